@@ -1,0 +1,30 @@
+#pragma once
+
+#include "core/world/physics_config.hpp"
+#include "core/world/push.hpp"
+#include "core/world/scene.hpp"
+
+namespace rtg {
+
+/// What one push led to. `ok` is false if the simulator met a non-finite state or an iteration
+/// limit; `end` is then the last good state and must not be used as a transition.
+struct PushOutcome {
+  Poses end;
+  bool ok = true;
+};
+
+/// Forward dynamics of a scene at rest: equal arguments give bit-equal results, in any order, on any
+/// number of threads (implementations hold no mutable state).
+class Simulator {
+ public:
+  virtual ~Simulator() = default;
+
+  /// The pushing action: the robot moves straight to push_target(), heading held, force and torque
+  /// bounded; then everything settles. `start` has one pose per body.
+  [[nodiscard]] virtual PushOutcome push(const Poses& start, int action) const = 0;
+
+  /// Lets the scene come to rest with the robot held.
+  [[nodiscard]] virtual PushOutcome settle(const Poses& start) const = 0;
+};
+
+}  // namespace rtg

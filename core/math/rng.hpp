@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+namespace rtg {
+
+/// Deterministic random stream: the same seed gives the same numbers in every process.
+///
+/// std::mt19937_64 is fixed by the standard; the mapping to reals is ours because
+/// std::uniform_real_distribution is not.
+class Rng {
+ public:
+  explicit Rng(std::uint64_t seed) : engine_(mix(seed)) {}
+
+  /// An independent stream for a sub-task, a pure function of (seed, key).
+  Rng(std::uint64_t seed, std::uint64_t key) : engine_(mix(mix(seed) ^ (key + 0x9e3779b97f4a7c15))) {}
+
+  /// Uniform in [lo, hi).
+  double uniform(double lo, double hi) {
+    return lo + (hi - lo) * static_cast<double>(engine_() >> 11) * 0x1.0p-53;
+  }
+
+  /// Uniform in {0, ..., n-1}; n ≥ 1.
+  int below(int n) { return static_cast<int>(uniform(0.0, static_cast<double>(n))); }
+
+ private:
+  static std::uint64_t mix(std::uint64_t x) {  // splitmix64 finaliser [Steele et al. 2014]
+    x += 0x9e3779b97f4a7c15;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+    return x ^ (x >> 31);
+  }
+
+  std::mt19937_64 engine_;
+};
+
+}  // namespace rtg

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace rtg {
+
+/// How a reverse solve ended.
+enum class SolveStatus : std::int8_t {
+  kConverged,         // constraints and stationarity below their tolerances
+  kPruned,            // the action cannot have been the last one; nothing was solved
+  kInfeasible,        // stationary point of the infeasibility: no predecessor nearby
+  kIterationLimit,    // max_iterations
+  kLineSearchFailed,  // no acceptable step, even with the largest regularisation
+  kSingular,          // the KKT system could not be factorised
+  kNonFinite,         // NaN or infinity met
+};
+inline constexpr int kSolveStatusCount = 7;
+
+constexpr std::string_view name(SolveStatus s) {
+  constexpr std::string_view names[] = {"converged",          "pruned",   "infeasible",
+                                        "iteration_limit",    "line_search_failed",
+                                        "singular",           "non_finite"};
+  return names[static_cast<int>(s)];
+}
+
+}  // namespace rtg

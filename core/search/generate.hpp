@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "core/search/batches.hpp"
+#include "core/search/report.hpp"
+#include "core/search/search_config.hpp"
+#include "core/search/transition.hpp"
+#include "core/tasks/task.hpp"
+
+namespace rtg {
+
+/// Everything the search needs from outside of itself.
+struct GenerationSeams {
+  SolveBatch solve;
+  ReplayBatch replay;
+  std::function<Poses(const Poses&)> settle;          // brings a sampled goal state to rest
+  TransitionSink store;                               // receives every transition, in order
+  std::function<void(const Progress&)> progress = {}; // called after each layer; may be empty
+  std::function<bool()> cancelled = {};               // polled between layers; may be empty
+};
+
+/// The whole generation: trees of reverse steps from sampled goals (beam search), forward replay of every
+/// converged candidate, end-to-end replay of chains, tree policy, its roll-outs, coverage. A pure function of
+/// (task, config, seed) and the seams.
+GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
+                          const GenerationSeams& seams);
+
+}  // namespace rtg

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/math/rng.hpp"
+#include "core/world/push.hpp"
+#include "core/world/scene.hpp"
+
+namespace rtg {
+
+/// One condition on the bodies of a kind ("*" means all but the robot). A goal is the conjunction of
+/// its terms. `tighten` [m] shrinks the target set from all sides.
+struct GoalTerm {
+  enum class Region { kDisc, kHalfPlane };
+  std::string kind = "*";
+  Region region = Region::kDisc;
+  Vector2d centre = Vector2d::Zero();   // kDisc: |x - centre| ≤ radius
+  double radius = 0.0;                  // [m]
+  Vector2d normal = Vector2d::UnitX();  // kHalfPlane: normal·x ≤ offset, |normal| = 1
+  double offset = 0.0;                  // [m]
+};
+
+/// A sparse-reward task: reward +1 and termination when the goal holds, nothing otherwise.
+struct Task {
+  std::string name;
+  Scene scene;
+  Poses start;                  // nominal start state
+  std::vector<GoalTerm> goal;   // all must hold
+  PushConfig push;
+  int horizon = 60;             // episode length, a truncation
+  double discount = 0.8;        // γ
+  double start_jitter = 0.1;    // evaluation starts: object positions ± this [m]
+  double randomisation = 0.0;   // training starts: object positions ± this [m]
+};
+
+/// Whether the goal holds in `poses`, with every target set shrunk by `tighten` [m].
+bool succeeded(const Task& task, const Poses& poses, double tighten = 0.0);
+
+/// The learner's view, float32, lengths / 8 m: robot x, y; per movable body x, y, cos θ, sin θ,
+/// x - x_robot, y - y_robot. Fixed body order carries the class.
+std::vector<float> observation(const Task& task, const Poses& poses);
+int observation_size(const Task& task);
+
+/// Start state with every movable object's position moved by ± amplitude in x and y (uniform),
+/// overlaps drawn again; empty if no legal draw was found in 1000 attempts.
+std::optional<Poses> jittered_start(const Task& task, double amplitude, Rng& rng);
+
+/// A layout that satisfies the goal with 0.05 m to spare, bodies at random angles without overlap
+/// and a robot outside of them, clear of all bodies or just behind one as after a push. Not yet at rest:
+/// settle it. Empty if none was found in 1000 attempts.
+std::optional<Poses> sample_goal(const Task& task, Rng& rng);
+
+}  // namespace rtg

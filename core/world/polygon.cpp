@@ -1,0 +1,89 @@
+#include "core/world/polygon.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace rtg {
+namespace {
+
+constexpr double kMinEdge = 0.005;   // Box2D merges vertices closer than its linear slop [m]
+constexpr double kMinArea = 1e-4;    // [m²]
+constexpr double kMaxExtent = 1000;  // [m]
+
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+std::string vertex_name(std::size_t k) { return "vertex " + std::to_string(k); }
+
+}  // namespace
+
+Moments moments(const Polygon& shape) {
+  double area = 0.0, polar = 0.0;
+  Vector2d first = Vector2d::Zero();
+  for (std::size_t k = 0; k < shape.size(); ++k) {
+    const Vector2d& v = shape.vertices[k];
+    const Vector2d& w = shape.vertices[(k + 1) % shape.size()];
+    const double c = cross(v, w);
+    area += c / 2.0;
+    first += c / 6.0 * (v + w);
+    polar += c / 12.0 * (v.dot(v) + v.dot(w) + w.dot(w));
+  }
+  const Vector2d centroid = first / area;
+  return {area, centroid, polar - area * centroid.squaredNorm()};
+}
+
+std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices) {
+  const std::size_t n = vertices.size();
+  if (n < 3 || n > kMaxVertices)
+    return "has " + std::to_string(n) + " vertices; legal are 3 to " + std::to_string(kMaxVertices);
+  for (std::size_t k = 0; k < n; ++k)
+    if (!vertices[k].allFinite() || vertices[k].cwiseAbs().maxCoeff() > kMaxExtent)
+      return vertex_name(k) + " is not finite or beyond 1000 m";
+  double area = 0.0, turning = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vector2d edge = vertices[(k + 1) % n] - vertices[k];
+    const Vector2d next = vertices[(k + 2) % n] - vertices[(k + 1) % n];
+    if (edge.norm() < kMinEdge)
+      return "edge at " + vertex_name(k) + " is shorter than 0.005 m";
+    turning += std::atan2(cross(edge, next), edge.dot(next));
+    area += cross(vertices[k], vertices[(k + 1) % n]) / 2.0;
+  }
+  if (area < 0.0) return "is clockwise; list the vertices counter-clockwise";
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vector2d edge = vertices[(k + 1) % n] - vertices[k];
+    const Vector2d next = vertices[(k + 2) % n] - vertices[(k + 1) % n];
+    if (cross(edge, next) <= 1e-6 * edge.norm() * next.norm())
+      return "is not strictly convex at " + vertex_name((k + 1) % n);
+  }
+  if (std::abs(turning - 2.0 * std::numbers::pi) > 1e-6) return "crosses itself";
+  if (area < kMinArea) return "has an area below 1e-4 m²";
+  return std::nullopt;
+}
+
+Polygon centred(const Polygon& shape) {
+  const Vector2d c = moments(shape).centroid;
+  Polygon out = shape;
+  for (Vector2d& v : out.vertices) v -= c;
+  return out;
+}
+
+double bounding_radius(const Polygon& shape) {
+  double r = 0.0;
+  for (const Vector2d& v : shape.vertices) r = std::max(r, v.norm());
+  return r;
+}
+
+Polygon box(double width, double height) {
+  const double a = width / 2.0, b = height / 2.0;
+  return {{{-a, -b}, {a, -b}, {a, b}, {-a, b}}};
+}
+
+Polygon regular_polygon(int sides, double circumradius) {
+  Polygon shape;
+  for (int k = 0; k < sides; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / sides;
+    shape.vertices.emplace_back(circumradius * std::cos(angle), circumradius * std::sin(angle));
+  }
+  return shape;
+}
+
+}  // namespace rtg

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/world/pose.hpp"
+
+namespace rtg {
+
+/// Convex polygon, vertices counter-clockwise [m].
+struct Polygon {
+  std::vector<Vector2d> vertices;
+
+  bool operator==(const Polygon&) const = default;
+  std::size_t size() const { return vertices.size(); }
+};
+
+/// Box2D's limit, and ours.
+inline constexpr std::size_t kMaxVertices = 8;
+
+/// Area integrals of a polygon of unit density, reference/physics.md 1.1.
+struct Moments {
+  double area = 0.0;                      // [m²]
+  Vector2d centroid = Vector2d::Zero();   // [m]
+  double polar = 0.0;                     // ∫|x - centroid|² dx [m⁴]
+};
+
+Moments moments(const Polygon& shape);
+
+/// Why `vertices` is no legal shape (too few or many, not finite, clockwise, not convex, degenerate),
+/// in words a user can act on; empty if it is legal.
+std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices);
+
+/// The same shape with its centroid at the origin.
+Polygon centred(const Polygon& shape);
+
+/// Largest distance of a vertex from the body origin [m].
+double bounding_radius(const Polygon& shape);
+
+Polygon box(double width, double height);
+Polygon regular_polygon(int sides, double circumradius);
+
+}  // namespace rtg

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <vector>
+
+namespace rtg {
+
+using Eigen::Vector2d;
+
+/// Planar pose p = (x, y, θ) of a body: X(v, p) = R(θ) v + (x, y), with v in the centroid frame.
+struct Pose {
+  double x = 0.0;      // [m]
+  double y = 0.0;      // [m]
+  double theta = 0.0;  // [rad], never wrapped
+
+  bool operator==(const Pose&) const = default;
+  Vector2d position() const { return {x, y}; }
+};
+
+/// State of a scene at rest: one pose per body, body 0 is the robot.
+using Poses = std::vector<Pose>;
+
+/// R(θ) v.
+inline Vector2d rotate(double theta, const Vector2d& v) {
+  const double c = std::cos(theta), s = std::sin(theta);
+  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+}
+
+/// X(v, p), a body-frame point in the world frame.
+inline Vector2d to_world(const Pose& p, const Vector2d& v) { return p.position() + rotate(p.theta, v); }
+
+/// The inverse of to_world.
+inline Vector2d to_local(const Pose& p, const Vector2d& x) {
+  return rotate(-p.theta, x - p.position());
+}
+
+inline bool is_finite(const Pose& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.theta);
+}
+
+inline bool is_finite(const Poses& poses) {
+  for (const Pose& p : poses)
+    if (!is_finite(p)) return false;
+  return true;
+}
+
+}  // namespace rtg

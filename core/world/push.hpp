@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/world/pose.hpp"
+
+namespace rtg {
+
+/// The discrete action set: push straight along d(a) = (cos 2πa/n, sin 2πa/n), heading held.
+struct PushConfig {
+  int headings = 48;    // n
+  double stride = 2.0;  // length of one push [m]
+  double arena = 8.0;   // the robot's target is clipped to |x|, |y| ≤ arena [m]
+
+  template <class Visitor>
+  void visit(Visitor& v) {
+    v.integer("headings", headings, 1, 360, "number of push directions");
+    v.number("stride", stride, 0.01, 100.0, "length of one push [m]");
+    v.number("arena", arena, 0.1, 1000.0, "half width of the square the robot stays in [m]");
+  }
+};
+
+/// d(a), unit vector of action a ∈ {0, ..., headings-1}.
+Vector2d direction(int action, const PushConfig& config);
+
+/// Where the robot stands after action `action` from `robot`: one stride along d(a), each
+/// coordinate clipped to the arena; the heading is held.
+Pose push_target(const Pose& robot, int action, const PushConfig& config);
+
+/// Whether a robot pose lies in the arena.
+bool in_arena(const Pose& robot, const PushConfig& config);
+
+}  // namespace rtg

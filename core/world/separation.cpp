@@ -1,0 +1,43 @@
+#include "core/world/separation.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace rtg {
+namespace {
+
+double one_sided(const Polygon& a, const Pose& pose_a, const Polygon& b, const Pose& pose_b) {
+  double best = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const Vector2d& v = a.vertices[k];
+    const Vector2d edge = a.vertices[(k + 1) % a.size()] - v;
+    const Vector2d normal = Vector2d(edge.y(), -edge.x()).normalized();
+    double gap = std::numeric_limits<double>::infinity();
+    for (const Vector2d& w : b.vertices)
+      gap = std::min(gap, normal.dot(to_local(pose_a, to_world(pose_b, w)) - v));
+    best = std::max(best, gap);
+  }
+  return best;
+}
+
+}  // namespace
+
+double separation(const Polygon& a, const Pose& pose_a, const Polygon& b, const Pose& pose_b) {
+  return std::max(one_sided(a, pose_a, b, pose_b), one_sided(b, pose_b, a, pose_a));
+}
+
+std::optional<std::pair<std::size_t, std::size_t>> first_overlap(const Scene& scene,
+                                                                  const Poses& poses,
+                                                                  double margin) {
+  for (std::size_t i = 0; i < scene.size(); ++i)
+    for (std::size_t j = i + 1; j < scene.size(); ++j) {
+      const Body &a = scene.bodies[i], &b = scene.bodies[j];
+      if (a.fixed && b.fixed) continue;
+      const double reach = bounding_radius(a.shape) + bounding_radius(b.shape) + margin;
+      if ((poses[i].position() - poses[j].position()).norm() > reach) continue;
+      if (separation(a.shape, poses[i], b.shape, poses[j]) < margin) return {{i, j}};
+    }
+  return std::nullopt;
+}
+
+}  // namespace rtg

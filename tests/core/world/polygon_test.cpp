@@ -1,0 +1,46 @@
+#include "core/world/polygon.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rtg {
+namespace {
+
+// Reference values of shared/reference/physics.md 1.1, checked there against shapely, pymunk and Box2D.
+TEST(Polygon, MomentsMatchReferenceValues) {
+  const Polygon shape{{{.1, -.4}, {.9, -.3}, {1.2, .5}, {.4, .9}, {-.2, .3}}};
+  const Moments m = moments(shape);
+  EXPECT_NEAR(m.area, 1.185, 1e-12);
+  EXPECT_NEAR(m.centroid.x(), .4914205, 1e-7);
+  EXPECT_NEAR(m.centroid.y(), .2135021, 1e-7);
+  EXPECT_NEAR(m.polar + m.area * m.centroid.squaredNorm(), .5689833333, 1e-9);
+}
+
+TEST(Polygon, PolarMomentOfABoxIsTheTextbookOne) {
+  const Moments m = moments(box(1.2, 0.7));
+  EXPECT_NEAR(m.polar, 1.2 * 0.7 * (1.2 * 1.2 + 0.7 * 0.7) / 12.0, 1e-12);
+}
+
+TEST(Polygon, MomentsDoNotDependOnTheOrigin) {
+  Polygon shape = regular_polygon(5, 0.8);
+  const double polar = moments(shape).polar;
+  for (Vector2d& v : shape.vertices) v += Vector2d(3.0, -2.0);
+  EXPECT_NEAR(moments(shape).polar, polar, 1e-12);
+  EXPECT_NEAR(moments(centred(shape)).centroid.norm(), 0.0, 1e-12);
+}
+
+TEST(Polygon, DefectsAreNamed) {
+  using V = std::vector<Vector2d>;
+  const V clockwise{{0, 0}, {0, 1}, {1, 1}, {1, 0}}, dent{{0, 0}, {2, 0}, {0.5, 0.5}, {0, 2}},
+      star{{0, 1}, {-0.6, -0.8}, {1, 0.3}, {-1, 0.3}, {0.6, -0.8}}, two{{0, 0}, {1, 0}},
+      flat{{0, 0}, {1, 0}, {2, 0}}, nan{{0, 0}, {NAN, 0}, {0, 1}};
+  EXPECT_EQ(polygon_defect(clockwise), "is clockwise; list the vertices counter-clockwise");
+  EXPECT_EQ(polygon_defect(dent), "is not strictly convex at vertex 2");
+  EXPECT_EQ(polygon_defect(star), "crosses itself");
+  EXPECT_EQ(polygon_defect(two), "has 2 vertices; legal are 3 to 8");
+  EXPECT_EQ(polygon_defect(flat), "is not strictly convex at vertex 1");
+  EXPECT_EQ(polygon_defect(nan), "vertex 1 is not finite or beyond 1000 m");
+  EXPECT_EQ(polygon_defect(box(1, 2).vertices), std::nullopt);
+}
+
+}  // namespace
+}  // namespace rtg
