@@ -1,0 +1,158 @@
+# Set-up shared by run.sh and test.sh; sourced, never run. Every step is idempotent, says on stderr what it
+# does, and costs nothing once it is done. Calls at the same time wait for each other.
+
+ROOT=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
+VENV=$ROOT/.venv
+
+# Debian and Ubuntu names; "a|b" is satisfied by either (Ubuntu 24.04 renamed some).
+PACKAGES=(
+  g++ python3-venv python3-dev 'libglib2.0-0|libglib2.0-0t64'
+  libeigen3-dev libsuitesparse-dev libbox2d-dev libyaml-cpp-dev nlohmann-json3-dev libgtest-dev
+)
+TEST_PACKAGES=(libbenchmark-dev iproute2)
+
+say() { printf 'rtg: %s\n' "$*" >&2; }
+
+fail() {
+  say "$*"
+  exit 1
+}
+
+# One set-up at a time in this checkout; released by unlock_setup or by the end of the process.
+lock_setup() {
+  mkdir -p "$ROOT/build"
+  exec 9>"$ROOT/build/.setup.lock"
+  if ! flock --nonblock 9; then
+    say "waiting for another set-up in $ROOT"
+    flock 9
+  fi
+}
+
+unlock_setup() { exec 9>&-; }
+
+is_installed() { # "a|b" of Debian packages
+  local name
+  for name in ${1//|/ }; do
+    if [[ $(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null) == installed ]]; then
+      return 0
+    fi
+  done
+  return 1
+}
+
+apt_install() {
+  local as_root=()
+  if ((EUID != 0)); then as_root=(sudo); fi
+  "${as_root[@]}" apt-get update -qq || say "apt-get update failed; trying with the lists at hand"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends "$@"
+}
+
+may_install() {
+  ((EUID == 0)) || { command -v sudo && { [[ -t 0 ]] || sudo -n true; }; } &>/dev/null
+}
+
+# setup_packages NAME...: Debian packages, through apt when root or sudo.
+setup_packages() {
+  if ! command -v dpkg-query >/dev/null; then
+    say "no Debian or Ubuntu: taking for granted what these packages hold: $*"
+    return
+  fi
+  local package missing=()
+  for package in "$@"; do
+    is_installed "$package" || missing+=("${package%%|*}")
+  done
+  ((${#missing[@]})) || return 0
+  may_install || fail "missing Debian packages, and neither root nor sudo to install them. Ask for:
+  apt-get install ${missing[*]}"
+  say "installing Debian packages: ${missing[*]}"
+  mkdir -p "$ROOT/build"
+  if ! apt_install "${missing[@]}" >"$ROOT/build/apt.log" 2>&1 9>&-; then
+    tail -n 20 "$ROOT/build/apt.log" >&2
+    fail "apt-get could not install: ${missing[*]} (whole log: build/apt.log)"
+  fi
+}
+
+find_python() {
+  local python
+  for python in python3 python3.11 python3.12 python3.13; do
+    if "$python" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' 2>/dev/null; then
+      command -v "$python"
+      return
+    fi
+  done
+  fail "no Python 3.11, 3.12 or 3.13 found. Debian 12 and Ubuntu 24.04 have one: apt-get install python3"
+}
+
+# The CPU build of torch lives on an index of its own; without it pip fetches the far larger CUDA build.
+torch_index() {
+  local index=https://download.pytorch.org/whl/cpu
+  if "$VENV/bin/python" -c 'import sys, urllib.request as u; u.urlopen(sys.argv[1], timeout=5)' \
+    "$index/torch/" 2>/dev/null; then
+    printf '%s\n' --extra-index-url "$index"
+  fi
+}
+
+pip_install() {
+  if ! "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check "$@" \
+    >"$ROOT/build/pip.log" 2>&1 9>&-; then
+    tail -n 20 "$ROOT/build/pip.log" >&2
+    fail "pip could not install the Python packages (whole log: build/pip.log)"
+  fi
+}
+
+# .venv with the pinned packages of train/requirements.txt and the package rtg itself, installed in place.
+# The stamp holds what the environment was made from; a moved checkout is made anew.
+setup_python() {
+  local stamp=$VENV/.made-from wanted torch index
+  wanted="$ROOT $(cd "$ROOT/train" && cat requirements.txt pyproject.toml | sha256sum)"
+  if [[ -x $VENV/bin/python && -f $stamp && $(<"$stamp") == "$wanted" ]]; then return; fi
+  local python
+  python=$(find_python) || exit 1
+  if [[ ! -f $stamp || $(<"$stamp") != "$ROOT "* ]] || ! "$VENV/bin/python" -c '' 2>/dev/null; then
+    say "creating .venv with $("$python" --version)"
+    "$python" -m venv --clear "$VENV" 9>&- || fail "$python -m venv failed"
+  fi
+  say "installing the Python packages of train/requirements.txt (minutes the first time)"
+  torch=$(grep '^torch==' "$ROOT/train/requirements.txt")
+  mapfile -t index < <(torch_index)
+  pip_install "${index[@]}" "$torch"
+  pip_install -r "$ROOT/train/requirements.txt"
+  pip_install --no-deps --no-build-isolation --editable "$ROOT/train"
+  printf '%s\n' "$wanted" >"$stamp"
+}
+
+# Shows ninja's progress as one changing line on a terminal, nothing elsewhere.
+build_progress() {
+  local line
+  while IFS= read -r line; do
+    printf '%s\n' "$line" >>"$1"
+    if [[ -t 2 && $line == \[* ]]; then printf '\r\033[K%s' "${line:0:100}" >&2; fi
+  done
+  if [[ -t 2 ]]; then printf '\r\033[K' >&2; fi
+}
+
+# build_preset PRESET TARGET [CMAKE_OPTION...]: configures once, builds what changed, quiet unless it fails.
+build_preset() {
+  local preset=$1 target=$2
+  shift 2
+  local folder=$ROOT/build/$preset log=$ROOT/build/$preset.log
+  export PATH=$VENV/bin:$PATH
+  : >"$log"
+  if [[ ! -f $folder/build.ninja ]]; then
+    say "configuring build/$preset"
+    local launcher=()
+    if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+    if ! (cd "$ROOT" && cmake --preset "$preset" "${launcher[@]}" "$@") >"$log" 2>&1 9>&-; then
+      tail -n 30 "$log" >&2
+      fail "cmake could not configure (whole log: build/$preset.log)"
+    fi
+  fi
+  if ! ninja -C "$folder" -n "$target" 2>/dev/null 9>&- | grep -q 'no work to do'; then
+    say "building build/$preset ($(nproc) cores)"
+    if ! (set -o pipefail && ninja -C "$folder" "$target" 2>&1 9>&- | build_progress "$log"); then
+      grep -vE '^\[[0-9]+/[0-9]+\] ' "$log" | tail -n 60 >&2
+      fail "the build failed (whole log: build/$preset.log)"
+    fi
+  fi
+}

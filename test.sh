@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# Builds and runs the tests.
+#   ./test.sh             release build, ctest, pytest with the system tests
+#   ./test.sh asan        C++ tests under AddressSanitizer and UndefinedBehaviorSanitizer
+#   ./test.sh tsan        C++ tests that use threads under ThreadSanitizer
+#   ./test.sh coverage    line coverage of the physics and the solver
+#   ./test.sh bench       benchmarks: JSON files and a Markdown table in build/bench/
+set -euo pipefail
+# shellcheck source=setup.sh
+source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
+
+usage() { sed -n '3,7s/^# *//p' "${BASH_SOURCE[0]}"; }
+
+set_up() { # PRESET TARGET
+  lock_setup
+  setup_packages "${PACKAGES[@]}" "${TEST_PACKAGES[@]}"
+  setup_python
+  build_preset "$@"
+  unlock_setup
+}
+
+run_ctest() { # PRESET [CTEST_OPTION...]
+  local preset=$1
+  shift
+  say "ctest, build/$preset"
+  (cd "$ROOT" && ctest --preset "$preset" --parallel "$(nproc)" "$@")
+}
+
+run_pytest() {
+  say "pytest"
+  (cd "$ROOT" && "$VENV/bin/python" -m pytest -c train/pyproject.toml --rootdir . "$@")
+}
+
+coverage() {
+  local folder=$ROOT/build/coverage
+  find "$folder" -name '*.gcda' -delete
+  run_ctest coverage --label-exclude system
+  (cd "$ROOT" && "$VENV/bin/gcovr" --root . --object-directory "$folder" \
+    --filter 'core/(math|energy|forward|reverse)/' --exclude-throw-branches \
+    --gcov-ignore-parse-errors --sort uncovered-percent \
+    --txt --txt-summary --html-details "$folder/coverage.html" --fail-under-line 95)
+}
+
+case ${1:-all} in
+  all)
+    set_up release all
+    run_ctest release --label-exclude bench
+    run_pytest
+    ;;
+  asan)
+    set_up asan rtg_cpp_tests
+    run_ctest asan
+    ;;
+  tsan)
+    set_up tsan rtg_cpp_tests
+    run_ctest tsan --tests-regex 'thread|pool|generate'
+    ;;
+  coverage)
+    set_up coverage rtg_cpp_tests
+    coverage
+    ;;
+  bench)
+    set_up release all
+    exec "$VENV/bin/python" "$ROOT/tests/bench/table.py" "$ROOT/build/release" "$ROOT/build/bench"
+    ;;
+  -h | --help) usage ;;
+  *)
+    say "unknown: $1"
+    usage >&2
+    exit 2
+    ;;
+esac

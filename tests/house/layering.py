@@ -1,0 +1,94 @@
+"""Who may include whom: the architecture's arrows, read from the include and import lines."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
+
+ROOT = Path(__file__).resolve().parents[2]
+
+MAY_INCLUDE = {
+    "core/math": {"core/math"},
+    "core/world": {"core/math", "core/world"},
+    "core/energy": {"core/math", "core/world", "core/energy"},
+    "core/forward": {"core/math", "core/world", "core/energy", "core/forward"},
+    "core/reverse": {"core/math", "core/world", "core/energy", "core/reverse"},
+    "core/tasks": {"core/math", "core/world", "core/tasks"},
+    "core/search": {"core"},
+    "nodes": {"core", "nodes", "rtg_msgs"},
+    "msgs": {"rtg_msgs"},
+    # The bindings take the resolved config, so that C++ and Python never read YAML apart.
+    "train": {"core", "nodes/common"},
+    "tests": {"core", "nodes", "tests", "rtg_msgs"},
+}
+
+# Third-party headers by their first path component or name -> the files that may include them.
+ONLY_IN = {
+    r"(umfpack|cholmod|klu|SuiteSparse|amd|colamd)\w*\.h|suitesparse/.*": r"core/math/\w+\.cpp",
+    r"box2d/.*": r"core/forward/box2d_\w+\.cpp",
+    r"yaml-cpp/.*": r"nodes/common/\w+\.cpp",
+    r"lcm/.*": r"nodes/common/bus\w*\.cpp",
+    r"nlohmann/.*": r"(core/search|nodes/.*|train/.*)\w*\.cpp",
+    r"nanobind/.*": r"train/.*\.(cpp|hpp)",
+    r"gtest/.*|gmock/.*": r"tests/.*\.(cpp|hpp)",
+    r"benchmark/.*": r"tests/bench/.*\.(cpp|hpp)",
+    r"Eigen/.*|unsupported/Eigen/.*": r"(core|nodes|train|tests)/.*",
+    # POSIX belongs to the processes.
+    r"(sys|netinet|arpa|net)/.*|unistd\.h|pthread\.h": r"(nodes|tests|train)/.*|core/search/.*",
+}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
+IMPORT_LCM = re.compile(r"^\s*(?:import\s+lcm\b|from\s+lcm\b)", re.MULTILINE)
+
+
+def is_ours(header: str) -> bool:
+    return header.split("/")[0] in {"core", "nodes", "msgs", "rtg_msgs", "tests", "train"}
+
+
+def is_standard(header: str) -> bool:
+    """The C++ standard library and C headers without a folder."""
+    return "/" not in header and not any(re.fullmatch(third, header) for third in ONLY_IN)
+
+
+def layer(path: str) -> str:
+    """The longest prefix of `path` that has a rule."""
+    fits = [name for name in MAY_INCLUDE if path.startswith(name + "/")]
+    return max(fits, key=len, default="")
+
+
+def fault(path: str, header: str) -> str:
+    """What is wrong with `path` including `header`; empty when nothing is."""
+    if is_ours(header):
+        allowed = MAY_INCLUDE.get(layer(path), set())
+        folder = str(PurePosixPath(header).parent)
+        if any(folder == name or folder.startswith(name + "/") for name in allowed):
+            return ""
+        return f"{path}: may not include {header}"
+    if is_standard(header) or header.startswith("experimental/"):
+        return ""
+    for third_party, places in ONLY_IN.items():
+        if re.fullmatch(third_party, header):
+            ok = re.fullmatch(places, path)
+            return "" if ok else f"{path}: {header} belongs in {places} alone"
+    return f"{path}: {header} is of no library that this project uses"
+
+
+def violations(files: dict[str, str]) -> list[str]:
+    """All faults of `files`, a map of repository path to text."""
+    found = []
+    for path, text in sorted(files.items()):
+        if path.endswith(".py"):
+            if IMPORT_LCM.search(text) and path not in {"train/rtg/bus.py"}:
+                found.append(f"{path}: import lcm belongs in train/rtg/bus.py alone")
+            continue
+        found += [message for header in INCLUDE.findall(text) if (message := fault(path, header))]
+    return found
+
+
+def sources(*suffixes: str) -> Iterator[Path]:
+    """Our own sources with one of the suffixes."""
+    for folder in ("core", "nodes", "msgs", "train", "tests"):
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix in suffixes and "build" not in path.parts:
+                yield path

@@ -1,0 +1,36 @@
+import subprocess
+import sys
+from pathlib import Path
+
+from layering import ROOT, sources
+
+TOOLS = Path(sys.executable).parent
+PYPROJECT = "train/pyproject.toml"
+
+
+def check(*command: str) -> None:
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
+
+
+def test_cpp_is_formatted() -> None:
+    files = [str(path) for path in sources(".hpp", ".cpp")]
+    check(str(TOOLS / "clang-format"), "--dry-run", "-Werror", *files)
+
+
+def test_python_is_formatted() -> None:
+    check(str(TOOLS / "ruff"), "format", "--check", "--config", PYPROJECT, "train", "tests")
+
+
+def test_python_is_clean() -> None:
+    check(str(TOOLS / "ruff"), "check", "--no-cache", "--config", PYPROJECT, "train", "tests")
+
+
+def test_python_types_hold() -> None:
+    cache = str(ROOT / "build" / "mypy")
+    check(str(TOOLS / "mypy"), "--config-file", PYPROJECT, "--cache-dir", cache)
+
+
+def test_shell_scripts_parse() -> None:
+    for script in ("run.sh", "test.sh", "setup.sh", ".ci/run"):
+        check("bash", "-n", script)

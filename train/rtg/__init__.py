@@ -1,0 +1,1 @@
+"""Reverse trajectory generation: processes, learning and tools around the C++ core."""
