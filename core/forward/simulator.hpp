@@ -13,8 +13,8 @@ struct PushOutcome {
   bool ok = true;
 };
 
-/// Forward dynamics of a scene at rest: equal arguments give bit-equal results, in any order, on any
-/// number of threads (implementations hold no mutable state).
+/// Forward dynamics of a scene at rest: equal arguments give bit-equal results, in any order, on
+/// any number of threads (implementations hold no mutable state).
 class Simulator {
  public:
   virtual ~Simulator() = default;

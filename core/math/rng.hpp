@@ -14,7 +14,8 @@ class Rng {
   explicit Rng(std::uint64_t seed) : engine_(mix(seed)) {}
 
   /// An independent stream for a sub-task, a pure function of (seed, key).
-  Rng(std::uint64_t seed, std::uint64_t key) : engine_(mix(mix(seed) ^ (key + 0x9e3779b97f4a7c15))) {}
+  Rng(std::uint64_t seed, std::uint64_t key)
+      : engine_(mix(mix(seed) ^ (key + 0x9e3779b97f4a7c15))) {}
 
   /// Uniform in [lo, hi).
   double uniform(double lo, double hi) {

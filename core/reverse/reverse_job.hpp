@@ -13,7 +13,8 @@ struct ReverseJob {
   bool operator==(const ReverseJob&) const = default;
 };
 
-/// Answer to a ReverseJob. `start` is finite always, and a predecessor only if status is kConverged.
+/// Answer to a ReverseJob. `start` is finite always, and a predecessor only if status is
+/// kConverged.
 struct ReverseResult {
   SolveStatus status = SolveStatus::kNonFinite;
   int iterations = 0;

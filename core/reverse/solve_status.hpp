@@ -18,9 +18,9 @@ enum class SolveStatus : std::int8_t {
 inline constexpr int kSolveStatusCount = 7;
 
 constexpr std::string_view name(SolveStatus s) {
-  constexpr std::string_view names[] = {"converged",          "pruned",   "infeasible",
-                                        "iteration_limit",    "line_search_failed",
-                                        "singular",           "non_finite"};
+  constexpr std::string_view names[] = {
+      "converged",          "pruned",   "infeasible", "iteration_limit",
+      "line_search_failed", "singular", "non_finite"};
   return names[static_cast<int>(s)];
 }
 

@@ -15,15 +15,15 @@ namespace rtg {
 struct GenerationSeams {
   SolveBatch solve;
   ReplayBatch replay;
-  std::function<Poses(const Poses&)> settle;          // brings a sampled goal state to rest
-  TransitionSink store;                               // receives every transition, in order
-  std::function<void(const Progress&)> progress = {}; // called after each layer; may be empty
-  std::function<bool()> cancelled = {};               // polled between layers; may be empty
+  std::function<Poses(const Poses&)> settle;           // brings a sampled goal state to rest
+  TransitionSink store;                                // receives every transition, in order
+  std::function<void(const Progress&)> progress = {};  // called after each layer; may be empty
+  std::function<bool()> cancelled = {};                // polled between layers; may be empty
 };
 
-/// The whole generation: trees of reverse steps from sampled goals (beam search), forward replay of every
-/// converged candidate, end-to-end replay of chains, tree policy, its roll-outs, coverage. A pure function of
-/// (task, config, seed) and the seams.
+/// The whole generation: trees of reverse steps from sampled goals (beam search), forward replay of
+/// every converged candidate, end-to-end replay of chains, tree policy, its roll-outs, coverage. A
+/// pure function of (task, config, seed) and the seams.
 GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams);
 

@@ -11,11 +11,11 @@ namespace rtg {
 
 /// One line of the progress display.
 struct Progress {
-  std::string phase;      // "tree 1", "roll-outs", ...
-  int layer = 0;          // of `depth`
+  std::string phase;  // "tree 1", "roll-outs", ...
+  int layer = 0;      // of `depth`
   int depth = 0;
-  long transitions = 0;   // stored so far
-  long target = 0;        // to be stored in all
+  long transitions = 0;  // stored so far
+  long target = 0;       // to be stored in all
   double contact_share = 0.0;
   long start_region = 0;  // transitions whose state lies in the start region so far
 };
@@ -30,15 +30,17 @@ struct ReportNode {
 /// What a generation did: the generation part of summary.json plus the samples behind its pictures.
 struct GenerationReport {
   long transitions = 0;
-  double contact_share = 0.0;     // share of stored transitions that moved an object by more than 0.05 m
+  double contact_share =
+      0.0;  // share of stored transitions that moved an object by more than 0.05 m
   double multi_body_share = 0.0;  // ... two objects or more
   long start_region_transitions = 0;
-  double reachable_share = 0.0;   // share of transitions from which a success is reachable in the stored graph
+  double reachable_share =
+      0.0;  // share of transitions from which a success is reachable in the stored graph
   double tree_policy_success = 0.0;
   double tree_policy_length_mean = 0.0;
-  int start_region_depth = -1;    // least depth of a node in the start region; -1: never reached
-  long candidates = 0;            // reverse jobs asked for, pruned ones included
-  std::array<long, kSolveStatusCount> statuses{};  // by SolveStatus
+  int start_region_depth = -1;  // least depth of a node in the start region; -1: never reached
+  long candidates = 0;          // reverse jobs asked for, pruned ones included
+  std::array<long, kSolveStatusCount> statuses{};        // by SolveStatus
   double iterations_median = 0.0, iterations_p90 = 0.0;  // over converged ones
   double replay_gap_median = 0.0, replay_gap_p90 = 0.0;  // [m]
   double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
@@ -46,7 +48,8 @@ struct GenerationReport {
   std::vector<ReportNode> nodes;
 };
 
-/// The report as JSON text, keys as the fields above (pruned, converged and the other statuses by name).
+/// The report as JSON text, keys as the fields above (pruned, converged and the other statuses by
+/// name).
 std::string to_json(const GenerationReport& report);
 
 }  // namespace rtg

@@ -10,8 +10,8 @@
 
 namespace rtg {
 
-/// One condition on the bodies of a kind ("*" means all but the robot). A goal is the conjunction of
-/// its terms. `tighten` [m] shrinks the target set from all sides.
+/// One condition on the bodies of a kind ("*" means all but the robot). A goal is the conjunction
+/// of its terms. `tighten` [m] shrinks the target set from all sides.
 struct GoalTerm {
   enum class Region { kDisc, kHalfPlane };
   std::string kind = "*";
@@ -26,13 +26,13 @@ struct GoalTerm {
 struct Task {
   std::string name;
   Scene scene;
-  Poses start;                  // nominal start state
-  std::vector<GoalTerm> goal;   // all must hold
+  Poses start;                 // nominal start state
+  std::vector<GoalTerm> goal;  // all must hold
   PushConfig push;
-  int horizon = 60;             // episode length, a truncation
-  double discount = 0.8;        // γ
-  double start_jitter = 0.1;    // evaluation starts: object positions ± this [m]
-  double randomisation = 0.0;   // training starts: object positions ± this [m]
+  int horizon = 60;            // episode length, a truncation
+  double discount = 0.8;       // γ
+  double start_jitter = 0.1;   // evaluation starts: object positions ± this [m]
+  double randomisation = 0.0;  // training starts: object positions ± this [m]
 };
 
 /// Whether the goal holds in `poses`, with every target set shrunk by `tighten` [m].
@@ -48,8 +48,8 @@ int observation_size(const Task& task);
 std::optional<Poses> jittered_start(const Task& task, double amplitude, Rng& rng);
 
 /// A layout that satisfies the goal with 0.05 m to spare, bodies at random angles without overlap
-/// and a robot outside of them, clear of all bodies or just behind one as after a push. Not yet at rest:
-/// settle it. Empty if none was found in 1000 attempts.
+/// and a robot outside of them, clear of all bodies or just behind one as after a push. Not yet at
+/// rest: settle it. Empty if none was found in 1000 attempts.
 std::optional<Poses> sample_goal(const Task& task, Rng& rng);
 
 }  // namespace rtg

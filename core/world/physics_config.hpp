@@ -4,17 +4,17 @@ namespace rtg {
 
 /// Constants of the step energy Ψ and of the Box2D world matched to it, design 2.2.
 struct PhysicsConfig {
-  double time_step = 0.05;      // Δt of a sub-step [s]
-  int sub_steps = 10;           // h, sub-steps of one push
-  double damping = 20.0;        // k_D; Box2D gets linearDamping = angularDamping = k_D/Δt
-  double barrier = 2.0;         // μ, weight of the contact barrier [J]
-  double range = 0.15;          // ĝ, gap beyond which there is no contact force [m]
-  double skin = 0.0145;         // d₀, Box2D's resting distance [m]
-  double sharpness = 100.0;     // α of the log-sum-exp signed distance [1/m]
-  double slip = 0.025;          // ε_u, displacement over which friction builds up [m]
-  double force_factor = 6.0;    // B_f in units of the robot's own drag at push speed
-  double torque_factor = 6.0;   // B_ω, the same times the robot's radius
-  int box2d_steps = 5;          // Box2D steps per sub-step
+  double time_step = 0.05;     // Δt of a sub-step [s]
+  int sub_steps = 10;          // h, sub-steps of one push
+  double damping = 20.0;       // k_D; Box2D gets linearDamping = angularDamping = k_D/Δt
+  double barrier = 2.0;        // μ, weight of the contact barrier [J]
+  double range = 0.15;         // ĝ, gap beyond which there is no contact force [m]
+  double skin = 0.0145;        // d₀, Box2D's resting distance [m]
+  double sharpness = 100.0;    // α of the log-sum-exp signed distance [1/m]
+  double slip = 0.025;         // ε_u, displacement over which friction builds up [m]
+  double force_factor = 6.0;   // B_f in units of the robot's own drag at push speed
+  double torque_factor = 6.0;  // B_ω, the same times the robot's radius
+  int box2d_steps = 5;         // Box2D steps per sub-step
   int box2d_velocity_iterations = 16;
   int box2d_position_iterations = 8;
 

@@ -42,8 +42,7 @@ std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices) {
   for (std::size_t k = 0; k < n; ++k) {
     const Vector2d edge = vertices[(k + 1) % n] - vertices[k];
     const Vector2d next = vertices[(k + 2) % n] - vertices[(k + 1) % n];
-    if (edge.norm() < kMinEdge)
-      return "edge at " + vertex_name(k) + " is shorter than 0.005 m";
+    if (edge.norm() < kMinEdge) return "edge at " + vertex_name(k) + " is shorter than 0.005 m";
     turning += std::atan2(cross(edge, next), edge.dot(next));
     area += cross(vertices[k], vertices[(k + 1) % n]) / 2.0;
   }

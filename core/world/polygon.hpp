@@ -22,15 +22,15 @@ inline constexpr std::size_t kMaxVertices = 8;
 
 /// Area integrals of a polygon of unit density, reference/physics.md 1.1.
 struct Moments {
-  double area = 0.0;                      // [m²]
-  Vector2d centroid = Vector2d::Zero();   // [m]
-  double polar = 0.0;                     // ∫|x - centroid|² dx [m⁴]
+  double area = 0.0;                     // [m²]
+  Vector2d centroid = Vector2d::Zero();  // [m]
+  double polar = 0.0;                    // ∫|x - centroid|² dx [m⁴]
 };
 
 Moments moments(const Polygon& shape);
 
-/// Why `vertices` is no legal shape (too few or many, not finite, clockwise, not convex, degenerate),
-/// in words a user can act on; empty if it is legal.
+/// Why `vertices` is no legal shape (too few or many, not finite, clockwise, not convex,
+/// degenerate), in words a user can act on; empty if it is legal.
 std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices);
 
 /// The same shape with its centroid at the origin.

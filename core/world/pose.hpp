@@ -28,7 +28,9 @@ inline Vector2d rotate(double theta, const Vector2d& v) {
 }
 
 /// X(v, p), a body-frame point in the world frame.
-inline Vector2d to_world(const Pose& p, const Vector2d& v) { return p.position() + rotate(p.theta, v); }
+inline Vector2d to_world(const Pose& p, const Vector2d& v) {
+  return p.position() + rotate(p.theta, v);
+}
 
 /// The inverse of to_world.
 inline Vector2d to_local(const Pose& p, const Vector2d& x) {

@@ -10,11 +10,11 @@ namespace rtg {
 /// One rigid body. Its frame sits at the centroid of `shape`.
 struct Body {
   std::string name;
-  std::string kind;        // class label that goals refer to, for example "box"
-  Polygon shape;           // centred() [m]
-  double density = 1.0;    // ρ [kg/m²]
-  double friction = 0.3;   // μ_f; a pair uses √(μ₁μ₂), as Box2D does
-  bool fixed = false;      // takes part in contact, has no coordinates (a wall)
+  std::string kind;       // class label that goals refer to, for example "box"
+  Polygon shape;          // centred() [m]
+  double density = 1.0;   // ρ [kg/m²]
+  double friction = 0.3;  // μ_f; a pair uses √(μ₁μ₂), as Box2D does
+  bool fixed = false;     // takes part in contact, has no coordinates (a wall)
 
   bool operator==(const Body&) const = default;
 };

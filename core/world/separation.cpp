@@ -27,8 +27,8 @@ double separation(const Polygon& a, const Pose& pose_a, const Polygon& b, const 
 }
 
 std::optional<std::pair<std::size_t, std::size_t>> first_overlap(const Scene& scene,
-                                                                  const Poses& poses,
-                                                                  double margin) {
+                                                                 const Poses& poses,
+                                                                 double margin) {
   for (std::size_t i = 0; i < scene.size(); ++i)
     for (std::size_t j = i + 1; j < scene.size(); ++j) {
       const Body &a = scene.bodies[i], &b = scene.bodies[j];

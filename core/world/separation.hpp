@@ -17,7 +17,7 @@ double separation(const Polygon& a, const Pose& pose_a, const Polygon& b, const 
 
 /// The first pair of bodies closer than `margin` [m] (two fixed bodies may touch), or nothing.
 std::optional<std::pair<std::size_t, std::size_t>> first_overlap(const Scene& scene,
-                                                                  const Poses& poses,
-                                                                  double margin = 0.0);
+                                                                 const Poses& poses,
+                                                                 double margin = 0.0);
 
 }  // namespace rtg

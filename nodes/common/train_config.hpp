@@ -8,35 +8,35 @@ namespace rtg {
 enum class TrainPreset { kDefault, kPaper };
 inline constexpr std::array<std::string_view, 2> kTrainPresets{"default", "paper"};
 
-/// How the Python trainer learns, design 5.3. The values here are the preset `default`: what works best
-/// within Table 2's interaction budget. A loader begins with train_preset(preset) and reads the
-/// other fields over it.
+/// How the Python trainer learns, design 5.3. The values here are the preset `default`: what works
+/// best within Table 2's interaction budget. A loader begins with train_preset(preset) and reads
+/// the other fields over it.
 struct TrainConfig {
   TrainPreset preset = TrainPreset::kDefault;
-  int interactions = 350000;      // Table 2
-  int start_at = 20000;           // transitions that must have come in before learning starts
-  int buffer = 1500000;           // Table 2; of each of the two buffers
-  int batch = 512;                // Table 2
-  double learning_rate = 3e-4;    // of Adam
-  int train_frequency = 4;        // interactions per training round, Table 2
-  int gradient_steps = 1;         // per training round, Table 2
-  int warm_up = 0;                // gradient steps before the first interaction
-  int target_sync = 500;          // gradient steps between copies to the target network
-  double discount = 0.9;          // γ; 0: the task's
-  double offline_share = 0.5;     // of a batch; negative: uniform over all transitions
-  bool double_q = true;           // van Hasselt et al. 2016
-  bool dueling = true;            // Wang et al. 2016
-  bool layer_norm = true;         // after each hidden layer
-  bool small_head = true;         // last layer starts near 0
-  bool clip_targets = true;       // to [0, 1], where the values lie
-  bool value_bounds = true;       // raise targets to what stored trajectories prove
-  double epsilon_start = 0.3;     // exploration at the first interaction
-  double epsilon_end = 0.05;      // ... and from epsilon_share of the interactions on
+  int interactions = 350000;    // Table 2
+  int start_at = 20000;         // transitions that must have come in before learning starts
+  int buffer = 1500000;         // Table 2; of each of the two buffers
+  int batch = 512;              // Table 2
+  double learning_rate = 3e-4;  // of Adam
+  int train_frequency = 4;      // interactions per training round, Table 2
+  int gradient_steps = 1;       // per training round, Table 2
+  int warm_up = 0;              // gradient steps before the first interaction
+  int target_sync = 500;        // gradient steps between copies to the target network
+  double discount = 0.9;        // γ; 0: the task's
+  double offline_share = 0.5;   // of a batch; negative: uniform over all transitions
+  bool double_q = true;         // van Hasselt et al. 2016
+  bool dueling = true;          // Wang et al. 2016
+  bool layer_norm = true;       // after each hidden layer
+  bool small_head = true;       // last layer starts near 0
+  bool clip_targets = true;     // to [0, 1], where the values lie
+  bool value_bounds = true;     // raise targets to what stored trajectories prove
+  double epsilon_start = 0.3;   // exploration at the first interaction
+  double epsilon_end = 0.05;    // ... and from epsilon_share of the interactions on
   double epsilon_share = 0.2;
-  double nearby_share = 0.5;      // of the exploring actions: near the greedy heading
-  int nearby_headings = 2;        // how near
-  double start_jitter = 0.1;      // training starts: object positions ± this [m]
-  int eval_every = 10000;         // interactions
+  double nearby_share = 0.5;  // of the exploring actions: near the greedy heading
+  int nearby_headings = 2;    // how near
+  double start_jitter = 0.1;  // training starts: object positions ± this [m]
+  int eval_every = 10000;     // interactions
   int eval_episodes = 100;
   int checkpoint_every = 20000;   // interactions
   bool reduced_precision = true;  // inner layers in bfloat16 where the processor has it
@@ -65,9 +65,11 @@ struct TrainConfig {
     v.number("epsilon_start", epsilon_start, 0.0, 1.0, "exploration at the first interaction");
     v.number("epsilon_end", epsilon_end, 0.0, 1.0, "exploration after its decay");
     v.number("epsilon_share", epsilon_share, 0.0, 1.0, "share of the interactions it decays over");
-    v.number("nearby_share", nearby_share, 0.0, 1.0, "share of exploration near the greedy heading");
+    v.number("nearby_share", nearby_share, 0.0, 1.0,
+             "share of exploration near the greedy heading");
     v.integer("nearby_headings", nearby_headings, 1, 180, "how many headings away, at most");
-    v.number("start_jitter", start_jitter, 0.0, 10.0, "training starts: object positions +- this [m]");
+    v.number("start_jitter", start_jitter, 0.0, 10.0,
+             "training starts: object positions +- this [m]");
     v.integer("eval_every", eval_every, 1, kMany, "interactions between evaluations");
     v.integer("eval_episodes", eval_episodes, 1, 100000, "held-out starts of an evaluation");
     v.integer("checkpoint_every", checkpoint_every, 1, kMany, "interactions between checkpoints");
@@ -75,8 +77,8 @@ struct TrainConfig {
   }
 };
 
-/// The values that `preset` stands for. `paper` is Table 2, with the defaults of Stable-Baselines3's DQN for
-/// what the table leaves open, and uniform mixing.
+/// The values that `preset` stands for. `paper` is Table 2, with the defaults of
+/// Stable-Baselines3's DQN for what the table leaves open, and uniform mixing.
 inline TrainConfig train_preset(TrainPreset preset) {
   TrainConfig config;
   if (preset == TrainPreset::kDefault) return config;
