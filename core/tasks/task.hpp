@@ -10,8 +10,8 @@
 
 namespace rtg {
 
-/// One condition on the bodies of a kind ("*" means all but the robot). A goal is the conjunction
-/// of its terms. `tighten` [m] shrinks the target set from all sides.
+/// One condition on the centres of the bodies of a kind ("*" means all movable ones but the robot).
+/// A goal is the conjunction of its terms. `tighten` [m] shrinks the target set from all sides.
 struct GoalTerm {
   enum class Region { kDisc, kHalfPlane };
   std::string kind = "*";
@@ -35,6 +35,12 @@ struct Task {
   double randomisation = 0.0;  // training starts: object positions ± this [m]
 };
 
+/// Whether `term` constrains that body.
+bool applies_to(const GoalTerm& term, const Task& task, std::size_t body);
+
+/// Whether every target set that applies to that body, shrunk by `tighten` [m], contains x.
+bool in_target(const Task& task, std::size_t body, const Vector2d& x, double tighten);
+
 /// Whether the goal holds in `poses`, with every target set shrunk by `tighten` [m].
 bool succeeded(const Task& task, const Poses& poses, double tighten = 0.0);
 
@@ -44,12 +50,14 @@ std::vector<float> observation(const Task& task, const Poses& poses);
 int observation_size(const Task& task);
 
 /// Start state with every movable object's position moved by ± amplitude in x and y (uniform),
-/// overlaps drawn again; empty if no legal draw was found in 1000 attempts.
+/// overlaps drawn again; empty if no legal draw was found in 1000 attempts. Poses are to_single().
 std::optional<Poses> jittered_start(const Task& task, double amplitude, Rng& rng);
 
-/// A layout that satisfies the goal with 0.05 m to spare, bodies at random angles without overlap
-/// and a robot outside of them, clear of all bodies or just behind one as after a push. Not yet at
-/// rest: settle it. Empty if none was found in 1000 attempts.
+/// A layout that satisfies the goal with 0.05 m to spare: each body somewhere in its target set or
+/// beside one that is already there, corner or face towards it, at random angles; the robot,
+/// heading as at the start, just behind one as after a push (3 of 4) or clear of all. Fixed bodies
+/// stay. Poses are to_single(). Nearly at rest: settle it. Empty if none was found in 1000
+/// attempts.
 std::optional<Poses> sample_goal(const Task& task, Rng& rng);
 
 }  // namespace rtg

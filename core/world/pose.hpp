@@ -37,6 +37,12 @@ inline Vector2d to_local(const Pose& p, const Vector2d& x) {
   return rotate(-p.theta, x - p.position());
 }
 
+/// The nearest pose in single precision, widened again. Box2D computes with these; a state made of
+/// them goes through a simulator without rounding.
+inline Pose to_single(const Pose& p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.theta)};
+}
+
 inline bool is_finite(const Pose& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.theta);
 }

@@ -1,0 +1,211 @@
+#include "core/forward/box2d_simulator.hpp"
+
+#include <box2d/box2d.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace rtg {
+namespace {
+
+constexpr double kMaxCoordinate =
+    1000.0;                        // beyond it single precision is coarser than the slop [m]
+constexpr double kMaxAngle = 1e4;  // ... likewise [rad]
+constexpr double kCatchUp = 1.5;   // largest servo speed / push speed
+constexpr int kCatchUpSteps = 2;   // make up for what first contacts cost at the end of the path
+constexpr int kMaxRestSteps = 400;
+constexpr double kRestSpeed = 1e-4;  // [m/s] and [rad/s]
+constexpr double kSlowSpeed = 1e-2;  // still good enough when the steps run out
+constexpr double kRestShift =
+    1e-5;  // contacts have come apart when no step moves a body by more [m]
+
+b2Vec2 to_b2(const Vector2d& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
+
+Pose pose_of(const b2Body& body) {
+  return {body.GetPosition().x, body.GetPosition().y, body.GetAngle()};
+}
+
+/// Quantities of the servo that hold for a whole push.
+struct Servo {
+  double step_s = 0.0;   // length of a Box2D step [s]
+  double advance = 0.0;  // of the robot per Box2D step [m]
+  double radius = 0.0;   // r₀ [m]
+  double max_force = 0.0, max_torque = 0.0;
+};
+
+// A joint impulse is not damped in its own step, an applied force is: the same motion takes 1/(1 +
+// h d) of the force. Dividing the bounds by that factor makes them stop the robot where they would
+// in Ψ.
+Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& physics) {
+  const double damping = physics.damping / physics.time_step;
+  const double speed = push.stride / (physics.sub_steps * physics.time_step);
+  const double step_s = physics.time_step / physics.box2d_steps;
+  const double radius = bounding_radius(scene.bodies[0].shape);
+  const double drag = mass_of(scene.bodies[0]).mass * damping * speed / (1.0 + step_s * damping);
+  return {step_s, speed * step_s, radius, physics.force_factor * drag,
+          physics.torque_factor * drag * radius};
+}
+
+/// One scene in a Box2D world of its own.
+class Table {
+ public:
+  Table(const Scene& scene, const PhysicsConfig& physics, const Servo& servo, const Poses& start)
+      : physics_(physics), servo_(servo), good_(start), touched_(start.size(), false) {
+    world_.SetAllowSleeping(false);
+    world_.SetContinuousPhysics(false);  // a Box2D step moves bodies by far less than their size
+    for (std::size_t i = 0; i < scene.size(); ++i) add(scene.bodies[i], start[i]);
+    touched_[0] = true;
+    add_joint();
+  }
+
+  /// One Box2D step in which the servo heads for `target`. False: not finite, the step is
+  /// discarded.
+  bool step_towards(const Pose& target) {
+    const Pose robot = pose_of(*bodies_[0]);
+    const double reach = kCatchUp * servo_.advance;
+    Vector2d ahead = target.position() - robot.position();
+    if (ahead.norm() > reach) ahead *= reach / ahead.norm();
+    const double turn =
+        std::clamp(target.theta - robot.theta, -reach / servo_.radius, reach / servo_.radius);
+    joint_->SetLinearOffset(to_b2(robot.position() + ahead));
+    joint_->SetAngularOffset(static_cast<float>(robot.theta + turn));
+    world_.Step(static_cast<float>(servo_.step_s), physics_.box2d_velocity_iterations,
+                physics_.box2d_position_iterations);
+    return observe();
+  }
+
+  /// Steps with the robot held where it is until nothing moves any more. False: something still
+  /// moves, or not finite.
+  bool come_to_rest() {
+    const Pose hold = pose_of(*bodies_[0]);
+    for (int k = 0; k < kMaxRestSteps; ++k) {
+      if (!step_towards(hold)) return false;
+      if (fastest_ < kRestSpeed && shift_ < kRestShift) return true;
+    }
+    return fastest_ < kSlowSpeed;
+  }
+
+  /// Counts every body as touched, so that overlaps at the start are resolved and not restored.
+  void touch_all() { touched_.assign(touched_.size(), true); }
+
+  const Poses& poses() const { return good_; }
+
+ private:
+  void add(const Body& body, const Pose& pose) {
+    b2BodyDef def;
+    def.type = body.fixed ? b2_staticBody : b2_dynamicBody;
+    def.position = to_b2(pose.position());
+    def.angle = static_cast<float>(pose.theta);
+    def.linearDamping = def.angularDamping =
+        static_cast<float>(physics_.damping / physics_.time_step);
+    b2Body* const added = world_.CreateBody(&def);
+    std::array<b2Vec2, kMaxVertices> corners;
+    std::transform(body.shape.vertices.begin(), body.shape.vertices.end(), corners.begin(), to_b2);
+    b2PolygonShape shape;
+    shape.Set(corners.data(), static_cast<int>(body.shape.size()));
+    b2FixtureDef fixture;
+    fixture.shape = &shape;
+    fixture.friction = static_cast<float>(body.friction);
+    added->CreateFixture(&fixture);
+    if (!body.fixed) {
+      // An exactly zero centre keeps poses free of rounding: Box2D stores the centre, not the
+      // origin.
+      const Mass mass = mass_of(body);
+      const b2MassData data{
+          static_cast<float>(mass.mass), {0.0f, 0.0f}, static_cast<float>(mass.moment)};
+      added->SetMassData(&data);
+    }
+    bodies_.push_back(added);
+  }
+
+  void add_joint() {
+    const b2BodyDef ground;
+    b2MotorJointDef def;
+    def.bodyA = world_.CreateBody(&ground);
+    def.bodyB = bodies_[0];
+    def.maxForce = static_cast<float>(servo_.max_force);
+    def.maxTorque = static_cast<float>(servo_.max_torque);
+    def.correctionFactor = 1.0f;
+    def.collideConnected = true;
+    joint_ = static_cast<b2MotorJoint*>(world_.CreateJoint(&def));
+  }
+
+  bool observe() {
+    for (const b2Body* body : bodies_)
+      if (!is_finite(pose_of(*body))) return false;
+    fastest_ = shift_ = 0.0;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const double speed = bodies_[i]->GetLinearVelocity().Length();
+      const double spin = std::abs(bodies_[i]->GetAngularVelocity());
+      // Contacts at rest exchange exactly zero impulse; what then still moves is Box2D's position
+      // correction.
+      if (speed > 0.0 || spin > 0.0) touched_[i] = true;
+      if (!touched_[i]) continue;
+      const Pose now = pose_of(*bodies_[i]);
+      fastest_ = std::max({fastest_, speed, spin});
+      shift_ = std::max({shift_, (now.position() - good_[i].position()).norm(),
+                         std::abs(now.theta - good_[i].theta)});
+      good_[i] = now;
+    }
+    return true;
+  }
+
+  const PhysicsConfig& physics_;
+  const Servo& servo_;
+  b2World world_{b2Vec2(0.0f, 0.0f)};
+  std::vector<b2Body*> bodies_;
+  b2MotorJoint* joint_ = nullptr;
+  Poses good_;                 // after the last finite step
+  std::vector<bool> touched_;  // has had a velocity
+  double fastest_ = 0.0;       // largest speed of a touched body [m/s] or [rad/s]
+  double shift_ = 0.0;         // largest displacement in the last step [m] or [rad]
+};
+
+/// Drives the robot from `from` to `to`. False: a step was not finite.
+bool drive(Table& table, const Servo& servo, const Pose& from, const Pose& to, int max_steps) {
+  const Vector2d path = to.position() - from.position();
+  const int steps =
+      std::min(max_steps, static_cast<int>(std::ceil(path.norm() / servo.advance - 1e-6)));
+  for (int k = 1; k <= steps + kCatchUpSteps; ++k) {
+    const double done = std::min(1.0, k * servo.advance / std::max(path.norm(), servo.advance));
+    const Vector2d at = from.position() + done * path;
+    if (!table.step_towards({at.x(), at.y(), from.theta})) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Box2dSimulator::Box2dSimulator(Scene scene, PushConfig push, PhysicsConfig physics)
+    : scene_(std::move(scene)), push_(push), physics_(physics) {}
+
+bool Box2dSimulator::plausible(const Poses& start) const {
+  if (start.size() != scene_.size()) return false;
+  return std::all_of(start.begin(), start.end(), [](const Pose& p) {
+    return is_finite(p) && std::abs(p.x) <= kMaxCoordinate && std::abs(p.y) <= kMaxCoordinate &&
+           std::abs(p.theta) <= kMaxAngle;
+  });
+}
+
+PushOutcome Box2dSimulator::push(const Poses& start, int action) const {
+  if (!plausible(start)) return {start, false};
+  const Servo servo = servo_of(scene_, push_, physics_);
+  Table table(scene_, physics_, servo, start);
+  const int max_steps = physics_.sub_steps * physics_.box2d_steps;
+  const bool ok = drive(table, servo, start[0], push_target(start[0], action, push_), max_steps) &&
+                  table.come_to_rest();
+  return {table.poses(), ok};
+}
+
+PushOutcome Box2dSimulator::settle(const Poses& start) const {
+  if (!plausible(start)) return {start, false};
+  const Servo servo = servo_of(scene_, push_, physics_);
+  Table table(scene_, physics_, servo, start);
+  table.touch_all();
+  const bool ok = table.come_to_rest();
+  return {table.poses(), ok};
+}
+
+}  // namespace rtg

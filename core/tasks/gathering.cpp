@@ -1,0 +1,37 @@
+#include "core/tasks/gathering.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kFriction = 0.5;
+
+void add_box(Task& task, const Pose& pose) {
+  const std::string name = "box" + std::to_string(task.scene.size());
+  task.scene.bodies.push_back({name, "box", box(1.2, 1.2), 1.0, kFriction, false});
+  task.start.push_back(to_single(pose));
+}
+
+}  // namespace
+
+Task gathering() {
+  Task task;
+  task.name = "gathering";
+  task.scene.bodies.push_back({"robot", "robot", regular_polygon(6, 0.8), 1.0, kFriction, false});
+  task.start.push_back({0.0, -5.0, 0.0});
+  add_box(task, {-3.0, 1.13, 0.2});
+  add_box(task, {2.63, 2.25, -0.3});
+  add_box(task, {2.25, -2.25, 0.6});
+  GoalTerm near_origin;
+  near_origin.radius = 2.0;
+  task.goal.push_back(near_origin);
+  return task;
+}
+
+Task gathering_hard() {
+  Task task = gathering();
+  task.name = "gathering_hard";
+  add_box(task, {-1.88, -2.63, 0.1});
+  return task;
+}
+
+}  // namespace rtg

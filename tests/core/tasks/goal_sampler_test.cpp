@@ -1,0 +1,77 @@
+#include <gtest/gtest.h>
+
+#include "core/forward/box2d_simulator.hpp"
+#include "core/tasks/gathering.hpp"
+#include "core/world/separation.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr int kGoals = 500;
+
+std::vector<Poses> goals(const Task& task, std::uint64_t seed) {
+  std::vector<Poses> out;
+  Rng rng(seed);
+  for (int k = 0; k < kGoals; ++k) out.push_back(sample_goal(task, rng).value());
+  return out;
+}
+
+/// Sorting-like: two boxes left of x = -2, one right of x = 2.
+Task half_planes() {
+  Task task = gathering();
+  task.scene.bodies[3].kind = "b";
+  task.goal = {{"box", GoalTerm::Region::kHalfPlane, {}, 0.0, {1.0, 0.0}, -2.0},
+               {"b", GoalTerm::Region::kHalfPlane, {}, 0.0, {-1.0, 0.0}, -2.0}};
+  return task;
+}
+
+TEST(GoalSampler, GoalsHoldWithRoomToSpareAndDoNotOverlap) {
+  for (const Task& task : {gathering(), gathering_hard(), half_planes()})
+    for (const Poses& poses : goals(task, 1)) {
+      EXPECT_TRUE(succeeded(task, poses, 0.049));
+      EXPECT_EQ(first_overlap(task.scene, poses, 0.02), std::nullopt);
+      EXPECT_TRUE(in_arena(poses[0], task.push));
+      EXPECT_EQ(poses[0].theta, task.start[0].theta);
+    }
+}
+
+TEST(GoalSampler, SettledGoalsStillHold) {
+  const Task task = gathering();
+  const Box2dSimulator simulator(task.scene, task.push, PhysicsConfig{});
+  int held = 0;
+  for (const Poses& poses : goals(task, 2)) {
+    const PushOutcome rest = simulator.settle(poses);
+    held += rest.ok && succeeded(task, rest.end, 0.04);
+  }
+  RecordProperty("held", held);
+  EXPECT_EQ(held, kGoals);
+}
+
+TEST(GoalSampler, LayoutsVaryFromClustersToSpreadOnes) {
+  const Task task = gathering();
+  int touching = 0, apart = 0, robot_near = 0;
+  for (const Poses& poses : goals(task, 3)) {
+    Scene objects{{task.scene.bodies.begin() + 1, task.scene.bodies.end()}};
+    const bool close = first_overlap(objects, {poses.begin() + 1, poses.end()}, 0.1).has_value();
+    (close ? touching : apart)++;
+    robot_near += first_overlap(task.scene, poses, 0.06).has_value() && !close;
+  }
+  EXPECT_GT(touching, kGoals / 5);
+  EXPECT_GT(apart, kGoals / 10);
+  EXPECT_GT(robot_near, apart / 2);
+}
+
+TEST(GoalSampler, EqualSeedsGiveEqualGoalsAndOthersDoNot) {
+  EXPECT_EQ(goals(gathering(), 7), goals(gathering(), 7));
+  EXPECT_NE(goals(gathering(), 7), goals(gathering(), 8));
+}
+
+TEST(GoalSampler, AnImpossibleGoalIsReported) {
+  Task task = gathering();
+  task.goal[0].radius = 0.4;  // three boxes do not fit
+  Rng rng(1);
+  EXPECT_EQ(sample_goal(task, rng), std::nullopt);
+}
+
+}  // namespace
+}  // namespace rtg

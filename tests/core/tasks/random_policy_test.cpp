@@ -1,0 +1,39 @@
+#include <gtest/gtest.h>
+
+#include "core/forward/box2d_simulator.hpp"
+#include "core/tasks/gathering.hpp"
+
+namespace rtg {
+namespace {
+
+bool moved_object(const Poses& before, const Poses& after) {
+  for (std::size_t i = 1; i < before.size(); ++i)
+    if ((after[i].position() - before[i].position()).norm() > 0.05) return true;
+  return false;
+}
+
+// Design 5.1: Gathering must be out of reach of exploration. reference/rl.md 5b measured 5 to 12.6
+// % touching steps.
+TEST(RandomPolicy, NeverGathersAndSeldomTouches) {
+  const Task task = gathering();
+  const Box2dSimulator simulator(task.scene, task.push, PhysicsConfig{});
+  int successes = 0, steps = 0, touching = 0;
+  for (std::uint64_t episode = 0; episode < 200; ++episode) {
+    Rng rng(42, episode);
+    Poses poses = task.start;
+    for (int k = 0; k < task.horizon; ++k, ++steps) {
+      const PushOutcome out = simulator.push(poses, rng.below(task.push.headings));
+      ASSERT_TRUE(out.ok);
+      touching += moved_object(poses, out.end);
+      poses = out.end;
+      successes += succeeded(task, poses);
+    }
+  }
+  EXPECT_EQ(successes, 0);
+  const double share = static_cast<double>(touching) / steps;
+  EXPECT_GT(share, 0.05);
+  EXPECT_LT(share, 0.13);
+}
+
+}  // namespace
+}  // namespace rtg

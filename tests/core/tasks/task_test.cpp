@@ -1,0 +1,120 @@
+#include "core/tasks/task.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/tasks/gathering.hpp"
+#include "core/world/separation.hpp"
+
+namespace rtg {
+namespace {
+
+Task two_kinds() {
+  Task task = gathering();
+  task.scene.bodies[1].kind = "a";
+  task.goal = {{"a", GoalTerm::Region::kHalfPlane, {}, 0.0, {-1.0, 0.0}, -2.0},  // x ≥ 2
+               {"box", GoalTerm::Region::kDisc, {0.0, 1.0}, 1.5, {}, 0.0}};
+  return task;
+}
+
+TEST(Task, GoalIsTheConjunctionOverTheBodiesOfEachKind) {
+  const Task task = two_kinds();
+  const Poses good{{0, -5, 0}, {2.01, 7, 0}, {0, 2.49, 0}, {1.49, 1, 0}};
+  EXPECT_TRUE(succeeded(task, good));
+  Poses bad = good;
+  bad[1].x = 1.99;
+  EXPECT_FALSE(succeeded(task, bad));
+  bad = good;
+  bad[3].x = 1.51;
+  EXPECT_FALSE(succeeded(task, bad));
+  bad = good;
+  bad[0].x = 100.0;  // the robot is no object
+  EXPECT_TRUE(succeeded(task, bad));
+}
+
+TEST(Task, TighteningShrinksTargetsFromAllSides) {
+  const Task task = two_kinds();
+  const Poses edge{{0, -5, 0}, {2.04, 7, 0}, {0, 1, 0}, {0, 1, 0}};
+  EXPECT_TRUE(succeeded(task, edge, 0.03));
+  EXPECT_FALSE(succeeded(task, edge, 0.05));
+}
+
+TEST(Task, AStarMeansMovableObjectsOnly) {
+  Task task = gathering();
+  task.scene.bodies[3].fixed = true;
+  EXPECT_TRUE(succeeded(task, {{0, -5, 0}, {0, 1, 0}, {0, -1, 0}, {7, 7, 0}}));
+  EXPECT_FALSE(succeeded(task, {{0, -5, 0}, {0, 2.1, 0}, {0, -1, 0}, {7, 7, 0}}));
+}
+
+TEST(Task, ObservationHasTheDocumentedNumbers) {
+  const Task task = gathering();
+  Poses poses = task.start;
+  poses[2] = {1.0, -4.0, 0.5};
+  const std::vector<float> seen = observation(task, poses);
+  ASSERT_EQ(observation_size(task), 20);
+  ASSERT_EQ(seen.size(), 20u);
+  const float expected[8] = {0.0f,           -0.625f,        0.125f, -0.5f,
+                             std::cos(0.5f), std::sin(0.5f), 0.125f, 0.125f};
+  for (int k = 0; k < 2; ++k) EXPECT_FLOAT_EQ(seen[k], expected[k]);
+  for (int k = 2; k < 8; ++k) EXPECT_FLOAT_EQ(seen[6 + k], expected[k]);
+}
+
+TEST(Task, ObservationLeavesOutFixedBodies) {
+  Task task = gathering();
+  task.scene.bodies[1].fixed = true;
+  EXPECT_EQ(observation_size(task), 14);
+  EXPECT_EQ(observation(task, task.start).size(), 14u);
+}
+
+TEST(Task, JitteredStartsStayWithinTheAmplitudeAndFreeOfOverlap) {
+  const Task task = gathering();
+  Rng rng(3);
+  double widest = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    const auto poses = jittered_start(task, 0.5, rng);
+    ASSERT_TRUE(poses.has_value());
+    EXPECT_EQ((*poses)[0], task.start[0]);
+    EXPECT_EQ(first_overlap(task.scene, *poses), std::nullopt);
+    for (std::size_t i = 1; i < poses->size(); ++i) {
+      const Vector2d moved = (*poses)[i].position() - task.start[i].position();
+      widest = std::max(widest, moved.cwiseAbs().maxCoeff());
+      EXPECT_EQ((*poses)[i].theta, task.start[i].theta);
+      EXPECT_EQ((*poses)[i], to_single((*poses)[i]));
+    }
+  }
+  EXPECT_LE(widest, 0.5 + 1e-6);
+  EXPECT_GT(widest, 0.45);
+}
+
+TEST(Task, JitterDrawsOverlapsAgainAndGivesUpOnTheImpossible) {
+  Task task = gathering();
+  Rng rng(4);
+  task.start[2] = {-3.0 + 1.4, 1.13, 0.2};
+  for (int k = 0; k < 50; ++k)
+    EXPECT_EQ(first_overlap(task.scene, jittered_start(task, 1.0, rng).value(), 0.02),
+              std::nullopt);
+  task.scene.bodies[1].fixed = task.scene.bodies[2].fixed = task.scene.bodies[3].fixed = true;
+  task.scene.bodies[3].fixed = false;
+  task.start[3] = task.start[2];
+  EXPECT_EQ(jittered_start(task, 0.01, rng), std::nullopt);
+}
+
+TEST(Task, ZeroJitterIsTheNominalStart) {
+  Rng rng(5);
+  EXPECT_EQ(jittered_start(gathering(), 0.0, rng), gathering().start);
+}
+
+TEST(Gathering, StartsLegalAndUnsolved) {
+  for (const Task& task : {gathering(), gathering_hard()}) {
+    EXPECT_EQ(task.scene.size(), task.start.size());
+    EXPECT_FALSE(succeeded(task, task.start));
+    EXPECT_EQ(first_overlap(task.scene, task.start, 0.02), std::nullopt);
+    for (const Body& body : task.scene.bodies)
+      EXPECT_EQ(polygon_defect(body.shape.vertices), std::nullopt);
+    for (const Pose& pose : task.start) EXPECT_EQ(pose, to_single(pose));
+  }
+  EXPECT_EQ(gathering().scene.size(), 4u);
+  EXPECT_EQ(gathering_hard().scene.size(), 5u);
+}
+
+}  // namespace
+}  // namespace rtg
