@@ -1,0 +1,178 @@
+"""Draws one state of a task, from the data that the goal predicate itself uses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+Floats = NDArray[np.float64]
+Colour = tuple[int, int, int]
+
+PAPER: Colour = (252, 251, 248)
+INK: Colour = (43, 48, 58)
+FAINT: Colour = (222, 220, 213)
+ROBOT: Colour = (62, 70, 86)
+WALL: Colour = (178, 176, 170)
+GOAL: Colour = (92, 160, 112)
+KINDS: tuple[Colour, ...] = (
+    (226, 149, 72),
+    (74, 126, 187),
+    (158, 106, 178),
+    (200, 92, 92),
+    (96, 160, 160),
+)
+_SMOOTH = 3  # drawn this much larger, then reduced
+
+
+class GoalLike(Protocol):
+    """One term of the goal, as rtg._core.GoalTerm."""
+
+    kind: str
+    region: str  # "disc" or "half_plane"
+    centre: Floats
+    radius: float
+    normal: Floats
+    offset: float
+
+
+class TaskLike(Protocol):
+    """What drawing needs to know of a task, as rtg._core.Task."""
+
+    shapes: Sequence[Floats]  # per body [V, 2]
+    kinds: Sequence[str]
+    goal: Sequence[GoalLike]
+    arena: float
+
+
+def kind_colours(task: TaskLike) -> dict[str, Colour]:
+    """A colour per kind of body, in order of first appearance; body 0 is the robot."""
+    colours: dict[str, Colour] = {}
+    for kind in task.kinds[1:]:
+        if kind not in colours:
+            colours[kind] = KINDS[len(colours) % len(KINDS)]
+    return colours
+
+
+def outline(shape: Floats, pose: Floats) -> Floats:
+    """World vertices of a body. shape [V, 2], pose [3] -> [V, 2]."""
+    c, s = np.cos(pose[2]), np.sin(pose[2])
+    return np.asarray(shape) @ np.array([[c, s], [-s, c]]) + pose[:2]
+
+
+class Canvas:
+    """A square window on the arena with y upwards."""
+
+    def __init__(self, half_width: float, pixels: int) -> None:
+        self._half = half_width
+        self._side = pixels * _SMOOTH
+        self._scale = self._side / (2.0 * half_width)  # [pixel/m]
+        self._image = Image.new("RGB", (self._side, self._side), PAPER)
+
+    def _points(self, xy: Any) -> list[tuple[float, float]]:
+        points = np.atleast_2d(np.asarray(xy, dtype=float))
+        x = (points[:, 0] + self._half) * self._scale
+        y = (self._half - points[:, 1]) * self._scale
+        return list(zip(x.tolist(), y.tolist(), strict=True))
+
+    def polygon(
+        self, xy: Any, fill: Colour, alpha: float = 1.0, edge: Colour | None = None
+    ) -> None:
+        """Filled polygon, outlined with `edge` in full strength."""
+        points = self._points(xy)
+        if alpha < 1.0:
+            mask = Image.new("L", self._image.size, 0)
+            ImageDraw.Draw(mask).polygon(points, fill=int(255 * alpha))
+            self._image.paste(fill, mask=mask)
+        else:
+            ImageDraw.Draw(self._image).polygon(points, fill=fill)
+        if edge is not None:
+            self.line(np.vstack([np.atleast_2d(xy), np.atleast_2d(xy)[:2]]), edge, 0.07)
+
+    def line(self, xy: Any, colour: Colour, width: float) -> None:
+        """Polyline of `width` [m]."""
+        pixels = max(1, round(width * self._scale))
+        ImageDraw.Draw(self._image).line(self._points(xy), fill=colour, width=pixels, joint="curve")
+
+    def dot(self, xy: Any, colour: Colour, radius: float) -> None:
+        """Disc of `radius` [m]."""
+        (x, y), r = self._points(xy)[0], radius * self._scale
+        ImageDraw.Draw(self._image).ellipse((x - r, y - r, x + r, y + r), fill=colour)
+
+    def text(self, xy: Any, words: str, size: float = 0.75, colour: Colour = INK) -> None:
+        """Words with their upper left corner at `xy`, `size` [m] high."""
+        font = ImageFont.load_default(size=size * self._scale)
+        ImageDraw.Draw(self._image).text(self._points(xy)[0], words, fill=colour, font=font)
+
+    def pixels(self) -> NDArray[np.uint8]:
+        """[height, width, 3]."""
+        side = self._side // _SMOOTH
+        return np.asarray(self._image.resize((side, side), Image.Resampling.LANCZOS))
+
+
+def circle(centre: Any, radius: float, corners: int = 96) -> Floats:
+    """Polygon of a disc, [corners, 2]."""
+    angle = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
+    centre = np.asarray(centre, dtype=float).reshape(2)
+    return centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def _half_plane(term: GoalLike, reach: float) -> Floats:
+    """The part of normal·x <= offset that a window can show, as a rectangle."""
+    normal = np.asarray(term.normal, dtype=float).reshape(2)
+    along = np.array([-normal[1], normal[0]])
+    edge = normal * term.offset
+    far = edge - normal * 4.0 * reach
+    corners = [edge + along * 2 * reach, edge - along * 2 * reach]
+    return np.array([*corners, far - along * 2 * reach, far + along * 2 * reach])
+
+
+def draw_goal(canvas: Canvas, task: TaskLike, reached: bool = False) -> None:
+    """The target sets, stronger when they hold."""
+    colours = kind_colours(task)
+    for term in task.goal:
+        colour = colours.get(term.kind, GOAL)
+        if term.region == "disc":
+            shape = circle(term.centre, term.radius)
+        else:
+            shape = _half_plane(term, task.arena)
+        canvas.polygon(shape, colour, alpha=0.38 if reached else 0.18, edge=colour)
+
+
+def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats, alpha: float = 1.0) -> None:
+    """All bodies, the robot last and on top. poses [bodies, 3]."""
+    colours = kind_colours(task)
+    for body in [*range(1, len(task.kinds)), 0]:
+        colour = ROBOT if body == 0 else colours[task.kinds[body]]
+        xy = outline(task.shapes[body], poses[body])
+        canvas.polygon(xy, colour, alpha, edge=None if alpha < 1.0 else INK)
+        if alpha == 1.0 and body > 0:
+            canvas.dot(poses[body][:2], INK, 0.08)
+
+
+def state_image(
+    task: TaskLike,
+    poses: Floats,
+    *,
+    pixels: int = 360,
+    trail: Floats | None = None,
+    caption: str = "",
+    reached: bool = False,
+) -> NDArray[np.uint8]:
+    """One state as an RGB picture [pixels, pixels, 3].
+
+    poses [bodies, 3]; trail [K, 2] is a path of the robot up to here; `reached` marks a success.
+    """
+    canvas = Canvas(1.06 * task.arena, pixels)
+    a = task.arena
+    draw_goal(canvas, task, reached)
+    canvas.line([(-a, -a), (a, -a), (a, a), (-a, a), (-a, -a)], FAINT, 0.06)
+    if trail is not None and len(trail) > 1:
+        canvas.line(trail, (150, 156, 168), 0.1)
+    draw_bodies(canvas, task, np.asarray(poses, dtype=float))
+    if caption:
+        canvas.text((-0.97 * a, 0.97 * a), caption)
+    return canvas.pixels()
