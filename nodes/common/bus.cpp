@@ -1,0 +1,142 @@
+#include "nodes/common/bus.hpp"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <exception>
+#include <lcm/lcm-cpp.hpp>
+#include <list>
+#include <regex>
+#include <stdexcept>
+#include <utility>
+
+#include "nodes/common/content_hash.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr int kReceiveBuffer =
+    4 << 20;                          // [bytes]; the kernel's default of 208 kB loses every burst
+constexpr int kQueueCapacity = 1000;  // messages; LCM's default of 30 drops new ones silently
+constexpr int kMaxPerSpin = 1000;     // a flood must not keep the caller from its own work
+
+/// Receive buffer of the UDP socket bound to `port` [bytes]; LCM does not tell its descriptor. 0 if
+/// there is none.
+int receive_buffer(int port) {
+  for (int fd = 3; fd < 256; ++fd) {
+    sockaddr_in address{};
+    socklen_t length = sizeof address;
+    if (getsockname(fd, reinterpret_cast<sockaddr*>(&address), &length) != 0 ||
+        address.sin_family != AF_INET || ntohs(address.sin_port) != port)
+      continue;
+    int size = 0;
+    length = sizeof size;
+    if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, &length) == 0) return size;
+  }
+  return 0;
+}
+
+void warn_of_small_buffer(const std::string& url) {
+  if (!url.starts_with("udpm")) return;
+  const int port = std::stoi(url.substr(url.find(':', 7) + 1));
+  const int size = receive_buffer(port) / 2;  // Linux reports twice what it was asked for
+  if (size >= kReceiveBuffer) return;
+  std::fprintf(stderr,
+               "bus: receive buffer is %d kB instead of %d kB; bursts will be lost and sent again. "
+               "To raise it: sysctl -w net.core.rmem_max=%d\n",
+               size >> 10, kReceiveBuffer >> 10, kReceiveBuffer);
+}
+
+}  // namespace
+
+std::string checked_bus_url(const std::string& url) {
+  if (url == "memq://") return url;
+  static const std::regex form(
+      R"(udpm://(\d{1,3})\.(\d{1,3})\.(\d{1,3})\.(\d{1,3}):(\d{1,5})(\?ttl=(\d{1,3}))?)");
+  std::smatch match;
+  const auto number = [&match](int i) { return std::stoi(match[i].str()); };
+  const bool legal = std::regex_match(url, match, form) && number(1) >= 224 && number(1) <= 239 &&
+                     number(2) <= 255 && number(3) <= 255 && number(4) <= 255 &&
+                     number(5) >= 1024 && number(5) <= 65535 &&
+                     (!match[7].matched || number(7) <= 255);
+  if (!legal)
+    throw std::invalid_argument(
+        "bus '" + url +
+        "': legal are memq:// and udpm://GROUP:PORT[?ttl=N] with a multicast "
+        "group 224.x.x.x-239.x.x.x, port 1024-65535, ttl 0-255");
+  return url + (match[7].matched ? "&" : "?ttl=0&") +
+         "recv_buf_size=" + std::to_string(kReceiveBuffer);
+}
+
+struct Bus::Connection {
+  explicit Connection(const std::string& bus_url) : url(bus_url), lcm(bus_url) {}
+
+  /// One listened-to channel; LCM calls `receive` from C, where no exception may pass.
+  struct Listener {
+    Connection* connection;
+    RawHandler handler;
+
+    void receive(const lcm::ReceiveBuffer* buffer, const std::string&) {
+      try {
+        handler({static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+      } catch (...) {
+        if (!connection->failure) connection->failure = std::current_exception();
+      }
+    }
+  };
+
+  std::string url;
+  lcm::LCM lcm;
+  std::list<Listener> listeners;  // a list: LCM keeps their addresses
+  std::exception_ptr failure;
+};
+
+Bus::Bus(const std::string& url, const std::string& run)
+    : connection_(std::make_unique<Connection>(checked_bus_url(url))) {
+  if (!connection_->lcm.good()) throw std::runtime_error("bus '" + url + "' cannot be opened");
+  header_.protocol = kProtocol;
+  header_.run = ContentHash().add(run).value();
+  header_.sender = getpid();
+}
+
+Bus::~Bus() = default;
+
+int Bus::spin(std::chrono::milliseconds timeout) {
+  int handled = 0;
+  int wait = static_cast<int>(timeout.count());
+  while (handled < kMaxPerSpin && connection_->lcm.handleTimeout(wait) > 0) {
+    ++handled;
+    wait = 0;
+    if (connection_->failure) std::rethrow_exception(std::exchange(connection_->failure, nullptr));
+  }
+  return handled;
+}
+
+void Bus::send(const std::string& channel, std::span<const std::uint8_t> bytes) {
+  if (connection_->lcm.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size())) != 0)
+    counters_.add("bus.unsent");
+}
+
+void Bus::listen(const std::string& channel, RawHandler handler) {
+  auto& listener = connection_->listeners.emplace_back(connection_.get(), std::move(handler));
+  lcm::Subscription* subscription = nullptr;
+  for (int attempt = 0; attempt < 3 && !subscription;
+       ++attempt)  // LCM's self-test may lose its packet
+    subscription = connection_->lcm.subscribe(channel, &Connection::Listener::receive, &listener);
+  if (!subscription)
+    throw std::runtime_error(
+        "bus: messages sent do not come back; is multicast enabled on this machine? "
+        "(ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo)");
+  subscription->setQueueCapacity(kQueueCapacity);
+  if (connection_->listeners.size() == 1) warn_of_small_buffer(connection_->url);
+}
+
+bool Bus::is_ours(const rtg_msgs::header_t& header) {
+  if (header.run != header_.run) return counters_.add("bus.foreign_run"), false;
+  if (header.protocol != kProtocol) return counters_.add("bus.foreign_protocol"), false;
+  return true;
+}
+
+}  // namespace rtg

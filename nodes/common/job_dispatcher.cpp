@@ -1,0 +1,112 @@
+#include "nodes/common/job_dispatcher.hpp"
+
+namespace rtg {
+
+void JobDispatcher::submit(std::span<const JobId> jobs) {
+  jobs_.clear();
+  queue_.clear();
+  for (auto& [id, worker] : workers_) worker.leases.clear();
+  for (const JobId id : jobs)
+    if (jobs_.try_emplace(id).second) queue_.push_back(id);
+  open_ = static_cast<long>(jobs_.size());
+}
+
+void JobDispatcher::on_beat(const Beat& beat, Seconds now) {
+  Worker& worker = workers_[beat.worker];
+  worker.beat = now;
+  worker.capacity = beat.capacity;
+  worker.held = {beat.held.begin(), beat.held.end()};
+}
+
+JobDispatcher::Verdict JobDispatcher::on_result(JobId id) {
+  const auto found = jobs_.find(id);
+  if (found == jobs_.end()) return Verdict::kUnknown;
+  Job& job = found->second;
+  if (job.state == State::kDone || job.state == State::kPoison) return Verdict::kDuplicate;
+  if (job.state == State::kLeased) workers_[job.worker].leases.erase(id);
+  job.state = State::kDone;
+  --open_;
+  return Verdict::kAccepted;
+}
+
+std::vector<JobDispatcher::Send> JobDispatcher::due(Seconds now) {
+  std::vector<Send> sends;
+  bury_silent_workers(now);
+  take_back_expired_leases(now);
+  resend_unheard(now, sends);
+  hand_out(now, sends);
+  return sends;
+}
+
+std::vector<JobId> JobDispatcher::poisoned() const {
+  std::vector<JobId> ids;
+  for (const auto& [id, job] : jobs_)
+    if (job.state == State::kPoison) ids.push_back(id);
+  return ids;
+}
+
+void JobDispatcher::bury_silent_workers(Seconds now) {
+  std::erase_if(workers_, [&](const auto& entry) {
+    const Worker& worker = entry.second;
+    if (now - worker.beat <= limits_.silence) return false;
+    for (const JobId id : worker.leases) take_back(id);
+    return true;
+  });
+}
+
+void JobDispatcher::take_back_expired_leases(Seconds now) {
+  for (auto& [worker_id, worker] : workers_)
+    std::erase_if(worker.leases, [&](JobId id) {
+      if (now - jobs_.at(id).leased <= limits_.lease) return false;
+      take_back(id);
+      return true;
+    });
+}
+
+void JobDispatcher::take_back(JobId id) {
+  Job& job = jobs_.at(id);
+  ++reissued_;
+  if (++job.victims >= limits_.poison) {
+    job.state = State::kPoison;
+    --open_;
+  } else {
+    job.state = State::kNew;
+    queue_.push_front(id);
+  }
+}
+
+void JobDispatcher::resend_unheard(Seconds now, std::vector<Send>& sends) {
+  for (auto& [worker_id, worker] : workers_)
+    for (const JobId id : worker.leases) {
+      Job& job = jobs_.at(id);
+      // Only a beat that left the worker well after the job reached it proves that the job did not.
+      if (worker.held.contains(id) || worker.beat - job.sent < limits_.resend) continue;
+      job.sent = now;
+      ++resent_;
+      sends.push_back({worker_id, id, ++job.attempt});
+    }
+}
+
+void JobDispatcher::hand_out(Seconds now, std::vector<Send>& sends) {
+  while (!queue_.empty()) {
+    const JobId id = queue_.front();
+    Job& job = jobs_.at(id);
+    if (job.state != State::kNew) {
+      queue_.pop_front();
+      continue;
+    }
+    auto freest = workers_.end();
+    int room = 0;
+    for (auto it = workers_.begin(); it != workers_.end(); ++it) {
+      const int free = it->second.capacity - static_cast<int>(it->second.leases.size());
+      if (free > room) freest = it, room = free;
+    }
+    if (freest == workers_.end()) return;
+    queue_.pop_front();
+    freest->second.leases.insert(id);
+    job = {State::kLeased, freest->first, now, now, job.attempt + 1, job.victims};
+    sends.push_back({freest->first, id, job.attempt});
+  }
+}
+
+}  // namespace rtg

@@ -1,0 +1,95 @@
+#include "nodes/common/bus.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/nodes/filled_message.hpp"
+
+namespace rtg {
+namespace {
+
+using namespace std::chrono_literals;
+using rtg_msgs::stream_tail_t;
+
+TEST(Bus, DeliversWhatWasPublished) {
+  Bus bus("memq://", "test");
+  std::vector<std::int64_t> counts;
+  bus.subscribe<stream_tail_t>("TAIL",
+                               [&](const stream_tail_t& tail) { counts.push_back(tail.count); });
+  for (const int n : {1, 2, 3}) {
+    auto tail = test::filled<stream_tail_t>();
+    tail.count = n;
+    bus.publish("TAIL", tail);
+  }
+  while (bus.spin(0ms) > 0) {
+  }
+  EXPECT_EQ(counts, (std::vector<std::int64_t>{1, 2, 3}));
+}
+
+TEST(Bus, ExceptionsOfHandlersSurfaceInSpinAndLoseNothing) {
+  Bus bus("memq://", "test");
+  int handled = 0;
+  bus.subscribe<stream_tail_t>("TAIL", [&](const stream_tail_t&) {
+    if (++handled == 1) throw std::range_error("boom");
+  });
+  bus.publish("TAIL", stream_tail_t{});
+  bus.publish("TAIL", stream_tail_t{});
+  EXPECT_THROW(bus.spin(0ms), std::range_error);
+  while (bus.spin(0ms) > 0) {
+  }
+  EXPECT_EQ(handled, 2);
+}
+
+/// What a listening bus of the run "test" counts when a stranger sends `bytes`.
+std::map<std::string, long> counters_after(std::span<const std::uint8_t> bytes) {
+  Bus bus("memq://", "test");
+  bus.subscribe<stream_tail_t>("TAIL", [](const stream_tail_t&) { FAIL(); });
+  bus.send("TAIL", bytes);
+  while (bus.spin(0ms) > 0) {
+  }
+  return bus.counters().all();
+}
+
+using Counts = std::map<std::string, long>;
+
+TEST(Bus, CountsWhatItRejects) {
+  auto tail = test::filled<stream_tail_t>();
+  EXPECT_EQ(counters_after(encode(tail)), (Counts{{"bus.foreign_run", 1}}));
+
+  auto other = test::filled<rtg_msgs::worker_beat_t>();
+  EXPECT_EQ(counters_after(encode(other)), (Counts{{"bus.wrong_type", 1}}));
+
+  auto bytes = encode(tail);
+  bytes.pop_back();
+  EXPECT_EQ(counters_after(bytes), (Counts{{"bus.malformed", 1}}));
+
+  bytes.assign(kMaxMessageBytes + 1, 0);
+  EXPECT_EQ(counters_after(bytes), (Counts{{"bus.too_long", 1}}));
+}
+
+TEST(Bus, UrlIsSpeltOut) {
+  EXPECT_EQ(checked_bus_url("udpm://239.255.76.67:7667"),
+            "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304");
+  EXPECT_EQ(checked_bus_url("udpm://239.255.76.67:7667?ttl=1"),
+            "udpm://239.255.76.67:7667?ttl=1&recv_buf_size=4194304");
+  EXPECT_EQ(checked_bus_url("memq://"), "memq://");
+}
+
+TEST(Bus, IllegalUrlsAreNamed) {
+  const std::string legal =
+      "': legal are memq:// and udpm://GROUP:PORT[?ttl=N] with a multicast group "
+      "224.x.x.x-239.x.x.x, port 1024-65535, ttl 0-255";
+  for (const std::string url :
+       {"", "udpm://", "tcpq://127.0.0.1:7700", "udpm://10.0.0.1:7667", "udpm://239.255.76.67",
+        "udpm://239.255.76.67:80", "udpm://239.255.76.67:70000", "udpm://239.255.76.67:7667?ttl=-1",
+        "udpm://239.255.76.67:7667?ttl=300", "udpm://239.99999999999.1.1:7667"}) {
+    try {
+      checked_bus_url(url);
+      ADD_FAILURE() << url << " was accepted";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_EQ(error.what(), "bus '" + url + legal);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "nodes/common/wire_fields.hpp"
+
+namespace rtg::test {
+
+/// Fills every field of a message: counts with `n`, numbers with 1, 2, 3, ..., texts likewise.
+struct Fill {
+  std::int32_t n = 3;
+  int next = 1;
+
+  template <class T>
+  void scalar(T& x) {
+    x = static_cast<T>(next++);
+  }
+  void count(std::int32_t& x) { x = n; }
+  template <class T>
+  void array(std::vector<T>& values, std::int32_t size) {
+    values.resize(static_cast<std::size_t>(size));
+    for (T& x : values) scalar(x);
+  }
+  void text(std::string& s) { s = "text " + std::to_string(next++); }
+  void texts(std::vector<std::string>& values, std::int32_t size) {
+    values.resize(static_cast<std::size_t>(size));
+    for (std::string& s : values) text(s);
+  }
+};
+
+template <class Msg>
+Msg filled(std::int32_t n = 3) {
+  Msg msg{};
+  Fill fill{n};
+  fields(fill, msg);
+  return msg;
+}
+
+}  // namespace rtg::test
