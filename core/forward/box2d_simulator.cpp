@@ -15,6 +15,7 @@ constexpr double kMaxCoordinate =
 constexpr double kMaxAngle = 1e4;  // ... likewise [rad]
 constexpr double kCatchUp = 1.5;   // largest servo speed / push speed
 constexpr int kCatchUpSteps = 2;   // make up for what first contacts cost at the end of the path
+constexpr double kClear = 0.1;     // bodies farther apart do not meet in the next steps [m]
 constexpr int kMaxRestSteps = 400;
 constexpr double kRestSpeed = 1e-4;  // [m/s] and [rad/s]
 constexpr double kSlowSpeed = 1e-2;  // still good enough when the steps run out
@@ -48,6 +49,25 @@ Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& 
           physics.torque_factor * drag * radius};
 }
 
+/// Distance of x from the segment from a to b [m].
+double distance_to_segment(const Vector2d& x, const Vector2d& a, const Vector2d& b) {
+  const Vector2d path = b - a;
+  const double along = path.dot(x - a) / std::max(path.squaredNorm(), 1e-12);
+  return (x - a - std::clamp(along, 0.0, 1.0) * path).norm();
+}
+
+/// Whether the bounding circle of body `i`, swept from `from` to `to`, stays clear of all other
+/// bodies.
+bool sweep_is_clear(const Scene& scene, const Poses& poses, std::size_t i, const Vector2d& from,
+                    const Vector2d& to) {
+  const double radius = bounding_radius(scene.bodies[i].shape) + kClear;
+  for (std::size_t j = 0; j < scene.size(); ++j)
+    if (j != i && distance_to_segment(poses[j].position(), from, to) <
+                      radius + bounding_radius(scene.bodies[j].shape))
+      return false;
+  return true;
+}
+
 /// One scene in a Box2D world of its own.
 class Table {
  public:
@@ -55,7 +75,11 @@ class Table {
       : physics_(physics), servo_(servo), good_(start), touched_(start.size(), false) {
     world_.SetAllowSleeping(false);
     world_.SetContinuousPhysics(false);  // a Box2D step moves bodies by far less than their size
-    for (std::size_t i = 0; i < scene.size(); ++i) add(scene.bodies[i], start[i]);
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+      // A body on its own sleeps until something runs into it, which saves its island's cost.
+      const Vector2d at = start[i].position();
+      add(scene.bodies[i], start[i], i == 0 || !sweep_is_clear(scene, start, i, at, at));
+    }
     touched_[0] = true;
     add_joint();
   }
@@ -93,9 +117,10 @@ class Table {
   const Poses& poses() const { return good_; }
 
  private:
-  void add(const Body& body, const Pose& pose) {
+  void add(const Body& body, const Pose& pose, bool awake) {
     b2BodyDef def;
     def.type = body.fixed ? b2_staticBody : b2_dynamicBody;
+    def.awake = awake;
     def.position = to_b2(pose.position());
     def.angle = static_cast<float>(pose.theta);
     def.linearDamping = def.angularDamping =
@@ -191,11 +216,16 @@ bool Box2dSimulator::plausible(const Poses& start) const {
 
 PushOutcome Box2dSimulator::push(const Poses& start, int action) const {
   if (!plausible(start)) return {start, false};
+  const Pose target = push_target(start[0], action, push_);
+  if (sweep_is_clear(scene_, start, 0, start[0].position(), target.position())) {
+    Poses end = start;  // nothing is met on the way
+    end[0] = to_single(target);
+    return {end, true};
+  }
   const Servo servo = servo_of(scene_, push_, physics_);
   Table table(scene_, physics_, servo, start);
   const int max_steps = physics_.sub_steps * physics_.box2d_steps;
-  const bool ok = drive(table, servo, start[0], push_target(start[0], action, push_), max_steps) &&
-                  table.come_to_rest();
+  const bool ok = drive(table, servo, start[0], target, max_steps) && table.come_to_rest();
   return {table.poses(), ok};
 }
 

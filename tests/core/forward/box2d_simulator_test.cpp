@@ -79,6 +79,32 @@ TEST(Box2dSimulator, AFreePushEndsAtTheTargetWithTheHeadingHeld) {
   }
 }
 
+// With bodies near the path the push is stepped through, without any the result is known; both must
+// agree.
+TEST(Box2dSimulator, APushCloselyPastABodyEndsAtTheTargetToo) {
+  const Task task = gathering();
+  Poses start = task.start;
+  start[0] = {0.0, 0.0, 0.0};
+  start[1] = {1.0, 0.8 * std::sqrt(0.75) + 0.6 + 0.03, 0.0};  // 0.03 from the hexagon's upper side
+  const PushOutcome out = simulator_of(task).push(start, 0);
+  ASSERT_TRUE(out.ok);
+  EXPECT_NEAR(out.end[0].x, 2.0, 1e-5);
+  EXPECT_NEAR(out.end[0].y, 0.0, 1e-5);
+  EXPECT_EQ(out.end[1], start[1]);
+}
+
+TEST(Box2dSimulator, APushedBoxPushesTheNext) {
+  Scene scene = robot_and_box();
+  scene.bodies.push_back(scene.bodies[1]);
+  scene.bodies.push_back(scene.bodies[1]);
+  const Poses start{{0, 0, 0}, {1.2, 0, 0}, {2.6, 0, 0}, {4.9, 0, 0}};
+  const PushOutcome out = Box2dSimulator(scene, kPush, kPhysics).push(start, 0);
+  ASSERT_TRUE(out.ok);
+  EXPECT_NEAR(out.end[1].x, 2.0 + 1.1 + 0.02, 0.02);
+  EXPECT_NEAR(out.end[2].x, out.end[1].x + 1.2 + 0.02, 0.02);
+  EXPECT_EQ(out.end[3], start[3]);
+}
+
 TEST(Box2dSimulator, UntouchedBodiesKeepTheirPosesBitForBit) {
   const Task task = gathering();
   const Box2dSimulator simulator = simulator_of(task);
