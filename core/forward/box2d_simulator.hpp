@@ -12,14 +12,15 @@ namespace rtg {
 /// force and the torque, bounded by B_f and B_ω, that bring it to the next point of its straight
 /// path with the heading held;
 ///
-///   B_f = force_factor · m₀ k_D/Δt · stride/(hΔt) [N],   B_ω = torque_factor · m₀ k_D/Δt ·
-///   stride/(hΔt) · r₀ [N·m]
+///   B_f = force_factor · F [N],   B_ω = torque_factor · F r₀ [N·m],
+///   F = m₀ k_D/Δt · stride/(hΔt), the robot's own drag at push speed,
 ///
 /// with r₀ the robot's bounding radius. It stops short where that is not enough, and never moves
 /// faster than 1.5 × the push speed, so nothing jumps when a blocked robot comes free.
 ///
 /// Poses of bodies that moved are single-precision values widened to double, hence a result is
-/// reproduced exactly from its own start. A body that took no impulse keeps its pose bit for bit.
+/// reproduced exactly from its own start. A body that took no impulse keeps its pose bit for bit. A
+/// push whose way is clear of all bodies is not simulated: it ends at its target.
 class Box2dSimulator final : public Simulator {
  public:
   /// `scene`: legal shapes only (polygon_defect() empty), bodies[0] movable.

@@ -97,7 +97,7 @@ TEST(Box2dSimulator, APushedBoxPushesTheNext) {
   Scene scene = robot_and_box();
   scene.bodies.push_back(scene.bodies[1]);
   scene.bodies.push_back(scene.bodies[1]);
-  const Poses start{{0, 0, 0}, {1.2, 0, 0}, {2.6, 0, 0}, {4.9, 0, 0}};
+  const Poses start{{0, 0, 0}, {1.2, 0, 0}, {2.6, 0, 0}, {5.9, 0, 0}};
   const PushOutcome out = Box2dSimulator(scene, kPush, kPhysics).push(start, 0);
   ASSERT_TRUE(out.ok);
   EXPECT_NEAR(out.end[1].x, 2.0 + 1.1 + 0.02, 0.02);
