@@ -1,0 +1,149 @@
+import dataclasses
+
+import numpy as np
+import pytest
+import torch as th
+from rtg import networks
+from rtg.ddqn import DoubleDqn, next_values, td_targets
+from rtg.replay import Batch
+from rtg.settings import TrainSettings
+from toy import line
+
+SETTINGS = TrainSettings(
+    interactions=1000, batch=32, target_sync=10, buffer=10_000, reduced_precision=False
+)
+
+
+def model(seed: int = 0, **changes: object) -> DoubleDqn:
+    return DoubleDqn(line(), dataclasses.replace(SETTINGS, **changes), discount=0.9, seed=seed)
+
+
+def column(*values: float) -> th.Tensor:
+    return th.tensor(values, dtype=th.float32)[:, None]
+
+
+def batch(rewards: th.Tensor, terminated: th.Tensor, bounds: th.Tensor) -> Batch:
+    nothing = th.zeros(len(rewards), 1)
+    return Batch(nothing, nothing, nothing, rewards, terminated, bounds, offline=0)
+
+
+def test_targets_by_hand() -> None:
+    none = column(*[-np.inf] * 5)
+    data = batch(column(0, 1, 0, 0, 0), column(0, 1, 0, 0, 0), none)
+    value = column(0.5, 0.7, -0.4, 2.0, 0.0)
+    plain = td_targets(data, value, 0.8, clip=False)
+    th.testing.assert_close(plain, column(0.4, 1.0, -0.32, 1.6, 0.0))
+    clipped = td_targets(data, value, 0.8, clip=True)
+    th.testing.assert_close(clipped, column(0.4, 1.0, 0.0, 1.0, 0.0))
+
+
+def test_targets_are_raised_to_proven_bounds() -> None:
+    data = batch(column(0, 0), column(0, 0), column(0.64, 0.1))
+    targets = td_targets(data, column(0.5, 0.5), 0.8, clip=True)
+    th.testing.assert_close(targets, column(0.64, 0.4))
+
+
+def test_double_q_agrees_with_a_plain_loop() -> None:
+    rng = np.random.default_rng(1)
+    online, target = rng.normal(size=(2, 64, 48)).astype(np.float32)
+    double, single = np.zeros((2, 64, 1), np.float32)
+    for i in range(64):
+        double[i] = target[i, int(np.argmax(online[i]))]
+        single[i] = max(target[i])
+    pair = (th.from_numpy(online), th.from_numpy(target))
+    np.testing.assert_array_equal(next_values(*pair, double_q=True), double)
+    np.testing.assert_array_equal(next_values(*pair, double_q=False), single)
+    assert (double <= single).all() and (double < single).any()
+
+
+@pytest.mark.parametrize("dueling", [True, False])
+def test_network_starts_near_zero(dueling: bool) -> None:
+    q = model(dueling=dueling).values(np.random.default_rng(0).normal(size=(100, 3)).astype("f4"))
+    assert q.shape == (100, 8)
+    assert np.abs(q).max() < 0.02 and q.std() > 0
+
+
+def test_dueling_advantages_sum_to_zero() -> None:
+    net = model(dueling=True).q_net
+    x = th.randn(10, 3)
+    out = net.head(net.inner(net.first(x)))
+    th.testing.assert_close(net(x).mean(dim=1), out[:, 0])
+
+
+def test_plain_network_has_the_layers_of_table_2() -> None:
+    net = model(dueling=False, layer_norm=False).q_net
+    weights = [tuple(p.shape) for name, p in net.named_parameters() if name.endswith("weight")]
+    assert weights == [(512, 3), (512, 512), (128, 512), (8, 128)]
+
+
+@pytest.mark.skipif(not networks.has_fast_bfloat16(), reason="no bfloat16 in this processor")
+def test_reduced_precision_stays_close() -> None:
+    fast, exact = model(reduced_precision=True), model(reduced_precision=False)
+    exact.q_net.load_state_dict(fast.q_net.state_dict())
+    x = np.random.default_rng(0).normal(size=(200, 3)).astype(np.float32)
+    error = np.abs(fast.values(x) - exact.values(x)).max()
+    assert 0 < error < 0.02 * np.abs(exact.values(x)).max()  # bfloat16 has 8 bits
+
+
+def test_target_network_follows_every_target_sync_gradient_steps() -> None:
+    one = model(target_sync=10)
+    one.learn(4, reset_num_timesteps=False)  # fills the online buffer
+    weights = lambda net: th.cat([p.detach().ravel() for p in net.parameters()])  # noqa: E731
+    start = weights(one.q_net_target)
+    one.train(10 - one._n_updates - 1, 32)
+    th.testing.assert_close(weights(one.q_net_target), start, rtol=0, atol=0)
+    one.train(1, 32)
+    th.testing.assert_close(weights(one.q_net_target), weights(one.q_net), rtol=0, atol=0)
+    assert not th.equal(weights(one.q_net), start)
+
+
+def test_interactions_are_counted_singly() -> None:
+    one = model(train_frequency=4)
+    one.learn(40, reset_num_timesteps=False)
+    assert (one.num_timesteps, one._n_updates, one.replay_buffer.online.count) == (40, 10, 40)
+
+
+def test_exploration_follows_the_interactions_not_the_calls() -> None:
+    one = model(epsilon_start=0.3, epsilon_end=0.1, epsilon_share=0.5)
+    assert one.exploration_rate == pytest.approx(0.3)
+    for _ in range(5):
+        one.learn(52, reset_num_timesteps=False)
+    assert one.num_timesteps == 260
+    assert one.exploration_rate == pytest.approx(0.3 - 0.2 * 260 / 500)
+    one.learn(400, reset_num_timesteps=False)
+    assert one.exploration_rate == pytest.approx(0.1)
+
+
+def test_noise_is_nearby_or_anywhere_and_as_frequent_as_asked() -> None:
+    one = model(nearby_share=1.0, nearby_headings=2, epsilon_start=0.3, epsilon_end=0.3)
+    shift = (one._explore(np.full(20_000, 1)) - 1 + 4) % 8 - 4
+    assert set(shift) == {-2, -1, 0, 1, 2}
+    assert abs((shift != 0).mean() - 0.3) < 4 * np.sqrt(0.3 * 0.7 / 20_000)  # four sigma
+    anywhere = model(nearby_share=0.0, epsilon_start=1.0, epsilon_end=1.0)
+    counts = np.bincount(anywhere._explore(np.full(20_000, 1)), minlength=8)
+    assert (np.abs(counts / 20_000 - 1 / 8) < 0.012).all()  # five sigma
+
+
+def test_deterministic_predictions_do_not_explore() -> None:
+    one = model(epsilon_start=1.0, epsilon_end=1.0)
+    x = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
+    action, _ = one.predict(x, deterministic=True)
+    np.testing.assert_array_equal(action, one.values(x).argmax(axis=1))
+
+
+def test_learns_the_line() -> None:
+    one = model(epsilon_start=1.0, epsilon_end=0.1, learning_rate=1e-3)
+    one.learn(2000)
+    x = np.array([[k / 4, 1, 0] for k in range(4)], np.float32)
+    assert (one.greedy(x) == 1).all()
+    np.testing.assert_allclose(one.values(x).max(axis=1), 0.9 ** np.arange(3, -1, -1), atol=0.1)
+
+
+def test_statistics_are_means_since_the_last_take() -> None:
+    one = model()
+    one.learn(100)
+    first = one.statistics.take()
+    assert {"td_error", "clipped_share", "bound_share", "q_online_mean", "q_online_max"} <= set(
+        first
+    )
+    assert one.statistics.take() == {}

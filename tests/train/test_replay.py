@@ -1,0 +1,161 @@
+import numpy as np
+import pytest
+import torch as th
+from gymnasium import spaces
+from rtg.replay import MixedReplayBuffer, Store
+from samples import random_transitions
+
+SIZE = 20
+SPACE = spaces.Box(-1e4, 1e4, (SIZE,), np.float32)
+
+
+def buffer(capacity: int = 1000, n_envs: int = 1, **kwargs: object) -> MixedReplayBuffer:
+    return MixedReplayBuffer(capacity, SPACE, spaces.Discrete(48), n_envs=n_envs, **kwargs)
+
+
+def add_online(replay: MixedReplayBuffer, tag: float, **changes: object) -> None:
+    """One transition whose observation is `tag` everywhere."""
+    row = np.full((1, SIZE), tag, np.float32)
+    done = bool(changes.get("done", False))
+    replay.add(
+        row,
+        row + 0.5,
+        np.array([3]),
+        np.array([changes.get("reward", 0.0)], np.float32),
+        np.array([done]),
+        [{"TimeLimit.truncated": changes.get("timeout", False)}],
+    )
+
+
+def test_store_returns_what_went_in() -> None:
+    store = Store(100, SIZE)
+    data = random_transitions(30)
+    rows = store.append(**{name: getattr(data, name) for name in Store.columns if name != "bound"})
+    np.testing.assert_array_equal(rows, np.arange(30))
+    for name in ("observation", "next_observation", "action", "reward", "terminated"):
+        np.testing.assert_array_equal(getattr(store, name)[:30], getattr(data, name))
+
+
+def test_full_store_overwrites_the_oldest() -> None:
+    store = Store(5, 1)
+    for value in range(8):
+        store.append(observation=np.full((1, 1), value), action=np.array([value]))
+    assert store.count == 5
+    assert sorted(store.action[:5]) == [3, 4, 5, 6, 7]
+    assert store.observation[:, 0].tolist() == [5, 6, 7, 3, 4]
+
+
+def test_offline_transitions_are_never_evicted() -> None:
+    replay = buffer(capacity=40)
+    replay.add_offline(random_transitions(40))
+    for tag in range(100):
+        add_online(replay, float(tag))
+    assert (replay.offline.count, replay.online.count) == (40, 40)
+    np.testing.assert_array_equal(
+        replay.offline.observation[:40], random_transitions(40).observation
+    )
+    with pytest.raises(ValueError, match=r"more offline transitions than train\.buffer = 40"):
+        replay.add_offline(random_transitions(1))
+
+
+def test_samples_are_stored_transitions_in_the_wanted_mix() -> None:
+    replay = buffer(offline_share=0.25)
+    data = random_transitions(60)
+    replay.add_offline(data)
+    for tag in range(100, 200):
+        add_online(replay, float(tag))
+    batch = replay.sample(80)
+    assert batch.offline == 20
+    known = {row.tobytes(): k for k, row in enumerate(data.observation)}
+    for i in range(20):
+        k = known[batch.observations[i].numpy().tobytes()]
+        assert batch.actions[i, 0] == data.action[k]
+        assert batch.rewards[i, 0] == data.reward[k]
+        np.testing.assert_array_equal(batch.next_observations[i], data.next_observation[k])
+    online = batch.observations[20:, 0]
+    assert ((online >= 100) & (online < 200)).all()
+    assert (batch.next_observations[20:, 0] == online + 0.5).all()
+    assert (batch.actions[20:] == 3).all()
+
+
+def test_batches_are_offline_until_a_batch_of_online_data_exists() -> None:
+    replay = buffer(offline_share=0.5)
+    replay.add_offline(random_transitions(10))
+    for tag in range(31):
+        add_online(replay, float(tag))
+    assert replay.sample(32).offline == 32
+    add_online(replay, 31.0)
+    assert replay.sample(32).offline == 16
+
+
+def test_uniform_mixing_follows_the_sizes() -> None:
+    replay = buffer(offline_share=-1.0)
+    replay.add_offline(random_transitions(300))
+    for tag in range(100):
+        add_online(replay, float(tag))
+    drawn = [replay.sample(100).offline for _ in range(200)]
+    assert abs(np.mean(drawn) - 75.0) < 4 * np.sqrt(100 * 0.75 * 0.25 / 200)  # four sigma
+
+
+def test_without_offline_data_all_is_online() -> None:
+    replay = buffer(offline_share=0.5)
+    add_online(replay, 1.0)
+    assert replay.sample(8).offline == 0
+    with pytest.raises(ValueError, match="nothing to sample from"):
+        buffer().sample(1)
+
+
+def test_time_out_keeps_the_bootstrap_and_success_ends_it() -> None:
+    replay = buffer()
+    add_online(replay, 0.0, done=True, timeout=True)
+    add_online(replay, 1.0, done=True, reward=1.0)
+    np.testing.assert_array_equal(replay.online.terminated[:2], [0.0, 1.0])
+
+
+def test_successful_episode_proves_its_own_values() -> None:
+    replay = buffer(discount=0.5)
+    add_online(replay, 0.0, done=True, timeout=True)
+    for tag in range(2):
+        add_online(replay, float(tag))
+    add_online(replay, 2.0, done=True, reward=1.0)
+    np.testing.assert_array_equal(replay.online.bound[:4], [0.0, 0.25, 0.5, 1.0])
+
+
+def test_unused_bounds_bound_nothing() -> None:
+    replay = buffer(use_bounds=False)
+    add_online(replay, 2.0, done=True, reward=1.0)
+    assert (replay.sample(4).bounds == -th.inf).all()
+
+
+def test_episodes_of_parallel_environments_are_kept_apart() -> None:
+    replay = buffer(n_envs=2, discount=0.5)
+    row = np.zeros((2, SIZE), np.float32)
+    for step in range(2):
+        done = np.array([False, step == 1])
+        reward = done.astype(np.float32)
+        replay.add(row, row, np.array([1, 2]), reward, done, [{}, {}])
+    np.testing.assert_array_equal(replay.online.bound[:4], [0.0, 0.5, 0.0, 1.0])
+
+
+def test_restored_buffer_continues_with_the_same_samples() -> None:
+    replay = buffer(n_envs=1)
+    replay.add_offline(random_transitions(70))
+    for tag in range(40):
+        add_online(replay, float(tag))
+    replay.sample(16)
+    other = buffer(seed=99)
+    other.restore(replay.state())
+    for tag in range(3):
+        for one in (replay, other):
+            add_online(one, float(tag), done=tag == 2, reward=float(tag == 2))
+    for ours, theirs in zip(replay.sample(64), other.sample(64), strict=True):
+        assert ours == theirs if isinstance(ours, int) else th.equal(ours, theirs)
+    np.testing.assert_array_equal(replay.online.bound[:43], other.online.bound[:43])
+
+
+def test_state_holds_only_what_is_filled() -> None:
+    replay = buffer(capacity=1_000_000)
+    replay.add_offline(random_transitions(7))
+    state = replay.state()
+    assert state["offline"]["observation"].shape == (7, SIZE)
+    assert state["online"]["observation"].shape == (0, SIZE)

@@ -1,0 +1,180 @@
+"""Double DQN on offline and online transitions, from Stable-Baselines3's DQN."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import torch as th
+from stable_baselines3 import DQN
+from stable_baselines3.common.logger import Logger
+from stable_baselines3.common.vec_env import VecEnv
+from torch.nn import functional
+
+from rtg.networks import ValuePolicy
+from rtg.replay import Batch, MixedReplayBuffer
+from rtg.settings import TrainSettings
+
+Array = npt.NDArray[Any]
+
+MAX_GRADIENT_NORM = 10.0
+
+
+def next_values(online: th.Tensor, target: th.Tensor, double_q: bool) -> th.Tensor:
+    """Value of s' from the Q of both networks, [B, actions] each -> [B, 1].
+
+    Double Q: the online network chooses, the target network values [van Hasselt et al. 2016].
+    """
+    chooser = online if double_q else target
+    return target.gather(1, chooser.argmax(dim=1, keepdim=True))
+
+
+def td_targets(batch: Batch, next_value: th.Tensor, discount: float, clip: bool) -> th.Tensor:
+    """y = r + γ (1 - terminated) Q(s'), raised to the proven bound, in [0, 1] if `clip`. [B, 1]"""
+    y = batch.rewards + discount * (1.0 - batch.terminated) * next_value
+    y = th.maximum(y, batch.bounds)
+    return y.clamp(0.0, 1.0) if clip else y
+
+
+class DoubleDqn(DQN):
+    """SB3's DQN with the batch of MixedReplayBuffer.
+
+    Departs from SB3: Double-Q, target synchronisation counted in gradient steps (`target_sync`),
+    ε over absolute interactions (learning in pieces and resuming leave the schedule alone),
+    exploration that often picks a heading near the greedy one.
+    """
+
+    replay_buffer: MixedReplayBuffer  # type: ignore[assignment]
+
+    def __init__(self, env: VecEnv, settings: TrainSettings, discount: float, seed: int) -> None:
+        self.settings = settings
+        self.statistics = Statistics()
+        self.explorer = np.random.default_rng([seed, 1])
+        super().__init__(
+            ValuePolicy,
+            env,
+            learning_rate=settings.learning_rate,
+            buffer_size=settings.buffer,
+            learning_starts=0,
+            batch_size=settings.batch,
+            gamma=discount,
+            train_freq=max(1, settings.train_frequency // env.num_envs),
+            gradient_steps=settings.gradient_steps,
+            replay_buffer_class=MixedReplayBuffer,  # type: ignore[arg-type]
+            replay_buffer_kwargs={
+                "offline_share": settings.offline_share,
+                "discount": discount,
+                "use_bounds": settings.value_bounds,
+                "seed": seed,
+            },
+            policy_kwargs={
+                "network": {
+                    "dueling": settings.dueling,
+                    "layer_norm": settings.layer_norm,
+                    "small_head": settings.small_head,
+                    "reduced_precision": settings.reduced_precision,
+                }
+            },
+            seed=seed,
+            device="cpu",
+        )
+        self.set_logger(Logger(folder=None, output_formats=[]))
+        self.update_exploration()
+
+    def train(self, gradient_steps: int, batch_size: int = 100) -> None:
+        self.policy.set_training_mode(True)
+        self._update_learning_rate(self.policy.optimizer)
+        for _ in range(gradient_steps):
+            self._gradient_step(self.replay_buffer.sample(batch_size))
+            self._n_updates += 1
+            if self._n_updates % self.settings.target_sync == 0:
+                self.q_net_target.load_state_dict(self.q_net.state_dict())
+
+    def _gradient_step(self, batch: Batch) -> None:
+        with th.no_grad():
+            target = self.q_net_target(batch.next_observations)
+            online = self.q_net(batch.next_observations) if self.settings.double_q else target
+            value = next_values(online, target, self.settings.double_q)
+            y = td_targets(batch, value, self.gamma, self.settings.clip_targets)
+        q = self.q_net(batch.observations).gather(1, batch.actions)
+        loss = functional.smooth_l1_loss(q, y)
+        self.policy.optimizer.zero_grad()
+        loss.backward()
+        th.nn.utils.clip_grad_norm_(self.q_net.parameters(), MAX_GRADIENT_NORM)
+        self.policy.optimizer.step()
+        self.statistics.note(batch, q.detach(), y, value)
+
+    def _on_step(self) -> None:
+        self.update_exploration()
+
+    def update_exploration(self) -> None:
+        """ε, linear from start to end over the first `epsilon_share` of the interactions."""
+        s = self.settings
+        done = min(1.0, self.num_timesteps / max(1.0, s.epsilon_share * s.interactions))
+        self.exploration_rate = s.epsilon_start + done * (s.epsilon_end - s.epsilon_start)
+
+    def predict(
+        self,
+        observation: Any,
+        state: Any = None,
+        episode_start: Any = None,
+        deterministic: bool = False,
+    ) -> tuple[Array, Any]:
+        action, state = self.policy.predict(observation, state, episode_start, deterministic=True)
+        if not deterministic:
+            action = self._explore(action)
+        return action, state
+
+    def _explore(self, greedy: Array) -> Array:
+        """ε-greedy per environment; `nearby_share` of it stays near the greedy heading. [N]"""
+        n, actions = len(greedy), int(self.action_space.n)  # type: ignore[attr-defined]
+        span = self.settings.nearby_headings
+        explores = self.explorer.random(n) < self.exploration_rate
+        nearby = self.explorer.random(n) < self.settings.nearby_share
+        offset = self.explorer.integers(1, span + 1, n) * self.explorer.choice((-1, 1), n)
+        anywhere = self.explorer.integers(actions, size=n)
+        return np.where(explores, np.where(nearby, (greedy + offset) % actions, anywhere), greedy)
+
+    def greedy(self, observation: Array) -> Array:
+        """The policy's own choice. [N, observation] float32 -> [N] int"""
+        return self.values(observation).argmax(axis=1)
+
+    def values(self, observation: Array) -> Array:
+        """Q of all actions. [N, observation] float32 -> [N, actions] float32"""
+        self.policy.set_training_mode(False)
+        with th.no_grad():
+            q: Array = self.q_net(th.from_numpy(np.ascontiguousarray(observation))).numpy()
+        return q
+
+
+class Statistics:
+    """Running means over the gradient steps since the last row of the log."""
+
+    def __init__(self) -> None:
+        self._sums: dict[str, float] = {}
+        self._counts: dict[str, float] = {}
+        self._peaks: dict[str, float] = {}
+
+    def note(self, batch: Batch, q: th.Tensor, y: th.Tensor, value: th.Tensor) -> None:
+        error = q - y
+        raw = batch.rewards + (1.0 - batch.terminated) * value
+        self._add("td_error", float(error.square().mean().sqrt()))
+        self._add("clipped_share", float(((raw < 0.0) | (raw > 1.0)).float().mean()))
+        self._add("bound_share", float((y <= batch.bounds).float().mean()))
+        for name, part in (("offline", q[: batch.offline]), ("online", q[batch.offline :])):
+            if len(part):
+                self._add(f"q_{name}_mean", float(part.mean()))
+                peak = f"q_{name}_max"
+                self._peaks[peak] = max(self._peaks.get(peak, -np.inf), float(part.max()))
+
+    def _add(self, name: str, value: float) -> None:
+        self._sums[name] = self._sums.get(name, 0.0) + value
+        self._counts[name] = self._counts.get(name, 0.0) + 1.0
+
+    def take(self) -> dict[str, float]:
+        """The means and peaks so far; starts afresh."""
+        means = {name: total / self._counts[name] for name, total in self._sums.items()}
+        means.update(self._peaks)
+        self.__init__()  # type: ignore[misc]
+        return means

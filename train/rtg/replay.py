@@ -1,0 +1,212 @@
+"""Two replay buffers as one: offline transitions, never evicted, and a ring of online ones."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import torch as th
+from gymnasium import spaces
+from stable_baselines3.common.buffers import BaseBuffer
+from stable_baselines3.common.vec_env import VecNormalize
+
+from rtg.dataset import Transitions
+from rtg.value_bounds import value_bounds
+
+Array = npt.NDArray[Any]
+Infos = list[dict[str, Any]]
+
+
+class Batch(NamedTuple):
+    """A sample for one gradient step; its first `offline` rows are offline transitions."""
+
+    observations: th.Tensor  # [B, observation] float32
+    actions: th.Tensor  # [B, 1] int64
+    next_observations: th.Tensor  # [B, observation] float32
+    rewards: th.Tensor  # [B, 1] float32
+    terminated: th.Tensor  # [B, 1] float32, 1 ends the bootstrap; a time-out is 0
+    bounds: th.Tensor  # [B, 1] float32, a proven lower bound of Q*(s, a); -inf if unused
+    offline: int
+
+
+class Store:
+    """Columns of transitions. Grows up to `capacity` rows, then overwrites the oldest."""
+
+    columns = ("observation", "next_observation", "action", "reward", "terminated", "bound")
+
+    def __init__(self, capacity: int, observation_size: int) -> None:
+        self.capacity = capacity
+        self.count = 0  # rows filled
+        self.head = 0  # row that is written next
+        wide, one = (0, observation_size), (0,)
+        self.observation = np.zeros(wide, np.float32)  # [rows, observation]
+        self.next_observation = np.zeros(wide, np.float32)  # [rows, observation]
+        self.action = np.zeros(one, np.int64)  # [rows]
+        self.reward = np.zeros(one, np.float32)  # [rows]
+        self.terminated = np.zeros(one, np.float32)  # [rows]
+        self.bound = np.zeros(one, np.float32)  # [rows]
+
+    def append(self, **columns: Array) -> Array:
+        """Adds rows (at most `capacity`); returns where they stand, [rows] int64."""
+        added = len(columns["action"])
+        if added > self.capacity:
+            raise ValueError(f"{added} transitions do not fit into a buffer of {self.capacity}")
+        self._reserve(min(self.count + added, self.capacity))
+        rows = (self.head + np.arange(added)) % self.capacity
+        for name in self.columns:
+            getattr(self, name)[rows] = columns.get(name, 0.0)
+        self.head = (self.head + added) % self.capacity
+        self.count = min(self.count + added, self.capacity)
+        return rows
+
+    def _reserve(self, rows: int) -> None:
+        if rows <= len(self.action):
+            return
+        size = min(max(rows, 2 * len(self.action)), self.capacity)
+        for name in self.columns:
+            old = getattr(self, name)
+            new = np.zeros((size, *old.shape[1:]), old.dtype)
+            new[: len(old)] = old
+            setattr(self, name, new)
+
+    def state(self) -> dict[str, Any]:
+        """The filled rows and nothing else."""
+        rows = {name: getattr(self, name)[: self.count].copy() for name in self.columns}
+        return {"head": self.head, **rows}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        self.count = len(state["action"])
+        self.head = state["head"]
+        for name in self.columns:
+            setattr(self, name, np.array(state[name]))
+
+
+class MixedReplayBuffer(BaseBuffer):
+    """What SB3's DQN samples from.
+
+    `offline_share` of every batch is drawn from the offline transitions once a batch of online ones
+    exists (before that, all of it); a negative share draws uniformly over both.
+    """
+
+    def __init__(
+        self,
+        buffer_size: int,
+        observation_space: spaces.Space[Any],
+        action_space: spaces.Space[Any],
+        device: th.device | str = "cpu",
+        n_envs: int = 1,
+        optimize_memory_usage: bool = False,
+        *,
+        offline_share: float = 0.5,
+        discount: float = 0.9,
+        use_bounds: bool = True,
+        seed: int = 0,
+    ) -> None:
+        del optimize_memory_usage  # s and s' are both kept: offline transitions are not consecutive
+        super().__init__(buffer_size, observation_space, action_space, device, n_envs=n_envs)
+        size = self.obs_shape[0]
+        self.offline = Store(buffer_size, size)
+        self.online = Store(buffer_size, size)
+        self.offline_share = offline_share
+        self.discount = discount
+        self.use_bounds = use_bounds
+        self.rng = np.random.default_rng(seed)
+        self._episodes: list[list[int]] = [[] for _ in range(n_envs)]  # rows of the running ones
+
+    def size(self) -> int:
+        return self.offline.count + self.online.count
+
+    def add_offline(self, batch: Transitions) -> None:
+        """Takes transitions of the stream, while training or before. Raises if they do not fit."""
+        if self.offline.count + len(batch.action) > self.offline.capacity:
+            raise ValueError(f"more offline transitions than train.buffer = {self.buffer_size}")
+        self.offline.append(
+            observation=batch.observation,
+            next_observation=batch.next_observation,
+            action=batch.action,
+            reward=batch.reward,
+            terminated=batch.terminated,
+        )
+
+    def refresh_bounds(self) -> None:
+        """Recomputes the lower bounds of all offline transitions; call it when data came in."""
+        store, n = self.offline, self.offline.count
+        if self.use_bounds and n:
+            store.bound[:n] = value_bounds(
+                store.observation[:n], store.next_observation[:n], store.reward[:n], self.discount
+            )
+
+    def add(
+        self, obs: Array, next_obs: Array, action: Array, reward: Array, done: Array, infos: Infos
+    ) -> None:
+        """SB3's call: one row per environment; `done` with a time-out keeps the bootstrap."""
+        timeout = np.array([info.get("TimeLimit.truncated", False) for info in infos])
+        rows = self.online.append(
+            observation=obs,
+            next_observation=next_obs,
+            action=action.reshape(-1),
+            reward=reward,
+            terminated=np.asarray(done) & ~timeout,
+            bound=reward,
+        )
+        for env, row in enumerate(rows):
+            self._episodes[env].append(int(row))
+            if done[env]:
+                self._close_episode(env, success=bool(reward[env] > 0))
+
+    def _close_episode(self, env: int, success: bool) -> None:
+        rows = np.array(self._episodes[env][-self.online.capacity :])
+        self._episodes[env] = []
+        if success and self.use_bounds:
+            self.online.bound[rows] = self.discount ** np.arange(len(rows) - 1, -1, -1)
+
+    def sample(self, batch_size: int, env: VecNormalize | None = None) -> Batch:
+        offline = self._offline_rows(batch_size)
+        parts = []
+        for store, count in ((self.offline, offline), (self.online, batch_size - offline)):
+            if count:
+                parts.append((store, self.rng.integers(store.count, size=count)))
+
+        def column(name: str) -> th.Tensor:
+            picked = [getattr(store, name)[rows] for store, rows in parts]
+            tensor = th.from_numpy(np.concatenate(picked)).to(self.device)
+            return tensor if tensor.ndim == 2 else tensor[:, None]
+
+        return Batch(
+            observations=column("observation"),
+            actions=column("action"),
+            next_observations=column("next_observation"),
+            rewards=column("reward"),
+            terminated=column("terminated"),
+            bounds=column("bound") if self.use_bounds else th.full((batch_size, 1), -th.inf),
+            offline=offline,
+        )
+
+    def _offline_rows(self, batch_size: int) -> int:
+        offline, online = self.offline.count, self.online.count
+        if offline + online == 0:
+            raise ValueError("nothing to sample from: the replay buffer is empty")
+        if self.offline_share < 0.0:
+            return int(self.rng.binomial(batch_size, offline / (offline + online)))
+        if offline == 0:
+            return 0
+        return batch_size if online < batch_size else round(self.offline_share * batch_size)
+
+    def _get_samples(self, batch_inds: Array, env: VecNormalize | None = None) -> Any:
+        raise NotImplementedError("rows belong to two stores; use sample()")
+
+    def state(self) -> dict[str, Any]:
+        """Everything that sampling depends on; restore() continues with the same bits."""
+        return {
+            "offline": self.offline.state(),
+            "online": self.online.state(),
+            "rng": self.rng.bit_generator.state,
+            "episodes": [list(rows) for rows in self._episodes],
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        self.offline.restore(state["offline"])
+        self.online.restore(state["online"])
+        self.rng.bit_generator.state = state["rng"]
+        self._episodes = [list(rows) for rows in state["episodes"]]

@@ -1,0 +1,45 @@
+"""How to learn: the section `train` of the configuration as the C++ loader resolved it."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+
+@dataclasses.dataclass(frozen=True)
+class TrainSettings:
+    """Mirror of rtg::TrainConfig, which documents the fields and holds their legal ranges."""
+
+    preset: str = "default"
+    interactions: int = 350_000
+    start_at: int = 20_000
+    buffer: int = 1_500_000
+    batch: int = 512
+    learning_rate: float = 3.0e-4
+    train_frequency: int = 4
+    gradient_steps: int = 1
+    warm_up: int = 0
+    target_sync: int = 500
+    discount: float = 0.9
+    offline_share: float = 0.5
+    double_q: bool = True
+    dueling: bool = True
+    layer_norm: bool = True
+    small_head: bool = True
+    clip_targets: bool = True
+    value_bounds: bool = True
+    epsilon_start: float = 0.3
+    epsilon_end: float = 0.05
+    epsilon_share: float = 0.2
+    nearby_share: float = 0.5
+    nearby_headings: int = 2
+    start_jitter: float = 0.1
+    eval_every: int = 10_000
+    eval_episodes: int = 100
+    checkpoint_every: int = 20_000
+    reduced_precision: bool = True
+
+    @classmethod
+    def from_config(cls, section: dict[str, Any]) -> TrainSettings:
+        """From the `train` section of rtg._core.Config.json; KeyError if a field is absent."""
+        return cls(**{field.name: section[field.name] for field in dataclasses.fields(cls)})
