@@ -1,0 +1,44 @@
+"""The configuration as the C++ loader resolves it; Python reads no YAML of its own."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rtg import paths
+from rtg.errors import RunError, UserError
+from rtg.run_args import Override
+
+
+def _rtg_config(file: Path, overrides: Sequence[Override], mode: str) -> str:
+    command = [str(paths.program("rtg_config")), str(file)]
+    for override in overrides:
+        command += ["--set", override.setting]
+    done = subprocess.run([*command, mode], capture_output=True, text=True, check=False)
+    if done.returncode == 2:
+        message = done.stderr.strip()
+        for override in overrides:
+            message = message.replace(f"--set {override.setting}", override.typed)
+        raise UserError(message)
+    if done.returncode != 0:
+        raise RunError(f"rtg_config failed: {done.stderr.strip() or done.returncode}")
+    return done.stdout
+
+
+def canonical(file: Path, overrides: Sequence[Override] = ()) -> str:
+    """The whole configuration as canonical YAML. Raises UserError on a mistake in it."""
+    return _rtg_config(file, overrides, "--print")
+
+
+def values(file: Path, overrides: Sequence[Override] = ()) -> dict[str, Any]:
+    """The same as nested dictionaries."""
+    result: dict[str, Any] = json.loads(_rtg_config(file, overrides, "--json"))
+    return result
+
+
+def check(file: Path) -> str:
+    """What a task file says, for people. Raises UserError."""
+    return _rtg_config(file, (), "--check")

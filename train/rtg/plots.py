@@ -1,0 +1,177 @@
+"""Pictures of numbers: learning curve, replay gap, coverage."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from rtg.draw import GOAL, INK, PAPER, ROBOT, TaskLike, circle, kind_colours, outline
+
+Floats = NDArray[np.float64]
+
+_STYLE: dict[str, Any] = {
+    "font.size": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "#8a8d93",
+    "axes.labelcolor": "#2b303a",
+    "text.color": "#2b303a",
+    "xtick.color": "#5a5e66",
+    "ytick.color": "#5a5e66",
+    "axes.grid": True,
+    "grid.color": "#e7e5df",
+    "axes.axisbelow": True,
+    "figure.facecolor": tuple(c / 255 for c in PAPER),
+    "axes.facecolor": tuple(c / 255 for c in PAPER),
+    "axes.titlelocation": "left",
+    "axes.titlesize": 11,
+}
+_BLUE, _ORANGE = "#4a7ebb", "#d9822b"
+
+
+def _rgb(colour: Sequence[int]) -> tuple[float, ...]:
+    return tuple(c / 255 for c in colour)
+
+
+def _save(figure: Figure, path: Path) -> None:
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+
+
+def learning_curve(path: Path, title: str, curve: Mapping[str, Floats]) -> None:
+    """Success, episode length and return over interactions.
+
+    curve: columns `interactions`, `success_rate`, `episode_length_mean`, `episode_return_mean` of
+    the evaluations and, where known, `rollout_success`; all [N], NaN where not measured.
+    """
+    panels = [
+        ("success rate", "success_rate", "rollout_success", (-0.03, 1.03)),
+        ("episode length", "episode_length_mean", None, None),
+        ("return", "episode_return_mean", None, None),
+    ]
+    with plt.rc_context(_STYLE):
+        figure, axes = plt.subplots(1, 3, figsize=(10.5, 3.2), layout="constrained")
+        thousand = np.asarray(curve["interactions"]) / 1000.0
+        for axis, (name, column, extra, limits) in zip(axes, panels, strict=True):
+            if extra in curve:
+                axis.plot(thousand, curve[extra], color=_ORANGE, lw=1.3, label="training roll-outs")
+            known = np.isfinite(curve[column])
+            axis.plot(
+                thousand[known],
+                np.asarray(curve[column])[known],
+                color=_BLUE,
+                lw=1.8,
+                marker="o",
+                ms=3,
+                label="greedy, held-out starts",
+            )
+            axis.set_title(name)
+            axis.set_xlabel("interactions / 1000")
+            if limits:
+                axis.set_ylim(*limits)
+            if extra in curve:
+                axis.legend(frameon=False, fontsize=8, loc="best")
+        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        _save(figure, path)
+
+
+def replay_gap(path: Path, title: str, gaps: Floats) -> None:
+    """Histogram of the replay gap over decades [m], with median and 90th percentile. gaps [N]."""
+    floor = 1e-4
+    values = np.maximum(np.asarray(gaps, dtype=float), floor)
+    with plt.rc_context(_STYLE):
+        figure, axis = plt.subplots(figsize=(6.4, 3.4), layout="constrained")
+        top = max(float(values.max(initial=floor)), 10 * floor)
+        edges = np.geomspace(floor, 1.001 * top, 61)
+        axis.hist(values, bins=edges, color=_BLUE, alpha=0.85)
+        axis.set_xscale("log")
+        if len(values):
+            for share, words in ((50, "median"), (90, "90 %")):
+                at = float(np.percentile(values, share))
+                axis.axvline(at, color=_ORANGE, lw=1.5, ls="-" if share == 50 else "--")
+                axis.annotate(
+                    f" {words} {at:.3f} m",
+                    (at, 0.99 if share == 50 else 0.90),
+                    xycoords=("data", "axes fraction"),
+                    va="top",
+                    color="#a35d14",
+                )
+        axis.set_xlabel("replay gap: mean distance between reverse-generated and replayed end [m]")
+        axis.set_ylabel("replayed candidates")
+        axis.set_title(title)
+        _save(figure, path)
+
+
+def _scene(axis: Axes, task: TaskLike, start: Floats, body: int) -> None:
+    """Goal, arena, the start layout in outline, the body in question filled."""
+    colours = kind_colours(task)
+    a = task.arena
+    for term in task.goal:
+        colour = _rgb(colours.get(term.kind, GOAL))
+        if term.kind not in ("*", task.kinds[body]):
+            continue
+        if term.region == "disc":
+            axis.fill(*circle(term.centre, term.radius).T, color=colour, alpha=0.18, lw=0)
+        else:
+            normal = np.asarray(term.normal).reshape(2)
+            edge = normal * term.offset + np.outer([-3 * a, 3 * a], [-normal[1], normal[0]])
+            axis.fill(*np.vstack([edge, edge[::-1] - 4 * a * normal]).T, color=colour, alpha=0.15)
+    for other, shape in enumerate(task.shapes):
+        xy = outline(shape, start[other])
+        closed = np.vstack([xy, xy[:1]])
+        colour = _rgb(ROBOT) if other == 0 else _rgb(INK)
+        axis.plot(*closed.T, color=colour, lw=1.8 if other == body else 0.7)
+    axis.plot([-a, a, a, -a, -a], [-a, -a, a, a, -a], color="#c9c6bc", lw=1)
+    axis.set(xlim=(-1.05 * a, 1.05 * a), ylim=(-1.05 * a, 1.05 * a), aspect="equal")
+    axis.axis("off")
+
+
+def coverage(
+    path: Path, title: str, task: TaskLike, start: Floats, poses: Floats, depth: Floats
+) -> None:
+    """Where the search brought each object, coloured by the number of actions to success.
+
+    start [bodies, 3]; poses [N, bodies, 3] and depth [N] are the stored nodes.
+    """
+    objects = [body for body in range(1, len(task.kinds))]
+    columns = min(4, len(objects))
+    rows = -(-len(objects) // columns)
+    order = np.argsort(depth, kind="stable")  # the far ones on top
+    with plt.rc_context(_STYLE):
+        size = (3.1 * columns + 0.9, 3.1 * rows + 0.5)
+        figure, axes = plt.subplots(
+            rows, columns, figsize=size, layout="constrained", squeeze=False
+        )
+        for axis in axes.flat[len(objects) :]:
+            axis.set_visible(False)
+        for axis, body in zip(axes.flat, objects, strict=False):
+            _scene(axis, task, start, body)
+            dots = axis.scatter(
+                poses[order, body, 0],
+                poses[order, body, 1],
+                c=np.asarray(depth)[order],
+                s=4,
+                alpha=0.55,
+                cmap="viridis",
+                lw=0,
+                rasterized=True,
+            )
+            axis.set_title(f"object {body}" if len(set(task.kinds[1:])) == 1 else task.kinds[body])
+        bar = figure.colorbar(dots, ax=axes, shrink=0.85, pad=0.02)
+        bar.solids.set_alpha(1.0)
+        bar.set_label("actions to success")
+        bar.locator = MaxNLocator(integer=True)
+        bar.outline.set_visible(False)  # type: ignore[operator]
+        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        _save(figure, path)

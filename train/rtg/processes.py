@@ -1,0 +1,92 @@
+"""Child processes that never outlive their parent."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+_PR_SET_PDEATHSIG = 1
+_libc = ctypes.CDLL(None)
+
+
+def _die_with_parent() -> None:
+    """Runs in the child: the kernel kills it when the thread that started it ends."""
+    _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+class Node:
+    """One program of the process graph in a process group of its own, its output in a log file."""
+
+    def __init__(self, name: str, command: Sequence[str | Path], log: Path) -> None:
+        """Starts at once. Call from the main thread: the child dies with the thread that starts it."""
+        self.name = name
+        self.command = [str(part) for part in command]
+        self.log = log
+        self.restarts = 0
+        self.start()
+
+    def start(self) -> None:
+        """Starts the program, again if it ran before."""
+        with self.log.open("ab") as output:
+            self._process = subprocess.Popen(
+                self.command,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                preexec_fn=_die_with_parent,
+            )
+
+    @property
+    def pid(self) -> int:
+        """Also the id of the process group."""
+        return self._process.pid
+
+    def exit_status(self) -> int | None:
+        """None while it runs."""
+        return self._process.poll()
+
+    def signal_group(self, number: int) -> None:
+        """To the program and everything it started."""
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self.pid, number)
+
+    def wait(self, seconds: float) -> bool:
+        """Whether it has ended within that time."""
+        try:
+            self._process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+
+    def last_words(self, lines: int = 8) -> str:
+        """The end of its log."""
+        text = self.log.read_text(errors="replace") if self.log.exists() else ""
+        return "\n".join(text.splitlines()[-lines:])
+
+    def epitaph(self) -> str:
+        """How it ended, for people."""
+        status = self.exit_status()
+        if status is not None and status < 0:
+            return f"{self.name} was killed by {signal.Signals(-status).name}"
+        return f"{self.name} ended with exit status {status}"
+
+
+def stop_all(nodes: Iterable[Node], grace: float = 5.0) -> None:
+    """SIGTERM to all, SIGKILL to the groups of those that are still there after `grace` seconds."""
+    nodes = list(nodes)
+    for node in nodes:
+        if node.exit_status() is None:
+            node.signal_group(signal.SIGTERM)
+    deadline = time.monotonic() + grace
+    for node in nodes:
+        node.wait(max(0.0, deadline - time.monotonic()))
+    for node in nodes:
+        node.signal_group(signal.SIGKILL)
+        node.wait(grace)

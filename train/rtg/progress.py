@@ -1,0 +1,183 @@
+"""How a run shows itself: bars on a terminal, a line per change anywhere else."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from types import TracebackType
+from typing import Protocol, Self, TextIO
+
+from rich.console import Console, Group, RenderableType
+from rich.live import Live
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TaskID,
+    TextColumn,
+    TimeRemainingColumn,
+)
+from rich.text import Text
+
+
+@dataclass(frozen=True)
+class RunState:
+    """Where a run stands."""
+
+    phase: str = ""  # of the generation: "tree 1", "roll-outs", ...
+    layer: int = 0  # of `depth`
+    depth: int = 0
+    transitions: int = 0
+    target: int = 0
+    contact_share: float = 0.0
+    start_region: int = 0
+    workers: int = 0
+    interactions: int = 0
+    budget: int = 0  # interactions in all; 0: no training
+    rate: float = 0.0  # interactions per second
+    success_rate: float | None = None  # of the last evaluation
+
+
+def generation_text(state: RunState) -> str:
+    """One line on the generation."""
+    parts = [state.phase or "starting"]
+    if state.depth:
+        parts.append(f"layer {state.layer}/{state.depth}")
+    parts.append(f"contact share {state.contact_share:.2f}")
+    parts.append(f"{state.start_region:,} in the start region")
+    if state.workers:
+        parts.append(f"{state.workers} worker{'s' if state.workers != 1 else ''}")
+    return ", ".join(parts)
+
+
+def training_text(state: RunState) -> str:
+    """One line on the training."""
+    if not state.interactions:
+        return "waiting for transitions"
+    success = "-" if state.success_rate is None else f"{state.success_rate:.2f}"
+    return f"success {success}, {state.rate:,.0f} interactions/s"
+
+
+class Display(Protocol):
+    """A context manager that shows states and notes."""
+
+    def __enter__(self) -> Self: ...
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None: ...
+
+    def show(self, state: RunState) -> None:
+        """The newest state; may be called as often as one likes."""
+
+    def note(self, message: str) -> None:
+        """Something worth a line that stays."""
+
+
+class PlainDisplay:
+    """A line per change, with the seconds since the start."""
+
+    def __init__(self, out: TextIO) -> None:
+        self._out = out
+        self._start = time.monotonic()
+        self._shown = RunState()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def note(self, message: str) -> None:
+        print(f"[{time.monotonic() - self._start:7.1f} s] {message}", file=self._out, flush=True)
+
+    def show(self, state: RunState) -> None:
+        last = self._shown
+        if (state.phase, state.layer) != (last.phase, last.layer):
+            counts = f"{state.transitions:,} of {state.target:,} transitions"
+            self.note(f"{counts}: {generation_text(state)}")
+        tenth = max(1, state.budget // 10)
+        if (
+            state.interactions // tenth != last.interactions // tenth
+            or state.success_rate != last.success_rate
+        ):
+            counts = f"{state.interactions:,} of {state.budget:,} interactions"
+            self.note(f"{counts}: {training_text(state)}")
+        self._shown = state
+
+
+class LiveDisplay:
+    """Two bars that change in place, with a line of words under each."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._bars = [self._bar("generate"), self._bar("train")]
+        self._live = Live(console=console, refresh_per_second=5)
+
+    def _bar(self, name: str) -> Progress:
+        bar = Progress(
+            TextColumn("{task.description:<8}"),
+            BarColumn(bar_width=28),
+            MofNCompleteColumn(),
+            TimeRemainingColumn(elapsed_when_finished=True),
+            console=self._console,
+        )
+        bar.add_task(name, total=None)
+        return bar
+
+    def __enter__(self) -> Self:
+        self._live.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._live.stop()
+
+    def note(self, message: str) -> None:
+        self._console.print(message, highlight=False)
+
+    def show(self, state: RunState) -> None:
+        generate, train = self._bars
+        only = TaskID(0)
+        generate.update(only, completed=state.transitions, total=state.target or None)
+        rows: list[RenderableType] = [generate, _under(generation_text(state))]
+        if state.budget:
+            train.update(only, completed=state.interactions, total=state.budget)
+            rows += [train, _under(training_text(state))]
+        self._live.update(Group(*rows))
+
+
+def _under(words: str) -> Text:
+    return Text(f"         {words}", style="dim", no_wrap=True, overflow="ellipsis")
+
+
+def display(out: TextIO) -> Display:
+    """The display that suits where the output goes."""
+    console = Console(file=out)
+    return LiveDisplay(console) if console.is_terminal else PlainDisplay(out)
+
+
+class RateMeter:
+    """Counts per second over the last stretch of time."""
+
+    def __init__(self, stretch: float = 10.0) -> None:
+        self._stretch = stretch
+        self._samples: list[tuple[float, int]] = []
+
+    def rate(self, count: int, now: float) -> float:
+        """Takes the count at time `now` [s] in."""
+        if not self._samples or count != self._samples[-1][1]:
+            self._samples.append((now, count))
+        while len(self._samples) > 2 and now - self._samples[0][0] > self._stretch:
+            self._samples.pop(0)
+        (first_time, first), (_, last) = self._samples[0], self._samples[-1]
+        return (last - first) / (now - first_time) if now > first_time else 0.0
+
+
+def with_training(
+    state: RunState, interactions: int, rate: float, success_rate: float | None
+) -> RunState:
+    """The state with the learner's part replaced."""
+    return replace(state, interactions=interactions, rate=rate, success_rate=success_rate)

@@ -1,0 +1,136 @@
+"""The flags of `./run.sh` and what they mean in the configuration."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rtg import paths
+from rtg.errors import UserError
+
+EPILOG = """\
+examples:
+  ./run.sh                                     the whole job on Gathering
+  ./run.sh gathering --no-train                only generate transitions
+  ./run.sh config/mine.yaml --seed 3 --out runs/mine
+  ./run.sh --set search.breadth=32 --print-config
+
+tools:
+  ./run.sh check FILE.yaml                     validate a task file and print what it says
+  ./run.sh spy                                 watch the channels of a run in the terminal
+  ./run.sh lcm-spy                             the same with LCM's own viewer (needs Java)
+
+exit status: 0 success, 2 bad input, 1 anything else"""
+
+# Flag -> the configuration key that it sets.
+_KEYS = {
+    "workers": "run.workers",
+    "reverse": "search.reverse",
+    "transitions": "search.transitions",
+    "interactions": "train.interactions",
+    "seed": "run.seed",
+}
+
+
+@dataclass(frozen=True)
+class Override:
+    """A value from the command line, as the user typed it and as the configuration takes it."""
+
+    typed: str  # "--workers 4"
+    setting: str  # "run.workers=4"
+
+
+@dataclass(frozen=True)
+class RunArgs:
+    """One call of `rtg run`."""
+
+    file: Path
+    overrides: tuple[Override, ...]
+    out: Path | None
+    train: bool
+    resume: bool
+    print_config: bool
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> None:  # type: ignore[override]
+        raise UserError(f"{message} (./run.sh --help lists all)")
+
+
+def parser() -> argparse.ArgumentParser:
+    """The flags of `rtg run`."""
+    p = _Parser(
+        prog="./run.sh",
+        description="From goal states to a trained policy: generate reverse transitions, train, "
+        "evaluate, and leave the results in a run folder.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    p.add_argument(
+        "task", nargs="?", default="gathering", help="a task of config/ or a FILE.yaml (gathering)"
+    )
+    p.add_argument("--in-process", action="store_true", help="everything in one process, no LCM")
+    p.add_argument("--workers", metavar="N", help="reverse workers (one per core)")
+    p.add_argument("--reverse", metavar="rrbs|naive", help="how reverse steps are found (rrbs)")
+    p.add_argument("--transitions", metavar="N", help="transitions to generate")
+    p.add_argument("--interactions", metavar="N", help="environment steps of the learner")
+    p.add_argument("--no-train", action="store_true", help="stop after the generation")
+    p.add_argument("--seed", metavar="N", help="decides everything random")
+    p.add_argument("--out", metavar="DIR", help="the run folder (runs/TASK-TIME)")
+    p.add_argument("--resume", action="store_true", help="go on with the run in --out DIR")
+    p.add_argument(
+        "--set", metavar="KEY=VALUE", action="append", default=[], help="any configuration value"
+    )
+    p.add_argument("--print-config", action="store_true", help="print all values and stop")
+    return p
+
+
+def task_file(task: str) -> Path:
+    """The file that `task`, a name or a path, stands for. Raises UserError."""
+    if task in paths.task_names():
+        return paths.CONFIG / f"{task}.yaml"
+    path = Path(task)
+    if path.is_file():
+        return path
+    if path.suffix in {".yaml", ".yml"} or path.is_dir():
+        raise UserError(f"{task}: no such task file")
+    names = ", ".join(paths.task_names())
+    raise UserError(f"{task}: no task of that name; legal: {names}, a FILE.yaml or a tool")
+
+
+def _overrides(args: argparse.Namespace) -> tuple[Override, ...]:
+    found = [Override(f"--set {setting}", setting) for setting in args.set]
+    for flag, key in _KEYS.items():
+        value = getattr(args, flag)
+        if value is not None:
+            found.append(Override(f"--{flag} {value}", f"{key}={value}"))
+    if args.in_process:
+        found.append(Override("--in-process", "run.in_process=true"))
+    return tuple(found)
+
+
+def parse(argv: Sequence[str]) -> RunArgs:
+    """Raises UserError, or SystemExit(0) after --help."""
+    args = parser().parse_args(argv)
+    out = Path(args.out).absolute() if args.out else None
+    if args.resume:
+        if out is None:
+            raise UserError("--resume: needs --out DIR, the folder of the run to go on with")
+        file = out / "config.yaml"
+        if not file.is_file():
+            raise UserError(f"--resume: {out} holds no run (no config.yaml)")
+    else:
+        file = task_file(args.task)
+        if out is not None and out.exists() and not (out.is_dir() and not any(out.iterdir())):
+            raise UserError(f"--out: {out} exists and is not empty; take another or add --resume")
+    return RunArgs(
+        file=file,
+        overrides=_overrides(args),
+        out=out,
+        train=not args.no_train,
+        resume=args.resume,
+        print_config=args.print_config,
+    )

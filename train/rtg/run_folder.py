@@ -1,0 +1,126 @@
+"""The folder of one run: what it was made from, and its summary."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import os
+import platform
+import shutil
+import subprocess
+import time
+from pathlib import Path
+from typing import Any
+
+from rtg import paths
+
+# What summary.json holds at least; null where a part did not run.
+SUMMARY_KEYS = (
+    "task",
+    "seed",
+    "mode",
+    "workers",
+    "transitions",
+    "contact_share",
+    "multi_body_share",
+    "start_region_transitions",
+    "reachable_share",
+    "tree_policy_success",
+    "tree_policy_length_mean",
+    "candidates",
+    "pruned",
+    "converged",
+    "iterations_median",
+    "iterations_p90",
+    "replay_gap_median",
+    "replay_gap_p90",
+    "reverse_cpu_s",
+    "replay_cpu_s",
+    "generate_wall_s",
+    "train_wall_s",
+    "interactions",
+    "online_successes",
+    "success_rate",
+    "episode_length_mean",
+    "episode_return_mean",
+    "lost_transitions",
+)
+# Samples behind the pictures, too long for a summary.
+_SAMPLES = ("replay_gaps", "nodes")
+_PACKAGES = ("torch", "stable-baselines3", "gymnasium", "numpy", "lcm")
+_DEBIAN = ("g++", "libeigen3-dev", "libsuitesparse-dev", "libbox2d-dev", "libyaml-cpp-dev")
+
+
+def write_text(path: Path, text: str) -> None:
+    """Replaces the file in one step, so that no reader ever sees half of it."""
+    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    draft.write_text(text)
+    draft.replace(path)
+
+
+def write_json(path: Path, value: Any) -> None:
+    """Indented, keys in the given order, in one step."""
+    write_text(path, json.dumps(value, indent=2, ensure_ascii=False) + "\n")
+
+
+def read_json(path: Path) -> dict[str, Any]:
+    """Empty if there is no such file."""
+    if not path.is_file():
+        return {}
+    value: dict[str, Any] = json.loads(path.read_text())
+    return value
+
+
+def default_path(task: str) -> Path:
+    """runs/TASK-TIME, with a number behind it if that second has one already."""
+    base = paths.RUNS / f"{task}-{time.strftime('%Y%m%d-%H%M%S')}"
+    path, count = base, 1
+    while path.exists():
+        count += 1
+        path = base.with_name(f"{base.name}-{count}")
+    return path
+
+
+def _output(*command: str) -> str | None:
+    if shutil.which(command[0]) is None:
+        return None
+    done = subprocess.run(command, cwd=paths.ROOT, capture_output=True, text=True, check=False)
+    return done.stdout.strip() if done.returncode == 0 else None
+
+
+def _debian_version(package: str) -> str | None:
+    return _output("dpkg-query", "-W", "-f=${Version}", package)
+
+
+def versions() -> dict[str, Any]:
+    """What a run was made with; null where it cannot be told."""
+    changes = _output("git", "status", "--porcelain", "--untracked-files=no")
+    return {
+        "git_revision": _output("git", "rev-parse", "HEAD"),
+        "git_modified": None if changes is None else bool(changes),
+        "python": platform.python_version(),
+        "system": platform.platform(),
+        "processors": os.cpu_count(),
+        "packages": {name: importlib.metadata.version(name) for name in _PACKAGES},
+        "debian": {name: _debian_version(name) for name in _DEBIAN},
+    }
+
+
+def summary(
+    run: Path, config: dict[str, Any], mode: str, measured: dict[str, Any]
+) -> dict[str, Any]:
+    """Generation and training merged; the contract's keys first, then what else was counted."""
+    generation = read_json(run / "generation.json")
+    statuses = generation.pop("statuses", {})
+    known: dict[str, Any] = {
+        **{key: value for key, value in generation.items() if key not in _SAMPLES},
+        **{key: value for key, value in statuses.items() if key not in generation},
+        **read_json(run / "training.json"),
+        **measured,
+        "task": config["task"]["name"] if isinstance(config["task"], dict) else config["task"],
+        "seed": config["run"]["seed"],
+        "workers": config["run"]["workers"],
+        "mode": mode,
+    }
+    first = {key: known.get(key) for key in SUMMARY_KEYS}
+    return {**first, **{key: value for key, value in known.items() if key not in first}}
