@@ -20,8 +20,8 @@ _HOLD_MS = 1200  # at the start and at the end
 def between(before: Floats, after: Floats, share: float) -> Floats:
     """The state when `share` of a push is done. [bodies, 3]
 
-    The robot moves evenly; an object stands still until the robot has come so near that the rest of
-    the push covers the object's way, then moves along. Exact for straight drags, good enough to watch.
+    The robot moves evenly; an object stands still until the rest of the push covers its way, then
+    moves along. Exact for straight drags, good enough to watch.
     """
     way = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)  # [bodies]
     stride = max(float(way[0]), 1e-9)

@@ -12,6 +12,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
@@ -20,7 +21,7 @@ from rtg.draw import GOAL, INK, PAPER, ROBOT, TaskLike, circle, kind_colours, ou
 
 Floats = NDArray[np.float64]
 
-_STYLE: dict[str, Any] = {
+_STYLE: Any = {
     "font.size": 10,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -57,8 +58,8 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats]) -> None:
     """
     panels = [
         ("success rate", "success_rate", "rollout_success", (-0.03, 1.03)),
-        ("episode length", "episode_length_mean", None, None),
-        ("return", "episode_return_mean", None, None),
+        ("episode length", "episode_length_mean", "", None),
+        ("return", "episode_return_mean", "", None),
     ]
     with plt.rc_context(_STYLE):
         figure, axes = plt.subplots(1, 3, figsize=(10.5, 3.2), layout="constrained")
@@ -168,10 +169,8 @@ def coverage(
                 rasterized=True,
             )
             axis.set_title(f"object {body}" if len(set(task.kinds[1:])) == 1 else task.kinds[body])
-        bar = figure.colorbar(dots, ax=axes, shrink=0.85, pad=0.02)
-        bar.solids.set_alpha(1.0)
+        bar = figure.colorbar(ScalarMappable(dots.norm, dots.cmap), ax=axes, shrink=0.85, pad=0.02)
         bar.set_label("actions to success")
         bar.locator = MaxNLocator(integer=True)
-        bar.outline.set_visible(False)  # type: ignore[operator]
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
         _save(figure, path)
