@@ -22,6 +22,9 @@ class Rng {
     return lo + (hi - lo) * static_cast<double>(engine_() >> 11) * 0x1.0p-53;
   }
 
+  /// 64 random bits, for seeding another stream.
+  std::uint64_t word() { return engine_(); }
+
   /// Uniform in {0, ..., n-1}; n ≥ 1.
   int below(int n) { return static_cast<int>(uniform(0.0, static_cast<double>(n))); }
 

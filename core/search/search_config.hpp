@@ -16,13 +16,22 @@ inline constexpr std::array<std::string_view, 3> kRankings{"start_distance", "no
 struct SearchConfig {
   ReverseMode reverse = ReverseMode::kRrbs;
   Ranking ranking = Ranking::kStartDistance;
-  int transitions = 60000;      // stored in all
-  double rollout_share = 0.5;   // of them from roll-outs of the tree policy
-  int breadth = 64;             // B, nodes kept per layer
-  int depth = 24;               // D, layers per tree at most
-  double contact_quota = 0.6;   // share of the beam reserved for nodes whose step moved an object
-  double random_share = 0.15;   // share of the beam drawn at random among the rest
-  double gap_tolerance = 0.25;  // largest replay gap of a node that is expanded further [m]
+  int transitions = 60000;       // stored in all
+  double rollout_share = 0.5;    // of them from roll-outs of the tree policy
+  int breadth = 64;              // B, nodes kept per layer
+  int depth = 24;                // D, layers per tree at most
+  double contact_quota = 0.6;    // share of the beam reserved for nodes whose step moved an object
+  double random_share = 0.15;    // share of the beam drawn at random among the rest
+  double gap_tolerance = 0.25;   // largest replay gap of a node that is expanded further [m]
+  int free_moves = 12;           // steps that move no object replayed per node, the best ones
+  int per_layout = 6;            // nodes of a beam that differ in the robot only, at most
+  int root_draws = 4;            // goal states drawn per root kept
+  int start_nodes = 40;          // a tree with that many nodes in the start region is complete
+  double target_jitter = 0.25;   // trees aim at the start with objects moved by up to ± this [m]
+  double chain_share = 0.1;      // of the tree transitions from chains replayed end to end
+  double rollout_jitter = 0.25;  // roll-outs start with objects moved by up to ± this [m]
+  double rollout_noise = 0.1;    // share of their actions replaced by a neighbouring heading
+  int evaluation_starts = 100;   // episodes behind tree_policy_success
 
   template <class Visitor>
   void visit(Visitor& v) {
@@ -35,6 +44,15 @@ struct SearchConfig {
     v.number("contact_quota", contact_quota, 0.0, 1.0, "share of the beam that moved an object");
     v.number("random_share", random_share, 0.0, 1.0, "share of the beam drawn at random");
     v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest replay gap expanded [m]");
+    v.integer("free_moves", free_moves, 0, 360, "steps without contact replayed per node");
+    v.integer("per_layout", per_layout, 1, 100000, "nodes of a beam with objects alike");
+    v.integer("root_draws", root_draws, 1, 1000, "goal states drawn per root kept");
+    v.integer("start_nodes", start_nodes, 1, 1000000, "start-region nodes that complete a tree");
+    v.number("target_jitter", target_jitter, 0.0, 10.0, "of the start layout a tree aims at [m]");
+    v.number("chain_share", chain_share, 0.0, 1.0, "share of tree transitions from whole chains");
+    v.number("rollout_jitter", rollout_jitter, 0.0, 10.0, "of the starts of roll-outs [m]");
+    v.number("rollout_noise", rollout_noise, 0.0, 1.0, "share of roll-out actions disturbed");
+    v.integer("evaluation_starts", evaluation_starts, 1, 100000, "episodes that judge the data");
   }
 };
 

@@ -1,0 +1,122 @@
+#include "core/search/beam_search.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "core/search/beam_selection.hpp"
+#include "core/search/goal_roots.hpp"
+#include "core/search/ranking.hpp"
+
+namespace rtg {
+namespace {
+
+void count(std::span<const ReverseResult> answers, SearchStats& stats) {
+  for (const ReverseResult& r : answers) {
+    ++stats.candidates;
+    ++stats.statuses[static_cast<std::size_t>(r.status)];
+    if (r.status == SolveStatus::kConverged) stats.iterations.push_back(r.iterations);
+    stats.reverse_cpu_s += r.cpu_s;
+  }
+}
+
+}  // namespace
+
+BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, Poses target,
+                       std::uint64_t seed)
+    : task_(task), config_(config), metric_(task.scene), target_(std::move(target)), rng_(seed) {}
+
+int BeamSearch::plant(const std::function<Poses(const Poses&)>& settle) {
+  for (Poses& goal : goal_roots(task_, config_, target_, rng_)) {
+    Poses rest = float_rounded(settle(goal));
+    if (!legal_state(task_, rest) || !succeeded(task_, rest)) continue;
+    seen_.insert(metric_.cell(rest, {}));
+    beam_.push_back(static_cast<int>(nodes_.size()));
+    nodes_.push_back({std::move(rest), -1, -1, 0});
+  }
+  return static_cast<int>(nodes_.size());
+}
+
+std::vector<ReverseJob> BeamSearch::jobs() const {
+  std::vector<ReverseJob> out;
+  for (const int node : beam_)
+    for (int action = 0; action < task_.push.headings; ++action)
+      out.push_back({nodes_[static_cast<std::size_t>(node)].poses, action});
+  return out;
+}
+
+/// Score of this layer.
+Score BeamSearch::layer_score() const {
+  std::vector<Poses> known;
+  for (const Node& n : nodes_) known.push_back(n.poses);
+  return make_score(config_.ranking, task_, target_, known);
+}
+
+/// Leaves out, per node, all but the best `free_moves` of the steps that move no object.
+std::vector<Candidate> BeamSearch::worth_replaying(std::vector<Candidate> all,
+                                                   const Score& score) const {
+  std::vector<std::pair<double, std::size_t>> idle;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (all[k].moved == 0) idle.emplace_back(score(all[k]), k);
+  std::sort(idle.begin(), idle.end());
+  std::vector<int> left(nodes_.size(), config_.free_moves);
+  std::vector<bool> dropped(all.size(), false);
+  for (const auto& [value, k] : idle)
+    dropped[k] = left[static_cast<std::size_t>(all[k].parent)]-- <= 0;
+  std::vector<Candidate> out;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (!dropped[k]) out.push_back(std::move(all[k]));
+  return out;
+}
+
+std::vector<BeamSearch::Growth> BeamSearch::grow(const SolveBatch& solve, const ReplayBatch& replay,
+                                                 SearchStats& stats) {
+  const std::vector<ReverseJob> asked = jobs();
+  const std::vector<ReverseResult> answers = solve(asked);
+  count(answers, stats);
+  std::vector<Candidate> found = proposals(task_, asked, answers);
+  for (Candidate& c : found)
+    c.parent = beam_[static_cast<std::size_t>(c.parent / task_.push.headings)];
+  const Score score = layer_score();
+  std::vector<Growth> out;
+  for (Candidate& c :
+       replay_candidates(worth_replaying(std::move(found), score), replay, stats.replay_cpu_s)) {
+    stats.gaps.push_back(static_cast<float>(c.gap));
+    const int depth = nodes_[static_cast<std::size_t>(c.parent)].depth + 1;
+    out.push_back({std::move(c), depth});
+    if (succeeded(task_, out.back().candidate.start)) out.back().depth = 0;
+  }
+  advance(out, score);
+  return out;
+}
+
+/// Chooses the next beam among what replays within the gap tolerance.
+void BeamSearch::advance(std::span<const Growth> growths, const Score& score) {
+  std::vector<BeamEntry> entries;
+  std::vector<const Growth*> eligible;
+  for (const Growth& g : growths) {
+    const Candidate& c = g.candidate;
+    if (c.miss > config_.gap_tolerance) continue;
+    eligible.push_back(&g);
+    const StateMetric::Cells anywhere{1e9, StateMetric::Cells{}.object, 0.5};
+    entries.push_back(
+        {score(c), metric_.cell(c.start, {}), metric_.cell(c.start, anywhere), c.moved > 0});
+  }
+  beam_.clear();
+  for (const std::size_t k : select_beam(entries, config_, rng_, seen_)) {
+    const Candidate& c = eligible[k]->candidate;
+    beam_.push_back(static_cast<int>(nodes_.size()));
+    nodes_.push_back({c.start, c.parent, c.action, eligible[k]->depth});
+  }
+}
+
+Chain BeamSearch::chain(int node) const {
+  Chain out{nodes_[static_cast<std::size_t>(node)].poses, {}};
+  for (int k = node; k >= 0 && nodes_[static_cast<std::size_t>(k)].depth > 0;) {
+    out.actions.push_back(nodes_[static_cast<std::size_t>(k)].action);
+    k = nodes_[static_cast<std::size_t>(k)].parent;
+  }
+  return out;
+}
+
+}  // namespace rtg

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <unordered_set>
+#include <vector>
+
+#include "core/search/forward_replay.hpp"
+#include "core/search/ranking.hpp"
+#include "core/search/search_config.hpp"
+#include "core/search/state_metric.hpp"
+
+namespace rtg {
+
+/// Counts of a run's reverse solves and replays.
+struct SearchStats {
+  long candidates = 0;
+  std::array<long, kSolveStatusCount> statuses{};  // by SolveStatus
+  std::vector<int> iterations;                     // of converged solves
+  std::vector<float> gaps;                         // of replayed candidates [m]
+  double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
+};
+
+/// A state from which `depth` known actions lead to success.
+struct Node {
+  Poses poses;
+  int parent = -1;  // node that `action` leads to; -1: a goal state
+  int action = -1;
+  int depth = 0;
+};
+
+/// One tree of reverse steps, grown layer by layer from goal states (Algorithm 1).
+class BeamSearch {
+ public:
+  /// `target` is the layout to grow to. The task must outlive the search.
+  BeamSearch(const Task& task, const SearchConfig& config, Poses target, std::uint64_t seed);
+
+  /// Starts from up to `config.breadth` distinct goal states of the task's sampler, brought to rest
+  /// by `settle`: the ones nearest to the target among `config.root_draws` times as many, objects
+  /// that look the same exchanged so that each begins near its place. Returns the number found.
+  int plant(const std::function<Poses(const Poses&)>& settle);
+
+  /// A replayed candidate with the node that it came from.
+  struct Growth {
+    Candidate candidate;  // parent: index into nodes()
+    int depth = 0;        // actions to success of its start, if it is expanded further
+  };
+
+  /// One layer: solves for every action of every node of the beam, replays what converged, chooses
+  /// the next beam. All replayed candidates come back, misses too; empty if the tree cannot grow.
+  std::vector<Growth> grow(const SolveBatch& solve, const ReplayBatch& replay, SearchStats& stats);
+
+  std::span<const Node> nodes() const { return nodes_; }
+  std::span<const int> beam() const { return beam_; }  // indices into nodes()
+
+  /// The actions that lead from a node to success.
+  Chain chain(int node) const;
+
+ private:
+  std::vector<ReverseJob> jobs() const;
+  Score layer_score() const;
+  std::vector<Candidate> worth_replaying(std::vector<Candidate> all, const Score& score) const;
+  void advance(std::span<const Growth> growths, const Score& score);
+
+  const Task& task_;
+  SearchConfig config_;
+  StateMetric metric_;
+  Poses target_;
+  Rng rng_;
+  std::vector<Node> nodes_;
+  std::vector<int> beam_;
+  std::unordered_set<std::uint64_t> seen_;
+};
+
+}  // namespace rtg

@@ -1,0 +1,66 @@
+#include "core/search/beam_selection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+namespace rtg {
+namespace {
+
+int share_of(int breadth, double share) {
+  return static_cast<int>(std::lround(share * static_cast<double>(breadth)));
+}
+
+/// The best entry of each new cell and the best `per_layout` of each layout, in order of (score,
+/// index).
+std::vector<std::size_t> distinct(std::span<const BeamEntry> entries, int per_layout,
+                                  std::unordered_set<std::uint64_t> seen) {
+  std::vector<std::size_t> order(entries.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return entries[a].score < entries[b].score;
+  });
+  std::unordered_map<std::uint64_t, int> layouts;
+  std::erase_if(order, [&](std::size_t k) {
+    return !seen.insert(entries[k].cell).second || ++layouts[entries[k].layout] > per_layout;
+  });
+  return order;
+}
+
+/// Moves the first `count` of `from` that satisfy `wanted` to `to`.
+template <class Wanted>
+void take(std::vector<std::size_t>& from, std::vector<std::size_t>& to, int count, Wanted wanted) {
+  std::erase_if(from, [&](std::size_t k) {
+    if (count <= 0 || !wanted(k)) return false;
+    to.push_back(k);
+    --count;
+    return true;
+  });
+}
+
+}  // namespace
+
+std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
+                                     Rng& rng, std::unordered_set<std::uint64_t>& seen) {
+  std::vector<std::size_t> rest = distinct(entries, config.per_layout, seen), beam;
+  const int random = share_of(config.breadth, config.random_share);
+  const int quota =
+      std::min(share_of(config.breadth, config.contact_quota), config.breadth - random);
+  take(rest, beam, quota, [&](std::size_t k) { return entries[k].contact; });
+  take(rest, beam, config.breadth - random - static_cast<int>(beam.size()),
+       [](std::size_t) { return true; });
+  while (!rest.empty() && static_cast<int>(beam.size()) < config.breadth) {
+    const auto pick = rest.begin() + rng.below(static_cast<int>(rest.size()));
+    beam.push_back(*pick);
+    rest.erase(pick);
+  }
+  std::sort(beam.begin(), beam.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(entries[a].score, a) < std::pair(entries[b].score, b);
+  });
+  for (const std::size_t k : beam) seen.insert(entries[k].cell);
+  return beam;
+}
+
+}  // namespace rtg

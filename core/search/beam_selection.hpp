@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_set>
+#include <vector>
+
+#include "core/math/rng.hpp"
+#include "core/search/search_config.hpp"
+
+namespace rtg {
+
+/// What the choice of the next beam needs to know of a candidate.
+struct BeamEntry {
+  double score = 0.0;        // the less the better
+  std::uint64_t cell = 0;    // candidates of one cell count as the same
+  std::uint64_t layout = 0;  // the same without the robot
+  bool contact = false;      // its push moved an object
+};
+
+/// Indices of the next beam, at most config.breadth, in order of (score, index): first the best of
+/// the contact quota, then the best of all, last the random survivors. At most one per cell, none
+/// of a cell in `seen`; the chosen cells are added to `seen`. A pure function of the complete set,
+/// so the order in which results arrived cannot matter.
+std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
+                                     Rng& rng, std::unordered_set<std::uint64_t>& seen);
+
+}  // namespace rtg

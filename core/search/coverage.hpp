@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/search/state_metric.hpp"
+#include "core/search/transition.hpp"
+#include "core/tasks/task.hpp"
+
+namespace rtg {
+
+/// Half width of the start region: every object's x and y within this of its nominal start [m], the
+/// domain randomisation of the paper's Gathering (App. D), and its angle within kStartAngle modulo
+/// the symmetry of its shape [rad]. The robot may be anywhere: it gets about freely.
+inline constexpr double kStartRegion = 0.5;
+inline constexpr double kStartAngle = 0.35;
+
+/// Whether a state lies in the start region of the task.
+bool in_start_region(const Task& task, const StateMetric& metric, const Poses& poses);
+
+/// Counts what a stream of transitions covers.
+class Coverage {
+ public:
+  explicit Coverage(const Task& task);
+
+  void add(const Transition& transition);
+
+  long transitions() const { return static_cast<long>(links_.size()); }
+  double contact_share() const;     // moved an object by more than kMoved
+  double multi_body_share() const;  // moved two or more
+  long start_region() const { return start_region_; }
+
+  /// Share of the transitions from which a success is reachable in the stored graph: transition b
+  /// follows a if the start of b lies in the cell of the end of a, in one of kGrids grids shifted
+  /// against each other (so that neighbours across one grid's lines are found by another). Cells
+  /// have the side kLink.
+  double reachable_share() const;
+
+ private:
+  static constexpr std::size_t kGrids = 4;
+  static constexpr double kLink = 0.25;  // [m], [rad]; the default gap tolerance
+  struct Link {
+    std::array<std::uint64_t, kGrids> from, to;
+    bool success = false;
+  };
+
+  const Task& task_;
+  StateMetric metric_;
+  std::vector<Link> links_;
+  long contacts_ = 0, multi_body_ = 0, start_region_ = 0;
+};
+
+}  // namespace rtg

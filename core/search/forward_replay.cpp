@@ -1,0 +1,94 @@
+#include "core/search/forward_replay.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/world/separation.hpp"
+
+namespace rtg {
+Poses float_rounded(const Poses& poses) {
+  Poses out = poses;
+  for (Pose& p : out) p = to_single(p);
+  return out;
+}
+
+double replay_gap(const Poses& reverse_end, const Poses& replayed_end) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < reverse_end.size(); ++k)
+    sum += (reverse_end[k].position() - replayed_end[k].position()).norm();
+  return sum / static_cast<double>(reverse_end.size());
+}
+
+int objects_moved(const Poses& a, const Poses& b) {
+  int count = 0;
+  for (std::size_t k = 1; k < a.size(); ++k)
+    count += (a[k].position() - b[k].position()).norm() > kMoved;
+  return count;
+}
+
+bool legal_state(const Task& task, const Poses& poses) {
+  return is_finite(poses) && in_arena(poses[0], task.push) &&
+         !first_overlap(task.scene, poses).has_value();
+}
+
+std::vector<Candidate> proposals(const Task& task, std::span<const ReverseJob> jobs,
+                                 std::span<const ReverseResult> answers) {
+  std::vector<Candidate> out;
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    if (answers[k].status != SolveStatus::kConverged) continue;
+    Poses start = float_rounded(answers[k].start);
+    if (!legal_state(task, start)) continue;
+    const int moved = objects_moved(start, jobs[k].end);
+    out.push_back({static_cast<int>(k), jobs[k].action, std::move(start), jobs[k].end, moved});
+  }
+  return out;
+}
+
+std::vector<Candidate> replay_candidates(std::vector<Candidate> candidates,
+                                         const ReplayBatch& replay, double& cpu_s) {
+  std::vector<ReplayJob> pushes;
+  for (const Candidate& c : candidates) pushes.push_back({c.start, c.action});
+  const std::vector<ReplayResult> results = replay(pushes);
+  std::vector<Candidate> out;
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    cpu_s += results[k].cpu_s;
+    if (!results[k].ok) continue;
+    Candidate& c = candidates[k];
+    c.gap = replay_gap(c.end, results[k].end);
+    for (std::size_t body = 0; body < c.end.size(); ++body)
+      c.miss = std::max(c.miss, (c.end[body].position() - results[k].end[body].position()).norm());
+    c.end = results[k].end;
+    c.moved = objects_moved(c.start, c.end);
+    out.push_back(std::move(c));
+  }
+  return out;
+}
+
+std::vector<std::vector<Transition>> replay_chains(const Task& task, std::span<const Chain> chains,
+                                                   const ReplayBatch& replay, double& cpu_s) {
+  std::vector<std::vector<Transition>> out(chains.size());
+  std::vector<std::size_t> alive;
+  for (std::size_t c = 0; c < chains.size(); ++c)
+    if (!chains[c].actions.empty()) alive.push_back(c);
+  for (std::size_t step = 0; !alive.empty(); ++step) {
+    std::vector<ReplayJob> pushes;
+    for (const std::size_t c : alive)
+      pushes.push_back(
+          {step == 0 ? chains[c].far_end : out[c].back().next, chains[c].actions[step]});
+    const std::vector<ReplayResult> results = replay(pushes);
+    std::vector<std::size_t> still;
+    for (std::size_t k = 0; k < alive.size(); ++k) {
+      cpu_s += results[k].cpu_s;
+      if (!results[k].ok) continue;
+      const std::size_t c = alive[k];
+      const bool success = succeeded(task, results[k].end);
+      out[c].push_back(
+          {pushes[k].start, pushes[k].action, results[k].end, success, Source::kChainReplay});
+      if (!success && step + 1 < chains[c].actions.size()) still.push_back(c);
+    }
+    alive = std::move(still);
+  }
+  return out;
+}
+
+}  // namespace rtg

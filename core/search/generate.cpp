@@ -1,0 +1,217 @@
+#include "core/search/generate.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "core/search/beam_search.hpp"
+#include "core/search/coverage.hpp"
+#include "core/search/roll_out.hpp"
+
+namespace rtg {
+namespace {
+
+// Keys of the independent random streams of one run.
+enum Stream : std::uint64_t { kTrees = 1, kTargets, kRollOuts, kNoise, kEvaluation };
+
+constexpr int kWave = 50;  // roll-outs that run in lockstep
+constexpr int kMaxBarren =
+    8;  // trees or waves without a transition after which there is no use going on
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at =
+      values.begin() + static_cast<long>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// One run of generate().
+class Generation {
+ public:
+  Generation(const Task& task, const SearchConfig& config, std::uint64_t seed,
+             const GenerationSeams& seams)
+      : task_(task),
+        config_(config),
+        seed_(seed),
+        seams_(seams),
+        metric_(task.scene),
+        coverage_(task),
+        policy_(task) {}
+
+  GenerationReport run() {
+    const auto trees = static_cast<long>(
+        static_cast<double>(config_.transitions) * (1.0 - config_.rollout_share) + 0.5);
+    for (int barren = 0; stored() < trees && barren < kMaxBarren && !cancelled();)
+      barren = grow_tree(trees) ? 0 : barren + 1;
+    for (int barren = 0; stored() < config_.transitions && barren < kMaxBarren && !cancelled();)
+      barren = roll_out() ? 0 : barren + 1;
+    if (!cancelled()) evaluate();
+    return finished_report();
+  }
+
+ private:
+  long stored() const { return coverage_.transitions(); }
+  bool cancelled() const { return seams_.cancelled && seams_.cancelled(); }
+
+  /// Stores what `limit` transitions in all leave room for.
+  void store(std::span<const Transition> transitions, long limit) {
+    const auto room = static_cast<std::size_t>(std::max(0L, limit - stored()));
+    const auto kept = transitions.first(std::min(room, transitions.size()));
+    if (kept.empty()) return;
+    for (const Transition& t : kept) coverage_.add(t);
+    seams_.store(kept);
+  }
+
+  /// Whether it stored anything.
+  bool grow_tree(long limit) {
+    const long before = stored();
+    const auto key = static_cast<std::uint64_t>(tree_count_);
+    Rng targets(seed_, kTargets << 32 | key);
+    BeamSearch tree(task_, config_, jittered_starts(task_, 1, config_.target_jitter, targets)[0],
+                    Rng(seed_, kTrees << 32 | key).word());
+    tree.plant(seams_.settle);
+    const long layers =
+        limit - static_cast<long>(config_.chain_share * static_cast<double>(limit - before));
+    for (int layer = 1; layer <= config_.depth && stored() < layers && !cancelled(); ++layer) {
+      const auto growths = tree.grow(seams_.solve, seams_.replay, stats_);
+      if (growths.empty()) break;
+      store_growths(growths, layers);
+      report_progress("tree " + std::to_string(tree_count_ + 1), layer, config_.depth);
+      if (start_nodes(tree) >= config_.start_nodes) break;
+    }
+    replay_chains_of(tree, before, limit);
+    for (const Node& n : tree.nodes()) report_.nodes.push_back({n.poses, n.depth, tree_count_});
+    ++tree_count_;
+    return stored() > before;
+  }
+
+  /// A state in which the goal holds ends an episode, so nothing starts there.
+  void store_growths(std::span<const BeamSearch::Growth> growths, long limit) {
+    std::vector<Transition> batch;
+    for (const auto& [c, depth] : growths) {
+      if (depth == 0) continue;
+      const bool success = succeeded(task_, c.end);
+      batch.push_back({c.start, c.action, c.end, success, Source::kStepReplay});
+      if (success || c.miss <= config_.gap_tolerance)
+        policy_.add(c.start, c.action, success ? 1.0 : depth);
+    }
+    store(batch, limit);
+  }
+
+  int start_nodes(const BeamSearch& tree) {
+    int count = 0;
+    for (const Node& n : tree.nodes()) {
+      if (n.depth == 0 || !in_start_region(task_, metric_, n.poses)) continue;
+      ++count;
+      int& least = report_.start_region_depth;
+      least = least < 0 ? n.depth : std::min(least, n.depth);
+    }
+    return count;
+  }
+
+  /// The chains that begin nearest to the start, for chain_share of what the tree has stored.
+  void replay_chains_of(const BeamSearch& tree, long before, long limit) {
+    const double share = config_.chain_share;
+    if (share >= 1.0 || share <= 0.0) return;
+    const auto wanted =
+        static_cast<long>(static_cast<double>(stored() - before) * share / (1.0 - share));
+    std::vector<std::pair<double, int>> order;
+    for (int k = 0; k < static_cast<int>(tree.nodes().size()); ++k)
+      if (tree.nodes()[static_cast<std::size_t>(k)].depth > 0)
+        order.emplace_back(
+            metric_.layout_distance(tree.nodes()[static_cast<std::size_t>(k)].poses, task_.start),
+            k);
+    std::sort(order.begin(), order.end());
+    std::vector<Chain> chains;
+    long planned = 0;
+    for (const auto& [distance, node] : order) {
+      if (planned >= wanted) break;
+      chains.push_back(tree.chain(node));
+      planned += static_cast<long>(chains.back().actions.size());
+    }
+    for (const auto& steps : replay_chains(task_, chains, seams_.replay, stats_.replay_cpu_s)) {
+      learn(steps);
+      store(steps, std::min(limit, stored() + wanted));
+    }
+  }
+
+  /// Adds the steps of an episode that ended in success to the policy.
+  void learn(std::span<const Transition> steps) {
+    if (steps.empty() || !steps.back().success) return;
+    for (std::size_t k = 0; k < steps.size(); ++k)
+      policy_.add(steps[k].poses, steps[k].action, static_cast<double>(steps.size() - k));
+  }
+
+  bool roll_out() {
+    const long before = stored();
+    const auto key = static_cast<std::uint64_t>(wave_count_);
+    Rng rng(seed_, kRollOuts << 32 | key);
+    const auto starts = jittered_starts(task_, kWave, config_.rollout_jitter, rng);
+    const EpisodeRules rules{config_.rollout_noise, Rng(seed_, kNoise << 32 | key).word()};
+    for (const Episode& e :
+         run_episodes(task_, policy_, starts, rules, seams_.replay, stats_.replay_cpu_s)) {
+      store(e.steps, config_.transitions);
+      learn(e.steps);
+    }
+    report_progress("roll-outs", ++wave_count_, 0);
+    return stored() > before;
+  }
+
+  void evaluate() {
+    Rng rng(seed_, kEvaluation << 32);
+    std::vector<Poses> starts;
+    for (int k = 0; k < config_.evaluation_starts; ++k)
+      starts.push_back(jittered_start(task_, task_.start_jitter, rng).value_or(task_.start));
+    const PolicyScore score =
+        evaluate_policy(task_, policy_, starts, seams_.replay, stats_.replay_cpu_s);
+    report_.tree_policy_success = score.success;
+    report_.tree_policy_length_mean = score.length_mean;
+  }
+
+  void report_progress(std::string phase, int layer, int depth) const {
+    if (!seams_.progress) return;
+    seams_.progress({std::move(phase), layer, depth, stored(), config_.transitions,
+                     coverage_.contact_share(), coverage_.start_region()});
+  }
+
+  GenerationReport finished_report() {
+    report_.transitions = stored();
+    report_.contact_share = coverage_.contact_share();
+    report_.multi_body_share = coverage_.multi_body_share();
+    report_.start_region_transitions = coverage_.start_region();
+    report_.reachable_share = coverage_.reachable_share();
+    report_.candidates = stats_.candidates;
+    report_.statuses = stats_.statuses;
+    const std::vector<double> iterations(stats_.iterations.begin(), stats_.iterations.end());
+    report_.iterations_median = quantile(iterations, 0.5);
+    report_.iterations_p90 = quantile(iterations, 0.9);
+    const std::vector<double> gaps(stats_.gaps.begin(), stats_.gaps.end());
+    report_.replay_gap_median = quantile(gaps, 0.5);
+    report_.replay_gap_p90 = quantile(gaps, 0.9);
+    report_.reverse_cpu_s = stats_.reverse_cpu_s;
+    report_.replay_cpu_s = stats_.replay_cpu_s;
+    report_.replay_gaps = stats_.gaps;
+    return std::move(report_);
+  }
+
+  const Task& task_;
+  SearchConfig config_;
+  std::uint64_t seed_;
+  const GenerationSeams& seams_;
+  StateMetric metric_;
+  Coverage coverage_;
+  TreePolicy policy_;
+  SearchStats stats_;
+  GenerationReport report_;
+  int tree_count_ = 0, wave_count_ = 0;
+};
+
+}  // namespace
+
+GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
+                          const GenerationSeams& seams) {
+  return Generation(task, config, seed, seams).run();
+}
+
+}  // namespace rtg

@@ -1,0 +1,63 @@
+#include "core/search/goal_roots.hpp"
+
+#include <algorithm>
+#include <unordered_set>
+#include <utility>
+
+#include "core/search/ranking.hpp"
+#include "core/search/state_metric.hpp"
+
+namespace rtg {
+namespace {
+
+bool look_the_same(const Body& a, const Body& b) {
+  return a.kind == b.kind && a.shape == b.shape && a.density == b.density &&
+         a.friction == b.friction && !a.fixed && !b.fixed;
+}
+
+}  // namespace
+
+Poses relabelled(const Task& task, const Poses& poses, const Poses& target) {
+  const StateMetric metric(task.scene);
+  Poses best = poses;
+  double least = metric.layout_distance(best, target);
+  for (bool improved = true; improved;) {
+    improved = false;
+    for (std::size_t i = 1; i < poses.size(); ++i)
+      for (std::size_t j = i + 1; j < poses.size(); ++j) {
+        if (!look_the_same(task.scene.bodies[i], task.scene.bodies[j])) continue;
+        Poses trial = best;
+        std::swap(trial[i], trial[j]);
+        const double distance = metric.layout_distance(trial, target);
+        if (distance >= least) continue;
+        best = std::move(trial);
+        least = distance;
+        improved = true;
+      }
+  }
+  return best;
+}
+
+std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, const Poses& target,
+                              Rng& rng) {
+  const StateMetric metric(task.scene);
+  std::unordered_set<std::uint64_t> seen;
+  std::vector<std::pair<double, Poses>> drawn;
+  for (int k = 0; k < config.breadth * config.root_draws; ++k) {
+    const std::optional<Poses> goal = sample_goal(task, rng);
+    if (!goal) break;
+    Poses root = relabelled(task, *goal, target);
+    if (!seen.insert(metric.cell(root, {})).second) continue;
+    drawn.emplace_back(start_distance(task, metric, root, target), std::move(root));
+  }
+  std::stable_sort(drawn.begin(), drawn.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Poses> roots;
+  for (auto& [score, root] : drawn) {
+    if (static_cast<int>(roots.size()) == config.breadth) break;
+    roots.push_back(std::move(root));
+  }
+  return roots;
+}
+
+}  // namespace rtg

@@ -1,0 +1,81 @@
+#include "core/search/naive_reverse.hpp"
+
+#include <bit>
+#include <utility>
+
+#include "core/math/rng.hpp"
+#include "core/world/separation.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kTouch = 0.2;      // an object closer than this ahead of the robot was pushed [m]
+constexpr double kClearance = 0.0;  // least separation along the way back [m]
+constexpr double kLeastPull = 0.2;  // of the stride
+constexpr double kSweepStep = 0.1;  // [m]
+
+/// A number that differs between jobs.
+std::uint64_t key_of(const ReverseJob& job) {
+  std::uint64_t key = static_cast<std::uint64_t>(job.action);
+  for (const Pose& p : job.end)
+    for (const double x : {p.x, p.y, p.theta})
+      key = (key ^ std::bit_cast<std::uint64_t>(x)) * 0x100000001b3 + (key >> 29);
+  return key;
+}
+
+Pose moved(const Pose& p, const Vector2d& by) { return {p.x + by.x(), p.y + by.y(), p.theta}; }
+
+}  // namespace
+
+NaiveReverse::NaiveReverse(Scene scene, PushConfig push) : scene_(std::move(scene)), push_(push) {}
+
+/// The movable object nearest to the robot within reach in front of it; 0 if there is none.
+std::size_t NaiveReverse::touched_object(const Poses& end, const Vector2d& ahead) const {
+  std::size_t best = 0;
+  double nearest = kTouch;
+  const Polygon& robot = scene_.bodies[0].shape;
+  const Pose advanced = moved(end[0], kTouch * ahead);
+  for (std::size_t k = 1; k < scene_.size(); ++k) {
+    if (scene_.bodies[k].fixed) continue;
+    const double gap = separation(robot, end[0], scene_.bodies[k].shape, end[k]);
+    if (gap >= nearest || separation(robot, advanced, scene_.bodies[k].shape, end[k]) >= gap)
+      continue;
+    nearest = gap;
+    best = k;
+  }
+  return best;
+}
+
+/// Whether a body other than `touched` lies on the robot's way back.
+bool NaiveReverse::blocked(const Poses& end, std::size_t touched, const Vector2d& back) const {
+  const double reach = bounding_radius(scene_.bodies[0].shape) + back.norm();
+  for (std::size_t k = 1; k < scene_.size(); ++k) {
+    if (k == touched) continue;
+    const Polygon& shape = scene_.bodies[k].shape;
+    if ((end[k].position() - end[0].position()).norm() > reach + bounding_radius(shape)) continue;
+    const int steps = static_cast<int>(back.norm() / kSweepStep) + 1;
+    for (int step = 1; step <= steps; ++step) {
+      const Pose robot = moved(end[0], static_cast<double>(step) / steps * back);
+      if (separation(scene_.bodies[0].shape, robot, shape, end[k]) < kClearance) return true;
+    }
+  }
+  return false;
+}
+
+ReverseResult NaiveReverse::solve(const ReverseJob& job) const {
+  ReverseResult result{SolveStatus::kPruned, 0, job.end, 0.0};
+  const Vector2d ahead = direction(job.action, push_);
+  const std::size_t touched = touched_object(job.end, ahead);
+  result.start[0] = moved(job.end[0], -push_.stride * ahead);
+  if (!in_arena(result.start[0], push_) || blocked(job.end, touched, -push_.stride * ahead))
+    return result;
+  if (touched != 0) {
+    const double pull = Rng(key_of(job)).uniform(kLeastPull, 1.0) * push_.stride;
+    result.start[touched] = moved(job.end[touched], -pull * ahead);
+  }
+  const bool overlap = first_overlap(scene_, result.start).has_value();
+  result.status = overlap ? SolveStatus::kInfeasible : SolveStatus::kConverged;
+  return result;
+}
+
+}  // namespace rtg

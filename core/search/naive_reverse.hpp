@@ -1,0 +1,32 @@
+#pragma once
+
+#include "core/reverse/reverse_job.hpp"
+#include "core/world/push.hpp"
+#include "core/world/scene.hpp"
+
+namespace rtg {
+
+/// Kinematic guess of a predecessor, without any physics: the robot moves back one stride against
+/// its heading; the one object that it touches in front (if any) is pulled back with it, unturned.
+/// The baseline that the reverse simulator must beat, design 5.2.
+///
+///   start(robot) = end(robot) - stride·d,   start(object) = end(object) - L·d
+///
+/// L is drawn from [0.2, 1]·stride as a function of the job: the robot may have met the object
+/// anywhere on its way. Statuses: kPruned if the robot would start outside of the arena or its way
+/// back is blocked; kInfeasible if the pulled object would overlap another body.
+class NaiveReverse {
+ public:
+  NaiveReverse(Scene scene, PushConfig push);
+
+  [[nodiscard]] ReverseResult solve(const ReverseJob& job) const;
+
+ private:
+  bool blocked(const Poses& end, std::size_t touched, const Vector2d& back) const;
+  std::size_t touched_object(const Poses& end, const Vector2d& ahead) const;
+
+  Scene scene_;
+  PushConfig push_;
+};
+
+}  // namespace rtg

@@ -1,0 +1,35 @@
+#include "core/search/report.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace rtg {
+
+std::string to_json(const GenerationReport& r) {
+  nlohmann::ordered_json out = {{"transitions", r.transitions},
+                                {"contact_share", r.contact_share},
+                                {"multi_body_share", r.multi_body_share},
+                                {"start_region_transitions", r.start_region_transitions},
+                                {"reachable_share", r.reachable_share},
+                                {"tree_policy_success", r.tree_policy_success},
+                                {"tree_policy_length_mean", r.tree_policy_length_mean},
+                                {"start_region_depth", r.start_region_depth},
+                                {"candidates", r.candidates}};
+  for (std::size_t k = 0; k < r.statuses.size(); ++k)
+    out[std::string(name(static_cast<SolveStatus>(k)))] = r.statuses[k];
+  out["iterations_median"] = r.iterations_median;
+  out["iterations_p90"] = r.iterations_p90;
+  out["replay_gap_median"] = r.replay_gap_median;
+  out["replay_gap_p90"] = r.replay_gap_p90;
+  out["reverse_cpu_s"] = r.reverse_cpu_s;
+  out["replay_cpu_s"] = r.replay_cpu_s;
+  out["replay_gaps"] = r.replay_gaps;
+  out["nodes"] = nlohmann::ordered_json::array();
+  for (const ReportNode& n : r.nodes) {
+    nlohmann::ordered_json poses = nlohmann::ordered_json::array();
+    for (const Pose& p : n.poses) poses.push_back({p.x, p.y, p.theta});
+    out["nodes"].push_back({{"poses", poses}, {"depth", n.depth}, {"tree", n.tree}});
+  }
+  return out.dump();
+}
+
+}  // namespace rtg

@@ -1,0 +1,107 @@
+#include "core/search/roll_out.hpp"
+
+#include <utility>
+
+namespace rtg {
+namespace {
+
+constexpr int kNoiseReach = 2;  // headings
+
+int noisy(int action, int headings, const EpisodeRules& rules, Rng& rng) {
+  if (rng.uniform(0.0, 1.0) >= rules.noise) return action;
+  const int step = 1 + rng.below(kNoiseReach);
+  const int side = rng.below(2) == 0 ? step : headings - step % headings;
+  return (action + side) % headings;
+}
+
+/// Episodes that have not ended, with all that advances them.
+class Lockstep {
+ public:
+  Lockstep(const Task& task, std::span<const Poses> starts, const EpisodeRules& rules)
+      : task_(task), rules_(rules), episodes_(starts.size()) {
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+      alive_.push_back(k);
+      states_.push_back({starts[k], {}});
+      noise_.emplace_back(rules.seed, k);
+    }
+  }
+
+  bool done() const { return alive_.empty(); }
+
+  void step(const TreePolicy& policy, const ReplayBatch& replay, double& cpu_s) {
+    std::vector<TreePolicy::Query> queries;
+    for (const std::size_t e : alive_) queries.push_back(states_[e]);
+    const std::vector<TreePolicy::Choice> choices = policy.choose(queries);
+    std::vector<ReplayJob> pushes;
+    for (std::size_t k = 0; k < alive_.size(); ++k)
+      pushes.push_back({queries[k].state, action(choices[k], noise_[alive_[k]])});
+    const std::vector<ReplayResult> results = replay(pushes);
+    std::vector<std::size_t> still;
+    for (std::size_t k = 0; k < alive_.size(); ++k) {
+      cpu_s += results[k].cpu_s;
+      if (!results[k].ok) continue;
+      states_[alive_[k]].used.push_back(choices[k].entry);
+      if (record(alive_[k], pushes[k], results[k].end)) still.push_back(alive_[k]);
+    }
+    alive_ = std::move(still);
+  }
+
+  std::vector<Episode> take() {
+    for (std::size_t e = 0; e < episodes_.size(); ++e) episodes_[e].entries = states_[e].used;
+    return std::move(episodes_);
+  }
+
+ private:
+  int action(const TreePolicy::Choice& choice, Rng& rng) const {
+    const int headings = task_.push.headings;
+    return choice.entry < 0 ? rng.below(headings) : noisy(choice.action, headings, rules_, rng);
+  }
+
+  /// Whether the episode goes on.
+  bool record(std::size_t e, const ReplayJob& push, const Poses& end) {
+    Episode& episode = episodes_[e];
+    episode.success = succeeded(task_, end);
+    episode.steps.push_back({push.start, push.action, end, episode.success, Source::kRollOut});
+    states_[e].state = end;
+    return !episode.success && static_cast<int>(episode.steps.size()) < task_.horizon;
+  }
+
+  const Task& task_;
+  EpisodeRules rules_;
+  std::vector<Episode> episodes_;
+  std::vector<TreePolicy::Query> states_;
+  std::vector<Rng> noise_;
+  std::vector<std::size_t> alive_;
+};
+
+}  // namespace
+
+std::vector<Episode> run_episodes(const Task& task, const TreePolicy& policy,
+                                  std::span<const Poses> starts, const EpisodeRules& rules,
+                                  const ReplayBatch& replay, double& cpu_s) {
+  Lockstep run(task, starts, rules);
+  while (!run.done()) run.step(policy, replay, cpu_s);
+  return run.take();
+}
+
+std::vector<Poses> jittered_starts(const Task& task, int count, double amplitude, Rng& rng) {
+  std::vector<Poses> out;
+  for (int k = 0; k < count; ++k) {
+    const double share = rng.uniform(0.0, 1.0);
+    out.push_back(jittered_start(task, share * amplitude, rng).value_or(task.start));
+  }
+  return out;
+}
+
+PolicyScore evaluate_policy(const Task& task, const TreePolicy& policy,
+                            std::span<const Poses> starts, const ReplayBatch& replay,
+                            double& cpu_s) {
+  PolicyScore score;
+  for (const Episode& e : run_episodes(task, policy, starts, {}, replay, cpu_s)) {
+    score.success += e.success / static_cast<double>(starts.size());
+    score.length_mean += static_cast<double>(e.steps.size()) / static_cast<double>(starts.size());
+  }
+  return score;
+}
+
+}  // namespace rtg

@@ -1,0 +1,89 @@
+#include "core/search/thread_pool.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace rtg {
+namespace {
+
+/// The exception of the least index among those thrown.
+class FirstError {
+ public:
+  void record(std::size_t index, std::exception_ptr error) {
+    const std::lock_guard lock(mutex_);
+    if (error_ && index_ <= index) return;
+    index_ = index;
+    error_ = std::move(error);
+  }
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::size_t index_ = 0;
+  std::exception_ptr error_;
+};
+
+template <class Job, class Result>
+std::function<std::vector<Result>(std::span<const Job>)> on_threads(
+    std::function<Result(const Job&)> answer, int threads) {
+  return [answer = std::move(answer), threads](std::span<const Job> jobs) {
+    std::vector<Result> results(jobs.size());
+    parallel_for(jobs.size(), threads, [&](std::size_t k) {
+      const double begin = thread_cpu_s();
+      results[k] = answer(jobs[k]);
+      results[k].cpu_s = thread_cpu_s() - begin;
+    });
+    return results;
+  };
+}
+
+}  // namespace
+
+void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> stop{false};
+  FirstError error;
+  const auto run = [&] {
+    // Indices are handed out in order, so the least failing index has always been begun.
+    for (std::size_t k = next++; k < count && !stop; k = next++) {
+      try {
+        work(k);
+      } catch (...) {
+        error.record(k, std::current_exception());
+        stop = true;
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    const std::size_t wanted = std::min<std::size_t>(count, std::max(threads, 1));
+    for (std::size_t k = 1; k < wanted; ++k) helpers.emplace_back(run);
+    run();
+  }
+  error.rethrow();
+}
+
+double thread_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+SolveBatch solve_on_threads(std::function<ReverseResult(const ReverseJob&)> solve, int threads) {
+  return on_threads<ReverseJob, ReverseResult>(std::move(solve), threads);
+}
+
+ReplayBatch replay_on_threads(std::function<ReplayResult(const ReplayJob&)> replay, int threads) {
+  return on_threads<ReplayJob, ReplayResult>(std::move(replay), threads);
+}
+
+}  // namespace rtg

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/search/state_metric.hpp"
+#include "core/tasks/task.hpp"
+
+namespace rtg {
+
+/// Nearest-node policy over stored transitions: of all entries (state, action, depth) it takes the
+/// action of the one with the least
+///
+///   score = depth + 16 / m · distance(state of the entry, current state),
+///
+/// depth the number of actions from there to success. It needs no simulator and no learning, so its
+/// success rate judges the data, design 5.2.
+class TreePolicy {
+ public:
+  explicit TreePolicy(const Task& task);
+
+  /// An action that led from `state` to where success is `depth - 1` actions away.
+  void add(const Poses& state, int action, double depth);
+
+  /// Number of entries.
+  int size() const { return static_cast<int>(depth_.size()); }
+
+  /// Where an episode is and the entries it has used; an entry is used once per episode, or a
+  /// deterministic policy would go round in circles.
+  struct Query {
+    Poses state;
+    std::vector<int> used;
+  };
+  struct Choice {
+    int entry = -1;  // -1: there is no entry left
+    int action = 0;
+    float score = 0.0F;
+  };
+  /// One choice per query, ties to the oldest entry.
+  std::vector<Choice> choose(std::span<const Query> queries) const;
+
+ private:
+  void scan(int begin, int end, std::span<const float> point, std::span<const int> used,
+            Choice& best) const;
+
+  StateMetric metric_;
+  std::vector<std::vector<float>> coordinate_;  // [size of embedding][entry]
+  std::vector<float> depth_;
+  std::vector<int> action_;
+};
+
+}  // namespace rtg

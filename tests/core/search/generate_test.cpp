@@ -1,0 +1,143 @@
+#include "core/search/generate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/search/coverage.hpp"
+#include "core/tasks/gathering.hpp"
+#include "tests/support/generation_run.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::GenerationRun;
+using testing::run_naive;
+
+SearchConfig small() {
+  SearchConfig config;
+  config.reverse = ReverseMode::kNaive;
+  config.transitions = 3000;
+  config.breadth = 8;
+  config.depth = 12;
+  config.evaluation_starts = 10;
+  return config;
+}
+
+const GenerationRun& reference_run() {
+  static const GenerationRun run = run_naive(gathering(), small(), 7, 1);
+  return run;
+}
+
+bool same_reports(const GenerationReport& a, const GenerationReport& b) {
+  GenerationReport x = a, y = b;
+  x.reverse_cpu_s = y.reverse_cpu_s = 0.0;  // time is the one thing that may differ
+  x.replay_cpu_s = y.replay_cpu_s = 0.0;
+  return to_json(x) == to_json(y);
+}
+
+TEST(Generate, GivesTheSameBytesForAnyNumberOfThreads) {
+  for (const int threads : {2, 5}) {
+    const GenerationRun run = run_naive(gathering(), small(), 7, threads);
+    EXPECT_EQ(run.stored, reference_run().stored);
+    EXPECT_TRUE(same_reports(run.report, reference_run().report));
+  }
+}
+
+TEST(Generate, AnotherSeedGivesOtherTransitions) {
+  EXPECT_NE(run_naive(gathering(), small(), 8, 2).stored, reference_run().stored);
+}
+
+TEST(Generate, StoresExactlyTheBudget) {
+  EXPECT_EQ(reference_run().stored.size(), 3000U);
+  EXPECT_EQ(reference_run().report.transitions, 3000);
+  EXPECT_EQ(reference_run().progress.back().transitions, 3000);
+}
+
+TEST(Generate, EveryTransitionSimulatesToItselfAndIsLabelledByThePredicate) {
+  const Task task = gathering();
+  const Box2dSimulator simulator(task.scene, task.push, {});
+  for (const Transition& t : reference_run().stored) {
+    const PushOutcome outcome = simulator.push(t.poses, t.action);
+    ASSERT_TRUE(outcome.ok);
+    ASSERT_EQ(outcome.end, t.next);
+    ASSERT_EQ(t.success, succeeded(task, t.next));
+    ASSERT_FALSE(succeeded(task, t.poses)) << "a state that ends an episode starts no transition";
+  }
+}
+
+TEST(Generate, EachSourceHasItsShare) {
+  const auto count = [](Source source) {
+    return std::ranges::count(reference_run().stored, source, &Transition::source);
+  };
+  EXPECT_EQ(count(Source::kRollOut), 1500);
+  EXPECT_GT(count(Source::kChainReplay), 0);
+  EXPECT_GT(count(Source::kStepReplay), 1000);
+}
+
+TEST(Generate, StepsOfChainsAndEpisodesFollowEachOther) {
+  const std::vector<Transition>& all = reference_run().stored;
+  long links = 0, steps = 0;
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    if (all[k].source == Source::kStepReplay || all[k].source != all[k - 1].source) continue;
+    ++steps;
+    links += all[k].poses == all[k - 1].next;
+  }
+  EXPECT_GT(links, steps * 3 / 4);  // the rest begin a chain or an episode
+}
+
+TEST(Generate, ReportAgreesWithTheStoredTransitions) {
+  const Task task = gathering();
+  const GenerationReport& report = reference_run().report;
+  long contacts = 0, region = 0;
+  for (const Transition& t : reference_run().stored) {
+    bool moved = false, inside = true;
+    for (std::size_t k = 1; k < t.poses.size(); ++k) {
+      moved = moved || std::hypot(t.next[k].x - t.poses[k].x, t.next[k].y - t.poses[k].y) > 0.05;
+      inside = inside && std::abs(t.poses[k].x - task.start[k].x) <= 0.5 &&
+               std::abs(t.poses[k].y - task.start[k].y) <= 0.5 &&
+               std::abs(std::remainder(t.poses[k].theta - task.start[k].theta, M_PI / 2)) <= 0.35;
+    }
+    contacts += moved;
+    region += inside;
+  }
+  EXPECT_DOUBLE_EQ(report.contact_share, static_cast<double>(contacts) / 3000.0);
+  EXPECT_EQ(report.start_region_transitions, region);
+  EXPECT_EQ(report.candidates, std::accumulate(report.statuses.begin(), report.statuses.end(), 0L));
+}
+
+TEST(Generate, CancelStopsIt) {
+  const Task task = gathering();
+  const Box2dSimulator simulator(task.scene, task.push, {});
+  const NaiveReverse naive(task.scene, task.push);
+  GenerationSeams seams = testing::naive_seams(simulator, naive, 1);
+  long stored = 0;
+  seams.store = [&](std::span<const Transition> batch) {
+    stored += static_cast<long>(batch.size());
+  };
+  seams.cancelled = [&] { return stored > 0; };
+  const GenerationReport report = generate(task, small(), 7, seams);
+  EXPECT_GT(report.transitions, 0);
+  EXPECT_LT(report.transitions, 1000);
+  EXPECT_EQ(report.transitions, stored);
+}
+
+TEST(Generate, EndsEvenIfNoReverseSolveConverges) {
+  const Task task = gathering();
+  const Box2dSimulator simulator(task.scene, task.push, {});
+  const NaiveReverse naive(task.scene, task.push);
+  GenerationSeams seams = testing::naive_seams(simulator, naive, 1);
+  seams.store = [](std::span<const Transition>) {};
+  seams.solve = [](std::span<const ReverseJob> jobs) {
+    return std::vector<ReverseResult>(jobs.size(), {SolveStatus::kIterationLimit, 50, jobs[0].end});
+  };
+  const GenerationReport report = generate(task, small(), 7, seams);
+  EXPECT_EQ(report.transitions, 3000);  // episodes of random actions
+  EXPECT_EQ(report.replay_gap_median, 0.0);
+  EXPECT_EQ(report.tree_policy_success, 0.0);
+}
+
+}  // namespace
+}  // namespace rtg
