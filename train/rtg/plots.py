@@ -95,7 +95,7 @@ def replay_gap(path: Path, title: str, gaps: Floats) -> None:
         figure, axis = plt.subplots(figsize=(6.4, 3.4), layout="constrained")
         top = max(float(values.max(initial=floor)), 10 * floor)
         edges = np.geomspace(floor, 1.001 * top, 61)
-        axis.hist(values, bins=edges, color=_BLUE, alpha=0.85)
+        axis.hist(values, bins=edges.tolist(), color=_BLUE, alpha=0.85)
         axis.set_xscale("log")
         if len(values):
             for share, words in ((50, "median"), (90, "90 %")):

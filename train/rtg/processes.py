@@ -24,7 +24,7 @@ class Node:
     """One program of the process graph in a process group of its own, its output in a log file."""
 
     def __init__(self, name: str, command: Sequence[str | Path], log: Path) -> None:
-        """Starts at once. For the main thread alone: the child dies with the thread that starts it."""
+        """Starts at once. Main thread only: the child dies with the thread that starts it."""
         self.name = name
         self.command = [str(part) for part in command]
         self.log = log
