@@ -1,0 +1,107 @@
+#include "nodes/common/job_dispatcher.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rtg {
+namespace {
+
+using Send = JobDispatcher::Send;
+using Verdict = JobDispatcher::Verdict;
+using Ids = std::vector<JobId>;
+using Sends = std::vector<Send>;
+
+constexpr WorkerId kAnn = 1, kBob = 2, kCat = 3;
+
+void beat(JobDispatcher& jobs, WorkerId worker, Seconds now, const Ids& held = {},
+          int capacity = 2) {
+  jobs.on_beat({worker, capacity, held}, now);
+}
+
+TEST(JobDispatcher, FillsTheFreestWorkerFirst) {
+  JobDispatcher jobs;
+  jobs.submit(Ids{10, 11, 12, 13});
+  EXPECT_EQ(jobs.due(0.0), Sends{});
+  beat(jobs, kAnn, 0.0);
+  beat(jobs, kBob, 0.0, {}, 1);
+  EXPECT_EQ(jobs.due(0.0), (Sends{{kAnn, 10, 1}, {kAnn, 11, 1}, {kBob, 12, 1}}));
+  EXPECT_EQ(jobs.on_result(11), Verdict::kAccepted);
+  EXPECT_EQ(jobs.due(0.0), (Sends{{kAnn, 13, 1}}));
+  for (const JobId id : {10, 12, 13}) jobs.on_result(id);
+  EXPECT_TRUE(jobs.finished());
+}
+
+TEST(JobDispatcher, ResultsCountOnceAndWhoeverSendsThem) {
+  JobDispatcher jobs;
+  jobs.submit(Ids{10, 10, 11});
+  EXPECT_EQ(jobs.open(), 2);
+  EXPECT_EQ(jobs.on_result(10), Verdict::kAccepted);  // nobody was asked yet
+  EXPECT_EQ(jobs.on_result(10), Verdict::kDuplicate);
+  EXPECT_EQ(jobs.on_result(99), Verdict::kUnknown);
+  beat(jobs, kAnn, 0.0);
+  EXPECT_EQ(jobs.due(0.0), (Sends{{kAnn, 11, 1}}));
+}
+
+TEST(JobDispatcher, SendsAgainWhatALaterBeatDoesNotList) {
+  JobDispatcher jobs;
+  jobs.submit(Ids{10});
+  beat(jobs, kAnn, 0.0);
+  jobs.due(0.0);
+  beat(jobs, kAnn, 0.1);  // may have left before the job arrived
+  EXPECT_EQ(jobs.due(0.1), Sends{});
+  beat(jobs, kAnn, 0.3);
+  EXPECT_EQ(jobs.due(0.3), (Sends{{kAnn, 10, 2}}));
+  beat(jobs, kAnn, 0.9, {10});
+  EXPECT_EQ(jobs.due(0.9), Sends{});
+  EXPECT_EQ(jobs.resent(), 1);
+}
+
+TEST(JobDispatcher, GivesTheJobsOfASilentWorkerToAnother) {
+  JobDispatcher jobs;
+  jobs.submit(Ids{10, 11});
+  beat(jobs, kAnn, 0.0, {}, 1);
+  jobs.due(0.0);
+  beat(jobs, kBob, 1.9, {}, 4);
+  EXPECT_EQ(jobs.due(1.9), (Sends{{kBob, 11, 1}}));
+  EXPECT_EQ(jobs.due(2.1), (Sends{{kBob, 10, 2}}));
+  EXPECT_EQ(jobs.workers(), 1);
+  EXPECT_EQ(jobs.reissued(), 1);
+  EXPECT_EQ(jobs.on_result(10), Verdict::kAccepted);
+}
+
+TEST(JobDispatcher, AStuckWorkerLosesItsLeaseHoweverAlive) {
+  JobDispatcher jobs;
+  jobs.submit(Ids{10});
+  beat(jobs, kAnn, 0.0);
+  jobs.due(0.0);
+  for (Seconds now = 1.0; now <= 121.0; now += 1.0) beat(jobs, kAnn, now, {10});
+  beat(jobs, kBob, 121.0, {}, 3);
+  EXPECT_EQ(jobs.due(121.0), (Sends{{kBob, 10, 2}}));
+}
+
+TEST(JobDispatcher, AJobThatTakesThreeWorkersDownIsPoison) {
+  JobDispatcher jobs;
+  jobs.submit(Ids{10});
+  Seconds now = 0.0;
+  for (const WorkerId victim : {kAnn, kBob, kCat}) {
+    beat(jobs, victim, now);
+    EXPECT_EQ(jobs.due(now).size(), 1u);
+    now += 3.0;
+  }
+  EXPECT_EQ(jobs.due(now), Sends{});
+  EXPECT_TRUE(jobs.finished());
+  EXPECT_EQ(jobs.poisoned(), Ids{10});
+  EXPECT_EQ(jobs.on_result(10), Verdict::kDuplicate);
+}
+
+TEST(JobDispatcher, ANewSetForgetsTheOldOne) {
+  JobDispatcher jobs;
+  jobs.submit(Ids{10});
+  beat(jobs, kAnn, 0.0, {}, 1);
+  jobs.due(0.0);
+  jobs.submit(Ids{20});
+  EXPECT_EQ(jobs.on_result(10), Verdict::kUnknown);
+  EXPECT_EQ(jobs.due(0.0), (Sends{{kAnn, 20, 1}}));
+}
+
+}  // namespace
+}  // namespace rtg

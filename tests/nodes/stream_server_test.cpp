@@ -1,0 +1,100 @@
+#include "nodes/common/stream_server.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace rtg {
+namespace {
+
+using Ranges = std::vector<RowRange>;
+
+constexpr std::int64_t kRowBytes = 100;  // hence 160 rows per message, 640 per burst
+
+StreamServer server_with(int rows) {
+  StreamServer server({}, kRowBytes);
+  server.append(std::vector<Transition>(static_cast<std::size_t>(rows)));
+  return server;
+}
+
+void ack(StreamServer& server, std::int64_t cursor, const Ranges& missing = {}, Seconds now = 0.0,
+         std::int64_t credit = 100000) {
+  EXPECT_TRUE(server.on_ack({7, cursor, credit, missing}, now));
+}
+
+TEST(StreamServer, SendsNewRowsOnceInMessagesOfBoundedSize) {
+  StreamServer server = server_with(400);
+  EXPECT_EQ(server.due(0.0), (Ranges{{0, 160}, {160, 320}, {320, 400}}));
+  EXPECT_EQ(server.due(0.1), Ranges{});
+  server.append(std::vector<Transition>(1));
+  EXPECT_EQ(server.due(0.2), (Ranges{{400, 401}}));
+}
+
+TEST(StreamServer, ABurstIsNoLongerThanAReceiveBufferStands) {
+  StreamServer server = server_with(100000);
+  EXPECT_EQ(server.due(0.0).size(), 4u);  // 64 kB
+  EXPECT_EQ(server.due(0.0).size(), 0u);
+  EXPECT_EQ(server.due(0.001).size(), 1u);  // 10 kB on
+}
+
+TEST(StreamServer, RowsAskedForGoOutAgainAndFirst) {
+  StreamServer server = server_with(400);
+  server.due(0.0);
+  server.append(std::vector<Transition>(10));
+  ack(server, 20, {{20, 30}, {100, 300}, {25, 40}});
+  EXPECT_EQ(server.due(1.0), (Ranges{{20, 40}, {100, 260}, {260, 300}, {400, 410}}));
+  EXPECT_EQ(server.resent(), 220);
+}
+
+TEST(StreamServer, RowsThatWereNeverSentAreNotResent) {
+  StreamServer server = server_with(1000);
+  server.due(0.0);  // 640 rows
+  ack(server, 600, {{600, 1000}});
+  EXPECT_EQ(server.due(0.002), (Ranges{{600, 640}, {640, 800}}));
+}
+
+TEST(StreamServer, HostileRangesAreCutToWhatExists) {
+  StreamServer server = server_with(100);
+  server.due(0.0);
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  ack(server, 0, {{-most, most}, {most, -most}, {most - 1, most}, {50, 20}});
+  EXPECT_EQ(server.due(1.0), (Ranges{{0, 100}}));
+}
+
+TEST(StreamServer, AnImpossibleCursorIsIgnored) {
+  StreamServer server = server_with(100);
+  EXPECT_FALSE(server.on_ack({7, 101, 10, {}}, 0.0));
+  EXPECT_FALSE(server.on_ack({7, -1, 10, {}}, 0.0));
+  EXPECT_EQ(server.consumers(), 0);
+}
+
+TEST(StreamServer, WaitsForTheSlowestLivingConsumer) {
+  StreamServer server = server_with(400);
+  ack(server, 0, {}, 0.0, 50);
+  EXPECT_EQ(server.due(0.0), (Ranges{{0, 50}}));
+  EXPECT_EQ(server.due(1.0), Ranges{});
+  ack(server, 50, {}, 1.0, 50);
+  EXPECT_EQ(server.due(1.0), (Ranges{{50, 100}}));
+  EXPECT_EQ(server.due(3.1), (Ranges{{100, 260}, {260, 400}}));  // it fell silent
+}
+
+TEST(StreamServer, AnOldAcknowledgementMovesNothingBack) {
+  StreamServer server = server_with(400);
+  ack(server, 300);
+  ack(server, 100);
+  EXPECT_EQ(server.slowest_cursor(), 300);
+}
+
+TEST(StreamServer, IsDrainedWhenEveryConsumerHasTheSealedStream) {
+  StreamServer server = server_with(400);
+  ack(server, 400);
+  EXPECT_FALSE(server.drained(1));
+  server.seal();
+  EXPECT_TRUE(server.drained(1));
+  EXPECT_FALSE(server.drained(2));
+  EXPECT_TRUE(server.on_ack({8, 399, 10, {}}, 0.0));
+  EXPECT_FALSE(server.drained(1));
+}
+
+}  // namespace
+}  // namespace rtg

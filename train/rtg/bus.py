@@ -1,0 +1,141 @@
+"""The only Python module that touches LCM.
+
+LCM loses, doubles and reorders messages, and anyone may send: what arrives is checked against its
+type, the run and finite numbers before a handler sees it; what is dropped is counted.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import struct
+from collections import Counter
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import lcm
+
+PROTOCOL = 1  # version of the rules in msgs/CHANNELS.md
+MAX_MESSAGE_BYTES = 60_000
+RECEIVE_BUFFER = 4 << 20  # [bytes]; the kernel's default of 208 kB loses every burst
+QUEUE_CAPACITY = 1000  # messages; LCM's default of 30 drops new ones silently
+
+Message = TypeVar("Message")
+
+
+def run_key(run: str) -> int:
+    """`header.run` of the run of this name: FNV-1a, 64 bit, as a signed number."""
+    key = 0xCBF29CE484222325
+    for byte in run.encode():
+        key = (key ^ byte) * 0x100000001B3 % 2**64
+    return key - 2**64 if key >= 2**63 else key
+
+
+def _is_finite(message: Any) -> bool:
+    """Whether every float of a decoded message is a number."""
+    for name, kind in zip(message.__slots__, message.__typenames__, strict=True):
+        if kind in ("double", "float"):
+            value = getattr(message, name)
+            values = value if isinstance(value, (tuple, list)) else (value,)
+            if not all(map(math.isfinite, values)):
+                return False
+    return True
+
+
+class Bus:
+    """Publishes and receives the messages of one run.
+
+    `url`: "udpm://GROUP:PORT[?ttl=N]" or "memq://" (one process, for tests); the C++ configuration
+    loader checks it. ttl is 0, this machine only, unless named.
+    """
+
+    def __init__(self, url: str, run: str) -> None:
+        if url.startswith("udpm:"):
+            url += ("&" if "?" in url else "?ttl=0&") + f"recv_buf_size={RECEIVE_BUFFER}"
+        self.counters: Counter[str] = Counter()
+        self._lcm = lcm.LCM(url)
+        self._run = run_key(run)
+        self._subscriptions: list[Any] = []
+        self._failure: BaseException | None = None
+
+    def publish(self, channel: str, message: Any) -> None:
+        """Fills the header and sends. A datagram the kernel refuses is as lost as any other."""
+        message.header.protocol = PROTOCOL
+        message.header.run = self._run
+        message.header.sender = os.getpid()
+        data = message.encode()
+        if len(data) > MAX_MESSAGE_BYTES:
+            raise ValueError(f"{type(message).__name__}: longer than one datagram")
+        self.send(channel, data)
+
+    def send(self, channel: str, data: bytes) -> None:
+        """Sends bytes as they are; for tests of what a stranger may send."""
+        try:
+            self._lcm.publish(channel, data)
+        except OSError:
+            self.counters["bus.unsent"] += 1
+
+    def subscribe(
+        self, channel: str, message_type: type[Message], handler: Callable[[Message], None]
+    ) -> None:
+        def receive(_: str, data: bytes) -> None:
+            message = self.decode(message_type, data)
+            if message is not None:
+                handler(message)
+
+        self.watch(channel, receive)
+
+    def watch(self, pattern: str, handler: Callable[[str, bytes], None]) -> None:
+        """Undecoded messages of all channels that match the regular expression, for monitors."""
+
+        def receive(channel: str, data: bytes) -> None:
+            try:
+                handler(channel, data)
+            except BaseException as error:  # carried past LCM's C frames, raised by spin()
+                self._failure = self._failure or error
+
+        subscription = self._lcm.subscribe(pattern, receive)
+        if subscription is None:
+            raise RuntimeError("bus: messages sent do not come back; is multicast enabled?")
+        subscription.set_queue_capacity(QUEUE_CAPACITY)
+        self._subscriptions.append(subscription)
+
+    def decode(self, message_type: type[Message], data: bytes) -> Message | None:
+        """The message, or None and a count of why not."""
+        if len(data) > MAX_MESSAGE_BYTES:
+            self.counters["bus.too_long"] += 1
+            return None
+        try:
+            message: Any = message_type.decode(data)  # type: ignore[attr-defined]
+            well_formed = len(message.encode()) == len(data)
+        except (ValueError, struct.error, IndexError):
+            well_formed = False
+        if not well_formed:
+            self.counters["bus.malformed"] += 1
+        elif not _is_finite(message):
+            self.counters["bus.not_finite"] += 1
+        elif message.header.run != self._run:
+            self.counters["bus.foreign_run"] += 1
+        elif message.header.protocol != PROTOCOL:
+            self.counters["bus.foreign_protocol"] += 1
+        else:
+            return message
+        return None
+
+    def spin(self, timeout: float) -> int:
+        """Waits `timeout` s at most for a message, then handles all that came; returns how many.
+
+        Raises the first exception of a handler. A signal ends the wait early.
+        """
+        handled, wait_ms = 0, int(timeout * 1000)
+        while handled < QUEUE_CAPACITY:
+            try:
+                if self._lcm.handle_timeout(wait_ms) <= 0:
+                    break
+            except OSError:  # how LCM reports an interrupting signal
+                break
+            handled, wait_ms = handled + 1, 0
+            if self._failure is not None:
+                failure, self._failure = self._failure, None
+                raise failure
+        return handled
