@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace rtg {
+
+enum class ReversePreset { kDefault, kPaper };
+inline constexpr std::array<std::string_view, 2> kReversePresets{"default", "paper"};
+
+enum class KktMethod { kBlockElimination, kCyclicReduction, kSuiteSparse };
+inline constexpr std::array<std::string_view, 3> kKktMethods{"block_elimination",
+                                                             "cyclic_reduction", "suitesparse"};
+
+/// The reverse problem (eq. 6, 7) and its SQP (A.2). The values here are the preset `default`. A
+/// loader begins with reverse_preset(preset) and reads the other fields over it. Energies are in
+/// units of k_D/Δt², see core/NOTATION.md.
+struct ReverseConfig {
+  ReversePreset preset = ReversePreset::kDefault;
+  KktMethod kkt = KktMethod::kBlockElimination;
+  int max_iterations = 400;
+  double feasibility_tol = 1e-6;     // ‖C‖∞
+  double stationarity_tol = 1e-4;    // ‖∇L‖∞
+  double robot_weight = 0.2;         // w₀ of eq. (6)
+  double object_weight = 1.0;        // w_i, i > 0
+  double control_weight = 1e-3;      // ε of eq. (6)
+  double path_weight = 100.0;        // κ_x, action consistency; 0: the paper's objective
+  double heading_weight = 100.0;     // κ_θ
+  double terminal_weight = 300.0;    // spring to the given final state; 0: that state is fixed
+  double terminal_tolerance = 0.05;  // a solution that misses the final state by more fails [m]
+  double proximal_start = 1.0;       // δ of the first iteration
+  double exact_below = 0.02;         // exact Lagrangian Hessian once δ is no larger
+
+  template <class Visitor>
+  void visit(Visitor& v) {
+    v.choice("preset", preset, kReversePresets, "values of all fields that are not given");
+    v.choice("kkt", kkt, kKktMethods, "how the Newton systems are solved");
+    v.integer("max_iterations", max_iterations, 1, 100000, "SQP iterations per candidate");
+    v.number("feasibility_tol", feasibility_tol, 1e-14, 1.0, "largest constraint violation");
+    v.number("stationarity_tol", stationarity_tol, 1e-14, 1.0, "largest Lagrangian gradient");
+    v.number("robot_weight", robot_weight, 0.0, 1e6, "pull of the robot against the push");
+    v.number("object_weight", object_weight, 0.0, 1e6, "pull of the objects against the push");
+    v.number("control_weight", control_weight, 1e-9, 1e6, "price of control");
+    v.number("path_weight", path_weight, 0.0, 1e9, "holds the robot on the push's straight line");
+    v.number("heading_weight", heading_weight, 0.0, 1e9, "holds the robot's heading");
+    v.number("terminal_weight", terminal_weight, 0.0, 1e9, "holds the final state; 0: fixes it");
+    v.number("terminal_tolerance", terminal_tolerance, 0.0, 100.0, "largest miss of it [m]");
+    v.number("proximal_start", proximal_start, 0.0, 1e9, "regularisation of the first step");
+    v.number("exact_below", exact_below, 0.0, 1e9, "regularisation that allows exact Hessians");
+  }
+};
+
+/// The values that `preset` stands for. `paper` is App. E: the printed objective, l1 merit,
+/// Hessian of the objective only, static start, 1000 iterations, final state fixed.
+inline ReverseConfig reverse_preset(ReversePreset preset) {
+  ReverseConfig config;
+  if (preset == ReversePreset::kDefault) return config;
+  config.preset = ReversePreset::kPaper;
+  config.max_iterations = 1000;
+  config.path_weight = config.heading_weight = config.terminal_weight = 0.0;
+  return config;
+}
+
+}  // namespace rtg
