@@ -39,7 +39,7 @@ void fields(V& v, rtg_msgs::reverse_job_t& m) {
 template <class V>
 void fields(V& v, rtg_msgs::reverse_result_t& m) {
   fields(v, m.header);
-  v.scalar(m.job_id), v.scalar(m.from);
+  v.scalar(m.job_id), v.scalar(m.incarnation);
   v.count(m.n), v.count(m.n_poses);
   v.array(m.status, m.n), v.array(m.iterations, m.n), v.array(m.cpu_s, m.n);
   v.array(m.start, m.n_poses);
@@ -56,7 +56,7 @@ void fields(V& v, rtg_msgs::replay_job_t& m) {
 template <class V>
 void fields(V& v, rtg_msgs::replay_result_t& m) {
   fields(v, m.header);
-  v.scalar(m.job_id), v.scalar(m.from);
+  v.scalar(m.job_id), v.scalar(m.incarnation);
   v.count(m.n), v.count(m.n_poses);
   v.array(m.ok, m.n), v.array(m.cpu_s, m.n), v.array(m.end, m.n_poses);
 }

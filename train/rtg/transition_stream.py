@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg.bus import Bus
+from rtg.messages import message_type
 
 ACK_INTERVAL = 0.5  # [s], without progress
 RETRY_INTERVAL = 0.1  # [s], between two questions for the same rows
@@ -166,16 +167,14 @@ class TransitionStream:
         sink: Callable[[Rows], None],
         credit: int = 8192,
     ) -> None:
-        from rtg_msgs import stream_tail_t, transition_batch_t
-
         self._bus = bus
         self._bodies, self._headings = bodies, headings
         self._sink = sink
         self._cursor = StreamCursor(credit)
         self._consumer = secrets.randbits(62)
         self._stream: int | None = None
-        bus.subscribe("RTG_TRANSITION", transition_batch_t, self._on_batch)
-        bus.subscribe("RTG_TAIL", stream_tail_t, self._on_tail)
+        bus.subscribe("RTG_TRANSITION", message_type("transition_batch_t"), self._on_batch)
+        bus.subscribe("RTG_TAIL", message_type("stream_tail_t"), self._on_tail)
 
     def poll(self, timeout: float) -> int:
         """Receives for `timeout` s at most; returns how many rows went to the sink."""
@@ -224,12 +223,10 @@ class TransitionStream:
             raise RuntimeError("the coordinator was restarted: two streams must not be mixed")
 
     def _acknowledge(self) -> None:
-        from rtg_msgs import stream_ack_t
-
         ack = self._cursor.ack_due(time.monotonic())
         if ack is None or self._stream is None:
             return
-        message = stream_ack_t()
+        message = message_type("stream_ack_t")()
         message.stream, message.consumer = self._stream, self._consumer
         message.cursor, message.credit = ack.cursor, self._cursor.credit
         message.n = len(ack.missing)
