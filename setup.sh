@@ -84,15 +84,6 @@ find_python() {
   fail "no Python 3.11, 3.12 or 3.13 found. Debian 12 and Ubuntu 24.04 have one: apt-get install python3"
 }
 
-# The CPU build of torch lives on an index of its own; without it pip fetches the far larger CUDA build.
-torch_index() {
-  local index=https://download.pytorch.org/whl/cpu
-  if "$VENV/bin/python" -c 'import sys, urllib.request as u; u.urlopen(sys.argv[1], timeout=5)' \
-    "$index/torch/" 2>/dev/null; then
-    printf '%s\n' --extra-index-url "$index"
-  fi
-}
-
 pip_install() {
   if ! "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check "$@" \
     >"$ROOT/build/pip.log" 2>&1 9>&-; then
@@ -104,7 +95,7 @@ pip_install() {
 # .venv with the pinned packages of train/requirements.txt and the package rtg itself, installed in place.
 # The stamp holds what the environment was made from; a moved checkout is made anew.
 setup_python() {
-  local stamp=$VENV/.made-from wanted torch index
+  local stamp=$VENV/.made-from wanted
   wanted="$ROOT $(cd "$ROOT/train" && cat requirements.txt pyproject.toml | sha256sum)"
   if [[ -x $VENV/bin/python && -f $stamp && $(<"$stamp") == "$wanted" ]]; then return; fi
   local python
@@ -114,9 +105,6 @@ setup_python() {
     "$python" -m venv --clear "$VENV" 9>&- || fail "$python -m venv failed"
   fi
   say "installing the Python packages of train/requirements.txt (minutes the first time)"
-  torch=$(grep '^torch==' "$ROOT/train/requirements.txt")
-  mapfile -t index < <(torch_index)
-  pip_install "${index[@]}" "$torch"
   pip_install -r "$ROOT/train/requirements.txt"
   pip_install --no-deps --no-build-isolation --editable "$ROOT/train"
   printf '%s\n' "$wanted" >"$stamp"

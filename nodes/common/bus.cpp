@@ -4,12 +4,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <lcm/lcm-cpp.hpp>
 #include <list>
-#include <regex>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "nodes/common/content_hash.hpp"
@@ -49,25 +50,38 @@ void warn_of_small_buffer(const std::string& url) {
                size >> 10, kReceiveBuffer >> 10, kReceiveBuffer);
 }
 
+/// Whether `text` begins with `word`, which is then taken off it.
+bool take(std::string_view& text, std::string_view word) {
+  if (!text.starts_with(word)) return false;
+  text.remove_prefix(word.size());
+  return true;
+}
+
+/// Whether `text` begins with a decimal number in [low, high], which is then taken off it. No
+/// leading zeros: inet_aton() would read them as octal.
+bool take_number(std::string_view& text, int low, int high) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && low <= value && value <= high && take(text, std::to_string(value));
+}
+
 }  // namespace
 
 std::string checked_bus_url(const std::string& url) {
   if (url == "memq://") return url;
-  static const std::regex form(
-      R"(udpm://(\d{1,3})\.(\d{1,3})\.(\d{1,3})\.(\d{1,3}):(\d{1,5})(\?ttl=(\d{1,3}))?)");
-  std::smatch match;
-  const auto number = [&match](int i) { return std::stoi(match[i].str()); };
-  const bool legal = std::regex_match(url, match, form) && number(1) >= 224 && number(1) <= 239 &&
-                     number(2) <= 255 && number(3) <= 255 && number(4) <= 255 &&
-                     number(5) >= 1024 && number(5) <= 65535 &&
-                     (!match[7].matched || number(7) <= 255);
+  std::string_view rest = url;
+  bool legal = take(rest, "udpm://") && take_number(rest, 224, 239);
+  for (int byte = 1; byte < 4; ++byte)
+    legal = legal && take(rest, ".") && take_number(rest, 0, 255);
+  legal = legal && take(rest, ":") && take_number(rest, 1024, 65535);
+  const bool has_ttl = take(rest, "?ttl=");
+  legal = legal && (!has_ttl || take_number(rest, 0, 255)) && rest.empty();
   if (!legal)
     throw std::invalid_argument(
         "bus '" + url +
         "': legal are memq:// and udpm://GROUP:PORT[?ttl=N] with a multicast "
         "group 224.x.x.x-239.x.x.x, port 1024-65535, ttl 0-255");
-  return url + (match[7].matched ? "&" : "?ttl=0&") +
-         "recv_buf_size=" + std::to_string(kReceiveBuffer);
+  return url + (has_ttl ? "&" : "?ttl=0&") + "recv_buf_size=" + std::to_string(kReceiveBuffer);
 }
 
 struct Bus::Connection {
