@@ -3,14 +3,12 @@
 #include <array>
 #include <string_view>
 
+#include "core/math/kkt_solver.hpp"
+
 namespace rtg {
 
 enum class ReversePreset { kDefault, kPaper };
 inline constexpr std::array<std::string_view, 2> kReversePresets{"default", "paper"};
-
-enum class KktMethod { kBlockElimination, kCyclicReduction, kSuiteSparse };
-inline constexpr std::array<std::string_view, 3> kKktMethods{"block_elimination",
-                                                             "cyclic_reduction", "suitesparse"};
 
 /// The reverse problem (eq. 6, 7) and its SQP (A.2). The values here are the preset `default`. A
 /// loader begins with reverse_preset(preset) and reads the other fields over it. Energies are in

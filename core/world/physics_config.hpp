@@ -7,14 +7,16 @@ struct PhysicsConfig {
   double time_step = 0.05;     // Δt of a sub-step [s]
   int sub_steps = 10;          // h, sub-steps of one push
   double damping = 20.0;       // k_D; Box2D gets linearDamping = angularDamping = k_D/Δt
-  double barrier = 2.0;        // μ, weight of the contact barrier [J]
+  double barrier = 24.0;       // μ, weight of the contact barrier [J]
   double range = 0.15;         // ĝ, gap beyond which there is no contact force [m]
-  double skin = 0.0145;        // d₀, Box2D's resting distance [m]
-  double sharpness = 100.0;    // α of the log-sum-exp signed distance [1/m]
+  double skin = 0.0;           // d₀, offset of the gap [m]; μ and ĝ set the distance of contact
+  double sharpness = 50.0;     // α of the log-sum-exp signed distance [1/m]
   double slip = 0.025;         // ε_u, displacement over which friction builds up [m]
   double force_factor = 6.0;   // B_f in units of the robot's own drag at push speed
   double torque_factor = 6.0;  // B_ω, the same times the robot's radius
-  int box2d_steps = 5;         // Box2D steps per sub-step
+  bool plain_barrier = false;  // the paper's -μ log g, of infinite range
+  bool periodic_damping = false;  // the paper's 1 - cos Δθ for turns
+  int box2d_steps = 5;            // Box2D steps per sub-step
   int box2d_velocity_iterations = 16;
   int box2d_position_iterations = 8;
 
@@ -25,11 +27,13 @@ struct PhysicsConfig {
     v.number("damping", damping, 1e-6, 1e6, "damping coefficient k_D");
     v.number("barrier", barrier, 1e-12, 1e6, "weight of the contact barrier [J]");
     v.number("range", range, 1e-4, 10.0, "gap beyond which bodies exert no force [m]");
-    v.number("skin", skin, 0.0, 1.0, "distance of bodies at rest in contact [m]");
+    v.number("skin", skin, 0.0, 1.0, "offset of the gap [m]");
     v.number("sharpness", sharpness, 1.0, 1e5, "of the smoothed signed distance [1/m]");
     v.number("slip", slip, 1e-6, 10.0, "displacement over which friction builds up [m]");
     v.number("force_factor", force_factor, 0.1, 1e6, "largest force / robot's own drag");
     v.number("torque_factor", torque_factor, 0.1, 1e6, "largest torque / (drag x robot radius)");
+    v.flag("plain_barrier", plain_barrier, "-mu log g, of infinite range");
+    v.flag("periodic_damping", periodic_damping, "1 - cos instead of the square of turns");
     v.integer("box2d_steps", box2d_steps, 1, 1000, "Box2D steps per sub-step");
     v.integer("box2d_velocity_iterations", box2d_velocity_iterations, 1, 1000, "");
     v.integer("box2d_position_iterations", box2d_position_iterations, 1, 1000, "");

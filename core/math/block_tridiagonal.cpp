@@ -1,0 +1,57 @@
+#include "core/math/block_tridiagonal.hpp"
+
+namespace rtg {
+
+Eigen::Index BlockTridiagonal::order() const {
+  Eigen::Index n = 0;
+  for (const MatrixXd& block : A) n += block.rows();
+  return n;
+}
+
+MatrixXd BlockTridiagonal::dense() const {
+  MatrixXd M = MatrixXd::Zero(order(), order());
+  Eigen::Index at = 0, before = 0;
+  for (std::size_t k = 0; k < blocks(); ++k) {
+    M.block(at, at, A[k].rows(), A[k].cols()) = A[k];
+    if (k > 0) {
+      M.block(at, before, B[k].rows(), B[k].cols()) = B[k];
+      M.block(before, at, B[k].cols(), B[k].rows()) = B[k].transpose();
+    }
+    before = at;
+    at += A[k].rows();
+  }
+  return M;
+}
+
+BlockVector product(const BlockTridiagonal& K, const BlockVector& x) {
+  BlockVector y(K.blocks());
+  for (std::size_t k = 0; k < K.blocks(); ++k) {
+    y[k] = K.A[k] * x[k];
+    if (k > 0) y[k] += K.B[k] * x[k - 1];
+    if (k + 1 < K.blocks()) y[k] += K.B[k + 1].transpose() * x[k + 1];
+  }
+  return y;
+}
+
+VectorXd joined(const BlockVector& x) {
+  Eigen::Index n = 0, at = 0;
+  for (const VectorXd& block : x) n += block.size();
+  VectorXd all(n);
+  for (const VectorXd& block : x) {
+    all.segment(at, block.size()) = block;
+    at += block.size();
+  }
+  return all;
+}
+
+BlockVector split_like(const BlockTridiagonal& K, const VectorXd& x) {
+  BlockVector parts(K.blocks());
+  Eigen::Index at = 0;
+  for (std::size_t k = 0; k < K.blocks(); ++k) {
+    parts[k] = x.segment(at, K.A[k].rows());
+    at += K.A[k].rows();
+  }
+  return parts;
+}
+
+}  // namespace rtg

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace rtg {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Symmetric block-tridiagonal matrix of N blocks, and vectors cut alike.
+///
+///     ⎡ A₀  B₁ᵀ         ⎤
+///     ⎢ B₁  A₁  B₂ᵀ     ⎥    A[k]  [n_k × n_k]      symmetric, may be indefinite
+///     ⎢     B₂  A₂   ⋱  ⎥    B[k]  [n_k × n_{k-1}]  B[0] is empty
+///     ⎣          ⋱   ⋱  ⎦
+struct BlockTridiagonal {
+  std::vector<MatrixXd> A, B;
+
+  std::size_t blocks() const { return A.size(); }
+  Eigen::Index order() const;  // Σ n_k
+  MatrixXd dense() const;      // for tests and small problems only
+};
+
+using BlockVector = std::vector<VectorXd>;
+
+/// K x.
+BlockVector product(const BlockTridiagonal& K, const BlockVector& x);
+
+VectorXd joined(const BlockVector& x);
+BlockVector split_like(const BlockTridiagonal& K, const VectorXd& x);
+
+}  // namespace rtg

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/LU>
+#include <vector>
+
+#include "core/math/kkt_solver.hpp"
+
+namespace rtg {
+
+/// LU of a pivot block; singular if it is not finite or its pivots span more than 1e14.
+class PivotBlock {
+ public:
+  [[nodiscard]] bool factorize(const MatrixXd& A);
+  template <class Rhs>
+  auto solve(const Rhs& r) const {
+    return lu_.solve(r);
+  }
+
+ private:
+  Eigen::PartialPivLU<MatrixXd> lu_;
+};
+
+class BlockElimination final : public KktSolver {
+ public:
+  [[nodiscard]] bool factorize(const BlockTridiagonal& K) override;
+  [[nodiscard]] BlockVector solve(const BlockVector& r) const override;
+
+ private:
+  std::vector<PivotBlock> pivots_;
+  std::vector<MatrixXd> B_, gain_;  // gain_[k] = pivot_k⁻¹ B_k
+};
+
+class CyclicReduction final : public KktSolver {
+ public:
+  [[nodiscard]] bool factorize(const BlockTridiagonal& K) override;
+  [[nodiscard]] BlockVector solve(const BlockVector& r) const override;
+
+ private:
+  /// One halving: the odd blocks of the system are eliminated, the even ones stay.
+  struct Level {
+    std::size_t blocks = 0;
+    std::vector<PivotBlock> pivots;     // of the odd blocks
+    std::vector<MatrixXd> B;            // of this level's system
+    std::vector<MatrixXd> left, right;  // pivot⁻¹ times the couplings to the even neighbours
+  };
+  [[nodiscard]] bool halve(BlockTridiagonal& K);
+
+  std::vector<Level> levels_;
+  PivotBlock last_;
+};
+
+/// UMFPACK's LU of the whole sparse matrix [Davis 2004].
+std::unique_ptr<KktSolver> make_suitesparse_solver();
+
+}  // namespace rtg

@@ -1,0 +1,99 @@
+#include <umfpack.h>
+
+#include <stdexcept>
+
+#include "core/math/kkt_solvers.hpp"
+
+namespace rtg {
+namespace {
+
+/// Compressed columns of the nonzeros of K.
+struct SparseColumns {
+  std::vector<int> start{0}, row;
+  std::vector<double> value;
+};
+
+SparseColumns sparse(const BlockTridiagonal& K) {
+  SparseColumns S;
+  const auto append = [&S](const auto& column, Eigen::Index first) {
+    for (Eigen::Index i = 0; i < column.size(); ++i) {
+      if (column[i] == 0.0) continue;
+      S.row.push_back(static_cast<int>(first + i));
+      S.value.push_back(column[i]);
+    }
+  };
+  Eigen::Index at = 0, before = 0;
+  for (std::size_t k = 0; k < K.blocks(); ++k) {
+    const Eigen::Index n = K.A[k].rows();
+    for (Eigen::Index j = 0; j < n; ++j) {
+      if (k > 0) append(K.B[k].row(j), before);
+      append(K.A[k].col(j), at);
+      if (k + 1 < K.blocks()) append(K.B[k + 1].col(j), at + n);
+      S.start.push_back(static_cast<int>(S.row.size()));
+    }
+    before = at;
+    at += n;
+  }
+  return S;
+}
+
+class SuiteSparseSolver final : public KktSolver {
+ public:
+  ~SuiteSparseSolver() override { clear(); }
+
+  [[nodiscard]] bool factorize(const BlockTridiagonal& K) override {
+    clear();
+    shape_ = K;
+    columns_ = sparse(K);
+    const int n = static_cast<int>(K.order());
+    void* symbolic = nullptr;
+    const int analysed = umfpack_di_symbolic(n, n, columns_.start.data(), columns_.row.data(),
+                                             columns_.value.data(), &symbolic, nullptr, nullptr);
+    if (analysed != UMFPACK_OK) return false;
+    const int done =
+        umfpack_di_numeric(columns_.start.data(), columns_.row.data(), columns_.value.data(),
+                           symbolic, &numeric_, nullptr, nullptr);
+    umfpack_di_free_symbolic(&symbolic);
+    return done == UMFPACK_OK;
+  }
+
+  [[nodiscard]] BlockVector solve(const BlockVector& r) const override {
+    const VectorXd rhs = joined(r);
+    VectorXd x(rhs.size());
+    const int done =
+        umfpack_di_solve(UMFPACK_A, columns_.start.data(), columns_.row.data(),
+                         columns_.value.data(), x.data(), rhs.data(), numeric_, nullptr, nullptr);
+    if (done != UMFPACK_OK) throw std::logic_error("UMFPACK solve without a factorisation");
+    return split_like(shape_, x);
+  }
+
+ private:
+  void clear() {
+    if (numeric_) umfpack_di_free_numeric(&numeric_);
+    numeric_ = nullptr;
+  }
+
+  BlockTridiagonal shape_;
+  SparseColumns columns_;
+  void* numeric_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<KktSolver> make_suitesparse_solver() {
+  return std::make_unique<SuiteSparseSolver>();
+}
+
+std::unique_ptr<KktSolver> make_kkt_solver(KktMethod method) {
+  switch (method) {
+    case KktMethod::kCyclicReduction:
+      return std::make_unique<CyclicReduction>();
+    case KktMethod::kSuiteSparse:
+      return make_suitesparse_solver();
+    case KktMethod::kBlockElimination:
+      break;
+  }
+  return std::make_unique<BlockElimination>();
+}
+
+}  // namespace rtg
