@@ -42,6 +42,20 @@ def _is_finite(message: Any) -> bool:
     return True
 
 
+def decoded(message_type: Any, data: bytes) -> Any:
+    """The message of whatever run, or the name of the counter of its defect."""
+    if len(data) > MAX_MESSAGE_BYTES:
+        return "bus.too_long"
+    try:
+        message = message_type.decode(data)
+        well_formed = len(message.encode()) == len(data)
+    except (ValueError, struct.error, IndexError):
+        well_formed = False
+    if not well_formed:
+        return "bus.malformed"
+    return message if _is_finite(message) else "bus.not_finite"
+
+
 class Bus:
     """Publishes and receives the messages of one run.
 
@@ -102,24 +116,16 @@ class Bus:
 
     def decode(self, message_type: type[Message], data: bytes) -> Message | None:
         """The message, or None and a count of why not."""
-        if len(data) > MAX_MESSAGE_BYTES:
-            self.counters["bus.too_long"] += 1
-            return None
-        try:
-            message: Any = message_type.decode(data)  # type: ignore[attr-defined]
-            well_formed = len(message.encode()) == len(data)
-        except (ValueError, struct.error, IndexError):
-            well_formed = False
-        if not well_formed:
-            self.counters["bus.malformed"] += 1
-        elif not _is_finite(message):
-            self.counters["bus.not_finite"] += 1
+        message = decoded(message_type, data)
+        if isinstance(message, str):
+            self.counters[message] += 1
         elif message.header.run != self._run:
             self.counters["bus.foreign_run"] += 1
         elif message.header.protocol != PROTOCOL:
             self.counters["bus.foreign_protocol"] += 1
         else:
-            return message
+            checked: Message = message
+            return checked
         return None
 
     def spin(self, timeout: float) -> int:

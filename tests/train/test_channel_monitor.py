@@ -1,0 +1,87 @@
+"""Counts, rates and node states of the channel monitor, with a clock of our own."""
+
+from rtg.channel_monitor import ChannelMonitor, ChannelRow, NodeRow
+from rtg.messages import message_type
+
+
+def status(number=0, state="busy", done=0, cpu_s=0.0, pid=7, counters=()):
+    message = message_type("node_status_t")()
+    message.header.sender = pid
+    message.node, message.number, message.state = "reverse_worker", number, state
+    message.done, message.cpu_s = done, cpu_s
+    message.n = len(counters)
+    message.counter_name = [name for name, _ in counters]
+    message.counter_value = [value for _, value in counters]
+    return message.encode()
+
+
+def test_a_channel_shows_type_count_rate_and_bandwidth():
+    monitor = ChannelMonitor()
+    data = message_type("stream_tail_t")().encode()
+    for k in range(21):
+        monitor.on_message("RTG_TAIL", data, 0.1 * k)
+        monitor.sample(0.1 * k)
+    (row,) = monitor.channels()
+    # 20 messages after the one at the first sample, in 2 s
+    assert row == ChannelRow("RTG_TAIL", "stream_tail_t", 21, 10.0, 10.0 * len(data), 0)
+
+
+def test_rates_forget_what_was_long_ago():
+    monitor = ChannelMonitor()
+    data = message_type("stream_tail_t")().encode()
+    for _ in range(100):
+        monitor.on_message("RTG_TAIL", data, 0.0)
+    for k in range(20):
+        monitor.sample(0.5 * k)
+    assert monitor.channels()[0].rate == 0.0
+    assert monitor.channels()[0].messages == 100
+
+
+def test_bytes_of_no_type_and_broken_messages_are_undecodable():
+    monitor = ChannelMonitor()
+    tail = message_type("stream_tail_t")().encode()
+    monitor.on_message("OTHER", b"rubbish", 0.0)
+    for data in (tail, tail[:-1], tail + b"x", b""):
+        monitor.on_message("RTG_TAIL", data, 0.0)
+    other, ours = monitor.channels()
+    assert (other.type_name, other.messages, other.undecodable) == ("?", 1, 1)
+    assert (ours.type_name, ours.messages, ours.undecodable) == ("stream_tail_t", 4, 3)
+
+
+def test_a_node_shows_its_state_rate_cpu_and_the_counters_that_count():
+    monitor = ChannelMonitor()
+    counters = [("bus.malformed", 2), ("jobs.resent", 0), ("bus.foreign_run", 5)]
+    for k in range(5):
+        monitor.on_message(
+            "RTG_STATUS", status(1, done=10 * k, cpu_s=0.25 * k, counters=counters), 0.5 * k
+        )
+        monitor.sample(0.5 * k)
+    (row,) = monitor.nodes(2.0)
+    words = "bus.malformed 2, bus.foreign_run 5"
+    assert row == NodeRow("reverse_worker 1", 7, "busy", 40, 20.0, 0.5, words)
+
+
+def test_a_node_that_falls_silent_says_so():
+    monitor = ChannelMonitor()
+    monitor.on_message("RTG_STATUS", status(), 0.0)
+    assert monitor.nodes(2.9)[0].state == "busy"
+    assert monitor.nodes(5.0)[0].state == "silent 5 s"
+
+
+def test_a_restarted_node_counts_from_nothing():
+    monitor = ChannelMonitor()
+    for k, (pid, done) in enumerate([(7, 0), (7, 1000), (8, 0), (8, 10)]):
+        monitor.on_message("RTG_STATUS", status(pid=pid, done=done), float(k))
+        monitor.sample(float(k))
+    (row,) = monitor.nodes(3.0)
+    assert (row.pid, row.done, row.rate) == (8, 10, 10.0)
+
+
+def test_progress_is_one_line():
+    monitor = ChannelMonitor()
+    assert monitor.progress() == ""
+    message = message_type("search_progress_t")()
+    message.phase, message.layer, message.depth = "tree 1", 3, 24
+    message.transitions, message.target = 12345, 60000
+    monitor.on_message("RTG_PROGRESS", message.encode(), 0.0)
+    assert monitor.progress().startswith("tree 1, layer 3/24: 12,345 of 60,000 transitions, ")
