@@ -19,7 +19,7 @@ MAY_INCLUDE = {
     "nodes": {"core", "nodes", "rtg_msgs"},
     "msgs": {"rtg_msgs"},
     # The bindings take the resolved config, so that C++ and Python never read YAML apart.
-    "train": {"core", "nodes/common"},
+    "train": {"core", "nodes/common", "train/bindings"},
     "tests": {"core", "nodes", "tests", "rtg_msgs"},
 }
 

@@ -31,21 +31,35 @@ _SMOOTH = 3  # drawn this much larger, then reduced
 class GoalLike(Protocol):
     """One term of the goal, as rtg._core.GoalTerm."""
 
-    kind: str
-    region: str  # "disc" or "half_plane"
-    centre: Floats
-    radius: float
-    normal: Floats
-    offset: float
+    @property
+    def kind(self) -> str: ...
+    @property
+    def region(self) -> str:
+        """ "disc" or "half_plane"."""
+
+    @property
+    def centre(self) -> Floats: ...
+    @property
+    def radius(self) -> float: ...
+    @property
+    def normal(self) -> Floats: ...
+    @property
+    def offset(self) -> float: ...
 
 
 class TaskLike(Protocol):
     """What drawing needs to know of a task, as rtg._core.Task."""
 
-    shapes: Sequence[Floats]  # per body [V, 2]
-    kinds: Sequence[str]
-    goal: Sequence[GoalLike]
-    arena: float
+    @property
+    def shapes(self) -> Sequence[Floats]:
+        """Per body [V, 2]."""
+
+    @property
+    def kinds(self) -> Sequence[str]: ...
+    @property
+    def goal(self) -> Sequence[GoalLike]: ...
+    @property
+    def arena(self) -> float: ...
 
 
 def kind_colours(task: TaskLike) -> dict[str, Colour]:

@@ -1,0 +1,65 @@
+"""The bindings against the stub and against each other."""
+
+import ast
+from pathlib import Path
+
+import numpy as np
+from rtg import _core
+
+TASK = _core.gathering()
+
+
+def test_the_stub_lists_what_the_module_has() -> None:
+    tree = ast.parse((Path(_core.__file__).parent / "_core.pyi").read_text())
+    stub = {
+        node.name: {m.name for m in getattr(node, "body", []) if isinstance(m, ast.FunctionDef)}
+        for node in tree.body
+        if isinstance(node, ast.ClassDef | ast.FunctionDef)
+    }
+    public = {name for name in vars(_core) if not name.startswith("_")}
+    assert public == set(stub)
+    for name, members in stub.items():
+        found = getattr(_core, name)
+        if isinstance(found, type):
+            assert {m for m in vars(found) if not m.startswith("_")} == members - {"__init__"}
+
+
+def test_observation_is_the_documented_one() -> None:
+    poses = TASK.start + np.arange(12).reshape(4, 3) / 100
+    robot, expected = poses[0], [*(poses[0, :2] / 8)]
+    for x, y, theta in poses[1:]:
+        expected += [x / 8, y / 8, np.cos(theta), np.sin(theta)]
+        expected += [(x - robot[0]) / 8, (y - robot[1]) / 8]
+    np.testing.assert_allclose(TASK.observation(poses[None])[0], expected, atol=1e-7)
+
+
+def test_success_is_the_goal_term_drawn_in_pictures() -> None:
+    (term,) = TASK.goal
+    assert term.region == "disc"
+    rng = np.random.default_rng(0)
+    states = np.repeat(TASK.start[None], 500, 0)
+    states[:, 1:, :2] = rng.uniform(-2.2, 2.2, (500, 3, 2))
+    inside = np.linalg.norm(states[:, 1:, :2] - term.centre, axis=2) <= term.radius
+    expected = inside.all(axis=1)
+    assert 0.1 < expected.mean() < 0.9
+    np.testing.assert_array_equal(TASK.succeeded(states), expected)
+
+
+def test_pushes_of_a_batch_do_not_depend_on_each_other() -> None:
+    simulator = _core.Simulator(TASK)
+    rng = np.random.default_rng(1)
+    states, actions = np.repeat(TASK.start[None], 64, 0), rng.integers(48, size=64)
+    for _ in range(5):
+        states, ok = simulator.push(states, actions)
+        assert ok.all()
+    together, _ = simulator.push(states, actions)
+    order = rng.permutation(64)
+    apart = np.empty_like(together)
+    for k in order:
+        apart[k] = simulator.push(states[k : k + 1], actions[k : k + 1])[0][0]
+    np.testing.assert_array_equal(apart, together)
+
+
+def test_arrays_outlive_the_call() -> None:
+    kept = [_core.gathering().start for _ in range(100)]
+    assert all(np.array_equal(start, TASK.start) for start in kept)

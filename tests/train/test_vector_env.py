@@ -1,0 +1,56 @@
+import numpy as np
+from rtg import _core
+from rtg.env import PushEnv
+from rtg.vector_env import PushVecEnv
+
+TASK = _core.gathering()
+
+
+def steps(env: PushVecEnv, count: int, seed: int = 0) -> list[np.ndarray]:
+    rng = np.random.default_rng(seed)
+    out = []
+    for _ in range(count):
+        observation, reward, done, _ = env.step(rng.integers(48, size=env.num_envs))
+        out.append(np.column_stack((observation, reward, done)))
+    return out
+
+
+def test_every_copy_does_what_the_single_environment_does() -> None:
+    many = PushVecEnv(TASK, 3, jitter=0.1, seed=9)
+    first = many.reset()
+    singles = [PushEnv(TASK) for _ in range(3)]
+    for k, single in enumerate(singles):
+        seen, _ = single.reset(options={"poses": TASK.jittered_start(0.1, 9, k)})
+        np.testing.assert_array_equal(first[k], seen)
+    rng = np.random.default_rng(0)
+    for _ in range(59):
+        actions = rng.integers(48, size=3)
+        observation, reward, done, _ = many.step(actions)
+        for k, single in enumerate(singles):
+            seen, one, terminated, truncated, _ = single.step(actions[k])
+            np.testing.assert_array_equal(observation[k], seen)
+            assert (reward[k], done[k]) == (one, terminated or truncated)
+
+
+def test_a_finished_episode_reports_its_end_and_starts_again() -> None:
+    env = PushVecEnv(TASK, 2, jitter=0.1, seed=9)
+    env.reset()
+    for _ in range(60):
+        observation, reward, done, infos = env.step(np.array([36, 36]))
+    assert done.all() and not reward.any()
+    for k, info in enumerate(infos):
+        assert info["TimeLimit.truncated"] and info["length"] == 60 and not info["is_success"]
+        start = TASK.observation(TASK.jittered_start(0.1, 9, 2 + k)[None])[0]
+        np.testing.assert_array_equal(observation[k], start)
+        assert not np.array_equal(info["terminal_observation"], observation[k])
+
+
+def test_a_restored_environment_goes_on_with_the_same_bits() -> None:
+    env = PushVecEnv(TASK, 4, jitter=0.1, seed=1)
+    env.reset()
+    steps(env, 50)
+    state = env.state()
+    expected = steps(env, 100, seed=7)
+    other = PushVecEnv(TASK, 4, jitter=0.1, seed=1)
+    other.restore(state)
+    np.testing.assert_array_equal(steps(other, 100, seed=7), expected)

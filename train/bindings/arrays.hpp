@@ -1,0 +1,68 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <initializer_list>
+#include <memory>
+#include <string>
+
+#include "core/world/pose.hpp"
+
+namespace rtg {
+
+namespace nb = nanobind;
+
+/// States of a scene from numpy: [N, bodies, 3] float64, x [m], y [m], θ [rad].
+using StateArray = nb::ndarray<const double, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
+using ActionArray = nb::ndarray<const std::int64_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+
+/// An array of numpy's that owns its memory.
+template <class T>
+struct OwnedArray {
+  std::unique_ptr<T[]> data;
+
+  explicit OwnedArray(std::size_t count) : data(new T[count]()) {}
+
+  /// Hands the memory over to numpy.
+  nb::ndarray<nb::numpy, T> release(std::initializer_list<std::size_t> shape) {
+    T* memory = data.release();
+    nb::capsule owner(memory, [](void* p) noexcept { delete[] static_cast<T*>(p); });
+    return nb::ndarray<nb::numpy, T>(memory, shape, owner);
+  }
+};
+
+/// Throws ValueError unless every state has one pose per body.
+inline void check_bodies(const StateArray& states, std::size_t bodies) {
+  if (states.shape(1) != bodies) {
+    const std::string found = std::to_string(states.shape(1)), want = std::to_string(bodies);
+    throw nb::value_error(("states of " + found + " bodies; the task has " + want).c_str());
+  }
+}
+
+inline Poses state_at(const StateArray& states, std::size_t row) {
+  const std::size_t bodies = states.shape(1);
+  const double* p = states.data() + row * bodies * 3;
+  Poses poses(bodies);
+  for (std::size_t i = 0; i < bodies; ++i) poses[i] = {p[3 * i], p[3 * i + 1], p[3 * i + 2]};
+  return poses;
+}
+
+/// Writes 3·bodies numbers.
+inline void write_state(const Poses& poses, double* out) {
+  for (const Pose& p : poses) {
+    *out++ = p.x;
+    *out++ = p.y;
+    *out++ = p.theta;
+  }
+}
+
+inline nb::ndarray<nb::numpy, double> state_array(const Poses& poses) {
+  OwnedArray<double> out(poses.size() * 3);
+  write_state(poses, out.data.get());
+  return out.release({poses.size(), 3});
+}
+
+}  // namespace rtg

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace rtg {
+
+/// Each adds its part of the module rtg._core.
+void bind_task(nanobind::module_& module);
+void bind_simulator(nanobind::module_& module);
+
+}  // namespace rtg

@@ -1,0 +1,64 @@
+#include <nanobind/stl/pair.h>
+
+#include "core/forward/box2d_simulator.hpp"
+#include "core/tasks/task.hpp"
+#include "train/bindings/arrays.hpp"
+#include "train/bindings/bindings.hpp"
+
+namespace rtg {
+namespace {
+
+/// The true dynamics of one task.
+struct TaskSimulator {
+  std::size_t bodies;
+  int headings;
+  Box2dSimulator box2d;
+
+  explicit TaskSimulator(const Task& task, const PhysicsConfig& physics = {})
+      : bodies(task.scene.size()),
+        headings(task.push.headings),
+        box2d(task.scene, task.push, physics) {}
+};
+
+void check_actions(const TaskSimulator& simulator, const StateArray& states,
+                   const ActionArray& actions) {
+  check_bodies(states, simulator.bodies);
+  if (actions.shape(0) != states.shape(0))
+    throw nb::value_error("states and actions differ in number");
+  for (std::size_t row = 0; row < actions.shape(0); ++row) {
+    const std::int64_t action = actions.data()[row];
+    if (action < 0 || action >= simulator.headings) {
+      const std::string found = "action " + std::to_string(action);
+      throw nb::value_error(
+          (found + "; legal: 0 to " + std::to_string(simulator.headings - 1)).c_str());
+    }
+  }
+}
+
+std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, bool>> push(
+    const TaskSimulator& simulator, const StateArray& states, const ActionArray& actions) {
+  check_actions(simulator, states, actions);
+  const std::size_t count = states.shape(0), width = simulator.bodies * 3;
+  OwnedArray<double> next(count * width);
+  OwnedArray<bool> ok(count);
+  {
+    const nb::gil_scoped_release release;
+    for (std::size_t row = 0; row < count; ++row) {
+      const int action = static_cast<int>(actions.data()[row]);
+      const PushOutcome outcome = simulator.box2d.push(state_at(states, row), action);
+      write_state(outcome.end, next.data.get() + row * width);
+      ok.data[row] = outcome.ok;
+    }
+  }
+  return {next.release({count, simulator.bodies, 3}), ok.release({count})};
+}
+
+}  // namespace
+
+void bind_simulator(nb::module_& module) {
+  nb::class_<TaskSimulator>(module, "Simulator")
+      .def(nb::init<const Task&>(), nb::arg("task"))
+      .def("push", &push, nb::arg("states"), nb::arg("actions"));
+}
+
+}  // namespace rtg

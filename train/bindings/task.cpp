@@ -1,0 +1,106 @@
+#include "core/tasks/task.hpp"
+
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "core/tasks/gathering.hpp"
+#include "train/bindings/arrays.hpp"
+#include "train/bindings/bindings.hpp"
+
+namespace rtg {
+namespace {
+
+using Vertices = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+
+std::vector<Vertices> shapes(const Task& task) {
+  std::vector<Vertices> out;
+  for (const Body& body : task.scene.bodies) {
+    Vertices& vertices = out.emplace_back(static_cast<Eigen::Index>(body.shape.size()), 2);
+    for (Eigen::Index k = 0; k < vertices.rows(); ++k)
+      vertices.row(k) = body.shape.vertices[static_cast<std::size_t>(k)];
+  }
+  return out;
+}
+
+std::vector<std::string> kinds(const Task& task) {
+  std::vector<std::string> out;
+  for (const Body& body : task.scene.bodies) out.push_back(body.kind);
+  return out;
+}
+
+nb::ndarray<nb::numpy, float> observations(const Task& task, const StateArray& states) {
+  check_bodies(states, task.scene.size());
+  const auto size = static_cast<std::size_t>(observation_size(task));
+  OwnedArray<float> out(states.shape(0) * size);
+  {
+    const nb::gil_scoped_release release;
+    for (std::size_t row = 0; row < states.shape(0); ++row) {
+      const std::vector<float> one = observation(task, state_at(states, row));
+      std::copy(one.begin(), one.end(), out.data.get() + row * size);
+    }
+  }
+  return out.release({states.shape(0), size});
+}
+
+nb::ndarray<nb::numpy, bool> successes(const Task& task, const StateArray& states) {
+  check_bodies(states, task.scene.size());
+  OwnedArray<bool> out(states.shape(0));
+  for (std::size_t row = 0; row < states.shape(0); ++row)
+    out.data[row] = succeeded(task, state_at(states, row));
+  return out.release({states.shape(0)});
+}
+
+nb::ndarray<nb::numpy, double> start(const Task& task, double amplitude, std::uint64_t seed,
+                                     std::uint64_t index) {
+  if (!(amplitude >= 0.0 && amplitude <= 10.0))
+    throw nb::value_error("amplitude: legal are 0 to 10 m");
+  Rng rng(seed, index);
+  const std::optional<Poses> poses = jittered_start(task, amplitude, rng);
+  if (!poses) {
+    const std::string found = "no start without overlap among 1000 draws with jitter ";
+    throw nb::value_error((found + std::to_string(amplitude)).c_str());
+  }
+  return state_array(*poses);
+}
+
+void bind_goal_term(nb::module_& module) {
+  nb::class_<GoalTerm>(module, "GoalTerm")
+      .def_ro("kind", &GoalTerm::kind)
+      .def_prop_ro("region",
+                   [](const GoalTerm& term) {
+                     return term.region == GoalTerm::Region::kDisc ? "disc" : "half_plane";
+                   })
+      .def_ro("centre", &GoalTerm::centre)
+      .def_ro("radius", &GoalTerm::radius)
+      .def_ro("normal", &GoalTerm::normal)
+      .def_ro("offset", &GoalTerm::offset);
+}
+
+}  // namespace
+
+void bind_task(nb::module_& module) {
+  bind_goal_term(module);
+  nb::class_<Task>(module, "Task")
+      .def_ro("name", &Task::name)
+      .def_prop_ro("shapes", &shapes)
+      .def_prop_ro("kinds", &kinds)
+      .def_ro("goal", &Task::goal)
+      .def_prop_ro("arena", [](const Task& task) { return task.push.arena; })
+      .def_prop_ro("headings", [](const Task& task) { return task.push.headings; })
+      .def_prop_ro(
+          "start", [](const Task& task) { return state_array(task.start); }, nb::rv_policy::move)
+      .def_ro("horizon", &Task::horizon)
+      .def_ro("discount", &Task::discount)
+      .def_ro("start_jitter", &Task::start_jitter)
+      .def_ro("randomisation", &Task::randomisation)
+      .def_prop_ro("bodies", [](const Task& task) { return task.scene.size(); })
+      .def_prop_ro("observation_size", &observation_size)
+      .def("observation", &observations, nb::arg("states"))
+      .def("succeeded", &successes, nb::arg("states"))
+      .def("jittered_start", &start, nb::arg("amplitude"), nb::arg("seed"), nb::arg("index") = 0);
+  module.def("gathering", &gathering);
+  module.def("gathering_hard", &gathering_hard);
+}
+
+}  // namespace rtg

@@ -1,0 +1,89 @@
+"""The C++ core of RTG: tasks, the true dynamics. Poses are x [m], y [m], θ [rad]."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+class GoalTerm:
+    """A target set for the centres of the bodies of a kind; "*" means all objects."""
+
+    @property
+    def kind(self) -> str: ...
+    @property
+    def region(self) -> str:
+        """ "disc": |x - centre| <= radius; "half_plane": normal·x <= offset."""
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """[2], m"""
+    @property
+    def radius(self) -> float: ...
+    @property
+    def normal(self) -> NDArray[np.float64]:
+        """[2], a unit vector"""
+    @property
+    def offset(self) -> float: ...
+
+class Task:
+    """A sparse-reward task: reward 1 and the end when the goal holds. Body 0 is the robot."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def shapes(self) -> Sequence[NDArray[np.float64]]:
+        """Per body [vertices, 2], counter-clockwise, centroid at the origin [m]."""
+    @property
+    def kinds(self) -> list[str]:
+        """The class of each body."""
+    @property
+    def goal(self) -> list[GoalTerm]:
+        """All must hold."""
+    @property
+    def arena(self) -> float:
+        """Half width of the square that the robot stays in [m]."""
+    @property
+    def headings(self) -> int:
+        """Number of actions: action a pushes along 2πa/headings."""
+    @property
+    def start(self) -> NDArray[np.float64]:
+        """[bodies, 3]"""
+    @property
+    def horizon(self) -> int:
+        """Actions of an episode; then it is truncated."""
+    @property
+    def discount(self) -> float: ...
+    @property
+    def start_jitter(self) -> float:
+        """Evaluation starts: object positions ± this [m]."""
+    @property
+    def randomisation(self) -> float:
+        """Training starts: object positions ± this [m]."""
+    @property
+    def bodies(self) -> int: ...
+    @property
+    def observation_size(self) -> int: ...
+    def observation(self, states: NDArray[np.float64]) -> NDArray[np.float32]:
+        """The learner's view. [N, bodies, 3] -> [N, observation_size]"""
+    def succeeded(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether the goal holds. [N, bodies, 3] -> [N]"""
+    def jittered_start(self, amplitude: float, seed: int, index: int = 0) -> NDArray[np.float64]:
+        """Start number `index` of stream `seed`, objects moved by ± amplitude [m]. [bodies, 3]
+
+        Raises ValueError if 1000 draws in a row overlap, or for an amplitude beyond [0, 10] m.
+        """
+
+class Simulator:
+    """The true dynamics of a task: Box2D. Holds no state; equal arguments give equal bits."""
+
+    def __init__(self, task: Task) -> None: ...
+    def push(
+        self, states: NDArray[np.float64], actions: NDArray[np.int64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """One action in each state. [N, bodies, 3], [N] -> [N, bodies, 3], [N]
+
+        The second array is False where the bodies did not come to rest: no legal transition.
+        Raises ValueError for arrays that do not fit the task.
+        """
+
+def gathering() -> Task: ...
+def gathering_hard() -> Task: ...
