@@ -8,10 +8,13 @@
 
 namespace rtg {
 
+/// Stands for no push: the scene comes to rest with the robot held.
+inline constexpr int kSettle = -1;
+
 /// What does `action` do in `start`?
 struct ReplayJob {
   Poses start;
-  int action = 0;
+  int action = 0;  // or kSettle
 
   bool operator==(const ReplayJob&) const = default;
 };

@@ -11,10 +11,7 @@
 #include <string>
 #include <type_traits>
 
-#include "core/forward/box2d_simulator.hpp"
-#include "core/search/generate.hpp"
-#include "core/search/naive_reverse.hpp"
-#include "core/search/thread_pool.hpp"
+#include "core/search/simulators.hpp"
 #include "core/tasks/gathering.hpp"
 
 namespace rtg {
@@ -72,18 +69,8 @@ void print_progress(const Progress& p) {
 
 int run(const Options& options) {
   const Task task = gathering();
-  const Box2dSimulator simulator(task.scene, task.push, {});
-  const NaiveReverse naive(task.scene, task.push);
-  GenerationSeams seams;
-  seams.solve =
-      solve_on_threads([&](const ReverseJob& job) { return naive.solve(job); }, options.threads);
-  seams.replay = replay_on_threads(
-      [&](const ReplayJob& job) {
-        PushOutcome outcome = simulator.push(job.start, job.action);
-        return ReplayResult{std::move(outcome.end), outcome.ok, 0.0};
-      },
-      options.threads);
-  seams.settle = [&](const Poses& poses) { return simulator.settle(poses).end; };
+  GenerationSeams seams = in_process_seams(reverse_solver(task, {}, {}, options.search.reverse),
+                                           forward_replay(task, {}), options.threads);
   seams.store = [](std::span<const Transition>) {};
   seams.progress = print_progress;
   const auto begin = std::chrono::steady_clock::now();

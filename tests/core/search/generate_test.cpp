@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/forward/box2d_simulator.hpp"
 #include "core/search/coverage.hpp"
 #include "core/tasks/gathering.hpp"
 #include "tests/support/generation_run.hpp"
@@ -110,9 +111,7 @@ TEST(Generate, ReportAgreesWithTheStoredTransitions) {
 
 TEST(Generate, CancelStopsIt) {
   const Task task = gathering();
-  const Box2dSimulator simulator(task.scene, task.push, {});
-  const NaiveReverse naive(task.scene, task.push);
-  GenerationSeams seams = testing::naive_seams(simulator, naive, 1);
+  GenerationSeams seams = testing::naive_seams(task, 1);
   long stored = 0;
   seams.store = [&](std::span<const Transition> batch) {
     stored += static_cast<long>(batch.size());
@@ -126,9 +125,7 @@ TEST(Generate, CancelStopsIt) {
 
 TEST(Generate, EndsEvenIfNoReverseSolveConverges) {
   const Task task = gathering();
-  const Box2dSimulator simulator(task.scene, task.push, {});
-  const NaiveReverse naive(task.scene, task.push);
-  GenerationSeams seams = testing::naive_seams(simulator, naive, 1);
+  GenerationSeams seams = testing::naive_seams(task, 1);
   seams.store = [](std::span<const Transition>) {};
   seams.solve = [](std::span<const ReverseJob> jobs) {
     return std::vector<ReverseResult>(jobs.size(), {SolveStatus::kIterationLimit, 50, jobs[0].end});

@@ -1,0 +1,45 @@
+#include "core/search/simulators.hpp"
+
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "core/forward/box2d_simulator.hpp"
+#include "core/search/naive_reverse.hpp"
+#include "core/search/thread_pool.hpp"
+
+namespace rtg {
+
+SolveOne reverse_solver(const Task& task, const PhysicsConfig&, const ReverseConfig&,
+                        ReverseMode mode) {
+  if (mode == ReverseMode::kRrbs)
+    throw std::invalid_argument("search.reverse: rrbs is not built in; legal: naive");
+  return [naive = std::make_shared<const NaiveReverse>(task.scene, task.push)](
+             const ReverseJob& job) { return naive->solve(job); };
+}
+
+ReplayOne forward_replay(const Task& task, const PhysicsConfig& physics) {
+  return [box2d = std::make_shared<const Box2dSimulator>(task.scene, task.push, physics)](
+             const ReplayJob& job) {
+    PushOutcome outcome =
+        job.action == kSettle ? box2d->settle(job.start) : box2d->push(job.start, job.action);
+    return ReplayResult{std::move(outcome.end), outcome.ok, 0.0};
+  };
+}
+
+std::function<Poses(const Poses&)> settle_through(ReplayBatch replay) {
+  return [replay = std::move(replay)](const Poses& poses) {
+    const ReplayJob job{poses, kSettle};
+    return replay({&job, 1})[0].end;
+  };
+}
+
+GenerationSeams in_process_seams(SolveOne solve, ReplayOne replay, int threads) {
+  GenerationSeams seams;
+  seams.solve = solve_on_threads(std::move(solve), threads);
+  seams.replay = replay_on_threads(std::move(replay), threads);
+  seams.settle = settle_through(seams.replay);
+  return seams;
+}
+
+}  // namespace rtg

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+
+#include "core/reverse/reverse_config.hpp"
+#include "core/search/batches.hpp"
+#include "core/search/generate.hpp"
+#include "core/search/search_config.hpp"
+#include "core/tasks/task.hpp"
+#include "core/world/physics_config.hpp"
+
+namespace rtg {
+
+/// One reverse job after the other; pure, and callable from several threads at once.
+using SolveOne = std::function<ReverseResult(const ReverseJob&)>;
+/// One replay job after the other; likewise.
+using ReplayOne = std::function<ReplayResult(const ReplayJob&)>;
+
+/// The reverse simulator that `mode` names.
+SolveOne reverse_solver(const Task& task, const PhysicsConfig& physics,
+                        const ReverseConfig& reverse, ReverseMode mode);
+
+/// The true dynamics, Box2D; kSettle is answered, too.
+ReplayOne forward_replay(const Task& task, const PhysicsConfig& physics);
+
+/// Brings a state to rest by a job for `replay`.
+std::function<Poses(const Poses&)> settle_through(ReplayBatch replay);
+
+/// The seams with all simulators on `threads` threads of this process; store, progress and
+/// cancelled are left to the caller.
+GenerationSeams in_process_seams(SolveOne solve, ReplayOne replay, int threads);
+
+}  // namespace rtg
