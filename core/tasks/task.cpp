@@ -9,7 +9,6 @@ namespace rtg {
 namespace {
 
 constexpr double kLengthScale = 8.0;  // of the observation [m]
-constexpr double kClearance = 0.02;   // closer bodies are in contact for Box2D [m]
 constexpr int kAttempts = 1000;
 
 bool holds(const GoalTerm& term, const Vector2d& x, double tighten) {
@@ -78,7 +77,7 @@ std::optional<Poses> jittered_start(const Task& task, double amplitude, Rng& rng
       poses[i].y += rng.uniform(-amplitude, amplitude);
       poses[i] = to_single(poses[i]);
     }
-    if (!first_overlap(task.scene, poses, kClearance)) return poses;
+    if (!first_overlap(task.scene, poses, kStartClearance)) return poses;
   }
   return std::nullopt;
 }

@@ -33,7 +33,22 @@ struct Task {
   double discount = 0.8;       // γ
   double start_jitter = 0.1;   // evaluation starts: object positions ± this [m]
   double randomisation = 0.0;  // training starts: object positions ± this [m]
+
+  /// The plain numbers; the rest has a structure of its own.
+  template <class Visitor>
+  void visit(Visitor& v) {
+    v.integer("horizon", horizon, 1, 100000, "pushes of an episode at most");
+    v.number("discount", discount, 0.01, 0.9999, "of the reward per push");
+    v.number("start_jitter", start_jitter, 0.0, 10.0,
+             "evaluation starts: object positions +- this [m]");
+    v.number("randomisation", randomisation, 0.0, 10.0,
+             "training starts: object positions +- this [m]");
+  }
 };
+
+/// Bodies closer than this are in contact for Box2D; start states keep clear of each other by it
+/// [m].
+inline constexpr double kStartClearance = 0.02;
 
 /// Whether `term` constrains that body.
 bool applies_to(const GoalTerm& term, const Task& task, std::size_t body);

@@ -1,0 +1,157 @@
+#include "nodes/common/rtg_config.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "nodes/common/config_overrides.hpp"
+#include "nodes/common/content_hash.hpp"
+#include "nodes/common/field_writer.hpp"
+#include "nodes/common/task_section.hpp"
+#include "nodes/common/yaml_parser.hpp"
+
+namespace rtg {
+namespace {
+
+using Kind = ConfigNode::Kind;
+
+const std::vector<std::string> kSections{"task", "physics", "reverse", "search", "train", "run"};
+const std::string kTaskLegal = "a mapping, or the path of a YAML file with one";
+
+std::string read_text(const std::filesystem::path& file, const std::string& origin) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (std::filesystem::is_regular_file(file) && stream && text << stream.rdbuf()) return text.str();
+  const bool exists = std::filesystem::exists(file);
+  throw ConfigError(origin + ": " + (exists ? "cannot be read" : "no such file") +
+                    "; legal: a YAML file with a section 'task'");
+}
+
+ConfigNode parse_root(const std::string& text, const std::string& name) {
+  ConfigNode root = parse_yaml(text, name);
+  if (root.kind != Kind::kMap)
+    throw ConfigError((root.origin.empty() ? name + ":1" : root.origin) + ": holds " +
+                      in_words(root) + "; legal: a mapping with keys of " + listed(kSections));
+  root.origin = name + ":1";
+  return root;
+}
+
+/// Puts the section of another file in the place of its path.
+void fetch_task(ConfigNode& root, const std::filesystem::path& folder) {
+  for (ConfigEntry& entry : root.entries) {
+    if (entry.key != "task" || entry.value.kind != Kind::kScalar) continue;
+    const std::string where = entry.value.origin + ": key 'task'";
+    const std::filesystem::path file = folder / entry.value.scalar;
+    ConfigNode other = parse_root(read_text(file, where + ": " + file.string()), file.string());
+    const ConfigEntry* task = find(other, "task");
+    if (!task || task->value.kind != Kind::kMap)
+      throw ConfigError(where + ": " + file.string() + " describes no task; legal: " + kTaskLegal);
+    entry.value = task->value;
+  }
+}
+
+/// Takes the keys that presets of `section` decide out of the file's values: a preset on the
+/// command line stands above them.
+template <class Config, class Preset>
+void clear_for_preset(ConfigNode& root, const std::string& section, Config (*values)(Preset)) {
+  const ConfigNode a = fields_of(values(Preset::kDefault)), b = fields_of(values(Preset::kPaper));
+  for (ConfigEntry& entry : root.entries) {
+    if (entry.key != section) continue;
+    std::erase_if(entry.value.entries, [&](const ConfigEntry& field) {
+      const ConfigEntry* value = find(a, field.key);
+      return value && value->value.scalar != find(b, field.key)->value.scalar;
+    });
+  }
+}
+
+void apply_overrides(ConfigNode& root, std::span<const std::string> overrides) {
+  for (const std::string& setting : overrides) {
+    if (setting.starts_with("reverse.preset=")) clear_for_preset(root, "reverse", reverse_preset);
+    if (setting.starts_with("train.preset=")) clear_for_preset(root, "train", train_preset);
+  }
+  for (const std::string& setting : overrides) apply_override(root, setting);
+}
+
+template <class Config>
+void read_section(const ConfigNode& root, const std::string& name, Config& config) {
+  if (const ConfigEntry* section = find(root, name)) read_fields(section->value, name, config);
+}
+
+/// A section whose field `preset` chooses the values of the fields that are not given.
+template <class Config, class Preset>
+void read_preset_section(const ConfigNode& root, const std::string& name, Config (*values)(Preset),
+                         Config& config) {
+  read_section(root, name, config);
+  config = values(config.preset);
+  read_section(root, name, config);
+}
+
+void check_physics(const ConfigNode& root, const PhysicsConfig& physics) {
+  if (physics.skin < physics.range) return;
+  const ConfigEntry* section = find(root, "physics");
+  const ConfigEntry* given = find(section->value, "skin");
+  if (!given) given = find(section->value, "range");
+  throw ConfigError(given->value.origin, "physics.skin",
+                    number_text(physics.skin) + " is not below physics.range",
+                    "less than " + number_text(physics.range));
+}
+
+void check_bus(const ConfigNode& root, const std::string& url) {
+  if (url.starts_with("udpm://") || url == "memq://") return;
+  throw ConfigError(find(find(root, "run")->value, "bus")->value.origin, "run.bus",
+                    "'" + url + "' is no LCM URL", "udpm://GROUP:PORT?ttl=N, memq://");
+}
+
+RtgConfig read_config(const ConfigNode& root) {
+  const FieldReader reader(root, "", kSections);
+  RtgConfig config;
+  config.task = read_task(reader.required("task", kTaskLegal).value);
+  read_section(root, "physics", config.physics);
+  read_preset_section(root, "reverse", reverse_preset, config.reverse);
+  read_section(root, "search", config.search);
+  read_preset_section(root, "train", train_preset, config.train);
+  read_section(root, "run", config.run);
+  check_physics(root, config.physics);
+  check_bus(root, config.run.bus);
+  if (config.run.workers == 0)
+    config.run.workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return config;
+}
+
+ConfigNode tree_of(const RtgConfig& config) {
+  ConfigNode root = map_node();
+  root.entries.push_back({"task", "", task_node(config.task)});
+  root.entries.push_back({"physics", "", fields_of(config.physics)});
+  root.entries.push_back({"reverse", "", fields_of(config.reverse)});
+  root.entries.push_back({"search", "", fields_of(config.search)});
+  root.entries.push_back({"train", "", fields_of(config.train)});
+  root.entries.push_back({"run", "", fields_of(config.run)});
+  return root;
+}
+
+}  // namespace
+
+RtgConfig load_config(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  return parse_config(read_text(file, file.string()), file, overrides);
+}
+
+RtgConfig parse_config(const std::string& text, const std::filesystem::path& name,
+                       std::span<const std::string> overrides) {
+  ConfigNode root = parse_root(text, name.string());
+  fetch_task(root, name.parent_path());
+  apply_overrides(root, overrides);
+  return read_config(root);
+}
+
+std::string canonical_yaml(const RtgConfig& config) { return yaml_text(tree_of(config)); }
+
+std::string config_json(const RtgConfig& config) { return json_text(tree_of(config)); }
+
+std::int64_t config_hash(const RtgConfig& config) {
+  return ContentHash().add(canonical_yaml(config)).value();
+}
+
+}  // namespace rtg

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+namespace rtg {
+
+/// How a run is carried out; of these only the seed changes its results.
+struct RunConfig {
+  int seed = 1;
+  int workers = 0;  // reverse workers; the loader replaces 0 by the number of cores
+  bool in_process = false;
+  std::string bus = "udpm://239.255.76.67:7667?ttl=0";
+
+  template <class Visitor>
+  void visit(Visitor& v) {
+    v.integer("seed", seed, 0, 2147483647, "decides everything random");
+    v.integer("workers", workers, 0, 1024, "reverse workers; 0: one per core");
+    v.flag("in_process", in_process, "everything in one process, no LCM");
+    v.text("bus", bus, "LCM URL, udpm://GROUP:PORT?ttl=N");
+  }
+};
+
+}  // namespace rtg

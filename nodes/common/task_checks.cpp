@@ -1,0 +1,119 @@
+#include "nodes/common/task_checks.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "core/world/separation.hpp"
+#include "nodes/common/config_error.hpp"
+#include "nodes/common/field_reader.hpp"
+
+namespace rtg {
+namespace {
+
+std::string body_path(std::size_t i) { return "task.bodies." + std::to_string(i); }
+
+const ConfigNode& body_section(const ConfigNode& section, std::size_t i) {
+  return find(section, "bodies")->value.items[i];
+}
+
+[[noreturn]] void fail_at(const ConfigNode& section, std::size_t body, const char* key,
+                          const std::string& wrong, const std::string& legal) {
+  const ConfigNode& node = body_section(section, body);
+  const ConfigEntry* entry = find(node, key);
+  throw ConfigError(entry ? entry->value.origin : node.origin, body_path(body) + '.' + key, wrong,
+                    legal);
+}
+
+void check_names(const Task& task, const ConfigNode& section) {
+  const auto& bodies = task.scene.bodies;
+  for (std::size_t i = 1; i < bodies.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (bodies[i].name == bodies[j].name)
+        fail_at(section, i, "name",
+                "'" + bodies[i].name + "' is the name of body " + std::to_string(j) + " too",
+                "names that differ");
+}
+
+void check_movable(const Task& task, const ConfigNode& section) {
+  const auto& bodies = task.scene.bodies;
+  if (bodies[0].fixed)
+    fail_at(section, 0, "fixed", "the first body is the robot, which moves", "false");
+  if (std::all_of(bodies.begin() + 1, bodies.end(), [](const Body& body) { return body.fixed; }))
+    fail_at(section, 1, "fixed", "no object can move", "false for one body besides the robot");
+}
+
+void check_start(const Task& task, const ConfigNode& section) {
+  const std::string arena = number_text(task.push.arena);
+  for (std::size_t i = 0; i < task.scene.size(); ++i) {
+    const Body& body = task.scene.bodies[i];
+    if (body.fixed) continue;
+    if (!in_arena(task.start[i], task.push))
+      fail_at(section, i, "start", "lies outside the arena",
+              "x and y from -" + arena + " to " + arena + " (task.push.arena)");
+    if (bounding_radius(body.shape) > task.push.arena)
+      fail_at(section, i, "shape", "is larger than the arena",
+              "a reach of at most " + arena + " m (task.push.arena)");
+  }
+  if (const auto pair = first_overlap(task.scene, task.start, kStartClearance)) {
+    const auto [a, b] = std::minmax(pair->first, pair->second);
+    const double gap = separation(task.scene.bodies[a].shape, task.start[a],
+                                  task.scene.bodies[b].shape, task.start[b]);
+    fail_at(section, b, "start",
+            (gap < 0.0 ? "overlaps '" : "touches '") + task.scene.bodies[a].name + "'",
+            "bodies at least 0.02 m apart");
+  }
+}
+
+/// The kinds of the objects that can move, and "*".
+std::string legal_kinds(const Task& task) {
+  std::vector<std::string> kinds{"\"*\""};
+  for (std::size_t i = 1; i < task.scene.size(); ++i) {
+    const Body& body = task.scene.bodies[i];
+    if (!body.fixed && std::find(kinds.begin(), kinds.end(), body.kind) == kinds.end())
+      kinds.push_back(body.kind);
+  }
+  return listed(kinds);
+}
+
+void check_term(const Task& task, std::size_t k, const ConfigNode& section) {
+  const GoalTerm& term = task.goal[k];
+  bool concerns_movable = false;
+  for (std::size_t i = 1; i < task.scene.size(); ++i) {
+    const Body& body = task.scene.bodies[i];
+    if (applies_to(term, task, i) && !body.fixed) concerns_movable = true;
+  }
+  const ConfigNode& node = find(section, "goal")->value.items[k];
+  if (concerns_movable) return;
+  const ConfigEntry* kind = find(node, "kind");
+  throw ConfigError(kind ? kind->value.origin : node.origin,
+                    "task.goal." + std::to_string(k) + ".kind",
+                    "no object that can move is of kind '" + term.kind + "'", legal_kinds(task));
+}
+
+void check_goal(const Task& task, const ConfigNode& section) {
+  for (std::size_t k = 0; k < task.goal.size(); ++k) check_term(task, k, section);
+  const std::string& origin = find(section, "goal")->value.origin;
+  for (std::size_t i = 1; i < task.scene.size(); ++i)
+    if (task.scene.bodies[i].fixed && !in_target(task, i, task.start[i].position(), 0.0))
+      throw ConfigError(origin, "task.goal",
+                        "asks fixed body '" + task.scene.bodies[i].name + "' to be elsewhere",
+                        "terms that the fixed bodies of that kind meet");
+  if (succeeded(task, task.start))
+    throw ConfigError(origin, "task.goal", "holds in the start state",
+                      "a goal that the start state does not meet");
+  Rng rng(1);
+  if (!sample_goal(task, rng))
+    throw ConfigError(origin, "task.goal", "no layout of the bodies that meets it was found",
+                      "terms that all objects can meet at once, with 0.05 m to spare");
+}
+
+}  // namespace
+
+void check_task(const Task& task, const ConfigNode& section) {
+  check_names(task, section);
+  check_movable(task, section);
+  check_start(task, section);
+  check_goal(task, section);
+}
+
+}  // namespace rtg
