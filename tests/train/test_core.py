@@ -4,9 +4,10 @@ import ast
 from pathlib import Path
 
 import numpy as np
-from rtg import _core
+from rtg import _core, paths
 
-TASK = _core.gathering()
+CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
+TASK = CONFIG.task
 
 
 def test_the_stub_lists_what_the_module_has() -> None:
@@ -46,7 +47,7 @@ def test_success_is_the_goal_term_drawn_in_pictures() -> None:
 
 
 def test_pushes_of_a_batch_do_not_depend_on_each_other() -> None:
-    simulator = _core.Simulator(TASK)
+    simulator = _core.Simulator(CONFIG)
     rng = np.random.default_rng(1)
     states, actions = np.repeat(TASK.start[None], 64, 0), rng.integers(48, size=64)
     for _ in range(5):
@@ -61,5 +62,5 @@ def test_pushes_of_a_batch_do_not_depend_on_each_other() -> None:
 
 
 def test_arrays_outlive_the_call() -> None:
-    kept = [_core.gathering().start for _ in range(100)]
+    kept = [_core.Config.from_file(paths.CONFIG / "gathering.yaml").task.start for _ in range(100)]
     assert all(np.array_equal(start, TASK.start) for start in kept)

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 import rtg  # noqa: F401  (registers the environments)
 from gymnasium.utils.env_checker import check_env as check_gymnasium
-from rtg import _core
 from rtg.env import PushEnv
 from stable_baselines3.common.env_checker import check_env as check_sb3
 
@@ -85,6 +84,6 @@ def test_wrong_arguments_are_named() -> None:
     with pytest.raises(ValueError, match=r"options \['pose'\]; legal: 'poses', 'jitter'"):
         PushEnv().reset(options={"pose": 1})
     with pytest.raises(ValueError, match="states of 2 bodies; the task has 4"):
-        _core.gathering().observation(np.zeros((1, 2, 3)))
+        PushEnv().task.observation(np.zeros((1, 2, 3)))
     with pytest.raises(ValueError, match="amplitude: legal are 0 to 10 m"):
-        _core.gathering().jittered_start(float("nan"), 0)
+        PushEnv().task.jittered_start(float("nan"), 0)

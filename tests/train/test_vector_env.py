@@ -1,9 +1,10 @@
 import numpy as np
-from rtg import _core
+from rtg import _core, paths
 from rtg.env import PushEnv
 from rtg.vector_env import PushVecEnv
 
-TASK = _core.gathering()
+CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
+TASK = CONFIG.task
 
 
 def steps(env: PushVecEnv, count: int, seed: int = 0) -> list[np.ndarray]:
@@ -16,9 +17,9 @@ def steps(env: PushVecEnv, count: int, seed: int = 0) -> list[np.ndarray]:
 
 
 def test_every_copy_does_what_the_single_environment_does() -> None:
-    many = PushVecEnv(TASK, 3, jitter=0.1, seed=9)
+    many = PushVecEnv(CONFIG, 3, jitter=0.1, seed=9)
     first = many.reset()
-    singles = [PushEnv(TASK) for _ in range(3)]
+    singles = [PushEnv(CONFIG) for _ in range(3)]
     for k, single in enumerate(singles):
         seen, _ = single.reset(options={"poses": TASK.jittered_start(0.1, 9, k)})
         np.testing.assert_array_equal(first[k], seen)
@@ -33,7 +34,7 @@ def test_every_copy_does_what_the_single_environment_does() -> None:
 
 
 def test_a_finished_episode_reports_its_end_and_starts_again() -> None:
-    env = PushVecEnv(TASK, 2, jitter=0.1, seed=9)
+    env = PushVecEnv(CONFIG, 2, jitter=0.1, seed=9)
     env.reset()
     for _ in range(60):
         observation, reward, done, infos = env.step(np.array([36, 36]))
@@ -46,11 +47,11 @@ def test_a_finished_episode_reports_its_end_and_starts_again() -> None:
 
 
 def test_a_restored_environment_goes_on_with_the_same_bits() -> None:
-    env = PushVecEnv(TASK, 4, jitter=0.1, seed=1)
+    env = PushVecEnv(CONFIG, 4, jitter=0.1, seed=1)
     env.reset()
     steps(env, 50)
     state = env.state()
     expected = steps(env, 100, seed=7)
-    other = PushVecEnv(TASK, 4, jitter=0.1, seed=1)
+    other = PushVecEnv(CONFIG, 4, jitter=0.1, seed=1)
     other.restore(state)
     np.testing.assert_array_equal(steps(other, 100, seed=7), expected)

@@ -5,6 +5,8 @@
 namespace rtg {
 
 /// Each adds its part of the module rtg._core.
+void bind_config(nanobind::module_& module);
+void bind_generation(nanobind::module_& module);
 void bind_task(nanobind::module_& module);
 void bind_simulator(nanobind::module_& module);
 

@@ -1,7 +1,7 @@
 #include <nanobind/stl/pair.h>
 
 #include "core/forward/box2d_simulator.hpp"
-#include "core/tasks/task.hpp"
+#include "nodes/common/rtg_config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 
@@ -14,10 +14,10 @@ struct TaskSimulator {
   int headings;
   Box2dSimulator box2d;
 
-  explicit TaskSimulator(const Task& task, const PhysicsConfig& physics = {})
-      : bodies(task.scene.size()),
-        headings(task.push.headings),
-        box2d(task.scene, task.push, physics) {}
+  explicit TaskSimulator(const RtgConfig& config)
+      : bodies(config.task.scene.size()),
+        headings(config.task.push.headings),
+        box2d(config.task.scene, config.task.push, config.physics) {}
 };
 
 void check_actions(const TaskSimulator& simulator, const StateArray& states,
@@ -57,7 +57,7 @@ std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, bool>> push(
 
 void bind_simulator(nb::module_& module) {
   nb::class_<TaskSimulator>(module, "Simulator")
-      .def(nb::init<const Task&>(), nb::arg("task"))
+      .def(nb::init<const RtgConfig&>(), nb::arg("config"))
       .def("push", &push, nb::arg("states"), nb::arg("actions"));
 }
 

@@ -4,7 +4,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include "core/tasks/gathering.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 
@@ -99,8 +98,6 @@ void bind_task(nb::module_& module) {
       .def("observation", &observations, nb::arg("states"))
       .def("succeeded", &successes, nb::arg("states"))
       .def("jittered_start", &start, nb::arg("amplitude"), nb::arg("seed"), nb::arg("index") = 0);
-  module.def("gathering", &gathering);
-  module.def("gathering_hard", &gathering_hard);
 }
 
 }  // namespace rtg

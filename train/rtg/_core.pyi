@@ -1,6 +1,11 @@
-"""The C++ core of RTG: tasks, the true dynamics. Poses are x [m], y [m], θ [rad]."""
+"""The C++ core of RTG: configuration, tasks, the true dynamics, generation.
 
-from collections.abc import Sequence
+Poses are x [m], y [m], θ [rad]; body 0 is the robot.
+"""
+
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,10 +77,31 @@ class Task:
         Raises ValueError if 1000 draws in a row overlap, or for an amplitude beyond [0, 10] m.
         """
 
+class ConfigError(ValueError):
+    """A mistake in the configuration: file:line, the key, what is legal."""
+
+class Config:
+    """Everything that a run is made from, checked."""
+
+    @staticmethod
+    def from_file(file: str | PathLike[str], overrides: Sequence[str] = ()) -> Config:
+        """`overrides`: "section.key=value". Raises ConfigError."""
+    @staticmethod
+    def from_text(text: str, name: str = "text", overrides: Sequence[str] = ()) -> Config:
+        """`name` stands in messages; paths in the text are relative to it. Raises ConfigError."""
+    @property
+    def task(self) -> Task: ...
+    @property
+    def yaml(self) -> str:
+        """The canonical text; reads back to the same."""
+    @property
+    def json(self) -> str:
+        """The same values."""
+
 class Simulator:
     """The true dynamics of a task: Box2D. Holds no state; equal arguments give equal bits."""
 
-    def __init__(self, task: Task) -> None: ...
+    def __init__(self, config: Config) -> None: ...
     def push(
         self, states: NDArray[np.float64], actions: NDArray[np.int64]
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
@@ -85,5 +111,23 @@ class Simulator:
         Raises ValueError for arrays that do not fit the task.
         """
 
-def gathering() -> Task: ...
-def gathering_hard() -> Task: ...
+def generate(
+    config: Config,
+    store: Callable[
+        [
+            NDArray[np.float64],
+            NDArray[np.int32],
+            NDArray[np.float64],
+            NDArray[np.bool_],
+            NDArray[np.int8],
+        ],
+        Any,
+    ],
+    progress: Callable[[dict[str, Any]], Any],
+) -> str:
+    """The whole generation in this process, on config's run.workers threads; the report as JSON.
+
+    store(poses, action, next_poses, success, source) gets the transitions in sequence order,
+    progress({"phase", "layer", "depth", "transitions", "target", "contact_share", "start_region"})
+    is called after each layer. What they raise ends the generation.
+    """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import gymnasium
@@ -9,7 +10,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from rtg import _core
+from rtg import _core, paths
 from rtg.draw import state_image
 
 OBSERVATION_LIMIT = 200.0  # a body 1 km away is 125; nothing gets that far
@@ -23,6 +24,7 @@ def observation_space(task: _core.Task) -> spaces.Box:
 class PushEnv(gymnasium.Env[Any, Any]):
     """Push the bodies of a task into their goal: reward 1 and the end when it holds, else 0.
 
+    `config`: what to take the task and the physics from, or its file; Gathering's if None.
     Action a moves the robot one stride along 2πa/headings. Time runs out after task.horizon
     actions (truncated). `jitter` [m] moves the objects of the start, None: by the task's own
     amount. The seed decides all. `info`: "poses" [bodies, 3], "is_success", and "rejected" for a
@@ -33,16 +35,18 @@ class PushEnv(gymnasium.Env[Any, Any]):
 
     def __init__(
         self,
-        task: _core.Task | None = None,
+        config: _core.Config | str | Path | None = None,
         jitter: float | None = None,
         render_mode: str | None = None,
     ) -> None:
-        self.task = task or _core.gathering()
+        if not isinstance(config, _core.Config):
+            config = _core.Config.from_file(config or paths.CONFIG / "gathering.yaml")
+        self.task = config.task
         self.jitter = self.task.start_jitter if jitter is None else jitter
         self.render_mode = render_mode
         self.observation_space = observation_space(self.task)
         self.action_space = spaces.Discrete(self.task.headings)
-        self._simulator = _core.Simulator(self.task)
+        self._simulator = _core.Simulator(config)
         self._path: list[NDArray[np.float64]] = [self.task.start]  # states of the episode
 
     @property

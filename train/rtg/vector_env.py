@@ -20,11 +20,11 @@ class PushVecEnv(VecEnv):
     Start number k of the whole run is start k of the stream `seed`, whichever environment is next.
     """
 
-    def __init__(self, task: _core.Task, count: int, jitter: float, seed: int) -> None:
+    def __init__(self, config: _core.Config, count: int, jitter: float, seed: int) -> None:
         self.render_mode = None
+        self.task = task = config.task
         super().__init__(count, observation_space(task), spaces.Discrete(task.headings))
-        self.task = task
-        self._simulator = _core.Simulator(task)
+        self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
         self._starts = 0  # drawn so far
         self._poses = np.zeros((count, task.bodies, 3))  # [count, bodies, 3]

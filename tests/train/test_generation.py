@@ -1,0 +1,59 @@
+"""The generation inside of the Python process."""
+
+import json
+
+import numpy as np
+import pytest
+from rtg import _core, paths
+
+FILE = paths.CONFIG / "tests" / "tiny.yaml"
+
+
+def generated(*overrides: str) -> tuple[list[np.ndarray], list[dict], dict]:
+    config = _core.Config.from_file(FILE, overrides)
+    batches, lines = [], []
+    report = _core.generate(config, lambda *columns: batches.append(columns), lines.append)
+    columns = [np.concatenate(parts) for parts in zip(*batches, strict=True)]
+    return columns, lines, json.loads(report)
+
+
+def test_transitions_are_true_and_as_many_as_asked() -> None:
+    (poses, action, after, success, source), lines, report = generated()
+    config = _core.Config.from_file(FILE)
+    assert len(action) == report["transitions"] == 2000
+    replayed, ok = _core.Simulator(config).push(poses, action.astype(np.int64))
+    assert ok.all()
+    np.testing.assert_array_equal(replayed, after)
+    np.testing.assert_array_equal(config.task.succeeded(after), success)
+    assert success.any() and set(source) <= {0, 1, 2}
+    assert lines[-1]["transitions"] == lines[-1]["target"] == 2000
+
+
+def test_the_seed_decides_and_the_number_of_threads_does_not() -> None:
+    first, again = generated("run.workers=1"), generated("run.workers=3")
+    for a, b in zip(first[0], again[0], strict=True):
+        np.testing.assert_array_equal(a, b)
+    other = generated("run.seed=2")
+    assert not np.array_equal(first[0][0], other[0][0])
+
+
+def test_an_exception_of_a_callback_ends_the_generation() -> None:
+    def interrupt(line: dict) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        _core.generate(_core.Config.from_file(FILE), lambda *columns: None, interrupt)
+
+
+def test_mistakes_in_the_configuration_are_value_errors_with_the_place() -> None:
+    with pytest.raises(_core.ConfigError, match=r"tiny.yaml:1: key 'task'"):
+        _core.Config.from_text("search: {}\n", "tiny.yaml")
+    with pytest.raises(ValueError, match=r"--set search.breadth=0: key 'search.breadth'"):
+        _core.Config.from_file(FILE, ["search.breadth=0"])
+
+
+def test_the_canonical_text_reads_back_to_the_same() -> None:
+    config = _core.Config.from_file(FILE, ["run.seed=5"])
+    again = _core.Config.from_text(config.yaml)
+    assert again.yaml == config.yaml and again.json == config.json
+    assert json.loads(again.json)["run"]["seed"] == 5
