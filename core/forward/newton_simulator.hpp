@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "core/energy/step_energy.hpp"
+#include "core/forward/simulator.hpp"
+
+namespace rtg {
+
+/// Quasi-static forward simulation, eq. (5): every sub-step minimises Ψ, the robot on a bounded
+/// servo along the straight path. The model that the reverse simulator inverts; the true dynamics
+/// is Box2dSimulator.
+class NewtonSimulator final : public Simulator {
+ public:
+  /// `scene`: legal shapes only (polygon_defect() empty), bodies[0] movable.
+  NewtonSimulator(Scene scene, const PushConfig& push, const PhysicsConfig& physics);
+
+  /// As Simulator::push. Without inertia everything is at rest after the last sub-step. Not ok:
+  /// `start` has the wrong size, is not finite, overlaps, or a sub-step failed.
+  [[nodiscard]] PushOutcome push(const Poses& start, int action) const override;
+
+  /// As Simulator::settle, for the time of one push.
+  [[nodiscard]] PushOutcome settle(const Poses& start) const override;
+
+ private:
+  PushOutcome follow(const Poses& start, const std::vector<Vector3d>& targets) const;
+
+  Scene scene_;
+  PushConfig push_;
+  int sub_steps_;
+  std::vector<int> order_;  // of the bodies in energy_
+  StepEnergy energy_;
+};
+
+}  // namespace rtg

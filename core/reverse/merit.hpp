@@ -1,0 +1,26 @@
+#pragma once
+
+#include <algorithm>
+
+namespace rtg {
+
+/// l1 merit function M = J + ν ‖C‖₁, eq. (9), exact once ν exceeds every multiplier.
+class Merit {
+ public:
+  /// Keeps ν above ‖y‖∞ with a margin.
+  void raise_weight_above(double multiplier) {
+    weight_ = std::max(weight_, kMargin * multiplier + kLeast);
+  }
+  double weight() const { return weight_; }
+  double value(double objective, double violation) const { return objective + weight_ * violation; }
+  /// Derivative along a Newton step, for which ‖C‖₁ falls at the rate of itself.
+  double slope(double objective_slope, double violation) const {
+    return objective_slope - weight_ * violation;
+  }
+
+ private:
+  static constexpr double kMargin = 1.5, kLeast = 1e-3;
+  double weight_ = kLeast;
+};
+
+}  // namespace rtg

@@ -1,0 +1,82 @@
+#include "core/reverse/pruning.hpp"
+
+#include <algorithm>
+
+#include "core/world/separation.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kOverlap = 0.01;   // of a sweep with a body that still counts as touching [m]
+constexpr double kClearance = 0.1;  // beyond the range, for objects that turn on their way [m]
+
+double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
+  return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
+}
+
+/// Counter-clockwise convex hull [Andrew 1979].
+std::vector<Vector2d> convex_hull(std::vector<Vector2d> points) {
+  std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
+  std::vector<Vector2d> hull;
+  const auto extend = [&hull](const Vector2d& point, std::size_t kept) {
+    while (hull.size() > kept && cross(hull[hull.size() - 2], hull.back(), point) <= 1e-12)
+      hull.pop_back();
+    hull.push_back(point);
+  };
+  for (const Vector2d& point : points) extend(point, 1);
+  const std::size_t lower = hull.size();
+  for (auto point = points.rbegin() + 1; point != points.rend(); ++point) extend(*point, lower);
+  hull.pop_back();
+  return hull;
+}
+
+}  // namespace
+
+Polygon swept(const Polygon& shape, double theta, const Vector2d& by) {
+  std::vector<Vector2d> points = shape.vertices;
+  for (const Vector2d& v : shape.vertices) points.push_back(v + rotate(-theta, by));
+  return {convex_hull(std::move(points))};
+}
+
+bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job) {
+  const Pose& robot = job.end[0];
+  const Vector2d back = -push.stride * direction(job.action, push);
+  if (!in_arena({robot.x + back.x(), robot.y + back.y(), robot.theta}, push)) return true;
+  const Polygon& shape = scene.bodies[0].shape;
+  const Polygon way = swept(shape, robot.theta, back);
+  for (std::size_t k = 1; k < scene.size(); ++k) {
+    const Polygon& other = scene.bodies[k].shape;
+    const double touching = std::min(0.0, separation(shape, robot, other, job.end[k]));
+    if (separation(way, robot, other, job.end[k]) < touching - kOverlap) return true;
+  }
+  return false;
+}
+
+std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, const ReverseJob& job,
+                                 double range) {
+  const Vector2d back = -push.stride * direction(job.action, push);
+  std::vector<int> found{0};
+  std::vector<bool> seen(scene.size(), false);
+  seen[0] = true;
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    const auto i = static_cast<std::size_t>(found[n]);
+    if (scene.bodies[i].fixed) continue;
+    const Polygon way = swept(scene.bodies[i].shape, job.end[i].theta, back);
+    const double reach = i == 0 ? range : range + kClearance;
+    for (std::size_t k = 1; k < scene.size(); ++k) {
+      if (seen[k]) continue;
+      if (separation(way, job.end[i], scene.bodies[k].shape, job.end[k]) >= reach) continue;
+      seen[k] = true;
+      found.push_back(static_cast<int>(k));
+    }
+  }
+  std::sort(found.begin(), found.end());
+  std::stable_partition(found.begin(), found.end(), [&scene](int k) {
+    return !scene.bodies[static_cast<std::size_t>(k)].fixed;
+  });
+  return found;
+}
+
+}  // namespace rtg

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "core/reverse/sqp_result.hpp"
+
+namespace rtg {
+
+/// filter_sqp() from the warm start, with a restoration phase: when it gets stuck, forward
+/// simulations of mixtures between the best feasible trajectory and the stuck one give a better
+/// feasible trajectory to go on from, with a larger proximal term. kInfeasible if there is no warm
+/// start, or if the solution misses the given final state by more than the tolerance.
+SqpResult solve_with_restoration(const ReverseProblem& problem);
+
+}  // namespace rtg

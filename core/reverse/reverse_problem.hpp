@@ -1,0 +1,65 @@
+#pragma once
+
+#include <vector>
+
+#include "core/energy/step_energy.hpp"
+#include "core/reverse/reverse_config.hpp"
+
+namespace rtg {
+
+/// The reverse problem of one candidate, eq. (6) and (7), over the sub-steps k = 1 ... h of a push:
+///
+///   min  Σ_i w_i (x_i, y_i)_0·d + ε Σ_k |c_k|² + Σ b(g(p_0)) + κ_x Σ_k |t₀ - t̄₀|²_k
+///        + κ_θ Σ_k (θ₀ - θ̄₀)²_k + K/2 |p_h - p̄|²
+///   s.t. Φ_k = ∂Ψ/∂p₊(p_k, p_{k-1}, c_k) = 0,   λ_k g(p_k) = μ̃ w(g(p_k)),   g > 0.
+///
+/// p̄ is the given final state, (t̄₀, θ̄₀)_k the straight path of the robot that ends in it.
+///
+/// Departs from the paper: action consistency κ makes the controls those of the discrete action;
+/// the normal forces λ are unknowns (relaxed complementarity), bilinear instead of 1/g; a stiff
+/// spring K holds the final state, so that every forward simulation is feasible. With the preset
+/// `paper` κ = 0, λ = μ̃ w/g throughout, and the final state is fixed.
+struct ReverseProblem {
+  const StepEnergy& energy;
+  const ReverseConfig& config;
+  VectorXd end;        // p̄ [3·bodies]
+  Vector2d direction;  // d(a)
+  int sub_steps = 1;   // h
+
+  bool fixed_end() const { return config.terminal_weight == 0.0; }
+  /// Normal forces follow from the gaps at once instead of being unknowns.
+  bool slaved_forces() const { return config.preset == ReversePreset::kPaper; }
+  /// (t̄₀, θ̄₀) after sub-step k.
+  Vector3d robot_path(int k) const;
+};
+
+/// A trajectory with its forces and multipliers; entry k belongs to the end of sub-step k, entry 0
+/// to the start. controls[0] and multipliers[0] are unused.
+struct Iterate {
+  std::vector<VectorXd> p;            // p_k [3·bodies]
+  std::vector<VectorXd> forces;       // λ_k [contacts]
+  std::vector<Vector3d> controls;     // c_k
+  std::vector<VectorXd> multipliers;  // of Φ_k = 0 [dofs]
+};
+
+/// At rest in the final state: λ = λ(g), c = 0.
+Iterate static_iterate(const ReverseProblem& problem);
+
+/// Whether contact c takes part at level k: in range, or with a force left over.
+bool is_active(const ReverseProblem& problem, const Iterate& x, int level, int contact);
+
+double objective(const ReverseProblem& problem, const Iterate& x);
+
+/// How far the constraints are from holding.
+struct Violation {
+  std::vector<VectorXd> residuals;        // Φ_k [dofs], entry 0 unused
+  std::vector<VectorXd> complementarity;  // λ g - μ̃ w [contacts]
+  double l1() const;
+  double max() const;
+};
+Violation violation(const ReverseProblem& problem, const Iterate& x);
+
+/// Largest distance of a movable body from where it should end [m].
+double terminal_miss(const ReverseProblem& problem, const Iterate& x);
+
+}  // namespace rtg

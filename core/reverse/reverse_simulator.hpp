@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/reverse/reverse_config.hpp"
+#include "core/reverse/reverse_job.hpp"
+#include "core/world/physics_config.hpp"
+#include "core/world/push.hpp"
+#include "core/world/scene.hpp"
+
+namespace rtg {
+
+/// The reverse rigid-body simulator, eq. (6) and (7): from which state does a push lead to a given
+/// one? Const and free of mutable state, so equal jobs give bit-equal results on any thread.
+class ReverseSimulator {
+ public:
+  /// `scene`: legal shapes only (polygon_defect() empty), bodies[0] movable.
+  ReverseSimulator(Scene scene, const PhysicsConfig& physics, const PushConfig& push,
+                   const ReverseConfig& config);
+
+  /// `job.end`: one pose per body, at rest. Bodies that the push cannot reach stay where they are.
+  /// Never throws; kNonFinite also for an end state of the wrong size or with a pose that is not
+  /// finite.
+  [[nodiscard]] ReverseResult solve(const ReverseJob& job) const;
+
+ private:
+  ReverseResult solve_legal(const ReverseJob& job) const;
+
+  Scene scene_;
+  PhysicsConfig physics_;
+  PushConfig push_;
+  ReverseConfig config_;
+};
+
+}  // namespace rtg

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "core/reverse/reverse_problem.hpp"
+#include "core/reverse/solve_status.hpp"
+
+namespace rtg {
+
+/// How an SQP run ended. Unless the status is kConverged, `x` is the last iterate.
+struct SqpResult {
+  SolveStatus status = SolveStatus::kNonFinite;
+  Iterate x;
+  int iterations = 0;          // Newton systems solved
+  double infeasibility = 0.0;  // ‖C‖∞
+  double stationarity = 0.0;   // ‖∇L‖∞
+};
+
+}  // namespace rtg
