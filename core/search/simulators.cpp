@@ -1,21 +1,22 @@
 #include "core/search/simulators.hpp"
 
 #include <memory>
-#include <stdexcept>
 #include <utility>
 
 #include "core/forward/box2d_simulator.hpp"
+#include "core/reverse/reverse_simulator.hpp"
 #include "core/search/naive_reverse.hpp"
 #include "core/search/thread_pool.hpp"
 
 namespace rtg {
 
-SolveOne reverse_solver(const Task& task, const PhysicsConfig&, const ReverseConfig&,
-                        ReverseMode mode) {
-  if (mode == ReverseMode::kRrbs)
-    throw std::invalid_argument("search.reverse: rrbs is not built in; legal: naive");
-  return [naive = std::make_shared<const NaiveReverse>(task.scene, task.push)](
-             const ReverseJob& job) { return naive->solve(job); };
+SolveOne reverse_solver(const Task& task, const PhysicsConfig& physics,
+                        const ReverseConfig& reverse, ReverseMode mode) {
+  if (mode == ReverseMode::kNaive)
+    return [naive = std::make_shared<const NaiveReverse>(task.scene, task.push)](
+               const ReverseJob& job) { return naive->solve(job); };
+  return [rrbs = std::make_shared<const ReverseSimulator>(task.scene, physics, task.push, reverse)](
+             const ReverseJob& job) { return rrbs->solve(job); };
 }
 
 ReplayOne forward_replay(const Task& task, const PhysicsConfig& physics) {

@@ -51,6 +51,9 @@ Options parsed(int argc, char** argv) {
   for (int k = 1; k + 1 < argc; k += 2) {
     const std::string flag = argv[k];
     if (flag == "--seed") options.seed = std::strtoull(argv[k + 1], nullptr, 10);
+    if (flag == "--reverse")
+      options.search.reverse =
+          std::strcmp(argv[k + 1], "rrbs") == 0 ? ReverseMode::kRrbs : ReverseMode::kNaive;
     if (flag == "--threads") options.threads = std::atoi(argv[k + 1]);
     if (flag == "--transitions") options.search.transitions = std::atoi(argv[k + 1]);
     if (flag != "--set" || k + 2 >= argc) continue;

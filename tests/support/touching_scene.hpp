@@ -1,0 +1,42 @@
+#pragma once
+
+#include "core/energy/step_energy.hpp"
+#include "core/math/rng.hpp"
+#include "core/reverse/rollout.hpp"
+#include "core/tasks/gathering.hpp"
+
+namespace rtg::testing {
+
+/// Gathering's robot with two boxes in a row in front of it, the second one turned: after a push to
+/// the right all three rest in contact, face to face and corner to face.
+struct TouchingScene {
+  Task task = gathering();
+  PhysicsConfig physics;
+  Scene scene{{task.scene.bodies[0], task.scene.bodies[1], task.scene.bodies[2]}};
+  StepEnergy energy{scene, physics, task.push};
+  Poses poses{{0.0, 0.0, 0.0}, {1.46, 0.15, 0.05}, {2.95, 0.35, 0.6}};
+
+  /// The reverse problem that ends in these poses.
+  ReverseProblem problem(const ReverseConfig& config) const {
+    return {energy, config, stacked(poses), Vector2d::UnitX(), physics.sub_steps};
+  }
+};
+
+/// Vector of numbers in ±size.
+inline VectorXd noise(Eigen::Index n, double size, Rng& rng) {
+  return VectorXd::NullaryExpr(n, [&] { return rng.uniform(-size, size); });
+}
+
+/// x with random multipliers, and everything else moved at random by ±size.
+inline Iterate disturbed(Iterate x, double size, Rng& rng) {
+  for (std::size_t k = 0; k < x.p.size(); ++k) {
+    x.p[k] += noise(x.p[k].size(), size, rng);
+    for (double& force : x.forces[k])
+      if (force != 0.0) force += rng.uniform(-size, size);
+    x.controls[k] += noise(3, size, rng);
+    x.multipliers[k] = noise(x.multipliers[k].size(), 1.0, rng);
+  }
+  return x;
+}
+
+}  // namespace rtg::testing
