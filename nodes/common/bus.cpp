@@ -4,22 +4,19 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <lcm/lcm-cpp.hpp>
 #include <list>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
+#include "nodes/common/bus_url.hpp"
 #include "nodes/common/content_hash.hpp"
 
 namespace rtg {
 namespace {
 
-constexpr int kReceiveBuffer =
-    4 << 20;                          // [bytes]; the kernel's default of 208 kB loses every burst
 constexpr int kQueueCapacity = 1000;  // messages; LCM's default of 30 drops new ones silently
 constexpr int kMaxPerSpin = 1000;     // a flood must not keep the caller from its own work
 
@@ -50,39 +47,7 @@ void warn_of_small_buffer(const std::string& url) {
                size >> 10, kReceiveBuffer >> 10, kReceiveBuffer);
 }
 
-/// Whether `text` begins with `word`, which is then taken off it.
-bool take(std::string_view& text, std::string_view word) {
-  if (!text.starts_with(word)) return false;
-  text.remove_prefix(word.size());
-  return true;
-}
-
-/// Whether `text` begins with a decimal number in [low, high], which is then taken off it. No
-/// leading zeros: inet_aton() would read them as octal.
-bool take_number(std::string_view& text, int low, int high) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && low <= value && value <= high && take(text, std::to_string(value));
-}
-
 }  // namespace
-
-std::string checked_bus_url(const std::string& url) {
-  if (url == "memq://") return url;
-  std::string_view rest = url;
-  bool legal = take(rest, "udpm://") && take_number(rest, 224, 239);
-  for (int byte = 1; byte < 4; ++byte)
-    legal = legal && take(rest, ".") && take_number(rest, 0, 255);
-  legal = legal && take(rest, ":") && take_number(rest, 1024, 65535);
-  const bool has_ttl = take(rest, "?ttl=");
-  legal = legal && (!has_ttl || take_number(rest, 0, 255)) && rest.empty();
-  if (!legal)
-    throw std::invalid_argument(
-        "bus '" + url +
-        "': legal are memq:// and udpm://GROUP:PORT[?ttl=N] with a multicast "
-        "group 224.x.x.x-239.x.x.x, port 1024-65535, ttl 0-255");
-  return url + (has_ttl ? "&" : "?ttl=0&") + "recv_buf_size=" + std::to_string(kReceiveBuffer);
-}
 
 struct Bus::Connection {
   explicit Connection(const std::string& bus_url) : url(bus_url), lcm(bus_url) {}

@@ -69,8 +69,4 @@ class Bus {
   std::unique_ptr<Connection> connection_;
 };
 
-/// The URL with ttl and receive buffer spelt out; throws std::invalid_argument that says what is
-/// legal.
-std::string checked_bus_url(const std::string& url);
-
 }  // namespace rtg

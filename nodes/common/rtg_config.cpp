@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <fstream>
-#include <sstream>
-#include <system_error>
+#include <iterator>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
+#include "nodes/common/bus_url.hpp"
 #include "nodes/common/config_overrides.hpp"
 #include "nodes/common/content_hash.hpp"
 #include "nodes/common/field_writer.hpp"
@@ -22,12 +23,15 @@ const std::vector<std::string> kSections{"task", "physics", "reverse", "search",
 const std::string kTaskLegal = "a mapping, or the path of a YAML file with one";
 
 std::string read_text(const std::filesystem::path& file, const std::string& origin) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (std::filesystem::is_regular_file(file) && stream && text << stream.rdbuf()) return text.str();
-  const bool exists = std::filesystem::exists(file);
-  throw ConfigError(origin + ": " + (exists ? "cannot be read" : "no such file") +
-                    "; legal: a YAML file with a section 'task'");
+  const char* wrong = "no such file";
+  if (std::filesystem::is_directory(file)) {
+    wrong = "is a folder";
+  } else if (std::ifstream stream(file, std::ios::binary); stream) {
+    return {std::istreambuf_iterator<char>(stream), {}};
+  } else if (std::filesystem::exists(file)) {
+    wrong = "cannot be read";
+  }
+  throw ConfigError(origin + ": " + wrong + "; legal: a YAML file with a section 'task'");
 }
 
 ConfigNode parse_root(const std::string& text, const std::string& name) {
@@ -43,12 +47,12 @@ ConfigNode parse_root(const std::string& text, const std::string& name) {
 void fetch_task(ConfigNode& root, const std::filesystem::path& folder) {
   for (ConfigEntry& entry : root.entries) {
     if (entry.key != "task" || entry.value.kind != Kind::kScalar) continue;
-    const std::string where = entry.value.origin + ": key 'task'";
     const std::filesystem::path file = folder / entry.value.scalar;
-    ConfigNode other = parse_root(read_text(file, where + ": " + file.string()), file.string());
+    const std::string where = entry.value.origin + ": key 'task': " + file.string();
+    const ConfigNode other = parse_root(read_text(file, where), file.string());
     const ConfigEntry* task = find(other, "task");
     if (!task || task->value.kind != Kind::kMap)
-      throw ConfigError(where + ": " + file.string() + " describes no task; legal: " + kTaskLegal);
+      throw ConfigError(where + ": describes no task; legal: " + kTaskLegal);
     entry.value = task->value;
   }
 }
@@ -100,25 +104,12 @@ void check_physics(const ConfigNode& root, const PhysicsConfig& physics) {
 }
 
 void check_bus(const ConfigNode& root, const std::string& url) {
-  if (url.starts_with("udpm://") || url == "memq://") return;
-  throw ConfigError(find(find(root, "run")->value, "bus")->value.origin, "run.bus",
-                    "'" + url + "' is no LCM URL", "udpm://GROUP:PORT?ttl=N, memq://");
-}
-
-RtgConfig read_config(const ConfigNode& root) {
-  const FieldReader reader(root, "", kSections);
-  RtgConfig config;
-  config.task = read_task(reader.required("task", kTaskLegal).value);
-  read_section(root, "physics", config.physics);
-  read_preset_section(root, "reverse", reverse_preset, config.reverse);
-  read_section(root, "search", config.search);
-  read_preset_section(root, "train", train_preset, config.train);
-  read_section(root, "run", config.run);
-  check_physics(root, config.physics);
-  check_bus(root, config.run.bus);
-  if (config.run.workers == 0)
-    config.run.workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  return config;
+  try {
+    checked_bus_url(url);
+  } catch (const std::invalid_argument& error) {
+    throw ConfigError(find(find(root, "run")->value, "bus")->value.origin +
+                      ": key 'run.bus': " + error.what());
+  }
 }
 
 ConfigNode tree_of(const RtgConfig& config) {
@@ -130,6 +121,34 @@ ConfigNode tree_of(const RtgConfig& config) {
   root.entries.push_back({"train", "", fields_of(config.train)});
   root.entries.push_back({"run", "", fields_of(config.run)});
   return root;
+}
+
+/// A key at the root that belongs in a section: `breadth` for `search.breadth`.
+void check_sections(const ConfigNode& root) {
+  const ConfigNode known = tree_of({});
+  for (const ConfigEntry& entry : root.entries)
+    for (const ConfigEntry& section : known.entries)
+      if (!find(known, entry.key) && find(section.value, entry.key))
+        throw ConfigError(entry.origin, entry.key,
+                          "no such section (did you mean '" + section.key + '.' + entry.key + "'?)",
+                          listed(kSections));
+}
+
+RtgConfig read_config(const ConfigNode& root) {
+  check_sections(root);
+  const FieldReader reader(root, "", kSections);
+  RtgConfig config;
+  config.task = read_task(reader.required("task", kTaskLegal).value);
+  read_section(root, "physics", config.physics);
+  read_preset_section(root, "reverse", reverse_preset, config.reverse);
+  read_section(root, "search", config.search);
+  read_preset_section(root, "train", train_preset, config.train);
+  read_section(root, "run", config.run);
+  check_physics(root, config.physics);
+  check_bus(root, config.run.bus);
+  if (config.run.workers == 0)
+    config.run.workers = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 1024);
+  return config;
 }
 
 }  // namespace

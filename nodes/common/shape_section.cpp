@@ -1,5 +1,6 @@
 #include "nodes/common/shape_section.hpp"
 
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -22,14 +23,16 @@ const std::vector<std::string> kShapes{"box", "regular", "vertices"};
 const std::vector<std::string> kRegularKeys{"sides", "radius"};
 const std::string kShapeLegal =
     "{box: [width, height]}, {regular: {sides: 3 to 8, radius: m}} or {vertices: [[x, y], ...]}";
-const std::string kVerticesLegal = "a list of 3 to 8 corners [x, y], counter-clockwise";
+const std::string kVerticesLegal =
+    "a convex polygon of 3 to 8 vertices [x, y], counter-clockwise, within 100 m of its centre";
 
-/// `shape` unless it is none.
+/// `shape` unless it is no legal one.
 Polygon checked(Polygon shape, const std::string& origin, const std::string& path) {
   std::optional<std::string> defect = polygon_defect(shape.vertices);
   if (!defect && bounding_radius(shape) > kMaxRadius)
-    defect = "reaches " + number_text(bounding_radius(shape)) + " m from its centre, at most 100";
-  if (defect) throw ConfigError(origin, path, *defect, kShapeLegal);
+    defect =
+        "reaches " + std::to_string(std::lround(bounding_radius(shape))) + " m from its centre";
+  if (defect) throw ConfigError(origin, path, *defect, kVerticesLegal);
   return shape;
 }
 

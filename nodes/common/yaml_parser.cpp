@@ -96,6 +96,7 @@ class TreeBuilder : public YAML::EventHandler {
     } else if (Level& level = levels_.back(); level.node.kind == ConfigNode::Kind::kList) {
       level.node.items.push_back(std::move(value));
     } else if (level.has_key) {
+      if (value.kind == ConfigNode::Kind::kNull) value.origin = level.key_origin;
       level.node.entries.push_back({level.key, level.key_origin, std::move(value)});
       level.has_key = false;
     } else {
@@ -103,11 +104,23 @@ class TreeBuilder : public YAML::EventHandler {
     }
   }
 
-  static void take_key(Level& level, const ConfigNode& key) {
+  /// The dotted key of the innermost level and a dot; "" at the root.
+  std::string path() const {
+    std::string out;
+    for (std::size_t k = 0; k + 1 < levels_.size(); ++k) {
+      const Level& level = levels_[k];
+      const bool is_list = level.node.kind == ConfigNode::Kind::kList;
+      out += (is_list ? std::to_string(level.node.items.size()) : level.key) + '.';
+    }
+    return out;
+  }
+
+  void take_key(Level& level, const ConfigNode& key) const {
     if (key.kind != ConfigNode::Kind::kScalar)
       throw ConfigError(key.origin + ": " + in_words(key) + " as a key; legal: a word");
     if (const ConfigEntry* first = find(level.node, key.scalar))
-      throw ConfigError(key.origin, key.scalar, "given twice, first at " + first->origin, "once");
+      throw ConfigError(key.origin, path() + key.scalar, "given twice, first at " + first->origin,
+                        "once");
     level.has_key = true;
     level.key = key.scalar;
     level.key_origin = key.origin;
@@ -133,7 +146,7 @@ ConfigNode parse(const std::string& text, const OriginOfLine& origin) {
     return root;
   } catch (const YAML::Exception& error) {
     throw ConfigError(origin(error.mark.line) + ": wrong YAML: " + error.msg +
-                      "; legal: YAML 1.2 with an indentation of spaces");
+                      "; legal: YAML, 'key: value' on each line, indented by spaces");
   }
 }
 

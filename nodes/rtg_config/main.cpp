@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nodes/common/rtg_config.hpp"
+#include "nodes/rtg_config/description.hpp"
 
 namespace {
 
@@ -21,7 +22,9 @@ struct Arguments {
 Arguments parse(const std::vector<std::string>& words) {
   Arguments found;
   for (std::size_t k = 0; k < words.size(); ++k) {
-    if (words[k] == "--set" && k + 1 < words.size())
+    if (words[k] == "--set" && k + 1 == words.size())
+      throw rtg::ConfigError("--set: nothing behind it; legal: --set KEY=VALUE");
+    if (words[k] == "--set")
       found.overrides.push_back(words[++k]);
     else if (words[k] == "--print" || words[k] == "--json" || words[k] == "--check")
       found.mode = words[k];
@@ -37,8 +40,11 @@ Arguments parse(const std::vector<std::string>& words) {
 
 void run(const Arguments& arguments) {
   const rtg::RtgConfig config = rtg::load_config(arguments.file, arguments.overrides);
-  std::cout << (arguments.mode == "--json" ? rtg::config_json(config)
-                                           : rtg::canonical_yaml(config));
+  if (arguments.mode == "--check")
+    std::cout << arguments.file << ": legal\n" << rtg::description(config);
+  else
+    std::cout << (arguments.mode == "--json" ? rtg::config_json(config)
+                                             : rtg::canonical_yaml(config));
 }
 
 }  // namespace

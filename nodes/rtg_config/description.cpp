@@ -1,0 +1,111 @@
+#include "nodes/rtg_config/description.hpp"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+#include "core/world/separation.hpp"
+
+namespace rtg {
+namespace {
+
+[[gnu::format(printf, 1, 2)]] std::string print(const char* format, ...) {
+  char line[400];
+  va_list values;
+  va_start(values, format);
+  std::vsnprintf(line, sizeof line, format, values);
+  va_end(values);
+  return line;
+}
+
+/// Width and height of the smallest upright rectangle around a shape, as it lies at angle 0.
+Vector2d extent(const Polygon& shape) {
+  Vector2d low = shape.vertices[0], high = low;
+  for (const Vector2d& v : shape.vertices) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  return high - low;
+}
+
+std::string shape_in_words(const Polygon& shape) {
+  const Vector2d size = extent(shape);
+  return print("%zu corners, %.2f x %.2f m", shape.size(), size.x(), size.y());
+}
+
+std::string body_line(const Body& body, const Pose& start, std::size_t width) {
+  const std::string mass = body.fixed ? "fixed" : print("%.3g kg", mass_of(body).mass);
+  return print("  %-*s  %-8s  %s  %9s  friction %.2f  at (%.2f, %.2f), %.1f deg\n",
+               static_cast<int>(width), body.name.c_str(), body.kind.c_str(),
+               shape_in_words(body.shape).c_str(), mass.c_str(), body.friction, start.x, start.y,
+               start.theta * 180.0 / std::numbers::pi);
+}
+
+std::string bodies_in_words(const Task& task) {
+  std::size_t width = 0;
+  for (const Body& body : task.scene.bodies) width = std::max(width, body.name.size());
+  std::string out = "bodies, the first is the robot\n";
+  for (std::size_t i = 0; i < task.scene.size(); ++i)
+    out += body_line(task.scene.bodies[i], task.start[i], width);
+  return out;
+}
+
+std::string half_plane_in_words(const Vector2d& normal, double offset) {
+  if (normal.y() == 0.0)
+    return print("x %s %.4g m", normal.x() > 0.0 ? "<=" : ">=", offset * normal.x());
+  if (normal.x() == 0.0)
+    return print("y %s %.4g m", normal.y() > 0.0 ? "<=" : ">=", offset * normal.y());
+  return print("%.4g x %+.4g y <= %.4g m", normal.x(), normal.y(), offset);
+}
+
+std::string term_in_words(const GoalTerm& term) {
+  const std::string who = term.kind == "*" ? "movable object" : "'" + term.kind + "'";
+  const std::string where =
+      term.region == GoalTerm::Region::kDisc
+          ? print("within %.4g m of (%.4g, %.4g)", term.radius, term.centre.x(), term.centre.y())
+          : "at " + half_plane_in_words(term.normal, term.offset);
+  return "  the centre of every " + who + " lies " + where + '\n';
+}
+
+std::string task_in_words(const Task& task) {
+  std::string out = "task " + task.name + "\n" + bodies_in_words(task) + "goal, all of\n";
+  for (const GoalTerm& term : task.goal) out += term_in_words(term);
+  const PushConfig& push = task.push;
+  out += print(
+      "actions\n  %d headings, %.4g degrees apart; a push is %.4g m straight ahead, "
+      "within |x|, |y| <= %.4g m\n",
+      push.headings, 360.0 / push.headings, push.stride, push.arena);
+  out += print("episodes\n  at most %d pushes, discount %.4g, observation of %d numbers\n",
+               task.horizon, task.discount, observation_size(task));
+  out += print("  objects start within %.4g m of the layout above (training: %.4g m)\n",
+               task.start_jitter, task.randomisation);
+  return out;
+}
+
+std::string work_in_words(const RtgConfig& config) {
+  const SearchConfig& search = config.search;
+  const TrainConfig& train = config.train;
+  const RunConfig& run = config.run;
+  std::string out = "work\n";
+  out += print(
+      "  generate %d transitions, reverse steps by %s, trees of %d nodes in at most %d "
+      "layers\n",
+      search.transitions, kReverseModes[static_cast<std::size_t>(search.reverse)].data(),
+      search.breadth, search.depth);
+  out +=
+      print("  train for %d interactions, preset %s, from %d transitions on\n", train.interactions,
+            kTrainPresets[static_cast<std::size_t>(train.preset)].data(), train.start_at);
+  out += print("  seed %d, %d reverse workers, %s\n", run.seed, run.workers,
+               run.in_process ? "all in one process" : ("bus " + run.bus).c_str());
+  return out;
+}
+
+}  // namespace
+
+std::string description(const RtgConfig& config) {
+  return task_in_words(config.task) + work_in_words(config);
+}
+
+}  // namespace rtg

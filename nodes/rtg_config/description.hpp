@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "nodes/common/rtg_config.hpp"
+
+namespace rtg {
+
+/// What a configuration says, for the person who wrote it: bodies with sizes and masses, the goal
+/// in words, actions, episodes, the work of the search and of the learner.
+std::string description(const RtgConfig& config);
+
+}  // namespace rtg

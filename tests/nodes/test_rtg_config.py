@@ -1,0 +1,129 @@
+"""The program rtg_config on wrong input: exact text with place and legal values, exit 2."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+from rtg import paths
+
+TASK = """\
+task:
+  name: two_boxes
+  bodies:
+    - {name: robot, kind: robot, shape: {regular: {sides: 6, radius: 0.8}}, start: [0, -5, 0]}
+    - {name: a, kind: box, shape: {box: [1, 1]}, start: [3, 0, 0]}
+    - {name: b, kind: box, shape: {box: [1, 1]}, start: [-3, 0, 0]}
+  goal:
+    - {kind: box, disc: {centre: [0, 0], radius: 2}}
+  push: {headings: 8}
+search:
+  breadth: 4
+"""
+
+USAGE = "usage: rtg_config FILE [--set KEY=VALUE]... (--print | --json | --check)"
+
+
+def blocks(name: str) -> list[list[str]]:
+    """The blocks of lines of a data file beside this one; # begins a comment."""
+    text = Path(__file__).with_name(name).read_text()
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    return [block.splitlines() for block in "\n".join(lines).strip().split("\n\n")]
+
+
+def spelt(line: str) -> str:
+    return line[2:].replace("\\n", "\n").replace("\\t", "\t")
+
+
+FILES = blocks("wrong_files.txt")
+SETTINGS = blocks("wrong_settings.txt")
+
+
+def rtg_config(*words: str | Path) -> subprocess.CompletedProcess[str]:
+    program = str(paths.program("rtg_config"))
+    return subprocess.run([program, *map(str, words)], capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("config") / "two_boxes.yaml"
+    path.write_text(TASK)
+    return path
+
+
+def test_the_text_behind_the_mistakes_is_legal(file: Path) -> None:
+    done = rtg_config(file, "--check")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("block", FILES, ids=[b[1] for b in FILES])
+def test_a_mistake_in_a_file_is_named_with_its_line(block: list[str], tmp_path: Path) -> None:
+    old, new, message = spelt(block[0]), spelt(block[1]), block[2]
+    old = TASK if old == "*" else old
+    assert TASK.count(old) == 1
+    path = tmp_path / "wrong.yaml"
+    path.write_text(TASK.replace(old, new))
+    done = rtg_config(path, "--check")
+    assert done.stderr == f"{path}:{message}\n".replace("{file}", str(path))
+    assert (done.returncode, done.stdout) == (2, "")
+
+
+@pytest.mark.parametrize(("setting", "message"), SETTINGS, ids=[s for s, _ in SETTINGS])
+def test_a_mistake_in_a_setting_is_named_with_the_flag(
+    setting: str, message: str, file: Path
+) -> None:
+    done = rtg_config(file, "--set", "run.seed=2", "--set", setting, "--print")
+    assert done.stderr == f"--set {setting}: {message}\n"
+    assert (done.returncode, done.stdout) == (2, "")
+
+
+def test_there_are_many_mistakes() -> None:
+    assert len(FILES) + len(SETTINGS) >= 80
+
+
+def test_a_mistake_on_the_command_line_is_named(file: Path, tmp_path: Path) -> None:
+    legal = "legal: a YAML file with a section 'task'"
+    lines = {
+        ("--print",): f"no FILE; {USAGE}",
+        (file,): f"no mode; {USAGE}",
+        (file, "--prnt"): f"--prnt: no such flag; {USAGE}",
+        (file, "--print", "--set"): "--set: nothing behind it; legal: --set KEY=VALUE",
+        (file, file, "--print"): f"{file}: no such flag; {USAGE}",
+        (tmp_path / "none.yaml", "--print"): f"{tmp_path}/none.yaml: no such file; {legal}",
+        (tmp_path, "--print"): f"{tmp_path}: is a folder; {legal}",
+    }
+    for words, line in lines.items():
+        done = rtg_config(*words)
+        assert (done.returncode, done.stdout, done.stderr) == (2, "", line + "\n")
+
+
+def test_a_task_may_lie_in_another_file(file: Path, tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_text(f"task: {file}\nsearch: {{breadth: 7}}\n")
+    done = rtg_config(path, "--print")
+    assert done.returncode == 0
+    assert "name: two_boxes" in done.stdout
+    assert "\n  breadth: 7 " in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("none.yaml", "no such file; legal: a YAML file with a section 'task'"),
+        ("mine.yaml", "describes no task; legal: a mapping, or the path of a YAML file with one"),
+    ],
+)
+def test_a_wrong_path_of_a_task_is_named(name: str, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_text(f"\ntask: {name}\n")
+    done = rtg_config(path, "--print")
+    assert done.returncode == 2
+    assert done.stderr == f"{path}:2: key 'task': {tmp_path}/{name}: {message}\n"
+
+
+def test_check_says_what_it_understood(file: Path) -> None:
+    done = rtg_config(file, "--set", "run.workers=3", "--check")
+    assert done.returncode == 0
+    understood = Path(__file__).with_name("understood.txt").read_text()
+    assert done.stdout == understood.replace("{file}", str(file))
