@@ -32,5 +32,5 @@ def test_python_types_hold() -> None:
 
 
 def test_shell_scripts_parse() -> None:
-    for script in ("run.sh", "test.sh", "setup.sh", ".ci/run"):
+    for script in ("run.sh", "test.sh", "setup.sh", ".ci/run", "tests/support/private_network.sh"):
         check("bash", "-n", script)

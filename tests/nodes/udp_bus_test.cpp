@@ -1,0 +1,59 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "nodes/common/bus.hpp"
+
+namespace rtg {
+namespace {
+
+using namespace std::chrono_literals;
+using rtg_msgs::stream_tail_t;
+
+const std::string kUrl = "udpm://239.255.76.67:7667";
+
+/// Runs in tests/support/private_network.sh alone: the machine's own network is none of our
+/// business.
+class UdpBus : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(std::getenv("RTG_PRIVATE_NETWORK")) << "see rtg_network_test()";
+  }
+};
+
+TEST_F(UdpBus, DeliversToAnotherBusOfTheRun) {
+  Bus sender(kUrl, "test");
+  Bus receiver(kUrl, "test");
+  Bus stranger(kUrl, "other");
+  std::vector<std::int64_t> counts;
+  const auto handler = [&](const stream_tail_t& tail) { counts.push_back(tail.count); };
+  receiver.subscribe<stream_tail_t>("TAIL", handler);
+  stranger.subscribe<stream_tail_t>("TAIL", [](const stream_tail_t&) { FAIL(); });
+  for (const int n : {1, 2, 3}) {
+    stream_tail_t tail{};
+    tail.count = n;
+    sender.publish("TAIL", tail);
+  }
+  while (counts.size() < 3 && receiver.spin(10s) > 0) {
+  }
+  EXPECT_EQ(counts, (std::vector<std::int64_t>{1, 2, 3}));
+  for (int heard = 0, n = 1; heard < 3 && n > 0; heard += n) n = stranger.spin(10s);
+  EXPECT_EQ(stranger.counters().all(), (std::map<std::string, long>{{"bus.foreign_run", 3}}));
+}
+
+TEST_F(UdpBus, ANetworkThatSwallowsEverythingIsAnErrorThatSaysWhatToDo) {
+  Bus bus(kUrl, "test");
+  ASSERT_EQ(std::system("tc qdisc add dev lo root bfifo limit 1"), 0);
+  try {
+    bus.subscribe<stream_tail_t>("TAIL", [](const stream_tail_t&) {});
+    ADD_FAILURE() << "was accepted";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "bus: messages sent do not come back; is multicast enabled on this machine? "
+                 "(ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo)");
+  }
+  ASSERT_EQ(std::system("tc qdisc del dev lo root"), 0);
+}
+
+}  // namespace
+}  // namespace rtg
