@@ -39,6 +39,8 @@ struct TrainConfig {
   int eval_every = 10000;     // interactions
   int eval_episodes = 100;
   int checkpoint_every = 20000;   // interactions
+  double stop_at_success = 0.0;   // end early at this success rate; 0: use all interactions
+  int stop_evaluations = 3;       // ... of so many evaluations in a row
   bool reduced_precision = true;  // inner layers in bfloat16 where the processor has it
 
   template <class Visitor>
@@ -73,6 +75,9 @@ struct TrainConfig {
     v.integer("eval_every", eval_every, 1, kMany, "interactions between evaluations");
     v.integer("eval_episodes", eval_episodes, 1, 100000, "held-out starts of an evaluation");
     v.integer("checkpoint_every", checkpoint_every, 1, kMany, "interactions between checkpoints");
+    v.number("stop_at_success", stop_at_success, 0.0, 1.0, "success that ends training; 0: none");
+    v.integer("stop_evaluations", stop_evaluations, 1, 100000,
+              "... in so many evaluations in a row");
     v.flag("reduced_precision", reduced_precision, "inner layers in bfloat16 where it is fast");
   }
 };

@@ -144,6 +144,7 @@ def test_restored_buffer_continues_with_the_same_samples() -> None:
         add_online(replay, float(tag))
     replay.sample(16)
     other = buffer(seed=99)
+    other.add_offline(random_transitions(70))
     other.restore(replay.state())
     for tag in range(3):
         for one in (replay, other):
@@ -156,6 +157,16 @@ def test_restored_buffer_continues_with_the_same_samples() -> None:
 def test_state_holds_only_what_is_filled() -> None:
     replay = buffer(capacity=1_000_000)
     replay.add_offline(random_transitions(7))
-    state = replay.state()
-    assert state["offline"]["observation"].shape == (7, SIZE)
-    assert state["online"]["observation"].shape == (0, SIZE)
+    add_online(replay, 1.0)
+    assert replay.state()["online"]["observation"].shape == (1, SIZE)
+
+
+def test_a_push_that_the_simulator_gave_up_is_not_stored() -> None:
+    replay = buffer(n_envs=2, discount=0.5)
+    rows = np.array([[1.0], [2.0]], np.float32) * np.ones(SIZE, np.float32)
+    done = np.array([False, True])
+    infos = [{}, {"rejected": True, "TimeLimit.truncated": True}]
+    replay.add(rows, rows, np.array([1, 2]), np.zeros(2, np.float32), done, infos)
+    assert replay.online.count == 1 and replay.online.action[0] == 1
+    replay.add(rows, rows, np.array([3, 4]), np.ones(2, np.float32), done | True, [{}, {}])
+    np.testing.assert_array_equal(replay.online.bound[:3], [0.5, 1.0, 1.0])

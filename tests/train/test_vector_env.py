@@ -40,7 +40,11 @@ def test_a_finished_episode_reports_its_end_and_starts_again() -> None:
         observation, reward, done, infos = env.step(np.array([36, 36]))
     assert done.all() and not reward.any()
     for k, info in enumerate(infos):
-        assert info["TimeLimit.truncated"] and info["length"] == 60 and not info["is_success"]
+        assert (
+            info["TimeLimit.truncated"]
+            and info["episode"] == {"r": 0.0, "l": 60}
+            and not info["is_success"]
+        )
         start = TASK.observation(TASK.jittered_start(0.1, 9, 2 + k)[None])[0]
         np.testing.assert_array_equal(observation[k], start)
         assert not np.array_equal(info["terminal_observation"], observation[k])

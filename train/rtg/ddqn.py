@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from typing import Any
 
 import numpy as np
@@ -103,7 +104,8 @@ class DoubleDqn(DQN):
         loss.backward()
         th.nn.utils.clip_grad_norm_(self.q_net.parameters(), MAX_GRADIENT_NORM)
         self.policy.optimizer.step()
-        self.statistics.note(batch, q.detach(), y, value)
+        raw = td_targets(batch, value, self.gamma, clip=False)
+        self.statistics.note(batch, q.detach(), y, raw)
 
     def _on_step(self) -> None:
         self.update_exploration()
@@ -147,6 +149,50 @@ class DoubleDqn(DQN):
             q: Array = self.q_net(th.from_numpy(np.ascontiguousarray(observation))).numpy()
         return q
 
+    def state(self) -> dict[str, Any]:
+        """Everything that learning goes on from, but the replay buffer and the environments."""
+        return {
+            "q_net": self.q_net.state_dict(),
+            "q_net_target": self.q_net_target.state_dict(),
+            "optimizer": self.policy.optimizer.state_dict(),
+            "explorer": self.explorer.bit_generator.state,
+            "statistics": self.statistics.state(),
+            "interactions": self.num_timesteps,
+            "gradient_steps": self._n_updates,
+            "episodes": self._episode_num,
+            "observation": self._last_obs,  # None before the first interaction
+            "recent_success": list(self.ep_success_buffer or ()),
+            "recent_episodes": list(self.ep_info_buffer or ()),
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        self.q_net.load_state_dict(state["q_net"])
+        self.q_net_target.load_state_dict(state["q_net_target"])
+        self.policy.optimizer.load_state_dict(state["optimizer"])
+        self.explorer.bit_generator.state = state["explorer"]
+        self.statistics.restore(state["statistics"])
+        self.num_timesteps = state["interactions"]
+        self._n_updates = state["gradient_steps"]
+        self._episode_num = state["episodes"]
+        if state["observation"] is not None:
+            self._last_obs = np.asarray(state["observation"]).copy()
+        self.ep_success_buffer = deque(state["recent_success"], maxlen=self._stats_window_size)
+        self.ep_info_buffer = deque(state["recent_episodes"], maxlen=self._stats_window_size)
+        self.update_exploration()
+
+    def recent_episodes(self) -> dict[str, float]:
+        """Success and mean length of the last 100 training episodes; empty before the first."""
+        if not self.ep_success_buffer or not self.ep_info_buffer:
+            return {}
+        return {
+            "rollout_success": float(np.mean(self.ep_success_buffer)),
+            "rollout_length_mean": float(np.mean([one["l"] for one in self.ep_info_buffer])),
+        }
+
+    @property
+    def gradient_steps_done(self) -> int:
+        return self._n_updates
+
 
 class Statistics:
     """Running means over the gradient steps since the last row of the log."""
@@ -156,9 +202,9 @@ class Statistics:
         self._counts: dict[str, float] = {}
         self._peaks: dict[str, float] = {}
 
-    def note(self, batch: Batch, q: th.Tensor, y: th.Tensor, value: th.Tensor) -> None:
+    def note(self, batch: Batch, q: th.Tensor, y: th.Tensor, raw: th.Tensor) -> None:
+        """Q(s, a), its target, and the same before clipping. [B, 1] each"""
         error = q - y
-        raw = batch.rewards + (1.0 - batch.terminated) * value
         self._add("td_error", float(error.square().mean().sqrt()))
         self._add("clipped_share", float(((raw < 0.0) | (raw > 1.0)).float().mean()))
         self._add("bound_share", float((y <= batch.bounds).float().mean()))
@@ -171,6 +217,13 @@ class Statistics:
     def _add(self, name: str, value: float) -> None:
         self._sums[name] = self._sums.get(name, 0.0) + value
         self._counts[name] = self._counts.get(name, 0.0) + 1.0
+
+    def state(self) -> dict[str, dict[str, float]]:
+        return {"sums": self._sums, "counts": self._counts, "peaks": self._peaks}
+
+    def restore(self, state: dict[str, dict[str, float]]) -> None:
+        self._sums, self._counts = dict(state["sums"]), dict(state["counts"])
+        self._peaks = dict(state["peaks"])
 
     def take(self) -> dict[str, float]:
         """The means and peaks so far; starts afresh."""

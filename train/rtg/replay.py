@@ -79,7 +79,7 @@ class Store:
         self.count = len(state["action"])
         self.head = state["head"]
         for name in self.columns:
-            setattr(self, name, np.array(state[name]))
+            setattr(self, name, np.asarray(state[name]).copy())
 
 
 class MixedReplayBuffer(BaseBuffer):
@@ -140,20 +140,24 @@ class MixedReplayBuffer(BaseBuffer):
     def add(
         self, obs: Array, next_obs: Array, action: Array, reward: Array, done: Array, infos: Infos
     ) -> None:
-        """SB3's call: one row per environment; `done` with a time-out keeps the bootstrap."""
+        """SB3's call: one row per environment; `done` with a time-out keeps the bootstrap.
+
+        A push that the simulator gave up is no transition; its row is left out.
+        """
         timeout = np.array([info.get("TimeLimit.truncated", False) for info in infos])
+        kept = np.flatnonzero([not info.get("rejected", False) for info in infos])
         rows = self.online.append(
-            observation=obs,
-            next_observation=next_obs,
-            action=action.reshape(-1),
-            reward=reward,
-            terminated=np.asarray(done) & ~timeout,
-            bound=reward,
+            observation=obs[kept],
+            next_observation=next_obs[kept],
+            action=action.reshape(-1)[kept],
+            reward=reward[kept],
+            terminated=(np.asarray(done) & ~timeout)[kept],
+            bound=reward[kept],
         )
-        for env, row in enumerate(rows):
+        for env, row in zip(kept, rows, strict=True):
             self._episodes[env].append(int(row))
-            if done[env]:
-                self._close_episode(env, success=bool(reward[env] > 0))
+        for env in np.flatnonzero(done):
+            self._close_episode(int(env), success=bool(reward[env] > 0))
 
     def _close_episode(self, env: int, success: bool) -> None:
         rows = np.array(self._episodes[env][-self.online.capacity :])
@@ -197,16 +201,17 @@ class MixedReplayBuffer(BaseBuffer):
         raise NotImplementedError("rows belong to two stores; use sample()")
 
     def state(self) -> dict[str, Any]:
-        """Everything that sampling depends on; restore() continues with the same bits."""
+        """What sampling depends on besides the offline transitions, which have a file of their own.
+
+        restore() continues with the same bits once those are back, their bounds refreshed alike.
+        """
         return {
-            "offline": self.offline.state(),
             "online": self.online.state(),
             "rng": self.rng.bit_generator.state,
             "episodes": [list(rows) for rows in self._episodes],
         }
 
     def restore(self, state: dict[str, Any]) -> None:
-        self.offline.restore(state["offline"])
         self.online.restore(state["online"])
         self.rng.bit_generator.state = state["rng"]
         self._episodes = [list(rows) for rows in state["episodes"]]

@@ -37,9 +37,11 @@ class TrainSettings:
     eval_every: int = 10_000
     eval_episodes: int = 100
     checkpoint_every: int = 20_000
+    stop_at_success: float = 0.0
+    stop_evaluations: int = 3
     reduced_precision: bool = True
 
     @classmethod
     def from_config(cls, section: dict[str, Any]) -> TrainSettings:
-        """From the `train` section of rtg._core.Config.json; KeyError if a field is absent."""
+        """From the `train` section of the configuration as JSON; KeyError if a field is absent."""
         return cls(**{field.name: section[field.name] for field in dataclasses.fields(cls)})

@@ -27,6 +27,7 @@ class PushVecEnv(VecEnv):
         self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
         self._starts = 0  # drawn so far
+        self.successes = 0  # episodes that ended in one
         self._poses = np.zeros((count, task.bodies, 3))  # [count, bodies, 3]
         self._steps = np.zeros(count, np.int64)  # actions in the running episodes
         self._actions = np.zeros(count, np.int64)
@@ -44,6 +45,7 @@ class PushVecEnv(VecEnv):
         after[~ok] = self._poses[~ok]
         self._poses, self._steps = after, self._steps + 1
         success = self.task.succeeded(after) & ok
+        self.successes += int(success.sum())
         timeout = ~success & ((self._steps >= self.task.horizon) | ~ok)
         observation = self.task.observation(after)
         infos: list[dict[str, Any]] = [
@@ -55,7 +57,7 @@ class PushVecEnv(VecEnv):
             for env in map(int, np.flatnonzero(done)):
                 infos[env]["terminal_observation"] = observation[env]
                 infos[env]["is_success"] = bool(success[env])
-                infos[env]["length"] = int(self._steps[env])
+                infos[env]["episode"] = {"r": float(success[env]), "l": int(self._steps[env])}
                 self._begin(env)
             observation = self.task.observation(self._poses)
         return observation, success.astype(np.float32), done, infos
@@ -67,12 +69,18 @@ class PushVecEnv(VecEnv):
 
     def state(self) -> dict[str, Any]:
         """Everything that the next steps depend on."""
-        return {"poses": self._poses.copy(), "steps": self._steps.copy(), "starts": self._starts}
+        return {
+            "poses": self._poses.copy(),
+            "steps": self._steps.copy(),
+            "starts": self._starts,
+            "successes": self.successes,
+        }
 
     def restore(self, state: dict[str, Any]) -> None:
-        self._poses = np.array(state["poses"])
-        self._steps = np.array(state["steps"])
-        self._starts = int(state["starts"])
+        self._poses = np.asarray(state["poses"]).copy()
+        self._steps = np.asarray(state["steps"]).copy()
+        self._starts = state["starts"]
+        self.successes = state["successes"]
 
     # What SB3 asks of a VecEnv beyond that.
 

@@ -1,0 +1,265 @@
+"""The trainer on a small set of true transitions: what it leaves; resuming changes nothing."""
+
+import csv
+import json
+import os
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch as th
+from rtg import _core, checkpoint, dataset, paths, policy_file, trainer
+from rtg.errors import RunError, UserError
+from rtg.evaluation import HELD_OUT, evaluate, held_out_starts
+from rtg.offline_data import FileSource, OfflineData, with_observations
+from rtg.training import Training
+from rtg.training_log import COLUMNS, TrainingLog
+from rtg.transition_stream import Rows
+
+TINY = paths.CONFIG / "tests" / "tiny.yaml"
+WORK = ("train.interactions=240", "train.eval_every=80", "train.checkpoint_every=100")
+
+
+@pytest.fixture(scope="module")
+def rows() -> Rows:
+    """2,000 transitions of a generation."""
+    parts: list[Rows] = []
+
+    def store(poses, action, after, success, source) -> None:
+        parts.append(Rows(poses, action, after, success.astype(np.float32), success, source))
+
+    _core.generate(_core.Config.from_file(TINY), store, lambda line: None)
+    return Rows(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+
+
+def run_folder(path: Path, rows: Rows | None, *overrides: str) -> Path:
+    path.mkdir()
+    config = _core.Config.from_file(TINY, [*WORK, *overrides])
+    (path / "config.yaml").write_text(config.yaml)
+    if rows is not None:
+        dataset.write(path / "transitions.npz", with_observations(config.task, rows))
+    return path
+
+
+def training(folder: Path) -> Training:
+    return Training(_core.Config.from_file(folder / "config.yaml"), folder)
+
+
+class Stream:
+    """Hands `rows` over in pieces, one per poll, as the stream of a run does."""
+
+    lost = 0
+
+    def __init__(self, rows: Rows, data: OfflineData, piece: int) -> None:
+        self.rows, self.data, self.piece, self.at = rows, data, piece, 0
+
+    @property
+    def complete(self) -> bool:
+        return self.at >= len(self.rows.action)
+
+    def poll(self, timeout: float) -> int:
+        begin, self.at = self.at, min(self.at + self.piece, len(self.rows.action))
+        self.data.take(Rows(*(column[begin : self.at] for column in self.rows)))
+        return self.at - begin
+
+
+def after_polls(count: int) -> Callable[[], bool]:
+    """False `count` times."""
+    left = iter(range(count))
+    return lambda: next(left, None) is None
+
+
+def flat(value: object) -> list[object]:
+    """Every leaf of a checkpoint, wall time left out."""
+    if isinstance(value, dict):
+        return [leaf for key in value if key != "wall_s" for leaf in [key, *flat(value[key])]]
+    if isinstance(value, list):
+        return [leaf for part in value for leaf in flat(part)]
+    return [value.numpy().tobytes() if isinstance(value, th.Tensor) else value]
+
+
+def test_a_run_leaves_its_files(tmp_path: Path, rows: Rows) -> None:
+    folder = run_folder(tmp_path / "run", rows)
+    assert trainer.main([str(folder), "--no-stream"]) == 0
+    with (folder / "progress.csv").open() as file:
+        table = list(csv.DictReader(file))
+    assert [row["interactions"] for row in table] == ["80", "160", "240"]
+    assert set(table[0]) == set(COLUMNS)
+    assert all(table[-1][name] != "" for name in COLUMNS)
+    result = json.loads((folder / "training.json").read_text())
+    assert result["interactions"] == 240 and result["lost_transitions"] == 0
+    assert {"success_rate", "episode_length_mean", "episode_return_mean"} <= set(result)
+    assert result["train_wall_s"] > 0
+    state = json.loads((folder / "training_state.json").read_text())
+    assert state["done"] and (state["interactions"], state["budget"]) == (240, 240)
+    with np.load(folder / "best_episode.npz") as best:
+        assert best["poses"].shape[1:] == (4, 3)
+
+
+def test_the_model_file_holds_the_policy(tmp_path: Path, rows: Rows) -> None:
+    folder = run_folder(tmp_path / "run", rows)
+    one = training(folder)
+    source = FileSource(folder / "transitions.npz", one.task, one.data)
+    assert one.run(source, lambda: False, record=False)
+    one.finish(lost=0)
+    policy = policy_file.read(folder / "model.pt", one.task)
+    np.testing.assert_array_equal(
+        policy(rows_seen := one.data.all().observation), one.model.greedy(rows_seen)
+    )
+
+
+@pytest.mark.parametrize("cut", [1, 17, 41, 55])
+def test_a_resumed_run_ends_with_the_same_bits(tmp_path: Path, rows: Rows, cut: int) -> None:
+    """Cut off while waiting, between events and after an evaluation; transitions still come in."""
+    ends = []
+    for name, cuts in (("whole", []), ("cut", [cut, 7])):
+        folder = run_folder(tmp_path / name, None)
+        for stop in [*map(after_polls, cuts), lambda: False]:
+            one = training(folder)
+            if one.has_checkpoint():
+                one.restore()
+            # As the coordinator's stream, from the first row; what is known already comes at once.
+            source = Stream(rows, one.data, piece=60)
+            while source.at < one.data.count:
+                source.poll(0.0)
+            finished = one.run(source, stop, record=True)
+        assert finished
+        ends.append(flat(checkpoint.read(folder / "checkpoint" / "state.pt")))
+        assert not (folder / "checkpoint" / "transitions.npz").exists()
+    assert len(ends[0]) > 50 and ends[0] == ends[1]
+    files = [(tmp_path / name / "transitions.npz").read_bytes() for name in ("whole", "cut")]
+    assert files[0] == files[1]
+
+
+def test_transitions_file_holds_the_stream_in_order(tmp_path: Path, rows: Rows) -> None:
+    folder = run_folder(tmp_path / "run", None, "train.interactions=4")
+    one = training(folder)
+    assert one.run(Stream(rows, one.data, piece=333), lambda: False, record=True)
+    written = dataset.read(folder / "transitions.npz")
+    for name in Rows._fields:
+        np.testing.assert_array_equal(getattr(written, name), getattr(rows, name))
+    np.testing.assert_array_equal(written.observation, one.task.observation(rows.poses))
+    np.testing.assert_array_equal(written.next_observation, one.task.observation(rows.next_poses))
+
+
+def test_learning_begins_before_all_transitions_are_in(tmp_path: Path, rows: Rows) -> None:
+    folder = run_folder(tmp_path / "run", None, "train.start_at=500")
+    one = training(folder)
+    seen = []
+    stream = Stream(rows, one.data, piece=50)
+    learn = one.model.learn
+    one.model.learn = lambda *a, **k: seen.append(one.data.count) or learn(*a, **k)
+    assert one.run(stream, lambda: False, record=True)
+    assert seen[0] == 550 and seen[-1] == 2000 and len(set(seen)) > 20
+
+
+def test_learning_stops_early_at_lasting_success(tmp_path: Path, rows: Rows) -> None:
+    wanted = ("train.stop_at_success=0.5", "train.stop_evaluations=2", "train.eval_every=20")
+    folder = run_folder(tmp_path / "run", rows, *wanted)
+    one = training(folder)
+    successes = iter([True, False, True, True, False])
+    found = one.evaluate()
+    one.evaluate = lambda: found._replace(success=np.full(2, next(successes)))
+    source = FileSource(folder / "transitions.npz", one.task, one.data)
+    assert one.run(source, lambda: False, record=False)
+    assert one.interactions == 80
+
+
+def test_another_stream_is_not_mixed_with_the_checkpoint(tmp_path: Path, rows: Rows) -> None:
+    folder = run_folder(tmp_path / "run", None)
+    one = training(folder)
+    one.run(Stream(rows, one.data, piece=60), after_polls(5), record=True)
+    other = training(folder)
+    other.restore()
+    changed = rows._replace(action=(rows.action + 1) % 48)
+    with pytest.raises(RunError, match="not those that the checkpoint was made with"):
+        other.run(Stream(changed, other.data, piece=60), lambda: False, record=True)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_leaves_a_checkpoint_to_go_on_from(
+    tmp_path: Path, rows: Rows, number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = run_folder(tmp_path / "run", rows)
+    add = TrainingLog.add
+
+    def interrupted(log: TrainingLog, row: dict) -> None:
+        add(log, row)
+        os.kill(os.getpid(), number)
+
+    monkeypatch.setattr(TrainingLog, "add", interrupted)
+    handlers = signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)
+    assert trainer.main([str(folder), "--no-stream"]) == 128 + number
+    assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)) == handlers
+    assert not (folder / "training.json").exists()
+    monkeypatch.setattr(TrainingLog, "add", add)
+    assert trainer.main([str(folder), "--no-stream", "--resume"]) == 0
+    result = json.loads((folder / "training.json").read_text())
+    assert result["interactions"] == 240
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("run.seed=9", "made with seed = 1; this run has 9"),
+        ("train.dueling=false", "made with dueling = True; this run has False"),
+    ],
+)
+def test_a_checkpoint_of_another_run_is_refused(
+    tmp_path: Path, rows: Rows, override: str, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = run_folder(tmp_path / "run", rows)
+    assert trainer.main([str(folder), "--no-stream"]) == 0
+    other = _core.Config.from_file(folder / "config.yaml", [override])
+    (folder / "config.yaml").write_text(other.yaml)
+    assert trainer.main([str(folder), "--no-stream", "--resume"]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_files_that_are_no_checkpoints_are_refused(tmp_path: Path) -> None:
+    for content in (b"", b"no", b"\x80\x04\x95"):
+        (tmp_path / "state.pt").write_bytes(content)
+        with pytest.raises(UserError, match="not a checkpoint of ours"):
+            checkpoint.read(tmp_path / "state.pt")
+    with pytest.raises(UserError, match="no such checkpoint"):
+        checkpoint.read(tmp_path / "absent.pt")
+
+
+def test_missing_files_are_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert trainer.main([str(tmp_path / "absent")]) == 2
+    folder = run_folder(tmp_path / "run", None)
+    assert trainer.main([str(folder), "--no-stream"]) == 2
+    assert "transitions.npz" in capsys.readouterr().err
+
+
+def test_held_out_starts_are_legal_distinct_and_no_training_starts() -> None:
+    task = _core.Config.from_file(TINY).task
+    starts = held_out_starts(task, 50)
+    assert len(np.unique(starts[:, 1, 0])) == 50
+    assert np.abs(starts - task.start).max() <= task.start_jitter + 1e-6
+    assert HELD_OUT > 2**31 - 1  # the largest legal run.seed
+
+
+def test_evaluation_agrees_with_single_episodes() -> None:
+    config = _core.Config.from_file(TINY)
+    starts = held_out_starts(config.task, 3)
+    starts[1] = [[-4.5, 0.0, 0.0], [-2.9, 0.0, 0.0], [1.2, 0.7, 0.0], [1.2, -0.7, 0.0]]
+    found = evaluate(config, lambda seen: np.zeros(len(seen), int), starts, discount=0.9)
+    assert found.success.tolist() == [False, True, False]
+    assert found.length.tolist() == [60, 1, 60]
+    assert found.discounted.tolist() == [0.0, 1.0, 0.0]
+    assert found.best() == 1
+    assert [len(path) for path in found.paths] == [61, 2, 61]
+    simulator = _core.Simulator(config)
+    for path in found.paths:
+        after, _ = simulator.push(path[:-1], np.zeros(len(path) - 1, np.int64))
+        np.testing.assert_array_equal(after, path[1:])
+    assert found.summary()["success_rate"] == pytest.approx(1 / 3)
+
+
+def test_empty_transition_set_has_the_right_shapes() -> None:
+    config = _core.Config.from_file(TINY)
+    empty = OfflineData(config.task, buffer=None).all()
+    assert empty.poses.shape == (0, 4, 3) and empty.observation.shape == (0, 20)

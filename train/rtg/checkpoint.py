@@ -1,0 +1,47 @@
+"""Checkpoints: nested dictionaries of tensors, arrays and plain values in one file."""
+
+from __future__ import annotations
+
+import os
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch as th
+
+from rtg.errors import UserError
+
+
+def write(path: Path, state: dict[str, Any]) -> None:
+    """Replaces the file at once or not at all, also if the machine goes down."""
+    draft = path.with_name(path.name + ".part")
+    with draft.open("wb") as file:
+        th.save(_portable(state), file)
+        file.flush()
+        os.fsync(file.fileno())
+    os.replace(draft, path)
+
+
+def read(path: Path) -> dict[str, Any]:
+    """What write() wrote, arrays as tensors. Runs no code of the file's. Raises UserError."""
+    try:
+        state = th.load(path, map_location="cpu", weights_only=True)
+    except FileNotFoundError:
+        raise UserError(f"{path}: no such checkpoint") from None
+    except (RuntimeError, pickle.UnpicklingError, EOFError, ValueError, OSError) as error:
+        raise UserError(f"{path}: not a checkpoint of ours ({error})") from error
+    if not isinstance(state, dict):
+        raise UserError(f"{path}: not a checkpoint of ours (holds a {type(state).__name__})")
+    return state
+
+
+def _portable(value: Any) -> Any:
+    """With arrays as tensors and numpy's numbers as Python's."""
+    if isinstance(value, dict):
+        return {key: _portable(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_portable(part) for part in value]
+    if isinstance(value, np.ndarray):
+        return th.from_numpy(np.ascontiguousarray(value))
+    return value.item() if isinstance(value, np.generic) else value

@@ -1,0 +1,66 @@
+"""A trained policy in a file: the weights of the value network and what they fit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch as th
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from rtg import _core, checkpoint
+from rtg.env import observation_space
+from rtg.errors import UserError
+from rtg.evaluation import Policy
+from rtg.networks import ValuePolicy
+from rtg.settings import TrainSettings
+
+
+def identity(task: _core.Task, settings: TrainSettings) -> dict[str, Any]:
+    """What weights fit."""
+    return {
+        "observation_size": task.observation_size,
+        "headings": task.headings,
+        "dueling": settings.dueling,
+        "layer_norm": settings.layer_norm,
+    }
+
+
+def check_identity(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> None:
+    """Raises UserError, naming what differs."""
+    for name, value in wanted.items():
+        if found.get(name) != value:
+            raise UserError(f"{path}: made with {name} = {found.get(name)}; this run has {value}")
+
+
+def write(path: Path, task: _core.Task, settings: TrainSettings, weights: dict[str, Any]) -> None:
+    """`weights`: state_dict of the value network."""
+    checkpoint.write(path, {"identity": identity(task, settings), "weights": weights})
+
+
+def read(path: Path, task: _core.Task) -> Policy:
+    """The greedy policy, [N, observation] -> [N] actions. Raises UserError if it does not fit."""
+    state = checkpoint.read(path)
+    found = state.get("identity", {})
+    wanted = {"observation_size": task.observation_size, "headings": task.headings}
+    check_identity(path, found, wanted)
+    network = {name: bool(found.get(name)) for name in ("dueling", "layer_norm")}
+    policy = ValuePolicy(
+        observation_space(task),
+        spaces.Discrete(task.headings),
+        lambda _: 1.0,
+        network=network,
+    )
+    try:
+        policy.q_net.load_state_dict(state["weights"])
+    except RuntimeError as error:
+        raise UserError(f"{path}: the weights do not fit ({error})") from error
+    policy.set_training_mode(False)
+
+    def greedy(observation: NDArray[np.float32]) -> NDArray[Any]:
+        with th.no_grad():
+            return policy.q_net(th.from_numpy(observation)).argmax(dim=1).numpy()
+
+    return greedy

@@ -1,0 +1,104 @@
+"""The learner's process: `python -m rtg.trainer RUN_FOLDER [--resume] [--no-stream]`.
+
+Reads RUN_FOLDER/config.yaml, takes the transitions of the run in while it learns, and leaves
+transitions.npz, progress.csv, training_state.json (for displays), checkpoint/, model.pt,
+best_episode.npz and training.json there. SIGINT or SIGTERM: checkpoint and exit with 128 + number;
+a second one: exit at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Self
+
+import torch as th
+
+from rtg import _core
+from rtg.bus import Bus
+from rtg.dataset import DatasetError
+from rtg.errors import RunError, UserError
+from rtg.offline_data import FileSource, Source
+from rtg.training import Training
+from rtg.transition_stream import TransitionStream
+
+
+class StopSignals:
+    """Within its `with`, SIGINT and SIGTERM are a wish; the second one ends the process."""
+
+    def __init__(self) -> None:
+        self.number = 0
+
+    def __enter__(self) -> Self:
+        numbers = (signal.SIGINT, signal.SIGTERM)
+        self._before = {number: signal.signal(number, self._on_signal) for number in numbers}
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _on_signal(self, number: int, _: object) -> None:
+        if self.number:
+            os._exit(128 + number)
+        self.number = number
+
+    def __call__(self) -> bool:
+        return self.number != 0
+
+
+def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="rtg.trainer", description=__doc__.split("\n")[0])
+    parser.add_argument("folder", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("--resume", action="store_true", help="go on from the checkpoint, if any")
+    parser.add_argument(
+        "--no-stream", action="store_true", help="learn from RUN_FOLDER/transitions.npz"
+    )
+    parser.add_argument(
+        "--run-name", help="the run on the bus whose stream to take (the folder's name)"
+    )
+    return parser.parse_args(argv)
+
+
+def _source(training: Training, args: argparse.Namespace) -> Source:
+    if args.no_stream:
+        return FileSource(args.folder / "transitions.npz", training.task, training.data)
+    url = json.loads(training.config.json)["run"]["bus"]
+    bus = Bus(url, args.run_name or args.folder.resolve().name)
+    task = training.task
+    return TransitionStream(bus, task.bodies, task.headings, training.data.take)
+
+
+def train(args: argparse.Namespace, stop: StopSignals) -> int:
+    """The exit status. Raises UserError, RunError."""
+    config = _core.Config.from_file(args.folder / "config.yaml")
+    training = Training(config, args.folder)
+    if args.resume and training.has_checkpoint():
+        training.restore()
+    source = _source(training, args)
+    if not training.run(source, stop, record=not args.no_stream):
+        return 128 + stop.number
+    training.finish(source.lost)
+    return 0
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    th.set_num_threads(1)  # more are slower for networks this small, a hundred times on a busy core
+    try:
+        with StopSignals() as stop:
+            return train(_parse(argv), stop)
+    except (UserError, _core.ConfigError, DatasetError, FileNotFoundError) as error:
+        print(f"rtg.trainer: {error}", file=sys.stderr)
+        return 2
+    except RunError as error:
+        print(f"rtg.trainer: {error}", file=sys.stderr)
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,234 @@
+"""One training run: take transitions in, interact, learn, evaluate, write down."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rtg import _core, checkpoint, dataset, policy_file
+from rtg.ddqn import DoubleDqn
+from rtg.evaluation import Evaluation, evaluate, held_out_starts
+from rtg.offline_data import OfflineData, Source
+from rtg.run_folder import write_json
+from rtg.settings import TrainSettings
+from rtg.training_log import TrainingLog
+from rtg.vector_env import PushVecEnv
+
+MAX_ENVIRONMENTS = 4  # stepped together
+WAIT = 0.1  # [s], for transitions when there is nothing else to do
+
+Stop = Callable[[], bool]
+
+
+class Training:
+    """The learner with everything around it, writing to a run folder.
+
+    It goes on while transitions come in; polling for them never waits. What it does next depends on
+    its checkpoint and the transitions alone, so a resumed run goes on with the same bits.
+    """
+
+    def __init__(self, config: _core.Config, folder: Path) -> None:
+        values = json.loads(config.json)
+        self.config, self.task, self.folder = config, config.task, folder
+        self.settings = s = TrainSettings.from_config(values["train"])
+        self.discount = s.discount or self.task.discount
+        jitter, seed = max(s.start_jitter, self.task.randomisation), values["run"]["seed"]
+        count = math.gcd(s.train_frequency, MAX_ENVIRONMENTS)
+        self.env = PushVecEnv(config, count, jitter, seed)
+        self.model = DoubleDqn(self.env, s, self.discount, seed)
+        self.data = OfflineData(self.task, self.model.replay_buffer)
+        self.log = TrainingLog(folder)
+        self._identity = {"seed": seed, "environments": count, **policy_file.identity(self.task, s)}
+        self._starts = held_out_starts(self.task, s.eval_episodes)
+        self._clock = Clock()
+        self._checkpoint = folder / "checkpoint" / "state.pt"
+        self._saved_at = 0  # interactions
+        self._saved_rows = 0  # offline transitions
+
+    @property
+    def interactions(self) -> int:
+        return self.model.num_timesteps
+
+    @property
+    def done(self) -> bool:
+        """Whether the budget is used up or success has been high for long enough."""
+        return self.interactions >= self.settings.interactions or self._is_good()
+
+    def _is_good(self) -> bool:
+        bar, count = self.settings.stop_at_success, self.settings.stop_evaluations
+        last = [row["success_rate"] for row in self.log.rows[-count:]]
+        return bar > 0.0 and len(last) == count and min(last) >= bar
+
+    def run(self, source: Source, stop: Stop, record: bool) -> bool:
+        """Until learning is done and all transitions are in; False if `stop` said so before.
+
+        Leaves a checkpoint either way. `record`: write what comes in to transitions.npz.
+        """
+        while not (stop() or source.complete or self.data.count >= self.settings.start_at):
+            self._take_in(source, record, WAIT)
+        self._clock.start()
+        while not (stop() or self.done):
+            self._take_in(source, record, 0.0)
+            self._learn()
+            self._write_down()
+        self._clock.stop()
+        while not (stop() or source.complete):
+            self._take_in(source, record, WAIT)
+        self.save()
+        return self.done and source.complete
+
+    def _take_in(self, source: Source, record: bool, timeout: float) -> None:
+        if not source.complete:
+            source.poll(timeout)
+            self.data.prove_bounds(source.complete)
+            if source.complete and record:
+                dataset.write(self.folder / "transitions.npz", self.data.all())
+        self.log.display(self._state())
+
+    def _learn(self) -> None:
+        """A part of the warm-up, or one round of interactions and gradient steps."""
+        left = self.settings.warm_up - self.model.gradient_steps_done
+        if self.interactions == 0 and left > 0 and self.data.count:
+            self.model.train(min(left, 10), self.settings.batch)
+        else:
+            self.model.learn(self.settings.train_frequency, reset_num_timesteps=False)
+
+    def _write_down(self) -> None:
+        """Evaluation and checkpoint, where they are due."""
+        evaluated_at = self.log.rows[-1]["interactions"] if self.log.rows else 0
+        over = self.interactions >= self.settings.interactions > evaluated_at
+        if over or self._is_due(self.settings.eval_every, evaluated_at):
+            self._log_row(self.evaluate())
+        if self._is_due(self.settings.checkpoint_every, self._saved_at):
+            self.save()
+
+    def _is_due(self, every: int, last: int) -> bool:
+        return self.interactions // every > last // every
+
+    def evaluate(self) -> Evaluation:
+        """The greedy policy on the held-out starts; changes nothing."""
+        return evaluate(self.config, self.model.greedy, self._starts, self.discount)
+
+    def _log_row(self, evaluation: Evaluation) -> None:
+        nominal = self.task.observation(self.task.start[None])
+        self.log.add(
+            {
+                "interactions": self.interactions,
+                "gradient_steps": self.model.gradient_steps_done,
+                **evaluation.summary(),
+                **self.model.recent_episodes(),
+                "online_successes": self.env.successes,
+                "epsilon": self.model.exploration_rate,
+                "q_start_max": float(self.model.values(nominal).max()),
+                **self.model.statistics.take(),
+                "offline_transitions": self.data.count,
+                "wall_s": self._clock.seconds,
+            }
+        )
+        self.log.display(self._state(), force=True)
+
+    def _state(self) -> dict[str, Any]:
+        """What a display shows."""
+        rows = self.log.rows
+        return {
+            "interactions": self.interactions,
+            "budget": self.settings.interactions,
+            "transitions": self.data.count,
+            "online_successes": self.env.successes,
+            "success_rate": rows[-1]["success_rate"] if rows else None,
+            "done": self.done,
+        }
+
+    def save(self) -> None:
+        """Writes the checkpoint, and the transitions in hand as long as their file is not there."""
+        self._checkpoint.parent.mkdir(exist_ok=True)
+        whole, part = self._transition_files()
+        if whole.exists():
+            part.unlink(missing_ok=True)
+        elif self.data.count > self._saved_rows or not part.exists():
+            dataset.write(part, self.data.all())
+            self._saved_rows = self.data.count
+        state = {
+            "identity": self._identity,
+            "model": self.model.state(),
+            "replay": self.model.replay_buffer.state(),
+            "env": self.env.state(),
+            "data": self.data.state(),
+            "rows": self.log.rows,
+            "wall_s": self._clock.seconds,
+        }
+        checkpoint.write(self._checkpoint, state)
+        self._saved_at = self.interactions
+
+    def has_checkpoint(self) -> bool:
+        return self._checkpoint.exists()
+
+    def restore(self) -> None:
+        """Goes back to the checkpoint in the run folder. Raises UserError if it does not fit."""
+        path = self._checkpoint
+        state = checkpoint.read(path)
+        policy_file.check_identity(path, state.get("identity", {}), self._identity)
+        whole, part = self._transition_files()
+        rows = dataset.read(whole if whole.exists() else part, self.task.bodies, self.task.headings)
+        self.data.restore(state["data"], rows)
+        self.model.replay_buffer.restore(state["replay"])
+        self.model.restore(state["model"])
+        self.env.restore(state["env"])
+        self.log.rows = state["rows"]
+        self.log.write()
+        self._clock.restore(state["wall_s"])
+        self._saved_at, self._saved_rows = self.interactions, self.data.count
+
+    def _transition_files(self) -> tuple[Path, Path]:
+        """All of the run; those that were in at the checkpoint, while the former is not there."""
+        return self.folder / "transitions.npz", self._checkpoint.parent / "transitions.npz"
+
+    def finish(self, lost: int) -> None:
+        """Writes the model, the best evaluation episode and training.json."""
+        final = self.evaluate()
+        weights = self.model.q_net.state_dict()
+        policy_file.write(self.folder / "model.pt", self.task, self.settings, weights)
+        best = final.best()
+        np.savez(
+            self.folder / "best_episode.npz", poses=final.paths[best], success=final.success[best]
+        )
+        training = {
+            "interactions": self.interactions,
+            "gradient_steps": self.model.gradient_steps_done,
+            "online_successes": self.env.successes,
+            **final.summary(),
+            **self.model.recent_episodes(),
+            "train_wall_s": round(self._clock.seconds, 3),
+            "offline_transitions": self.data.count,
+            "lost_transitions": lost,
+        }
+        write_json(self.folder / "training.json", training)
+        self.log.display(self._state(), force=True)
+
+
+class Clock:
+    """Seconds of learning, over all processes that took part in it."""
+
+    def __init__(self) -> None:
+        self._before = 0.0
+        self._since: float | None = None
+
+    def start(self) -> None:
+        self._since = time.monotonic()
+
+    def stop(self) -> None:
+        self._before, self._since = self.seconds, None
+
+    @property
+    def seconds(self) -> float:
+        running = 0.0 if self._since is None else time.monotonic() - self._since
+        return self._before + running
+
+    def restore(self, seconds: float) -> None:
+        self._before = seconds
