@@ -219,7 +219,7 @@ def test_a_checkpoint_of_another_run_is_refused(
 
 
 def test_files_that_are_no_checkpoints_are_refused(tmp_path: Path) -> None:
-    for content in (b"", b"no", b"\x80\x04\x95"):
+    for content in (b"", b"no", b"\x80\x02\x95"):
         (tmp_path / "state.pt").write_bytes(content)
         with pytest.raises(UserError, match="not a checkpoint of ours"):
             checkpoint.read(tmp_path / "state.pt")
