@@ -8,16 +8,22 @@ import os
 import signal
 import subprocess
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 _PR_SET_PDEATHSIG = 1
 _libc = ctypes.CDLL(None)
 
 
-def _die_with_parent() -> None:
-    """Runs in the child: the kernel kills it when the thread that started it ends."""
-    _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+def _die_with(parent: int) -> Callable[[], None]:
+    """For the child: the kernel kills it when the thread that started it ends."""
+
+    def die_with_parent() -> None:
+        _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        if os.getppid() != parent:  # gone before the kernel was told
+            os._exit(1)
+
+    return die_with_parent
 
 
 class Node:
@@ -28,11 +34,12 @@ class Node:
         self.name = name
         self.command = [str(part) for part in command]
         self.log = log
-        self.restarts = 0
         self.start()
 
     def start(self) -> None:
         """Starts the program, again if it ran before."""
+        self.started = time.monotonic()
+        self._gone = False
         with self.log.open("ab") as output:
             self._process = subprocess.Popen(
                 self.command,
@@ -40,7 +47,7 @@ class Node:
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                preexec_fn=_die_with_parent,
+                preexec_fn=_die_with(os.getpid()),
             )
 
     @property
@@ -49,13 +56,18 @@ class Node:
         return self._process.pid
 
     def exit_status(self) -> int | None:
-        """None while it runs."""
-        return self._process.poll()
+        """None while it runs. What it started ends with it."""
+        status = self._process.poll()
+        if status is not None and not self._gone:
+            self.signal_group(signal.SIGKILL)
+            self._gone = True  # from now on the id may be another's
+        return status
 
     def signal_group(self, number: int) -> None:
         """To the program and everything it started."""
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self.pid, number)
+        if not self._gone:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self.pid, number)
 
     def wait(self, seconds: float) -> bool:
         """Whether it has ended within that time."""
@@ -63,7 +75,7 @@ class Node:
             self._process.wait(seconds)
         except subprocess.TimeoutExpired:
             return False
-        return True
+        return self.exit_status() is not None
 
     def last_words(self, lines: int = 8) -> str:
         """The end of its log."""
@@ -78,7 +90,7 @@ class Node:
         return f"{self.name} ended with exit status {status}"
 
 
-def stop_all(nodes: Iterable[Node], grace: float = 5.0) -> None:
+def stop_all(nodes: Iterable[Node], grace: float = 4.0) -> None:
     """SIGTERM to all, SIGKILL to the groups of those that are still there after `grace` seconds."""
     nodes = list(nodes)
     for node in nodes:
@@ -87,6 +99,12 @@ def stop_all(nodes: Iterable[Node], grace: float = 5.0) -> None:
     deadline = time.monotonic() + grace
     for node in nodes:
         node.wait(max(0.0, deadline - time.monotonic()))
+    kill_all(nodes)
+    for node in nodes:
+        node.wait(grace)
+
+
+def kill_all(nodes: Iterable[Node]) -> None:
+    """SIGKILL to all groups."""
     for node in nodes:
         node.signal_group(signal.SIGKILL)
-        node.wait(grace)

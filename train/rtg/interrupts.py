@@ -1,0 +1,44 @@
+"""Two stages of stopping: the first signal asks, the second does not."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable
+from types import FrameType, TracebackType
+from typing import Any, Self
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class Interrupts:
+    """While entered, the first SIGINT, SIGTERM or SIGHUP sets `requested` and calls `on_request`;
+    the second calls `on_demand` and ends this process at once with exit status 1.
+
+    Main thread only.
+    """
+
+    def __init__(self, on_demand: Callable[[], None], on_request: Callable[[], None]) -> None:
+        self.requested = False
+        self._on_demand, self._on_request = on_demand, on_request
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> Self:
+        self._before = {number: signal.signal(number, self._handle) for number in _SIGNALS}
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _handle(self, number: int, frame: FrameType | None) -> None:
+        if self.requested:
+            self._on_demand()
+            os._exit(1)
+        self.requested = True
+        self._on_request()

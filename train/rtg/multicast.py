@@ -1,0 +1,45 @@
+"""Whether multicast, which LCM needs, works on this machine."""
+
+from __future__ import annotations
+
+import re
+import secrets
+import socket
+import struct
+
+FIX = "sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo"
+
+
+def _echo(group: str, wait: float) -> str | None:
+    token = secrets.token_bytes(16)
+    with (
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver,
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender,
+    ):
+        receiver.bind(("", 0))
+        membership = struct.pack("4sI", socket.inet_aton(group), socket.INADDR_ANY)
+        receiver.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+        receiver.settimeout(wait)
+        sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+        sender.sendto(token, (group, receiver.getsockname()[1]))
+        try:
+            while receiver.recv(64) != token:
+                pass
+        except TimeoutError:
+            return f"what is sent to {group} does not come back"
+    return None
+
+
+def defect(url: str, wait: float = 1.0) -> str | None:
+    """Why messages on the bus at `url` would not arrive; None if they do.
+
+    Sends one datagram to the group of the URL, at a free port, as LCM would: ttl 0, on the
+    interface that the routes name.
+    """
+    match = re.match(r"udpm://([\d.]+):\d+", url)
+    if match is None:
+        return f"{url} is for one process only"
+    try:
+        return _echo(match.group(1), wait)
+    except OSError as error:
+        return f"multicast to {match.group(1)}: {(error.strerror or str(error)).lower()}"
