@@ -9,3 +9,7 @@ class UserError(Exception):
 
 class RunError(Exception):
     """The run itself failed; the message says what broke and where to look. Exit 1."""
+
+
+class Stopped(Exception):
+    """The user asked for the end of the run. Exit 1."""

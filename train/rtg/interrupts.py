@@ -8,19 +8,19 @@ from collections.abc import Callable
 from types import FrameType, TracebackType
 from typing import Any, Self
 
+from rtg.errors import Stopped
+
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Interrupts:
-    """While entered, the first SIGINT, SIGTERM or SIGHUP sets `requested` and calls `on_request`;
-    the second calls `on_demand` and ends this process at once with exit status 1.
-
-    Main thread only.
+    """While entered, the first SIGINT, SIGTERM or SIGHUP sets `requested`; the second calls
+    `on_demand` and ends this process at once with exit status 1. Main thread only.
     """
 
-    def __init__(self, on_demand: Callable[[], None], on_request: Callable[[], None]) -> None:
+    def __init__(self, on_demand: Callable[[], None]) -> None:
         self.requested = False
-        self._on_demand, self._on_request = on_demand, on_request
+        self._on_demand = on_demand
         self._before: dict[int, Any] = {}
 
     def __enter__(self) -> Self:
@@ -36,9 +36,13 @@ class Interrupts:
         for number, handler in self._before.items():
             signal.signal(number, handler)
 
+    def raise_if_requested(self) -> None:
+        """Raises Stopped after the first signal."""
+        if self.requested:
+            raise Stopped
+
     def _handle(self, number: int, frame: FrameType | None) -> None:
         if self.requested:
             self._on_demand()
             os._exit(1)
         self.requested = True
-        self._on_request()

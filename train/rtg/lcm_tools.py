@@ -24,8 +24,8 @@ def lcm_program(name: str) -> Path:
 
 
 def logger_command(url: str, log: Path) -> list[str | Path]:
-    """lcm-logger, recording everything on the bus at `url`."""
-    return [lcm_program("lcm-logger"), "--quiet", "--force", f"--lcm-url={url}", log]
+    """lcm-logger, which adds everything on the bus at `url` to `log`."""
+    return [lcm_program("lcm-logger"), "--quiet", "--append", f"--lcm-url={url}", log]
 
 
 def _build_types_jar() -> None:

@@ -1,4 +1,4 @@
-"""The processes of a run: workers are replaced when they die, the others take the run with them."""
+"""The processes of a run: helpers are replaced when they die, the others take the run with them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _QUICK_DEATHS = 10  # in a row, of one worker; one job may take down three
 @dataclass
 class _Member:
     node: Node
-    replaceable: bool
+    helper: bool
     quick_deaths: int = 0
 
 
@@ -30,23 +30,22 @@ class ProcessGraph:
         self._members: list[_Member] = []
         self.restarts = 0
 
-    def add(self, name: str, command: Sequence[str | Path], replaceable: bool = False) -> Node:
-        """Starts a program; a replaceable one is started again when it dies."""
+    def add(self, name: str, command: Sequence[str | Path], helper: bool = False) -> None:
+        """Starts a program; a helper is started again when it dies."""
         node = Node(name, command, self._logs / f"{name}.log")
-        self._members.append(_Member(node, replaceable))
-        return node
+        self._members.append(_Member(node, helper))
 
     def tend(self, leaving: bool) -> list[str]:
-        """Replaces dead workers, unless they are `leaving`; returns what there is to say about it.
+        """Replaces dead helpers, unless they are `leaving`; returns what there is to say about it.
 
         Raises RunError with the last words of a program that the run cannot do without.
         """
         notes = []
         for member in self._members:
             status = member.node.exit_status()
-            if status is None or (status == 0 and (leaving or not member.replaceable)):
+            if status is None or (status == 0 and (leaving or not member.helper)):
                 continue
-            if not member.replaceable:
+            if not member.helper:
                 raise RunError(_obituary(member.node))
             notes.append(f"{member.node.epitaph()}, started again")
             self._replace(member)
@@ -60,18 +59,21 @@ class ProcessGraph:
         member.node.start()
         self.restarts += 1
 
-    def running(self) -> list[Node]:
-        """Programs that have not ended."""
-        nodes = [member.node for member in self._members]
-        return [node for node in nodes if node.exit_status() is None]
+    def working(self) -> bool:
+        """Whether a program that is no helper still runs."""
+        return any(not m.helper and m.node.exit_status() is None for m in self._members)
 
     def stop(self) -> None:
         """Ends all programs within 5 s."""
-        stop_all(self.running())
+        stop_all(self._running())
 
     def kill(self) -> None:
         """Ends all programs at once."""
-        kill_all(self.running())
+        kill_all(self._running())
+
+    def _running(self) -> list[Node]:
+        nodes = [member.node for member in self._members]
+        return [node for node in nodes if node.exit_status() is None]
 
 
 def _obituary(node: Node) -> str:

@@ -54,14 +54,16 @@ class RunArgs:
     print_config: bool
 
 
-class _Parser(argparse.ArgumentParser):
+class Parser(argparse.ArgumentParser):
+    """Mistakes become a UserError, which names the remedy."""
+
     def error(self, message: str) -> None:  # type: ignore[override]
         raise UserError(f"{message} (./run.sh --help lists all)")
 
 
 def parser() -> argparse.ArgumentParser:
     """The flags of `rtg run`."""
-    p = _Parser(
+    p = Parser(
         prog="./run.sh",
         description="From goal states to a trained policy: generate reverse transitions, train, "
         "evaluate, and leave the results in a run folder.",

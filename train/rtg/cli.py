@@ -1,0 +1,109 @@
+"""The command of the user: `./run.sh ...`, `rtg ...`, `python -m rtg.cli ...`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from rtg import run_args
+from rtg.errors import RunError, UserError
+
+# Nothing heavy is imported before it is needed: --help and mistakes answer at once.
+
+
+def _run(words: Sequence[str]) -> int:
+    from rtg.run import run
+
+    return run(run_args.parse(words))
+
+
+def _check(words: Sequence[str]) -> int:
+    from rtg import effective_config
+
+    parser = run_args.Parser(
+        prog="./run.sh check", description="Validate a task file; print what it says."
+    )
+    parser.add_argument("file", metavar="FILE.yaml", help="a task file, or a task of config/")
+    args = parser.parse_args(words)
+    print(effective_config.check(run_args.task_file(args.file)), end="")
+    return 0
+
+
+def _bus_url(target: str) -> str:
+    from rtg import effective_config
+
+    run_config = Path(target) / "config.yaml"
+    file = run_config if run_config.is_file() else run_args.task_file(target)
+    return str(effective_config.values(file)["run"]["bus"])
+
+
+def _watcher(tool: str, description: str) -> argparse.ArgumentParser:
+    parser = run_args.Parser(prog=f"./run.sh {tool}", description=description)
+    parser.add_argument(
+        "target",
+        metavar="TASK | FILE.yaml | RUN_FOLDER",
+        nargs="?",
+        default="gathering",
+        help="whose bus to watch (gathering); all runs on it are shown",
+    )
+    return parser
+
+
+def _seconds(word: str) -> float:
+    try:
+        seconds = float(word)
+    except ValueError:
+        seconds = -1.0
+    if not 0.0 < seconds <= 1e6:
+        raise UserError(f"--seconds {word}: legal is a number of seconds above 0")
+    return seconds
+
+
+def _spy(words: Sequence[str]) -> int:
+    parser = _watcher("spy", "Watch the channels: in place on a terminal, as tables elsewhere.")
+    parser.add_argument("--seconds", metavar="N", help="stop after so long (never)")
+    args = parser.parse_args(words)
+    seconds = None if args.seconds is None else _seconds(args.seconds)
+    url = _bus_url(args.target)
+    from rtg.spy import spy
+
+    spy(url, seconds)
+    return 0
+
+
+def _lcm_spy(words: Sequence[str]) -> int:
+    args = _watcher("lcm-spy", "LCM's own viewer, with our message types.").parse_args(words)
+    from rtg.lcm_tools import lcm_spy
+
+    lcm_spy(_bus_url(args.target))
+    return 0
+
+
+_TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
+    "run": _run,
+    "check": _check,
+    "spy": _spy,
+    "lcm-spy": _lcm_spy,
+}
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Exit status: 0 success, 2 bad input, 1 anything else."""
+    words = list(sys.argv[1:] if words is None else words)
+    tool = _TOOLS.get(words[0]) if words else None
+    try:
+        return tool(words[1:]) if tool else _run(words)
+    except UserError as error:
+        print(f"rtg: {error}", file=sys.stderr)
+        return 2
+    except RunError as error:
+        print(f"rtg: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

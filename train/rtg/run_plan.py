@@ -1,0 +1,62 @@
+"""What one run is going to do, resolved and written down before anything starts."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rtg import effective_config, multicast, run_folder
+from rtg.run_args import Override, RunArgs
+
+
+@dataclass(frozen=True)
+class RunPlan:
+    """A run whose folder, with config.yaml and versions.json in it, exists."""
+
+    folder: Path
+    name: str  # of the run on the bus; no two runs share it
+    config: dict[str, Any]  # as the C++ loader resolved it
+    train: bool
+    resume: bool
+    notes: tuple[str, ...]  # for the user
+
+    @property
+    def in_process(self) -> bool:
+        """Everything in this process, no LCM."""
+        return bool(self.config["run"]["in_process"])
+
+    @property
+    def config_file(self) -> Path:
+        """The canonical configuration."""
+        return self.folder / "config.yaml"
+
+    @property
+    def task_name(self) -> str:
+        """As the task calls itself."""
+        return str(self.config["task"]["name"])
+
+    @property
+    def interactions(self) -> int:
+        """Budget of the learner; 0 without training."""
+        return int(self.config["train"]["interactions"]) if self.train else 0
+
+
+def make_plan(args: RunArgs) -> RunPlan:
+    """Resolves the configuration and makes the run folder. Raises UserError."""
+    overrides = args.overrides
+    config = effective_config.values(args.file, overrides)
+    notes = []
+    if not config["run"]["in_process"] and (why := multicast.defect(config["run"]["bus"])):
+        notes.append(f"no process graph: {why}. To mend it: {multicast.FIX}")
+        notes.append("going on as with --in-process, which gives the same transitions")
+        overrides = (*overrides, Override("--in-process", "run.in_process=true"))
+        config = effective_config.values(args.file, overrides)
+    canonical = effective_config.canonical(args.file, overrides)
+    folder = args.out or run_folder.default_path(config["task"]["name"])
+    folder.mkdir(parents=True, exist_ok=True)
+    run_folder.write_text(folder / "config.yaml", canonical)
+    run_folder.write_json(folder / "versions.json", run_folder.versions())
+    name = f"{folder.name}-{secrets.token_hex(4)}"
+    return RunPlan(folder, name, config, args.train, args.resume, tuple(notes))
