@@ -11,5 +11,5 @@ class RunError(Exception):
     """The run itself failed; the message says what broke and where to look. Exit 1."""
 
 
-class Stopped(Exception):
+class StoppedError(Exception):
     """The user asked for the end of the run. Exit 1."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 import time
+from pathlib import Path
 from typing import Any
 
-from rtg import _core, lcm_tools, paths
+from rtg import _core, lcm_tools, paths, run_folder
 from rtg.bus import Bus
 from rtg.errors import RunError
 from rtg.interrupts import Interrupts
@@ -15,49 +15,68 @@ from rtg.progress import Display, RunState
 from rtg.recorder import Recorder
 from rtg.run_plan import RunPlan
 from rtg.run_watch import RunWatch
+from rtg.train_run import trainer_command
 from rtg.training_watch import TrainingWatch
 from rtg.transition_stream import TransitionStream
 
 _POLL = 0.1  # [s]
 
 
+class _Recording:
+    """This process as the consumer of the stream, in a run without a trainer."""
+
+    def __init__(self, plan: RunPlan, bus: Bus) -> None:
+        task = _core.Config.from_file(plan.config_file).task
+        self._recorder = Recorder(task)
+        self._stream = TransitionStream(bus, task.bodies, task.headings, self._recorder.add)
+
+    def poll(self, timeout: float) -> None:
+        self._stream.poll(timeout)
+
+    def write(self, plan: RunPlan) -> int:
+        """Writes transitions.npz if nothing is missing; returns how many rows are."""
+        missing = int(run_folder.read_json(plan.report_file)["transitions"]) - self._recorder.count
+        if missing == 0:
+            self._recorder.write(plan.transitions_file)
+        return missing
+
+
 class GraphRun:
-    """The programs, and what this process does meanwhile: it watches, replaces dead workers, and
-    consumes the transition stream beside the trainer to write transitions.npz."""
+    """The programs, and what this process does meanwhile: watch them and replace dead workers."""
 
     def __init__(self, plan: RunPlan, display: Display) -> None:
         self._plan, self._display = plan, display
-        task = _core.Config.from_file(plan.config_file).task
-        bus = Bus(plan.config["run"]["bus"], plan.name)
-        self._watch = RunWatch(bus, RunState(budget=plan.interactions))
+        self._bus = Bus(plan.config["run"]["bus"], plan.name)
+        self._watch = RunWatch(self._bus, RunState(budget=plan.interactions))
         self._training = TrainingWatch(plan.folder)
-        self._recorder = Recorder(task)
-        self._stream = TransitionStream(bus, task.bodies, task.headings, self._recorder.add)
+        self._recording = None if plan.train else _Recording(plan, self._bus)
         self._graph = ProcessGraph(plan.folder / "logs")
         self._start = time.monotonic()
-        self._generate_wall_s: float | None = None
+        self._timed = False
 
     def run(self) -> dict[str, Any]:
-        """Starts everything, waits for the end of it; returns what was measured."""
+        """Starts everything, waits for its end; returns what was measured."""
         with Interrupts(on_demand=self._graph.kill) as interrupts:
             try:
                 self._start_programs()
                 while self._graph.working():
                     self._step()
                     interrupts.raise_if_requested()
-                self._finish_generation()
             finally:
                 self._graph.stop()
+        self._graph.tend(leaving=True)
+        missing = self._recording.write(self._plan) if self._recording else 0
+        if missing:
+            raise RunError(f"the coordinator ended, {missing} transitions have not arrived")
         return {
-            "generate_wall_s": self._generate_wall_s,
-            "lost_transitions": self._stream.lost,
+            "lost_transitions": missing,
             "worker_restarts": self._graph.restarts,
             "counters": self._watch.counters(),
         }
 
     def _start_programs(self) -> None:
         plan, graph = self._plan, self._graph
-        arguments = [plan.config_file, plan.name]
+        arguments: list[str | Path] = [plan.config_file, plan.name]
         if plan.config["run"]["record"]:
             url, log = plan.config["run"]["bus"], plan.folder / "lcm.log"
             graph.add("lcm_logger", lcm_tools.logger_command(url, log), helper=True)
@@ -67,32 +86,29 @@ class GraphRun:
         for number in range(plan.config["run"]["workers"]):
             name = f"reverse_worker_{number}"
             graph.add(name, [worker, *arguments, str(number)], helper=True)
-        consumers = 2 if plan.train else 1
         coordinator = paths.program("rtg_beam_coordinator")
-        graph.add(
-            "beam_coordinator", [coordinator, *arguments, plan.folder, "--consumers", str(consumers)]
-        )
+        graph.add("beam_coordinator", [coordinator, *arguments, plan.folder])
         if plan.train:
-            trainer = [sys.executable, "-m", "rtg.trainer", plan.folder, "--run", plan.name]
-            graph.add("trainer", trainer)
+            graph.add("trainer", trainer_command(plan, "--run-name", plan.name))
 
     def _step(self) -> None:
-        self._stream.poll(_POLL)
+        if self._recording:
+            self._recording.poll(_POLL)
+        else:
+            self._bus.spin(_POLL)
         for note in self._graph.tend(leaving=self._watch.leaving):
             self._display.note(note)
-        if self._stream.complete and self._generate_wall_s is None:
-            self._finish_generation()
+        self._time_generation()
         self._display.show(self._training.update(self._watch.state))
 
-    def _finish_generation(self) -> None:
-        if self._generate_wall_s is not None:
-            return
-        if not self._stream.complete:
-            raise RunError(f"the coordinator ended with {self._stream.lost} transitions unsent")
-        self._generate_wall_s = time.monotonic() - self._start
-        self._recorder.write(self._plan.folder / "transitions.npz")
+    def _time_generation(self) -> None:
+        if self._watch.state.phase == "sealed" and not self._timed:
+            self._timed = True
+            report = run_folder.read_json(self._plan.report_file)
+            wall = time.monotonic() - self._start
+            run_folder.write_report(self._plan.report_file, report, wall)
 
 
-def generate_and_train(plan: RunPlan, display: Display) -> dict[str, Any]:
-    """The whole job; returns what was measured, for summary.json."""
+def run(plan: RunPlan, display: Display) -> dict[str, Any]:
+    """Generation and training at the same time; returns what was measured, for summary.json."""
     return GraphRun(plan, display).run()

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from types import FrameType, TracebackType
 from typing import Any, Self
 
-from rtg.errors import Stopped
+from rtg.errors import StoppedError
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -37,9 +37,9 @@ class Interrupts:
             signal.signal(number, handler)
 
     def raise_if_requested(self) -> None:
-        """Raises Stopped after the first signal."""
+        """Raises StoppedError after the first signal."""
         if self.requested:
-            raise Stopped
+            raise StoppedError
 
     def _handle(self, number: int, frame: FrameType | None) -> None:
         if self.requested:

@@ -50,8 +50,9 @@ def lcm_spy(url: str) -> None:
     if shutil.which("java") is None:
         raise UserError("lcm-spy needs Java: apt-get install default-jdk. Without: ./run.sh spy")
     if not os.environ.get("DISPLAY"):
-        raise UserError("lcm-spy needs a graphical display (DISPLAY is not set); "
-                        "in a terminal: ./run.sh spy")
+        raise UserError(
+            "lcm-spy needs a graphical display (DISPLAY is not set); in a terminal: ./run.sh spy"
+        )
     jar = _types_jar()
     if jar is None:
         print(

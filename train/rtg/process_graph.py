@@ -61,7 +61,13 @@ class ProcessGraph:
 
     def working(self) -> bool:
         """Whether a program that is no helper still runs."""
-        return any(not m.helper and m.node.exit_status() is None for m in self._members)
+        return bool(self._running(helpers=False))
+
+    def wait(self, seconds: float) -> bool:
+        """working(), once one has ended or so much time has passed."""
+        for node in self._running(helpers=False)[:1]:
+            node.wait(seconds)
+        return self.working()
 
     def stop(self) -> None:
         """Ends all programs within 5 s."""
@@ -71,8 +77,8 @@ class ProcessGraph:
         """Ends all programs at once."""
         kill_all(self._running())
 
-    def _running(self) -> list[Node]:
-        nodes = [member.node for member in self._members]
+    def _running(self, helpers: bool = True) -> list[Node]:
+        nodes = [member.node for member in self._members if helpers or not member.helper]
         return [node for node in nodes if node.exit_status() is None]
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
+from typing import Any
 
 from rtg import effective_config
-from rtg.errors import RunError
-from rtg.progress import display
+from rtg.errors import RunError, StoppedError
+from rtg.progress import Display, display
 from rtg.run_args import RunArgs
 from rtg.run_plan import RunPlan, make_plan
 
@@ -17,22 +19,30 @@ def run(args: RunArgs) -> int:
         print(effective_config.canonical(args.file, args.overrides), end="")
         return 0
     plan = make_plan(args)
-    return _carry_out(plan)
-
-
-def _carry_out(plan: RunPlan) -> int:
-    from rtg import results
+    from rtg import results  # heavy
 
     with display(sys.stdout) as shown:
-        shown.note(f"{plan.task_name}, seed {plan.config['run']['seed']}: {plan.folder}")
-        for note in plan.notes:
+        for note in (f"{plan.title}: {plan.folder}", *plan.notes):
             shown.note(note)
-        if plan.in_process:
-            from rtg.in_process import generate_and_train
-        else:
-            from rtg.graph_run import generate_and_train
-        measured = generate_and_train(plan, shown)
-        shown.note("drawing")
+        try:
+            measured = _generate_and_train(plan, shown)
+        except StoppedError:
+            command = f"./run.sh --resume --out {shlex.quote(str(plan.folder))}"
+            raise RunError(f"stopped; to go on: {command}") from None
         summary = results.finish(plan, measured)
     print(results.words(plan, summary))
     return 0
+
+
+def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
+    from rtg import graph_run, in_process, train_run
+
+    if plan.is_generated():
+        shown.note("the transitions are there already")
+    elif plan.in_process:
+        in_process.generate(plan, shown)
+    else:
+        return graph_run.run(plan, shown)
+    if plan.train:
+        train_run.run(plan, shown)
+    return {"lost_transitions": 0}

@@ -24,7 +24,7 @@ class RunPlan:
 
     @property
     def in_process(self) -> bool:
-        """Everything in this process, no LCM."""
+        """The search in this process, no LCM."""
         return bool(self.config["run"]["in_process"])
 
     @property
@@ -33,14 +33,28 @@ class RunPlan:
         return self.folder / "config.yaml"
 
     @property
-    def task_name(self) -> str:
-        """As the task calls itself."""
-        return str(self.config["task"]["name"])
+    def transitions_file(self) -> Path:
+        """Written at the end of the generation."""
+        return self.folder / "transitions.npz"
+
+    @property
+    def report_file(self) -> Path:
+        """What the generation says of itself."""
+        return self.folder / "generation.json"
+
+    @property
+    def title(self) -> str:
+        """For pictures and first words."""
+        return f"{self.config['task']['name']}, seed {self.config['run']['seed']}"
 
     @property
     def interactions(self) -> int:
         """Budget of the learner; 0 without training."""
         return int(self.config["train"]["interactions"]) if self.train else 0
+
+    def is_generated(self) -> bool:
+        """Whether an earlier process of this run has done the generation."""
+        return self.resume and self.transitions_file.is_file() and self.report_file.is_file()
 
 
 def make_plan(args: RunArgs) -> RunPlan:

@@ -1,0 +1,99 @@
+"""Exit status and words of the command, as the user meets them."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from rtg import paths
+
+MISTAKES = {
+    "unknown task": (["sortign"], "sortign: no task of that name; legal: gathering, "),
+    "unknown flag": (["--wokers", "2"], "unrecognized arguments: --wokers (./run.sh --help"),
+    "missing file": (["mine.yaml"], "mine.yaml: no such task file"),
+    "workers no number": (["--workers", "two"], "--workers two: "),
+    "workers negative": (["--workers", "-1"], "--workers"),
+    "too many workers": (["--workers", "5000"], "--workers 5000: "),
+    "reverse": (["--reverse", "magic"], "--reverse magic: "),
+    "seed": (["--seed", "1.5"], "--seed 1.5: "),
+    "no transitions": (["--transitions", "0"], "--transitions 0: "),
+    "no interactions": (["--interactions", "0"], "--interactions 0: "),
+    "unknown key": (["--set", "search.bredth=3"], "--set search.bredth=3: "),
+    "no key": (["--set", "search.breadth"], "--set search.breadth: "),
+    "out of range": (["--set", "search.breadth=0"], "--set search.breadth=0: "),
+    "resume without folder": (["--resume"], "--resume: needs --out DIR"),
+    "check without file": (["check"], "the following arguments are required: FILE.yaml"),
+    "spy for no time": (["spy", "--seconds", "0"], "--seconds 0: legal is a number of seconds"),
+    "spy on nothing": (["spy", "sortign"], "sortign: no task of that name"),
+}
+
+
+def rtg(*words, **environment):
+    return subprocess.run(
+        [sys.executable, "-m", "rtg.cli", *words],
+        cwd=paths.ROOT,
+        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train"), **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_a_mistake_is_named_and_ends_with_status_2(name):
+    words, message = MISTAKES[name]
+    done = rtg(*words)
+    assert done.stderr.startswith(f"rtg: {message}"), done.stderr
+    assert done.stderr.count("\n") <= 3, "more than the user needs"
+    assert done.returncode == 2
+    assert done.stdout == ""
+
+
+def test_help_names_every_flag_of_the_contract():
+    done = rtg("--help")
+    assert done.returncode == 0
+    for flag in ("--in-process", "--workers", "--reverse", "--transitions", "--interactions"):
+        assert flag in done.stdout
+    for flag in ("--no-train", "--seed", "--out", "--set", "--print-config", "--resume"):
+        assert flag in done.stdout
+
+
+def test_help_does_not_wait_for_heavy_imports():
+    program = (
+        "import sys; from rtg import cli\n"
+        "try: cli.main(['--help'])\n"
+        "except SystemExit: pass\n"
+        "print(sorted({'torch', 'matplotlib', 'textual', 'lcm'} & set(sys.modules)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_print_config_reads_back_to_itself(tmp_path):
+    first = rtg("--seed", "7", "--set", "search.breadth=9", "--print-config")
+    assert first.returncode == 0, first.stderr
+    assert "seed: 7" in first.stdout and "breadth: 9" in first.stdout
+    file = tmp_path / "again.yaml"
+    file.write_text(first.stdout)
+    assert rtg(str(file), "--print-config").stdout == first.stdout
+
+
+def test_check_prints_what_it_understood_and_refuses_a_wrong_file(tmp_path):
+    good = rtg("check", "config/gathering.yaml")
+    assert good.returncode == 0 and "gathering" in good.stdout
+    file = tmp_path / "wrong.yaml"
+    file.write_text("task: gathering\nsaerch: {}\n")
+    bad = rtg("check", str(file))
+    assert bad.returncode == 2 and f"{file}:" in bad.stderr
+
+
+def test_lcm_spy_names_the_remedy_where_it_cannot_be_shown():
+    done = rtg("lcm-spy", DISPLAY="")
+    assert done.returncode == 2
+    assert "./run.sh spy" in done.stderr

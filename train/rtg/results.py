@@ -1,0 +1,81 @@
+"""The end of a run: pictures, summary.json, the last words."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg import _core, dataset, episode_pictures, plots, run_folder
+from rtg.episodes import best_episode
+from rtg.run_plan import RunPlan
+
+Floats = NDArray[np.float64]
+
+
+def learning_curve(path: Path) -> dict[str, Floats]:
+    """Columns of progress.csv, NaN where a cell is empty. [N] each"""
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    names = rows[0].keys() if rows else ()
+    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in names}
+
+
+def _draw_generation(plan: RunPlan, task: _core.Task) -> None:
+    report = run_folder.read_json(plan.report_file)
+    gaps = np.array(report["replay_gaps"], float)
+    plots.replay_gap(plan.folder / "replay_gap.png", plan.title, gaps)
+    nodes = report["nodes"]
+    poses = np.array([node["poses"] for node in nodes]).reshape(-1, task.bodies, 3)
+    depth = np.array([node["depth"] for node in nodes], float)
+    picture = plan.folder / "coverage.png"
+    plots.coverage(picture, plan.title, task, task.start, poses, depth)
+
+
+def _episode(plan: RunPlan, task: _core.Task) -> Floats | None:
+    """States of the learner's best evaluation episode; without a learner, of the data's best."""
+    if plan.train:
+        with np.load(plan.folder / "best_episode.npz") as file:
+            poses: Floats = file["poses"]
+            return poses
+    return best_episode(dataset.read(plan.transitions_file, task.bodies, task.headings))
+
+
+def _draw_episode(plan: RunPlan, task: _core.Task) -> None:
+    poses = _episode(plan, task)
+    if poses is not None:
+        success = bool(task.succeeded(poses[-1:])[0])
+        episode_pictures.strip(plan.folder / "episode.png", task, poses, success)
+        episode_pictures.film(plan.folder / "episode.gif", task, poses, success)
+
+
+def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
+    """Draws all pictures and writes summary.json; returns the summary."""
+    task = _core.Config.from_file(plan.config_file).task
+    _draw_generation(plan, task)
+    if plan.train:
+        curve = learning_curve(plan.folder / "progress.csv")
+        plots.learning_curve(plan.folder / "learning_curve.png", plan.title, curve)
+    _draw_episode(plan, task)
+    mode = "in_process" if plan.in_process else "lcm"
+    summary = run_folder.summary(plan.folder, plan.config, mode, measured)
+    run_folder.write_json(plan.folder / "summary.json", summary)
+    return summary
+
+
+def words(plan: RunPlan, summary: dict[str, Any]) -> str:
+    """What the run came to, for people."""
+    s = summary
+    lines = [
+        f"{s['transitions']:,} transitions in {s['generate_wall_s']:.0f} s, "
+        f"contact share {s['contact_share']:.2f}, tree policy {s['tree_policy_success']:.2f}"
+    ]
+    if plan.train:
+        lines.append(
+            f"success rate {s['success_rate']:.2f} after {s['interactions']:,} interactions in "
+            f"{s['train_wall_s']:.0f} s, {s['episode_length_mean']:.1f} actions per episode"
+        )
+    return "\n".join([*lines, f"results: {plan.folder}"])

@@ -1,0 +1,47 @@
+"""The learner on a finished transition set."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from rtg.interrupts import Interrupts
+from rtg.process_graph import ProcessGraph
+from rtg.progress import Display, RunState
+from rtg.run_folder import read_json
+from rtg.run_plan import RunPlan
+from rtg.training_watch import TrainingWatch
+
+_POLL = 0.1  # [s]
+
+
+def trainer_command(plan: RunPlan, *flags: str) -> Sequence[str | Path]:
+    """The learner's program."""
+    resume = ["--resume"] if plan.resume else []
+    return [sys.executable, "-m", "rtg.trainer", plan.folder, *resume, *flags]
+
+
+def run(plan: RunPlan, display: Display) -> None:
+    """Learns in a process of its own, so that it can be stopped at any time."""
+    graph = ProcessGraph(plan.folder / "logs")
+    watch = TrainingWatch(plan.folder)
+    report = read_json(plan.report_file)
+    state = RunState(
+        phase="done",
+        transitions=report["transitions"],
+        target=report["transitions"],
+        contact_share=report["contact_share"],
+        start_region=report["start_region_transitions"],
+        budget=plan.interactions,
+    )
+    with Interrupts(on_demand=graph.kill) as interrupts:
+        try:
+            graph.add("trainer", trainer_command(plan, "--no-stream"))
+            while graph.wait(_POLL):
+                graph.tend(leaving=True)
+                display.show(watch.update(state))
+                interrupts.raise_if_requested()
+        finally:
+            graph.stop()
+    graph.tend(leaving=True)
