@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ FAINT: Colour = (222, 220, 213)
 ROBOT: Colour = (62, 70, 86)
 WALL: Colour = (178, 176, 170)
 GOAL: Colour = (92, 160, 112)
+TRAIL: Colour = (150, 156, 168)
 KINDS: tuple[Colour, ...] = (
     (226, 149, 72),
     (74, 126, 187),
@@ -77,19 +78,54 @@ def outline(shape: Floats, pose: Floats) -> Floats:
     return np.asarray(shape) @ np.array([[c, s], [-s, c]]) + pose[:2]
 
 
-class Canvas:
-    """A square window on the arena with y upwards."""
+class Window(NamedTuple):
+    """A square part of the plane [m]."""
 
-    def __init__(self, half_width: float, pixels: int) -> None:
-        self._half = half_width
+    x: float  # of its centre
+    y: float
+    half: float  # of its side
+
+    def at(self, right: float, up: float) -> tuple[float, float]:
+        """A place in it; -1 and 1 are the edges."""
+        return self.x + right * self.half, self.y + up * self.half
+
+
+def arena_window(task: TaskLike) -> Window:
+    """The whole arena with a margin."""
+    return Window(0.0, 0.0, 1.06 * task.arena)
+
+
+def episode_window(task: TaskLike, poses: Floats) -> Window:
+    """All that an episode needs: the bodies at all times, discs of the goal. poses [T, bodies, 3]
+
+    No larger than the arena with its margin.
+    """
+    marks = [term for term in task.goal if term.region == "disc"]
+    corners = [circle(term.centre, term.radius) for term in marks]
+    for body, shape in enumerate(task.shapes):
+        reach = float(np.linalg.norm(shape, axis=1).max())
+        corners += [poses[:, body, :2] - reach, poses[:, body, :2] + reach]
+    points = np.concatenate(corners)
+    low, high = points.min(axis=0), points.max(axis=0)
+    x, y = (low + high) / 2.0
+    half = 0.53 * float((high - low).max()) + 0.4
+    whole = arena_window(task)
+    return whole if half >= whole.half else Window(float(x), float(y), half)
+
+
+class Canvas:
+    """A square window on the plane with y upwards."""
+
+    def __init__(self, window: Window, pixels: int) -> None:
+        self._window = window
         self._side = pixels * _SMOOTH
-        self._scale = self._side / (2.0 * half_width)  # [pixel/m]
+        self._scale = self._side / (2.0 * window.half)  # [pixel/m]
         self._image = Image.new("RGB", (self._side, self._side), PAPER)
 
     def _points(self, xy: Any) -> list[tuple[float, float]]:
         points = np.atleast_2d(np.asarray(xy, dtype=float))
-        x = (points[:, 0] + self._half) * self._scale
-        y = (self._half - points[:, 1]) * self._scale
+        x = (points[:, 0] - self._window.x + self._window.half) * self._scale
+        y = (self._window.half + self._window.y - points[:, 1]) * self._scale
         return list(zip(x.tolist(), y.tolist(), strict=True))
 
     def polygon(
@@ -167,26 +203,39 @@ def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats, alpha: float = 1.
             canvas.dot(poses[body][:2], INK, 0.08)
 
 
+def draw_ghosts(canvas: Canvas, task: TaskLike, before: Floats, poses: Floats) -> None:
+    """Outlines of where the objects that moved since `before` came from. [bodies, 3] each"""
+    colours = kind_colours(task)
+    for body in range(1, len(task.kinds)):
+        if np.abs(poses[body] - before[body]).max() > 0.02:
+            xy = outline(task.shapes[body], before[body])
+            canvas.line(np.vstack([xy, xy[:2]]), colours[task.kinds[body]], 0.06)
+
+
 def state_image(
     task: TaskLike,
-    poses: Floats,
+    path: Floats,
     *,
     pixels: int = 360,
-    trail: Floats | None = None,
+    window: Window | None = None,
     caption: str = "",
     reached: bool = False,
 ) -> NDArray[np.uint8]:
-    """One state as an RGB picture [pixels, pixels, 3].
+    """The last state of a path as an RGB picture [pixels, pixels, 3].
 
-    poses [bodies, 3]; trail [K, 2] is a path of the robot up to here; `reached` marks a success.
+    path [T, bodies, 3]: the robot's way and the objects' first places are shown, too; `reached`
+    marks a success; the window is the whole arena if not given.
     """
-    canvas = Canvas(1.06 * task.arena, pixels)
+    window = window or arena_window(task)
+    canvas = Canvas(window, pixels)
+    path = np.asarray(path, dtype=float)
     a = task.arena
     draw_goal(canvas, task, reached)
     canvas.line([(-a, -a), (a, -a), (a, a), (-a, a), (-a, -a)], FAINT, 0.06)
-    if trail is not None and len(trail) > 1:
-        canvas.line(trail, (150, 156, 168), 0.1)
-    draw_bodies(canvas, task, np.asarray(poses, dtype=float))
+    if len(path) > 1:
+        draw_ghosts(canvas, task, path[0], path[-1])
+        canvas.line(path[:, 0, :2], TRAIL, 0.1)
+    draw_bodies(canvas, task, path[-1])
     if caption:
-        canvas.text((-0.97 * a, 0.97 * a), caption)
+        canvas.text(window.at(-0.96, 0.96), caption, size=0.09 * window.half)
     return canvas.pixels()

@@ -83,12 +83,10 @@ class PushEnv(gymnasium.Env[Any, Any]):
     def render(self) -> NDArray[np.uint8] | None:
         if self.render_mode != "rgb_array":
             return None
-        path = np.array(self._path)
+        way = np.array(self._path)
+        way[:-1, 1:] = self.poses[1:]  # of the objects, only where they are now
         reached = bool(self.task.succeeded(self.poses[None])[0])
-        caption = f"{len(path) - 1}"
-        return state_image(
-            self.task, self.poses, trail=path[:, 0, :2], caption=caption, reached=reached
-        )
+        return state_image(self.task, way, caption=f"{len(way) - 1}", reached=reached)
 
     def _observation(self) -> NDArray[np.float32]:
         return self.task.observation(self.poses[None])[0]

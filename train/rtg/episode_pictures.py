@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from rtg.draw import PAPER, TaskLike, state_image
+from rtg.draw import FAINT, PAPER, TaskLike, episode_window, state_image
 
 Floats = NDArray[np.float64]
+Picture = NDArray[np.uint8]  # [height, width, 3]
 
 _FRAMES_PER_PUSH = 8
 _FRAME_MS = 45
@@ -35,41 +36,46 @@ def strip(path: Path, task: TaskLike, poses: Floats, success: bool, columns: int
     """Two rows at most of states from the first to the last. poses [T+1, bodies, 3]."""
     last = len(poses) - 1
     shown = np.unique(np.linspace(0, last, min(last + 1, 2 * columns)).round().astype(int))
+    window = episode_window(task, poses)
     tiles = []
     for k, step in enumerate(shown):
         earlier = shown[k - 1] if k else 0
         tiles.append(
             state_image(
                 task,
-                poses[step],
+                poses[earlier : step + 1],
                 pixels=300,
-                trail=poses[earlier : step + 1, 0, :2],
+                window=window,
                 caption="start" if step == 0 else f"{step}",
                 reached=success and step == last,
             )
         )
-    gap = 6
-    columns = min(columns, len(tiles))
+    _sheet(tiles, min(columns, len(tiles))).save(path)
+
+
+def _sheet(tiles: list[Picture], columns: int) -> Image.Image:
+    """The tiles row by row with thin lines between them."""
+    line, side = 2, tiles[0].shape[0]
     rows = -(-len(tiles) // columns)
-    side = tiles[0].shape[0]
-    sheet = np.full(
-        (rows * side + (rows - 1) * gap, columns * side + (columns - 1) * gap, 3), 255, np.uint8
-    )
-    sheet[:] = PAPER
-    for k, tile in enumerate(tiles):
-        y, x = (side + gap) * (k // columns), (side + gap) * (k % columns)
-        sheet[y : y + side, x : x + side] = tile
-    Image.fromarray(sheet).save(path)
+    size = ((side + line) * rows - line, (side + line) * columns - line)
+    sheet = np.empty((*size, 3), np.uint8)
+    sheet[:] = FAINT
+    for k in range(rows * columns):
+        y, x = (side + line) * (k // columns), (side + line) * (k % columns)
+        sheet[y : y + side, x : x + side] = tiles[k] if k < len(tiles) else PAPER
+    return Image.fromarray(sheet)
 
 
 def film(path: Path, task: TaskLike, poses: Floats, success: bool) -> None:
     """An animated GIF of the pushes. poses [T+1, bodies, 3]."""
     last = len(poses) - 1
+    window = episode_window(task, poses)
     frames, durations = [], []
 
     def add(state: Floats, step: int, milliseconds: int, reached: bool = False) -> None:
-        trail = np.vstack([poses[max(0, step - 3) : step + 1, 0, :2], state[0, :2]])
-        picture = state_image(task, state, trail=trail, caption=f"{step}", reached=reached)
+        way = np.concatenate([poses[max(0, step - 3) : step + 1], state[None]])
+        way[:-1, 1:] = state[1:]  # the film itself shows where the objects came from
+        picture = state_image(task, way, window=window, caption=f"{step}", reached=reached)
         frames.append(Image.fromarray(picture))
         durations.append(milliseconds)
 
@@ -79,8 +85,12 @@ def film(path: Path, task: TaskLike, poses: Floats, success: bool) -> None:
             state = between(poses[step], poses[step + 1], frame / _FRAMES_PER_PUSH)
             add(state, step, _FRAME_MS)
     add(poses[last], last, 2 * _HOLD_MS, reached=success)
-    palette = frames[-1].quantize(64)
+    palette = _side_by_side(frames[len(frames) // 2], frames[-1]).quantize(64)  # of all colours
     reduced = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     reduced[0].save(
         path, save_all=True, append_images=reduced[1:], duration=durations, loop=0, optimize=True
     )
+
+
+def _side_by_side(left: Image.Image, right: Image.Image) -> Image.Image:
+    return Image.fromarray(np.concatenate([np.asarray(left), np.asarray(right)], axis=1))

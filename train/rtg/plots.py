@@ -87,6 +87,10 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats]) -> None:
         _save(figure, path)
 
 
+def _metres(value: float, floor: float) -> str:
+    return f"≤ {floor:g} m" if value <= floor else f"{value:.2g} m"
+
+
 def replay_gap(path: Path, title: str, gaps: Floats) -> None:
     """Histogram of the replay gap over decades [m], with median and 90th percentile. gaps [N]."""
     floor = 1e-4
@@ -102,7 +106,7 @@ def replay_gap(path: Path, title: str, gaps: Floats) -> None:
                 at = float(np.percentile(values, share))
                 axis.axvline(at, color=_ORANGE, lw=1.5, ls="-" if share == 50 else "--")
                 axis.annotate(
-                    f" {words} {at:.3f} m",
+                    f" {words} {_metres(at, floor)}",
                     (at, 0.99 if share == 50 else 0.90),
                     xycoords=("data", "axes fraction"),
                     va="top",
