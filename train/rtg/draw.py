@@ -72,6 +72,14 @@ def kind_colours(task: TaskLike) -> dict[str, Colour]:
     return colours
 
 
+def on_paper(colour: Colour, share: float) -> Colour:
+    """The colour thinned."""
+    red, green, blue = (
+        round(share * c + (1.0 - share) * p) for c, p in zip(colour, PAPER, strict=True)
+    )
+    return red, green, blue
+
+
 def outline(shape: Floats, pose: Floats) -> Floats:
     """World vertices of a body. shape [V, 2], pose [3] -> [V, 2]."""
     c, s = np.cos(pose[2]), np.sin(pose[2])
@@ -128,19 +136,10 @@ class Canvas:
         y = (self._window.half + self._window.y - points[:, 1]) * self._scale
         return list(zip(x.tolist(), y.tolist(), strict=True))
 
-    def polygon(
-        self, xy: Any, fill: Colour, alpha: float = 1.0, edge: Colour | None = None
-    ) -> None:
-        """Filled polygon, outlined with `edge` in full strength."""
-        points = self._points(xy)
-        if alpha < 1.0:
-            mask = Image.new("L", self._image.size, 0)
-            ImageDraw.Draw(mask).polygon(points, fill=int(255 * alpha))
-            self._image.paste(fill, mask=mask)
-        else:
-            ImageDraw.Draw(self._image).polygon(points, fill=fill)
-        if edge is not None:
-            self.line(np.vstack([np.atleast_2d(xy), np.atleast_2d(xy)[:2]]), edge, 0.07)
+    def polygon(self, xy: Any, fill: Colour, edge: Colour) -> None:
+        """Filled polygon with an outline."""
+        ImageDraw.Draw(self._image).polygon(self._points(xy), fill=fill)
+        self.line(np.vstack([np.atleast_2d(xy), np.atleast_2d(xy)[:2]]), edge, 0.07)
 
     def line(self, xy: Any, colour: Colour, width: float) -> None:
         """Polyline of `width` [m]."""
@@ -159,8 +158,7 @@ class Canvas:
 
     def pixels(self) -> NDArray[np.uint8]:
         """[height, width, 3]."""
-        side = self._side // _SMOOTH
-        return np.asarray(self._image.resize((side, side), Image.Resampling.LANCZOS))
+        return np.asarray(self._image.reduce(_SMOOTH))
 
 
 def circle(centre: Any, radius: float, corners: int = 96) -> Floats:
@@ -189,17 +187,17 @@ def draw_goal(canvas: Canvas, task: TaskLike, reached: bool = False) -> None:
             shape = circle(term.centre, term.radius)
         else:
             shape = _half_plane(term, task.arena)
-        canvas.polygon(shape, colour, alpha=0.38 if reached else 0.18, edge=colour)
+        canvas.polygon(shape, on_paper(colour, 0.38 if reached else 0.18), edge=colour)
 
 
-def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats, alpha: float = 1.0) -> None:
+def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
     """All bodies, the robot last and on top. poses [bodies, 3]."""
     colours = kind_colours(task)
     for body in [*range(1, len(task.kinds)), 0]:
         colour = ROBOT if body == 0 else colours[task.kinds[body]]
         xy = outline(task.shapes[body], poses[body])
-        canvas.polygon(xy, colour, alpha, edge=None if alpha < 1.0 else INK)
-        if alpha == 1.0 and body > 0:
+        canvas.polygon(xy, colour, edge=INK)
+        if body > 0:
             canvas.dot(poses[body][:2], INK, 0.08)
 
 

@@ -13,7 +13,8 @@ from rtg.draw import FAINT, PAPER, TaskLike, episode_window, state_image
 Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]  # [height, width, 3]
 
-_FRAMES_PER_PUSH = 8
+_FRAMES_PER_PUSH = 8  # of a short episode
+_FRAMES = 160  # in all, about
 _FRAME_MS = 45
 _HOLD_MS = 1200  # at the start and at the end
 
@@ -71,6 +72,7 @@ def film(path: Path, task: TaskLike, poses: Floats, success: bool) -> None:
     last = len(poses) - 1
     window = episode_window(task, poses)
     frames, durations = [], []
+    per_push = min(_FRAMES_PER_PUSH, max(2, _FRAMES // max(1, last)))
 
     def add(state: Floats, step: int, milliseconds: int, reached: bool = False) -> None:
         way = np.concatenate([poses[max(0, step - 3) : step + 1], state[None]])
@@ -81,8 +83,8 @@ def film(path: Path, task: TaskLike, poses: Floats, success: bool) -> None:
 
     add(poses[0], 0, _HOLD_MS)
     for step in range(last):
-        for frame in range(1, _FRAMES_PER_PUSH + 1):
-            state = between(poses[step], poses[step + 1], frame / _FRAMES_PER_PUSH)
+        for frame in range(1, per_push + 1):
+            state = between(poses[step], poses[step + 1], frame / per_push)
             add(state, step, _FRAME_MS)
     add(poses[last], last, 2 * _HOLD_MS, reached=success)
     palette = _side_by_side(frames[len(frames) // 2], frames[-1]).quantize(64)  # of all colours

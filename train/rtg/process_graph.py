@@ -55,9 +55,13 @@ class ProcessGraph:
         quick = time.monotonic() - member.node.started < _QUICK
         member.quick_deaths = member.quick_deaths + 1 if quick else 0
         if member.quick_deaths >= _QUICK_DEATHS:
-            raise RunError(f"{_obituary(member.node)}\nfor the {_QUICK_DEATHS}th time in a row")
+            raise RunError(f"{_obituary(member.node)}\n(died {_QUICK_DEATHS} times in a row)")
         member.node.start()
         self.restarts += 1
+
+    def pids(self) -> dict[str, int]:
+        """Process ids of the programs by name."""
+        return {member.node.name: member.node.pid for member in self._members}
 
     def working(self) -> bool:
         """Whether a program that is no helper still runs."""

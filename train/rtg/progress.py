@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import TracebackType
 from typing import Protocol, Self, TextIO
 
@@ -18,6 +18,8 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 from rich.text import Text
+
+_REDRAW = 0.2  # [s]
 
 
 @dataclass(frozen=True)
@@ -115,7 +117,9 @@ class LiveDisplay:
     def __init__(self, console: Console) -> None:
         self._console = console
         self._bars = [self._bar("generate"), self._bar("train")]
-        self._live = Live(console=console, refresh_per_second=5)
+        # No thread of its own: this process starts others with fork.
+        self._live = Live(console=console, auto_refresh=False)
+        self._drawn = 0.0
 
     def _bar(self, name: str) -> Progress:
         bar = Progress(
@@ -146,7 +150,10 @@ class LiveDisplay:
         if state.budget:
             train.update(only, completed=state.interactions, total=state.budget)
             rows += [train, _under(training_text(state))]
-        self._live.update(Group(*rows))
+        now = time.monotonic()
+        refresh = now - self._drawn >= _REDRAW
+        self._drawn = now if refresh else self._drawn
+        self._live.update(Group(*rows), refresh=refresh)
 
 
 def _under(words: str) -> Text:
@@ -174,10 +181,3 @@ class RateMeter:
             self._samples.pop(0)
         (first_time, first), (_, last) = self._samples[0], self._samples[-1]
         return (last - first) / (now - first_time) if now > first_time else 0.0
-
-
-def with_training(
-    state: RunState, interactions: int, rate: float, success_rate: float | None
-) -> RunState:
-    """The state with the learner's part replaced."""
-    return replace(state, interactions=interactions, rate=rate, success_rate=success_rate)

@@ -1,0 +1,73 @@
+"""What a run shows of itself, on a terminal and elsewhere."""
+
+import io
+from dataclasses import replace
+
+import pytest
+from rich.console import Console
+from rtg.progress import LiveDisplay, PlainDisplay, RateMeter, RunState, display
+
+GENERATING = RunState(
+    phase="tree 1", layer=2, depth=24, transitions=1234, target=60000, contact_share=0.417
+)
+TRAINING = replace(GENERATING, phase="sealed", interactions=10_000, budget=350_000, rate=812.3)
+
+
+def plain(*states):
+    out = io.StringIO()
+    with display(out) as shown:
+        assert isinstance(shown, PlainDisplay)
+        for state in states:
+            shown.show(state)
+    return [line.split("] ", 1)[1] for line in out.getvalue().splitlines()]
+
+
+def test_elsewhere_there_is_one_line_per_layer_and_no_control_character():
+    lines = plain(GENERATING, GENERATING, replace(GENERATING, layer=3, transitions=2000))
+    assert lines == [
+        "1,234 of 60,000 transitions: tree 1, layer 2/24, contact share 0.42, "
+        "0 in the start region",
+        "2,000 of 60,000 transitions: tree 1, layer 3/24, contact share 0.42, "
+        "0 in the start region",
+    ]
+
+
+def test_elsewhere_training_says_every_tenth_of_the_budget_and_every_evaluation():
+    states = [replace(TRAINING, interactions=n) for n in (5_000, 20_000, 34_000, 36_000, 60_000)]
+    states.append(replace(states[-1], success_rate=0.5))
+    lines = [line for line in plain(*states) if "interactions/s" in line]
+    assert lines == [
+        "36,000 of 350,000 interactions: success -, 812 interactions/s",
+        "60,000 of 350,000 interactions: success 0.50, 812 interactions/s",
+    ]
+
+
+def test_nothing_is_said_about_a_generation_that_has_not_begun():
+    assert plain(RunState(budget=1000), RunState(budget=1000)) == []
+
+
+def test_a_terminal_shows_a_bar_with_words_for_each_half_of_the_run():
+    out = io.StringIO()
+    console = Console(file=out, force_terminal=True, width=100)
+    with LiveDisplay(console) as shown:
+        shown.show(TRAINING)
+        shown.note("reverse_worker_0 was killed by SIGKILL, started again")
+    text = out.getvalue()
+    for words in ("generate", "1234/60000", "train", "10000/350000", "success -", "SIGKILL"):
+        assert words in text
+
+
+def test_without_training_there_is_one_bar():
+    out = io.StringIO()
+    with LiveDisplay(Console(file=out, force_terminal=True, width=100)) as shown:
+        shown.show(GENERATING)
+    assert "generate" in out.getvalue() and "train " not in out.getvalue()
+
+
+def test_the_rate_is_that_of_the_last_stretch():
+    meter = RateMeter(stretch=10.0)
+    assert meter.rate(0, 0.0) == 0.0
+    assert meter.rate(100, 1.0) == 100.0
+    for second in range(2, 30):
+        rate = meter.rate(100 + 5 * second, float(second))
+    assert rate == pytest.approx(5.0)
