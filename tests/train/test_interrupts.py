@@ -1,0 +1,44 @@
+"""The first signal asks, the second does not."""
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+from rtg import paths
+from rtg.errors import StoppedError
+from rtg.interrupts import Interrupts
+
+TWO_SIGNALS = """
+import os, signal
+from rtg.interrupts import Interrupts
+with Interrupts(on_demand=lambda: print("at once", flush=True)) as interrupts:
+    os.kill(os.getpid(), signal.SIGINT)
+    print("asked", interrupts.requested, flush=True)
+    os.kill(os.getpid(), signal.SIGTERM)
+    print("never said")
+"""
+
+
+def test_the_first_signal_only_asks():
+    before = signal.getsignal(signal.SIGTERM)
+    with Interrupts(on_demand=lambda: pytest.fail("too early")) as interrupts:
+        interrupts.raise_if_requested()
+        os.kill(os.getpid(), signal.SIGTERM)
+        assert interrupts.requested
+        with pytest.raises(StoppedError):
+            interrupts.raise_if_requested()
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_the_second_signal_ends_the_process():
+    done = subprocess.run(
+        [sys.executable, "-c", TWO_SIGNALS],
+        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout == "asked True\nat once\n"
+    assert done.returncode == 1

@@ -1,0 +1,80 @@
+"""summary.json and the other files of the run folder."""
+
+import json
+import re
+
+import pytest
+from rtg import paths, run_folder
+
+CONFIG = {"task": {"name": "gathering"}, "run": {"seed": 7, "workers": 2}}
+
+
+def write_parts(folder):
+    report = {"transitions": 100, "contact_share": 0.5, "replay_gaps": [0.1], "nodes": [1]}
+    run_folder.write_report(folder / "generation.json", report, 12.3456)
+    training = {"interactions": 400, "success_rate": 0.25, "lost_transitions": 3, "epsilon": 0.1}
+    run_folder.write_json(folder / "training.json", training)
+
+
+def test_the_summary_merges_both_halves_and_what_was_measured(tmp_path):
+    write_parts(tmp_path)
+    measured = {"lost_transitions": 0, "worker_restarts": 2}
+    summary = run_folder.summary(tmp_path, CONFIG, "lcm", measured)
+    assert tuple(summary)[: len(run_folder.SUMMARY_KEYS)] == run_folder.SUMMARY_KEYS
+    known = {key: value for key, value in summary.items() if value is not None}
+    assert known == {
+        "task": "gathering",
+        "seed": 7,
+        "mode": "lcm",
+        "workers": 2,
+        "transitions": 100,
+        "contact_share": 0.5,
+        "generate_wall_s": 12.346,
+        "interactions": 400,
+        "success_rate": 0.25,
+        "lost_transitions": 3,  # the learner knows better than the display
+        "worker_restarts": 2,
+        "epsilon": 0.1,
+    }
+
+
+def test_the_summary_of_a_run_without_learner_has_nulls_in_its_place(tmp_path):
+    run_folder.write_report(tmp_path / "generation.json", {"transitions": 100}, 1.0)
+    summary = run_folder.summary(tmp_path, CONFIG, "in_process", {"lost_transitions": 0})
+    assert summary["success_rate"] is None and summary["train_wall_s"] is None
+    assert summary["lost_transitions"] == 0
+
+
+def test_the_summary_has_the_keys_that_are_promised():
+    contract = """task, seed, mode, workers, transitions, contact_share, multi_body_share,
+    start_region_transitions, reachable_share, tree_policy_success, tree_policy_length_mean,
+    candidates, pruned, converged, iterations_median, iterations_p90, replay_gap_median,
+    replay_gap_p90, reverse_cpu_s, replay_cpu_s, generate_wall_s, train_wall_s, interactions,
+    online_successes, success_rate, episode_length_mean, episode_return_mean, lost_transitions"""
+    assert set(re.findall(r"\w+", contract)) == set(run_folder.SUMMARY_KEYS)
+
+
+def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
+    file = tmp_path / "summary.json"
+    run_folder.write_json(file, {"a": 1})
+    with pytest.raises(TypeError):
+        run_folder.write_json(file, {"a": object()})
+    assert json.loads(file.read_text()) == {"a": 1}
+    assert [path.name for path in tmp_path.iterdir()] == ["summary.json"]
+
+
+def test_versions_name_what_a_run_was_made_with():
+    versions = run_folder.versions()
+    assert versions["packages"]["lcm"] == "1.5.3"
+    revision = versions["git_revision"]
+    assert revision is None or re.fullmatch("[0-9a-f]{40}", revision)
+    assert set(versions["debian"]) >= {"libbox2d-dev", "libeigen3-dev"}
+
+
+def test_two_runs_of_one_second_have_two_folders(tmp_path, monkeypatch):
+    monkeypatch.setattr(paths, "RUNS", tmp_path)
+    monkeypatch.setattr(run_folder.time, "strftime", lambda _: "20260101-000000")
+    first = run_folder.default_path("gathering")
+    first.mkdir()
+    second = run_folder.default_path("gathering")
+    assert (first.name, second.name) == ("gathering-20260101-000000", "gathering-20260101-000000-2")
