@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace rtg {
 
@@ -12,11 +13,19 @@ namespace rtg {
 /// with the flag, `--set KEY=VALUE`, in the place of FILE:LINE if that is where it was given.
 class ConfigError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit ConfigError(std::string line) : std::runtime_error(printable(std::move(line))) {}
 
   ConfigError(const std::string& origin, const std::string& key, const std::string& wrong,
               const std::string& legal)
-      : std::runtime_error(origin + ": key '" + key + "': " + wrong + "; legal: " + legal) {}
+      : ConfigError(origin + ": key '" + key + "': " + wrong + "; legal: " + legal) {}
+
+ private:
+  /// Quotations from a file may hold line ends or worse.
+  static std::string printable(std::string line) {
+    for (char& c : line)
+      if ((c >= 0 && c < ' ') || c == '\x7f') c = ' ';
+    return line;
+  }
 };
 
 }  // namespace rtg

@@ -79,6 +79,14 @@ std::string json(const ConfigNode& node, const std::string& indent) {
   return (is_list ? '[' : '{') + out + '\n' + indent + (is_list ? ']' : '}');
 }
 
+/// At most 60 bytes and no broken UTF-8.
+std::string shortened(const std::string& text) {
+  std::size_t size = 60;
+  if (text.size() <= size) return text;
+  while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80) --size;
+  return text.substr(0, size) + "...";
+}
+
 }  // namespace
 
 ConfigNode text_node(std::string text) {
@@ -113,8 +121,7 @@ std::string in_words(const ConfigNode& node) {
     case Kind::kNull:
       return "nothing";
     case Kind::kScalar:
-      return '\'' + (node.scalar.size() > 60 ? node.scalar.substr(0, 60) + "..." : node.scalar) +
-             '\'';
+      return '\'' + shortened(node.scalar) + '\'';
     case Kind::kList:
       return "a list";
     case Kind::kMap:

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -23,12 +24,13 @@ const std::vector<std::string> kSections{"task", "physics", "reverse", "search",
 const std::string kTaskLegal = "a mapping, or the path of a YAML file with one";
 
 std::string read_text(const std::filesystem::path& file, const std::string& origin) {
+  std::error_code error;
   const char* wrong = "no such file";
-  if (std::filesystem::is_directory(file)) {
+  if (std::filesystem::is_directory(file, error)) {
     wrong = "is a folder";
   } else if (std::ifstream stream(file, std::ios::binary); stream) {
     return {std::istreambuf_iterator<char>(stream), {}};
-  } else if (std::filesystem::exists(file)) {
+  } else if (std::filesystem::exists(file, error)) {
     wrong = "cannot be read";
   }
   throw ConfigError(origin + ": " + wrong + "; legal: a YAML file with a section 'task'");

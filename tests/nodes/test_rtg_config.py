@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
+import json
 import subprocess
 from pathlib import Path
 
 import pytest
 from rtg import paths
+from rtg.settings import TrainSettings
 
 TASK = """\
 task:
@@ -127,3 +130,38 @@ def test_check_says_what_it_understood(file: Path) -> None:
     assert done.returncode == 0
     understood = Path(__file__).with_name("understood.txt").read_text()
     assert done.stdout == understood.replace("{file}", str(file))
+
+
+def test_json_holds_the_values_with_their_types(file: Path) -> None:
+    done = rtg_config(file, "--set", "run.workers=3", "--set", "search.breadth=7", "--json")
+    config = json.loads(done.stdout)
+    assert list(config) == ["task", "physics", "reverse", "search", "train", "run"]
+    assert config["run"] == {
+        "seed": 1,
+        "workers": 3,
+        "in_process": False,
+        "record": False,
+        "bus": "udpm://239.255.76.67:7667?ttl=0",
+    }
+    assert config["search"]["breadth"] == 7
+    assert config["task"]["bodies"][1] == {
+        "name": "a",
+        "kind": "box",
+        "shape": {"box": [1.0, 1.0]},
+        "density": 1.0,
+        "friction": 0.3,
+        "fixed": False,
+        "start": [3.0, 0.0, 0.0],
+    }
+    assert config["task"]["goal"] == [
+        {"kind": "box", "disc": {"centre": [0.0, 0.0], "radius": 2.0}}
+    ]
+
+
+def test_the_learner_of_python_has_the_fields_and_defaults_of_the_loader(file: Path) -> None:
+    train = json.loads(rtg_config(file, "--json").stdout)["train"]
+    settings = dataclasses.asdict(TrainSettings())
+    assert train == settings
+    assert {key: type(value) for key, value in train.items()} == {
+        key: type(value) for key, value in settings.items()
+    }

@@ -1,0 +1,169 @@
+#include "nodes/common/rtg_config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <limits>
+#include <vector>
+
+#include "core/tasks/gathering.hpp"
+#include "nodes/common/field_writer.hpp"
+#include "tests/nodes/two_boxes.hpp"
+
+namespace rtg {
+namespace {
+
+const std::filesystem::path kConfig = RTG_CONFIG_FOLDER;
+
+RtgConfig parsed(const std::string& more, const std::vector<std::string>& overrides = {}) {
+  return parse_config(testing::kTwoBoxes + more, "two_boxes.yaml", overrides);
+}
+
+/// The visited fields of a struct as text, for comparison.
+template <class Config>
+std::string text_of(const Config& config) {
+  return yaml_text(fields_of(config));
+}
+
+std::vector<std::filesystem::path> files() {
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kConfig))
+    if (entry.path().extension() == ".yaml") found.push_back(entry.path());
+  return found;
+}
+
+void expect_same_task(const Task& a, const Task& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.scene.bodies, b.scene.bodies);
+  EXPECT_EQ(a.start, b.start);
+  ASSERT_EQ(a.goal.size(), b.goal.size());
+  for (std::size_t k = 0; k < a.goal.size(); ++k) {
+    EXPECT_EQ(a.goal[k].kind, b.goal[k].kind);
+    EXPECT_EQ(a.goal[k].region, b.goal[k].region);
+    EXPECT_EQ(a.goal[k].centre, b.goal[k].centre);
+    EXPECT_EQ(a.goal[k].radius, b.goal[k].radius);
+    EXPECT_EQ(a.goal[k].normal, b.goal[k].normal);
+    EXPECT_EQ(a.goal[k].offset, b.goal[k].offset);
+  }
+  EXPECT_EQ(text_of(a.push), text_of(b.push));
+  EXPECT_EQ(text_of(a), text_of(b));
+}
+
+TEST(RtgConfig, EveryFileOfOursIsLegalAndItsCanonicalTextReadsBackToItself) {
+  EXPECT_GE(files().size(), 3u);
+  for (const std::filesystem::path& file : files()) {
+    const RtgConfig config = load_config(file);
+    const RtgConfig again = parse_config(canonical_yaml(config), "canonical.yaml");
+    EXPECT_EQ(canonical_yaml(again), canonical_yaml(config)) << file;
+    EXPECT_EQ(config_json(again), config_json(config)) << file;
+    EXPECT_EQ(config_hash(again), config_hash(config)) << file;
+    expect_same_task(again.task, config.task);
+  }
+}
+
+TEST(RtgConfig, TheLayoutsOfTheFilesAreThoseOfTheTests) {
+  expect_same_task(load_config(kConfig / "gathering.yaml").task, gathering());
+  expect_same_task(load_config(kConfig / "gathering_hard.yaml").task, gathering_hard());
+}
+
+TEST(RtgConfig, WhatIsNotGivenHasTheDefaultOfItsStruct) {
+  const RtgConfig config = parsed("");
+  EXPECT_EQ(text_of(config.physics), text_of(PhysicsConfig{}));
+  EXPECT_EQ(text_of(config.reverse), text_of(ReverseConfig{}));
+  EXPECT_EQ(text_of(config.search), text_of(SearchConfig{}));
+  EXPECT_EQ(text_of(config.train), text_of(TrainConfig{}));
+  EXPECT_EQ(config.run.seed, RunConfig{}.seed);
+  EXPECT_EQ(config.run.bus, RunConfig{}.bus);
+  EXPECT_GE(config.run.workers, 1);  // one per core
+}
+
+TEST(RtgConfig, EveryFieldIsReadFromItsKey) {
+  const RtgConfig config = parsed(
+      "  horizon: 7\n  start_jitter: 1e-1\n"
+      "physics: {skin: +0.01}\n"
+      "search: {ranking: 'novelty', breadth: 12}\n"
+      "train: {double_q: false}\n"
+      "run: {seed: 5, workers: 3, in_process: true, bus: \"memq://\"}\n");
+  EXPECT_EQ(config.task.horizon, 7);
+  EXPECT_EQ(config.task.start_jitter, 0.1);
+  EXPECT_EQ(config.physics.skin, 0.01);
+  EXPECT_EQ(config.search.ranking, Ranking::kNovelty);
+  EXPECT_EQ(config.search.breadth, 12);
+  EXPECT_FALSE(config.train.double_q);
+  EXPECT_EQ(config.run.seed, 5);
+  EXPECT_EQ(config.run.workers, 3);
+  EXPECT_TRUE(config.run.in_process);
+  EXPECT_EQ(config.run.bus, "memq://");
+}
+
+TEST(RtgConfig, APresetChoosesTheDefaultsAndTheOtherKeysOverride) {
+  const RtgConfig config = parsed(
+      "reverse: {max_iterations: 7, preset: paper}\n"
+      "train: {preset: paper, target_sync: 9}\n");
+  ReverseConfig reverse = reverse_preset(ReversePreset::kPaper);
+  reverse.max_iterations = 7;
+  TrainConfig train = train_preset(TrainPreset::kPaper);
+  train.target_sync = 9;
+  EXPECT_EQ(text_of(config.reverse), text_of(reverse));
+  EXPECT_EQ(text_of(config.train), text_of(train));
+}
+
+TEST(RtgConfig, APresetOnTheCommandLineStandsAboveWhatPresetsDecideInTheFile) {
+  const std::vector<std::string> overrides{"train.preset=paper", "train.epsilon_start=0.7",
+                                           "reverse.preset=paper"};
+  TrainConfig train = train_preset(TrainPreset::kPaper);
+  train.interactions = 400;
+  train.epsilon_start = 0.7;
+  const RtgConfig config =
+      parsed("train: {interactions: 400, target_sync: 9, epsilon_start: 0.5}\n", overrides);
+  EXPECT_EQ(text_of(config.train), text_of(train));
+  EXPECT_EQ(text_of(config.reverse), text_of(reverse_preset(ReversePreset::kPaper)));
+
+  // A resolved file gives all keys.
+  const std::string resolved = canonical_yaml(parsed("train: {interactions: 400}\n"));
+  EXPECT_EQ(text_of(parse_config(resolved, "config.yaml", overrides).train), text_of(train));
+}
+
+TEST(RtgConfig, SettingsStandAboveTheFileInTheirOrder) {
+  const RtgConfig config = parsed(
+      "search: {breadth: 5, depth: 6}\n",
+      {"search.breadth=7", "run.seed=3", "search.breadth=8", "task.bodies.1.start=[3, 1, 0.5]",
+       "task.bodies.2.density=2", "physics={skin: 0.01}", "run.bus=memq://"});
+  EXPECT_EQ(config.search.breadth, 8);
+  EXPECT_EQ(config.search.depth, 6);
+  EXPECT_EQ(config.run.seed, 3);
+  EXPECT_EQ(config.task.start[1], (Pose{3.0, 1.0, 0.5}));
+  EXPECT_EQ(config.task.scene.bodies[2].density, 2.0);
+  EXPECT_EQ(config.physics.skin, 0.01);
+  EXPECT_EQ(config.run.bus, "memq://");
+}
+
+TEST(RtgConfig, APolygonIsCentredAndItsTextReadsBackToTheSameBits) {
+  const RtgConfig config =
+      parsed("", {"task.bodies.1.shape={vertices: [[5, 5], [6.1, 5], [6, 6.5], [5.3, 6.6]]}"});
+  const Polygon& shape = config.task.scene.bodies[1].shape;
+  EXPECT_LT(moments(shape).centroid.norm(), 1e-12);
+  EXPECT_NEAR((shape.vertices[1] - shape.vertices[0]).x(), 1.1, 1e-12);
+  EXPECT_EQ(config.task.start[1], (Pose{3.0, 0.0, 0.0}));
+  const RtgConfig again = parse_config(canonical_yaml(config), "canonical.yaml");
+  EXPECT_EQ(again.task.scene.bodies[1].shape, shape);
+}
+
+TEST(RtgConfig, TheHashTellsConfigurationsApart) {
+  EXPECT_EQ(config_hash(parsed("")), config_hash(parsed("search: {breadth: 64}\n")));
+  EXPECT_NE(config_hash(parsed("")), config_hash(parsed("search: {breadth: 63}\n")));
+}
+
+TEST(NumberText, IsTheShortestThatReadsBackAndIsARealForYamlAndJson) {
+  EXPECT_EQ(number_text(20.0), "20.0");
+  EXPECT_EQ(number_text(0.1), "0.1");
+  EXPECT_EQ(number_text(-0.0), "-0.0");
+  EXPECT_EQ(number_text(1e-5), "1.0e-05");
+  EXPECT_EQ(number_text(1.5e300), "1.5e+300");
+  EXPECT_EQ(number_text(1.0 / 3.0), "0.3333333333333333");
+  EXPECT_EQ(single_text(1.13f), "1.13");
+  EXPECT_EQ(single_text(std::numeric_limits<float>::min()), "1.1754944e-38");
+}
+
+}  // namespace
+}  // namespace rtg
