@@ -46,13 +46,18 @@ class SuiteSparseSolver final : public KktSolver {
     shape_ = K;
     columns_ = sparse(K);
     const int n = static_cast<int>(K.order());
+    double control[UMFPACK_CONTROL];
+    umfpack_di_defaults(control);
+    // The band as it is: fill grows with the number of blocks, under AMD with its square.
+    control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+    control[UMFPACK_ORDERING] = UMFPACK_ORDERING_NONE;
     void* symbolic = nullptr;
     const int analysed = umfpack_di_symbolic(n, n, columns_.start.data(), columns_.row.data(),
-                                             columns_.value.data(), &symbolic, nullptr, nullptr);
+                                             columns_.value.data(), &symbolic, control, nullptr);
     if (analysed != UMFPACK_OK) return false;
     const int done =
         umfpack_di_numeric(columns_.start.data(), columns_.row.data(), columns_.value.data(),
-                           symbolic, &numeric_, nullptr, nullptr);
+                           symbolic, &numeric_, control, nullptr);
     umfpack_di_free_symbolic(&symbolic);
     return done == UMFPACK_OK;
   }

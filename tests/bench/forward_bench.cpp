@@ -1,0 +1,59 @@
+// One push that moves an object, in each forward simulator.
+
+#include <benchmark/benchmark.h>
+
+#include <memory>
+
+#include "core/forward/newton_simulator.hpp"
+#include "tests/bench/gathering_states.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kMoved = 0.05;  // [m]
+
+struct Push {
+  Poses start;
+  int action = 0;
+};
+
+bool moves_an_object(const Poses& before, const Poses& after) {
+  for (std::size_t k = 1; k < before.size(); ++k)
+    if ((after[k].position() - before[k].position()).norm() > kMoved) return true;
+  return false;
+}
+
+/// All pushes from the goal states that both simulators finish and that move an object.
+std::vector<Push> contact_pushes(const Task& task) {
+  const Box2dSimulator box2d(task.scene, task.push, {});
+  const NewtonSimulator newton(task.scene, task.push, {});
+  std::vector<Push> pushes;
+  for (const Poses& state : bench::goal_states(task))
+    for (int action = 0; action < task.push.headings; ++action) {
+      const PushOutcome outcome = box2d.push(state, action);
+      if (outcome.ok && moves_an_object(state, outcome.end) && newton.push(state, action).ok)
+        pushes.push_back({state, action});
+    }
+  return pushes;
+}
+
+template <class Forward>
+void push(benchmark::State& state) {
+  const Task task = gathering();
+  const std::vector<Push> pushes = contact_pushes(task);
+  if (pushes.empty()) return state.SkipWithError("no push moves an object");
+  const Forward simulator(task.scene, task.push, {});
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Push& next = pushes[k++ % pushes.size()];
+    const PushOutcome outcome = simulator.push(next.start, next.action);
+    if (!outcome.ok) return state.SkipWithError("a push failed");
+    benchmark::DoNotOptimize(outcome.end.data());
+  }
+}
+
+BENCHMARK(push<Box2dSimulator>)->Name("push/box2d")->Unit(benchmark::kMicrosecond);
+BENCHMARK(push<NewtonSimulator>)->Name("push/newton")->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,65 @@
+// The 48 candidates of one state, one core.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+
+#include "core/reverse/reverse_simulator.hpp"
+#include "tests/bench/gathering_states.hpp"
+
+namespace rtg {
+namespace {
+
+/// What became of the candidates of all states solved.
+struct Tally {
+  long candidates = 0, pruned = 0, converged = 0;
+  std::vector<int> iterations;  // of the converged ones
+
+  void add(const ReverseResult& result) {
+    ++candidates;
+    if (result.status == SolveStatus::kPruned) ++pruned;
+    if (result.status != SolveStatus::kConverged) return;
+    ++converged;
+    iterations.push_back(result.iterations);
+  }
+
+  double iterations_median() {
+    if (iterations.empty()) return 0.0;
+    const auto middle = iterations.begin() + static_cast<std::ptrdiff_t>(iterations.size() / 2);
+    std::nth_element(iterations.begin(), middle, iterations.end());
+    return *middle;
+  }
+};
+
+void candidates(benchmark::State& state, ReversePreset preset) {
+  const Task task = gathering();
+  const std::vector<Poses> states = bench::goal_states(task);
+  const ReverseSimulator reverse(task.scene, {}, task.push, reverse_preset(preset));
+  Tally tally;
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Poses& end = states[k++ % states.size()];
+    for (int action = 0; action < task.push.headings; ++action)
+      tally.add(reverse.solve({end, action}));
+  }
+  // `paper` may fail throughout, that is its figure.
+  if (tally.converged == 0 && preset == ReversePreset::kDefault)
+    return state.SkipWithError("no candidate converged");
+  const auto solved = static_cast<double>(tally.candidates - tally.pruned);
+  state.counters["pruned"] =
+      static_cast<double>(tally.pruned) / static_cast<double>(tally.candidates);
+  state.counters["converged"] = static_cast<double>(tally.converged) / solved;
+  state.counters["iterations_median"] = tally.iterations_median();
+}
+
+BENCHMARK_CAPTURE(candidates, default, ReversePreset::kDefault)
+    ->Name("action48/default")
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(bench::kStates);
+BENCHMARK_CAPTURE(candidates, paper, ReversePreset::kPaper)
+    ->Name("action48/paper")
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(bench::kStates);
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,81 @@
+"""Runs the benchmarks: table.py BUILD_FOLDER OUT_FOLDER [--smoke].
+
+Leaves rtg_bench.json (Google Benchmark's own format) and table.md in OUT_FOLDER and prints the table. Times are
+CPU times of one thread. --smoke runs everything as briefly as can be: it shows that the benchmarks work, not how
+fast anything is. Exit status 1 if a benchmark refused its own result.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+# Keys of a benchmark in Google Benchmark's JSON that are not counters of ours.
+_OWN_KEYS = {
+    "name",
+    "family_index",
+    "per_family_instance_index",
+    "run_name",
+    "run_type",
+    "repetitions",
+    "repetition_index",
+    "threads",
+    "iterations",
+    "real_time",
+    "cpu_time",
+    "time_unit",
+    "error_occurred",
+    "error_message",
+    "label",
+}
+
+
+def measure(build: Path, out: Path, smoke: bool) -> dict[str, Any]:
+    """Runs the benchmarks; returns what Google Benchmark wrote."""
+    file = out / "rtg_bench.json"
+    command = [str(build / "tests" / "rtg_bench"), f"--benchmark_out={file}"]
+    if smoke:
+        command += ["--benchmark_min_time=0.001", "--benchmark_filter=-(paper|/256)"]
+    subprocess.run(command, check=True, stdout=sys.stderr)
+    result: dict[str, Any] = json.loads(file.read_text())
+    return result
+
+
+def row(benchmark: dict[str, Any]) -> str:
+    """One line of the table."""
+    name = benchmark["name"].removesuffix(f"/iterations:{benchmark['iterations']}")
+    if benchmark.get("error_occurred"):
+        return f"| `{name}` | | {benchmark['error_message']} |"
+    counters = [f"{key} {value:.3g}" for key, value in benchmark.items() if key not in _OWN_KEYS]
+    time = f"{benchmark['cpu_time']:.4g} {benchmark['time_unit']}"
+    return f"| `{name}` | {time} | {', '.join(counters)} |"
+
+
+def table(result: dict[str, Any]) -> str:
+    """The benchmarks as Markdown."""
+    context = result["context"]
+    lines = [
+        f"{context['date']}, {context['num_cpus']} × {context['mhz_per_cpu']} MHz",
+        "",
+        "| benchmark | CPU time | |",
+        "|---|---:|---|",
+        *(row(benchmark) for benchmark in result["benchmarks"]),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def main(build: Path, out: Path, smoke: bool) -> int:
+    """Exit status."""
+    out.mkdir(parents=True, exist_ok=True)
+    result = measure(build, out, smoke)
+    text = table(result)
+    (out / "table.md").write_text(text)
+    print(text, end="")
+    return int(any(benchmark.get("error_occurred") for benchmark in result["benchmarks"]))
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2]), smoke="--smoke" in sys.argv[3:]))
