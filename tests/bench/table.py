@@ -1,8 +1,9 @@
 """Runs the benchmarks: table.py BUILD_FOLDER OUT_FOLDER [--smoke].
 
-Leaves rtg_bench.json (Google Benchmark's own format) and table.md in OUT_FOLDER and prints the table. Times are
-CPU times of one thread. --smoke runs everything as briefly as can be: it shows that the benchmarks work, not how
-fast anything is. Exit status 1 if a benchmark refused its own result.
+Leaves rtg_bench.json (Google Benchmark's own format) and table.md in OUT_FOLDER and prints the
+table. Times are CPU times of one thread. --smoke runs everything as briefly as can be: it shows
+that the benchmarks work, not how fast anything is. Exit status 1 if a benchmark refused its own
+result.
 """
 
 from __future__ import annotations
