@@ -5,7 +5,7 @@ import random
 
 import numpy as np
 import pytest
-from rtg.transition_stream import Rows, StreamCursor, to_rows
+from rtg.transition_stream import FAREWELLS, Rows, StreamCursor, to_rows
 
 
 class Server:
@@ -94,17 +94,26 @@ def test_a_good_network_needs_no_question():
     for first in range(0, 50, 10):
         assert cursor.on_rows(first, None, 10, now=0.1 * first) == [(None, 0)]
     cursor.on_tail(50, True)
-    ack = cursor.ack_due(now=10.0)
-    assert ack == (50, [])
     assert cursor.complete
+
+
+def test_who_has_all_of_a_sealed_stream_says_so_many_times_and_goes_on_saying_it():
+    cursor = StreamCursor(credit=100)
+    cursor.on_rows(0, None, 10, now=0.0)
+    cursor.on_tail(10, False)
+    assert cursor.ack_due(now=1.0) == (10, 100, [])  # not sealed yet
+    cursor.on_tail(10, True)
+    assert [cursor.ack_due(now=1.0) for _ in range(FAREWELLS)] == [(10, 0, [])] * FAREWELLS
+    assert cursor.ack_due(now=1.1) is None
+    assert cursor.ack_due(now=1.6) == (10, 0, [])
 
 
 def test_a_gap_is_asked_for_at_once_and_again_after_a_while():
     cursor = StreamCursor(credit=100)
     assert cursor.on_rows(10, "b", 10, now=0.0) == []
-    assert cursor.ack_due(now=0.0) == (0, [(0, 9)])
+    assert cursor.ack_due(now=0.0) == (0, 100, [(0, 9)])
     assert cursor.ack_due(now=0.05) is None
-    assert cursor.ack_due(now=0.11) == (0, [(0, 9)])
+    assert cursor.ack_due(now=0.11) == (0, 100, [(0, 9)])
     assert cursor.on_rows(0, "a", 10, now=0.12) == [("a", 0), ("b", 0)]
     assert cursor.cursor == 20
 
@@ -113,13 +122,13 @@ def test_lost_last_rows_are_seen_by_the_tail():
     cursor = StreamCursor(credit=100)
     cursor.on_tail(7, True)
     assert not cursor.complete
-    assert cursor.ack_due(now=1.0) == (0, [(0, 6)])
+    assert cursor.ack_due(now=1.0) == (0, 100, [(0, 6)])
 
 
 def test_rows_beyond_the_credit_are_neither_held_nor_forgotten():
     cursor = StreamCursor(credit=20)
     assert cursor.on_rows(30, "far", 10, now=0.0) == []
-    assert cursor.ack_due(now=1.0) == (0, [(0, 19)])
+    assert cursor.ack_due(now=1.0) == (0, 20, [(0, 19)])
 
 
 def test_overlapping_pieces_are_cut():

@@ -114,6 +114,12 @@ class Bus:
         subscription.set_queue_capacity(QUEUE_CAPACITY)
         self._subscriptions.append(subscription)
 
+    def close(self) -> None:
+        """Hears nothing more. The handlers are let go; LCM's would be kept until the very end."""
+        for subscription in self._subscriptions:
+            self._lcm.unsubscribe(subscription)
+        self._subscriptions.clear()
+
     def decode(self, message_type: type[Message], data: bytes) -> Message | None:
         """The message, or None and a count of why not."""
         message = decoded(message_type, data)

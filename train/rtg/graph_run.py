@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from rtg.training_watch import TrainingWatch
 from rtg.transition_stream import TransitionStream
 
 _POLL = 0.1  # [s]
+_GOOD_BYE = 5.0  # [s] for the coordinator to leave by itself
 
 
 class _Recording:
@@ -32,6 +34,10 @@ class _Recording:
 
     def poll(self, timeout: float) -> None:
         self._stream.poll(timeout)
+
+    @property
+    def complete(self) -> bool:
+        return self._stream.complete
 
     def write(self, plan: RunPlan) -> int:
         """Writes transitions.npz if nothing is missing; returns how many rows are."""
@@ -53,18 +59,20 @@ class GraphRun:
         self._graph = ProcessGraph(plan.folder / "logs")
         self._start = time.monotonic()
         self._timed = False
+        self._consumed = math.inf  # when the consumer had all
 
     def run(self) -> dict[str, Any]:
         """Starts everything, waits for its end; returns what was measured."""
         with Interrupts(on_demand=self._graph.kill) as interrupts:
             try:
                 self._start_programs()
-                while self._graph.working():
+                while self._graph.working() and not self._is_over():
                     self._step()
                     interrupts.raise_if_requested()
+                self._graph.tend(leaving=True)
             finally:
                 self._graph.stop()
-        self._graph.tend(leaving=True)
+                self._bus.close()
         missing = self._recording.write(self._plan) if self._recording else 0
         if missing:
             raise RunError(f"the coordinator ended, {missing} transitions have not arrived")
@@ -100,6 +108,16 @@ class GraphRun:
             self._display.note(note)
         self._time_generation()
         self._display.show(self._training.update(self._watch.state))
+
+    def _is_over(self) -> bool:
+        """Whether the coordinator waits for good-byes that were lost."""
+        if not self._timed or (self._plan.train and self._graph.working("trainer")):
+            return False
+        if self._recording and not self._recording.complete:
+            return False
+        now = time.monotonic()
+        self._consumed = min(self._consumed, now)
+        return now - self._consumed > _GOOD_BYE
 
     def _time_generation(self) -> None:
         if self._watch.state.phase == "sealed" and not self._timed:

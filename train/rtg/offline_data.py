@@ -22,6 +22,9 @@ class Source(Protocol):
     def poll(self, timeout: float) -> int:
         """Hands over what comes within `timeout` s; returns how many rows."""
 
+    def close(self) -> None:
+        """Takes nothing more."""
+
     @property
     def complete(self) -> bool:
         """Whether all rows have been handed over."""
@@ -147,3 +150,6 @@ class FileSource:
             return 0
         self._data.take(rows)
         return len(rows.action)
+
+    def close(self) -> None:
+        pass

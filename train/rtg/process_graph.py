@@ -63,9 +63,9 @@ class ProcessGraph:
         """Process ids of the programs by name."""
         return {member.node.name: member.node.pid for member in self._members}
 
-    def working(self) -> bool:
-        """Whether a program that is no helper still runs."""
-        return bool(self._running(helpers=False))
+    def working(self, name: str | None = None) -> bool:
+        """Whether a program that is no helper still runs, or the one of that name."""
+        return any(name in (None, node.name) for node in self._running(helpers=False))
 
     def wait(self, seconds: float) -> bool:
         """working(), once one has ended or so much time has passed."""

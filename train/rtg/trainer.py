@@ -9,6 +9,7 @@ a second one: exit at once.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
 import signal
@@ -80,10 +81,10 @@ def train(args: argparse.Namespace, stop: StopSignals) -> int:
     training = Training(config, args.folder)
     if args.resume and training.has_checkpoint():
         training.restore()
-    source = _source(training, args)
-    if not training.run(source, stop, record=not args.no_stream):
-        return 128 + stop.number
-    training.finish(source.lost)
+    with contextlib.closing(_source(training, args)) as source:
+        if not training.run(source, stop, record=not args.no_stream):
+            return 128 + stop.number
+        training.finish(source.lost)
     return 0
 
 

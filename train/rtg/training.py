@@ -84,8 +84,9 @@ class Training:
         return self.done and source.complete
 
     def _take_in(self, source: Source, record: bool, timeout: float) -> None:
-        if not source.complete:
-            source.poll(timeout)
+        news = not source.complete
+        source.poll(timeout)  # also when complete: the stream is told so again and again
+        if news:
             self.data.prove_bounds(source.complete)
             if source.complete and record:
                 dataset.write(self.folder / "transitions.npz", self.data.all())

@@ -17,6 +17,7 @@ ACK_INTERVAL = 0.5  # [s], without progress
 RETRY_INTERVAL = 0.1  # [s], between two questions for the same rows
 MIN_INTERVAL = 0.01  # [s], between any two acknowledgements
 MAX_RANGES = 32  # of one acknowledgement
+FAREWELLS = 10  # acknowledgements of the complete stream at once: who has it all may stop talking
 SOURCES = 3  # step replay, chain replay, roll-out
 
 
@@ -39,6 +40,7 @@ class Ack(NamedTuple):
     """What a consumer tells the server."""
 
     cursor: int  # rows below have been consumed
+    credit: int  # rows it takes beyond the cursor; 0: it has all of a sealed stream
     missing: list[tuple[int, int]]  # ranges asked for, first and last row
 
 
@@ -59,6 +61,7 @@ class StreamCursor:
         self._asked_at = -1e9
         self._asked_end = 0
         self._arrived_at = -1e9
+        self._farewells = FAREWELLS
 
     def on_rows(self, first: int, rows: Any, size: int, now: float) -> list[tuple[Any, int]]:
         """Takes rows first ... first + size - 1.
@@ -79,7 +82,9 @@ class StreamCursor:
         self.sealed = self.sealed or sealed
 
     def ack_due(self, now: float) -> Ack | None:
-        """What to tell the server now, if anything."""
+        """What to tell the server now, if anything; to be asked until there is nothing."""
+        if self.complete:
+            return self._farewell(now)
         missing = self._missing()
         ask = bool(missing) and (
             self.cursor >= self._asked_end  # all that was asked for has come
@@ -88,17 +93,23 @@ class StreamCursor:
         # Rows that nobody has seen yet are most likely on their way.
         if ask and not self._held and now - self._arrived_at < RETRY_INTERVAL / 2:
             ask = False
-        moved = self.cursor - self._acked_cursor >= self.credit // 4 or (
-            self.complete and self.cursor > self._acked_cursor
-        )
+        moved = self.cursor - self._acked_cursor >= self.credit // 4
         idle = now - self._acked_at >= ACK_INTERVAL
         if not (ask or moved or idle) or now - self._acked_at < MIN_INTERVAL:
             return None
         self._acked_at, self._acked_cursor = now, self.cursor
         if not ask:
-            return Ack(self.cursor, [])
+            return Ack(self.cursor, self.credit, [])
         self._asked_at, self._asked_end = now, missing[-1][1] + 1
-        return Ack(self.cursor, missing)
+        return Ack(self.cursor, self.credit, missing)
+
+    def _farewell(self, now: float) -> Ack | None:
+        if self._farewells > 0:
+            self._farewells -= 1
+        elif now - self._acked_at < ACK_INTERVAL:
+            return None
+        self._acked_at = now
+        return Ack(self.cursor, 0, [])
 
     @property
     def complete(self) -> bool:
@@ -183,6 +194,10 @@ class TransitionStream:
         self._acknowledge()
         return self._cursor.cursor - before
 
+    def close(self) -> None:
+        """Takes nothing more; closes the bus."""
+        self._bus.close()
+
     @property
     def received(self) -> int:
         """Rows handed to the sink."""
@@ -223,13 +238,13 @@ class TransitionStream:
             raise RuntimeError("the coordinator was restarted: two streams must not be mixed")
 
     def _acknowledge(self) -> None:
-        ack = self._cursor.ack_due(time.monotonic())
-        if ack is None or self._stream is None:
+        if self._stream is None:
             return
-        message = message_type("stream_ack_t")()
-        message.stream, message.consumer = self._stream, self._consumer
-        message.cursor, message.credit = ack.cursor, self._cursor.credit
-        message.n = len(ack.missing)
-        message.first = [first for first, _ in ack.missing]
-        message.last = [last for _, last in ack.missing]
-        self._bus.publish("RTG_ACK", message)
+        while ack := self._cursor.ack_due(time.monotonic()):
+            message = message_type("stream_ack_t")()
+            message.stream, message.consumer = self._stream, self._consumer
+            message.cursor, message.credit = ack.cursor, ack.credit
+            message.n = len(ack.missing)
+            message.first = [first for first, _ in ack.missing]
+            message.last = [last for _, last in ack.missing]
+            self._bus.publish("RTG_ACK", message)
