@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 #include "core/world/separation.hpp"
 
@@ -136,11 +137,12 @@ void StepEnergy::add_contact(const Contact& c, const VectorXd& next, const Vecto
 }
 
 bool StepEnergy::separated(const VectorXd& p) const {
+  const double cut = 2.0 * std::numbers::ln2 / sharpness_;  // what smoothing takes off two corners
   for (int i = 0; i < movable_; ++i)
     for (int j = i + 1; j < bodies(); ++j) {
       const double reach = radius_[i] + radius_[j];
       if ((p.segment<2>(3 * i) - p.segment<2>(3 * j)).squaredNorm() > reach * reach) continue;
-      if (separation(shapes_[i], pose_of(p, i), shapes_[j], pose_of(p, j)) <= 0.0) return false;
+      if (separation(shapes_[i], pose_of(p, i), shapes_[j], pose_of(p, j)) <= -cut) return false;
     }
   return true;
 }

@@ -79,7 +79,8 @@ class StepEnergy {
   };
   Model model(const VectorXd& next, const VectorXd& now, const VectorXd& lag) const;
 
-  /// Separating-axis test of all pairs of which one may move.
+  /// Separating-axis test of all pairs of which one may move. Corners, which the smoothed distance
+  /// cuts, may overlap by 2 ln 2/α.
   bool separated(const VectorXd& p) const;
   /// Every gap ≥ `share` of what it was in `before`, and separated().
   bool keeps_gaps(const VectorXd& before, const VectorXd& after, double share) const;

@@ -15,6 +15,10 @@ constexpr double kLeastProximal = 1e-4, kMostProximal = 1e6;
 constexpr double kLeastStep = 1e-4;
 constexpr double kArmijo = 1e-4;
 constexpr double kSmallViolation = 1e-2;  // above it, the objective alone decides nothing
+constexpr double kMostViolation = 1.0;    // θ may not grow beyond it
+constexpr double kShortStep = 0.3;        // steps no longer ask for a larger proximal term
+constexpr double kGrowth = 8.0, kShrinkage = 0.25;  // of δ
+constexpr double kExactBand = 10.0;  // exact Hessians last until δ exceeds so many exact_below
 
 class FilterSqp {
  public:
@@ -37,8 +41,9 @@ class FilterSqp {
   /// Linearises at the iterate and looks for a reason to stop.
   bool ended() {
     if (failed_) return true;
-    const bool exact = proximal_ <= problem_.config.exact_below;
-    lin_.emplace(problem_, result_.x, Curvature{exact, proximal_});
+    if (proximal_ <= problem_.config.exact_below) exact_ = true;
+    if (proximal_ > kExactBand * problem_.config.exact_below) exact_ = false;
+    lin_.emplace(problem_, result_.x, Curvature{exact_, proximal_});
     result_.infeasibility = lin_->violation().max();
     result_.stationarity = lin_->stationarity();
     if (!std::isfinite(result_.infeasibility + result_.stationarity))
@@ -60,11 +65,12 @@ class FilterSqp {
     if (lin_->model_curvature(solution) <= 0.0) return regularise(SolveStatus::kLineSearchFailed);
     const double alpha = line_search(lin_->direction(solution, lin_->violation()));
     if (alpha == 0.0) return regularise(SolveStatus::kLineSearchFailed);
-    if (alpha > 0.5) proximal_ = std::max(proximal_ / 4.0, kLeastProximal);
+    if (alpha <= kShortStep) proximal_ *= kGrowth;
+    if (alpha > 0.5) proximal_ = std::max(kShrinkage * proximal_, kLeastProximal);
   }
 
   void regularise(SolveStatus if_hopeless) {
-    proximal_ *= 8.0;
+    proximal_ *= kGrowth;
     if (proximal_ > kMostProximal) stop(if_hopeless);
   }
 
@@ -99,6 +105,7 @@ class FilterSqp {
               double slope) {
     const Filter::Entry then{v.l1(), objective(problem_, trial)};
     if (!std::isfinite(then.violation + then.objective) || !filter_.accepts(then)) return false;
+    if (then.violation > std::max(kMostViolation, now.violation)) return false;
     const bool switching = slope < 0.0 &&
                            alpha * std::pow(-slope, 2.3) > std::pow(now.violation, 1.1) &&
                            now.violation < kSmallViolation;
@@ -115,7 +122,7 @@ class FilterSqp {
   double proximal_;
   Filter filter_;
   std::optional<Linearisation> lin_;
-  bool failed_ = false;
+  bool exact_ = false, failed_ = false;
   SqpResult result_;
 };
 

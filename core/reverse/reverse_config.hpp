@@ -27,7 +27,7 @@ struct ReverseConfig {
   double terminal_weight = 300.0;    // spring to the given final state; 0: that state is fixed
   double terminal_tolerance = 0.05;  // a solution that misses the final state by more fails [m]
   double proximal_start = 1.0;       // δ of the first iteration
-  double exact_below = 0.02;         // exact Lagrangian Hessian once δ is no larger
+  double exact_below = 0.1;          // exact Lagrangian Hessian once δ is no larger
 
   template <class Visitor>
   void visit(Visitor& v) {

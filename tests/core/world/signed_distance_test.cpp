@@ -1,0 +1,59 @@
+#include "core/world/signed_distance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/math/rng.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kAlpha = 50.0;
+
+double distance(const HalfPlanes& planes, const Vector2d& x) {
+  return SignedDistance<double>(planes, kAlpha, x).value;
+}
+
+TEST(SignedDistance, HalfPlanesHaveUnitNormals) {
+  for (const Polygon& shape : {box(1.2, 1.2), box(0.4, 3.0), regular_polygon(6, 0.8)}) {
+    const HalfPlanes planes = half_planes(shape);
+    for (int k = 0; k < planes.count; ++k) {
+      EXPECT_NEAR(planes.normal[k].norm(), 1.0, 1e-15);
+      for (const Vector2d& v : shape.vertices)
+        EXPECT_LE(planes.normal[k].dot(v), planes.offset[k] + 1e-15);
+    }
+  }
+}
+
+TEST(SignedDistance, IsExactOnFaces) {
+  const HalfPlanes square = half_planes(box(1.2, 1.2));
+  EXPECT_NEAR(distance(square, {0.7, 0.1}), 0.1, 1e-8);
+  EXPECT_NEAR(distance(square, {-0.2, -0.9}), 0.3, 1e-8);
+}
+
+TEST(SignedDistance, CutsCornersByTheKnownLength) {
+  const HalfPlanes square = half_planes(box(1.2, 1.2));
+  const double cut = std::numbers::sqrt2 * std::numbers::ln2 / kAlpha;  // along the bisector
+  const Vector2d tip = Vector2d::Constant(0.6 - cut / std::numbers::sqrt2);
+  EXPECT_NEAR(distance(square, tip), 0.0, 1e-12);
+}
+
+TEST(SignedDistance, DerivativesMatchDifferences) {
+  const HalfPlanes hexagon = half_planes(regular_polygon(6, 0.8));
+  Rng rng(3);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Vector2d x(rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0));
+    const Vector2d along(rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0));
+    const double t = 1e-6;
+    const SignedDistance<double> d(hexagon, kAlpha, x);
+    const SignedDistance<double> up(hexagon, kAlpha, x + t * along);
+    const SignedDistance<double> down(hexagon, kAlpha, x - t * along);
+    EXPECT_NEAR(d.gradient.dot(along), (up.value - down.value) / (2.0 * t), 1e-8);
+    EXPECT_LT((d.hessian() * along - (up.gradient - down.gradient) / (2.0 * t)).norm(), 1e-6);
+    EXPECT_LT((d.third(along) - (up.hessian() - down.hessian()) / (2.0 * t)).norm(), 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace rtg
