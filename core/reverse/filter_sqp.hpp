@@ -4,7 +4,7 @@
 
 namespace rtg {
 
-/// The default SQP, design 2.4: Newton steps on the relaxed problem with a proximal term δ,
+/// The default SQP: Newton steps on the relaxed problem with a proximal term δ,
 /// globalised by a filter line search [Wächter & Biegler 2006] with second-order correction. δ
 /// falls on full steps, rises when no step is acceptable or the model has negative curvature, and
 /// once it is small the exact Hessian of the Lagrangian takes over.

@@ -8,7 +8,7 @@ namespace rtg {
 
 /// Kinematic guess of a predecessor, without any physics: the robot moves back one stride against
 /// its heading; the one object that it touches in front (if any) is pulled back with it, unturned.
-/// The baseline that the reverse simulator must beat, design 5.2.
+/// The baseline that the reverse simulator must beat.
 ///
 ///   start(robot) = end(robot) - stride·d,   start(object) = end(object) - L·d
 ///

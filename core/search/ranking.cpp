@@ -9,7 +9,7 @@
 namespace rtg {
 namespace {
 
-constexpr double kApproachWeight = 0.12;  // reference/rl.md 5d
+constexpr double kApproachWeight = 0.12;  // per metre of layout distance
 constexpr double kPullCone = 0.5;         // [rad]
 constexpr double kInPlace = 0.25;         // an object this near to its place needs no contact [m]
 

@@ -12,7 +12,7 @@ enum class Ranking { kStartDistance, kNovelty, kDisplacement };
 inline constexpr std::array<std::string_view, 3> kRankings{"start_distance", "novelty",
                                                            "displacement"};
 
-/// Beam search and the stored data set, design 5.2.
+/// Beam search and the stored data set.
 struct SearchConfig {
   ReverseMode reverse = ReverseMode::kRrbs;
   Ranking ranking = Ranking::kStartDistance;

@@ -7,7 +7,7 @@
 namespace rtg {
 namespace {
 
-constexpr double kObjectWeight = 1.5;  // w, design 5.2
+constexpr double kObjectWeight = 1.5;  // w
 constexpr double kAngleRadius = 0.5;   // r [m], about the radius of gyration of a 1.2 m box
 
 bool maps_onto_itself(const Polygon& shape, std::size_t shift, double tolerance) {

@@ -8,7 +8,7 @@
 namespace rtg {
 namespace {
 
-constexpr float kDistanceWeight = 16.0F;  // actions per metre, design 5.2
+constexpr float kDistanceWeight = 16.0F;  // actions per metre
 constexpr int kBlock = 512;               // entries whose coordinates stay in the first-level cache
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace rtg {
 ///   score = depth + 16 / m · distance(state of the entry, current state),
 ///
 /// depth the number of actions from there to success. It needs no simulator and no learning, so its
-/// success rate judges the data, design 5.2.
+/// success rate judges the data.
 class TreePolicy {
  public:
   explicit TreePolicy(const Task& task);

@@ -4,7 +4,7 @@
 
 namespace rtg {
 
-/// Gathering, design 5.1: push three scattered boxes together, all centres within 2 m of the
+/// Gathering: push three scattered boxes together, all centres within 2 m of the
 /// origin. A random policy never gets there; 11 pushes suffice.
 Task gathering();
 

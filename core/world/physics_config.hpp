@@ -2,7 +2,7 @@
 
 namespace rtg {
 
-/// Constants of the step energy Ψ and of the Box2D world matched to it, design 2.2.
+/// Constants of the step energy Ψ and of the Box2D world matched to it.
 struct PhysicsConfig {
   double time_step = 0.05;     // Δt of a sub-step [s]
   int sub_steps = 10;          // h, sub-steps of one push

@@ -20,7 +20,7 @@ struct Polygon {
 /// Box2D's limit, and ours.
 inline constexpr std::size_t kMaxVertices = 8;
 
-/// Area integrals of a polygon of unit density, reference/physics.md 1.1.
+/// Area integrals of a polygon of unit density.
 struct Moments {
   double area = 0.0;                     // [m²]
   Vector2d centroid = Vector2d::Zero();  // [m]

@@ -29,8 +29,8 @@ HalfPlanes half_planes(const Polygon& shape);
 ///   d(x) = 1/α ln Σ_k exp(α (n_k·x - b_k)),   w = softmax(α (n_k·x - b_k)),
 ///   ∇d = n̄ = Σ w n,   ∇²d = α (Σ w n nᵀ - n̄ n̄ᵀ),   ∇³d = α² Σ w (n - n̄)^⊗3,
 ///
-/// all in the polygon's frame. Exact on faces; corners are cut by at most √2 ln 2/α
-/// (reference/physics.md 1.5). S is double or Dual.
+/// all in the polygon's frame. Exact on faces; right angles are cut by at most
+/// √2 ln 2/α. S is double or Dual.
 template <class S>
 class SignedDistance {
  public:

@@ -8,7 +8,7 @@ namespace rtg {
 enum class TrainPreset { kDefault, kPaper };
 inline constexpr std::array<std::string_view, 2> kTrainPresets{"default", "paper"};
 
-/// How the Python trainer learns, design 5.3. The values here are the preset `default`: what works
+/// How the Python trainer learns. The values here are the preset `default`: what works
 /// best within Table 2's interaction budget. A loader begins with train_preset(preset) and reads
 /// the other fields over it.
 struct TrainConfig {

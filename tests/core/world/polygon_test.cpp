@@ -5,8 +5,7 @@
 namespace rtg {
 namespace {
 
-// Reference values of shared/reference/physics.md 1.1, checked there against shapely, pymunk and
-// Box2D.
+// Reference values of shapely, pymunk and Box2D, which agree.
 TEST(Polygon, MomentsMatchReferenceValues) {
   const Polygon shape{{{.1, -.4}, {.9, -.3}, {1.2, .5}, {.4, .9}, {-.2, .3}}};
   const Moments m = moments(shape);
