@@ -12,7 +12,7 @@ bool moved_object(const Poses& before, const Poses& after) {
   return false;
 }
 
-// Gathering must be out of reach of exploration; a throwaway model of the task in Python
+// Gathering must be out of reach of exploration; a throwaway model of the task
 // touched an object in 5 to 12.6 % of random steps.
 TEST(RandomPolicy, NeverGathersAndSeldomTouches) {
   const Task task = gathering();
