@@ -87,6 +87,14 @@ void JobDispatcher::resend_unheard(Seconds now, std::vector<Send>& sends) {
     }
 }
 
+/// Units that a worker can take now. One that may be deadly is alone with it.
+int JobDispatcher::room(const Worker& worker, bool suspect) const {
+  const int leases = static_cast<int>(worker.leases.size());
+  if (suspect) return leases == 0 ? worker.capacity : 0;
+  if (leases == 1 && jobs_.at(*worker.leases.begin()).victims > 0) return 0;
+  return worker.capacity - leases;
+}
+
 void JobDispatcher::hand_out(Seconds now, std::vector<Send>& sends) {
   while (!queue_.empty()) {
     const JobId id = queue_.front();
@@ -96,10 +104,10 @@ void JobDispatcher::hand_out(Seconds now, std::vector<Send>& sends) {
       continue;
     }
     auto freest = workers_.end();
-    int room = 0;
+    int most = 0;
     for (auto it = workers_.begin(); it != workers_.end(); ++it) {
-      const int free = it->second.capacity - static_cast<int>(it->second.leases.size());
-      if (free > room) freest = it, room = free;
+      const int free = room(it->second, job.victims > 0);
+      if (free > most) freest = it, most = free;
     }
     if (freest == workers_.end()) return;
     queue_.pop_front();

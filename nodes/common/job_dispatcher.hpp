@@ -20,13 +20,14 @@ using Seconds = double;
 /// -> LEASED -> DONE or POISON. Free of I/O: events in, messages to send out, the clock passed in.
 ///
 /// Workers announce capacity and what they hold; a lease they do not hold is sent again, the leases
-/// of a silent worker go to others. Results count by id, whoever sends them and whatever the
+/// of a silent worker go to others, each alone so that one deadly unit does not make its neighbours
+/// look deadly. Results count by id, whoever sends them and whatever the
 /// attempt, so no fault changes an answer.
 class JobDispatcher {
  public:
   struct Limits {
     Seconds silence = 2.0;  // without a beat for so long: dead
-    Seconds resend = 0.25;  // a beat so long after sending should list the job
+    Seconds resend = 0.1;   // a beat so long after sending should list the job
     Seconds lease = 120.0;  // from start to result, however alive the worker
     int poison = 3;         // workers that one job may take down
   };
@@ -82,6 +83,7 @@ class JobDispatcher {
   void take_back_expired_leases(Seconds now);
   void take_back(JobId id);
   void resend_unheard(Seconds now, std::vector<Send>& sends);
+  int room(const Worker& worker, bool suspect) const;
   void hand_out(Seconds now, std::vector<Send>& sends);
 
   Limits limits_;

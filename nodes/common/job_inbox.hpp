@@ -43,6 +43,7 @@ class JobInbox {
     order_.pop_front();
   }
 
+  /// Jobs that wait or are being worked on.
   std::vector<JobId> held() const { return {held_.begin(), held_.end()}; }
 
  private:

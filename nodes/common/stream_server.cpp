@@ -55,9 +55,15 @@ std::int64_t StreamServer::slowest_cursor() const {
   return cursor;
 }
 
-bool StreamServer::drained(int consumers) const {
-  return sealed_ && this->consumers() >= consumers &&
-         (consumers_.empty() || slowest_cursor() == count());
+bool StreamServer::drained(int consumers, Seconds now) const {
+  int complete = 0;
+  for (const auto& [id, consumer] : consumers_) {
+    if (consumer.cursor == count())
+      ++complete;
+    else if (now - consumer.heard <= limits_.silence)
+      return false;
+  }
+  return sealed_ && complete >= consumers;
 }
 
 /// Unites `range` with those asked for already, so that a repeated question costs nothing.

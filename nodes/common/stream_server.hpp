@@ -60,8 +60,12 @@ class StreamServer {
   std::int64_t slowest_cursor() const;
   long resent() const { return resent_; }  // rows sent again on request
 
-  /// Whether at least `consumers` have every row of a sealed stream.
-  bool drained(int consumers) const;
+  /// Whether due() will have more to send although nothing new comes in.
+  bool backlog(Seconds now) const { return !asked_.empty() || live_ < live_limit(now); }
+
+  /// Whether the stream is sealed, at least `consumers` have all of it, and no living one lacks a
+  /// row.
+  bool drained(int consumers, Seconds now) const;
 
  private:
   struct Consumer {

@@ -46,8 +46,8 @@ TEST(JobDispatcher, SendsAgainWhatALaterBeatDoesNotList) {
   jobs.submit(Ids{10});
   beat(jobs, kAnn, 0.0);
   jobs.due(0.0);
-  beat(jobs, kAnn, 0.1);  // may have left before the job arrived
-  EXPECT_EQ(jobs.due(0.1), Sends{});
+  beat(jobs, kAnn, 0.05);  // may have left before the job arrived
+  EXPECT_EQ(jobs.due(0.05), Sends{});
   beat(jobs, kAnn, 0.3);
   EXPECT_EQ(jobs.due(0.3), (Sends{{kAnn, 10, 2}}));
   beat(jobs, kAnn, 0.9, {10});
@@ -62,6 +62,8 @@ TEST(JobDispatcher, GivesTheJobsOfASilentWorkerToAnother) {
   jobs.due(0.0);
   beat(jobs, kBob, 1.9, {}, 4);
   EXPECT_EQ(jobs.due(1.9), (Sends{{kBob, 11, 1}}));
+  EXPECT_EQ(jobs.due(2.1), Sends{});
+  EXPECT_EQ(jobs.on_result(11), Verdict::kAccepted);
   EXPECT_EQ(jobs.due(2.1), (Sends{{kBob, 10, 2}}));
   EXPECT_EQ(jobs.workers(), 1);
   EXPECT_EQ(jobs.reissued(), 1);
@@ -91,6 +93,19 @@ TEST(JobDispatcher, AJobThatTakesThreeWorkersDownIsPoison) {
   EXPECT_TRUE(jobs.finished());
   EXPECT_EQ(jobs.poisoned(), Ids{10});
   EXPECT_EQ(jobs.on_result(10), Verdict::kDuplicate);
+}
+
+TEST(JobDispatcher, AJobThatSawAWorkerDieIsTriedAloneSoThatOthersDoNotShareItsFate) {
+  JobDispatcher jobs;
+  jobs.submit(Ids{10, 11, 12});
+  beat(jobs, kAnn, 0.0);
+  EXPECT_EQ(jobs.due(0.0), (Sends{{kAnn, 10, 1}, {kAnn, 11, 1}}));
+  beat(jobs, kBob, 3.0, {}, 2);
+  EXPECT_EQ(jobs.due(3.0), (Sends{{kBob, 11, 2}}));
+  jobs.on_result(11);
+  EXPECT_EQ(jobs.due(3.0), (Sends{{kBob, 10, 2}}));
+  beat(jobs, kCat, 4.0, {}, 2);
+  EXPECT_EQ(jobs.due(4.0), (Sends{{kCat, 12, 1}}));
 }
 
 TEST(JobDispatcher, ANewSetForgetsTheOldOne) {

@@ -85,15 +85,35 @@ TEST(StreamServer, AnOldAcknowledgementMovesNothingBack) {
   EXPECT_EQ(server.slowest_cursor(), 300);
 }
 
-TEST(StreamServer, IsDrainedWhenEveryConsumerHasTheSealedStream) {
+TEST(StreamServer, IsDrainedWhenEveryLivingConsumerHasTheSealedStream) {
   StreamServer server = server_with(400);
   ack(server, 400);
-  EXPECT_FALSE(server.drained(1));
+  EXPECT_FALSE(server.drained(1, 0.0));
   server.seal();
-  EXPECT_TRUE(server.drained(1));
-  EXPECT_FALSE(server.drained(2));
-  EXPECT_TRUE(server.on_ack({8, 399, 10, {}}, 0.0));
-  EXPECT_FALSE(server.drained(1));
+  EXPECT_TRUE(server.drained(1, 0.0));
+  EXPECT_FALSE(server.drained(2, 0.0));
+  EXPECT_TRUE(server.on_ack({8, 399, 10, {}}, 1.0));
+  EXPECT_FALSE(server.drained(1, 1.0));
+  EXPECT_FALSE(server.drained(1, 3.0));
+  EXPECT_TRUE(server.drained(1, 3.1));  // the one that lacks a row fell silent
+  EXPECT_FALSE(server.drained(2, 3.1));
+}
+
+TEST(StreamServer, NobodyNeedsToDrainAStreamWithoutConsumers) {
+  StreamServer server = server_with(400);
+  server.seal();
+  EXPECT_TRUE(server.drained(0, 0.0));
+}
+
+TEST(StreamServer, TellsWhetherMoreIsToBeSent) {
+  StreamServer server = server_with(1000);
+  EXPECT_TRUE(server.backlog(0.0));
+  server.due(0.0);  // 640 rows
+  EXPECT_TRUE(server.backlog(0.0));
+  server.due(1.0);
+  EXPECT_FALSE(server.backlog(1.0));
+  ack(server, 0, {{3, 4}}, 1.0);
+  EXPECT_TRUE(server.backlog(1.0));
 }
 
 }  // namespace

@@ -1,0 +1,138 @@
+#include "nodes/beam_coordinator/coordinator_node.hpp"
+
+#include <atomic>
+#include <exception>
+#include <rtg_msgs/search_progress_t.hpp>
+#include <thread>
+#include <utility>
+
+#include "core/search/simulators.hpp"
+
+namespace rtg {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kWait = 50ms;        // between two looks at the clock
+constexpr auto kBacklogWait = 5ms;  // the same while the stream waits for its pace
+constexpr int kFarewells = 5;       // any of them ends a worker
+constexpr auto kFarewellWait = 40ms;
+
+}  // namespace
+
+CoordinatorNode::CoordinatorNode(Bus& bus, Options options)
+    : bus_(bus),
+      options_(std::move(options)),
+      reverse_(bus, options_.shape, options_.config),
+      replay_(bus, options_.shape, options_.config),
+      transitions_(bus, options_.shape),
+      status_(bus, "beam_coordinator", 0) {
+  progress_.target = options_.target;
+}
+
+CoordinatorNode::~CoordinatorNode() {
+  leaving_ = true;
+  for (int k = 0; k < kFarewells; ++k) {
+    publish_progress();
+    std::this_thread::sleep_for(kFarewellWait);
+  }
+}
+
+std::optional<GenerationReport> CoordinatorNode::run(const Search& search) {
+  std::optional<GenerationReport> report;
+  std::exception_ptr failure;
+  std::atomic<bool> ended = false;
+  std::jthread thread([&] {
+    try {
+      report = search(seams());
+    } catch (const Interrupted&) {
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    ended = true;
+  });
+  try {
+    while (!ended) serve();
+  } catch (...) {
+    stop_search();
+    throw;
+  }
+  thread.join();
+  if (failure) std::rethrow_exception(failure);
+  if (options_.stopped()) report.reset();
+  return report;
+}
+
+void CoordinatorNode::drain(int consumers) {
+  transitions_.seal();
+  {
+    const std::scoped_lock lock(mutex_);
+    progress_.phase = "sealed";
+  }
+  while (!options_.stopped() && !transitions_.drained(consumers, monotonic_now())) serve();
+}
+
+GenerationSeams CoordinatorNode::seams() {
+  GenerationSeams seams;
+  seams.solve = [this](std::span<const ReverseJob> jobs) { return reverse_.answers(jobs); };
+  seams.replay = [this](std::span<const ReplayJob> jobs) { return replay_.answers(jobs); };
+  seams.settle = settle_through(seams.replay);
+  seams.store = [this](std::span<const Transition> rows) { transitions_.store(rows); };
+  seams.progress = [this](const Progress& progress) {
+    const std::scoped_lock lock(mutex_);
+    progress_ = progress;
+  };
+  seams.cancelled = options_.stopped;
+  return seams;
+}
+
+void CoordinatorNode::serve() {
+  if (options_.stopped()) stop_search();
+  bus_.spin(transitions_.backlog(monotonic_now()) ? kBacklogWait : kWait);
+  reverse_.tick();
+  replay_.tick();
+  const Seconds now = monotonic_now();
+  transitions_.tick(now);
+  if (progress_ticker_.due(now)) publish_progress();
+  if (status_.due(now)) publish_status();
+}
+
+void CoordinatorNode::stop_search() {
+  reverse_.stop();
+  replay_.stop();
+}
+
+void CoordinatorNode::publish_progress() {
+  std::unique_lock lock(mutex_);
+  const Progress progress = progress_;
+  lock.unlock();
+  const TransitionPublisher::State stream = transitions_.state();
+  const PoolState reverse = reverse_.state();
+  rtg_msgs::search_progress_t message{};
+  message.config = options_.config;
+  message.phase = progress.phase;
+  message.layer = progress.layer;
+  message.depth = progress.depth;
+  message.transitions = stream.rows;
+  message.target = options_.target;
+  message.contact_share = progress.contact_share;
+  message.start_region = progress.start_region;
+  message.workers = reverse.workers;
+  message.jobs_open = static_cast<std::int32_t>(reverse.open);
+  message.consumers = stream.consumers;
+  message.slowest_cursor = stream.slowest_cursor;
+  message.leaving = leaving_;
+  bus_.publish("RTG_PROGRESS", std::move(message));
+}
+
+void CoordinatorNode::publish_status() {
+  const PoolState reverse = reverse_.state(), replay = replay_.state();
+  const TransitionPublisher::State stream = transitions_.state();
+  status_.publish(stream.sealed ? "sealed" : "generating", stream.rows,
+                  {{"units.resent", reverse.resent + replay.resent},
+                   {"units.reissued", reverse.reissued + replay.reissued},
+                   {"units.given_up", reverse.given_up + replay.given_up},
+                   {"stream.resent", stream.resent}});
+}
+
+}  // namespace rtg

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "core/search/generate.hpp"
+#include "nodes/beam_coordinator/job_pool.hpp"
+#include "nodes/beam_coordinator/transition_publisher.hpp"
+#include "nodes/common/node_status.hpp"
+
+namespace rtg {
+
+/// The process that owns a generation: hands its work to workers and server, serves the transition
+/// stream, says where it stands.
+///
+/// The search runs on a thread of its own and blocks in its seams, so that the bus is served while
+/// it computes.
+class CoordinatorNode {
+ public:
+  struct Options {
+    TaskShape shape;
+    std::int64_t config = 0;        // hash of the configuration
+    long target = 0;                // transitions to be stored, for the display
+    std::function<bool()> stopped;  // polled; true: end as soon as possible
+  };
+
+  CoordinatorNode(Bus& bus, Options options);
+  /// Tells workers and server to end.
+  ~CoordinatorNode();
+  CoordinatorNode(const CoordinatorNode&) = delete;
+  CoordinatorNode& operator=(const CoordinatorNode&) = delete;
+
+  using Search = std::function<GenerationReport(const GenerationSeams&)>;
+
+  /// Runs `search` to its end and serves the bus meanwhile. Empty if it was stopped; rethrows what
+  /// the search or a handler threw.
+  std::optional<GenerationReport> run(const Search& search);
+
+  /// Seals the stream and serves it until `consumers` and all others that are alive have it, or
+  /// until stopped.
+  void drain(int consumers);
+
+  /// Units given up since they took down every worker that had them.
+  long given_up() const { return reverse_.state().given_up + replay_.state().given_up; }
+
+ private:
+  GenerationSeams seams();
+  void serve();
+  void stop_search();
+  void publish_progress();
+  void publish_status();
+
+  Bus& bus_;
+  Options options_;
+  JobPool<ReverseWork> reverse_;
+  JobPool<ReplayWork> replay_;
+  TransitionPublisher transitions_;
+  NodeStatus status_;
+  Ticker progress_ticker_{0.5};
+  bool leaving_ = false;
+  mutable std::mutex mutex_;  // guards what follows
+  Progress progress_{.phase = "starting"};
+};
+
+}  // namespace rtg

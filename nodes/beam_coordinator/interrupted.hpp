@@ -1,0 +1,13 @@
+#pragma once
+
+#include <exception>
+
+namespace rtg {
+
+/// Ends a generation from within when the process has been asked to end.
+class Interrupted : public std::exception {
+ public:
+  const char* what() const noexcept override { return "interrupted"; }
+};
+
+}  // namespace rtg

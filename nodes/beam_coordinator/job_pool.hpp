@@ -1,0 +1,131 @@
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <rtg_msgs/worker_beat_t.hpp>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "nodes/beam_coordinator/interrupted.hpp"
+#include "nodes/beam_coordinator/unit_table.hpp"
+#include "nodes/common/bus.hpp"
+#include "nodes/common/clock.hpp"
+#include "nodes/common/job_dispatcher.hpp"
+#include "nodes/common/work.hpp"
+
+namespace rtg {
+
+/// Where a JobPool stands.
+struct PoolState {
+  int workers = 0;  // alive
+  long open = 0;    // units neither answered nor given up
+  long resent = 0, reissued = 0, given_up = 0;
+};
+
+/// One kind of work, answered by processes behind the bus: a SolveBatch or ReplayBatch that hides
+/// ids, units, retries and order. The search calls answers() on its thread; the thread that spins
+/// the bus calls tick().
+template <class Work>
+class JobPool {
+ public:
+  using Job = typename Work::Job;
+  using Result = typename Work::Result;
+
+  JobPool(Bus& bus, const TaskShape& shape, std::int64_t config,
+          const JobDispatcher::Limits& limits = {})
+      : bus_(bus), shape_(shape), config_(config), dispatcher_(limits) {
+    bus_.subscribe<Beat>(Work::kBeats, [this](const Beat& m) { on_beat(m); });
+    bus_.subscribe<ResultMessage>(Work::kResults, [this](const ResultMessage& m) { on_result(m); });
+  }
+
+  /// The results in job order, however often workers die and messages are lost. Blocks until all
+  /// are there; throws Interrupted once stop() has been called.
+  std::vector<Result> answers(std::span<const Job> jobs) {
+    std::unique_lock lock(mutex_);
+    dispatcher_.submit(units_.deal(jobs, shape_, config_));
+    send_due();
+    changed_.wait(lock, [this] { return stopped_ || dispatcher_.finished(); });
+    for (const JobId id : dispatcher_.poisoned()) give_up(id);
+    dispatcher_.submit({});
+    std::vector<Result> results = units_.take();
+    if (stopped_) throw Interrupted();
+    return results;
+  }
+
+  /// Hands out again what died or got lost.
+  void tick() {
+    const std::scoped_lock lock(mutex_);
+    send_due();
+    if (dispatcher_.finished()) changed_.notify_all();  // poison ends a unit without a result
+  }
+
+  void stop() {
+    const std::scoped_lock lock(mutex_);
+    stopped_ = true;
+    changed_.notify_all();
+  }
+
+  PoolState state() const {
+    const std::scoped_lock lock(mutex_);
+    return {dispatcher_.workers(), dispatcher_.open(), dispatcher_.resent(), dispatcher_.reissued(),
+            given_up_};
+  }
+
+ private:
+  using Beat = rtg_msgs::worker_beat_t;
+  using ResultMessage = typename Work::ResultMessage;
+  static constexpr int kMostCapacity = 10000;
+
+  void on_beat(const Beat& message) {
+    if (message.capacity < 0 || message.capacity > kMostCapacity)
+      return bus_.counters().add("beats.illegal");
+    if (message.config != config_) return bus_.counters().add("beats.other_configuration");
+    const std::scoped_lock lock(mutex_);
+    dispatcher_.on_beat({message.incarnation, message.capacity, message.held}, monotonic_now());
+    send_due();
+  }
+
+  void on_result(const ResultMessage& message) {
+    const std::scoped_lock lock(mutex_);
+    const JobId id = message.job_id;
+    if (!units_.contains(id)) return bus_.counters().add("results.unknown");
+    const auto results = Work::parse(message, shape_);
+    if (!results || results->size() != units_.jobs(id).size())
+      return bus_.counters().add("results.illegal");
+    if (dispatcher_.on_result(id) != JobDispatcher::Verdict::kAccepted)
+      return bus_.counters().add("results.repeated");
+    units_.store(id, *results);
+    send_due();
+    if (dispatcher_.finished()) changed_.notify_all();
+  }
+
+  void send_due() {
+    for (const auto& [worker, id, attempt] : dispatcher_.due(monotonic_now())) {
+      auto message = Work::message(units_.jobs(id));
+      message.job_id = id;
+      message.to = worker;
+      message.attempt = attempt;
+      bus_.publish(Work::kJobs, std::move(message));
+    }
+  }
+
+  void give_up(JobId id) {
+    ++given_up_;
+    std::vector<Result> results;
+    for (const Job& job : units_.jobs(id)) results.push_back(Work::given_up(job));
+    units_.store(id, results);
+  }
+
+  Bus& bus_;
+  TaskShape shape_;
+  std::int64_t config_;
+  mutable std::mutex mutex_;  // guards what follows
+  std::condition_variable changed_;
+  JobDispatcher dispatcher_;
+  UnitTable<Work> units_;
+  bool stopped_ = false;
+  long given_up_ = 0;
+};
+
+}  // namespace rtg

@@ -1,0 +1,84 @@
+#include "nodes/beam_coordinator/transition_publisher.hpp"
+
+#include <utility>
+
+namespace rtg {
+namespace {
+
+/// Bytes of one transition on the wire: two states, action, success, source.
+std::int64_t row_bytes(const TaskShape& shape) { return std::int64_t{2} * shape.bodies * 24 + 6; }
+
+}  // namespace
+
+TransitionPublisher::TransitionPublisher(Bus& bus, const TaskShape& shape)
+    : bus_(bus), server_({}, row_bytes(shape)) {
+  using rtg_msgs::stream_ack_t;
+  bus_.subscribe<stream_ack_t>("RTG_ACK", [this](const stream_ack_t& m) { on_ack(m); });
+}
+
+void TransitionPublisher::store(std::span<const Transition> rows) {
+  const std::scoped_lock lock(mutex_);
+  server_.append(rows);
+}
+
+void TransitionPublisher::seal() {
+  const std::scoped_lock lock(mutex_);
+  server_.seal();
+}
+
+void TransitionPublisher::tick(Seconds now) {
+  const std::scoped_lock lock(mutex_);
+  for (const RowRange& range : server_.due(now)) send(range);
+  if (!tail_.due(now)) return;
+  rtg_msgs::stream_tail_t message{};
+  message.stream = stream_;
+  message.count = server_.count();
+  message.sealed = server_.sealed();
+  bus_.publish("RTG_TAIL", message);
+}
+
+bool TransitionPublisher::backlog(Seconds now) const {
+  const std::scoped_lock lock(mutex_);
+  return server_.backlog(now);
+}
+
+bool TransitionPublisher::drained(int consumers, Seconds now) const {
+  const std::scoped_lock lock(mutex_);
+  return server_.drained(consumers, now);
+}
+
+TransitionPublisher::State TransitionPublisher::state() const {
+  const std::scoped_lock lock(mutex_);
+  return {server_.count(), server_.slowest_cursor(), server_.consumers(), server_.resent(),
+          server_.sealed()};
+}
+
+void TransitionPublisher::on_ack(const rtg_msgs::stream_ack_t& message) {
+  if (message.stream != stream_) return bus_.counters().add("stream.other_stream");
+  const std::scoped_lock lock(mutex_);
+  std::vector<RowRange> missing;
+  for (std::size_t k = 0; k < message.first.size(); ++k)
+    if (message.first[k] >= 0 && message.last[k] >= message.first[k] &&
+        message.last[k] < server_.count())
+      missing.push_back({message.first[k], message.last[k] + 1});
+  if (!server_.on_ack({message.consumer, message.cursor, message.credit, missing}, monotonic_now()))
+    bus_.counters().add("stream.illegal_ack");
+}
+
+void TransitionPublisher::send(RowRange range) {
+  rtg_msgs::transition_batch_t message{};
+  message.stream = stream_;
+  message.first = range.begin;
+  for (const Transition& t : server_.rows(range)) {
+    append_poses(t.poses, message.poses);
+    append_poses(t.next, message.next_poses);
+    message.action.push_back(t.action);
+    message.success.push_back(t.success ? 1 : 0);
+    message.source.push_back(static_cast<std::int8_t>(t.source));
+  }
+  message.n = static_cast<std::int32_t>(message.action.size());
+  message.n_poses = static_cast<std::int32_t>(message.poses.size());
+  bus_.publish("RTG_TRANSITION", std::move(message));
+}
+
+}  // namespace rtg

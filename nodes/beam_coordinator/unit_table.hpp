@@ -1,0 +1,67 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "nodes/common/job_dispatcher.hpp"
+#include "nodes/common/work.hpp"
+
+namespace rtg {
+
+/// Which jobs of a batch travel in which unit, and where their results belong. Refers to the jobs
+/// of the caller.
+template <class Work>
+class UnitTable {
+ public:
+  using Job = typename Work::Job;
+  using Result = typename Work::Result;
+
+  /// Deals a new batch into units; their ids in order, equal ones for equal questions.
+  std::vector<JobId> deal(std::span<const Job> jobs, const TaskShape& shape, std::int64_t config) {
+    units_.clear();
+    results_.assign(jobs.size(), {});
+    std::vector<JobId> ids;
+    std::size_t first = 0;
+    for (const std::size_t size : unit_sizes(jobs.size(), Work::kUnit, shape)) {
+      const Unit unit{first, jobs.subspan(first, size)};
+      ids.push_back(unit_id(unit.jobs, config));
+      units_.emplace(ids.back(), unit);
+      first += size;
+    }
+    return ids;
+  }
+
+  bool contains(JobId id) const { return units_.contains(id); }
+
+  /// The jobs of a unit that the table contains.
+  std::span<const Job> jobs(JobId id) const { return units_.find(id)->second.jobs; }
+
+  /// Takes the results of a unit's jobs, as many as the unit has jobs.
+  void store(JobId id, std::span<const Result> results) {
+    const auto [begin, end] = units_.equal_range(id);
+    for (auto it = begin; it != end; ++it)
+      std::copy(results.begin(), results.end(),
+                results_.begin() + static_cast<std::ptrdiff_t>(it->second.first));
+  }
+
+  /// The results in job order; the table is empty afterwards.
+  std::vector<Result> take() {
+    units_.clear();
+    return std::exchange(results_, {});
+  }
+
+ private:
+  struct Unit {
+    std::size_t first;  // index of its first job
+    std::span<const Job> jobs;
+  };
+
+  std::unordered_multimap<JobId, Unit> units_;
+  std::vector<Result> results_;
+};
+
+}  // namespace rtg

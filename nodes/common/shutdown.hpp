@@ -1,0 +1,17 @@
+#pragma once
+
+namespace rtg {
+
+/// From here on SIGINT and SIGTERM end the process in an orderly way: the first one makes
+/// stop_signal() tell its number, the second one ends the process at once. To be called before
+/// threads start.
+void watch_signals();
+
+/// Number of the signal that asks for an end; 0 as long as there was none.
+int stop_signal();
+
+/// The process ends after a few seconds, whatever its threads are doing. Called by the first signal
+/// and by whoever begins to shut down.
+void limit_shutdown();
+
+}  // namespace rtg

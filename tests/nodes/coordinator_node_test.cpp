@@ -1,0 +1,178 @@
+#include "nodes/beam_coordinator/coordinator_node.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <list>
+#include <rtg_msgs/search_progress_t.hpp>
+#include <rtg_msgs/transition_batch_t.hpp>
+#include <thread>
+
+#include "core/search/thread_pool.hpp"
+#include "core/tasks/gathering.hpp"
+#include "nodes/common/worker_node.hpp"
+#include "tests/support/generation_run.hpp"
+
+namespace rtg {
+namespace {
+
+using rtg_msgs::search_progress_t;
+using rtg_msgs::transition_batch_t;
+
+constexpr std::int64_t kConfig = 77;
+constexpr std::uint64_t kSeed = 7;
+
+SearchConfig small() {
+  SearchConfig config;
+  config.reverse = ReverseMode::kNaive;
+  config.transitions = 1200;
+  config.breadth = 6;
+  config.depth = 10;
+  config.evaluation_starts = 5;
+  return config;
+}
+
+/// The whole process graph on one bus in one process.
+class Graph {
+ public:
+  explicit Graph(
+      int workers, std::function<bool()> stopped = [] { return false; })
+      : coordinator(bus, {shape(), kConfig, small().transitions, std::move(stopped)}),
+        server_(bus, {shape(), kConfig, 0, 2}, replay_on_threads(forward_replay(task, {}), 1)) {
+    bus.subscribe<transition_batch_t>("RTG_TRANSITION",
+                                      [this](const transition_batch_t& m) { on_rows(m); });
+    for (int k = 0; k < workers; ++k)
+      workers_.emplace_back(bus, WorkerNode<ReverseWork>::Options{shape(), kConfig, k, 1},
+                            solve_on_threads(reverse_solver(task, {}, {}, ReverseMode::kNaive), 1));
+  }
+
+  std::optional<GenerationReport> run() {
+    const std::jthread ticking([this](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+        for (auto& worker : workers_) worker.tick(monotonic_now());
+        server_.tick(monotonic_now());
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      }
+    });
+    auto report = coordinator.run(
+        [this](const GenerationSeams& seams) { return generate(task, small(), kSeed, seams); });
+    if (report) coordinator.drain(0);
+    return report;
+  }
+
+  TaskShape shape() const { return {static_cast<int>(task.scene.size()), task.push.headings}; }
+
+  const Task task = gathering();
+  Bus bus{"memq://", "test"};
+  CoordinatorNode coordinator;
+  std::vector<double> poses, next_poses;  // as streamed
+  std::vector<int> actions, successes, sources;
+
+ private:
+  void on_rows(const transition_batch_t& m) {
+    EXPECT_EQ(m.first, static_cast<std::int64_t>(actions.size()));
+    poses.insert(poses.end(), m.poses.begin(), m.poses.end());
+    next_poses.insert(next_poses.end(), m.next_poses.begin(), m.next_poses.end());
+    actions.insert(actions.end(), m.action.begin(), m.action.end());
+    successes.insert(successes.end(), m.success.begin(), m.success.end());
+    sources.insert(sources.end(), m.source.begin(), m.source.end());
+  }
+
+  WorkerNode<ReplayWork> server_;
+  std::list<WorkerNode<ReverseWork>> workers_;
+};
+
+std::string without_times(GenerationReport report) {
+  report.reverse_cpu_s = report.replay_cpu_s = 0.0;
+  return to_json(report);
+}
+
+class GraphOf : public ::testing::TestWithParam<int> {};
+
+TEST_P(GraphOf, StreamsTheBytesOfTheDirectCall) {
+  Graph graph(GetParam());
+  const auto report = graph.run();
+  const testing::GenerationRun direct = testing::run_naive(graph.task, small(), kSeed, 1);
+  ASSERT_TRUE(report.has_value());
+  EXPECT_EQ(without_times(*report), without_times(direct.report));
+  std::vector<double> poses, next_poses;
+  for (std::size_t k = 0; k < direct.stored.size(); ++k) {
+    const Transition& t = direct.stored[k];
+    append_poses(t.poses, poses);
+    append_poses(t.next, next_poses);
+    ASSERT_LT(k, graph.actions.size());
+    ASSERT_EQ(graph.actions[k], t.action);
+    ASSERT_EQ(graph.successes[k], t.success);
+    ASSERT_EQ(graph.sources[k], static_cast<int>(t.source));
+  }
+  EXPECT_EQ(graph.poses, poses);
+  EXPECT_EQ(graph.next_poses, next_poses);
+  EXPECT_EQ(graph.coordinator.given_up(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Workers, GraphOf, ::testing::Values(1, 3));
+
+TEST(CoordinatorNode, AStopEndsTheSearchWithoutAReport) {
+  std::atomic<bool> stop = false;
+  Graph graph(1, [&] { return stop.load(); });
+  graph.bus.subscribe<transition_batch_t>("RTG_TRANSITION",
+                                          [&](const transition_batch_t&) { stop = true; });
+  EXPECT_FALSE(graph.run().has_value());
+  EXPECT_GT(graph.actions.size(), 0U);
+  EXPECT_LT(graph.actions.size(), 1200U);
+}
+
+TEST(CoordinatorNode, WhatTheSearchThrowsComesOut) {
+  Bus bus("memq://", "test");
+  CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [] { return false; }});
+  EXPECT_THROW(coordinator.run([](const GenerationSeams&) -> GenerationReport {
+    throw std::range_error("boom");
+  }),
+               std::range_error);
+}
+
+TEST(CoordinatorNode, WhatAHandlerThrowsComesOutAndEndsTheSearch) {
+  Bus bus("memq://", "test");
+  CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [] { return false; }});
+  bus.subscribe<search_progress_t>(
+      "RTG_PROGRESS", [](const search_progress_t&) { throw std::range_error("boom"); });
+  EXPECT_THROW(coordinator.run([](const GenerationSeams& seams) {
+    const ReverseJob job{{{}}, 0};
+    seams.solve({&job, 1});  // nobody is there to answer
+    return GenerationReport{};
+  }),
+               std::range_error);
+}
+
+TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
+  Bus bus("memq://", "test");
+  std::vector<search_progress_t> heard;
+  std::atomic<bool> said = false;
+  bus.subscribe<search_progress_t>("RTG_PROGRESS", [&](const search_progress_t& m) {
+    heard.push_back(m);
+    said = true;
+    said.notify_all();
+  });
+  {
+    CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [] { return false; }});
+    const auto report = coordinator.run([&](const GenerationSeams& seams) {
+      seams.progress({.phase = "tree 1", .layer = 3, .depth = 24});
+      said.wait(false);
+      return GenerationReport{};
+    });
+    EXPECT_TRUE(report.has_value());
+    coordinator.drain(0);
+  }
+  while (bus.spin(std::chrono::milliseconds(0)) > 0) {
+  }
+  ASSERT_FALSE(heard.empty());
+  EXPECT_EQ(heard[0].phase, "tree 1");
+  EXPECT_EQ(heard[0].layer, 3);
+  EXPECT_EQ(heard[0].target, 10);
+  EXPECT_EQ(heard[0].leaving, 0);
+  EXPECT_EQ(heard.back().phase, "sealed");
+  EXPECT_EQ(heard.back().leaving, 1);
+}
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,214 @@
+#include "nodes/beam_coordinator/job_pool.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <optional>
+#include <thread>
+
+namespace rtg {
+namespace {
+
+using namespace std::chrono_literals;
+using rtg_msgs::replay_job_t;
+
+constexpr TaskShape kShape{.bodies = 1, .headings = 48};
+constexpr std::int64_t kConfig = 77;
+constexpr WorkerId kAnn = 1;
+
+std::vector<ReplayJob> many_jobs(int count) {
+  std::vector<ReplayJob> jobs;
+  for (int k = 0; k < count; ++k) jobs.push_back({{{0.5 * k, 0.0, 0.0}}, k % 48});
+  return jobs;
+}
+
+ReplayResult answer(const ReplayJob& job) {
+  return {{{job.start[0].x + job.action, 1.0, 0.0}}, job.action % 2 == 0, 0.0};
+}
+
+/// A pool whose worker, Ann, is played by the test.
+class Played {
+ public:
+  explicit Played(JobDispatcher::Limits limits = {}) : pool(bus, kShape, kConfig, limits) {
+    bus.subscribe<replay_job_t>("RTG_REPLAY_JOB", [this](const replay_job_t& m) { on_job(m); });
+  }
+
+  void beat(std::int64_t config = kConfig, int capacity = 4) {
+    rtg_msgs::worker_beat_t message{};
+    message.incarnation = kAnn;
+    message.config = config;
+    message.capacity = capacity;
+    bus.publish("RTG_REPLAY_BEAT", message);
+  }
+
+  static rtg_msgs::replay_result_t result_of(const replay_job_t& job) {
+    const std::vector<ReplayJob> jobs = ReplayWork::parse(job, kShape).value();
+    std::vector<ReplayResult> results;
+    for (const ReplayJob& j : jobs) results.push_back(answer(j));
+    auto message = ReplayWork::message(results);
+    message.job_id = job.job_id;
+    return message;
+  }
+
+  void publish(const rtg_msgs::replay_result_t& message) {
+    bus.publish("RTG_REPLAY_RESULT", message);
+  }
+
+  /// What the pool answers, or nothing if it was stopped; serves the bus meanwhile.
+  std::optional<std::vector<ReplayResult>> ask(const std::vector<ReplayJob>& jobs) {
+    std::optional<std::vector<ReplayResult>> results;
+    std::atomic<bool> ended = false;
+    std::jthread search([&] {
+      try {
+        results = pool.answers(jobs);
+      } catch (const Interrupted&) {
+      }
+      ended = true;
+    });
+    while (!ended) {
+      bus.spin(1ms);
+      pool.tick();
+      if (each_round) each_round();
+    }
+    search.join();
+    return results;
+  }
+
+  Bus bus{"memq://", "test"};
+  JobPool<ReplayWork> pool;
+  std::function<void(const replay_job_t&)> on_job = [this](const replay_job_t& job) {
+    publish(result_of(job));
+  };
+  std::function<void()> each_round;
+};
+
+void expect_right(const std::vector<ReplayJob>& jobs,
+                  const std::optional<std::vector<ReplayResult>>& results) {
+  ASSERT_TRUE(results.has_value());
+  ASSERT_EQ(results->size(), jobs.size());
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    EXPECT_EQ((*results)[k].end, answer(jobs[k]).end);
+    EXPECT_EQ((*results)[k].ok, answer(jobs[k]).ok);
+  }
+}
+
+TEST(JobPool, AnswersInJobOrderHoweverTheUnitsComeBack) {
+  Played played;
+  std::vector<replay_job_t> waiting;
+  played.on_job = [&](const replay_job_t& job) {
+    EXPECT_EQ(job.to, kAnn);
+    waiting.push_back(job);
+  };
+  played.each_round = [&] {  // last come, first served
+    played.beat();
+    if (waiting.empty()) return;
+    played.publish(Played::result_of(waiting.back()));
+    waiting.pop_back();
+  };
+  const auto jobs = many_jobs(333);
+  expect_right(jobs, played.ask(jobs));
+  expect_right({}, played.ask({}));
+}
+
+TEST(JobPool, EqualUnitsAreAskedOnce) {
+  Played played;
+  played.beat();
+  int asked = 0;
+  played.on_job = [&](const replay_job_t& job) {
+    ++asked;
+    played.publish(Played::result_of(job));
+  };
+  const std::vector<ReplayJob> jobs(48, many_jobs(2)[1]);
+  expect_right(jobs, played.ask(jobs));
+  EXPECT_EQ(asked, 1);
+}
+
+TEST(JobPool, CountsAndIgnoresResultsThatMakeNoSense) {
+  Played played;
+  played.beat();
+  played.on_job = [&](const replay_job_t& job) {
+    auto spoilt = Played::result_of(job);
+    spoilt.ok[0] = 7;
+    played.publish(spoilt);
+    auto shorter = ReplayWork::message(std::vector<ReplayResult>{answer(many_jobs(1)[0])});
+    shorter.job_id = job.job_id;
+    played.publish(shorter);
+    auto unknown = Played::result_of(job);
+    unknown.job_id = 123;
+    played.publish(unknown);
+    played.publish(Played::result_of(job));
+    played.publish(Played::result_of(job));
+  };
+  const auto jobs = many_jobs(48);
+  expect_right(jobs, played.ask(jobs));
+  EXPECT_EQ(played.bus.counters().value("results.illegal"), 4);
+  EXPECT_GE(played.bus.counters().value("results.unknown"), 2);
+  EXPECT_GE(played.bus.counters().value("results.repeated"), 1);
+}
+
+TEST(JobPool, AWorkerOfAnotherConfigurationGetsNoWork) {
+  Played played;
+  played.beat(kConfig + 1);
+  played.beat(kConfig, -1);
+  played.beat(kConfig, 1 << 30);
+  played.on_job = [](const replay_job_t&) { FAIL(); };
+  played.each_round = [&] {
+    if (played.bus.counters().value("beats.illegal") == 2) played.pool.stop();
+  };
+  EXPECT_FALSE(played.ask(many_jobs(3)).has_value());
+  EXPECT_EQ(played.bus.counters().value("beats.other_configuration"), 1);
+}
+
+TEST(JobPool, SendsAgainWhatGotLost) {
+  Played played({.resend = 0.0});
+  int lost = 0;
+  played.on_job = [&](const replay_job_t& job) {
+    if (lost < 5 && job.attempt == 1)
+      ++lost;
+    else
+      played.publish(Played::result_of(job));
+  };
+  played.each_round = [&] { played.beat(); };
+  const auto jobs = many_jobs(333);
+  expect_right(jobs, played.ask(jobs));
+  EXPECT_GE(played.pool.state().resent, 5);
+}
+
+TEST(JobPool, GivesUpAUnitThatNobodySurvives) {
+  Played played({.silence = 0.2, .poison = 2});
+  std::optional<JobId> deadly;
+  bool alive = true;
+  played.on_job = [&](const replay_job_t& job) {
+    if (!deadly) deadly = job.job_id;
+    if (job.job_id == *deadly) alive = false;
+    if (alive) played.publish(Played::result_of(job));
+  };
+  played.each_round = [&] {
+    if (played.pool.state().workers == 0) alive = true;  // another one starts
+    if (alive) played.beat();
+  };
+  const auto jobs = many_jobs(72);
+  const auto results = played.ask(jobs);
+  ASSERT_TRUE(results.has_value());
+  EXPECT_EQ(played.pool.state().given_up, 1);
+  EXPECT_GE(played.pool.state().reissued, 2);
+  int skipped = 0;
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    const ReplayResult& result = (*results)[k];
+    if (result.end == answer(jobs[k]).end) continue;
+    ++skipped;
+    EXPECT_FALSE(result.ok);
+    EXPECT_EQ(result.end, jobs[k].start);
+  }
+  EXPECT_EQ(skipped, 24);
+}
+
+TEST(JobPool, StopEndsASearchThatWaits) {
+  Played played;
+  played.each_round = [&] { played.pool.stop(); };
+  EXPECT_FALSE(played.ask(many_jobs(3)).has_value());
+  EXPECT_FALSE(played.ask(many_jobs(3)).has_value());
+}
+
+}  // namespace
+}  // namespace rtg

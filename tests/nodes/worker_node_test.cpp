@@ -1,0 +1,162 @@
+#include "nodes/common/worker_node.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace rtg {
+namespace {
+
+using namespace std::chrono_literals;
+using rtg_msgs::reverse_job_t;
+using rtg_msgs::reverse_result_t;
+using rtg_msgs::worker_beat_t;
+
+constexpr TaskShape kShape{.bodies = 2, .headings = 48};
+constexpr std::int64_t kConfig = 77;
+
+const std::vector<ReverseJob> kJobs{{{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 5},
+                                    {{{1.5, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 47}};
+
+ReverseResult solved(const ReverseJob& job) {
+  ReverseResult result{SolveStatus::kConverged, job.action, job.end, 0.25};
+  result.start[0].x -= 1.0;
+  return result;
+}
+
+std::vector<ReverseResult> solve(std::span<const ReverseJob> jobs) {
+  std::vector<ReverseResult> out;
+  for (const ReverseJob& job : jobs) out.push_back(solved(job));
+  return out;
+}
+
+/// A worker and, on the same bus, what it says.
+class Pair {
+ public:
+  explicit Pair(WorkerNode<ReverseWork>::Answer answer = solve)
+      : worker(bus, {kShape, kConfig, 3, 1}, std::move(answer)) {
+    bus.subscribe<worker_beat_t>("RTG_REVERSE_BEAT",
+                                 [this](const worker_beat_t& m) { beats.push_back(m); });
+    bus.subscribe<reverse_result_t>("RTG_REVERSE_RESULT",
+                                    [this](const reverse_result_t& m) { results.push_back(m); });
+  }
+
+  reverse_job_t job(std::int64_t id) const {
+    reverse_job_t message = ReverseWork::message(kJobs);
+    message.job_id = id;
+    message.to = worker.incarnation();
+    return message;
+  }
+
+  void send(const reverse_job_t& message) { bus.publish("RTG_REVERSE_JOB", message); }
+
+  /// Serves the bus until `done`.
+  template <class Done>
+  void serve_until(const Done& done) {
+    while (!done()) {
+      bus.spin(5ms);
+      worker.tick(monotonic_now());
+    }
+  }
+
+  Bus bus{"memq://", "test"};
+  std::vector<worker_beat_t> beats;
+  std::vector<reverse_result_t> results;
+  WorkerNode<ReverseWork> worker;
+};
+
+TEST(WorkerNode, AnswersAsTheDirectCallDoes) {
+  Pair pair;
+  pair.send(pair.job(11));
+  pair.serve_until([&] { return !pair.results.empty(); });
+  EXPECT_EQ(pair.results[0].job_id, 11);
+  EXPECT_EQ(pair.results[0].incarnation, pair.worker.incarnation());
+  const auto results = ReverseWork::parse(pair.results[0], kShape);
+  ASSERT_TRUE(results && results->size() == 2);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ((*results)[k].start, solved(kJobs[k]).start);
+    EXPECT_EQ((*results)[k].iterations, kJobs[k].action);
+  }
+}
+
+TEST(WorkerNode, SaysWhoItIsAndWhatItHolds) {
+  std::mutex gate;
+  std::unique_lock closed(gate);
+  Pair pair([&](std::span<const ReverseJob> jobs) {
+    const std::scoped_lock wait(gate);
+    return solve(jobs);
+  });
+  pair.send(pair.job(11));
+  pair.send(pair.job(12));
+  pair.serve_until([&] { return !pair.beats.empty() && pair.beats.back().n_held == 2; });
+  EXPECT_EQ(pair.beats.back().held, (std::vector<std::int64_t>{11, 12}));
+  EXPECT_EQ(pair.beats.back().config, kConfig);
+  EXPECT_EQ(pair.beats.back().worker, 3);
+  EXPECT_EQ(pair.beats.back().capacity, 3);
+  closed.unlock();
+  pair.serve_until([&] { return pair.beats.back().n_held == 0; });
+  EXPECT_EQ(pair.results.size(), 2U);
+}
+
+TEST(WorkerNode, AnswersARepeatedQuestionFromMemory) {
+  std::atomic<int> calls = 0;
+  Pair pair([&](std::span<const ReverseJob> jobs) { return ++calls, solve(jobs); });
+  pair.send(pair.job(11));
+  pair.serve_until([&] { return !pair.beats.empty() && pair.results.size() == 1; });
+  pair.serve_until([&] { return pair.beats.back().n_held == 0; });
+  pair.send(pair.job(11));
+  pair.serve_until([&] { return pair.results.size() == 2; });
+  EXPECT_EQ(calls, 1);
+  EXPECT_EQ(pair.results[1].start, pair.results[0].start);
+  EXPECT_EQ(pair.bus.counters().value("jobs.answered_again"), 1);
+}
+
+TEST(WorkerNode, CountsAndIgnoresWhatItCannotUse) {
+  Pair pair;
+  reverse_job_t out_of_range = pair.job(1), other_bodies = pair.job(2), nothing{};
+  out_of_range.action[1] = 48;
+  other_bodies.end.resize(6);
+  other_bodies.n_poses = 6;
+  nothing.to = pair.worker.incarnation();
+  for (const auto& message : {out_of_range, other_bodies, nothing}) pair.send(message);
+  reverse_job_t foreign = pair.job(3);
+  foreign.header.protocol = kProtocol;
+  foreign.header.run = 1;
+  pair.bus.send("RTG_REVERSE_JOB", encode(foreign));
+  auto bytes = encode(foreign);
+  bytes.pop_back();
+  pair.bus.send("RTG_REVERSE_JOB", bytes);
+  reverse_job_t someone_elses = pair.job(4);
+  ++someone_elses.to;
+  pair.send(someone_elses);
+  pair.send(pair.job(5));
+  pair.serve_until([&] { return !pair.results.empty(); });
+  EXPECT_EQ(pair.results[0].job_id, 5);
+  EXPECT_EQ(pair.bus.counters().value("jobs.illegal"), 3);
+  EXPECT_EQ(pair.bus.counters().value("bus.foreign_run"), 1);
+  EXPECT_EQ(pair.bus.counters().value("bus.malformed"), 1);
+}
+
+TEST(WorkerNode, WhatTheSolverThrowsSurfacesInTick) {
+  Pair pair([](std::span<const ReverseJob>) -> std::vector<ReverseResult> {
+    throw std::range_error("boom");
+  });
+  pair.send(pair.job(11));
+  EXPECT_THROW(pair.serve_until([] { return false; }), std::range_error);
+}
+
+TEST(WorkerNode, HearsThatTheCoordinatorLeavesOrIsGone) {
+  Pair pair;
+  EXPECT_FALSE(pair.worker.coordinator().leaving());
+  EXPECT_FALSE(pair.worker.coordinator().silent(monotonic_now()));
+  EXPECT_TRUE(pair.worker.coordinator().silent(monotonic_now() + CoordinatorWatch::kSilence + 1));
+  rtg_msgs::search_progress_t progress{};
+  pair.bus.publish("RTG_PROGRESS", progress);
+  progress.leaving = 1;
+  pair.bus.publish("RTG_PROGRESS", progress);
+  pair.serve_until([&] { return pair.worker.coordinator().leaving(); });
+}
+
+}  // namespace
+}  // namespace rtg
