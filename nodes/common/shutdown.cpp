@@ -11,19 +11,16 @@ namespace {
 constexpr unsigned kGrace = 4;  // [s]; the promise is to be gone after 5
 
 std::atomic<int> first_signal{0};
+std::atomic<int> late_status{0};
 static_assert(std::atomic<int>::is_always_lock_free);  // hence usable in a handler
 
-int exit_status() {
-  const int number = first_signal;
-  return number == 0 ? 1 : 128 + number;
-}
-
 void on_stop_signal(int number) {
-  if (first_signal.exchange(number) != 0) _exit(exit_status());
+  if (first_signal.exchange(number) != 0) _exit(128 + number);
+  late_status = 128 + number;
   alarm(kGrace);
 }
 
-void on_alarm(int) { _exit(exit_status()); }
+void on_alarm(int) { _exit(late_status); }
 
 void handle(int number, void (*handler)(int)) {
   struct sigaction action {};
@@ -40,6 +37,9 @@ void watch_signals() {
 
 int stop_signal() { return first_signal; }
 
-void limit_shutdown() { alarm(kGrace); }
+void limit_shutdown(int status) {
+  late_status = status;
+  alarm(kGrace);
+}
 
 }  // namespace rtg

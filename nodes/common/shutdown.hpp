@@ -10,8 +10,8 @@ void watch_signals();
 /// Number of the signal that asks for an end; 0 as long as there was none.
 int stop_signal();
 
-/// The process ends after a few seconds, whatever its threads are doing. Called by the first signal
-/// and by whoever begins to shut down.
-void limit_shutdown();
+/// The process ends with `status` after a few seconds, whatever its threads are doing; for those
+/// who begin to shut down without a signal.
+void limit_shutdown(int status);
 
 }  // namespace rtg

@@ -1,0 +1,46 @@
+// rtg_beam_coordinator CONFIG.yaml RUN FOLDER [CONSUMERS]
+//
+// Generates the transitions of the run named RUN with the workers and the server that it finds on
+// the bus, writes FOLDER/generation.json, and leaves when CONSUMERS of the transition stream (one,
+// if not given) have all of it. CONFIG.yaml is the resolved configuration of the run.
+
+#include <cstdio>
+
+#include "nodes/beam_coordinator/coordinator_node.hpp"
+#include "nodes/common/program.hpp"
+#include "nodes/common/rtg_config.hpp"
+#include "nodes/common/shutdown.hpp"
+#include "nodes/common/whole_file.hpp"
+
+namespace rtg {
+namespace {
+
+int run(const Words& words) {
+  const int consumers = words.size() > 3 ? number_word(words[3], "CONSUMERS") : 1;
+  const RtgConfig config = load_config(words[0]);
+  Bus bus(config.run.bus, words[1]);
+  CoordinatorNode node(bus, {shape_of(config.task), config_hash(config), config.search.transitions,
+                             [] { return stop_signal() != 0; }});
+  const auto report = node.run([&](const GenerationSeams& seams) {
+    const auto seed = static_cast<std::uint64_t>(config.run.seed);
+    return generate(config.task, config.search, seed, seams);
+  });
+  if (report) {
+    write_whole_file(std::filesystem::path(words[2]) / "generation.json", to_json(*report));
+    node.drain(consumers);
+  }
+  if (stop_signal()) return 128 + stop_signal();
+  if (node.given_up() == 0) return 0;
+  std::fprintf(stderr,
+               "rtg_beam_coordinator: %ld units of work took down every worker and were "
+               "skipped\n",
+               node.given_up());
+  return 1;
+}
+
+}  // namespace
+}  // namespace rtg
+
+int main(int argc, char** argv) {
+  return rtg::run_program(argc, argv, "CONFIG.yaml RUN FOLDER [CONSUMERS]", rtg::run);
+}

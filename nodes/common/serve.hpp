@@ -1,0 +1,27 @@
+#pragma once
+
+#include <chrono>
+#include <stdexcept>
+
+#include "nodes/common/shutdown.hpp"
+#include "nodes/common/worker_node.hpp"
+
+namespace rtg {
+
+/// Serves the bus until the coordinator leaves or a signal comes; the exit status of the process.
+/// Throws std::runtime_error if the coordinator falls silent, and what the node's work throws.
+template <class Work>
+int serve(Bus& bus, WorkerNode<Work>& node) {
+  int status = 0;
+  while (!stop_signal() && !node.coordinator().leaving()) {
+    bus.spin(std::chrono::milliseconds(50));
+    node.tick(monotonic_now());
+    if (node.coordinator().silent(monotonic_now()))
+      throw std::runtime_error("no coordinator heard for 30 s");
+  }
+  if (stop_signal()) status = 128 + stop_signal();
+  limit_shutdown(status);
+  return status;
+}
+
+}  // namespace rtg

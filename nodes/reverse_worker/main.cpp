@@ -1,0 +1,31 @@
+// rtg_reverse_worker CONFIG.yaml RUN [NUMBER]
+//
+// Solves reverse jobs for the coordinator of the run named RUN until it leaves. CONFIG.yaml is the
+// resolved configuration of the run; NUMBER tells workers apart for people.
+
+#include "core/search/simulators.hpp"
+#include "core/search/thread_pool.hpp"
+#include "nodes/common/program.hpp"
+#include "nodes/common/rtg_config.hpp"
+#include "nodes/common/serve.hpp"
+
+namespace rtg {
+namespace {
+
+int run(const Words& words) {
+  const int number = words.size() > 2 ? number_word(words[2], "NUMBER") : 0;
+  const RtgConfig config = load_config(words[0]);
+  const SolveOne solve =
+      reverse_solver(config.task, config.physics, config.reverse, config.search.reverse);
+  Bus bus(config.run.bus, words[1]);
+  WorkerNode<ReverseWork> node(bus, {shape_of(config.task), config_hash(config), number, 1},
+                               solve_on_threads(solve, 1));
+  return serve(bus, node);
+}
+
+}  // namespace
+}  // namespace rtg
+
+int main(int argc, char** argv) {
+  return rtg::run_program(argc, argv, "CONFIG.yaml RUN [NUMBER]", rtg::run);
+}
