@@ -19,6 +19,20 @@ S gap_value(const HalfPlanes& planes, double alpha, double skin, const LocalPoin
   return SignedDistance<S>(planes, alpha, point.x).value - S(skin);
 }
 
+/// Value and gradient alone.
+template <class S>
+struct GapSlope {
+  S value;
+  Vec6<S> gradient;
+};
+
+template <class S>
+GapSlope<S> gap_slope(const HalfPlanes& planes, double alpha, double skin,
+                      const LocalPoint<S>& point) {
+  const SignedDistance<S> d(planes, alpha, point.x);
+  return {d.value - S(skin), point.jacobian.transpose() * d.gradient};
+}
+
 template <class S>
 Gap<S> gap(const HalfPlanes& planes, double alpha, double skin, const LocalPoint<S>& point) {
   const SignedDistance<S> d(planes, alpha, point.x);

@@ -1,10 +1,10 @@
 #include "core/energy/step_energy.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
-
-#include "core/world/separation.hpp"
 
 namespace rtg {
 namespace {
@@ -69,8 +69,10 @@ LocalPoint<Dual> StepEnergy::point(const Contact& c, const VectorXd& p, const Ve
   return {c.vertex, dual};
 }
 
-double StepEnergy::gap_value(const Contact& c, const VectorXd& p) const {
-  return rtg::gap_value(planes_[c.other], sharpness_, skin_, point(c, p));
+double StepEnergy::gap_value(const Contact& c, const LocalPoint<double>& point) const {
+  const double bound = mitred_distance(planes_[c.other], point.x) - skin_;
+  if (bound > barrier_.range && !barrier_.plain) return bound;
+  return rtg::gap_value(planes_[c.other], sharpness_, skin_, point);
 }
 
 VectorXd StepEnergy::forces(const VectorXd& p) const {
@@ -119,15 +121,13 @@ void StepEnergy::add_contact(const Contact& c, const VectorXd& next, const Vecto
   const bool close = near(c, next);
   if (!close && lag == 0.0) return;
   const LocalPoint<double> ahead = point(c, next);
-  if (close) {
+  if (close && barrier_.acts(gap_value(c, ahead))) {
     const Gap<double> g = gap(c, ahead);
-    if (barrier_.acts(g.value)) {
-      const double force = barrier_.force(g.value), slope = barrier_.force_slope(g.value);
-      scatter(*this, c, Vec6<double>(-force * g.gradient), model.gradient);
-      scatter(*this, c,
-              Mat6<double>(-slope * g.gradient * g.gradient.transpose() - force * g.hessian),
-              model.hessian);
-    }
+    const double force = barrier_.force(g.value), slope = barrier_.force_slope(g.value);
+    scatter(*this, c, Vec6<double>(-force * g.gradient), model.gradient);
+    scatter(*this, c,
+            Mat6<double>(-slope * g.gradient * g.gradient.transpose() - force * g.hessian),
+            model.hessian);
   }
   if (lag == 0.0) return;
   const Friction<double> f = friction(c, ahead, point(c, now));
@@ -136,13 +136,28 @@ void StepEnergy::add_contact(const Contact& c, const VectorXd& next, const Vecto
           model.hessian);
 }
 
+/// Whether an edge normal of i separates it from j; corners may overlap by `cut`.
+bool StepEnergy::has_separating_edge(int i, int j, const VectorXd& p, double cut) const {
+  const Pose in = pose_of(p, i), of = pose_of(p, j);
+  Vector2d vertices[kMaxVertices];
+  for (std::size_t m = 0; m < shapes_[j].size(); ++m)
+    vertices[m] = to_local(in, to_world(of, shapes_[j].vertices[m]));
+  for (int k = 0; k < planes_[i].count; ++k) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t m = 0; m < shapes_[j].size(); ++m)
+      least = std::min(least, planes_[i].normal[k].dot(vertices[m]));
+    if (least - planes_[i].offset[k] > -cut) return true;
+  }
+  return false;
+}
+
 bool StepEnergy::separated(const VectorXd& p) const {
   const double cut = 2.0 * std::numbers::ln2 / sharpness_;  // what smoothing takes off two corners
   for (int i = 0; i < movable_; ++i)
     for (int j = i + 1; j < bodies(); ++j) {
       const double reach = radius_[i] + radius_[j];
       if ((p.segment<2>(3 * i) - p.segment<2>(3 * j)).squaredNorm() > reach * reach) continue;
-      if (separation(shapes_[i], pose_of(p, i), shapes_[j], pose_of(p, j)) <= -cut) return false;
+      if (!has_separating_edge(i, j, p, cut) && !has_separating_edge(j, i, p, cut)) return false;
     }
   return true;
 }
@@ -150,7 +165,9 @@ bool StepEnergy::separated(const VectorXd& p) const {
 bool StepEnergy::keeps_gaps(const VectorXd& before, const VectorXd& after, double share) const {
   for (const Contact& c : contacts_) {
     if (!near(c, after)) continue;
-    if (gap_value(c, after) < share * gap_value(c, before)) return false;
+    const double g = gap_value(c, after);
+    if (!(g > 0.0)) return false;
+    if (g < share * barrier_.range && g < share * gap_value(c, before)) return false;
   }
   return separated(after);
 }

@@ -57,7 +57,13 @@ class StepEnergy {
   Gap<S> gap(const Contact& c, const LocalPoint<S>& point) const {
     return rtg::gap(planes_[c.other], sharpness_, skin_, point);
   }
-  double gap_value(const Contact& c, const VectorXd& p) const;
+  template <class S>
+  GapSlope<S> gap_slope(const Contact& c, const LocalPoint<S>& point) const {
+    return rtg::gap_slope(planes_[c.other], sharpness_, skin_, point);
+  }
+  /// g, or a lower bound of it where that is beyond the barrier's range.
+  double gap_value(const Contact& c, const LocalPoint<double>& point) const;
+  double gap_value(const Contact& c, const VectorXd& p) const { return gap_value(c, point(c, p)); }
   LocalPoint<double> point(const Contact& c, const VectorXd& p) const;
   /// The same point with dual parts along `y` [dofs].
   LocalPoint<Dual> point(const Contact& c, const VectorXd& p, const VectorXd& y) const;
@@ -82,10 +88,12 @@ class StepEnergy {
   /// Separating-axis test of all pairs of which one may move. Corners, which the smoothed distance
   /// cuts, may overlap by 2 ln 2/α.
   bool separated(const VectorXd& p) const;
-  /// Every gap ≥ `share` of what it was in `before`, and separated().
+  /// Every gap open and, below `share` of the barrier's range, ≥ `share` of what it was in
+  /// `before`; and separated().
   bool keeps_gaps(const VectorXd& before, const VectorXd& after, double share) const;
 
  private:
+  bool has_separating_edge(int i, int j, const VectorXd& p, double cut) const;
   void add_pair_contacts(const Scene& scene, int body, int other);
   void add_contact(const Contact& c, const VectorXd& next, const VectorXd& now, double lag,
                    Model& model) const;

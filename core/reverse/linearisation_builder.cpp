@@ -50,7 +50,7 @@ void LinearisationBuilder::run() {
   }
   for (int k = 0; k <= h_; ++k)
     for (int c = 0; c < static_cast<int>(energy_.contacts().size()); ++c)
-      if (is_active(problem_, x_, k, c)) add_contact(k, c);
+      if (may_act(problem_, x_, k, c)) add_contact(k, c);
   add_proximal();
   for (int k = 1; k <= h_; ++k) {  // so far ∂Φ and the coupling stand below the diagonal only
     MatrixXd& A = lin_.K_.A[k];
@@ -121,8 +121,9 @@ void LinearisationBuilder::add_start_barrier() {
   const Barrier& barrier = energy_.barrier();
   for (const Contact& c : energy_.contacts()) {
     if (!energy_.near(c, x_.p[0])) continue;
-    const Gap<double> g = energy_.gap(c, energy_.point(c, x_.p[0]));
-    if (!barrier.acts(g.value)) continue;
+    const LocalPoint<double> here = energy_.point(c, x_.p[0]);
+    if (!barrier.acts(energy_.gap_value(c, here))) continue;
+    const Gap<double> g = energy_.gap(c, here);
     const double force = barrier.force(g.value);
     scatter(energy_, c, Vec6<double>(-force * g.gradient), lin_.objective_pose_[0]);
     Mat6<double> H = -barrier.force_slope(g.value) * g.gradient * g.gradient.transpose();
@@ -134,8 +135,9 @@ void LinearisationBuilder::add_start_barrier() {
 void LinearisationBuilder::add_contact(int level, int contact) {
   const Contact& c = energy_.contacts()[contact];
   const LocalPoint<double> here = energy_.point(c, x_.p[level]);
-  const Gap<double> g = energy_.gap(c, here);
   const double force = x_.forces[level][contact];
+  if (force == 0.0 && !energy_.barrier().acts(energy_.gap_value(c, here))) return;
+  const Gap<double> g = energy_.gap(c, here);
   const double s = force - energy_.barrier().weight * energy_.barrier().window(g.value).d1;
   Linearisation::Eliminated e;
   e.level = level;

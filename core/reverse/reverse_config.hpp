@@ -16,7 +16,7 @@ inline constexpr std::array<std::string_view, 2> kReversePresets{"default", "pap
 struct ReverseConfig {
   ReversePreset preset = ReversePreset::kDefault;
   KktMethod kkt = KktMethod::kBlockElimination;
-  int max_iterations = 400;
+  int max_iterations = 200;
   double feasibility_tol = 1e-6;     // ‖C‖∞
   double stationarity_tol = 1e-4;    // ‖∇L‖∞
   double robot_weight = 0.2;         // w₀ of eq. (6)

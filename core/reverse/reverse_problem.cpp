@@ -37,11 +37,9 @@ Iterate static_iterate(const ReverseProblem& problem) {
           std::vector<VectorXd>(levels, VectorXd::Zero(problem.energy.dofs()))};
 }
 
-bool is_active(const ReverseProblem& problem, const Iterate& x, int level, int contact) {
-  if (x.forces[level][contact] != 0.0) return true;
-  const Contact& c = problem.energy.contacts()[contact];
-  return problem.energy.near(c, x.p[level]) &&
-         problem.energy.barrier().acts(problem.energy.gap_value(c, x.p[level]));
+bool may_act(const ReverseProblem& problem, const Iterate& x, int level, int contact) {
+  return x.forces[level][contact] != 0.0 ||
+         problem.energy.near(problem.energy.contacts()[contact], x.p[level]);
 }
 
 double objective(const ReverseProblem& problem, const Iterate& x) {
@@ -89,11 +87,12 @@ Violation violation(const ReverseProblem& problem, const Iterate& x) {
   for (int k = 1; k <= h; ++k) v.residuals[k] = free_residual(problem, x, k);
   for (int k = 0; k <= h; ++k)
     for (int n = 0; n < contacts; ++n) {
-      if (!is_active(problem, x, k, n)) continue;
+      if (!may_act(problem, x, k, n)) continue;
       const Contact& c = energy.contacts()[n];
       const double force = x.forces[k][n];
       const LocalPoint<double> here = energy.point(c, x.p[k]);
-      const Gap<double> g = energy.gap(c, here);
+      if (force == 0.0 && !energy.barrier().acts(energy.gap_value(c, here))) continue;
+      const GapSlope<double> g = energy.gap_slope(c, here);
       v.complementarity[k][n] =
           force * g.value - energy.barrier().weight * energy.barrier().window(g.value).w;
       if (k > 0) scatter(energy, c, Vec6<double>(-force * g.gradient), v.residuals[k]);

@@ -45,8 +45,8 @@ struct Iterate {
 /// At rest in the final state: λ = λ(g), c = 0.
 Iterate static_iterate(const ReverseProblem& problem);
 
-/// Whether contact c takes part at level k: in range, or with a force left over.
-bool is_active(const ReverseProblem& problem, const Iterate& x, int level, int contact);
+/// Whether a contact may take part at a level: bodies close, or with a force left over.
+bool may_act(const ReverseProblem& problem, const Iterate& x, int level, int contact);
 
 double objective(const ReverseProblem& problem, const Iterate& x);
 

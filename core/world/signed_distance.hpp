@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -24,6 +25,14 @@ struct HalfPlanes {
 
 HalfPlanes half_planes(const Polygon& shape);
 
+/// Largest half-plane distance of a point, max_k (n_k·x - b_k) ≤ d(x).
+inline double mitred_distance(const HalfPlanes& planes, const Vector2d& x) {
+  double top = -INFINITY;
+  for (int k = 0; k < planes.count; ++k)
+    top = std::max(top, planes.normal[k].dot(x) - planes.offset[k]);
+  return top;
+}
+
 /// Smoothed signed distance of a point x to a convex polygon and its derivatives,
 ///
 ///   d(x) = 1/α ln Σ_k exp(α (n_k·x - b_k)),   w = softmax(α (n_k·x - b_k)),
@@ -36,15 +45,15 @@ class SignedDistance {
  public:
   SignedDistance(const HalfPlanes& planes, double alpha, const Vec2<S>& x)
       : planes_(planes), alpha_(alpha) {
-    S top = height(0, x);
-    for (int k = 1; k < planes.count; ++k) {
-      const S h = height(k, x);
-      if (h > top) top = h;
+    S top(-INFINITY);
+    for (int k = 0; k < planes.count; ++k) {
+      weight_[k] = normal(k).dot(x) - S(planes.offset[k]);
+      if (weight_[k] > top) top = weight_[k];
     }
     using std::exp, std::log;
     S sum(0.0);
     for (int k = 0; k < planes.count; ++k) {
-      weight_[k] = exp(S(alpha) * (height(k, x) - top));
+      weight_[k] = exp(S(alpha) * (weight_[k] - top));
       sum += weight_[k];
     }
     gradient.setZero();
@@ -79,7 +88,6 @@ class SignedDistance {
   Vec2<S> gradient;  // ∇d, |∇d| ≤ 1
 
  private:
-  S height(int k, const Vec2<S>& x) const { return normal(k).dot(x) - S(planes_.offset[k]); }
   Vec2<S> normal(int k) const { return planes_.normal[k].template cast<S>(); }
 
   const HalfPlanes& planes_;
