@@ -13,7 +13,8 @@ import torch as th
 from rtg import _core, checkpoint, dataset, paths, policy_file, trainer
 from rtg.errors import RunError, UserError
 from rtg.evaluation import HELD_OUT, evaluate, held_out_starts
-from rtg.offline_data import FileSource, OfflineData, with_observations
+from rtg.offline_data import FileSource, OfflineData
+from rtg.recorder import Recorder
 from rtg.training import Training
 from rtg.training_log import COLUMNS, TrainingLog
 from rtg.transition_stream import Rows
@@ -39,7 +40,9 @@ def run_folder(path: Path, rows: Rows | None, *overrides: str) -> Path:
     config = _core.Config.from_file(TINY, [*WORK, *overrides])
     (path / "config.yaml").write_text(config.yaml)
     if rows is not None:
-        dataset.write(path / "transitions.npz", with_observations(config.task, rows))
+        recorder = Recorder(config.task)
+        recorder.add(rows)
+        recorder.write(path / "transitions.npz")
     return path
 
 
@@ -106,7 +109,7 @@ def test_the_model_file_holds_the_policy(tmp_path: Path, rows: Rows) -> None:
     one.finish(lost=0)
     policy = policy_file.read(folder / "model.pt", one.task)
     np.testing.assert_array_equal(
-        policy(rows_seen := one.data.all().observation), one.model.greedy(rows_seen)
+        policy(rows_seen := one.data.record.transitions().observation), one.model.greedy(rows_seen)
     )
 
 
@@ -261,5 +264,5 @@ def test_evaluation_agrees_with_single_episodes() -> None:
 
 def test_empty_transition_set_has_the_right_shapes() -> None:
     config = _core.Config.from_file(TINY)
-    empty = OfflineData(config.task, buffer=None).all()
+    empty = Recorder(config.task).transitions()
     assert empty.poses.shape == (0, 4, 3) and empty.observation.shape == (0, 20)

@@ -16,33 +16,39 @@ class Recorder:
 
     def __init__(self, task: _core.Task) -> None:
         self._task = task
-        self._parts: list[Rows] = []
+        self._parts = [self._seen(_no_rows(task.bodies))]
         self.count = 0
 
-    def add(self, rows: Rows) -> None:
-        """The next rows of the sequence."""
-        self._parts.append(rows)
+    def add(self, rows: Rows) -> Transitions:
+        """Takes the next rows of the sequence; returns them with what the learner sees."""
+        self._parts.append(self._seen(rows))
         self.count += len(rows.action)
+        return self._parts[-1]
 
-    def transitions(self) -> Transitions:
-        """Everything so far, with observations."""
+    def _seen(self, rows: Rows) -> Transitions:
         task = self._task
-        empty = np.zeros((0, task.bodies, 3))
-        none = Rows(
-            empty,
-            np.zeros(0, np.int32),
-            empty,
-            np.zeros(0, np.float32),
-            np.zeros(0, np.bool_),
-            np.zeros(0, np.int8),
-        )
-        rows = Rows(*(np.concatenate(column) for column in zip(none, *self._parts, strict=True)))
         return Transitions(
             **rows._asdict(),
             observation=task.observation(rows.poses),
             next_observation=task.observation(rows.next_poses),
         )
 
+    def transitions(self) -> Transitions:
+        """Everything so far."""
+        self._parts = [dataset.concatenate(self._parts)]
+        return self._parts[0]
+
     def write(self, path: Path) -> None:
         """Writes the file, at once or not at all."""
         dataset.write(path, self.transitions())
+
+
+def _no_rows(bodies: int) -> Rows:
+    return Rows(
+        poses=np.zeros((0, bodies, 3)),
+        action=np.zeros(0, np.int32),
+        next_poses=np.zeros((0, bodies, 3)),
+        reward=np.zeros(0, np.float32),
+        terminated=np.zeros(0, np.bool_),
+        source=np.zeros(0, np.int8),
+    )

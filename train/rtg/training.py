@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from rtg import _core, checkpoint, dataset, policy_file
+from rtg import _core, checkpoint, policy_file
 from rtg.ddqn import DoubleDqn
 from rtg.evaluation import Evaluation, evaluate, held_out_starts
-from rtg.offline_data import OfflineData, Source
+from rtg.offline_data import OfflineData, Source, read_rows
 from rtg.run_folder import write_json
 from rtg.settings import TrainSettings
 from rtg.training_log import TrainingLog
@@ -89,7 +89,7 @@ class Training:
         if news:
             self.data.prove_bounds(source.complete)
             if source.complete and record:
-                dataset.write(self.folder / "transitions.npz", self.data.all())
+                self.data.record.write(self._transition_files()[0])
         self.log.display(self._state())
 
     def _learn(self) -> None:
@@ -153,7 +153,7 @@ class Training:
         if whole.exists():
             part.unlink(missing_ok=True)
         elif self.data.count > self._saved_rows or not part.exists():
-            dataset.write(part, self.data.all())
+            self.data.record.write(part)
             self._saved_rows = self.data.count
         state = {
             "identity": self._identity,
@@ -176,7 +176,7 @@ class Training:
         state = checkpoint.read(path)
         policy_file.check_identity(path, state.get("identity", {}), self._identity)
         whole, part = self._transition_files()
-        rows = dataset.read(whole if whole.exists() else part, self.task.bodies, self.task.headings)
+        rows = read_rows(whole if whole.exists() else part, self.task)
         self.data.restore(state["data"], rows)
         self.model.replay_buffer.restore(state["replay"])
         self.model.restore(state["model"])

@@ -31,9 +31,9 @@ class Rows(NamedTuple):
     terminated: NDArray[np.bool_]  # [n], on success
     source: NDArray[np.int8]  # [n]
 
-    def after(self, skip: int) -> Rows:
-        """Without the first `skip` rows."""
-        return Rows._make(column[skip:] for column in self)
+    def after(self, skip: int, end: int | None = None) -> Rows:
+        """Without the first `skip` rows, and without those from `end` on."""
+        return Rows._make(column[skip:end] for column in self)
 
 
 class Ack(NamedTuple):
@@ -175,7 +175,7 @@ class TransitionStream:
         bus: Bus,
         bodies: int,
         headings: int,
-        sink: Callable[[Rows], None],
+        sink: Callable[[Rows], object],
         credit: int = 8192,
     ) -> None:
         self._bus = bus
