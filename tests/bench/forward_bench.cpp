@@ -10,6 +10,8 @@
 namespace rtg {
 namespace {
 
+using testing::gathering;
+
 constexpr double kMoved = 0.05;  // [m]
 
 struct Push {

@@ -12,10 +12,12 @@
 #include <type_traits>
 
 #include "core/search/simulators.hpp"
-#include "core/tasks/gathering.hpp"
+#include "tests/support/gathering.hpp"
 
 namespace rtg {
 namespace {
+
+using testing::gathering;
 
 /// Sets the number called `name`; the config's visitor.
 struct Setter {

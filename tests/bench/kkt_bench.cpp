@@ -6,10 +6,12 @@
 #include <string>
 
 #include "core/reverse/linearisation.hpp"
-#include "core/tasks/gathering.hpp"
+#include "tests/support/gathering.hpp"
 
 namespace rtg {
 namespace {
+
+using testing::gathering;
 
 constexpr int kBodies = 6;
 constexpr double kResidual = 1e-9;  // of the right-hand side, largest accepted

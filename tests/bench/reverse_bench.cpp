@@ -10,6 +10,8 @@
 namespace rtg {
 namespace {
 
+using testing::gathering;
+
 /// What became of the candidates of all states solved.
 struct Tally {
   long candidates = 0, pruned = 0, converged = 0;

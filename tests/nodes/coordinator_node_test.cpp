@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "core/search/thread_pool.hpp"
-#include "core/tasks/gathering.hpp"
 #include "nodes/common/worker_node.hpp"
+#include "tests/support/gathering.hpp"
 #include "tests/support/generation_run.hpp"
 
 namespace rtg {
@@ -18,6 +18,7 @@ namespace {
 
 using rtg_msgs::search_progress_t;
 using rtg_msgs::transition_batch_t;
+using testing::gathering;
 
 constexpr std::int64_t kConfig = 77;
 constexpr std::uint64_t kSeed = 7;

@@ -6,12 +6,15 @@
 #include <limits>
 #include <vector>
 
-#include "core/tasks/gathering.hpp"
 #include "nodes/common/field_writer.hpp"
 #include "tests/nodes/two_boxes.hpp"
+#include "tests/support/gathering.hpp"
 
 namespace rtg {
 namespace {
+
+using testing::gathering;
+using testing::gathering_hard;
 
 const std::filesystem::path kConfig = RTG_CONFIG_FOLDER;
 

@@ -3,7 +3,7 @@
 #include "core/energy/step_energy.hpp"
 #include "core/math/rng.hpp"
 #include "core/reverse/rollout.hpp"
-#include "core/tasks/gathering.hpp"
+#include "tests/support/gathering.hpp"
 
 namespace rtg::testing {
 

@@ -8,11 +8,13 @@
 #include <thread>
 
 #include "core/math/rng.hpp"
-#include "core/tasks/gathering.hpp"
 #include "core/world/separation.hpp"
+#include "tests/support/gathering.hpp"
 
 namespace rtg {
 namespace {
+
+using testing::gathering;
 
 const PhysicsConfig kPhysics;
 const PushConfig kPush;

@@ -8,12 +8,13 @@
 
 #include "core/forward/box2d_simulator.hpp"
 #include "core/search/coverage.hpp"
-#include "core/tasks/gathering.hpp"
+#include "tests/support/gathering.hpp"
 #include "tests/support/generation_run.hpp"
 
 namespace rtg {
 namespace {
 
+using testing::gathering;
 using testing::GenerationRun;
 using testing::run_naive;
 

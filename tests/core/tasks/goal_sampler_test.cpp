@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
 #include "core/forward/box2d_simulator.hpp"
-#include "core/tasks/gathering.hpp"
 #include "core/world/separation.hpp"
+#include "tests/support/gathering.hpp"
 
 namespace rtg {
 namespace {
+
+using testing::gathering;
+using testing::gathering_hard;
 
 constexpr int kGoals = 500;
 

@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
 #include "core/forward/box2d_simulator.hpp"
-#include "core/tasks/gathering.hpp"
+#include "tests/support/gathering.hpp"
 
 namespace rtg {
 namespace {
+
+using testing::gathering;
 
 bool moved_object(const Poses& before, const Poses& after) {
   for (std::size_t i = 1; i < before.size(); ++i)

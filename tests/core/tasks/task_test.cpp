@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "core/tasks/gathering.hpp"
 #include "core/world/separation.hpp"
+#include "tests/support/gathering.hpp"
 
 namespace rtg {
 namespace {
+
+using testing::gathering;
+using testing::gathering_hard;
 
 Task two_kinds() {
   Task task = gathering();

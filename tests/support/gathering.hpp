@@ -1,22 +1,22 @@
-#include "core/tasks/gathering.hpp"
+#pragma once
 
-namespace rtg {
-namespace {
+#include <string>
 
-constexpr double kFriction = 0.5;
+#include "core/tasks/task.hpp"
 
-void add_box(Task& task, const Pose& pose) {
+namespace rtg::testing {
+
+inline void add_box(Task& task, const Pose& pose) {
   const std::string name = "box" + std::to_string(task.scene.size());
-  task.scene.bodies.push_back({name, "box", box(1.2, 1.2), 1.0, kFriction, false});
+  task.scene.bodies.push_back({name, "box", box(1.2, 1.2), 1.0, 0.5, false});
   task.start.push_back(to_single(pose));
 }
 
-}  // namespace
-
-Task gathering() {
+/// The task of config/gathering.yaml, for tests of the core, which reads no YAML.
+inline Task gathering() {
   Task task;
   task.name = "gathering";
-  task.scene.bodies.push_back({"robot", "robot", regular_polygon(6, 0.8), 1.0, kFriction, false});
+  task.scene.bodies.push_back({"robot", "robot", regular_polygon(6, 0.8), 1.0, 0.5, false});
   task.start.push_back({0.0, -5.0, 0.0});
   add_box(task, {-3.0, 1.13, 0.2});
   add_box(task, {2.63, 2.25, -0.3});
@@ -27,11 +27,12 @@ Task gathering() {
   return task;
 }
 
-Task gathering_hard() {
+/// The task of config/gathering_hard.yaml.
+inline Task gathering_hard() {
   Task task = gathering();
   task.name = "gathering_hard";
   add_box(task, {-1.88, -2.63, 0.1});
   return task;
 }
 
-}  // namespace rtg
+}  // namespace rtg::testing
