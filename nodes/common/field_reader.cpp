@@ -35,14 +35,11 @@ std::string suggestion(const std::string& key, std::span<const std::string> keys
   const auto nearest =
       std::min_element(keys.begin(), keys.end(),
                        [&](const auto& a, const auto& b) { return edits(key, a) < edits(key, b); });
-  const std::size_t most = std::max<std::size_t>(2, key.size() / 3);
-  return edits(key, *nearest) <= most && most < key.size() + 1
-             ? " (did you mean '" + *nearest + "'?)"
-             : "";
+  const std::size_t near = std::max<std::size_t>(2, key.size() / 3);
+  return edits(key, *nearest) <= near ? " (did you mean '" + *nearest + "'?)" : "";
 }
 
-template <class Number>
-std::string range_text(const char* what, const Number& least, const Number& most) {
+std::string range_text(const char* what, const std::string& least, const std::string& most) {
   return std::string(what) + " from " + least + " to " + most;
 }
 

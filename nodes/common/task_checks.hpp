@@ -5,9 +5,10 @@
 
 namespace rtg {
 
-/// Throws ConfigError, at the place in `section` that it was read from, for a task that hangs
-/// together in no way: names that differ not, a start state that overlaps or lies outside, a goal
-/// that concerns nobody, holds from the start or that nothing can meet.
+/// What concerns several values at once. Throws ConfigError with the place in `section`, which
+/// `task` was read from, for: bodies of the same name, nothing that can move, a start state that
+/// overlaps or lies outside, a goal that concerns nobody, holds from the start or that no layout
+/// meets.
 void check_task(const Task& task, const ConfigNode& section);
 
 }  // namespace rtg
