@@ -52,8 +52,8 @@ case ${1:-all} in
     run_ctest asan
     ;;
   tsan)
-    set_up tsan rtg_cpp_tests
-    run_ctest tsan --tests-regex 'thread|pool|generate'
+    set_up tsan rtg_thread_tests
+    run_ctest tsan --label-regex threads
     ;;
   coverage)
     set_up coverage rtg_cpp_tests
