@@ -20,6 +20,7 @@ bool StreamServer::on_ack(const Ack& ack, Seconds now) {
   consumer.cursor = std::max(consumer.cursor, ack.cursor);  // an old acknowledgement may come late
   consumer.credit = ack.credit;
   consumer.heard = now;
+  consumer.complete = consumer.complete || (sealed_ && ack.cursor == count() && ack.credit == 0);
   std::int64_t budget = limits_.max_nacked;
   for (const RowRange& range : ack.missing) {
     const std::int64_t begin = std::clamp<std::int64_t>(range.begin, 0, live_);
@@ -58,7 +59,7 @@ std::int64_t StreamServer::slowest_cursor() const {
 bool StreamServer::drained(int consumers, Seconds now) const {
   int complete = 0;
   for (const auto& [id, consumer] : consumers_) {
-    if (consumer.cursor == count())
+    if (consumer.complete)
       ++complete;
     else if (now - consumer.heard <= limits_.silence)
       return false;

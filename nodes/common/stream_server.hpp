@@ -35,7 +35,7 @@ class StreamServer {
   struct Ack {
     std::int64_t consumer = 0;
     std::int64_t cursor = 0;
-    std::int64_t credit = 0;
+    std::int64_t credit = 0;  // rows beyond the cursor; 0: it knows that it has the whole stream
     std::span<const RowRange> missing;
   };
 
@@ -63,14 +63,15 @@ class StreamServer {
   /// Whether due() will have more to send although nothing new comes in.
   bool backlog(Seconds now) const { return !asked_.empty() || live_ < live_limit(now); }
 
-  /// Whether the stream is sealed, at least `consumers` have all of it, and no living one lacks a
-  /// row.
+  /// Whether at least `consumers` know that they have the whole sealed stream, and no living one
+  /// does not.
   bool drained(int consumers, Seconds now) const;
 
  private:
   struct Consumer {
     std::int64_t cursor = 0, credit = 0;
     Seconds heard = 0.0;
+    bool complete = false;
   };
 
   void ask(RowRange range);

@@ -85,11 +85,16 @@ TEST(StreamServer, AnOldAcknowledgementMovesNothingBack) {
   EXPECT_EQ(server.slowest_cursor(), 300);
 }
 
-TEST(StreamServer, IsDrainedWhenEveryLivingConsumerHasTheSealedStream) {
+TEST(StreamServer, IsDrainedWhenEveryLivingConsumerKnowsThatItHasAll) {
   StreamServer server = server_with(400);
-  ack(server, 400);
-  EXPECT_FALSE(server.drained(1, 0.0));
+  ack(server, 400, {}, 0.0, 0);
   server.seal();
+  EXPECT_FALSE(server.drained(1, 0.0));  // it cannot know yet
+  ack(server, 400, {}, 0.0, 100);
+  EXPECT_FALSE(server.drained(1, 0.0));
+  ack(server, 400, {}, 0.0, 0);
+  EXPECT_TRUE(server.drained(1, 0.0));
+  ack(server, 300, {}, 0.0, 100);  // an old one
   EXPECT_TRUE(server.drained(1, 0.0));
   EXPECT_FALSE(server.drained(2, 0.0));
   EXPECT_TRUE(server.on_ack({8, 399, 10, {}}, 1.0));

@@ -1,0 +1,30 @@
+"""A consumer of the transition stream: CONFIG.yaml RUN FILE.npz.
+
+Says how many rows it has whenever some have come, and how many it lacks at the end.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+from rtg import _core
+from rtg.bus import Bus
+from rtg.recorder import Recorder
+from rtg.transition_stream import TransitionStream
+
+
+def main(config_file: str, run: str, target: str) -> None:
+    config = _core.Config.from_file(config_file)
+    task = config.task
+    recorder = Recorder(task)
+    bus = Bus(json.loads(config.json)["run"]["bus"], run)
+    stream = TransitionStream(bus, task.bodies, task.headings, recorder.add)
+    while not stream.complete:
+        if stream.poll(0.1):
+            print(stream.received, flush=True)
+    recorder.write(Path(target))
+    print(f"lost {stream.lost}", flush=True)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

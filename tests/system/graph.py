@@ -1,0 +1,80 @@
+"""The process graph on a network of its own."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+from network import Network
+from rtg import _core, effective_config, paths
+from rtg.recorder import Recorder
+from rtg.run_args import Override
+from rtg.transition_stream import Rows
+
+_TINY = paths.CONFIG / "tests" / "tiny.yaml"
+_RUN = "system-test"
+_CONSUMER = Path(__file__).with_name("consumer.py")
+PATIENCE = 120.0  # [s] until a test that hangs fails
+
+Process = subprocess.Popen[str]
+
+
+class Graph:
+    """The programs of one run; `overrides` as in --set."""
+
+    def __init__(self, network: Network, folder: Path, *overrides: str) -> None:
+        self.network, self.folder = network, folder
+        self.config = folder / "config.yaml"
+        given = [Override("", setting) for setting in overrides]
+        self.config.write_text(effective_config.canonical(_TINY, given))
+
+    def _program(self, name: str, *words: str | Path) -> Process:
+        return self.network.start([paths.program(name), self.config, _RUN, *words])
+
+    def server(self) -> Process:
+        return self._program("rtg_forward_sim_server")
+
+    def worker(self, number: int) -> Process:
+        return self._program("rtg_reverse_worker", str(number))
+
+    def coordinator(self, consumers: int = 1) -> Process:
+        return self._program("rtg_beam_coordinator", self.folder, str(consumers))
+
+    def consumer(self, name: str = "transitions") -> Process:
+        command = [sys.executable, _CONSUMER, self.config, _RUN, self.folder / f"{name}.npz"]
+        return self.network.start(command, PYTHONPATH=str(paths.ROOT / "train"))
+
+    def transitions(self, name: str = "transitions") -> bytes:
+        """What the consumer of that name has written."""
+        return (self.folder / f"{name}.npz").read_bytes()
+
+    def is_generating(self) -> bool:
+        return not (self.folder / "generation.json").exists()
+
+
+def first_rows(consumer: Process) -> int:
+    """Waits until the consumer has some; how many."""
+    assert consumer.stdout is not None
+    return int(consumer.stdout.readline())
+
+
+def rest(consumer: Process) -> str:
+    """Waits for its end; what it says last."""
+    assert consumer.stdout is not None
+    words = consumer.stdout.read().splitlines()
+    assert consumer.wait(PATIENCE) == 0
+    return words[-1]
+
+
+def generated_in_process(file: Path, *overrides: str) -> bytes:
+    """transitions.npz of the same run in this process, without LCM; written to `file`."""
+    config = _core.Config.from_file(_TINY, overrides)
+    recorder = Recorder(config.task)
+
+    def store(poses, action, next_poses, success, source) -> None:  # type: ignore[no-untyped-def]
+        recorder.add(Rows(poses, action, next_poses, success.astype("f4"), success, source))
+
+    _core.generate(config, store, lambda progress: None)
+    recorder.write(file)
+    return file.read_bytes()

@@ -1,0 +1,90 @@
+"""A network of its own, in which messages can be lost, and processes in it."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+_MULTICAST = "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo"
+_PATH = os.environ["PATH"] + ":/usr/sbin:/sbin"
+_LOSS = """
+add table ip loss
+add chain ip loss incoming {{ type filter hook input priority 0; }}
+add rule ip loss incoming meta l4proto udp numgen random mod 100 lt {percent} counter drop
+"""
+
+
+def defect() -> str | None:
+    """Why there can be no such network here; None if there can."""
+    command = ["unshare", "-rn", "sh", "-c", _MULTICAST]
+    done = subprocess.run(command, capture_output=True, text=True, env={"PATH": _PATH})
+    return done.stderr.strip() if done.returncode else None
+
+
+class Network:
+    """A network namespace with nothing but a loopback device; takes its processes with it."""
+
+    def __init__(self) -> None:
+        script = f"{_MULTICAST} && echo ready && exec sleep infinity"
+        self._holder = subprocess.Popen(
+            ["unshare", "-rn", "sh", "-c", script], stdout=subprocess.PIPE, text=True
+        )
+        assert self._holder.stdout is not None
+        assert self._holder.stdout.readline() == "ready\n"
+        self._processes = [self._holder]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        for process in self._processes:
+            if process.poll() is None:
+                process.send_signal(signal.SIGKILL)
+            process.wait()
+            if process.stdout:
+                process.stdout.close()
+
+    def _inside(self, command: Sequence[str | Path]) -> list[str]:
+        enter = ["nsenter", "--preserve-credentials", "-U", "-n", "-t", str(self._holder.pid)]
+        return [*enter, *map(str, command)]
+
+    def start(self, command: Sequence[str | Path], **options: str) -> subprocess.Popen[str]:
+        """Starts a process whose output can be read; its id is the program's own."""
+        process = subprocess.Popen(
+            self._inside(command),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            text=True,
+            env={**os.environ, **options},
+        )
+        self._processes.append(process)
+        return process
+
+    def _nft(self, *arguments: str, rules: str = "") -> str:
+        command = self._inside(["nft", *arguments])
+        done = subprocess.run(
+            command, input=rules, capture_output=True, text=True, env={"PATH": _PATH}
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    def lose(self, percent: int) -> None:
+        """From now on every datagram is lost with that probability."""
+        self._nft("-f", "-", rules=_LOSS.format(percent=percent))
+
+    def lost(self) -> int:
+        """Datagrams lost so far."""
+        count = re.search(r"packets (\d+)", self._nft("list", "table", "ip", "loss"))
+        assert count is not None
+        return int(count.group(1))

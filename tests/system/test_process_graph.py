@@ -1,0 +1,139 @@
+"""The transitions are the same bytes however many processes work, die or go unheard."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import network
+import pytest
+from graph import PATIENCE, Graph, Process, first_rows, generated_in_process, rest
+
+# No roll-outs: to its last row the search needs reverse workers and the server.
+LONG = ("search.transitions=12000", "search.rollout_share=0", "run.seed=3")
+
+
+@pytest.fixture
+def net() -> Iterator[network.Network]:
+    if why := network.defect():
+        pytest.skip(f"no network namespaces here: {why}")
+    with network.Network() as created:
+        yield created
+
+
+@pytest.fixture(scope="module")
+def tiny(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    return generated_in_process(tmp_path_factory.mktemp("tiny") / "transitions.npz")
+
+
+@pytest.fixture(scope="module")
+def long(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    return generated_in_process(tmp_path_factory.mktemp("long") / "transitions.npz", *LONG)
+
+
+def assert_all_left(*processes: Process) -> None:
+    for process in processes:
+        assert process.wait(PATIENCE) == 0
+
+
+@pytest.mark.parametrize("workers", [1, 2, 4])
+def test_any_number_of_workers(
+    net: network.Network, tmp_path: Path, tiny: bytes, workers: int
+) -> None:
+    graph = Graph(net, tmp_path, f"run.workers={workers}")
+    helpers = [graph.server(), *(graph.worker(number) for number in range(workers))]
+    consumer, coordinator = graph.consumer(), graph.coordinator()
+    assert rest(consumer) == "lost 0"
+    assert_all_left(coordinator, *helpers)
+    assert graph.transitions() == tiny
+
+
+def test_a_killed_worker(net: network.Network, tmp_path: Path, long: bytes) -> None:
+    graph = Graph(net, tmp_path, *LONG)
+    server, worker, consumer = graph.server(), graph.worker(1), graph.consumer()
+    coordinator = graph.coordinator()
+    assert 0 < first_rows(consumer) < 12000
+    worker.kill()
+    assert worker.wait() == -signal.SIGKILL
+    assert graph.is_generating()
+    another = graph.worker(2)
+    assert rest(consumer) == "lost 0"
+    assert_all_left(coordinator, server, another)
+    assert graph.transitions() == long
+
+
+def test_a_killed_server(net: network.Network, tmp_path: Path, long: bytes) -> None:
+    graph = Graph(net, tmp_path, *LONG)
+    server, worker, consumer = graph.server(), graph.worker(1), graph.consumer()
+    coordinator = graph.coordinator()
+    assert 0 < first_rows(consumer) < 12000
+    server.kill()
+    assert server.wait() == -signal.SIGKILL
+    assert graph.is_generating()
+    another = graph.server()
+    assert rest(consumer) == "lost 0"
+    assert_all_left(coordinator, worker, another)
+    assert graph.transitions() == long
+
+
+def test_a_tenth_of_the_datagrams_lost(net: network.Network, tmp_path: Path, tiny: bytes) -> None:
+    net.lose(10)
+    graph = Graph(net, tmp_path)
+    helpers = [graph.server(), graph.worker(1), graph.worker(2)]
+    consumer, coordinator = graph.consumer(), graph.coordinator()
+    assert rest(consumer) == "lost 0"
+    assert_all_left(coordinator, *helpers)
+    assert net.lost() > 20
+    assert graph.transitions() == tiny
+
+
+def test_consumers_that_come_late_or_again(
+    net: network.Network, tmp_path: Path, tiny: bytes
+) -> None:
+    graph = Graph(net, tmp_path)
+    helpers = [graph.server(), graph.worker(1)]
+    first, coordinator = graph.consumer("first"), graph.coordinator(2)
+    assert first_rows(first) > 0
+    first.kill()
+    second = graph.consumer("second")
+    assert rest(second) == "lost 0"
+    assert not graph.is_generating()
+    third = graph.consumer("third")
+    assert rest(third) == "lost 0"
+    assert_all_left(coordinator, *helpers)
+    assert graph.transitions("second") == graph.transitions("third") == tiny
+
+
+def test_a_terminated_coordinator_ends_all_and_leaves_no_half_file(
+    net: network.Network, tmp_path: Path
+) -> None:
+    graph = Graph(net, tmp_path, *LONG)
+    server, worker, consumer = graph.server(), graph.worker(1), graph.consumer()
+    coordinator = graph.coordinator()
+    assert first_rows(consumer) > 0
+    coordinator.terminate()
+    assert coordinator.wait(PATIENCE) == 128 + signal.SIGTERM
+    assert_all_left(server, worker)
+    assert [path.name for path in tmp_path.iterdir()] == ["config.yaml"]
+
+
+def test_workers_and_server_end_when_told(net: network.Network, tmp_path: Path) -> None:
+    graph = Graph(net, tmp_path, *LONG)
+    server, worker, consumer = graph.server(), graph.worker(1), graph.consumer()
+    coordinator = graph.coordinator()
+    assert first_rows(consumer) > 0
+    worker.terminate()
+    server.send_signal(signal.SIGINT)
+    assert worker.wait(PATIENCE) == 128 + signal.SIGTERM
+    assert server.wait(PATIENCE) == 128 + signal.SIGINT
+    coordinator.send_signal(signal.SIGINT)  # while its search waits for the two
+    assert coordinator.wait(PATIENCE) == 128 + signal.SIGINT
+
+
+def test_bad_words_are_named(net: network.Network, tmp_path: Path) -> None:
+    graph = Graph(net, tmp_path)
+    assert graph.worker(-1).wait(PATIENCE) == 2
+    assert graph.coordinator(-1).wait(PATIENCE) == 2
+    graph.config.write_text("task: nowhere.yaml\n")
+    assert graph.server().wait(PATIENCE) == 2
