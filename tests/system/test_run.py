@@ -1,0 +1,230 @@
+"""The whole command as the user types it, on a configuration that takes seconds."""
+
+import contextlib
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from rtg import dataset, paths
+from rtg.run_folder import SUMMARY_KEYS
+
+TINY = "config/tests/tiny.yaml"
+NETWORK = paths.ROOT / "tests" / "support" / "private_network.sh"
+ENDLESS = (TINY, "--transitions", "20000000")
+PATIENCE = 120.0  # [s]; longer is a hang
+COMMON_FILES = {
+    "config.yaml",
+    "versions.json",
+    "summary.json",
+    "generation.json",
+    "transitions.npz",
+    "replay_gap.png",
+    "coverage.png",
+    "episode.png",
+    "episode.gif",
+}
+TRAINING_FILES = {"progress.csv", "learning_curve.png", "training.json", "model.pt"}
+
+
+def start(*words):
+    return subprocess.Popen(
+        [NETWORK, sys.executable, "-m", "rtg.cli", *map(str, words)],
+        cwd=paths.ROOT,
+        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def run(*words):
+    process = start(*words)
+    out, err = process.communicate(timeout=PATIENCE)
+    if process.returncode == 77:
+        pytest.skip(err)
+    return subprocess.CompletedProcess(words, process.returncode, out, err)
+
+
+@pytest.fixture(scope="module")
+def in_process(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("run") / "in_process"
+    return folder, run(TINY, "--in-process", "--out", folder)
+
+
+@pytest.fixture(scope="module")
+def over_lcm(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("run") / "over_lcm"
+    return folder, run(TINY, "--out", folder, "--set", "run.record=true")
+
+
+@pytest.fixture(params=["in_process", "over_lcm"])
+def whole_run(request):
+    return request.getfixturevalue(request.param)
+
+
+def test_a_run_ends_well_and_leaves_every_file(whole_run):
+    folder, done = whole_run
+    assert done.returncode == 0, done.stderr
+    found = {path.name for path in folder.iterdir() if path.stat().st_size > 0}
+    assert found >= COMMON_FILES | TRAINING_FILES
+    assert "Traceback" not in "".join(log.read_text() for log in (folder / "logs").iterdir())
+
+
+def test_the_output_of_a_piped_run_is_plain_lines(whole_run):
+    folder, done = whole_run
+    assert "\x1b" not in done.stdout and "\r" not in done.stdout
+    assert done.stderr == ""
+    lines = done.stdout.splitlines()
+    assert lines[-1] == f"results: {folder}"
+    assert all(re.match(r"\[ *\d+\.\d s\] ", line) for line in lines[:-3])
+
+
+def test_the_summary_is_whole_and_agrees_with_the_files(whole_run):
+    folder, _ = whole_run
+    summary = json.loads((folder / "summary.json").read_text())
+    assert [key for key in SUMMARY_KEYS if summary[key] is None] == []
+    data = dataset.read(folder / "transitions.npz", bodies=4, headings=48)
+    assert summary["transitions"] == len(data.action) == 2000
+    moved = np.abs(data.next_poses - data.poses)[:, 1:, :2]
+    moved = np.hypot(moved[..., 0], moved[..., 1]) > 0.05
+    assert summary["contact_share"] == pytest.approx(moved.any(axis=1).mean(), abs=1e-3)
+    assert summary["multi_body_share"] == pytest.approx((moved.sum(axis=1) > 1).mean(), abs=1e-3)
+    assert summary["lost_transitions"] == 0
+    assert summary["interactions"] == 400
+
+
+def test_the_pictures_are_pictures(whole_run):
+    folder, _ = whole_run
+    for name in ("replay_gap.png", "coverage.png", "learning_curve.png", "episode.png"):
+        with Image.open(folder / name) as picture:
+            assert len(picture.convert("RGB").getcolors(1 << 24)) > 50, name
+    with Image.open(folder / "episode.gif") as film:
+        assert film.n_frames > 60
+
+
+def test_the_process_graph_and_one_process_store_the_same_bytes(in_process, over_lcm):
+    one, many = (folder / "transitions.npz" for folder, _ in (in_process, over_lcm))
+    assert one.read_bytes() == many.read_bytes()
+
+
+def test_a_run_is_recorded_when_asked(over_lcm):
+    log = (over_lcm[0] / "lcm.log").read_bytes()
+    for channel in (b"RTG_TRANSITION", b"RTG_REVERSE_JOB", b"RTG_PROGRESS", b"RTG_STATUS"):
+        assert channel in log
+
+
+def test_the_written_configuration_makes_the_same_run(in_process, tmp_path):
+    folder, _ = in_process
+    again = tmp_path / "again"
+    done = run(folder / "config.yaml", "--no-train", "--out", again)
+    assert done.returncode == 0, done.stderr
+    assert (again / "config.yaml").read_text() == (folder / "config.yaml").read_text()
+    assert (again / "transitions.npz").read_bytes() == (folder / "transitions.npz").read_bytes()
+    assert {path.name for path in again.iterdir()} >= COMMON_FILES
+
+
+def processes_of(folder):
+    """Words of all living processes that were started with the folder among them, by id."""
+    found = {}
+    for entry in os.listdir("/proc"):
+        with contextlib.suppress(OSError):
+            if entry.isdigit() and int(entry) != os.getpid():
+                words = Path(f"/proc/{entry}/cmdline").read_bytes().decode(errors="replace")
+                if str(folder) in words:
+                    found[int(entry)] = words
+    return found
+
+
+def kill(folder, program):
+    """SIGKILL to the processes of a run whose words contain `program`; there must be one."""
+    victims = [pid for pid, words in processes_of(folder).items() if program in words]
+    assert victims
+    for pid in victims:
+        os.kill(pid, signal.SIGKILL)
+
+
+def wait_for_line(process, words):
+    for line in process.stdout:
+        if words in line:
+            return
+    pytest.fail(f"the run ended without saying '{words}': {process.stderr.read()}")
+
+
+@pytest.mark.parametrize("mode", [(), ("--in-process",)], ids=["over_lcm", "in_process"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_run_and_all_of_its_processes(tmp_path, mode, number):
+    folder = tmp_path / "run"
+    process = start(*ENDLESS, *mode, "--out", folder)
+    wait_for_line(process, "tree 1")
+    process.send_signal(number)
+    _, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 1
+    assert err == f"rtg: stopped; to go on: ./run.sh --resume --out {folder}\n"
+    assert processes_of(folder) == {}
+
+
+def test_killing_the_command_kills_all_of_its_processes(tmp_path):
+    folder = tmp_path / "run"
+    process = start(*ENDLESS, "--out", folder)
+    wait_for_line(process, "tree 1")
+    # the command, server, two workers, coordinator, trainer
+    assert len(processes_of(folder)) == 6
+    process.kill()
+    process.communicate(timeout=PATIENCE)
+    deadline = time.monotonic() + PATIENCE
+    while left := processes_of(folder):
+        assert time.monotonic() < deadline, left
+        time.sleep(0.02)
+
+
+def test_a_killed_worker_is_replaced_and_changes_nothing(tmp_path):
+    words = (TINY, "--no-train", "--transitions", "20000", "--workers", "1")
+    assert run(*words, "--in-process", "--out", tmp_path / "undisturbed").returncode == 0
+    folder = tmp_path / "disturbed"
+    process = start(*words, "--out", folder)
+    wait_for_line(process, "tree 1")
+    kill(folder, "rtg_reverse_worker")
+    out, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 0, err
+    assert "reverse_worker_0 was killed by SIGKILL, started again" in out
+    assert json.loads((folder / "summary.json").read_text())["worker_restarts"] == 1
+    undisturbed = tmp_path / "undisturbed" / "transitions.npz"
+    assert (folder / "transitions.npz").read_bytes() == undisturbed.read_bytes()
+
+
+@pytest.mark.parametrize("program", ["rtg.trainer", "rtg_beam_coordinator"])
+def test_without_trainer_or_coordinator_the_run_ends(tmp_path, program):
+    folder = tmp_path / "run"
+    process = start(*ENDLESS, "--out", folder)
+    wait_for_line(process, "tree 1")
+    kill(folder, program)
+    _, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 1
+    assert "was killed by SIGKILL" in err.splitlines()[0]
+    assert processes_of(folder) == {}
+
+
+def test_a_stopped_run_goes_on_where_it_was(in_process, tmp_path):
+    folder = tmp_path / "run"
+    process = start(TINY, "--in-process", "--out", folder)
+    wait_for_line(process, "interactions")
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 1, err
+    done = run("--resume", "--out", folder)
+    assert done.returncode == 0, done.stderr
+    assert "the transitions are there already" in done.stdout
+    assert best_episode(folder).tolist() == best_episode(in_process[0]).tolist()
+
+
+def best_episode(folder):
+    with np.load(folder / "best_episode.npz") as file:
+        return file["poses"]
