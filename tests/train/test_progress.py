@@ -53,7 +53,14 @@ def test_a_terminal_shows_a_bar_with_words_for_each_half_of_the_run():
         shown.show(TRAINING)
         shown.note("reverse_worker_0 was killed by SIGKILL, started again")
     text = out.getvalue()
-    for words in ("generate", "1234/60000", "train", "10000/350000", "success -", "SIGKILL"):
+    for words in (
+        "generate",
+        "1,234 of    60,000",
+        "train",
+        "10,000 of   350,000",
+        "success -",
+        "SIGKILL",
+    ):
         assert words in text
 
 

@@ -8,6 +8,7 @@ import pytest
 from rtg.bus import Bus
 from rtg.channel_monitor import ChannelMonitor
 from rtg.messages import message_type
+from rtg.node_status import NodeStatus
 from rtg.spy import SpyApp, bandwidth, watch_plainly
 
 
@@ -69,3 +70,15 @@ def test_bandwidth_has_fitting_units():
     assert bandwidth(12345.0) == "12.3 kB/s"
     assert bandwidth(999_990.0) == "1.0 MB/s"
     assert bandwidth(2.5e9) == "2.5 GB/s"
+
+
+def test_a_python_node_is_shown_like_any_other(bus, monitor):
+    status = NodeStatus(bus, "trainer")
+    bus.counters["bus.malformed"] = 2
+    status.tick("learning", 400)
+    status.tick("learning", 401)  # too early to say more
+    bus.spin(0.0)
+    (row,) = monitor.nodes(time.monotonic())
+    assert (row.name, row.state, row.done) == ("trainer 0", "learning", 400)
+    assert row.counters == "bus.malformed 2"
+    assert monitor.channels()[0].messages == 1

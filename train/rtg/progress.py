@@ -11,8 +11,9 @@ from rich.console import Console, Group, RenderableType
 from rich.live import Live
 from rich.progress import (
     BarColumn,
-    MofNCompleteColumn,
     Progress,
+    ProgressColumn,
+    Task,
     TaskID,
     TextColumn,
     TimeRemainingColumn,
@@ -111,6 +112,14 @@ class PlainDisplay:
         self._shown = state
 
 
+class _Counts(ProgressColumn):
+    """How many of how many."""
+
+    def render(self, task: Task) -> Text:
+        total = "?" if task.total is None else f"{task.total:,.0f}"
+        return Text(f"{f'{task.completed:,.0f}':>9} of {total:>9}", style="progress.download")
+
+
 class LiveDisplay:
     """Two bars that change in place, with a line of words under each."""
 
@@ -125,7 +134,7 @@ class LiveDisplay:
         bar = Progress(
             TextColumn("{task.description:<8}"),
             BarColumn(bar_width=28),
-            MofNCompleteColumn(),
+            _Counts(),
             TimeRemainingColumn(elapsed_when_finished=True),
             console=self._console,
         )

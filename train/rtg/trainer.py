@@ -24,6 +24,7 @@ from rtg import _core
 from rtg.bus import Bus
 from rtg.dataset import DatasetError
 from rtg.errors import RunError, UserError
+from rtg.node_status import NodeStatus
 from rtg.offline_data import FileSource, Source
 from rtg.training import Training
 from rtg.transition_stream import TransitionStream
@@ -71,6 +72,7 @@ def _source(training: Training, args: argparse.Namespace) -> Source:
         return FileSource(args.folder / "transitions.npz", training.task, training.data)
     url = json.loads(training.config.json)["run"]["bus"]
     bus = Bus(url, args.run_name or args.folder.resolve().name)
+    training.tell = NodeStatus(bus, "trainer").tick
     task = training.task
     return TransitionStream(bus, task.bodies, task.headings, training.data.take)
 

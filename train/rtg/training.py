@@ -47,6 +47,7 @@ class Training:
         self._identity = {"seed": seed, "environments": count, **policy_file.identity(self.task, s)}
         self._starts = held_out_starts(self.task, s.eval_episodes)
         self._clock = Clock()
+        self.tell: Callable[[str, int], None] = lambda state, done: None  # as NodeStatus.tick
         self._checkpoint = folder / "checkpoint" / "state.pt"
         self._saved_at = 0  # interactions
         self._saved_rows = 0  # offline transitions
@@ -91,6 +92,7 @@ class Training:
             if source.complete and record:
                 self.data.record.write(self._transition_files()[0])
         self.log.display(self._state())
+        self.tell("learning" if self._clock.running else "waiting", self.interactions)
 
     def _learn(self) -> None:
         """A part of the warm-up, or one round of interactions and gradient steps."""
@@ -225,6 +227,10 @@ class Clock:
 
     def stop(self) -> None:
         self._before, self._since = self.seconds, None
+
+    @property
+    def running(self) -> bool:
+        return self._since is not None
 
     @property
     def seconds(self) -> float:

@@ -1,0 +1,99 @@
+"""What is drawn, where."""
+
+import numpy as np
+import pytest
+from PIL import Image
+from rtg import _core, paths, plots
+from rtg.draw import FAINT, KINDS, PAPER, ROBOT, arena_window, episode_window, state_image
+from rtg.episode_pictures import between, film, strip
+
+TASK = _core.Config.from_file(paths.CONFIG / "gathering.yaml").task
+START = TASK.start[None]
+SOLVED = TASK.start.copy()
+SOLVED[1:, :2] = [[-1.0, 0.0], [1.0, 0.0], [0.0, 1.2]]
+
+
+def pixel(picture, x, y, window):
+    """Colour of the pixel at a place of the plane [m]."""
+    side = len(picture)
+    scale = side / (2 * window.half)
+    row, column = (window.half + window.y - y) * scale, (x - window.x + window.half) * scale
+    return tuple(picture[int(row), int(column)].tolist())
+
+
+@pytest.mark.parametrize("window", [arena_window(TASK), episode_window(TASK, START)])
+def test_every_body_stands_where_its_pose_says(window):
+    picture = state_image(TASK, START, window=window)
+    for body, (x, y, _) in enumerate(TASK.start):
+        beside = (x + 0.3, y)  # the centre of an object is marked
+        assert pixel(picture, *beside, window) == (ROBOT if body == 0 else KINDS[0])
+    assert pixel(picture, 4.5, 4.0, arena_window(TASK)) == PAPER
+
+
+def test_a_reached_goal_is_stronger():
+    window = arena_window(TASK)
+    plain, strong = (
+        pixel(state_image(TASK, SOLVED[None], reached=reached), 0.0, -1.0, window)
+        for reached in (False, True)
+    )
+    assert sum(strong) < sum(plain) < sum(PAPER)
+
+
+def test_the_window_holds_all_that_happens_and_no_more_than_the_arena():
+    path = np.stack([TASK.start, TASK.start])
+    path[1, 0, :2] = (7.0, 6.0)
+    window = episode_window(TASK, path)
+    assert abs(7.8 - window.x) < window.half and abs(-5.8 - window.y) < window.half
+    path[1, 1, :2] = (-80.0, 6.0)
+    assert episode_window(TASK, path) == arena_window(TASK)
+
+
+def test_an_object_waits_for_the_robot_and_then_goes_along():
+    before, after = np.zeros((2, 3)), np.array([[2.0, 0.0, 0.0], [0.5, 0.0, 0.4]])
+    early = between(before, after, 0.5)
+    assert early.tolist() == [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
+    late = between(before, after, 0.875)
+    assert np.allclose(late, [[1.75, 0.0, 0.0], [0.25, 0.0, 0.2]])
+    assert np.allclose(between(before, after, 1.0), after)
+
+
+def test_a_strip_has_ten_states_at_most_the_first_and_the_last_among_them(tmp_path):
+    file = tmp_path / "strip.png"
+    for states, rows, columns in ((1, 1, 1), (3, 1, 3), (7, 2, 5), (61, 2, 5)):
+        strip(file, TASK, np.repeat(START, states, axis=0), success=False)
+        with Image.open(file) as picture:
+            assert picture.size == (302 * columns - 2, 302 * rows - 2)
+            if columns > 1:
+                assert picture.getpixel((300, 10)) == FAINT  # between two tiles
+
+
+@pytest.mark.parametrize(("steps", "frames"), [(1, 10), (10, 82), (60, 122)])
+def test_a_film_shows_every_push_and_rests_at_both_ends(tmp_path, steps, frames):
+    path = np.repeat(START, steps + 1, axis=0)
+    path[:, 0, 0] = np.linspace(-6.0, 6.0, steps + 1)
+    film(tmp_path / "film.gif", TASK, path, success=True)
+    with Image.open(tmp_path / "film.gif") as picture:
+        assert picture.n_frames == frames
+        rests = []
+        for frame in (0, 1, frames - 1):
+            picture.seek(frame)
+            rests.append(picture.info["duration"])
+    assert rests[0] > 10 * rests[1] and rests[2] > 10 * rests[1]
+
+
+def test_curves_with_gaps_and_empty_samples_can_be_drawn(tmp_path):
+    nan = float("nan")
+    curve = {
+        "interactions": np.array([0.0, 100.0, 200.0]),
+        "success_rate": np.array([nan, 0.0, 0.5]),
+        "episode_length_mean": np.array([nan, 60.0, 40.0]),
+        "episode_return_mean": np.array([nan, 0.0, 0.1]),
+        "rollout_success": np.array([nan, nan, nan]),
+    }
+    plots.learning_curve(tmp_path / "curve.png", "a run", curve)
+    plots.replay_gap(tmp_path / "gap.png", "a run", np.zeros(0))
+    none = np.zeros((0, 4, 3))
+    plots.coverage(tmp_path / "coverage.png", "a run", TASK, TASK.start, none, np.zeros(0))
+    for file in tmp_path.iterdir():
+        with Image.open(file) as picture:
+            assert len(picture.convert("RGB").getcolors(1 << 24)) > 20
