@@ -19,7 +19,7 @@ from rtg.run_folder import SUMMARY_KEYS
 TINY = "config/tests/tiny.yaml"
 NETWORK = paths.ROOT / "tests" / "support" / "private_network.sh"
 ENDLESS = (TINY, "--transitions", "20000000")
-PATIENCE = 120.0  # [s]; longer is a hang
+PATIENCE = 300.0  # [s]; longer is a hang
 COMMON_FILES = {
     "config.yaml",
     "versions.json",
