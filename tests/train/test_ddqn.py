@@ -10,7 +10,13 @@ from rtg.settings import TrainSettings
 from toy import line
 
 SETTINGS = TrainSettings(
-    interactions=1000, batch=32, target_sync=10, buffer=10_000, reduced_precision=False
+    interactions=1000,
+    batch=32,
+    target_sync=10,
+    target_rate=1.0,
+    target_policy=False,
+    buffer=10_000,
+    reduced_precision=False,
 )
 
 
@@ -80,15 +86,48 @@ def test_plain_network_has_the_layers_of_table_2() -> None:
 def test_reduced_precision_stays_close() -> None:
     fast, exact = model(reduced_precision=True), model(reduced_precision=False)
     exact.q_net.load_state_dict(fast.q_net.state_dict())
-    x = np.random.default_rng(0).normal(size=(200, 3)).astype(np.float32)
-    error = np.abs(fast.values(x) - exact.values(x)).max()
-    assert 0 < error < 0.02 * np.abs(exact.values(x)).max()  # bfloat16 has 8 bits
+    x = th.randn(200, 3)
+    with th.no_grad():
+        error = (fast.q_net.train()(x) - exact.q_net.train()(x)).abs().max()
+        assert 0 < error < 0.02 * exact.q_net(x).abs().max()  # bfloat16 has 8 bits
+        assert th.equal(fast.q_net.eval()(x), exact.q_net.eval()(x))
+
+
+@pytest.mark.skipif(not networks.has_fast_bfloat16(), reason="no bfloat16 in this processor")
+def test_both_networks_train_in_reduced_precision() -> None:
+    one, modes = model(reduced_precision=True), []
+    for net in (one.q_net, one.q_net_target):
+        net.register_forward_hook(lambda net, *_: modes.append(net.training))
+    one.learn(4, reset_num_timesteps=False)
+    assert modes == [False, True, True, True]  # one choice of actions, three passes to learn
+
+
+def weights(net: th.nn.Module) -> th.Tensor:
+    return th.cat([p.detach().ravel() for p in net.parameters()])
+
+
+def test_target_network_moves_by_the_target_rate() -> None:
+    one = model(target_sync=1, target_rate=0.25)
+    one.learn(4, reset_num_timesteps=False)
+    start = weights(one.q_net_target).clone()
+    one.train(1, 32)
+    th.testing.assert_close(weights(one.q_net_target), 0.75 * start + 0.25 * weights(one.q_net))
+
+
+def test_target_policy_is_the_target_networks() -> None:
+    x = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
+    for target_policy in (False, True):
+        one = model(target_policy=target_policy, target_sync=10**6)
+        one.learn(400, reset_num_timesteps=False)
+        net = one.q_net_target if target_policy else one.q_net
+        with th.no_grad():
+            np.testing.assert_array_equal(one.values(x), net(th.from_numpy(x)).numpy())
+        assert not th.equal(weights(one.q_net), weights(one.q_net_target))
 
 
 def test_target_network_follows_every_target_sync_gradient_steps() -> None:
     one = model(target_sync=10)
     one.learn(4, reset_num_timesteps=False)  # fills the online buffer
-    weights = lambda net: th.cat([p.detach().ravel() for p in net.parameters()])  # noqa: E731
     start = weights(one.q_net_target)
     one.train(10 - one._n_updates - 1, 32)
     th.testing.assert_close(weights(one.q_net_target), start, rtol=0, atol=0)

@@ -10,6 +10,7 @@ import numpy.typing as npt
 import torch as th
 from stable_baselines3 import DQN
 from stable_baselines3.common.logger import Logger
+from stable_baselines3.common.utils import polyak_update
 from stable_baselines3.common.vec_env import VecEnv
 from torch.nn import functional
 
@@ -41,7 +42,8 @@ def td_targets(batch: Batch, next_value: th.Tensor, discount: float, clip: bool)
 class DoubleDqn(DQN):
     """SB3's DQN with the batch of MixedReplayBuffer.
 
-    Departs from SB3: Double-Q, target synchronisation counted in gradient steps (`target_sync`),
+    Departs from SB3: Double-Q, target updates counted in gradient steps (`target_sync`), a greedy
+    policy that may be the target network's (a running mean over weights, steadier by far),
     ε over absolute interactions (learning in pieces and resuming leave the schedule alone),
     exploration that often picks a heading near the greedy one.
     """
@@ -84,13 +86,14 @@ class DoubleDqn(DQN):
         self.update_exploration()
 
     def train(self, gradient_steps: int, batch_size: int = 100) -> None:
-        self.policy.set_training_mode(True)
+        self.policy.train(True)  # both networks
         self._update_learning_rate(self.policy.optimizer)
         for _ in range(gradient_steps):
             self._gradient_step(self.replay_buffer.sample(batch_size))
             self._n_updates += 1
             if self._n_updates % self.settings.target_sync == 0:
-                self.q_net_target.load_state_dict(self.q_net.state_dict())
+                online, target = self.q_net.parameters(), self.q_net_target.parameters()
+                polyak_update(online, target, self.settings.target_rate)
 
     def _gradient_step(self, batch: Batch) -> None:
         with th.no_grad():
@@ -138,15 +141,20 @@ class DoubleDqn(DQN):
         anywhere = self.explorer.integers(actions, size=n)
         return np.where(explores, np.where(nearby, (greedy + offset) % actions, anywhere), greedy)
 
+    @property
+    def policy_net(self) -> th.nn.Module:
+        """The network whose greedy policy is the result."""
+        return self.q_net_target if self.settings.target_policy else self.q_net
+
     def greedy(self, observation: Array) -> Array:
         """The policy's own choice. [N, observation] float32 -> [N] int"""
         return self.values(observation).argmax(axis=1)
 
     def values(self, observation: Array) -> Array:
-        """Q of all actions. [N, observation] float32 -> [N, actions] float32"""
-        self.policy.set_training_mode(False)
+        """The policy's Q of all actions. [N, observation] float32 -> [N, actions] float32"""
+        self.policy.train(False)
         with th.no_grad():
-            q: Array = self.q_net(th.from_numpy(np.ascontiguousarray(observation))).numpy()
+            q: Array = self.policy_net(th.from_numpy(np.ascontiguousarray(observation))).numpy()
         return q
 
     def state(self) -> dict[str, Any]:

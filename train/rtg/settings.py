@@ -14,12 +14,14 @@ class TrainSettings:
     interactions: int = 350_000
     start_at: int = 20_000
     buffer: int = 1_500_000
-    batch: int = 512
+    batch: int = 256
     learning_rate: float = 3.0e-4
     train_frequency: int = 4
     gradient_steps: int = 1
     warm_up: int = 0
-    target_sync: int = 500
+    target_sync: int = 1
+    target_rate: float = 0.005
+    target_policy: bool = True
     discount: float = 0.9
     offline_share: float = 0.5
     double_q: bool = True
@@ -34,10 +36,10 @@ class TrainSettings:
     nearby_share: float = 0.5
     nearby_headings: int = 2
     start_jitter: float = 0.1
-    eval_every: int = 10_000
+    eval_every: int = 5_000
     eval_episodes: int = 100
     checkpoint_every: int = 20_000
-    stop_at_success: float = 0.0
+    stop_at_success: float = 0.97
     stop_evaluations: int = 3
     reduced_precision: bool = True
 

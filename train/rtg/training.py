@@ -195,7 +195,7 @@ class Training:
     def finish(self, lost: int) -> None:
         """Writes the model, the best evaluation episode and training.json."""
         final = self.evaluate()
-        weights = self.model.q_net.state_dict()
+        weights = self.model.policy_net.state_dict()
         policy_file.write(self.folder / "model.pt", self.task, self.settings, weights)
         best = final.best()
         np.savez(

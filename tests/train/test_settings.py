@@ -1,0 +1,24 @@
+import json
+
+from rtg import _core, paths
+from rtg.settings import TrainSettings
+
+
+def settings(*overrides: str) -> TrainSettings:
+    text = f"task: {paths.CONFIG / 'gathering.yaml'}"
+    config = _core.Config.from_text(text, overrides=overrides)
+    return TrainSettings.from_config(json.loads(config.json)["train"])
+
+
+def test_python_and_cpp_have_the_same_defaults() -> None:
+    assert settings() == TrainSettings()
+
+
+def test_the_preset_paper_is_table_2_with_the_defaults_of_sb3() -> None:
+    paper = settings("train.preset=paper")
+    table_2 = (paper.interactions, paper.buffer, paper.batch, paper.learning_rate)
+    assert table_2 == (350_000, 1_500_000, 512, 5e-5)
+    assert (paper.train_frequency, paper.gradient_steps) == (4, 1)
+    assert (paper.target_sync * paper.train_frequency, paper.target_rate) == (10_000, 1.0)
+    assert paper.offline_share < 0 and paper.stop_at_success == 0 and not paper.target_policy
+    assert (paper.epsilon_start, paper.epsilon_end, paper.epsilon_share) == (1.0, 0.05, 0.1)
