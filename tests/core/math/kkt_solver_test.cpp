@@ -1,0 +1,126 @@
+#include "core/math/kkt_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <string>
+
+#include "core/reverse/linearisation.hpp"
+#include "tests/support/touching_scene.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::noise;
+
+constexpr KktMethod kMethods[] = {KktMethod::kBlockElimination, KktMethod::kCyclicReduction,
+                                  KktMethod::kSuiteSparse};
+
+std::string name_of(KktMethod method) {
+  return std::string(kKktMethods[static_cast<std::size_t>(method)]);
+}
+
+/// Random symmetric indefinite system of blocks of 1 to 6 unknowns; diagonal ±(4 ... 6) keeps it
+/// well conditioned.
+BlockTridiagonal random_system(std::size_t blocks, Rng& rng) {
+  BlockTridiagonal K;
+  for (std::size_t k = 0; k < blocks; ++k) {
+    const int n = 1 + rng.below(6);
+    const MatrixXd M = MatrixXd::NullaryExpr(n, n, [&] { return rng.uniform(-0.3, 0.3); });
+    K.A.push_back(M + M.transpose());
+    for (double& entry : K.A[k].diagonal())
+      entry += rng.uniform(4.0, 6.0) * (rng.below(2) ? 1.0 : -1.0);
+    const auto before = k == 0 ? 0 : K.A[k - 1].rows();
+    K.B.push_back(
+        MatrixXd::NullaryExpr(k == 0 ? 0 : n, before, [&] { return rng.uniform(-1.0, 1.0); }));
+  }
+  return K;
+}
+
+/// ‖K x - r‖∞ of the method's solution over ‖r‖∞.
+double relative_residual(KktSolver& solver, const BlockTridiagonal& K, const VectorXd& r) {
+  EXPECT_TRUE(solver.factorize(K));
+  const VectorXd x = joined(solver.solve(split_like(K, r)));
+  return (K.dense() * x - r).lpNorm<Eigen::Infinity>() / r.lpNorm<Eigen::Infinity>();
+}
+
+class KktMethods : public ::testing::TestWithParam<KktMethod> {};
+
+INSTANTIATE_TEST_SUITE_P(All, KktMethods, ::testing::ValuesIn(kMethods),
+                         [](const auto& each) { return name_of(each.param); });
+
+TEST_P(KktMethods, SolutionsAreThoseOfDenseLu) {
+  const auto solver = make_kkt_solver(GetParam());
+  Rng rng(1);
+  for (const std::size_t blocks : {1, 2, 3, 4, 7, 8, 11, 16, 33}) {
+    const BlockTridiagonal K = random_system(blocks, rng);
+    const VectorXd r = noise(K.order(), 1.0, rng);
+    ASSERT_TRUE(solver->factorize(K)) << blocks;
+    const VectorXd expected = K.dense().fullPivLu().solve(r);
+    EXPECT_LT((joined(solver->solve(split_like(K, r))) - expected).norm(), 1e-12 * expected.norm())
+        << blocks;
+  }
+}
+
+TEST_P(KktMethods, OneFactorisationServesSeveralRightHandSides) {
+  const auto solver = make_kkt_solver(GetParam());
+  Rng rng(2);
+  const BlockTridiagonal K = random_system(11, rng);
+  ASSERT_TRUE(solver->factorize(K));
+  const VectorXd a = noise(K.order(), 1.0, rng), b = noise(K.order(), 1.0, rng);
+  const VectorXd x = joined(solver->solve(split_like(K, a)));
+  const VectorXd y = joined(solver->solve(split_like(K, b)));
+  const VectorXd sum = joined(solver->solve(split_like(K, a + b)));
+  EXPECT_LT((K.dense() * x - a).norm(), 1e-12);
+  EXPECT_LT((K.dense() * y - b).norm(), 1e-12);
+  EXPECT_LT((sum - x - y).norm(), 1e-12);
+}
+
+TEST_P(KktMethods, SingularAndNonFiniteSystemsAreReported) {
+  const auto solver = make_kkt_solver(GetParam());
+  Rng rng(3);
+  for (const std::size_t blocks : {1, 2, 11}) {
+    BlockTridiagonal K = random_system(blocks, rng);
+    for (const std::size_t at : {std::size_t{0}, blocks - 1}) {
+      BlockTridiagonal zero_row = K, nan = K;
+      zero_row.A[at].row(0).setZero();
+      zero_row.A[at].col(0).setZero();
+      if (at > 0) zero_row.B[at].row(0).setZero();
+      if (at + 1 < blocks) zero_row.B[at + 1].col(0).setZero();
+      EXPECT_FALSE(solver->factorize(zero_row)) << blocks << " blocks, row of block " << at;
+      nan.A[at](0, 0) = NAN;
+      EXPECT_FALSE(solver->factorize(nan)) << blocks << " blocks, entry of block " << at;
+    }
+    EXPECT_LT(relative_residual(*solver, K, noise(K.order(), 1.0, rng)), 1e-12);  // and recovers
+  }
+}
+
+/// Newton systems of a solve: at the warm start, disturbed, with the objective's Hessian and the
+/// exact one.
+std::vector<BlockTridiagonal> newton_systems() {
+  const testing::TouchingScene scene;
+  Rng rng(4);
+  std::vector<BlockTridiagonal> systems;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const Iterate x = testing::disturbed(*warm_start(problem), 1e-3, rng);
+  for (const Curvature curvature : {Curvature{false, 1.0}, Curvature{true, 1e-2}})
+    systems.push_back(Linearisation(problem, x, curvature).matrix());
+  return systems;
+}
+
+// The tolerances allow for condition numbers of 3e5 and 4e6.
+TEST_P(KktMethods, NewtonSystemsOfAReverseSolveAreSolved) {
+  const auto solver = make_kkt_solver(GetParam());
+  Rng rng(5);
+  for (const BlockTridiagonal& K : newton_systems()) {
+    const VectorXd r = noise(K.order(), 1.0, rng);
+    EXPECT_LT(relative_residual(*solver, K, r), 1e-9);
+    const VectorXd expected = K.dense().partialPivLu().solve(r);
+    const VectorXd x = joined(solver->solve(split_like(K, r)));
+    EXPECT_LT((x - expected).norm(), 1e-7 * expected.norm());
+  }
+}
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <vector>
+
+#include "core/energy/local_point.hpp"
+#include "core/math/rng.hpp"
+#include "core/world/pose.hpp"
+
+namespace rtg::testing {
+
+/// Sharpness at which the samples' corners are rounded.
+inline constexpr double kAlpha = 50.0;
+
+/// Points in the frame of a box of half width 0.6: on faces, beside and right at corners, near
+/// contact (gaps of 1e-4 to 0.1) and, for the smoothed distance has no gap in its domain, inside.
+inline std::vector<Vector2d> points_near_a_box() {
+  return {{0.6001, 0.2}, {0.605, -0.3},  {0.7, 0.0},      {-0.3, 0.61},   {0.62, 0.59},
+          {0.6, 0.6},    {0.595, 0.595}, {-0.604, 0.598}, {0.61, -0.601}, {0.55, 0.1}};
+}
+
+/// Poses (p_i, p_j) [6] at random such that `vertex` of body i stands at `x` in body j's frame.
+inline Vec6<double> poses_with_point_at(const Vector2d& vertex, const Vector2d& x, Rng& rng) {
+  const Pose j{rng.uniform(-2.0, 2.0), rng.uniform(-2.0, 2.0), rng.uniform(-3.0, 3.0)};
+  const double theta = rng.uniform(-3.0, 3.0);
+  const Vector2d at = to_world(j, x) - rotate(theta, vertex);
+  Vec6<double> q;
+  q << at, theta, j.x, j.y, j.theta;
+  return q;
+}
+
+/// The poses after a rigid motion of the scene: turned by `angle` about the origin, then shifted.
+inline Vec6<double> rigidly_moved(const Vec6<double>& q, double angle, const Vector2d& shift) {
+  Vec6<double> moved;
+  for (int body = 0; body < 2; ++body)
+    moved.segment<3>(3 * body) << rotate(angle, q.segment<2>(3 * body)) + shift,
+        q[3 * body + 2] + angle;
+  return moved;
+}
+
+/// Net force and net torque about the origin of forces g on two bodies at q: both 0 for
+/// anything invariant under rigid motions.
+inline Eigen::Vector3d net_wrench(const Vec6<double>& g, const Vec6<double>& q) {
+  Eigen::Vector3d net = g.head<3>() + g.tail<3>();
+  for (const int at : {0, 3}) net[2] += q[at] * g[at + 1] - q[at + 1] * g[at];
+  return net;
+}
+
+/// Dual numbers q + ε y.
+template <int N>
+Eigen::Matrix<Dual, N, 1> dual(const Eigen::Matrix<double, N, 1>& q,
+                               const Eigen::Matrix<double, N, 1>& y) {
+  Eigen::Matrix<Dual, N, 1> d;
+  for (int m = 0; m < N; ++m) d[m] = Dual(q[m], y[m]);
+  return d;
+}
+
+/// The dual parts.
+template <int Rows, int Columns>
+Eigen::Matrix<double, Rows, Columns> dual_part(const Eigen::Matrix<Dual, Rows, Columns>& M) {
+  return M.unaryExpr([](const Dual& x) { return x.d; });
+}
+
+}  // namespace rtg::testing
