@@ -21,6 +21,7 @@ MISTAKES = {
     "unknown key": (["--set", "search.bredth=3"], "--set search.bredth=3: "),
     "no key": (["--set", "search.breadth"], "--set search.breadth: "),
     "out of range": (["--set", "search.breadth=0"], "--set search.breadth=0: "),
+    "small buffer": (["--set", "train.buffer=5"], "train.buffer: 5 is too small for search.tr"),
     "resume without folder": (["--resume"], "--resume: needs --out DIR"),
     "check without file": (["check"], "the following arguments are required: FILE.yaml"),
     "spy for no time": (["spy", "--seconds", "0"], "--seconds 0: legal is a number of seconds"),

@@ -111,6 +111,7 @@ def replay_gap(path: Path, title: str, gaps: Floats) -> None:
                     xycoords=("data", "axes fraction"),
                     va="top",
                     color="#a35d14",
+                    bbox={"facecolor": _rgb(PAPER), "edgecolor": "none", "pad": 1.0},
                 )
         axis.set_xlabel("replay gap: mean distance between reverse-generated and replayed end [m]")
         axis.set_ylabel("replayed candidates")

@@ -12,6 +12,7 @@ from rtg.processes import Node, kill_all, stop_all
 
 _QUICK = 5.0  # [s]; a worker that dies this soon after its start may never do better
 _QUICK_DEATHS = 10  # in a row, of one worker; one job may take down three
+_GOOD_BYE = 1.0  # [s]; a helper that ended well may have heard earlier than we that all is over
 
 
 @dataclass
@@ -19,6 +20,13 @@ class _Member:
     node: Node
     helper: bool
     quick_deaths: int = 0
+    left: float | None = None  # when it was first seen to have ended well
+
+    def has_left_early(self) -> bool:
+        """Whether it has been gone for longer than a good-bye needs."""
+        now = time.monotonic()
+        self.left = now if self.left is None else self.left
+        return now - self.left > _GOOD_BYE
 
 
 class ProcessGraph:
@@ -47,6 +55,8 @@ class ProcessGraph:
                 continue
             if not member.helper:
                 raise RunError(_obituary(member.node))
+            if status == 0 and not member.has_left_early():
+                continue
             notes.append(f"{member.node.epitaph()}, started again")
             self._replace(member)
         return notes
@@ -57,6 +67,7 @@ class ProcessGraph:
         if member.quick_deaths >= _QUICK_DEATHS:
             raise RunError(f"{_obituary(member.node)}\n(died {_QUICK_DEATHS} times in a row)")
         member.node.start()
+        member.left = None
         self.restarts += 1
 
     def pids(self) -> dict[str, int]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rtg import effective_config, multicast, run_folder
+from rtg.errors import UserError
 from rtg.run_args import Override, RunArgs
 
 
@@ -57,10 +58,21 @@ class RunPlan:
         return self.resume and self.transitions_file.is_file() and self.report_file.is_file()
 
 
+def _check_buffer(config: dict[str, Any]) -> None:
+    transitions, buffer = config["search"]["transitions"], config["train"]["buffer"]
+    if buffer < transitions:
+        raise UserError(
+            f"train.buffer: {buffer} is too small for search.transitions = {transitions}; legal "
+            "are equal or larger ones, or --no-train"
+        )
+
+
 def make_plan(args: RunArgs) -> RunPlan:
     """Resolves the configuration and makes the run folder. Raises UserError."""
     overrides = args.overrides
     config = effective_config.values(args.file, overrides)
+    if args.train:
+        _check_buffer(config)
     notes = []
     if not config["run"]["in_process"] and (why := multicast.defect(config["run"]["bus"])):
         notes.append(f"no process graph: {why}. To mend it: {multicast.FIX}")
