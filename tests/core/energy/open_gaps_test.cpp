@@ -1,0 +1,58 @@
+#include "core/energy/open_gaps.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/touching_scene.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::TouchingScene;
+
+VectorXd boxes_apart(double gap) { return stacked({{-5, 0, 0}, {0, 0, 0}, {0.1, 1.2 + gap, 0}}); }
+
+TEST(OpenGaps, LeastGapIsThatOfTheClosestFaces) {
+  const TouchingScene scene;
+  for (const double gap : {0.1, 0.01, 0.0, -0.004}) {
+    // A vertex 0.1 from the other box's corner: rounding adds e^(-0.1 α)/α at most.
+    EXPECT_NEAR(least_gap(scene.energy, boxes_apart(gap)), gap, 2e-4) << gap;
+  }
+  EXPECT_EQ(least_gap(scene.energy, boxes_apart(3.0)), scene.energy.barrier().range);
+}
+
+TEST(OpenGaps, OverlapBySlopIsOpenedByMovingBothBodiesAlike) {
+  const TouchingScene scene;
+  const VectorXd closed = boxes_apart(-0.005);
+  const VectorXd open = with_open_gaps(scene.energy, closed);
+  EXPECT_GE(least_gap(scene.energy, open), kGapFloor * scene.energy.barrier().range);
+  EXPECT_LT((open - closed).norm(), 0.03);
+  EXPECT_NEAR(open[4] - closed[4], closed[7] - open[7], 1e-12);
+  EXPECT_EQ(Vector3d(open.head<3>()), Vector3d(closed.head<3>()));
+}
+
+TEST(OpenGaps, OpenGapsStayBitForBit) {
+  const TouchingScene scene;
+  for (const double gap : {0.006, 0.1, 3.0})
+    EXPECT_EQ(with_open_gaps(scene.energy, boxes_apart(gap)), boxes_apart(gap));
+}
+
+TEST(OpenGaps, FixedBodiesStay) {
+  TouchingScene scene;
+  scene.scene.bodies[2].fixed = true;
+  const StepEnergy energy(scene.scene, scene.physics, scene.task.push);
+  const VectorXd closed = boxes_apart(-0.005), open = with_open_gaps(energy, closed);
+  EXPECT_GE(least_gap(energy, open), kGapFloor * energy.barrier().range);
+  EXPECT_EQ(Vector3d(open.tail<3>()), Vector3d(closed.tail<3>()));
+}
+
+TEST(OpenGaps, ARowInContactOpensAtEveryJoint) {
+  const TouchingScene scene;
+  const double reach = 0.8 * std::sqrt(0.75);  // of the hexagon's upper face
+  const VectorXd closed = stacked({{0, 0, 0}, {0, reach + 0.597, 0}, {0.1, reach + 1.794, 0}});
+  const VectorXd open = with_open_gaps(scene.energy, closed);
+  EXPECT_GE(least_gap(scene.energy, open), kGapFloor * scene.energy.barrier().range);
+  EXPECT_LT((open - closed).norm(), 0.05);
+}
+
+}  // namespace
+}  // namespace rtg
