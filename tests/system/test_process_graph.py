@@ -13,6 +13,14 @@ from graph import PATIENCE, Graph, Process, first_rows, generated_in_process, re
 # No roll-outs: to its last row the search needs reverse workers and the server.
 LONG = ("search.transitions=12000", "search.rollout_share=0", "run.seed=3")
 
+RRBS = (
+    "search.reverse=rrbs",
+    "search.transitions=300",
+    "search.breadth=4",
+    "search.rollout_share=0.2",
+    "search.evaluation_starts=1",
+)
+
 
 @pytest.fixture
 def net() -> Iterator[network.Network]:
@@ -47,6 +55,15 @@ def test_any_number_of_workers(
     assert rest(consumer) == "lost 0"
     assert_all_left(coordinator, *helpers)
     assert graph.transitions() == tiny
+
+
+def test_the_reverse_simulator(net: network.Network, tmp_path: Path) -> None:
+    graph = Graph(net, tmp_path, *RRBS)
+    helpers = [graph.server(), graph.worker(1), graph.worker(2)]
+    consumer, coordinator = graph.consumer(), graph.coordinator()
+    assert rest(consumer) == "lost 0"
+    assert_all_left(coordinator, *helpers)
+    assert graph.transitions() == generated_in_process(tmp_path / "direct.npz", *RRBS)
 
 
 def test_a_killed_worker(net: network.Network, tmp_path: Path, long: bytes) -> None:
