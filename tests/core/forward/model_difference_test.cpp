@@ -1,0 +1,51 @@
+// How far the step energy's model and Box2D are apart after one push.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "core/forward/box2d_simulator.hpp"
+#include "core/forward/newton_simulator.hpp"
+#include "tests/support/random_push.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr std::uint64_t kScenes = 200;
+
+/// Mean over the bodies of the distance between their positions [m].
+double difference(const Poses& a, const Poses& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i].position() - b[i].position()).norm();
+  return sum / static_cast<double>(a.size());
+}
+
+double quantile(const std::vector<double>& sorted, double share) {
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+TEST(ModelDifference, MedianOverTheRandomScenesIsSmall) {
+  const PushConfig push;
+  const PhysicsConfig physics;
+  std::vector<double> differences;
+  for (std::uint64_t seed = 0; seed < kScenes; ++seed) {
+    const testing::RandomPush drawn = testing::random_push(seed, push);
+    const PushOutcome newton =
+        NewtonSimulator(drawn.scene, push, physics).push(drawn.start, drawn.action);
+    const PushOutcome box2d =
+        Box2dSimulator(drawn.scene, push, physics).push(drawn.start, drawn.action);
+    ASSERT_TRUE(newton.ok && box2d.ok) << seed;
+    differences.push_back(difference(newton.end, box2d.end));
+  }
+  std::sort(differences.begin(), differences.end());
+  std::printf("Newton against Box2D, %d pushes: median %.4f, 90%% %.4f, largest %.4f m\n",
+              static_cast<int>(kScenes), quantile(differences, 0.5), quantile(differences, 0.9),
+              quantile(differences, 1.0));
+  EXPECT_LE(quantile(differences, 0.5), 0.03);
+  EXPECT_LE(quantile(differences, 0.9), 0.1);
+}
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <numbers>
+#include <optional>
+
+#include "core/math/rng.hpp"
+#include "core/world/push.hpp"
+#include "core/world/separation.hpp"
+
+namespace rtg::testing {
+
+/// A scene with a start and an action whose push meets at least one object.
+struct RandomPush {
+  Scene scene;
+  Poses start;
+  int action = 0;
+};
+
+/// A box, triangle, pentagon or hexagon about as large as Gathering's boxes.
+inline Polygon random_shape(Rng& rng) {
+  const int sides = 3 + rng.below(4);
+  if (sides == 4) return box(rng.uniform(0.6, 1.6), rng.uniform(0.6, 1.6));
+  return centred(regular_polygon(sides, rng.uniform(0.6, 1.0)));
+}
+
+/// The robot and one to four objects around it, none closer to another than Box2D's skin; nothing
+/// if the objects found no room or the robot's straight way misses them all.
+inline std::optional<RandomPush> drawn_push(Rng& rng, const PushConfig& push) {
+  constexpr double kFriction = 0.5, kClearance = 0.02;
+  RandomPush drawn;
+  drawn.scene.bodies.push_back({"robot", "robot", regular_polygon(6, 0.8), 1.0, kFriction, false});
+  drawn.start.push_back({0.0, 0.0, rng.uniform(-std::numbers::pi, std::numbers::pi)});
+  drawn.action = rng.below(push.headings);
+  const int objects = 1 + rng.below(4);
+  for (int k = 0; k < objects; ++k) {
+    drawn.scene.bodies.push_back({"object", "box", random_shape(rng), 1.0, kFriction, false});
+    const double angle = rng.uniform(-std::numbers::pi, std::numbers::pi);
+    const Vector2d at = rotate(angle, {rng.uniform(1.0, 3.5), 0.0});
+    drawn.start.push_back({at.x(), at.y(), rng.uniform(-std::numbers::pi, std::numbers::pi)});
+  }
+  if (first_overlap(drawn.scene, drawn.start, kClearance)) return std::nullopt;
+  Poses ahead = drawn.start;
+  for (int k = 1; k <= 4; ++k) {
+    const Vector2d at = 0.25 * k * push.stride * direction(drawn.action, push);
+    ahead[0] = {at.x(), at.y(), drawn.start[0].theta};
+    const auto met = first_overlap(drawn.scene, ahead, 0.0);
+    if (met && met->first == 0) return drawn;
+  }
+  return std::nullopt;
+}
+
+/// The push of that seed.
+inline RandomPush random_push(std::uint64_t seed, const PushConfig& push) {
+  Rng rng(seed);
+  for (;;)
+    if (auto drawn = drawn_push(rng, push)) return *drawn;
+}
+
+}  // namespace rtg::testing
