@@ -41,7 +41,7 @@ struct TrainConfig {
   int eval_every = 5000;      // interactions
   int eval_episodes = 100;
   int checkpoint_every = 20000;   // interactions
-  double stop_at_success = 0.97;  // end early at this success rate; 0: use all interactions
+  double stop_at_success = 0.95;  // end early at this success rate; 0: use all interactions
   int stop_evaluations = 3;       // ... of so many evaluations in a row
   bool reduced_precision = true;  // inner layers in bfloat16 where the processor has it
 

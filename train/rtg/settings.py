@@ -39,7 +39,7 @@ class TrainSettings:
     eval_every: int = 5_000
     eval_episodes: int = 100
     checkpoint_every: int = 20_000
-    stop_at_success: float = 0.97
+    stop_at_success: float = 0.95
     stop_evaluations: int = 3
     reduced_precision: bool = True
 
