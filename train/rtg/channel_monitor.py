@@ -124,8 +124,8 @@ class ChannelMonitor:
         return (
             f"{p.phase}{layer}: {p.transitions:,} of {p.target:,} transitions, "
             f"contact share {p.contact_share:.2f}, {p.start_region:,} in the start region, "
-            f"{p.workers} workers, {p.jobs_open} jobs open, "
-            f"{p.consumers} consumers, the slowest at {p.slowest_cursor:,}"
+            f"workers: {p.workers}, jobs open: {p.jobs_open}, "
+            f"consumers: {p.consumers}, the slowest at {p.slowest_cursor:,}"
         )
 
     def _on_status(self, message: Any, now: float) -> None:
