@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(bool(why_not), reason=f"no network namespaces he
 
 TINY = "config/tests/tiny.yaml"
 NETWORK = paths.ROOT / "tests" / "support" / "private_network.sh"
-ENDLESS = (TINY, "--transitions", "20000000")
+ENDLESS = (TINY, "--transitions", "20000000", "--set", "train.buffer=20000000")
 PATIENCE = 300.0  # [s]; longer is a hang
 COMMON_FILES = {
     "config.yaml",
