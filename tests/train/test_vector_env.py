@@ -59,3 +59,29 @@ def test_a_restored_environment_goes_on_with_the_same_bits() -> None:
     other = PushVecEnv(CONFIG, 4, jitter=0.1, seed=1)
     other.restore(state)
     np.testing.assert_array_equal(steps(other, 100, seed=7), expected)
+
+
+class GivesUp:
+    """A simulator that finishes no push of environment 1."""
+
+    def __init__(self, env: PushVecEnv) -> None:
+        self.real = env._simulator
+
+    def push(self, states: np.ndarray, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        after, ok = self.real.push(states, actions)
+        after[1:], ok[1:] = np.nan, False
+        return after, ok
+
+
+def test_a_push_that_the_simulator_gives_up_cuts_the_episode() -> None:
+    env = PushVecEnv(CONFIG, 2, jitter=0.1, seed=9)
+    before = env.reset()
+    env._simulator = GivesUp(env)
+    observation, reward, done, infos = env.step(np.array([0, 0]))
+    assert done.tolist() == [False, True] and reward.tolist() == [0.0, 0.0]
+    assert not infos[0]["rejected"]
+    assert infos[1]["rejected"] and infos[1]["TimeLimit.truncated"]
+    np.testing.assert_array_equal(infos[1]["terminal_observation"], before[1])
+    start = TASK.observation(TASK.jittered_start(0.1, 9, 2)[None])[0]
+    np.testing.assert_array_equal(observation[1], start)
+    assert env.successes == 0
