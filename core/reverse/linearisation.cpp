@@ -35,13 +35,13 @@ BlockVector Linearisation::right_hand_side(const Violation& v) const {
     scatter(problem_->energy, c, Vec6<double>(a * e.friction), residual[e.level + 1]);
     scatter(problem_->energy, c, Vec6<double>(a * e.next), gradient[e.level + 1]);
   }
-  BlockVector r(K_.blocks());
+  BlockVector r;
+  for (const MatrixXd& A : K_.A) r.push_back(VectorXd::Zero(A.rows()));
   for (int k = 0; k <= h_; ++k) {
-    r[k] = VectorXd::Zero(K_.A[k].rows());
     if (has_pose(k)) r[k].head(n_) = -gradient[k];
     if (k == 0) continue;
-    r[k].segment<3>(control_row(k)) = -control_gradient_[k];
-    r[k].segment(multiplier_row(k), n_) = -residual[k];
+    r[control_place(k).block].segment<3>(control_place(k).row) = -control_gradient_[k];
+    r[multiplier_place(k).block].segment(multiplier_place(k).row, n_) = -residual[k];
   }
   return r;
 }
@@ -56,8 +56,8 @@ Direction Linearisation::direction(const BlockVector& solution, const Violation&
   for (int k = 0; k <= h_; ++k) {
     if (has_pose(k)) d.p[k] = solution[k].head(n_);
     if (k == 0) continue;
-    d.controls[k] = solution[k].segment<3>(control_row(k));
-    d.multipliers[k] = solution[k].segment(multiplier_row(k), n_);
+    d.controls[k] = solution[control_place(k).block].segment<3>(control_place(k).row);
+    d.multipliers[k] = solution[multiplier_place(k).block].segment(multiplier_place(k).row, n_);
   }
   for (const Eliminated& e : eliminated_) {
     const Contact& c = problem_->energy.contacts()[e.contact];
@@ -76,7 +76,7 @@ double Linearisation::objective_slope(const Direction& d) const {
 
 double Linearisation::model_curvature(const BlockVector& solution) const {
   BlockVector primal = solution;
-  for (int k = 1; k <= h_; ++k) primal[k].tail(n_).setZero();
+  for (int k = 1; k <= h_; ++k) primal[multiplier_place(k).block].tail(n_).setZero();
   return joined(primal).dot(joined(product(K_, primal)));
 }
 

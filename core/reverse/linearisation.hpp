@@ -26,13 +26,17 @@ struct Curvature {
 ///
 ///   ζ_k = (Δp_k, Δc_k, y_k), k = 1 ... h;  ζ_0 = Δp_0,
 ///
-/// so that the matrix is block tridiagonal (Departs from the paper: its printed pairing is
-/// pentadiagonal). Each force is eliminated by its own complementarity row,
+/// or, where the final state is fixed and block h would have no pose, those of the next sub-step,
+///
+///   ζ_k = (Δp_k, Δc_{k+1}, y_{k+1}), k = 0 ... h-1.
+///
+/// Either way the matrix is block tridiagonal (Departs from the paper: its printed pairing is
+/// pentadiagonal) and its last block regular: ∂Φ_k/∂p_k, or ∂Φ_{k+1}/∂p_k, is. Each force is
+/// eliminated by its own complementarity row,
 ///
 ///   g Δλ + s ∇g·Δp = -(λ g - μ̃ w),  s = λ - μ̃ w'   =>   Δλ = a + b·Δp,
 ///
-/// and the multiplier z of that row by stationarity in λ, z = -L_λ/g. With a fixed final state
-/// block h has no Δp.
+/// and the multiplier z of that row by stationarity in λ, z = -L_λ/g.
 class Linearisation {
  public:
   Linearisation(const ReverseProblem& problem, const Iterate& x, const Curvature& curvature);
@@ -70,9 +74,14 @@ class Linearisation {
     Vec6<double> next;      // ∂²L/∂λ∂p_{k+1}
   };
 
+  /// Where an unknown begins in the system.
+  struct Place {
+    int block = 0, row = 0;
+  };
   bool has_pose(int level) const { return level < h_ || !problem_->fixed_end(); }
-  int control_row(int level) const { return has_pose(level) ? n_ : 0; }
-  int multiplier_row(int level) const { return control_row(level) + 3; }
+  Place pose_place(int level) const { return {level, 0}; }
+  Place control_place(int step) const { return {problem_->fixed_end() ? step - 1 : step, n_}; }
+  Place multiplier_place(int step) const { return {control_place(step).block, n_ + 3}; }
 
   const ReverseProblem* problem_;
   int h_, n_;

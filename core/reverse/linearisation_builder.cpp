@@ -31,8 +31,9 @@ LinearisationBuilder::LinearisationBuilder(Linearisation& into, const Iterate& x
   lin_.objective_pose_ = lin_.pose_gradient_;
   lin_.control_gradient_.assign(levels, Vector3d::Zero());
   lin_.objective_control_ = lin_.control_gradient_;
-  for (int k = 0; k <= h_; ++k) {
-    const int rows = k == 0 ? n_ : lin_.multiplier_row(k) + n_;
+  const int blocks = problem_.fixed_end() ? h_ : h_ + 1;
+  for (int k = 0; k < blocks; ++k) {
+    const int rows = k == 0 && !problem_.fixed_end() ? n_ : 2 * n_ + 3;
     lin_.K_.A.push_back(MatrixXd::Zero(rows, rows));
     lin_.K_.B.push_back(k == 0 ? MatrixXd() : MatrixXd::Zero(rows, lin_.K_.A[k - 1].cols()));
   }
@@ -52,15 +53,14 @@ void LinearisationBuilder::run() {
     for (int c = 0; c < static_cast<int>(energy_.contacts().size()); ++c)
       if (may_act(problem_, x_, k, c)) add_contact(k, c);
   add_proximal();
-  for (int k = 1; k <= h_; ++k) {  // so far ∂Φ and the coupling stand below the diagonal only
-    MatrixXd& A = lin_.K_.A[k];
+  for (MatrixXd& A : lin_.K_.A)  // so far ∂Φ stands below the diagonal only
     A = MatrixXd(A.selfadjointView<Eigen::Lower>());
-  }
 }
 
 void LinearisationBuilder::add_damping(int k) {
   const VectorXd& y = x_.multipliers[k];
-  const int row = lin_.multiplier_row(k);
+  const Linearisation::Place row = lin_.multiplier_place(k);
+  const Linearisation::Place here = lin_.pose_place(k), before = lin_.pose_place(k - 1);
   for (int i = 0; 3 * i < n_; ++i) {
     const Damping& body = energy_.damping(i);
     const double turn = x_.p[k][3 * i + 2] - x_.p[k - 1][3 * i + 2];
@@ -69,16 +69,16 @@ void LinearisationBuilder::add_damping(int k) {
     lin_.pose_gradient_[k].segment<3>(3 * i) += force;
     lin_.pose_gradient_[k - 1].segment<3>(3 * i) -= force;
     for (int m = 3 * i; m < 3 * i + 3; ++m) {
-      if (lin_.has_pose(k)) lin_.K_.A[k](row + m, m) += slope[m - 3 * i];
-      lin_.K_.B[k](row + m, m) -= slope[m - 3 * i];
+      if (lin_.has_pose(k)) entry(row, m, here, m) += slope[m - 3 * i];
+      entry(row, m, before, m) -= slope[m - 3 * i];
     }
     if (!curvature_.exact) continue;
     const int m = 3 * i + 2;
     const double bend = body.turn_third(turn) * y[m];
-    lin_.K_.A[k - 1](m, m) += bend;
+    entry(before, m, before, m) += bend;
     if (!lin_.has_pose(k)) continue;
-    lin_.K_.A[k](m, m) += bend;
-    lin_.K_.B[k](m, m) -= bend;
+    entry(here, m, here, m) += bend;
+    entry(here, m, before, m) -= bend;
   }
 }
 
@@ -86,11 +86,11 @@ void LinearisationBuilder::add_control(int k) {
   const Vector3d push = x_.controls[k].array().tanh();
   const Vector3d slope = -energy_.control_bound().array() * (1.0 - push.array().square());
   const Vector3d y = x_.multipliers[k].head<3>();
-  const int row = lin_.multiplier_row(k), at = lin_.control_row(k);
+  const Linearisation::Place row = lin_.multiplier_place(k), at = lin_.control_place(k);
   lin_.control_gradient_[k] += slope.cwiseProduct(y);
   for (int m = 0; m < 3; ++m) {
-    lin_.K_.A[k](row + m, at + m) += slope[m];
-    if (curvature_.exact) lin_.K_.A[k](at + m, at + m) -= 2.0 * push[m] * slope[m] * y[m];
+    entry(row, m, at, m) += slope[m];
+    if (curvature_.exact) entry(at, m, at, m) -= 2.0 * push[m] * slope[m] * y[m];
   }
 }
 
@@ -107,7 +107,8 @@ void LinearisationBuilder::add_objective() {
     if (lin_.has_pose(k)) lin_.K_.A[k].diagonal().head<3>() += weight;
     if (k == 0) continue;
     lin_.objective_control_[k] = 2.0 * config.control_weight * x_.controls[k];
-    lin_.K_.A[k].diagonal().segment<3>(lin_.control_row(k)).array() += 2.0 * config.control_weight;
+    const Linearisation::Place at = lin_.control_place(k);
+    for (int m = 0; m < 3; ++m) entry(at, m, at, m) += 2.0 * config.control_weight;
   }
   if (lin_.has_pose(h_)) {
     lin_.objective_pose_[h_] += config.terminal_weight * (x_.p[h_] - problem_.end).head(n_);
@@ -229,25 +230,40 @@ void LinearisationBuilder::add_proximal() {
   for (int k = 0; k <= h_; ++k) {
     if (lin_.has_pose(k)) lin_.K_.A[k].diagonal().head(n_).array() += curvature_.proximal;
     if (k == 0) continue;
-    lin_.K_.A[k].diagonal().segment<3>(lin_.control_row(k)).array() += curvature_.proximal;
-    lin_.K_.A[k].diagonal().tail(n_).array() -= kMultiplierShift;
+    const Linearisation::Place at = lin_.control_place(k), row = lin_.multiplier_place(k);
+    for (int m = 0; m < 3; ++m) entry(at, m, at, m) += curvature_.proximal;
+    for (int m = 0; m < n_; ++m) entry(row, m, row, m) -= kMultiplierShift;
   }
 }
 
+double& LinearisationBuilder::entry(Linearisation::Place row, int i, Linearisation::Place column,
+                                    int j) {
+  if (row.block < column.block) return entry(column, j, row, i);
+  MatrixXd& into = row.block == column.block ? lin_.K_.A[row.block] : lin_.K_.B[row.block];
+  return into(row.row + i, column.row + j);
+}
+
+void LinearisationBuilder::add(const Contact& c, const Mat6<double>& M, Linearisation::Place row,
+                               Linearisation::Place column) {
+  if (row.block < column.block) return add(c, M.transpose(), column, row);
+  MatrixXd& into = row.block == column.block ? lin_.K_.A[row.block] : lin_.K_.B[row.block];
+  scatter(energy_, c, M, into.block(row.row, column.row, n_, n_));
+}
+
 void LinearisationBuilder::to_hessian(const Contact& c, const Mat6<double>& M, int level) {
-  if (lin_.has_pose(level)) scatter(energy_, c, M, lin_.K_.A[level].topLeftCorner(n_, n_));
+  if (lin_.has_pose(level)) add(c, M, lin_.pose_place(level), lin_.pose_place(level));
 }
 
 void LinearisationBuilder::to_coupling(const Contact& c, const Mat6<double>& M, int level) {
-  if (lin_.has_pose(level + 1)) scatter(energy_, c, M, lin_.K_.B[level + 1].topLeftCorner(n_, n_));
+  if (lin_.has_pose(level + 1)) add(c, M, lin_.pose_place(level + 1), lin_.pose_place(level));
 }
 
 void LinearisationBuilder::to_jacobian(const Contact& c, const Mat6<double>& M, int level) {
-  if (lin_.has_pose(level)) scatter(energy_, c, M, lin_.K_.A[level].bottomLeftCorner(n_, n_));
+  if (lin_.has_pose(level)) add(c, M, lin_.multiplier_place(level), lin_.pose_place(level));
 }
 
 void LinearisationBuilder::to_jacobian_next(const Contact& c, const Mat6<double>& M, int level) {
-  scatter(energy_, c, M, lin_.K_.B[level + 1].bottomLeftCorner(n_, n_));
+  add(c, M, lin_.multiplier_place(level + 1), lin_.pose_place(level));
 }
 
 }  // namespace rtg

@@ -30,6 +30,12 @@ class LinearisationBuilder {
   void to_jacobian(const Contact& c, const Mat6<double>& M, int level);
   void to_jacobian_next(const Contact& c, const Mat6<double>& M, int level);
 
+  /// The entry of K below (or on) the diagonal at row `row` + i, column `column` + j.
+  double& entry(Linearisation::Place row, int i, Linearisation::Place column, int j);
+  /// Adds M of a contact to K's blocks that begin at (row, column).
+  void add(const Contact& c, const Mat6<double>& M, Linearisation::Place row,
+           Linearisation::Place column);
+
   Linearisation& lin_;
   const ReverseProblem& problem_;
   const StepEnergy& energy_;
