@@ -22,6 +22,7 @@ MISTAKES = {
     "no key": (["--set", "search.breadth"], "--set search.breadth: "),
     "out of range": (["--set", "search.breadth=0"], "--set search.breadth=0: "),
     "small buffer": (["--set", "train.buffer=5"], "train.buffer: 5 is too small for search.tr"),
+    "folder of another kind": (["--out", "/proc/rtg", "--in-process"], "--out: /proc/rtg: "),
     "resume without folder": (["--resume"], "--resume: needs --out DIR"),
     "check without file": (["check"], "the following arguments are required: FILE.yaml"),
     "spy for no time": (["spy", "--seconds", "0"], "--seconds 0: legal is a number of seconds"),

@@ -58,7 +58,7 @@ class GraphRun:
         self._recording = None if plan.train else _Recording(plan, self._bus)
         self._graph = ProcessGraph(plan.folder / "logs")
         self._start = time.monotonic()
-        self._timed = False
+        self._sealed = False
         self._consumed = math.inf  # when the consumer had all
 
     def run(self) -> dict[str, Any]:
@@ -70,6 +70,9 @@ class GraphRun:
                     self._step()
                     interrupts.raise_if_requested()
                 self._graph.tend(leaving=True)
+                if not self._sealed:  # not heard, the coordinator ended well all the same
+                    self._on_sealed()
+                defects = self._graph.failures()
             finally:
                 self._graph.stop()
                 self._bus.close()
@@ -80,6 +83,7 @@ class GraphRun:
             "lost_transitions": missing,
             "worker_restarts": self._graph.restarts,
             "counters": self._watch.counters(),
+            "defects": defects,
         }
 
     def _start_programs(self) -> None:
@@ -104,14 +108,15 @@ class GraphRun:
             self._recording.poll(_POLL)
         else:
             self._bus.spin(_POLL)
+        if self._watch.state.phase == "sealed" and not self._sealed:
+            self._on_sealed()
         for note in self._graph.tend(leaving=self._watch.leaving):
             self._display.note(note)
-        self._time_generation()
         self._display.show(self._training.update(self._watch.state))
 
     def _is_over(self) -> bool:
         """Whether the coordinator waits for good-byes that were lost."""
-        if not self._timed or (self._plan.train and self._graph.working("trainer")):
+        if not self._sealed or (self._plan.train and self._graph.working("trainer")):
             return False
         if self._recording and not self._recording.complete:
             return False
@@ -119,12 +124,13 @@ class GraphRun:
         self._consumed = min(self._consumed, now)
         return now - self._consumed > _GOOD_BYE
 
-    def _time_generation(self) -> None:
-        if self._watch.state.phase == "sealed" and not self._timed:
-            self._timed = True
-            report = run_folder.read_json(self._plan.report_file)
-            wall = time.monotonic() - self._start
-            run_folder.write_report(self._plan.report_file, report, wall)
+    def _on_sealed(self) -> None:
+        """All transitions are stored: whatever the coordinator says in the end, they count."""
+        self._sealed = True
+        self._graph.spare("beam_coordinator")
+        report = run_folder.read_json(self._plan.report_file)
+        wall = time.monotonic() - self._start
+        run_folder.write_report(self._plan.report_file, report, wall)
 
 
 def run(plan: RunPlan, display: Display) -> dict[str, Any]:

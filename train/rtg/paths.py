@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from rtg.errors import RunError
+
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = ROOT / "config"
 RUNS = ROOT / "runs"
@@ -11,10 +13,10 @@ BUILD = ROOT / "build" / "release"
 
 
 def program(name: str) -> Path:
-    """One of our C++ programs. Raises FileNotFoundError with the remedy if it is not built."""
+    """One of our C++ programs. Raises RunError with the remedy if it is not built."""
     path = BUILD / "nodes" / name
     if not path.is_file():
-        raise FileNotFoundError(f"{path} is not built: start through ./run.sh, which builds it")
+        raise RunError(f"{path} is not built: start through ./run.sh, which builds it")
     return path
 
 

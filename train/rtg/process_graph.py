@@ -36,6 +36,7 @@ class ProcessGraph:
         logs.mkdir(parents=True, exist_ok=True)
         self._logs = logs
         self._members: list[_Member] = []
+        self._spared: set[str] = set()
         self.restarts = 0
 
     def add(self, name: str, command: Sequence[str | Path], helper: bool = False) -> None:
@@ -43,7 +44,7 @@ class ProcessGraph:
         node = Node(name, command, self._logs / f"{name}.log")
         self._members.append(_Member(node, helper))
 
-    def tend(self, leaving: bool) -> list[str]:
+    def tend(self, leaving: bool = False) -> list[str]:
         """Replaces dead helpers, unless they are `leaving`; returns what there is to say about it.
 
         Raises RunError with the last words of a program that the run cannot do without.
@@ -51,21 +52,32 @@ class ProcessGraph:
         notes = []
         for member in self._members:
             status = member.node.exit_status()
-            if status is None or (status == 0 and (leaving or not member.helper)):
+            if status is None or (status == 0 and not member.helper):
                 continue
             if not member.helper:
-                raise RunError(_obituary(member.node))
-            if status == 0 and not member.has_left_early():
+                if member.node.name not in self._spared:
+                    raise RunError(obituary(member.node))
+                continue
+            if leaving or (status == 0 and not member.has_left_early()):
                 continue
             notes.append(f"{member.node.epitaph()}, started again")
             self._replace(member)
         return notes
 
+    def spare(self, name: str) -> None:
+        """From now on the failure of that program is no reason to stop the others."""
+        self._spared.add(name)
+
+    def failures(self) -> list[str]:
+        """The last words of programs, no helpers, that ended badly."""
+        essential = [member.node for member in self._members if not member.helper]
+        return [obituary(node) for node in essential if node.exit_status() not in (None, 0)]
+
     def _replace(self, member: _Member) -> None:
         quick = time.monotonic() - member.node.started < _QUICK
         member.quick_deaths = member.quick_deaths + 1 if quick else 0
         if member.quick_deaths >= _QUICK_DEATHS:
-            raise RunError(f"{_obituary(member.node)}\n(died {_QUICK_DEATHS} times in a row)")
+            raise RunError(f"{obituary(member.node)}\n(died {_QUICK_DEATHS} times in a row)")
         member.node.start()
         member.left = None
         self.restarts += 1
@@ -97,6 +109,7 @@ class ProcessGraph:
         return [node for node in nodes if node.exit_status() is None]
 
 
-def _obituary(node: Node) -> str:
+def obituary(node: Node) -> str:
+    """How it ended and the end of its log."""
     words = node.last_words()
     return f"{node.epitaph()}; the end of {node.log}:\n{words}" if words else node.epitaph()

@@ -31,7 +31,9 @@ def run(args: RunArgs) -> int:
             raise RunError(f"stopped; to go on: {command}") from None
         summary = results.finish(plan, measured)
     print(results.words(plan, summary))
-    return 0
+    for defect in measured["defects"]:
+        print(f"rtg: {defect}", file=sys.stderr)
+    return 1 if measured["defects"] else 0
 
 
 def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
@@ -45,4 +47,4 @@ def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
         return graph_run.run(plan, shown)
     if plan.train:
         train_run.run(plan, shown)
-    return {"lost_transitions": 0}
+    return {"lost_transitions": 0, "defects": []}

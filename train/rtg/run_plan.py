@@ -81,8 +81,11 @@ def make_plan(args: RunArgs) -> RunPlan:
         config = effective_config.values(args.file, overrides)
     canonical = effective_config.canonical(args.file, overrides)
     folder = args.out or run_folder.default_path(config["task"]["name"])
-    folder.mkdir(parents=True, exist_ok=True)
-    run_folder.write_text(folder / "config.yaml", canonical)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        run_folder.write_text(folder / "config.yaml", canonical)
+    except OSError as error:
+        raise UserError(f"--out: {folder}: {error.strerror}; legal: a folder to write to") from None
     run_folder.write_json(folder / "versions.json", run_folder.versions())
     name = f"{folder.name}-{secrets.token_hex(4)}"
     return RunPlan(folder, name, config, args.train, args.resume, tuple(notes))

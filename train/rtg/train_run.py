@@ -39,9 +39,9 @@ def run(plan: RunPlan, display: Display) -> None:
         try:
             graph.add("trainer", trainer_command(plan, "--no-stream"))
             while graph.wait(_POLL):
-                graph.tend(leaving=True)
+                graph.tend()
                 display.show(watch.update(state))
                 interrupts.raise_if_requested()
         finally:
             graph.stop()
-    graph.tend(leaving=True)
+    graph.tend()
