@@ -1,0 +1,104 @@
+#include "core/reverse/rollout.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/energy/implicit_step.hpp"
+#include "tests/support/touching_scene.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::TouchingScene;
+
+TEST(RollOut, IsFeasible) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const auto x = roll_out(problem, problem.end, straight_targets(problem));
+  ASSERT_TRUE(x);
+  EXPECT_LT(violation(problem, *x).max(), 1e-9);
+  EXPECT_EQ(x->p[0], problem.end);
+}
+
+// The servo's lead makes up for its lag in free motion.
+TEST(RollOut, AlongStraightTargetsAFreeRobotKeepsToItsPath) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0.3}, {20, 0, 0}, {0, 20, 0}});
+  VectorXd start = problem.end;
+  start.head<3>() = problem.robot_path(0);
+  const auto x = roll_out(problem, start, straight_targets(problem));
+  ASSERT_TRUE(x);
+  for (int k = 0; k <= problem.sub_steps; ++k)
+    EXPECT_LT((x->p[static_cast<std::size_t>(k)].head<3>() - problem.robot_path(k)).norm(), 1e-8);
+}
+
+TEST(RollOut, RepeatsItselfUnderItsOwnServoTargets) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const auto x = warm_start(problem);
+  ASSERT_TRUE(x);
+  const auto again = roll_out(problem, x->p[0], servo_targets(problem, *x));
+  ASSERT_TRUE(again);
+  for (std::size_t k = 0; k < x->p.size(); ++k)
+    EXPECT_LT((again->p[k] - x->p[k]).norm(), 1e-7) << k;
+}
+
+TEST(RollOut, FromOverlappingBodiesThereIsNone) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const VectorXd overlapping = stacked({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
+  EXPECT_FALSE(roll_out(problem, overlapping, straight_targets(problem)));
+}
+
+TEST(WarmStart, IsFeasibleAndNearlyEndsInTheEnd) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const auto x = warm_start(problem);
+  ASSERT_TRUE(x);
+  EXPECT_LT(violation(problem, *x).max(), 1e-9);
+  EXPECT_LT(terminal_miss(problem, *x), 0.05);
+}
+
+// A gap of 0.0087 carries the box's drag at push speed: before the last sub-step it was a stride of
+// a sub-step, 0.2, further back.
+TEST(WarmStart, DragsATouchedBodyAgainstThePush) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0}, {1.4 + 0.0087, 0, 0}, {20, 0, 0}});
+  const auto x = warm_start(problem);
+  ASSERT_TRUE(x);
+  const VectorXd moved = x->p[0] - problem.end;
+  EXPECT_NEAR(moved[0], -2.0, 0.01);
+  EXPECT_LT(moved[3], -0.19);
+  EXPECT_NEAR(moved[4], 0.0, 1e-6);
+  EXPECT_LT(terminal_miss(problem, *x), 0.01);
+}
+
+TEST(WarmStart, LeavesUntouchedBodiesAlone) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end[4] += 20.0;
+  problem.end[7] -= 20.0;
+  const auto x = warm_start(problem);
+  ASSERT_TRUE(x);
+  for (const VectorXd& p : x->p) EXPECT_EQ(p.tail(6), problem.end.tail(6));
+  EXPECT_LT(terminal_miss(problem, *x), 1e-6);
+}
+
+TEST(WarmStart, OfAnOverlappingEndThereIsNone) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
+  EXPECT_FALSE(warm_start(problem));
+}
+
+}  // namespace
+}  // namespace rtg
