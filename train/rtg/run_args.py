@@ -71,9 +71,7 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    p.add_argument(
-        "task", nargs="?", default="gathering", help="a task of config/ or a FILE.yaml (gathering)"
-    )
+    p.add_argument("task", nargs="?", help="a task of config/ or a FILE.yaml (gathering)")
     p.add_argument("--in-process", action="store_true", help="everything in one process, no LCM")
     p.add_argument("--workers", metavar="N", help="reverse workers (one per core)")
     p.add_argument("--reverse", metavar="rrbs|naive", help="how reverse steps are found (rrbs)")
@@ -121,11 +119,13 @@ def parse(argv: Sequence[str]) -> RunArgs:
     if args.resume:
         if out is None:
             raise UserError("--resume: needs --out DIR, the folder of the run to go on with")
+        if args.task is not None:
+            raise UserError(f"{args.task}: --resume goes on with the task of {out}; name none")
         file = out / "config.yaml"
         if not file.is_file():
             raise UserError(f"--resume: {out} holds no run (no config.yaml)")
     else:
-        file = task_file(args.task)
+        file = task_file(args.task or "gathering")
         if out is not None and out.exists() and not (out.is_dir() and not any(out.iterdir())):
             raise UserError(f"--out: {out} exists and is not empty; take another or add --resume")
     return RunArgs(

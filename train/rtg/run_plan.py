@@ -67,10 +67,32 @@ def _check_buffer(config: dict[str, Any]) -> None:
         )
 
 
+def _fixed_values(config: dict[str, Any]) -> dict[str, Any]:
+    """What decides the transitions, by dotted name: a run keeps it for good."""
+    found: dict[str, Any] = {"run.seed": config["run"]["seed"]}
+    for section in ("task", "physics", "reverse", "search"):
+        found.update({f"{section}.{name}": value for name, value in config[section].items()})
+    return found
+
+
+def _check_resumed(file: Path, config: dict[str, Any]) -> None:
+    """Raises UserError if `config` is not the one in `file` as far as the transitions go."""
+    before, after = _fixed_values(effective_config.values(file)), _fixed_values(config)
+    for name in sorted({*before, *after}):
+        old, new = before.get(name), after.get(name)
+        if old != new:
+            raise UserError(
+                f"--resume: {name} must stay {old} as in {file}; legal are changes of train and "
+                "run, but for run.seed"
+            )
+
+
 def make_plan(args: RunArgs) -> RunPlan:
     """Resolves the configuration and makes the run folder. Raises UserError."""
     overrides = args.overrides
     config = effective_config.values(args.file, overrides)
+    if args.resume:
+        _check_resumed(args.file, config)
     if args.train:
         _check_buffer(config)
     notes = []

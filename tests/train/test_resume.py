@@ -1,0 +1,46 @@
+"""What may change when a run goes on: nothing that decides its transitions."""
+
+import pytest
+from rtg import cli, effective_config, paths
+from rtg.run_args import parse
+from rtg.run_plan import make_plan
+
+TINY = paths.CONFIG / "tests" / "tiny.yaml"
+CHANGES = {
+    "seed": (["--seed", "9"], "--resume: run.seed must stay 1 as in "),
+    "search": (["--set", "search.breadth=9"], "--resume: search.breadth must stay 16 as in "),
+    "reverse flag": (["--reverse", "rrbs"], "--resume: search.reverse must stay naive as in "),
+    "transitions": (["--transitions", "9"], "--resume: search.transitions must stay 2000 as in "),
+    "physics": (["--set", "physics.sub_steps=9"], "--resume: physics.sub_steps must stay 10 as "),
+    "reverse": (["--set", "reverse.preset=paper"], "--resume: reverse."),
+    "task setting": (["--set", "task.horizon=9"], "--resume: task.horizon must stay 60 as in "),
+    "task": (["--set", "task=gathering_hard"], "--set task=gathering_hard: key 'task': is "),
+    "one of two": (["--workers", "1", "--seed", "9"], "--resume: run.seed must stay 1 as in "),
+    "named task": (["gathering"], "gathering: --resume goes on with the task of "),
+}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Of a stopped run."""
+    (tmp_path / "config.yaml").write_text(effective_config.canonical(TINY))
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_change_of_the_transitions_is_refused_and_leaves_the_run_alone(name, folder, capsys):
+    words, message = CHANGES[name]
+    before = (folder / "config.yaml").read_bytes()
+    assert cli.main([*words, "--resume", "--out", str(folder)]) == 2
+    assert capsys.readouterr().err.startswith(f"rtg: {message}")
+    assert [path.name for path in folder.iterdir()] == ["config.yaml"]
+    assert (folder / "config.yaml").read_bytes() == before
+
+
+def test_the_learner_and_the_processes_may_change_and_equal_values_are_no_change(folder):
+    words = "--resume --in-process --workers 1 --interactions 900 --seed 1 --set search.breadth=16"
+    plan = make_plan(parse([*words.split(), "--out", str(folder)]))
+    assert plan.resume and plan.interactions == 900
+    written = effective_config.values(folder / "config.yaml")
+    assert written == plan.config
+    assert written["run"]["workers"] == 1 and written["train"]["interactions"] == 900
