@@ -70,6 +70,7 @@ class GraphRun:
                     self._step()
                     interrupts.raise_if_requested()
                 self._graph.tend(leaving=True)
+                self._listen(0.0)  # what came after the last look
                 if not self._sealed:  # not heard, the coordinator ended well all the same
                     self._on_sealed()
                 defects = self._graph.failures()
@@ -103,11 +104,14 @@ class GraphRun:
         if plan.train:
             graph.add("trainer", trainer_command(plan, "--run-name", plan.name))
 
-    def _step(self) -> None:
+    def _listen(self, seconds: float) -> None:
         if self._recording:
-            self._recording.poll(_POLL)
+            self._recording.poll(seconds)
         else:
-            self._bus.spin(_POLL)
+            self._bus.spin(seconds)
+
+    def _step(self) -> None:
+        self._listen(_POLL)
         if self._watch.state.phase == "sealed" and not self._sealed:
             self._on_sealed()
         for note in self._graph.tend(leaving=self._watch.leaving):

@@ -1,0 +1,42 @@
+"""The end of a process graph, with programs that do nothing but end."""
+
+import io
+import json
+
+import pytest
+from rtg import effective_config, graph_run, paths
+from rtg.progress import display
+from rtg.run_plan import RunPlan
+
+TINY = paths.CONFIG / "tests" / "tiny.yaml"
+REPORT = {"transitions": 0, "replay_gaps": []}
+PROGRAMS = {
+    "rtg_forward_sim_server": "exec sleep infinity",
+    "rtg_reverse_worker": "exec sleep infinity",
+    "rtg_beam_coordinator": f"echo '{json.dumps(REPORT)}' > \"$3/generation.json\"",
+}
+
+
+@pytest.fixture
+def plan(tmp_path, monkeypatch):
+    """A run of those programs, without a trainer, on a bus on which nobody speaks."""
+    folder = tmp_path / "run"
+    folder.mkdir()
+    (folder / "config.yaml").write_text(effective_config.canonical(TINY))
+    for name, script in PROGRAMS.items():
+        program = tmp_path / name
+        program.write_text(f"#!/bin/sh\n{script}\n")
+        program.chmod(0o755)
+    monkeypatch.setattr(paths, "program", lambda name: tmp_path / name)
+    config = {"run": {"bus": "memq://", "record": False, "workers": 1}}
+    return RunPlan(folder, "test", config, train=False, resume=False, notes=())
+
+
+def test_a_coordinator_that_was_never_heard_leaves_a_whole_report(plan):
+    with display(io.StringIO()) as shown:
+        measured = graph_run.run(plan, shown)
+    report = json.loads(plan.report_file.read_text())
+    assert report["generate_wall_s"] > 0
+    assert {key: report[key] for key in REPORT} == REPORT
+    assert plan.transitions_file.is_file()
+    assert measured["lost_transitions"] == 0 and measured["defects"] == []
