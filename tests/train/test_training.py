@@ -12,7 +12,7 @@ import pytest
 import torch as th
 from rtg import _core, checkpoint, dataset, paths, policy_file, trainer
 from rtg.errors import RunError, UserError
-from rtg.evaluation import HELD_OUT, evaluate, held_out_starts
+from rtg.evaluation import FINAL, HELD_OUT, evaluate, held_out_starts
 from rtg.offline_data import FileSource, OfflineData
 from rtg.recorder import Recorder
 from rtg.training import Training
@@ -243,6 +243,27 @@ def test_held_out_starts_are_legal_distinct_and_no_training_starts() -> None:
     assert len(np.unique(starts[:, 1, 0])) == 50
     assert np.abs(starts - task.start).max() <= task.start_jitter + 1e-6
     assert HELD_OUT > 2**31 - 1  # the largest legal run.seed
+    final = held_out_starts(task, 50, FINAL)
+    assert not set(starts[:, 1, 0]) & set(final[:, 1, 0])
+
+
+def test_the_result_is_measured_on_starts_that_did_not_stop_training(
+    tmp_path: Path, rows: Rows, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wanted = ("train.stop_at_success=0.5", "train.stop_evaluations=1", "train.eval_every=20")
+    one = training(run_folder(tmp_path / "run", rows, *wanted))
+    watched = held_out_starts(one.task, one.settings.eval_episodes)
+
+    def lucky(config, policy, starts, discount):  # success on just the starts of the evaluations
+        found = evaluate(config, policy, starts, discount)
+        return found._replace(success=np.isin(starts[:, 1, 0], watched[:, 1, 0]))
+
+    monkeypatch.setattr("rtg.training.evaluate", lucky)
+    source = FileSource(one.folder / "transitions.npz", one.task, one.data)
+    assert one.run(source, lambda: False, record=False)
+    assert one.interactions == 20 and one.log.rows[-1]["success_rate"] == 1.0
+    one.finish(lost=0)
+    assert json.loads((one.folder / "training.json").read_text())["success_rate"] == 0.0
 
 
 def test_evaluation_agrees_with_single_episodes() -> None:

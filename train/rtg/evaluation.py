@@ -13,7 +13,9 @@ from rtg import _core
 Floats = NDArray[np.float64]
 Policy = Callable[[NDArray[np.float32]], NDArray[Any]]  # [N, observation] -> [N] actions
 
-HELD_OUT = 1 << 63  # seeds of runs are smaller, so no training start is among these
+# Seeds of runs are smaller, so no training start is among these.
+HELD_OUT = 1 << 63  # what training is watched, and stopped, with
+FINAL = HELD_OUT + 1  # what the result is measured with: nothing was chosen by these
 
 
 class Evaluation(NamedTuple):
@@ -37,9 +39,9 @@ class Evaluation(NamedTuple):
         }
 
 
-def held_out_starts(task: _core.Task, count: int) -> Floats:
+def held_out_starts(task: _core.Task, count: int, seed: int = HELD_OUT) -> Floats:
     """The same for every run: objects moved by ± task.start_jitter. [count, bodies, 3]"""
-    return np.stack([task.jittered_start(task.start_jitter, HELD_OUT, k) for k in range(count)])
+    return np.stack([task.jittered_start(task.start_jitter, seed, k) for k in range(count)])
 
 
 def evaluate(config: _core.Config, policy: Policy, starts: Floats, discount: float) -> Evaluation:

@@ -13,7 +13,7 @@ import numpy as np
 
 from rtg import _core, checkpoint, policy_file
 from rtg.ddqn import DoubleDqn
-from rtg.evaluation import Evaluation, evaluate, held_out_starts
+from rtg.evaluation import FINAL, Evaluation, Floats, evaluate, held_out_starts
 from rtg.offline_data import OfflineData, Source, read_rows
 from rtg.run_folder import write_json
 from rtg.settings import TrainSettings
@@ -116,7 +116,10 @@ class Training:
 
     def evaluate(self) -> Evaluation:
         """The greedy policy on the held-out starts; changes nothing."""
-        return evaluate(self.config, self.model.greedy, self._starts, self.discount)
+        return self._evaluate(self._starts)
+
+    def _evaluate(self, starts: Floats) -> Evaluation:
+        return evaluate(self.config, self.model.greedy, starts, self.discount)
 
     def _log_row(self, evaluation: Evaluation) -> None:
         nominal = self.task.observation(self.task.start[None])
@@ -193,8 +196,12 @@ class Training:
         return self.folder / "transitions.npz", self._checkpoint.parent / "transitions.npz"
 
     def finish(self, lost: int) -> None:
-        """Writes the model, the best evaluation episode and training.json."""
-        final = self.evaluate()
+        """Writes the model, the best final episode and training.json.
+
+        The final figures are of starts that no evaluation before has seen: training may have been
+        stopped because those of the others went well by chance.
+        """
+        final = self._evaluate(held_out_starts(self.task, self.settings.eval_episodes, FINAL))
         weights = self.model.policy_net.state_dict()
         policy_file.write(self.folder / "model.pt", self.task, self.settings, weights)
         best = final.best()
