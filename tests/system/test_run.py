@@ -17,9 +17,6 @@ from PIL import Image
 from rtg import dataset, paths
 from rtg.run_folder import SUMMARY_KEYS
 
-why_not = network.defect()
-pytestmark = pytest.mark.skipif(bool(why_not), reason=f"no network namespaces here: {why_not}")
-
 TINY = "config/tests/tiny.yaml"
 NETWORK = paths.ROOT / "tests" / "support" / "private_network.sh"
 ENDLESS = (TINY, "--transitions", "20000000", "--set", "train.buffer=20000000")
@@ -36,6 +33,11 @@ COMMON_FILES = {
     "episode.gif",
 }
 TRAINING_FILES = {"progress.csv", "learning_curve.png", "training.json", "model.pt"}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def private_network():
+    network.require()
 
 
 def start(*words):
