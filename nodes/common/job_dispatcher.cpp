@@ -49,7 +49,10 @@ void JobDispatcher::bury_silent_workers(Seconds now) {
   std::erase_if(workers_, [&](const auto& entry) {
     const Worker& worker = entry.second;
     if (now - worker.beat <= limits_.silence) return false;
-    for (const JobId id : worker.leases) take_back(id);
+    for (const JobId id : worker.leases) {
+      ++jobs_.at(id).victims;
+      take_back(id);
+    }
     return true;
   });
 }
@@ -66,7 +69,7 @@ void JobDispatcher::take_back_expired_leases(Seconds now) {
 void JobDispatcher::take_back(JobId id) {
   Job& job = jobs_.at(id);
   ++reissued_;
-  if (++job.victims >= limits_.poison) {
+  if (job.victims >= limits_.poison) {
     job.state = State::kPoison;
     --open_;
   } else {

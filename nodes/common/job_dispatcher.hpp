@@ -21,15 +21,15 @@ using Seconds = double;
 ///
 /// Workers announce capacity and what they hold; a lease they do not hold is sent again, the leases
 /// of a silent worker go to others, each alone so that one deadly unit does not make its neighbours
-/// look deadly. Results count by id, whoever sends them and whatever the
-/// attempt, so no fault changes an answer.
+/// look deadly. A job that takes long may be given to another too, but that is no death: time alone
+/// makes no job poison. Results count by id, whoever sends them and whatever the attempt.
 class JobDispatcher {
  public:
   struct Limits {
     Seconds silence = 2.0;  // without a beat for so long: dead
     Seconds resend = 0.1;   // a beat so long after sending should list the job
-    Seconds lease = 120.0;  // from start to result, however alive the worker
-    int poison = 3;         // workers that one job may take down
+    Seconds lease = 120.0;  // from start to result; then others may try, however alive the worker
+    int poison = 3;         // silent workers that held one job until it is given up
   };
   struct Send {
     WorkerId worker = 0;

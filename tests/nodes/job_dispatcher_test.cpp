@@ -80,6 +80,23 @@ TEST(JobDispatcher, AStuckWorkerLosesItsLeaseHoweverAlive) {
   EXPECT_EQ(jobs.due(121.0), (Sends{{kBob, 10, 2}}));
 }
 
+TEST(JobDispatcher, ALongJobOfALivingWorkerIsNeverPoison) {
+  JobDispatcher jobs;
+  jobs.submit(Ids{10, 11});
+  beat(jobs, kAnn, 0.0);
+  jobs.due(0.0);
+  for (Seconds now = 1.0; now <= 500.0; now += 1.0) {
+    beat(jobs, kAnn, now, {10, 11});
+    jobs.due(now);
+  }
+  EXPECT_EQ(jobs.reissued(), 8);  // after 121, 242, 363 and 484 s
+  EXPECT_EQ(jobs.poisoned(), Ids{});
+  EXPECT_EQ(jobs.open(), 2);
+  EXPECT_EQ(jobs.on_result(10), Verdict::kAccepted);
+  EXPECT_EQ(jobs.on_result(11), Verdict::kAccepted);
+  EXPECT_TRUE(jobs.finished());
+}
+
 TEST(JobDispatcher, AJobThatTakesThreeWorkersDownIsPoison) {
   JobDispatcher jobs;
   jobs.submit(Ids{10});
