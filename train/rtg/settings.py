@@ -12,7 +12,7 @@ class TrainSettings:
 
     preset: str = "default"
     interactions: int = 350_000
-    start_at: int = 20_000
+    start_at: int = 40_000
     buffer: int = 1_500_000
     batch: int = 256
     learning_rate: float = 3.0e-4
