@@ -9,7 +9,7 @@ namespace rtg {
 enum class SolveStatus : std::int8_t {
   kConverged,         // constraints and stationarity below their tolerances
   kPruned,            // the action cannot have been the last one; nothing was solved
-  kInfeasible,        // stationary point of the infeasibility: no predecessor nearby
+  kInfeasible,        // no warm start, the final state missed, or (naive) bodies overlap
   kIterationLimit,    // max_iterations
   kLineSearchFailed,  // no acceptable step, even with the largest regularisation
   kSingular,          // the KKT system could not be factorised

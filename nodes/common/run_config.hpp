@@ -4,7 +4,8 @@
 
 namespace rtg {
 
-/// How a run is carried out; of these only the seed changes its results.
+/// How a run is carried out. Of these only the seed changes the transitions; what is learned from
+/// them also depends, over LCM, on when they come in.
 struct RunConfig {
   int seed = 1;
   int workers = 0;  // reverse workers; the loader replaces 0 by the number of cores

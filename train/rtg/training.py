@@ -30,7 +30,9 @@ class Training:
     """The learner with everything around it, writing to a run folder.
 
     It goes on while transitions come in; polling for them never waits. What it does next depends on
-    its checkpoint and the transitions alone, so a resumed run goes on with the same bits.
+    its checkpoint, the transitions and at which step they come in: from a finished set, and from a
+    stream that delivers alike, a resumed run goes on with the same bits. LCM does not deliver
+    alike, so over it two runs of one seed may learn differently.
     """
 
     def __init__(self, config: _core.Config, folder: Path) -> None:
