@@ -34,7 +34,7 @@ run_pytest() {
 coverage() {
   local folder=$ROOT/build/coverage
   find "$folder" -name '*.gcda' -delete
-  run_ctest coverage --label-exclude system
+  run_ctest coverage
   (cd "$ROOT" && "$VENV/bin/gcovr" --root . --object-directory "$folder" \
     --filter 'core/(math|energy|forward|reverse)/' --exclude-throw-branches \
     --gcov-ignore-parse-errors --sort uncovered-percent \
@@ -44,7 +44,7 @@ coverage() {
 case ${1:-all} in
   all)
     set_up release all
-    run_ctest release --label-exclude bench
+    run_ctest release
     run_pytest
     ;;
   asan)

@@ -74,6 +74,14 @@ def whole_run(request):
     return request.getfixturevalue(request.param)
 
 
+def test_the_readme_names_everything_in_a_run_folder(whole_run):
+    readme = (paths.ROOT / "README.md").read_text()
+    folder, done = whole_run
+    assert done.returncode == 0, done.stderr
+    names = {path.name + "/" * path.is_dir() for path in folder.iterdir()}
+    assert {name for name in names if f"`{name}`" not in readme} == set()
+
+
 def test_a_run_ends_well_and_leaves_every_file(whole_run):
     folder, done = whole_run
     assert done.returncode == 0, done.stderr
