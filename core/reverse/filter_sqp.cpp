@@ -46,8 +46,7 @@ class FilterSqp {
     lin_.emplace(problem_, result_.x, Curvature{exact_, proximal_});
     result_.infeasibility = lin_->violation().max();
     result_.stationarity = lin_->stationarity();
-    if (!std::isfinite(result_.infeasibility + result_.stationarity))
-      return stop(SolveStatus::kNonFinite);
+    if (!lin_->finite()) return stop(SolveStatus::kNonFinite);
     if (result_.infeasibility < problem_.config.feasibility_tol &&
         result_.stationarity < problem_.config.stationarity_tol)
       return stop(SolveStatus::kConverged);

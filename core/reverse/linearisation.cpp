@@ -1,6 +1,7 @@
 #include "core/reverse/linearisation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/reverse/linearisation_builder.hpp"
 
@@ -22,6 +23,13 @@ double Linearisation::stationarity() const {
     top = std::max(top, control_gradient_[k].lpNorm<Eigen::Infinity>());
   }
   return top;
+}
+
+bool Linearisation::finite() const {
+  double sum = violation_.l1();
+  for (const VectorXd& gradient : pose_gradient_) sum += gradient.sum();
+  for (const Vector3d& gradient : control_gradient_) sum += gradient.sum();
+  return std::isfinite(sum);
 }
 
 BlockVector Linearisation::right_hand_side(const Violation& v) const {

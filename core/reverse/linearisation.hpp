@@ -46,6 +46,8 @@ class Linearisation {
 
   /// ‖∇L‖∞ over poses and controls.
   double stationarity() const;
+  /// Whether constraints and gradients are; the maxima of the norms overlook a NaN.
+  bool finite() const;
 
   /// Right-hand side for constraint values `v`: those at the iterate, or with those at a trial
   /// point added for a second-order correction. Its solution is the step and its multipliers'

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kArmijo = 1e-4;
 constexpr double kLeastStep = 1e-12;
-constexpr double kProximal = 1e-6;   // keeps the poses' Hessian from being singular
-constexpr double kSafeguard = 1e-4;  // ε_c
+constexpr double kProximal = 1e-6;  // keeps the poses' Hessian from being singular
+constexpr double kSafeguard = 1.0;  // ε_c [kg m]; far less lets even free pushes creep
 
 double largest_multiplier(const Iterate& x, const Direction& d) {
   double top = 0.0;
@@ -54,8 +54,7 @@ SqpResult merit_sqp(const ReverseProblem& problem, const Iterate& start) {
     const Linearisation lin(problem, result.x, {false, kProximal});
     result.infeasibility = lin.violation().max();
     result.stationarity = lin.stationarity();
-    if (!std::isfinite(result.infeasibility + result.stationarity))
-      return ended(SolveStatus::kNonFinite);
+    if (!lin.finite()) return ended(SolveStatus::kNonFinite);
     if (result.infeasibility < config.feasibility_tol &&
         result.stationarity < config.stationarity_tol)
       return ended(SolveStatus::kConverged);

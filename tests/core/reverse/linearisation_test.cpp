@@ -83,5 +83,107 @@ TEST(Linearisation, MatrixIsDerivativeWithFixedEnd) {
   expect_matrix_is_derivative(problem, x);
 }
 
+/// Touching scene, disturbed from its warm start, with random multipliers.
+struct Disturbed {
+  TouchingScene scene;
+  ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  Iterate x;
+
+  explicit Disturbed(std::uint64_t seed) {
+    Rng rng(seed);
+    x = disturbed(*warm_start(problem), 1e-3, rng);
+  }
+};
+
+/// J + Σ y·Φ.
+double lagrangian(const ReverseProblem& problem, const Iterate& x) {
+  const Violation v = violation(problem, x);
+  double sum = objective(problem, x);
+  for (std::size_t k = 1; k < x.p.size(); ++k) sum += x.multipliers[k].dot(v.residuals[k]);
+  return sum;
+}
+
+// Along directions that keep complementarity (Δλ = b·Δp) its multipliers drop out.
+TEST(Linearisation, RightHandSideIsMinusTheGradientOfTheLagrangian) {
+  const Disturbed at(4);
+  const Linearisation lin(at.problem, at.x, {true, 0.0});
+  Violation v = lin.violation();
+  for (VectorXd& c : v.complementarity) c.setZero();
+  const VectorXd gradient = -joined(lin.right_hand_side(v));
+  Rng rng(5);
+  for (int trial = 0; trial < 5; ++trial) {
+    BlockVector along;
+    for (const MatrixXd& A : lin.matrix().A) along.push_back(noise(A.rows(), 1.0, rng));
+    const Direction d = lin.direction(along, v);
+    const double t = 1e-7, slope = gradient.dot(joined(along));
+    EXPECT_NEAR(
+        (lagrangian(at.problem, moved(at.x, d, t)) - lagrangian(at.problem, moved(at.x, d, -t))) /
+            (2.0 * t),
+        slope, 1e-6 * std::abs(slope));
+  }
+}
+
+TEST(Linearisation, StationarityIsTheLargestGradientOfThePrimalUnknowns) {
+  const Disturbed at(6);
+  const Linearisation lin(at.problem, at.x, {true, 0.0});
+  Violation v = lin.violation();
+  for (VectorXd& c : v.complementarity) c.setZero();
+  const BlockVector r = lin.right_hand_side(v);
+  double largest = r[0].lpNorm<Eigen::Infinity>();
+  for (std::size_t k = 1; k < r.size(); ++k)
+    largest = std::max(largest, r[k].head(9 + 3).lpNorm<Eigen::Infinity>());
+  EXPECT_DOUBLE_EQ(lin.stationarity(), largest);
+}
+
+/// The Newton step.
+BlockVector solution_of(const Linearisation& lin) {
+  const auto solver = make_kkt_solver(KktMethod::kBlockElimination);
+  EXPECT_TRUE(solver->factorize(lin.matrix()));
+  return solver->solve(lin.right_hand_side(lin.violation()));
+}
+
+// To first order in α, x + α d leaves (1 - α) of every constraint.
+TEST(Linearisation, StepSolvesTheLinearisedConstraints) {
+  const Disturbed at(7);
+  for (const Curvature curvature : {Curvature{false, 1.0}, Curvature{true, 0.1}}) {
+    const Linearisation lin(at.problem, at.x, curvature);
+    const Direction d = lin.direction(solution_of(lin), lin.violation());
+    const double t = 1e-6;
+    const Violation now = violation(at.problem, at.x);
+    const Violation up = violation(at.problem, moved(at.x, d, t));
+    const Violation down = violation(at.problem, moved(at.x, d, -t));
+    for (std::size_t k = 0; k < now.residuals.size(); ++k) {
+      const VectorXd slope = (up.residuals[k] - down.residuals[k]) / (2.0 * t);
+      EXPECT_LT((slope + now.residuals[k]).lpNorm<Eigen::Infinity>(), 1e-6);
+      const VectorXd other = (up.complementarity[k] - down.complementarity[k]) / (2.0 * t);
+      EXPECT_LT((other + now.complementarity[k]).lpNorm<Eigen::Infinity>(), 1e-6);
+    }
+  }
+}
+
+TEST(Linearisation, ObjectiveSlopeMatchesDifferences) {
+  const Disturbed at(8);
+  const Linearisation lin(at.problem, at.x, {});
+  const Direction d = lin.direction(solution_of(lin), lin.violation());
+  const double t = 1e-6, slope = lin.objective_slope(d);
+  EXPECT_NEAR(
+      (objective(at.problem, moved(at.x, d, t)) - objective(at.problem, moved(at.x, d, -t))) /
+          (2.0 * t),
+      slope, 1e-6 * std::abs(slope));
+}
+
+// Controls enter the objective as ε |c|² alone, poses of the robot amid the way as κ |t|².
+TEST(Linearisation, ModelCurvatureIsThatOfTheObjectiveAndTheProximalTerm) {
+  const Disturbed at(9);
+  const double proximal = 0.3;
+  const Linearisation lin(at.problem, at.x, {false, proximal});
+  BlockVector along;
+  for (const MatrixXd& A : lin.matrix().A) along.push_back(VectorXd::Zero(A.rows()));
+  along[3].segment<3>(9) = Vector3d(1.0, -2.0, 2.0);
+  along[5].tail(9).setOnes();  // multipliers do not count
+  EXPECT_NEAR(lin.model_curvature(along), 9.0 * (2.0 * at.config.control_weight + proximal), 1e-12);
+}
+
 }  // namespace
 }  // namespace rtg

@@ -1,0 +1,184 @@
+#include "core/reverse/filter_sqp.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/energy/implicit_step.hpp"
+#include "core/reverse/rollout.hpp"
+#include "tests/support/free_push.hpp"
+#include "tests/support/touching_scene.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::noise;
+using testing::TouchingScene;
+
+SqpResult solved(const ReverseProblem& problem) {
+  return filter_sqp(problem, *warm_start(problem), 200, problem.config.proximal_start);
+}
+
+/// Forward simulation of the solution's start under the solution's controls.
+Iterate replayed(const ReverseProblem& problem, const Iterate& x) {
+  Iterate again = x;
+  for (std::size_t k = 1; k < x.p.size(); ++k) {
+    again.forces[k - 1] = problem.energy.forces(again.p[k - 1]);
+    const auto step = implicit_step(problem.energy, again.p[k - 1], again.forces[k - 1],
+                                    Drive::controls(x.controls[k]));
+    EXPECT_TRUE(step);
+    if (step) again.p[k] = step->next;
+  }
+  return again;
+}
+
+TEST(FilterSqp, ReverseOfAFreePushIsTheClosedForm) {
+  const TouchingScene scene;
+  ReverseConfig config = testing::free_push_config({});
+  config.feasibility_tol = 1e-11;
+  config.stationarity_tol = 1e-10;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{1, 2, 0.3}, {40, 0, 0}, {0, 40, 0}});
+  problem.direction = {0.6, 0.8};
+  const SqpResult result = filter_sqp(problem, static_iterate(problem), 200, 1.0);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  testing::expect_closed_form(problem, result.x, 1e-6);
+  EXPECT_LT((result.x.p[0] - problem.end).tail(6).norm(), 1e-15);
+}
+
+// The gap carries the box's drag at push speed, so the push dragged it along.
+TEST(FilterSqp, ATouchedBoxIsDraggedTheWholeStrideBack) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0}, {1.4087, 0, 0}, {40, 0, 0}});
+  const SqpResult result = solved(problem);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_NEAR(result.x.p[0][3] - problem.end[3], -2.0, 0.02);
+  EXPECT_NEAR(result.x.p[0][0], -2.0, 0.02);
+  EXPECT_LT(terminal_miss(problem, result.x), 0.01);
+}
+
+TEST(FilterSqp, ForwardOfReverseWithTheSolversControlsIsTheEnd) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const SqpResult result = solved(problem);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_LT((replayed(problem, result.x).p.back() - result.x.p.back()).norm(), 1e-6);
+  EXPECT_LT(terminal_miss(problem, result.x), config.terminal_tolerance);
+}
+
+// With the final state fixed instead of held by a spring, and one that a push leads to, the end is
+// the given one.
+TEST(FilterSqp, ForwardOfReverseIsTheGivenStateWhereItIsFixed) {
+  const TouchingScene scene;
+  ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = warm_start(problem)->p.back();
+  config.terminal_weight = 0.0;
+  const SqpResult result = filter_sqp(problem, static_iterate(problem), 200, 1.0);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_EQ(result.x.p.back(), problem.end);
+  EXPECT_LT((replayed(problem, result.x).p.back() - problem.end).norm(), 1e-6);
+}
+
+// Without friction a sub-step is explicit backwards: p = p₊ + M⁻¹ (∂P_⊥(p₊) - F).
+TEST(FilterSqp, WithoutFrictionSubStepsAreExplicitBackwards) {
+  TouchingScene scene;
+  for (Body& body : scene.scene.bodies) body.friction = 0.0;
+  scene.energy = StepEnergy(scene.scene, scene.physics, scene.task.push);
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const SqpResult result = solved(problem);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  for (std::size_t k = 1; k < result.x.p.size(); ++k) {
+    const VectorXd& next = result.x.p[k];
+    VectorXd force = scene.energy.model(next, next, VectorXd::Zero(28)).gradient;  // ∂P_⊥
+    const Vector3d push = result.x.controls[k].array().tanh();
+    force.head<3>() -= scene.energy.control_bound().cwiseProduct(push);
+    for (int i = 0; i < 3; ++i) {
+      const Damping& body = scene.energy.damping(i);
+      const Vector3d mass(body.mass, body.mass, body.moment);
+      EXPECT_LT((next.segment<3>(3 * i) + force.segment<3>(3 * i).cwiseQuotient(mass) -
+                 result.x.p[k - 1].segment<3>(3 * i))
+                    .norm(),
+                1e-4);  // 1e-6 of Φ over λ's own 1e-6/g
+    }
+  }
+}
+
+// Every forward simulation is feasible, so none near the solution may have a lower objective.
+TEST(FilterSqp, NoForwardSimulationNearbyIsBetter) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const SqpResult result = solved(problem);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  const double least = objective(problem, result.x);
+  Rng rng(1);
+  for (int trial = 0; trial < 30; ++trial) {
+    Iterate other = result.x;
+    other.p[0] += noise(9, 2e-3, rng);
+    for (Vector3d& c : other.controls) c += noise(3, 2e-3, rng);
+    EXPECT_GT(objective(problem, replayed(problem, other)), least);
+  }
+}
+
+TEST(FilterSqp, EveryKktMethodGivesTheSameSolution) {
+  const TouchingScene scene;
+  ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const SqpResult first = solved(problem);
+  ASSERT_EQ(first.status, SolveStatus::kConverged);
+  for (const KktMethod method : {KktMethod::kCyclicReduction, KktMethod::kSuiteSparse}) {
+    config.kkt = method;
+    const SqpResult other = solved(problem);
+    ASSERT_EQ(other.status, SolveStatus::kConverged);
+    for (std::size_t k = 0; k < first.x.p.size(); ++k)
+      EXPECT_LT((other.x.p[k] - first.x.p[k]).norm(), 1e-5) << k;
+  }
+}
+
+TEST(FilterSqp, StopsAtTheIterationLimit) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  for (const int limit : {0, 1, 3}) {
+    const SqpResult result = filter_sqp(problem, *warm_start(problem), limit, 1.0);
+    EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
+    EXPECT_EQ(result.iterations, limit);
+  }
+}
+
+TEST(FilterSqp, ReportsWhatIsNotFinite) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  Iterate start = static_iterate(problem);
+  start.controls[3][1] = NAN;
+  EXPECT_EQ(filter_sqp(problem, start, 200, 1.0).status, SolveStatus::kNonFinite);
+}
+
+// No step leads from overlapping bodies to a legal iterate.
+TEST(FilterSqp, ReportsAStartFromWhichNoStepIsLegal) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0}, {40, 0, 0}, {40.9, 0.2, 0}});
+  const SqpResult result = filter_sqp(problem, static_iterate(problem), 200, 1.0);
+  EXPECT_EQ(result.status, SolveStatus::kLineSearchFailed);
+}
+
+// A body heavier than the others by a factor beyond double precision.
+TEST(FilterSqp, ReportsSingularSystems) {
+  TouchingScene scene;
+  scene.scene.bodies[2].density = 1e25;
+  scene.energy = StepEnergy(scene.scene, scene.physics, scene.task.push);
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0}, {40, 0, 0}, {0, 40, 0}});
+  const SqpResult result = filter_sqp(problem, static_iterate(problem), 200, 1.0);
+  EXPECT_EQ(result.status, SolveStatus::kSingular);
+}
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,56 @@
+#include "core/reverse/restoration.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/touching_scene.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::TouchingScene;
+
+TEST(Restoration, SolvesTheTouchingScene) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const SqpResult result = solve_with_restoration(problem);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_LT(violation(problem, result.x).max(), config.feasibility_tol);
+  EXPECT_LT(terminal_miss(problem, result.x), config.terminal_tolerance);
+  EXPECT_EQ(result.infeasibility, violation(problem, result.x).max());
+  EXPECT_LE(result.iterations, config.max_iterations);
+}
+
+TEST(Restoration, ASolutionThatMissesTheGivenEndIsNone) {
+  const TouchingScene scene;
+  ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const double miss = terminal_miss(problem, solve_with_restoration(problem).x);
+  config.terminal_tolerance = 0.9 * miss;
+  EXPECT_EQ(solve_with_restoration(problem).status, SolveStatus::kInfeasible);
+  config.terminal_tolerance = 1.1 * miss;
+  EXPECT_EQ(solve_with_restoration(problem).status, SolveStatus::kConverged);
+}
+
+TEST(Restoration, AnOverlappingEndIsInfeasible) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
+  const SqpResult result = solve_with_restoration(problem);
+  EXPECT_EQ(result.status, SolveStatus::kInfeasible);
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_EQ(result.x.p[0], problem.end);
+}
+
+TEST(Restoration, AttemptsShareTheIterationLimit) {
+  const TouchingScene scene;
+  ReverseConfig config;
+  config.max_iterations = 3;
+  const SqpResult result = solve_with_restoration(scene.problem(config));
+  EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
+  EXPECT_EQ(result.iterations, 3);
+}
+
+}  // namespace
+}  // namespace rtg
