@@ -10,7 +10,10 @@ inline constexpr std::array<std::string_view, 2> kTrainPresets{"default", "paper
 
 /// How the Python trainer learns. The values here are the preset `default`: what works
 /// best within Table 2's interaction budget. A loader begins with train_preset(preset) and reads
-/// the other fields over it.
+/// the other fields over it. Measured on Gathering, `./run.sh --seed 1` and 2 (60,000 transitions,
+/// rrbs): success ≥ 0.95 three times in a row after 70,000 and 65,000 interactions, on other starts
+/// then 0.99 and 0.95. A hard copy every 500 steps instead of target_rate swings between 0.7 and 1
+/// from one evaluation to the next; 10,000 steps of warm_up overestimate and teach nothing.
 struct TrainConfig {
   TrainPreset preset = TrainPreset::kDefault;
   int interactions = 350000;    // Table 2
