@@ -1,0 +1,53 @@
+"""The pages say what is there."""
+
+import re
+
+import pytest
+from layering import ROOT, sources
+
+PAGES = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "core/NOTATION.md", "msgs/CHANNELS.md"]
+READERS_OWN = {"config/mine.yaml", "msgs/NAME_t.lcm"}
+CODE = "\n".join(path.read_text() for path in sources(".hpp", ".cpp", ".py"))
+
+
+def in_backticks(page: str) -> list[str]:
+    return re.findall(r"`([^`\n]+)`", (ROOT / page).read_text())
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_lead_somewhere(page: str) -> None:
+    targets = re.findall(r"\]\((?!https?:)([^)#]+)\)", (ROOT / page).read_text())
+    assert [name for name in targets if not ((ROOT / page).parent / name).exists()] == []
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_paths_exist(page: str) -> None:
+    """Names in backticks that begin with a folder of the repository."""
+    folders = "core|msgs|nodes|config|train|tests"
+    paths = [name for name in in_backticks(page) if re.fullmatch(rf"({folders})/[\w./]*", name)]
+    assert {name for name in paths if not (ROOT / name).exists()} <= READERS_OWN
+
+
+def test_channels_of_the_code_are_in_the_table_and_only_they() -> None:
+    processes = "\n".join(
+        path.read_text() for path in sources(".hpp", ".cpp", ".py") if "tests" not in path.parts
+    )
+    page = (ROOT / "msgs/CHANNELS.md").read_text()
+    table = set(re.findall(r"^\| `(RTG_\w+)`", page, re.MULTILINE))
+    assert table == set(re.findall(r'"(RTG_[A-Z]+(?:_[A-Z]+)*)"', processes))
+
+
+def test_every_message_type_has_a_channel() -> None:
+    types = {path.stem for path in (ROOT / "msgs").glob("*.lcm")} - {"header_t"}
+    assert types == {name for name in in_backticks("msgs/CHANNELS.md") if name in types}
+
+
+def test_notation_names_what_is_in_the_code() -> None:
+    words = {
+        word
+        for name in in_backticks("core/NOTATION.md")
+        if "/" not in name and "Departs" not in name
+        for word in re.findall(r"[A-Za-z_]\w*", name)
+    }
+    assert len(words) > 50
+    assert {word for word in words if not re.search(rf"\b{word}\b", CODE)} == set()
