@@ -9,27 +9,21 @@
 #include "core/search/ranking.hpp"
 
 namespace rtg {
-namespace {
-
-void count(std::span<const ReverseResult> answers, SearchStats& stats) {
-  for (const ReverseResult& r : answers) {
-    ++stats.candidates;
-    ++stats.statuses[static_cast<std::size_t>(r.status)];
-    if (r.status == SolveStatus::kConverged) stats.iterations.push_back(r.iterations);
-    stats.reverse_cpu_s += r.cpu_s;
-  }
-}
-
-}  // namespace
-
 BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, Poses target,
                        std::uint64_t seed)
     : task_(task), config_(config), metric_(task.scene), target_(std::move(target)), rng_(seed) {}
 
-int BeamSearch::plant(const std::function<Poses(const Poses&)>& settle) {
-  for (Poses& goal : goal_roots(task_, config_, target_, rng_)) {
-    Poses rest = float_rounded(settle(goal));
-    if (!legal_state(task_, rest) || !succeeded(task_, rest)) continue;
+int BeamSearch::plant(const ReplayBatch& replay, SearchStats& stats) {
+  std::vector<ReplayJob> goals;
+  for (Poses& goal : goal_roots(task_, config_, target_, rng_))
+    goals.push_back({std::move(goal), kSettle});
+  for (const ReplayResult& settled : replay(goals)) {
+    if (!stats.count(settled)) continue;
+    Poses rest = float_rounded(settled.end);
+    if (!legal_state(task_, rest) || !succeeded(task_, rest)) {
+      ++stats.unsettled_goals;
+      continue;
+    }
     seen_.insert(metric_.cell(rest, {}));
     beam_.push_back(static_cast<int>(nodes_.size()));
     nodes_.push_back({std::move(rest), -1, -1, 0});
@@ -73,14 +67,13 @@ std::vector<BeamSearch::Growth> BeamSearch::grow(const SolveBatch& solve, const 
                                                  SearchStats& stats) {
   const std::vector<ReverseJob> asked = jobs();
   const std::vector<ReverseResult> answers = solve(asked);
-  count(answers, stats);
-  std::vector<Candidate> found = proposals(task_, asked, answers);
+  for (const ReverseResult& answer : answers) stats.count(answer);
+  std::vector<Candidate> found = proposals(task_, asked, answers, stats);
   for (Candidate& c : found)
     c.parent = beam_[static_cast<std::size_t>(c.parent / task_.push.headings)];
   const Score score = layer_score();
   std::vector<Growth> out;
-  for (Candidate& c :
-       replay_candidates(worth_replaying(std::move(found), score), replay, stats.replay_cpu_s)) {
+  for (Candidate& c : replay_candidates(worth_replaying(std::move(found), score), replay, stats)) {
     stats.gaps.push_back(static_cast<float>(c.gap));
     const int depth = nodes_[static_cast<std::size_t>(c.parent)].depth + 1;
     out.push_back({std::move(c), depth});

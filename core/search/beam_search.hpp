@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <unordered_set>
 #include <vector>
@@ -10,18 +8,10 @@
 #include "core/search/forward_replay.hpp"
 #include "core/search/ranking.hpp"
 #include "core/search/search_config.hpp"
+#include "core/search/search_stats.hpp"
 #include "core/search/state_metric.hpp"
 
 namespace rtg {
-
-/// Counts of a run's reverse solves and replays.
-struct SearchStats {
-  long candidates = 0;
-  std::array<long, kSolveStatusCount> statuses{};  // by SolveStatus
-  std::vector<int> iterations;                     // of converged solves
-  std::vector<float> gaps;                         // of replayed candidates [m]
-  double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
-};
 
 /// A state from which `depth` known actions lead to success.
 struct Node {
@@ -38,9 +28,9 @@ class BeamSearch {
   BeamSearch(const Task& task, const SearchConfig& config, Poses target, std::uint64_t seed);
 
   /// Starts from up to `config.breadth` distinct goal states of the task's sampler, brought to rest
-  /// by `settle`: the ones nearest to the target among `config.root_draws` times as many, objects
+  /// by `replay`: the ones nearest to the target among `config.root_draws` times as many, objects
   /// that look the same exchanged so that each begins near its place. Returns the number found.
-  int plant(const std::function<Poses(const Poses&)>& settle);
+  int plant(const ReplayBatch& replay, SearchStats& stats);
 
   /// A replayed candidate with the node that it came from.
   struct Growth {

@@ -24,7 +24,9 @@ void Coverage::add(const Transition& t) {
   const int moved = objects_moved(t.poses, t.next);
   contacts_ += moved >= 1;
   multi_body_ += moved >= 2;
-  start_region_ += in_start_region(task_, metric_, t.poses);
+  const bool in_region = in_start_region(task_, metric_, t.poses);
+  start_region_ += in_region;
+  start_region_trees_ += in_region && t.source != Source::kRollOut;
   Link link;
   for (std::size_t g = 0; g < kGrids; ++g) {
     const StateMetric::Cells cells{kLink, kLink, static_cast<double>(g) / kGrids};

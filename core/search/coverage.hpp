@@ -30,6 +30,7 @@ class Coverage {
   double contact_share() const;     // moved an object by more than kMoved
   double multi_body_share() const;  // moved two or more
   long start_region() const { return start_region_; }
+  long start_region_trees() const { return start_region_trees_; }  // roll-outs left out
 
   /// Share of the transitions from which a success is reachable in the stored graph: transition b
   /// follows a if the start of b lies in the cell of the end of a, in one of kGrids grids shifted
@@ -48,7 +49,7 @@ class Coverage {
   const Task& task_;
   StateMetric metric_;
   std::vector<Link> links_;
-  long contacts_ = 0, multi_body_ = 0, start_region_ = 0;
+  long contacts_ = 0, multi_body_ = 0, start_region_ = 0, start_region_trees_ = 0;
 };
 
 }  // namespace rtg

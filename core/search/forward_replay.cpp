@@ -32,12 +32,15 @@ bool legal_state(const Task& task, const Poses& poses) {
 }
 
 std::vector<Candidate> proposals(const Task& task, std::span<const ReverseJob> jobs,
-                                 std::span<const ReverseResult> answers) {
+                                 std::span<const ReverseResult> answers, SearchStats& stats) {
   std::vector<Candidate> out;
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     if (answers[k].status != SolveStatus::kConverged) continue;
     Poses start = float_rounded(answers[k].start);
-    if (!legal_state(task, start)) continue;
+    if (!legal_state(task, start)) {
+      ++stats.illegal_starts;
+      continue;
+    }
     const int moved = objects_moved(start, jobs[k].end);
     out.push_back({static_cast<int>(k), jobs[k].action, std::move(start), jobs[k].end, moved});
   }
@@ -45,14 +48,13 @@ std::vector<Candidate> proposals(const Task& task, std::span<const ReverseJob> j
 }
 
 std::vector<Candidate> replay_candidates(std::vector<Candidate> candidates,
-                                         const ReplayBatch& replay, double& cpu_s) {
+                                         const ReplayBatch& replay, SearchStats& stats) {
   std::vector<ReplayJob> pushes;
   for (const Candidate& c : candidates) pushes.push_back({c.start, c.action});
   const std::vector<ReplayResult> results = replay(pushes);
   std::vector<Candidate> out;
   for (std::size_t k = 0; k < results.size(); ++k) {
-    cpu_s += results[k].cpu_s;
-    if (!results[k].ok) continue;
+    if (!stats.count(results[k])) continue;
     Candidate& c = candidates[k];
     c.gap = replay_gap(c.end, results[k].end);
     for (std::size_t body = 0; body < c.end.size(); ++body)
@@ -65,7 +67,7 @@ std::vector<Candidate> replay_candidates(std::vector<Candidate> candidates,
 }
 
 std::vector<std::vector<Transition>> replay_chains(const Task& task, std::span<const Chain> chains,
-                                                   const ReplayBatch& replay, double& cpu_s) {
+                                                   const ReplayBatch& replay, SearchStats& stats) {
   std::vector<std::vector<Transition>> out(chains.size());
   std::vector<std::size_t> alive;
   for (std::size_t c = 0; c < chains.size(); ++c)
@@ -78,8 +80,7 @@ std::vector<std::vector<Transition>> replay_chains(const Task& task, std::span<c
     const std::vector<ReplayResult> results = replay(pushes);
     std::vector<std::size_t> still;
     for (std::size_t k = 0; k < alive.size(); ++k) {
-      cpu_s += results[k].cpu_s;
-      if (!results[k].ok) continue;
+      if (!stats.count(results[k])) continue;
       const std::size_t c = alive[k];
       const bool success = succeeded(task, results[k].end);
       out[c].push_back(

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/search/batches.hpp"
+#include "core/search/search_stats.hpp"
 #include "core/search/transition.hpp"
 #include "core/tasks/task.hpp"
 
@@ -36,15 +37,15 @@ int objects_moved(const Poses& a, const Poses& b);
 /// Whether a state can be the start of a transition: finite, robot in the arena, no overlap.
 bool legal_state(const Task& task, const Poses& poses);
 
-/// The converged answers whose start, rounded to float, is a legal state. `end` is still the state
-/// that the job asked for. `jobs` and `answers` have equal length.
+/// The converged answers whose start, rounded to float, is a legal state; the others are counted.
+/// `end` is still the state that the job asked for. `jobs` and `answers` have equal length.
 std::vector<Candidate> proposals(const Task& task, std::span<const ReverseJob> jobs,
-                                 std::span<const ReverseResult> answers);
+                                 std::span<const ReverseResult> answers, SearchStats& stats);
 
 /// Replaces `end` by what the push truly leads to and fills in moved, gap and miss; those whose
-/// push the simulator rejects are left out. Adds the simulator's CPU time to `cpu_s`.
+/// push the simulator rejects are left out, and counted.
 std::vector<Candidate> replay_candidates(std::vector<Candidate> candidates,
-                                         const ReplayBatch& replay, double& cpu_s);
+                                         const ReplayBatch& replay, SearchStats& stats);
 
 /// A reverse trajectory read forward: actions from its far end towards the goal.
 struct Chain {
@@ -55,6 +56,6 @@ struct Chain {
 /// Replays whole chains, each transition starting where the one before ended, until the chain ends,
 /// the goal holds or the simulator rejects a push. One list of transitions per chain.
 std::vector<std::vector<Transition>> replay_chains(const Task& task, std::span<const Chain> chains,
-                                                   const ReplayBatch& replay, double& cpu_s);
+                                                   const ReplayBatch& replay, SearchStats& stats);
 
 }  // namespace rtg

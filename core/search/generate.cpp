@@ -44,9 +44,9 @@ class Generation {
         static_cast<double>(config_.transitions) * (1.0 - config_.rollout_share) + 0.5);
     for (int barren = 0; stored() < trees && barren < kMaxBarren && !cancelled();)
       barren = grow_tree(trees) ? 0 : barren + 1;
+    if (!cancelled()) judge_trees();
     for (int barren = 0; stored() < config_.transitions && barren < kMaxBarren && !cancelled();)
       barren = roll_out() ? 0 : barren + 1;
-    if (!cancelled()) evaluate();
     return finished_report();
   }
 
@@ -54,13 +54,14 @@ class Generation {
   long stored() const { return coverage_.transitions(); }
   bool cancelled() const { return seams_.cancelled && seams_.cancelled(); }
 
-  /// Stores what `limit` transitions in all leave room for.
-  void store(std::span<const Transition> transitions, long limit) {
+  /// Stores the first of them, as far as `limit` transitions in all leave room; returns these.
+  std::span<const Transition> store(std::span<const Transition> transitions, long limit) {
     const auto room = static_cast<std::size_t>(std::max(0L, limit - stored()));
     const auto kept = transitions.first(std::min(room, transitions.size()));
-    if (kept.empty()) return;
+    if (kept.empty()) return kept;
     for (const Transition& t : kept) coverage_.add(t);
     seams_.store(kept);
+    return kept;
   }
 
   /// Whether it stored anything.
@@ -70,7 +71,7 @@ class Generation {
     Rng targets(seed_, kTargets << 32 | key);
     BeamSearch tree(task_, config_, jittered_starts(task_, 1, config_.target_jitter, targets)[0],
                     Rng(seed_, kTrees << 32 | key).word());
-    tree.plant(seams_.settle);
+    tree.plant(seams_.replay, stats_);
     const long layers =
         limit - static_cast<long>(config_.chain_share * static_cast<double>(limit - before));
     for (int layer = 1; layer <= config_.depth && stored() < layers && !cancelled(); ++layer) {
@@ -89,14 +90,19 @@ class Generation {
   /// A state in which the goal holds ends an episode, so nothing starts there.
   void store_growths(std::span<const BeamSearch::Growth> growths, long limit) {
     std::vector<Transition> batch;
-    for (const auto& [c, depth] : growths) {
-      if (depth == 0) continue;
-      const bool success = succeeded(task_, c.end);
-      batch.push_back({c.start, c.action, c.end, success, Source::kStepReplay});
-      if (success || c.miss <= config_.gap_tolerance)
-        policy_.add(c.start, c.action, success ? 1.0 : depth);
+    std::vector<const BeamSearch::Growth*> behind;
+    for (const BeamSearch::Growth& g : growths) {
+      if (g.depth == 0) continue;
+      const Candidate& c = g.candidate;
+      batch.push_back({c.start, c.action, c.end, succeeded(task_, c.end), Source::kStepReplay});
+      behind.push_back(&g);
     }
-    store(batch, limit);
+    const auto kept = store(batch, limit);
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      const Transition& t = kept[k];
+      if (t.success || behind[k]->candidate.miss <= config_.gap_tolerance)
+        policy_.add(t.poses, t.action, t.success ? 1.0 : behind[k]->depth);
+    }
   }
 
   int start_nodes(const BeamSearch& tree) {
@@ -130,10 +136,9 @@ class Generation {
       chains.push_back(tree.chain(node));
       planned += static_cast<long>(chains.back().actions.size());
     }
-    for (const auto& steps : replay_chains(task_, chains, seams_.replay, stats_.replay_cpu_s)) {
-      learn(steps);
-      store(steps, std::min(limit, stored() + wanted));
-    }
+    const long room = std::min(limit, stored() + wanted);
+    for (const auto& steps : replay_chains(task_, chains, seams_.replay, stats_))
+      learn(store(steps, room));
   }
 
   /// Adds the steps of an episode that ended in success to the policy.
@@ -149,22 +154,19 @@ class Generation {
     Rng rng(seed_, kRollOuts << 32 | key);
     const auto starts = jittered_starts(task_, kWave, config_.rollout_jitter, rng);
     const EpisodeRules rules{config_.rollout_noise, Rng(seed_, kNoise << 32 | key).word()};
-    for (const Episode& e :
-         run_episodes(task_, policy_, starts, rules, seams_.replay, stats_.replay_cpu_s)) {
-      store(e.steps, config_.transitions);
-      learn(e.steps);
-    }
+    for (const Episode& e : run_episodes(task_, policy_, starts, rules, seams_.replay, stats_))
+      learn(store(e.steps, config_.transitions));
     report_progress("roll-outs", ++wave_count_, 0);
     return stored() > before;
   }
 
-  void evaluate() {
+  /// How the policy of the trees does before it learns from roll-outs of its own.
+  void judge_trees() {
     Rng rng(seed_, kEvaluation << 32);
     std::vector<Poses> starts;
     for (int k = 0; k < config_.evaluation_starts; ++k)
       starts.push_back(jittered_start(task_, task_.start_jitter, rng).value_or(task_.start));
-    const PolicyScore score =
-        evaluate_policy(task_, policy_, starts, seams_.replay, stats_.replay_cpu_s);
+    const PolicyScore score = evaluate_policy(task_, policy_, starts, seams_.replay, stats_);
     report_.tree_policy_success = score.success;
     report_.tree_policy_length_mean = score.length_mean;
   }
@@ -180,9 +182,13 @@ class Generation {
     report_.contact_share = coverage_.contact_share();
     report_.multi_body_share = coverage_.multi_body_share();
     report_.start_region_transitions = coverage_.start_region();
+    report_.start_region_tree_transitions = coverage_.start_region_trees();
     report_.reachable_share = coverage_.reachable_share();
     report_.candidates = stats_.candidates;
     report_.statuses = stats_.statuses;
+    report_.illegal_starts = stats_.illegal_starts;
+    report_.unsettled_goals = stats_.unsettled_goals;
+    report_.rejected_pushes = stats_.rejected_pushes;
     const std::vector<double> iterations(stats_.iterations.begin(), stats_.iterations.end());
     report_.iterations_median = quantile(iterations, 0.5);
     report_.iterations_p90 = quantile(iterations, 0.9);

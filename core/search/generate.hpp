@@ -15,7 +15,6 @@ namespace rtg {
 struct GenerationSeams {
   SolveBatch solve;
   ReplayBatch replay;
-  std::function<Poses(const Poses&)> settle;           // brings a sampled goal state to rest
   TransitionSink store;                                // receives every transition, in order
   std::function<void(const Progress&)> progress = {};  // called after each layer; may be empty
   std::function<bool()> cancelled = {};                // polled between layers; may be empty

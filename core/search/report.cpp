@@ -9,6 +9,7 @@ std::string to_json(const GenerationReport& r) {
                                 {"contact_share", r.contact_share},
                                 {"multi_body_share", r.multi_body_share},
                                 {"start_region_transitions", r.start_region_transitions},
+                                {"start_region_tree_transitions", r.start_region_tree_transitions},
                                 {"reachable_share", r.reachable_share},
                                 {"tree_policy_success", r.tree_policy_success},
                                 {"tree_policy_length_mean", r.tree_policy_length_mean},
@@ -16,6 +17,9 @@ std::string to_json(const GenerationReport& r) {
                                 {"candidates", r.candidates}};
   for (std::size_t k = 0; k < r.statuses.size(); ++k)
     out[std::string(name(static_cast<SolveStatus>(k)))] = r.statuses[k];
+  out["illegal_starts"] = r.illegal_starts;
+  out["unsettled_goals"] = r.unsettled_goals;
+  out["rejected_pushes"] = r.rejected_pushes;
   out["iterations_median"] = r.iterations_median;
   out["iterations_p90"] = r.iterations_p90;
   out["replay_gap_median"] = r.replay_gap_median;

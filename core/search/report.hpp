@@ -32,17 +32,19 @@ struct GenerationReport {
   long transitions = 0;
   double contact_share =
       0.0;  // share of stored transitions that moved an object by more than 0.05 m
-  double multi_body_share = 0.0;  // ... two objects or more
-  long start_region_transitions = 0;
+  double multi_body_share = 0.0;           // ... two objects or more
+  long start_region_transitions = 0;       // that begin in the start region
+  long start_region_tree_transitions = 0;  // of them from trees: roll-outs begin there anyway
   double reachable_share =
       0.0;  // share of transitions from which a success is reachable in the stored graph
-  double tree_policy_success = 0.0;
+  double tree_policy_success = 0.0;  // of the trees alone, before any roll-out
   double tree_policy_length_mean = 0.0;
   int start_region_depth = -1;  // least depth of a node in the start region; -1: never reached
   long candidates = 0;          // reverse jobs asked for, pruned ones included
-  std::array<long, kSolveStatusCount> statuses{};        // by SolveStatus
-  double iterations_median = 0.0, iterations_p90 = 0.0;  // over converged ones
-  double replay_gap_median = 0.0, replay_gap_p90 = 0.0;  // [m]
+  std::array<long, kSolveStatusCount> statuses{};                     // by SolveStatus
+  long illegal_starts = 0, unsettled_goals = 0, rejected_pushes = 0;  // as in SearchStats
+  double iterations_median = 0.0, iterations_p90 = 0.0;               // over converged ones
+  double replay_gap_median = 0.0, replay_gap_p90 = 0.0;               // [m]
   double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
   std::vector<float> replay_gaps;  // one per replayed candidate [m]
   std::vector<ReportNode> nodes;

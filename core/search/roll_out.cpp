@@ -28,7 +28,7 @@ class Lockstep {
 
   bool done() const { return alive_.empty(); }
 
-  void step(const TreePolicy& policy, const ReplayBatch& replay, double& cpu_s) {
+  void step(const TreePolicy& policy, const ReplayBatch& replay, SearchStats& stats) {
     std::vector<TreePolicy::Query> queries;
     for (const std::size_t e : alive_) queries.push_back(states_[e]);
     const std::vector<TreePolicy::Choice> choices = policy.choose(queries);
@@ -38,8 +38,7 @@ class Lockstep {
     const std::vector<ReplayResult> results = replay(pushes);
     std::vector<std::size_t> still;
     for (std::size_t k = 0; k < alive_.size(); ++k) {
-      cpu_s += results[k].cpu_s;
-      if (!results[k].ok) continue;
+      if (!stats.count(results[k])) continue;
       states_[alive_[k]].used.push_back(choices[k].entry);
       if (record(alive_[k], pushes[k], results[k].end)) still.push_back(alive_[k]);
     }
@@ -78,9 +77,9 @@ class Lockstep {
 
 std::vector<Episode> run_episodes(const Task& task, const TreePolicy& policy,
                                   std::span<const Poses> starts, const EpisodeRules& rules,
-                                  const ReplayBatch& replay, double& cpu_s) {
+                                  const ReplayBatch& replay, SearchStats& stats) {
   Lockstep run(task, starts, rules);
-  while (!run.done()) run.step(policy, replay, cpu_s);
+  while (!run.done()) run.step(policy, replay, stats);
   return run.take();
 }
 
@@ -95,9 +94,9 @@ std::vector<Poses> jittered_starts(const Task& task, int count, double amplitude
 
 PolicyScore evaluate_policy(const Task& task, const TreePolicy& policy,
                             std::span<const Poses> starts, const ReplayBatch& replay,
-                            double& cpu_s) {
+                            SearchStats& stats) {
   PolicyScore score;
-  for (const Episode& e : run_episodes(task, policy, starts, {}, replay, cpu_s)) {
+  for (const Episode& e : run_episodes(task, policy, starts, {}, replay, stats)) {
     score.success += e.success / static_cast<double>(starts.size());
     score.length_mean += static_cast<double>(e.steps.size()) / static_cast<double>(starts.size());
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/search/batches.hpp"
+#include "core/search/search_stats.hpp"
 #include "core/search/transition.hpp"
 #include "core/search/tree_policy.hpp"
 
@@ -27,7 +28,7 @@ struct EpisodeRules {
 /// function of its start and number only.
 std::vector<Episode> run_episodes(const Task& task, const TreePolicy& policy,
                                   std::span<const Poses> starts, const EpisodeRules& rules,
-                                  const ReplayBatch& replay, double& cpu_s);
+                                  const ReplayBatch& replay, SearchStats& stats);
 
 /// Start states with object positions moved by up to ± an amplitude drawn from [0, amplitude] for
 /// each state; the nominal start if the task has no legal draw.
@@ -40,6 +41,6 @@ struct PolicyScore {
 };
 PolicyScore evaluate_policy(const Task& task, const TreePolicy& policy,
                             std::span<const Poses> starts, const ReplayBatch& replay,
-                            double& cpu_s);
+                            SearchStats& stats);
 
 }  // namespace rtg

@@ -28,18 +28,10 @@ ReplayOne forward_replay(const Task& task, const PhysicsConfig& physics) {
   };
 }
 
-std::function<Poses(const Poses&)> settle_through(ReplayBatch replay) {
-  return [replay = std::move(replay)](const Poses& poses) {
-    const ReplayJob job{poses, kSettle};
-    return replay({&job, 1})[0].end;
-  };
-}
-
 GenerationSeams in_process_seams(SolveOne solve, ReplayOne replay, int threads) {
   GenerationSeams seams;
   seams.solve = solve_on_threads(std::move(solve), threads);
   seams.replay = replay_on_threads(std::move(replay), threads);
-  seams.settle = settle_through(seams.replay);
   return seams;
 }
 

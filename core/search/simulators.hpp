@@ -23,9 +23,6 @@ SolveOne reverse_solver(const Task& task, const PhysicsConfig& physics,
 /// The true dynamics, Box2D; kSettle is answered, too.
 ReplayOne forward_replay(const Task& task, const PhysicsConfig& physics);
 
-/// Brings a state to rest by a job for `replay`.
-std::function<Poses(const Poses&)> settle_through(ReplayBatch replay);
-
 /// The seams with all simulators on `threads` threads of this process; store, progress and
 /// cancelled are left to the caller.
 GenerationSeams in_process_seams(SolveOne solve, ReplayOne replay, int threads);

@@ -6,8 +6,6 @@
 #include <thread>
 #include <utility>
 
-#include "core/search/simulators.hpp"
-
 namespace rtg {
 namespace {
 
@@ -76,7 +74,6 @@ GenerationSeams CoordinatorNode::seams() {
   GenerationSeams seams;
   seams.solve = [this](std::span<const ReverseJob> jobs) { return reverse_.answers(jobs); };
   seams.replay = [this](std::span<const ReplayJob> jobs) { return replay_.answers(jobs); };
-  seams.settle = settle_through(seams.replay);
   seams.store = [this](std::span<const Transition> rows) { transitions_.store(rows); };
   seams.progress = [this](const Progress& progress) {
     const std::scoped_lock lock(mutex_);

@@ -64,7 +64,7 @@ bool StreamServer::drained(int consumers, Seconds now) const {
     else if (now - consumer.heard <= limits_.silence)
       return false;
   }
-  return sealed_ && complete >= consumers;
+  return sealed_ && live_ == count() && complete >= consumers;
 }
 
 /// Unites `range` with those asked for already, so that a repeated question costs nothing.

@@ -63,8 +63,8 @@ class StreamServer {
   /// Whether due() will have more to send although nothing new comes in.
   bool backlog(Seconds now) const { return !asked_.empty() || live_ < live_limit(now); }
 
-  /// Whether at least `consumers` know that they have the whole sealed stream, and no living one
-  /// does not.
+  /// Whether all of the sealed stream has been sent, at least `consumers` know that they have it,
+  /// and no living one does not.
   bool drained(int consumers, Seconds now) const;
 
  private:

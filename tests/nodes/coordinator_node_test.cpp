@@ -58,6 +58,8 @@ class Graph {
     auto report = coordinator.run(
         [this](const GenerationSeams& seams) { return generate(task, small(), kSeed, seams); });
     if (report) coordinator.drain(0);
+    while (bus.spin(std::chrono::milliseconds(0)) > 0) {
+    }  // what was sent last has yet to be received
     return report;
   }
 

@@ -87,6 +87,7 @@ TEST(StreamServer, AnOldAcknowledgementMovesNothingBack) {
 
 TEST(StreamServer, IsDrainedWhenEveryLivingConsumerKnowsThatItHasAll) {
   StreamServer server = server_with(400);
+  server.due(0.0);
   ack(server, 400, {}, 0.0, 0);
   server.seal();
   EXPECT_FALSE(server.drained(1, 0.0));  // it cannot know yet
@@ -104,10 +105,13 @@ TEST(StreamServer, IsDrainedWhenEveryLivingConsumerKnowsThatItHasAll) {
   EXPECT_FALSE(server.drained(2, 3.1));
 }
 
-TEST(StreamServer, NobodyNeedsToDrainAStreamWithoutConsumers) {
-  StreamServer server = server_with(400);
+TEST(StreamServer, WithoutConsumersItIsDrainedOnceAllHasGoneOut) {
+  StreamServer server = server_with(1000);
   server.seal();
-  EXPECT_TRUE(server.drained(0, 0.0));
+  server.due(0.0);  // 640 rows
+  EXPECT_FALSE(server.drained(0, 0.0));
+  server.due(1.0);
+  EXPECT_TRUE(server.drained(0, 1.0));
 }
 
 TEST(StreamServer, TellsWhetherMoreIsToBeSent) {

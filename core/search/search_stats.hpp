@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/search/batches.hpp"
+
+namespace rtg {
+
+/// Counts of a run's reverse solves and replays; nothing that the search drops goes uncounted.
+struct SearchStats {
+  long candidates = 0;                             // reverse jobs answered
+  std::array<long, kSolveStatusCount> statuses{};  // of them, by SolveStatus
+  std::vector<int> iterations;                     // of converged solves
+  long illegal_starts = 0;   // converged, yet the start overlaps or leaves the arena
+  long unsettled_goals = 0;  // sampled goals that do not come to rest as legal goal states
+  long rejected_pushes = 0;  // replays that the simulator could not finish
+  std::vector<float> gaps;   // of replayed candidates [m]
+  double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
+
+  void count(const ReverseResult& answer) {
+    ++candidates;
+    ++statuses[static_cast<std::size_t>(answer.status)];
+    if (answer.status == SolveStatus::kConverged) iterations.push_back(answer.iterations);
+    reverse_cpu_s += answer.cpu_s;
+  }
+
+  /// Whether the simulator finished the push.
+  bool count(const ReplayResult& answer) {
+    rejected_pushes += !answer.ok;
+    replay_cpu_s += answer.cpu_s;
+    return answer.ok;
+  }
+};
+
+}  // namespace rtg
