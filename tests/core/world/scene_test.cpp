@@ -1,0 +1,45 @@
+#include "core/world/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace rtg {
+namespace {
+
+Body body(const Polygon& shape, double density, double friction = 0.3) {
+  return {"", "", shape, density, friction, false};
+}
+
+TEST(Scene, MassOfABoxIsTheTextbookOne) {
+  const Mass m = mass_of(body(box(1.2, 0.5), 2.5));
+  EXPECT_NEAR(m.mass, 2.5 * 0.6, 1e-15);
+  EXPECT_NEAR(m.moment, 2.5 * 0.6 * (1.2 * 1.2 + 0.5 * 0.5) / 12.0, 1e-15);
+}
+
+TEST(Scene, MassOfARegularPolygonIsTheTextbookOne) {
+  for (const int sides : {3, 5, 6, 8}) {
+    const double radius = 0.8, half = std::numbers::pi / sides;
+    const double area = 0.5 * sides * radius * radius * std::sin(2.0 * half);
+    const Mass m = mass_of(body(regular_polygon(sides, radius), 3.0));
+    EXPECT_NEAR(m.mass, 3.0 * area, 1e-14);
+    const double arm = radius * radius / 6.0 * (1.0 + 2.0 * std::cos(half) * std::cos(half));
+    EXPECT_NEAR(m.moment, 3.0 * area * arm, 1e-14);
+  }
+}
+
+TEST(Scene, MomentIsAboutTheCentroidWhereverTheShapeStands) {
+  Polygon shape = box(1.2, 0.5);
+  for (Vector2d& v : shape.vertices) v += Vector2d(4.0, -3.0);
+  EXPECT_NEAR(mass_of(body(shape, 1.0)).moment, mass_of(body(box(1.2, 0.5), 1.0)).moment, 1e-12);
+}
+
+TEST(Scene, FrictionOfAPairIsTheGeometricMean) {
+  const Polygon shape = box(1, 1);
+  EXPECT_NEAR(pair_friction(body(shape, 1, 0.2), body(shape, 1, 0.8)), 0.4, 1e-15);
+  EXPECT_EQ(pair_friction(body(shape, 1, 0.0), body(shape, 1, 0.8)), 0.0);
+}
+
+}  // namespace
+}  // namespace rtg
