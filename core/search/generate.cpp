@@ -153,8 +153,8 @@ class Generation {
     const auto key = static_cast<std::uint64_t>(wave_count_);
     Rng rng(seed_, kRollOuts << 32 | key);
     const auto starts = jittered_starts(task_, kWave, config_.rollout_jitter, rng);
-    const EpisodeRules rules{config_.rollout_noise, Rng(seed_, kNoise << 32 | key).word()};
-    for (const Episode& e : run_episodes(task_, policy_, starts, rules, seams_.replay, stats_))
+    const EpisodePlan plan{starts, config_.rollout_noise, Rng(seed_, kNoise << 32 | key).word()};
+    for (const Episode& e : run_episodes(task_, policy_, plan, seams_.replay, stats_))
       learn(store(e.steps, config_.transitions));
     report_progress("roll-outs", ++wave_count_, 0);
     return stored() > before;

@@ -7,8 +7,8 @@ namespace {
 
 constexpr int kNoiseReach = 2;  // headings
 
-int noisy(int action, int headings, const EpisodeRules& rules, Rng& rng) {
-  if (rng.uniform(0.0, 1.0) >= rules.noise) return action;
+int noisy(int action, int headings, double noise, Rng& rng) {
+  if (rng.uniform(0.0, 1.0) >= noise) return action;
   const int step = 1 + rng.below(kNoiseReach);
   const int side = rng.below(2) == 0 ? step : headings - step % headings;
   return (action + side) % headings;
@@ -17,12 +17,12 @@ int noisy(int action, int headings, const EpisodeRules& rules, Rng& rng) {
 /// Episodes that have not ended, with all that advances them.
 class Lockstep {
  public:
-  Lockstep(const Task& task, std::span<const Poses> starts, const EpisodeRules& rules)
-      : task_(task), rules_(rules), episodes_(starts.size()) {
-    for (std::size_t k = 0; k < starts.size(); ++k) {
+  Lockstep(const Task& task, const EpisodePlan& plan)
+      : task_(task), noise_share_(plan.noise), episodes_(plan.starts.size()) {
+    for (std::size_t k = 0; k < plan.starts.size(); ++k) {
       alive_.push_back(k);
-      states_.push_back({starts[k], {}});
-      noise_.emplace_back(rules.seed, k);
+      states_.push_back({plan.starts[k], {}});
+      noise_.emplace_back(plan.seed, k);
     }
   }
 
@@ -53,7 +53,8 @@ class Lockstep {
  private:
   int action(const TreePolicy::Choice& choice, Rng& rng) const {
     const int headings = task_.push.headings;
-    return choice.entry < 0 ? rng.below(headings) : noisy(choice.action, headings, rules_, rng);
+    return choice.entry < 0 ? rng.below(headings)
+                            : noisy(choice.action, headings, noise_share_, rng);
   }
 
   /// Whether the episode goes on.
@@ -66,7 +67,7 @@ class Lockstep {
   }
 
   const Task& task_;
-  EpisodeRules rules_;
+  double noise_share_;
   std::vector<Episode> episodes_;
   std::vector<TreePolicy::Query> states_;
   std::vector<Rng> noise_;
@@ -76,9 +77,9 @@ class Lockstep {
 }  // namespace
 
 std::vector<Episode> run_episodes(const Task& task, const TreePolicy& policy,
-                                  std::span<const Poses> starts, const EpisodeRules& rules,
-                                  const ReplayBatch& replay, SearchStats& stats) {
-  Lockstep run(task, starts, rules);
+                                  const EpisodePlan& plan, const ReplayBatch& replay,
+                                  SearchStats& stats) {
+  Lockstep run(task, plan);
   while (!run.done()) run.step(policy, replay, stats);
   return run.take();
 }
@@ -96,7 +97,7 @@ PolicyScore evaluate_policy(const Task& task, const TreePolicy& policy,
                             std::span<const Poses> starts, const ReplayBatch& replay,
                             SearchStats& stats) {
   PolicyScore score;
-  for (const Episode& e : run_episodes(task, policy, starts, {}, replay, stats)) {
+  for (const Episode& e : run_episodes(task, policy, {starts}, replay, stats)) {
     score.success += e.success / static_cast<double>(starts.size());
     score.length_mean += static_cast<double>(e.steps.size()) / static_cast<double>(starts.size());
   }

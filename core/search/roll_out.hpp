@@ -18,7 +18,9 @@ struct Episode {
   bool success = false;
 };
 
-struct EpisodeRules {
+/// Episodes to be played, one from each start.
+struct EpisodePlan {
+  std::span<const Poses> starts;
   double noise = 0.0;      // share of actions replaced by a neighbouring heading, ±1 or ±2
   std::uint64_t seed = 0;  // of the noise; episode k uses a stream of its own
 };
@@ -27,8 +29,8 @@ struct EpisodeRules {
 /// simulator rejects. All episodes advance in lockstep, one batch of replays per step; each is a
 /// function of its start and number only.
 std::vector<Episode> run_episodes(const Task& task, const TreePolicy& policy,
-                                  std::span<const Poses> starts, const EpisodeRules& rules,
-                                  const ReplayBatch& replay, SearchStats& stats);
+                                  const EpisodePlan& plan, const ReplayBatch& replay,
+                                  SearchStats& stats);
 
 /// Start states with object positions moved by up to ± an amplitude drawn from [0, amplitude] for
 /// each state; the nominal start if the task has no legal draw.

@@ -40,17 +40,25 @@ double clearance(const Task& task, const Layout& layout, std::size_t i, const Po
   return least;
 }
 
-/// Slides body `i` from `pose` along `heading` until it is `gap` away from the first placed body;
-/// empty if it meets none within `range`. The separating-axis gap never exceeds the distance, so no
-/// step passes through.
-std::optional<Pose> slide(const Task& task, const Layout& layout, std::size_t i, Pose pose,
-                          const Vector2d& heading, double gap, double range) {
+/// A straight way of a body towards the placed ones.
+struct Approach {
+  Pose from;
+  Vector2d heading;
+  double gap = 0.0;    // left between them [m]
+  double range = 0.0;  // its longest [m]
+};
+
+/// Where body `i` ends its approach, `gap` away from the first placed body; empty if it meets none
+/// within `range`. The separating-axis gap never exceeds the distance, so no step passes through.
+std::optional<Pose> slide(const Task& task, const Layout& layout, std::size_t i,
+                          const Approach& way) {
+  Pose pose = way.from;
   double gone = 0.0;
-  while (gone < range) {
-    const double free = clearance(task, layout, i, pose) - gap;
+  while (gone < way.range) {
+    const double free = clearance(task, layout, i, pose) - way.gap;
     if (free < kSlideError) return free > -kSlideError ? std::optional(pose) : std::nullopt;
-    pose.x += free * heading.x();
-    pose.y += free * heading.y();
+    pose.x += free * way.heading.x();
+    pose.y += free * way.heading.y();
     gone += free;
   }
   return std::nullopt;
@@ -97,8 +105,11 @@ std::optional<Pose> beside(const Task& task, const Layout& layout, std::size_t i
   const double shift = rng.uniform(-0.5, 0.5) * bounding_radius(other);
   const Vector2d from =
       layout.poses[j].position() + reach * unit(side) + shift * unit(side + kTwoPi / 4.0);
-  return slide(task, layout, i, {from.x(), from.y(), theta}, -unit(side),
-               rng.uniform(kClearance, kBesideGap), 2.0 * reach);
+  return slide(task, layout, i,
+               {.from = {from.x(), from.y(), theta},
+                .heading = -unit(side),
+                .gap = rng.uniform(kClearance, kBesideGap),
+                .range = 2.0 * reach});
 }
 
 bool place_object(const Task& task, Layout& layout, std::size_t i, Rng& rng) {
@@ -128,8 +139,11 @@ std::optional<Pose> robot_behind(const Task& task, const Layout& layout, Rng& rn
       bounding_radius(task.scene.bodies[0].shape) + bounding_radius(task.scene.bodies[j].shape);
   const Vector2d from = layout.poses[j].position() - (span + task.push.stride) * d +
                         rng.uniform(-0.8, 0.8) * span * Vector2d(-d.y(), d.x());
-  return slide(task, layout, 0, {from.x(), from.y(), task.start[0].theta}, d,
-               kClearance + rng.uniform(0.0, kBehindGap), 2.0 * (span + task.push.stride));
+  return slide(task, layout, 0,
+               {.from = {from.x(), from.y(), task.start[0].theta},
+                .heading = d,
+                .gap = kClearance + rng.uniform(0.0, kBehindGap),
+                .range = 2.0 * (span + task.push.stride)});
 }
 
 bool place_robot(const Task& task, Layout& layout, Rng& rng) {

@@ -4,10 +4,10 @@ from rtg.channel_monitor import ChannelMonitor, ChannelRow, NodeRow
 from rtg.messages import message_type
 
 
-def status(number=0, state="busy", done=0, cpu_s=0.0, pid=7, counters=()):
+def status(number=0, done=0, cpu_s=0.0, pid=7, counters=()):
     message = message_type("node_status_t")()
     message.header.sender = pid
-    message.node, message.number, message.state = "reverse_worker", number, state
+    message.node, message.number, message.state = "reverse_worker", number, "busy"
     message.done, message.cpu_s = done, cpu_s
     message.n = len(counters)
     message.counter_name = [name for name, _ in counters]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from rtg import _core, paths, plots
-from rtg.draw import FAINT, KINDS, PAPER, ROBOT, arena_window, episode_window, state_image
+from rtg.draw import FAINT, KINDS, PAPER, ROBOT, Canvas, arena_window, episode_window, state_image
 from rtg.episode_pictures import between, film, strip
 
 TASK = _core.Config.from_file(paths.CONFIG / "gathering.yaml").task
@@ -23,7 +23,7 @@ def pixel(picture, x, y, window):
 
 @pytest.mark.parametrize("window", [arena_window(TASK), episode_window(TASK, START)])
 def test_every_body_stands_where_its_pose_says(window):
-    picture = state_image(TASK, START, window=window)
+    picture = state_image(TASK, START, canvas=Canvas(window))
     for body, (x, y, _) in enumerate(TASK.start):
         beside = (x + 0.3, y)  # the centre of an object is marked
         assert pixel(picture, *beside, window) == (ROBOT if body == 0 else KINDS[0])
@@ -93,7 +93,7 @@ def test_curves_with_gaps_and_empty_samples_can_be_drawn(tmp_path):
     plots.learning_curve(tmp_path / "curve.png", "a run", curve)
     plots.replay_gap(tmp_path / "gap.png", "a run", np.zeros(0))
     none = np.zeros((0, 4, 3))
-    plots.coverage(tmp_path / "coverage.png", "a run", TASK, TASK.start, none, np.zeros(0))
+    plots.coverage(tmp_path / "coverage.png", "a run", TASK, none, np.zeros(0))
     for file in tmp_path.iterdir():
         with Image.open(file) as picture:
             assert len(picture.convert("RGB").getcolors(1 << 24)) > 20

@@ -1,16 +1,19 @@
+from typing import Any
+
 import numpy as np
 import pytest
 import torch as th
 from gymnasium import spaces
-from rtg.replay import MixedReplayBuffer, Store
+from rtg.replay import MixedReplayBuffer, ReplayRules, Store
 from samples import random_transitions
 
 SIZE = 20
 SPACE = spaces.Box(-1e4, 1e4, (SIZE,), np.float32)
 
 
-def buffer(capacity: int = 1000, n_envs: int = 1, **kwargs: object) -> MixedReplayBuffer:
-    return MixedReplayBuffer(capacity, SPACE, spaces.Discrete(48), n_envs=n_envs, **kwargs)
+def buffer(capacity: int = 1000, n_envs: int = 1, **rules: Any) -> MixedReplayBuffer:
+    actions = spaces.Discrete(48)
+    return MixedReplayBuffer(capacity, SPACE, actions, n_envs=n_envs, rules=ReplayRules(**rules))
 
 
 def add_online(replay: MixedReplayBuffer, tag: float, **changes: object) -> None:

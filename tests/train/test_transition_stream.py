@@ -39,8 +39,10 @@ class Server:
 class Network:
     """Loses, doubles and delays."""
 
-    def __init__(self, rng, loss, double, delay):
-        self.rng, self.loss, self.double, self.delay = rng, loss, double, delay
+    loss, double, delay = 0.2, 0.1, 0.05  # shares of the messages; at most [s]
+
+    def __init__(self, rng):
+        self.rng = rng
         self.flying, self.sent = [], 0
 
     def send(self, now, to, message):
@@ -56,10 +58,10 @@ class Network:
             yield to, message
 
 
-def consumed(seed, loss=0.2, double=0.1, delay=0.05, total=1500, credit=200, restart=0.002):
+def consumed(seed, total=1500, credit=200, restart=0.002):
     """Rows that one consumer handed out until it said it was complete."""
     rng = random.Random(seed)
-    server, network = Server(total), Network(rng, loss, double, delay)
+    server, network = Server(total), Network(rng)
     cursor, out, now = StreamCursor(credit), [], 0.0
     while not cursor.complete:
         now += 0.01

@@ -15,7 +15,7 @@ from stable_baselines3.common.vec_env import VecEnv
 from torch.nn import functional
 
 from rtg.networks import ValuePolicy
-from rtg.replay import Batch, MixedReplayBuffer
+from rtg.replay import Batch, MixedReplayBuffer, ReplayRules
 from rtg.settings import TrainSettings
 
 Array = npt.NDArray[Any]
@@ -66,10 +66,7 @@ class DoubleDqn(DQN):
             gradient_steps=settings.gradient_steps,
             replay_buffer_class=MixedReplayBuffer,  # type: ignore[arg-type]
             replay_buffer_kwargs={
-                "offline_share": settings.offline_share,
-                "discount": discount,
-                "use_bounds": settings.value_bounds,
-                "seed": seed,
+                "rules": ReplayRules(settings.offline_share, discount, settings.value_bounds, seed)
             },
             policy_kwargs={
                 "network": {

@@ -60,6 +60,10 @@ class TaskLike(Protocol):
     @property
     def goal(self) -> Sequence[GoalLike]: ...
     @property
+    def start(self) -> Floats:
+        """[bodies, 3]."""
+
+    @property
     def arena(self) -> float: ...
 
 
@@ -124,16 +128,16 @@ def episode_window(task: TaskLike, poses: Floats) -> Window:
 class Canvas:
     """A square window on the plane with y upwards."""
 
-    def __init__(self, window: Window, pixels: int) -> None:
-        self._window = window
+    def __init__(self, window: Window, pixels: int = 360) -> None:
+        self.window = window
         self._side = pixels * _SMOOTH
         self._scale = self._side / (2.0 * window.half)  # [pixel/m]
         self._image = Image.new("RGB", (self._side, self._side), PAPER)
 
     def _points(self, xy: Any) -> list[tuple[float, float]]:
         points = np.atleast_2d(np.asarray(xy, dtype=float))
-        x = (points[:, 0] - self._window.x + self._window.half) * self._scale
-        y = (self._window.half + self._window.y - points[:, 1]) * self._scale
+        x = (points[:, 0] - self.window.x + self.window.half) * self._scale
+        y = (self.window.half + self.window.y - points[:, 1]) * self._scale
         return list(zip(x.tolist(), y.tolist(), strict=True))
 
     def polygon(self, xy: Any, fill: Colour, edge: Colour) -> None:
@@ -214,18 +218,16 @@ def state_image(
     task: TaskLike,
     path: Floats,
     *,
-    pixels: int = 360,
-    window: Window | None = None,
+    canvas: Canvas | None = None,
     caption: str = "",
     reached: bool = False,
 ) -> NDArray[np.uint8]:
     """The last state of a path as an RGB picture [pixels, pixels, 3].
 
     path [T, bodies, 3]: the robot's way and the objects' first places are shown, too; `reached`
-    marks a success; the window is the whole arena if not given.
+    marks a success; an empty canvas of the whole arena if none is given.
     """
-    window = window or arena_window(task)
-    canvas = Canvas(window, pixels)
+    canvas = canvas or Canvas(arena_window(task))
     path = np.asarray(path, dtype=float)
     a = task.arena
     draw_goal(canvas, task, reached)
@@ -235,5 +237,5 @@ def state_image(
         canvas.line(path[:, 0, :2], TRAIL, 0.1)
     draw_bodies(canvas, task, path[-1])
     if caption:
-        canvas.text(window.at(-0.96, 0.96), caption, size=0.09 * window.half)
+        canvas.text(canvas.window.at(-0.96, 0.96), caption, size=0.09 * canvas.window.half)
     return canvas.pixels()

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from rtg.draw import FAINT, PAPER, TaskLike, episode_window, state_image
+from rtg.draw import FAINT, PAPER, Canvas, TaskLike, episode_window, state_image
 
 Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]  # [height, width, 3]
@@ -45,8 +45,7 @@ def strip(path: Path, task: TaskLike, poses: Floats, success: bool, columns: int
             state_image(
                 task,
                 poses[earlier : step + 1],
-                pixels=300,
-                window=window,
+                canvas=Canvas(window, 300),
                 caption="start" if step == 0 else f"{step}",
                 reached=success and step == last,
             )
@@ -77,7 +76,7 @@ def film(path: Path, task: TaskLike, poses: Floats, success: bool) -> None:
     def add(state: Floats, step: int, milliseconds: int, reached: bool = False) -> None:
         way = np.concatenate([poses[max(0, step - 3) : step + 1], state[None]])
         way[:-1, 1:] = state[1:]  # the film itself shows where the objects came from
-        picture = state_image(task, way, window=window, caption=f"{step}", reached=reached)
+        picture = state_image(task, way, canvas=Canvas(window), caption=f"{step}", reached=reached)
         frames.append(Image.fromarray(picture))
         durations.append(milliseconds)
 

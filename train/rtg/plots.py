@@ -119,7 +119,7 @@ def replay_gap(path: Path, title: str, gaps: Floats) -> None:
         _save(figure, path)
 
 
-def _scene(axis: Axes, task: TaskLike, start: Floats, body: int) -> None:
+def _scene(axis: Axes, task: TaskLike, body: int) -> None:
     """Goal, arena, the start layout in outline, the body in question filled."""
     colours = kind_colours(task)
     a = task.arena
@@ -134,7 +134,7 @@ def _scene(axis: Axes, task: TaskLike, start: Floats, body: int) -> None:
             edge = normal * term.offset + np.outer([-3 * a, 3 * a], [-normal[1], normal[0]])
             axis.fill(*np.vstack([edge, edge[::-1] - 4 * a * normal]).T, color=colour, alpha=0.15)
     for other, shape in enumerate(task.shapes):
-        xy = outline(shape, start[other])
+        xy = outline(shape, task.start[other])
         closed = np.vstack([xy, xy[:1]])
         colour = _rgb(ROBOT) if other == 0 else _rgb(INK)
         axis.plot(*closed.T, color=colour, lw=1.8 if other == body else 0.7)
@@ -143,12 +143,10 @@ def _scene(axis: Axes, task: TaskLike, start: Floats, body: int) -> None:
     axis.axis("off")
 
 
-def coverage(
-    path: Path, title: str, task: TaskLike, start: Floats, poses: Floats, depth: Floats
-) -> None:
+def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Floats) -> None:
     """Where the search brought each object, coloured by the number of actions to success.
 
-    start [bodies, 3]; poses [N, bodies, 3] and depth [N] are the stored nodes.
+    poses [N, bodies, 3] and depth [N] are the stored nodes.
     """
     objects = [body for body in range(1, len(task.kinds))]
     columns = min(4, len(objects))
@@ -162,7 +160,7 @@ def coverage(
         for axis in axes.flat[len(objects) :]:
             axis.set_visible(False)
         for axis, body in zip(axes.flat, objects, strict=False):
-            _scene(axis, task, start, body)
+            _scene(axis, task, body)
             dots = axis.scatter(
                 poses[order, body, 0],
                 poses[order, body, 1],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -82,6 +83,16 @@ class Store:
             setattr(self, name, np.asarray(state[name]).copy())
 
 
+@dataclass(frozen=True)
+class ReplayRules:
+    """What a batch is made of."""
+
+    offline_share: float = 0.5  # of a batch, once as many online ones exist; negative: no shares
+    discount: float = 0.9  # of the value bounds
+    use_bounds: bool = True
+    seed: int = 0
+
+
 class MixedReplayBuffer(BaseBuffer):
     """What SB3's DQN samples from.
 
@@ -94,25 +105,23 @@ class MixedReplayBuffer(BaseBuffer):
         buffer_size: int,
         observation_space: spaces.Space[Any],
         action_space: spaces.Space[Any],
-        device: th.device | str = "cpu",
-        n_envs: int = 1,
-        optimize_memory_usage: bool = False,
-        *,
-        offline_share: float = 0.5,
-        discount: float = 0.9,
-        use_bounds: bool = True,
-        seed: int = 0,
+        rules: ReplayRules | None = None,
+        **of_sb3: Any,
     ) -> None:
-        del optimize_memory_usage  # s and s' are both kept: offline transitions are not consecutive
-        super().__init__(buffer_size, observation_space, action_space, device, n_envs=n_envs)
+        """`of_sb3`: `device`, `n_envs` and `optimize_memory_usage`, which SB3 passes by name."""
+        # s and s' are both kept: offline transitions are not consecutive.
+        of_sb3.pop("optimize_memory_usage", None)
+        arguments = {"device": "cpu", **of_sb3}
+        super().__init__(buffer_size, observation_space, action_space, **arguments)
+        rules = rules or ReplayRules()
         size = self.obs_shape[0]
         self.offline = Store(buffer_size, size)
         self.online = Store(buffer_size, size)
-        self.offline_share = offline_share
-        self.discount = discount
-        self.use_bounds = use_bounds
-        self.rng = np.random.default_rng(seed)
-        self._episodes: list[list[int]] = [[] for _ in range(n_envs)]  # rows of the running ones
+        self.offline_share = rules.offline_share
+        self.discount = rules.discount
+        self.use_bounds = rules.use_bounds
+        self.rng = np.random.default_rng(rules.seed)
+        self._episodes: list[list[int]] = [[] for _ in range(self.n_envs)]  # rows, of the running
 
     def size(self) -> int:
         return self.offline.count + self.online.count

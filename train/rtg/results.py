@@ -32,7 +32,7 @@ def _draw_generation(plan: RunPlan, task: _core.Task) -> None:
     poses = np.array([node["poses"] for node in nodes]).reshape(-1, task.bodies, 3)
     depth = np.array([node["depth"] for node in nodes], float)
     picture = plan.folder / "coverage.png"
-    plots.coverage(picture, plan.title, task, task.start, poses, depth)
+    plots.coverage(picture, plan.title, task, poses, depth)
 
 
 def _episode(plan: RunPlan, task: _core.Task) -> Floats | None:
