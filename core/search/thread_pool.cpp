@@ -53,8 +53,11 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
   std::atomic<bool> stop{false};
   FirstError error;
   const auto run = [&] {
-    // Indices are handed out in order, so the least failing index has always been begun.
-    for (std::size_t k = next++; k < count && !stop; k = next++) {
+    // Indices are handed out in order and none is dropped once handed out, so the least failing one
+    // has been begun.
+    while (!stop) {
+      const std::size_t k = next++;
+      if (k >= count) return;
       try {
         work(k);
       } catch (...) {

@@ -90,5 +90,5 @@ def sources(*suffixes: str) -> Iterator[Path]:
     """Our own sources with one of the suffixes."""
     for folder in ("core", "nodes", "msgs", "train", "tests"):
         for path in sorted((ROOT / folder).rglob("*")):
-            if path.suffix in suffixes and "build" not in path.parts:
+            if path.suffix in suffixes and "build" not in path.relative_to(ROOT).parts:
                 yield path

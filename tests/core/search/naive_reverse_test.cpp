@@ -1,0 +1,153 @@
+#include "core/search/naive_reverse.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/rng.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr int kRight = 0;  // of 4 actions; the robot comes from the left
+
+/// A square robot of 1 m and objects of the given shapes; pushes of 2 m in an arena of ±8 m.
+struct NaiveReverseTest : ::testing::Test {
+  Scene scene{{{"robot", "robot", box(1.0, 1.0), 1.0, 0.5, false}}};
+  PushConfig push{4, 2.0, 8.0};
+  Poses end{{1.0, 0.5, 0.0}};
+
+  void add(const Polygon& shape, const Pose& pose, bool fixed = false) {
+    scene.bodies.push_back({"", "", shape, 1.0, 0.5, fixed});
+    end.push_back(pose);
+  }
+
+  ReverseResult solve(int action = kRight) const {
+    return NaiveReverse(scene, push).solve({end, action});
+  }
+
+  void expect_pulled(std::size_t body) const {
+    const ReverseResult result = solve();
+    ASSERT_EQ(result.status, SolveStatus::kConverged);
+    for (std::size_t k = 0; k < end.size(); ++k) {
+      const double pull = end[k].x - result.start[k].x;
+      EXPECT_EQ(result.start[k].y, end[k].y);
+      EXPECT_EQ(result.start[k].theta, end[k].theta);
+      if (k == 0) {
+        EXPECT_NEAR(pull, 2.0, 1e-15);
+      } else if (k == body) {
+        EXPECT_GE(pull, 0.4);  // a fifth of the stride
+        EXPECT_LE(pull, 2.0);
+      } else {
+        EXPECT_EQ(pull, 0.0);
+      }
+    }
+  }
+};
+
+TEST_F(NaiveReverseTest, FreeRobotStepsBackOneStride) {
+  add(box(1, 1), {5.0, 5.0, 0.3});
+  const std::vector<Vector2d> back{{-2, 0}, {0, -2}, {2, 0}, {0, 2}};
+  for (int action = 0; action < 4; ++action) {
+    const ReverseResult result = solve(action);
+    EXPECT_EQ(result.status, SolveStatus::kConverged);
+    EXPECT_EQ(result.iterations, 0);
+    const Vector2d moved = result.start[0].position() - end[0].position();
+    EXPECT_LT((moved - back[static_cast<std::size_t>(action)]).norm(), 1e-14);
+    EXPECT_EQ(result.start[0].theta, end[0].theta);
+    EXPECT_EQ(result.start[1], end[1]);
+  }
+}
+
+TEST_F(NaiveReverseTest, PullsTheObjectInFrontWithItUnturned) {
+  add(box(1, 1), {2.1, 0.6, 0.0});
+  expect_pulled(1);
+}
+
+TEST_F(NaiveReverseTest, PullsNothingThatIsOutOfReach) {
+  add(box(1, 1), {2.21, 0.5, 0.0});  // 0.21 m ahead
+  expect_pulled(0);
+}
+
+TEST_F(NaiveReverseTest, PullsNothingThatTouchesItFromTheSide) {
+  add(box(1, 1), {1.0, 1.6, 0.0});
+  expect_pulled(0);
+}
+
+TEST_F(NaiveReverseTest, PullsTheNearestOfTwo) {
+  add(box(0.4, 0.4), {1.85, 0.9, 0.0});  // 0.15 m ahead
+  add(box(0.4, 0.4), {1.75, 0.1, 0.0});  // 0.05 m ahead
+  expect_pulled(2);
+}
+
+TEST_F(NaiveReverseTest, PullsNoFixedBody) {
+  add(box(1, 1), {2.05, 0.5, 0.0}, true);
+  expect_pulled(0);
+}
+
+TEST_F(NaiveReverseTest, ThePullIsAFunctionOfTheJobSpreadOverItsRange) {
+  add(box(1, 1), {2.1, 0.5, 0.0});
+  double least = INFINITY, most = 0.0, mean = 0.0;
+  for (int k = 0; k < 1000; ++k) {
+    end[1].theta = 1e-4 * k;
+    const double pull = end[1].x - solve().start[1].x;
+    ASSERT_EQ(end[1].x - solve().start[1].x, pull);
+    least = std::min(least, pull);
+    most = std::max(most, pull);
+    mean += pull / 1000.0;
+  }
+  // 1000 even draws from [0.4, 2]: standard deviation of the mean 1.6/√12/√1000 = 0.015.
+  EXPECT_NEAR(mean, 1.2, 5 * 0.015);
+  EXPECT_LT(least, 0.42);
+  EXPECT_GT(most, 1.98);
+}
+
+TEST_F(NaiveReverseTest, BodyOnTheWayBackPrunes) {
+  add(box(0.2, 0.2), {-0.7, 0.5, 0.0});
+  EXPECT_EQ(solve().status, SolveStatus::kPruned);
+  EXPECT_EQ(solve(2).status, SolveStatus::kConverged);  // the way to the other side is clear
+  end[1].y = 1.2;                                       // beside the way
+  EXPECT_EQ(solve().status, SolveStatus::kConverged);
+  end[1] = {-1.61, 0.5, 0.0};  // behind where it ends
+  EXPECT_EQ(solve().status, SolveStatus::kConverged);
+}
+
+TEST_F(NaiveReverseTest, FixedBodyOnTheWayBackPrunes) {
+  add(box(0.2, 0.2), {0.0, 0.5, 0.0}, true);
+  EXPECT_EQ(solve().status, SolveStatus::kPruned);
+}
+
+TEST_F(NaiveReverseTest, ThinWallAcrossTheWayBackPrunes) {
+  add(box(0.01, 4.0), {-0.5, 0.5, 0.0}, true);
+  EXPECT_EQ(solve().status, SolveStatus::kPruned);
+}
+
+TEST_F(NaiveReverseTest, PulledObjectThatWouldOverlapAnotherIsInfeasible) {
+  add(box(1.0, 4.0), {2.1, 0.5, 0.0});
+  add(box(2.0, 0.5), {0.25, 2.0, 0.0});  // beside the robot's way, 0.35 m behind the object
+  EXPECT_EQ(solve().status, SolveStatus::kInfeasible);
+}
+
+TEST_F(NaiveReverseTest, RobotThatWouldStartOutsideTheArenaPrunes) {
+  end[0] = {-6.01, 0.0, 0.0};
+  EXPECT_EQ(solve().status, SolveStatus::kPruned);
+  EXPECT_EQ(solve(2).status, SolveStatus::kConverged);
+  end[0].x = -5.99;
+  EXPECT_EQ(solve().status, SolveStatus::kConverged);
+}
+
+TEST_F(NaiveReverseTest, AlwaysAnswersWithAFiniteStartOfAllBodies) {
+  Rng rng(41);
+  add(box(1, 1), {});
+  add(box(1, 2), {});
+  for (int trial = 0; trial < 300; ++trial) {
+    for (Pose& p : end) p = {rng.uniform(-9, 9), rng.uniform(-9, 9), rng.uniform(-9, 9)};
+    const ReverseResult result = solve(rng.below(4));
+    ASSERT_EQ(result.start.size(), 3U);
+    ASSERT_TRUE(is_finite(result.start));
+  }
+}
+
+}  // namespace
+}  // namespace rtg

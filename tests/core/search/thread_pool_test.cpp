@@ -1,0 +1,143 @@
+#include "core/search/thread_pool.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace rtg {
+namespace {
+
+TEST(ParallelFor, CallsEveryIndexOnce) {
+  for (int threads = 1; threads <= 8; ++threads)
+    for (const std::size_t count : {0U, 1U, 3U, 8U, 1000U}) {
+      std::vector<std::atomic<int>> calls(count);
+      parallel_for(count, threads, [&](std::size_t k) { ++calls.at(k); });
+      for (const std::atomic<int>& c : calls) ASSERT_EQ(c, 1);
+    }
+}
+
+TEST(ParallelFor, OneThreadIsTheCaller) {
+  std::vector<std::size_t> order;  // not guarded
+  parallel_for(100, 1, [&](std::size_t k) { order.push_back(k); });
+  ASSERT_EQ(order.size(), 100U);
+  for (std::size_t k = 0; k < order.size(); ++k) EXPECT_EQ(order[k], k);
+}
+
+/// What parallel_for throws if the calls from `first` on throw their index.
+std::string thrown(std::size_t count, int threads, std::size_t first) {
+  try {
+    parallel_for(count, threads, [first](std::size_t k) {
+      if (k >= first) throw std::runtime_error(std::to_string(k));
+    });
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(ParallelFor, RethrowsTheExceptionOfTheLeastIndex) {
+  for (int threads = 1; threads <= 8; ++threads) {
+    EXPECT_EQ(thrown(20, threads, 20), "nothing");
+    for (int run = 0; run < 500; ++run) ASSERT_EQ(thrown(20, threads, 3), "3") << threads;
+  }
+}
+
+TEST(ParallelFor, AllCallsHaveReturnedWhenItThrows) {
+  std::atomic<int> running{0};
+  const auto work = [&](std::size_t k) {
+    ++running;
+    for (std::atomic<int> busy{0}; busy < 1000;) ++busy;
+    --running;
+    if (k == 5) throw std::runtime_error("");
+  };
+  for (int run = 0; run < 50; ++run) {
+    EXPECT_THROW(parallel_for(10000, 4, work), std::runtime_error);
+    ASSERT_EQ(running, 0);
+  }
+}
+
+/// As many jobs as `count`, told apart by their action.
+template <class Job>
+std::vector<Job> numbered(int count) {
+  std::vector<Job> jobs;
+  for (int k = 0; k < count; ++k) jobs.push_back({Poses{{1.0 * k, 0, 0}}, k});
+  return jobs;
+}
+
+TEST(ThreadPool, SolvesInJobOrderForAnyNumberOfThreads) {
+  const std::vector<ReverseJob> jobs = numbered<ReverseJob>(100);
+  for (int threads = 1; threads <= 8; ++threads) {
+    const SolveBatch solve = solve_on_threads(
+        [](const ReverseJob& job) {
+          return ReverseResult{SolveStatus::kInfeasible, 2 * job.action, job.end, -1.0};
+        },
+        threads);
+    const std::vector<ReverseResult> results = solve(jobs);
+    ASSERT_EQ(results.size(), jobs.size());
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+      ASSERT_EQ(results[k].iterations, 2 * jobs[k].action);
+      ASSERT_EQ(results[k].start, jobs[k].end);
+      ASSERT_EQ(results[k].status, SolveStatus::kInfeasible);
+      ASSERT_GE(results[k].cpu_s, 0.0);  // filled in
+    }
+    EXPECT_TRUE(solve({}).empty());
+  }
+}
+
+TEST(ThreadPool, ReplaysInJobOrderForAnyNumberOfThreads) {
+  const std::vector<ReplayJob> jobs = numbered<ReplayJob>(100);
+  for (int threads = 1; threads <= 8; ++threads) {
+    const ReplayBatch replay = replay_on_threads(
+        [](const ReplayJob& job) {
+          return ReplayResult{job.start, job.action % 3 == 0, -1.0};
+        },
+        threads);
+    const std::vector<ReplayResult> results = replay(jobs);
+    ASSERT_EQ(results.size(), jobs.size());
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+      ASSERT_EQ(results[k].end, jobs[k].start);
+      ASSERT_EQ(results[k].ok, jobs[k].action % 3 == 0);
+      ASSERT_GE(results[k].cpu_s, 0.0);
+    }
+    EXPECT_TRUE(replay({}).empty());
+  }
+}
+
+TEST(ThreadPool, PassesExceptionsOnToTheCaller) {
+  const SolveBatch solve = solve_on_threads(
+      [](const ReverseJob& job) -> ReverseResult {
+        if (job.action >= 7) throw std::runtime_error("job " + std::to_string(job.action));
+        return {};
+      },
+      4);
+  try {
+    static_cast<void>(solve(numbered<ReverseJob>(50)));
+    FAIL() << "no exception";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "job 7");
+  }
+  EXPECT_EQ(solve(numbered<ReverseJob>(7)).size(), 7U);  // and goes on working
+}
+
+/// Keeps the calling thread busy until it has used `seconds` of CPU time; false if the clock
+/// stands.
+bool burn(double seconds) {
+  for (long k = 0; k < 100'000'000; ++k)
+    if (thread_cpu_s() >= seconds) return true;
+  return false;
+}
+
+TEST(ThreadPool, CpuTimeIsThatOfTheCallingThread) {
+  const double before = thread_cpu_s();
+  bool burned = false;
+  std::jthread([&burned] { burned = burn(0.05); }).join();
+  EXPECT_TRUE(burned);
+  EXPECT_LT(thread_cpu_s() - before, 0.05);
+}
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,146 @@
+#include "core/search/tree_policy.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/math/rng.hpp"
+#include "tests/support/gathering.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::gathering;
+
+constexpr int kBlock = 512;  // entries that the policy scans at a time
+
+struct Entry {
+  Poses state;
+  int action = 0;
+  double depth = 0.0;
+};
+
+Entry random_entry(Rng& rng) {
+  Entry e{Poses(4), rng.below(48), 1.0 + rng.below(20)};
+  for (Pose& p : e.state)
+    p = {rng.uniform(-3.0, 3.0), rng.uniform(-3.0, 3.0), rng.uniform(-3.0, 3.0)};
+  return e;
+}
+
+struct Policy {
+  Task task = gathering();
+  StateMetric metric{task.scene};
+  TreePolicy policy{task};
+  std::vector<Entry> entries;
+
+  explicit Policy(std::vector<Entry> all) : entries(std::move(all)) {
+    for (const Entry& e : entries) policy.add(e.state, e.action, e.depth);
+  }
+
+  double score(int entry, const Poses& state) const {
+    const Entry& e = entries[static_cast<std::size_t>(entry)];
+    return e.depth + 16.0 * metric.distance(e.state, state);
+  }
+
+  int best(const TreePolicy::Query& query) const {
+    int best = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < policy.size(); ++k) {
+      if (std::ranges::count(query.used, k) > 0 || score(k, query.state) >= least) continue;
+      least = score(k, query.state);
+      best = k;
+    }
+    return best;
+  }
+
+  TreePolicy::Choice choose(const TreePolicy::Query& query) const {
+    return policy.choose(std::vector{query}).front();
+  }
+};
+
+Policy random_policy(int size) {
+  Rng rng(11);
+  std::vector<Entry> entries;
+  for (int k = 0; k < size; ++k) entries.push_back(random_entry(rng));
+  return Policy(std::move(entries));
+}
+
+TEST(TreePolicy, ChoosesAsBruteForceDoesOverSeveralBlocks) {
+  const Policy tree = random_policy(2 * kBlock + 300);
+  Rng rng(12);
+  std::vector<TreePolicy::Query> queries;
+  for (int q = 0; q < 200; ++q) {
+    queries.push_back({random_entry(rng).state, {}});
+    for (int k = 0; k < q; ++k) queries.back().used.push_back(rng.below(tree.policy.size()));
+    // So that the best ones are used, too.
+    for (int k = 0; k < q % 3; ++k) queries.back().used.push_back(tree.best(queries.back()));
+  }
+  const std::vector<TreePolicy::Choice> choices = tree.policy.choose(queries);
+  ASSERT_EQ(choices.size(), queries.size());
+  for (std::size_t q = 0; q < queries.size(); ++q) {
+    const int best = tree.best(queries[q]);
+    ASSERT_EQ(choices[q].entry, best);
+    ASSERT_EQ(choices[q].action, tree.entries[static_cast<std::size_t>(best)].action);
+    // Single precision of a score of up to 200.
+    ASSERT_NEAR(choices[q].score, tree.score(best, queries[q].state), 1e-4);
+  }
+}
+
+TEST(TreePolicy, FindsEveryEntryAtTheEdgesOfBlocks) {
+  Policy tree = random_policy(2 * kBlock);
+  for (const int k : {0, 1, kBlock - 1, kBlock, 2 * kBlock - 1})
+    EXPECT_EQ(tree.choose({tree.entries[static_cast<std::size_t>(k)].state, {}}).entry, k);
+}
+
+TEST(TreePolicy, TiesGoToTheOldestEntry) {
+  Rng rng(13);
+  const Entry here = random_entry(rng);
+  std::vector<Entry> entries;
+  for (int k = 0; k < 3 * kBlock; ++k) {
+    entries.push_back(here);
+    entries.back().action = k % 48;
+    if (k < 40) entries.back().depth = here.depth + 1.0;
+  }
+  const Policy tree(std::move(entries));
+  TreePolicy::Query query{here.state, {}};
+  for (int k = 40; k < 3 * kBlock; ++k) {
+    const TreePolicy::Choice choice = tree.choose(query);
+    ASSERT_EQ(choice.entry, k);
+    ASSERT_EQ(choice.action, k % 48);
+    query.used.push_back(k);
+  }
+  EXPECT_EQ(tree.choose(query).entry, 0);
+}
+
+TEST(TreePolicy, HasNoChoiceWithoutAnEntryLeft) {
+  EXPECT_EQ(Policy({}).choose({gathering().start, {}}).entry, -1);
+  Rng rng(14);
+  const Policy tree({random_entry(rng), random_entry(rng)});
+  EXPECT_EQ(tree.choose({gathering().start, {1, 0}}).entry, -1);
+  EXPECT_NE(tree.choose({gathering().start, {1}}).entry, -1);
+}
+
+TEST(TreePolicy, OneMetreOfTheRobotCountsAsSixteenActions) {
+  Entry here{gathering().start, 1, 4.0}, beside = here;
+  beside.state[0].x += 0.125;  // 2 actions
+  beside.action = 2;
+  beside.depth = 1.9;
+  EXPECT_EQ(Policy({here, beside}).choose({here.state, {}}).action, 2);
+  beside.depth = 2.1;
+  EXPECT_EQ(Policy({here, beside}).choose({here.state, {}}).action, 1);
+}
+
+TEST(TreePolicy, KnowsStatesThatLookTheSame) {
+  Rng rng(15);
+  const Policy tree = random_policy(100);
+  Poses turned = tree.entries[50].state;
+  turned[0].theta += 1.0;
+  turned[2].theta -= 1.5707963267948966;  // a quarter of a square
+  const TreePolicy::Choice choice = tree.choose({turned, {}});
+  EXPECT_EQ(choice.entry, 50);
+  EXPECT_NEAR(choice.score, tree.entries[50].depth, 1e-4);
+}
+
+}  // namespace
+}  // namespace rtg
