@@ -4,8 +4,10 @@
 
 #include <numbers>
 
+#include "core/forward/box2d_simulator.hpp"
 #include "core/math/rng.hpp"
 #include "core/world/separation.hpp"
+#include "tests/support/random_push.hpp"
 
 namespace rtg {
 namespace {
@@ -116,6 +118,16 @@ TEST(Pruning, AgreesWithASampledWayBack) {
       EXPECT_FALSE(pruned(robot, other, action));
       ++misses;
     }
+  }
+}
+
+TEST(Pruning, TheActionThatLedToAStateIsNeverPruned) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const testing::RandomPush drawn = testing::random_push(seed, kPush);
+    const PushOutcome box2d =
+        Box2dSimulator(drawn.scene, kPush, {}).push(drawn.start, drawn.action);
+    ASSERT_TRUE(box2d.ok);
+    EXPECT_FALSE(is_pruned(drawn.scene, kPush, {box2d.end, drawn.action})) << seed;
   }
 }
 

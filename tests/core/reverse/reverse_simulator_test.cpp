@@ -1,0 +1,175 @@
+#include "core/reverse/reverse_simulator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/forward/newton_simulator.hpp"
+#include "tests/support/free_push.hpp"
+#include "tests/support/random_push.hpp"
+
+namespace rtg {
+namespace {
+
+const PhysicsConfig kPhysics;
+const PushConfig kPush;
+
+/// The hexagonal robot and `boxes` boxes.
+Scene robot_and_boxes(int boxes) {
+  Scene scene{{{"robot", "robot", regular_polygon(6, 0.8), 1.0, 0.5, false}}};
+  for (int k = 0; k < boxes; ++k)
+    scene.bodies.push_back({"box", "box", box(1.2, 1.2), 1.0, 0.5, false});
+  return scene;
+}
+
+ReverseResult solve(const Scene& scene, const ReverseJob& job, const ReverseConfig& config = {}) {
+  return ReverseSimulator(scene, kPhysics, kPush, config).solve(job);
+}
+
+/// A box in contact ahead of the robot, after a push to the right, and one out of reach.
+ReverseJob touching_job() { return {{{0, 0, 0}, {1.41, 0.2, 0.05}, {-5, 5, 0.3}}, 0}; }
+
+TEST(ReverseSimulator, AFreeRobotStepsBackOneStrideAndTheOthersStay) {
+  const Poses end{{1, -2, 0.3}, {1, 5, 0.1}, {-5, -5, 0.2}};
+  for (const int action : {0, 7, 30}) {
+    const ReverseResult result = solve(robot_and_boxes(2), {end, action});
+    ASSERT_EQ(result.status, SolveStatus::kConverged);
+    const Vector2d back = end[0].position() - kPush.stride * direction(action, kPush);
+    // The pull on the robot against the push and the price of control shift it a little.
+    EXPECT_LT((result.start[0].position() - back).norm(), 0.01);
+    EXPECT_NEAR(result.start[0].theta, 0.3, 1e-6);
+    EXPECT_EQ(result.start[1], end[1]);
+    EXPECT_EQ(result.start[2], end[2]);
+  }
+}
+
+TEST(ReverseSimulator, WithThePapersPresetAFreeRobotFollowsTheClosedForm) {
+  const Scene scene = robot_and_boxes(1);
+  const StepEnergy energy(scene, kPhysics, kPush);
+  const ReverseConfig config = reverse_preset(ReversePreset::kPaper);
+  const Poses end{{1, -2, 0.3}, {7, 7, 0}};
+  const ReverseResult result = solve(scene, {end, 5}, config);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  const Vector2d d = direction(5, kPush);
+  const ReverseProblem problem{energy, config, stacked(end), d, kPhysics.sub_steps};
+  const double reach =
+      kPhysics.sub_steps * energy.control_bound()[0] / mass_of(scene.bodies[0]).mass;
+  const auto moved = [&](double along) {
+    return reach * std::tanh(testing::closed_form_control(problem, along));
+  };
+  // A stationarity of 1e-4 over the curvature 2ε of the controls' price, times dx/dc.
+  EXPECT_NEAR(result.start[0].x, end[0].x - moved(d.x()), 0.02);
+  EXPECT_NEAR(result.start[0].y, end[0].y - moved(d.y()), 0.02);
+}
+
+/// Random scenes after a push of the model, solved back and pushed again: how far the bodies are
+/// from where they were, mean over the bodies [m], of the solves that converged.
+std::vector<double> model_gaps(int scenes) {
+  std::vector<double> gaps;
+  for (int seed = 0; seed < scenes; ++seed) {
+    const testing::RandomPush drawn = testing::random_push(seed, kPush);
+    const NewtonSimulator model(drawn.scene, kPush, kPhysics);
+    const Poses end = model.push(drawn.start, drawn.action).end;
+    const ReverseResult result = solve(drawn.scene, {end, drawn.action});
+    if (result.status != SolveStatus::kConverged) continue;
+    const Poses reached = model.push(result.start, drawn.action).end;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < end.size(); ++k)
+      sum += (reached[k].position() - end[k].position()).norm();
+    gaps.push_back(sum / static_cast<double>(end.size()));
+  }
+  std::ranges::sort(gaps);
+  return gaps;
+}
+
+// The push is the straight one of the action; the solver's own controls differ from it a little.
+TEST(ReverseSimulator, APushFromTheStartLeadsToTheEnd) {
+  const std::vector<double> gaps = model_gaps(20);
+  ASSERT_GE(gaps.size(), 16U);
+  EXPECT_LT(gaps[gaps.size() / 2], 0.03);
+  EXPECT_LT(gaps[gaps.size() * 8 / 10], 0.1);
+}
+
+TEST(ReverseSimulator, PrunedJobsComeBackUnsolved) {
+  ReverseJob job = touching_job();
+  job.action = 24;  // away from the box, out of it
+  const ReverseResult result = solve(robot_and_boxes(2), job);
+  EXPECT_EQ(result.status, SolveStatus::kPruned);
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_EQ(result.start, job.end);
+}
+
+TEST(ReverseSimulator, BadEndsAreNotFiniteAndTheAnswerIs) {
+  const Scene scene = robot_and_boxes(2);
+  std::vector<ReverseJob> bad(4, touching_job());
+  bad[0].end.pop_back();
+  bad[1].end.clear();
+  bad[2].end[0].theta = std::nan("");
+  bad[3].end[2].x = std::numeric_limits<double>::infinity();
+  for (const ReverseJob& job : bad) {
+    const ReverseResult result = solve(scene, job);
+    EXPECT_EQ(result.status, SolveStatus::kNonFinite);
+    EXPECT_EQ(result.start.size(), 3U);
+    EXPECT_TRUE(is_finite(result.start));
+  }
+}
+
+// Twelve of the 48 headings are a quarter turn; the bounds of the controls hold per axis, so other
+// turns are another problem.
+TEST(ReverseSimulator, TheSceneMayStandElsewhereAndByAQuarterTurn) {
+  const Scene scene = robot_and_boxes(2);
+  const ReverseJob job = touching_job();
+  const ReverseResult here = solve(scene, job);
+  ASSERT_EQ(here.status, SolveStatus::kConverged);
+  const auto moved = [](const Pose& p) {
+    return Pose{2.0 - p.y, -1.0 + p.x, p.theta + std::numbers::pi / 2.0};
+  };
+  ReverseJob there{{}, 12};
+  for (const Pose& p : job.end) there.end.push_back(moved(p));
+  const ReverseResult result = solve(scene, there);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  for (std::size_t k = 0; k < job.end.size(); ++k) {
+    const Pose expected = moved(here.start[k]);
+    EXPECT_LT((result.start[k].position() - expected.position()).norm(), 1e-5);
+    EXPECT_NEAR(result.start[k].theta, expected.theta, 1e-5);
+  }
+}
+
+TEST(ReverseSimulator, FixedBodiesMayStandAnywhereInTheOrder) {
+  Scene last = robot_and_boxes(3), first = last;
+  last.bodies[3].fixed = first.bodies[1].fixed = true;
+  const Pose wall{1.5, -1.12, 0.0};  // beside the box, in the barrier's range
+  const ReverseResult a = solve(last, {{{0, 0, 0}, {1.41, 0.2, 0}, {-5, 5, 0}, wall}, 0});
+  const ReverseResult b = solve(first, {{{0, 0, 0}, wall, {1.41, 0.2, 0}, {-5, 5, 0}}, 0});
+  ASSERT_EQ(a.status, SolveStatus::kConverged);
+  EXPECT_EQ(b.status, a.status);
+  EXPECT_EQ(b.iterations, a.iterations);
+  EXPECT_EQ(b.start, (Poses{a.start[0], a.start[3], a.start[1], a.start[2]}));
+  EXPECT_EQ(a.start[3], wall);
+}
+
+TEST(ReverseSimulator, StopsAtTheIterationLimit) {
+  ReverseConfig config;
+  config.max_iterations = 3;
+  const ReverseResult result = solve(robot_and_boxes(2), touching_job(), config);
+  EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
+  EXPECT_EQ(result.iterations, 3);
+}
+
+TEST(ReverseSimulator, AnswersAnyLayoutWithAFiniteStart) {
+  const Scene scene = robot_and_boxes(2);
+  Rng rng(61);
+  for (int trial = 0; trial < 30; ++trial) {
+    ReverseJob job{Poses(3), rng.below(48)};  // many of them overlap
+    for (Pose& p : job.end) p = {rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-9, 9)};
+    const ReverseResult result = solve(scene, job);
+    ASSERT_EQ(result.start.size(), 3U);
+    ASSERT_TRUE(is_finite(result.start));
+  }
+}
+
+}  // namespace
+}  // namespace rtg

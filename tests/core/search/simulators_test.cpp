@@ -1,0 +1,73 @@
+#include "core/search/simulators.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/forward/box2d_simulator.hpp"
+#include "core/search/naive_reverse.hpp"
+#include "core/search/thread_pool.hpp"
+#include "tests/support/gathering.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::gathering;
+
+/// Gathering after a push to the right: the robot touches a box, which touches the next.
+Poses touching(const Task& task) {
+  const Poses row{{-2, 0, 0}, {-0.5, 0.1, 0.05}, {0.85, 0.2, 0.3}, {2, 4, 0}};
+  return forward_replay(task, {})({row, 0}).end;
+}
+
+/// What one node of the beam asks for: a job per heading.
+std::vector<ReverseJob> layer(const Task& task) {
+  std::vector<ReverseJob> jobs;
+  for (int action = 0; action < task.push.headings; ++action)
+    jobs.push_back({touching(task), action});
+  return jobs;
+}
+
+TEST(Simulators, ALayerOfReverseSolvesHasTheSameBitsOn1To16Threads) {
+  Task task = gathering();
+  task.push.headings = 8;
+  const std::vector<ReverseJob> jobs = layer(task);
+  const SolveOne solve = reverse_solver(task, {}, {}, ReverseMode::kRrbs);
+  const std::vector<ReverseResult> reference = solve_on_threads(solve, 1)(jobs);
+  const auto iterations = std::ranges::max(reference, {}, &ReverseResult::iterations).iterations;
+  ASSERT_GT(iterations, 10);  // solves in contact are among them
+  for (int threads = 2; threads <= 16; ++threads) {
+    const std::vector<ReverseResult> results = solve_on_threads(solve, threads)(jobs);
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+      ASSERT_EQ(results[k].status, reference[k].status);
+      ASSERT_EQ(results[k].iterations, reference[k].iterations);
+      ASSERT_EQ(results[k].start, reference[k].start);
+    }
+  }
+}
+
+TEST(Simulators, ReplayIsBox2dsPushAndItsSettling) {
+  const Task task = gathering();
+  const Box2dSimulator box2d(task.scene, task.push, {});
+  const ReplayOne replay = forward_replay(task, {});
+  Poses close = task.start;
+  close[0] = {-3.0, -0.3, 0.0};  // overlaps a box a little
+  EXPECT_EQ(replay({close, 12}).end, box2d.push(close, 12).end);
+  EXPECT_EQ(replay({close, kSettle}).end, box2d.settle(close).end);
+  EXPECT_NE(replay({close, kSettle}).end, replay({close, 12}).end);
+  EXPECT_TRUE(replay({close, kSettle}).ok);
+  EXPECT_FALSE(replay({{}, kSettle}).ok);
+}
+
+TEST(Simulators, NaiveModeIsTheNaiveReverse) {
+  const Task task = gathering();
+  const SolveOne solve = reverse_solver(task, {}, {}, ReverseMode::kNaive);
+  const NaiveReverse naive(task.scene, task.push);
+  for (const ReverseJob& job : layer(task)) {
+    EXPECT_EQ(solve(job).status, naive.solve(job).status);
+    EXPECT_EQ(solve(job).start, naive.solve(job).start);
+  }
+}
+
+}  // namespace
+}  // namespace rtg
