@@ -42,8 +42,9 @@ struct RollOutTest : ::testing::Test {
     for (int k = 0; k < count; ++k) policy.add(task.start, (10 + k) % task.push.headings, 1.0);
   }
 
-  std::vector<Episode> run(const std::vector<Poses>& starts, const EpisodeRules& rules = {}) {
-    return run_episodes(task, policy, starts, rules, replay, stats);
+  std::vector<Episode> run(const std::vector<Poses>& starts, double noise = 0.0,
+                           std::uint64_t seed = 3) {
+    return run_episodes(task, policy, {starts, noise, seed}, replay, stats);
   }
 };
 
@@ -133,14 +134,14 @@ TEST_F(RollOutTest, NoiseTakesANeighbourByOneOrTwo) {
   task.horizon = 400;
   for (int k = 0; k < 400; ++k) policy.add(task.start, 1, 1.0);  // 2 to the right of 0: wraps
   std::set<int> taken;
-  for (const int action : actions(run({from(-500.0)}, {1.0, 3}).front())) taken.insert(action);
+  for (const int action : actions(run({from(-500.0)}, 1.0).front())) taken.insert(action);
   EXPECT_EQ(taken, (std::set<int>{47, 0, 2, 3}));
 }
 
 TEST_F(RollOutTest, NoiseDisturbsItsShareOfTheActions) {
   task.horizon = 2000;
   for (int k = 0; k < 2000; ++k) policy.add(task.start, 20, 1.0);
-  const std::vector<int> all = actions(run({from(-5000.0)}, {0.1, 3}).front());
+  const std::vector<int> all = actions(run({from(-5000.0)}, 0.1).front());
   // Mean 200, standard deviation √(2000 · 0.1 · 0.9) = 13.4.
   EXPECT_NEAR(2000 - std::ranges::count(all, 20), 200, 5 * 13.4);
 }
@@ -148,14 +149,13 @@ TEST_F(RollOutTest, NoiseDisturbsItsShareOfTheActions) {
 TEST_F(RollOutTest, NoiseIsAFunctionOfSeedAndEpisodeNumberOnly) {
   add_entries(20);
   task.horizon = 20;
-  const EpisodeRules rules{0.5, 3};
-  const auto both = run({from(-50.0), from(-50.0)}, rules);
-  const auto first_ends = run({from(1.9), from(-50.0), from(-50.0)}, rules);
+  const auto both = run({from(-50.0), from(-50.0)}, 0.5);
+  const auto first_ends = run({from(1.9), from(-50.0), from(-50.0)}, 0.5);
   EXPECT_EQ(actions(first_ends[1]), actions(both[1]));
   EXPECT_NE(actions(both[0]), actions(both[1]));
   EXPECT_NE(actions(first_ends[2]), actions(both[1]));
-  EXPECT_NE(actions(run({from(-50.0)}, {0.5, 4})[0]), actions(both[0]));
-  EXPECT_EQ(actions(run({from(-50.0)}, rules)[0]), actions(both[0]));
+  EXPECT_NE(actions(run({from(-50.0)}, 0.5, 4)[0]), actions(both[0]));
+  EXPECT_EQ(actions(run({from(-50.0)}, 0.5)[0]), actions(both[0]));
 }
 
 TEST_F(RollOutTest, OfNoStartsAreNoEpisodes) {
