@@ -1,6 +1,7 @@
 #include "core/search/generate.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <string>
 #include <utility>
 
@@ -217,7 +218,11 @@ class Generation {
 
 GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams) {
-  return Generation(task, config, seed, seams).run();
+  const auto start = std::chrono::steady_clock::now();
+  GenerationReport report = Generation(task, config, seed, seams).run();
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  report.generate_wall_s = wall.count();
+  return report;
 }
 
 }  // namespace rtg

@@ -26,6 +26,7 @@ std::string to_json(const GenerationReport& r) {
   out["replay_gap_p90"] = r.replay_gap_p90;
   out["reverse_cpu_s"] = r.reverse_cpu_s;
   out["replay_cpu_s"] = r.replay_cpu_s;
+  out["generate_wall_s"] = r.generate_wall_s;
   out["replay_gaps"] = r.replay_gaps;
   out["nodes"] = nlohmann::ordered_json::array();
   for (const ReportNode& n : r.nodes) {

@@ -45,7 +45,7 @@ struct GenerationReport {
   long illegal_starts = 0, unsettled_goals = 0, rejected_pushes = 0;  // as in SearchStats
   double iterations_median = 0.0, iterations_p90 = 0.0;               // over converged ones
   double replay_gap_median = 0.0, replay_gap_p90 = 0.0;               // [m]
-  double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
+  double reverse_cpu_s = 0.0, replay_cpu_s = 0.0, generate_wall_s = 0.0;
   std::vector<float> replay_gaps;  // one per replayed candidate [m]
   std::vector<ReportNode> nodes;
 };

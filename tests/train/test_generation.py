@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from rtg import _core, paths
+from rtg import _core, paths, run_folder
 
 FILE = paths.CONFIG / "tests" / "tiny.yaml"
 
@@ -27,6 +27,18 @@ def test_transitions_are_true_and_as_many_as_asked() -> None:
     np.testing.assert_array_equal(config.task.succeeded(after), success)
     assert success.any() and set(source) <= {0, 1, 2}
     assert lines[-1]["transitions"] == lines[-1]["target"] == 2000
+
+
+def test_the_report_of_the_search_itself_has_every_figure_of_the_summary(tmp_path) -> None:
+    """So a run that is stopped between the last transition and its end lacks none of them."""
+    _, _, report = generated()
+    run_folder.write_json(tmp_path / "generation.json", report)
+    config = json.loads(_core.Config.from_file(FILE).json)
+    summary = run_folder.summary(tmp_path, config, "lcm", {"lost_transitions": 0})
+    of_the_learner = {"train_wall_s", "interactions", "online_successes", "success_rate"}
+    of_the_learner |= {"episode_length_mean", "episode_return_mean"}
+    assert {key for key in run_folder.SUMMARY_KEYS if summary[key] is None} == of_the_learner
+    assert summary["generate_wall_s"] > 0
 
 
 def test_the_seed_decides_and_the_number_of_threads_does_not() -> None:

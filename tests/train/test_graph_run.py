@@ -9,7 +9,7 @@ from rtg.progress import display
 from rtg.run_plan import RunPlan
 
 TINY = paths.CONFIG / "tests" / "tiny.yaml"
-REPORT = {"transitions": 0, "replay_gaps": []}
+REPORT = {"transitions": 0, "generate_wall_s": 1.5, "replay_gaps": []}
 PROGRAMS = {
     "rtg_forward_sim_server": "exec sleep infinity",
     "rtg_reverse_worker": "exec sleep infinity",
@@ -35,8 +35,6 @@ def plan(tmp_path, monkeypatch):
 def test_a_coordinator_that_was_never_heard_leaves_a_whole_report(plan):
     with display(io.StringIO()) as shown:
         measured = graph_run.run(plan, shown)
-    report = json.loads(plan.report_file.read_text())
-    assert report["generate_wall_s"] > 0
-    assert {key: report[key] for key in REPORT} == REPORT
+    assert json.loads(plan.report_file.read_text()) == REPORT
     assert plan.transitions_file.is_file()
     assert measured["lost_transitions"] == 0 and measured["defects"] == []

@@ -11,7 +11,7 @@ CONFIG = {"task": {"name": "gathering"}, "run": {"seed": 7, "workers": 2}}
 
 def write_parts(folder):
     report = {"transitions": 100, "contact_share": 0.5, "replay_gaps": [0.1], "nodes": [1]}
-    run_folder.write_report(folder / "generation.json", report, 12.3456)
+    run_folder.write_json(folder / "generation.json", report)
     training = {"interactions": 400, "success_rate": 0.25, "lost_transitions": 3, "epsilon": 0.1}
     run_folder.write_json(folder / "training.json", training)
 
@@ -29,7 +29,6 @@ def test_the_summary_merges_both_halves_and_what_was_measured(tmp_path):
         "workers": 2,
         "transitions": 100,
         "contact_share": 0.5,
-        "generate_wall_s": 12.346,
         "interactions": 400,
         "success_rate": 0.25,
         "lost_transitions": 3,  # the learner knows better than the display
@@ -39,7 +38,7 @@ def test_the_summary_merges_both_halves_and_what_was_measured(tmp_path):
 
 
 def test_the_summary_of_a_run_without_learner_has_nulls_in_its_place(tmp_path):
-    run_folder.write_report(tmp_path / "generation.json", {"transitions": 100}, 1.0)
+    run_folder.write_json(tmp_path / "generation.json", {"transitions": 100})
     summary = run_folder.summary(tmp_path, CONFIG, "in_process", {"lost_transitions": 0})
     assert summary["success_rate"] is None and summary["train_wall_s"] is None
     assert summary["lost_transitions"] == 0

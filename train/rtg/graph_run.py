@@ -57,7 +57,6 @@ class GraphRun:
         self._training = TrainingWatch(plan.folder)
         self._recording = None if plan.train else _Recording(plan, self._bus)
         self._graph = ProcessGraph(plan.folder / "logs")
-        self._start = time.monotonic()
         self._sealed = False
         self._consumed = math.inf  # when the consumer had all
 
@@ -71,8 +70,6 @@ class GraphRun:
                     interrupts.raise_if_requested()
                 self._graph.tend(leaving=True)
                 self._listen(0.0)  # what came after the last look
-                if not self._sealed:  # not heard, the coordinator ended well all the same
-                    self._on_sealed()
                 defects = self._graph.failures()
             finally:
                 self._graph.stop()
@@ -132,9 +129,6 @@ class GraphRun:
         """All transitions are stored: whatever the coordinator says in the end, they count."""
         self._sealed = True
         self._graph.spare("beam_coordinator")
-        report = run_folder.read_json(self._plan.report_file)
-        wall = time.monotonic() - self._start
-        run_folder.write_report(self._plan.report_file, report, wall)
 
 
 def run(plan: RunPlan, display: Display) -> dict[str, Any]:

@@ -6,7 +6,6 @@ import atexit
 import json
 import os
 import threading
-import time
 from dataclasses import replace
 from typing import Any
 
@@ -56,11 +55,10 @@ class Generation:
         """Where it stands."""
         return replace(RunState(), **self._progress, workers=self._workers)
 
-    def report(self) -> dict[str, Any]:
-        """Only after the end."""
+    def report(self) -> str:
+        """What generation.json holds. Only after the end."""
         assert self._report is not None
-        report: dict[str, Any] = json.loads(self._report)
-        return report
+        return self._report
 
     def _generate(self) -> None:
         try:
@@ -82,7 +80,6 @@ def generate(plan: RunPlan, display: Display) -> None:
     """Writes generation.json and transitions.npz."""
     config = _core.Config.from_file(plan.config_file)
     recorder = Recorder(config.task)
-    start = time.monotonic()
     with Interrupts(on_demand=lambda: None) as interrupts:
         generation = Generation(config, recorder)
         while not generation.wait(_POLL):
@@ -91,6 +88,5 @@ def generate(plan: RunPlan, display: Display) -> None:
                 generation.stop()
                 raise StoppedError
     recorder.write(plan.transitions_file)
-    wall = time.monotonic() - start
-    run_folder.write_report(plan.report_file, generation.report(), wall)
+    run_folder.write_text(plan.report_file, generation.report())
     display.show(replace(generation.state(), budget=plan.interactions))

@@ -71,11 +71,6 @@ def read_json(path: Path) -> dict[str, Any]:
     return value
 
 
-def write_report(path: Path, report: dict[str, Any], generate_wall_s: float) -> None:
-    """generation.json: what the C++ side reports, and the wall time [s] measured on this side."""
-    write_text(path, json.dumps({**report, "generate_wall_s": round(generate_wall_s, 3)}))
-
-
 def default_path(task: str) -> Path:
     """runs/TASK-TIME, with a number behind it if that second has one already."""
     base = paths.RUNS / f"{task}-{time.strftime('%Y%m%d-%H%M%S')}"
