@@ -42,7 +42,7 @@ class CoordinatorNode {
   /// until stopped.
   void drain(int consumers);
 
-  /// Units given up since they took down every worker that had them.
+  /// Units given up since they took down or stopped every worker that had them.
   long given_up() const { return reverse_.state().given_up + replay_.state().given_up; }
 
  private:

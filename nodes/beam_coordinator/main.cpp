@@ -32,8 +32,8 @@ int run(const Words& words) {
   if (stop_signal()) return 128 + stop_signal();
   if (node.given_up() == 0) return 0;
   std::fprintf(stderr,
-               "rtg_beam_coordinator: %ld units of work took down every worker and were "
-               "skipped\n",
+               "rtg_beam_coordinator: %ld units of work took down or stopped every worker that had "
+               "them and were skipped\n",
                node.given_up());
   return 1;
 }

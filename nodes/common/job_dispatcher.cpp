@@ -1,5 +1,7 @@
 #include "nodes/common/job_dispatcher.hpp"
 
+#include <algorithm>
+
 namespace rtg {
 
 void JobDispatcher::submit(std::span<const JobId> jobs) {
@@ -16,6 +18,7 @@ void JobDispatcher::on_beat(const Beat& beat, Seconds now) {
   worker.beat = now;
   worker.capacity = beat.capacity;
   worker.held = {beat.held.begin(), beat.held.end()};
+  std::erase_if(worker.stuck, [&](JobId id) { return !worker.held.contains(id); });
 }
 
 JobDispatcher::Verdict JobDispatcher::on_result(JobId id) {
@@ -32,7 +35,7 @@ JobDispatcher::Verdict JobDispatcher::on_result(JobId id) {
 std::vector<JobDispatcher::Send> JobDispatcher::due(Seconds now) {
   std::vector<Send> sends;
   bury_silent_workers(now);
-  take_back_expired_leases(now);
+  give_up_stuck_workers(now);
   resend_unheard(now, sends);
   hand_out(now, sends);
   return sends;
@@ -49,26 +52,28 @@ void JobDispatcher::bury_silent_workers(Seconds now) {
   std::erase_if(workers_, [&](const auto& entry) {
     const Worker& worker = entry.second;
     if (now - worker.beat <= limits_.silence) return false;
-    for (const JobId id : worker.leases) {
-      ++jobs_.at(id).victims;
-      take_back(id);
-    }
+    for (const JobId id : worker.leases) take_back(id, true);
     return true;
   });
 }
 
-void JobDispatcher::take_back_expired_leases(Seconds now) {
-  for (auto& [worker_id, worker] : workers_)
-    std::erase_if(worker.leases, [&](JobId id) {
-      if (now - jobs_.at(id).leased <= limits_.lease) return false;
-      take_back(id);
-      return true;
-    });
+void JobDispatcher::give_up_stuck_workers(Seconds now) {
+  for (auto& [worker_id, worker] : workers_) {
+    const auto has_run_out = [&](JobId id) { return now - jobs_.at(id).leased > limits_.lease; };
+    if (std::ranges::none_of(worker.leases, has_run_out)) continue;
+    for (const JobId id : worker.leases) {
+      // One that it does not hold never reached it: nobody's victim.
+      if (worker.held.contains(id) && has_run_out(id)) worker.stuck.insert(id);
+      take_back(id, worker.held.contains(id));
+    }
+    worker.leases.clear();
+  }
 }
 
-void JobDispatcher::take_back(JobId id) {
+void JobDispatcher::take_back(JobId id, bool victim) {
   Job& job = jobs_.at(id);
   ++reissued_;
+  job.victims += victim;
   if (job.victims >= limits_.poison) {
     job.state = State::kPoison;
     --open_;
@@ -90,8 +95,9 @@ void JobDispatcher::resend_unheard(Seconds now, std::vector<Send>& sends) {
     }
 }
 
-/// Units that a worker can take now. One that may be deadly is alone with it.
+/// Jobs that a worker can take now. One that may be deadly is alone with it.
 int JobDispatcher::room(const Worker& worker, bool suspect) const {
+  if (!worker.stuck.empty()) return 0;
   const int leases = static_cast<int>(worker.leases.size());
   if (suspect) return leases == 0 ? worker.capacity : 0;
   if (leases == 1 && jobs_.at(*worker.leases.begin()).victims > 0) return 0;

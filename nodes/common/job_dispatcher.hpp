@@ -19,17 +19,19 @@ using Seconds = double;
 /// Who works on what, over a network that loses, doubles and reorders, with workers that die: NEW
 /// -> LEASED -> DONE or POISON. Free of I/O: events in, messages to send out, the clock passed in.
 ///
-/// Workers announce capacity and what they hold; a lease they do not hold is sent again, the leases
-/// of a silent worker go to others, each alone so that one deadly unit does not make its neighbours
-/// look deadly. A job that takes long may be given to another too, but that is no death: time alone
-/// makes no job poison. Results count by id, whoever sends them and whatever the attempt.
+/// Workers announce capacity and what they hold; a lease they do not hold is sent again. A worker
+/// is lost when it falls silent, and also when it sits on a job for longer than any job takes,
+/// however alive: it gets nothing more until it lets go of that job. The leases of a lost worker go
+/// to others, each alone so that one deadly job does not make its neighbours look deadly; a job
+/// that cost several workers is poison. Results count by id, whoever sends them and whatever the
+/// attempt.
 class JobDispatcher {
  public:
   struct Limits {
     Seconds silence = 2.0;  // without a beat for so long: dead
     Seconds resend = 0.1;   // a beat so long after sending should list the job
-    Seconds lease = 120.0;  // from start to result; then others may try, however alive the worker
-    int poison = 3;         // silent workers that held one job until it is given up
+    Seconds lease = 300.0;  // from lease to result, some hundred times what a job takes: stuck
+    int poison = 3;         // lost workers that held one job until it is given up
   };
   struct Send {
     WorkerId worker = 0;
@@ -61,7 +63,7 @@ class JobDispatcher {
   long open() const { return open_; }
   int workers() const { return static_cast<int>(workers_.size()); }
   std::vector<JobId> poisoned() const;
-  long reissued() const { return reissued_; }  // leases taken back from dead or stuck workers
+  long reissued() const { return reissued_; }  // leases taken back from lost workers
   long resent() const { return resent_; }      // messages said again
 
  private:
@@ -77,11 +79,12 @@ class JobDispatcher {
     int capacity = 0;
     std::set<JobId> held;    // as of its last beat
     std::set<JobId> leases;  // as we see it
+    std::set<JobId> stuck;   // of what it holds: leases that have run out
   };
 
   void bury_silent_workers(Seconds now);
-  void take_back_expired_leases(Seconds now);
-  void take_back(JobId id);
+  void give_up_stuck_workers(Seconds now);
+  void take_back(JobId id, bool victim);
   void resend_unheard(Seconds now, std::vector<Send>& sends);
   int room(const Worker& worker, bool suspect) const;
   void hand_out(Seconds now, std::vector<Send>& sends);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <condition_variable>
 #include <exception>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <rtg_msgs/worker_beat_t.hpp>
@@ -30,6 +32,7 @@ class WorkerNode {
     std::int64_t config = 0;  // hash of the configuration
     int number = 0;           // of several workers, for people
     int threads = 1;
+    Seconds patience = JobDispatcher::Limits{}.lease;  // with one unit, until the process is stuck
   };
 
   /// `answer` computes a unit's results in job order; it is called from `threads` threads at once.
@@ -53,6 +56,14 @@ class WorkerNode {
     lock.unlock();
     if (beat_.due(now)) send_beat(held);
     if (status_.due(now)) status_.publish(held.empty() ? "idle" : "busy", done);
+  }
+
+  /// Whether a unit has been in work for longer than any unit takes. Nothing but the end of the
+  /// process frees the thread, so that another one can take its place.
+  bool stuck(Seconds now) const {
+    const std::scoped_lock lock(mutex_);
+    return std::ranges::any_of(
+        begun_, [&](const auto& unit) { return now - unit.second > options_.patience; });
   }
 
   const CoordinatorWatch& coordinator() const { return watch_; }
@@ -96,6 +107,7 @@ class WorkerNode {
         message.incarnation = incarnation_;
         bus_.publish(Work::kResults, message);
         const std::scoped_lock lock(mutex_);
+        begun_.erase(unit->first);
         inbox_.finish(unit->first, std::move(message));
         ++done_;
       }
@@ -110,6 +122,7 @@ class WorkerNode {
     std::unique_lock lock(mutex_);
     std::optional<std::pair<JobId, Jobs>> unit;
     wake_.wait(lock, stop, [&] { return (unit = inbox_.take()).has_value(); });
+    if (unit) begun_[unit->first] = monotonic_now();
     return stop.stop_requested() ? std::nullopt : std::move(unit);
   }
 
@@ -120,9 +133,10 @@ class WorkerNode {
   CoordinatorWatch watch_;
   NodeStatus status_;
   Ticker beat_{0.05};
-  std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any wake_;
   JobInbox<Jobs, ResultMessage> inbox_{64};
+  std::map<JobId, Seconds> begun_;  // units in work, and since when
   long done_ = 0;
   std::exception_ptr failure_;
   std::vector<std::jthread> threads_;  // last: ends before all that it uses

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 namespace rtg {
 namespace {
 
@@ -70,31 +72,77 @@ TEST(JobDispatcher, GivesTheJobsOfASilentWorkerToAnother) {
   EXPECT_EQ(jobs.on_result(10), Verdict::kAccepted);
 }
 
-TEST(JobDispatcher, AStuckWorkerLosesItsLeaseHoweverAlive) {
-  JobDispatcher jobs;
-  jobs.submit(Ids{10});
-  beat(jobs, kAnn, 0.0);
-  jobs.due(0.0);
-  for (Seconds now = 1.0; now <= 121.0; now += 1.0) beat(jobs, kAnn, now, {10});
-  beat(jobs, kBob, 121.0, {}, 3);
-  EXPECT_EQ(jobs.due(121.0), (Sends{{kBob, 10, 2}}));
+/// Beats of a worker that holds the jobs, once a second until `end`; what is sent meanwhile.
+Sends beats_until(JobDispatcher& jobs, WorkerId worker, const Ids& held, Seconds begin,
+                  Seconds end) {
+  Sends sends;
+  for (Seconds now = begin; now <= end; now += 1.0) {
+    beat(jobs, worker, now, held);
+    for (const Send& send : jobs.due(now)) sends.push_back(send);
+  }
+  return sends;
 }
 
-TEST(JobDispatcher, ALongJobOfALivingWorkerIsNeverPoison) {
+TEST(JobDispatcher, AStuckWorkerLosesItsJobsHoweverAlive) {
   JobDispatcher jobs;
   jobs.submit(Ids{10, 11});
   beat(jobs, kAnn, 0.0);
   jobs.due(0.0);
-  for (Seconds now = 1.0; now <= 500.0; now += 1.0) {
-    beat(jobs, kAnn, now, {10, 11});
-    jobs.due(now);
-  }
-  EXPECT_EQ(jobs.reissued(), 8);  // after 121, 242, 363 and 484 s
-  EXPECT_EQ(jobs.poisoned(), Ids{});
-  EXPECT_EQ(jobs.open(), 2);
-  EXPECT_EQ(jobs.on_result(10), Verdict::kAccepted);
+  EXPECT_EQ(beats_until(jobs, kAnn, {10, 11}, 1.0, 301.0), Sends{});
+  beat(jobs, kBob, 301.0, {}, 3);
+  EXPECT_EQ(jobs.due(301.0), (Sends{{kBob, 11, 2}}));  // alone: it may have been the one
   EXPECT_EQ(jobs.on_result(11), Verdict::kAccepted);
+  EXPECT_EQ(jobs.due(301.0), (Sends{{kBob, 10, 2}}));
+  EXPECT_EQ(jobs.reissued(), 2);
+}
+
+TEST(JobDispatcher, AStuckWorkerGetsNothingUntilItLetsGo) {
+  JobDispatcher jobs;
+  jobs.submit(Ids{10, 11, 12});
+  beat(jobs, kAnn, 0.0);
+  EXPECT_EQ(jobs.due(0.0), (Sends{{kAnn, 10, 1}, {kAnn, 11, 1}}));
+  EXPECT_EQ(beats_until(jobs, kAnn, {10, 11}, 1.0, 1000.0), Sends{});
+  EXPECT_EQ(jobs.on_result(10), Verdict::kAccepted);  // slow, not stuck
+  beat(jobs, kAnn, 1001.0, {11});
+  EXPECT_EQ(jobs.due(1001.0), Sends{});
+  EXPECT_EQ(jobs.on_result(11), Verdict::kAccepted);
+  beat(jobs, kAnn, 1002.0);
+  EXPECT_EQ(jobs.due(1002.0), (Sends{{kAnn, 12, 1}}));
+  EXPECT_EQ(jobs.poisoned(), Ids{});
+}
+
+TEST(JobDispatcher, AJobThatThreeLivingWorkersGetStuckWithIsPoison) {
+  JobDispatcher jobs;
+  jobs.submit(Ids{10, 11});
+  std::set<WorkerId> stuck;  // each holds 10 for ever
+  int sent = 0;
+  for (Seconds now = 0.0; now < 2000.0 && !jobs.finished(); now += 1.0) {
+    for (const WorkerId worker : {kAnn, kBob, kCat})
+      beat(jobs, worker, now, stuck.contains(worker) ? Ids{10} : Ids{});
+    for (const Send& send : jobs.due(now)) {
+      ++sent;
+      if (send.job == 10)
+        stuck.insert(send.worker);
+      else
+        jobs.on_result(send.job);
+    }
+  }
   EXPECT_TRUE(jobs.finished());
+  EXPECT_EQ(sent, 4);
+  EXPECT_EQ(stuck.size(), 3U);
+  EXPECT_EQ(jobs.poisoned(), Ids{10});
+  EXPECT_EQ(jobs.reissued(), 3);
+}
+
+TEST(JobDispatcher, AJobThatNeverReachedItsWorkerMakesItNoVictim) {
+  JobDispatcher jobs({.poison = 1});
+  jobs.submit(Ids{10});
+  beat(jobs, kAnn, 0.0);
+  jobs.due(0.0);
+  const Sends sends = beats_until(jobs, kAnn, {}, 1.0, 1000.0);
+  EXPECT_EQ(jobs.poisoned(), Ids{});
+  EXPECT_EQ(jobs.reissued(), 3);  // after 301, 602 and 903 s
+  EXPECT_EQ(sends.size(), 1000U);
 }
 
 TEST(JobDispatcher, AJobThatTakesThreeWorkersDownIsPoison) {

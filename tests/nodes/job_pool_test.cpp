@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <optional>
+#include <set>
 #include <thread>
 
 namespace rtg {
@@ -38,6 +39,17 @@ class Played {
     message.incarnation = kAnn;
     message.config = config;
     message.capacity = capacity;
+    bus.publish("RTG_REPLAY_BEAT", message);
+  }
+
+  /// Of a worker that holds the unit and can take four.
+  void beat_of(WorkerId worker, std::optional<JobId> held) {
+    rtg_msgs::worker_beat_t message{};
+    message.incarnation = worker;
+    message.config = kConfig;
+    message.capacity = 4;
+    if (held) message.held = {*held};
+    message.n_held = static_cast<std::int32_t>(message.held.size());
     bus.publish("RTG_REPLAY_BEAT", message);
   }
 
@@ -201,6 +213,32 @@ TEST(JobPool, GivesUpAUnitThatNobodySurvives) {
     EXPECT_EQ(result.end, jobs[k].start);
   }
   EXPECT_EQ(skipped, 24);
+}
+
+TEST(JobPool, GivesUpAUnitThatHangsOnEveryLivingWorker) {
+  Played played({.lease = 0.1, .poison = 2});
+  std::optional<JobId> hanging;
+  std::set<WorkerId> stuck;
+  played.on_job = [&](const replay_job_t& job) {
+    if (!hanging) hanging = job.job_id;
+    if (job.job_id == *hanging)
+      stuck.insert(job.to);
+    else
+      played.publish(Played::result_of(job));
+  };
+  played.each_round = [&] {  // there is always one more
+    for (WorkerId worker = 1; worker <= std::ssize(stuck) + 1; ++worker)
+      played.beat_of(worker, stuck.contains(worker) ? hanging : std::nullopt);
+  };
+  const auto jobs = many_jobs(72);
+  const auto results = played.ask(jobs);
+  ASSERT_TRUE(results.has_value());
+  EXPECT_EQ(played.pool.state().given_up, 1);
+  EXPECT_GE(stuck.size(), 2U);
+  std::size_t answered = 0;
+  for (std::size_t k = 0; k < jobs.size(); ++k)
+    answered += (*results)[k].end == answer(jobs[k]).end;
+  EXPECT_EQ(answered, 48U);
 }
 
 TEST(JobPool, StopEndsASearchThatWaits) {

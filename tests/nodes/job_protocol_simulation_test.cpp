@@ -7,18 +7,19 @@
 #include "tests/nodes/faulty_network.hpp"
 
 // The two ends of the job protocol in virtual time, over a network that loses, doubles and
-// reorders, with workers that are killed and started again. A failing seed is printed and can be
-// run alone.
+// reorders, with workers that are killed or hang and are started again. A failing seed is printed
+// and can be run alone.
 namespace rtg {
 namespace {
 
-constexpr double kStep = 0.01, kBeatInterval = 0.2;
+constexpr double kStep = 0.01, kBeatInterval = 0.2, kPatience = 3.0;
+constexpr double kHangs = 0.01;  // share of the units that a worker never answers, however alive
 
 struct Worker {
   WorkerId id = 0;
   JobInbox<int, int> inbox{8};
   std::optional<JobId> busy;
-  double done_at = 0.0, beat_at = 0.0;
+  double begun = 0.0, done_at = 0.0, beat_at = 0.0;
 };
 
 class Simulation {
@@ -51,7 +52,8 @@ class Simulation {
   }
 
   void work(std::unique_ptr<Worker>& worker) {
-    if (rng_.uniform(0, 1) < kill_rate_) start(worker);
+    const bool stuck = worker->busy && now_ - worker->begun > kPatience;
+    if (stuck || rng_.uniform(0, 1) < kill_rate_) start(worker);
     if (worker->busy && now_ >= worker->done_at) {
       worker->inbox.finish(*worker->busy, answer_to(*worker->busy));
       report(*worker->busy, answer_to(*worker->busy));
@@ -60,7 +62,8 @@ class Simulation {
     if (!worker->busy)
       if (const auto next = worker->inbox.take()) {
         worker->busy = next->first;
-        worker->done_at = now_ + rng_.uniform(0.0, 0.3);
+        worker->begun = now_;
+        worker->done_at = now_ + (rng_.uniform(0, 1) < kHangs ? 1e9 : rng_.uniform(0.0, 0.3));
       }
     if (now_ < worker->beat_at) return;
     worker->beat_at = now_ + kBeatInterval;
@@ -94,11 +97,11 @@ class Simulation {
   double now_ = 0.0;
   WorkerId lives_ = 0;
   std::array<std::unique_ptr<Worker>, 3> workers_;
-  JobDispatcher dispatcher_{{.poison = 1000}};
+  JobDispatcher dispatcher_{{.lease = kPatience, .poison = 1000}};
   std::map<JobId, int> accepted_;
 };
 
-TEST(JobProtocol, AnswersEveryJobOnceUnderLossDuplicationReorderAndKills) {
+TEST(JobProtocol, AnswersEveryJobOnceUnderLossDuplicationReorderKillsAndHangs) {
   long reissued = 0, resent = 0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     Simulation simulation(seed, 0.0005);

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <future>
 #include <stdexcept>
+
+#include "nodes/common/serve.hpp"
 
 namespace rtg {
 namespace {
@@ -144,6 +147,40 @@ TEST(WorkerNode, WhatTheSolverThrowsSurfacesInTick) {
   });
   pair.send(pair.job(11));
   EXPECT_THROW(pair.serve_until([] { return false; }), std::range_error);
+}
+
+TEST(WorkerNode, IsStuckOnceAUnitHasBeenInWorkForLongerThanAnyTakes) {
+  std::mutex gate;
+  std::unique_lock closed(gate);
+  Pair pair([&](std::span<const ReverseJob> jobs) {
+    const std::scoped_lock wait(gate);
+    return solve(jobs);
+  });
+  const Seconds lease = JobDispatcher::Limits{}.lease;
+  EXPECT_FALSE(pair.worker.stuck(monotonic_now() + lease + 1.0));  // with nothing
+  pair.send(pair.job(11));
+  pair.serve_until([&] { return pair.worker.stuck(monotonic_now() + lease + 1.0); });
+  EXPECT_FALSE(pair.worker.stuck(monotonic_now() + lease - 100.0));
+  closed.unlock();
+  pair.serve_until([&] { return !pair.results.empty() && pair.beats.back().n_held == 0; });
+  EXPECT_FALSE(pair.worker.stuck(monotonic_now() + lease + 1.0));
+}
+
+TEST(WorkerNodeDeathTest, AProcessThatIsStuckEndsThoughItsThreadDoesNot) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto hang = [](std::span<const ReverseJob>) -> std::vector<ReverseResult> {
+    std::promise<void>().get_future().wait();
+    return {};
+  };
+  const auto process = [&] {
+    Bus bus("memq://", "test");
+    WorkerNode<ReverseWork> worker(bus, {kShape, kConfig, 3, 1, 0.0}, hang);
+    reverse_job_t message = ReverseWork::message(kJobs);
+    message.to = worker.incarnation();
+    bus.publish("RTG_REVERSE_JOB", message);
+    std::exit(serve(bus, worker));
+  };
+  EXPECT_EXIT(process(), ::testing::ExitedWithCode(1), "stuck: a unit of work takes longer");
 }
 
 TEST(WorkerNode, HearsThatTheCoordinatorLeavesOrIsGone) {
