@@ -1,7 +1,7 @@
-"""What may change when a run goes on: nothing that decides its transitions."""
+"""What may change when a run goes on: nothing that decides its transitions or its checkpoint."""
 
 import pytest
-from rtg import cli, effective_config, paths
+from rtg import cli, effective_config, paths, settings
 from rtg.run_args import parse
 from rtg.run_plan import make_plan
 
@@ -35,6 +35,38 @@ def test_a_change_of_the_transitions_is_refused_and_leaves_the_run_alone(name, f
     assert capsys.readouterr().err.startswith(f"rtg: {message}")
     assert [path.name for path in folder.iterdir()] == ["config.yaml"]
     assert (folder / "config.yaml").read_bytes() == before
+
+
+OF_CHECKPOINT = {
+    "dueling": "False",
+    "layer_norm": "False",
+    "train_frequency": "8",
+    "buffer": "9999",
+    "discount": "0.5",
+}
+
+
+@pytest.mark.parametrize("name", OF_CHECKPOINT)
+@pytest.mark.parametrize("more", [[], ["--no-train"]])
+def test_what_a_checkpoint_is_bound_to_is_refused_and_leaves_the_run_alone(
+    name, more, folder, capsys
+):
+    (folder / "checkpoint").mkdir()
+    (folder / "checkpoint" / "state.pt").write_bytes(b"of a learner")
+    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    words = ["--set", f"train.{name}={OF_CHECKPOINT[name].lower()}", *more]
+    assert cli.main([*words, "--resume", "--out", str(folder)]) == 2
+    assert capsys.readouterr().err.startswith(f"rtg: --resume: train.{name} must stay ")
+    assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
+
+
+def test_without_a_checkpoint_the_learner_may_become_another(folder):
+    words = ["--set", "train.preset=paper", "--resume", "--in-process", "--out", str(folder)]
+    assert not make_plan(parse(words)).config["train"]["dueling"]
+
+
+def test_the_settings_a_checkpoint_is_bound_to_are_those_of_the_test():
+    assert set(settings.OF_CHECKPOINT) == set(OF_CHECKPOINT)
 
 
 def test_the_learner_and_the_processes_may_change_and_equal_values_are_no_change(folder):

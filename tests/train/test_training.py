@@ -208,6 +208,7 @@ def test_a_signal_leaves_a_checkpoint_to_go_on_from(
     [
         ("run.seed=9", "made with seed = 1; this run has 9"),
         ("train.dueling=false", "made with dueling = True; this run has False"),
+        ("train.buffer=3000", "made with buffer = "),
     ],
 )
 def test_a_checkpoint_of_another_run_is_refused(

@@ -51,6 +51,11 @@ _PACKAGES = ("torch", "stable-baselines3", "gymnasium", "numpy", "lcm")
 _DEBIAN = ("g++", "libeigen3-dev", "libsuitesparse-dev", "libbox2d-dev", "libyaml-cpp-dev")
 
 
+def checkpoint_file(run: Path) -> Path:
+    """Where the learner goes on from, once it has been stopped."""
+    return run / "checkpoint" / "state.pt"
+
+
 def write_text(path: Path, text: str) -> None:
     """Replaces the file in one step, so that no reader ever sees half of it."""
     draft = path.with_name(f".{path.name}.{os.getpid()}")

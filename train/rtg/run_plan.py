@@ -10,6 +10,7 @@ from typing import Any
 from rtg import effective_config, multicast, run_folder
 from rtg.errors import UserError
 from rtg.run_args import Override, RunArgs
+from rtg.settings import OF_CHECKPOINT
 
 
 @dataclass(frozen=True)
@@ -67,23 +68,31 @@ def _check_buffer(config: dict[str, Any]) -> None:
         )
 
 
-def _fixed_values(config: dict[str, Any]) -> dict[str, Any]:
-    """What decides the transitions, by dotted name: a run keeps it for good."""
+def _fixed_values(config: dict[str, Any], has_checkpoint: bool) -> dict[str, Any]:
+    """What a run keeps for good, by dotted name: what decides the transitions, and what a
+    checkpoint is bound to once there is one."""
     found: dict[str, Any] = {"run.seed": config["run"]["seed"]}
     for section in ("task", "physics", "reverse", "search"):
         found.update({f"{section}.{name}": value for name, value in config[section].items()})
+    if has_checkpoint:
+        found.update({f"train.{name}": config["train"][name] for name in OF_CHECKPOINT})
     return found
 
 
 def _check_resumed(file: Path, config: dict[str, Any]) -> None:
-    """Raises UserError if `config` is not the one in `file` as far as the transitions go."""
-    before, after = _fixed_values(effective_config.values(file)), _fixed_values(config)
+    """Raises UserError if `config` does not go on with the run whose configuration is `file`.
+
+    Also without training: the configuration in the folder stays the one of its checkpoint.
+    """
+    has_checkpoint = run_folder.checkpoint_file(file.parent).exists()
+    before = _fixed_values(effective_config.values(file), has_checkpoint)
+    after = _fixed_values(config, has_checkpoint)
     for name in sorted({*before, *after}):
         old, new = before.get(name), after.get(name)
         if old != new:
             raise UserError(
                 f"--resume: {name} must stay {old} as in {file}; legal are changes of train and "
-                "run, but for run.seed"
+                f"run, but for run.seed and, with a checkpoint, train.{{{','.join(OF_CHECKPOINT)}}}"
             )
 
 

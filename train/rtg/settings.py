@@ -5,6 +5,9 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
+# What a checkpoint is bound to: the shape of its network and buffer, the returns it has counted.
+OF_CHECKPOINT = ("train_frequency", "buffer", "discount", "dueling", "layer_norm")
+
 
 @dataclasses.dataclass(frozen=True)
 class TrainSettings:

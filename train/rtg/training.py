@@ -11,12 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from rtg import _core, checkpoint, policy_file
+from rtg import _core, checkpoint, policy_file, run_folder
 from rtg.ddqn import DoubleDqn
 from rtg.evaluation import FINAL, Evaluation, Floats, evaluate, held_out_starts
 from rtg.offline_data import OfflineData, Source, read_rows
-from rtg.run_folder import write_json
-from rtg.settings import TrainSettings
+from rtg.settings import OF_CHECKPOINT, TrainSettings
 from rtg.training_log import TrainingLog
 from rtg.vector_env import PushVecEnv
 
@@ -46,11 +45,12 @@ class Training:
         self.model = DoubleDqn(self.env, s, self.discount, seed)
         self.data = OfflineData(self.task, self.model.replay_buffer)
         self.log = TrainingLog(folder)
-        self._identity = {"seed": seed, "environments": count, **policy_file.identity(self.task, s)}
+        fixed = {name: getattr(s, name) for name in OF_CHECKPOINT}
+        self._identity = {"seed": seed, **fixed, **policy_file.identity(self.task, s)}
         self._starts = held_out_starts(self.task, s.eval_episodes)
         self._clock = Clock()
         self.tell: Callable[[str, int], None] = lambda state, done: None  # as NodeStatus.tick
-        self._checkpoint = folder / "checkpoint" / "state.pt"
+        self._checkpoint = run_folder.checkpoint_file(folder)
         self._saved_at = 0  # interactions
         self._saved_rows = 0  # offline transitions
 
@@ -220,7 +220,7 @@ class Training:
             "offline_transitions": self.data.count,
             "lost_transitions": lost,
         }
-        write_json(self.folder / "training.json", training)
+        run_folder.write_json(self.folder / "training.json", training)
         self.log.display(self._state(), force=True)
 
 
