@@ -1,4 +1,4 @@
-"""A consumer of the transition stream: CONFIG.yaml RUN FILE.npz.
+"""A consumer of the transition stream: CONFIG.yaml RUN FILE.npz [RECEIVE_BUFFER].
 
 Says how many rows it has whenever some have come, and how many it lacks at the end.
 """
@@ -7,18 +7,19 @@ import json
 import sys
 from pathlib import Path
 
-from rtg import _core
-from rtg.bus import Bus
+from rtg import _core, bus
 from rtg.recorder import Recorder
 from rtg.transition_stream import TransitionStream
 
 
-def main(config_file: str, run: str, target: str) -> None:
+def main(config_file: str, run: str, target: str, *receive_buffer: str) -> None:
+    for size in receive_buffer:
+        bus.RECEIVE_BUFFER = int(size)  # [bytes]
     config = _core.Config.from_file(config_file)
     task = config.task
     recorder = Recorder(task)
-    bus = Bus(json.loads(config.json)["run"]["bus"], run)
-    stream = TransitionStream(bus, task.bodies, task.headings, recorder.add)
+    url = json.loads(config.json)["run"]["bus"]
+    stream = TransitionStream(bus.Bus(url, run), task.bodies, task.headings, recorder.add)
     while not stream.complete:
         if stream.poll(0.1):
             print(stream.received, flush=True)

@@ -41,8 +41,9 @@ class Graph:
     def coordinator(self, consumers: int = 1) -> Process:
         return self._program("rtg_beam_coordinator", self.folder, str(consumers))
 
-    def consumer(self, name: str = "transitions") -> Process:
-        command = [sys.executable, _CONSUMER, self.config, _RUN, self.folder / f"{name}.npz"]
+    def consumer(self, name: str = "transitions", *words: str) -> Process:
+        file = self.folder / f"{name}.npz"
+        command = [sys.executable, _CONSUMER, self.config, _RUN, file, *words]
         return self.network.start(command, PYTHONPATH=str(paths.ROOT / "train"))
 
     def transitions(self, name: str = "transitions") -> bytes:

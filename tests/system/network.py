@@ -82,6 +82,13 @@ class Network:
         self._processes.append(process)
         return process
 
+    def dropped(self) -> int:
+        """Datagrams for which the receive buffer of some socket had no room so far."""
+        table = subprocess.run(
+            self._inside(["cat", "/proc/net/udp"]), capture_output=True, text=True, check=True
+        )
+        return sum(int(line.split()[-1]) for line in table.stdout.splitlines()[1:])
+
     def _nft(self, *arguments: str, rules: str = "") -> str:
         command = self._inside(["nft", *arguments])
         done = subprocess.run(

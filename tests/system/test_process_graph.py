@@ -104,6 +104,23 @@ def test_a_tenth_of_the_datagrams_lost(net: network.Network, tmp_path: Path, tin
     assert graph.transitions() == tiny
 
 
+def test_a_receive_buffer_too_small_for_a_burst(
+    net: network.Network, tmp_path: Path, long: bytes
+) -> None:
+    graph = Graph(net, tmp_path, *LONG)
+    helpers = [graph.server(), graph.worker(1)]
+    small, usual = graph.consumer("small", "2048"), graph.consumer("usual")
+    coordinator = graph.coordinator(2)
+    assert 0 < first_rows(small) < 12000
+    small.send_signal(signal.SIGSTOP)  # nobody empties the buffer
+    assert rest(usual) == "lost 0"
+    assert net.dropped() > 0
+    small.send_signal(signal.SIGCONT)
+    assert rest(small) == "lost 0"
+    assert_all_left(coordinator, *helpers)
+    assert graph.transitions("small") == long
+
+
 def test_consumers_that_come_late_or_again(
     net: network.Network, tmp_path: Path, tiny: bytes
 ) -> None:

@@ -32,6 +32,14 @@ def plan(tmp_path, monkeypatch):
     return RunPlan(folder, "test", config, train=False, resume=False, notes=())
 
 
+def test_what_the_network_lacks_is_told(plan, monkeypatch):
+    monkeypatch.setattr("rtg.bus._small_buffer", lambda url: f"a small buffer on {url}")
+    out = io.StringIO()
+    with display(out) as shown:
+        graph_run.run(plan, shown)
+    assert "a small buffer on memq://\n" in out.getvalue()
+
+
 def test_a_coordinator_that_was_never_heard_leaves_a_whole_report(plan):
     with display(io.StringIO()) as shown:
         measured = graph_run.run(plan, shown)

@@ -8,12 +8,17 @@ from __future__ import annotations
 
 import math
 import os
+import re
+import socket
+import stat
 import struct
 from collections import Counter
 from collections.abc import Callable
 from typing import Any, TypeVar
 
 import lcm
+
+from rtg.errors import RunError
 
 PROTOCOL = 1  # version of the rules in msgs/CHANNELS.md
 MAX_MESSAGE_BYTES = 60_000
@@ -56,18 +61,52 @@ def decoded(message_type: Any, data: bytes) -> Any:
     return message if _is_finite(message) else "bus.not_finite"
 
 
+def _receive_buffer(port: int) -> int:
+    """Of the UDP socket bound to `port` [bytes]; LCM does not tell its descriptor. 0 if none is."""
+    for number in map(int, os.listdir("/proc/self/fd")):
+        try:
+            if not stat.S_ISSOCK(os.fstat(number).st_mode):
+                continue
+            with socket.socket(fileno=os.dup(number)) as found:
+                if found.family == socket.AF_INET and found.getsockname()[1] == port:
+                    size = found.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
+                    return size // 2  # Linux reports twice what it was asked for
+        except OSError:  # closed meanwhile: LCM's thread runs
+            continue
+    return 0
+
+
+def _small_buffer(url: str) -> str | None:
+    """What to say if the kernel gave LCM's socket less than it was asked for; else None."""
+    match = re.match(r"udpm://[\d.]+:(\d+)", url)
+    size = RECEIVE_BUFFER if match is None else _receive_buffer(int(match.group(1)))
+    if size >= RECEIVE_BUFFER:
+        return None
+    return (
+        f"bus: receive buffer is {size >> 10} kB instead of {RECEIVE_BUFFER >> 10} kB; bursts will "
+        f"be lost and sent again. To raise it: sysctl -w net.core.rmem_max={RECEIVE_BUFFER}"
+    )
+
+
 class Bus:
     """Publishes and receives the messages of one run.
 
     `url`: "udpm://GROUP:PORT[?ttl=N]" or "memq://" (one process, for tests); the C++ configuration
-    loader checks it. ttl is 0, this machine only, unless named.
+    loader checks it. ttl is 0, this machine only, unless named. Raises RunError if the network
+    cannot be opened or swallows what is sent. `warning`, known from the first subscription on: what
+    whoever opened the bus should say where people read it.
     """
 
     def __init__(self, url: str, run: str) -> None:
         if url.startswith("udpm:"):
             url += ("&" if "?" in url else "?ttl=0&") + f"recv_buf_size={RECEIVE_BUFFER}"
         self.counters: Counter[str] = Counter()
-        self._lcm = lcm.LCM(url)
+        self.warning: str | None = None
+        self._url = url
+        try:
+            self._lcm = lcm.LCM(url)
+        except RuntimeError as error:
+            raise RunError(f"bus '{url}' cannot be opened: {error}") from error
         self._run = run_key(run)
         self._subscriptions: list[Any] = []
         self._failure: BaseException | None = None
@@ -110,8 +149,10 @@ class Bus:
 
         subscription = self._lcm.subscribe(pattern, receive)
         if subscription is None:
-            raise RuntimeError("bus: messages sent do not come back; is multicast enabled?")
+            raise RunError("bus: messages sent do not come back; is multicast enabled?")
         subscription.set_queue_capacity(QUEUE_CAPACITY)
+        if not self._subscriptions:  # LCM opens its socket now
+            self.warning = _small_buffer(self._url)
         self._subscriptions.append(subscription)
 
     def close(self) -> None:
@@ -144,7 +185,8 @@ class Bus:
             try:
                 if self._lcm.handle_timeout(wait_ms) <= 0:
                     break
-            except OSError:  # how LCM reports an interrupting signal
+            except OSError:  # how LCM reports an interrupting signal, and all else that goes wrong
+                self.counters["bus.interrupted"] += 1
                 break
             handled, wait_ms = handled + 1, 0
             if self._failure is not None:

@@ -59,6 +59,8 @@ class GraphRun:
         self._graph = ProcessGraph(plan.folder / "logs")
         self._sealed = False
         self._consumed = math.inf  # when the consumer had all
+        if self._bus.warning:
+            display.note(self._bus.warning)
 
     def run(self) -> dict[str, Any]:
         """Starts everything, waits for its end; returns what was measured."""

@@ -151,6 +151,8 @@ def spy(url: str, seconds: float | None) -> None:
     monitor = ChannelMonitor()
     bus = Bus(url, "rtg spy")
     bus.watch(".*", lambda channel, data: monitor.on_message(channel, data, time.monotonic()))
+    if bus.warning:
+        print(bus.warning, file=sys.stderr)
     if sys.stdout.isatty():
         SpyApp(bus, monitor, seconds).run()
     else:

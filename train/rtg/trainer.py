@@ -74,7 +74,10 @@ def _source(training: Training, args: argparse.Namespace) -> Source:
     bus = Bus(url, args.run_name or args.folder.resolve().name)
     training.tell = NodeStatus(bus, "trainer").tick
     task = training.task
-    return TransitionStream(bus, task.bodies, task.headings, training.data.take)
+    stream = TransitionStream(bus, task.bodies, task.headings, training.data.take)
+    if bus.warning:
+        print(bus.warning, file=sys.stderr)
+    return stream
 
 
 def train(args: argparse.Namespace, stop: StopSignals) -> int:
