@@ -9,7 +9,10 @@ from rtg import paths
 
 MISTAKES = {
     "unknown task": (["sortign"], "sortign: no task of that name; legal: gathering, "),
-    "unknown flag": (["--wokers", "2"], "unrecognized arguments: --wokers (./run.sh --help"),
+    "unknown flag": (
+        ["--wokers", "2"],
+        "unrecognized arguments: --wokers; legal: ./run.sh [-h] [--in-proc",
+    ),
     "missing file": (["mine.yaml"], "mine.yaml: no such task file"),
     "workers no number": (["--workers", "two"], "--workers two: "),
     "workers negative": (["--workers", "-1"], "--workers"),
@@ -24,7 +27,16 @@ MISTAKES = {
     "small buffer": (["--set", "train.buffer=5"], "train.buffer: 5 is too small for search.tr"),
     "folder of another kind": (["--out", "/proc/rtg", "--in-process"], "--out: /proc/rtg: "),
     "resume without folder": (["--resume"], "--resume: needs --out DIR"),
-    "check without file": (["check"], "the following arguments are required: FILE.yaml"),
+    "check without file": (["check"], "the following arguments are required: FILE.yaml; legal: "),
+    "check of two": (
+        ["check", "a", "b"],
+        "unrecognized arguments: b; legal: ./run.sh check [-h] F",
+    ),
+    "half a flag of spy": (
+        ["spy", "--sec", "1"],
+        "unrecognized arguments: --sec; legal: ./run.sh s",
+    ),
+    "flag of lcm-spy": (["lcm-spy", "-x"], "unrecognized arguments: -x; legal: ./run.sh lcm-spy ["),
     "spy for no time": (["spy", "--seconds", "0"], "--seconds 0: legal is a number of seconds"),
     "spy on nothing": (["spy", "sortign"], "sortign: no task of that name"),
 }
@@ -32,7 +44,7 @@ MISTAKES = {
 
 def rtg(*words, **environment):
     return subprocess.run(
-        [sys.executable, "-m", "rtg.cli", *words],
+        [sys.executable, "-m", "rtg", *words],
         cwd=paths.ROOT,
         env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train"), **environment},
         capture_output=True,
@@ -58,6 +70,32 @@ def test_help_names_every_flag_of_the_contract():
         assert flag in done.stdout
     for flag in ("--no-train", "--seed", "--out", "--set", "--print-config", "--resume"):
         assert flag in done.stdout
+
+
+def test_spy_names_the_remedy_where_nothing_can_be_heard():
+    """In a network with no device that is up."""
+    program = [sys.executable, "-m", "rtg", "spy", "--seconds", "1"]
+    done = subprocess.run(
+        ["unshare", "--map-root-user", "--net", *program],
+        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if "unshare" in done.stderr:
+        pytest.skip("this machine forbids network namespaces")
+    assert done.returncode == 1 and done.stdout == ""
+    assert done.stderr == (
+        "rtg: nothing to be heard: multicast to 239.255.76.67: no such device. To mend it: "
+        "sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo\n"
+    )
+
+
+@pytest.mark.parametrize("tool", ["run", "check", "spy", "lcm-spy"])
+def test_every_tool_has_help(tool):
+    done = rtg(tool, "--help")
+    assert done.returncode == 0 and done.stderr == ""
+    assert done.stdout.startswith(f"usage: ./run.sh {'' if tool == 'run' else tool + ' '}[-h]")
 
 
 def test_help_does_not_wait_for_heavy_imports():

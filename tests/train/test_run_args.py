@@ -41,9 +41,9 @@ def test_a_path_is_a_task_file(tmp_path):
         (["sortign"], "sortign: no task of that name; legal: gathering, gathering_hard, "),
         (["nowhere/mine.yaml"], "nowhere/mine.yaml: no such task file"),
         (["config"], "config: no such task file"),
-        (["--worker", "3"], "unrecognized arguments: --worker "),
-        (["gathering", "more"], "unrecognized arguments: more "),
-        (["--seed"], "argument --seed: expected one argument "),
+        (["--worker", "3"], "unrecognized arguments: --worker; legal: ./run.sh [-h] "),
+        (["gathering", "more"], "unrecognized arguments: more; legal: "),
+        (["--seed"], "argument --seed: expected one argument; legal: "),
         (["--resume"], "--resume: needs --out DIR, "),
     ],
 )

@@ -1,4 +1,4 @@
-"""The command of the user: `./run.sh ...`, `rtg ...`, `python -m rtg.cli ...`."""
+"""The command of the user: `./run.sh ...`, `rtg ...`, `python -m rtg ...`."""
 
 from __future__ import annotations
 

@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rtg import paths
 from rtg.errors import UserError
@@ -55,10 +56,14 @@ class RunArgs:
 
 
 class Parser(argparse.ArgumentParser):
-    """Mistakes become a UserError, which names the remedy."""
+    """Takes flags in full alone. Mistakes become a UserError, which says what is legal."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(allow_abbrev=False, **options)
 
     def error(self, message: str) -> None:  # type: ignore[override]
-        raise UserError(f"{message} (./run.sh --help lists all)")
+        usage = " ".join(self.format_usage().split()).removeprefix("usage: ")
+        raise UserError(f"{message}; legal: {usage}")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -69,7 +74,6 @@ def parser() -> argparse.ArgumentParser:
         "evaluate, and leave the results in a run folder.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
     )
     p.add_argument("task", nargs="?", help="a task of config/ or a FILE.yaml (gathering)")
     p.add_argument("--in-process", action="store_true", help="everything in one process, no LCM")
@@ -98,7 +102,7 @@ def task_file(task: str) -> Path:
     if path.suffix in {".yaml", ".yml"} or path.is_dir():
         raise UserError(f"{task}: no such task file")
     names = ", ".join(paths.task_names())
-    raise UserError(f"{task}: no task of that name; legal: {names}, a FILE.yaml or a tool")
+    raise UserError(f"{task}: no task of that name; legal: {names}, a FILE.yaml or a tool (--help)")
 
 
 def _overrides(args: argparse.Namespace) -> tuple[Override, ...]:

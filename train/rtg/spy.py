@@ -14,8 +14,10 @@ from textual.binding import BindingType
 from textual.containers import VerticalScroll
 from textual.widgets import Footer, Header, Static
 
+from rtg import multicast
 from rtg.bus import Bus
 from rtg.channel_monitor import ChannelMonitor, ChannelRow, NodeRow
+from rtg.errors import RunError
 
 _REFRESH = 0.5  # [s]
 _POLL = 0.05  # [s]
@@ -147,7 +149,9 @@ def watch_plainly(bus: Bus, monitor: ChannelMonitor, seconds: float | None, out:
 
 
 def spy(url: str, seconds: float | None) -> None:
-    """Watches the bus at `url` until `seconds` have passed, or for ever."""
+    """Watches the bus at `url` until `seconds` have passed, or for ever. Raises RunError."""
+    if why := multicast.defect(url):
+        raise RunError(f"nothing to be heard: {why}. To mend it: {multicast.FIX}")
     monitor = ChannelMonitor()
     bus = Bus(url, "rtg spy")
     bus.watch(".*", lambda channel, data: monitor.on_message(channel, data, time.monotonic()))

@@ -1,6 +1,7 @@
-"""The learner's process: `python -m rtg.trainer RUN_FOLDER [--resume] [--no-stream]`.
+"""The learner's process, which ./run.sh starts.
 
-Reads RUN_FOLDER/config.yaml, takes the transitions of the run in while it learns, and leaves
+`python -m rtg.trainer RUN_FOLDER [--resume] [--no-stream] [--run-name NAME]` reads
+RUN_FOLDER/config.yaml, takes the transitions of the run in while it learns, and leaves
 transitions.npz, progress.csv, training_state.json (for displays), checkpoint/, model.pt,
 best_episode.npz and training.json there. SIGINT or SIGTERM: checkpoint and exit with 128 + number;
 a second one: exit at once.
@@ -55,14 +56,17 @@ class StopSignals:
 
 
 def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="rtg.trainer", description=__doc__.split("\n")[0])
+    summary = __doc__.split("\n")[0]
+    parser = argparse.ArgumentParser("rtg.trainer", description=summary, allow_abbrev=False)
     parser.add_argument("folder", type=Path, metavar="RUN_FOLDER")
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint, if any")
     parser.add_argument(
         "--no-stream", action="store_true", help="learn from RUN_FOLDER/transitions.npz"
     )
     parser.add_argument(
-        "--run-name", help="the run on the bus whose stream to take (the folder's name)"
+        "--run-name",
+        metavar="NAME",
+        help="the run on the bus whose stream to take (the folder's name)",
     )
     return parser.parse_args(argv)
 
