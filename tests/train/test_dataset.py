@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from rtg import dataset
 from rtg.dataset import DatasetError, Transitions
+from rtg.errors import UserError
 from samples import random_transitions
 
 
@@ -86,6 +87,10 @@ def test_wrong_arrays_are_named(
     with pytest.raises(DatasetError) as error:
         dataset.read(path, bodies=4, headings=48)
     assert str(error.value).startswith(f"{path}: {message}")
+
+
+def test_a_wrong_file_is_bad_input_to_every_command() -> None:
+    assert issubclass(DatasetError, UserError)
 
 
 def test_other_tasks_are_refused(tmp_path: Path, transitions: Transitions) -> None:

@@ -40,6 +40,15 @@ def test_what_the_network_lacks_is_told(plan, monkeypatch):
     assert "a small buffer on memq://\n" in out.getvalue()
 
 
+def test_work_that_was_given_up_is_told_though_the_coordinator_was_not_waited_for(
+    plan, monkeypatch
+):
+    monkeypatch.setattr(graph_run.RunWatch, "counters", lambda watch: {"units.given_up": 2})
+    with display(io.StringIO()) as shown:
+        measured = graph_run.run(plan, shown)
+    assert measured["defects"] == ["the coordinator gave up 2 units of work"]
+
+
 def test_a_coordinator_that_was_never_heard_leaves_a_whole_report(plan):
     with display(io.StringIO()) as shown:
         measured = graph_run.run(plan, shown)

@@ -5,7 +5,10 @@ import random
 
 import numpy as np
 import pytest
-from rtg.transition_stream import FAREWELLS, Rows, StreamCursor, to_rows
+from rtg.bus import Bus
+from rtg.errors import RunError
+from rtg.messages import message_type
+from rtg.transition_stream import FAREWELLS, Rows, StreamCursor, TransitionStream, to_rows
 
 
 class Server:
@@ -138,6 +141,17 @@ def test_overlapping_pieces_are_cut():
     assert cursor.on_rows(5, "late", 10, now=0.0) == []
     assert cursor.on_rows(0, "early", 8, now=0.0) == [("early", 0), ("late", 3)]
     assert cursor.on_rows(0, "again", 15, now=0.0) == []
+
+
+def test_two_streams_are_not_mixed():
+    ours = Bus("memq://", "a run")
+    stream = TransitionStream(ours, bodies=3, headings=48, sink=print)
+    for number in (5, 5, 6):
+        tail = message_type("stream_tail_t")()
+        tail.stream = number
+        ours.publish("RTG_TAIL", tail)
+    with pytest.raises(RunError, match="the coordinator was restarted"):
+        stream.poll(0.0)
 
 
 class Message:

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from rtg.errors import UserError
+
 Array = npt.NDArray[Any]
 
 SOURCES = ("step_replay", "chain_replay", "roll_out")  # rtg::Source by value
@@ -48,7 +50,7 @@ _SHAPES = {
 _RANK = {"poses": 3, "next_poses": 3, "observation": 2, "next_observation": 2}
 
 
-class DatasetError(ValueError):
+class DatasetError(UserError, ValueError):
     """A file that is no transition set; the text names the file, the array and what is legal."""
 
 
@@ -58,14 +60,18 @@ def concatenate(parts: list[Transitions]) -> Transitions:
 
 
 def write(path: Path, transitions: Transitions) -> None:
-    """Writes `path` at once or not at all; equal transitions give equal bytes."""
+    """Writes `path` at once or not at all, also if the machine goes down; equal transitions give
+    equal bytes."""
     partial = path.with_name(path.name + ".part")
-    with zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED) as archive:
-        for name, dtype in _DTYPES.items():
-            entry = zipfile.ZipInfo(f"{name}.npy", _EPOCH)
-            with archive.open(entry, "w", force_zip64=True) as member:
-                array: Array = np.ascontiguousarray(getattr(transitions, name), dtype=dtype)
-                np.lib.format.write_array(member, array, allow_pickle=False)
+    with partial.open("wb") as file:
+        with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+            for name, dtype in _DTYPES.items():
+                entry = zipfile.ZipInfo(f"{name}.npy", _EPOCH)
+                with archive.open(entry, "w", force_zip64=True) as member:
+                    array: Array = np.ascontiguousarray(getattr(transitions, name), dtype=dtype)
+                    np.lib.format.write_array(member, array, allow_pickle=False)
+        file.flush()
+        os.fsync(file.fileno())
     os.replace(partial, path)
 
 

@@ -79,10 +79,14 @@ class GraphRun:
         missing = self._recording.write(self._plan) if self._recording else 0
         if missing:
             raise RunError(f"the coordinator ended, {missing} transitions have not arrived")
+        counters = self._watch.counters()
+        given_up = counters.get("units.given_up", 0)
+        if given_up and not defects:  # the coordinator was not waited for
+            defects.append(f"the coordinator gave up {given_up} units of work")
         return {
             "lost_transitions": missing,
             "worker_restarts": self._graph.restarts,
-            "counters": self._watch.counters(),
+            "counters": counters,
             "defects": defects,
         }
 

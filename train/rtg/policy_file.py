@@ -28,8 +28,10 @@ def identity(task: _core.Task, settings: TrainSettings) -> dict[str, Any]:
     }
 
 
-def check_identity(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> None:
+def check_identity(path: Path, found: Any, wanted: dict[str, Any]) -> None:
     """Raises UserError, naming what differs."""
+    if not isinstance(found, dict):
+        raise UserError(f"{path}: of another kind: it does not say what made it")
     for name, value in wanted.items():
         if found.get(name) != value:
             raise UserError(f"{path}: made with {name} = {found.get(name)}; this run has {value}")
@@ -43,9 +45,12 @@ def write(path: Path, task: _core.Task, settings: TrainSettings, weights: dict[s
 def read(path: Path, task: _core.Task) -> Policy:
     """The greedy policy, [N, observation] -> [N] actions. Raises UserError if it does not fit."""
     state = checkpoint.read(path)
-    found = state.get("identity", {})
+    found: Any = state.get("identity")
+    weights = state.get("weights")
     wanted = {"observation_size": task.observation_size, "headings": task.headings}
     check_identity(path, found, wanted)
+    if not isinstance(weights, dict):
+        raise UserError(f"{path}: holds no policy; legal: a model.pt")
     network = {name: bool(found.get(name)) for name in ("dueling", "layer_norm")}
     policy = ValuePolicy(
         observation_space(task),
@@ -54,7 +59,7 @@ def read(path: Path, task: _core.Task) -> Policy:
         network=network,
     )
     try:
-        policy.q_net.load_state_dict(state["weights"])
+        policy.q_net.load_state_dict(weights)
     except RuntimeError as error:
         raise UserError(f"{path}: the weights do not fit ({error})") from error
     policy.set_training_mode(False)

@@ -23,7 +23,6 @@ import torch as th
 
 from rtg import _core
 from rtg.bus import Bus
-from rtg.dataset import DatasetError
 from rtg.errors import RunError, UserError
 from rtg.node_status import NodeStatus
 from rtg.offline_data import FileSource, Source
@@ -102,7 +101,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         with StopSignals() as stop:
             return train(_parse(argv), stop)
-    except (UserError, _core.ConfigError, DatasetError, FileNotFoundError) as error:
+    except (UserError, _core.ConfigError, FileNotFoundError) as error:
         print(f"rtg.trainer: {error}", file=sys.stderr)
         return 2
     except RunError as error:

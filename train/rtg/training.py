@@ -181,7 +181,7 @@ class Training:
         """Goes back to the checkpoint in the run folder. Raises UserError if it does not fit."""
         path = self._checkpoint
         state = checkpoint.read(path)
-        policy_file.check_identity(path, state.get("identity", {}), self._identity)
+        policy_file.check_identity(path, state.get("identity"), self._identity)
         whole, part = self._transition_files()
         rows = read_rows(whole if whole.exists() else part, self.task)
         self.data.restore(state["data"], rows)

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg.bus import Bus
+from rtg.dataset import SOURCES
+from rtg.errors import RunError
 from rtg.messages import message_type
 
 ACK_INTERVAL = 0.5  # [s], without progress
@@ -18,7 +20,6 @@ RETRY_INTERVAL = 0.1  # [s], between two questions for the same rows
 MIN_INTERVAL = 0.01  # [s], between any two acknowledgements
 MAX_RANGES = 32  # of one acknowledgement
 FAREWELLS = 10  # acknowledgements of the complete stream at once: who has it all may stop talking
-SOURCES = 3  # step replay, chain replay, roll-out
 
 
 class Rows(NamedTuple):
@@ -157,7 +158,7 @@ def to_rows(message: Any, bodies: int, headings: int) -> Rows | None:
     legal = (
         ((rows.action >= 0) & (rows.action < headings)).all()
         and ((success == 0) | (success == 1)).all()
-        and ((rows.source >= 0) & (rows.source < SOURCES)).all()
+        and ((rows.source >= 0) & (rows.source < len(SOURCES))).all()
     )
     return rows if legal else None
 
@@ -235,7 +236,7 @@ class TransitionStream:
         if self._stream is None:
             self._stream = stream
         if stream != self._stream:
-            raise RuntimeError("the coordinator was restarted: two streams must not be mixed")
+            raise RunError("the coordinator was restarted: two streams must not be mixed")
 
     def _acknowledge(self) -> None:
         if self._stream is None:
