@@ -102,6 +102,7 @@ def main(words: Sequence[str] | None = None) -> int:
         print(f"rtg: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
+        print("rtg: interrupted", file=sys.stderr)
         return 1
 
 

@@ -28,9 +28,9 @@ Stop = Callable[[], bool]
 class Training:
     """The learner with everything around it, writing to a run folder.
 
-    It goes on while transitions come in; polling for them never waits. What it does next depends on
-    its checkpoint, the transitions and at which step they come in: from a finished set, and from a
-    stream that delivers alike, a resumed run goes on with the same bits. LCM does not deliver
+    Once begun, learning does not wait for transitions that still come in. What it does next depends
+    on its checkpoint, the transitions and at which step they come in: from a finished set, and from
+    a stream that delivers alike, a resumed run goes on with the same bits. LCM does not deliver
     alike, so over it two runs of one seed may learn differently.
     """
 
