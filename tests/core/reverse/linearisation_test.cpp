@@ -30,16 +30,25 @@ VectorXd conditions(const ReverseProblem& problem, const Iterate& x) {
   return -joined(lin.right_hand_side(v));
 }
 
-/// The system's matrix against central differences of the first-order conditions along random
-/// directions on which the forces follow the gaps (Δλ = b·Δp).
+/// Five random directions and that of the gradient, along which errors do not average out.
+std::vector<BlockVector> directions(const Linearisation& lin, const Violation& v) {
+  Rng rng(5);
+  std::vector<BlockVector> all(5);
+  for (BlockVector& along : all)
+    for (const MatrixXd& A : lin.matrix().A) along.push_back(noise(A.rows(), 1.0, rng));
+  all.push_back(lin.right_hand_side(v));
+  const double size = joined(all.back()).lpNorm<Eigen::Infinity>();
+  for (VectorXd& block : all.back()) block /= size;
+  return all;
+}
+
+/// The system's matrix against central differences of the first-order conditions along directions
+/// on which the forces follow the gaps (Δλ = b·Δp).
 void expect_matrix_is_derivative(const ReverseProblem& problem, const Iterate& x) {
   const Linearisation lin(problem, x, {true, 0.0});
   Violation none = lin.violation();
   for (VectorXd& c : none.complementarity) c.setZero();
-  Rng rng(5);
-  for (int trial = 0; trial < 5; ++trial) {
-    BlockVector along;
-    for (const MatrixXd& A : lin.matrix().A) along.push_back(noise(A.rows(), 1.0, rng));
+  for (const BlockVector& along : directions(lin, none)) {
     const Direction d = lin.direction(along, none);
     const double t = 1e-7;
     const VectorXd difference =
@@ -111,10 +120,7 @@ TEST(Linearisation, RightHandSideIsMinusTheGradientOfTheLagrangian) {
   Violation v = lin.violation();
   for (VectorXd& c : v.complementarity) c.setZero();
   const VectorXd gradient = -joined(lin.right_hand_side(v));
-  Rng rng(5);
-  for (int trial = 0; trial < 5; ++trial) {
-    BlockVector along;
-    for (const MatrixXd& A : lin.matrix().A) along.push_back(noise(A.rows(), 1.0, rng));
+  for (const BlockVector& along : directions(lin, v)) {
     const Direction d = lin.direction(along, v);
     const double t = 1e-7, slope = gradient.dot(joined(along));
     EXPECT_NEAR(

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/forward/newton_simulator.hpp"
+#include "core/reverse/merit_sqp.hpp"
 #include "tests/support/free_push.hpp"
 #include "tests/support/random_push.hpp"
 
@@ -63,6 +64,23 @@ TEST(ReverseSimulator, WithThePapersPresetAFreeRobotFollowsTheClosedForm) {
   // A stationarity of 1e-4 over the curvature 2ε of the controls' price, times dx/dc.
   EXPECT_NEAR(result.start[0].x, end[0].x - moved(d.x()), 0.02);
   EXPECT_NEAR(result.start[0].y, end[0].y - moved(d.y()), 0.02);
+}
+
+TEST(ReverseSimulator, ThePapersPresetIsItsSqpFromRestWithThePlainBarrier) {
+  const Scene scene = robot_and_boxes(1);
+  ReverseConfig config = reverse_preset(ReversePreset::kPaper);
+  config.max_iterations = 5;  // with contacts it takes long
+  const ReverseJob job{{{0, 0, 0}, {1.54, 0.1, 0}}, 0};
+  PhysicsConfig plain;
+  plain.plain_barrier = true;
+  const StepEnergy energy(scene, plain, kPush);
+  const ReverseProblem problem{energy, config, stacked(job.end), direction(0, kPush), 10};
+  const SqpResult direct = merit_sqp(problem, static_iterate(problem));
+  const ReverseResult result = solve(scene, job, config);
+  EXPECT_EQ(result.status, direct.status);
+  EXPECT_EQ(result.iterations, 5);
+  EXPECT_EQ(result.start, unstacked(direct.x.p[0]));
+  EXPECT_NE(result.start, job.end);
 }
 
 /// Random scenes after a push of the model, solved back and pushed again: how far the bodies are

@@ -90,13 +90,17 @@ TEST(BeamSelection, DrawsTheRandomShareEvenlyFromTheRest) {
   for (const auto& [index, count] : drawn) EXPECT_NEAR(count, kDraws / 6, 5 * 24);
 }
 
-TEST(BeamSelection, GivesTheRandomShareUpForNothing) {
+TEST(BeamSelection, LeavesTheRandomShareRoomBesideALargeQuota) {
   std::vector<BeamEntry> entries = ranked(30);
   for (std::size_t k = 10; k < 30; ++k) entries[k].contact = true;
-  const Indices beam = select(entries, config(10, 1.0, 0.3));  // quota and share exceed the beam
-  ASSERT_EQ(beam.size(), 10U);
-  const auto best = std::ranges::count_if(beam, [](std::size_t k) { return 10 <= k && k < 17; });
-  EXPECT_EQ(best, 7);
+  std::set<std::size_t> drawn;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const Indices beam = select(entries, config(10, 1.0, 0.3), {}, seed);
+    ASSERT_EQ(beam.size(), 10U);
+    for (std::size_t k = 10; k < 17; ++k) ASSERT_EQ(std::ranges::count(beam, k), 1) << k;
+    drawn.insert(beam.begin(), beam.end());
+  }
+  EXPECT_EQ(drawn.size(), 30U);  // each of the other 23 in 600 draws
 }
 
 TEST(BeamSelection, KeepsTheBestOfEachCell) {

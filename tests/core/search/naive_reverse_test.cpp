@@ -65,6 +65,11 @@ TEST_F(NaiveReverseTest, PullsTheObjectInFrontWithItUnturned) {
   expect_pulled(1);
 }
 
+TEST_F(NaiveReverseTest, PullsAnObjectThatItOverlaps) {
+  add(box(1, 1), {1.85, 0.5, 0.0});  // by 0.15 m
+  expect_pulled(1);
+}
+
 TEST_F(NaiveReverseTest, PullsNothingThatIsOutOfReach) {
   add(box(1, 1), {2.21, 0.5, 0.0});  // 0.21 m ahead
   expect_pulled(0);

@@ -123,20 +123,22 @@ TEST(ThreadPool, PassesExceptionsOnToTheCaller) {
   EXPECT_EQ(solve(numbered<ReverseJob>(7)).size(), 7U);  // and goes on working
 }
 
-/// Keeps the calling thread busy until it has used `seconds` of CPU time; false if the clock
-/// stands.
-bool burn(double seconds) {
+constexpr double kWork = 0.05;  // CPU time [s]
+
+/// Keeps the calling thread busy until it has used kWork; false if the clock stands.
+bool work() {
+  const double begin = thread_cpu_s();
   for (long k = 0; k < 100'000'000; ++k)
-    if (thread_cpu_s() >= seconds) return true;
+    if (thread_cpu_s() - begin >= kWork) return true;
   return false;
 }
 
 TEST(ThreadPool, CpuTimeIsThatOfTheCallingThread) {
   const double before = thread_cpu_s();
-  bool burned = false;
-  std::jthread([&burned] { burned = burn(0.05); }).join();
-  EXPECT_TRUE(burned);
-  EXPECT_LT(thread_cpu_s() - before, 0.05);
+  bool worked = false;
+  std::jthread([&worked] { worked = work(); }).join();
+  EXPECT_TRUE(worked);
+  EXPECT_LT(thread_cpu_s() - before, kWork);
 }
 
 }  // namespace
