@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/math/kkt_solver.hpp"
+#include "core/reverse/reverse_job.hpp"
 
 namespace rtg {
 
@@ -28,6 +29,7 @@ struct ReverseConfig {
   double terminal_tolerance = 0.05;  // a solution that misses the final state by more fails [m]
   double proximal_start = 1.0;       // δ of the first iteration
   double exact_below = 0.1;          // exact Lagrangian Hessian once δ is no larger
+  int releases = 2;                  // predecessors besides the one of the whole push
 
   template <class Visitor>
   void visit(Visitor& v) {
@@ -44,6 +46,7 @@ struct ReverseConfig {
     v.number("terminal_weight", terminal_weight, 0.0, 1e9, "holds the final state; 0: fixes it");
     v.number("terminal_tolerance", terminal_tolerance, 0.0, 100.0, "largest miss of it [m]");
     v.number("proximal_start", proximal_start, 0.0, 1e9, "regularisation of the first step");
+    v.integer("releases", releases, 0, kMaxStarts - 1, "starts whose objects are met on the way");
     v.number("exact_below", exact_below, 0.0, 1e9, "regularisation that allows exact Hessians");
   }
 };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "core/reverse/solve_status.hpp"
 #include "core/world/pose.hpp"
 
@@ -13,12 +15,15 @@ struct ReverseJob {
   bool operator==(const ReverseJob&) const = default;
 };
 
-/// Answer to a ReverseJob. `start` is finite always, and a predecessor only if status is
-/// kConverged.
+/// Most predecessors in the answer to one job.
+inline constexpr int kMaxStarts = 8;
+
+/// Answer to a ReverseJob. `starts`: predecessors, finite, the one of the whole push first; 1 to
+/// kMaxStarts if status is kConverged, else none.
 struct ReverseResult {
   SolveStatus status = SolveStatus::kNonFinite;
   int iterations = 0;
-  Poses start;
+  std::vector<Poses> starts = {};
   double cpu_s = 0.0;  // thread CPU time; the one field that is not a function of the job
 };
 

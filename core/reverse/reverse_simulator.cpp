@@ -9,6 +9,31 @@
 #include "core/world/selection.hpp"
 
 namespace rtg {
+namespace {
+
+constexpr double kDragged = 0.05;  // a push that moves nothing further has one predecessor [m]
+
+/// The start of a quasi-static push p_0 ... p_h, and others of which it makes the same end: nothing
+/// but the robot moves until the robot is where it meets the objects, so they may as well stand
+/// where they are at a later sub-step k, the robot at its start.
+///
+///   start_j = (robot of p_0, objects of p_k),  k = h·j/(releases + 1),  j = 0 ... releases
+std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int releases) {
+  std::vector<VectorXd> out{p[0]};
+  const Eigen::Index objects = p[0].size() - 3;
+  if ((p.back() - p[0]).tail(objects).lpNorm<Eigen::Infinity>() < kDragged) return out;
+  for (int j = 1; j <= releases; ++j) {
+    const std::size_t k =
+        (p.size() - 1) * static_cast<std::size_t>(j) / static_cast<std::size_t>(releases + 1);
+    VectorXd start = p[k];
+    start.head(3) = p[0].head(3);
+    out.push_back(std::move(start));
+  }
+  return out;
+}
+
+}  // namespace
+
 ReverseSimulator::ReverseSimulator(Scene scene, const PhysicsConfig& physics,
                                    const PushConfig& push, const ReverseConfig& config)
     : scene_(std::move(scene)), physics_(physics), push_(push), config_(config) {
@@ -16,15 +41,8 @@ ReverseSimulator::ReverseSimulator(Scene scene, const PhysicsConfig& physics,
 }
 
 ReverseResult ReverseSimulator::solve(const ReverseJob& job) const {
-  ReverseResult result{SolveStatus::kNonFinite, 0, job.end, 0.0};
-  if (job.end.size() != scene_.size() || !is_finite(job.end)) {
-    result.start.assign(scene_.size(), Pose{});
-    return result;
-  }
-  if (is_pruned(scene_, push_, job)) {
-    result.status = SolveStatus::kPruned;
-    return result;
-  }
+  if (job.end.size() != scene_.size() || !is_finite(job.end)) return {SolveStatus::kNonFinite};
+  if (is_pruned(scene_, push_, job)) return {SolveStatus::kPruned};
   return solve_legal(job);
 }
 
@@ -37,12 +55,10 @@ ReverseResult ReverseSimulator::solve_legal(const ReverseJob& job) const {
   const SqpResult solved = config_.preset == ReversePreset::kPaper
                                ? merit_sqp(problem, static_iterate(problem))
                                : solve_with_restoration(problem);
-  ReverseResult result{solved.status, solved.iterations, job.end, 0.0};
-  if (!solved.x.p[0].allFinite()) {
-    result.status = SolveStatus::kNonFinite;
-    return result;
-  }
-  result.start = merged(job.end, unstacked(solved.x.p[0]), bodies);
+  ReverseResult result{solved.status, solved.iterations};
+  if (result.status != SolveStatus::kConverged) return result;
+  for (const VectorXd& start : predecessors(solved.x.p, config_.releases))
+    result.starts.push_back(merged(job.end, unstacked(start), bodies));
   return result;
 }
 

@@ -9,11 +9,31 @@
 #include "core/search/ranking.hpp"
 
 namespace rtg {
-BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, Poses target,
-                       std::uint64_t seed)
-    : task_(task), config_(config), metric_(task.scene), target_(std::move(target)), rng_(seed) {}
+namespace {
 
-int BeamSearch::plant(const ReplayBatch& replay, SearchStats& stats) {
+/// Cells of states that differ in the robot only.
+constexpr StateMetric::Cells kLayoutCells{1e9, StateMetric::Cells{}.object, 0.5};
+
+}  // namespace
+
+BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, std::uint64_t seed)
+    : task_(task), config_(config), metric_(task.scene), rng_(seed) {}
+
+void BeamSearch::aim(const Poses& target, const ReplayBatch& replay, SearchStats& stats) {
+  target_ = target;
+  plant(replay, stats);
+  const Score score = layer_score();
+  std::vector<BeamEntry> entries;
+  for (const Node& n : nodes_)
+    entries.push_back({score({0, n.action, n.poses, n.poses}), metric_.cell(n.poses, {}),
+                       metric_.cell(n.poses, kLayoutCells), false});
+  beam_.clear();
+  std::unordered_set<std::uint64_t> none;
+  for (const std::size_t k : select_beam(entries, config_, rng_, none))
+    beam_.push_back(static_cast<int>(k));
+}
+
+void BeamSearch::plant(const ReplayBatch& replay, SearchStats& stats) {
   std::vector<ReplayJob> goals;
   for (Poses& goal : goal_roots(task_, config_, target_, rng_))
     goals.push_back({std::move(goal), kSettle});
@@ -24,11 +44,8 @@ int BeamSearch::plant(const ReplayBatch& replay, SearchStats& stats) {
       ++stats.unsettled_goals;
       continue;
     }
-    seen_.insert(metric_.cell(rest, {}));
-    beam_.push_back(static_cast<int>(nodes_.size()));
-    nodes_.push_back({std::move(rest), -1, -1, 0});
+    if (seen_.insert(metric_.cell(rest, {})).second) nodes_.push_back({std::move(rest), -1, -1, 0});
   }
-  return static_cast<int>(nodes_.size());
 }
 
 std::vector<ReverseJob> BeamSearch::jobs() const {
@@ -91,13 +108,14 @@ void BeamSearch::advance(std::span<const Growth> growths, const Score& score) {
     const Candidate& c = g.candidate;
     if (c.miss > config_.gap_tolerance) continue;
     eligible.push_back(&g);
-    const StateMetric::Cells anywhere{1e9, StateMetric::Cells{}.object, 0.5};
     entries.push_back(
-        {score(c), metric_.cell(c.start, {}), metric_.cell(c.start, anywhere), c.moved > 0});
+        {score(c), metric_.cell(c.start, {}), metric_.cell(c.start, kLayoutCells), c.moved > 0});
   }
   beam_.clear();
+  best_ = std::numeric_limits<double>::infinity();
   for (const std::size_t k : select_beam(entries, config_, rng_, seen_)) {
     const Candidate& c = eligible[k]->candidate;
+    best_ = std::min(best_, entries[k].score);
     beam_.push_back(static_cast<int>(nodes_.size()));
     nodes_.push_back({c.start, c.parent, c.action, eligible[k]->depth});
   }

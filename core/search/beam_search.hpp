@@ -21,16 +21,18 @@ struct Node {
   int depth = 0;
 };
 
-/// One tree of reverse steps, grown layer by layer from goal states (Algorithm 1).
+/// Trees of reverse steps, grown layer by layer from goal states (Algorithm 1) towards one target
+/// after the other.
 class BeamSearch {
  public:
-  /// `target` is the layout to grow to. The task must outlive the search.
-  BeamSearch(const Task& task, const SearchConfig& config, Poses target, std::uint64_t seed);
+  /// The task must outlive the search.
+  BeamSearch(const Task& task, const SearchConfig& config, std::uint64_t seed);
 
-  /// Starts from up to `config.breadth` distinct goal states of the task's sampler, brought to rest
-  /// by `replay`: the ones nearest to the target among `config.root_draws` times as many, objects
-  /// that look the same exchanged so that each begins near its place. Returns the number found.
-  int plant(const ReplayBatch& replay, SearchStats& stats);
+  /// Heads for `target`: plants up to `config.breadth` distinct goal states of the task's sampler,
+  /// brought to rest by `replay`: the ones nearest to the target among `config.root_draws` times as
+  /// many, objects that look the same exchanged so that each begins near its place. The next layer
+  /// grows from the best of all nodes.
+  void aim(const Poses& target, const ReplayBatch& replay, SearchStats& stats);
 
   /// A replayed candidate with the node that it came from.
   struct Growth {
@@ -42,6 +44,9 @@ class BeamSearch {
   /// the next beam. All replayed candidates come back, misses too; empty if the tree cannot grow.
   std::vector<Growth> grow(const SolveBatch& solve, const ReplayBatch& replay, SearchStats& stats);
 
+  /// Least score of the beam.
+  double best() const { return best_; }
+
   std::span<const Node> nodes() const { return nodes_; }
   std::span<const int> beam() const { return beam_; }  // indices into nodes()
 
@@ -49,6 +54,7 @@ class BeamSearch {
   Chain chain(int node) const;
 
  private:
+  void plant(const ReplayBatch& replay, SearchStats& stats);
   std::vector<ReverseJob> jobs() const;
   Score layer_score() const;
   std::vector<Candidate> worth_replaying(std::vector<Candidate> all, const Score& score) const;
@@ -61,6 +67,7 @@ class BeamSearch {
   Rng rng_;
   std::vector<Node> nodes_;
   std::vector<int> beam_;
+  double best_ = 0.0;
   std::unordered_set<std::uint64_t> seen_;
 };
 

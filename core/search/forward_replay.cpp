@@ -35,14 +35,15 @@ std::vector<Candidate> proposals(const Task& task, std::span<const ReverseJob> j
                                  std::span<const ReverseResult> answers, SearchStats& stats) {
   std::vector<Candidate> out;
   for (std::size_t k = 0; k < jobs.size(); ++k) {
-    if (answers[k].status != SolveStatus::kConverged) continue;
-    Poses start = float_rounded(answers[k].start);
-    if (!legal_state(task, start)) {
-      ++stats.illegal_starts;
-      continue;
+    for (const Poses& exact : answers[k].starts) {
+      Poses start = float_rounded(exact);
+      if (!legal_state(task, start)) {
+        ++stats.illegal_starts;
+        continue;
+      }
+      const int moved = objects_moved(start, jobs[k].end);
+      out.push_back({static_cast<int>(k), jobs[k].action, std::move(start), jobs[k].end, moved});
     }
-    const int moved = objects_moved(start, jobs[k].end);
-    out.push_back({static_cast<int>(k), jobs[k].action, std::move(start), jobs[k].end, moved});
   }
   return out;
 }

@@ -37,7 +37,7 @@ int objects_moved(const Poses& a, const Poses& b);
 /// Whether a state can be the start of a transition: finite, robot in the arena, no overlap.
 bool legal_state(const Task& task, const Poses& poses);
 
-/// The converged answers whose start, rounded to float, is a legal state; the others are counted.
+/// The starts of converged answers that, rounded to float, are legal states; others are counted.
 /// `end` is still the state that the job asked for. `jobs` and `answers` have equal length.
 std::vector<Candidate> proposals(const Task& task, std::span<const ReverseJob> jobs,
                                  std::span<const ReverseResult> answers, SearchStats& stats);

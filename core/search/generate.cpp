@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "core/search/beam_search.hpp"
 #include "core/search/coverage.hpp"
+#include "core/search/lost_state.hpp"
 #include "core/search/roll_out.hpp"
 
 namespace rtg {
@@ -15,9 +17,10 @@ namespace {
 // Keys of the independent random streams of one run.
 enum Stream : std::uint64_t { kTrees = 1, kTargets, kRollOuts, kNoise, kEvaluation };
 
-constexpr int kWave = 50;  // roll-outs that run in lockstep
-constexpr int kMaxBarren =
-    8;  // trees or waves without a transition after which there is no use going on
+constexpr int kWave = 50;         // roll-outs that run in lockstep
+constexpr int kProbes = 16;       // episodes that look for the next round's target
+constexpr double kArrived = 0.5;  // a node so near is at its target [m], in the policy's metric
+constexpr int kMaxBarren = 8;     // rounds or waves without a transition before it gives up
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
@@ -38,13 +41,14 @@ class Generation {
         seams_(seams),
         metric_(task.scene),
         coverage_(task),
-        policy_(task) {}
+        policy_(task),
+        search_(task, config, Rng(seed, kTrees << 32).word()) {}
 
   GenerationReport run() {
     const auto trees = static_cast<long>(
         static_cast<double>(config_.transitions) * (1.0 - config_.rollout_share) + 0.5);
     for (int barren = 0; stored() < trees && barren < kMaxBarren && !cancelled();)
-      barren = grow_tree(trees) ? 0 : barren + 1;
+      barren = grow(trees) ? 0 : barren + 1;
     if (!cancelled()) judge_trees();
     for (int barren = 0; stored() < config_.transitions && barren < kMaxBarren && !cancelled();)
       barren = roll_out() ? 0 : barren + 1;
@@ -65,27 +69,55 @@ class Generation {
     return kept;
   }
 
-  /// Whether it stored anything.
-  bool grow_tree(long limit) {
+  /// One round: trees grow towards a target until it is reached or comes no nearer. Whether it
+  /// stored anything.
+  bool grow(long limit) {
     const long before = stored();
-    const auto key = static_cast<std::uint64_t>(tree_count_);
-    Rng targets(seed_, kTargets << 32 | key);
-    BeamSearch tree(task_, config_, jittered_starts(task_, 1, config_.target_jitter, targets)[0],
-                    Rng(seed_, kTrees << 32 | key).word());
-    tree.plant(seams_.replay, stats_);
     const long layers =
         limit - static_cast<long>(config_.chain_share * static_cast<double>(limit - before));
+    const std::size_t known = search_.nodes().size();
+    const Poses target = next_target();
+    search_.aim(target, seams_.replay, stats_);
+    double best = std::numeric_limits<double>::infinity();
+    int patience = config_.patience;
     for (int layer = 1; layer <= config_.depth && stored() < layers && !cancelled(); ++layer) {
-      const auto growths = tree.grow(seams_.solve, seams_.replay, stats_);
+      const auto growths = search_.grow(seams_.solve, seams_.replay, stats_);
       if (growths.empty()) break;
       store_growths(growths, layers);
-      report_progress("tree " + std::to_string(tree_count_ + 1), layer, config_.depth);
-      if (start_nodes(tree) >= config_.start_nodes) break;
+      report_progress("round " + std::to_string(rounds_ + 1), layer, config_.depth);
+      patience = search_.best() < best ? config_.patience : patience - 1;
+      best = std::min(best, search_.best());
+      if (patience <= 0 || arrivals(known, target) >= config_.arrivals) break;
     }
-    replay_chains_of(tree, before, limit);
-    for (const Node& n : tree.nodes()) report_.nodes.push_back({n.poses, n.depth, tree_count_});
-    ++tree_count_;
+    replay_chains_from(known, before, limit);
+    note_nodes(known);
+    ++rounds_;
     return stored() > before;
+  }
+
+  /// Where the policy of the trees so far gets lost on its way from a jittered start; the jittered
+  /// start itself if it does not.
+  Poses next_target() {
+    Rng rng(seed_, kTargets << 32 | static_cast<std::uint64_t>(rounds_));
+    const std::vector<Poses> starts = jittered_starts(task_, kProbes, config_.target_jitter, rng);
+    return lost_state(task_, policy_, starts, seams_.replay, stats_).value_or(starts[0]);
+  }
+
+  /// How many nodes from index `first` on are at the target.
+  int arrivals(std::size_t first, const Poses& target) const {
+    const auto nodes = search_.nodes().subspan(first);
+    return static_cast<int>(std::ranges::count_if(
+        nodes, [&](const Node& n) { return metric_.distance(n.poses, target) <= kArrived; }));
+  }
+
+  /// Reports the nodes from index `first` on.
+  void note_nodes(std::size_t first) {
+    for (const Node& n : search_.nodes().subspan(first)) {
+      report_.nodes.push_back({n.poses, n.depth, rounds_});
+      if (n.depth == 0 || !in_start_region(task_, metric_, n.poses)) continue;
+      int& least = report_.start_region_depth;
+      least = least < 0 ? n.depth : std::min(least, n.depth);
+    }
   }
 
   /// A state in which the goal holds ends an episode, so nothing starts there.
@@ -106,35 +138,25 @@ class Generation {
     }
   }
 
-  int start_nodes(const BeamSearch& tree) {
-    int count = 0;
-    for (const Node& n : tree.nodes()) {
-      if (n.depth == 0 || !in_start_region(task_, metric_, n.poses)) continue;
-      ++count;
-      int& least = report_.start_region_depth;
-      least = least < 0 ? n.depth : std::min(least, n.depth);
-    }
-    return count;
-  }
-
-  /// The chains that begin nearest to the start, for chain_share of what the tree has stored.
-  void replay_chains_of(const BeamSearch& tree, long before, long limit) {
+  /// The chains that begin nearest to the start, of nodes from index `first` on, for chain_share of
+  /// what the round has stored.
+  void replay_chains_from(std::size_t first, long before, long limit) {
     const double share = config_.chain_share;
     if (share >= 1.0 || share <= 0.0) return;
     const auto wanted =
         static_cast<long>(static_cast<double>(stored() - before) * share / (1.0 - share));
     std::vector<std::pair<double, int>> order;
-    for (int k = 0; k < static_cast<int>(tree.nodes().size()); ++k)
-      if (tree.nodes()[static_cast<std::size_t>(k)].depth > 0)
-        order.emplace_back(
-            metric_.layout_distance(tree.nodes()[static_cast<std::size_t>(k)].poses, task_.start),
-            k);
+    const std::span<const Node> nodes = search_.nodes();
+    for (std::size_t k = first; k < nodes.size(); ++k)
+      if (nodes[k].depth > 0)
+        order.emplace_back(metric_.layout_distance(nodes[k].poses, task_.start),
+                           static_cast<int>(k));
     std::sort(order.begin(), order.end());
     std::vector<Chain> chains;
     long planned = 0;
     for (const auto& [distance, node] : order) {
       if (planned >= wanted) break;
-      chains.push_back(tree.chain(node));
+      chains.push_back(search_.chain(node));
       planned += static_cast<long>(chains.back().actions.size());
     }
     const long room = std::min(limit, stored() + wanted);
@@ -209,9 +231,10 @@ class Generation {
   StateMetric metric_;
   Coverage coverage_;
   TreePolicy policy_;
+  BeamSearch search_;
   SearchStats stats_;
   GenerationReport report_;
-  int tree_count_ = 0, wave_count_ = 0;
+  int rounds_ = 0, wave_count_ = 0;
 };
 
 }  // namespace

@@ -20,9 +20,10 @@ struct GenerationSeams {
   std::function<bool()> cancelled = {};                // polled between layers; may be empty
 };
 
-/// The whole generation: trees of reverse steps from sampled goals (beam search), forward replay of
-/// every converged candidate, end-to-end replay of chains, tree policy, its roll-outs, coverage. A
-/// pure function of (task, config, seed) and the seams.
+/// The whole generation: trees of reverse steps from sampled goals (beam search), first towards the
+/// start, then to where the tree policy still gets lost; forward replay of every converged
+/// candidate, end-to-end replay of chains, roll-outs of the policy, coverage. A pure function of
+/// (task, config, seed) and the seams.
 GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams);
 

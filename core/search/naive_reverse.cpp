@@ -63,19 +63,18 @@ bool NaiveReverse::blocked(const Poses& end, std::size_t touched, const Vector2d
 }
 
 ReverseResult NaiveReverse::solve(const ReverseJob& job) const {
-  ReverseResult result{SolveStatus::kPruned, 0, job.end, 0.0};
   const Vector2d ahead = direction(job.action, push_);
   const std::size_t touched = touched_object(job.end, ahead);
-  result.start[0] = moved(job.end[0], -push_.stride * ahead);
-  if (!in_arena(result.start[0], push_) || blocked(job.end, touched, -push_.stride * ahead))
-    return result;
+  Poses start = job.end;
+  start[0] = moved(job.end[0], -push_.stride * ahead);
+  if (!in_arena(start[0], push_) || blocked(job.end, touched, -push_.stride * ahead))
+    return {SolveStatus::kPruned};
   if (touched != 0) {
     const double pull = Rng(key_of(job)).uniform(kLeastPull, 1.0) * push_.stride;
-    result.start[touched] = moved(job.end[touched], -pull * ahead);
+    start[touched] = moved(job.end[touched], -pull * ahead);
   }
-  const bool overlap = first_overlap(scene_, result.start).has_value();
-  result.status = overlap ? SolveStatus::kInfeasible : SolveStatus::kConverged;
-  return result;
+  if (first_overlap(scene_, start)) return {SolveStatus::kInfeasible};
+  return {SolveStatus::kConverged, 0, {std::move(start)}};
 }
 
 }  // namespace rtg

@@ -11,12 +11,14 @@ namespace rtg {
 
 /// Where a tree should grow to: its score is the least there.
 ///
-///   start_distance: Σ_objects (|x - x*| + r|θ - θ*|) + 0.12 · way of the robot to its next
-///   contact,
+///   start_distance: about how many pushes are left,
 ///
-/// x*, θ* the layout `target`, r as in StateMetric. The next contact: the robot stands ahead of
-/// an object on the line to its place x*, ready to pull it there; with all objects in place, the
-/// robot's own place.
+///     Σ_objects [(|x - x*| + r|θ - θ*|) / stride + 2·min(1, |x - x*| / 0.4 m)] + walk,
+///
+/// x*, θ* the layout `target`, r as in StateMetric; 2 is the price of getting from one object to
+/// the next. `walk`: pushes until the robot touches an object that is out of place on the side
+/// towards its place, ready to pull it there (0, 1, or the strides of the way, but at least 2);
+/// with all objects in place, the way to the robot's own, in strides.
 ///   novelty:      how many of the tree's states share the coarse cell of the state
 ///   displacement: - how far the step moved the objects, in all [m]
 using Score = std::function<double(const Candidate&)>;

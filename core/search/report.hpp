@@ -11,7 +11,7 @@ namespace rtg {
 
 /// One line of the progress display.
 struct Progress {
-  std::string phase;  // "tree 1", "roll-outs", ...
+  std::string phase;  // "round 1", "roll-outs", ...
   int layer = 0;      // of `depth`
   int depth = 0;
   long transitions = 0;  // stored so far
@@ -24,7 +24,7 @@ struct Progress {
 struct ReportNode {
   Poses poses;
   int depth = 0;  // actions to success along its chain
-  int tree = 0;
+  int tree = 0;   // round of the search that found it
 };
 
 /// What a generation did: the generation part of summary.json plus the samples behind its pictures.

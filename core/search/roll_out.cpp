@@ -40,15 +40,13 @@ class Lockstep {
     for (std::size_t k = 0; k < alive_.size(); ++k) {
       if (!stats.count(results[k])) continue;
       states_[alive_[k]].used.push_back(choices[k].entry);
+      episodes_[alive_[k]].strayed.push_back(choices[k].distance);
       if (record(alive_[k], pushes[k], results[k].end)) still.push_back(alive_[k]);
     }
     alive_ = std::move(still);
   }
 
-  std::vector<Episode> take() {
-    for (std::size_t e = 0; e < episodes_.size(); ++e) episodes_[e].entries = states_[e].used;
-    return std::move(episodes_);
-  }
+  std::vector<Episode> take() { return std::move(episodes_); }
 
  private:
   int action(const TreePolicy::Choice& choice, Rng& rng) const {

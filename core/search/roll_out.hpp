@@ -14,7 +14,7 @@ namespace rtg {
 /// One episode of the tree policy.
 struct Episode {
   std::vector<Transition> steps;  // source kRollOut
-  std::vector<int> entries;       // entry of the policy behind each step
+  std::vector<double> strayed;    // distance from the policy's entry at each step [m]
   bool success = false;
 };
 

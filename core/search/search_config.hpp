@@ -18,15 +18,16 @@ struct SearchConfig {
   Ranking ranking = Ranking::kStartDistance;
   int transitions = 60000;       // stored in all
   double rollout_share = 0.5;    // of them from roll-outs of the tree policy
-  int breadth = 64;              // B, nodes kept per layer
-  int depth = 24;                // D, layers per tree at most
-  double contact_quota = 0.6;    // share of the beam reserved for nodes whose step moved an object
+  int breadth = 32;              // B, nodes kept per layer
+  int depth = 24;                // D, layers per round at most
+  double contact_quota = 0.4;    // share of the beam reserved for nodes whose step moved an object
   double random_share = 0.15;    // share of the beam drawn at random among the rest
   double gap_tolerance = 0.25;   // largest replay gap of a node that is expanded further [m]
   int free_moves = 12;           // steps that move no object replayed per node, the best ones
   int per_layout = 6;            // nodes of a beam that differ in the robot only, at most
   int root_draws = 4;            // goal states drawn per root kept
-  int start_nodes = 40;          // a tree with that many nodes in the start region is complete
+  int arrivals = 10;             // nodes at its target that end a round
+  int patience = 3;              // layers without a better node that end a round
   double target_jitter = 0.25;   // trees aim at the start with objects moved by up to ± this [m]
   double chain_share = 0.1;      // of the tree transitions from chains replayed end to end
   double rollout_jitter = 0.25;  // roll-outs start with objects moved by up to ± this [m]
@@ -40,14 +41,15 @@ struct SearchConfig {
     v.integer("transitions", transitions, 1, 100000000, "transitions to store");
     v.number("rollout_share", rollout_share, 0.0, 0.95, "share of them from tree-policy episodes");
     v.integer("breadth", breadth, 1, 100000, "nodes kept per layer");
-    v.integer("depth", depth, 1, 1000, "layers per tree at most");
+    v.integer("depth", depth, 1, 1000, "layers per round at most");
     v.number("contact_quota", contact_quota, 0.0, 1.0, "share of the beam that moved an object");
     v.number("random_share", random_share, 0.0, 1.0, "share of the beam drawn at random");
     v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest replay gap expanded [m]");
     v.integer("free_moves", free_moves, 0, 360, "steps without contact replayed per node");
     v.integer("per_layout", per_layout, 1, 100000, "nodes of a beam with objects alike");
     v.integer("root_draws", root_draws, 1, 1000, "goal states drawn per root kept");
-    v.integer("start_nodes", start_nodes, 1, 1000000, "start-region nodes that complete a tree");
+    v.integer("arrivals", arrivals, 1, 1000000, "nodes at its target that end a round");
+    v.integer("patience", patience, 1, 1000, "layers without a better node that end a round");
     v.number("target_jitter", target_jitter, 0.0, 10.0, "of the start layout a tree aims at [m]");
     v.number("chain_share", chain_share, 0.0, 1.0, "share of tree transitions from whole chains");
     v.number("rollout_jitter", rollout_jitter, 0.0, 10.0, "of the starts of roll-outs [m]");

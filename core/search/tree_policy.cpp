@@ -8,6 +8,7 @@
 namespace rtg {
 namespace {
 
+constexpr float kNone = std::numeric_limits<float>::infinity();
 constexpr float kDistanceWeight = 16.0F;  // actions per metre
 constexpr int kBlock = 512;               // entries whose coordinates stay in the first-level cache
 
@@ -41,11 +42,12 @@ void TreePolicy::scan(int begin, int end, std::span<const float> point, std::spa
   const auto least = std::min_element(score.begin(), score.begin() + static_cast<long>(n));
   if (*least >= best.score) return;
   const int entry = begin + static_cast<int>(least - score.begin());
-  best = {entry, action_[static_cast<std::size_t>(entry)], *least};
+  const auto e = static_cast<std::size_t>(entry);
+  best = {entry, action_[e], *least, (*least - depth_[e]) / kDistanceWeight};
 }
 
 std::vector<TreePolicy::Choice> TreePolicy::choose(std::span<const Query> queries) const {
-  std::vector<Choice> best(queries.size(), {-1, 0, std::numeric_limits<float>::infinity()});
+  std::vector<Choice> best(queries.size(), {-1, 0, kNone, kNone});
   std::vector<std::vector<float>> points(queries.size(), std::vector<float>(coordinate_.size()));
   for (std::size_t q = 0; q < queries.size(); ++q) metric_.embed(queries[q].state, points[q]);
   for (int begin = 0; begin < size(); begin += kBlock)

@@ -23,6 +23,7 @@ class TreePolicy {
   void add(const Poses& state, int action, double depth);
 
   /// Number of entries.
+  float depth(int k) const { return depth_[static_cast<std::size_t>(k)]; }
   int size() const { return static_cast<int>(depth_.size()); }
 
   /// Where an episode is and the entries it has used; an entry is used once per episode, or a
@@ -35,6 +36,7 @@ class TreePolicy {
     int entry = -1;  // -1: there is no entry left
     int action = 0;
     float score = 0.0F;
+    float distance = 0.0F;  // of the entry's state [m]
   };
   /// One choice per query, ties to the oldest entry.
   std::vector<Choice> choose(std::span<const Query> queries) const;

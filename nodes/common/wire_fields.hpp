@@ -42,7 +42,7 @@ void fields(V& v, rtg_msgs::reverse_result_t& m) {
   v.scalar(m.job_id), v.scalar(m.incarnation);
   v.count(m.n), v.count(m.n_poses);
   v.array(m.status, m.n), v.array(m.iterations, m.n), v.array(m.cpu_s, m.n);
-  v.array(m.start, m.n_poses);
+  v.array(m.starts, m.n), v.array(m.start, m.n_poses);
 }
 
 template <class V>

@@ -28,6 +28,18 @@ bool has_shape(const Message& message, const TaskShape& shape) {
   return message.n >= 1 && message.n_poses == std::int64_t{3} * message.n * shape.bodies;
 }
 
+/// Whether there are as many poses as the counts of starts say, and starts where they belong.
+bool has_starts(const rtg_msgs::reverse_result_t& message, const TaskShape& shape) {
+  std::int64_t sum = 0;
+  for (std::size_t i = 0; i < message.starts.size(); ++i) {
+    const bool converged = message.status[i] == static_cast<int>(SolveStatus::kConverged);
+    if (message.starts[i] < (converged ? 1 : 0) || message.starts[i] > (converged ? kMaxStarts : 0))
+      return false;
+    sum += message.starts[i];
+  }
+  return message.n >= 1 && message.n_poses == 3 * sum * shape.bodies;
+}
+
 bool all_between(const auto& values, auto least, auto most) {
   return std::all_of(values.begin(), values.end(), [=](auto v) { return v >= least && v <= most; });
 }
@@ -71,7 +83,8 @@ ReverseWork::ResultMessage ReverseWork::message(std::span<const Result> results)
     out.status.push_back(static_cast<std::int8_t>(r.status));
     out.iterations.push_back(r.iterations);
     out.cpu_s.push_back(r.cpu_s);
-    append_poses(r.start, out.start);
+    out.starts.push_back(static_cast<std::int8_t>(r.starts.size()));
+    for (const Poses& start : r.starts) append_poses(start, out.start);
   }
   set_counts(out, results.size(), out.start);
   return out;
@@ -89,19 +102,23 @@ std::optional<std::vector<ReverseJob>> ReverseWork::parse(const JobMessage& mess
 
 std::optional<std::vector<ReverseResult>> ReverseWork::parse(const ResultMessage& message,
                                                              const TaskShape& shape) {
-  if (!has_shape(message, shape) || !all_between(message.status, 0, kSolveStatusCount - 1) ||
-      !all_between(message.iterations, 0, 1000000000) || !all_between(message.cpu_s, 0.0, 1e9))
+  if (!all_between(message.status, 0, kSolveStatusCount - 1) ||
+      !all_between(message.iterations, 0, 1000000000) || !all_between(message.cpu_s, 0.0, 1e9) ||
+      !has_starts(message, shape))
     return std::nullopt;
   std::vector<Result> results;
-  for (std::size_t i = 0; i < message.status.size(); ++i)
-    results.push_back({static_cast<SolveStatus>(message.status[i]), message.iterations[i],
-                       poses_at(message.start, i, shape.bodies), message.cpu_s[i]});
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < message.status.size(); ++i) {
+    Result r{
+        static_cast<SolveStatus>(message.status[i]), message.iterations[i], {}, message.cpu_s[i]};
+    for (int k = 0; k < message.starts[i]; ++k)
+      r.starts.push_back(poses_at(message.start, at++, shape.bodies));
+    results.push_back(std::move(r));
+  }
   return results;
 }
 
-ReverseResult ReverseWork::given_up(const Job& job) {
-  return {SolveStatus::kNonFinite, 0, job.end, 0.0};
-}
+ReverseResult ReverseWork::given_up(const Job&) { return {SolveStatus::kNonFinite}; }
 
 ReplayWork::JobMessage ReplayWork::message(std::span<const Job> jobs) {
   JobMessage out{};
@@ -149,10 +166,12 @@ std::optional<std::vector<ReplayResult>> ReplayWork::parse(const ResultMessage& 
 
 ReplayResult ReplayWork::given_up(const Job& job) { return {job.start, false, 0.0}; }
 
-std::vector<std::size_t> unit_sizes(std::size_t jobs, std::size_t largest, const TaskShape& shape) {
-  const std::size_t per_job = static_cast<std::size_t>(shape.bodies) * 3 * sizeof(double) + kPerJob;
+std::vector<std::size_t> unit_sizes(std::size_t jobs, const UnitLimit& limit,
+                                    const TaskShape& shape) {
+  const std::size_t state = static_cast<std::size_t>(shape.bodies) * 3 * sizeof(double);
+  const std::size_t per_job = limit.states * state + kPerJob;
   const std::size_t fits = (kMaxMessageBytes - kEnvelope) / per_job;
-  const std::size_t most = std::max<std::size_t>(1, std::min(largest, fits));
+  const std::size_t most = std::max<std::size_t>(1, std::min(limit.jobs, fits));
   const std::size_t units = (jobs + most - 1) / most;
   std::vector<std::size_t> sizes;
   for (std::size_t k = 0; k < units; ++k) sizes.push_back((jobs + k) / units);

@@ -20,6 +20,12 @@ struct TaskShape {
   int headings = 0;
 };
 
+/// What a unit, the load of one message, carries at most.
+struct UnitLimit {
+  std::size_t jobs;
+  std::size_t states;  // in a job or its result
+};
+
 /// The two kinds of work that cross the bus: names, messages, and conversions between messages and
 /// the core's types. A unit is what one message carries. A message that makes no sense for the task
 /// (counts, range of actions, statuses) converts to nothing.
@@ -32,7 +38,7 @@ struct ReverseWork {
   static constexpr const char* kBeats = "RTG_REVERSE_BEAT";
   static constexpr const char* kJobs = "RTG_REVERSE_JOB";
   static constexpr const char* kResults = "RTG_REVERSE_RESULT";
-  static constexpr std::size_t kUnit = 24;  // jobs of a unit at most
+  static constexpr UnitLimit kUnit{.jobs = 24, .states = kMaxStarts};
 
   static JobMessage message(std::span<const Job> jobs);
   static ResultMessage message(std::span<const Result> results);
@@ -52,7 +58,7 @@ struct ReplayWork {
   static constexpr const char* kBeats = "RTG_REPLAY_BEAT";
   static constexpr const char* kJobs = "RTG_REPLAY_JOB";
   static constexpr const char* kResults = "RTG_REPLAY_RESULT";
-  static constexpr std::size_t kUnit = 24;
+  static constexpr UnitLimit kUnit{.jobs = 24, .states = 1};
 
   static JobMessage message(std::span<const Job> jobs);
   static ResultMessage message(std::span<const Result> results);
@@ -62,9 +68,10 @@ struct ReplayWork {
   static Result given_up(const Job& job);
 };
 
-/// Sizes of the units that `jobs` jobs of kind Work are dealt into: as few as fit into messages and
-/// kUnit allows, and as equal as possible.
-std::vector<std::size_t> unit_sizes(std::size_t jobs, std::size_t largest, const TaskShape& shape);
+/// Sizes of the units that `jobs` jobs are dealt into: as few as fit into messages and `limit`
+/// allows, and as equal as possible.
+std::vector<std::size_t> unit_sizes(std::size_t jobs, const UnitLimit& limit,
+                                    const TaskShape& shape);
 
 /// Name of a unit: a hash of the configuration and of everything that is asked.
 std::int64_t unit_id(std::span<const ReverseJob> jobs, std::int64_t config);

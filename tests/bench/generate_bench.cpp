@@ -42,6 +42,7 @@ struct Setter {
 
 struct Options {
   SearchConfig search;
+  ReverseConfig reverse;
   std::uint64_t seed = 1;
   int threads = 2;
 };
@@ -60,6 +61,7 @@ Options parsed(int argc, char** argv) {
     if (flag != "--set" || k + 2 >= argc) continue;
     Setter setter{argv[k + 1], std::atof(argv[k + 2])};
     options.search.visit(setter);
+    options.reverse.visit(setter);
     if (!setter.found) std::fprintf(stderr, "--set %s: no such key\n", argv[k + 1]);
     ++k;
   }
@@ -73,8 +75,9 @@ void print_progress(const Progress& p) {
 
 int run(const Options& options) {
   const Task task = gathering();
-  GenerationSeams seams = in_process_seams(reverse_solver(task, {}, {}, options.search.reverse),
-                                           forward_replay(task, {}), options.threads);
+  GenerationSeams seams =
+      in_process_seams(reverse_solver(task, {}, options.reverse, options.search.reverse),
+                       forward_replay(task, {}), options.threads);
   seams.store = [](std::span<const Transition>) {};
   seams.progress = print_progress;
   GenerationReport report = generate(task, options.search, options.seed, seams);

@@ -153,8 +153,11 @@ TEST(RtgConfig, APolygonIsCentredAndItsTextReadsBackToTheSameBits) {
 }
 
 TEST(RtgConfig, TheHashTellsConfigurationsApart) {
-  EXPECT_EQ(config_hash(parsed("")), config_hash(parsed("search: {breadth: 64}\n")));
-  EXPECT_NE(config_hash(parsed("")), config_hash(parsed("search: {breadth: 63}\n")));
+  const auto with_breadth = [](int breadth) {
+    return config_hash(parsed("search: {breadth: " + std::to_string(breadth) + "}\n"));
+  };
+  EXPECT_EQ(config_hash(parsed("")), with_breadth(SearchConfig{}.breadth));
+  EXPECT_NE(config_hash(parsed("")), with_breadth(SearchConfig{}.breadth + 1));
 }
 
 TEST(NumberText, IsTheShortestThatReadsBackAndIsARealForYamlAndJson) {

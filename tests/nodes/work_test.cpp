@@ -17,8 +17,9 @@ std::vector<ReverseJob> reverse_jobs() { return {{state(1.0), 0}, {state(2.0), 4
 std::vector<ReplayJob> replay_jobs() { return {{state(1.0), kSettle}, {state(2.0), 47}}; }
 
 std::vector<ReverseResult> reverse_results() {
-  return {{SolveStatus::kConverged, 12, state(3.0), 0.5},
-          {SolveStatus::kNonFinite, 0, state(4.0), 0.0}};
+  return {{SolveStatus::kConverged, 12, {state(3.0), state(5.0)}, 0.5},
+          {SolveStatus::kNonFinite, 0, {}, 0.25},
+          {SolveStatus::kConverged, 7, {state(4.0)}, 0.0}};
 }
 std::vector<ReplayResult> replay_results() {
   return {{state(3.0), true, 0.5}, {state(4.0), false, 0.0}};
@@ -38,12 +39,12 @@ TEST(Work, JobsAndResultsSurviveTheWireBitForBit) {
   EXPECT_EQ(ReplayWork::parse(flown(ReplayWork::message(replay_jobs())), kShape), replay_jobs());
 
   const auto solved = ReverseWork::parse(flown(ReverseWork::message(reverse_results())), kShape);
-  ASSERT_TRUE(solved && solved->size() == 2);
-  for (std::size_t k = 0; k < 2; ++k) {
+  ASSERT_TRUE(solved && solved->size() == 3);
+  for (std::size_t k = 0; k < 3; ++k) {
     const ReverseResult &got = (*solved)[k], wanted = reverse_results()[k];
     EXPECT_EQ(got.status, wanted.status);
     EXPECT_EQ(got.iterations, wanted.iterations);
-    EXPECT_EQ(got.start, wanted.start);
+    EXPECT_EQ(got.starts, wanted.starts);
     EXPECT_EQ(got.cpu_s, wanted.cpu_s);
   }
   const auto replayed = ReplayWork::parse(flown(ReplayWork::message(replay_results())), kShape);
@@ -82,22 +83,29 @@ TEST(Work, ResultsThatMakeNoSenseAreRefused) {
   EXPECT_TRUE(refused<ReverseWork>(reverse_results(), [](auto& m) { m.iterations[0] = -1; }));
   EXPECT_TRUE(refused<ReverseWork>(reverse_results(), [](auto& m) { m.cpu_s[1] = -0.1; }));
   EXPECT_TRUE(refused<ReverseWork>(reverse_results(), [](auto& m) { m = {}; }));
+  EXPECT_TRUE(refused<ReverseWork>(reverse_results(), [](auto& m) { m.starts[2] = 2; }));
+  EXPECT_TRUE(refused<ReverseWork>(reverse_results(), [](auto& m) { m.starts[2] = 0; }));
+  EXPECT_TRUE(refused<ReverseWork>(reverse_results(), [](auto& m) { m.starts = {2, 1, 0}; }));
+  EXPECT_TRUE(refused<ReverseWork>(reverse_results(), [](auto& m) { m.starts[0] = -1; }));
+  EXPECT_TRUE(refused<ReverseWork>(reverse_results(), [](auto&) {}, {.bodies = 3, .headings = 48}));
   EXPECT_TRUE(refused<ReplayWork>(replay_results(), [](auto& m) { m.ok[0] = 2; }));
   EXPECT_TRUE(refused<ReplayWork>(replay_results(), [](auto& m) { m.cpu_s[1] = 1e300; }));
   EXPECT_TRUE(refused<ReplayWork>(replay_results(), [](auto&) {}, {.bodies = 3, .headings = 48}));
 }
 
 TEST(Work, UnitsAreAsEqualAsCanBeAndFitIntoMessages) {
-  EXPECT_EQ(unit_sizes(0, 24, kShape), std::vector<std::size_t>{});
-  EXPECT_EQ(unit_sizes(24, 24, kShape), std::vector<std::size_t>{24});
-  EXPECT_EQ(unit_sizes(50, 24, kShape), (std::vector<std::size_t>{16, 17, 17}));
-  for (const int bodies : {2, 64, 200, 2000}) {
+  const UnitLimit limit = ReverseWork::kUnit;
+  EXPECT_EQ(unit_sizes(0, limit, kShape), std::vector<std::size_t>{});
+  EXPECT_EQ(unit_sizes(24, limit, kShape), std::vector<std::size_t>{24});
+  EXPECT_EQ(unit_sizes(50, limit, kShape), (std::vector<std::size_t>{16, 17, 17}));
+  for (const int bodies : {2, 64, 200}) {
     const TaskShape shape{bodies, 48};
-    const auto sizes = unit_sizes(1000, 24, shape);
+    const auto sizes = unit_sizes(1000, limit, shape);
     EXPECT_EQ(std::accumulate(sizes.begin(), sizes.end(), 0U), 1000U);
     const std::vector<ReverseResult> results(
         *std::max_element(sizes.begin(), sizes.end()),
-        {SolveStatus::kConverged, 1, Poses(static_cast<std::size_t>(bodies)), 0.0});
+        {SolveStatus::kConverged, 1,
+         std::vector<Poses>(kMaxStarts, Poses(static_cast<std::size_t>(bodies)))});
     auto message = ReverseWork::message(results);
     EXPECT_NO_THROW(encode(message)) << bodies;
   }

@@ -23,9 +23,9 @@ const std::vector<ReverseJob> kJobs{{{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 5},
                                     {{{1.5, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 47}};
 
 ReverseResult solved(const ReverseJob& job) {
-  ReverseResult result{SolveStatus::kConverged, job.action, job.end, 0.25};
-  result.start[0].x -= 1.0;
-  return result;
+  Poses start = job.end;
+  start[0].x -= 1.0;
+  return {SolveStatus::kConverged, job.action, {start}, 0.25};
 }
 
 std::vector<ReverseResult> solve(std::span<const ReverseJob> jobs) {
@@ -78,7 +78,7 @@ TEST(WorkerNode, AnswersAsTheDirectCallDoes) {
   const auto results = ReverseWork::parse(pair.results[0], kShape);
   ASSERT_TRUE(results && results->size() == 2);
   for (std::size_t k = 0; k < 2; ++k) {
-    EXPECT_EQ((*results)[k].start, solved(kJobs[k]).start);
+    EXPECT_EQ((*results)[k].starts, solved(kJobs[k]).starts);
     EXPECT_EQ((*results)[k].iterations, kJobs[k].action);
   }
 }

@@ -27,7 +27,7 @@ _REDRAW = 0.2  # [s]
 class RunState:
     """Where a run stands."""
 
-    phase: str = ""  # of the generation: "tree 1", "roll-outs", ...
+    phase: str = ""  # of the generation: "round 1", "roll-outs", ...
     layer: int = 0  # of `depth`
     depth: int = 0
     transitions: int = 0

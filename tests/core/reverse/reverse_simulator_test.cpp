@@ -40,10 +40,11 @@ TEST(ReverseSimulator, AFreeRobotStepsBackOneStrideAndTheOthersStay) {
     ASSERT_EQ(result.status, SolveStatus::kConverged);
     const Vector2d back = end[0].position() - kPush.stride * direction(action, kPush);
     // The pull on the robot against the push and the price of control shift it a little.
-    EXPECT_LT((result.start[0].position() - back).norm(), 0.01);
-    EXPECT_NEAR(result.start[0].theta, 0.3, 1e-6);
-    EXPECT_EQ(result.start[1], end[1]);
-    EXPECT_EQ(result.start[2], end[2]);
+    EXPECT_LT((result.starts[0][0].position() - back).norm(), 0.01);
+    EXPECT_NEAR(result.starts[0][0].theta, 0.3, 1e-6);
+    EXPECT_EQ(result.starts[0][1], end[1]);
+    EXPECT_EQ(result.starts[0][2], end[2]);
+    EXPECT_EQ(result.starts.size(), 1U);
   }
 }
 
@@ -62,8 +63,8 @@ TEST(ReverseSimulator, WithThePapersPresetAFreeRobotFollowsTheClosedForm) {
     return reach * std::tanh(testing::closed_form_control(problem, along));
   };
   // A stationarity of 1e-4 over the curvature 2ε of the controls' price, times dx/dc.
-  EXPECT_NEAR(result.start[0].x, end[0].x - moved(d.x()), 0.02);
-  EXPECT_NEAR(result.start[0].y, end[0].y - moved(d.y()), 0.02);
+  EXPECT_NEAR(result.starts[0][0].x, end[0].x - moved(d.x()), 0.02);
+  EXPECT_NEAR(result.starts[0][0].y, end[0].y - moved(d.y()), 0.02);
 }
 
 TEST(ReverseSimulator, ThePapersPresetIsItsSqpFromRestWithThePlainBarrier) {
@@ -84,7 +85,7 @@ TEST(ReverseSimulator, ThePapersPresetIsItsSqpFromRestWithThePlainBarrier) {
 }
 
 /// Random scenes after a push of the model, solved back and pushed again: how far the bodies are
-/// from where they were, mean over the bodies [m], of the solves that converged.
+/// from where they were, mean over the bodies [m], of all starts found.
 std::vector<double> model_gaps(int scenes) {
   std::vector<double> gaps;
   for (int seed = 0; seed < scenes; ++seed) {
@@ -92,23 +93,40 @@ std::vector<double> model_gaps(int scenes) {
     const NewtonSimulator model(drawn.scene, kPush, kPhysics);
     const Poses end = model.push(drawn.start, drawn.action).end;
     const ReverseResult result = solve(drawn.scene, {end, drawn.action});
-    if (result.status != SolveStatus::kConverged) continue;
-    const Poses reached = model.push(result.start, drawn.action).end;
-    double sum = 0.0;
-    for (std::size_t k = 0; k < end.size(); ++k)
-      sum += (reached[k].position() - end[k].position()).norm();
-    gaps.push_back(sum / static_cast<double>(end.size()));
+    for (const Poses& start : result.starts) {
+      const Poses reached = model.push(start, drawn.action).end;
+      double sum = 0.0;
+      for (std::size_t k = 0; k < end.size(); ++k)
+        sum += (reached[k].position() - end[k].position()).norm();
+      gaps.push_back(sum / static_cast<double>(end.size()));
+    }
   }
   std::ranges::sort(gaps);
   return gaps;
 }
 
 // The push is the straight one of the action; the solver's own controls differ from it a little.
-TEST(ReverseSimulator, APushFromTheStartLeadsToTheEnd) {
+TEST(ReverseSimulator, APushFromAnyOfTheStartsLeadsToTheEnd) {
   const std::vector<double> gaps = model_gaps(20);
-  ASSERT_GE(gaps.size(), 16U);
+  ASSERT_GE(gaps.size(), 32U);
   EXPECT_LT(gaps[gaps.size() / 2], 0.03);
   EXPECT_LT(gaps[gaps.size() * 8 / 10], 0.1);
+}
+
+// The robot begins where it does for the whole push, the objects part of the way.
+TEST(ReverseSimulator, ReleasesStandBetweenTheStartOfTheWholePushAndTheEnd) {
+  const ReverseJob job = touching_job();
+  ReverseConfig config;
+  config.releases = 4;
+  const ReverseResult result = solve(robot_and_boxes(2), job, config);
+  ASSERT_EQ(result.starts.size(), 5U);
+  for (std::size_t k = 1; k < 5; ++k) {
+    const Poses &start = result.starts[k], &before = result.starts[k - 1];
+    EXPECT_EQ(start[0], before[0]);
+    EXPECT_GT(start[1].x, before[1].x + 0.2);  // a fifth of the stride is 0.4 m
+    EXPECT_LT(start[1].x, job.end[1].x);
+    EXPECT_EQ(start[2], job.end[2]);
+  }
 }
 
 TEST(ReverseSimulator, PrunedJobsComeBackUnsolved) {
@@ -117,10 +135,10 @@ TEST(ReverseSimulator, PrunedJobsComeBackUnsolved) {
   const ReverseResult result = solve(robot_and_boxes(2), job);
   EXPECT_EQ(result.status, SolveStatus::kPruned);
   EXPECT_EQ(result.iterations, 0);
-  EXPECT_EQ(result.start, job.end);
+  EXPECT_TRUE(result.starts.empty());
 }
 
-TEST(ReverseSimulator, BadEndsAreNotFiniteAndTheAnswerIs) {
+TEST(ReverseSimulator, BadEndsAreNotFiniteAndHaveNoStart) {
   const Scene scene = robot_and_boxes(2);
   std::vector<ReverseJob> bad(4, touching_job());
   bad[0].end.pop_back();
@@ -130,8 +148,7 @@ TEST(ReverseSimulator, BadEndsAreNotFiniteAndTheAnswerIs) {
   for (const ReverseJob& job : bad) {
     const ReverseResult result = solve(scene, job);
     EXPECT_EQ(result.status, SolveStatus::kNonFinite);
-    EXPECT_EQ(result.start.size(), 3U);
-    EXPECT_TRUE(is_finite(result.start));
+    EXPECT_TRUE(result.starts.empty());
   }
 }
 
@@ -150,9 +167,9 @@ TEST(ReverseSimulator, TheSceneMayStandElsewhereAndByAQuarterTurn) {
   const ReverseResult result = solve(scene, there);
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   for (std::size_t k = 0; k < job.end.size(); ++k) {
-    const Pose expected = moved(here.start[k]);
-    EXPECT_LT((result.start[k].position() - expected.position()).norm(), 1e-5);
-    EXPECT_NEAR(result.start[k].theta, expected.theta, 1e-5);
+    const Pose expected = moved(here.starts[0][k]);
+    EXPECT_LT((result.starts[0][k].position() - expected.position()).norm(), 1e-5);
+    EXPECT_NEAR(result.starts[0][k].theta, expected.theta, 1e-5);
   }
 }
 
@@ -165,8 +182,9 @@ TEST(ReverseSimulator, FixedBodiesMayStandAnywhereInTheOrder) {
   ASSERT_EQ(a.status, SolveStatus::kConverged);
   EXPECT_EQ(b.status, a.status);
   EXPECT_EQ(b.iterations, a.iterations);
-  EXPECT_EQ(b.start, (Poses{a.start[0], a.start[3], a.start[1], a.start[2]}));
-  EXPECT_EQ(a.start[3], wall);
+  const Poses &p = a.starts[0], &q = b.starts[0];
+  EXPECT_EQ(q, (Poses{p[0], p[3], p[1], p[2]}));
+  EXPECT_EQ(p[3], wall);
 }
 
 TEST(ReverseSimulator, StopsAtTheIterationLimit) {
@@ -177,15 +195,18 @@ TEST(ReverseSimulator, StopsAtTheIterationLimit) {
   EXPECT_EQ(result.iterations, 3);
 }
 
-TEST(ReverseSimulator, AnswersAnyLayoutWithAFiniteStart) {
+TEST(ReverseSimulator, AnswersAnyLayoutWithFiniteStarts) {
   const Scene scene = robot_and_boxes(2);
   Rng rng(61);
   for (int trial = 0; trial < 30; ++trial) {
     ReverseJob job{Poses(3), rng.below(48)};  // many of them overlap
     for (Pose& p : job.end) p = {rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-9, 9)};
     const ReverseResult result = solve(scene, job);
-    ASSERT_EQ(result.start.size(), 3U);
-    ASSERT_TRUE(is_finite(result.start));
+    ASSERT_EQ(!result.starts.empty(), result.status == SolveStatus::kConverged);
+    for (const Poses& start : result.starts) {
+      ASSERT_EQ(start.size(), 3U);
+      ASSERT_TRUE(is_finite(start));
+    }
   }
 }
 

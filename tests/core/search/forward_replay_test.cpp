@@ -65,14 +65,17 @@ TEST(Proposals, AreTheConvergedAnswersWithLegalStarts) {
   moved[3].y -= 0.5;
   const std::vector<ReverseJob> jobs{
       {task.start, 3}, {task.start, 4}, {task.start, 5}, {task.start, 6}, {task.start, 7}};
-  const std::vector<ReverseResult> answers{{SolveStatus::kConverged, 9, outside},
-                                           {SolveStatus::kPruned, 0, task.start},
-                                           {SolveStatus::kConverged, 9, moved},
-                                           {SolveStatus::kLineSearchFailed, 50, moved},
-                                           {SolveStatus::kConverged, 9, overlapping}};
+  const std::vector<ReverseResult> answers{{SolveStatus::kConverged, 9, {outside}},
+                                           {SolveStatus::kPruned},
+                                           {SolveStatus::kConverged, 9, {moved, task.start}},
+                                           {SolveStatus::kLineSearchFailed, 50},
+                                           {SolveStatus::kConverged, 9, {overlapping}}};
   SearchStats stats;
   const std::vector<Candidate> found = proposals(task, jobs, answers, stats);
-  ASSERT_EQ(found.size(), 1U);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[1].parent, 2);
+  EXPECT_EQ(found[1].start, task.start);
+  EXPECT_EQ(found[1].moved, 0);
   EXPECT_EQ(found[0].parent, 2);
   EXPECT_EQ(found[0].action, 5);
   EXPECT_EQ(found[0].end, task.start);
@@ -90,7 +93,7 @@ TEST(Proposals, AreJudgedAfterRounding) {
   ASSERT_TRUE(legal_state(task, edge));
   SearchStats stats;
   const std::vector<ReverseJob> jobs{{edge, 0}};
-  const std::vector<ReverseResult> answers{{SolveStatus::kConverged, 1, edge}};
+  const std::vector<ReverseResult> answers{{SolveStatus::kConverged, 1, {edge}}};
   EXPECT_TRUE(proposals(task, jobs, answers, stats).empty());
   EXPECT_EQ(stats.illegal_starts, 1);
 }

@@ -130,7 +130,7 @@ TEST(Generate, EndsEvenIfNoReverseSolveConverges) {
   GenerationSeams seams = testing::naive_seams(task, 1);
   seams.store = [](std::span<const Transition>) {};
   seams.solve = [](std::span<const ReverseJob> jobs) {
-    return std::vector<ReverseResult>(jobs.size(), {SolveStatus::kIterationLimit, 50, jobs[0].end});
+    return std::vector<ReverseResult>(jobs.size(), {SolveStatus::kIterationLimit, 50});
   };
   const GenerationReport report = generate(task, small(), 7, seams);
   EXPECT_EQ(report.transitions, 3000);  // episodes of random actions

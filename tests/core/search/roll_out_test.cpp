@@ -90,7 +90,6 @@ TEST_F(RollOutTest, ARejectedPushEndsAnEpisodeAndIsCountedNotStored) {
   rejected = 12;
   const std::vector<Episode> episodes = run({from(-5.0), from(1.5)});
   EXPECT_EQ(actions(episodes[0]), (std::vector{10, 11}));
-  EXPECT_EQ(episodes[0].entries, (std::vector{0, 1}));
   EXPECT_FALSE(episodes[0].success);
   EXPECT_TRUE(episodes[1].success);
   EXPECT_EQ(stats.rejected_pushes, 1);
@@ -110,12 +109,17 @@ TEST_F(RollOutTest, EachStepStartsWhereTheOneBeforeEnded) {
   }
 }
 
+// All entries are the nominal start, the robot at (0, -5); it strays by half a metre a push.
+TEST_F(RollOutTest, TellsHowFarEachStateIsFromTheData) {
+  add_entries(20);
+  EXPECT_EQ(run({from(0.5)}).front().strayed, (std::vector{0.5, 1.0, 1.5, 2.0}));
+}
+
 TEST_F(RollOutTest, AnEpisodeUsesEachEntryOnce) {
   add_entries(7);
   task.horizon = 7;
   for (const Episode& e : run({from(-5.0), from(-5.0)})) {
-    EXPECT_EQ(e.entries, (std::vector{0, 1, 2, 3, 4, 5, 6}));  // ties go to the oldest
-    EXPECT_EQ(actions(e), (std::vector{10, 11, 12, 13, 14, 15, 16}));
+    EXPECT_EQ(actions(e), (std::vector{10, 11, 12, 13, 14, 15, 16}));  // ties go to the oldest
   }
 }
 
@@ -127,7 +131,7 @@ TEST_F(RollOutTest, WithoutAnEntryLeftActionsAreDrawnFromAll) {
   // Mean 104, standard deviation 10.
   EXPECT_GT(*std::ranges::min_element(count), 104 - 50);
   EXPECT_LT(*std::ranges::max_element(count), 104 + 50);
-  EXPECT_EQ(e.entries, std::vector<int>(5000, -1));
+  EXPECT_EQ(e.strayed, std::vector<double>(5000, INFINITY));
 }
 
 TEST_F(RollOutTest, NoiseTakesANeighbourByOneOrTwo) {

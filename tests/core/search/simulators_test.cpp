@@ -41,7 +41,7 @@ TEST(Simulators, ALayerOfReverseSolvesHasTheSameBitsOn1To16Threads) {
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       ASSERT_EQ(results[k].status, reference[k].status);
       ASSERT_EQ(results[k].iterations, reference[k].iterations);
-      ASSERT_EQ(results[k].start, reference[k].start);
+      ASSERT_EQ(results[k].starts, reference[k].starts);
     }
   }
 }
@@ -65,7 +65,7 @@ TEST(Simulators, NaiveModeIsTheNaiveReverse) {
   const NaiveReverse naive(task.scene, task.push);
   for (const ReverseJob& job : layer(task)) {
     EXPECT_EQ(solve(job).status, naive.solve(job).status);
-    EXPECT_EQ(solve(job).start, naive.solve(job).start);
+    EXPECT_EQ(solve(job).starts, naive.solve(job).starts);
   }
 }
 

@@ -73,14 +73,14 @@ TEST(ThreadPool, SolvesInJobOrderForAnyNumberOfThreads) {
   for (int threads = 1; threads <= 8; ++threads) {
     const SolveBatch solve = solve_on_threads(
         [](const ReverseJob& job) {
-          return ReverseResult{SolveStatus::kInfeasible, 2 * job.action, job.end, -1.0};
+          return ReverseResult{SolveStatus::kInfeasible, 2 * job.action, {job.end}, -1.0};
         },
         threads);
     const std::vector<ReverseResult> results = solve(jobs);
     ASSERT_EQ(results.size(), jobs.size());
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       ASSERT_EQ(results[k].iterations, 2 * jobs[k].action);
-      ASSERT_EQ(results[k].start, jobs[k].end);
+      ASSERT_EQ(results[k].starts.at(0), jobs[k].end);
       ASSERT_EQ(results[k].status, SolveStatus::kInfeasible);
       ASSERT_GE(results[k].cpu_s, 0.0);  // filled in
     }

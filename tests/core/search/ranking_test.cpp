@@ -1,0 +1,69 @@
+#include "core/search/ranking.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/gathering.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::gathering;
+
+/// Gathering, its start as the target, all objects in place but the first, which stands 3 m to the
+/// right of its place: it has to be pulled to the left.
+struct StartDistanceTest : ::testing::Test {
+  Task task = gathering();
+  StateMetric metric{task.scene};
+  Poses poses = task.start;
+
+  StartDistanceTest() { poses[1].x += 3.0; }
+
+  double with_robot_at(double x, double y) {
+    poses[0] = {x, y, 0.0};
+    return start_distance(task, metric, poses, task.start);
+  }
+};
+
+// The box is turned by 0.2 rad and reaches 0.71 m to its left, the hexagon 0.8 m to its right.
+TEST_F(StartDistanceTest, ARobotReadyToPullHasNoWayToGo) {
+  const Pose box = poses[1];
+  EXPECT_NEAR(with_robot_at(box.x - 1.55, box.y), 1.5 + 2.0, 1e-12);  // one and a half strides
+  EXPECT_NEAR(with_robot_at(box.x + 1.55, box.y), 1.5 + 2.0 + 2.0, 1e-12);  // the wrong side
+}
+
+TEST_F(StartDistanceTest, OneStrideFromThereIsOnePushAndLessThanThatIsTwo) {
+  const Pose box = poses[1];
+  EXPECT_NEAR(with_robot_at(box.x - 3.55, box.y), 1.5 + 2.0 + 1.0, 1e-12);
+  EXPECT_NEAR(with_robot_at(box.x - 2.4, box.y), 1.5 + 2.0 + 2.0, 1e-12);
+  EXPECT_GT(with_robot_at(box.x - 7.0, box.y), 1.5 + 2.0 + 2.0);
+}
+
+TEST_F(StartDistanceTest, WithAllInPlaceTheRobotGoesHome) {
+  poses = task.start;
+  EXPECT_NEAR(with_robot_at(0.0, -5.0), 0.0, 1e-12);
+  EXPECT_NEAR(with_robot_at(0.0, -2.0), 1.5, 1e-12);
+}
+
+TEST(Ranking, DisplacementPrefersWhatMovesMore) {
+  const Task task = gathering();
+  const Score score = make_score(Ranking::kDisplacement, task, task.start, {});
+  Candidate c{0, 0, task.start, task.start};
+  EXPECT_EQ(score(c), 0.0);
+  c.start[2].x += 0.5;
+  EXPECT_DOUBLE_EQ(score(c), -0.5);
+}
+
+TEST(Ranking, NoveltyCountsTheStatesOfTheCell) {
+  const Task task = gathering();
+  Poses other = task.start;
+  other[1].x += 1.0;
+  const std::vector<Poses> known{task.start, task.start, other};
+  const Score score = make_score(Ranking::kNovelty, task, task.start, known);
+  EXPECT_EQ(score({0, 0, task.start, task.start}), 2.0);
+  EXPECT_EQ(score({0, 0, other, task.start}), 1.0);
+  other[1].x += 1.0;
+  EXPECT_EQ(score({0, 0, other, task.start}), 0.0);
+}
+
+}  // namespace
+}  // namespace rtg
