@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "core/forward/newton_simulator.hpp"
-#include "core/reverse/merit_sqp.hpp"
 #include "tests/support/free_push.hpp"
 #include "tests/support/random_push.hpp"
 
@@ -67,21 +66,13 @@ TEST(ReverseSimulator, WithThePapersPresetAFreeRobotFollowsTheClosedForm) {
   EXPECT_NEAR(result.starts[0][0].y, end[0].y - moved(d.y()), 0.02);
 }
 
-TEST(ReverseSimulator, ThePapersPresetIsItsSqpFromRestWithThePlainBarrier) {
-  const Scene scene = robot_and_boxes(1);
+TEST(ReverseSimulator, WithThePapersPresetContactsReachTheIterationLimitAndHaveNoStart) {
   ReverseConfig config = reverse_preset(ReversePreset::kPaper);
-  config.max_iterations = 5;  // with contacts it takes long
-  const ReverseJob job{{{0, 0, 0}, {1.54, 0.1, 0}}, 0};
-  PhysicsConfig plain;
-  plain.plain_barrier = true;
-  const StepEnergy energy(scene, plain, kPush);
-  const ReverseProblem problem{energy, config, stacked(job.end), direction(0, kPush), 10};
-  const SqpResult direct = merit_sqp(problem, static_iterate(problem));
-  const ReverseResult result = solve(scene, job, config);
-  EXPECT_EQ(result.status, direct.status);
+  config.max_iterations = 5;  // a thousand do not suffice either, and take seconds
+  const ReverseResult result = solve(robot_and_boxes(1), {{{0, 0, 0}, {1.54, 0.1, 0}}, 0}, config);
+  EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
   EXPECT_EQ(result.iterations, 5);
-  EXPECT_EQ(result.start, unstacked(direct.x.p[0]));
-  EXPECT_NE(result.start, job.end);
+  EXPECT_TRUE(result.starts.empty());
 }
 
 /// Random scenes after a push of the model, solved back and pushed again: how far the bodies are
