@@ -81,9 +81,11 @@ TEST(TreePolicy, ChoosesAsBruteForceDoesOverSeveralBlocks) {
   for (std::size_t q = 0; q < queries.size(); ++q) {
     const int best = tree.best(queries[q]);
     ASSERT_EQ(choices[q].entry, best);
-    ASSERT_EQ(choices[q].action, tree.entries[static_cast<std::size_t>(best)].action);
+    const Entry& entry = tree.entries[static_cast<std::size_t>(best)];
+    ASSERT_EQ(choices[q].action, entry.action);
     // Single precision of a score of up to 200.
     ASSERT_NEAR(choices[q].score, tree.score(best, queries[q].state), 1e-4);
+    ASSERT_NEAR(choices[q].distance, tree.metric.distance(entry.state, queries[q].state), 1e-5);
   }
 }
 
