@@ -23,7 +23,6 @@ class TreePolicy {
   void add(const Poses& state, int action, double depth);
 
   /// Number of entries.
-  float depth(int k) const { return depth_[static_cast<std::size_t>(k)]; }
   int size() const { return static_cast<int>(depth_.size()); }
 
   /// Where an episode is and the entries it has used; an entry is used once per episode, or a

@@ -159,7 +159,7 @@ TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
   {
     CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [] { return false; }});
     const auto report = coordinator.run([&](const GenerationSeams& seams) {
-      seams.progress({.phase = "tree 1", .layer = 3, .depth = 24});
+      seams.progress({.phase = "round 1", .layer = 3, .depth = 24});
       said.wait(false);
       return GenerationReport{};
     });
@@ -169,7 +169,7 @@ TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
   while (bus.spin(std::chrono::milliseconds(0)) > 0) {
   }
   ASSERT_FALSE(heard.empty());
-  EXPECT_EQ(heard[0].phase, "tree 1");
+  EXPECT_EQ(heard[0].phase, "round 1");
   EXPECT_EQ(heard[0].layer, 3);
   EXPECT_EQ(heard[0].target, 10);
   EXPECT_EQ(heard[0].leaving, 0);

@@ -81,7 +81,7 @@ def test_progress_is_one_line():
     monitor = ChannelMonitor()
     assert monitor.progress() == ""
     message = message_type("search_progress_t")()
-    message.phase, message.layer, message.depth = "tree 1", 3, 24
+    message.phase, message.layer, message.depth = "round 1", 3, 24
     message.transitions, message.target = 12345, 60000
     monitor.on_message("RTG_PROGRESS", message.encode(), 0.0)
-    assert monitor.progress().startswith("tree 1, layer 3/24: 12,345 of 60,000 transitions, ")
+    assert monitor.progress().startswith("round 1, layer 3/24: 12,345 of 60,000 transitions, ")

@@ -8,7 +8,7 @@ from rich.console import Console
 from rtg.progress import LiveDisplay, PlainDisplay, RateMeter, RunState, display
 
 GENERATING = RunState(
-    phase="tree 1", layer=2, depth=24, transitions=1234, target=60000, contact_share=0.417
+    phase="round 1", layer=2, depth=24, transitions=1234, target=60000, contact_share=0.417
 )
 TRAINING = replace(GENERATING, phase="sealed", interactions=10_000, budget=350_000, rate=812.3)
 
@@ -25,9 +25,9 @@ def plain(*states):
 def test_elsewhere_there_is_one_line_per_layer_and_no_control_character():
     lines = plain(GENERATING, GENERATING, replace(GENERATING, layer=3, transitions=2000))
     assert lines == [
-        "1,234 of 60,000 transitions: tree 1, layer 2/24, contact share 0.42, "
+        "1,234 of 60,000 transitions: round 1, layer 2/24, contact share 0.42, "
         "0 in the start region",
-        "2,000 of 60,000 transitions: tree 1, layer 3/24, contact share 0.42, "
+        "2,000 of 60,000 transitions: round 1, layer 3/24, contact share 0.42, "
         "0 in the start region",
     ]
 

@@ -8,12 +8,12 @@ from rtg.training_watch import TrainingWatch
 
 def test_the_learner_is_shown_as_it_writes(tmp_path):
     watch = TrainingWatch(tmp_path)
-    state = RunState(phase="tree 1", budget=400)
+    state = RunState(phase="round 1", budget=400)
     assert watch.update(state) == state
     file = tmp_path / "training_state.json"
     file.write_text(json.dumps({"interactions": 100, "success_rate": None}))
     shown = watch.update(state)
-    assert (shown.phase, shown.interactions, shown.success_rate) == ("tree 1", 100, None)
+    assert (shown.phase, shown.interactions, shown.success_rate) == ("round 1", 100, None)
     file.write_text(json.dumps({"interactions": 200, "success_rate": 0.5}))
     shown = watch.update(state)
     assert (shown.interactions, shown.success_rate) == (200, 0.5)
