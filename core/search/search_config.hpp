@@ -16,7 +16,7 @@ inline constexpr std::array<std::string_view, 3> kRankings{"start_distance", "no
 struct SearchConfig {
   ReverseMode reverse = ReverseMode::kRrbs;
   Ranking ranking = Ranking::kStartDistance;
-  int transitions = 60000;       // stored in all
+  int transitions = 120000;      // stored in all
   double rollout_share = 0.5;    // of them from roll-outs of the tree policy
   int breadth = 32;              // B, nodes kept per layer
   int depth = 24;                // D, layers per round at most
