@@ -59,7 +59,8 @@ std::vector<ReverseJob> BeamSearch::jobs() const {
 /// Score of this layer.
 Score BeamSearch::layer_score() const {
   std::vector<Poses> known;
-  for (const Node& n : nodes_) known.push_back(n.poses);
+  if (config_.ranking == Ranking::kNovelty)  // nothing else looks at them
+    for (const Node& n : nodes_) known.push_back(n.poses);
   return make_score(config_.ranking, task_, target_, known);
 }
 

@@ -23,7 +23,8 @@ namespace rtg {
 ///   displacement: - how far the step moved the objects, in all [m]
 using Score = std::function<double(const Candidate&)>;
 
-/// `target` is the layout to reach, `known` the states that the tree has; both are copied.
+/// `target` is the layout to reach, `known` the states that the trees have (only novelty looks at
+/// them); both are copied.
 Score make_score(Ranking ranking, const Task& task, const Poses& target,
                  std::span<const Poses> known);
 

@@ -37,8 +37,7 @@ void TreePolicy::scan(int begin, int end, std::span<const float> point, std::spa
   for (std::size_t k = 0; k < n; ++k)
     score[k] = depth_[at + k] + kDistanceWeight * std::sqrt(score[k]);
   for (const int u : used)
-    if (u >= begin && u < end)
-      score[static_cast<std::size_t>(u - begin)] = std::numeric_limits<float>::infinity();
+    if (u >= begin && u < end) score[static_cast<std::size_t>(u - begin)] = kNone;
   const auto least = std::min_element(score.begin(), score.begin() + static_cast<long>(n));
   if (*least >= best.score) return;
   const int entry = begin + static_cast<int>(least - score.begin());
