@@ -11,13 +11,19 @@
 namespace rtg {
 namespace {
 
+constexpr std::uint64_t kTwins = 1;  // key of the probe's random stream
+
 /// Cells of states that differ in the robot only.
 constexpr StateMetric::Cells kLayoutCells{1e9, StateMetric::Cells{}.object, 0.5};
 
 }  // namespace
 
 BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, std::uint64_t seed)
-    : task_(task), config_(config), metric_(task.scene), rng_(seed) {}
+    : task_(task),
+      config_(config),
+      metric_(task.scene),
+      rng_(seed),
+      probe_(task, config, Rng(seed, kTwins).word()) {}
 
 void BeamSearch::aim(const Poses& target, const ReplayBatch& replay, SearchStats& stats) {
   target_ = target;
@@ -90,8 +96,11 @@ std::vector<BeamSearch::Growth> BeamSearch::grow(const SolveBatch& solve, const 
   for (Candidate& c : found)
     c.parent = beam_[static_cast<std::size_t>(c.parent / task_.push.headings)];
   const Score score = layer_score();
+  std::vector<Candidate> replayed =
+      replay_candidates(worth_replaying(std::move(found), score), replay, stats);
+  probe_.measure(replayed, replay, stats);
   std::vector<Growth> out;
-  for (Candidate& c : replay_candidates(worth_replaying(std::move(found), score), replay, stats)) {
+  for (Candidate& c : replayed) {
     stats.gaps.push_back(static_cast<float>(c.gap));
     const int depth = nodes_[static_cast<std::size_t>(c.parent)].depth + 1;
     out.push_back({std::move(c), depth});

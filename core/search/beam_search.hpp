@@ -10,6 +10,7 @@
 #include "core/search/search_config.hpp"
 #include "core/search/search_stats.hpp"
 #include "core/search/state_metric.hpp"
+#include "core/search/stretch_probe.hpp"
 
 namespace rtg {
 
@@ -65,6 +66,7 @@ class BeamSearch {
   StateMetric metric_;
   Poses target_;
   Rng rng_;
+  StretchProbe probe_;
   std::vector<Node> nodes_;
   std::vector<int> beam_;
   double best_ = 0.0;

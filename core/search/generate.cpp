@@ -133,7 +133,8 @@ class Generation {
     const auto kept = store(batch, limit);
     for (std::size_t k = 0; k < kept.size(); ++k) {
       const Transition& t = kept[k];
-      if (t.success || behind[k]->candidate.miss <= config_.gap_tolerance)
+      const Candidate& c = behind[k]->candidate;
+      if (t.success || (c.miss <= config_.gap_tolerance && c.stretch <= config_.policy_stretch))
         policy_.add(t.poses, t.action, t.success ? 1.0 : behind[k]->depth);
     }
   }

@@ -71,6 +71,15 @@ TEST(Generate, EveryTransitionSimulatesToItselfAndIsLabelledByThePredicate) {
   }
 }
 
+TEST(Generate, PolicyStretchDecidesWhatEpisodesFollowNotWhatTheFirstRoundFinds) {
+  SearchConfig config = small();
+  config.policy_stretch = 0.0;  // no push that moves an object, unless it ends in success
+  const auto stored = run_naive(gathering(), config, 7, 1).stored;
+  const auto& reference = reference_run().stored;
+  EXPECT_NE(stored, reference);
+  EXPECT_TRUE(std::equal(stored.begin(), stored.begin() + 500, reference.begin()));
+}
+
 TEST(Generate, EachSourceHasItsShare) {
   const auto count = [](Source source) {
     return std::ranges::count(reference_run().stored, source, &Transition::source);
