@@ -90,8 +90,8 @@ std::string work_in_words(const RtgConfig& config) {
   const RunConfig& run = config.run;
   std::string out = "work\n";
   out += print(
-      "  generate %d transitions, reverse steps by %s, trees of %d nodes in at most %d "
-      "layers\n",
+      "  generate %d transitions, reverse steps by %s, beams of %d nodes, at most %d "
+      "layers a round\n",
       search.transitions, kReverseModes[static_cast<std::size_t>(search.reverse)].data(),
       search.breadth, search.depth);
   out +=
