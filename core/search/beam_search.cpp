@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <unordered_map>
 #include <utility>
 
 #include "core/search/beam_selection.hpp"
@@ -77,10 +78,9 @@ std::vector<Candidate> BeamSearch::worth_replaying(std::vector<Candidate> all,
   for (std::size_t k = 0; k < all.size(); ++k)
     if (all[k].moved == 0) idle.emplace_back(score(all[k]), k);
   std::sort(idle.begin(), idle.end());
-  std::vector<int> left(nodes_.size(), config_.free_moves);
+  std::unordered_map<int, int> kept;  // per node
   std::vector<bool> dropped(all.size(), false);
-  for (const auto& [value, k] : idle)
-    dropped[k] = left[static_cast<std::size_t>(all[k].parent)]-- <= 0;
+  for (const auto& [value, k] : idle) dropped[k] = ++kept[all[k].parent] > config_.free_moves;
   std::vector<Candidate> out;
   for (std::size_t k = 0; k < all.size(); ++k)
     if (!dropped[k]) out.push_back(std::move(all[k]));

@@ -53,6 +53,22 @@ def rtg(*words, **environment):
     )
 
 
+def test_output_that_nobody_reads_ends_quietly_with_status_1():
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(
+        [sys.executable, "-m", "rtg", "--print-config"],
+        cwd=paths.ROOT,
+        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
+        stdout=writer,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (1, "")
+
+
 @pytest.mark.parametrize("name", MISTAKES)
 def test_a_mistake_is_named_and_ends_with_status_2(name):
     words, message = MISTAKES[name]

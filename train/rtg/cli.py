@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -94,7 +95,9 @@ def main(words: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if words is None else words)
     tool = _TOOLS.get(words[0]) if words else None
     try:
-        return tool(words[1:]) if tool else _run(words)
+        status = tool(words[1:]) if tool else _run(words)
+        sys.stdout.flush()  # or Python does it after main(), where nobody can catch what it meets
+        return status
     except UserError as error:
         print(f"rtg: {error}", file=sys.stderr)
         return 2
@@ -103,6 +106,9 @@ def main(words: Sequence[str] | None = None) -> int:
         return 1
     except KeyboardInterrupt:
         print("rtg: interrupted", file=sys.stderr)
+        return 1
+    except BrokenPipeError:  # whoever read our output has gone, as `head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
 
 
