@@ -29,7 +29,7 @@ struct ReverseConfig {
   double terminal_tolerance = 0.05;  // a solution that misses the final state by more fails [m]
   double proximal_start = 1.0;       // δ of the first iteration
   double exact_below = 0.1;          // exact Lagrangian Hessian once δ is no larger
-  int releases = 2;                  // predecessors besides the one of the whole push
+  int releases = 7;                  // predecessors besides the one of the whole push
 
   template <class Visitor>
   void visit(Visitor& v) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bit>
+#include <cstdint>
 #include <vector>
 
 #include "core/reverse/solve_status.hpp"
@@ -14,6 +16,17 @@ struct ReverseJob {
 
   bool operator==(const ReverseJob&) const = default;
 };
+
+/// A number that differs between jobs, but for one pair in 2⁶⁴.
+inline std::uint64_t key_of(const ReverseJob& job) {
+  auto key = static_cast<std::uint64_t>(job.action);
+  for (const Pose& p : job.end)
+    for (const double x : {p.x, p.y, p.theta}) {
+      key = (key ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15;
+      key ^= key >> 32;
+    }
+  return key;
+}
 
 /// Most predecessors in the answer to one job.
 inline constexpr int kMaxStarts = 8;

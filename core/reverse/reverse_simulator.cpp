@@ -22,9 +22,11 @@ std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int releases) {
   std::vector<VectorXd> out{p[0]};
   const Eigen::Index objects = p[0].size() - 3;
   if ((p.back() - p[0]).tail(objects).lpNorm<Eigen::Infinity>() < kDragged) return out;
+  std::size_t last = 0;
   for (int j = 1; j <= releases; ++j) {
     const std::size_t k =
         (p.size() - 1) * static_cast<std::size_t>(j) / static_cast<std::size_t>(releases + 1);
+    if (k == std::exchange(last, k)) continue;  // fewer sub-steps than starts
     VectorXd start = p[k];
     start.head(3) = p[0].head(3);
     out.push_back(std::move(start));
@@ -47,7 +49,8 @@ ReverseResult ReverseSimulator::solve(const ReverseJob& job) const {
 }
 
 ReverseResult ReverseSimulator::solve_legal(const ReverseJob& job) const {
-  const std::vector<int> bodies = relevant_bodies(scene_, push_, job, physics_.range);
+  const double reach = physics_.range + physics_.skin;
+  const std::vector<int> bodies = relevant_bodies(scene_, push_, job, reach);
   const Selection part = select(scene_, job.end, bodies);
   const StepEnergy energy(part.scene, physics_, push_);
   const ReverseProblem problem{energy, config_, with_open_gaps(energy, stacked(part.poses)),

@@ -71,16 +71,21 @@ Score BeamSearch::layer_score() const {
   return make_score(config_.ranking, task_, target_, known);
 }
 
-/// Leaves out, per node, all but the best `free_moves` of the steps that move no object.
+/// Leaves out, per node, all but the best `free_moves` of the steps that move no object and, per
+/// solve, all but the best `starts` of those that do.
 std::vector<Candidate> BeamSearch::worth_replaying(std::vector<Candidate> all,
                                                    const Score& score) const {
-  std::vector<std::pair<double, std::size_t>> idle;
-  for (std::size_t k = 0; k < all.size(); ++k)
-    if (all[k].moved == 0) idle.emplace_back(score(all[k]), k);
-  std::sort(idle.begin(), idle.end());
-  std::unordered_map<int, int> kept;  // per node
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t k = 0; k < all.size(); ++k) order.emplace_back(score(all[k]), k);
+  std::sort(order.begin(), order.end());
+  std::unordered_map<int, int> idle, pushing;  // kept so far, per node and per solve
   std::vector<bool> dropped(all.size(), false);
-  for (const auto& [value, k] : idle) dropped[k] = ++kept[all[k].parent] > config_.free_moves;
+  for (const auto& [value, k] : order) {
+    const Candidate& c = all[k];
+    dropped[k] = c.moved == 0
+                     ? ++idle[c.parent] > config_.free_moves
+                     : ++pushing[c.parent * task_.push.headings + c.action] > config_.starts;
+  }
   std::vector<Candidate> out;
   for (std::size_t k = 0; k < all.size(); ++k)
     if (!dropped[k]) out.push_back(std::move(all[k]));

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <limits>
 #include <string>
+#include <unordered_set>
 #include <utility>
 
 #include "core/search/beam_search.hpp"
@@ -120,13 +121,15 @@ class Generation {
     }
   }
 
-  /// A state in which the goal holds ends an episode, so nothing starts there.
+  /// A state in which the goal holds ends an episode, so nothing starts there. A round that begins
+  /// at nodes of another finds some of their steps once more; they are stored once.
   void store_growths(std::span<const BeamSearch::Growth> growths, long limit) {
     std::vector<Transition> batch;
     std::vector<const BeamSearch::Growth*> behind;
     for (const BeamSearch::Growth& g : growths) {
       if (g.depth == 0) continue;
       const Candidate& c = g.candidate;
+      if (!tried_.insert(key_of({c.start, c.action})).second) continue;
       batch.push_back({c.start, c.action, c.end, succeeded(task_, c.end), Source::kStepReplay});
       behind.push_back(&g);
     }
@@ -143,7 +146,6 @@ class Generation {
   /// what the round has stored.
   void replay_chains_from(std::size_t first, long before, long limit) {
     const double share = config_.chain_share;
-    if (share >= 1.0 || share <= 0.0) return;
     const auto wanted =
         static_cast<long>(static_cast<double>(stored() - before) * share / (1.0 - share));
     std::vector<std::pair<double, int>> order;
@@ -233,6 +235,7 @@ class Generation {
   Coverage coverage_;
   TreePolicy policy_;
   BeamSearch search_;
+  std::unordered_set<std::uint64_t> tried_;  // key_of() the steps stored, start and action
   SearchStats stats_;
   GenerationReport report_;
   int rounds_ = 0, wave_count_ = 0;

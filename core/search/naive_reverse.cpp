@@ -1,6 +1,5 @@
 #include "core/search/naive_reverse.hpp"
 
-#include <bit>
 #include <utility>
 
 #include "core/math/rng.hpp"
@@ -13,15 +12,6 @@ constexpr double kTouch = 0.2;      // an object closer than this ahead of the r
 constexpr double kClearance = 0.0;  // least separation along the way back [m]
 constexpr double kLeastPull = 0.2;  // of the stride
 constexpr double kSweepStep = 0.1;  // [m]
-
-/// A number that differs between jobs.
-std::uint64_t key_of(const ReverseJob& job) {
-  std::uint64_t key = static_cast<std::uint64_t>(job.action);
-  for (const Pose& p : job.end)
-    for (const double x : {p.x, p.y, p.theta})
-      key = (key ^ std::bit_cast<std::uint64_t>(x)) * 0x100000001b3 + (key >> 29);
-  return key;
-}
 
 Pose moved(const Pose& p, const Vector2d& by) { return {p.x + by.x(), p.y + by.y(), p.theta}; }
 

@@ -22,10 +22,11 @@ struct SearchConfig {
   int depth = 24;                // D, layers per round at most
   double contact_quota = 0.4;    // share of the beam reserved for nodes whose step moved an object
   double random_share = 0.15;    // share of the beam drawn at random among the rest
-  double gap_tolerance = 0.25;   // largest replay gap of a node that is expanded further [m]
+  double gap_tolerance = 0.25;   // a node that misses by more is not expanded [m]
   int twins = 6;                 // disturbed starts that probe how a push passes errors on
   double twin_jitter = 0.1;      // how far they are disturbed [m, rad]
   double policy_stretch = 1.2;   // the tree policy leaves out pushes that stretch errors more
+  int starts = 2;                // predecessors of one solve that are replayed, the best ones
   int free_moves = 12;           // steps that move no object replayed per node, the best ones
   int per_layout = 6;            // nodes of a beam that differ in the robot only, at most
   int root_draws = 4;            // goal states drawn per root kept
@@ -47,17 +48,18 @@ struct SearchConfig {
     v.integer("depth", depth, 1, 1000, "layers per round at most");
     v.number("contact_quota", contact_quota, 0.0, 1.0, "share of the beam that moved an object");
     v.number("random_share", random_share, 0.0, 1.0, "share of the beam drawn at random");
-    v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest replay gap expanded [m]");
+    v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest miss of a body expanded [m]");
     v.integer("twins", twins, 0, 1000, "disturbed starts that probe a push");
     v.number("twin_jitter", twin_jitter, 1e-6, 1.0, "how far they are disturbed [m, rad]");
     v.number("policy_stretch", policy_stretch, 0.0, 1e9, "errors of followed pushes grow at most");
+    v.integer("starts", starts, 1, 100, "predecessors replayed per solve");
     v.integer("free_moves", free_moves, 0, 360, "steps without contact replayed per node");
     v.integer("per_layout", per_layout, 1, 100000, "nodes of a beam with objects alike");
     v.integer("root_draws", root_draws, 1, 1000, "goal states drawn per root kept");
     v.integer("arrivals", arrivals, 1, 1000000, "nodes at its target that end a round");
     v.integer("patience", patience, 1, 1000, "layers without a better node that end a round");
     v.number("target_jitter", target_jitter, 0.0, 10.0, "of the start layout a tree aims at [m]");
-    v.number("chain_share", chain_share, 0.0, 1.0, "share of tree transitions from whole chains");
+    v.number("chain_share", chain_share, 0.0, 0.95, "share of tree transitions from whole chains");
     v.number("rollout_jitter", rollout_jitter, 0.0, 10.0, "of the starts of roll-outs [m]");
     v.number("rollout_noise", rollout_noise, 0.0, 1.0, "share of roll-out actions disturbed");
     v.integer("evaluation_starts", evaluation_starts, 1, 100000, "episodes that judge the data");

@@ -80,6 +80,14 @@ TEST(Generate, PolicyStretchDecidesWhatEpisodesFollowNotWhatTheFirstRoundFinds) 
   EXPECT_TRUE(std::equal(stored.begin(), stored.begin() + 500, reference.begin()));
 }
 
+TEST(Generate, StoresNoStepTwice) {
+  std::vector<Transition> steps;
+  for (const Transition& t : reference_run().stored)
+    if (t.source == Source::kStepReplay) steps.push_back(t);
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    for (std::size_t j = 0; j < k; ++j) ASSERT_NE(steps[j], steps[k]) << j << ", " << k;
+}
+
 TEST(Generate, EachSourceHasItsShare) {
   const auto count = [](Source source) {
     return std::ranges::count(reference_run().stored, source, &Transition::source);
