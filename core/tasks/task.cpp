@@ -77,7 +77,7 @@ std::optional<Poses> jittered_start(const Task& task, double amplitude, Rng& rng
       poses[i].y += rng.uniform(-amplitude, amplitude);
       poses[i] = to_single(poses[i]);
     }
-    if (!first_overlap(task.scene, poses, kStartClearance)) return poses;
+    if (!first_overlap(task.scene, poses, kStartClearance) && !succeeded(task, poses)) return poses;
   }
   return std::nullopt;
 }

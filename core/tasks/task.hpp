@@ -65,7 +65,8 @@ std::vector<float> observation(const Task& task, const Poses& poses);
 int observation_size(const Task& task);
 
 /// Start state with every movable object's position moved by ± amplitude in x and y (uniform),
-/// overlaps drawn again; empty if no legal draw was found in 1000 attempts. Poses are to_single().
+/// overlaps and states in which the goal holds drawn again; empty if no legal draw was found in
+/// 1000 attempts. Poses are to_single().
 std::optional<Poses> jittered_start(const Task& task, double amplitude, Rng& rng);
 
 /// A layout that satisfies the goal with 0.05 m to spare: each body somewhere in its target set or

@@ -21,7 +21,7 @@ std::string quote(const std::string& text) {
 
 /// Whether YAML reads the bare word back as that text.
 bool is_plain_word(const std::string& text) {
-  static const std::vector<std::string> kMeaning{"true", "false", "null"};
+  static const std::vector<std::string> kMeaning{"true", "false", "null", "Null", "NULL"};
   const auto in_word = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
   return !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) &&
          std::all_of(text.begin(), text.end(), in_word) &&

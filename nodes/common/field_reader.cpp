@@ -49,7 +49,7 @@ std::optional<Number> spelled(const ConfigNode& node, std::errc& error) {
   if (node.kind != Kind::kScalar || node.quoted) return std::nullopt;
   const char* begin = node.scalar.data();
   const char* end = begin + node.scalar.size();
-  if (begin != end && *begin == '+') ++begin;
+  if (end - begin > 1 && *begin == '+' && begin[1] != '-') ++begin;
   Number value{};
   const auto [stop, code] = std::from_chars(begin, end, value);
   error = code;

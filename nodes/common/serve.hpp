@@ -23,8 +23,10 @@ int serve(Bus& bus, WorkerNode<Work>& node) {
       std::fputs("stuck: a unit of work takes longer than any should; leaving it\n", stderr);
       std::_Exit(1);  // nobody could wait for its thread
     }
-    if (node.coordinator().silent(monotonic_now()))
+    if (node.coordinator().silent(monotonic_now())) {
+      limit_shutdown(1);  // the node's end waits for its units, which may hang
       throw std::runtime_error("no coordinator heard for 30 s");
+    }
   }
   if (stop_signal()) status = 128 + stop_signal();
   limit_shutdown(status);

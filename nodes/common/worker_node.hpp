@@ -73,7 +73,7 @@ class WorkerNode {
   using JobMessage = typename Work::JobMessage;
   using ResultMessage = typename Work::ResultMessage;
   using Jobs = std::vector<typename Work::Job>;
-  static constexpr std::size_t kMostHeld = 1000;  // far beyond the capacity that beats announce
+  static constexpr std::size_t kMostHeld = 3000;  // beyond any capacity that beats announce
 
   void receive(const JobMessage& message) {
     if (message.to != incarnation_) return;

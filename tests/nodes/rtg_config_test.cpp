@@ -152,6 +152,14 @@ TEST(RtgConfig, APolygonIsCentredAndItsTextReadsBackToTheSameBits) {
   EXPECT_EQ(again.task.scene.bodies[1].shape, shape);
 }
 
+TEST(RtgConfig, NamesThatYamlReadsAsNothingReadBackToThemselves) {
+  const RtgConfig config =
+      parsed("", {"task.bodies.1.name='null'", "task.bodies.2.name='Null'", "task.name='NULL'"});
+  const RtgConfig again = parse_config(canonical_yaml(config), "canonical.yaml");
+  EXPECT_EQ(canonical_yaml(again), canonical_yaml(config));
+  EXPECT_EQ(again.task.name, "NULL");
+}
+
 TEST(RtgConfig, TheHashTellsConfigurationsApart) {
   const auto with_breadth = [](int breadth) {
     return config_hash(parsed("search: {breadth: " + std::to_string(breadth) + "}\n"));
