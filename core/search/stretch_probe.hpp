@@ -24,8 +24,8 @@ class StretchProbe {
   StretchProbe(const Task& task, const SearchConfig& config, std::uint64_t seed);
 
   /// Fills in `stretch` of the replayed candidates that move an object and miss by no more than
-  /// config.gap_tolerance. Draws config.twins twins each, every body moved by up to
-  /// ± config.twin_jitter in x and y and objects turned by as much [m, rad].
+  /// config.gap_tolerance. Draws config.twins twins each, bodies moved by up to
+  /// ± config.twin_jitter in x and y, objects turned by as much [m, rad]; fixed ones stay.
   void measure(std::span<Candidate> candidates, const ReplayBatch& replay, SearchStats& stats);
 
  private:
