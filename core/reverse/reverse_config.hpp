@@ -58,6 +58,7 @@ inline ReverseConfig reverse_preset(ReversePreset preset) {
   if (preset == ReversePreset::kDefault) return config;
   config.preset = ReversePreset::kPaper;
   config.max_iterations = 1000;
+  config.releases = 0;
   config.path_weight = config.heading_weight = config.terminal_weight = 0.0;
   return config;
 }
