@@ -29,15 +29,15 @@ BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, std::uint64
 void BeamSearch::aim(const Poses& target, const ReplayBatch& replay, SearchStats& stats) {
   target_ = target;
   plant(replay, stats);
-  const Score score = layer_score();
   std::vector<BeamEntry> entries;
   for (const Node& n : nodes_)
-    entries.push_back({score({0, n.action, n.poses, n.poses}), metric_.cell(n.poses, {}),
+    entries.push_back({distance_left(n.poses), metric_.cell(n.poses, {}),
                        metric_.cell(n.poses, kLayoutCells), false});
   beam_.clear();
   std::unordered_set<std::uint64_t> none;
   for (const std::size_t k : select_beam(entries, config_, rng_, none))
     beam_.push_back(static_cast<int>(k));
+  note_best();
 }
 
 void BeamSearch::plant(const ReplayBatch& replay, SearchStats& stats) {
@@ -127,13 +127,22 @@ void BeamSearch::advance(std::span<const Growth> growths, const Score& score) {
         {score(c), metric_.cell(c.start, {}), metric_.cell(c.start, kLayoutCells), c.moved > 0});
   }
   beam_.clear();
-  best_ = std::numeric_limits<double>::infinity();
   for (const std::size_t k : select_beam(entries, config_, rng_, seen_)) {
     const Candidate& c = eligible[k]->candidate;
-    best_ = std::min(best_, entries[k].score);
     beam_.push_back(static_cast<int>(nodes_.size()));
     nodes_.push_back({c.start, c.parent, c.action, eligible[k]->depth});
   }
+  note_best();
+}
+
+double BeamSearch::distance_left(const Poses& poses) const {
+  return start_distance(task_, metric_, poses, target_);
+}
+
+void BeamSearch::note_best() {
+  best_ = std::numeric_limits<double>::infinity();
+  for (const int node : beam_)
+    best_ = std::min(best_, distance_left(nodes_[static_cast<std::size_t>(node)].poses));
 }
 
 Chain BeamSearch::chain(int node) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <unordered_set>
 #include <vector>
@@ -32,7 +33,8 @@ class BeamSearch {
   /// Heads for `target`: plants up to `config.breadth` distinct goal states of the task's sampler,
   /// brought to rest by `replay`: the ones nearest to the target among `config.root_draws` times as
   /// many, objects that look the same exchanged so that each begins near its place. The next layer
-  /// grows from the best of all nodes.
+  /// grows from those of all nodes that start_distance() puts nearest, whatever the ranking: the
+  /// others judge a step, and an old node is none.
   void aim(const Poses& target, const ReplayBatch& replay, SearchStats& stats);
 
   /// A replayed candidate with the node that it came from.
@@ -45,7 +47,8 @@ class BeamSearch {
   /// the next beam. All replayed candidates come back, misses too; empty if the tree cannot grow.
   std::vector<Growth> grow(const SolveBatch& solve, const ReplayBatch& replay, SearchStats& stats);
 
-  /// Least score of the beam.
+  /// Least start_distance() of the beam to the target, whatever the ranking; infinity without a
+  /// beam.
   double best() const { return best_; }
 
   std::span<const Node> nodes() const { return nodes_; }
@@ -60,6 +63,8 @@ class BeamSearch {
   Score layer_score() const;
   std::vector<Candidate> worth_replaying(std::vector<Candidate> all, const Score& score) const;
   void advance(std::span<const Growth> growths, const Score& score);
+  double distance_left(const Poses& poses) const;
+  void note_best();
 
   const Task& task_;
   SearchConfig config_;
@@ -69,7 +74,7 @@ class BeamSearch {
   StretchProbe probe_;
   std::vector<Node> nodes_;
   std::vector<int> beam_;
-  double best_ = 0.0;
+  double best_ = std::numeric_limits<double>::infinity();
   std::unordered_set<std::uint64_t> seen_;
 };
 
