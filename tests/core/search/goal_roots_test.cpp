@@ -1,0 +1,191 @@
+#include "core/search/goal_roots.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "core/search/ranking.hpp"
+#include "core/search/state_metric.hpp"
+#include "tests/support/gathering.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::gathering;
+using testing::gathering_hard;
+
+constexpr int kStates = 500;
+
+Poses random_poses(const Task& task, Rng& rng) {
+  Poses out = task.start;
+  for (Pose& p : out) p = {rng.uniform(-5.0, 5.0), rng.uniform(-5.0, 5.0), rng.uniform(-3.0, 3.0)};
+  return out;
+}
+
+double distance(const Task& task, const Poses& a, const Poses& b) {
+  return StateMetric(task.scene).layout_distance(a, b);
+}
+
+Poses exchanged(Poses poses, std::size_t i, std::size_t j) {
+  std::swap(poses[i], poses[j]);
+  return poses;
+}
+
+/// Least distance over all ways to share out the poses of Gathering's three boxes.
+double least_distance(const Task& task, const Poses& poses, const Poses& target) {
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<std::size_t> order{1, 2, 3};
+  do {
+    const Poses trial{poses[0], poses[order[0]], poses[order[1]], poses[order[2]]};
+    least = std::min(least, distance(task, trial, target));
+  } while (std::ranges::next_permutation(order).found);
+  return least;
+}
+
+TEST(Relabelled, UndoesEveryExchangeOfThreeAlike) {
+  const Task task = gathering();
+  std::vector<std::size_t> order{1, 2, 3};
+  do {
+    const Poses mixed{task.start[0], task.start[order[0]], task.start[order[1]],
+                      task.start[order[2]]};
+    EXPECT_EQ(relabelled(task, mixed, task.start), task.start);
+  } while (std::ranges::next_permutation(order).found);
+}
+
+TEST(Relabelled, IsNoFartherThanBeforeNorThanAfterAnyFurtherExchange) {
+  const Task task = gathering_hard();
+  Rng rng(61);
+  int nearer = 0;
+  for (int k = 0; k < kStates; ++k) {
+    const Poses poses = random_poses(task, rng), target = random_poses(task, rng);
+    const Poses out = relabelled(task, poses, target);
+    const double least = distance(task, out, target);
+    EXPECT_LE(least, distance(task, poses, target));
+    nearer += least < distance(task, poses, target);
+    for (std::size_t i = 1; i < out.size(); ++i)
+      for (std::size_t j = i + 1; j < out.size(); ++j)
+        EXPECT_LE(least, distance(task, exchanged(out, i, j), target));
+  }
+  EXPECT_GT(nearer, kStates / 2);  // 23 of 24 labellings are not the nearest
+}
+
+// A cycle of three may be nearer where no exchange of two is: in 6 of these 500.
+TEST(Relabelled, IsTheNearestLabellingOfThreeAlmostAlways) {
+  const Task task = gathering();
+  Rng rng(62);
+  int nearest = 0;
+  for (int k = 0; k < kStates; ++k) {
+    const Poses poses = random_poses(task, rng), target = random_poses(task, rng);
+    const double least = least_distance(task, poses, target);
+    const double found = distance(task, relabelled(task, poses, target), target);
+    EXPECT_GE(found, least - 1e-9);  // sums in another order
+    nearest += found <= least + 1e-9;
+  }
+  EXPECT_GT(nearest, kStates * 97 / 100);
+}
+
+TEST(Relabelled, ExchangesOnlyWhatLooksTheSame) {
+  Task task = gathering_hard();
+  task.scene.bodies[3].kind = "other";
+  task.scene.bodies[4].kind = "other";
+  Rng rng(63);
+  for (int k = 0; k < kStates; ++k) {
+    const Poses poses = random_poses(task, rng);
+    const Poses out = relabelled(task, poses, random_poses(task, rng));
+    EXPECT_EQ(out[0], poses[0]);
+    for (const std::size_t i : {1U, 3U})
+      EXPECT_TRUE((out[i] == poses[i] && out[i + 1] == poses[i + 1]) ||
+                  (out[i] == poses[i + 1] && out[i + 1] == poses[i]));
+  }
+}
+
+TEST(Relabelled, EveryDifferenceOfLooksCounts) {
+  const auto stays = [](auto change) {
+    Task task = gathering();
+    change(task.scene.bodies[1]);
+    const Poses crossed = exchanged(task.start, 1, 2);
+    return relabelled(task, crossed, task.start) == crossed;
+  };
+  EXPECT_FALSE(stays([](Body& b) { b.name = "another"; }));
+  EXPECT_TRUE(stays([](Body& b) { b.kind = "other"; }));
+  EXPECT_TRUE(stays([](Body& b) { b.shape = box(1.2, 1.3); }));
+  EXPECT_TRUE(stays([](Body& b) { b.density = 2.0; }));
+  EXPECT_TRUE(stays([](Body& b) { b.friction = 0.4; }));
+  EXPECT_TRUE(stays([](Body& b) { b.fixed = true; }));
+}
+
+TEST(Relabelled, TheRobotStaysWhateverLooksLikeIt) {
+  Task task = gathering();
+  task.scene.bodies[1] = task.scene.bodies[0];
+  const Poses crossed = exchanged(task.start, 0, 1);
+  EXPECT_EQ(relabelled(task, crossed, task.start), crossed);
+}
+
+SearchConfig of(int breadth, int root_draws) {
+  SearchConfig config;
+  config.breadth = breadth;
+  config.root_draws = root_draws;
+  return config;
+}
+
+std::vector<Poses> roots(const Task& task, const SearchConfig& config, std::uint64_t seed) {
+  Rng rng(seed);
+  return goal_roots(task, config, task.start, rng);
+}
+
+TEST(GoalRoots, AreDistinctGoalsNearestFirst) {
+  const Task task = gathering();
+  const StateMetric metric(task.scene);
+  const std::vector<Poses> found = roots(task, of(20, 4), 64);
+  ASSERT_EQ(found.size(), 20U);
+  std::set<std::uint64_t> cells;
+  double before = 0.0;
+  for (const Poses& root : found) {
+    EXPECT_TRUE(succeeded(task, root));
+    EXPECT_EQ(relabelled(task, root, task.start), root);
+    EXPECT_TRUE(cells.insert(metric.cell(root, {})).second);
+    const double left = start_distance(task, metric, root, task.start);
+    EXPECT_GE(left, before);
+    before = left;
+  }
+}
+
+TEST(GoalRoots, AreTheNearestOfAllDraws) {
+  const Task task = gathering();
+  const std::vector<Poses> all = roots(task, of(80, 1), 65);
+  const std::vector<Poses> best = roots(task, of(20, 4), 65);
+  ASSERT_GE(all.size(), 20U);
+  EXPECT_EQ(best, std::vector<Poses>(all.begin(), all.begin() + 20));
+}
+
+// A disc just large enough for one box and no room for the robot elsewhere: few cells.
+TEST(GoalRoots, StatesOfOneCellAreOneRoot) {
+  Task task = gathering();
+  task.scene.bodies.resize(2);
+  task.start.resize(2);
+  task.goal[0].radius = 0.1;
+  task.push.arena = 1.6;
+  const std::vector<Poses> found = roots(task, of(400, 4), 66);
+  const StateMetric metric(task.scene);
+  std::set<std::uint64_t> cells;
+  for (const Poses& root : found) EXPECT_TRUE(cells.insert(metric.cell(root, {})).second);
+  EXPECT_LT(found.size(), 400U);
+  EXPECT_GT(found.size(), 10U);
+}
+
+TEST(GoalRoots, AreAFunctionOfTheRandomStream) {
+  const Task task = gathering();
+  EXPECT_EQ(roots(task, of(8, 2), 67), roots(task, of(8, 2), 67));
+  EXPECT_NE(roots(task, of(8, 2), 67), roots(task, of(8, 2), 68));
+}
+
+TEST(GoalRoots, OfAnImpossibleGoalAreNone) {
+  Task task = gathering();
+  task.goal[0].radius = 0.4;  // three boxes do not fit
+  EXPECT_TRUE(roots(task, of(2, 1), 69).empty());
+}
+
+}  // namespace
+}  // namespace rtg
