@@ -1,0 +1,61 @@
+#include "core/search/report.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rtg {
+namespace {
+
+/// A report whose numbers all differ and are exact in single precision.
+GenerationReport filled() {
+  GenerationReport r;
+  r.transitions = 1;
+  r.contact_share = 0.25;
+  r.multi_body_share = 0.125;
+  r.start_region_transitions = 2;
+  r.start_region_tree_transitions = 3;
+  r.reachable_share = 0.5;
+  r.tree_policy_success = 0.75;
+  r.tree_policy_length_mean = 4.5;
+  r.start_region_depth = 5;
+  r.candidates = 6;
+  for (std::size_t k = 0; k < r.statuses.size(); ++k) r.statuses[k] = 10 + static_cast<long>(k);
+  r.illegal_starts = 20;
+  r.unsettled_goals = 21;
+  r.rejected_pushes = 22;
+  r.iterations_median = 30.0;
+  r.iterations_p90 = 31.0;
+  r.replay_gap_median = 0.0625;
+  r.replay_gap_p90 = 0.375;
+  r.reverse_cpu_s = 40.5;
+  r.replay_cpu_s = 41.5;
+  r.generate_wall_s = 42.5;
+  r.replay_gaps = {1.5F, 2.5F};
+  r.nodes = {{{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 7, 8}, {{{-0.5, 0.0, 0.5}}, 9, 50}};
+  return r;
+}
+
+TEST(Report, EveryFieldIsWrittenUnderItsName) {
+  EXPECT_EQ(to_json(filled()),
+            R"({"transitions":1,"contact_share":0.25,"multi_body_share":0.125,)"
+            R"("start_region_transitions":2,"start_region_tree_transitions":3,)"
+            R"("reachable_share":0.5,"tree_policy_success":0.75,"tree_policy_length_mean":4.5,)"
+            R"("start_region_depth":5,"candidates":6,)"
+            R"("converged":10,"pruned":11,"infeasible":12,"iteration_limit":13,)"
+            R"("line_search_failed":14,"singular":15,"non_finite":16,)"
+            R"("illegal_starts":20,"unsettled_goals":21,"rejected_pushes":22,)"
+            R"("iterations_median":30.0,"iterations_p90":31.0,)"
+            R"("replay_gap_median":0.0625,"replay_gap_p90":0.375,)"
+            R"("reverse_cpu_s":40.5,"replay_cpu_s":41.5,"generate_wall_s":42.5,)"
+            R"("replay_gaps":[1.5,2.5],"nodes":[)"
+            R"({"poses":[[1.0,2.0,3.0],[4.0,5.0,6.0]],"depth":7,"tree":8},)"
+            R"({"poses":[[-0.5,0.0,0.5]],"depth":9,"tree":50}]})");
+}
+
+TEST(Report, OfNothingHasEmptyListsAndNoDepth) {
+  const std::string text = to_json({});
+  EXPECT_NE(text.find(R"("start_region_depth":-1,)"), std::string::npos);
+  EXPECT_TRUE(text.ends_with(R"("replay_gaps":[],"nodes":[]})"));
+}
+
+}  // namespace
+}  // namespace rtg
