@@ -204,6 +204,14 @@ TEST(JitteredStarts, MoveObjectsByUpToAnAmplitudeOfTheirOwn) {
   EXPECT_NEAR(static_cast<double>(small), 0.24 * 400, 5 * 8.5);
 }
 
+TEST(JitteredStarts, AreNeverInTheGoal) {
+  Task task = gathering();
+  task.goal[0].radius = 3.46;  // the second box starts 1 mm outside: two of five states are in it
+  Rng rng(53);
+  for (const Poses& poses : jittered_starts(task, 200, 0.5, rng))
+    EXPECT_FALSE(succeeded(task, poses));
+}
+
 TEST(JitteredStarts, AreTheNominalStartWhereThereIsNoRoom) {
   Task task = gathering();
   task.scene.bodies[2].fixed = true;

@@ -88,6 +88,17 @@ TEST(Task, JitteredStartsStayWithinTheAmplitudeAndFreeOfOverlap) {
   EXPECT_GT(widest, 0.45);
 }
 
+// The second box stands 3.461 m from the centre: a quarter of the states within 0.5 m of the start
+// are solved.
+TEST(Task, JitteredStartsAreNeverInTheGoal) {
+  Task task = gathering();
+  task.goal[0].radius = 3.46;
+  ASSERT_FALSE(succeeded(task, task.start));
+  Rng rng(6);
+  for (int k = 0; k < 200; ++k)
+    EXPECT_FALSE(succeeded(task, jittered_start(task, 0.5, rng).value()));
+}
+
 TEST(Task, JitterDrawsOverlapsAgainAndGivesUpOnTheImpossible) {
   Task task = gathering();
   Rng rng(4);
