@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <regex>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/math/rng.hpp"
 #include "nodes/common/rtg_config.hpp"
@@ -18,15 +21,34 @@ constexpr std::array<std::string_view, 30> kTokens{
     "\"", "#",     "&a ",  "*a", "!",  "!!int", "---",  "...",    "? ",   "| ",
     "> ", "1e999", ".nan", "-1", "0",  "\t",    "\xff", "\\",     "true", "%YAML 1.2\n"};
 
+/// Settings of every kind of value.
+constexpr std::array<std::string_view, 16> kSettings{
+    "search.breadth=32",
+    "search.gap_tolerance=0.125",
+    "search.ranking=novelty",
+    "reverse.preset=paper",
+    "train.preset=paper",
+    "run.bus=udpm://239.255.76.67:7667?ttl=0",
+    "run.in_process=true",
+    "physics={skin: 0.01}",
+    "task.name=other",
+    "task.horizon=30",
+    "task.bodies.1.start=[3, 0, 0.5]",
+    "task.bodies.1.friction=0.25",
+    "task.bodies.2.density=2",
+    "task.bodies.2.shape={vertices: [[0, 0], [1, 0], [0, 1]]}",
+    "task.goal.0.disc.radius=2.5",
+    "task.goal.0={kind: '*', half_plane: {normal: [0, 1], offset: -1}}"};
+
 std::size_t place(const std::string& text, Rng& rng) {
   return static_cast<std::size_t>(rng.below(static_cast<int>(text.size()) + 1));
 }
 
-/// One random edit: a byte changed, a token put in, a stretch left out or doubled, two lines
-/// swapped for one another's tails.
-void mutate(std::string& text, Rng& rng) {
+/// One random edit: a byte changed, a token put in, a stretch shorter than `longest` left out or
+/// put in once more somewhere else.
+void mutate(std::string& text, int longest, Rng& rng) {
   const std::size_t at = place(text, rng);
-  const auto length = static_cast<std::size_t>(rng.below(40));
+  const auto length = static_cast<std::size_t>(rng.below(longest));
   switch (rng.below(4)) {
     case 0:
       if (at < text.size()) text[at] = static_cast<char>(rng.below(256));
@@ -42,18 +64,85 @@ void mutate(std::string& text, Rng& rng) {
   }
 }
 
-/// Loads the text. A legal one must have a canonical text that reads back to itself; what is wrong
-/// with another must be said in one line that names what is legal.
+/// The values that a struct's visit() lists, bit for bit.
+struct Values {
+  std::vector<double> numbers;
+  std::vector<std::string> texts;
+
+  void number(const char*, double x, double, double, const char*) { numbers.push_back(x); }
+  void integer(const char*, int x, int, int, const char*) { numbers.push_back(x); }
+  void flag(const char*, bool x, const char*) { numbers.push_back(x); }
+  void text(const char*, const std::string& x, const char*) { texts.push_back(x); }
+  template <class Enum, class Names>
+  void choice(const char*, Enum x, const Names&, const char*) {
+    numbers.push_back(static_cast<double>(x));
+  }
+
+  bool operator==(const Values&) const = default;
+};
+
+Values values(RtgConfig config) {
+  Values all;
+  config.task.visit(all);
+  config.task.push.visit(all);
+  config.physics.visit(all);
+  config.reverse.visit(all);
+  config.search.visit(all);
+  config.train.visit(all);
+  config.run.visit(all);
+  return all;
+}
+
+/// A legal configuration prints as a text that reads back to equal values.
+void expect_to_read_back(const RtgConfig& config, const std::string& from) {
+  const std::string canonical = canonical_yaml(config);
+  const RtgConfig again = parse_config(canonical, "canonical.yaml");
+  EXPECT_EQ(canonical_yaml(again), canonical) << from;
+  EXPECT_TRUE(values(again) == values(config)) << from;
+  EXPECT_EQ(again.task.name, config.task.name) << from;
+  EXPECT_EQ(again.task.scene.bodies, config.task.scene.bodies) << from;
+  EXPECT_EQ(again.task.start, config.task.start) << from;
+  ASSERT_EQ(again.task.goal.size(), config.task.goal.size()) << from;
+  for (std::size_t k = 0; k < again.task.goal.size(); ++k) {
+    const GoalTerm &a = again.task.goal[k], &b = config.task.goal[k];
+    EXPECT_EQ(a.kind, b.kind) << from;
+    EXPECT_EQ(a.region, b.region) << from;
+    EXPECT_EQ(a.centre, b.centre) << from;
+    EXPECT_EQ(a.radius, b.radius) << from;
+    EXPECT_EQ(a.normal, b.normal) << from;
+    EXPECT_EQ(a.offset, b.offset) << from;
+  }
+}
+
+/// What is wrong is said in one line: the place, a colon, what is wrong, what is legal.
+void expect_to_tell(const std::string& message, const std::string& place, const std::string& from) {
+  EXPECT_TRUE(message.starts_with(place + ": ")) << message << '\n' << from;
+  const std::size_t legal = message.find("; legal: ", place.size());
+  ASSERT_NE(legal, std::string::npos) << message << '\n' << from;
+  EXPECT_GT(legal, place.size() + 2) << message << '\n' << from;
+  EXPECT_GT(message.size(), legal + 9) << message << '\n' << from;
+  EXPECT_TRUE(std::ranges::none_of(message, [](unsigned char c) { return c < ' ' || c == 127; }))
+      << message << '\n'
+      << from;
+}
+
+/// Place that a message begins with: "FILE:LINE" of a line that the text has; empty if it is none.
+std::string line_of(const std::string& message, const std::string& file, const std::string& text) {
+  std::smatch found;
+  if (!std::regex_search(message, found, std::regex("^" + file + ":([0-9]{1,6}): "))) return {};
+  const int line = std::stoi(found[1]);
+  if (line < 1 || line > std::ranges::count(text, '\n') + 1) return {};
+  return file + ':' + found[1].str();
+}
+
 bool is_legal(const std::string& text) {
   try {
-    const std::string canonical = canonical_yaml(parse_config(text, "fuzz.yaml"));
-    EXPECT_EQ(canonical_yaml(parse_config(canonical, "canonical.yaml")), canonical) << text;
+    expect_to_read_back(parse_config(text, "fuzz.yaml"), text);
     return true;
   } catch (const ConfigError& error) {
-    const std::string message = error.what();
-    EXPECT_TRUE(message.starts_with("fuzz.yaml:")) << message << '\n' << text;
-    EXPECT_NE(message.find("; legal: "), std::string::npos) << message << '\n' << text;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message << '\n' << text;
+    const std::string place = line_of(error.what(), "fuzz.yaml", text);
+    EXPECT_FALSE(place.empty()) << error.what() << '\n' << text;
+    expect_to_tell(error.what(), place, text);
     return false;
   }
 }
@@ -64,7 +153,7 @@ TEST(ConfigFuzz, MutatedTextsAreReadOrRefusedInOneLine) {
   int legal = 0;
   for (int k = 0; k < kTexts; ++k) {
     std::string text = k % 4 == 0 ? whole : testing::kTwoBoxes;
-    for (int edits = 1 + rng.below(4); edits > 0; --edits) mutate(text, rng);
+    for (int edits = 1 + rng.below(4); edits > 0; --edits) mutate(text, 40, rng);
     legal += is_legal(text) ? 1 : 0;
   }
   // Neither nearly all nor nearly none, or the edits would test nothing.
@@ -72,17 +161,41 @@ TEST(ConfigFuzz, MutatedTextsAreReadOrRefusedInOneLine) {
   EXPECT_LT(legal, kTexts * 19 / 20);
 }
 
+/// The flag as messages show it.
+std::string shown(const std::string& setting) {
+  std::string flag = "--set " + setting;
+  std::ranges::replace_if(
+      flag, [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
+  return flag;
+}
+
+/// What the whole task fails for, a goal that the start meets, is told of the file's line.
+bool is_legal_setting(const std::string& setting, int& of_the_file) {
+  try {
+    const RtgConfig config =
+        parse_config(testing::kTwoBoxes, "two_boxes.yaml", std::array{setting});
+    expect_to_read_back(config, setting);
+    return true;
+  } catch (const ConfigError& error) {
+    const std::string message = error.what(), flag = shown(setting);
+    const std::string line = line_of(message, "two_boxes.yaml", testing::kTwoBoxes);
+    expect_to_tell(message, line.empty() ? flag : line, setting);
+    of_the_file += !line.empty();
+    return false;
+  }
+}
+
 TEST(ConfigFuzz, MutatedSettingsAreReadOrRefusedInOneLine) {
   Rng rng(21);
+  int legal = 0, of_the_file = 0;
   for (int k = 0; k < kTexts; ++k) {
-    std::string setting = k % 2 == 0 ? "task.bodies.1.start=[3, 0, 0.5]" : "search.breadth=32";
-    for (int edits = 1 + rng.below(3); edits > 0; --edits) mutate(setting, rng);
-    try {
-      parse_config(testing::kTwoBoxes, "two_boxes.yaml", std::array{setting});
-    } catch (const ConfigError& error) {
-      EXPECT_NE(std::string(error.what()).find("; legal: "), std::string::npos) << error.what();
-    }
+    std::string setting{kSettings[static_cast<std::size_t>(k) % kSettings.size()]};
+    for (int edits = 1 + rng.below(2); edits > 0; --edits) mutate(setting, 4, rng);
+    legal += is_legal_setting(setting, of_the_file) ? 1 : 0;
   }
+  EXPECT_GT(legal, kTexts / 20);
+  EXPECT_LT(legal, kTexts * 19 / 20);
+  EXPECT_LT(of_the_file, kTexts / 100);
 }
 
 }  // namespace
