@@ -31,6 +31,9 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
+/// Names a step: what it leads to follows from its start and action.
+std::uint64_t key_of_step(const Transition& t) { return key_of({t.poses, t.action}); }
+
 /// One run of generate().
 class Generation {
  public:
@@ -129,11 +132,14 @@ class Generation {
     for (const BeamSearch::Growth& g : growths) {
       if (g.depth == 0) continue;
       const Candidate& c = g.candidate;
-      if (!tried_.insert(key_of({c.start, c.action})).second) continue;
-      batch.push_back({c.start, c.action, c.end, succeeded(task_, c.end), Source::kStepReplay});
+      Transition t{c.start, c.action, c.end, succeeded(task_, c.end), Source::kStepReplay};
+      if (!stored_steps_.insert(key_of_step(t)).second) continue;
+      batch.push_back(std::move(t));
       behind.push_back(&g);
     }
     const auto kept = store(batch, limit);
+    for (std::size_t k = kept.size(); k < batch.size(); ++k)
+      stored_steps_.erase(key_of_step(batch[k]));
     for (std::size_t k = 0; k < kept.size(); ++k) {
       const Transition& t = kept[k];
       const Candidate& c = behind[k]->candidate;
@@ -160,11 +166,22 @@ class Generation {
     for (const auto& [distance, node] : order) {
       if (planned >= wanted) break;
       chains.push_back(search_.chain(node));
-      planned += static_cast<long>(chains.back().actions.size());
+      planned += static_cast<long>(chains.back().actions.size()) - 1;
     }
     const long room = std::min(limit, stored() + wanted);
     for (const auto& steps : replay_chains(task_, chains, seams_.replay, stats_))
-      learn(store(steps, room));
+      store_chain(steps, room);
+  }
+
+  /// Steps that are stored already are left out: the first one of a chain is, bit for bit, the step
+  /// that found its far end. The policy learns them all the same.
+  void store_chain(std::span<const Transition> steps, long limit) {
+    std::vector<Transition> fresh;
+    for (const Transition& t : steps)
+      if (!stored_steps_.contains(key_of_step(t))) fresh.push_back(t);
+    const auto kept = store(fresh, limit);
+    for (const Transition& t : kept) stored_steps_.insert(key_of_step(t));
+    if (kept.size() == fresh.size()) learn(steps);
   }
 
   /// Adds the steps of an episode that ended in success to the policy.
@@ -235,7 +252,7 @@ class Generation {
   Coverage coverage_;
   TreePolicy policy_;
   BeamSearch search_;
-  std::unordered_set<std::uint64_t> tried_;  // key_of() the steps stored, start and action
+  std::unordered_set<std::uint64_t> stored_steps_;  // key_of_step()
   SearchStats stats_;
   GenerationReport report_;
   int rounds_ = 0, wave_count_ = 0;

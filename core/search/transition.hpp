@@ -11,7 +11,8 @@ namespace rtg {
 /// Where a stored transition comes from.
 enum class Source : std::int8_t {
   kStepReplay,   // one reverse candidate replayed forward
-  kChainReplay,  // part of a whole chain replayed end to end from its far end
+  kChainReplay,  // part of a whole chain replayed end to end from its far end, but for its first
+                 // step and any other that is stored already
   kRollOut,      // part of an episode of the tree policy from a jittered start
 };
 
