@@ -41,7 +41,7 @@ SqpResult solve_with_restoration(const ReverseProblem& problem) {
     iterations += result.iterations;
     if (result.status == SolveStatus::kConverged || iterations >= problem.config.max_iterations)
       break;
-    if (result.status != SolveStatus::kNonFinite)
+    if (result.status != SolveStatus::kNonFinite && attempt + 1 < kAttempts)
       *feasible = restored(problem, *feasible, result.x);
   }
   result.iterations = iterations;
