@@ -44,13 +44,13 @@ std::optional<Iterate> line_search(const ReverseProblem& problem, const Iterate&
 SqpResult merit_sqp(const ReverseProblem& problem, const Iterate& start) {
   const ReverseConfig& config = problem.config;
   const std::unique_ptr<KktSolver> kkt = make_kkt_solver(config.kkt);
-  SqpResult result{SolveStatus::kIterationLimit, start, 0, 0.0, 0.0};
+  SqpResult result{SolveStatus::kNonFinite, start, 0, 0.0, 0.0};
   const auto ended = [&result](SolveStatus status) {
     result.status = status;
     return result;
   };
   Merit merit;
-  for (; result.iterations < config.max_iterations; ++result.iterations) {
+  for (;;) {
     const Linearisation lin(problem, result.x, {false, kProximal});
     result.infeasibility = lin.violation().max();
     result.stationarity = lin.stationarity();
@@ -58,6 +58,8 @@ SqpResult merit_sqp(const ReverseProblem& problem, const Iterate& start) {
     if (result.infeasibility < config.feasibility_tol &&
         result.stationarity < config.stationarity_tol)
       return ended(SolveStatus::kConverged);
+    if (result.iterations == config.max_iterations) return ended(SolveStatus::kIterationLimit);
+    ++result.iterations;
     if (!kkt->factorize(lin.matrix())) return ended(SolveStatus::kSingular);
     const BlockVector solution = kkt->solve(lin.right_hand_side(lin.violation()));
     const Direction d = lin.direction(solution, lin.violation());
@@ -66,7 +68,6 @@ SqpResult merit_sqp(const ReverseProblem& problem, const Iterate& start) {
     if (!next) return ended(SolveStatus::kLineSearchFailed);
     result.x = std::move(*next);
   }
-  return result;
 }
 
 }  // namespace rtg

@@ -21,17 +21,38 @@ struct PaperScene : TouchingScene {
   ReverseProblem problem() const { return TouchingScene::problem(config); }
 };
 
-// The robot alone: nothing to touch, at any distance.
+/// The robot alone, pushed along (0.6, 0.8): nothing to touch, at any distance.
+struct FreeRobot : PaperScene {
+  FreeRobot() {
+    scene.bodies.resize(1);
+    energy = StepEnergy(scene, physics, task.push);
+    config = testing::free_push_config(config);
+  }
+  ReverseProblem problem() const { return {energy, config, stacked({{1, 2, 0.3}}), {0.6, 0.8}, 10}; }
+};
+
 TEST(MeritSqp, ReverseOfAFreePushIsTheClosedForm) {
-  PaperScene scene;
-  scene.scene.bodies.resize(1);
-  const StepEnergy energy(scene.scene, scene.physics, scene.task.push);
-  ReverseConfig config = testing::free_push_config(scene.config);
-  config.stationarity_tol = 1e-6;  // over a curvature of 0.01
-  const ReverseProblem problem{energy, config, stacked({{1, 2, 0.3}}), {0.6, 0.8}, 10};
+  FreeRobot free;
+  free.config.stationarity_tol = 1e-6;  // over a curvature of 0.01
+  const ReverseProblem problem = free.problem();
   const SqpResult result = merit_sqp(problem, static_iterate(problem));
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   testing::expect_closed_form(problem, result.x, 1e-4);
+}
+
+TEST(MeritSqp, TheLastIterateThatTheLimitAllowsMayBeTheSolution) {
+  FreeRobot free;
+  const ReverseProblem problem = free.problem();
+  const SqpResult unlimited = merit_sqp(problem, static_iterate(problem));
+  ASSERT_EQ(unlimited.status, SolveStatus::kConverged);
+  free.config.max_iterations = unlimited.iterations;
+  const SqpResult just = merit_sqp(problem, static_iterate(problem));
+  EXPECT_EQ(just.status, SolveStatus::kConverged);
+  EXPECT_EQ(just.iterations, unlimited.iterations);
+  --free.config.max_iterations;
+  const SqpResult short_of_it = merit_sqp(problem, static_iterate(problem));
+  EXPECT_EQ(short_of_it.status, SolveStatus::kIterationLimit);
+  EXPECT_EQ(short_of_it.iterations, unlimited.iterations - 1);
 }
 
 TEST(MeritSqp, IterationsKeepTheObjectiveFallingOrTheConstraintsHolding) {
