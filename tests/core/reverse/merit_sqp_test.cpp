@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
+#include "core/reverse/linearisation.hpp"
+#include "core/reverse/merit.hpp"
 #include "tests/support/free_push.hpp"
 #include "tests/support/touching_scene.hpp"
 
@@ -13,22 +18,27 @@ using testing::TouchingScene;
 /// The touching scene with the paper's barrier, solved the paper's way.
 struct PaperScene : TouchingScene {
   ReverseConfig config = reverse_preset(ReversePreset::kPaper);
+  Vector2d push = Vector2d::UnitX();
 
   PaperScene() {
     physics.plain_barrier = true;
     energy = StepEnergy(scene, physics, task.push);
   }
-  ReverseProblem problem() const { return TouchingScene::problem(config); }
+  ReverseProblem problem() const {
+    ReverseProblem out = TouchingScene::problem(config);
+    out.direction = push;
+    return out;
+  }
 };
 
-/// The robot alone, pushed along (0.6, 0.8): nothing to touch, at any distance.
+/// The robot alone: nothing to touch, at any distance.
 struct FreeRobot : PaperScene {
   FreeRobot() {
     scene.bodies.resize(1);
     energy = StepEnergy(scene, physics, task.push);
-    config = testing::free_push_config(config);
+    poses = {{1, 2, 0.3}};
+    push = {0.6, 0.8};
   }
-  ReverseProblem problem() const { return {energy, config, stacked({{1, 2, 0.3}}), {0.6, 0.8}, 10}; }
 };
 
 TEST(MeritSqp, ReverseOfAFreePushIsTheClosedForm) {
@@ -55,19 +65,60 @@ TEST(MeritSqp, TheLastIterateThatTheLimitAllowsMayBeTheSolution) {
   EXPECT_EQ(short_of_it.iterations, unlimited.iterations - 1);
 }
 
-TEST(MeritSqp, IterationsKeepTheObjectiveFallingOrTheConstraintsHolding) {
-  PaperScene scene;
-  scene.config.max_iterations = 15;
+/// The iterates of a run, the start first: a run with a smaller limit is the beginning of it.
+std::vector<Iterate> iterates(PaperScene& scene, int count) {
   const ReverseProblem problem = scene.problem();
-  const Iterate start = static_iterate(problem);
-  const SqpResult result = merit_sqp(problem, start);
-  EXPECT_EQ(result.iterations, 15);
-  EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
-  const double before = violation(problem, start).l1(), after = violation(problem, result.x).l1();
-  EXPECT_TRUE(after < before || objective(problem, result.x) < objective(problem, start));
-  EXPECT_EQ(result.x.p.back(), problem.end);
-  for (std::size_t k = 0; k < result.x.p.size(); ++k)
-    EXPECT_EQ(result.x.forces[k], scene.energy.forces(result.x.p[k]));
+  std::vector<Iterate> out;
+  for (int k = 0; k <= count; ++k) {
+    scene.config.max_iterations = k;
+    const SqpResult result = merit_sqp(problem, static_iterate(problem));
+    EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
+    EXPECT_EQ(result.iterations, k);
+    out.push_back(result.x);
+  }
+  return out;
+}
+
+/// Largest multiplier that the Newton step at `x` leads to.
+double next_multiplier(const ReverseProblem& problem, const Iterate& x) {
+  const Linearisation lin(problem, x, {false, 1e-6});
+  const auto kkt = make_kkt_solver(KktMethod::kSuiteSparse);
+  EXPECT_TRUE(kkt->factorize(lin.matrix()));
+  const Direction d =
+      lin.direction(kkt->solve(lin.right_hand_side(lin.violation())), lin.violation());
+  double top = 0.0;
+  for (std::size_t k = 1; k < x.multipliers.size(); ++k)
+    top = std::max(top, (x.multipliers[k] + d.multipliers[k]).lpNorm<Eigen::Infinity>());
+  return top;
+}
+
+// The safeguard's ε_c is 1.
+void expect_descent(PaperScene scene, int count) {
+  const ReverseProblem problem = scene.problem();
+  const std::vector<Iterate> x = iterates(scene, count);
+  Merit merit;
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+    merit.raise_weight_above(next_multiplier(problem, x[k]));
+    const double before = violation(problem, x[k]).l1(), after = violation(problem, x[k + 1]).l1();
+    EXPECT_LT(merit.value(objective(problem, x[k + 1]), after),
+              merit.value(objective(problem, x[k]), before))
+        << k;
+    EXPECT_LE(after, std::max(1.0, before)) << k;
+  }
+}
+
+TEST(MeritSqp, EveryIterationLowersTheMeritAndKeepsToTheSafeguard) {
+  expect_descent(PaperScene(), 15);  // here full steps would break the safeguard
+  expect_descent(FreeRobot(), 80);   // and here, from the 58th on, raise the merit
+}
+
+TEST(MeritSqp, IteratesEndInTheGivenStateWithTheForcesOfTheirGaps) {
+  PaperScene scene;
+  const ReverseProblem problem = scene.problem();
+  const Iterate x = iterates(scene, 5).back();
+  EXPECT_NE(x.p[0], problem.end);
+  EXPECT_EQ(x.p.back(), problem.end);
+  for (std::size_t k = 0; k < x.p.size(); ++k) EXPECT_EQ(x.forces[k], scene.energy.forces(x.p[k]));
 }
 
 TEST(MeritSqp, EveryKktMethodTakesTheSameSteps) {
