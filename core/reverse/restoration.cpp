@@ -28,6 +28,15 @@ Iterate restored(const ReverseProblem& problem, const Iterate& feasible, const I
   return feasible;
 }
 
+/// `x`, made to end in the given final state where that is fixed: a forward simulation ends near
+/// it.
+Iterate with_fixed_end(const ReverseProblem& problem, Iterate x) {
+  if (!problem.fixed_end()) return x;
+  x.p.back() = problem.end;
+  x.forces.back() = problem.energy.forces(problem.end);
+  return x;
+}
+
 }  // namespace
 
 SqpResult solve_with_restoration(const ReverseProblem& problem) {
@@ -37,7 +46,8 @@ SqpResult solve_with_restoration(const ReverseProblem& problem) {
   int iterations = 0;
   double proximal = problem.config.proximal_start;
   for (int attempt = 0; attempt < kAttempts; ++attempt, proximal *= kProximalGrowth) {
-    result = filter_sqp(problem, *feasible, problem.config.max_iterations - iterations, proximal);
+    result = filter_sqp(problem, with_fixed_end(problem, *feasible),
+                        problem.config.max_iterations - iterations, proximal);
     iterations += result.iterations;
     if (result.status == SolveStatus::kConverged || iterations >= problem.config.max_iterations)
       break;

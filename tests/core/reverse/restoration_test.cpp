@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/reverse/rollout.hpp"
 #include "tests/support/touching_scene.hpp"
 
 namespace rtg {
@@ -30,6 +31,20 @@ TEST(Restoration, ASolutionThatMissesTheGivenEndIsNone) {
   EXPECT_EQ(solve_with_restoration(problem).status, SolveStatus::kInfeasible);
   config.terminal_tolerance = 1.1 * miss;
   EXPECT_EQ(solve_with_restoration(problem).status, SolveStatus::kConverged);
+}
+
+// The warm start alone ends elsewhere.
+TEST(Restoration, WhereTheFinalStateIsFixedTheSolutionEndsInIt) {
+  const TouchingScene scene;
+  ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0}, {1.41, 0.2, 0.05}, {20, 0, 0}});
+  config.terminal_weight = 0.0;
+  ASSERT_GT(terminal_miss(problem, *warm_start(problem)), 1e-4);
+  const SqpResult result = solve_with_restoration(problem);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_EQ(result.x.p.back(), problem.end);
+  EXPECT_LT(violation(problem, result.x).max(), config.feasibility_tol);
 }
 
 TEST(Restoration, AnOverlappingEndIsInfeasible) {
