@@ -55,9 +55,6 @@ SqpResult solve_with_restoration(const ReverseProblem& problem) {
       *feasible = restored(problem, *feasible, result.x);
   }
   result.iterations = iterations;
-  if (result.status == SolveStatus::kConverged &&
-      terminal_miss(problem, result.x) > problem.config.terminal_tolerance)
-    result.status = SolveStatus::kInfeasible;
   return result;
 }
 

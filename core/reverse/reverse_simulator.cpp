@@ -13,6 +13,18 @@ namespace {
 
 constexpr double kDragged = 0.05;  // a push that moves nothing further has one predecessor [m]
 
+/// The paper's SQP or the default one. kInfeasible also if the solution misses the given final
+/// state by more than the tolerance.
+SqpResult solve_problem(const ReverseProblem& problem) {
+  SqpResult solved = problem.config.preset == ReversePreset::kPaper
+                         ? merit_sqp(problem, static_iterate(problem))
+                         : solve_with_restoration(problem);
+  if (solved.status == SolveStatus::kConverged &&
+      terminal_miss(problem, solved.x) > problem.config.terminal_tolerance)
+    solved.status = SolveStatus::kInfeasible;
+  return solved;
+}
+
 /// The start of a quasi-static push p_0 ... p_h, and others of which it makes the same end: nothing
 /// but the robot moves until the robot is where it meets the objects, so they may as well stand
 /// where they are at a later sub-step k, the robot at its start.
@@ -55,9 +67,7 @@ ReverseResult ReverseSimulator::solve_legal(const ReverseJob& job) const {
   const StepEnergy energy(part.scene, physics_, push_);
   const ReverseProblem problem{energy, config_, with_open_gaps(energy, stacked(part.poses)),
                                direction(job.action, push_), physics_.sub_steps};
-  const SqpResult solved = config_.preset == ReversePreset::kPaper
-                               ? merit_sqp(problem, static_iterate(problem))
-                               : solve_with_restoration(problem);
+  const SqpResult solved = solve_problem(problem);
   ReverseResult result{solved.status, solved.iterations};
   if (result.status != SolveStatus::kConverged) return result;
   for (const VectorXd& start : predecessors(solved.x.p, config_.releases))

@@ -22,17 +22,6 @@ TEST(Restoration, SolvesTheTouchingScene) {
   EXPECT_LE(result.iterations, config.max_iterations);
 }
 
-TEST(Restoration, ASolutionThatMissesTheGivenEndIsNone) {
-  const TouchingScene scene;
-  ReverseConfig config;
-  const ReverseProblem problem = scene.problem(config);
-  const double miss = terminal_miss(problem, solve_with_restoration(problem).x);
-  config.terminal_tolerance = 0.9 * miss;
-  EXPECT_EQ(solve_with_restoration(problem).status, SolveStatus::kInfeasible);
-  config.terminal_tolerance = 1.1 * miss;
-  EXPECT_EQ(solve_with_restoration(problem).status, SolveStatus::kConverged);
-}
-
 // The warm start alone ends elsewhere.
 TEST(Restoration, WhereTheFinalStateIsFixedTheSolutionEndsInIt) {
   const TouchingScene scene;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
 
 #include "core/forward/newton_simulator.hpp"
 #include "tests/support/free_push.hpp"
@@ -73,6 +74,25 @@ TEST(ReverseSimulator, WithThePapersPresetContactsReachTheIterationLimitAndHaveN
   EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
   EXPECT_EQ(result.iterations, 5);
   EXPECT_TRUE(result.starts.empty());
+}
+
+// The pull on the robot against the push, 0.2 against a spring of 300, and what the contact
+// resists.
+TEST(ReverseSimulator, ASolutionThatMissesTheGivenEndIsNoneInEitherPreset) {
+  ReverseConfig paper = reverse_preset(ReversePreset::kPaper);
+  paper.terminal_weight = ReverseConfig().terminal_weight;
+  const ReverseJob alone{{{0, 0, 0}}, 0};
+  for (const auto& [config, boxes, job] :
+       {std::tuple(paper, 0, alone), std::tuple(ReverseConfig(), 2, touching_job())}) {
+    ReverseConfig strict = config, lax = config;
+    strict.terminal_tolerance = 1e-4;
+    lax.terminal_tolerance = 0.05;
+    const Scene scene = robot_and_boxes(boxes);
+    const ReverseResult missed = solve(scene, job, strict);
+    EXPECT_EQ(missed.status, SolveStatus::kInfeasible);
+    EXPECT_TRUE(missed.starts.empty());
+    EXPECT_EQ(solve(scene, job, lax).status, SolveStatus::kConverged);
+  }
 }
 
 /// Random scenes after a push of the model, solved back and pushed again: how far the bodies are
