@@ -1,5 +1,6 @@
 #include "core/reverse/reverse_simulator.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/energy/open_gaps.hpp"
@@ -11,7 +12,19 @@
 namespace rtg {
 namespace {
 
-constexpr double kDragged = 0.05;  // a push that moves nothing further has one predecessor [m]
+// A push that moves every object by less, along either axis, and turns it by less has one
+// predecessor.
+constexpr double kDragged = 0.05;  // [m]
+constexpr double kTurned = 0.05;   // [rad]
+
+/// Whether an object (all bodies but the first) is elsewhere in `q` than in `p`.
+bool objects_differ(const VectorXd& p, const VectorXd& q) {
+  for (Eigen::Index i = 3; i < p.size(); i += 3) {
+    const Vector3d by = (q - p).segment<3>(i).cwiseAbs();
+    if (std::max(by[0], by[1]) >= kDragged || by[2] >= kTurned) return true;
+  }
+  return false;
+}
 
 /// The paper's SQP or the default one. kInfeasible also if the solution misses the given final
 /// state by more than the tolerance.
@@ -32,8 +45,7 @@ SqpResult solve_problem(const ReverseProblem& problem) {
 ///   start_j = (robot of p_0, objects of p_k),  k = h·j/(releases + 1),  j = 0 ... releases
 std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int releases) {
   std::vector<VectorXd> out{p[0]};
-  const Eigen::Index objects = p[0].size() - 3;
-  if ((p.back() - p[0]).tail(objects).lpNorm<Eigen::Infinity>() < kDragged) return out;
+  if (!objects_differ(p[0], p.back())) return out;
   std::size_t last = 0;
   for (int j = 1; j <= releases; ++j) {
     const std::size_t k =
