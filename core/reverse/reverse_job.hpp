@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/math/hash.hpp"
 #include "core/reverse/solve_status.hpp"
 #include "core/world/pose.hpp"
 
@@ -17,16 +18,14 @@ struct ReverseJob {
   bool operator==(const ReverseJob&) const = default;
 };
 
-/// A number that differs between jobs, but for one pair in 2⁶⁴.
-inline std::uint64_t key_of(const ReverseJob& job) {
-  auto key = static_cast<std::uint64_t>(job.action);
-  for (const Pose& p : job.end)
-    for (const double x : {p.x, p.y, p.theta}) {
-      key = (key ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15;
-      key ^= key >> 32;
-    }
+/// A number that differs between pairs of a state and an action, but for one in 2⁶⁴.
+inline std::uint64_t key_of(const Poses& state, int action) {
+  auto key = static_cast<std::uint64_t>(action);
+  for (const Pose& p : state)
+    for (const double x : {p.x, p.y, p.theta}) key = hashed(key, std::bit_cast<std::uint64_t>(x));
   return key;
 }
+inline std::uint64_t key_of(const ReverseJob& job) { return key_of(job.end, job.action); }
 
 /// Most predecessors in the answer to one job.
 inline constexpr int kMaxStarts = 8;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/math/hash.hpp"
+
 namespace rtg {
 namespace {
 
@@ -20,10 +22,9 @@ bool maps_onto_itself(const Polygon& shape, std::size_t shift, double tolerance)
   return true;
 }
 
-std::uint64_t mixed(std::uint64_t hash, std::int64_t value) {
-  hash ^= static_cast<std::uint64_t>(value) + 0x9e3779b97f4a7c15 + (hash << 6) + (hash >> 2);
-  hash *= 0xff51afd7ed558ccd;
-  return hash ^ (hash >> 33);
+/// `hash` with a slot's number folded in.
+std::uint64_t mixed(std::uint64_t hash, std::int64_t number) {
+  return hashed(hash, static_cast<std::uint64_t>(number));
 }
 
 std::int64_t slot(double x, double side, double shift) {

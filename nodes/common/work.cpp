@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "nodes/common/content_hash.hpp"
+#include "core/math/hash.hpp"
 #include "nodes/common/wire.hpp"
 
 namespace rtg {
@@ -55,10 +55,9 @@ const Poses& state_of(const ReplayJob& job) { return job.start; }
 
 template <class Job>
 std::int64_t hash_of(std::span<const Job> jobs, std::int64_t config) {
-  ContentHash hash;
-  hash.add(static_cast<std::uint64_t>(config));
-  for (const Job& job : jobs) hash.add(state_of(job)).add(static_cast<std::uint64_t>(job.action));
-  return hash.value();
+  auto hash = static_cast<std::uint64_t>(config);
+  for (const Job& job : jobs) hash = hashed(hash, key_of(state_of(job), job.action));
+  return static_cast<std::int64_t>(hash);
 }
 
 }  // namespace
