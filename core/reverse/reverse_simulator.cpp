@@ -1,6 +1,7 @@
 #include "core/reverse/reverse_simulator.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "core/energy/open_gaps.hpp"
@@ -73,7 +74,9 @@ ReverseResult ReverseSimulator::solve(const ReverseJob& job) const {
 }
 
 ReverseResult ReverseSimulator::solve_legal(const ReverseJob& job) const {
-  const double reach = physics_.range + physics_.skin;
+  // The plain barrier moves bodies at any distance.
+  const double reach = physics_.plain_barrier ? std::numeric_limits<double>::infinity()
+                                              : physics_.range + physics_.skin;
   const std::vector<int> bodies = relevant_bodies(scene_, push_, job, reach);
   const Selection part = select(scene_, job.end, bodies);
   const StepEnergy energy(part.scene, physics_, push_);

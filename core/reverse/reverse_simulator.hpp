@@ -16,9 +16,9 @@ class ReverseSimulator {
   ReverseSimulator(Scene scene, const PhysicsConfig& physics, const PushConfig& push,
                    const ReverseConfig& config);
 
-  /// `job.end`: one pose per body, at rest. Bodies that the push cannot reach stay where they are.
-  /// Never throws; kNonFinite also for an end state of the wrong size or with a pose that is not
-  /// finite.
+  /// `job.end`: one pose per body, at rest. Bodies that the push cannot reach stay where they are;
+  /// with the plain barrier, whose range is infinite, there are none. Never throws; kNonFinite also
+  /// for an end state of the wrong size or with a pose that is not finite.
   [[nodiscard]] ReverseResult solve(const ReverseJob& job) const;
 
  private:

@@ -48,11 +48,12 @@ TEST(ReverseSimulator, AFreeRobotStepsBackOneStrideAndTheOthersStay) {
   }
 }
 
+// Alone: the plain barrier has no end.
 TEST(ReverseSimulator, WithThePapersPresetAFreeRobotFollowsTheClosedForm) {
-  const Scene scene = robot_and_boxes(1);
+  const Scene scene = robot_and_boxes(0);
   const StepEnergy energy(scene, kPhysics, kPush);
   const ReverseConfig config = reverse_preset(ReversePreset::kPaper);
-  const Poses end{{1, -2, 0.3}, {7, 7, 0}};
+  const Poses end{{1, -2, 0.3}};
   const ReverseResult result = solve(scene, {end, 5}, config);
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   const Vector2d d = direction(5, kPush);
@@ -65,6 +66,22 @@ TEST(ReverseSimulator, WithThePapersPresetAFreeRobotFollowsTheClosedForm) {
   // A stationarity of 1e-4 over the curvature 2ε of the controls' price, times dx/dc.
   EXPECT_NEAR(result.starts[0][0].x, end[0].x - moved(d.x()), 0.02);
   EXPECT_NEAR(result.starts[0][0].y, end[0].y - moved(d.y()), 0.02);
+}
+
+// The first box is 6 m off the robot's way, the second one beyond.
+TEST(ReverseSimulator, WithThePlainBarrierBodiesFarAwayAreMovedToo) {
+  const Scene scene = robot_and_boxes(2);
+  const ReverseJob job{{{0, 0, 0}, {0, 6, 0}, {1, 9, 0.5}}, 0};
+  PhysicsConfig plain;
+  plain.plain_barrier = true;
+  const ReverseResult far = ReverseSimulator(scene, plain, kPush, {}).solve(job);
+  ASSERT_EQ(far.status, SolveStatus::kConverged);
+  const ReverseResult near = solve(scene, job);
+  ASSERT_EQ(near.status, SolveStatus::kConverged);
+  for (std::size_t k : {1U, 2U}) {
+    EXPECT_NE(far.starts[0][k], job.end[k]);
+    EXPECT_EQ(near.starts[0][k], job.end[k]);
+  }
 }
 
 TEST(ReverseSimulator, WithThePapersPresetContactsReachTheIterationLimitAndHaveNoStart) {
