@@ -64,7 +64,10 @@ std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int releases) {
 ReverseSimulator::ReverseSimulator(Scene scene, const PhysicsConfig& physics,
                                    const PushConfig& push, const ReverseConfig& config)
     : scene_(std::move(scene)), physics_(physics), push_(push), config_(config) {
-  if (config.preset == ReversePreset::kPaper) physics_.plain_barrier = true;
+  if (config.plain_barrier > 0.0) {
+    physics_.plain_barrier = true;
+    physics_.barrier = config.plain_barrier;
+  }
 }
 
 ReverseResult ReverseSimulator::solve(const ReverseJob& job) const {

@@ -84,6 +84,20 @@ TEST(ReverseSimulator, WithThePlainBarrierBodiesFarAwayAreMovedToo) {
   }
 }
 
+// A box stands 3 m beside the robot's way; with the weight of the other barrier a hundred
+// iterations do not suffice.
+TEST(ReverseSimulator, WithThePapersPresetAMoveWithoutContactConverges) {
+  const ReverseJob job{{{0, 0, 0}, {-2, 3, 0.3}}, 0};
+  const ReverseConfig paper = reverse_preset(ReversePreset::kPaper);
+  const ReverseResult result = solve(robot_and_boxes(1), job, paper);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_LT(result.starts[0][0].x, -2.0);
+  ReverseConfig heavy = paper;
+  heavy.plain_barrier = kPhysics.barrier;
+  heavy.max_iterations = 100;
+  EXPECT_EQ(solve(robot_and_boxes(1), job, heavy).status, SolveStatus::kIterationLimit);
+}
+
 TEST(ReverseSimulator, WithThePapersPresetContactsReachTheIterationLimitAndHaveNoStart) {
   ReverseConfig config = reverse_preset(ReversePreset::kPaper);
   config.max_iterations = 5;  // a thousand do not suffice either, and take seconds
