@@ -16,7 +16,7 @@ constexpr double kLeastStep = 1e-4;
 constexpr double kArmijo = 1e-4;
 constexpr double kSmallViolation = 1e-2;           // above it, the objective alone decides nothing
 constexpr double kMostViolation = 0.3;             // θ may not grow beyond it
-constexpr double kShortStep = 0.3;                 // steps no longer ask for a larger proximal term
+constexpr double kShortStep = 0.3;                 // a step of at most this makes δ grow
 constexpr double kGrowth = 8.0, kShrinkage = 0.1;  // of δ
 constexpr double kExactBand = 10.0;  // exact Hessians last until δ exceeds so many exact_below
 

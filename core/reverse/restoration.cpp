@@ -1,5 +1,6 @@
 #include "core/reverse/restoration.hpp"
 
+#include <limits>
 #include <utility>
 
 #include "core/reverse/filter_sqp.hpp"
@@ -12,10 +13,13 @@ constexpr int kAttempts = 6;
 constexpr double kProximalGrowth = 4.0;  // per attempt
 constexpr double kShares[] = {1.0, 0.5, 0.25, 0.1};
 
-/// A forward simulation on the way from `feasible` to `stuck` that is better than `feasible`;
-/// `feasible` itself if there is none.
+/// A forward simulation on the way from `feasible` to `stuck` that is better than `feasible` and,
+/// where no spring makes that a matter of the objective, ends no farther from the given final
+/// state; `feasible` itself if there is none.
 Iterate restored(const ReverseProblem& problem, const Iterate& feasible, const Iterate& stuck) {
   const double best = objective(problem, feasible);
+  const double miss = problem.fixed_end() ? terminal_miss(problem, feasible)
+                                          : std::numeric_limits<double>::infinity();
   const ServoTargets from = servo_targets(problem, feasible), to = servo_targets(problem, stuck);
   for (const double share : kShares) {
     const VectorXd start = (1.0 - share) * feasible.p[0] + share * stuck.p[0];
@@ -23,7 +27,8 @@ Iterate restored(const ReverseProblem& problem, const Iterate& feasible, const I
     ServoTargets targets = from;
     for (std::size_t k = 0; k < targets.size(); ++k) targets[k] += share * (to[k] - from[k]);
     std::optional<Iterate> rolled = roll_out(problem, start, targets);
-    if (rolled && objective(problem, *rolled) < best) return std::move(*rolled);
+    if (rolled && objective(problem, *rolled) < best && terminal_miss(problem, *rolled) <= miss)
+      return std::move(*rolled);
   }
   return feasible;
 }

@@ -28,7 +28,7 @@ struct ReverseConfig {
   double terminal_weight = 300.0;    // spring to the given final state; 0: that state is fixed,
                                      // and few at which Box2D comes to rest have a predecessor
   double terminal_tolerance = 0.05;  // a solution that misses the final state by more fails [m]
-  double plain_barrier = 0.0;        // μ of the paper's -μ log g [J]; 0: physics.barrier
+  double plain_barrier = 0.0;        // μ of the paper's -μ log g [J]; 0: physics has the barrier
   double proximal_start = 1.0;       // δ of the first iteration
   double exact_below = 0.1;          // exact Lagrangian Hessian once δ is no larger
   int releases = 7;                  // predecessors besides the one of the whole push
@@ -47,8 +47,8 @@ struct ReverseConfig {
     v.number("heading_weight", heading_weight, 0.0, 1e9, "holds the robot's heading");
     v.number("terminal_weight", terminal_weight, 0.0, 1e9, "holds the final state; 0: fixes it");
     v.number("terminal_tolerance", terminal_tolerance, 0.0, 100.0, "largest miss of it [m]");
-    v.number("plain_barrier", plain_barrier, 0.0, 1e6, "weight of -mu log g; 0: physics.barrier");
-    v.number("proximal_start", proximal_start, 0.0, 1e9, "regularisation of the first step");
+    v.number("plain_barrier", plain_barrier, 0.0, 1e6, "weight of -mu log g; 0: physics' barrier");
+    v.number("proximal_start", proximal_start, 1e-4, 1e9, "regularisation of the first step");
     v.integer("releases", releases, 0, kMaxStarts - 1, "starts whose objects are met on the way");
     v.number("exact_below", exact_below, 0.0, 1e9, "regularisation that allows exact Hessians");
   }

@@ -20,7 +20,7 @@ struct ReverseJob {
 
 /// A number that differs between pairs of a state and an action, but for one in 2⁶⁴.
 inline std::uint64_t key_of(const Poses& state, int action) {
-  auto key = static_cast<std::uint64_t>(action);
+  std::uint64_t key = hashed(0, static_cast<std::uint64_t>(action));
   for (const Pose& p : state)
     for (const double x : {p.x, p.y, p.theta}) key = hashed(key, std::bit_cast<std::uint64_t>(x));
   return key;

@@ -18,7 +18,7 @@ namespace rtg {
 /// Departs from the paper: action consistency κ makes the controls those of the discrete action;
 /// the normal forces λ are unknowns (relaxed complementarity), bilinear instead of 1/g; a stiff
 /// spring K holds the final state, so that every forward simulation is feasible. With the preset
-/// `paper` κ = 0, λ = μ̃ w/g throughout, and the final state is fixed.
+/// `paper` κ = 0, λ = μ̃ w/g throughout, w = 1 at any gap, and the final state is fixed.
 struct ReverseProblem {
   const StepEnergy& energy;
   const ReverseConfig& config;

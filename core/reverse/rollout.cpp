@@ -1,5 +1,6 @@
 #include "core/reverse/rollout.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/energy/implicit_step.hpp"

@@ -5,7 +5,7 @@
 
 namespace rtg {
 
-/// How an SQP run ended. Unless the status is kConverged, `x` is the last iterate.
+/// How an SQP run ended. `x`: the last iterate; the static one if there was no warm start.
 struct SqpResult {
   SolveStatus status = SolveStatus::kNonFinite;
   Iterate x;

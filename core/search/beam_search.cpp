@@ -63,7 +63,6 @@ std::vector<ReverseJob> BeamSearch::jobs() const {
   return out;
 }
 
-/// Score of this layer.
 Score BeamSearch::layer_score() const {
   std::vector<Poses> known;
   if (config_.ranking == Ranking::kNovelty)  // nothing else looks at them

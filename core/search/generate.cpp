@@ -32,7 +32,7 @@ double quantile(std::vector<double> values, double share) {
 }
 
 /// Names a step: what it leads to follows from its start and action.
-std::uint64_t key_of_step(const Transition& t) { return key_of({t.poses, t.action}); }
+std::uint64_t key_of_step(const Transition& t) { return key_of(t.poses, t.action); }
 
 /// One run of generate().
 class Generation {
@@ -157,7 +157,7 @@ class Generation {
     std::vector<std::pair<double, int>> order;
     const std::span<const Node> nodes = search_.nodes();
     for (std::size_t k = first; k < nodes.size(); ++k)
-      if (nodes[k].depth > 0)
+      if (nodes[k].depth > 1)  // a chain of one step is stored already
         order.emplace_back(metric_.layout_distance(nodes[k].poses, task_.start),
                            static_cast<int>(k));
     std::sort(order.begin(), order.end());

@@ -9,7 +9,6 @@ namespace rtg {
 namespace {
 
 constexpr double kTouch = 0.2;      // an object closer than this ahead of the robot was pushed [m]
-constexpr double kClearance = 0.0;  // least separation along the way back [m]
 constexpr double kLeastPull = 0.2;  // of the stride
 constexpr double kSweepStep = 0.1;  // [m]
 
@@ -46,7 +45,7 @@ bool NaiveReverse::blocked(const Poses& end, std::size_t touched, const Vector2d
     const int steps = static_cast<int>(back.norm() / kSweepStep) + 1;
     for (int step = 1; step <= steps; ++step) {
       const Pose robot = moved(end[0], static_cast<double>(step) / steps * back);
-      if (separation(scene_.bodies[0].shape, robot, shape, end[k]) < kClearance) return true;
+      if (separation(scene_.bodies[0].shape, robot, shape, end[k]) < 0.0) return true;
     }
   }
   return false;

@@ -1,6 +1,7 @@
 #include "core/search/ranking.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <unordered_map>
 

@@ -28,7 +28,7 @@ using Score = std::function<double(const Candidate&)>;
 Score make_score(Ranking ranking, const Task& task, const Poses& target,
                  std::span<const Poses> known);
 
-/// The first score on its own, for choosing roots.
+/// The first score on its own: chooses the roots and the beam of a new round, tells its progress.
 double start_distance(const Task& task, const StateMetric& metric, const Poses& poses,
                       const Poses& target);
 

@@ -25,7 +25,7 @@ struct SearchConfig {
   double gap_tolerance = 0.25;   // a node that misses by more is not expanded [m]
   int twins = 6;                 // disturbed starts that probe how a push passes errors on
   double twin_jitter = 0.1;      // how far they are disturbed [m, rad]
-  double policy_stretch = 1.2;   // the tree policy leaves out pushes that stretch errors more
+  double policy_stretch = 1.2;   // the policy leaves out step replays that stretch errors more
   int starts = 2;                // predecessors of one solve that are replayed, the best ones
   int free_moves = 12;           // steps that move no object replayed per node, the best ones
   int per_layout = 6;            // nodes of a beam that differ in the robot only, at most
@@ -51,7 +51,7 @@ struct SearchConfig {
     v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest miss of a body expanded [m]");
     v.integer("twins", twins, 0, 1000, "disturbed starts that probe a push");
     v.number("twin_jitter", twin_jitter, 1e-6, 1.0, "how far they are disturbed [m, rad]");
-    v.number("policy_stretch", policy_stretch, 0.0, 1e9, "errors of followed pushes grow at most");
+    v.number("policy_stretch", policy_stretch, 1.0, 1e9, "errors of followed pushes grow at most");
     v.integer("starts", starts, 1, 100, "predecessors replayed per solve");
     v.integer("free_moves", free_moves, 0, 360, "steps without contact replayed per node");
     v.integer("per_layout", per_layout, 1, 100000, "nodes of a beam with objects alike");

@@ -7,7 +7,8 @@
 
 namespace rtg {
 
-/// Counts of a run's reverse solves and replays; nothing that the search drops goes uncounted.
+/// Counts of a run's reverse solves and replays, and of those that failed; what the search merely
+/// chooses not to replay or to expand is not counted.
 struct SearchStats {
   long candidates = 0;                             // reverse jobs answered
   std::array<long, kSolveStatusCount> statuses{};  // of them, by SolveStatus

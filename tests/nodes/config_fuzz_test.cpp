@@ -64,7 +64,7 @@ void mutate(std::string& text, int longest, Rng& rng) {
   }
 }
 
-/// The values that a struct's visit() lists, bit for bit.
+/// The values that a struct's visit() lists.
 struct Values {
   std::vector<double> numbers;
   std::vector<std::string> texts;

@@ -22,8 +22,9 @@ def episodes(transitions: Transitions, source: str) -> list[slice]:
 
 
 def best_episode(transitions: Transitions) -> Floats | None:
-    """States of the shortest successful roll-out, or of the longest chain if no roll-out succeeded.
+    """States of the shortest successful roll-out, else of the longest stretch of a chain.
 
+    Steps that were stored before their chain are not part of it.
     [T+1, bodies, 3]; None if there is neither.
     """
     for source, sign in (("roll_out", 1), ("chain_replay", -1)):

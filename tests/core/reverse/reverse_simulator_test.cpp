@@ -79,7 +79,7 @@ TEST(ReverseSimulator, WithThePlainBarrierBodiesFarAwayAreMovedToo) {
   const ReverseResult near = solve(scene, job);
   ASSERT_EQ(near.status, SolveStatus::kConverged);
   for (std::size_t k : {1U, 2U}) {
-    EXPECT_NE(far.starts[0][k], job.end[k]);
+    EXPECT_GT((far.starts[0][k].position() - job.end[k].position()).norm(), 1e-3);
     EXPECT_EQ(near.starts[0][k], job.end[k]);
   }
 }
@@ -98,9 +98,9 @@ TEST(ReverseSimulator, WithThePapersPresetAMoveWithoutContactConverges) {
   EXPECT_EQ(solve(robot_and_boxes(1), job, heavy).status, SolveStatus::kIterationLimit);
 }
 
-TEST(ReverseSimulator, WithThePapersPresetContactsReachTheIterationLimitAndHaveNoStart) {
+TEST(ReverseSimulator, WithThePapersPresetThereIsNoStartAtTheIterationLimit) {
   ReverseConfig config = reverse_preset(ReversePreset::kPaper);
-  config.max_iterations = 5;  // a thousand do not suffice either, and take seconds
+  config.max_iterations = 5;
   const ReverseResult result = solve(robot_and_boxes(1), {{{0, 0, 0}, {1.54, 0.1, 0}}, 0}, config);
   EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
   EXPECT_EQ(result.iterations, 5);

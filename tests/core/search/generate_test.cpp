@@ -73,7 +73,7 @@ TEST(Generate, EveryTransitionSimulatesToItselfAndIsLabelledByThePredicate) {
 
 TEST(Generate, PolicyStretchDecidesWhatEpisodesFollowNotWhatTheFirstRoundFinds) {
   SearchConfig config = small();
-  config.policy_stretch = 0.0;  // no push that moves an object, unless it ends in success
+  config.policy_stretch = 1.0;
   const auto stored = run_naive(gathering(), config, 7, 1).stored;
   const auto& reference = reference_run().stored;
   EXPECT_NE(stored, reference);
@@ -84,7 +84,8 @@ TEST(Generate, TreesStoreNoStepTwice) {
   std::vector<Transition> steps;
   for (Transition t : reference_run().stored) {
     if (t.source == Source::kRollOut) continue;
-    t.source = Source::kStepReplay;  // a chain begins with a step that is stored already
+    t.source =
+        Source::kStepReplay;  // a chain's first step would be one of these but for its source
     steps.push_back(t);
   }
   for (std::size_t k = 0; k < steps.size(); ++k)
