@@ -59,6 +59,8 @@ def test_a_run_folder_with_something_in_it_is_not_overwritten(tmp_path):
     (tmp_path / "notes.txt").write_text("mine")
     with pytest.raises(UserError, match="exists and is not empty; take another or add --resume"):
         parse(["--out", str(tmp_path)])
+    with pytest.raises(UserError, match=r"notes\.txt is no folder"):
+        parse(["--out", str(tmp_path / "notes.txt")])
     with pytest.raises(UserError, match=r"holds no run \(no config.yaml\)"):
         parse(["--out", str(tmp_path), "--resume"])
 

@@ -77,7 +77,7 @@ def parser() -> argparse.ArgumentParser:
     )
     p.add_argument("task", nargs="?", help="a task of config/ or a FILE.yaml (gathering)")
     p.add_argument("--in-process", action="store_true", help="everything in one process, no LCM")
-    p.add_argument("--workers", metavar="N", help="reverse workers (one per core)")
+    p.add_argument("--workers", metavar="N", help="reverse workers; 0: one per core")
     p.add_argument("--reverse", metavar="rrbs|naive", help="how reverse steps are found (rrbs)")
     p.add_argument("--transitions", metavar="N", help="transitions to generate")
     p.add_argument("--interactions", metavar="N", help="environment steps of the learner")
@@ -130,7 +130,9 @@ def parse(argv: Sequence[str]) -> RunArgs:
             raise UserError(f"--resume: {out} holds no run (no config.yaml)")
     else:
         file = task_file(args.task or "gathering")
-        if out is not None and out.exists() and not (out.is_dir() and not any(out.iterdir())):
+        if out is not None and out.exists() and not out.is_dir():
+            raise UserError(f"--out: {out} is no folder; take another")
+        if out is not None and out.is_dir() and any(out.iterdir()):
             raise UserError(f"--out: {out} exists and is not empty; take another or add --resume")
     return RunArgs(
         file=file,
