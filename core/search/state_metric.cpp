@@ -22,8 +22,12 @@ bool maps_onto_itself(const Polygon& shape, std::size_t shift, double tolerance)
   return true;
 }
 
-std::uint64_t slot(double x, double side, double shift) {
-  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / side + shift)));
+std::int64_t slot(double x, double side, double shift) {
+  return static_cast<std::int64_t>(std::floor(x / side + shift));
+}
+
+std::uint64_t with_slot(std::uint64_t hash, std::int64_t number) {
+  return hashed(hash, static_cast<std::uint64_t>(number));
 }
 
 }  // namespace
@@ -90,16 +94,16 @@ StateMetric::Spread StateMetric::spread(const Poses& a, const Poses& b) const {
 }
 
 std::uint64_t StateMetric::cell(const Poses& poses, const Cells& cells) const {
-  std::uint64_t hash = hashed(0, slot(poses[0].x, cells.robot, cells.shift));
-  hash = hashed(hash, slot(poses[0].y, cells.robot, cells.shift));
+  std::uint64_t hash = with_slot(0, slot(poses[0].x, cells.robot, cells.shift));
+  hash = with_slot(hash, slot(poses[0].y, cells.robot, cells.shift));
   for (const Object& o : objects_) {
     const Pose& p = poses[o.body];
     const double period = 2.0 * std::numbers::pi / o.order;
     const auto slots = std::max<std::int64_t>(1, std::llround(period / cells.object));
     const std::int64_t turn = slot(p.theta, period / static_cast<double>(slots), cells.shift);
-    hash = hashed(hash, slot(p.x, cells.object, cells.shift));
-    hash = hashed(hash, slot(p.y, cells.object, cells.shift));
-    hash = hashed(hash, static_cast<std::uint64_t>(((turn % slots) + slots) % slots));
+    hash = with_slot(hash, slot(p.x, cells.object, cells.shift));
+    hash = with_slot(hash, slot(p.y, cells.object, cells.shift));
+    hash = with_slot(hash, ((turn % slots) + slots) % slots);
   }
   return hash;
 }
