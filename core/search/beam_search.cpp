@@ -12,19 +12,13 @@
 namespace rtg {
 namespace {
 
-constexpr std::uint64_t kTwins = 1;  // key of the probe's random stream
-
 /// Cells of states that differ in the robot only.
 constexpr StateMetric::Cells kLayoutCells{1e9, StateMetric::Cells{}.object, 0.5};
 
 }  // namespace
 
 BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, std::uint64_t seed)
-    : task_(task),
-      config_(config),
-      metric_(task.scene),
-      rng_(seed),
-      probe_(task, config, Rng(seed, kTwins).word()) {}
+    : task_(task), config_(config), metric_(task.scene), rng_(seed) {}
 
 void BeamSearch::aim(const Poses& target, const ReplayBatch& replay, SearchStats& stats) {
   target_ = target;
@@ -102,7 +96,6 @@ std::vector<BeamSearch::Growth> BeamSearch::grow(const SolveBatch& solve, const 
   const Score score = layer_score();
   std::vector<Candidate> replayed =
       replay_candidates(worth_replaying(std::move(found), score), replay, stats);
-  probe_.measure(replayed, replay, stats);
   std::vector<Growth> out;
   for (Candidate& c : replayed) {
     stats.gaps.push_back(static_cast<float>(c.gap));

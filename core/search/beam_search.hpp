@@ -11,7 +11,6 @@
 #include "core/search/search_config.hpp"
 #include "core/search/search_stats.hpp"
 #include "core/search/state_metric.hpp"
-#include "core/search/stretch_probe.hpp"
 
 namespace rtg {
 
@@ -71,7 +70,6 @@ class BeamSearch {
   StateMetric metric_;
   Poses target_;
   Rng rng_;
-  StretchProbe probe_;
   std::vector<Node> nodes_;
   std::vector<int> beam_;
   double best_ = std::numeric_limits<double>::infinity();

@@ -16,10 +16,10 @@ namespace rtg {
 namespace {
 
 // Keys of the independent random streams of one run.
-enum Stream : std::uint64_t { kTrees = 1, kTargets, kRollOuts, kNoise, kEvaluation };
+enum Stream : std::uint64_t { kTrees = 1, kProbing, kRollOuts, kNoise, kEvaluation };
 
 constexpr int kWave = 50;         // roll-outs that run in lockstep
-constexpr int kProbes = 16;       // episodes that look for the next round's target
+constexpr int kProbes = 50;       // episodes that judge a round's policy
 constexpr double kArrived = 0.5;  // a node so near is at its target [m], in the policy's metric
 constexpr int kMaxBarren = 8;     // rounds or waves without a transition before it gives up
 
@@ -29,6 +29,10 @@ double quantile(std::vector<double> values, double share) {
       values.begin() + static_cast<long>(share * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), at, values.end());
   return *at;
+}
+
+long successes(std::span<const Episode> episodes) {
+  return std::ranges::count(episodes, true, &Episode::success);
 }
 
 /// Names a step: what it leads to follows from its start and action.
@@ -73,14 +77,27 @@ class Generation {
     return kept;
   }
 
-  /// One round: trees grow towards a target until it is reached or comes no nearer. Whether it
-  /// stored anything.
+  /// One round: trees grow to where the policy gets lost, or to a jittered start if it does not.
+  /// The policy takes up what they find unless it does worse with it. Whether anything was stored.
   bool grow(long limit) {
     const long before = stored();
-    const long layers =
-        limit - static_cast<long>(config_.chain_share * static_cast<double>(limit - before));
     const std::size_t known = search_.nodes().size();
-    const Poses target = next_target();
+    const std::vector<Poses> starts = probe_starts();
+    const std::vector<Episode> probes = follow_policy(starts);
+    TreePolicy proven = policy_;
+    grow_towards(lost_state(probes).value_or(starts[0]), limit);
+    replay_chains_from(known, before, limit);
+    if (successes(follow_policy(starts)) < successes(probes)) policy_ = std::move(proven);
+    note_nodes(known);
+    ++rounds_;
+    return stored() > before;
+  }
+
+  /// Layers until the trees have reached the target or come no nearer; leaves room for chains.
+  void grow_towards(const Poses& target, long limit) {
+    const long layers =
+        limit - static_cast<long>(config_.chain_share * static_cast<double>(limit - stored()));
+    const std::size_t known = search_.nodes().size();
     search_.aim(target, seams_.replay, stats_);
     double best = std::numeric_limits<double>::infinity();
     int patience = config_.patience;
@@ -93,18 +110,17 @@ class Generation {
       best = std::min(best, search_.best());
       if (patience <= 0 || arrivals(known, target) >= config_.arrivals) break;
     }
-    replay_chains_from(known, before, limit);
-    note_nodes(known);
-    ++rounds_;
-    return stored() > before;
   }
 
-  /// Where the policy of the trees so far gets lost on its way from a jittered start; the jittered
-  /// start itself if it does not.
-  Poses next_target() {
-    Rng rng(seed_, kTargets << 32 | static_cast<std::uint64_t>(rounds_));
-    const std::vector<Poses> starts = jittered_starts(task_, kProbes, config_.target_jitter, rng);
-    return lost_state(task_, policy_, starts, seams_.replay, stats_).value_or(starts[0]);
+  std::vector<Poses> probe_starts() const {
+    Rng rng(seed_, kProbing << 32 | static_cast<std::uint64_t>(rounds_));
+    return jittered_starts(task_, kProbes, config_.target_jitter, rng);
+  }
+
+  /// None of the episodes while there is no policy.
+  std::vector<Episode> follow_policy(std::span<const Poses> starts) {
+    if (policy_.size() == 0) return {};
+    return run_episodes(task_, policy_, {starts}, seams_.replay, stats_);
   }
 
   /// How many nodes from index `first` on are at the target.
@@ -143,7 +159,7 @@ class Generation {
     for (std::size_t k = 0; k < kept.size(); ++k) {
       const Transition& t = kept[k];
       const Candidate& c = behind[k]->candidate;
-      if (t.success || (c.miss <= config_.gap_tolerance && c.stretch <= config_.policy_stretch))
+      if (t.success || c.miss <= config_.gap_tolerance)
         policy_.add(t.poses, t.action, t.success ? 1.0 : behind[k]->depth);
     }
   }

@@ -22,8 +22,9 @@ struct GenerationSeams {
 
 /// The whole generation: trees of reverse steps from sampled goals (beam search), first towards the
 /// start, then to where the tree policy still gets lost; forward replay of the best
-/// predecessors found, end-to-end replay of chains, roll-outs of the policy, coverage. A pure
-/// function of (task, config, seed) and the seams.
+/// predecessors found, end-to-end replay of chains, roll-outs of the policy, coverage. All is
+/// stored; the policy takes up a round's steps unless it does worse with them. A pure function of
+/// (task, config, seed) and the seams.
 GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams);
 

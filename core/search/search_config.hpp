@@ -23,15 +23,12 @@ struct SearchConfig {
   double contact_quota = 0.4;    // share of the beam reserved for nodes whose step moved an object
   double random_share = 0.15;    // share of the beam drawn at random among the rest
   double gap_tolerance = 0.25;   // a node that misses by more is not expanded [m]
-  int twins = 6;                 // disturbed starts that probe how a push passes errors on
-  double twin_jitter = 0.1;      // how far they are disturbed [m, rad]
-  double policy_stretch = 1.2;   // the policy leaves out step replays that stretch errors more
   int starts = 2;                // predecessors of one solve that are replayed, the best ones
   int free_moves = 12;           // steps that move no object replayed per node, the best ones
   int per_layout = 6;            // nodes of a beam that differ in the robot only, at most
   int root_draws = 4;            // goal states drawn per root kept
   int arrivals = 10;             // nodes at its target that end a round
-  int patience = 3;              // layers without a better node that end a round
+  int patience = 1;              // layers without a better node that end a round
   double target_jitter = 0.25;   // trees aim at the start with objects moved by up to ± this [m]
   double chain_share = 0.1;      // of the tree transitions from chains replayed end to end
   double rollout_jitter = 0.25;  // roll-outs start with objects moved by up to ± this [m]
@@ -49,9 +46,6 @@ struct SearchConfig {
     v.number("contact_quota", contact_quota, 0.0, 1.0, "share of the beam that moved an object");
     v.number("random_share", random_share, 0.0, 1.0, "share of the beam drawn at random");
     v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest miss of a body expanded [m]");
-    v.integer("twins", twins, 0, 1000, "disturbed starts that probe a push");
-    v.number("twin_jitter", twin_jitter, 1e-6, 1.0, "how far they are disturbed [m, rad]");
-    v.number("policy_stretch", policy_stretch, 1.0, 1e9, "errors of followed pushes grow at most");
     v.integer("starts", starts, 1, 100, "predecessors replayed per solve");
     v.integer("free_moves", free_moves, 0, 360, "steps without contact replayed per node");
     v.integer("per_layout", per_layout, 1, 100000, "nodes of a beam with objects alike");

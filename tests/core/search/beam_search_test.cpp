@@ -22,10 +22,7 @@ struct BeamSearchTest : ::testing::Test, testing::DraggingWorld {
   SearchStats stats;
   StateMetric metric{task.scene};
 
-  BeamSearchTest() {
-    config.breadth = 6;
-    config.twins = 0;
-  }
+  BeamSearchTest() { config.breadth = 6; }
 
   BeamSearch aimed(std::uint64_t seed = 1) {
     BeamSearch search(task, config, seed);

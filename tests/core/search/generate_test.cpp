@@ -71,15 +71,6 @@ TEST(Generate, EveryTransitionSimulatesToItselfAndIsLabelledByThePredicate) {
   }
 }
 
-TEST(Generate, PolicyStretchDecidesWhatEpisodesFollowNotWhatTheFirstRoundFinds) {
-  SearchConfig config = small();
-  config.policy_stretch = 1.0;
-  const auto stored = run_naive(gathering(), config, 7, 1).stored;
-  const auto& reference = reference_run().stored;
-  EXPECT_NE(stored, reference);
-  EXPECT_TRUE(std::equal(stored.begin(), stored.begin() + 500, reference.begin()));
-}
-
 TEST(Generate, TreesStoreNoStepTwice) {
   std::vector<Transition> steps;
   for (Transition t : reference_run().stored) {
@@ -157,6 +148,62 @@ TEST(Generate, EndsEvenIfNoReverseSolveConverges) {
   EXPECT_EQ(report.transitions, 3000);  // episodes of random actions
   EXPECT_EQ(report.replay_gap_median, 0.0);
   EXPECT_EQ(report.tree_policy_success, 0.0);
+}
+
+/// A world of two pushes: `kSure` solves the task from anywhere, `kLucky` from `lucky()` only.
+/// Reverse solves find the first in the first round and the second, nearer to the start, later.
+struct LuckyWorld {
+  static constexpr int kSure = 0, kLucky = 5;
+  Task task = gathering();
+  int rounds = 0;
+
+  LuckyWorld() { task.horizon = 1; }
+
+  Poses beside_the_start(double x) const {
+    Poses out = task.start;
+    out[0].x += x;
+    return out;
+  }
+  Poses lucky() const { return beside_the_start(0.125); }
+
+  Poses pushed(const ReplayJob& job) const {
+    Poses end = job.start;
+    if (job.action == kSure || (job.action == kLucky && job.start == lucky()))
+      for (std::size_t k = 1; k < end.size(); ++k) end[k] = {0.0, 0.0, 0.0};
+    return end;
+  }
+
+  GenerationSeams seams() {
+    GenerationSeams out;
+    out.solve = [this](std::span<const ReverseJob> jobs) {
+      ++rounds;
+      std::vector<ReverseResult> results(jobs.size(), {SolveStatus::kPruned});
+      for (std::size_t k = 0; k < jobs.size(); ++k)
+        if (jobs[k].action == (rounds == 1 ? kSure : kLucky))
+          results[k] = {
+              SolveStatus::kConverged, 1, {rounds == 1 ? beside_the_start(0.5) : lucky()}};
+      return results;
+    };
+    out.replay = [this](std::span<const ReplayJob> jobs) {
+      std::vector<ReplayResult> results;
+      for (const ReplayJob& job : jobs) results.push_back({pushed(job), true, 0.0});
+      return results;
+    };
+    out.store = [](std::span<const Transition>) {};
+    return out;
+  }
+};
+
+TEST(Generate, ThePolicyDoesNotTakeUpWhatMakesItWorse) {
+  LuckyWorld world;
+  SearchConfig config = small();
+  config.transitions = 2;
+  config.depth = 1;
+  config.rollout_share = 0.0;
+  const GenerationReport report = generate(world.task, config, 1, world.seams());
+  EXPECT_EQ(world.rounds, 2);
+  EXPECT_EQ(report.transitions, 2);
+  EXPECT_DOUBLE_EQ(report.tree_policy_success, 1.0);
 }
 
 }  // namespace

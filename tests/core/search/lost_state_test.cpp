@@ -7,60 +7,40 @@
 namespace rtg {
 namespace {
 
-using testing::gathering;
-
-/// Gathering with data at the nominal start only and a push that takes the robot 0.4 m to the
-/// right.
-struct LostStateTest : ::testing::Test {
-  Task task = gathering();
-  TreePolicy policy{task};
-  SearchStats stats;
-  bool solved = false;  // whether every push brings the objects to the goal
-
-  LostStateTest() {
-    for (int k = 0; k < 100; ++k) policy.add(task.start, 0, 1.0);
+/// An episode whose state k has the robot at x = k.
+Episode episode(bool success, std::vector<double> strayed) {
+  Episode out;
+  out.success = success;
+  Poses poses = testing::gathering().start;
+  for (std::size_t k = 0; k < strayed.size(); ++k) {
+    poses[0].x = static_cast<double>(k);
+    out.steps.push_back({poses, 0, poses});
   }
-
-  std::optional<Poses> lost(const std::vector<Poses>& starts) {
-    const ReplayBatch replay = [this](std::span<const ReplayJob> jobs) {
-      std::vector<ReplayResult> results;
-      for (const ReplayJob& job : jobs) {
-        Poses end = job.start;
-        end[0].x += 0.4;
-        if (solved)
-          for (std::size_t k = 1; k < end.size(); ++k) end[k] = {0.0, 0.0, 0.0};
-        results.push_back({end, true, 0.0});
-      }
-      return results;
-    };
-    return lost_state(task, policy, starts, replay, stats);
-  }
-};
-
-TEST_F(LostStateTest, IsTheFirstStateOfAFailureThatIsFarFromTheData) {
-  Poses expected = task.start;
-  for (int k = 0; k < 3; ++k) expected[0].x += 0.4;
-  EXPECT_EQ(lost({task.start}), expected);  // 1.2 m away; 0.8 m is near
+  out.strayed = std::move(strayed);
+  return out;
 }
 
-TEST_F(LostStateTest, MayBeTheStartItself) {
-  Poses far = task.start;
-  far[0].y = 3.0;
-  EXPECT_EQ(lost({far}), far);
+double robot_x(const std::vector<Episode>& episodes) {
+  const std::optional<Poses> lost = lost_state(episodes);
+  return lost ? (*lost)[0].x : -1.0;
 }
 
-TEST_F(LostStateTest, IsNoneIfThePolicySucceedsOrEndsNearTheData) {
-  solved = true;
-  EXPECT_EQ(lost({task.start, task.start}), std::nullopt);
-  solved = false;
-  task.horizon = 2;
-  EXPECT_EQ(lost({task.start}), std::nullopt);
+TEST(LostState, IsTheFirstStateThatIsFarFromTheData) {
+  EXPECT_EQ(robot_x({episode(false, {0.4, 0.9, 1.1, 0.5, 3.0})}), 2.0);
+  EXPECT_EQ(robot_x({episode(false, {1.1, 0.0})}), 0.0);  // the start itself
 }
 
-TEST_F(LostStateTest, IsNoneWithoutData) {
-  policy = TreePolicy(task);
-  EXPECT_EQ(lost({task.start}), std::nullopt);
-  EXPECT_EQ(stats.rejected_pushes, 0);
+TEST(LostState, IsOfTheFirstEpisodeThatGetsLostAndFails) {
+  const Episode fails_nearby = episode(false, {0.9, 0.9});
+  const Episode recovers = episode(true, {0.1, 5.0, 0.1});
+  EXPECT_EQ(robot_x({fails_nearby, recovers, episode(false, {0.2, 0.2, 0.2, 2.0}),
+                     episode(false, {2.0})}),
+            3.0);
+}
+
+TEST(LostState, IsNoneWithoutSuchAnEpisode) {
+  EXPECT_EQ(lost_state({}), std::nullopt);
+  EXPECT_EQ(lost_state(std::vector{episode(true, {2.0}), episode(false, {1.0})}), std::nullopt);
 }
 
 }  // namespace
