@@ -94,12 +94,13 @@ std::vector<Poses> jittered_starts(const Task& task, int count, double amplitude
 PolicyScore evaluate_policy(const Task& task, const TreePolicy& policy,
                             std::span<const Poses> starts, const ReplayBatch& replay,
                             SearchStats& stats) {
-  PolicyScore score;
+  long solved = 0, actions = 0;
   for (const Episode& e : run_episodes(task, policy, {starts}, replay, stats)) {
-    score.success += e.success / static_cast<double>(starts.size());
-    score.length_mean += static_cast<double>(e.steps.size()) / static_cast<double>(starts.size());
+    solved += e.success;
+    actions += static_cast<long>(e.steps.size());
   }
-  return score;
+  const auto episodes = static_cast<double>(starts.size());
+  return {static_cast<double>(solved) / episodes, static_cast<double>(actions) / episodes};
 }
 
 }  // namespace rtg

@@ -175,5 +175,10 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
         bar = figure.colorbar(ScalarMappable(dots.norm, dots.cmap), ax=axes, shrink=0.85, pad=0.02)
         bar.set_label("actions to success")
         bar.locator = MaxNLocator(integer=True)
+        figure.supxlabel(
+            "dots: centres of the object in the search's nodes; outlines: start layout; "
+            f"shaded: goal; frame: arena, {2 * task.arena:g} m wide",
+            fontsize=8,
+        )
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
         _save(figure, path)

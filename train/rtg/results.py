@@ -15,6 +15,8 @@ from rtg.run_plan import RunPlan
 
 Floats = NDArray[np.float64]
 
+_POOR = 0.1  # tree policy below which start and goal are hardly connected by the data
+
 
 def learning_curve(path: Path) -> dict[str, Floats]:
     """Columns of progress.csv, NaN where a cell is empty. [N] each"""
@@ -73,6 +75,11 @@ def words(plan: RunPlan, summary: dict[str, Any]) -> str:
         f"{s['transitions']:,} transitions in {s['generate_wall_s']:.0f} s, "
         f"contact share {s['contact_share']:.2f}, tree policy {s['tree_policy_success']:.2f}"
     ]
+    if s["tree_policy_success"] < _POOR:
+        lines.append(
+            "the data seldom leads from the start to the goal; more transitions may help "
+            "(--transitions)"
+        )
     if plan.train:
         lines.append(
             f"success rate {s['success_rate']:.2f} after {s['interactions']:,} interactions in "
