@@ -95,8 +95,11 @@ def test_the_output_of_a_piped_run_is_plain_lines(whole_run):
     assert "\x1b" not in done.stdout and "\r" not in done.stdout
     assert done.stderr == ""
     lines = done.stdout.splitlines()
+    stamped = [re.match(r"\[ *\d+\.\d s\] ", line) is not None for line in lines]
+    last_words = stamped.index(False)
+    assert last_words > 0 and not any(stamped[last_words:])
+    assert lines[last_words].startswith("2,000 transitions in ")
     assert lines[-1] == f"results: {folder}"
-    assert all(re.match(r"\[ *\d+\.\d s\] ", line) for line in lines[:-3])
 
 
 def test_the_summary_is_whole_and_agrees_with_the_files(whole_run):
