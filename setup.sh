@@ -3,6 +3,7 @@
 
 ROOT=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 VENV=$ROOT/.venv
+MADE_FROM=$VENV/.made-from # stamp of a finished .venv
 
 # Debian and Ubuntu names; "a|b" is satisfied by either (Ubuntu 24.04 renamed some).
 PACKAGES=(
@@ -26,6 +27,9 @@ lock_setup() {
   if ! flock --nonblock 9; then
     say "waiting for another set-up in $ROOT"
     flock 9
+  fi
+  if [[ ! -f $MADE_FROM ]]; then
+    say "first call: sets everything up, which takes 5 to 10 minutes; later calls start at once"
   fi
 }
 
@@ -66,7 +70,7 @@ setup_packages() {
   ((${#missing[@]})) || return 0
   may_install || fail "missing Debian packages, and neither root nor sudo to install them. Ask for:
   apt-get install ${missing[*]}"
-  say "installing Debian packages: ${missing[*]}"
+  say "installing Debian packages, a minute or two: ${missing[*]}"
   mkdir -p "$ROOT/build"
   if ! apt_install "${missing[@]}" >"$ROOT/build/apt.log" 2>&1 9>&-; then
     tail -n 20 "$ROOT/build/apt.log" >&2
@@ -96,19 +100,19 @@ pip_install() {
 # .venv with the pinned packages of train/requirements.txt and the package rtg itself, installed in place.
 # The stamp holds what the environment was made from; a moved checkout is made anew.
 setup_python() {
-  local stamp=$VENV/.made-from wanted
+  local wanted
   wanted="$ROOT $(cd "$ROOT/train" && cat requirements.txt pyproject.toml | sha256sum)"
-  if [[ -x $VENV/bin/python && -f $stamp && $(<"$stamp") == "$wanted" ]]; then return; fi
+  if [[ -x $VENV/bin/python && -f $MADE_FROM && $(<"$MADE_FROM") == "$wanted" ]]; then return; fi
   local python
   python=$(find_python) || exit 1
-  if [[ ! -f $stamp || $(<"$stamp") != "$ROOT "* ]] || ! "$VENV/bin/python" -c '' 2>/dev/null; then
+  if [[ ! -f $MADE_FROM || $(<"$MADE_FROM") != "$ROOT "* ]] || ! "$VENV/bin/python" -c '' 2>/dev/null; then
     say "creating .venv with $("$python" --version)"
     "$python" -m venv --clear "$VENV" 9>&- || fail "$python -m venv failed"
   fi
-  say "installing the Python packages of train/requirements.txt (minutes the first time)"
+  say "installing the Python packages of train/requirements.txt, about two minutes (torch is 200 MB)"
   pip_install -r "$ROOT/train/requirements.txt"
   pip_install --no-deps --no-build-isolation --editable "$ROOT/train"
-  printf '%s\n' "$wanted" >"$stamp"
+  printf '%s\n' "$wanted" >"$MADE_FROM"
 }
 
 # Shows ninja's progress as one changing line on a terminal, nothing elsewhere.
@@ -137,8 +141,13 @@ build_preset() {
       fail "cmake could not configure (whole log: build/$preset.log)"
     fi
   fi
-  if ! ninja -C "$folder" -n "$target" 2>/dev/null 9>&- | grep -q 'no work to do'; then
-    say "building build/$preset ($(nproc) cores)"
+  local todo steps cores
+  todo=$(ninja -C "$folder" -n "$target" 2>/dev/null 9>&-) || todo=
+  if [[ $todo != *'no work to do'* ]]; then
+    steps=$(grep -c '^\[' <<<"$todo" || true)
+    cores=$(nproc)
+    # A step takes one core 4 s.
+    say "building build/$preset: $steps steps, about $((steps / 15 / cores + 1)) min on $cores cores"
     if ! (set -o pipefail && ninja -C "$folder" "$target" 2>&1 9>&- | build_progress "$log"); then
       grep -vE '^\[[0-9]+/[0-9]+\] ' "$log" | tail -n 60 >&2
       fail "the build failed (whole log: build/$preset.log)"
