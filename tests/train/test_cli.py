@@ -13,7 +13,7 @@ MISTAKES = {
         ["--wokers", "2"],
         "unrecognized arguments: --wokers; legal: ./run.sh [-h] [--in-proc",
     ),
-    "missing file": (["mine.yaml"], "mine.yaml: no such task file"),
+    "missing file": (["mine.yaml"], "mine.yaml: no such task file; legal: gathering, "),
     "workers no number": (["--workers", "two"], "--workers two: "),
     "workers negative": (["--workers", "-1"], "--workers"),
     "too many workers": (["--workers", "5000"], "--workers 5000: "),
@@ -39,6 +39,7 @@ MISTAKES = {
     "flag of lcm-spy": (["lcm-spy", "-x"], "unrecognized arguments: -x; legal: ./run.sh lcm-spy ["),
     "spy for no time": (["spy", "--seconds", "0"], "--seconds 0: legal is a number of seconds"),
     "spy on nothing": (["spy", "sortign"], "sortign: no task of that name"),
+    "spy on a folder": (["spy", "tests"], "tests: no such task file; legal: gathering, "),
 }
 
 

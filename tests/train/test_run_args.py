@@ -39,8 +39,8 @@ def test_a_path_is_a_task_file(tmp_path):
     ("words", "message"),
     [
         (["sortign"], "sortign: no task of that name; legal: gathering, gathering_hard, "),
-        (["nowhere/mine.yaml"], "nowhere/mine.yaml: no such task file"),
-        (["config"], "config: no such task file"),
+        (["nowhere/mine.yaml"], "nowhere/mine.yaml: no such task file; legal: gathering, "),
+        (["config"], "config: no such task file; legal: gathering, "),
         (["--worker", "3"], "unrecognized arguments: --worker; legal: ./run.sh [-h] "),
         (["gathering", "more"], "unrecognized arguments: more; legal: "),
         (["--seed"], "argument --seed: expected one argument; legal: "),
@@ -52,6 +52,14 @@ def test_a_mistake_is_named(words, message, monkeypatch):
     with pytest.raises(UserError) as error:
         parse(words)
     assert str(error.value).startswith(message)
+
+
+def test_what_a_task_may_be_is_named_in_full(monkeypatch):
+    monkeypatch.setattr(paths, "task_names", lambda: ["gathering", "other"])
+    with pytest.raises(UserError) as error:
+        parse(["mine.yaml"])
+    legal = "legal: gathering, other, the path of a FILE.yaml, a tool (--help)"
+    assert str(error.value) == f"mine.yaml: no such task file; {legal}"
 
 
 def test_a_run_folder_with_something_in_it_is_not_overwritten(tmp_path):

@@ -36,7 +36,7 @@ def _bus_url(target: str) -> str:
     from rtg import effective_config
 
     run_config = Path(target) / "config.yaml"
-    file = run_config if run_config.is_file() else run_args.task_file(target)
+    file = run_config if run_config.is_file() else run_args.task_file(target, also=", a run folder")
     return str(effective_config.values(file)["run"]["bus"])
 
 

@@ -92,17 +92,20 @@ def parser() -> argparse.ArgumentParser:
     return p
 
 
-def task_file(task: str) -> Path:
-    """The file that `task`, a name or a path, stands for. Raises UserError."""
+def task_file(task: str, also: str = "") -> Path:
+    """The file that `task`, a name or a path, stands for. Raises UserError.
+
+    `also`: what else the caller takes, for the message.
+    """
     if task in paths.task_names():
         return paths.CONFIG / f"{task}.yaml"
     path = Path(task)
     if path.is_file():
         return path
-    if path.suffix in {".yaml", ".yml"} or path.is_dir():
-        raise UserError(f"{task}: no such task file")
+    is_file_name = path.suffix in {".yaml", ".yml"} or path.is_dir()
+    wrong = "no such task file" if is_file_name else "no task of that name"
     names = ", ".join(paths.task_names())
-    raise UserError(f"{task}: no task of that name; legal: {names}, a FILE.yaml or a tool (--help)")
+    raise UserError(f"{task}: {wrong}; legal: {names}, the path of a FILE.yaml{also}")
 
 
 def _overrides(args: argparse.Namespace) -> tuple[Override, ...]:
@@ -129,7 +132,7 @@ def parse(argv: Sequence[str]) -> RunArgs:
         if not file.is_file():
             raise UserError(f"--resume: {out} holds no run (no config.yaml)")
     else:
-        file = task_file(args.task or "gathering")
+        file = task_file(args.task or "gathering", also=", a tool (--help)")
         if out is not None and out.exists() and not out.is_dir():
             raise UserError(f"--out: {out} is no folder; take another")
         if out is not None and out.is_dir() and any(out.iterdir()):
