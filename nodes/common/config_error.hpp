@@ -10,7 +10,8 @@ namespace rtg {
 ///
 ///   FILE:LINE: key 'search.breadth': what is wrong; legal: what would be right
 ///
-/// with the flag, `--set KEY=VALUE`, in the place of FILE:LINE if that is where it was given.
+/// with the flag, `--set KEY=VALUE`, in the place of FILE:LINE if that is where it was given, and
+/// before it if the flag made wrong what the file says there.
 class ConfigError : public std::runtime_error {
  public:
   explicit ConfigError(std::string line) : std::runtime_error(printable(std::move(line))) {}

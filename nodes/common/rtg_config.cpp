@@ -153,6 +153,21 @@ RtgConfig read_config(const ConfigNode& root) {
   return config;
 }
 
+/// What is wrong with the task as a whole is told of a line of the file. If it was right without
+/// the last settings, the one that made it wrong is told, too.
+RtgConfig read_config(const ConfigNode& file, std::span<const std::string> overrides) {
+  try {
+    ConfigNode root = file;
+    apply_overrides(root, overrides);
+    return read_config(root);
+  } catch (const ConfigError& error) {
+    const std::string message = error.what();
+    if (overrides.empty() || message.starts_with("--set ")) throw;
+    (void)read_config(file, overrides.first(overrides.size() - 1));
+    throw ConfigError("--set " + overrides.back() + ": " + message);
+  }
+}
+
 }  // namespace
 
 RtgConfig load_config(const std::filesystem::path& file, std::span<const std::string> overrides) {
@@ -163,8 +178,7 @@ RtgConfig parse_config(const std::string& text, const std::filesystem::path& nam
                        std::span<const std::string> overrides) {
   ConfigNode root = parse_root(text, name.string());
   fetch_task(root, name.parent_path());
-  apply_overrides(root, overrides);
-  return read_config(root);
+  return read_config(root, overrides);
 }
 
 std::string canonical_yaml(const RtgConfig& config) { return yaml_text(tree_of(config)); }

@@ -77,8 +77,22 @@ def test_a_mistake_in_a_setting_is_named_with_the_flag(
     setting: str, message: str, file: Path
 ) -> None:
     done = rtg_config(file, "--set", "run.seed=2", "--set", setting, "--print")
-    assert done.stderr == f"--set {setting}: {message}\n"
+    assert done.stderr == f"--set {setting}: {message}\n".replace("{file}", str(file))
     assert (done.returncode, done.stdout) == (2, "")
+
+
+def test_of_several_settings_the_one_that_made_it_wrong_is_named(file: Path) -> None:
+    settings = ["search.breadth=3", "task.goal.0.disc.radius=25", "run.seed=2"]
+    words = [word for setting in settings for word in ("--set", setting)]
+    done = rtg_config(file, *words, "--print")
+    assert done.stderr.startswith(f"--set {settings[1]}: {file}:8: key 'task.goal': holds ")
+
+
+def test_a_mistake_of_the_file_is_not_blamed_on_a_setting(file: Path, tmp_path: Path) -> None:
+    path = tmp_path / "wrong.yaml"
+    path.write_text(TASK.replace("radius: 2", "radius: 25"))
+    done = rtg_config(path, "--set", "run.seed=2", "--print")
+    assert done.stderr.startswith(f"{path}:8: key 'task.goal': holds ")
 
 
 def test_there_are_many_mistakes() -> None:
