@@ -1,5 +1,7 @@
 """What is drawn, where."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -97,3 +99,29 @@ def test_curves_with_gaps_and_empty_samples_can_be_drawn(tmp_path):
     for file in tmp_path.iterdir():
         with Image.open(file) as picture:
             assert len(picture.convert("RGB").getcolors(1 << 24)) > 20
+
+
+@pytest.fixture
+def figures(monkeypatch):
+    """The figures that are drawn, instead of their files."""
+    drawn = []
+    monkeypatch.setattr(plots, "_save", lambda figure, _: drawn.append(figure))
+    yield drawn
+    plots.plt.close("all")
+
+
+def test_the_coverage_of_a_body_bears_its_name(figures):
+    plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1))
+    titles = [axis.get_title(loc="left") for axis in figures[0].axes]
+    assert titles[:3] == ["box1", "box2", "box3"]
+
+
+def test_the_legend_of_the_curves_covers_none_of_them(figures):
+    columns = ["interactions", "success_rate", "episode_length_mean", "episode_return_mean"]
+    curve = {name: np.linspace(0.0, 1.0, 5) for name in [*columns, "rollout_success"]}
+    plots.learning_curve(Path("curve.png"), "a run", curve)
+    (figure,) = figures
+    figure.draw_without_rendering()
+    legend = figure.legends[0].get_window_extent()
+    assert len(figure.legends[0].get_texts()) == 2
+    assert not any(legend.overlaps(axis.get_window_extent()) for axis in figure.axes)

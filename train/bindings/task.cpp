@@ -22,6 +22,12 @@ std::vector<Vertices> shapes(const Task& task) {
   return out;
 }
 
+std::vector<std::string> names(const Task& task) {
+  std::vector<std::string> out;
+  for (const Body& body : task.scene.bodies) out.push_back(body.name);
+  return out;
+}
+
 std::vector<std::string> kinds(const Task& task) {
   std::vector<std::string> out;
   for (const Body& body : task.scene.bodies) out.push_back(body.kind);
@@ -83,6 +89,7 @@ void bind_task(nb::module_& module) {
   nb::class_<Task>(module, "Task")
       .def_ro("name", &Task::name)
       .def_prop_ro("shapes", &shapes)
+      .def_prop_ro("names", &names)
       .def_prop_ro("kinds", &kinds)
       .def_ro("goal", &Task::goal)
       .def_prop_ro("arena", [](const Task& task) { return task.push.arena; })

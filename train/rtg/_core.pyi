@@ -38,6 +38,9 @@ class Task:
     def shapes(self) -> Sequence[NDArray[np.float64]]:
         """Per body [vertices, 2], counter-clockwise, centroid at the origin [m]."""
     @property
+    def names(self) -> list[str]:
+        """Of the bodies; they differ."""
+    @property
     def kinds(self) -> list[str]:
         """The class of each body."""
     @property

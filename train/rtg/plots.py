@@ -58,8 +58,8 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats]) -> None:
     """
     panels = [
         ("success rate", "success_rate", "rollout_success", (-0.03, 1.03)),
-        ("episode length", "episode_length_mean", "", None),
-        ("return", "episode_return_mean", "", None),
+        ("episode length [actions]", "episode_length_mean", "", None),
+        ("discounted return", "episode_return_mean", "", None),
     ]
     with plt.rc_context(_STYLE):
         figure, axes = plt.subplots(1, 3, figsize=(10.5, 3.2), layout="constrained")
@@ -79,10 +79,11 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats]) -> None:
             )
             axis.set_title(name)
             axis.set_xlabel("interactions / 1000")
+            axis.set_xlim(left=0)
             if limits:
                 axis.set_ylim(*limits)
-            if extra in curve:
-                axis.legend(frameon=False, fontsize=8, loc="best")
+        lines = axes[0].get_lines()
+        figure.legend(handles=lines, loc="outside upper right", ncols=len(lines), frameon=False)
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
         _save(figure, path)
 
@@ -171,7 +172,7 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
                 lw=0,
                 rasterized=True,
             )
-            axis.set_title(f"object {body}" if len(set(task.kinds[1:])) == 1 else task.kinds[body])
+            axis.set_title(task.names[body])
         bar = figure.colorbar(ScalarMappable(dots.norm, dots.cmap), ax=axes, shrink=0.85, pad=0.02)
         bar.set_label("actions to success")
         bar.locator = MaxNLocator(integer=True)
