@@ -62,20 +62,32 @@ def test_an_object_waits_for_the_robot_and_then_goes_along():
 def test_a_strip_has_ten_states_at_most_the_first_and_the_last_among_them(tmp_path):
     file = tmp_path / "strip.png"
     for states, rows, columns in ((1, 1, 1), (3, 1, 3), (7, 2, 5), (61, 2, 5)):
-        strip(file, TASK, np.repeat(START, states, axis=0), success=False)
+        strip(file, TASK, np.repeat(START, states, axis=0), success=False, title="an episode")
         with Image.open(file) as picture:
-            assert picture.size == (302 * columns - 2, 302 * rows - 2)
+            width, height = picture.size
+            assert width == 302 * columns - 2
+            assert 302 * rows - 2 < height < 302 * rows + 40  # with a line of words above
             if columns > 1:
-                assert picture.getpixel((300, 10)) == FAINT  # between two tiles
+                assert picture.getpixel((300, height - 10)) == FAINT  # between two tiles
+
+
+@pytest.mark.parametrize("letters", [10, 40])
+def test_the_title_of_an_episode_stands_above_it_and_fits(tmp_path, letters):
+    strip(tmp_path / "strip.png", TASK, START, success=False, title="m" * letters)
+    with Image.open(tmp_path / "strip.png") as picture:
+        band = np.asarray(picture)[: picture.height - 300]
+    inked = np.flatnonzero((band != PAPER).any(axis=(0, 2)))
+    assert inked[0] < 12 and 100 < inked[-1] < 296
 
 
 @pytest.mark.parametrize(("steps", "frames"), [(1, 10), (10, 82), (60, 122)])
 def test_a_film_shows_every_push_and_rests_at_both_ends(tmp_path, steps, frames):
     path = np.repeat(START, steps + 1, axis=0)
     path[:, 0, 0] = np.linspace(-6.0, 6.0, steps + 1)
-    film(tmp_path / "film.gif", TASK, path, success=True)
+    film(tmp_path / "film.gif", TASK, path, success=True, title="an episode")
     with Image.open(tmp_path / "film.gif") as picture:
         assert picture.n_frames == frames
+        assert picture.width == 360 < picture.height  # with a line of words above
         rests = []
         for frame in (0, 1, frames - 1):
             picture.seek(frame)

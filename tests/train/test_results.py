@@ -1,10 +1,24 @@
-"""The last words of a run."""
+"""What is said of a run at its end, in words and titles."""
 
 from pathlib import Path
 
 import pytest
 from rtg import results
 from rtg.run_plan import RunPlan
+
+
+@pytest.mark.parametrize(
+    ("actions", "success", "trained", "title"),
+    [
+        (17, True, True, "gathering: success after 17 actions (learned policy)"),
+        (60, False, True, "gathering: not solved in 60 actions (learned policy)"),
+        (1, True, False, "gathering: success after 1 action (generated data, no training)"),
+    ],
+)
+def test_the_pictures_of_an_episode_say_how_it_ended_and_whose_it_is(
+    actions, success, trained, title
+):
+    assert results.episode_title("gathering", actions, success, trained) == title
 
 
 @pytest.mark.parametrize(("success", "told"), [(0.0, True), (0.05, True), (0.6, False)])

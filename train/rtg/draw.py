@@ -26,7 +26,7 @@ KINDS: tuple[Colour, ...] = (
     (200, 92, 92),
     (96, 160, 160),
 )
-_SMOOTH = 3  # drawn this much larger, then reduced
+SMOOTH = 3  # drawn this much larger, then reduced
 
 
 class GoalLike(Protocol):
@@ -132,7 +132,7 @@ class Canvas:
 
     def __init__(self, window: Window, pixels: int = 360) -> None:
         self.window = window
-        self._side = pixels * _SMOOTH
+        self._side = pixels * SMOOTH
         self._scale = self._side / (2.0 * window.half)  # [pixel/m]
         self._image = Image.new("RGB", (self._side, self._side), PAPER)
 
@@ -164,7 +164,7 @@ class Canvas:
 
     def pixels(self) -> NDArray[np.uint8]:
         """[height, width, 3]."""
-        return np.asarray(self._image.reduce(_SMOOTH))
+        return np.asarray(self._image.reduce(SMOOTH))
 
 
 def circle(centre: Any, radius: float, corners: int = 96) -> Floats:

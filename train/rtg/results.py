@@ -46,12 +46,20 @@ def _episode(plan: RunPlan, task: _core.Task) -> Floats | None:
     return best_episode(dataset.read(plan.transitions_file, task.bodies, task.headings))
 
 
+def episode_title(task: str, actions: int, success: bool, trained: bool) -> str:
+    """What the pictures of the episode show, and where it comes from."""
+    end = "success after" if success else "not solved in"
+    origin = "learned policy" if trained else "generated data, no training"
+    return f"{task}: {end} {actions} action{'s' if actions != 1 else ''} ({origin})"
+
+
 def _draw_episode(plan: RunPlan, task: _core.Task) -> None:
     poses = _episode(plan, task)
     if poses is not None:
         success = bool(task.succeeded(poses[-1:])[0])
-        episode_pictures.strip(plan.folder / "episode.png", task, poses, success)
-        episode_pictures.film(plan.folder / "episode.gif", task, poses, success)
+        title = episode_title(task.name, len(poses) - 1, success, plan.train)
+        episode_pictures.strip(plan.folder / "episode.png", task, poses, success, title)
+        episode_pictures.film(plan.folder / "episode.gif", task, poses, success, title)
 
 
 def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
