@@ -6,6 +6,7 @@ import pytest
 from layering import ROOT, sources
 
 PAGES = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "core/NOTATION.md", "msgs/CHANNELS.md"]
+PAGES += ["train/SUMMARY.md"]
 READERS_OWN = {"config/mine.yaml", "msgs/NAME_t.lcm"}
 CODE = "\n".join(path.read_text() for path in sources(".hpp", ".cpp", ".py"))
 

@@ -116,6 +116,12 @@ def test_the_summary_is_whole_and_agrees_with_the_files(whole_run):
     assert summary["interactions"] == 400
 
 
+def test_every_key_of_a_summary_is_explained(whole_run):
+    page = (paths.ROOT / "train/SUMMARY.md").read_text()
+    summary = json.loads((whole_run[0] / "summary.json").read_text())
+    assert [key for key in summary if f"`{key}`" not in page] == []
+
+
 def test_the_pictures_are_pictures(whole_run):
     folder, _ = whole_run
     for name in ("replay_gap.png", "coverage.png", "learning_curve.png", "episode.png"):

@@ -53,6 +53,11 @@ def test_the_summary_has_the_keys_that_are_promised():
     assert set(re.findall(r"\w+", contract)) == set(run_folder.SUMMARY_KEYS)
 
 
+def test_every_key_of_the_contract_is_explained():
+    page = (paths.ROOT / "train/SUMMARY.md").read_text()
+    assert [key for key in run_folder.SUMMARY_KEYS if f"`{key}`" not in page] == []
+
+
 def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
     file = tmp_path / "summary.json"
     run_folder.write_json(file, {"a": 1})

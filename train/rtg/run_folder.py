@@ -14,7 +14,7 @@ from typing import Any
 
 from rtg import paths
 
-# What summary.json holds at least; null where a part did not run.
+# What summary.json holds at least, null where a part did not run; train/SUMMARY.md explains it.
 SUMMARY_KEYS = (
     "task",
     "seed",
@@ -116,10 +116,8 @@ def summary(
 ) -> dict[str, Any]:
     """Generation and training merged; the contract's keys first, then what else was counted."""
     generation = read_json(run / "generation.json")
-    statuses = generation.pop("statuses", {})
     known: dict[str, Any] = {
         **{key: value for key, value in generation.items() if key not in _SAMPLES},
-        **{key: value for key, value in statuses.items() if key not in generation},
         **measured,
         **read_json(run / "training.json"),
         "task": config["task"]["name"] if isinstance(config["task"], dict) else config["task"],
