@@ -18,7 +18,7 @@ class NodeStatus {
   /// Whether it is time to publish(): twice a second.
   bool due(Seconds now) { return ticker_.due(now); }
 
-  /// `done`: units answered or transitions stored. `counts` are told beside the bus's counters.
+  /// `done` as in node_status_t. `counts` are told beside the bus's counters.
   void publish(const std::string& state, std::int64_t done,
                const std::map<std::string, long>& counts = {});
 

@@ -68,6 +68,23 @@ def test_a_node_that_falls_silent_says_so():
     assert monitor.nodes(5.0)[0].state == "silent 5 s"
 
 
+def progress(leaving):
+    message = message_type("search_progress_t")()
+    message.phase, message.leaving = "sealed", leaving
+    return message.encode()
+
+
+def test_a_node_that_falls_silent_after_the_good_bye_has_ended():
+    monitor = ChannelMonitor()
+    monitor.on_message("RTG_STATUS", status(), 0.0)
+    monitor.on_message("RTG_PROGRESS", progress(leaving=0), 0.0)
+    assert monitor.nodes(5.0)[0].state == "silent 5 s"
+    monitor.on_message("RTG_PROGRESS", progress(leaving=1), 0.0)
+    assert monitor.nodes(2.9)[0].state == "busy"
+    assert monitor.nodes(5.0)[0].state == "ended"
+    assert monitor.progress().startswith("generation over: ")
+
+
 def test_a_restarted_node_counts_from_nothing():
     monitor = ChannelMonitor()
     for k, (pid, done) in enumerate([(7, 0), (7, 1000), (8, 0), (8, 10)]):

@@ -35,7 +35,7 @@ def test_the_plain_table_names_channels_types_and_nodes(bus, monitor):
     publish(bus)
     out = io.StringIO()
     watch_plainly(bus, monitor, 0.0, out)
-    assert out.getvalue() == "no message heard\n"
+    assert out.getvalue().startswith("no message heard: no run is on this bus, or ")
     bus.spin(0.0)
     watch_plainly(bus, monitor, 0.0, out)
     lines = [line.split() for line in out.getvalue().splitlines()[1:]]

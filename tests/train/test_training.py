@@ -158,6 +158,14 @@ def test_learning_begins_before_all_transitions_are_in(tmp_path: Path, rows: Row
     assert seen[0] == 550 and seen[-1] == 2000 and len(set(seen)) > 20
 
 
+def test_people_are_told_how_well_the_learner_does(tmp_path: Path, rows: Rows) -> None:
+    one, told = training(run_folder(tmp_path / "run", None)), set[str]()
+    one.tell = lambda state, done: told.add(state)
+    assert one.run(Stream(rows, one.data, piece=333), lambda: False, record=False)
+    evaluated = {f"learning, success {row['success_rate']:.2f}" for row in one.log.rows[:-1]}
+    assert told == {"waiting", "learning", *evaluated}
+
+
 def test_learning_stops_early_at_lasting_success(tmp_path: Path, rows: Rows) -> None:
     wanted = ("train.stop_at_success=0.5", "train.stop_evaluations=2", "train.eval_every=20")
     folder = run_folder(tmp_path / "run", rows, *wanted)

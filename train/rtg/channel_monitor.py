@@ -12,6 +12,7 @@ from rtg.messages import type_of
 
 STRETCH = 4.0  # [s], over which rates are taken
 SILENT = 3.0  # [s] without a status: the node counts as silent
+ENDED = "ended"  # state of a silent node whose coordinator has said good-bye
 
 
 class Rates:
@@ -81,6 +82,7 @@ class ChannelMonitor:
         self._channels: dict[str, _Channel] = {}
         self._nodes: dict[tuple[int, str, int], _Node] = {}
         self._progress: Any = None
+        self._over: set[int] = set()  # runs whose generation is over
         self._handlers: dict[str, Callable[[Any, float], None]] = {
             "node_status_t": self._on_status,
             "search_progress_t": self._on_progress,
@@ -113,7 +115,10 @@ class ChannelMonitor:
 
     def nodes(self, now: float) -> list[NodeRow]:
         """All nodes heard so far, by name."""
-        return [_node_row(node, now) for _, node in sorted(self._nodes.items())]
+        return [
+            _node_row(node, now - node.heard, key[0] in self._over)
+            for key, node in sorted(self._nodes.items())
+        ]
 
     def progress(self) -> str:
         """Where the generation stands, in one line; empty if nothing was heard of it."""
@@ -121,8 +126,9 @@ class ChannelMonitor:
         if p is None:
             return ""
         layer = f", layer {p.layer}/{p.depth}" if p.depth else ""
+        phase = "generation over" if p.leaving else p.phase
         return (
-            f"{p.phase}{layer}: {p.transitions:,} of {p.target:,} transitions, "
+            f"{phase}{layer}: {p.transitions:,} of {p.target:,} transitions, "
             f"contact share {p.contact_share:.2f}, {p.start_region:,} in the start region, "
             f"workers: {p.workers}, jobs open: {p.jobs_open}, "
             f"consumers: {p.consumers}, the slowest at {p.slowest_cursor:,}"
@@ -137,6 +143,8 @@ class ChannelMonitor:
 
     def _on_progress(self, message: Any, _: float) -> None:
         self._progress = message
+        if message.leaving:
+            self._over.add(message.header.run)
 
 
 def _channel_row(name: str, stats: _Channel) -> ChannelRow:
@@ -145,15 +153,16 @@ def _channel_row(name: str, stats: _Channel) -> ChannelRow:
     return ChannelRow(name, kind, stats.messages, rate, bandwidth, stats.undecodable)
 
 
-def _node_row(node: _Node, now: float) -> NodeRow:
+def _node_row(node: _Node, silence: float, over: bool) -> NodeRow:
     status = node.status
-    silence = now - node.heard
-    rate, cpu = node.rates.per_second if silence < SILENT else (0.0, 0.0)
+    state, (rate, cpu) = status.state, node.rates.per_second
+    if silence >= SILENT:
+        state, rate, cpu = ENDED if over else f"silent {silence:.0f} s", 0.0, 0.0
     counters = zip(status.counter_name, status.counter_value, strict=True)
     return NodeRow(
         f"{status.node} {status.number}",
         status.header.sender,
-        status.state if silence < SILENT else f"silent {silence:.0f} s",
+        state,
         status.done,
         rate,
         cpu,

@@ -16,14 +16,18 @@ from textual.widgets import Footer, Header, Static
 
 from rtg import multicast
 from rtg.bus import Bus
-from rtg.channel_monitor import ChannelMonitor, ChannelRow, NodeRow
+from rtg.channel_monitor import ENDED, ChannelMonitor, ChannelRow, NodeRow
 from rtg.errors import RunError
 
 _REFRESH = 0.5  # [s]
 _POLL = 0.05  # [s]
 _PRINT = 2.0  # [s] between two plain tables
 _WIDTH = 200  # columns of plain tables at most
-_STATE_STYLES = {"busy": "green", "idle": "dim"}
+_STATE_STYLES = {"busy": "green", "idle": "dim", ENDED: "dim"}
+_NOTHING = (
+    "no message heard: no run is on this bus, or it sends nothing (with --in-process, or where "
+    "--resume finds the transitions finished)"
+)
 
 
 def bandwidth(bytes_per_second: float) -> str:
@@ -81,7 +85,7 @@ def picture(monitor: ChannelMonitor, now: float) -> RenderableType:
     """Everything the monitor knows at time `now` [s]."""
     channels, nodes = monitor.channels(), monitor.nodes(now)
     if not channels:
-        return Text("no message heard")
+        return Text(_NOTHING)
     parts: list[RenderableType] = [channel_table(channels)]
     if nodes:
         parts += ["", node_table(nodes)]

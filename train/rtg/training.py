@@ -94,7 +94,14 @@ class Training:
             if source.complete and record:
                 self.data.record.write(self._transition_files()[0])
         self.log.display(self._state())
-        self.tell("learning" if self._clock.running else "waiting", self.interactions)
+        self.tell(self._activity(), self.interactions)
+
+    def _activity(self) -> str:
+        """What it does, and how well it did in the last evaluation."""
+        if not self._clock.running:
+            return "waiting"
+        rows = self.log.rows
+        return f"learning, success {rows[-1]['success_rate']:.2f}" if rows else "learning"
 
     def _learn(self) -> None:
         """A part of the warm-up, or one round of interactions and gradient steps."""
