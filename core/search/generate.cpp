@@ -10,6 +10,7 @@
 #include "core/search/beam_search.hpp"
 #include "core/search/coverage.hpp"
 #include "core/search/lost_state.hpp"
+#include "core/search/policy_learning.hpp"
 #include "core/search/roll_out.hpp"
 
 namespace rtg {
@@ -29,10 +30,6 @@ double quantile(std::vector<double> values, double share) {
       values.begin() + static_cast<long>(share * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), at, values.end());
   return *at;
-}
-
-long successes(std::span<const Episode> episodes) {
-  return std::ranges::count(episodes, true, &Episode::success);
 }
 
 /// Names a step: what it leads to follows from its start and action.
@@ -78,16 +75,18 @@ class Generation {
   }
 
   /// One round: trees grow to where the policy gets lost, or to a jittered start if it does not.
-  /// The policy takes up what they find unless it does worse with it. Whether anything was stored.
+  /// The policy takes up what they find as far as it does better with it. Whether anything was
+  /// stored.
   bool grow(long limit) {
     const long before = stored();
     const std::size_t known = search_.nodes().size();
     const std::vector<Poses> starts = probe_starts();
     const std::vector<Episode> probes = follow_policy(starts);
-    TreePolicy proven = policy_;
+    const TreePolicy proven = policy_;
     grow_towards(lost_state(probes).value_or(starts[0]), limit);
     replay_chains_from(known, before, limit);
-    if (successes(follow_policy(starts)) < successes(probes)) policy_ = std::move(proven);
+    const auto rate = [&](const TreePolicy& policy) { return success_rate(policy, starts); };
+    policy_ = climbed(proven, std::move(policy_), rate);
     note_nodes(known);
     ++rounds_;
     return stored() > before;
@@ -117,6 +116,14 @@ class Generation {
     return jittered_starts(task_, kProbes, config_.target_jitter, rng);
   }
 
+  /// Share of the starts that the policy covers and solves the task from.
+  double success_rate(const TreePolicy& policy, std::span<const Poses> starts) {
+    const std::vector<Poses> covered = covered_starts(policy, starts);
+    const auto episodes = run_episodes(task_, policy, {covered}, seams_.replay, stats_);
+    return static_cast<double>(std::ranges::count(episodes, true, &Episode::success)) /
+           static_cast<double>(starts.size());
+  }
+
   /// None of the episodes while there is no policy.
   std::vector<Episode> follow_policy(std::span<const Poses> starts) {
     if (policy_.size() == 0) return {};
@@ -143,25 +150,27 @@ class Generation {
   /// A state in which the goal holds ends an episode, so nothing starts there. A round that begins
   /// at nodes of another finds some of their steps once more; they are stored once.
   void store_growths(std::span<const BeamSearch::Growth> growths, long limit) {
-    std::vector<Transition> batch;
-    std::vector<const BeamSearch::Growth*> behind;
+    std::vector<Transition> fresh;
     for (const BeamSearch::Growth& g : growths) {
-      if (g.depth == 0) continue;
-      const Candidate& c = g.candidate;
-      Transition t{c.start, c.action, c.end, succeeded(task_, c.end), Source::kStepReplay};
-      if (!stored_steps_.insert(key_of_step(t)).second) continue;
-      batch.push_back(std::move(t));
-      behind.push_back(&g);
+      Transition t = step_of(g.candidate);
+      if (g.depth > 0 && stored_steps_.insert(key_of_step(t)).second) fresh.push_back(std::move(t));
     }
-    const auto kept = store(batch, limit);
-    for (std::size_t k = kept.size(); k < batch.size(); ++k)
-      stored_steps_.erase(key_of_step(batch[k]));
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      const Transition& t = kept[k];
-      const Candidate& c = behind[k]->candidate;
-      if (t.success || c.miss <= config_.gap_tolerance)
-        policy_.add(t.poses, t.action, t.success ? 1.0 : behind[k]->depth);
-    }
+    const auto kept = store(fresh, limit);
+    for (std::size_t k = kept.size(); k < fresh.size(); ++k)
+      stored_steps_.erase(key_of_step(fresh[k]));
+    for (const BeamSearch::Growth& g : growths) learn(g);
+  }
+
+  Transition step_of(const Candidate& c) const {
+    return {c.start, c.action, c.end, succeeded(task_, c.end), Source::kStepReplay};
+  }
+
+  /// Stored steps only: the policy judges the data.
+  void learn(const BeamSearch::Growth& growth) {
+    const Transition t = step_of(growth.candidate);
+    if (!stored_steps_.contains(key_of_step(t))) return;
+    if (t.success || growth.candidate.miss <= config_.gap_tolerance)
+      learn_step(policy_, growth, t.success, search_.nodes());
   }
 
   /// The chains that begin nearest to the start, of nodes from index `first` on, for chain_share of
@@ -197,14 +206,7 @@ class Generation {
       if (!stored_steps_.contains(key_of_step(t))) fresh.push_back(t);
     const auto kept = store(fresh, limit);
     for (const Transition& t : kept) stored_steps_.insert(key_of_step(t));
-    if (kept.size() == fresh.size()) learn(steps);
-  }
-
-  /// Adds the steps of an episode that ended in success to the policy.
-  void learn(std::span<const Transition> steps) {
-    if (steps.empty() || !steps.back().success) return;
-    for (std::size_t k = 0; k < steps.size(); ++k)
-      policy_.add(steps[k].poses, steps[k].action, static_cast<double>(steps.size() - k));
+    if (kept.size() == fresh.size()) learn_episode(policy_, steps);
   }
 
   bool roll_out() {
@@ -214,7 +216,7 @@ class Generation {
     const auto starts = jittered_starts(task_, kWave, config_.rollout_jitter, rng);
     const EpisodePlan plan{starts, config_.rollout_noise, Rng(seed_, kNoise << 32 | key).word()};
     for (const Episode& e : run_episodes(task_, policy_, plan, seams_.replay, stats_))
-      learn(store(e.steps, config_.transitions));
+      learn_episode(policy_, store(e.steps, config_.transitions));
     report_progress("roll-outs", ++wave_count_, 0);
     return stored() > before;
   }

@@ -23,8 +23,8 @@ struct GenerationSeams {
 /// The whole generation: trees of reverse steps from sampled goals (beam search), first towards the
 /// start, then to where the tree policy still gets lost; forward replay of the best
 /// predecessors found, end-to-end replay of chains, roll-outs of the policy, coverage. All is
-/// stored; the policy takes up a round's steps unless it does worse with them. A pure function of
-/// (task, config, seed) and the seams.
+/// stored; the policy takes up what a round has found at the price that serves it best
+/// (policy_learning.hpp). A pure function of (task, config, seed) and the seams.
 GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams);
 

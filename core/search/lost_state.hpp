@@ -7,9 +7,6 @@
 
 namespace rtg {
 
-/// Further than this from the entry that it follows a policy is lost [m], in its own metric.
-inline constexpr double kLost = 1.0;
-
 /// Where the data lacks something: of the first episode that fails after its policy has got lost,
 /// the first state in which it was. Nothing if there is none.
 std::optional<Poses> lost_state(std::span<const Episode> episodes);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/reverse/reverse_job.hpp"
+
 namespace rtg {
 namespace {
 
@@ -17,12 +19,19 @@ constexpr int kBlock = 512;               // entries whose coordinates stay in t
 TreePolicy::TreePolicy(const Task& task)
     : metric_(task.scene), coordinate_(static_cast<std::size_t>(metric_.size())) {}
 
-void TreePolicy::add(const Poses& state, int action, double depth) {
+bool TreePolicy::add(const Poses& state, int action, double depth) {
+  if (!known_.insert(key_of(state, action)).second) return false;
   std::vector<float> point(coordinate_.size());
   metric_.embed(state, point);
   for (std::size_t k = 0; k < point.size(); ++k) coordinate_[k].push_back(point[k]);
   depth_.push_back(static_cast<float>(depth));
   action_.push_back(action);
+  return true;
+}
+
+void TreePolicy::raise(int first, double price) {
+  for (std::size_t k = static_cast<std::size_t>(first); k < depth_.size(); ++k)
+    depth_[k] += static_cast<float>(price);
 }
 
 /// Lowers `best` to the best entry of [begin, end), at most kBlock of them.

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "core/search/state_metric.hpp"
@@ -13,14 +15,18 @@ namespace rtg {
 ///
 ///   score = depth + 16 / m · distance(state of the entry, current state),
 ///
-/// depth the number of actions from there to success. It needs no simulator and no learning, so its
-/// success rate judges the data.
+/// depth the number of actions from there to success and a price for those that are hard to repeat
+/// (raise()). It needs no simulator and no learning, so its success rate judges the data.
 class TreePolicy {
  public:
   explicit TreePolicy(const Task& task);
 
-  /// An action that led from `state` to where success is `depth - 1` actions away.
-  void add(const Poses& state, int action, double depth);
+  /// An action that led from `state` to where success is `depth - 1` actions away; whether it is
+  /// new: a second entry of a state and action is none.
+  bool add(const Poses& state, int action, double depth);
+
+  /// Adds `price` to the depth of the entries from index `first` on.
+  void raise(int first, double price);
 
   /// Number of entries.
   int size() const { return static_cast<int>(depth_.size()); }
@@ -48,6 +54,7 @@ class TreePolicy {
   std::vector<std::vector<float>> coordinate_;  // [size of embedding][entry]
   std::vector<float> depth_;
   std::vector<int> action_;
+  std::unordered_set<std::uint64_t> known_;  // key_of() of states and actions
 };
 
 }  // namespace rtg

@@ -37,9 +37,16 @@ struct RollOutTest : ::testing::Test {
     return {end, job.action != rejected, 0.0};
   }
 
-  /// Entries with actions 10, 11, 12, ..., all alike otherwise.
+  /// An entry at the start; all are alike to the policy's metric, which knows no robot's heading.
+  void add_entry(int action) {
+    Poses state = task.start;
+    state[0].theta = policy.size();
+    policy.add(state, action, 1.0);
+  }
+
+  /// Entries with actions 10, 11, 12, ...
   void add_entries(int count) {
-    for (int k = 0; k < count; ++k) policy.add(task.start, (10 + k) % task.push.headings, 1.0);
+    for (int k = 0; k < count; ++k) add_entry((10 + k) % task.push.headings);
   }
 
   std::vector<Episode> run(const std::vector<Poses>& starts, double noise = 0.0,
@@ -136,7 +143,7 @@ TEST_F(RollOutTest, WithoutAnEntryLeftActionsAreDrawnFromAll) {
 
 TEST_F(RollOutTest, NoiseTakesANeighbourByOneOrTwo) {
   task.horizon = 400;
-  for (int k = 0; k < 400; ++k) policy.add(task.start, 1, 1.0);  // 2 to the right of 0: wraps
+  for (int k = 0; k < 400; ++k) add_entry(1);  // 2 to the right of 0: wraps
   std::set<int> taken;
   for (const int action : actions(run({from(-500.0)}, 1.0).front())) taken.insert(action);
   EXPECT_EQ(taken, (std::set<int>{47, 0, 2, 3}));
@@ -144,7 +151,7 @@ TEST_F(RollOutTest, NoiseTakesANeighbourByOneOrTwo) {
 
 TEST_F(RollOutTest, NoiseDisturbsItsShareOfTheActions) {
   task.horizon = 2000;
-  for (int k = 0; k < 2000; ++k) policy.add(task.start, 20, 1.0);
+  for (int k = 0; k < 2000; ++k) add_entry(20);
   const std::vector<int> all = actions(run({from(-5000.0)}, 0.1).front());
   // Mean 200, standard deviation √(2000 · 0.1 · 0.9) = 13.4.
   EXPECT_NEAR(2000 - std::ranges::count(all, 20), 200, 5 * 13.4);
@@ -183,6 +190,15 @@ double offset(const Task& task, const Poses& poses) {
     most = std::max(
         {most, std::abs(poses[k].x - task.start[k].x), std::abs(poses[k].y - task.start[k].y)});
   return most;
+}
+
+TEST(CoveredStarts, AreThoseWithinAMetreOfAnEntry) {
+  TreePolicy policy(gathering());
+  EXPECT_TRUE(covered_starts(policy, std::vector<Poses>{from(0.0)}).empty());
+  policy.add(from(0.0), 1, 3.0);
+  policy.add(from(5.0), 1, 9.0);
+  const std::vector<Poses> starts{from(-1.1), from(-0.9), from(2.5), from(4.5), from(6.5)};
+  EXPECT_EQ(covered_starts(policy, starts), (std::vector<Poses>{from(-0.9), from(4.5)}));
 }
 
 TEST(JitteredStarts, MoveObjectsByUpToAnAmplitudeOfTheirOwn) {

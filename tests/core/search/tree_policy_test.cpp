@@ -101,6 +101,7 @@ TEST(TreePolicy, TiesGoToTheOldestEntry) {
   std::vector<Entry> entries;
   for (int k = 0; k < 3 * kBlock; ++k) {
     entries.push_back(here);
+    entries.back().state[0].theta = k;  // all the same to the metric
     entries.back().action = k % 48;
     if (k < 40) entries.back().depth = here.depth + 1.0;
   }
@@ -131,6 +132,27 @@ TEST(TreePolicy, OneMetreOfTheRobotCountsAsSixteenActions) {
   EXPECT_EQ(Policy({here, beside}).choose({here.state, {}}).action, 2);
   beside.depth = 2.1;
   EXPECT_EQ(Policy({here, beside}).choose({here.state, {}}).action, 1);
+}
+
+TEST(TreePolicy, HasAStateAndActionOnce) {
+  Policy tree = random_policy(3);
+  const Entry& known = tree.entries[1];
+  EXPECT_FALSE(tree.policy.add(known.state, known.action, 1.0));
+  EXPECT_EQ(tree.policy.size(), 3);
+  EXPECT_EQ(tree.choose({known.state, {}}).score, known.depth);
+  EXPECT_TRUE(tree.policy.add(known.state, (known.action + 1) % 48, 100.0));
+  EXPECT_EQ(tree.policy.size(), 4);
+}
+
+TEST(TreePolicy, RaisesTheDepthOfItsLastEntries) {
+  Policy tree = random_policy(3);
+  tree.policy.raise(1, 2.5);
+  for (int k = 0; k < 3; ++k) {
+    const Entry& e = tree.entries[static_cast<std::size_t>(k)];
+    const TreePolicy::Choice choice = tree.choose({e.state, {}});
+    EXPECT_EQ(choice.entry, k);
+    EXPECT_EQ(choice.score, e.depth + (k == 0 ? 0.0 : 2.5));
+  }
 }
 
 TEST(TreePolicy, KnowsStatesThatLookTheSame) {

@@ -1,0 +1,46 @@
+#include "core/search/policy_learning.hpp"
+
+#include <array>
+
+namespace rtg {
+namespace {
+
+constexpr std::array kPrices{0.0, 4.0, 8.0, 16.0, 32.0};  // actions
+
+}  // namespace
+
+void learn_step(TreePolicy& policy, const BeamSearch::Growth& step, bool success,
+                std::span<const Node> nodes) {
+  const Candidate& c = step.candidate;
+  if (!policy.add(c.start, c.action, success ? 1.0 : step.depth) || success) return;
+  for (int k = c.parent; k >= 0;) {
+    const Node& n = nodes[static_cast<std::size_t>(k)];
+    if (n.depth == 0 || !policy.add(n.poses, n.action, n.depth)) return;
+    k = n.parent;
+  }
+}
+
+void learn_episode(TreePolicy& policy, std::span<const Transition> steps) {
+  if (steps.empty() || !steps.back().success) return;
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    policy.add(steps[k].poses, steps[k].action, static_cast<double>(steps.size() - k));
+}
+
+TreePolicy climbed(const TreePolicy& before, TreePolicy after, const PolicyRating& rate) {
+  if (after.size() == before.size()) return after;
+  double price = 0.0, best_price = 0.0, best = -1.0;
+  for (const double next : kPrices) {
+    after.raise(before.size(), next - price);
+    price = next;
+    if (const double rating = rate(after); rating > best) {
+      best = rating;
+      best_price = price;
+    }
+    if (best >= 1.0) break;
+  }
+  if (best < 1.0 && rate(before) > best) return before;
+  after.raise(before.size(), best_price - price);
+  return after;
+}
+
+}  // namespace rtg

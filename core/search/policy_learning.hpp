@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "core/search/beam_search.hpp"
+#include "core/search/transition.hpp"
+#include "core/search/tree_policy.hpp"
+
+namespace rtg {
+
+/// Adds a step that was found behind one of `nodes`; with it the steps from there to success, as
+/// far as the policy lacks them (it may not have taken up the round that found them): a step is of
+/// use with the whole plan behind it only.
+void learn_step(TreePolicy& policy, const BeamSearch::Growth& step, bool success,
+                std::span<const Node> nodes);
+
+/// Adds the steps of an episode that ended in success, none of any other.
+void learn_episode(TreePolicy& policy, std::span<const Transition> steps);
+
+/// How well a policy does, from 0 to 1.
+using PolicyRating = std::function<double(const TreePolicy&)>;
+
+/// The policy after a round of the search: one step of hill climbing. `after` is `before` and,
+/// behind its entries, those that the round has found.
+///
+/// A depth counts the actions of a plan that nothing disturbs. Where pushes easily go astray it
+/// promises too much: the policy leaves what it knew for a plan that it cannot hold. So the new
+/// entries are tried at several prices on top of their depth, from none to one at which they serve
+/// only where nothing else is near. Returns the policy that `rate` likes best; of equals the one
+/// with the lowest price, and `before` only if it is better than all.
+TreePolicy climbed(const TreePolicy& before, TreePolicy after, const PolicyRating& rate);
+
+}  // namespace rtg

@@ -1,0 +1,140 @@
+#include "core/search/policy_learning.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/support/gathering.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::gathering;
+
+/// The nominal start with the robot at x.
+Poses at(double x) {
+  Poses poses = gathering().start;
+  poses[0].x = x;
+  return poses;
+}
+
+TreePolicy::Choice choice(const TreePolicy& policy, const Poses& state) {
+  return policy.choose(std::vector<TreePolicy::Query>{{state, {}}}).front();
+}
+
+/// Depth that the policy has for a state of its own.
+double depth_at(const TreePolicy& policy, double x) { return choice(policy, at(x)).score; }
+
+int action_at(const TreePolicy& policy, double x) { return choice(policy, at(x)).action; }
+
+/// A step from robot at x to node `parent`.
+BeamSearch::Growth step(double x, int action, int parent, int depth) {
+  BeamSearch::Growth out;
+  out.candidate = {parent, action, at(x), at(x - 1.0)};
+  out.depth = depth;
+  return out;
+}
+
+/// A plan: the goal at 0, then nodes at 1, 2, 3 that lead to it by actions 11, 12, 13.
+const std::vector<Node> kPlan{
+    {at(0.0), -1, -1, 0}, {at(1.0), 0, 11, 1}, {at(2.0), 1, 12, 2}, {at(3.0), 2, 13, 3}};
+
+TEST(LearnStep, TakesUpThePlanBehindIt) {
+  TreePolicy policy(gathering());
+  learn_step(policy, step(4.0, 14, 3, 4), false, kPlan);
+  EXPECT_EQ(policy.size(), 4);
+  for (int k = 1; k <= 4; ++k) {
+    EXPECT_EQ(action_at(policy, k), 10 + k);
+    EXPECT_EQ(depth_at(policy, k), k);
+  }
+}
+
+TEST(LearnStep, KeepsWhatIsKnownOfThePlan) {
+  TreePolicy policy(gathering());
+  learn_step(policy, step(3.0, 13, 2, 3), false, kPlan);
+  policy.raise(0, 5.0);
+  learn_step(policy, step(4.0, 14, 3, 4), false, kPlan);
+  learn_step(policy, step(4.0, 14, 3, 4), false, kPlan);
+  EXPECT_EQ(policy.size(), 4);
+  EXPECT_EQ(depth_at(policy, 2.0), 7.0);
+}
+
+TEST(LearnStep, NeedsNothingBehindAStepIntoTheGoal) {
+  TreePolicy policy(gathering());
+  learn_step(policy, step(4.0, 14, 3, 4), true, kPlan);
+  EXPECT_EQ(policy.size(), 1);
+  EXPECT_EQ(depth_at(policy, 4.0), 1.0);
+}
+
+TEST(LearnEpisode, CountsTheActionsToItsEnd) {
+  TreePolicy policy(gathering());
+  std::vector<Transition> steps{{at(2.0), 12, at(1.0), false}, {at(1.0), 11, at(0.0), true}};
+  learn_episode(policy, steps);
+  EXPECT_EQ(policy.size(), 2);
+  EXPECT_EQ(depth_at(policy, 2.0), 2.0);
+  EXPECT_EQ(depth_at(policy, 1.0), 1.0);
+  EXPECT_EQ(action_at(policy, 2.0), 12);
+}
+
+TEST(LearnEpisode, LearnsNothingFromOneThatFails) {
+  TreePolicy policy(gathering());
+  learn_episode(policy, {});
+  learn_episode(policy, std::vector<Transition>{{at(2.0), 12, at(1.0), false}});
+  EXPECT_EQ(policy.size(), 0);
+}
+
+/// A policy of depth 3 at x = 0, and with it what a round has found: depth 1 at x = 3. The rating
+/// is a table of the price that the round's entry bears; -1 stands for the policy without it.
+struct Climb : ::testing::Test {
+  TreePolicy before{gathering()}, after{gathering()};
+  std::vector<double> tried;
+
+  Climb() {
+    before.add(at(0.0), 7, 3.0);
+    after.add(at(0.0), 7, 3.0);
+    after.add(at(3.0), 8, 1.0);
+  }
+
+  /// Price of the better policy; -1: the one before.
+  double climb(const std::map<double, double>& ratings) {
+    tried.clear();
+    const TreePolicy best = climbed(before, after, [&](const TreePolicy& policy) {
+      tried.push_back(price(policy));
+      return ratings.contains(tried.back()) ? ratings.at(tried.back()) : 0.5;
+    });
+    EXPECT_EQ(depth_at(best, 0.0), 3.0) << "what was known keeps its depth";
+    return price(best);
+  }
+
+  static double price(const TreePolicy& policy) {
+    return policy.size() == 1 ? -1.0 : depth_at(policy, 3.0) - 1.0;
+  }
+};
+
+TEST_F(Climb, TakesThePriceThatServesBest) {
+  EXPECT_EQ(climb({{0.0, 0.1}, {8.0, 0.9}, {32.0, 0.7}, {-1.0, 0.8}}), 8.0);
+  EXPECT_EQ(climb({{32.0, 0.6}}), 32.0);
+}
+
+TEST_F(Climb, StaysWhereItWasIfThatIsBetterAtEveryPrice) {
+  EXPECT_EQ(climb({{-1.0, 0.6}, {0.0, 0.4}}), -1.0);
+}
+
+TEST_F(Climb, PrefersTheLowestPriceAndTheNewPolicyAmongEquals) {
+  EXPECT_EQ(climb({}), 0.0);
+  EXPECT_EQ(climb({{0.0, 0.1}, {-1.0, 0.5}}), 4.0);
+}
+
+TEST_F(Climb, LooksNoFurtherThanPerfection) {
+  EXPECT_EQ(climb({{4.0, 1.0}, {-1.0, 1.0}}), 4.0);
+  EXPECT_EQ(tried, (std::vector{0.0, 4.0}));
+}
+
+TEST_F(Climb, AsksNothingWhereARoundHasFoundNothing) {
+  after = before;
+  EXPECT_EQ(climb({}), -1.0);
+  EXPECT_TRUE(tried.empty());
+}
+
+}  // namespace
+}  // namespace rtg
