@@ -29,7 +29,7 @@ lock_setup() {
     flock 9
   fi
   if [[ ! -f $MADE_FROM ]]; then
-    say "first call: sets everything up, which takes 5 to 10 minutes; later calls start at once"
+    say "first call: sets everything up, which takes about ten minutes; a second one starts at once"
   fi
 }
 
@@ -141,13 +141,15 @@ build_preset() {
       fail "cmake could not configure (whole log: build/$preset.log)"
     fi
   fi
-  local todo steps cores
+  local todo steps cores estimate=
   todo=$(ninja -C "$folder" -n "$target" 2>/dev/null 9>&-) || todo=
   if [[ $todo != *'no work to do'* ]]; then
-    steps=$(grep -c '^\[' <<<"$todo" || true)
-    cores=$(nproc)
-    # A step takes one core 4 s.
-    say "building build/$preset: $steps steps, about $((steps / 15 / cores + 1)) min on $cores cores"
+    if [[ -n $todo && $todo != *'Re-running CMake'* ]]; then # which says nothing of the steps after it
+      steps=$(grep -c '^\[' <<<"$todo" || true)
+      cores=$(nproc)
+      estimate=": $steps steps, about $((steps / 15 / cores + 1)) min on $cores cores" # 4 s of a core each
+    fi
+    say "building build/$preset$estimate"
     if ! (set -o pipefail && ninja -C "$folder" "$target" 2>&1 9>&- | build_progress "$log"); then
       grep -vE '^\[[0-9]+/[0-9]+\] ' "$log" | tail -n 60 >&2
       fail "the build failed (whole log: build/$preset.log)"

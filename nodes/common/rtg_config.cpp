@@ -163,7 +163,12 @@ RtgConfig read_config(const ConfigNode& file, std::span<const std::string> overr
   } catch (const ConfigError& error) {
     const std::string message = error.what();
     if (overrides.empty() || message.starts_with("--set ")) throw;
-    (void)read_config(file, overrides.first(overrides.size() - 1));
+    try {
+      (void)read_config(file, overrides.first(overrides.size() - 1));
+    } catch (const ConfigError& earlier) {
+      if (std::string(earlier.what()).ends_with(message)) throw;
+      throw error;  // another mistake, which the last settings mend
+    }
     throw ConfigError("--set " + overrides.back() + ": " + message);
   }
 }

@@ -95,6 +95,15 @@ def test_a_mistake_of_the_file_is_not_blamed_on_a_setting(file: Path, tmp_path: 
     assert done.stderr.startswith(f"{path}:8: key 'task.goal': holds ")
 
 
+def test_a_mistake_that_a_later_setting_mends_is_not_told(file: Path, tmp_path: Path) -> None:
+    path = tmp_path / "wrong.yaml"
+    path.write_text(TASK.replace("radius: 2", "radius: 25"))
+    same_name = "task.bodies.1={name: b, kind: box, shape: {box: [1, 1]}, start: [3, 0, 0]}"
+    mend = "task.goal.0.disc.radius=2"
+    done = rtg_config(path, "--set", same_name, "--set", mend, "--print")
+    assert done.stderr.startswith(f"{path}:6: key 'task.bodies.2.name': ")
+
+
 def test_there_are_many_mistakes() -> None:
     assert len(FILES) + len(SETTINGS) >= 80
 

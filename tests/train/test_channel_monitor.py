@@ -68,6 +68,15 @@ def test_a_node_that_falls_silent_says_so():
     assert monitor.nodes(5.0)[0].state == "silent 5 s"
 
 
+def test_a_trainer_goes_on_after_the_good_bye_or_is_silent():
+    message = message_type("node_status_t")()
+    message.node, message.state = "trainer", "learning"
+    monitor = ChannelMonitor()
+    monitor.on_message("RTG_STATUS", message.encode(), 0.0)
+    monitor.on_message("RTG_PROGRESS", progress(leaving=1), 0.0)
+    assert monitor.nodes(5.0)[0].state == "silent 5 s"
+
+
 def progress(leaving):
     message = message_type("search_progress_t")()
     message.phase, message.leaving = "sealed", leaving
@@ -83,6 +92,8 @@ def test_a_node_that_falls_silent_after_the_good_bye_has_ended():
     assert monitor.nodes(2.9)[0].state == "busy"
     assert monitor.nodes(5.0)[0].state == "ended"
     assert monitor.progress().startswith("generation over: ")
+    monitor.on_message("RTG_PROGRESS", progress(leaving=0), 0.0)  # resumed
+    assert monitor.nodes(5.0)[0].state == "silent 5 s"
 
 
 def test_a_restarted_node_counts_from_nothing():

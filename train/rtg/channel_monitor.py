@@ -12,7 +12,7 @@ from rtg.messages import type_of
 
 STRETCH = 4.0  # [s], over which rates are taken
 SILENT = 3.0  # [s] without a status: the node counts as silent
-ENDED = "ended"  # state of a silent node whose coordinator has said good-bye
+ENDED = "ended"  # state of a silent node, no trainer, whose coordinator has said good-bye
 
 
 class Rates:
@@ -116,8 +116,8 @@ class ChannelMonitor:
     def nodes(self, now: float) -> list[NodeRow]:
         """All nodes heard so far, by name."""
         return [
-            _node_row(node, now - node.heard, key[0] in self._over)
-            for key, node in sorted(self._nodes.items())
+            _node_row(node, now - node.heard, run in self._over and name != "trainer")
+            for (run, name, _), node in sorted(self._nodes.items())
         ]
 
     def progress(self) -> str:
@@ -145,6 +145,8 @@ class ChannelMonitor:
         self._progress = message
         if message.leaving:
             self._over.add(message.header.run)
+        else:  # a run resumed
+            self._over.discard(message.header.run)
 
 
 def _channel_row(name: str, stats: _Channel) -> ChannelRow:
