@@ -20,7 +20,7 @@ namespace {
 enum Stream : std::uint64_t { kTrees = 1, kProbing, kRollOuts, kNoise, kEvaluation };
 
 constexpr int kWave = 50;         // roll-outs that run in lockstep
-constexpr int kProbes = 50;       // episodes that judge a round's policy
+constexpr int kProbes = 50;       // episodes that find a round's target and judge its policy
 constexpr double kArrived = 0.5;  // a node so near is at its target [m], in the policy's metric
 constexpr int kMaxBarren = 8;     // rounds or waves without a transition before it gives up
 
@@ -165,7 +165,7 @@ class Generation {
     return {c.start, c.action, c.end, succeeded(task_, c.end), Source::kStepReplay};
   }
 
-  /// Stored steps only: the policy judges the data.
+  /// A step that found no room any more is not part of the data that the policy judges.
   void learn(const BeamSearch::Growth& growth) {
     const Transition t = step_of(growth.candidate);
     if (!stored_steps_.contains(key_of_step(t))) return;

@@ -16,13 +16,13 @@ namespace rtg {
 ///   score = depth + 16 / m · distance(state of the entry, current state),
 ///
 /// depth the number of actions from there to success and a price for those that are hard to repeat
-/// (raise()). It needs no simulator and no learning, so its success rate judges the data.
+/// (raise()). It learns nothing but these prices, so its success rate judges the data.
 class TreePolicy {
  public:
   explicit TreePolicy(const Task& task);
 
   /// An action that led from `state` to where success is `depth - 1` actions away; whether it is
-  /// new: a second entry of a state and action is none.
+  /// new: of a state and action the first entry stays.
   bool add(const Poses& state, int action, double depth);
 
   /// Adds `price` to the depth of the entries from index `first` on.

@@ -75,8 +75,8 @@ TEST(Generate, TreesStoreNoStepTwice) {
   std::vector<Transition> steps;
   for (Transition t : reference_run().stored) {
     if (t.source == Source::kRollOut) continue;
-    t.source =
-        Source::kStepReplay;  // a chain's first step would be one of these but for its source
+    // A chain's first step would be one of these but for its source.
+    t.source = Source::kStepReplay;
     steps.push_back(t);
   }
   for (std::size_t k = 0; k < steps.size(); ++k)
@@ -194,7 +194,7 @@ struct LuckyWorld {
   }
 };
 
-TEST(Generate, ThePolicyDoesNotTakeUpWhatMakesItWorse) {
+TEST(Generate, ThePolicyPricesWhatWouldMakeItWorse) {
   LuckyWorld world;
   SearchConfig config = small();
   config.transitions = 2;
