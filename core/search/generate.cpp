@@ -32,6 +32,13 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
+/// Share of the probe starts that were covered and from which success was reached.
+double rating(std::span<const Episode> episodes) {
+  const auto solved = std::ranges::count_if(
+      episodes, [](const Episode& e) { return e.success && e.strayed.front() <= kLost; });
+  return static_cast<double>(solved) / kProbes;
+}
+
 /// Names a step: what it leads to follows from its start and action.
 std::uint64_t key_of_step(const Transition& t) { return key_of(t.poses, t.action); }
 
@@ -85,8 +92,11 @@ class Generation {
     const TreePolicy proven = policy_;
     grow_towards(lost_state(probes).value_or(starts[0]), limit);
     replay_chains_from(known, before, limit);
-    const auto rate = [&](const TreePolicy& policy) { return success_rate(policy, starts); };
-    policy_ = climbed(proven, std::move(policy_), rate);
+    const auto rate = [&](const TreePolicy& policy) {
+      const std::vector<Poses> covered = covered_starts(policy, starts);
+      return rating(run_episodes(task_, policy, {covered}, seams_.replay, stats_));
+    };
+    policy_ = climbed(proven, rating(probes), std::move(policy_), rate);
     note_nodes(known);
     ++rounds_;
     return stored() > before;
@@ -114,14 +124,6 @@ class Generation {
   std::vector<Poses> probe_starts() const {
     Rng rng(seed_, kProbing << 32 | static_cast<std::uint64_t>(rounds_));
     return jittered_starts(task_, kProbes, config_.target_jitter, rng);
-  }
-
-  /// Share of the starts that the policy covers and solves the task from.
-  double success_rate(const TreePolicy& policy, std::span<const Poses> starts) {
-    const std::vector<Poses> covered = covered_starts(policy, starts);
-    const auto episodes = run_episodes(task_, policy, {covered}, seams_.replay, stats_);
-    return static_cast<double>(std::ranges::count(episodes, true, &Episode::success)) /
-           static_cast<double>(starts.size());
   }
 
   /// None of the episodes while there is no policy.

@@ -5,7 +5,7 @@
 namespace rtg {
 namespace {
 
-constexpr std::array kPrices{0.0, 4.0, 8.0, 16.0, 32.0};  // actions
+constexpr std::array kPrices{0.0, 8.0, 32.0};  // actions
 
 }  // namespace
 
@@ -26,7 +26,8 @@ void learn_episode(TreePolicy& policy, std::span<const Transition> steps) {
     policy.add(steps[k].poses, steps[k].action, static_cast<double>(steps.size() - k));
 }
 
-TreePolicy climbed(const TreePolicy& before, TreePolicy after, const PolicyRating& rate) {
+TreePolicy climbed(const TreePolicy& before, double before_rating, TreePolicy after,
+                   const PolicyRating& rate) {
   if (after.size() == before.size()) return after;
   double price = 0.0, best_price = 0.0, best = -1.0;
   for (const double next : kPrices) {
@@ -38,7 +39,7 @@ TreePolicy climbed(const TreePolicy& before, TreePolicy after, const PolicyRatin
     }
     if (best >= 1.0) break;
   }
-  if (best < 1.0 && rate(before) > best) return before;
+  if (best < before_rating) return before;
   after.raise(before.size(), best_price - price);
   return after;
 }

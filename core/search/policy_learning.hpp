@@ -29,6 +29,7 @@ using PolicyRating = std::function<double(const TreePolicy&)>;
 /// entries are tried at several prices on top of their depth, from none to one at which they serve
 /// only where nothing else is near. Returns the policy that `rate` likes best; of equals the one
 /// with the lowest price, and `before` only if it is better than all.
-TreePolicy climbed(const TreePolicy& before, TreePolicy after, const PolicyRating& rate);
+TreePolicy climbed(const TreePolicy& before, double before_rating, TreePolicy after,
+                   const PolicyRating& rate);
 
 }  // namespace rtg

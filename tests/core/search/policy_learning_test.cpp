@@ -97,11 +97,15 @@ struct Climb : ::testing::Test {
 
   /// Price of the better policy; -1: the one before.
   double climb(const std::map<double, double>& ratings) {
+    const auto rated = [&](double price) {
+      return ratings.contains(price) ? ratings.at(price) : 0.5;
+    };
     tried.clear();
-    const TreePolicy best = climbed(before, after, [&](const TreePolicy& policy) {
+    const auto rate = [&](const TreePolicy& policy) {
       tried.push_back(price(policy));
-      return ratings.contains(tried.back()) ? ratings.at(tried.back()) : 0.5;
-    });
+      return rated(tried.back());
+    };
+    const TreePolicy best = climbed(before, rated(-1.0), after, rate);
     EXPECT_EQ(depth_at(best, 0.0), 3.0) << "what was known keeps its depth";
     return price(best);
   }
@@ -122,12 +126,12 @@ TEST_F(Climb, StaysWhereItWasIfThatIsBetterAtEveryPrice) {
 
 TEST_F(Climb, PrefersTheLowestPriceAndTheNewPolicyAmongEquals) {
   EXPECT_EQ(climb({}), 0.0);
-  EXPECT_EQ(climb({{0.0, 0.1}, {-1.0, 0.5}}), 4.0);
+  EXPECT_EQ(climb({{0.0, 0.1}, {-1.0, 0.5}}), 8.0);
 }
 
 TEST_F(Climb, LooksNoFurtherThanPerfection) {
-  EXPECT_EQ(climb({{4.0, 1.0}, {-1.0, 1.0}}), 4.0);
-  EXPECT_EQ(tried, (std::vector{0.0, 4.0}));
+  EXPECT_EQ(climb({{8.0, 1.0}, {-1.0, 1.0}}), 8.0);
+  EXPECT_EQ(tried, (std::vector{0.0, 8.0}));
 }
 
 TEST_F(Climb, AsksNothingWhereARoundHasFoundNothing) {
