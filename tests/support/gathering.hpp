@@ -27,6 +27,13 @@ inline Task gathering() {
   return task;
 }
 
+/// Gathering's start with the robot at x: places on a line.
+inline Poses robot_at(double x) {
+  Poses poses = gathering().start;
+  poses[0].x = x;
+  return poses;
+}
+
 /// The task of config/gathering_hard.yaml.
 inline Task gathering_hard() {
   Task task = gathering();

@@ -13,16 +13,10 @@ namespace rtg {
 namespace {
 
 using testing::gathering;
-
-/// The nominal start with the robot at x: places of a graph on a line.
-Poses at(double x) {
-  Poses poses = gathering().start;
-  poses[0].x = x;
-  return poses;
-}
+using testing::robot_at;
 
 Transition link(double from, double to, bool success = false) {
-  return {at(from), 0, at(to), success, Source::kStepReplay};
+  return {robot_at(from), 0, robot_at(to), success, Source::kStepReplay};
 }
 
 double reachable(const std::vector<Transition>& all) {

@@ -10,34 +10,30 @@ namespace rtg {
 namespace {
 
 using testing::gathering;
-
-/// The nominal start with the robot at x.
-Poses at(double x) {
-  Poses poses = gathering().start;
-  poses[0].x = x;
-  return poses;
-}
+using testing::robot_at;
 
 TreePolicy::Choice choice(const TreePolicy& policy, const Poses& state) {
   return policy.choose(std::vector<TreePolicy::Query>{{state, {}}}).front();
 }
 
 /// Depth that the policy has for a state of its own.
-double depth_at(const TreePolicy& policy, double x) { return choice(policy, at(x)).score; }
+double depth_at(const TreePolicy& policy, double x) { return choice(policy, robot_at(x)).score; }
 
-int action_at(const TreePolicy& policy, double x) { return choice(policy, at(x)).action; }
+int action_at(const TreePolicy& policy, double x) { return choice(policy, robot_at(x)).action; }
 
 /// A step from robot at x to node `parent`.
 BeamSearch::Growth step(double x, int action, int parent, int depth) {
   BeamSearch::Growth out;
-  out.candidate = {parent, action, at(x), at(x - 1.0)};
+  out.candidate = {parent, action, robot_at(x), robot_at(x - 1.0)};
   out.depth = depth;
   return out;
 }
 
 /// A plan: the goal at 0, then nodes at 1, 2, 3 that lead to it by actions 11, 12, 13.
-const std::vector<Node> kPlan{
-    {at(0.0), -1, -1, 0}, {at(1.0), 0, 11, 1}, {at(2.0), 1, 12, 2}, {at(3.0), 2, 13, 3}};
+const std::vector<Node> kPlan{{robot_at(0.0), -1, -1, 0},
+                              {robot_at(1.0), 0, 11, 1},
+                              {robot_at(2.0), 1, 12, 2},
+                              {robot_at(3.0), 2, 13, 3}};
 
 TEST(LearnStep, TakesUpThePlanBehindIt) {
   TreePolicy policy(gathering());
@@ -68,7 +64,8 @@ TEST(LearnStep, NeedsNothingBehindAStepIntoTheGoal) {
 
 TEST(LearnEpisode, CountsTheActionsToItsEnd) {
   TreePolicy policy(gathering());
-  std::vector<Transition> steps{{at(2.0), 12, at(1.0), false}, {at(1.0), 11, at(0.0), true}};
+  std::vector<Transition> steps{{robot_at(2.0), 12, robot_at(1.0), false},
+                                {robot_at(1.0), 11, robot_at(0.0), true}};
   learn_episode(policy, steps);
   EXPECT_EQ(policy.size(), 2);
   EXPECT_EQ(depth_at(policy, 2.0), 2.0);
@@ -79,7 +76,7 @@ TEST(LearnEpisode, CountsTheActionsToItsEnd) {
 TEST(LearnEpisode, LearnsNothingFromOneThatFails) {
   TreePolicy policy(gathering());
   learn_episode(policy, {});
-  learn_episode(policy, std::vector<Transition>{{at(2.0), 12, at(1.0), false}});
+  learn_episode(policy, std::vector<Transition>{{robot_at(2.0), 12, robot_at(1.0), false}});
   EXPECT_EQ(policy.size(), 0);
 }
 
@@ -90,9 +87,9 @@ struct Climb : ::testing::Test {
   std::vector<double> tried;
 
   Climb() {
-    before.add(at(0.0), 7, 3.0);
-    after.add(at(0.0), 7, 3.0);
-    after.add(at(3.0), 8, 1.0);
+    before.add(robot_at(0.0), 7, 3.0);
+    after.add(robot_at(0.0), 7, 3.0);
+    after.add(robot_at(3.0), 8, 1.0);
   }
 
   /// Price of the better policy; -1: the one before.

@@ -12,6 +12,7 @@ namespace rtg {
 namespace {
 
 using testing::gathering;
+using testing::robot_at;
 
 /// Gathering with a policy of one action and a simulator that needs no physics: a push takes the
 /// robot 0.5 m to the right; at x > 2 m the objects come to the goal, too.
@@ -55,13 +56,6 @@ struct RollOutTest : ::testing::Test {
   }
 };
 
-/// The nominal start with the robot at x.
-Poses from(double x) {
-  Poses poses = gathering().start;
-  poses[0].x = x;
-  return poses;
-}
-
 std::vector<int> actions(const Episode& episode) {
   std::vector<int> out;
   for (const Transition& t : episode.steps) out.push_back(t.action);
@@ -70,7 +64,7 @@ std::vector<int> actions(const Episode& episode) {
 
 TEST_F(RollOutTest, SuccessEndsAnEpisode) {
   add_entries(20);
-  const std::vector<Episode> episodes = run({from(1.0), from(0.0)});
+  const std::vector<Episode> episodes = run({robot_at(1.0), robot_at(0.0)});
   ASSERT_EQ(episodes.size(), 2U);
   EXPECT_EQ(episodes[0].steps.size(), 3U);
   EXPECT_EQ(episodes[1].steps.size(), 5U);
@@ -84,7 +78,7 @@ TEST_F(RollOutTest, SuccessEndsAnEpisode) {
 TEST_F(RollOutTest, TheHorizonEndsAnEpisode) {
   add_entries(20);
   task.horizon = 4;
-  const std::vector<Episode> episodes = run({from(-5.0), from(1.5), from(0.5)});
+  const std::vector<Episode> episodes = run({robot_at(-5.0), robot_at(1.5), robot_at(0.5)});
   EXPECT_EQ(episodes[0].steps.size(), 4U);
   EXPECT_FALSE(episodes[0].success);
   EXPECT_EQ(episodes[1].steps.size(), 2U);
@@ -95,7 +89,7 @@ TEST_F(RollOutTest, TheHorizonEndsAnEpisode) {
 TEST_F(RollOutTest, ARejectedPushEndsAnEpisodeAndIsCountedNotStored) {
   add_entries(20);
   rejected = 12;
-  const std::vector<Episode> episodes = run({from(-5.0), from(1.5)});
+  const std::vector<Episode> episodes = run({robot_at(-5.0), robot_at(1.5)});
   EXPECT_EQ(actions(episodes[0]), (std::vector{10, 11}));
   EXPECT_FALSE(episodes[0].success);
   EXPECT_TRUE(episodes[1].success);
@@ -104,8 +98,8 @@ TEST_F(RollOutTest, ARejectedPushEndsAnEpisodeAndIsCountedNotStored) {
 
 TEST_F(RollOutTest, EachStepStartsWhereTheOneBeforeEnded) {
   add_entries(20);
-  const Episode episode = run({from(0.0)}).front();
-  EXPECT_EQ(episode.steps[0].poses, from(0.0));
+  const Episode episode = run({robot_at(0.0)}).front();
+  EXPECT_EQ(episode.steps[0].poses, robot_at(0.0));
   for (std::size_t k = 0; k < episode.steps.size(); ++k) {
     const Transition& t = episode.steps[k];
     EXPECT_EQ(t.next, pushed({t.poses, t.action}).end);
@@ -119,20 +113,20 @@ TEST_F(RollOutTest, EachStepStartsWhereTheOneBeforeEnded) {
 // All entries are the nominal start, the robot at (0, -5); it strays by half a metre a push.
 TEST_F(RollOutTest, TellsHowFarEachStateIsFromTheData) {
   add_entries(20);
-  EXPECT_EQ(run({from(0.5)}).front().strayed, (std::vector{0.5, 1.0, 1.5, 2.0}));
+  EXPECT_EQ(run({robot_at(0.5)}).front().strayed, (std::vector{0.5, 1.0, 1.5, 2.0}));
 }
 
 TEST_F(RollOutTest, AnEpisodeUsesEachEntryOnce) {
   add_entries(7);
   task.horizon = 7;
-  for (const Episode& e : run({from(-5.0), from(-5.0)})) {
+  for (const Episode& e : run({robot_at(-5.0), robot_at(-5.0)})) {
     EXPECT_EQ(actions(e), (std::vector{10, 11, 12, 13, 14, 15, 16}));  // ties go to the oldest
   }
 }
 
 TEST_F(RollOutTest, WithoutAnEntryLeftActionsAreDrawnFromAll) {
   task.horizon = 5000;
-  const Episode e = run({from(-5000.0)}).front();
+  const Episode e = run({robot_at(-5000.0)}).front();
   std::vector<int> count(48);
   for (const int action : actions(e)) ++count.at(static_cast<std::size_t>(action));
   // Mean 104, standard deviation 10.
@@ -145,14 +139,14 @@ TEST_F(RollOutTest, NoiseTakesANeighbourByOneOrTwo) {
   task.horizon = 400;
   for (int k = 0; k < 400; ++k) add_entry(1);  // 2 to the right of 0: wraps
   std::set<int> taken;
-  for (const int action : actions(run({from(-500.0)}, 1.0).front())) taken.insert(action);
+  for (const int action : actions(run({robot_at(-500.0)}, 1.0).front())) taken.insert(action);
   EXPECT_EQ(taken, (std::set<int>{47, 0, 2, 3}));
 }
 
 TEST_F(RollOutTest, NoiseDisturbsItsShareOfTheActions) {
   task.horizon = 2000;
   for (int k = 0; k < 2000; ++k) add_entry(20);
-  const std::vector<int> all = actions(run({from(-5000.0)}, 0.1).front());
+  const std::vector<int> all = actions(run({robot_at(-5000.0)}, 0.1).front());
   // Mean 200, standard deviation √(2000 · 0.1 · 0.9) = 13.4.
   EXPECT_NEAR(2000 - std::ranges::count(all, 20), 200, 5 * 13.4);
 }
@@ -160,13 +154,13 @@ TEST_F(RollOutTest, NoiseDisturbsItsShareOfTheActions) {
 TEST_F(RollOutTest, NoiseIsAFunctionOfSeedAndEpisodeNumberOnly) {
   add_entries(20);
   task.horizon = 20;
-  const auto both = run({from(-50.0), from(-50.0)}, 0.5);
-  const auto first_ends = run({from(1.9), from(-50.0), from(-50.0)}, 0.5);
+  const auto both = run({robot_at(-50.0), robot_at(-50.0)}, 0.5);
+  const auto first_ends = run({robot_at(1.9), robot_at(-50.0), robot_at(-50.0)}, 0.5);
   EXPECT_EQ(actions(first_ends[1]), actions(both[1]));
   EXPECT_NE(actions(both[0]), actions(both[1]));
   EXPECT_NE(actions(first_ends[2]), actions(both[1]));
-  EXPECT_NE(actions(run({from(-50.0)}, 0.5, 4)[0]), actions(both[0]));
-  EXPECT_EQ(actions(run({from(-50.0)}, 0.5)[0]), actions(both[0]));
+  EXPECT_NE(actions(run({robot_at(-50.0)}, 0.5, 4)[0]), actions(both[0]));
+  EXPECT_EQ(actions(run({robot_at(-50.0)}, 0.5)[0]), actions(both[0]));
 }
 
 TEST_F(RollOutTest, OfNoStartsAreNoEpisodes) {
@@ -177,7 +171,8 @@ TEST_F(RollOutTest, OfNoStartsAreNoEpisodes) {
 TEST_F(RollOutTest, TheScoreCountsSuccessesAndPushesOfAllEpisodes) {
   add_entries(20);
   task.horizon = 4;
-  const std::vector<Poses> starts{from(-5.0), from(1.5), from(1.0), from(-4.0)};  // 4, 2, 3, 4
+  const std::vector<Poses> starts{robot_at(-5.0), robot_at(1.5), robot_at(1.0),
+                                  robot_at(-4.0)};  // 4, 2, 3, 4
   const PolicyScore score = evaluate_policy(task, policy, starts, replay, stats);
   EXPECT_DOUBLE_EQ(score.success, 0.5);
   EXPECT_DOUBLE_EQ(score.length_mean, 13.0 / 4.0);
@@ -194,11 +189,12 @@ double offset(const Task& task, const Poses& poses) {
 
 TEST(CoveredStarts, AreThoseWithinAMetreOfAnEntry) {
   TreePolicy policy(gathering());
-  EXPECT_TRUE(covered_starts(policy, std::vector<Poses>{from(0.0)}).empty());
-  policy.add(from(0.0), 1, 3.0);
-  policy.add(from(5.0), 1, 9.0);
-  const std::vector<Poses> starts{from(-1.1), from(-0.9), from(2.5), from(4.5), from(6.5)};
-  EXPECT_EQ(covered_starts(policy, starts), (std::vector<Poses>{from(-0.9), from(4.5)}));
+  EXPECT_TRUE(covered_starts(policy, std::vector<Poses>{robot_at(0.0)}).empty());
+  policy.add(robot_at(0.0), 1, 3.0);
+  policy.add(robot_at(5.0), 1, 9.0);
+  const std::vector<Poses> starts{robot_at(-1.1), robot_at(-0.9), robot_at(2.5), robot_at(4.5),
+                                  robot_at(6.5)};
+  EXPECT_EQ(covered_starts(policy, starts), (std::vector<Poses>{robot_at(-0.9), robot_at(4.5)}));
 }
 
 TEST(JitteredStarts, MoveObjectsByUpToAnAmplitudeOfTheirOwn) {
