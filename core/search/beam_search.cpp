@@ -107,13 +107,13 @@ std::vector<BeamSearch::Growth> BeamSearch::grow(const SolveBatch& solve, const 
   return out;
 }
 
-/// Chooses the next beam among what replays within the gap tolerance.
+/// Chooses the next beam among what replays within the tolerances.
 void BeamSearch::advance(std::span<const Growth> growths, const Score& score) {
   std::vector<BeamEntry> entries;
   std::vector<const Growth*> eligible;
   for (const Growth& g : growths) {
     const Candidate& c = g.candidate;
-    if (c.miss > config_.gap_tolerance) continue;
+    if (c.miss > config_.gap_tolerance || c.turn > config_.turn_tolerance) continue;
     eligible.push_back(&g);
     entries.push_back(
         {score(c), metric_.cell(c.start, {}), metric_.cell(c.start, kLayoutCells), c.moved > 0});

@@ -43,7 +43,9 @@ class BeamSearch {
   };
 
   /// One layer: solves for every action of every node of the beam, replays what converged, chooses
-  /// the next beam. All replayed candidates come back, misses too; empty if the tree cannot grow.
+  /// the next beam. A push that turns an object far, as a corner does, makes more of any error of
+  /// its start, so that nothing can follow a plan through it: it is no better than one that misses.
+  /// All replayed candidates come back, these too; empty if the tree cannot grow.
   std::vector<Growth> grow(const SolveBatch& solve, const ReplayBatch& replay, SearchStats& stats);
 
   /// Least start_distance() of the beam to the target, whatever the ranking; infinity without a

@@ -1,6 +1,7 @@
 #include "core/search/forward_replay.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/world/separation.hpp"
@@ -24,6 +25,13 @@ int objects_moved(const Poses& a, const Poses& b) {
   for (std::size_t k = 1; k < a.size(); ++k)
     count += (a[k].position() - b[k].position()).norm() > kMoved;
   return count;
+}
+
+double largest_turn(const Poses& a, const Poses& b) {
+  double turn = 0.0;
+  for (std::size_t k = 1; k < a.size(); ++k)
+    turn = std::max(turn, std::abs(a[k].theta - b[k].theta));
+  return turn;
 }
 
 bool legal_state(const Task& task, const Poses& poses) {
@@ -62,6 +70,7 @@ std::vector<Candidate> replay_candidates(std::vector<Candidate> candidates,
       c.miss = std::max(c.miss, (c.end[body].position() - results[k].end[body].position()).norm());
     c.end = results[k].end;
     c.moved = objects_moved(c.start, c.end);
+    c.turn = largest_turn(c.start, c.end);
     out.push_back(std::move(c));
   }
   return out;

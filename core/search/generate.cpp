@@ -171,7 +171,8 @@ class Generation {
   void learn(const BeamSearch::Growth& growth) {
     const Transition t = step_of(growth.candidate);
     if (!stored_steps_.contains(key_of_step(t))) return;
-    if (t.success || growth.candidate.miss <= config_.gap_tolerance)
+    const bool arrives = t.success || growth.candidate.miss <= config_.gap_tolerance;
+    if (arrives && growth.candidate.turn <= config_.turn_tolerance)
       learn_step(policy_, growth, t.success, search_.nodes());
   }
 

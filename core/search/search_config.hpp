@@ -23,6 +23,7 @@ struct SearchConfig {
   double contact_quota = 0.4;    // share of the beam reserved for nodes whose step moved an object
   double random_share = 0.15;    // share of the beam drawn at random among the rest
   double gap_tolerance = 0.25;   // a node that misses by more is not expanded [m]
+  double turn_tolerance = 0.3;   // nor one whose push turns an object by more [rad]
   int starts = 2;                // predecessors of one solve that are replayed, the best ones
   int free_moves = 12;           // steps that move no object replayed per node, the best ones
   int per_layout = 6;            // nodes of a beam that differ in the robot only, at most
@@ -46,6 +47,7 @@ struct SearchConfig {
     v.number("contact_quota", contact_quota, 0.0, 1.0, "share of the beam that moved an object");
     v.number("random_share", random_share, 0.0, 1.0, "share of the beam drawn at random");
     v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest miss of a body expanded [m]");
+    v.number("turn_tolerance", turn_tolerance, 0.0, 100.0, "largest turn by a push expanded [rad]");
     v.integer("starts", starts, 1, 100, "predecessors replayed per solve");
     v.integer("free_moves", free_moves, 0, 360, "steps without contact replayed per node");
     v.integer("per_layout", per_layout, 1, 100000, "nodes of a beam with objects alike");

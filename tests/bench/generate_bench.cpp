@@ -1,13 +1,15 @@
-// Generates Gathering transitions in one process and prints the report without its samples, then
-// the time.
+// Generates transitions in one process and prints the report without its samples. Exit status 2 if
+// an argument is not one of
 //
-//   generate_bench [--reverse naive] [--transitions N] [--seed S] [--threads T] [--set NAME
-//   VALUE]...
+//   generate_bench [--task gathering|gathering_hard] [--reverse rrbs|naive] [--transitions N]
+//                  [--seed S] [--threads T] [--set NAME VALUE]...
 
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include "core/search/simulators.hpp"
@@ -15,8 +17,6 @@
 
 namespace rtg {
 namespace {
-
-using testing::gathering;
 
 /// Sets the number called `name`; the config's visitor.
 struct Setter {
@@ -41,29 +41,52 @@ struct Setter {
 };
 
 struct Options {
+  Task task = testing::gathering();
   SearchConfig search;
   ReverseConfig reverse;
   std::uint64_t seed = 1;
   int threads = 2;
 };
 
-Options parsed(int argc, char** argv) {
+bool set(Options& options, const char* name, const char* value) {
+  Setter setter{name, std::atof(value)};
+  options.search.visit(setter);
+  options.reverse.visit(setter);
+  return setter.found;
+}
+
+/// Whether `flag` takes one value and this is one.
+bool apply(Options& options, std::string_view flag, std::string_view value) {
+  const int number = std::atoi(value.data());
+  if (flag == "--task" && (value == "gathering" || value == "gathering_hard"))
+    options.task = value == "gathering" ? testing::gathering() : testing::gathering_hard();
+  else if (flag == "--reverse" && (value == "rrbs" || value == "naive"))
+    options.search.reverse = value == "rrbs" ? ReverseMode::kRrbs : ReverseMode::kNaive;
+  else if (flag == "--seed" && number >= 0)
+    options.seed = static_cast<std::uint64_t>(number);
+  else if (flag == "--threads" && number > 0)
+    options.threads = number;
+  else if (flag == "--transitions" && number > 0)
+    options.search.transitions = number;
+  else
+    return false;
+  return true;
+}
+
+/// None if an argument is illegal, which it tells.
+std::optional<Options> parsed(std::span<char* const> arguments) {
   Options options;
-  options.search.reverse = ReverseMode::kNaive;
-  for (int k = 1; k + 1 < argc; k += 2) {
-    const std::string flag = argv[k];
-    if (flag == "--seed") options.seed = std::strtoull(argv[k + 1], nullptr, 10);
-    if (flag == "--reverse")
-      options.search.reverse =
-          std::strcmp(argv[k + 1], "rrbs") == 0 ? ReverseMode::kRrbs : ReverseMode::kNaive;
-    if (flag == "--threads") options.threads = std::atoi(argv[k + 1]);
-    if (flag == "--transitions") options.search.transitions = std::atoi(argv[k + 1]);
-    if (flag != "--set" || k + 2 >= argc) continue;
-    Setter setter{argv[k + 1], std::atof(argv[k + 2])};
-    options.search.visit(setter);
-    options.reverse.visit(setter);
-    if (!setter.found) std::fprintf(stderr, "--set %s: no such key\n", argv[k + 1]);
-    ++k;
+  for (std::size_t k = 0; k < arguments.size();) {
+    const std::string_view flag = arguments[k];
+    const std::size_t values = flag == "--set" ? 2 : 1;
+    if (k + values >= arguments.size() ||
+        !(values == 2 ? set(options, arguments[k + 1], arguments[k + 2])
+                      : apply(options, flag, arguments[k + 1]))) {
+      std::fprintf(stderr, "generate_bench: %s is no argument, or its value is missing or wrong\n",
+                   arguments[k]);
+      return std::nullopt;
+    }
+    k += values + 1;
   }
   return options;
 }
@@ -74,7 +97,7 @@ void print_progress(const Progress& p) {
 }
 
 int run(const Options& options) {
-  const Task task = gathering();
+  const Task& task = options.task;
   GenerationSeams seams =
       in_process_seams(reverse_solver(task, {}, options.reverse, options.search.reverse),
                        forward_replay(task, {}), options.threads);
@@ -90,4 +113,7 @@ int run(const Options& options) {
 }  // namespace
 }  // namespace rtg
 
-int main(int argc, char** argv) { return rtg::run(rtg::parsed(argc, argv)); }
+int main(int argc, char** argv) {
+  const auto options = rtg::parsed({argv + 1, argv + argc});
+  return options ? rtg::run(*options) : 2;
+}

@@ -16,12 +16,19 @@ inline Poses moved(Poses poses, std::size_t body, const Vector2d& by) {
   return poses;
 }
 
+inline Poses turned(Poses poses, std::size_t body, double by) {
+  poses[body].theta += by;
+  return poses;
+}
+
 /// Gathering in a world without contact: a push takes the robot one stride along and drags an
-/// object of its own, which can be reckoned backwards but for the rounding to float, 1e-7 of 8 m.
+/// object of its own and turns it, which can be reckoned backwards but for the rounding to float,
+/// 1e-7 of 8 m.
 struct DraggingWorld {
   Task task = gathering();
   std::vector<double> drags{kDrag};  // one predecessor each per solve of a push that drags
   double aside = 0.0;                // how far off every third push sets the robot down [m]
+  double turn = 0.0;                 // of the object that a push drags [rad]
   std::vector<ReverseJob> asked;     // last
   std::vector<ReverseResult> answered;
 
@@ -55,7 +62,8 @@ struct DraggingWorld {
     const std::size_t object = dragged(job.action);
     if (object == 0) return {SolveStatus::kConverged, 1, {back}};
     ReverseResult out{SolveStatus::kConverged, 1};
-    for (const double drag : drags) out.starts.push_back(moved(back, object, -drag * d));
+    for (const double drag : drags)
+      out.starts.push_back(turned(moved(back, object, -drag * d), object, -turn));
     return out;
   }
 
@@ -64,7 +72,7 @@ struct DraggingWorld {
     const Vector2d d = direction(job.action, task.push);
     Poses end = moved(job.start, 0, task.push.stride * d);
     if (const std::size_t object = dragged(job.action); object != 0)
-      end = moved(end, object, kDrag * d);
+      end = turned(moved(end, object, kDrag * d), object, turn);
     return float_rounded(misses(job.action) ? moved(end, 0, {0.0, aside}) : end);
   }
 };

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
@@ -139,6 +140,24 @@ TEST_F(BeamSearchTest, WhatMissesByMoreThanTheToleranceIsReturnedButNotExpanded)
     for (const Node& n : search.nodes()) expanded += n.parent >= 0 && misses(n.action);
     EXPECT_GT(returned, 20);
     EXPECT_EQ(expanded > 0, off < config.gap_tolerance);
+  }
+}
+
+TEST_F(BeamSearchTest, WhatTurnsAnObjectByMoreThanTheToleranceIsReturnedButNotExpanded) {
+  config.turn_tolerance = 0.25;
+  for (const double by : {-0.2, 0.2, 0.3, -0.3}) {
+    turn = by;
+    BeamSearch search = aimed();
+    int returned = 0, expanded = 0;
+    for (int layer = 0; layer < 3; ++layer)
+      for (const BeamSearch::Growth& g : search.grow(solve, replay, stats)) {
+        const bool turns = dragged(g.candidate.action) != 0;
+        EXPECT_NEAR(g.candidate.turn, turns ? std::abs(by) : 0.0, 1e-6);  // rounded to float
+        returned += turns;
+      }
+    for (const Node& n : search.nodes()) expanded += n.parent >= 0 && dragged(n.action) != 0;
+    EXPECT_GT(returned, 20);
+    EXPECT_EQ(expanded > 0, std::abs(by) < config.turn_tolerance);
   }
 }
 

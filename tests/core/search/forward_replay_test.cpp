@@ -39,6 +39,15 @@ TEST(ObjectsMoved, CountsObjectsBeyondTheThresholdWithoutTheRobot) {
   EXPECT_EQ(objects_moved(all_zero(), next), 2);
 }
 
+TEST(LargestTurn, IsThatOfAnObjectInEitherDirection) {
+  Poses next = all_zero();
+  next[0].theta = 3.0;  // the robot does not count
+  next[1].theta = 0.2;
+  next[3].theta = -0.7;
+  EXPECT_EQ(largest_turn(all_zero(), next), 0.7);
+  EXPECT_EQ(largest_turn(next, next), 0.0);
+}
+
 TEST(LegalState, IsFiniteInTheArenaAndWithoutOverlap) {
   const Task task = gathering();
   EXPECT_TRUE(legal_state(task, task.start));

@@ -156,6 +156,7 @@ struct LuckyWorld {
   static constexpr int kSure = 0, kLucky = 5;
   Task task = gathering();
   int rounds = 0;
+  double turn = 0.0;  // of the objects, by a push that solves the task [rad]
 
   LuckyWorld() { task.horizon = 1; }
 
@@ -169,7 +170,7 @@ struct LuckyWorld {
   Poses pushed(const ReplayJob& job) const {
     Poses end = job.start;
     if (job.action == kSure || (job.action == kLucky && job.start == lucky()))
-      for (std::size_t k = 1; k < end.size(); ++k) end[k] = {0.0, 0.0, 0.0};
+      for (std::size_t k = 1; k < end.size(); ++k) end[k] = {0.0, 0.0, end[k].theta + turn};
     return end;
   }
 
@@ -194,12 +195,35 @@ struct LuckyWorld {
   }
 };
 
-TEST(Generate, ThePolicyPricesWhatWouldMakeItWorse) {
-  LuckyWorld world;
+/// Two rounds of one transition each.
+SearchConfig two_steps() {
   SearchConfig config = small();
   config.transitions = 2;
   config.depth = 1;
   config.rollout_share = 0.0;
+  return config;
+}
+
+TEST(Generate, ThePolicyLeavesOutPushesThatTurnAnObjectFar) {
+  for (const double turn : {0.2, 0.4}) {
+    LuckyWorld world;
+    world.turn = turn;
+    SearchConfig config = two_steps();
+    config.turn_tolerance = 0.3;
+    config.evaluation_starts = 100;
+    const GenerationReport report = generate(world.task, config, 1, world.seams());
+    EXPECT_EQ(report.transitions, 2);
+    if (turn < config.turn_tolerance) {
+      EXPECT_EQ(report.tree_policy_success, 1.0);
+    } else {
+      EXPECT_LT(report.tree_policy_success, 0.2);  // random actions, of which one in 48 succeeds
+    }
+  }
+}
+
+TEST(Generate, ThePolicyPricesWhatWouldMakeItWorse) {
+  LuckyWorld world;
+  const SearchConfig config = two_steps();
   const GenerationReport report = generate(world.task, config, 1, world.seams());
   EXPECT_EQ(world.rounds, 2);
   EXPECT_EQ(report.transitions, 2);
