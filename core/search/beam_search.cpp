@@ -99,9 +99,10 @@ std::vector<BeamSearch::Growth> BeamSearch::grow(const SolveBatch& solve, const 
   std::vector<Growth> out;
   for (Candidate& c : replayed) {
     stats.gaps.push_back(static_cast<float>(c.gap));
-    const int depth = nodes_[static_cast<std::size_t>(c.parent)].depth + 1;
+    int depth = nodes_[static_cast<std::size_t>(c.parent)].depth + 1;
+    if (succeeded(task_, c.end)) depth = 1;  // by a miss, perhaps
+    if (succeeded(task_, c.start)) depth = 0;
     out.push_back({std::move(c), depth});
-    if (succeeded(task_, out.back().candidate.start)) out.back().depth = 0;
   }
   advance(out, score);
   return out;
@@ -139,7 +140,7 @@ void BeamSearch::note_best() {
 
 Chain BeamSearch::chain(int node) const {
   Chain out{nodes_[static_cast<std::size_t>(node)].poses, {}};
-  for (int k = node; k >= 0 && nodes_[static_cast<std::size_t>(k)].depth > 0;) {
+  for (int k = node, left = nodes_[static_cast<std::size_t>(node)].depth; left > 0; --left) {
     out.actions.push_back(nodes_[static_cast<std::size_t>(k)].action);
     k = nodes_[static_cast<std::size_t>(k)].parent;
   }

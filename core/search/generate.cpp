@@ -32,11 +32,9 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// Share of the probe starts that were covered and from which success was reached.
-double rating(std::span<const Episode> episodes) {
-  const auto solved = std::ranges::count_if(
-      episodes, [](const Episode& e) { return e.success && e.strayed.front() <= kLost; });
-  return static_cast<double>(solved) / kProbes;
+/// Share of the probe starts from which success was reached.
+double rating(std::span<const Episode> probes) {
+  return static_cast<double>(std::ranges::count_if(probes, &Episode::success)) / kProbes;
 }
 
 /// Names a step: what it leads to follows from its start and action.
@@ -88,21 +86,19 @@ class Generation {
     const long before = stored();
     const std::size_t known = search_.nodes().size();
     const std::vector<Poses> starts = probe_starts();
-    const std::vector<Episode> probes = follow_policy(starts);
+    const std::vector<Episode> probes = follow(policy_, starts);
     const TreePolicy proven = policy_;
     grow_towards(lost_state(probes).value_or(starts[0]), limit);
     replay_chains_from(known, before, limit);
-    const auto rate = [&](const TreePolicy& policy) {
-      const std::vector<Poses> covered = covered_starts(policy, starts);
-      return rating(run_episodes(task_, policy, {covered}, seams_.replay, stats_));
-    };
+    const auto rate = [&](const TreePolicy& policy) { return rating(follow(policy, starts)); };
     policy_ = climbed(proven, rating(probes), std::move(policy_), rate);
     note_nodes(known);
     ++rounds_;
     return stored() > before;
   }
 
-  /// Layers until the trees have reached the target or come no nearer; leaves room for chains.
+  /// Layers until the trees have reached the target or, after the first, come no nearer; leaves
+  /// room for chains.
   void grow_towards(const Poses& target, long limit) {
     const long layers =
         limit - static_cast<long>(config_.chain_share * static_cast<double>(limit - stored()));
@@ -127,9 +123,9 @@ class Generation {
   }
 
   /// None of the episodes while there is no policy.
-  std::vector<Episode> follow_policy(std::span<const Poses> starts) {
-    if (policy_.size() == 0) return {};
-    return run_episodes(task_, policy_, {starts}, seams_.replay, stats_);
+  std::vector<Episode> follow(const TreePolicy& policy, std::span<const Poses> starts) {
+    if (policy.size() == 0) return {};
+    return run_episodes(task_, policy, {starts}, seams_.replay, stats_);
   }
 
   /// How many nodes from index `first` on are at the target.
@@ -169,11 +165,13 @@ class Generation {
 
   /// A step that found no room any more is not part of the data that the policy judges.
   void learn(const BeamSearch::Growth& growth) {
-    const Transition t = step_of(growth.candidate);
-    if (!stored_steps_.contains(key_of_step(t))) return;
-    const bool arrives = t.success || growth.candidate.miss <= config_.gap_tolerance;
-    if (arrives && growth.candidate.turn <= config_.turn_tolerance)
-      learn_step(policy_, growth, t.success, search_.nodes());
+    const Candidate& c = growth.candidate;
+    const auto stored = [&](const Poses& start, int action) {
+      return stored_steps_.contains(key_of(start, action));
+    };
+    if (!stored(c.start, c.action) || c.turn > config_.turn_tolerance) return;
+    if (growth.depth == 1 || c.miss <= config_.gap_tolerance)
+      learn_step(policy_, growth, search_.nodes(), stored);
   }
 
   /// The chains that begin nearest to the start, of nodes from index `first` on, for chain_share of

@@ -1,6 +1,7 @@
 #include "core/search/policy_learning.hpp"
 
 #include <array>
+#include <ranges>
 
 namespace rtg {
 namespace {
@@ -9,15 +10,24 @@ constexpr std::array kPrices{0.0, 8.0, 32.0};  // actions
 
 }  // namespace
 
-void learn_step(TreePolicy& policy, const BeamSearch::Growth& step, bool success,
-                std::span<const Node> nodes) {
+void learn_step(TreePolicy& policy, const BeamSearch::Growth& step, std::span<const Node> nodes,
+                const IsStored& stored) {
   const Candidate& c = step.candidate;
-  if (!policy.add(c.start, c.action, success ? 1.0 : step.depth) || success) return;
-  for (int k = c.parent; k >= 0;) {
+  if (policy.depth(c.start, c.action)) return;
+  std::vector<const Node*> plan;
+  double depth = 0.0;  // of what the plan leads to
+  for (int k = c.parent, left = step.depth - 1; left > 0; --left) {
     const Node& n = nodes[static_cast<std::size_t>(k)];
-    if (n.depth == 0 || !policy.add(n.poses, n.action, n.depth)) return;
+    if (const auto known = policy.depth(n.poses, n.action)) {
+      depth = *known;
+      break;
+    }
+    if (!stored(n.poses, n.action)) return;
+    plan.push_back(&n);
     k = n.parent;
   }
+  for (const Node* n : std::views::reverse(plan)) policy.add(n->poses, n->action, depth += 1.0);
+  policy.add(c.start, c.action, depth + 1.0);
 }
 
 void learn_episode(TreePolicy& policy, std::span<const Transition> steps) {

@@ -9,11 +9,15 @@
 
 namespace rtg {
 
+/// Whether the data set has a step.
+using IsStored = std::function<bool(const Poses& start, int action)>;
+
 /// Adds a step that was found behind one of `nodes`; with it the steps from there to success, as
 /// far as the policy lacks them (it may not have taken up the round that found them): a step is of
-/// use with the whole plan behind it only.
-void learn_step(TreePolicy& policy, const BeamSearch::Growth& step, bool success,
-                std::span<const Node> nodes);
+/// use with the whole plan behind it only. So it adds none of them if one is not stored, and what
+/// is new is one action deeper than what it leads to, prices included.
+void learn_step(TreePolicy& policy, const BeamSearch::Growth& step, std::span<const Node> nodes,
+                const IsStored& stored);
 
 /// Adds the steps of an episode that ended in success, none of any other.
 void learn_episode(TreePolicy& policy, std::span<const Transition> steps);

@@ -2,15 +2,18 @@
 // an argument is not one of
 //
 //   generate_bench [--task gathering|gathering_hard] [--reverse rrbs|naive] [--transitions N]
-//                  [--seed S] [--threads T] [--set NAME VALUE]...
+//                  [--seed S] [--threads T] [--set NAME NUMBER]...
+//
+// Without them it does what ./run.sh does, with two threads; --set takes numbers of the sections
+// search and reverse.
 
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
-#include <type_traits>
+#include <system_error>
 
 #include "core/search/simulators.hpp"
 #include "tests/support/gathering.hpp"
@@ -18,26 +21,31 @@
 namespace rtg {
 namespace {
 
+/// Whether the whole text is a number in [least, most]; if so, it is written to `out`.
+template <class Number>
+bool read_number(std::string_view text, Number least, Number most, Number& out) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size()) return false;
+  if (!(number >= least && number <= most)) return false;
+  out = number;
+  return true;
+}
+
 /// Sets the number called `name`; the config's visitor.
 struct Setter {
-  std::string name;
-  double value = 0.0;
-  bool found = false;
+  std::string_view name, value;
+  bool done = false;
 
-  void number(const char* key, double& field, double, double, const char*) { set(key, field); }
-  void integer(const char* key, int& field, int, int, const char*) { set(key, field); }
-  void flag(const char* key, bool& field, const char*) { set(key, field); }
+  void number(std::string_view key, double& field, double least, double most, const char*) {
+    if (key == name) done = read_number(value, least, most, field);
+  }
+  void integer(std::string_view key, int& field, int least, int most, const char*) {
+    if (key == name) done = read_number(value, least, most, field);
+  }
+  void flag(std::string_view, bool&, const char*) {}
   template <class Enum, class Names>
-  void choice(const char* key, Enum& field, const Names&, const char*) {
-    set(key, field);
-  }
-
-  template <class Field>
-  void set(const char* key, Field& field) {
-    if (name != key) return;
-    field = static_cast<Field>(value);
-    found = true;
-  }
+  void choice(std::string_view, Enum&, const Names&, const char*) {}
 };
 
 struct Options {
@@ -48,28 +56,26 @@ struct Options {
   int threads = 2;
 };
 
-bool set(Options& options, const char* name, const char* value) {
-  Setter setter{name, std::atof(value)};
+bool set(Options& options, std::string_view name, std::string_view value) {
+  Setter setter{name, value};
   options.search.visit(setter);
   options.reverse.visit(setter);
-  return setter.found;
+  return setter.done;
 }
 
 /// Whether `flag` takes one value and this is one.
 bool apply(Options& options, std::string_view flag, std::string_view value) {
-  const int number = std::atoi(value.data());
-  if (flag == "--task" && (value == "gathering" || value == "gathering_hard"))
+  if (flag == "--seed")
+    return read_number(value, std::uint64_t{0}, ~std::uint64_t{0}, options.seed);
+  if (flag == "--threads") return read_number(value, 1, 1024, options.threads);
+  if (flag == "--transitions") return set(options, "transitions", value);
+  if (flag == "--task" && (value == "gathering" || value == "gathering_hard")) {
     options.task = value == "gathering" ? testing::gathering() : testing::gathering_hard();
-  else if (flag == "--reverse" && (value == "rrbs" || value == "naive"))
-    options.search.reverse = value == "rrbs" ? ReverseMode::kRrbs : ReverseMode::kNaive;
-  else if (flag == "--seed" && number >= 0)
-    options.seed = static_cast<std::uint64_t>(number);
-  else if (flag == "--threads" && number > 0)
-    options.threads = number;
-  else if (flag == "--transitions" && number > 0)
-    options.search.transitions = number;
-  else
-    return false;
+    return true;
+  }
+  const auto mode = std::ranges::find(kReverseModes, value);
+  if (flag != "--reverse" || mode == kReverseModes.end()) return false;
+  options.search.reverse = static_cast<ReverseMode>(mode - kReverseModes.begin());
   return true;
 }
 

@@ -28,6 +28,7 @@ struct DraggingWorld {
   Task task = gathering();
   std::vector<double> drags{kDrag};  // one predecessor each per solve of a push that drags
   double aside = 0.0;                // how far off every third push sets the robot down [m]
+  double over = 0.0;                 // how much farther than reckoned a push drags [m]
   double turn = 0.0;                 // of the object that a push drags [rad]
   std::vector<ReverseJob> asked;     // last
   std::vector<ReverseResult> answered;
@@ -72,7 +73,7 @@ struct DraggingWorld {
     const Vector2d d = direction(job.action, task.push);
     Poses end = moved(job.start, 0, task.push.stride * d);
     if (const std::size_t object = dragged(job.action); object != 0)
-      end = turned(moved(end, object, kDrag * d), object, turn);
+      end = turned(moved(end, object, (kDrag + over) * d), object, turn);
     return float_rounded(misses(job.action) ? moved(end, 0, {0.0, aside}) : end);
   }
 };

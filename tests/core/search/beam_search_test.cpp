@@ -88,22 +88,38 @@ TEST_F(BeamSearchTest, SolvesForEveryActionOfEveryNodeOfTheBeam) {
   EXPECT_EQ(stats.candidates, 2 * 6 * 48);
 }
 
-TEST_F(BeamSearchTest, DepthIsOneMoreThanTheParentsOrZeroWhereTheGoalHolds) {
+TEST_F(BeamSearchTest, DepthIsOneMoreThanTheParentsUnlessTheGoalHoldsBeforeOrAfterTheStep) {
   BeamSearch search = aimed();
-  const auto expected = [&](int parent, const Poses& poses) {
-    return succeeded(task, poses) ? 0 : search.nodes()[parent].depth + 1;
+  const auto expected = [&](int parent, const Poses& start, const Poses& end) {
+    const int after = succeeded(task, end) ? 0 : search.nodes()[parent].depth;
+    return succeeded(task, start) ? 0 : after + 1;
   };
   int deepest = 0;
   for (int layer = 0; layer < 5; ++layer)
     for (const BeamSearch::Growth& g : search.grow(solve, replay, stats))
-      EXPECT_EQ(g.depth, expected(g.candidate.parent, g.candidate.start));
+      EXPECT_EQ(g.depth, expected(g.candidate.parent, g.candidate.start, g.candidate.end));
   for (const Node& n : search.nodes()) {
     if (n.parent >= 0) {
-      EXPECT_EQ(n.depth, expected(n.parent, n.poses));
+      EXPECT_EQ(n.depth, expected(n.parent, n.poses, pushed({n.poses, n.action})));
     }
     deepest = std::max(deepest, n.depth);
   }
   EXPECT_GE(deepest, 3);
+}
+
+TEST_F(BeamSearchTest, AMissThatReachesTheGoalIsOneActionFromSuccess) {
+  over = 0.24;  // within the tolerance; goal states lie 0.05 m within the goal, and more
+  config.breadth = 60;
+  BeamSearch search = aimed();
+  for (int layer = 0; layer < 5; ++layer) search.grow(solve, replay, stats);
+  int hits = 0;
+  for (const int k : everything(search)) {
+    const Node& n = search.nodes()[k];
+    if (n.depth != 1 || search.nodes()[n.parent].depth == 0) continue;
+    EXPECT_EQ(search.chain(k).actions, std::vector{n.action});
+    hits += succeeded(task, pushed({n.poses, n.action}));
+  }
+  EXPECT_GT(hits, 0);
 }
 
 TEST_F(BeamSearchTest, ChainsReplayToSuccessInAsManyActionsAsTheNodeIsDeep) {
@@ -146,14 +162,13 @@ TEST_F(BeamSearchTest, WhatMissesByMoreThanTheToleranceIsReturnedButNotExpanded)
 TEST_F(BeamSearchTest, WhatTurnsAnObjectByMoreThanTheToleranceIsReturnedButNotExpanded) {
   config.turn_tolerance = 0.25;
   for (const double by : {-0.2, 0.2, 0.3, -0.3}) {
-    turn = by;
     BeamSearch search = aimed();
+    turn = by;
     int returned = 0, expanded = 0;
     for (int layer = 0; layer < 3; ++layer)
       for (const BeamSearch::Growth& g : search.grow(solve, replay, stats)) {
-        const bool turns = dragged(g.candidate.action) != 0;
-        EXPECT_NEAR(g.candidate.turn, turns ? std::abs(by) : 0.0, 1e-6);  // rounded to float
-        returned += turns;
+        EXPECT_NEAR(g.candidate.turn, dragged(g.candidate.action) ? std::abs(by) : 0.0, 1e-6);
+        returned += dragged(g.candidate.action) != 0;
       }
     for (const Node& n : search.nodes()) expanded += n.parent >= 0 && dragged(n.action) != 0;
     EXPECT_GT(returned, 20);

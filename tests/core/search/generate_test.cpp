@@ -221,7 +221,7 @@ TEST(Generate, ThePolicyLeavesOutPushesThatTurnAnObjectFar) {
   }
 }
 
-TEST(Generate, ThePolicyPricesWhatWouldMakeItWorse) {
+TEST(Generate, ARoundThatMakesThePolicyWorseDoesNotDecide) {
   LuckyWorld world;
   const SearchConfig config = two_steps();
   const GenerationReport report = generate(world.task, config, 1, world.seams());

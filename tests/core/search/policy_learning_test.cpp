@@ -35,9 +35,11 @@ const std::vector<Node> kPlan{{robot_at(0.0), -1, -1, 0},
                               {robot_at(2.0), 1, 12, 2},
                               {robot_at(3.0), 2, 13, 3}};
 
+bool everything(const Poses&, int) { return true; }
+
 TEST(LearnStep, TakesUpThePlanBehindIt) {
   TreePolicy policy(gathering());
-  learn_step(policy, step(4.0, 14, 3, 4), false, kPlan);
+  learn_step(policy, step(4.0, 14, 3, 4), kPlan, everything);
   EXPECT_EQ(policy.size(), 4);
   for (int k = 1; k <= 4; ++k) {
     EXPECT_EQ(action_at(policy, k), 10 + k);
@@ -45,21 +47,38 @@ TEST(LearnStep, TakesUpThePlanBehindIt) {
   }
 }
 
-TEST(LearnStep, KeepsWhatIsKnownOfThePlan) {
+TEST(LearnStep, IsOneActionDeeperThanWhatIsKnownOfThePlan) {
   TreePolicy policy(gathering());
-  learn_step(policy, step(3.0, 13, 2, 3), false, kPlan);
+  learn_step(policy, step(2.0, 12, 1, 2), kPlan, everything);
   policy.raise(0, 5.0);
-  learn_step(policy, step(4.0, 14, 3, 4), false, kPlan);
-  learn_step(policy, step(4.0, 14, 3, 4), false, kPlan);
+  learn_step(policy, step(4.0, 14, 3, 4), kPlan, everything);
+  learn_step(policy, step(4.0, 14, 3, 4), kPlan, everything);
   EXPECT_EQ(policy.size(), 4);
-  EXPECT_EQ(depth_at(policy, 2.0), 7.0);
+  for (int k = 1; k <= 4; ++k) EXPECT_EQ(depth_at(policy, k), k + 5.0);
 }
 
 TEST(LearnStep, NeedsNothingBehindAStepIntoTheGoal) {
   TreePolicy policy(gathering());
-  learn_step(policy, step(4.0, 14, 3, 4), true, kPlan);
+  learn_step(policy, step(4.0, 14, 3, 1), kPlan, everything);
   EXPECT_EQ(policy.size(), 1);
   EXPECT_EQ(depth_at(policy, 4.0), 1.0);
+}
+
+TEST(LearnStep, ThePlanEndsWithANodeThatReachesTheGoalOnItsOwn) {
+  std::vector<Node> nodes = kPlan;
+  nodes[2].depth = 1;
+  nodes[3].depth = 2;
+  TreePolicy policy(gathering());
+  learn_step(policy, step(4.0, 14, 3, 3), nodes, everything);
+  EXPECT_EQ(policy.size(), 3);
+  for (int k = 2; k <= 4; ++k) EXPECT_EQ(depth_at(policy, k), k - 1.0);
+}
+
+TEST(LearnStep, LearnsNothingOfAPlanThatIsNotStoredAsAWhole) {
+  TreePolicy policy(gathering());
+  learn_step(policy, step(4.0, 14, 3, 4), kPlan,
+             [](const Poses&, int action) { return action != 12; });
+  EXPECT_EQ(policy.size(), 0);
 }
 
 TEST(LearnEpisode, CountsTheActionsToItsEnd) {
