@@ -78,7 +78,7 @@ struct TrainConfig {
              "share of exploration near the greedy heading");
     v.integer("nearby_headings", nearby_headings, 1, 180, "how many headings away, at most");
     v.number("start_jitter", start_jitter, 0.0, 10.0,
-             "training starts: object positions +- this [m]");
+             "training starts: object positions +- this, or task.randomisation if larger [m]");
     v.integer("eval_every", eval_every, 1, kMany, "interactions between evaluations");
     v.integer("eval_episodes", eval_episodes, 1, 100000, "held-out starts of an evaluation");
     v.integer("checkpoint_every", checkpoint_every, 1, kMany, "interactions between checkpoints");

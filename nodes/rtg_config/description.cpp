@@ -69,7 +69,8 @@ std::string term_in_words(const GoalTerm& term) {
   return "  the centre of every " + who + " lies " + where + '\n';
 }
 
-std::string task_in_words(const Task& task) {
+/// `training`: amplitude of the training starts [m].
+std::string task_in_words(const Task& task, double training) {
   std::string out = "task " + task.name + "\n" + bodies_in_words(task) + "goal, all of\n";
   for (const GoalTerm& term : task.goal) out += term_in_words(term);
   const PushConfig& push = task.push;
@@ -80,7 +81,7 @@ std::string task_in_words(const Task& task) {
   out += print("episodes\n  at most %d pushes, discount %.4g, observation of %d numbers\n",
                task.horizon, task.discount, observation_size(task));
   out += print("  objects start within %.4g m of the layout above (training: %.4g m)\n",
-               task.start_jitter, task.randomisation);
+               task.start_jitter, training);
   return out;
 }
 
@@ -105,7 +106,8 @@ std::string work_in_words(const RtgConfig& config) {
 }  // namespace
 
 std::string description(const RtgConfig& config) {
-  return task_in_words(config.task) + work_in_words(config);
+  const double training = std::max(config.train.start_jitter, config.task.randomisation);
+  return task_in_words(config.task, training) + work_in_words(config);
 }
 
 }  // namespace rtg

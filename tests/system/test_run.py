@@ -148,6 +148,9 @@ def test_the_written_configuration_makes_the_same_run(in_process, tmp_path):
     done = run(folder / "config.yaml", "--no-train", "--out", again)
     assert done.returncode == 0, done.stderr
     assert (again / "config.yaml").read_text() == (folder / "config.yaml").read_text()
+    with np.load(again / "best_episode.npz") as best:  # of the data
+        assert len(best["poses"]) > 1
+        assert best["success"]
     assert (again / "transitions.npz").read_bytes() == (folder / "transitions.npz").read_bytes()
     assert {path.name for path in again.iterdir()} >= COMMON_FILES
 
@@ -179,7 +182,9 @@ def wait_for_line(process, words):
     pytest.fail(f"the run ended without saying '{words}': {process.stderr.read()}")
 
 
-@pytest.mark.parametrize("mode", [(), ("--in-process",)], ids=["over_lcm", "in_process"])
+@pytest.mark.parametrize(
+    "mode", [(), ("--in-process", "--no-train")], ids=["over_lcm", "in_process"]
+)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_a_run_and_all_of_its_processes(tmp_path, mode, number):
     folder = tmp_path / "run"
@@ -188,7 +193,8 @@ def test_a_signal_ends_a_run_and_all_of_its_processes(tmp_path, mode, number):
     process.send_signal(number)
     _, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 1
-    assert err == f"rtg: stopped; to go on: ./run.sh --resume --out {folder}\n"
+    flags = "--resume --no-train" if mode else "--resume"
+    assert err == f"rtg: stopped; to go on: ./run.sh {flags} --out {folder}\n"
     assert processes_of(folder) == {}
 
 

@@ -38,12 +38,17 @@ def _draw_generation(plan: RunPlan, task: _core.Task) -> None:
 
 
 def _episode(plan: RunPlan, task: _core.Task) -> Floats | None:
-    """States of the learner's best evaluation episode; without a learner, of the data's best."""
+    """States of the learner's best evaluation episode; without a learner, of the data's best, which
+    it writes to the same file."""
+    path = plan.folder / "best_episode.npz"
     if plan.train:
-        with np.load(plan.folder / "best_episode.npz") as file:
+        with np.load(path) as file:
             poses: Floats = file["poses"]
             return poses
-    return best_episode(dataset.read(plan.transitions_file, task.bodies, task.headings))
+    best = best_episode(dataset.read(plan.transitions_file, task.bodies, task.headings))
+    if best is not None:
+        np.savez(path, poses=best, success=task.succeeded(best[-1:])[0])
+    return best
 
 
 def episode_title(task: str, actions: int, success: bool, trained: bool) -> str:
@@ -85,8 +90,8 @@ def words(plan: RunPlan, summary: dict[str, Any]) -> str:
     ]
     if s["tree_policy_success"] < _POOR:
         lines.append(
-            "the data seldom leads from the start to the goal; more transitions may help "
-            "(--transitions)"
+            "plans of the data seldom lead from the start to the goal: training may take long or "
+            "fail, more transitions may help (--transitions)"
         )
     if plan.train:
         lines.append(

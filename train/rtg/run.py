@@ -27,7 +27,8 @@ def run(args: RunArgs) -> int:
         try:
             measured = _generate_and_train(plan, shown)
         except StoppedError:
-            command = f"./run.sh --resume --out {shlex.quote(str(plan.folder))}"
+            flags = "--resume" if plan.train else "--resume --no-train"
+            command = f"./run.sh {flags} --out {shlex.quote(str(plan.folder))}"
             raise RunError(f"stopped; to go on: {command}") from None
         summary = results.finish(plan, measured)
     print(results.words(plan, summary))
