@@ -32,9 +32,11 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// Share of the probe starts from which success was reached.
-double rating(std::span<const Episode> probes) {
-  return static_cast<double>(std::ranges::count_if(probes, &Episode::success)) / kProbes;
+/// Share of the probe starts that were covered and from which success was reached.
+double rating(std::span<const Episode> episodes) {
+  const auto solved = std::ranges::count_if(
+      episodes, [](const Episode& e) { return e.success && e.strayed.front() <= kLost; });
+  return static_cast<double>(solved) / kProbes;
 }
 
 /// Names a step: what it leads to follows from its start and action.
@@ -90,7 +92,9 @@ class Generation {
     const TreePolicy proven = policy_;
     grow_towards(lost_state(probes).value_or(starts[0]), limit);
     replay_chains_from(known, before, limit);
-    const auto rate = [&](const TreePolicy& policy) { return rating(follow(policy, starts)); };
+    const auto rate = [&](const TreePolicy& policy) {
+      return rating(follow(policy, covered_starts(policy, starts)));
+    };
     policy_ = climbed(proven, rating(probes), std::move(policy_), rate);
     note_nodes(known);
     ++rounds_;

@@ -3,11 +3,6 @@
 #include <algorithm>
 
 namespace rtg {
-namespace {
-
-constexpr double kLost = 1.0;  // from the entry that it follows [m], in the policy's metric
-
-}  // namespace
 
 std::optional<Poses> lost_state(std::span<const Episode> episodes) {
   for (const Episode& e : episodes) {

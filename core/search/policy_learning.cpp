@@ -1,7 +1,6 @@
 #include "core/search/policy_learning.hpp"
 
 #include <array>
-#include <ranges>
 
 namespace rtg {
 namespace {
@@ -13,21 +12,12 @@ constexpr std::array kPrices{0.0, 8.0, 32.0};  // actions
 void learn_step(TreePolicy& policy, const BeamSearch::Growth& step, std::span<const Node> nodes,
                 const IsStored& stored) {
   const Candidate& c = step.candidate;
-  if (policy.depth(c.start, c.action)) return;
-  std::vector<const Node*> plan;
-  double depth = 0.0;  // of what the plan leads to
+  if (!policy.add(c.start, c.action, step.depth)) return;
   for (int k = c.parent, left = step.depth - 1; left > 0; --left) {
     const Node& n = nodes[static_cast<std::size_t>(k)];
-    if (const auto known = policy.depth(n.poses, n.action)) {
-      depth = *known;
-      break;
-    }
-    if (!stored(n.poses, n.action)) return;
-    plan.push_back(&n);
+    if (!stored(n.poses, n.action) || !policy.add(n.poses, n.action, n.depth)) return;
     k = n.parent;
   }
-  for (const Node* n : std::views::reverse(plan)) policy.add(n->poses, n->action, depth += 1.0);
-  policy.add(c.start, c.action, depth + 1.0);
 }
 
 void learn_episode(TreePolicy& policy, std::span<const Transition> steps) {

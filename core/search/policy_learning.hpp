@@ -14,8 +14,8 @@ using IsStored = std::function<bool(const Poses& start, int action)>;
 
 /// Adds a step that was found behind one of `nodes`; with it the steps from there to success, as
 /// far as the policy lacks them (it may not have taken up the round that found them): a step is of
-/// use with the whole plan behind it only. So it adds none of them if one is not stored, and what
-/// is new is one action deeper than what it leads to, prices included.
+/// use with the whole plan behind it only. The plan ends before a step that is not stored.
+/// Depths are those of the tree, also behind an entry that bears a price.
 void learn_step(TreePolicy& policy, const BeamSearch::Growth& step, std::span<const Node> nodes,
                 const IsStored& stored);
 

@@ -20,19 +20,13 @@ TreePolicy::TreePolicy(const Task& task)
     : metric_(task.scene), coordinate_(static_cast<std::size_t>(metric_.size())) {}
 
 bool TreePolicy::add(const Poses& state, int action, double depth) {
-  if (!entries_.emplace(key_of(state, action), size()).second) return false;
+  if (!known_.insert(key_of(state, action)).second) return false;
   std::vector<float> point(coordinate_.size());
   metric_.embed(state, point);
   for (std::size_t k = 0; k < point.size(); ++k) coordinate_[k].push_back(point[k]);
   depth_.push_back(static_cast<float>(depth));
   action_.push_back(action);
   return true;
-}
-
-std::optional<double> TreePolicy::depth(const Poses& state, int action) const {
-  const auto found = entries_.find(key_of(state, action));
-  if (found == entries_.end()) return std::nullopt;
-  return depth_[static_cast<std::size_t>(found->second)];
 }
 
 void TreePolicy::raise(int first, double price) {

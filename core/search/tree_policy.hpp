@@ -1,9 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "core/search/state_metric.hpp"
@@ -25,9 +24,6 @@ class TreePolicy {
   /// An action that led from `state` to where success is `depth - 1` actions away; whether it is
   /// new: of a state and action the first entry stays.
   bool add(const Poses& state, int action, double depth);
-
-  /// Depth that it has for an action in a state, prices included; none if it lacks it.
-  std::optional<double> depth(const Poses& state, int action) const;
 
   /// Adds `price` to the depth of the entries from index `first` on.
   void raise(int first, double price);
@@ -58,7 +54,7 @@ class TreePolicy {
   std::vector<std::vector<float>> coordinate_;  // [size of embedding][entry]
   std::vector<float> depth_;
   std::vector<int> action_;
-  std::unordered_map<std::uint64_t, int> entries_;  // by key_of() of state and action
+  std::unordered_set<std::uint64_t> known_;  // key_of() of states and actions
 };
 
 }  // namespace rtg

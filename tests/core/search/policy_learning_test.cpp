@@ -47,14 +47,15 @@ TEST(LearnStep, TakesUpThePlanBehindIt) {
   }
 }
 
-TEST(LearnStep, IsOneActionDeeperThanWhatIsKnownOfThePlan) {
+TEST(LearnStep, KeepsWhatIsKnownOfThePlan) {
   TreePolicy policy(gathering());
-  learn_step(policy, step(2.0, 12, 1, 2), kPlan, everything);
+  learn_step(policy, step(3.0, 13, 2, 3), kPlan, everything);
   policy.raise(0, 5.0);
   learn_step(policy, step(4.0, 14, 3, 4), kPlan, everything);
   learn_step(policy, step(4.0, 14, 3, 4), kPlan, everything);
   EXPECT_EQ(policy.size(), 4);
-  for (int k = 1; k <= 4; ++k) EXPECT_EQ(depth_at(policy, k), k + 5.0);
+  EXPECT_EQ(depth_at(policy, 2.0), 7.0);
+  EXPECT_EQ(depth_at(policy, 4.0), 4.0);
 }
 
 TEST(LearnStep, NeedsNothingBehindAStepIntoTheGoal) {
@@ -74,11 +75,13 @@ TEST(LearnStep, ThePlanEndsWithANodeThatReachesTheGoalOnItsOwn) {
   for (int k = 2; k <= 4; ++k) EXPECT_EQ(depth_at(policy, k), k - 1.0);
 }
 
-TEST(LearnStep, LearnsNothingOfAPlanThatIsNotStoredAsAWhole) {
+TEST(LearnStep, LearnsNoStepThatIsNotStored) {
   TreePolicy policy(gathering());
   learn_step(policy, step(4.0, 14, 3, 4), kPlan,
              [](const Poses&, int action) { return action != 12; });
-  EXPECT_EQ(policy.size(), 0);
+  EXPECT_EQ(policy.size(), 2);
+  EXPECT_EQ(depth_at(policy, 3.0), 3.0);
+  EXPECT_EQ(depth_at(policy, 4.0), 4.0);
 }
 
 TEST(LearnEpisode, CountsTheActionsToItsEnd) {

@@ -138,8 +138,6 @@ TEST(TreePolicy, HasAStateAndActionOnce) {
   Policy tree = random_policy(3);
   const Entry& known = tree.entries[1];
   EXPECT_FALSE(tree.policy.add(known.state, known.action, 1.0));
-  EXPECT_EQ(tree.policy.depth(known.state, known.action), known.depth);
-  EXPECT_FALSE(tree.policy.depth(known.state, (known.action + 1) % 48).has_value());
   EXPECT_EQ(tree.policy.size(), 3);
   EXPECT_EQ(tree.choose({known.state, {}}).score, known.depth);
   EXPECT_TRUE(tree.policy.add(known.state, (known.action + 1) % 48, 100.0));
