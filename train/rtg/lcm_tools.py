@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 from rtg import paths
-from rtg.errors import RunError, UserError
+from rtg.errors import RunError
 
 _TYPES_JAR = paths.BUILD / "msgs" / "rtg_msgs.jar"
 
@@ -46,11 +46,11 @@ def _types_jar() -> Path | None:
 
 
 def lcm_spy(url: str) -> None:
-    """Becomes lcm-spy. Raises UserError with the remedy if this machine cannot show it."""
+    """Becomes lcm-spy. Raises RunError with the remedy if this machine cannot show it."""
     if shutil.which("java") is None:
-        raise UserError("lcm-spy needs Java: apt-get install default-jdk. Without: ./run.sh spy")
+        raise RunError("lcm-spy needs Java: apt-get install default-jdk. Without: ./run.sh spy")
     if not os.environ.get("DISPLAY"):
-        raise UserError(
+        raise RunError(
             "lcm-spy needs a graphical display (DISPLAY is not set); in a terminal: ./run.sh spy"
         )
     jar = _types_jar()

@@ -58,7 +58,8 @@ def training_text(state: RunState) -> str:
     if not state.interactions:
         return "waiting for transitions"
     success = "-" if state.success_rate is None else f"{state.success_rate:.2f}"
-    return f"success {success}, {state.rate:,.0f} interactions/s"
+    rate = f"{state.rate:,.0f}" if state.rate else "-"
+    return f"success {success}, {rate} interactions/s"
 
 
 class Display(Protocol):

@@ -47,7 +47,8 @@ class RunPlan:
     @property
     def title(self) -> str:
         """For pictures and first words."""
-        return f"{self.config['task']['name']}, seed {self.config['run']['seed']}"
+        reverse = self.config["search"]["reverse"]
+        return f"{self.config['task']['name']}, {reverse}, seed {self.config['run']['seed']}"
 
     @property
     def interactions(self) -> int:
