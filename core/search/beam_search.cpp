@@ -15,10 +15,16 @@ namespace {
 /// Cells of states that differ in the robot only.
 constexpr StateMetric::Cells kLayoutCells{1e9, StateMetric::Cells{}.object, 0.5};
 
+constexpr std::uint64_t kTwins = 1;  // key of the random stream of the probe
+
 }  // namespace
 
 BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, std::uint64_t seed)
-    : task_(task), config_(config), metric_(task.scene), rng_(seed) {}
+    : task_(task),
+      config_(config),
+      metric_(task.scene),
+      rng_(seed),
+      probe_(task, config, Rng(seed, kTwins).word()) {}
 
 void BeamSearch::aim(const Poses& target, const ReplayBatch& replay, SearchStats& stats) {
   target_ = target;
@@ -96,6 +102,7 @@ std::vector<BeamSearch::Growth> BeamSearch::grow(const SolveBatch& solve, const 
   const Score score = layer_score();
   std::vector<Candidate> replayed =
       replay_candidates(worth_replaying(std::move(found), score), replay, stats);
+  probe_.measure(replayed, replay, stats);
   std::vector<Growth> out;
   for (Candidate& c : replayed) {
     stats.gaps.push_back(static_cast<float>(c.gap));
@@ -114,7 +121,7 @@ void BeamSearch::advance(std::span<const Growth> growths, const Score& score) {
   std::vector<const Growth*> eligible;
   for (const Growth& g : growths) {
     const Candidate& c = g.candidate;
-    if (c.miss > config_.gap_tolerance || c.turn > config_.turn_tolerance) continue;
+    if (c.miss > config_.gap_tolerance || !repeatable(c, config_)) continue;
     eligible.push_back(&g);
     entries.push_back(
         {score(c), metric_.cell(c.start, {}), metric_.cell(c.start, kLayoutCells), c.moved > 0});

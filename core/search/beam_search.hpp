@@ -11,6 +11,7 @@
 #include "core/search/search_config.hpp"
 #include "core/search/search_stats.hpp"
 #include "core/search/state_metric.hpp"
+#include "core/search/stretch_probe.hpp"
 
 namespace rtg {
 
@@ -43,8 +44,8 @@ class BeamSearch {
   };
 
   /// One layer: solves for every action of every node of the beam, replays what converged, chooses
-  /// the next beam. A push that turns an object far, as a corner does, makes more of any error of
-  /// its start, so that nothing can follow a plan through it: it is no better than one that misses.
+  /// the next beam. Nothing can follow a plan through a push that makes more of any error of its
+  /// start (repeatable()): it is no better than one that misses.
   /// All replayed candidates come back, these too; empty if the tree cannot grow.
   std::vector<Growth> grow(const SolveBatch& solve, const ReplayBatch& replay, SearchStats& stats);
 
@@ -72,6 +73,7 @@ class BeamSearch {
   StateMetric metric_;
   Poses target_;
   Rng rng_;
+  StretchProbe probe_;
   std::vector<Node> nodes_;
   std::vector<int> beam_;
   double best_ = std::numeric_limits<double>::infinity();

@@ -17,10 +17,11 @@ struct Candidate {
   int action = 0;
   Poses start;
   Poses end;
-  int moved = 0;      // objects moved by the push, objects_moved()
-  double gap = 0.0;   // replay gap [m]; 0 before the replay
-  double miss = 0.0;  // the same of the body that is off most [m]
-  double turn = 0.0;  // of the object that the push turned most [rad]; 0 before the replay
+  int moved = 0;         // objects moved by the push, objects_moved()
+  double gap = 0.0;      // replay gap [m]; 0 before the replay
+  double miss = 0.0;     // the same of the body that is off most [m]
+  double turn = 0.0;     // of the object that the push turned most [rad]; 0 before the replay
+  double stretch = 1.0;  // of errors by the push, see StretchProbe; 1 until it is measured
 };
 
 /// Displacement from which on an object counts as moved [m].

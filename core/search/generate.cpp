@@ -32,10 +32,9 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// Share of the probe starts that were covered and from which success was reached.
+/// Share of the probe starts from which success was reached.
 double rating(std::span<const Episode> episodes) {
-  const auto solved = std::ranges::count_if(
-      episodes, [](const Episode& e) { return e.success && e.strayed.front() <= kLost; });
+  const auto solved = std::ranges::count_if(episodes, &Episode::success);
   return static_cast<double>(solved) / kProbes;
 }
 
@@ -92,9 +91,7 @@ class Generation {
     const TreePolicy proven = policy_;
     grow_towards(lost_state(probes).value_or(starts[0]), limit);
     replay_chains_from(known, before, limit);
-    const auto rate = [&](const TreePolicy& policy) {
-      return rating(follow(policy, covered_starts(policy, starts)));
-    };
+    const auto rate = [&](const TreePolicy& policy) { return rating(follow(policy, starts)); };
     policy_ = climbed(proven, rating(probes), std::move(policy_), rate);
     note_nodes(known);
     ++rounds_;
@@ -173,7 +170,7 @@ class Generation {
     const auto stored = [&](const Poses& start, int action) {
       return stored_steps_.contains(key_of(start, action));
     };
-    if (!stored(c.start, c.action) || c.turn > config_.turn_tolerance) return;
+    if (!stored(c.start, c.action) || !repeatable(c, config_)) return;
     if (growth.depth == 1 || c.miss <= config_.gap_tolerance)
       learn_step(policy_, growth, search_.nodes(), stored);
   }

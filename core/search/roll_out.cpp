@@ -82,16 +82,6 @@ std::vector<Episode> run_episodes(const Task& task, const TreePolicy& policy,
   return run.take();
 }
 
-std::vector<Poses> covered_starts(const TreePolicy& policy, std::span<const Poses> starts) {
-  std::vector<TreePolicy::Query> queries;
-  for (const Poses& start : starts) queries.push_back({start, {}});
-  const std::vector<TreePolicy::Choice> choices = policy.choose(queries);
-  std::vector<Poses> covered;
-  for (std::size_t k = 0; k < starts.size(); ++k)
-    if (choices[k].distance <= kLost) covered.push_back(starts[k]);
-  return covered;
-}
-
 std::vector<Poses> jittered_starts(const Task& task, int count, double amplitude, Rng& rng) {
   std::vector<Poses> out;
   for (int k = 0; k < count; ++k) {

@@ -35,9 +35,6 @@ std::vector<Episode> run_episodes(const Task& task, const TreePolicy& policy,
 /// Further than this from the entry that it follows a policy is lost [m], in its own metric.
 inline constexpr double kLost = 1.0;
 
-/// The starts from which the policy is not lost at once: from elsewhere only luck helps it.
-std::vector<Poses> covered_starts(const TreePolicy& policy, std::span<const Poses> starts);
-
 /// Start states with object positions moved by up to ± an amplitude drawn from [0, amplitude] for
 /// each state; the nominal start if the task has no legal draw.
 std::vector<Poses> jittered_starts(const Task& task, int count, double amplitude, Rng& rng);

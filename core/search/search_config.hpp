@@ -16,25 +16,28 @@ inline constexpr std::array<std::string_view, 3> kRankings{"start_distance", "no
 struct SearchConfig {
   ReverseMode reverse = ReverseMode::kRrbs;
   Ranking ranking = Ranking::kStartDistance;
-  int transitions = 120000;      // stored in all
-  double rollout_share = 0.5;    // of them from roll-outs of the tree policy
-  int breadth = 32;              // B, nodes kept per layer
-  int depth = 24;                // D, layers per round at most
-  double contact_quota = 0.4;    // share of the beam reserved for nodes whose step moved an object
-  double random_share = 0.15;    // share of the beam drawn at random among the rest
-  double gap_tolerance = 0.25;   // a node that misses by more is not expanded [m]
-  double turn_tolerance = 0.3;   // nor one whose push turns an object by more [rad]
-  int starts = 2;                // predecessors of one solve that are replayed, the best ones
-  int free_moves = 12;           // steps that move no object replayed per node, the best ones
-  int per_layout = 6;            // nodes of a beam that differ in the robot only, at most
-  int root_draws = 4;            // goal states drawn per root kept
-  int arrivals = 10;             // nodes at its target that end a round
-  int patience = 1;              // layers without a better node that end a round
-  double target_jitter = 0.25;   // trees aim at the start with objects moved by up to ± this [m]
-  double chain_share = 0.1;      // of the tree transitions from chains replayed end to end
-  double rollout_jitter = 0.25;  // roll-outs start with objects moved by up to ± this [m]
-  double rollout_noise = 0.1;    // share of their actions replaced by a neighbouring heading
-  int evaluation_starts = 100;   // episodes behind tree_policy_success
+  int transitions = 120000;     // stored in all
+  double rollout_share = 0.5;   // of them from roll-outs of the tree policy
+  int breadth = 32;             // B, nodes kept per layer
+  int depth = 24;               // D, layers per round at most
+  double contact_quota = 0.4;   // share of the beam reserved for nodes whose step moved an object
+  double random_share = 0.15;   // share of the beam drawn at random among the rest
+  double gap_tolerance = 0.25;  // a node that misses by more is not expanded [m]
+  double turn_tolerance = 0.3;  // nor one whose push turns an object by more [rad]
+  double stretch_tolerance = 1.4;  // nor one whose push stretches errors by more
+  int twins = 8;                   // disturbed starts that probe how a push stretches errors
+  double twin_jitter = 0.3;        // they differ by up to ± this [m]; 1.5 m as 1 rad
+  int starts = 2;                  // predecessors of one solve that are replayed, the best ones
+  int free_moves = 12;             // steps that move no object replayed per node, the best ones
+  int per_layout = 6;              // nodes of a beam that differ in the robot only, at most
+  int root_draws = 4;              // goal states drawn per root kept
+  int arrivals = 10;               // nodes at its target that end a round
+  int patience = 1;                // layers without a better node that end a round
+  double target_jitter = 0.25;     // trees aim at the start with objects moved by up to ± this [m]
+  double chain_share = 0.1;        // of the tree transitions from chains replayed end to end
+  double rollout_jitter = 0.25;    // roll-outs start with objects moved by up to ± this [m]
+  double rollout_noise = 0.1;      // share of their actions replaced by a neighbouring heading
+  int evaluation_starts = 100;     // episodes behind tree_policy_success
 
   template <class Visitor>
   void visit(Visitor& v) {
@@ -48,6 +51,10 @@ struct SearchConfig {
     v.number("random_share", random_share, 0.0, 1.0, "share of the beam drawn at random");
     v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest miss of a body expanded [m]");
     v.number("turn_tolerance", turn_tolerance, 0.0, 100.0, "largest turn by a push expanded [rad]");
+    v.number("stretch_tolerance", stretch_tolerance, 0.0, 1e9,
+             "largest stretch of errors expanded");
+    v.integer("twins", twins, 0, 1000, "disturbed starts that probe a push");
+    v.number("twin_jitter", twin_jitter, 1e-6, 1.0, "how far they are disturbed [m]");
     v.integer("starts", starts, 1, 100, "predecessors replayed per solve");
     v.integer("free_moves", free_moves, 0, 360, "steps without contact replayed per node");
     v.integer("per_layout", per_layout, 1, 100000, "nodes of a beam with objects alike");

@@ -17,7 +17,10 @@ constexpr int kBlock = 512;               // entries whose coordinates stay in t
 }  // namespace
 
 TreePolicy::TreePolicy(const Task& task)
-    : metric_(task.scene), coordinate_(static_cast<std::size_t>(metric_.size())) {}
+    : metric_(task.scene),
+      contact_(task.scene, task.push),
+      headings_(task.push.headings),
+      coordinate_(static_cast<std::size_t>(metric_.size())) {}
 
 bool TreePolicy::add(const Poses& state, int action, double depth) {
   if (!known_.insert(key_of(state, action)).second) return false;
@@ -26,6 +29,9 @@ bool TreePolicy::add(const Poses& state, int action, double depth) {
   for (std::size_t k = 0; k < point.size(); ++k) coordinate_[k].push_back(point[k]);
   depth_.push_back(static_cast<float>(depth));
   action_.push_back(action);
+  contacts_.resize(contacts_.size() + static_cast<std::size_t>(contact_.size()));
+  contact_.describe(state, action,
+                    std::span(contacts_).last(static_cast<std::size_t>(contact_.size())));
   return true;
 }
 
@@ -34,33 +40,54 @@ void TreePolicy::raise(int first, double price) {
     depth_[k] += static_cast<float>(price);
 }
 
-/// Lowers `best` to the best entry of [begin, end), at most kBlock of them.
-void TreePolicy::scan(int begin, int end, std::span<const float> point, std::span<const int> used,
+/// |c(s_e, a) - c(s, a)|² [m²].
+float TreePolicy::contact_gap(std::size_t entry, Seen& query) const {
+  const int action = action_[entry];
+  const auto size = static_cast<std::size_t>(contact_.size());
+  std::vector<float>& there = query.contacts[static_cast<std::size_t>(action)];
+  if (there.empty()) {
+    there.resize(size);
+    contact_.describe(query.state, action, there);
+  }
+  const float* here = contacts_.data() + entry * size;
+  float sum = 0.0F;
+  for (std::size_t k = 0; k < size; ++k) sum += (here[k] - there[k]) * (here[k] - there[k]);
+  return sum;
+}
+
+/// Lowers `best` to the best entry of [begin, end), at most kBlock of them. What the push meets is
+/// looked at only where the states are near enough.
+void TreePolicy::scan(int begin, int end, Seen& query, std::span<const int> used,
                       Choice& best) const {
-  std::array<float, kBlock> score{};
+  std::array<float, kBlock> gap{}, score{};
   const auto n = static_cast<std::size_t>(end - begin), at = static_cast<std::size_t>(begin);
-  for (std::size_t c = 0; c < point.size(); ++c) {
+  for (std::size_t c = 0; c < query.point.size(); ++c) {
     const float* x = coordinate_[c].data() + at;
-    for (std::size_t k = 0; k < n; ++k) score[k] += (x[k] - point[c]) * (x[k] - point[c]);
+    for (std::size_t k = 0; k < n; ++k) gap[k] += (x[k] - query.point[c]) * (x[k] - query.point[c]);
   }
   for (std::size_t k = 0; k < n; ++k)
-    score[k] = depth_[at + k] + kDistanceWeight * std::sqrt(score[k]);
+    score[k] = depth_[at + k] + kDistanceWeight * std::sqrt(gap[k]);
   for (const int u : used)
     if (u >= begin && u < end) score[static_cast<std::size_t>(u - begin)] = kNone;
-  const auto least = std::min_element(score.begin(), score.begin() + static_cast<long>(n));
-  if (*least >= best.score) return;
-  const int entry = begin + static_cast<int>(least - score.begin());
-  const auto e = static_cast<std::size_t>(entry);
-  best = {entry, action_[e], *least, (*least - depth_[e]) / kDistanceWeight};
+  for (std::size_t k = 0; k < n; ++k) {
+    if (score[k] >= best.score) continue;
+    const float distance = std::sqrt(gap[k] + contact_gap(at + k, query));
+    const float whole = depth_[at + k] + kDistanceWeight * distance;
+    if (whole < best.score) best = {begin + static_cast<int>(k), action_[at + k], whole, distance};
+  }
 }
 
 std::vector<TreePolicy::Choice> TreePolicy::choose(std::span<const Query> queries) const {
   std::vector<Choice> best(queries.size(), {-1, 0, kNone, kNone});
-  std::vector<std::vector<float>> points(queries.size(), std::vector<float>(coordinate_.size()));
-  for (std::size_t q = 0; q < queries.size(); ++q) metric_.embed(queries[q].state, points[q]);
+  std::vector<Seen> seen;
+  for (const Query& q : queries) {
+    seen.push_back({q.state, std::vector<float>(coordinate_.size()),
+                    std::vector<std::vector<float>>(static_cast<std::size_t>(headings_))});
+    metric_.embed(q.state, seen.back().point);
+  }
   for (int begin = 0; begin < size(); begin += kBlock)
     for (std::size_t q = 0; q < queries.size(); ++q)
-      scan(begin, std::min(begin + kBlock, size()), points[q], queries[q].used, best[q]);
+      scan(begin, std::min(begin + kBlock, size()), seen[q], queries[q].used, best[q]);
   return best;
 }
 

@@ -5,6 +5,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "core/search/push_contact.hpp"
 #include "core/search/state_metric.hpp"
 #include "core/tasks/task.hpp"
 
@@ -13,10 +14,13 @@ namespace rtg {
 /// Nearest-node policy over stored transitions: of all entries (state, action, depth) it takes the
 /// action of the one with the least
 ///
-///   score = depth + 16 / m · distance(state of the entry, current state),
+///   score = depth + 16 / m · √(|s_e - s|² + |c(s_e, a) - c(s, a)|²),
 ///
-/// depth the number of actions from there to success and a price for those that are hard to repeat
-/// (raise()). It learns nothing but these prices, so its success rate judges the data.
+/// s the current state and (s_e, a) those of the entry, |s_e - s| their distance as in StateMetric,
+/// c what the push meets there (PushContact): the same action from a state that is near may hit an
+/// object that it only brushes in the other. depth is the number of actions from there to success
+/// and a price for those that are hard to repeat (raise()). It learns nothing but these prices, so
+/// its success rate judges the data.
 class TreePolicy {
  public:
   explicit TreePolicy(const Task& task);
@@ -41,19 +45,28 @@ class TreePolicy {
     int entry = -1;  // -1: there is no entry left
     int action = 0;
     float score = 0.0F;
-    float distance = 0.0F;  // of the entry's state [m]
+    float distance = 0.0F;  // from the entry, the root in the score [m]
   };
   /// One choice per query, ties to the oldest entry.
   std::vector<Choice> choose(std::span<const Query> queries) const;
 
  private:
-  void scan(int begin, int end, std::span<const float> point, std::span<const int> used,
-            Choice& best) const;
+  /// A query in the coordinates of the entries.
+  struct Seen {
+    const Poses& state;
+    std::vector<float> point;                  // embedding
+    std::vector<std::vector<float>> contacts;  // per action, empty until it is needed
+  };
+  void scan(int begin, int end, Seen& query, std::span<const int> used, Choice& best) const;
+  float contact_gap(std::size_t entry, Seen& query) const;
 
   StateMetric metric_;
+  PushContact contact_;
+  int headings_;
   std::vector<std::vector<float>> coordinate_;  // [size of embedding][entry]
   std::vector<float> depth_;
   std::vector<int> action_;
+  std::vector<float> contacts_;              // PushContact of the entries, one after the other
   std::unordered_set<std::uint64_t> known_;  // key_of() of states and actions
 };
 

@@ -187,16 +187,6 @@ double offset(const Task& task, const Poses& poses) {
   return most;
 }
 
-TEST(CoveredStarts, AreThoseWithinAMetreOfAnEntry) {
-  TreePolicy policy(gathering());
-  EXPECT_TRUE(covered_starts(policy, std::vector<Poses>{robot_at(0.0)}).empty());
-  policy.add(robot_at(0.0), 1, 3.0);
-  policy.add(robot_at(5.0), 1, 9.0);
-  const std::vector<Poses> starts{robot_at(-1.1), robot_at(-0.9), robot_at(2.5), robot_at(4.5),
-                                  robot_at(6.5)};
-  EXPECT_EQ(covered_starts(policy, starts), (std::vector<Poses>{robot_at(-0.9), robot_at(4.5)}));
-}
-
 TEST(JitteredStarts, MoveObjectsByUpToAnAmplitudeOfTheirOwn) {
   const Task task = gathering();
   Rng rng(51);

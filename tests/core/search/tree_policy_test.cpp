@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/math/rng.hpp"
@@ -31,6 +32,7 @@ Entry random_entry(Rng& rng) {
 struct Policy {
   Task task = gathering();
   StateMetric metric{task.scene};
+  PushContact contact{task.scene, task.push};
   TreePolicy policy{task};
   std::vector<Entry> entries;
 
@@ -38,9 +40,18 @@ struct Policy {
     for (const Entry& e : entries) policy.add(e.state, e.action, e.depth);
   }
 
-  double score(int entry, const Poses& state) const {
+  double distance(int entry, const Poses& state) const {
     const Entry& e = entries[static_cast<std::size_t>(entry)];
-    return e.depth + 16.0 * metric.distance(e.state, state);
+    std::vector<float> here(static_cast<std::size_t>(contact.size())), there(here.size());
+    contact.describe(e.state, e.action, here);
+    contact.describe(state, e.action, there);
+    double square = std::pow(metric.distance(e.state, state), 2);
+    for (std::size_t k = 0; k < here.size(); ++k) square += std::pow(here[k] - there[k], 2);
+    return std::sqrt(square);
+  }
+
+  double score(int entry, const Poses& state) const {
+    return entries[static_cast<std::size_t>(entry)].depth + 16.0 * distance(entry, state);
   }
 
   int best(const TreePolicy::Query& query) const {
@@ -70,7 +81,7 @@ TEST(TreePolicy, ChoosesAsBruteForceDoesOverSeveralBlocks) {
   const Policy tree = random_policy(2 * kBlock + 300);
   Rng rng(12);
   std::vector<TreePolicy::Query> queries;
-  for (int q = 0; q < 200; ++q) {
+  for (int q = 0; q < 40; ++q) {
     queries.push_back({random_entry(rng).state, {}});
     for (int k = 0; k < q; ++k) queries.back().used.push_back(rng.below(tree.policy.size()));
     // So that the best ones are used, too.
@@ -85,7 +96,7 @@ TEST(TreePolicy, ChoosesAsBruteForceDoesOverSeveralBlocks) {
     ASSERT_EQ(choices[q].action, entry.action);
     // Single precision of a score of up to 200.
     ASSERT_NEAR(choices[q].score, tree.score(best, queries[q].state), 1e-4);
-    ASSERT_NEAR(choices[q].distance, tree.metric.distance(entry.state, queries[q].state), 1e-5);
+    ASSERT_NEAR(choices[q].distance, tree.distance(best, queries[q].state), 1e-5);
   }
 }
 
@@ -97,7 +108,9 @@ TEST(TreePolicy, FindsEveryEntryAtTheEdgesOfBlocks) {
 
 TEST(TreePolicy, TiesGoToTheOldestEntry) {
   Rng rng(13);
-  const Entry here = random_entry(rng);
+  Entry here = random_entry(rng);
+  for (std::size_t k = 1; k < here.state.size(); ++k)
+    here.state[k].x += 50.0;  // no push meets them
   std::vector<Entry> entries;
   for (int k = 0; k < 3 * kBlock; ++k) {
     entries.push_back(here);
@@ -114,6 +127,16 @@ TEST(TreePolicy, TiesGoToTheOldestEntry) {
     query.used.push_back(k);
   }
   EXPECT_EQ(tree.choose(query).entry, 0);
+}
+
+TEST(TreePolicy, PrefersAPushThatMeetsTheSameToANearerOneThatMeetsNothing) {
+  const Poses state{{0, 0, 0}, {2, 1.2, 0}, {-6, 6, 0}, {-6, -6, 0}};  // along x it grazes the box
+  Poses hit = state, miss = state;
+  hit[1].x += 0.12;
+  miss[1].y += 0.1;
+  const Policy tree({{miss, 0, 5.0}, {hit, 0, 5.0}});
+  EXPECT_GT(tree.metric.distance(hit, state), tree.metric.distance(miss, state));
+  EXPECT_EQ(tree.choose({state, {}}).entry, 1);
 }
 
 TEST(TreePolicy, HasNoChoiceWithoutAnEntryLeft) {
@@ -159,7 +182,7 @@ TEST(TreePolicy, KnowsStatesThatLookTheSame) {
   Rng rng(15);
   const Policy tree = random_policy(100);
   Poses turned = tree.entries[50].state;
-  turned[0].theta += 1.0;
+  turned[0].theta += 1.0471975511965977;  // a sixth of a hexagon
   turned[2].theta -= 1.5707963267948966;  // a quarter of a square
   const TreePolicy::Choice choice = tree.choose({turned, {}});
   EXPECT_EQ(choice.entry, 50);

@@ -1,0 +1,30 @@
+#include "core/search/push_contact.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/reverse/pruning.hpp"
+#include "core/world/separation.hpp"
+
+namespace rtg {
+
+PushContact::PushContact(Scene scene, PushConfig push) : scene_(std::move(scene)), push_(push) {}
+
+void PushContact::describe(const Poses& state, int action, std::span<float> out) const {
+  std::fill(out.begin(), out.end(), 0.0F);
+  const Vector2d d = direction(action, push_);
+  const Polygon& hand = scene_.bodies[0].shape;
+  const Polygon way = swept(hand, state[0].theta, push_.stride * d);
+  const double reach = push_.stride + bounding_radius(hand);
+  const std::size_t bodies = scene_.size() - 1;
+  for (std::size_t k = 1; k <= bodies; ++k) {
+    const Polygon& shape = scene_.bodies[k].shape;
+    const Vector2d arm = state[k].position() - state[0].position();
+    if (arm.norm() > reach + bounding_radius(shape)) continue;
+    const double cut = std::max(0.0, -separation(way, state[0], shape, state[k]));
+    out[k - 1] = static_cast<float>(cut);
+    out[bodies + k - 1] = static_cast<float>(cut * (d.x() * arm.y() - d.y() * arm.x()));
+  }
+}
+
+}  // namespace rtg

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+
+#include "core/world/push.hpp"
+#include "core/world/scene.hpp"
+
+namespace rtg {
+
+/// How a push meets the bodies before it: numbers that are close for two states in which the same
+/// action does about the same. Of every body but the robot, W the area that the robot sweeps if
+/// nothing stops it, d the direction of the push:
+///
+///   cut  = -separation(W, body) where they overlap, else 0 [m]: how far the robot would push it at
+///          most, or how deep it would graze it;
+///   side = cut · (t_body - t_robot)·d⊥ / 1 m: as far as it is met, how far to the left.
+class PushContact {
+ public:
+  PushContact(Scene scene, PushConfig push);
+
+  /// Two numbers per body but the robot.
+  int size() const { return 2 * (static_cast<int>(scene_.size()) - 1); }
+
+  /// Writes the cuts, then the sides; out [size()].
+  void describe(const Poses& state, int action, std::span<float> out) const;
+
+ private:
+  Scene scene_;
+  PushConfig push_;
+};
+
+}  // namespace rtg

@@ -1,0 +1,64 @@
+#include "core/search/stretch_probe.hpp"
+
+#include <utility>
+
+namespace rtg {
+namespace {
+
+constexpr int kDraws = 5;  // per twin; those that are no legal state are drawn again
+constexpr double kTurnPerMetre = 1.0 / 1.5;  // [rad/m]
+
+}  // namespace
+
+bool repeatable(const Candidate& push, const SearchConfig& config) {
+  return push.turn <= config.turn_tolerance && push.stretch <= config.stretch_tolerance;
+}
+
+StretchProbe::StretchProbe(const Task& task, const SearchConfig& config, std::uint64_t seed)
+    : task_(task), config_(config), metric_(task.scene), rng_(seed) {}
+
+Poses StretchProbe::disturbed(Poses poses) {
+  const double most = config_.twin_jitter;
+  for (std::size_t body = 0; body < poses.size(); ++body) {
+    if (task_.scene.bodies[body].fixed) continue;
+    poses[body].x += rng_.uniform(-most, most);
+    poses[body].y += rng_.uniform(-most, most);
+    if (body > 0) poses[body].theta += kTurnPerMetre * rng_.uniform(-most, most);
+  }
+  return float_rounded(poses);
+}
+
+std::vector<StretchProbe::Twin> StretchProbe::draw(std::span<const Candidate> candidates) {
+  std::vector<Twin> twins;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const Candidate& c = candidates[k];
+    if (c.miss > config_.gap_tolerance || c.turn > config_.turn_tolerance) continue;
+    int left = config_.twins;
+    for (int draws = 0; left > 0 && draws < kDraws * config_.twins; ++draws) {
+      Poses start = disturbed(c.start);
+      if (!legal_state(task_, start)) continue;
+      twins.push_back({k, std::move(start)});
+      --left;
+    }
+  }
+  return twins;
+}
+
+void StretchProbe::measure(std::span<Candidate> candidates, const ReplayBatch& replay,
+                           SearchStats& stats) {
+  const std::vector<Twin> twins = draw(candidates);
+  std::vector<ReplayJob> pushes;
+  for (const Twin& t : twins) pushes.push_back({t.start, candidates[t.of].action});
+  const std::vector<ReplayResult> results = replay(pushes);
+  std::vector<double> before(candidates.size(), 0.0), after(candidates.size(), 0.0);
+  for (std::size_t k = 0; k < twins.size(); ++k) {
+    if (!stats.count(results[k])) continue;
+    const Candidate& c = candidates[twins[k].of];
+    before[twins[k].of] += metric_.distance(twins[k].start, c.start);
+    after[twins[k].of] += metric_.distance(results[k].end, c.end);
+  }
+  for (std::size_t k = 0; k < candidates.size(); ++k)
+    if (before[k] > 0.0) candidates[k].stretch = after[k] / before[k];
+}
+
+}  // namespace rtg

@@ -1,0 +1,130 @@
+#include "core/search/stretch_probe.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/search/simulators.hpp"
+#include "tests/support/gathering.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::gathering;
+
+/// A task with nothing but the robot: the distance of two states is that of their positions.
+Task lonely() {
+  Task task = gathering();
+  task.scene.bodies.resize(1);
+  task.start.resize(1);
+  return task;
+}
+
+/// Replays with `push`, keeping count.
+template <class Push>
+ReplayBatch replay_by(Push push, std::vector<ReplayJob>& asked) {
+  return [push, &asked](std::span<const ReplayJob> jobs) {
+    asked.insert(asked.end(), jobs.begin(), jobs.end());
+    std::vector<ReplayResult> results;
+    for (const ReplayJob& job : jobs) results.push_back({push(job.start), true, 0.0});
+    return results;
+  };
+}
+
+Poses same(const Poses& poses) { return poses; }
+
+Candidate moving(const Poses& start, const Poses& end, int action = 7) {
+  return {0, action, start, end, 1};
+}
+
+TEST(StretchProbe, IsTheRatioOfTheErrorsAfterAndBefore) {
+  const Task task = lonely();
+  const auto thrice = [](Poses poses) {
+    poses[0] = {3.0 * poses[0].x, 3.0 * poses[0].y, 0.0};
+    return poses;
+  };
+  std::vector<ReplayJob> asked;
+  SearchStats stats;
+  std::vector<Candidate> candidates{moving(task.start, thrice(task.start))};
+  StretchProbe(task, {}, 1).measure(candidates, replay_by(thrice, asked), stats);
+  EXPECT_NEAR(candidates[0].stretch, 3.0, 1e-4);  // embeddings have single precision, 1e-6 of 15 m
+}
+
+TEST(StretchProbe, TwinsAreDisturbedByNoMoreThanTheJitter) {
+  const Task task = gathering();
+  SearchConfig config;
+  config.twins = 20;
+  config.twin_jitter = 0.2;
+  std::vector<ReplayJob> asked;
+  SearchStats stats;
+  std::vector<Candidate> candidates{moving(task.start, task.start)};
+  StretchProbe(task, config, 1).measure(candidates, replay_by(same, asked), stats);
+  ASSERT_EQ(asked.size(), 20U);
+  double most = 0.0;
+  for (const ReplayJob& job : asked) {
+    EXPECT_EQ(job.action, 7);
+    EXPECT_TRUE(legal_state(task, job.start));
+    EXPECT_EQ(job.start[0].theta, task.start[0].theta);  // every push holds the robot's heading
+    for (std::size_t body = 0; body < job.start.size(); ++body)
+      for (const double off :
+           {job.start[body].x - task.start[body].x, job.start[body].y - task.start[body].y,
+            job.start[body].theta - task.start[body].theta})
+        most = std::max(most, std::abs(off));
+  }
+  EXPECT_LE(most, 0.2 + 1e-6);  // rounded to float
+  EXPECT_GT(most, 0.1);
+  EXPECT_DOUBLE_EQ(candidates[0].stretch, 1.0);  // a push that changes nothing
+}
+
+TEST(StretchProbe, LeavesPushesThatMissTheirEndOrTurnAnObject) {
+  const Task task = gathering();
+  std::vector<Candidate> candidates(2, moving(task.start, task.start));
+  candidates[0].turn = SearchConfig{}.turn_tolerance + 0.01;
+  candidates[1].miss = SearchConfig{}.gap_tolerance + 0.01;
+  std::vector<ReplayJob> asked;
+  SearchStats stats;
+  StretchProbe(task, {}, 1).measure(candidates, replay_by(same, asked), stats);
+  EXPECT_TRUE(asked.empty());
+  EXPECT_EQ(candidates[0].stretch, 1.0);
+  EXPECT_EQ(candidates[1].stretch, 1.0);
+}
+
+TEST(StretchProbe, CountsTwinsThatTheSimulatorRejects) {
+  const Task task = gathering();
+  const ReplayBatch rejecting = [](std::span<const ReplayJob> jobs) {
+    return std::vector<ReplayResult>(jobs.size(), {{}, false, 0.0});
+  };
+  std::vector<Candidate> candidates{moving(task.start, task.start)};
+  SearchStats stats;
+  StretchProbe(task, {}, 1).measure(candidates, rejecting, stats);
+  EXPECT_EQ(stats.rejected_pushes, SearchConfig{}.twins);
+  EXPECT_EQ(candidates[0].stretch, 1.0);
+}
+
+/// Stretch of a push along `action` of a box that faces it, half a metre ahead.
+double stretch_of_push(int action) {
+  Task task = gathering();
+  const Vector2d d = direction(action, task.push);
+  Poses start{
+      {0, 0, 0}, {2.0 * d.x(), 2.0 * d.y(), std::atan2(d.y(), d.x())}, {-5, 5, 0}, {-5, -5, 0}};
+  const ReplayBatch replay = in_process_seams(reverse_solver(task, {}, {}, ReverseMode::kNaive),
+                                              forward_replay(task, {}), 1)
+                                 .replay;
+  SearchConfig config;
+  config.twins = 50;
+  config.twin_jitter = 0.1;
+  SearchStats stats;
+  const std::vector<ReplayJob> push{{start, action}};
+  std::vector<Candidate> candidates{moving(start, replay(push)[0].end, action)};
+  StretchProbe(task, config, 1).measure(candidates, replay, stats);
+  return candidates[0].stretch;
+}
+
+TEST(StretchProbe, TellsACornerThatLosesABoxFromAFaceThatHoldsIt) {
+  EXPECT_LT(stretch_of_push(4), 1.0);  // 30°: face to face, the box comes to lie against it
+  EXPECT_GT(stretch_of_push(0), 1.5);  // 0°: a corner on the middle of a face
+}
+
+}  // namespace
+}  // namespace rtg
