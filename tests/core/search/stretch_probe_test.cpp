@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/search/beam_search.hpp"
 #include "core/search/simulators.hpp"
+#include "tests/support/dragging_world.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg {
@@ -100,6 +102,21 @@ TEST(StretchProbe, CountsTwinsThatTheSimulatorRejects) {
   StretchProbe(task, {}, 1).measure(candidates, rejecting, stats);
   EXPECT_EQ(stats.rejected_pushes, SearchConfig{}.twins);
   EXPECT_EQ(candidates[0].stretch, 1.0);
+}
+
+TEST(StretchProbe, WhatStretchesErrorsByMoreThanTheToleranceIsReturnedButNotExpanded) {
+  testing::DraggingWorld world;  // its pushes keep errors as they are
+  for (const double tolerance : {0.99, 1.01}) {
+    SearchConfig config;
+    config.breadth = 6;
+    config.stretch_tolerance = tolerance;
+    SearchStats stats;
+    BeamSearch search(world.task, config, 1);
+    search.aim(world.task.start, world.replay, stats);
+    const std::size_t roots = search.nodes().size();
+    EXPECT_GT(search.grow(world.solve, world.replay, stats).size(), 20U);
+    EXPECT_EQ(search.nodes().size() > roots, tolerance > 1.0);
+  }
 }
 
 /// Stretch of a push along `action` of a box that faces it, half a metre ahead.
