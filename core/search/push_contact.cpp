@@ -8,13 +8,18 @@
 
 namespace rtg {
 
-PushContact::PushContact(Scene scene, PushConfig push) : scene_(std::move(scene)), push_(push) {}
+PushContact::PushContact(Scene scene, PushConfig push, double heading)
+    : scene_(std::move(scene)), push_(push), heading_(heading) {
+  for (int action = 0; action < push.headings; ++action)
+    ways_.push_back(swept(scene_.bodies[0].shape, heading, push.stride * direction(action, push)));
+}
 
 void PushContact::describe(const Poses& state, int action, std::span<float> out) const {
   std::fill(out.begin(), out.end(), 0.0F);
   const Vector2d d = direction(action, push_);
   const Polygon& hand = scene_.bodies[0].shape;
-  const Polygon way = swept(hand, state[0].theta, push_.stride * d);
+  const Polygon way = state[0].theta == heading_ ? ways_[static_cast<std::size_t>(action)]
+                                                 : swept(hand, state[0].theta, push_.stride * d);
   const double reach = push_.stride + bounding_radius(hand);
   const std::size_t bodies = scene_.size() - 1;
   for (std::size_t k = 1; k <= bodies; ++k) {

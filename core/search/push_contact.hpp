@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "core/world/push.hpp"
 #include "core/world/scene.hpp"
@@ -16,7 +17,8 @@ namespace rtg {
 ///   side = cut · (t_body - t_robot)·d⊥ / 1 m: as far as it is met, how far to the left.
 class PushContact {
  public:
-  PushContact(Scene scene, PushConfig push);
+  /// `heading`: the robot's, which every push holds; states with another one cost more.
+  PushContact(Scene scene, PushConfig push, double heading);
 
   /// Two numbers per body but the robot.
   int size() const { return 2 * (static_cast<int>(scene_.size()) - 1); }
@@ -27,6 +29,8 @@ class PushContact {
  private:
   Scene scene_;
   PushConfig push_;
+  double heading_;
+  std::vector<Polygon> ways_;  // W of each action, in the robot's frame
 };
 
 }  // namespace rtg

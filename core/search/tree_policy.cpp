@@ -18,7 +18,7 @@ constexpr int kBlock = 512;               // entries whose coordinates stay in t
 
 TreePolicy::TreePolicy(const Task& task)
     : metric_(task.scene),
-      contact_(task.scene, task.push),
+      contact_(task.scene, task.push, task.start[0].theta),
       headings_(task.push.headings),
       coordinate_(static_cast<std::size_t>(metric_.size())) {}
 
@@ -69,12 +69,18 @@ void TreePolicy::scan(int begin, int end, Seen& query, std::span<const int> used
     score[k] = depth_[at + k] + kDistanceWeight * std::sqrt(gap[k]);
   for (const int u : used)
     if (u >= begin && u < end) score[static_cast<std::size_t>(u - begin)] = kNone;
-  for (std::size_t k = 0; k < n; ++k) {
-    if (score[k] >= best.score) continue;
+  const auto judge = [&](std::size_t k) {
+    if (score[k] > best.score || score[k] == kNone) return;
+    const int entry = begin + static_cast<int>(k);
     const float distance = std::sqrt(gap[k] + contact_gap(at + k, query));
     const float whole = depth_[at + k] + kDistanceWeight * distance;
-    if (whole < best.score) best = {begin + static_cast<int>(k), action_[at + k], whole, distance};
-  }
+    if (whole < best.score || (whole == best.score && entry < best.entry))
+      best = {entry, action_[at + k], whole, distance};
+  };
+  // The first one spares most of the others.
+  const auto least = std::min_element(score.begin(), score.begin() + static_cast<long>(n));
+  judge(static_cast<std::size_t>(least - score.begin()));
+  for (std::size_t k = 0; k < n; ++k) judge(k);
 }
 
 std::vector<TreePolicy::Choice> TreePolicy::choose(std::span<const Query> queries) const {

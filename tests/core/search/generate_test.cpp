@@ -24,6 +24,7 @@ SearchConfig small() {
   config.transitions = 3000;
   config.breadth = 8;
   config.depth = 12;
+  config.twins = 2;  // these tests are not about how good the policy is
   config.evaluation_starts = 10;
   return config;
 }

@@ -20,7 +20,7 @@ Poses box_at(double x, double y) { return {{0, 0, 0}, {x, y, 0}, {-6, 6, 0}, {-6
 
 std::vector<float> described(const Poses& state, int action = 0) {
   const Task task = gathering();
-  const PushContact contact(task.scene, task.push);
+  const PushContact contact(task.scene, task.push, 0.0);
   std::vector<float> out(static_cast<std::size_t>(contact.size()), NAN);
   contact.describe(state, action, out);
   return out;

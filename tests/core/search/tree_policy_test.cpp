@@ -32,7 +32,7 @@ Entry random_entry(Rng& rng) {
 struct Policy {
   Task task = gathering();
   StateMetric metric{task.scene};
-  PushContact contact{task.scene, task.push};
+  PushContact contact{task.scene, task.push, 0.0};
   TreePolicy policy{task};
   std::vector<Entry> entries;
 
