@@ -18,8 +18,9 @@ void PushContact::describe(const Poses& state, int action, std::span<float> out)
   std::fill(out.begin(), out.end(), 0.0F);
   const Vector2d d = direction(action, push_);
   const Polygon& hand = scene_.bodies[0].shape;
-  const Polygon way = state[0].theta == heading_ ? ways_[static_cast<std::size_t>(action)]
-                                                 : swept(hand, state[0].theta, push_.stride * d);
+  const bool held = state[0].theta == heading_;
+  const Polygon turned = held ? Polygon{} : swept(hand, state[0].theta, push_.stride * d);
+  const Polygon& way = held ? ways_[static_cast<std::size_t>(action)] : turned;
   const double reach = push_.stride + bounding_radius(hand);
   const std::size_t bodies = scene_.size() - 1;
   for (std::size_t k = 1; k <= bodies; ++k) {

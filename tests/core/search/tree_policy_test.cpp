@@ -40,14 +40,23 @@ struct Policy {
     for (const Entry& e : entries) policy.add(e.state, e.action, e.depth);
   }
 
-  double distance(int entry, const Poses& state) const {
-    const Entry& e = entries[static_cast<std::size_t>(entry)];
-    std::vector<float> here(static_cast<std::size_t>(contact.size())), there(here.size());
-    contact.describe(e.state, e.action, here);
-    contact.describe(state, e.action, there);
+  std::vector<float> met(const Poses& state, int action) const {
+    std::vector<float> out(static_cast<std::size_t>(contact.size()));
+    contact.describe(state, action, out);
+    return out;
+  }
+
+  /// `there`: what the entry's action meets in `state`.
+  double distance(const Entry& e, const Poses& state, const std::vector<float>& there) const {
     double square = std::pow(metric.distance(e.state, state), 2);
+    const std::vector<float> here = met(e.state, e.action);
     for (std::size_t k = 0; k < here.size(); ++k) square += std::pow(here[k] - there[k], 2);
     return std::sqrt(square);
+  }
+
+  double distance(int entry, const Poses& state) const {
+    const Entry& e = entries[static_cast<std::size_t>(entry)];
+    return distance(e, state, met(state, e.action));
   }
 
   double score(int entry, const Poses& state) const {
@@ -57,9 +66,15 @@ struct Policy {
   int best(const TreePolicy::Query& query) const {
     int best = -1;
     double least = std::numeric_limits<double>::infinity();
+    std::vector<std::vector<float>> there;
+    for (int a = 0; a < task.push.headings; ++a) there.push_back(met(query.state, a));
     for (int k = 0; k < policy.size(); ++k) {
-      if (std::ranges::count(query.used, k) > 0 || score(k, query.state) >= least) continue;
-      least = score(k, query.state);
+      const Entry& e = entries[static_cast<std::size_t>(k)];
+      if (std::ranges::count(query.used, k) > 0) continue;
+      const double score =
+          e.depth + 16.0 * distance(e, query.state, there[static_cast<std::size_t>(e.action)]);
+      if (score >= least) continue;
+      least = score;
       best = k;
     }
     return best;
@@ -81,7 +96,7 @@ TEST(TreePolicy, ChoosesAsBruteForceDoesOverSeveralBlocks) {
   const Policy tree = random_policy(2 * kBlock + 300);
   Rng rng(12);
   std::vector<TreePolicy::Query> queries;
-  for (int q = 0; q < 40; ++q) {
+  for (int q = 0; q < 200; ++q) {
     queries.push_back({random_entry(rng).state, {}});
     for (int k = 0; k < q; ++k) queries.back().used.push_back(rng.below(tree.policy.size()));
     // So that the best ones are used, too.
