@@ -88,11 +88,11 @@ class Generation {
     const std::size_t known = search_.nodes().size();
     const std::vector<Poses> starts = probe_starts();
     const std::vector<Episode> probes = follow(policy_, starts);
-    const TreePolicy proven = policy_;
+    const int proven = policy_.size();
     grow_towards(lost_state(probes).value_or(starts[0]), limit);
     replay_chains_from(known, before, limit);
     const auto rate = [&](const TreePolicy& policy) { return rating(follow(policy, starts)); };
-    policy_ = climbed(proven, rating(probes), std::move(policy_), rate);
+    climb(policy_, proven, rating(probes), rate);
     note_nodes(known);
     ++rounds_;
     return stored() > before;

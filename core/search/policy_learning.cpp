@@ -26,22 +26,22 @@ void learn_episode(TreePolicy& policy, std::span<const Transition> steps) {
     policy.add(steps[k].poses, steps[k].action, static_cast<double>(steps.size() - k));
 }
 
-TreePolicy climbed(const TreePolicy& before, double before_rating, TreePolicy after,
-                   const PolicyRating& rate) {
-  if (after.size() == before.size()) return after;
+void climb(TreePolicy& policy, int first, double before, const PolicyRating& rate) {
+  if (policy.size() == first) return;
   double price = 0.0, best_price = 0.0, best = -1.0;
   for (const double next : kPrices) {
-    after.raise(before.size(), next - price);
+    policy.raise(first, next - price);
     price = next;
-    if (const double rating = rate(after); rating > best) {
+    if (const double rating = rate(policy); rating > best) {
       best = rating;
       best_price = price;
     }
     if (best >= 1.0) break;
   }
-  if (best < before_rating) return before;
-  after.raise(before.size(), best_price - price);
-  return after;
+  if (best < before)
+    policy.forget(first);
+  else
+    policy.raise(first, best_price - price);
 }
 
 }  // namespace rtg

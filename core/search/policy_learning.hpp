@@ -25,15 +25,14 @@ void learn_episode(TreePolicy& policy, std::span<const Transition> steps);
 /// How well a policy does, from 0 to 1.
 using PolicyRating = std::function<double(const TreePolicy&)>;
 
-/// The policy after a round of the search: one step of hill climbing. `after` is `before` and,
-/// behind its entries, those that the round has found.
+/// One step of hill climbing after a round of the search, that has found the entries of `policy`
+/// from index `first` on; `before` is the rating without them.
 ///
 /// A depth counts the actions of a plan that nothing disturbs. Where pushes easily go astray it
 /// promises too much: the policy leaves what it knew for a plan that it cannot hold. So the new
 /// entries are tried at several prices on top of their depth, from none to one at which they serve
-/// only where nothing else is near. Returns the policy that `rate` likes best; of equals the one
-/// with the lowest price, and `before` only if it is better than all.
-TreePolicy climbed(const TreePolicy& before, double before_rating, TreePolicy after,
-                   const PolicyRating& rate);
+/// only where nothing else is near. They keep the price that `rate` likes best, of equals the
+/// lowest, and are forgotten if the policy was better without them at every price.
+void climb(TreePolicy& policy, int first, double before, const PolicyRating& rate);
 
 }  // namespace rtg

@@ -1,10 +1,11 @@
 #include "core/search/tree_policy.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "core/math/hash.hpp"
 #include "core/reverse/reverse_job.hpp"
 
 namespace rtg {
@@ -12,89 +13,140 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
 constexpr float kDistanceWeight = 16.0F;  // actions per metre
-constexpr int kBlock = 512;               // entries whose coordinates stay in the first-level cache
+constexpr float kCell = 0.5F;             // side of a cell [m]
+constexpr float kRounding = 1e-3F;        // of a score [actions]
+
+/// Squared distance of two points of `size` coordinates.
+float square_distance(const float* a, const float* b, std::size_t size) {
+  float sum = 0.0F;
+  for (std::size_t k = 0; k < size; ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return sum;
+}
+
+/// How far x is from [low, low + kCell].
+float outside(float x, float low) { return std::max({0.0F, low - x, x - (low + kCell)}); }
 
 }  // namespace
 
 TreePolicy::TreePolicy(const Task& task)
     : metric_(task.scene),
       contact_(task.scene, task.push, task.start[0].theta),
-      headings_(task.push.headings),
-      coordinate_(static_cast<std::size_t>(metric_.size())) {}
+      headings_(task.push.headings) {}
 
 bool TreePolicy::add(const Poses& state, int action, double depth) {
-  if (!known_.insert(key_of(state, action)).second) return false;
-  std::vector<float> point(coordinate_.size());
-  metric_.embed(state, point);
-  for (std::size_t k = 0; k < point.size(); ++k) coordinate_[k].push_back(point[k]);
+  const std::uint64_t key = key_of(state, action);
+  if (!known_.insert(key).second) return false;
+  key_.push_back(key);
   depth_.push_back(static_cast<float>(depth));
   action_.push_back(action);
-  contacts_.resize(contacts_.size() + static_cast<std::size_t>(contact_.size()));
-  contact_.describe(state, action,
-                    std::span(contacts_).last(static_cast<std::size_t>(contact_.size())));
+  const auto coordinates = static_cast<std::size_t>(metric_.size());
+  point_.resize(point_.size() + coordinates);
+  metric_.embed(state, std::span(point_).last(coordinates));
+  const auto numbers = static_cast<std::size_t>(contact_.size());
+  contacts_.resize(contacts_.size() + numbers);
+  contact_.describe(state, action, std::span(contacts_).last(numbers));
+  place(size() - 1);
   return true;
+}
+
+/// Puts an entry into its cell. The robot's position leads its embedding.
+void TreePolicy::place(int entry) {
+  const auto k = static_cast<std::size_t>(entry);
+  const float* robot = point_.data() + k * static_cast<std::size_t>(metric_.size());
+  const float column = std::floor(robot[0] / kCell), row = std::floor(robot[1] / kCell);
+  const auto word = [](float number) { return static_cast<std::uint64_t>(std::lround(number)); };
+  const auto [at, fresh] =
+      cell_at_.try_emplace(hashed(hashed(0, word(column)), word(row)), cells_.size());
+  if (fresh) cells_.push_back({kCell * column, kCell * row, kNone, {}});
+  Cell& cell = cells_[at->second];
+  cell.entries.push_back(entry);
+  cell.least = std::min(cell.least, depth_[k]);
+}
+
+void TreePolicy::bound_cells() {
+  for (Cell& cell : cells_) {
+    cell.least = kNone;
+    for (const int entry : cell.entries)
+      cell.least = std::min(cell.least, depth_[static_cast<std::size_t>(entry)]);
+  }
 }
 
 void TreePolicy::raise(int first, double price) {
   for (std::size_t k = static_cast<std::size_t>(first); k < depth_.size(); ++k)
     depth_[k] += static_cast<float>(price);
+  bound_cells();
+}
+
+void TreePolicy::forget(int first) {
+  const auto left = static_cast<std::size_t>(first);
+  for (std::size_t k = left; k < key_.size(); ++k) known_.erase(key_[k]);
+  key_.resize(left);
+  depth_.resize(left);
+  action_.resize(left);
+  point_.resize(left * static_cast<std::size_t>(metric_.size()));
+  contacts_.resize(left * static_cast<std::size_t>(contact_.size()));
+  for (Cell& cell : cells_)
+    while (!cell.entries.empty() && cell.entries.back() >= first) cell.entries.pop_back();
+  bound_cells();
+}
+
+/// |s_e - s|² [m²].
+float TreePolicy::state_gap(std::size_t entry, const Seen& seen) const {
+  const std::size_t size = seen.point.size();
+  return square_distance(point_.data() + entry * size, seen.point.data(), size);
 }
 
 /// |c(s_e, a) - c(s, a)|² [m²].
-float TreePolicy::contact_gap(std::size_t entry, Seen& query) const {
+float TreePolicy::contact_gap(std::size_t entry, Seen& seen) const {
   const int action = action_[entry];
   const auto size = static_cast<std::size_t>(contact_.size());
-  std::vector<float>& there = query.contacts[static_cast<std::size_t>(action)];
+  std::vector<float>& there = seen.contacts[static_cast<std::size_t>(action)];
   if (there.empty()) {
     there.resize(size);
-    contact_.describe(query.state, action, there);
+    contact_.describe(seen.query.state, action, there);
   }
-  const float* here = contacts_.data() + entry * size;
-  float sum = 0.0F;
-  for (std::size_t k = 0; k < size; ++k) sum += (here[k] - there[k]) * (here[k] - there[k]);
-  return sum;
+  return square_distance(contacts_.data() + entry * size, there.data(), size);
 }
 
-/// Lowers `best` to the best entry of [begin, end), at most kBlock of them. What the push meets is
-/// looked at only where the states are near enough.
-void TreePolicy::scan(int begin, int end, Seen& query, std::span<const int> used,
-                      Choice& best) const {
-  std::array<float, kBlock> gap{}, score{};
-  const auto n = static_cast<std::size_t>(end - begin), at = static_cast<std::size_t>(begin);
-  for (std::size_t c = 0; c < query.point.size(); ++c) {
-    const float* x = coordinate_[c].data() + at;
-    for (std::size_t k = 0; k < n; ++k) gap[k] += (x[k] - query.point[c]) * (x[k] - query.point[c]);
+/// Lowers `best` to the best entry of a cell. What the push meets is looked at only where the
+/// states are near enough.
+void TreePolicy::scan(const Cell& cell, Seen& seen, Choice& best) const {
+  for (const int entry : cell.entries) {
+    const auto k = static_cast<std::size_t>(entry);
+    const float gap = state_gap(k, seen);
+    if (depth_[k] + kDistanceWeight * std::sqrt(gap) > best.score) continue;
+    if (std::ranges::find(seen.query.used, entry) != seen.query.used.end()) continue;
+    const float distance = std::sqrt(gap + contact_gap(k, seen));
+    const float score = depth_[k] + kDistanceWeight * distance;
+    if (score < best.score || (score == best.score && entry < best.entry))
+      best = {entry, action_[k], score, distance};
   }
-  for (std::size_t k = 0; k < n; ++k)
-    score[k] = depth_[at + k] + kDistanceWeight * std::sqrt(gap[k]);
-  for (const int u : used)
-    if (u >= begin && u < end) score[static_cast<std::size_t>(u - begin)] = kNone;
-  const auto judge = [&](std::size_t k) {
-    if (score[k] > best.score || score[k] == kNone) return;
-    const int entry = begin + static_cast<int>(k);
-    const float distance = std::sqrt(gap[k] + contact_gap(at + k, query));
-    const float whole = depth_[at + k] + kDistanceWeight * distance;
-    if (whole < best.score || (whole == best.score && entry < best.entry))
-      best = {entry, action_[at + k], whole, distance};
-  };
-  // The first one spares most of the others.
-  const auto least = std::min_element(score.begin(), score.begin() + static_cast<long>(n));
-  judge(static_cast<std::size_t>(least - score.begin()));
-  for (std::size_t k = 0; k < n; ++k) judge(k);
+}
+
+/// Cells in the order of the least score that an entry of theirs can have, until none can be better
+/// than the best entry seen.
+TreePolicy::Choice TreePolicy::choose_one(const Query& query) const {
+  Seen seen{query, std::vector<float>(static_cast<std::size_t>(metric_.size())),
+            std::vector<std::vector<float>>(static_cast<std::size_t>(headings_))};
+  metric_.embed(query.state, seen.point);
+  std::vector<std::pair<float, const Cell*>> order;
+  for (const Cell& cell : cells_) {
+    const float dx = outside(seen.point[0], cell.x), dy = outside(seen.point[1], cell.y);
+    order.emplace_back(cell.least + kDistanceWeight * std::hypot(dx, dy), &cell);
+  }
+  std::ranges::sort(order, {}, &std::pair<float, const Cell*>::first);
+  Choice best{-1, 0, kNone, kNone};
+  for (const auto& [bound, cell] : order) {
+    if (bound > best.score + kRounding || bound == kNone) break;
+    scan(*cell, seen, best);
+  }
+  return best;
 }
 
 std::vector<TreePolicy::Choice> TreePolicy::choose(std::span<const Query> queries) const {
-  std::vector<Choice> best(queries.size(), {-1, 0, kNone, kNone});
-  std::vector<Seen> seen;
-  for (const Query& q : queries) {
-    seen.push_back({q.state, std::vector<float>(coordinate_.size()),
-                    std::vector<std::vector<float>>(static_cast<std::size_t>(headings_))});
-    metric_.embed(q.state, seen.back().point);
-  }
-  for (int begin = 0; begin < size(); begin += kBlock)
-    for (std::size_t q = 0; q < queries.size(); ++q)
-      scan(begin, std::min(begin + kBlock, size()), seen[q], queries[q].used, best[q]);
-  return best;
+  std::vector<Choice> out;
+  for (const Query& query : queries) out.push_back(choose_one(query));
+  return out;
 }
 
 }  // namespace rtg

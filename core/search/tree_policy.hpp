@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -32,6 +33,9 @@ class TreePolicy {
   /// Adds `price` to the depth of the entries from index `first` on.
   void raise(int first, double price);
 
+  /// Forgets the entries from index `first` on.
+  void forget(int first);
+
   /// Number of entries.
   int size() const { return static_cast<int>(depth_.size()); }
 
@@ -51,23 +55,36 @@ class TreePolicy {
   std::vector<Choice> choose(std::span<const Query> queries) const;
 
  private:
+  /// Entries whose robot is in one square of the plane.
+  struct Cell {
+    float x = 0.0F, y = 0.0F;  // lower corner [m]
+    float least = 0.0F;        // depth of them all at least
+    std::vector<int> entries;  // ascending
+  };
   /// A query in the coordinates of the entries.
   struct Seen {
-    const Poses& state;
+    const Query& query;
     std::vector<float> point;                  // embedding
     std::vector<std::vector<float>> contacts;  // per action, empty until it is needed
   };
-  void scan(int begin, int end, Seen& query, std::span<const int> used, Choice& best) const;
-  float contact_gap(std::size_t entry, Seen& query) const;
+  Choice choose_one(const Query& query) const;
+  void scan(const Cell& cell, Seen& seen, Choice& best) const;
+  float state_gap(std::size_t entry, const Seen& seen) const;
+  float contact_gap(std::size_t entry, Seen& seen) const;
+  void place(int entry);
+  void bound_cells();
 
   StateMetric metric_;
   PushContact contact_;
   int headings_;
-  std::vector<std::vector<float>> coordinate_;  // [size of embedding][entry]
+  std::vector<float> point_;     // embeddings of the entries, one after the other
+  std::vector<float> contacts_;  // PushContact of them, likewise
   std::vector<float> depth_;
   std::vector<int> action_;
-  std::vector<float> contacts_;              // PushContact of the entries, one after the other
-  std::unordered_set<std::uint64_t> known_;  // key_of() of states and actions
+  std::vector<std::uint64_t> key_;           // key_of() of state and action
+  std::unordered_set<std::uint64_t> known_;  // the same
+  std::vector<Cell> cells_;
+  std::unordered_map<std::uint64_t, std::size_t> cell_at_;  // index of the square's cell
 };
 
 }  // namespace rtg

@@ -6,15 +6,27 @@
 namespace rtg {
 namespace {
 
+/// Vertices, as columns; swept() makes shapes of twice as many as a body has.
+using Points = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 2 * kMaxVertices>;
+
+/// The vertices of b in the frame of a.
+Points local_points(const Pose& pose_a, const Polygon& b, const Pose& pose_b) {
+  Points out(2, static_cast<Eigen::Index>(b.size()));
+  for (std::size_t k = 0; k < b.size(); ++k)
+    out.col(static_cast<Eigen::Index>(k)) = to_local(pose_a, to_world(pose_b, b.vertices[k]));
+  return out;
+}
+
 double one_sided(const Polygon& a, const Pose& pose_a, const Polygon& b, const Pose& pose_b) {
+  const Points points = local_points(pose_a, b, pose_b);
   double best = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < a.size(); ++k) {
     const Vector2d& v = a.vertices[k];
     const Vector2d edge = a.vertices[(k + 1) % a.size()] - v;
     const Vector2d normal = Vector2d(edge.y(), -edge.x()).normalized();
     double gap = std::numeric_limits<double>::infinity();
-    for (const Vector2d& w : b.vertices)
-      gap = std::min(gap, normal.dot(to_local(pose_a, to_world(pose_b, w)) - v));
+    for (Eigen::Index w = 0; w < points.cols(); ++w)
+      gap = std::min(gap, normal.dot(points.col(w) - v));
     best = std::max(best, gap);
   }
   return best;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <stdexcept>
 
 #include "tests/support/gathering.hpp"
 
@@ -102,31 +103,28 @@ TEST(LearnEpisode, LearnsNothingFromOneThatFails) {
   EXPECT_EQ(policy.size(), 0);
 }
 
-/// A policy of depth 3 at x = 0, and with it what a round has found: depth 1 at x = 3. The rating
+/// A policy of depth 3 at x = 0, and behind it what a round has found: depth 1 at x = 3. The rating
 /// is a table of the price that the round's entry bears; -1 stands for the policy without it.
 struct Climb : ::testing::Test {
-  TreePolicy before{gathering()}, after{gathering()};
+  TreePolicy policy{gathering()};
   std::vector<double> tried;
-
-  Climb() {
-    before.add(robot_at(0.0), 7, 3.0);
-    after.add(robot_at(0.0), 7, 3.0);
-    after.add(robot_at(3.0), 8, 1.0);
-  }
 
   /// Price of the better policy; -1: the one before.
   double climb(const std::map<double, double>& ratings) {
+    policy.forget(0);
+    policy.add(robot_at(0.0), 7, 3.0);
+    policy.add(robot_at(3.0), 8, 1.0);
     const auto rated = [&](double price) {
       return ratings.contains(price) ? ratings.at(price) : 0.5;
     };
     tried.clear();
-    const auto rate = [&](const TreePolicy& policy) {
-      tried.push_back(price(policy));
+    const auto rate = [&](const TreePolicy& p) {
+      tried.push_back(price(p));
       return rated(tried.back());
     };
-    const TreePolicy best = climbed(before, rated(-1.0), after, rate);
-    EXPECT_EQ(depth_at(best, 0.0), 3.0) << "what was known keeps its depth";
-    return price(best);
+    rtg::climb(policy, 1, rated(-1.0), rate);
+    EXPECT_EQ(depth_at(policy, 0.0), 3.0) << "what was known keeps its depth";
+    return price(policy);
   }
 
   static double price(const TreePolicy& policy) {
@@ -154,9 +152,9 @@ TEST_F(Climb, LooksNoFurtherThanPerfection) {
 }
 
 TEST_F(Climb, AsksNothingWhereARoundHasFoundNothing) {
-  after = before;
-  EXPECT_EQ(climb({}), -1.0);
-  EXPECT_TRUE(tried.empty());
+  policy.add(robot_at(0.0), 7, 3.0);
+  rtg::climb(policy, 1, 0.5, [](const TreePolicy&) -> double { throw std::logic_error("asked"); });
+  EXPECT_EQ(policy.size(), 1);
 }
 
 }  // namespace

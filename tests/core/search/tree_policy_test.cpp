@@ -14,8 +14,6 @@ namespace {
 
 using testing::gathering;
 
-constexpr int kBlock = 512;  // entries that the policy scans at a time
-
 struct Entry {
   Poses state;
   int action = 0;
@@ -92,8 +90,8 @@ Policy random_policy(int size) {
   return Policy(std::move(entries));
 }
 
-TEST(TreePolicy, ChoosesAsBruteForceDoesOverSeveralBlocks) {
-  const Policy tree = random_policy(2 * kBlock + 300);
+TEST(TreePolicy, ChoosesAsBruteForceDoes) {
+  const Policy tree = random_policy(1300);
   Rng rng(12);
   std::vector<TreePolicy::Query> queries;
   for (int q = 0; q < 200; ++q) {
@@ -115,9 +113,16 @@ TEST(TreePolicy, ChoosesAsBruteForceDoesOverSeveralBlocks) {
   }
 }
 
-TEST(TreePolicy, FindsEveryEntryAtTheEdgesOfBlocks) {
-  Policy tree = random_policy(2 * kBlock);
-  for (const int k : {0, 1, kBlock - 1, kBlock, 2 * kBlock - 1})
+TEST(TreePolicy, FindsEveryEntryAlsoAtTheEdgesOfCells) {
+  Rng rng(16);
+  std::vector<Entry> entries;
+  for (int x = -8; x <= 8; ++x)
+    for (int y = -8; y <= 8; ++y) {
+      entries.push_back(random_entry(rng));
+      entries.back().state[0] = {0.5 * x, 0.5 * y, 0.0};
+    }
+  const Policy tree(std::move(entries));
+  for (int k = 0; k < tree.policy.size(); ++k)
     EXPECT_EQ(tree.choose({tree.entries[static_cast<std::size_t>(k)].state, {}}).entry, k);
 }
 
@@ -127,7 +132,7 @@ TEST(TreePolicy, TiesGoToTheOldestEntry) {
   for (std::size_t k = 1; k < here.state.size(); ++k)
     here.state[k].x += 50.0;  // no push meets them
   std::vector<Entry> entries;
-  for (int k = 0; k < 3 * kBlock; ++k) {
+  for (int k = 0; k < 1500; ++k) {
     entries.push_back(here);
     entries.back().state[0].theta = k;  // all the same to the metric
     entries.back().action = k % 48;
@@ -135,7 +140,7 @@ TEST(TreePolicy, TiesGoToTheOldestEntry) {
   }
   const Policy tree(std::move(entries));
   TreePolicy::Query query{here.state, {}};
-  for (int k = 40; k < 3 * kBlock; ++k) {
+  for (int k = 40; k < 1500; ++k) {
     const TreePolicy::Choice choice = tree.choose(query);
     ASSERT_EQ(choice.entry, k);
     ASSERT_EQ(choice.action, k % 48);
@@ -190,6 +195,27 @@ TEST(TreePolicy, RaisesTheDepthOfItsLastEntries) {
     const TreePolicy::Choice choice = tree.choose({e.state, {}});
     EXPECT_EQ(choice.entry, k);
     EXPECT_EQ(choice.score, e.depth + (k == 0 ? 0.0 : 2.5));
+  }
+}
+
+TEST(TreePolicy, ForgetsItsLastEntriesAndLearnsThemAgain) {
+  Policy tree = random_policy(400);
+  const auto entry = [&](int k) -> const Entry& {
+    return tree.entries[static_cast<std::size_t>(k)];
+  };
+  tree.policy.raise(300, 100.0);
+  tree.policy.forget(150);
+  EXPECT_EQ(tree.policy.size(), 150);
+  for (int k = 0; k < 400; ++k) {
+    const TreePolicy::Query query{entry(k).state, {}};
+    EXPECT_EQ(tree.choose(query).entry, tree.best(query));
+  }
+  EXPECT_FALSE(tree.policy.add(entry(149).state, entry(149).action, entry(149).depth));
+  for (int k = 150; k < 400; ++k)
+    EXPECT_TRUE(tree.policy.add(entry(k).state, entry(k).action, entry(k).depth));
+  for (int k = 0; k < 400; ++k) {
+    EXPECT_EQ(tree.choose({entry(k).state, {}}).entry, k);
+    EXPECT_EQ(tree.choose({entry(k).state, {}}).score, entry(k).depth);
   }
 }
 
