@@ -32,7 +32,8 @@ std::vector<StretchProbe::Twin> StretchProbe::draw(std::span<const Candidate> ca
   std::vector<Twin> twins;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const Candidate& c = candidates[k];
-    if (c.miss > config_.gap_tolerance || c.turn > config_.turn_tolerance) continue;
+    const bool missed = c.miss > config_.gap_tolerance && !succeeded(task_, c.end);
+    if (missed || c.turn > config_.turn_tolerance) continue;
     int left = config_.twins;
     for (int draws = 0; left > 0 && draws < kDraws * config_.twins; ++draws) {
       Poses start = disturbed(c.start);

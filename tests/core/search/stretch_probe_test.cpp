@@ -92,6 +92,18 @@ TEST(StretchProbe, LeavesPushesThatMissTheirEndOrTurnAnObject) {
   EXPECT_EQ(candidates[1].stretch, 1.0);
 }
 
+TEST(StretchProbe, LooksAtAMissThatReachesTheGoal) {
+  const Task task = gathering();
+  const Poses goal{{0, -3, 0}, {-1.3, 0, 0}, {0, 0, 0}, {1.3, 0, 0}};
+  ASSERT_TRUE(succeeded(task, goal));
+  std::vector<Candidate> candidates{moving(task.start, goal)};
+  candidates[0].miss = SearchConfig{}.gap_tolerance + 0.01;
+  std::vector<ReplayJob> asked;
+  SearchStats stats;
+  StretchProbe(task, {}, 1).measure(candidates, replay_by(same, asked), stats);
+  EXPECT_EQ(asked.size(), SearchConfig{}.twins);
+}
+
 TEST(StretchProbe, CountsTwinsThatTheSimulatorRejects) {
   const Task task = gathering();
   const ReplayBatch rejecting = [](std::span<const ReplayJob> jobs) {
