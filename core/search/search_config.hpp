@@ -18,7 +18,7 @@ struct SearchConfig {
   Ranking ranking = Ranking::kStartDistance;
   int transitions = 120000;     // stored in all
   double rollout_share = 0.5;   // of them from roll-outs of the tree policy
-  int breadth = 32;             // B, nodes kept per layer
+  int breadth = 12;             // B, nodes kept per layer
   int depth = 24;               // D, layers per round at most
   double contact_quota = 0.4;   // share of the beam reserved for nodes whose step moved an object
   double random_share = 0.15;   // share of the beam drawn at random among the rest
