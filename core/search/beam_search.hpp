@@ -44,8 +44,8 @@ class BeamSearch {
   };
 
   /// One layer: solves for every action of every node of the beam, replays what converged, chooses
-  /// the next beam. Nothing can follow a plan through a push that makes more of any error of its
-  /// start (repeatable()): it is no better than one that misses.
+  /// the next beam. Nothing can follow a plan through a push that turns an object or stretches
+  /// errors by more than the tolerances (repeatable()): it is no better than one that misses.
   /// All replayed candidates come back, these too; empty if the tree cannot grow.
   std::vector<Growth> grow(const SolveBatch& solve, const ReplayBatch& replay, SearchStats& stats);
 

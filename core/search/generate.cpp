@@ -21,7 +21,7 @@ enum Stream : std::uint64_t { kTrees = 1, kProbing, kRollOuts, kNoise, kEvaluati
 
 constexpr int kWave = 50;         // roll-outs that run in lockstep
 constexpr int kProbes = 50;       // episodes that find a round's target and judge its policy
-constexpr double kArrived = 0.5;  // a node so near is at its target [m], in the policy's metric
+constexpr double kArrived = 0.5;  // a node so near is at its target [m], as in StateMetric
 constexpr int kMaxBarren = 8;     // rounds or waves without a transition before it gives up
 
 double quantile(std::vector<double> values, double share) {
@@ -92,7 +92,7 @@ class Generation {
     grow_towards(lost_state(probes).value_or(starts[0]), limit);
     replay_chains_from(known, before, limit);
     const auto rate = [&](const TreePolicy& policy) { return rating(follow(policy, starts)); };
-    climb(policy_, proven, rating(probes), rate);
+    if (!cancelled()) climb(policy_, proven, rating(probes), rate);
     note_nodes(known);
     ++rounds_;
     return stored() > before;

@@ -10,14 +10,16 @@ namespace rtg {
 
 /// How a push meets the bodies before it: numbers that are close for two states in which the same
 /// action does about the same. Of every body but the robot, W the area that the robot sweeps if
-/// nothing stops it, d the direction of the push:
+/// nothing stops it, the edge of the arena included, d the direction of the push:
 ///
-///   cut  = -separation(W, body) where they overlap, else 0 [m]: how far the robot would push it at
-///          most, or how deep it would graze it;
+///   cut  = -separation(W, body) where they overlap, else 0 [m]: how far the robot would push it,
+///   up
+///          to about half the widths of both, or how deep it would graze it;
 ///   side = cut · (t_body - t_robot)·d⊥ / 1 m: as far as it is met, how far to the left.
 class PushContact {
  public:
-  /// `heading`: the robot's, which every push holds; states with another one cost more.
+  /// `heading`: the robot's, which every push holds to about 1e-3 rad; states in which it differs
+  /// by a bit, as contacts leave it, cost more.
   PushContact(Scene scene, PushConfig push, double heading);
 
   /// Two numbers per body but the robot.

@@ -29,9 +29,10 @@ class StretchProbe {
   StretchProbe(const Task& task, const SearchConfig& config, std::uint64_t seed);
 
   /// Fills in `stretch` of the replayed candidates that a plan may go through: they turn no object
-  /// by more than the tolerance of the config and miss by no more, unless they reach the goal.
-  /// Draws config.twins twins each, bodies moved by up to ± config.twin_jitter in x and y, objects
-  /// turned by up to 2/3 rad per metre of it; fixed bodies stay.
+  /// by more than config.turn_tolerance, and miss by no more than config.gap_tolerance or reach the
+  /// goal. Each gets config.twins twins, bodies moved by up to ± config.twin_jitter in x and y,
+  /// objects turned by up to 2/3 rad per metre of it; fixed bodies stay. Without a legal twin that
+  /// the simulator finishes it stays 1.
   void measure(std::span<Candidate> candidates, const ReplayBatch& replay, SearchStats& stats);
 
  private:

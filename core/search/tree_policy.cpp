@@ -14,7 +14,7 @@ namespace {
 constexpr float kNone = std::numeric_limits<float>::infinity();
 constexpr float kDistanceWeight = 16.0F;  // actions per metre
 constexpr float kCell = 0.5F;             // side of a cell [m]
-constexpr float kRounding = 1e-3F;        // of a score [actions]
+constexpr float kRounding = 1e-5F;        // of a score, relative
 
 /// Squared distance of two points of `size` coordinates.
 float square_distance(const float* a, const float* b, std::size_t size) {
@@ -137,7 +137,7 @@ TreePolicy::Choice TreePolicy::choose_one(const Query& query) const {
   std::ranges::sort(order, {}, &std::pair<float, const Cell*>::first);
   Choice best{-1, 0, kNone, kNone};
   for (const auto& [bound, cell] : order) {
-    if (bound > best.score + kRounding || bound == kNone) break;
+    if (bound * (1.0F - kRounding) > best.score || bound == kNone) break;
     scan(*cell, seen, best);
   }
   return best;

@@ -20,8 +20,8 @@ namespace rtg {
 /// s the current state and (s_e, a) those of the entry, |s_e - s| their distance as in StateMetric,
 /// c what the push meets there (PushContact): the same action from a state that is near may hit an
 /// object that it only brushes in the other. depth is the number of actions from there to success
-/// and a price for those that are hard to repeat (raise()). It learns nothing but these prices, so
-/// its success rate judges the data.
+/// and a price for those that are hard to repeat (raise()). It learns nothing but
+/// these prices and which rounds to leave out, so its success rate judges the data.
 class TreePolicy {
  public:
   explicit TreePolicy(const Task& task);
@@ -30,7 +30,7 @@ class TreePolicy {
   /// new: of a state and action the first entry stays.
   bool add(const Poses& state, int action, double depth);
 
-  /// Adds `price` to the depth of the entries from index `first` on.
+  /// Adds `price`, also a negative one, to the depth of the entries from index `first` on.
   void raise(int first, double price);
 
   /// Forgets the entries from index `first` on.

@@ -6,7 +6,7 @@
 namespace rtg {
 namespace {
 
-/// Vertices, as columns; swept() makes shapes of twice as many as a body has.
+/// Vertices, as columns; of what a shape sweeps there are some more than of a body.
 using Points = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 2 * kMaxVertices>;
 
 /// The vertices of b in the frame of a.

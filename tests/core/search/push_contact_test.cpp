@@ -34,6 +34,11 @@ TEST(PushContact, CutIsHowFarTheRobotReachesIntoABox) {
   for (std::size_t k = 1; k < out.size(); ++k) EXPECT_EQ(out[k], 0.0F);
 }
 
+TEST(PushContact, ABoxCloserByIsCutByHalfTheWidthsOfBoth) {
+  // Sideways it would be free sooner than along the way.
+  EXPECT_NEAR(described(box_at(1.5, 0.0))[0], std::sqrt(3.0) / 2.0 * 0.8 + 0.6, kTolerance);
+}
+
 TEST(PushContact, SideIsTheCutTimesHowFarTheBoxLiesToTheLeft) {
   EXPECT_NEAR(described(box_at(3.0, 0.3))[3], 0.4 * 0.3, kTolerance);
   EXPECT_NEAR(described(box_at(3.0, -0.3))[3], -0.4 * 0.3, kTolerance);

@@ -113,17 +113,26 @@ TEST(TreePolicy, ChoosesAsBruteForceDoes) {
   }
 }
 
-TEST(TreePolicy, FindsEveryEntryAlsoAtTheEdgesOfCells) {
+TEST(TreePolicy, ChoosesAsBruteForceDoesAtTheEdgesOfCells) {
   Rng rng(16);
+  const Entry one = random_entry(rng);
+  const auto at = [&](double x, double y) {
+    Entry entry = one;
+    entry.state[0] = {x, y, 0.0};
+    entry.depth = 1.0 + rng.below(3);
+    return entry;
+  };
   std::vector<Entry> entries;
   for (int x = -8; x <= 8; ++x)
-    for (int y = -8; y <= 8; ++y) {
-      entries.push_back(random_entry(rng));
-      entries.back().state[0] = {0.5 * x, 0.5 * y, 0.0};
-    }
+    for (int y = -8; y <= 8; ++y)
+      for (const double off : {-0.01, 0.0, 0.01, 0.25})
+        entries.push_back(at(0.5 * x + off, 0.5 * y - off));
   const Policy tree(std::move(entries));
-  for (int k = 0; k < tree.policy.size(); ++k)
-    EXPECT_EQ(tree.choose({tree.entries[static_cast<std::size_t>(k)].state, {}}).entry, k);
+  for (int x = -9; x <= 9; ++x)
+    for (int y = -9; y <= 9; ++y) {
+      const TreePolicy::Query query{at(0.5 * x + 0.02, 0.5 * y + 0.02).state, {}};
+      ASSERT_EQ(tree.choose(query).entry, tree.best(query));
+    }
 }
 
 TEST(TreePolicy, TiesGoToTheOldestEntry) {
@@ -147,6 +156,17 @@ TEST(TreePolicy, TiesGoToTheOldestEntry) {
     query.used.push_back(k);
   }
   EXPECT_EQ(tree.choose(query).entry, 0);
+}
+
+TEST(TreePolicy, TiesGoToTheOldestEntryOfAnyCell) {
+  Entry left{{{-0.25, 0, 0}, {6, 6, 0}, {-6, 6, 0}, {-6, -6, 0}}, 1, 4.0}, right = left;
+  right.state[0].x = 0.25;
+  Poses between = left.state;
+  between[0].x = 0.0;  // on the edge of the cell to the right: that one comes first
+  EXPECT_EQ(Policy({left, right}).choose({between, {}}).action, 1);
+  right.action = 2;
+  EXPECT_EQ(Policy({left, right}).choose({between, {}}).action, 1);
+  EXPECT_EQ(Policy({right, left}).choose({between, {}}).action, 2);
 }
 
 TEST(TreePolicy, PrefersAPushThatMeetsTheSameToANearerOneThatMeetsNothing) {
@@ -198,6 +218,17 @@ TEST(TreePolicy, RaisesTheDepthOfItsLastEntries) {
   }
 }
 
+TEST(TreePolicy, APriceCanBeTakenBack) {
+  Policy tree = random_policy(400);
+  tree.policy.raise(100, 100.0);
+  tree.policy.raise(100, -100.0);
+  Rng rng(17);
+  for (int q = 0; q < 50; ++q) {
+    const TreePolicy::Query query{random_entry(rng).state, {}};
+    EXPECT_EQ(tree.choose(query).entry, tree.best(query));
+  }
+}
+
 TEST(TreePolicy, ForgetsItsLastEntriesAndLearnsThemAgain) {
   Policy tree = random_policy(400);
   const auto entry = [&](int k) -> const Entry& {
@@ -220,7 +251,6 @@ TEST(TreePolicy, ForgetsItsLastEntriesAndLearnsThemAgain) {
 }
 
 TEST(TreePolicy, KnowsStatesThatLookTheSame) {
-  Rng rng(15);
   const Policy tree = random_policy(100);
   Poses turned = tree.entries[50].state;
   turned[0].theta += 1.0471975511965977;  // a sixth of a hexagon
