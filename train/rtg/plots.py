@@ -103,7 +103,7 @@ def replay_gap(path: Path, title: str, gaps: Floats) -> None:
         axis.hist(values, bins=edges.tolist(), color=_BLUE, alpha=0.85)
         axis.set_xscale("log")
         if len(values):
-            for share, words in ((50, "median"), (90, "90 %")):
+            for share, words in ((50, "median"), (90, "90th percentile")):
                 at = float(np.percentile(values, share))
                 axis.axvline(at, color=_ORANGE, lw=1.5, ls="-" if share == 50 else "--")
                 axis.annotate(
