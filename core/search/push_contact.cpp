@@ -16,20 +16,18 @@ PushContact::PushContact(Scene scene, PushConfig push, double heading)
 
 void PushContact::describe(const Poses& state, int action, std::span<float> out) const {
   std::fill(out.begin(), out.end(), 0.0F);
-  const Vector2d d = direction(action, push_);
-  const Polygon& hand = scene_.bodies[0].shape;
-  const bool held = state[0].theta == heading_;
-  const Polygon turned = held ? Polygon{} : swept(hand, state[0].theta, push_.stride * d);
-  const Polygon& way = held ? ways_[static_cast<std::size_t>(action)] : turned;
-  const double reach = push_.stride + bounding_radius(hand);
+  const Vector2d ahead = direction(action, push_);
+  const Polygon& way = ways_[static_cast<std::size_t>(action)];
+  const Pose robot{state[0].x, state[0].y, heading_};
+  const double reach = push_.stride + bounding_radius(scene_.bodies[0].shape);
   const std::size_t bodies = scene_.size() - 1;
   for (std::size_t k = 1; k <= bodies; ++k) {
     const Polygon& shape = scene_.bodies[k].shape;
-    const Vector2d arm = state[k].position() - state[0].position();
+    const Vector2d arm = state[k].position() - robot.position();
     if (arm.norm() > reach + bounding_radius(shape)) continue;
-    const double cut = std::max(0.0, -separation(way, state[0], shape, state[k]));
+    const double cut = std::max(0.0, -separation(way, robot, shape, state[k]));
     out[k - 1] = static_cast<float>(cut);
-    out[bodies + k - 1] = static_cast<float>(cut * (d.x() * arm.y() - d.y() * arm.x()));
+    out[bodies + k - 1] = static_cast<float>(cut * (ahead.x() * arm.y() - ahead.y() * arm.x()));
   }
 }
 

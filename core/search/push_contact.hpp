@@ -18,8 +18,8 @@ namespace rtg {
 ///   side = cut · (t_body - t_robot)·d⊥ / 1 m: as far as it is met, how far to the left.
 class PushContact {
  public:
-  /// `heading`: the robot's, which every push holds to about 1e-3 rad; states in which it differs
-  /// by a bit, as contacts leave it, cost more.
+  /// `heading`: the robot's. Every push holds it to about 1e-3 rad, so that of a state does not
+  /// matter.
   PushContact(Scene scene, PushConfig push, double heading);
 
   /// Two numbers per body but the robot.
@@ -32,7 +32,7 @@ class PushContact {
   Scene scene_;
   PushConfig push_;
   double heading_;
-  std::vector<Polygon> ways_;  // W of each action, in the robot's frame
+  std::vector<Polygon> ways_;  // W of each action, in a frame turned by heading_
 };
 
 }  // namespace rtg

@@ -55,6 +55,13 @@ TEST(PushContact, WhatTheRobotDoesNotMeetCountsNothing) {
     for (const float x : described(state)) EXPECT_EQ(x, 0.0F);
 }
 
+TEST(PushContact, TheHeadingThatAContactLeavesDoesNotMatter) {
+  Poses state = box_at(2.7, 0.4);
+  const std::vector<float> expected = described(state, 3);
+  state[0].theta = 1e-3;
+  EXPECT_EQ(described(state, 3), expected);
+}
+
 TEST(PushContact, IsTheSameForATurnedScene) {
   const double turn = std::numbers::pi / 3.0;  // 8 of 48 headings
   Poses state = box_at(2.7, 0.4);

@@ -38,8 +38,7 @@ struct RollOutTest : ::testing::Test {
     return {end, job.action != rejected, 0.0};
   }
 
-  /// An entry at the start; all are alike to the policy: its metric knows no robot's heading, and
-  /// the pushes meet nothing.
+  /// An entry at the start; all are alike to the policy, which knows no robot's heading.
   void add_entry(int action) {
     Poses state = task.start;
     state[0].theta = policy.size();

@@ -137,9 +137,7 @@ TEST(TreePolicy, ChoosesAsBruteForceDoesAtTheEdgesOfCells) {
 
 TEST(TreePolicy, TiesGoToTheOldestEntry) {
   Rng rng(13);
-  Entry here = random_entry(rng);
-  for (std::size_t k = 1; k < here.state.size(); ++k)
-    here.state[k].x += 50.0;  // no push meets them
+  const Entry here = random_entry(rng);
   std::vector<Entry> entries;
   for (int k = 0; k < 1500; ++k) {
     entries.push_back(here);
