@@ -10,11 +10,10 @@ namespace rtg {
 
 /// How a push meets the bodies before it: numbers that are close for two states in which the same
 /// action does about the same. Of every body but the robot, W the area that the robot sweeps if
-/// nothing stops it, the edge of the arena included, d the direction of the push:
+/// nothing stops it, not even the edge of the arena, d the direction of the push:
 ///
-///   cut  = -separation(W, body) where they overlap, else 0 [m]: how far the robot would push it,
-///   up
-///          to about half the widths of both, or how deep it would graze it;
+///   cut  = -separation(W, body) where they overlap, else 0 [m]: how far the robot would push it
+///          (up to about half the widths of both), or how deep it would graze it;
 ///   side = cut · (t_body - t_robot)·d⊥ / 1 m: as far as it is met, how far to the left.
 class PushContact {
  public:
