@@ -17,7 +17,7 @@ namespace rtg {
 namespace {
 
 // Keys of the independent random streams of one run.
-enum Stream : std::uint64_t { kTrees = 1, kProbing, kRollOuts, kNoise, kEvaluation };
+enum Stream : std::uint64_t { kTrees = 1, kProbing, kRollOuts, kNoise, kEvaluation, kProving };
 
 constexpr int kWave = 50;         // roll-outs that run in lockstep
 constexpr int kProbes = 50;       // episodes that find a round's target and judge its policy
@@ -81,18 +81,20 @@ class Generation {
   }
 
   /// One round: trees grow to where the policy gets lost, or to a jittered start if it does not.
-  /// The policy takes up what they find as far as it does better with it. Whether anything was
-  /// stored.
+  /// The policy takes up what they find if it does better with it. Whether anything was stored.
   bool grow(long limit) {
     const long before = stored();
     const std::size_t known = search_.nodes().size();
-    const std::vector<Poses> starts = probe_starts();
+    const std::vector<Poses> starts = probe_starts(kProbing);
     const std::vector<Episode> probes = follow(policy_, starts);
     const int proven = policy_.size();
     grow_towards(lost_state(probes).value_or(starts[0]), limit);
     replay_chains_from(known, before, limit);
     const auto rate = [&](const TreePolicy& policy) { return rating(follow(policy, starts)); };
-    if (!cancelled()) climb(policy_, proven, rating(probes), rate);
+    const auto rate_anew = [this](const TreePolicy& policy) {
+      return rating(follow(policy, probe_starts(kProving)));
+    };
+    if (!cancelled()) climb(policy_, proven, rating(probes), rate, rate_anew);
     note_nodes(known);
     ++rounds_;
     return stored() > before;
@@ -118,8 +120,9 @@ class Generation {
     }
   }
 
-  std::vector<Poses> probe_starts() const {
-    Rng rng(seed_, kProbing << 32 | static_cast<std::uint64_t>(rounds_));
+  /// Starts of this round's probes.
+  std::vector<Poses> probe_starts(Stream stream) const {
+    Rng rng(seed_, stream << 32 | static_cast<std::uint64_t>(rounds_));
     return jittered_starts(task_, kProbes, config_.target_jitter, rng);
   }
 

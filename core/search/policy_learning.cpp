@@ -26,7 +26,8 @@ void learn_episode(TreePolicy& policy, std::span<const Transition> steps) {
     policy.add(steps[k].poses, steps[k].action, static_cast<double>(steps.size() - k));
 }
 
-void climb(TreePolicy& policy, int first, double before, const PolicyRating& rate) {
+void climb(TreePolicy& policy, int first, double before, const PolicyRating& rate,
+           const PolicyRating& rate_anew) {
   if (policy.size() == first) return;
   double price = 0.0, best_price = 0.0, best = -1.0;
   for (const double next : kPrices) {
@@ -38,10 +39,14 @@ void climb(TreePolicy& policy, int first, double before, const PolicyRating& rat
     }
     if (best >= 1.0) break;
   }
-  if (best < before)
-    policy.forget(first);
-  else
-    policy.raise(first, best_price - price);
+  policy.raise(first, best_price - price);
+  if (before == 0.0) return;
+  if (best > before) {
+    TreePolicy without = policy;
+    without.forget(first);
+    if (best + rate_anew(policy) > before + rate_anew(without)) return;
+  }
+  policy.forget(first);
 }
 
 }  // namespace rtg

@@ -31,8 +31,13 @@ using PolicyRating = std::function<double(const TreePolicy&)>;
 /// A depth counts the actions of a plan that nothing disturbs. Where pushes easily go astray it
 /// promises too much: the policy leaves what it knew for a plan that it cannot hold. So the new
 /// entries are tried at several prices on top of their depth, from none to one at which they serve
-/// only where nothing else is near. They keep the price that `rate` likes best, of equals the
-/// lowest, and are forgotten if the policy was better without them at every price.
-void climb(TreePolicy& policy, int first, double before, const PolicyRating& rate);
+/// only where nothing else is near, and get the price that `rate` likes best, of equals the lowest.
+///
+/// They are forgotten unless the policy is better with them, by `rate` and by the sum of `rate` and
+/// `rate_anew`, which has not been asked before: the best of several prices looks better than it
+/// is, and a policy that takes up what only seems as good gets a little worse with every round. One
+/// that solves nothing has nothing to lose and takes up all.
+void climb(TreePolicy& policy, int first, double before, const PolicyRating& rate,
+           const PolicyRating& rate_anew);
 
 }  // namespace rtg

@@ -103,28 +103,32 @@ TEST(LearnEpisode, LearnsNothingFromOneThatFails) {
   EXPECT_EQ(policy.size(), 0);
 }
 
-/// A policy of depth 3 at x = 0, and behind it what a round has found: depth 1 at x = 3. The rating
-/// is a table of the price that the round's entry bears; -1 stands for the policy without it.
+/// A policy of depth 3 at x = 0, and behind it what a round has found: depth 1 at x = 3. Ratings
+/// are a table of the price that the round's entry bears; -1 stands for the policy without it.
 struct Climb : ::testing::Test {
-  TreePolicy policy{gathering()};
-  std::vector<double> tried;
+  /// 0.5 where nothing is said.
+  using Ratings = std::map<double, double>;
 
-  /// Price of the better policy; -1: the one before.
-  double climb(const std::map<double, double>& ratings) {
+  TreePolicy policy{gathering()};
+  std::vector<double> tried, tried_anew;
+
+  /// Price in the policy that is left.
+  double climb(const Ratings& ratings, const Ratings& anew = {}) {
     policy.forget(0);
     policy.add(robot_at(0.0), 7, 3.0);
     policy.add(robot_at(3.0), 8, 1.0);
-    const auto rated = [&](double price) {
-      return ratings.contains(price) ? ratings.at(price) : 0.5;
-    };
     tried.clear();
-    const auto rate = [&](const TreePolicy& p) {
-      tried.push_back(price(p));
-      return rated(tried.back());
-    };
-    rtg::climb(policy, 1, rated(-1.0), rate);
+    tried_anew.clear();
+    const auto rate = [&](const TreePolicy& p) { return rated(ratings, tried, price(p)); };
+    const auto rate_anew = [&](const TreePolicy& p) { return rated(anew, tried_anew, price(p)); };
+    rtg::climb(policy, 1, ratings.contains(-1.0) ? ratings.at(-1.0) : 0.5, rate, rate_anew);
     EXPECT_EQ(depth_at(policy, 0.0), 3.0) << "what was known keeps its depth";
     return price(policy);
+  }
+
+  static double rated(const Ratings& ratings, std::vector<double>& tried, double price) {
+    tried.push_back(price);
+    return ratings.contains(price) ? ratings.at(price) : 0.5;
   }
 
   static double price(const TreePolicy& policy) {
@@ -135,25 +139,38 @@ struct Climb : ::testing::Test {
 TEST_F(Climb, TakesThePriceThatServesBest) {
   EXPECT_EQ(climb({{0.0, 0.1}, {8.0, 0.9}, {32.0, 0.7}, {-1.0, 0.8}}), 8.0);
   EXPECT_EQ(climb({{32.0, 0.6}}), 32.0);
+  EXPECT_EQ(climb({{0.0, 0.1}, {-1.0, 0.2}}), 8.0) << "of equals the lowest";
 }
 
-TEST_F(Climb, StaysWhereItWasIfThatIsBetterAtEveryPrice) {
+TEST_F(Climb, StaysWhereItWasUnlessItGetsBetter) {
   EXPECT_EQ(climb({{-1.0, 0.6}, {0.0, 0.4}}), -1.0);
+  EXPECT_EQ(climb({}), -1.0);
+  EXPECT_TRUE(tried_anew.empty());
 }
 
-TEST_F(Climb, PrefersTheLowestPriceAndTheNewPolicyAmongEquals) {
-  EXPECT_EQ(climb({}), 0.0);
-  EXPECT_EQ(climb({{0.0, 0.1}, {-1.0, 0.5}}), 8.0);
+TEST_F(Climb, AsksAnewWhetherItGetsBetter) {
+  const Ratings gain{{8.0, 0.75}};  // instead of 0.5
+  EXPECT_EQ(climb(gain, {{8.0, 0.375}}), 8.0);
+  EXPECT_EQ(tried_anew, (std::vector{8.0, -1.0}));
+  EXPECT_EQ(climb(gain, {{8.0, 0.25}}), -1.0);
+  EXPECT_EQ(climb(gain, {{-1.0, 0.75}}), -1.0);
+}
+
+TEST_F(Climb, TakesUpAllWhereNothingIsSolved) {
+  EXPECT_EQ(climb({{-1.0, 0.0}, {0.0, 0.0}, {8.0, 0.0}, {32.0, 0.0}}), 0.0);
+  EXPECT_EQ(climb({{-1.0, 0.0}, {0.0, 0.0}, {8.0, 0.25}}, {{32.0, 0.0}}), 32.0);
+  EXPECT_TRUE(tried_anew.empty());
 }
 
 TEST_F(Climb, LooksNoFurtherThanPerfection) {
-  EXPECT_EQ(climb({{8.0, 1.0}, {-1.0, 1.0}}), 8.0);
+  EXPECT_EQ(climb({{8.0, 1.0}, {-1.0, 0.75}}), 8.0);
   EXPECT_EQ(tried, (std::vector{0.0, 8.0}));
 }
 
 TEST_F(Climb, AsksNothingWhereARoundHasFoundNothing) {
   policy.add(robot_at(0.0), 7, 3.0);
-  rtg::climb(policy, 1, 0.5, [](const TreePolicy&) -> double { throw std::logic_error("asked"); });
+  const auto asked = [](const TreePolicy&) -> double { throw std::logic_error("asked"); };
+  rtg::climb(policy, 1, 0.5, asked, asked);
   EXPECT_EQ(policy.size(), 1);
 }
 
