@@ -231,7 +231,7 @@ class Generation {
     Rng rng(seed_, kEvaluation << 32);
     std::vector<Poses> starts;
     for (int k = 0; k < config_.evaluation_starts; ++k)
-      starts.push_back(jittered_start(task_, task_.start_jitter, rng).value_or(task_.start));
+      starts.push_back(jittered_start(task_, task_.start_jitter, rng));
     const PolicyScore score = evaluate_policy(task_, policy_, starts, seams_.replay, stats_);
     report_.tree_policy_success = score.success;
     report_.tree_policy_length_mean = score.length_mean;

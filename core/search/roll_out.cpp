@@ -86,7 +86,7 @@ std::vector<Poses> jittered_starts(const Task& task, int count, double amplitude
   std::vector<Poses> out;
   for (int k = 0; k < count; ++k) {
     const double share = rng.uniform(0.0, 1.0);
-    out.push_back(jittered_start(task, share * amplitude, rng).value_or(task.start));
+    out.push_back(jittered_start(task, share * amplitude, rng));
   }
   return out;
 }

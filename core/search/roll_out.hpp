@@ -36,7 +36,7 @@ std::vector<Episode> run_episodes(const Task& task, const TreePolicy& policy,
 inline constexpr double kLost = 1.0;
 
 /// Start states with object positions moved by up to ± an amplitude drawn from [0, amplitude] for
-/// each state; the nominal start if the task has no legal draw.
+/// each state.
 std::vector<Poses> jittered_starts(const Task& task, int count, double amplitude, Rng& rng);
 
 /// How the policy does from `starts`, without noise.

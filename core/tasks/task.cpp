@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include "core/world/separation.hpp"
 
@@ -19,6 +21,21 @@ bool holds(const GoalTerm& term, const Vector2d& x, double tighten) {
 
 bool movable_object(const Task& task, std::size_t body) {
   return body > 0 && !task.scene.bodies[body].fixed;
+}
+
+/// Nothing if it is not legal.
+std::optional<Poses> draw_start(const Task& task, double amplitude, Rng& rng) {
+  if (amplitude <= 0.0) return task.start;
+  Poses poses = task.start;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    if (!movable_object(task, i)) continue;
+    poses[i].x += rng.uniform(-amplitude, amplitude);
+    poses[i].y += rng.uniform(-amplitude, amplitude);
+    poses[i] = to_single(poses[i]);
+  }
+  if (first_overlap(task.scene, poses, kStartClearance) || succeeded(task, poses))
+    return std::nullopt;
+  return poses;
 }
 
 }  // namespace
@@ -67,19 +84,18 @@ int observation_size(const Task& task) {
   return size;
 }
 
-std::optional<Poses> jittered_start(const Task& task, double amplitude, Rng& rng) {
-  if (amplitude <= 0.0) return task.start;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    Poses poses = task.start;
-    for (std::size_t i = 1; i < poses.size(); ++i) {
-      if (!movable_object(task, i)) continue;
-      poses[i].x += rng.uniform(-amplitude, amplitude);
-      poses[i].y += rng.uniform(-amplitude, amplitude);
-      poses[i] = to_single(poses[i]);
-    }
-    if (!first_overlap(task.scene, poses, kStartClearance) && !succeeded(task, poses)) return poses;
-  }
-  return std::nullopt;
+Poses jittered_start(const Task& task, double amplitude, Rng& rng) {
+  for (int attempt = 0; attempt < kAttempts; ++attempt)
+    if (std::optional<Poses> poses = draw_start(task, amplitude, rng)) return *std::move(poses);
+  throw std::invalid_argument("no start without overlap among " + std::to_string(kAttempts) +
+                              " draws with jitter " + std::to_string(amplitude));
+}
+
+bool allows_jitter(const Task& task, double amplitude) {
+  Rng rng(1);
+  for (int draw = 0, legal = 0; draw < 250; ++draw)
+    if (draw_start(task, amplitude, rng) && ++legal == 5) return true;
+  return false;
 }
 
 }  // namespace rtg

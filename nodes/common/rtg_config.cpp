@@ -12,6 +12,7 @@
 #include "nodes/common/config_overrides.hpp"
 #include "nodes/common/content_hash.hpp"
 #include "nodes/common/field_writer.hpp"
+#include "nodes/common/start_checks.hpp"
 #include "nodes/common/task_section.hpp"
 #include "nodes/common/yaml_parser.hpp"
 
@@ -147,6 +148,7 @@ RtgConfig read_config(const ConfigNode& root) {
   read_preset_section(root, "train", train_preset, config.train);
   read_section(root, "run", config.run);
   check_physics(root, config.physics);
+  check_jitters(config, root);
   check_bus(root, config.run.bus);
   if (config.run.workers == 0)
     config.run.workers = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 1024);

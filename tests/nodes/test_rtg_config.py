@@ -81,6 +81,37 @@ def test_a_mistake_in_a_setting_is_named_with_the_flag(
     assert (done.returncode, done.stdout) == (2, "")
 
 
+WALLS = """\
+    - {name: left, kind: wall, fixed: true, shape: {box: [0.2, 1]}, start: [2.37, 0, 0]}
+    - {name: right, kind: wall, fixed: true, shape: {box: [0.2, 1]}, start: [3.63, 0, 0]}
+    - {name: above, kind: wall, fixed: true, shape: {box: [1, 0.2]}, start: [3, 0.63, 0]}
+    - {name: below, kind: wall, fixed: true, shape: {box: [1, 0.2]}, start: [3, -0.63, 0]}
+"""
+HARDLY = "m hardly a start is free of overlaps, or short of the goal; legal: up to"
+
+
+def test_jitters_must_leave_room_for_starts(tmp_path: Path) -> None:
+    """Between the walls, box a may move by 0.01 m: of the starts within 0.1 m one in 100 is legal."""
+    path = tmp_path / "walls.yaml"
+    path.write_text(TASK.replace("  goal:\n", WALLS + "  goal:\n"))
+
+    def says(*settings: str) -> tuple[int, str]:
+        done = rtg_config(path, *(w for s in settings for w in ("--set", s)), "--check")
+        return done.returncode, done.stderr
+
+    task = "key 'task.start_jitter': with objects moved by +-"
+    assert says() == (2, f"{path}:4: {task}0.1 {HARDLY} 0.05 with these bodies\n")
+    wide = "task.start_jitter=0.2"
+    assert says(wide) == (2, f"--set {wide}: {task}0.2 {HARDLY} 0.05 with these bodies\n")
+    legal = ["task.start_jitter=0.01", "train.start_jitter=0.01", "search.target_jitter=0.01"]
+    assert says(*legal, "search.rollout_jitter=0.02") == (0, "")
+    for key in ["search.target_jitter", "search.rollout_jitter", "train.start_jitter"]:
+        last = f"{key}=0.4"
+        assert says(*legal, "search.rollout_jitter=0.02", last)[1].startswith(
+            f"--set {last}: key '{key}': with objects moved by +-0.4 m"
+        )
+
+
 def test_of_several_settings_the_one_that_made_it_wrong_is_named(file: Path) -> None:
     settings = ["search.breadth=3", "task.goal.0.disc.radius=25", "run.seed=2"]
     words = [word for setting in settings for word in ("--set", setting)]

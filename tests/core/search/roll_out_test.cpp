@@ -214,13 +214,5 @@ TEST(JitteredStarts, AreNeverInTheGoal) {
     EXPECT_FALSE(succeeded(task, poses));
 }
 
-TEST(JitteredStarts, AreTheNominalStartWhereThereIsNoRoom) {
-  Task task = gathering();
-  task.scene.bodies[2].fixed = true;
-  task.start[1] = task.start[2];  // overlaps whatever is drawn
-  Rng rng(52);
-  EXPECT_EQ(jittered_starts(task, 3, 0.1, rng), std::vector<Poses>(3, task.start));
-}
-
 }  // namespace
 }  // namespace rtg

@@ -73,15 +73,14 @@ TEST(Task, JitteredStartsStayWithinTheAmplitudeAndFreeOfOverlap) {
   Rng rng(3);
   double widest = 0.0;
   for (int k = 0; k < 200; ++k) {
-    const auto poses = jittered_start(task, 0.5, rng);
-    ASSERT_TRUE(poses.has_value());
-    EXPECT_EQ((*poses)[0], task.start[0]);
-    EXPECT_EQ(first_overlap(task.scene, *poses), std::nullopt);
-    for (std::size_t i = 1; i < poses->size(); ++i) {
-      const Vector2d moved = (*poses)[i].position() - task.start[i].position();
+    const Poses poses = jittered_start(task, 0.5, rng);
+    EXPECT_EQ(poses[0], task.start[0]);
+    EXPECT_EQ(first_overlap(task.scene, poses), std::nullopt);
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      const Vector2d moved = poses[i].position() - task.start[i].position();
       widest = std::max(widest, moved.cwiseAbs().maxCoeff());
-      EXPECT_EQ((*poses)[i].theta, task.start[i].theta);
-      EXPECT_EQ((*poses)[i], to_single((*poses)[i]));
+      EXPECT_EQ(poses[i].theta, task.start[i].theta);
+      EXPECT_EQ(poses[i], to_single(poses[i]));
     }
   }
   EXPECT_LE(widest, 0.5 + 1e-6);
@@ -95,8 +94,7 @@ TEST(Task, JitteredStartsAreNeverInTheGoal) {
   task.goal[0].radius = 3.46;
   ASSERT_FALSE(succeeded(task, task.start));
   Rng rng(6);
-  for (int k = 0; k < 200; ++k)
-    EXPECT_FALSE(succeeded(task, jittered_start(task, 0.5, rng).value()));
+  for (int k = 0; k < 200; ++k) EXPECT_FALSE(succeeded(task, jittered_start(task, 0.5, rng)));
 }
 
 TEST(Task, JitterDrawsOverlapsAgainAndGivesUpOnTheImpossible) {
@@ -104,12 +102,27 @@ TEST(Task, JitterDrawsOverlapsAgainAndGivesUpOnTheImpossible) {
   Rng rng(4);
   task.start[2] = {-3.0 + 1.4, 1.13, 0.2};
   for (int k = 0; k < 50; ++k)
-    EXPECT_EQ(first_overlap(task.scene, jittered_start(task, 1.0, rng).value(), 0.02),
-              std::nullopt);
+    EXPECT_EQ(first_overlap(task.scene, jittered_start(task, 1.0, rng), 0.02), std::nullopt);
   task.scene.bodies[1].fixed = task.scene.bodies[2].fixed = task.scene.bodies[3].fixed = true;
   task.scene.bodies[3].fixed = false;
   task.start[3] = task.start[2];
-  EXPECT_EQ(jittered_start(task, 0.01, rng), std::nullopt);
+  EXPECT_THROW(jittered_start(task, 0.01, rng), std::invalid_argument);
+  EXPECT_FALSE(allows_jitter(task, 0.01));
+}
+
+// Box 1 alone moves, by up to 1 m; the goal holds unless it moves to the right end of that.
+TEST(Task, JitterIsAllowedUnlessNearlyNoDrawIsLegal) {
+  Task task = gathering();
+  task.scene.bodies[2].fixed = task.scene.bodies[3].fixed = true;
+  GoalTerm term{.kind = "*", .region = GoalTerm::Region::kHalfPlane};
+  const auto allowed = [&](double share) {
+    term.offset = task.start[1].x + 1.0 - 2.0 * share;
+    task.goal = {term};
+    return allows_jitter(task, 1.0);
+  };
+  EXPECT_TRUE(allowed(0.5));
+  EXPECT_TRUE(allowed(0.1));
+  EXPECT_FALSE(allowed(0.002));
 }
 
 TEST(Task, ZeroJitterIsTheNominalStart) {
