@@ -3,7 +3,7 @@
 #   ./test.sh             release build, ctest, pytest with the system tests
 #   ./test.sh asan        C++ tests under AddressSanitizer and UndefinedBehaviorSanitizer
 #   ./test.sh tsan        C++ tests that use threads under ThreadSanitizer
-#   ./test.sh coverage    line coverage of the physics and the solver
+#   ./test.sh coverage    line coverage of the physics and the solver by their own tests
 #   ./test.sh bench       benchmarks: JSON files and a Markdown table in build/bench/
 set -euo pipefail
 # shellcheck source=setup.sh
@@ -32,11 +32,11 @@ run_pytest() {
 }
 
 coverage() {
-  local folder=$ROOT/build/coverage
+  local folder=$ROOT/build/coverage subject='core/(math|energy|forward|reverse)/'
   find "$folder" -name '*.gcda' -delete
-  run_ctest coverage
+  run_ctest coverage --tests-regex "^${subject//\//.}"
   (cd "$ROOT" && "$VENV/bin/gcovr" --root . --object-directory "$folder" \
-    --filter 'core/(math|energy|forward|reverse)/' --exclude-throw-branches \
+    --filter "$subject" --exclude-throw-branches \
     --gcov-ignore-parse-errors --sort uncovered-percent \
     --txt --txt-summary --html-details "$folder/coverage.html" --fail-under-line 95)
 }

@@ -86,14 +86,15 @@ Bus::Bus(const std::string& url, const std::string& run)
 Bus::~Bus() = default;
 
 int Bus::spin(std::chrono::milliseconds timeout) {
-  int handled = 0;
   int wait = static_cast<int>(timeout.count());
-  while (handled < kMaxPerSpin && connection_->lcm.handleTimeout(wait) > 0) {
-    ++handled;
+  for (int handled = 0; handled < kMaxPerSpin; ++handled) {
+    const int said = connection_->lcm.handleTimeout(wait);
+    if (said < 0) counters_.add("bus.interrupted");
+    if (said <= 0) return handled;
     wait = 0;
     if (connection_->failure) std::rethrow_exception(std::exchange(connection_->failure, nullptr));
   }
-  return handled;
+  return kMaxPerSpin;
 }
 
 void Bus::send(const std::string& channel, std::span<const std::uint8_t> bytes) {

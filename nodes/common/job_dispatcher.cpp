@@ -1,6 +1,7 @@
 #include "nodes/common/job_dispatcher.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace rtg {
 
@@ -34,6 +35,7 @@ JobDispatcher::Verdict JobDispatcher::on_result(JobId id) {
 
 std::vector<JobDispatcher::Send> JobDispatcher::due(Seconds now) {
   std::vector<Send> sends;
+  leave_out_sleep(now);
   bury_silent_workers(now);
   give_up_stuck_workers(now);
   resend_unheard(now, sends);
@@ -46,6 +48,17 @@ std::vector<JobId> JobDispatcher::poisoned() const {
   for (const auto& [id, job] : jobs_)
     if (job.state == State::kPoison) ids.push_back(id);
   return ids;
+}
+
+void JobDispatcher::leave_out_sleep(Seconds now) {
+  const Seconds slept = now - std::exchange(last_due_, now);
+  if (slept <= limits_.silence / 2.0) return;
+  const auto later = [&](Seconds& time) { time = std::min(time + slept, now); };
+  for (auto& [id, worker] : workers_) later(worker.beat);
+  for (auto& [id, job] : jobs_) {
+    later(job.leased);
+    later(job.sent);
+  }
 }
 
 void JobDispatcher::bury_silent_workers(Seconds now) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -56,7 +57,9 @@ class JobDispatcher {
   void on_beat(const Beat& beat, Seconds now);
   Verdict on_result(JobId job);
 
-  /// What has to be sent now. To be called after every event and a few times a second.
+  /// What has to be sent now. To be called after every event and a few times a second: where
+  /// `silence` / 2 passed without a call, this process slept and heard nobody, so that the clocks
+  /// of the workers stood still meanwhile.
   std::vector<Send> due(Seconds now);
 
   bool finished() const { return open_ == 0; }
@@ -82,6 +85,7 @@ class JobDispatcher {
     std::set<JobId> stuck;   // of what it holds: leases that have run out
   };
 
+  void leave_out_sleep(Seconds now);
   void bury_silent_workers(Seconds now);
   void give_up_stuck_workers(Seconds now);
   void take_back(JobId id, bool victim);
@@ -94,6 +98,7 @@ class JobDispatcher {
   std::deque<JobId> queue_;  // NEW, plus ids that have been answered meanwhile
   std::map<WorkerId, Worker> workers_;
   long open_ = 0, reissued_ = 0, resent_ = 0;
+  Seconds last_due_ = std::numeric_limits<Seconds>::infinity();
 };
 
 }  // namespace rtg

@@ -19,6 +19,14 @@ void beat(JobDispatcher& jobs, WorkerId worker, Seconds now, const Ids& held = {
   jobs.on_beat({worker, capacity, held}, now);
 }
 
+/// What is sent from `begin` to `end` when nothing is heard.
+Sends sent_between(JobDispatcher& jobs, Seconds begin, Seconds end) {
+  Sends sends;
+  for (Seconds now = begin; now <= end; now += 0.5)
+    for (const Send& send : jobs.due(now)) sends.push_back(send);
+  return sends;
+}
+
 TEST(JobDispatcher, FillsTheFreestWorkerFirst) {
   JobDispatcher jobs;
   jobs.submit(Ids{10, 11, 12, 13});
@@ -61,7 +69,7 @@ TEST(JobDispatcher, GivesTheJobsOfASilentWorkerToAnother) {
   JobDispatcher jobs;
   jobs.submit(Ids{10, 11});
   beat(jobs, kAnn, 0.0, {}, 1);
-  jobs.due(0.0);
+  sent_between(jobs, 0.0, 1.5);
   beat(jobs, kBob, 1.9, {}, 4);
   EXPECT_EQ(jobs.due(1.9), (Sends{{kBob, 11, 1}}));
   EXPECT_EQ(jobs.due(2.1), Sends{});
@@ -151,7 +159,7 @@ TEST(JobDispatcher, AJobThatTakesThreeWorkersDownIsPoison) {
   Seconds now = 0.0;
   for (const WorkerId victim : {kAnn, kBob, kCat}) {
     beat(jobs, victim, now);
-    EXPECT_EQ(jobs.due(now).size(), 1u);
+    EXPECT_EQ(sent_between(jobs, now, now + 2.5).size(), 1u);
     now += 3.0;
   }
   EXPECT_EQ(jobs.due(now), Sends{});
@@ -164,13 +172,32 @@ TEST(JobDispatcher, AJobThatSawAWorkerDieIsTriedAloneSoThatOthersDoNotShareItsFa
   JobDispatcher jobs;
   jobs.submit(Ids{10, 11, 12});
   beat(jobs, kAnn, 0.0);
-  EXPECT_EQ(jobs.due(0.0), (Sends{{kAnn, 10, 1}, {kAnn, 11, 1}}));
+  EXPECT_EQ(sent_between(jobs, 0.0, 2.5), (Sends{{kAnn, 10, 1}, {kAnn, 11, 1}}));
   beat(jobs, kBob, 3.0, {}, 2);
   EXPECT_EQ(jobs.due(3.0), (Sends{{kBob, 11, 2}}));
   jobs.on_result(11);
   EXPECT_EQ(jobs.due(3.0), (Sends{{kBob, 10, 2}}));
   beat(jobs, kCat, 4.0, {}, 2);
   EXPECT_EQ(jobs.due(4.0), (Sends{{kCat, 12, 1}}));
+}
+
+// A machine that was suspended: the beats of the living wait in the queue, the first one read would
+// bury everybody else.
+TEST(JobDispatcher, ASleepOfItsOwnBuriesNobody) {
+  JobDispatcher jobs({.poison = 1});
+  jobs.submit(Ids{10, 11});
+  for (const WorkerId worker : {kAnn, kBob}) beat(jobs, worker, 0.0, {}, 1);
+  EXPECT_EQ(jobs.due(0.0).size(), 2U);
+  for (Seconds now = 10.0; now < 2000.0; now += 500.0) {  // longer than a lease, too
+    beat(jobs, kAnn, now, {10}, 1);
+    EXPECT_EQ(jobs.due(now), Sends{});
+    beat(jobs, kBob, now, {11}, 1);
+    EXPECT_EQ(jobs.due(now), Sends{});
+  }
+  EXPECT_EQ(jobs.reissued(), 0);
+  EXPECT_EQ(jobs.workers(), 2);
+  sent_between(jobs, 1510.0, 1513.0);
+  EXPECT_EQ(jobs.workers(), 0) << "awake, it hears that they are silent";
 }
 
 TEST(JobDispatcher, ANewSetForgetsTheOldOne) {

@@ -91,7 +91,7 @@ HARDLY = "m hardly a start is free of overlaps, or short of the goal; legal: up 
 
 
 def test_jitters_must_leave_room_for_starts(tmp_path: Path) -> None:
-    """Between the walls, box a may move by 0.01 m: of the starts within 0.1 m one in 100 is legal."""
+    """Between the walls, box a may move by 0.01 m: of starts within 0.1 m one in 100 is legal."""
     path = tmp_path / "walls.yaml"
     path.write_text(TASK.replace("  goal:\n", WALLS + "  goal:\n"))
 
