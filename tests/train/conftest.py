@@ -1,3 +1,20 @@
+import numpy as np
+import pytest
 import torch as th
+from rtg import _core
+from rtg.transition_stream import Rows
+from training_runs import TINY
 
 th.set_num_threads(1)  # more threads than idle cores make small networks a hundred times slower
+
+
+@pytest.fixture(scope="session")
+def rows() -> Rows:
+    """2,000 transitions of a generation."""
+    parts: list[Rows] = []
+
+    def store(poses, action, after, success, source) -> None:
+        parts.append(Rows(poses, action, after, success.astype(np.float32), success, source))
+
+    _core.generate(_core.Config.from_file(TINY), store, lambda line: None)
+    return Rows(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))

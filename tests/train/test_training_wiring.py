@@ -1,0 +1,56 @@
+"""What the trainer makes of the settings, and that its parts work with the same values."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rtg.evaluation import evaluate
+from rtg.transition_stream import Rows
+from rtg.value_bounds import value_bounds
+from training_runs import Stream, after_polls, run_folder, training
+
+
+@pytest.mark.parametrize(
+    ("setting", "discount"), [("train.discount=0.7", 0.7), ("train.discount=0", 0.8)]
+)
+def test_learner_bounds_and_evaluation_have_one_discount(
+    tmp_path: Path, rows: Rows, setting: str, discount: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """train.discount, or the task's, 0.8, if that is 0."""
+    one, used = training(run_folder(tmp_path / "run", None, setting)), set[float]()
+
+    def watched(config, policy, starts, discount):
+        used.add(discount)
+        return evaluate(config, policy, starts, discount)
+
+    monkeypatch.setattr("rtg.training.evaluate", watched)
+    trees = Stream(rows.after(0, 1000), one.data, piece=300)  # at 1000 complete, but hardly grown
+    assert one.run(trees, lambda: False, record=False)
+    assert one.task.discount == 0.8
+    assert one.model.gamma == discount and used == {discount}
+    seen, bound = one.data.record.transitions(), one.model.replay_buffer.offline.bound
+    proven = value_bounds(seen.observation, seen.next_observation, seen.reward, discount)
+    np.testing.assert_array_equal(bound[: len(proven)], proven)
+    assert (proven[900:] > 0).any()
+
+
+def test_bounds_are_proven_before_all_transitions_are_in(tmp_path: Path, rows: Rows) -> None:
+    one = training(run_folder(tmp_path / "run", None))
+    stream = Stream(rows, one.data, piece=400)
+    assert not one.run(stream, after_polls(3), record=False)
+    bound = one.model.replay_buffer.offline.bound
+    assert not stream.complete and ((bound > 0) & (bound < 1)).any()
+
+
+@pytest.mark.parametrize("randomisation", [0.0, 0.3])
+def test_training_starts_are_jittered(tmp_path: Path, randomisation: float) -> None:
+    """By train.start_jitter, or by task.randomisation if that is larger."""
+    wanted = ("train.start_jitter=0.2", f"task.randomisation={randomisation}")
+    one = training(run_folder(tmp_path / "run", None, *wanted))
+    drawn = []
+    for _ in range(50):
+        one.env.reset()
+        drawn.append(one.env.state()["poses"] - one.task.start)
+    jitter = max(0.2, randomisation)
+    spread = np.abs(np.concatenate(drawn)[:, 1:, :2]).max(axis=0)  # [objects, x and y]
+    assert (spread <= jitter).all() and (spread > 0.9 * jitter).all()

@@ -1,0 +1,52 @@
+"""Tiny training runs: their folder, their learner, a stream of transitions."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from rtg import _core, paths
+from rtg.offline_data import OfflineData
+from rtg.recorder import Recorder
+from rtg.training import Training
+from rtg.transition_stream import Rows
+
+TINY = paths.CONFIG / "tests" / "tiny.yaml"
+WORK = ("train.interactions=240", "train.eval_every=80", "train.checkpoint_every=100")
+
+
+def run_folder(path: Path, rows: Rows | None, *overrides: str) -> Path:
+    path.mkdir()
+    config = _core.Config.from_file(TINY, [*WORK, *overrides])
+    (path / "config.yaml").write_text(config.yaml)
+    if rows is not None:
+        recorder = Recorder(config.task)
+        recorder.add(rows)
+        recorder.write(path / "transitions.npz")
+    return path
+
+
+def training(folder: Path) -> Training:
+    return Training(_core.Config.from_file(folder / "config.yaml"), folder)
+
+
+class Stream:
+    """Hands `rows` over in pieces, one per poll, as the stream of a run does."""
+
+    lost = 0
+
+    def __init__(self, rows: Rows, data: OfflineData, piece: int) -> None:
+        self.rows, self.data, self.piece, self.at = rows, data, piece, 0
+
+    @property
+    def complete(self) -> bool:
+        return self.at >= len(self.rows.action)
+
+    def poll(self, timeout: float) -> int:
+        begin, self.at = self.at, min(self.at + self.piece, len(self.rows.action))
+        self.data.take(Rows(*(column[begin : self.at] for column in self.rows)))
+        return self.at - begin
+
+
+def after_polls(count: int) -> Callable[[], bool]:
+    """False `count` times."""
+    left = iter(range(count))
+    return lambda: next(left, None) is None
