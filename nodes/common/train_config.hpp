@@ -10,10 +10,9 @@ inline constexpr std::array<std::string_view, 2> kTrainPresets{"default", "paper
 
 /// How the Python trainer learns. The values here are the preset `default`: what works
 /// best within Table 2's interaction budget. A loader begins with train_preset(preset) and reads
-/// the other fields over it. Measured on Gathering, `./run.sh --seed 1` and 2 (60,000 transitions,
-/// rrbs): success ≥ 0.95 three times in a row after 70,000 and 65,000 interactions, on other starts
-/// then 0.99 and 0.95. A hard copy every 500 steps instead of target_rate swings between 0.7 and 1
-/// from one evaluation to the next; 10,000 steps of warm_up overestimate and teach nothing.
+/// the other fields over it. At b7950a3 (Gathering, 60,000 transitions of rrbs) success with a hard
+/// copy every 500 steps instead of target_rate swung between 0.7 and 1 from one evaluation to the
+/// next.
 struct TrainConfig {
   TrainPreset preset = TrainPreset::kDefault;
   int interactions = 350000;    // Table 2
@@ -23,7 +22,6 @@ struct TrainConfig {
   double learning_rate = 3e-4;  // of Adam
   int train_frequency = 4;      // interactions per training round, Table 2
   int gradient_steps = 1;       // per training round, Table 2
-  int warm_up = 0;              // gradient steps before the first interaction
   int target_sync = 1;          // gradient steps between updates of the target network
   double target_rate = 0.005;   // τ: share that it moves then; 1: a copy
   bool target_policy = true;    // the policy is the target network's, a mean over recent weights
@@ -59,7 +57,6 @@ struct TrainConfig {
     v.number("learning_rate", learning_rate, 1e-9, 1.0, "of Adam");
     v.integer("train_frequency", train_frequency, 1, 100000, "interactions per training round");
     v.integer("gradient_steps", gradient_steps, 1, 100000, "gradient steps per training round");
-    v.integer("warm_up", warm_up, 0, kMany, "gradient steps before the first interaction");
     v.integer("target_sync", target_sync, 1, kMany, "gradient steps between target updates");
     v.number("target_rate", target_rate, 1e-6, 1.0, "how far the target network moves; 1: a copy");
     v.flag("target_policy", target_policy, "evaluate and keep the target network's policy");

@@ -21,7 +21,6 @@ class TrainSettings:
     learning_rate: float = 3.0e-4
     train_frequency: int = 4
     gradient_steps: int = 1
-    warm_up: int = 0
     target_sync: int = 1
     target_rate: float = 0.005
     target_policy: bool = True

@@ -78,7 +78,7 @@ class Training:
         self._clock.start()
         while not (stop() or self.done):
             self._take_in(source, record, 0.0)
-            self._learn()
+            self.model.learn(self.settings.train_frequency, reset_num_timesteps=False)
             self._write_down()
         self._clock.stop()
         while not (stop() or source.complete):
@@ -102,14 +102,6 @@ class Training:
             return "waiting"
         rows = self.log.rows
         return f"learning, success {rows[-1]['success_rate']:.2f}" if rows else "learning"
-
-    def _learn(self) -> None:
-        """A part of the warm-up, or one round of interactions and gradient steps."""
-        left = self.settings.warm_up - self.model.gradient_steps_done
-        if self.interactions == 0 and left > 0 and self.data.count:
-            self.model.train(min(left, 10), self.settings.batch)
-        else:
-            self.model.learn(self.settings.train_frequency, reset_num_timesteps=False)
 
     def _write_down(self) -> None:
         """Evaluation and checkpoint, where they are due."""
