@@ -16,7 +16,7 @@ inline constexpr std::array<std::string_view, 2> kTrainPresets{"default", "paper
 struct TrainConfig {
   TrainPreset preset = TrainPreset::kDefault;
   int interactions = 350000;    // Table 2
-  int start_at = 40000;         // transitions in hand before learning starts: trees, some roll-outs
+  int start_at = 40000;         // transitions in hand before learning starts
   int buffer = 1500000;         // Table 2; of each of the two buffers
   int batch = 256;              // half of Table 2's: a third less time per step, learns as fast
   double learning_rate = 3e-4;  // of Adam
