@@ -32,14 +32,16 @@ class Batch(NamedTuple):
 
 
 class Store:
-    """Columns of transitions. Grows up to `capacity` rows, then overwrites the oldest."""
+    """Columns of transitions. Grows up to `capacity` rows, then overwrites the oldest.
+
+    The k-th transition written stands in row k modulo `capacity`.
+    """
 
     columns = ("observation", "next_observation", "action", "reward", "terminated", "bound")
 
     def __init__(self, capacity: int, observation_size: int) -> None:
         self.capacity = capacity
-        self.count = 0  # rows filled
-        self.head = 0  # row that is written next
+        self.written = 0  # transitions, those overwritten since too
         wide, one = (0, observation_size), (0,)
         self.observation = np.zeros(wide, np.float32)  # [rows, observation]
         self.next_observation = np.zeros(wide, np.float32)  # [rows, observation]
@@ -48,18 +50,27 @@ class Store:
         self.terminated = np.zeros(one, np.float32)  # [rows]
         self.bound = np.zeros(one, np.float32)  # [rows]
 
+    @property
+    def count(self) -> int:
+        """Rows filled."""
+        return min(self.written, self.capacity)
+
     def append(self, **columns: Array) -> Array:
-        """Adds rows (at most `capacity`); returns where they stand, [rows] int64."""
+        """Adds transitions (at most `capacity`); returns their numbers, [added] int64."""
         added = len(columns["action"])
         if added > self.capacity:
             raise ValueError(f"{added} transitions do not fit into a buffer of {self.capacity}")
-        self._reserve(min(self.count + added, self.capacity))
-        rows = (self.head + np.arange(added)) % self.capacity
+        self._reserve(min(self.written + added, self.capacity))
+        numbers = self.written + np.arange(added)
         for name in self.columns:
-            getattr(self, name)[rows] = columns.get(name, 0.0)
-        self.head = (self.head + added) % self.capacity
-        self.count = min(self.count + added, self.capacity)
-        return rows
+            getattr(self, name)[numbers % self.capacity] = columns.get(name, 0.0)
+        self.written += added
+        return numbers
+
+    def set_bounds(self, numbers: Array, bounds: Array) -> None:
+        """Of the transitions with these numbers, as far as they have not been overwritten."""
+        kept = numbers >= self.written - self.capacity
+        self.bound[numbers[kept] % self.capacity] = bounds[kept]
 
     def _reserve(self, rows: int) -> None:
         if rows <= len(self.action):
@@ -74,11 +85,10 @@ class Store:
     def state(self) -> dict[str, Any]:
         """The filled rows and nothing else."""
         rows = {name: getattr(self, name)[: self.count].copy() for name in self.columns}
-        return {"head": self.head, **rows}
+        return {"written": self.written, **rows}
 
     def restore(self, state: dict[str, Any]) -> None:
-        self.count = len(state["action"])
-        self.head = state["head"]
+        self.written = state["written"]
         for name in self.columns:
             setattr(self, name, np.asarray(state[name]).copy())
 
@@ -121,7 +131,7 @@ class MixedReplayBuffer(BaseBuffer):
         self.discount = rules.discount
         self.use_bounds = rules.use_bounds
         self.rng = np.random.default_rng(rules.seed)
-        self._episodes: list[list[int]] = [[] for _ in range(self.n_envs)]  # rows, of the running
+        self._episodes: list[list[int]] = [[] for _ in range(self.n_envs)]  # numbers in `online`
 
     def size(self) -> int:
         return self.offline.count + self.online.count
@@ -155,7 +165,7 @@ class MixedReplayBuffer(BaseBuffer):
         """
         timeout = np.array([info.get("TimeLimit.truncated", False) for info in infos])
         kept = np.flatnonzero([not info.get("rejected", False) for info in infos])
-        rows = self.online.append(
+        numbers = self.online.append(
             observation=obs[kept],
             next_observation=next_obs[kept],
             action=action.reshape(-1)[kept],
@@ -163,16 +173,16 @@ class MixedReplayBuffer(BaseBuffer):
             terminated=(np.asarray(done) & ~timeout)[kept],
             bound=reward[kept],
         )
-        for env, row in zip(kept, rows, strict=True):
-            self._episodes[env].append(int(row))
+        for env, number in zip(kept, numbers, strict=True):
+            self._episodes[env].append(int(number))
         for env in np.flatnonzero(done):
             self._close_episode(int(env), success=bool(reward[env] > 0))
 
     def _close_episode(self, env: int, success: bool) -> None:
-        rows = np.array(self._episodes[env][-self.online.capacity :])
+        numbers = np.array(self._episodes[env])
         self._episodes[env] = []
         if success and self.use_bounds:
-            self.online.bound[rows] = self.discount ** np.arange(len(rows) - 1, -1, -1)
+            self.online.set_bounds(numbers, self.discount ** np.arange(len(numbers) - 1, -1, -1))
 
     def sample(self, batch_size: int, env: VecNormalize | None = None) -> Batch:
         offline = self._offline_rows(batch_size)
@@ -217,10 +227,10 @@ class MixedReplayBuffer(BaseBuffer):
         return {
             "online": self.online.state(),
             "rng": self.rng.bit_generator.state,
-            "episodes": [list(rows) for rows in self._episodes],
+            "episodes": [list(numbers) for numbers in self._episodes],
         }
 
     def restore(self, state: dict[str, Any]) -> None:
         self.online.restore(state["online"])
         self.rng.bit_generator.state = state["rng"]
-        self._episodes = [list(rows) for rows in state["episodes"]]
+        self._episodes = [list(numbers) for numbers in state["episodes"]]
