@@ -49,10 +49,11 @@ struct TrainConfig {
   template <class Visitor>
   void visit(Visitor& v) {
     constexpr int kMany = 1000000000;
+    constexpr int kTogether = 4;  // environments stepped at once, whose transitions must fit
     v.choice("preset", preset, kTrainPresets, "values of all fields that are not given");
     v.integer("interactions", interactions, 1, kMany, "environment steps of the learner");
     v.integer("start_at", start_at, 0, kMany, "transitions that must be in before learning starts");
-    v.integer("buffer", buffer, 1, kMany, "capacity of each replay buffer");
+    v.integer("buffer", buffer, kTogether, kMany, "capacity of each replay buffer");
     v.integer("batch", batch, 1, 1000000, "transitions per gradient step");
     v.number("learning_rate", learning_rate, 1e-9, 1.0, "of Adam");
     v.integer("train_frequency", train_frequency, 1, 100000, "interactions per training round");

@@ -4,10 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rtg import _core
 from rtg.evaluation import evaluate
+from rtg.training import MAX_ENVIRONMENTS
 from rtg.transition_stream import Rows
 from rtg.value_bounds import value_bounds
-from training_runs import Stream, after_polls, run_folder, training
+from training_runs import TINY, Stream, after_polls, run_folder, training
 
 
 @pytest.mark.parametrize(
@@ -54,3 +56,14 @@ def test_training_starts_are_jittered(tmp_path: Path, randomisation: float) -> N
     jitter = max(0.2, randomisation)
     spread = np.abs(np.concatenate(drawn)[:, 1:, :2]).max(axis=0)  # [objects, x and y]
     assert (spread <= jitter).all() and (spread > 0.9 * jitter).all()
+
+
+def test_the_least_legal_buffer_takes_a_step_of_all_environments(
+    tmp_path: Path, rows: Rows
+) -> None:
+    with pytest.raises(_core.ConfigError, match=f"legal: an integer from {MAX_ENVIRONMENTS} to "):
+        _core.Config.from_file(TINY, [f"train.buffer={MAX_ENVIRONMENTS - 1}"])
+    one = training(run_folder(tmp_path / "run", None, f"train.buffer={MAX_ENVIRONMENTS}"))
+    assert one.env.num_envs == MAX_ENVIRONMENTS
+    assert one.run(Stream(rows.after(0, 4), one.data, piece=4), lambda: False, record=False)
+    assert one.interactions == 240

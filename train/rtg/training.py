@@ -19,7 +19,7 @@ from rtg.settings import OF_CHECKPOINT, TrainSettings
 from rtg.training_log import TrainingLog
 from rtg.vector_env import PushVecEnv
 
-MAX_ENVIRONMENTS = 4  # stepped together
+MAX_ENVIRONMENTS = 4  # stepped together; the least legal train.buffer
 WAIT = 0.1  # [s], for transitions when there is nothing else to do
 
 Stop = Callable[[], bool]
