@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch as th
 from rtg import networks
-from rtg.ddqn import DoubleDqn, next_values, td_targets
+from rtg.ddqn import DoubleDqn, Statistics, bootstrap_targets, next_values, td_targets
 from rtg.replay import Batch
 from rtg.settings import TrainSettings
 from toy import line
@@ -36,17 +36,16 @@ def batch(rewards: th.Tensor, terminated: th.Tensor, bounds: th.Tensor) -> Batch
 def test_targets_by_hand() -> None:
     none = column(*[-np.inf] * 5)
     data = batch(column(0, 1, 0, 0, 0), column(0, 1, 0, 0, 0), none)
-    value = column(0.5, 0.7, -0.4, 2.0, 0.0)
-    plain = td_targets(data, value, 0.8, clip=False)
+    plain = bootstrap_targets(data, column(0.5, 0.7, -0.4, 2.0, 0.0), 0.8)
     th.testing.assert_close(plain, column(0.4, 1.0, -0.32, 1.6, 0.0))
-    clipped = td_targets(data, value, 0.8, clip=True)
+    assert th.equal(td_targets(plain, none, clip=False), plain)
+    clipped = td_targets(plain, none, clip=True)
     th.testing.assert_close(clipped, column(0.4, 1.0, 0.0, 1.0, 0.0))
 
 
 def test_targets_are_raised_to_proven_bounds() -> None:
-    data = batch(column(0, 0), column(0, 0), column(0.64, 0.1))
-    targets = td_targets(data, column(0.5, 0.5), 0.8, clip=True)
-    th.testing.assert_close(targets, column(0.64, 0.4))
+    targets = td_targets(column(0.4, 0.4, -0.2), column(0.64, 0.1, 0.0), clip=False)
+    th.testing.assert_close(targets, column(0.64, 0.4, 0.0))
 
 
 def test_double_q_agrees_with_a_plain_loop() -> None:
@@ -176,6 +175,37 @@ def test_learns_the_line() -> None:
     x = np.array([[k / 4, 1, 0] for k in range(4)], np.float32)
     assert (one.greedy(x) == 1).all()
     np.testing.assert_allclose(one.values(x).max(axis=1), 0.9 ** np.arange(3, -1, -1), atol=0.1)
+
+
+def test_only_targets_that_a_proof_raises_count_as_bound() -> None:
+    """Two are raised; then one above its bound, two unproven ones, a success, one above 1."""
+    bootstrap = column(0.4, -0.2, 0.7, -0.1, 0.0, 1.0, 1.1)
+    bounds = column(0.5, 0.5, 0.5, 0.0, 0.0, 1.0, 0.9)
+    data = batch(bootstrap, bootstrap, bounds)
+    for clip in (False, True):
+        statistics = Statistics()
+        statistics.note(data, bootstrap, td_targets(bootstrap, bounds, clip), bootstrap)
+        shares = statistics.take()
+        assert shares["bound_share"] == pytest.approx(2 / 7)
+        assert shares["clipped_share"] == pytest.approx(3 / 7)
+
+
+@pytest.mark.parametrize("value_bounds", [False, True])
+def test_targets_of_a_network_that_says_less_than_0_count_as_clipped(value_bounds: bool) -> None:
+    random = {"epsilon_start": 1.0, "epsilon_end": 1.0, "nearby_share": 0.0}
+    one = model(value_bounds=value_bounds, **random)
+    one.learn(400)
+    with th.no_grad():
+        for net in (one.q_net, one.q_net_target):
+            net.head.weight.zero_()
+            net.head.bias.fill_(-1.0)
+    one.statistics.take()
+    data = one.replay_buffer.sample(256)
+    one._gradient_step(data)
+    shares, goes_on = one.statistics.take(), data.terminated == 0
+    assert shares["clipped_share"] == float(goes_on.float().mean()) > 0.5
+    assert shares["bound_share"] == float((goes_on & (data.bounds > 0)).float().mean())
+    assert (shares["bound_share"] > 0) == value_bounds
 
 
 def test_statistics_are_means_since_the_last_take() -> None:

@@ -32,10 +32,14 @@ def next_values(online: th.Tensor, target: th.Tensor, double_q: bool) -> th.Tens
     return target.gather(1, chooser.argmax(dim=1, keepdim=True))
 
 
-def td_targets(batch: Batch, next_value: th.Tensor, discount: float, clip: bool) -> th.Tensor:
-    """y = r + γ (1 - terminated) Q(s'), raised to the proven bound, in [0, 1] if `clip`. [B, 1]"""
-    y = batch.rewards + discount * (1.0 - batch.terminated) * next_value
-    y = th.maximum(y, batch.bounds)
+def bootstrap_targets(batch: Batch, next_value: th.Tensor, discount: float) -> th.Tensor:
+    """r + γ (1 - terminated) Q(s'). [B, 1]"""
+    return batch.rewards + discount * (1.0 - batch.terminated) * next_value
+
+
+def td_targets(bootstrap: th.Tensor, bounds: th.Tensor, clip: bool) -> th.Tensor:
+    """The bootstrap targets, raised to the proven bounds, in [0, 1] if `clip`. [B, 1]"""
+    y = th.maximum(bootstrap, bounds)
     return y.clamp(0.0, 1.0) if clip else y
 
 
@@ -97,15 +101,15 @@ class DoubleDqn(DQN):
             target = self.q_net_target(batch.next_observations)
             online = self.q_net(batch.next_observations) if self.settings.double_q else target
             value = next_values(online, target, self.settings.double_q)
-            y = td_targets(batch, value, self.gamma, self.settings.clip_targets)
+            bootstrap = bootstrap_targets(batch, value, self.gamma)
+            y = td_targets(bootstrap, batch.bounds, self.settings.clip_targets)
         q = self.q_net(batch.observations).gather(1, batch.actions)
         loss = functional.smooth_l1_loss(q, y)
         self.policy.optimizer.zero_grad()
         loss.backward()
         th.nn.utils.clip_grad_norm_(self.q_net.parameters(), MAX_GRADIENT_NORM)
         self.policy.optimizer.step()
-        raw = td_targets(batch, value, self.gamma, clip=False)
-        self.statistics.note(batch, q.detach(), y, raw)
+        self.statistics.note(batch, q.detach(), y, bootstrap)
 
     def _on_step(self) -> None:
         self.update_exploration()
@@ -207,12 +211,14 @@ class Statistics:
         self._counts: dict[str, float] = {}
         self._peaks: dict[str, float] = {}
 
-    def note(self, batch: Batch, q: th.Tensor, y: th.Tensor, raw: th.Tensor) -> None:
-        """Q(s, a), its target, and the same before clipping. [B, 1] each"""
-        error = q - y
+    def note(self, batch: Batch, q: th.Tensor, y: th.Tensor, bootstrap: th.Tensor) -> None:
+        """Q(s, a), its target, and the same before it was raised and clipped. [B, 1] each"""
+        error, bounds = q - y, batch.bounds
+        beyond = (bootstrap < 0.0) | (bootstrap > 1.0)
+        raised = (bootstrap < bounds) & (bounds > 0.0)  # 0: nothing is proven
         self._add("td_error", float(error.square().mean().sqrt()))
-        self._add("clipped_share", float(((raw < 0.0) | (raw > 1.0)).float().mean()))
-        self._add("bound_share", float((y <= batch.bounds).float().mean()))
+        self._add("clipped_share", float(beyond.float().mean()))
+        self._add("bound_share", float(raised.float().mean()))
         for name, part in (("offline", q[: batch.offline]), ("online", q[batch.offline :])):
             if len(part):
                 self._add(f"q_{name}_mean", float(part.mean()))

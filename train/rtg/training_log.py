@@ -27,8 +27,8 @@ COLUMNS = (
     "q_online_mean",
     "q_online_max",
     "td_error",
-    "clipped_share",  # of the targets, beyond [0, 1] before clipping
-    "bound_share",  # of the targets, set by what stored trajectories prove
+    "clipped_share",  # of the targets, beyond [0, 1] before they are raised and clipped
+    "bound_share",  # of the targets, raised to what stored trajectories prove
     "offline_transitions",
     "wall_s",
 )
