@@ -95,7 +95,10 @@ std::vector<BeamSearch::Growth> BeamSearch::grow(const SolveBatch& solve, const 
                                                  SearchStats& stats) {
   const std::vector<ReverseJob> asked = jobs();
   const std::vector<ReverseResult> answers = solve(asked);
-  for (const ReverseResult& answer : answers) stats.count(answer);
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    const std::vector<Poses>& starts = answers[k].starts;
+    stats.count(answers[k], !starts.empty() && objects_moved(starts[0], asked[k].end) > 0);
+  }
   std::vector<Candidate> found = proposals(task_, asked, answers, stats);
   for (Candidate& c : found)
     c.parent = beam_[static_cast<std::size_t>(c.parent / task_.push.headings)];

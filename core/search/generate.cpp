@@ -24,7 +24,8 @@ constexpr int kProbes = 50;       // episodes that find a round's target and jud
 constexpr double kArrived = 0.5;  // a node so near is at its target [m], as in StateMetric
 constexpr int kMaxBarren = 8;     // rounds or waves without a transition before it gives up
 
-double quantile(std::vector<double> values, double share) {
+template <class Number>
+double quantile(std::vector<Number> values, double share) {
   if (values.empty()) return 0.0;
   const auto at =
       values.begin() + static_cast<long>(share * static_cast<double>(values.size() - 1) + 0.5);
@@ -255,12 +256,13 @@ class Generation {
     report_.illegal_starts = stats_.illegal_starts;
     report_.unsettled_goals = stats_.unsettled_goals;
     report_.rejected_pushes = stats_.rejected_pushes;
-    const std::vector<double> iterations(stats_.iterations.begin(), stats_.iterations.end());
-    report_.iterations_median = quantile(iterations, 0.5);
-    report_.iterations_p90 = quantile(iterations, 0.9);
-    const std::vector<double> gaps(stats_.gaps.begin(), stats_.gaps.end());
-    report_.replay_gap_median = quantile(gaps, 0.5);
-    report_.replay_gap_p90 = quantile(gaps, 0.9);
+    report_.iterations_median = quantile(stats_.iterations, 0.5);
+    report_.iterations_p90 = quantile(stats_.iterations, 0.9);
+    report_.pushing_converged = static_cast<long>(stats_.pushing_iterations.size());
+    report_.pushing_iterations_median = quantile(stats_.pushing_iterations, 0.5);
+    report_.pushing_iterations_p90 = quantile(stats_.pushing_iterations, 0.9);
+    report_.replay_gap_median = quantile(stats_.gaps, 0.5);
+    report_.replay_gap_p90 = quantile(stats_.gaps, 0.9);
     report_.reverse_cpu_s = stats_.reverse_cpu_s;
     report_.replay_cpu_s = stats_.replay_cpu_s;
     report_.replay_gaps = stats_.gaps;

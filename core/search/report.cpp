@@ -22,6 +22,9 @@ std::string to_json(const GenerationReport& r) {
   out["rejected_pushes"] = r.rejected_pushes;
   out["iterations_median"] = r.iterations_median;
   out["iterations_p90"] = r.iterations_p90;
+  out["pushing_converged"] = r.pushing_converged;
+  out["pushing_iterations_median"] = r.pushing_iterations_median;
+  out["pushing_iterations_p90"] = r.pushing_iterations_p90;
   out["replay_gap_median"] = r.replay_gap_median;
   out["replay_gap_p90"] = r.replay_gap_p90;
   out["reverse_cpu_s"] = r.reverse_cpu_s;

@@ -44,7 +44,9 @@ struct GenerationReport {
   std::array<long, kSolveStatusCount> statuses{};                     // by SolveStatus
   long illegal_starts = 0, unsettled_goals = 0, rejected_pushes = 0;  // as in SearchStats
   double iterations_median = 0.0, iterations_p90 = 0.0;               // over converged ones
-  double replay_gap_median = 0.0, replay_gap_p90 = 0.0;               // [m]
+  long pushing_converged = 0;                                         // that moved an object
+  double pushing_iterations_median = 0.0, pushing_iterations_p90 = 0.0;
+  double replay_gap_median = 0.0, replay_gap_p90 = 0.0;  // [m]
   double reverse_cpu_s = 0.0, replay_cpu_s = 0.0, generate_wall_s = 0.0;
   std::vector<float> replay_gaps;  // one per replayed candidate [m]
   std::vector<ReportNode> nodes;

@@ -13,16 +13,20 @@ struct SearchStats {
   long candidates = 0;                             // reverse jobs answered
   std::array<long, kSolveStatusCount> statuses{};  // of them, by SolveStatus
   std::vector<int> iterations;                     // of converged solves
+  std::vector<int> pushing_iterations;             // of those of them that moved an object
   long illegal_starts = 0;   // converged, yet the start overlaps or leaves the arena
   long unsettled_goals = 0;  // sampled goals that do not come to rest as legal goal states
   long rejected_pushes = 0;  // replays that the simulator could not finish
   std::vector<float> gaps;   // of replayed candidates [m]
   double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
 
-  void count(const ReverseResult& answer) {
+  void count(const ReverseResult& answer, bool moved_object) {
     ++candidates;
     ++statuses[static_cast<std::size_t>(answer.status)];
-    if (answer.status == SolveStatus::kConverged) iterations.push_back(answer.iterations);
+    if (answer.status == SolveStatus::kConverged) {
+      iterations.push_back(answer.iterations);
+      if (moved_object) pushing_iterations.push_back(answer.iterations);
+    }
     reverse_cpu_s += answer.cpu_s;
   }
 

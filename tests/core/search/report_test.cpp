@@ -24,6 +24,9 @@ GenerationReport filled() {
   r.rejected_pushes = 22;
   r.iterations_median = 30.0;
   r.iterations_p90 = 31.0;
+  r.pushing_converged = 32;
+  r.pushing_iterations_median = 33.0;
+  r.pushing_iterations_p90 = 34.0;
   r.replay_gap_median = 0.0625;
   r.replay_gap_p90 = 0.375;
   r.reverse_cpu_s = 40.5;
@@ -43,7 +46,8 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
             R"("converged":10,"pruned":11,"infeasible":12,"iteration_limit":13,)"
             R"("line_search_failed":14,"singular":15,"non_finite":16,)"
             R"("illegal_starts":20,"unsettled_goals":21,"rejected_pushes":22,)"
-            R"("iterations_median":30.0,"iterations_p90":31.0,)"
+            R"("iterations_median":30.0,"iterations_p90":31.0,"pushing_converged":32,)"
+            R"("pushing_iterations_median":33.0,"pushing_iterations_p90":34.0,)"
             R"("replay_gap_median":0.0625,"replay_gap_p90":0.375,)"
             R"("reverse_cpu_s":40.5,"replay_cpu_s":41.5,"generate_wall_s":42.5,)"
             R"("replay_gaps":[1.5,2.5],"nodes":[)"
