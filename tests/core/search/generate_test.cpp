@@ -107,19 +107,23 @@ TEST(Generate, StepsOfChainsAndEpisodesFollowEachOther) {
 TEST(Generate, ReportAgreesWithTheStoredTransitions) {
   const Task task = gathering();
   const GenerationReport& report = reference_run().report;
-  long contacts = 0, region = 0;
+  long contacts = 0, several = 0, region = 0;
   for (const Transition& t : reference_run().stored) {
-    bool moved = false, inside = true;
+    int moved = 0;
+    bool inside = true;
     for (std::size_t k = 1; k < t.poses.size(); ++k) {
-      moved = moved || std::hypot(t.next[k].x - t.poses[k].x, t.next[k].y - t.poses[k].y) > 0.05;
+      moved += std::hypot(t.next[k].x - t.poses[k].x, t.next[k].y - t.poses[k].y) > 0.05;
       inside = inside && std::abs(t.poses[k].x - task.start[k].x) <= 0.5 &&
                std::abs(t.poses[k].y - task.start[k].y) <= 0.5 &&
                std::abs(std::remainder(t.poses[k].theta - task.start[k].theta, M_PI / 2)) <= 0.35;
     }
-    contacts += moved;
+    contacts += moved > 0;
+    several += moved > 1;
     region += inside;
   }
   EXPECT_DOUBLE_EQ(report.contact_share, static_cast<double>(contacts) / 3000.0);
+  EXPECT_DOUBLE_EQ(report.multi_body_share, static_cast<double>(several) / 3000.0);
+  EXPECT_GT(several, 0);
   EXPECT_EQ(report.start_region_transitions, region);
   EXPECT_EQ(report.candidates, std::accumulate(report.statuses.begin(), report.statuses.end(), 0L));
 }

@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/search/coverage.hpp"
+#include "core/search/generate.hpp"
+#include "tests/support/dragging_world.hpp"
+
+namespace rtg {
+namespace {
+
+/// A world that misses what is asked of it and notes what passes the seams. Objects are
+/// octagons, of which nearly every angle is in the start region.
+struct NotingWorld : testing::DraggingWorld {
+  std::vector<double> gaps;        // of replayed candidates [m]
+  std::vector<double> iterations;  // of converged solves
+  std::vector<Poses> expanded;     // states that were solved for
+  std::vector<Transition> stored;
+
+  NotingWorld() {
+    over = 0.1;
+    aside = 0.2;
+    task.start = {{0, -5, 0}, {-1.3, 0, 0}, {0, 0, 0}, {3.25, 0, 0}};
+    for (std::size_t k = 1; k < 4; ++k) task.scene.bodies[k].shape = regular_polygon(8, 0.6);
+    task.horizon = 10;
+  }
+
+  GenerationSeams seams() {
+    return {[this](auto jobs) { return noted_solve(jobs); },
+            [this](auto jobs) { return noted_replay(jobs); },
+            [this](auto batch) { stored.insert(stored.end(), batch.begin(), batch.end()); }};
+  }
+
+ private:
+  /// Solves take 1 to 40 iterations; every 7th gives up after 50 more.
+  std::vector<ReverseResult> noted_solve(std::span<const ReverseJob> jobs) {
+    std::vector<ReverseResult> answers = solve(jobs);
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+      ReverseResult& answer = answers[k];
+      answer.iterations = 1 + static_cast<int>(k % 40);
+      if (k % 7 == 0) answer = {SolveStatus::kIterationLimit, answer.iterations + 50};
+      if (k % 7 != 0) iterations.push_back(answer.iterations);
+      if (k % static_cast<std::size_t>(task.push.headings) == 0) expanded.push_back(jobs[k].end);
+      for (const Poses& start : answer.starts)
+        wanted_[key_of(float_rounded(start), jobs[k].action)] = jobs[k].end;
+    }
+    to_come_ = true;
+    return answers;
+  }
+
+  /// The first batch after the solves is that of their candidates.
+  std::vector<ReplayResult> noted_replay(std::span<const ReplayJob> jobs) {
+    const std::vector<ReplayResult> results = replay(jobs);
+    if (to_come_)
+      for (std::size_t k = 0; k < jobs.size(); ++k)
+        gaps.push_back(gap(wanted_.at(key_of(jobs[k].start, jobs[k].action)), results[k].end));
+    to_come_ = false;
+    return results;
+  }
+
+  static double gap(const Poses& a, const Poses& b) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += std::hypot(a[k].x - b[k].x, a[k].y - b[k].y);
+    return sum / static_cast<double>(a.size());
+  }
+
+  std::map<std::uint64_t, Poses> wanted_;  // end that a start and action were found for
+  bool to_come_ = false;
+};
+
+struct GenerationReportTest : ::testing::Test {
+  NotingWorld world;
+  GenerationReport report;
+
+  GenerationReportTest() {
+    SearchConfig config;
+    config.transitions = 1500;
+    config.breadth = 8;
+    config.twins = 2;
+    config.evaluation_starts = 10;
+    report = generate(world.task, config, 4, world.seams());
+  }
+
+  bool in_the_start_region(const Poses& poses) const {
+    for (std::size_t k = 1; k < poses.size(); ++k) {
+      const Pose &at = poses[k], &start = world.task.start[k];
+      if (std::abs(at.x - start.x) > 0.5 || std::abs(at.y - start.y) > 0.5 ||
+          std::abs(std::remainder(at.theta - start.theta, M_PI / 4)) > 0.35)
+        return false;
+    }
+    return true;
+  }
+};
+
+/// The number that `share` of the others, to the nearest one, are below.
+double ranked(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  return values[static_cast<std::size_t>(
+      std::lround(share * static_cast<double>(values.size() - 1)))];
+}
+
+TEST_F(GenerationReportTest, GapsAreThoseBetweenWhatWasSolvedForAndWhatReplayed) {
+  ASSERT_EQ(report.replay_gaps.size(), world.gaps.size());
+  for (std::size_t k = 0; k < world.gaps.size(); ++k)
+    EXPECT_NEAR(report.replay_gaps[k], world.gaps[k], 1e-7);  // single precision
+  EXPECT_NEAR(report.replay_gap_median, ranked(world.gaps, 0.5), 1e-7);
+  EXPECT_NEAR(report.replay_gap_p90, ranked(world.gaps, 0.9), 1e-7);
+  EXPECT_GT(report.replay_gap_median, 0.01);
+  EXPECT_GT(report.replay_gap_p90, report.replay_gap_median + 0.01);
+}
+
+TEST_F(GenerationReportTest, IterationsAreThoseOfConvergedSolves) {
+  EXPECT_EQ(report.iterations_median, ranked(world.iterations, 0.5));
+  EXPECT_EQ(report.iterations_p90, ranked(world.iterations, 0.9));
+}
+
+TEST_F(GenerationReportTest, CoverageIsThatOfTheStoredTransitions) {
+  Coverage coverage(world.task);
+  long region = 0, trees = 0;
+  for (const Transition& t : world.stored) {
+    coverage.add(t);
+    const bool inside = in_the_start_region(t.poses);
+    region += inside;
+    trees += inside && t.source != Source::kRollOut;
+  }
+  EXPECT_EQ(report.reachable_share, coverage.reachable_share());
+  EXPECT_GT(report.reachable_share, 0.1);
+  EXPECT_EQ(report.start_region_transitions, region);
+  EXPECT_EQ(report.start_region_tree_transitions, trees);
+  EXPECT_GT(trees, 0);
+  EXPECT_GT(region, trees);
+}
+
+TEST_F(GenerationReportTest, StartRegionDepthIsTheLeastOfANodeThere) {
+  std::vector<int> depths;
+  for (const ReportNode& n : report.nodes)
+    if (n.depth > 0 && in_the_start_region(n.poses)) depths.push_back(n.depth);
+  ASSERT_FALSE(depths.empty());
+  EXPECT_EQ(report.start_region_depth, std::ranges::min(depths));
+  EXPECT_NE(depths.back(), std::ranges::min(depths)) << "the last one could be taken for the least";
+}
+
+TEST_F(GenerationReportTest, HasEveryNodeThatWasExpanded) {
+  for (const Poses& poses : world.expanded)
+    ASSERT_NE(std::ranges::find(report.nodes, poses, &ReportNode::poses), report.nodes.end());
+}
+
+}  // namespace
+}  // namespace rtg
