@@ -1,0 +1,82 @@
+// How fast the servo moves the robot, and that it arrives.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/forward/box2d_simulator.hpp"
+
+namespace rtg {
+namespace {
+
+const Poses kBelowABox{{0, 0, 0}, {1.3, 1.0, 0}};  // their sides overlap by 0.1 m seen along +x
+
+/// A robot box and one more box.
+Scene robot_and_box() {
+  return {{{"robot", "robot", box(1.0, 1.0), 1.0, 0.5, false},
+           {"box", "box", box(1.2, 1.2), 1.0, 0.5, false}}};
+}
+
+/// Of the robot within one Box2D step, in units of the advance at push speed (turns: at the
+/// corners).
+struct Fastest {
+  double way = 0.0, turn = 0.0;
+};
+
+/// Over the pushes from `kBelowABox` along +x whose path the arena cuts off after 1, 2, ... 50
+/// Box2D steps: a robot that lags behind does the same in the longer ones and then one step more.
+Fastest fastest(const Scene& scene, const PhysicsConfig& physics) {
+  const double advance = PushConfig{}.stride / (physics.sub_steps * physics.box2d_steps);
+  Fastest most;
+  Pose before = kBelowABox[0];
+  for (int k = 1; k <= physics.sub_steps * physics.box2d_steps; ++k) {
+    PushConfig push;
+    push.arena = k * advance;
+    const PushOutcome out = Box2dSimulator(scene, push, physics).push(kBelowABox, 0);
+    EXPECT_TRUE(out.ok);
+    const Pose now = out.end[0];
+    if (k > 1)  // the first one brings the steps of the catching up along
+      most.way = std::max(most.way, (now.position() - before.position()).norm() / advance);
+    most.turn = std::max(most.turn, std::abs(now.theta - before.theta) *
+                                        bounding_radius(scene.bodies[0].shape) / advance);
+    before = now;
+  }
+  return most;
+}
+
+constexpr double kBound = 1.5;       // of the servo
+constexpr double kCorrection = 0.3;  // by Box2D, of bodies that touch too deeply
+
+// The robot pushes a heavy box off centre, until that has turned out of its way.
+TEST(Box2dServo, ARobotThatComesFreeDoesNotJump) {
+  Scene scene = robot_and_box();
+  scene.bodies[1].density = 10.0;
+  const Fastest most = fastest(scene, {});
+  EXPECT_LT(most.way, kBound + kCorrection);
+  EXPECT_GT(most.way, 1.4) << "it never came free";
+}
+
+// The corner of a fixed box turns a weak robot, which then turns back.
+TEST(Box2dServo, ARobotThatAContactHasTurnedTurnsBackAtTheSpeedOfThePush) {
+  Scene scene = robot_and_box();
+  scene.bodies[1].fixed = true;
+  PhysicsConfig physics;
+  physics.torque_factor = 2.0;
+  const Fastest most = fastest(scene, physics);
+  EXPECT_LT(most.turn, kBound + kCorrection);
+  EXPECT_GT(most.turn, 1.4) << "it never turned";
+}
+
+// A box that it meets in the last steps of its path holds the robot up by up to a third of a step.
+TEST(Box2dServo, ARobotHeldUpAtTheEndOfItsPathCatchesUp) {
+  for (const double gap : {1.9, 1.95}) {
+    const PushOutcome out =
+        Box2dSimulator(robot_and_box(), {}, {}).push({{0, 0, 0}, {1.1 + gap, 0, 0}}, 0);
+    ASSERT_TRUE(out.ok);
+    EXPECT_NEAR(out.end[0].x, 2.0, 1e-3) << gap;
+  }
+}
+
+}  // namespace
+}  // namespace rtg
