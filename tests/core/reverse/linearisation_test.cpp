@@ -30,6 +30,13 @@ VectorXd conditions(const ReverseProblem& problem, const Iterate& x) {
   return -joined(lin.right_hand_side(v));
 }
 
+/// A zero vector of the system.
+BlockVector nothing(const Linearisation& lin) {
+  BlockVector all;
+  for (const MatrixXd& A : lin.matrix().A) all.push_back(VectorXd::Zero(A.rows()));
+  return all;
+}
+
 /// Five random directions and that of the gradient, along which errors do not average out.
 std::vector<BlockVector> directions(const Linearisation& lin, const Violation& v) {
   Rng rng(5);
@@ -69,16 +76,29 @@ TEST(Linearisation, MatrixIsDerivativeOfFirstOrderConditions) {
   expect_matrix_is_derivative(problem, disturbed(*start, 1e-3, rng));
 }
 
+// Bodies far apart that turn by up to 0.5 rad per sub-step; entry by entry, as what the sine adds
+// to the curvature is small beside the largest.
 TEST(Linearisation, MatrixIsDerivativeWithPeriodicDamping) {
   TouchingScene scene;
   scene.physics.periodic_damping = true;
   scene.energy = StepEnergy(scene.scene, scene.physics, scene.task.push);
+  scene.poses = {{0.0, 0.0, 0.0}, {5.0, 0.0, 0.0}, {0.0, 5.0, 0.0}};
   const ReverseConfig config;
   const ReverseProblem problem = scene.problem(config);
-  const auto start = warm_start(problem);
-  ASSERT_TRUE(start);
   Rng rng(2);
-  expect_matrix_is_derivative(problem, disturbed(*start, 1e-3, rng));
+  const Iterate x = disturbed(static_iterate(problem), 0.25, rng);
+  const Linearisation lin(problem, x, {true, 0.0});
+  for (std::size_t block = 0; block < lin.matrix().A.size(); ++block)
+    for (Eigen::Index row = 0; row < lin.matrix().A[block].rows(); ++row) {
+      BlockVector along = nothing(lin);
+      along[block][row] = 1.0;
+      const Direction d = lin.direction(along, lin.violation());
+      const double t = 1e-5;
+      const VectorXd difference =
+          (conditions(problem, moved(x, d, t)) - conditions(problem, moved(x, d, -t))) / (2.0 * t);
+      const VectorXd column = joined(product(lin.matrix(), along));
+      EXPECT_LT((difference - column).lpNorm<Eigen::Infinity>(), 1e-6) << block << ", " << row;
+    }
 }
 
 TEST(Linearisation, MatrixIsDerivativeWithFixedEnd) {
@@ -179,13 +199,44 @@ TEST(Linearisation, ObjectiveSlopeMatchesDifferences) {
       slope, 1e-6 * std::abs(slope));
 }
 
+/// |Δp|² + |Δc|² + 0.01 |Δλ|² of the step that s + t·u stands for.
+double step_size(const Linearisation& lin, BlockVector s, const BlockVector& u, double t) {
+  for (std::size_t k = 0; k < s.size(); ++k) s[k] += t * u[k];
+  const Direction d = lin.direction(s, lin.violation());
+  double sum = 0.0;
+  for (std::size_t k = 0; k < d.p.size(); ++k)
+    sum += d.p[k].squaredNorm() + d.controls[k].squaredNorm() + 0.01 * d.forces[k].squaredNorm();
+  return sum;
+}
+
+// Newton's equations K s = r with it, less those without. The forces follow from the poses and from
+// how far complementarity is from holding.
+TEST(Linearisation, ProximalTermIsTheGradientOfTheSquaredStep) {
+  const Disturbed at(10);
+  const double proximal = 0.7;
+  for (const bool exact : {false, true}) {
+    const Linearisation with(at.problem, at.x, {exact, proximal});
+    const Linearisation without(at.problem, at.x, {exact, 0.0});
+    const auto left = [](const Linearisation& lin, const BlockVector& s) {
+      return VectorXd(joined(product(lin.matrix(), s)) -
+                      joined(lin.right_hand_side(lin.violation())));
+    };
+    const std::vector<BlockVector> all = directions(with, with.violation());
+    const VectorXd term = left(with, all[0]) - left(without, all[0]);
+    for (const BlockVector& u : all) {
+      const double slope =
+          0.25 * proximal * (step_size(with, all[0], u, 1.0) - step_size(with, all[0], u, -1.0));
+      EXPECT_NEAR(term.dot(joined(u)), slope, 1e-9 * std::abs(slope));
+    }
+  }
+}
+
 // Controls enter the objective as ε |c|² alone, poses of the robot amid the way as κ |t|².
 TEST(Linearisation, ModelCurvatureIsThatOfTheObjectiveAndTheProximalTerm) {
   const Disturbed at(9);
   const double proximal = 0.3;
   const Linearisation lin(at.problem, at.x, {false, proximal});
-  BlockVector along;
-  for (const MatrixXd& A : lin.matrix().A) along.push_back(VectorXd::Zero(A.rows()));
+  BlockVector along = nothing(lin);
   along[3].segment<3>(9) = Vector3d(1.0, -2.0, 2.0);
   along[5].tail(9).setOnes();  // multipliers do not count
   EXPECT_NEAR(lin.model_curvature(along), 9.0 * (2.0 * at.config.control_weight + proximal), 1e-12);
