@@ -168,14 +168,15 @@ class Generation {
     return {c.start, c.action, c.end, succeeded(task_, c.end), Source::kStepReplay};
   }
 
-  /// A step that found no room any more is not part of the data that the policy judges.
+  /// A step that found no room any more is not part of the data that the policy judges; one that
+  /// misses serves only if it reaches the goal all the same.
   void learn(const BeamSearch::Growth& growth) {
     const Candidate& c = growth.candidate;
     const auto stored = [&](const Poses& start, int action) {
       return stored_steps_.contains(key_of(start, action));
     };
     if (!stored(c.start, c.action) || !repeatable(c, config_)) return;
-    if (growth.depth == 1 || c.miss <= config_.gap_tolerance)
+    if (c.miss <= config_.gap_tolerance || succeeded(task_, c.end))
       learn_step(policy_, growth, search_.nodes(), stored);
   }
 

@@ -78,6 +78,20 @@ TEST(GenerateRounds, ThePolicyLeavesOutStepsThatFoundNoRoom) {
   for (const ReplayJob& job : world.replays.back()) EXPECT_EQ(job.action, kFirst);
 }
 
+TEST(GenerateRounds, MissesServeThePolicyOnlyIfTheyReachTheGoal) {
+  ScriptedWorld world;
+  world.task.horizon = 1;
+  world.layers = {{{kFirst, world.start_but(1.0)}, {kLast, world.task.start}}};
+  world.pushed = [&](Poses poses, int action) {
+    if (action == kFirst) poses = world.goal();
+    poses[0].x += 1.0;
+    return poses;
+  };
+  const GenerationReport report = world.generation(trees_only(2, 1));
+  EXPECT_EQ(report.transitions, 2);
+  EXPECT_EQ(report.tree_policy_success, 1.0);  // by the one that begins farther away
+}
+
 TEST(GenerateRounds, ChainsNearestToTheStartAreReplayed) {
   ScriptedWorld world;
   const Poses near = world.start_but(0.0, 1.0), middle = world.start_but(0.0, 2.0),
