@@ -153,7 +153,7 @@ TEST(GenerateRounds, EveryPhaseJittersItsStartsFromAStreamOfItsOwn) {
   };
   Rng rng = stream(5, 0);
   std::vector<Poses> judged;
-  while (judged.size() < 7) judged.push_back(*jittered_start(world.task, 0.1, rng));
+  while (judged.size() < 7) judged.push_back(jittered_start(world.task, 0.1, rng));
   // the first round has no policy to follow
   const std::vector<long> order{jittered(2, 1, 0.3), begun_in(world, judged), jittered(3, 0, 0.2),
                                 jittered(3, 1, 0.2)};
