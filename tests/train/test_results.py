@@ -31,3 +31,21 @@ def test_data_that_does_not_connect_start_and_goal_is_told(success, told):
         "tree_policy_success": success,
     }
     assert ("--transitions" in results.words(plan, summary)) == told
+
+
+@pytest.mark.parametrize(("interactions", "told"), [(20000, True), (350000, False)])
+def test_an_early_end_of_training_is_explained(interactions, told):
+    train = {"interactions": 350000, "stop_at_success": 0.95, "stop_evaluations": 3}
+    plan = RunPlan(Path("runs/x"), "x", {"train": train}, train=True, resume=False, notes=())
+    summary = {
+        "transitions": 2000,
+        "generate_wall_s": 3.0,
+        "contact_share": 0.3,
+        "tree_policy_success": 0.5,
+        "success_rate": 0.98,
+        "interactions": interactions,
+        "train_wall_s": 60.0,
+        "episode_length_mean": 15.0,
+    }
+    why = "350,000 interactions were not needed: 3 evaluations in a row had solved 95% or more"
+    assert (why in results.words(plan, summary)) == told

@@ -16,7 +16,7 @@ from rich.progress import (
     Task,
     TaskID,
     TextColumn,
-    TimeRemainingColumn,
+    TimeElapsedColumn,
 )
 from rich.text import Text
 
@@ -136,10 +136,10 @@ class LiveDisplay:
             TextColumn("{task.description:<8}"),
             BarColumn(bar_width=28),
             _Counts(),
-            TimeRemainingColumn(elapsed_when_finished=True),
+            TimeElapsedColumn(),  # roll-outs are fast, training ends early: no remainder is known
             console=self._console,
         )
-        bar.add_task(name, total=None)
+        bar.add_task(name, total=None, start=False)
         return bar
 
     def __enter__(self) -> Self:
@@ -155,6 +155,9 @@ class LiveDisplay:
     def show(self, state: RunState) -> None:
         generate, train = self._bars
         only = TaskID(0)
+        for bar, begun in ((generate, state.transitions), (train, state.interactions)):
+            if begun and bar.tasks[0].start_time is None:
+                bar.start_task(only)
         generate.update(only, completed=state.transitions, total=state.target or None)
         rows: list[RenderableType] = [generate, _under(generation_text(state))]
         if state.budget:

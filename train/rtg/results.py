@@ -98,4 +98,12 @@ def words(plan: RunPlan, summary: dict[str, Any]) -> str:
             f"success rate {s['success_rate']:.2f} after {s['interactions']:,} interactions in "
             f"{s['train_wall_s']:.0f} s, {s['episode_length_mean']:.1f} actions per episode"
         )
+        if s["interactions"] < plan.interactions:
+            bar, count = (
+                plan.config["train"][key] for key in ("stop_at_success", "stop_evaluations")
+            )
+            lines.append(
+                f"{plan.interactions:,} interactions were not needed: {count} evaluations in a row "
+                f"had solved {bar:.0%} or more (train.stop_at_success)"
+            )
     return "\n".join([*lines, f"results: {plan.folder}"])
