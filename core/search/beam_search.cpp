@@ -26,7 +26,7 @@ BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, std::uint64
       rng_(seed),
       probe_(task, config, Rng(seed, kTwins).word()) {}
 
-void BeamSearch::aim(const Poses& target, const ReplayBatch& replay, SearchStats& stats) {
+void BeamSearch::aim(const Target& target, const ReplayBatch& replay, SearchStats& stats) {
   target_ = target;
   plant(replay, stats);
   std::vector<BeamEntry> entries;

@@ -35,7 +35,7 @@ class BeamSearch {
   /// many, objects that look the same exchanged so that each begins near its place. The next layer
   /// grows from those of all nodes that start_distance() puts nearest, whatever the ranking: the
   /// others judge a step, and an old node is none.
-  void aim(const Poses& target, const ReplayBatch& replay, SearchStats& stats);
+  void aim(const Target& target, const ReplayBatch& replay, SearchStats& stats);
 
   /// A replayed candidate with the node that it came from.
   struct Growth {
@@ -71,7 +71,7 @@ class BeamSearch {
   const Task& task_;
   SearchConfig config_;
   StateMetric metric_;
-  Poses target_;
+  Target target_;
   Rng rng_;
   StretchProbe probe_;
   std::vector<Node> nodes_;

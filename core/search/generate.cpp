@@ -22,16 +22,8 @@ enum Stream : std::uint64_t { kTrees = 1, kProbing, kRollOuts, kNoise, kEvaluati
 constexpr int kWave = 50;         // roll-outs that run in lockstep
 constexpr int kProbes = 50;       // episodes that find a round's target and judge its policy
 constexpr double kArrived = 0.5;  // a node so near is at its target [m], as in StateMetric
+constexpr double kTurned = 0.5;   // Target::turned where angles matter [m]
 constexpr int kMaxBarren = 8;     // rounds or waves without a transition before it gives up
-
-template <class Number>
-double quantile(std::vector<Number> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto at =
-      values.begin() + static_cast<long>(share * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 /// Share of the probe starts from which success was reached.
 double rating(std::span<const Episode> episodes) {
@@ -81,21 +73,23 @@ class Generation {
     return kept;
   }
 
-  /// One round: trees grow to where the policy gets lost, or to a jittered start if it does not.
-  /// The policy takes up what they find if it does better with it. Whether anything was stored.
+  /// One round: trees grow to where the policy gets lost, or to a jittered start if it does not
+  /// (once it solves every probe, also to the angles, for the start region's sake). The policy
+  /// takes up what they find if it does better with it. Whether anything was stored.
   bool grow(long limit) {
     const long before = stored();
     const std::size_t known = search_.nodes().size();
     const std::vector<Poses> starts = probe_starts(kProbing);
     const std::vector<Episode> probes = follow(policy_, starts);
     const int proven = policy_.size();
-    grow_towards(lost_state(probes).value_or(starts[0]), limit);
+    const double solved = rating(probes);
+    grow_towards({lost_state(probes).value_or(starts[0]), solved < 1.0 ? 0.0 : kTurned}, limit);
     replay_chains_from(known, before, limit);
     const auto rate = [&](const TreePolicy& policy) { return rating(follow(policy, starts)); };
     const auto rate_anew = [this](const TreePolicy& policy) {
       return rating(follow(policy, probe_starts(kProving)));
     };
-    if (!cancelled()) climb(policy_, proven, rating(probes), rate, rate_anew);
+    if (!cancelled()) climb(policy_, proven, solved, rate, rate_anew);
     note_nodes(known);
     ++rounds_;
     return stored() > before;
@@ -103,7 +97,7 @@ class Generation {
 
   /// Layers until the trees have reached the target or, after the first, come no nearer; leaves
   /// room for chains.
-  void grow_towards(const Poses& target, long limit) {
+  void grow_towards(const Target& target, long limit) {
     const long layers =
         limit - static_cast<long>(config_.chain_share * static_cast<double>(limit - stored()));
     const std::size_t known = search_.nodes().size();
@@ -117,7 +111,7 @@ class Generation {
       report_progress("round " + std::to_string(rounds_ + 1), layer, config_.depth);
       patience = search_.best() < best ? config_.patience : patience - 1;
       best = std::min(best, search_.best());
-      if (patience <= 0 || arrivals(known, target) >= config_.arrivals) break;
+      if (patience <= 0 || arrivals(known, target.poses) >= config_.arrivals) break;
     }
   }
 
@@ -252,21 +246,7 @@ class Generation {
     report_.start_region_transitions = coverage_.start_region();
     report_.start_region_tree_transitions = coverage_.start_region_trees();
     report_.reachable_share = coverage_.reachable_share();
-    report_.candidates = stats_.candidates;
-    report_.statuses = stats_.statuses;
-    report_.illegal_starts = stats_.illegal_starts;
-    report_.unsettled_goals = stats_.unsettled_goals;
-    report_.rejected_pushes = stats_.rejected_pushes;
-    report_.iterations_median = quantile(stats_.iterations, 0.5);
-    report_.iterations_p90 = quantile(stats_.iterations, 0.9);
-    report_.pushing_converged = static_cast<long>(stats_.pushing_iterations.size());
-    report_.pushing_iterations_median = quantile(stats_.pushing_iterations, 0.5);
-    report_.pushing_iterations_p90 = quantile(stats_.pushing_iterations, 0.9);
-    report_.replay_gap_median = quantile(stats_.gaps, 0.5);
-    report_.replay_gap_p90 = quantile(stats_.gaps, 0.9);
-    report_.reverse_cpu_s = stats_.reverse_cpu_s;
-    report_.replay_cpu_s = stats_.replay_cpu_s;
-    report_.replay_gaps = stats_.gaps;
+    fill(report_, stats_);
     return std::move(report_);
   }
 

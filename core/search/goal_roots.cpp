@@ -4,7 +4,6 @@
 #include <unordered_set>
 #include <utility>
 
-#include "core/search/ranking.hpp"
 #include "core/search/state_metric.hpp"
 
 namespace rtg {
@@ -38,7 +37,7 @@ Poses relabelled(const Task& task, const Poses& poses, const Poses& target) {
   return best;
 }
 
-std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, const Poses& target,
+std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, const Target& target,
                               Rng& rng) {
   const StateMetric metric(task.scene);
   std::unordered_set<std::uint64_t> seen;
@@ -46,7 +45,7 @@ std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, cons
   for (int k = 0; k < config.breadth * config.root_draws; ++k) {
     const std::optional<Poses> goal = sample_goal(task, rng);
     if (!goal) break;
-    Poses root = relabelled(task, *goal, target);
+    Poses root = relabelled(task, *goal, target.poses);
     if (!seen.insert(metric.cell(root, {})).second) continue;
     drawn.emplace_back(start_distance(task, metric, root, target), std::move(root));
   }

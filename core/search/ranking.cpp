@@ -76,16 +76,18 @@ Score novelty(const StateMetric& metric, std::span<const Poses> known) {
 }  // namespace
 
 double start_distance(const Task& task, const StateMetric& metric, const Poses& poses,
-                      const Poses& target) {
-  double sum = metric.layout_distance(poses, target) / task.push.stride;
+                      const Target& target) {
+  double sum = metric.layout_distance(poses, target.poses) / task.push.stride;
   for (const auto& o : metric.objects()) {
-    const double off = (target[o.body].position() - poses[o.body].position()).norm();
+    const Pose &here = poses[o.body], &there = target.poses[o.body];
+    const double angle = std::abs(angle_difference(there.theta, here.theta, o.order));
+    const double off = (there.position() - here.position()).norm() + target.turned * angle;
     sum += kWalk * std::min(1.0, off / kInPlace);
   }
-  return sum + next_walk(task, metric, poses, target);
+  return sum + next_walk(task, metric, poses, target.poses);
 }
 
-Score make_score(Ranking ranking, const Task& task, const Poses& target,
+Score make_score(Ranking ranking, const Task& task, const Target& target,
                  std::span<const Poses> known) {
   StateMetric metric(task.scene);
   switch (ranking) {

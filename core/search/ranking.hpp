@@ -9,13 +9,21 @@
 
 namespace rtg {
 
+/// A layout that trees grow to, and how far out of place an object is that is turned there by 1 rad
+/// [m]: 0 where angles hardly matter, as few pushes turn an object and a policy copes with most.
+struct Target {
+  Poses poses;
+  double turned = 0.0;
+};
+
 /// Where a tree should grow to: its score is the least there.
 ///
 ///   start_distance: about how many pushes are left,
 ///
-///     Σ_objects [(|x - x*| + r|θ - θ*|) / stride + 2·min(1, |x - x*| / 0.4 m)] + walk,
+///     Σ_objects [(|x - x*| + r|θ - θ*|) / stride
+///                + 2·min(1, (|x - x*| + turned·|θ - θ*|) / 0.4 m)] + walk,
 ///
-/// x*, θ* the layout `target`, r as in StateMetric; 2 is the price of getting from one object to
+/// x*, θ*, turned of the target, r as in StateMetric; 2 is the price of getting from one object to
 /// the next. `walk`: pushes until the robot touches an object that is out of place on the side
 /// towards its place, ready to pull it there (0, 1, or the strides of the way, but at least 2);
 /// with all objects in place, the way to the robot's own, in strides.
@@ -23,13 +31,12 @@ namespace rtg {
 ///   displacement: - how far the step moved the objects, in all [m]
 using Score = std::function<double(const Candidate&)>;
 
-/// `target` is the layout to reach, `known` the states that the trees have (only novelty looks at
-/// them); both are copied.
-Score make_score(Ranking ranking, const Task& task, const Poses& target,
+/// `known`: the states that the trees have (only novelty looks at them). Both are copied.
+Score make_score(Ranking ranking, const Task& task, const Target& target,
                  std::span<const Poses> known);
 
 /// The first score on its own: chooses the roots and the beam of a new round, tells its progress.
 double start_distance(const Task& task, const StateMetric& metric, const Poses& poses,
-                      const Poses& target);
+                      const Target& target);
 
 }  // namespace rtg

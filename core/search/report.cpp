@@ -1,8 +1,39 @@
 #include "core/search/report.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace rtg {
+namespace {
+
+template <class Number>
+double quantile(std::vector<Number> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at =
+      values.begin() + static_cast<long>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+void fill(GenerationReport& report, const SearchStats& stats) {
+  report.candidates = stats.candidates;
+  report.statuses = stats.statuses;
+  report.illegal_starts = stats.illegal_starts;
+  report.unsettled_goals = stats.unsettled_goals;
+  report.rejected_pushes = stats.rejected_pushes;
+  report.iterations_median = quantile(stats.iterations, 0.5);
+  report.iterations_p90 = quantile(stats.iterations, 0.9);
+  report.pushing_converged = static_cast<long>(stats.pushing_iterations.size());
+  report.pushing_iterations_median = quantile(stats.pushing_iterations, 0.5);
+  report.pushing_iterations_p90 = quantile(stats.pushing_iterations, 0.9);
+  report.replay_gap_median = quantile(stats.gaps, 0.5);
+  report.replay_gap_p90 = quantile(stats.gaps, 0.9);
+  report.reverse_cpu_s = stats.reverse_cpu_s;
+  report.replay_cpu_s = stats.replay_cpu_s;
+  report.replay_gaps = stats.gaps;
+}
 
 std::string to_json(const GenerationReport& r) {
   nlohmann::ordered_json out = {{"transitions", r.transitions},

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/reverse/solve_status.hpp"
+#include "core/search/search_stats.hpp"
 #include "core/world/pose.hpp"
 
 namespace rtg {
@@ -51,6 +52,9 @@ struct GenerationReport {
   std::vector<float> replay_gaps;  // one per replayed candidate [m]
   std::vector<ReportNode> nodes;
 };
+
+/// What solves and replays were counted.
+void fill(GenerationReport& report, const SearchStats& stats);
 
 /// The report as JSON text, keys as the fields above (pruned, converged and the other statuses by
 /// name).

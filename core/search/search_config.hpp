@@ -28,11 +28,11 @@ struct SearchConfig {
   int twins = 8;                   // disturbed starts that probe how a push stretches errors
   double twin_jitter = 0.3;        // they differ by up to ± this [m]; 1.5 m as 1 rad
   int starts = 2;                  // predecessors of one solve that are replayed, the best ones
-  int free_moves = 12;             // steps that move no object replayed per node, the best ones
+  int free_moves = 6;              // steps that move no object replayed per node, the best ones
   int per_layout = 6;              // nodes of a beam that differ in the robot only, at most
   int root_draws = 4;              // goal states drawn per root kept
   int arrivals = 10;               // nodes at its target that end a round
-  int patience = 1;                // layers without a better node that end a round
+  int patience = 3;                // layers without a better node that end a round
   double target_jitter = 0.25;     // trees aim at the start with objects moved by up to ± this [m]
   double chain_share = 0.1;        // of the tree transitions from chains replayed end to end
   double rollout_jitter = 0.25;    // roll-outs start with objects moved by up to ± this [m]

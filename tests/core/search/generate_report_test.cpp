@@ -16,6 +16,7 @@ namespace {
 struct NotingWorld : testing::DraggingWorld {
   std::vector<double> gaps;        // of replayed candidates [m]
   std::vector<double> iterations;  // of converged solves
+  std::vector<double> pushing;     // of those of them that moved an object
   std::vector<Poses> expanded;     // states that were solved for
   std::vector<Transition> stored;
 
@@ -40,8 +41,12 @@ struct NotingWorld : testing::DraggingWorld {
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       ReverseResult& answer = answers[k];
       answer.iterations = 1 + static_cast<int>(k % 40);
-      if (k % 7 == 0) answer = {SolveStatus::kIterationLimit, answer.iterations + 50};
-      if (k % 7 != 0) iterations.push_back(answer.iterations);
+      if (k % 7 == 0) {
+        answer = {SolveStatus::kIterationLimit, answer.iterations + 50};
+      } else {
+        iterations.push_back(answer.iterations);
+        if (moves(answer.starts[0], jobs[k].end)) pushing.push_back(answer.iterations);
+      }
       if (k % static_cast<std::size_t>(task.push.headings) == 0) expanded.push_back(jobs[k].end);
       for (const Poses& start : answer.starts)
         wanted_[key_of(float_rounded(start), jobs[k].action)] = jobs[k].end;
@@ -58,6 +63,12 @@ struct NotingWorld : testing::DraggingWorld {
         gaps.push_back(gap(wanted_.at(key_of(jobs[k].start, jobs[k].action)), results[k].end));
     to_come_ = false;
     return results;
+  }
+
+  static bool moves(const Poses& a, const Poses& b) {
+    for (std::size_t k = 1; k < a.size(); ++k)
+      if (std::hypot(a[k].x - b[k].x, a[k].y - b[k].y) > 0.05) return true;
+    return false;
   }
 
   static double gap(const Poses& a, const Poses& b) {
@@ -78,9 +89,10 @@ struct GenerationReportTest : ::testing::Test {
     SearchConfig config;
     config.transitions = 1500;
     config.breadth = 8;
+    config.patience = 1;
     config.twins = 2;
     config.evaluation_starts = 10;
-    report = generate(world.task, config, 4, world.seams());
+    report = generate(world.task, config, 8, world.seams());
   }
 
   bool in_the_start_region(const Poses& poses) const {
@@ -114,6 +126,10 @@ TEST_F(GenerationReportTest, GapsAreThoseBetweenWhatWasSolvedForAndWhatReplayed)
 TEST_F(GenerationReportTest, IterationsAreThoseOfConvergedSolves) {
   EXPECT_EQ(report.iterations_median, ranked(world.iterations, 0.5));
   EXPECT_EQ(report.iterations_p90, ranked(world.iterations, 0.9));
+  EXPECT_EQ(report.pushing_converged, static_cast<long>(world.pushing.size()));
+  EXPECT_EQ(report.pushing_iterations_median, ranked(world.pushing, 0.5));
+  EXPECT_EQ(report.pushing_iterations_p90, ranked(world.pushing, 0.9));
+  EXPECT_LT(world.pushing.size(), world.iterations.size());
 }
 
 TEST_F(GenerationReportTest, CoverageIsThatOfTheStoredTransitions) {

@@ -179,6 +179,24 @@ TEST(GenerateRounds, ARoundHeadsForWhereThePolicyGotLost) {
   EXPECT_EQ(world.solves[1][0].end, there) << "of the nodes the nearest to the target comes first";
 }
 
+// Of two nodes the first has an object out of place by 0.15 m, the other one turned by 0.35 rad.
+TEST(GenerateRounds, AnglesCountOnceThePolicySolvesAll) {
+  for (const bool solves_all : {false, true}) {
+    ScriptedWorld world;
+    world.task.horizon = 1;
+    const Poses start = world.task.start, moved = world.start_but(0.0, 0.15);
+    Poses turned = start;
+    turned[1] = to_single({turned[1].x, turned[1].y, turned[1].theta + 0.35});
+    world.layers = {{{kFirst, moved}, {kLast, turned}}};
+    world.pushed = [&](const Poses& poses, int) {
+      return poses == start && !solves_all ? start : world.goal();
+    };
+    world.generation(trees_only(3, 1));
+    ASSERT_GE(world.solves.size(), 2U);
+    EXPECT_EQ(world.solves[1][0].end, solves_all ? moved : turned);
+  }
+}
+
 struct RollOutsTest : ::testing::TestWithParam<double> {};
 
 /// Waves of 50, after the judgement of no policy at all.

@@ -132,7 +132,7 @@ SearchConfig of(int breadth, int root_draws) {
 
 std::vector<Poses> roots(const Task& task, const SearchConfig& config, std::uint64_t seed) {
   Rng rng(seed);
-  return goal_roots(task, config, task.start, rng);
+  return goal_roots(task, config, {task.start}, rng);
 }
 
 TEST(GoalRoots, AreDistinctGoalsNearestFirst) {
@@ -146,7 +146,7 @@ TEST(GoalRoots, AreDistinctGoalsNearestFirst) {
     EXPECT_TRUE(succeeded(task, root));
     EXPECT_EQ(relabelled(task, root, task.start), root);
     EXPECT_TRUE(cells.insert(metric.cell(root, {})).second);
-    const double left = start_distance(task, metric, root, task.start);
+    const double left = start_distance(task, metric, root, {task.start});
     EXPECT_GE(left, before);
     before = left;
   }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/gathering.hpp"
 
 namespace rtg {
@@ -15,12 +17,13 @@ struct StartDistanceTest : ::testing::Test {
   Task task = gathering();
   StateMetric metric{task.scene};
   Poses poses = task.start;
+  double turned = 0.0;
 
   StartDistanceTest() { poses[1].x += 3.0; }
 
   double with_robot_at(double x, double y) {
     poses[0] = {x, y, 0.0};
-    return start_distance(task, metric, poses, task.start);
+    return start_distance(task, metric, poses, {task.start, turned});
   }
 };
 
@@ -44,9 +47,22 @@ TEST_F(StartDistanceTest, WithAllInPlaceTheRobotGoesHome) {
   EXPECT_NEAR(with_robot_at(0.0, -2.0), 1.5, 1e-12);
 }
 
+// Turned by 0.2 rad a box is 0.1 m from its place in the metric, for a stride of 2 m.
+TEST_F(StartDistanceTest, ATurnedObjectIsOutOfPlaceAsFarAsTheTargetSays) {
+  poses = task.start;
+  poses[1].theta += 0.2;
+  EXPECT_NEAR(with_robot_at(0.0, -5.0), 0.05, 1e-12);
+  turned = 0.5;  // 0.1 m of 0.4 m
+  EXPECT_NEAR(with_robot_at(0.0, -5.0), 0.05 + 2.0 * 0.25, 1e-12);
+  turned = 4.0;
+  EXPECT_NEAR(with_robot_at(0.0, -5.0), 0.05 + 2.0, 1e-12);
+  poses[1].theta = task.start[1].theta + std::acos(-1.0) / 2.0;  // a square
+  EXPECT_NEAR(with_robot_at(0.0, -5.0), 0.0, 1e-12);
+}
+
 TEST(Ranking, DisplacementPrefersWhatMovesMore) {
   const Task task = gathering();
-  const Score score = make_score(Ranking::kDisplacement, task, task.start, {});
+  const Score score = make_score(Ranking::kDisplacement, task, {task.start}, {});
   Candidate c{0, 0, task.start, task.start};
   EXPECT_EQ(score(c), 0.0);
   c.start[2].x += 0.5;
@@ -58,7 +74,7 @@ TEST(Ranking, NoveltyCountsTheStatesOfTheCell) {
   Poses other = task.start;
   other[1].x += 1.0;
   const std::vector<Poses> known{task.start, task.start, other};
-  const Score score = make_score(Ranking::kNovelty, task, task.start, known);
+  const Score score = make_score(Ranking::kNovelty, task, {task.start}, known);
   EXPECT_EQ(score({0, 0, task.start, task.start}), 2.0);
   EXPECT_EQ(score({0, 0, other, task.start}), 1.0);
   other[1].x += 1.0;
