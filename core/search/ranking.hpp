@@ -9,11 +9,10 @@
 
 namespace rtg {
 
-/// A layout that trees grow to, and how far out of place an object is that is turned there by 1 rad
-/// [m]: 0 where angles hardly matter, as few pushes turn an object and a policy copes with most.
+/// Where trees grow to.
 struct Target {
-  Poses poses;
-  double turned = 0.0;
+  Poses poses;          // the layout
+  double turned = 0.0;  // an object 1 rad off its angle counts as this far out of its place [m]
 };
 
 /// Where a tree should grow to: its score is the least there.
@@ -31,7 +30,8 @@ struct Target {
 ///   displacement: - how far the step moved the objects, in all [m]
 using Score = std::function<double(const Candidate&)>;
 
-/// `known`: the states that the trees have (only novelty looks at them). Both are copied.
+/// `known`: the states that the trees have; only novelty looks at them. They and `target` are
+/// copied.
 Score make_score(Ranking ranking, const Task& task, const Target& target,
                  std::span<const Poses> known);
 

@@ -53,7 +53,7 @@ struct GenerationReport {
   std::vector<ReportNode> nodes;
 };
 
-/// What solves and replays were counted.
+/// Writes into `report` what `stats` has counted, with the medians and 90th percentiles.
 void fill(GenerationReport& report, const SearchStats& stats);
 
 /// The report as JSON text, keys as the fields above (pruned, converged and the other statuses by
