@@ -31,10 +31,12 @@ def test_a_network_with_a_multicast_route_has_no_defect():
 
 
 def test_a_machine_without_any_network_has_one():
-    assert (
-        said("unshare", "--map-root-user", "--net") == "multicast to 239.255.76.67: no such device"
+    assert said("unshare", "--map-root-user", "--net") == (
+        "multicast to 239.255.76.67: no such device. To mend it: "
+        "sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo"
     )
 
 
 def test_a_bus_of_one_process_is_none_for_a_process_graph():
-    assert defect("memq://") == "memq:// is for one process only"
+    words = "memq:// is for one process only; run.bus = udpm://… is for several"
+    assert defect("memq://") == words

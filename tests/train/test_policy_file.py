@@ -2,9 +2,14 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
+from gymnasium import spaces
 from rtg import _core, checkpoint, paths, policy_file
+from rtg.env import observation_space
 from rtg.errors import UserError
+from rtg.networks import ValuePolicy
+from rtg.settings import TrainSettings
 
 TASK = _core.Config.from_file(paths.CONFIG / "tests" / "tiny.yaml").task
 FITTING = {"observation_size": 20, "headings": 48, "dueling": True, "layer_norm": True}
@@ -26,3 +31,15 @@ def test_files_of_another_kind_are_no_policies(
     checkpoint.write(file, state)
     with pytest.raises(UserError, match=message):
         policy_file.read(file, TASK)
+
+
+def test_observations_of_a_wrong_shape_are_named(tmp_path: Path) -> None:
+    file, settings = tmp_path / "model.pt", TrainSettings()
+    flags = {"dueling": settings.dueling, "layer_norm": settings.layer_norm}
+    actions = spaces.Discrete(TASK.headings)
+    network = ValuePolicy(observation_space(TASK), actions, lambda _: 1.0, network=flags)
+    policy_file.write(file, TASK, settings, network.q_net.state_dict())
+    policy = policy_file.read(file, TASK)
+    assert policy(np.zeros((3, 20), np.float32)).shape == (3,)
+    with pytest.raises(ValueError, match=r"observations \[20\]; legal: \[N, 20\]"):
+        policy(np.zeros(20, np.float32))

@@ -9,7 +9,7 @@ import time
 
 import pytest
 from rtg import paths
-from rtg.errors import RunError
+from rtg.errors import RunError, UserError
 from rtg.process_graph import ProcessGraph
 from rtg.processes import Node
 
@@ -98,6 +98,15 @@ def test_any_other_dead_program_ends_the_run_with_its_last_words(graph):
         graph.tend()
     assert "trainer ended with exit status 3" in str(error.value)
     assert str(error.value).endswith("out of memory")
+
+
+def test_bad_input_of_a_program_is_bad_input_of_the_run(graph):
+    command = "print('reading'); print('trainer: model.pt: damaged'); raise SystemExit(2)"
+    graph.add("trainer", [sys.executable, "-c", command])
+    while graph.wait(60.0):
+        pass
+    with pytest.raises(UserError, match=r"^trainer: model\.pt: damaged$"):
+        graph.tend()
 
 
 def test_a_program_that_is_spared_may_fail_and_is_reported(graph):

@@ -45,6 +45,7 @@ def test_a_path_is_a_task_file(tmp_path):
         (["gathering", "more"], "unrecognized arguments: more; legal: "),
         (["--seed"], "argument --seed: expected one argument; legal: "),
         (["--resume"], "--resume: needs --out DIR, "),
+        (["--out", ""], "--out: '' is no folder; legal: the path of one"),
     ],
 )
 def test_a_mistake_is_named(words, message, monkeypatch):

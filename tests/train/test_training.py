@@ -178,10 +178,22 @@ def test_a_checkpoint_of_another_run_is_refused(
 def test_files_that_are_no_checkpoints_are_refused(tmp_path: Path) -> None:
     for content in (b"", b"no", b"\x80\x02\x95"):
         (tmp_path / "state.pt").write_bytes(content)
-        with pytest.raises(UserError, match="not a checkpoint of ours"):
+        with pytest.raises(UserError, match=r"state\.pt: damaged, or not a file that RTG wrote$"):
             checkpoint.read(tmp_path / "state.pt")
     with pytest.raises(UserError, match="no such checkpoint"):
         checkpoint.read(tmp_path / "absent.pt")
+
+
+def test_a_checkpoint_without_its_transitions_is_refused_and_says_what_helps(
+    tmp_path: Path, rows: Rows, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = run_folder(tmp_path / "run", rows)
+    assert trainer.main([str(folder), "--no-stream"]) == 0
+    (folder / "transitions.npz").unlink()
+    assert trainer.main([str(folder), "--resume"]) == 2
+    words = capsys.readouterr().err
+    assert "transitions.npz: missing, the checkpoint" in words
+    assert f"legal: {folder / 'checkpoint'} whole, or removed, to learn anew" in words
 
 
 def test_missing_files_are_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

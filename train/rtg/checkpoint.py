@@ -29,10 +29,10 @@ def read(path: Path) -> dict[str, Any]:
         state = th.load(path, map_location="cpu", weights_only=True)
     except FileNotFoundError:
         raise UserError(f"{path}: no such checkpoint") from None
-    except (RuntimeError, pickle.UnpicklingError, EOFError, ValueError, OSError) as error:
-        raise UserError(f"{path}: not a checkpoint of ours ({error})") from error
+    except (pickle.UnpicklingError, RuntimeError, EOFError, ValueError, OSError) as error:
+        raise UserError(f"{path}: damaged, or not a file that RTG wrote") from error
     if not isinstance(state, dict):
-        raise UserError(f"{path}: not a checkpoint of ours (holds a {type(state).__name__})")
+        raise UserError(f"{path}: holds a {type(state).__name__}, which RTG never wrote there")
     return state
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from pathlib import Path
 from typing import Any
 
@@ -73,7 +74,8 @@ class PushEnv(gymnasium.Env[Any, Any]):
     def step(
         self, action: np.int64 | int
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        after, ok = self._simulator.push(self.poses[None], np.array([action], np.int64))
+        chosen = np.array([operator.index(action)], np.int64)
+        after, ok = self._simulator.push(self.poses[None], chosen)
         self._path.append(after[0] if ok[0] else self.poses)
         success = bool(ok[0]) and bool(self.task.succeeded(self.poses[None])[0])
         truncated = not success and (len(self._path) > self.task.horizon or not ok[0])

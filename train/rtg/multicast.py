@@ -7,7 +7,7 @@ import secrets
 import socket
 import struct
 
-FIX = "sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo"
+_FIX = "sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo"
 
 
 def _echo(group: str, wait: float) -> str | None:
@@ -26,20 +26,21 @@ def _echo(group: str, wait: float) -> str | None:
             while receiver.recv(64) != token:
                 pass
         except TimeoutError:
-            return f"what is sent to {group} does not come back"
+            return "what is sent does not come back"
     return None
 
 
 def defect(url: str, wait: float = 1.0) -> str | None:
-    """Why messages on the bus at `url` would not arrive; None if they do.
+    """Why messages on the bus at `url` would not arrive, and what helps; None if they do.
 
     Sends one datagram to the group of the URL, at a free port, as LCM would: ttl 0, on the
     interface that the routes name.
     """
     match = re.match(r"udpm://([\d.]+):\d+", url)
     if match is None:
-        return f"{url} is for one process only"
+        return f"{url} is for one process only; run.bus = udpm://… is for several"
     try:
-        return _echo(match.group(1), wait)
+        why = _echo(match.group(1), wait)
     except OSError as error:
-        return f"multicast to {match.group(1)}: {(error.strerror or str(error)).lower()}"
+        why = (error.strerror or str(error)).lower()
+    return f"multicast to {match.group(1)}: {why}. To mend it: {_FIX}" if why else None

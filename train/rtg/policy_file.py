@@ -65,6 +65,9 @@ def read(path: Path, task: _core.Task) -> Policy:
     policy.set_training_mode(False)
 
     def greedy(observation: NDArray[np.float32]) -> NDArray[Any]:
+        if observation.ndim != 2 or observation.shape[1] != task.observation_size:
+            shape = list(observation.shape)
+            raise ValueError(f"observations {shape}; legal: [N, {task.observation_size}]")
         with th.no_grad():
             return policy.q_net(th.from_numpy(observation)).argmax(dim=1).numpy()
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from rtg.errors import RunError
+from rtg.errors import RunError, UserError
 from rtg.processes import Node, kill_all, stop_all
 
 _QUICK = 5.0  # [s]; a worker that dies this soon after its start may never do better
@@ -47,7 +47,8 @@ class ProcessGraph:
     def tend(self, leaving: bool = False) -> list[str]:
         """Replaces dead helpers, unless they are `leaving`; returns what there is to say about it.
 
-        Raises RunError with the last words of a program that the run cannot do without.
+        Raises RunError with the last words of a program that the run cannot do without, UserError
+        if bad input is what ended it.
         """
         notes = []
         for member in self._members:
@@ -56,7 +57,7 @@ class ProcessGraph:
                 continue
             if not member.helper:
                 if member.node.name not in self._spared:
-                    raise RunError(obituary(member.node))
+                    raise _failure(member.node, status)
                 continue
             if leaving or (status == 0 and not member.has_left_early()):
                 continue
@@ -107,6 +108,12 @@ class ProcessGraph:
     def _running(self, helpers: bool = True) -> list[Node]:
         nodes = [member.node for member in self._members if helpers or not member.helper]
         return [node for node in nodes if node.exit_status() is None]
+
+
+def _failure(node: Node, status: int) -> Exception:
+    """What to raise for a program that has ended badly; all of ours end with 2 on bad input."""
+    words = node.last_words(lines=1)
+    return UserError(words) if status == 2 and words else RunError(obituary(node))
 
 
 def obituary(node: Node) -> str:

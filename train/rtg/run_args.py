@@ -122,7 +122,9 @@ def _overrides(args: argparse.Namespace) -> tuple[Override, ...]:
 def parse(argv: Sequence[str]) -> RunArgs:
     """Raises UserError, or SystemExit(0) after --help."""
     args = parser().parse_args(argv)
-    out = Path(args.out).absolute() if args.out else None
+    if args.out == "":
+        raise UserError("--out: '' is no folder; legal: the path of one")
+    out = None if args.out is None else Path(args.out).absolute()
     if args.resume:
         if out is None:
             raise UserError("--resume: needs --out DIR, the folder of the run to go on with")

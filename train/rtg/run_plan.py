@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import secrets
 from dataclasses import dataclass
 from pathlib import Path
@@ -91,8 +92,9 @@ def _check_resumed(file: Path, config: dict[str, Any]) -> None:
     for name in sorted({*before, *after}):
         old, new = before.get(name), after.get(name)
         if old != new:
+            kept = old if isinstance(old, str) else json.dumps(old)
             raise UserError(
-                f"--resume: {name} must stay {old} as in {file}; legal are changes of train and "
+                f"--resume: {name} must stay {kept} as in {file}; legal are changes of train and "
                 f"run, but for run.seed and, with a checkpoint, train.{{{','.join(OF_CHECKPOINT)}}}"
             )
 
@@ -105,9 +107,11 @@ def make_plan(args: RunArgs) -> RunPlan:
         _check_resumed(args.file, config)
     if args.train:
         _check_buffer(config)
+    if config["run"]["in_process"] and config["run"]["record"]:
+        raise UserError("run.record: with run.in_process there are no messages; legal: false")
     notes = []
     if not config["run"]["in_process"] and (why := multicast.defect(config["run"]["bus"])):
-        notes.append(f"no process graph: {why}. To mend it: {multicast.FIX}")
+        notes.append(f"no process graph: {why}")
         notes.append("going on as with --in-process, which gives the same transitions")
         overrides = (*overrides, Override("--in-process", "run.in_process=true"))
         config = effective_config.values(args.file, overrides)

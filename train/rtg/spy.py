@@ -155,7 +155,7 @@ def watch_plainly(bus: Bus, monitor: ChannelMonitor, seconds: float | None, out:
 def spy(url: str, seconds: float | None) -> None:
     """Watches the bus at `url` until `seconds` have passed, or for ever. Raises RunError."""
     if why := multicast.defect(url):
-        raise RunError(f"nothing to be heard: {why}. To mend it: {multicast.FIX}")
+        raise RunError(f"nothing to be heard: {why}")
     monitor = ChannelMonitor()
     bus = Bus(url, "rtg spy")
     bus.watch(".*", lambda channel, data: monitor.on_message(channel, data, time.monotonic()))

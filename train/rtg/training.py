@@ -13,6 +13,7 @@ import numpy as np
 
 from rtg import _core, checkpoint, policy_file, run_folder
 from rtg.ddqn import DoubleDqn
+from rtg.errors import UserError
 from rtg.evaluation import FINAL, Evaluation, Floats, evaluate, held_out_starts
 from rtg.offline_data import OfflineData, Source, read_rows
 from rtg.settings import OF_CHECKPOINT, TrainSettings
@@ -181,8 +182,7 @@ class Training:
         path = self._checkpoint
         state = checkpoint.read(path)
         policy_file.check_identity(path, state.get("identity"), self._identity)
-        whole, part = self._transition_files()
-        rows = read_rows(whole if whole.exists() else part, self.task)
+        rows = read_rows(self._seen_transitions(), self.task)
         self.data.restore(state["data"], rows)
         self.model.replay_buffer.restore(state["replay"])
         self.model.restore(state["model"])
@@ -195,6 +195,15 @@ class Training:
     def _transition_files(self) -> tuple[Path, Path]:
         """All of the run; those that were in at the checkpoint, while the former is not there."""
         return self.folder / "transitions.npz", self._checkpoint.parent / "transitions.npz"
+
+    def _seen_transitions(self) -> Path:
+        for path in self._transition_files():
+            if path.exists():
+                return path
+        raise UserError(
+            f"{path}: missing, the checkpoint beside it learned from these transitions; legal: "
+            f"{self._checkpoint.parent} whole, or removed, to learn anew"
+        )
 
     def finish(self, lost: int) -> None:
         """Writes the model, the best final episode and training.json.
