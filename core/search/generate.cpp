@@ -95,8 +95,8 @@ class Generation {
     return stored() > before;
   }
 
-  /// Layers until the trees have reached the target or, after the first, come no nearer; leaves
-  /// room for chains.
+  /// Layers until the trees have reached the target or patience with those that come no nearer is
+  /// over; leaves room for chains.
   void grow_towards(const Target& target, long limit) {
     const long layers =
         limit - static_cast<long>(config_.chain_share * static_cast<double>(limit - stored()));

@@ -29,6 +29,7 @@ void learn_episode(TreePolicy& policy, std::span<const Transition> steps) {
 void climb(TreePolicy& policy, int first, double before, const PolicyRating& rate,
            const PolicyRating& rate_anew) {
   if (policy.size() == first) return;
+  if (before >= 1.0) return policy.forget(first);  // there is nothing to gain
   double price = 0.0, best_price = 0.0, best = -1.0;
   for (const double next : kPrices) {
     policy.raise(first, next - price);

@@ -23,9 +23,9 @@ struct Target {
 ///                + 2·min(1, (|x - x*| + turned·|θ - θ*|) / 0.4 m)] + walk,
 ///
 /// x*, θ*, turned of the target, r as in StateMetric; 2 is the price of getting from one object to
-/// the next. `walk`: pushes until the robot touches an object that is out of place on the side
-/// towards its place, ready to pull it there (0, 1, or the strides of the way, but at least 2);
-/// with all objects in place, the way to the robot's own, in strides.
+/// the next. `walk`: pushes until the robot touches an object that is out of place, whatever its
+/// angle, on the side towards its place, ready to pull it there (0, 1, or the strides of the way,
+/// but at least 2); with all objects in place, the way to the robot's own, in strides.
 ///   novelty:      how many of the tree's states share the coarse cell of the state
 ///   displacement: - how far the step moved the objects, in all [m]
 using Score = std::function<double(const Candidate&)>;

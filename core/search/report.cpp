@@ -51,6 +51,7 @@ std::string to_json(const GenerationReport& r) {
   out["illegal_starts"] = r.illegal_starts;
   out["unsettled_goals"] = r.unsettled_goals;
   out["rejected_pushes"] = r.rejected_pushes;
+  out["units_given_up"] = r.units_given_up;
   out["iterations_median"] = r.iterations_median;
   out["iterations_p90"] = r.iterations_p90;
   out["pushing_converged"] = r.pushing_converged;

@@ -21,11 +21,12 @@ int run(const Words& words) {
   Bus bus(config.run.bus, words[1]);
   CoordinatorNode node(bus, {shape_of(config.task), config_hash(config), config.search.transitions,
                              [] { return stop_signal() != 0; }});
-  const auto report = node.run([&](const GenerationSeams& seams) {
+  auto report = node.run([&](const GenerationSeams& seams) {
     const auto seed = static_cast<std::uint64_t>(config.run.seed);
     return generate(config.task, config.search, seed, seams);
   });
   if (report) {
+    report->units_given_up = node.given_up();
     write_whole_file(std::filesystem::path(words[2]) / "generation.json", to_json(*report));
     node.drain(consumers);
   }

@@ -126,6 +126,21 @@ def test_truncated_files_are_refused(tmp_path: Path, transitions: Transitions, k
         dataset.read(tmp_path / "b.npz")
 
 
+def test_a_changed_byte_of_the_directory_is_harmless_or_refused(
+    tmp_path: Path, transitions: Transitions
+) -> None:
+    dataset.write(tmp_path / "a.npz", transitions)
+    whole = (tmp_path / "a.npz").read_bytes()
+    refused = 0
+    for at in range(whole.rindex(b"PK\x01\x02"), len(whole)):
+        (tmp_path / "b.npz").write_bytes(whole[:at] + bytes([whole[at] ^ 0xFF]) + whole[at + 1 :])
+        try:
+            dataset.read(tmp_path / "b.npz")
+        except DatasetError:
+            refused += 1
+    assert refused > 10
+
+
 def test_header_that_promises_too_much_is_refused(tmp_path: Path, transitions: Transitions) -> None:
     header = io.BytesIO()
     shape = {"descr": "<f8", "fortran_order": False, "shape": (10**12, 4, 3)}

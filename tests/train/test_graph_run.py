@@ -2,10 +2,12 @@
 
 import io
 import json
+from dataclasses import replace
 
 import pytest
-from rtg import effective_config, graph_run, paths
+from rtg import effective_config, graph_run, paths, results, run
 from rtg.progress import display
+from rtg.run_args import parse
 from rtg.run_plan import RunPlan
 
 TINY = paths.CONFIG / "tests" / "tiny.yaml"
@@ -40,12 +42,25 @@ def test_what_the_network_lacks_is_told(plan, monkeypatch):
     assert "a small buffer on memq://\n" in out.getvalue()
 
 
-def test_work_that_was_given_up_is_told_though_the_coordinator_was_not_waited_for(
-    plan, monkeypatch
-):
-    monkeypatch.setattr(graph_run.RunWatch, "counters", lambda watch: {"units.given_up": 2})
+def test_work_that_was_given_up_is_told_though_the_coordinator_was_not_waited_for(plan, tmp_path):
+    report = json.dumps({**REPORT, "units_given_up": 2})
+    coordinator = tmp_path / "rtg_beam_coordinator"
+    coordinator.write_text(f"#!/bin/sh\necho '{report}' > \"$3/generation.json\"\n")
     with display(io.StringIO()) as shown:
         measured = graph_run.run(plan, shown)
+    assert measured["defects"] == ["the coordinator gave up 2 units of work"]
+
+
+def test_a_resumed_run_still_tells_what_its_generation_gave_up(plan, monkeypatch):
+    plan.report_file.write_text(json.dumps({**REPORT, "units_given_up": 2}))
+    plan.transitions_file.touch()
+    measured = {}
+    monkeypatch.setattr(results, "finish", lambda plan, found: measured.update(found))
+    monkeypatch.setattr(results, "words", lambda plan, summary: "done")
+    config = {**plan.config, "task": {"name": "a"}, "search": {"reverse": "rrbs"}}
+    config["run"] = {**config["run"], "seed": 1, "in_process": False}
+    monkeypatch.setattr(run, "make_plan", lambda args: replace(plan, config=config, resume=True))
+    assert run.run(parse(["--no-train"])) == 1
     assert measured["defects"] == ["the coordinator gave up 2 units of work"]
 
 

@@ -64,6 +64,17 @@ def test_a_terminal_shows_a_bar_with_words_for_each_half_of_the_run():
         assert words in text
 
 
+def test_time_counts_from_the_first_transition_and_the_first_interaction():
+    out = io.StringIO()
+    with LiveDisplay(Console(file=out, force_terminal=True, width=100)) as shown:
+        shown.show(replace(GENERATING, transitions=0, budget=1000))
+        before = out.tell()
+        shown.show(replace(GENERATING, budget=1000))
+    first, last = out.getvalue()[:before], out.getvalue()[before:]
+    assert first.count("-:--:--") == 2
+    assert last.count("0:00:00") == last.count("-:--:--") == 1
+
+
 def test_without_training_there_is_one_bar():
     out = io.StringIO()
     with LiveDisplay(Console(file=out, force_terminal=True, width=100)) as shown:

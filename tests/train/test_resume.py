@@ -1,7 +1,7 @@
 """What may change when a run goes on: nothing that decides its transitions or its checkpoint."""
 
 import pytest
-from rtg import cli, effective_config, paths, settings
+from rtg import cli, effective_config, multicast, paths, settings
 from rtg.run_args import parse
 from rtg.run_plan import make_plan
 
@@ -78,3 +78,19 @@ def test_the_learner_and_the_processes_may_change_and_equal_values_are_no_change
     written = effective_config.values(folder / "config.yaml")
     assert written == plan.config
     assert written["run"]["workers"] == 1 and written["train"]["interactions"] == 900
+
+
+def test_messages_to_record_need_a_process_graph(folder, capsys):
+    words = ["--resume", "--in-process", "--set", "run.record=true", "--out", str(folder)]
+    assert cli.main(words) == 2
+    assert capsys.readouterr().err.startswith("rtg: run.record: with run.in_process there are no")
+
+
+def test_a_run_that_goes_on_without_lcm_says_what_it_leaves_out_and_can_be_resumed(
+    folder, monkeypatch
+):
+    monkeypatch.setattr(multicast, "defect", lambda url: "multicast: no such device")
+    words = ["--resume", "--set", "run.record=true", "--out", str(folder)]
+    plan = make_plan(parse(words))
+    assert plan.in_process and "lcm.log is not recorded: there are no messages" in plan.notes
+    assert make_plan(parse(["--resume", "--out", str(folder)])).in_process

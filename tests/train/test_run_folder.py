@@ -5,6 +5,7 @@ import re
 
 import pytest
 from rtg import paths, run_folder
+from rtg.errors import UserError
 
 CONFIG = {"task": {"name": "gathering"}, "run": {"seed": 7, "workers": 2}}
 
@@ -82,3 +83,12 @@ def test_two_runs_of_one_second_have_two_folders(tmp_path, monkeypatch):
     first.mkdir()
     second = run_folder.default_path("gathering")
     assert (first.name, second.name) == ("gathering-20260101-000000", "gathering-20260101-000000-2")
+
+
+@pytest.mark.parametrize("text", ["", '{"trans', "[]"])
+def test_a_damaged_report_is_named(text, tmp_path):
+    file = tmp_path / "generation.json"
+    file.write_text(text)
+    with pytest.raises(UserError) as error:
+        run_folder.read_json(file)
+    assert str(error.value) == f"{file}: damaged; legal: as the run left it, or none"

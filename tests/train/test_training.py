@@ -176,10 +176,12 @@ def test_a_checkpoint_of_another_run_is_refused(
 
 
 def test_files_that_are_no_checkpoints_are_refused(tmp_path: Path) -> None:
-    for content in (b"", b"no", b"\x80\x02\x95"):
+    for content in (b"", b"no", b"\x80\x02\x95", b"junk", b"hello", b"task:\n"):
         (tmp_path / "state.pt").write_bytes(content)
         with pytest.raises(UserError, match=r"state\.pt: damaged, or not a file that RTG wrote$"):
             checkpoint.read(tmp_path / "state.pt")
+    with pytest.raises(UserError, match="Is a directory; legal: a file to read"):
+        checkpoint.read(tmp_path)
     with pytest.raises(UserError, match="no such checkpoint"):
         checkpoint.read(tmp_path / "absent.pt")
 

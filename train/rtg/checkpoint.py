@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import pickle
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +28,9 @@ def read(path: Path) -> dict[str, Any]:
         state = th.load(path, map_location="cpu", weights_only=True)
     except FileNotFoundError:
         raise UserError(f"{path}: no such checkpoint") from None
-    except (pickle.UnpicklingError, RuntimeError, EOFError, ValueError, OSError) as error:
+    except OSError as error:
+        raise UserError(f"{path}: {error.strerror or error}; legal: a file to read") from None
+    except Exception as error:  # the unpickler answers bytes of others with whatever they lead to
         raise UserError(f"{path}: damaged, or not a file that RTG wrote") from error
     if not isinstance(state, dict):
         raise UserError(f"{path}: holds a {type(state).__name__}, which RTG never wrote there")

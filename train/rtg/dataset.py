@@ -50,6 +50,10 @@ _SHAPES = {
 _RANK = {"poses": 3, "next_poses": 3, "observation": 2, "next_observation": 2}
 
 
+# What numpy and zipfile answer damaged files with.
+_NOT_NUMPYS = (ValueError, EOFError, KeyError, RuntimeError, MemoryError, zipfile.BadZipFile)
+
+
 class DatasetError(UserError, ValueError):
     """A file that is no transition set; the text names the file, the array and what is legal."""
 
@@ -78,14 +82,14 @@ def write(path: Path, transitions: Transitions) -> None:
 def read(path: Path, bodies: int | None = None, headings: int | None = None) -> Transitions:
     """Reads and checks a transition set; `bodies` and `headings` of the task are checked if given.
 
-    Raises DatasetError for anything that is no legal transition set, OSError if there is no file.
+    Raises DatasetError for anything that is no legal transition set, FileNotFoundError.
     """
     try:
         with np.load(path, allow_pickle=False) as archive:
             arrays = {name: _member(path, archive, name) for name in _DTYPES}
-    except (ValueError, EOFError, KeyError, MemoryError, zipfile.BadZipFile) as error:
-        if isinstance(error, DatasetError):
-            raise
+    except (DatasetError, FileNotFoundError):
+        raise
+    except (*_NOT_NUMPYS, OSError) as error:
         raise DatasetError(f"{path}: not a transition file ({error})") from error
     transitions = Transitions(**arrays)
     _check_shapes(path, transitions)

@@ -47,6 +47,12 @@ class _Recording:
         return missing
 
 
+def generation_defects(plan: RunPlan) -> list[str]:
+    """What went wrong in a generation that has come to its end, in words."""
+    given_up = run_folder.read_json(plan.report_file).get("units_given_up", 0)
+    return [f"the coordinator gave up {given_up} units of work"] if given_up else []
+
+
 class GraphRun:
     """The programs, and what this process does meanwhile: watch them and replace dead workers."""
 
@@ -79,15 +85,11 @@ class GraphRun:
         missing = self._recording.write(self._plan) if self._recording else 0
         if missing:
             raise RunError(f"the coordinator ended, {missing} transitions have not arrived")
-        counters = self._watch.counters()
-        given_up = counters.get("units.given_up", 0)
-        if given_up and not defects:  # the coordinator was not waited for
-            defects.append(f"the coordinator gave up {given_up} units of work")
         return {
             "lost_transitions": missing,
             "worker_restarts": self._graph.restarts,
-            "counters": counters,
-            "defects": defects,
+            "counters": self._watch.counters(),
+            "defects": defects or generation_defects(self._plan),
         }
 
     def _start_programs(self) -> None:

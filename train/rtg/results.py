@@ -99,11 +99,11 @@ def words(plan: RunPlan, summary: dict[str, Any]) -> str:
             f"{s['train_wall_s']:.0f} s, {s['episode_length_mean']:.1f} actions per episode"
         )
         if s["interactions"] < plan.interactions:
-            bar, count = (
-                plan.config["train"][key] for key in ("stop_at_success", "stop_evaluations")
-            )
+            train = plan.config["train"]
+            bar, count = 100 * train["stop_at_success"], train["stop_evaluations"]
+            evaluations = f"{count} evaluations in a row" if count > 1 else "an evaluation"
             lines.append(
-                f"{plan.interactions:,} interactions were not needed: {count} evaluations in a row "
-                f"had solved {bar:.0%} or more (train.stop_at_success)"
+                f"{plan.interactions:,} interactions were not needed: {evaluations} had solved "
+                f"{bar:g}% or more (train.stop_at_success)"
             )
     return "\n".join([*lines, f"results: {plan.folder}"])

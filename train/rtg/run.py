@@ -48,4 +48,4 @@ def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
         return graph_run.run(plan, shown)
     if plan.train:
         train_run.run(plan, shown)
-    return {"lost_transitions": 0, "defects": []}
+    return {"lost_transitions": 0, "defects": graph_run.generation_defects(plan)}

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from rtg import paths
+from rtg.errors import UserError
 
 # What summary.json holds at least, null where a part did not run; train/SUMMARY.md explains it.
 SUMMARY_KEYS = (
@@ -57,9 +58,12 @@ def checkpoint_file(run: Path) -> Path:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Replaces the file in one step, so that no reader ever sees half of it."""
+    """Replaces the file at once or not at all, also if the machine goes down."""
     draft = path.with_name(f".{path.name}.{os.getpid()}")
-    draft.write_text(text)
+    with draft.open("w") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
     draft.replace(path)
 
 
@@ -69,10 +73,15 @@ def write_json(path: Path, value: Any) -> None:
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    """Empty if there is no such file."""
+    """Empty if there is no such file. Raises UserError if it is damaged."""
     if not path.is_file():
         return {}
-    value: dict[str, Any] = json.loads(path.read_text())
+    try:
+        value = json.loads(path.read_text())
+    except ValueError:
+        value = None
+    if not isinstance(value, dict):
+        raise UserError(f"{path}: damaged; legal: as the run left it, or none")
     return value
 
 

@@ -114,6 +114,9 @@ def make_plan(args: RunArgs) -> RunPlan:
         notes.append(f"no process graph: {why}")
         notes.append("going on as with --in-process, which gives the same transitions")
         overrides = (*overrides, Override("--in-process", "run.in_process=true"))
+        if config["run"]["record"]:
+            notes.append("lcm.log is not recorded: there are no messages")
+            overrides = (*overrides, Override("--in-process", "run.record=false"))
         config = effective_config.values(args.file, overrides)
     canonical = effective_config.canonical(args.file, overrides)
     folder = args.out or run_folder.default_path(config["task"]["name"])

@@ -167,6 +167,11 @@ TEST_F(Climb, LooksNoFurtherThanPerfection) {
   EXPECT_EQ(tried, (std::vector{0.0, 8.0}));
 }
 
+TEST_F(Climb, AsksNothingWhereAllIsSolved) {
+  EXPECT_EQ(climb({{-1.0, 1.0}}), -1.0);
+  EXPECT_TRUE(tried.empty());
+}
+
 TEST_F(Climb, AsksNothingWhereARoundHasFoundNothing) {
   policy.add(robot_at(0.0), 7, 3.0);
   const auto asked = [](const TreePolicy&) -> double { throw std::logic_error("asked"); };

@@ -22,6 +22,7 @@ GenerationReport filled() {
   r.illegal_starts = 20;
   r.unsettled_goals = 21;
   r.rejected_pushes = 22;
+  r.units_given_up = 23;
   r.iterations_median = 30.0;
   r.iterations_p90 = 31.0;
   r.pushing_converged = 32;
@@ -46,6 +47,7 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
             R"("converged":10,"pruned":11,"infeasible":12,"iteration_limit":13,)"
             R"("line_search_failed":14,"singular":15,"non_finite":16,)"
             R"("illegal_starts":20,"unsettled_goals":21,"rejected_pushes":22,)"
+            R"("units_given_up":23,)"
             R"("iterations_median":30.0,"iterations_p90":31.0,"pushing_converged":32,)"
             R"("pushing_iterations_median":33.0,"pushing_iterations_p90":34.0,)"
             R"("replay_gap_median":0.0625,"replay_gap_p90":0.375,)"
