@@ -34,7 +34,7 @@ Moments moments(const Polygon& shape) {
 std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices) {
   const std::size_t n = vertices.size();
   if (n < 3 || n > kMaxVertices)
-    return "has " + std::to_string(n) + " vertices; legal are 3 to " + std::to_string(kMaxVertices);
+    return "has " + std::to_string(n) + " vertices, not 3 to " + std::to_string(kMaxVertices);
   for (std::size_t k = 0; k < n; ++k)
     if (!vertices[k].allFinite() || vertices[k].cwiseAbs().maxCoeff() > kMaxExtent)
       return vertex_name(k) + " is not finite or beyond 1000 m";

@@ -75,19 +75,33 @@ std::string legal_kinds(const Task& task) {
   return listed(kinds);
 }
 
+/// Whether some point of the arena, |x|, |y| ≤ a, lies in the target set.
+bool meets_arena(const GoalTerm& term, double a) {
+  if (term.region == GoalTerm::Region::kHalfPlane)
+    return -a * term.normal.lpNorm<1>() <= term.offset;
+  const Vector2d nearest = term.centre.cwiseMax(-a).cwiseMin(a);
+  return (term.centre - nearest).norm() <= term.radius;
+}
+
 void check_term(const Task& task, std::size_t k, const ConfigNode& section) {
   const GoalTerm& term = task.goal[k];
+  const ConfigNode& node = find(section, "goal")->value.items[k];
+  const std::string path = "task.goal." + std::to_string(k);
   bool concerns_movable = false;
   for (std::size_t i = 1; i < task.scene.size(); ++i) {
     const Body& body = task.scene.bodies[i];
     if (applies_to(term, task, i) && !body.fixed) concerns_movable = true;
   }
-  const ConfigNode& node = find(section, "goal")->value.items[k];
-  if (concerns_movable) return;
-  const ConfigEntry* kind = find(node, "kind");
-  throw ConfigError(kind ? kind->value.origin : node.origin,
-                    "task.goal." + std::to_string(k) + ".kind",
-                    "no object that can move is of kind '" + term.kind + "'", legal_kinds(task));
+  if (!concerns_movable) {
+    const ConfigEntry* kind = find(node, "kind");
+    throw ConfigError(kind ? kind->value.origin : node.origin, path + ".kind",
+                      "no object that can move is of kind '" + term.kind + "'", legal_kinds(task));
+  }
+  const std::string arena = number_text(task.push.arena);
+  if (!meets_arena(term, task.push.arena))
+    throw ConfigError(
+        node.origin, path, "lies outside the arena",
+        "regions with points of x and y from -" + arena + " to " + arena + " (task.push.arena)");
 }
 
 void check_goal(const Task& task, const ConfigNode& section) {

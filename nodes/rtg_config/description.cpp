@@ -54,9 +54,9 @@ std::string bodies_in_words(const Task& task) {
 
 std::string half_plane_in_words(const Vector2d& normal, double offset) {
   if (normal.y() == 0.0)
-    return print("x %s %.4g m", normal.x() > 0.0 ? "<=" : ">=", offset * normal.x());
+    return print("x %s %.4g m", normal.x() > 0.0 ? "<=" : ">=", offset * normal.x() + 0.0);
   if (normal.x() == 0.0)
-    return print("y %s %.4g m", normal.y() > 0.0 ? "<=" : ">=", offset * normal.y());
+    return print("y %s %.4g m", normal.y() > 0.0 ? "<=" : ">=", offset * normal.y() + 0.0);
   return print("%.4g x %+.4g y <= %.4g m", normal.x(), normal.y(), offset);
 }
 
@@ -95,9 +95,9 @@ std::string work_in_words(const RtgConfig& config) {
       "layers a round\n",
       search.transitions, kReverseModes[static_cast<std::size_t>(search.reverse)].data(),
       search.breadth, search.depth);
-  out +=
-      print("  train for %d interactions, preset %s, from %d transitions on\n", train.interactions,
-            kTrainPresets[static_cast<std::size_t>(train.preset)].data(), train.start_at);
+  out += print("  train for %d interactions, preset %s, discount %.4g, from %d transitions on\n",
+               train.interactions, kTrainPresets[static_cast<std::size_t>(train.preset)].data(),
+               train.discount > 0.0 ? train.discount : config.task.discount, train.start_at);
   out += print("  seed %d, %d reverse workers, %s\n", run.seed, run.workers,
                run.in_process ? "all in one process" : ("bus " + run.bus).c_str());
   return out;

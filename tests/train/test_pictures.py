@@ -1,6 +1,7 @@
 """What is drawn, where."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -39,6 +40,20 @@ def test_a_reached_goal_is_stronger():
         for reached in (False, True)
     )
     assert sum(strong) < sum(plain) < sum(PAPER)
+
+
+def test_a_disc_on_a_half_plane_is_seen_in_any_order():
+    disc = SimpleNamespace(kind="box", region="disc", centre=(4.0, 4.0), radius=1.0)
+    plane = SimpleNamespace(kind="*", region="half_plane", normal=(-1.0, 0.0), offset=0.0)
+    names = ("kinds", "names", "shapes", "start", "arena")
+    shown = {name: getattr(TASK, name) for name in names}
+    pictures = [
+        state_image(SimpleNamespace(**shown, goal=goal), SOLVED[None])
+        for goal in ([disc, plane], [plane, disc])
+    ]
+    assert np.array_equal(*pictures)
+    window = arena_window(TASK)
+    assert pixel(pictures[0], 4.0, 4.0, window) != pixel(pictures[0], 7.0, 4.0, window)
 
 
 def test_the_window_holds_all_that_happens_and_no_more_than_the_arena():

@@ -185,9 +185,9 @@ def _half_plane(term: GoalLike, reach: float) -> Floats:
 
 
 def draw_goal(canvas: Canvas, task: TaskLike, reached: bool = False) -> None:
-    """The target sets, stronger when they hold."""
+    """The target sets, stronger when they hold; discs lie on half-planes."""
     colours = kind_colours(task)
-    for term in task.goal:
+    for term in sorted(task.goal, key=lambda term: term.region == "disc"):
         colour = colours.get(term.kind, GOAL)
         if term.region == "disc":
             shape = circle(term.centre, term.radius)

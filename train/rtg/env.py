@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 from pathlib import Path
 from typing import Any
 
@@ -74,8 +73,9 @@ class PushEnv(gymnasium.Env[Any, Any]):
     def step(
         self, action: np.int64 | int
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        chosen = np.array([operator.index(action)], np.int64)
-        after, ok = self._simulator.push(self.poses[None], chosen)
+        if not self.action_space.contains(action):
+            raise ValueError(f"action {action}; legal: integers from 0 to {self.task.headings - 1}")
+        after, ok = self._simulator.push(self.poses[None], np.array([action], np.int64))
         self._path.append(after[0] if ok[0] else self.poses)
         success = bool(ok[0]) and bool(self.task.succeeded(self.poses[None])[0])
         truncated = not success and (len(self._path) > self.task.horizon or not ok[0])

@@ -113,6 +113,7 @@ def replay_gap(path: Path, title: str, gaps: Floats) -> None:
                     va="top",
                     color="#a35d14",
                     bbox={"facecolor": _rgb(PAPER), "edgecolor": "none", "pad": 1.0},
+                    zorder=5,  # above the other line
                 )
         axis.set_xlabel("replay gap: mean distance between reverse-generated and replayed end [m]")
         axis.set_ylabel("replayed candidates")
@@ -174,7 +175,7 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
             )
             axis.set_title(task.names[body])
         bar = figure.colorbar(ScalarMappable(dots.norm, dots.cmap), ax=axes, shrink=0.85, pad=0.02)
-        bar.set_label("actions to success")
+        bar.set_label("actions to success, over all rounds")
         bar.locator = MaxNLocator(integer=True)
         figure.supxlabel(
             "dots: centres of the object in the search's nodes; outlines: start layout; "

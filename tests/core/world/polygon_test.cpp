@@ -36,7 +36,7 @@ TEST(Polygon, DefectsAreNamed) {
   EXPECT_EQ(polygon_defect(clockwise), "is clockwise; list the vertices counter-clockwise");
   EXPECT_EQ(polygon_defect(dent), "is not strictly convex at vertex 2");
   EXPECT_EQ(polygon_defect(star), "crosses itself");
-  EXPECT_EQ(polygon_defect(two), "has 2 vertices; legal are 3 to 8");
+  EXPECT_EQ(polygon_defect(two), "has 2 vertices, not 3 to 8");
   EXPECT_EQ(polygon_defect(flat), "is not strictly convex at vertex 1");
   EXPECT_EQ(polygon_defect(nan), "vertex 1 is not finite or beyond 1000 m");
   EXPECT_EQ(polygon_defect(box(1, 2).vertices), std::nullopt);
