@@ -1,0 +1,74 @@
+#include "core/reverse/reverse_config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "core/reverse/solve_status.hpp"
+
+namespace rtg {
+namespace {
+
+/// Checks the range of every field that it visits.
+struct RangeCheck {
+  std::set<std::string> names;
+
+  void number(const char* name, double value, double least, double most, const char*) {
+    EXPECT_LT(least, most) << name;
+    EXPECT_LE(least, value) << name;
+    EXPECT_LE(value, most) << name;
+    EXPECT_TRUE(names.insert(name).second) << name;
+  }
+  void integer(const char* name, int value, int least, int most, const char* doc) {
+    number(name, value, least, most, doc);
+  }
+  template <class Enum, class Names>
+  void choice(const char* name, Enum value, const Names& legal, const char*) {
+    EXPECT_LT(static_cast<std::size_t>(value), legal.size()) << name;
+    EXPECT_TRUE(names.insert(name).second) << name;
+  }
+};
+
+TEST(ReverseConfig, PresetsLieInTheirOwnRanges) {
+  for (const ReversePreset preset : {ReversePreset::kDefault, ReversePreset::kPaper}) {
+    ReverseConfig config = reverse_preset(preset);
+    EXPECT_EQ(config.preset, preset);
+    RangeCheck check;
+    config.visit(check);
+    EXPECT_FALSE(check.names.empty());
+  }
+}
+
+TEST(ReverseConfig, ThePaperHasItsOwnObjectiveAndIterations) {
+  const ReverseConfig paper = reverse_preset(ReversePreset::kPaper);
+  EXPECT_EQ(paper.max_iterations, 1000);
+  EXPECT_EQ(paper.path_weight, 0.0);
+  EXPECT_EQ(paper.heading_weight, 0.0);
+  EXPECT_EQ(paper.terminal_weight, 0.0) << "the final state is fixed";
+  EXPECT_GT(paper.plain_barrier, 0.0);
+  EXPECT_EQ(paper.releases, 0);
+}
+
+TEST(ReverseJob, KeysTellStatesAndActionsApart) {
+  const Poses state{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
+  Poses swapped{state[1], state[0]}, turned = state;
+  turned[1].theta += 1e-12;
+  const std::set<std::uint64_t> keys{key_of(state, 1), key_of(state, 2), key_of(swapped, 1),
+                                     key_of(turned, 1), key_of({state[0]}, 1)};
+  EXPECT_EQ(keys.size(), 5U);
+  EXPECT_EQ(key_of(ReverseJob{state, 1}), key_of(Poses(state), 1));
+  EXPECT_TRUE((ReverseJob{state, 1} == ReverseJob{Poses(state), 1}));
+  EXPECT_FALSE((ReverseJob{state, 1} == ReverseJob{turned, 1}));
+}
+
+TEST(SolveStatus, EveryEndHasANameOfItsOwn) {
+  std::set<std::string_view> names;
+  for (int k = 0; k < kSolveStatusCount; ++k) names.insert(name(static_cast<SolveStatus>(k)));
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(kSolveStatusCount));
+  EXPECT_EQ(name(SolveStatus::kConverged), "converged");
+  EXPECT_EQ(name(SolveStatus::kNonFinite), "non_finite");
+}
+
+}  // namespace
+}  // namespace rtg
