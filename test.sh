@@ -4,7 +4,7 @@
 #   ./test.sh asan        C++ tests under AddressSanitizer and UndefinedBehaviorSanitizer
 #   ./test.sh tsan        C++ tests that use threads under ThreadSanitizer
 #   ./test.sh coverage    line coverage of the physics and the solver by their own tests
-#   ./test.sh bench       benchmarks: JSON files and a Markdown table in build/bench/
+#   ./test.sh bench       benchmarks and gates: JSON and a Markdown table in build/bench/
 set -euo pipefail
 # shellcheck source=setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"

@@ -9,6 +9,8 @@
 namespace rtg {
 namespace {
 
+constexpr double kCorners = 4.0;  // allowed overlap, in units of ln 2/α
+
 Pose pose_of(const VectorXd& p, int body) {
   return {p[3 * body], p[3 * body + 1], p[3 * body + 2]};
 }
@@ -152,7 +154,7 @@ bool StepEnergy::has_separating_edge(int i, int j, const VectorXd& p, double cut
 }
 
 bool StepEnergy::separated(const VectorXd& p) const {
-  const double cut = 2.0 * std::numbers::ln2 / sharpness_;  // what smoothing takes off two corners
+  const double cut = kCorners * std::numbers::ln2 / sharpness_;
   for (int i = 0; i < movable_; ++i)
     for (int j = i + 1; j < bodies(); ++j) {
       const double reach = radius_[i] + radius_[j];

@@ -86,7 +86,8 @@ class StepEnergy {
   Model model(const VectorXd& next, const VectorXd& now, const VectorXd& lag) const;
 
   /// Separating-axis test of all pairs of which one may move. Corners, which the smoothed distance
-  /// cuts, may overlap by 2 ln 2/α.
+  /// cuts, may overlap by 2 ln 2/α, and by as much again: acute tips pass each other without a
+  /// vertex in the other body, and a wall there that no force announces would stop every solver.
   bool separated(const VectorXd& p) const;
   /// Every gap open and, below `share` of the barrier's range, ≥ `share` of what it was in
   /// `before`; and separated().

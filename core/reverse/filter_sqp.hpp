@@ -4,10 +4,10 @@
 
 namespace rtg {
 
-/// The default SQP: Newton steps on the relaxed problem with a proximal term δ,
-/// globalised by a filter line search [Wächter & Biegler 2006] with second-order correction. δ
-/// falls on full steps, rises when no step is acceptable or the model has negative curvature, and
-/// once it is small the exact Hessian of the Lagrangian takes over.
+/// The default SQP: Newton steps on the relaxed problem with the exact Hessian of the Lagrangian
+/// and a proximal term δ, globalised by a filter line search [Fletcher & Leyffer 2002]. Where the
+/// exact model has no positive curvature along its step, the Hessian of the objective takes its
+/// place, which has. δ falls on full steps and rises on short ones or if none is acceptable.
 SqpResult filter_sqp(const ReverseProblem& problem, const Iterate& start, int max_iterations,
                      double proximal);
 

@@ -114,7 +114,24 @@ void LinearisationBuilder::add_objective() {
     lin_.objective_pose_[h_] += config.terminal_weight * (x_.p[h_] - problem_.end).head(n_);
     lin_.K_.A[h_].diagonal().head(n_).array() += config.terminal_weight;
   }
+  for (int k = 1; k <= h_; ++k)
+    for (int i = 1; 3 * i < n_; ++i) add_speed(k, i);
   add_start_barrier();
+}
+
+void LinearisationBuilder::add_speed(int k, int i) {
+  const SpeedPenalty speed = problem_.speed(x_.p, k, i);
+  lin_.objective_pose_[k].segment<3>(3 * i) += speed.gradient;
+  lin_.objective_pose_[k - 1].segment<3>(3 * i) -= speed.gradient;
+  const Linearisation::Place here = lin_.pose_place(k), before = lin_.pose_place(k - 1);
+  for (int m = 0; m < 3; ++m)
+    for (int n = 0; n < 3; ++n) {
+      const double bend = speed.hessian(m, n);
+      entry(before, 3 * i + m, before, 3 * i + n) += bend;
+      if (!lin_.has_pose(k)) continue;
+      entry(here, 3 * i + m, here, 3 * i + n) += bend;
+      entry(here, 3 * i + m, before, 3 * i + n) -= bend;
+    }
 }
 
 /// Σ b(g(p_0)).

@@ -14,6 +14,7 @@ class LinearisationBuilder {
   void add_damping(int level);
   void add_control(int level);
   void add_objective();
+  void add_speed(int k, int i);
   void add_start_barrier();
   void add_contact(int level, int contact);
   void add_normal_force(const Contact& c, const Gap<double>& g, Linearisation::Eliminated& e);

@@ -25,12 +25,12 @@ struct ReverseConfig {
   double control_weight = 1e-3;      // ε of eq. (6)
   double path_weight = 100.0;        // κ_x, action consistency; 0: the paper's objective
   double heading_weight = 100.0;     // κ_θ
+  double speed_weight = 0.2;         // ρ, holds objects to about the robot's speed
   double terminal_weight = 300.0;    // spring to the given final state; 0: that state is fixed,
                                      // and few at which Box2D comes to rest have a predecessor
   double terminal_tolerance = 0.05;  // a solution that misses the final state by more fails [m]
   double plain_barrier = 0.0;        // μ of the paper's -μ log g [J]; 0: physics has the barrier
   double proximal_start = 1.0;       // δ of the first iteration
-  double exact_below = 0.1;          // exact Lagrangian Hessian once δ is no larger
   int releases = 7;                  // predecessors besides the one of the whole push
 
   template <class Visitor>
@@ -45,12 +45,12 @@ struct ReverseConfig {
     v.number("control_weight", control_weight, 1e-9, 1e6, "price of control");
     v.number("path_weight", path_weight, 0.0, 1e9, "holds the robot on the push's straight line");
     v.number("heading_weight", heading_weight, 0.0, 1e9, "holds the robot's heading");
+    v.number("speed_weight", speed_weight, 0.0, 1e9, "price of objects that outrun the push");
     v.number("terminal_weight", terminal_weight, 0.0, 1e9, "holds the final state; 0: fixes it");
     v.number("terminal_tolerance", terminal_tolerance, 0.0, 100.0, "largest miss of it [m]");
     v.number("plain_barrier", plain_barrier, 0.0, 1e6, "weight of -mu log g; 0: physics' barrier");
     v.number("proximal_start", proximal_start, 1e-4, 1e9, "regularisation of the first step");
     v.integer("releases", releases, 0, kMaxStarts - 1, "starts whose objects are met on the way");
-    v.number("exact_below", exact_below, 0.0, 1e9, "regularisation that allows exact Hessians");
   }
 };
 
@@ -65,7 +65,8 @@ inline ReverseConfig reverse_preset(ReversePreset preset) {
   config.max_iterations = 1000;
   config.releases = 0;
   config.plain_barrier = 0.02;
-  config.path_weight = config.heading_weight = config.terminal_weight = 0.0;
+  config.path_weight = config.heading_weight = 0.0;
+  config.speed_weight = config.terminal_weight = 0.0;
   return config;
 }
 

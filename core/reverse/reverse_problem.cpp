@@ -29,6 +29,12 @@ Vector3d ReverseProblem::robot_path(int k) const {
   return pose;
 }
 
+SpeedPenalty ReverseProblem::speed(const std::vector<VectorXd>& p, int k, int i) const {
+  const auto level = static_cast<std::size_t>(k);
+  return speed_penalty(config.speed_weight, energy.stride(), energy.damping(i),
+                       (p[level] - p[level - 1]).segment<3>(3 * i));
+}
+
 Iterate static_iterate(const ReverseProblem& problem) {
   const auto levels = static_cast<std::size_t>(problem.sub_steps) + 1;
   return {std::vector<VectorXd>(levels, problem.end),
@@ -59,6 +65,8 @@ double objective(const ReverseProblem& problem, const Iterate& x) {
     sum +=
         config.path_weight * off.head<2>().squaredNorm() + config.heading_weight * off[2] * off[2];
   }
+  for (int k = 1; k <= h; ++k)
+    for (int i = 1; 3 * i < energy.dofs(); ++i) sum += problem.speed(x.p, k, i).value;
   const VectorXd miss = (x.p[h] - problem.end).head(energy.dofs());
   return sum + 0.5 * config.terminal_weight * miss.squaredNorm();
 }

@@ -7,7 +7,7 @@
 #include "core/energy/open_gaps.hpp"
 #include "core/reverse/merit_sqp.hpp"
 #include "core/reverse/pruning.hpp"
-#include "core/reverse/restoration.hpp"
+#include "core/reverse/restarts.hpp"
 #include "core/world/selection.hpp"
 
 namespace rtg {
@@ -32,7 +32,7 @@ bool objects_differ(const VectorXd& p, const VectorXd& other) {
 SqpResult solve_problem(const ReverseProblem& problem) {
   SqpResult solved = problem.config.preset == ReversePreset::kPaper
                          ? merit_sqp(problem, static_iterate(problem))
-                         : solve_with_restoration(problem);
+                         : solve_with_restarts(problem);
   if (solved.status == SolveStatus::kConverged &&
       terminal_miss(problem, solved.x) > problem.config.terminal_tolerance)
     solved.status = SolveStatus::kInfeasible;

@@ -80,13 +80,6 @@ ServoTargets straight_targets(const ReverseProblem& problem) {
   return targets;
 }
 
-ServoTargets servo_targets(const ReverseProblem& problem, const Iterate& x) {
-  ServoTargets targets;
-  for (std::size_t k = 0; k < x.p.size(); ++k)
-    targets.push_back(x.p[k].head<3>() + servo_scale(problem.energy).cwiseProduct(x.controls[k]));
-  return targets;
-}
-
 std::optional<Iterate> roll_out(const ReverseProblem& problem, const VectorXd& start,
                                 const ServoTargets& targets) {
   const StepEnergy& energy = problem.energy;

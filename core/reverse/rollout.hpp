@@ -12,9 +12,6 @@ using ServoTargets = std::vector<Vector3d>;
 /// The straight path of the push, led by what the servo lags behind in free motion.
 ServoTargets straight_targets(const ReverseProblem& problem);
 
-/// The targets whose servo forces at x's robot poses are x's controls.
-ServoTargets servo_targets(const ReverseProblem& problem, const Iterate& x);
-
 /// Forward simulation from `start` [3·bodies]: a feasible iterate (Φ = 0, λ = λ(g)) with zero
 /// multipliers. Nothing if a step fails.
 std::optional<Iterate> roll_out(const ReverseProblem& problem, const VectorXd& start,

@@ -8,45 +8,19 @@
 // search and reverse.
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <span>
 #include <string_view>
-#include <system_error>
 
 #include "core/search/simulators.hpp"
+#include "tests/bench/arguments.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg {
 namespace {
 
-/// Whether the whole text is a number in [least, most]; if so, it is written to `out`.
-template <class Number>
-bool read_number(std::string_view text, Number least, Number most, Number& out) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size()) return false;
-  if (!(number >= least && number <= most)) return false;
-  out = number;
-  return true;
-}
-
-/// Sets the number called `name`; the config's visitor.
-struct Setter {
-  std::string_view name, value;
-  bool done = false;
-
-  void number(std::string_view key, double& field, double least, double most, const char*) {
-    if (key == name) done = read_number(value, least, most, field);
-  }
-  void integer(std::string_view key, int& field, int least, int most, const char*) {
-    if (key == name) done = read_number(value, least, most, field);
-  }
-  void flag(std::string_view, bool&, const char*) {}
-  template <class Enum, class Names>
-  void choice(std::string_view, Enum&, const Names&, const char*) {}
-};
+using bench::read_number;
 
 struct Options {
   Task task = testing::gathering();
@@ -57,7 +31,7 @@ struct Options {
 };
 
 bool set(Options& options, std::string_view name, std::string_view value) {
-  Setter setter{name, value};
+  bench::Setter setter{name, value};
   options.search.visit(setter);
   options.reverse.visit(setter);
   return setter.done;

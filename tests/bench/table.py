@@ -1,9 +1,9 @@
 """Runs the benchmarks: table.py BUILD_FOLDER OUT_FOLDER [--smoke].
 
 Leaves rtg_bench.json (Google Benchmark's own format) and table.md in OUT_FOLDER and prints the
-table. Times are CPU times of one thread. --smoke runs everything as briefly as can be: it shows
-that the benchmarks work, not how fast anything is. Exit status 1 if a benchmark refused its own
-result.
+table, then what the reverse solver makes of the committed problems. Times are CPU times of one
+thread. --smoke runs everything as briefly as can be: it shows that the benchmarks work, not how
+fast anything is. Exit status 1 if a benchmark refused its own result or a gate failed.
 """
 
 from __future__ import annotations
@@ -45,6 +45,13 @@ def measure(build: Path, out: Path, smoke: bool) -> dict[str, Any]:
     return result
 
 
+def solves_the_corpus(build: Path, smoke: bool) -> bool:
+    """Runs the reverse solver over the committed problems; whether it met its gates."""
+    command = [str(build / "tests" / "reverse_corpus"), str(Path(__file__).parent / "corpus")]
+    done = subprocess.run([*command, *(["--every", "10"] if smoke else [])], check=False)
+    return done.returncode == 0
+
+
 def row(benchmark: dict[str, Any]) -> str:
     """One line of the table."""
     name = benchmark["name"].removesuffix(f"/iterations:{benchmark['iterations']}")
@@ -74,8 +81,9 @@ def main(build: Path, out: Path, smoke: bool) -> int:
     result = measure(build, out, smoke)
     text = table(result)
     (out / "table.md").write_text(text)
-    print(text, end="")
-    return int(any(benchmark.get("error_occurred") for benchmark in result["benchmarks"]))
+    print(text, flush=True)
+    refused = any(benchmark.get("error_occurred") for benchmark in result["benchmarks"])
+    return int(not solves_the_corpus(build, smoke) or refused)
 
 
 if __name__ == "__main__":

@@ -237,38 +237,6 @@ TEST(StepEnergy, TwoFixedBodiesDoNotTouch) {
   EXPECT_TRUE(energy.separated(stacked({{-5, 0, 0}, {0, 0, 0}, {0.1, 0, 0}})));
 }
 
-/// Two bars that cross in their middles: no vertex of either is near the other.
-Scene crossing_bars() {
-  return {{{"robot", "robot", box(2.0, 0.2), 1.0, 0.3, false},
-           {"bar", "bar", box(0.2, 2.0), 1.0, 0.3, false}}};
-}
-
-TEST(StepEnergy, CrossingBarsAreRejectedThoughEveryGapIsOpen) {
-  const StepEnergy energy(crossing_bars(), {}, {});
-  const VectorXd crossed = VectorXd::Zero(6);
-  for (const Contact& c : energy.contacts()) EXPECT_GT(energy.gap_value(c, crossed), 0.5);
-  EXPECT_FALSE(energy.separated(crossed));
-  EXPECT_TRUE(std::isfinite(energy.value(crossed, crossed, VectorXd::Zero(8))));
-  EXPECT_FALSE(energy.keeps_gaps(crossed, crossed, 0.1));
-  VectorXd apart = crossed;
-  apart[3] = 1.2;
-  EXPECT_TRUE(energy.separated(apart));
-  EXPECT_TRUE(energy.keeps_gaps(apart, apart, 0.1));
-}
-
-TEST(StepEnergy, StepsMayLeaveNoLessThanAShareOfAGap) {
-  const TouchingScene scene;
-  const auto boxes_apart = [](double gap) {
-    return stacked({{-5, 0, 0}, {0, 0, 0}, {0.1, 1.2 + gap, 0}});
-  };
-  EXPECT_TRUE(scene.energy.keeps_gaps(boxes_apart(0.01), boxes_apart(0.0012), 0.1));
-  EXPECT_FALSE(scene.energy.keeps_gaps(boxes_apart(0.01), boxes_apart(0.0008), 0.1));
-  EXPECT_FALSE(scene.energy.keeps_gaps(boxes_apart(0.01), boxes_apart(-0.001), 0.1));
-  // Far gaps may shrink at will down to the share of the range.
-  EXPECT_TRUE(scene.energy.keeps_gaps(boxes_apart(2.0), boxes_apart(0.016), 0.1));
-  EXPECT_FALSE(scene.energy.keeps_gaps(boxes_apart(2.0), boxes_apart(0.014), 0.1));
-}
-
 TEST(StepEnergy, ScatterAndGatherAreTransposes) {
   TouchingScene scene;
   scene.scene.bodies[2].fixed = true;

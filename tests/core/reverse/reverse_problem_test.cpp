@@ -85,6 +85,7 @@ TEST(ReverseProblem, ObjectiveIsTheSumOfItsTerms) {
   ReverseConfig config;
   config.path_weight = 3.0;
   config.heading_weight = 5.0;
+  config.speed_weight = 0.0;
   ReverseProblem problem = scene.problem(config);
   problem.end = stacked({{0, 0, 0}, {20, 0, 0}, {0, 20, 0}});
   Iterate x = static_iterate(problem);
@@ -102,9 +103,23 @@ TEST(ReverseProblem, ObjectiveIsTheSumOfItsTerms) {
   EXPECT_NEAR(terminal_miss(problem, x), 0.3, 1e-15);
 }
 
+TEST(ReverseProblem, ObjectsPayForTheirSpeedTheRobotDoesNot) {
+  const TouchingScene scene;
+  ReverseConfig config;
+  config.speed_weight = 0.7;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0}, {20, 0, 0}, {0, 20, 0}});
+  Iterate x = static_iterate(problem);
+  for (int k = 0; k <= 10; ++k) x.p[static_cast<std::size_t>(k)].head<3>() = problem.robot_path(k);
+  const double before = objective(problem, x), stride = scene.energy.stride();
+  for (std::size_t k = 0; k < 5; ++k) x.p[k][4] += 2.0 * stride;  // box 1, in one sub-step
+  EXPECT_NEAR(objective(problem, x) - before, 0.7 * 8.0, 1e-12);
+}
+
 TEST(ReverseProblem, ObjectiveHoldsTheBarrierOfTheStart) {
   const TouchingScene scene;
-  const ReverseConfig config;
+  ReverseConfig config;
+  config.speed_weight = 0.0;
   const ReverseProblem problem = scene.problem(config);
   const Iterate touching = static_iterate(problem);
   Iterate apart = touching;

@@ -34,18 +34,6 @@ TEST(RollOut, AlongStraightTargetsAFreeRobotKeepsToItsPath) {
     EXPECT_LT((x->p[static_cast<std::size_t>(k)].head<3>() - problem.robot_path(k)).norm(), 1e-8);
 }
 
-TEST(RollOut, RepeatsItselfUnderItsOwnServoTargets) {
-  const TouchingScene scene;
-  const ReverseConfig config;
-  const ReverseProblem problem = scene.problem(config);
-  const auto x = warm_start(problem);
-  ASSERT_TRUE(x);
-  const auto again = roll_out(problem, x->p[0], servo_targets(problem, *x));
-  ASSERT_TRUE(again);
-  for (std::size_t k = 0; k < x->p.size(); ++k)
-    EXPECT_LT((again->p[k] - x->p[k]).norm(), 1e-7) << k;
-}
-
 TEST(RollOut, FromOverlappingBodiesThereIsNone) {
   const TouchingScene scene;
   const ReverseConfig config;

@@ -1,0 +1,106 @@
+#include "tests/bench/corpus.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/reverse/pruning.hpp"
+#include "core/world/selection.hpp"
+#include "core/world/separation.hpp"
+#include "nodes/common/rtg_config.hpp"
+
+namespace rtg::bench {
+namespace {
+
+constexpr double kCorner = 0.2;  // between two vertices that meet [m]
+
+bool vertices_meet(const Body& a, const Pose& at, const Body& b, const Pose& bt) {
+  for (const Vector2d& v : a.shape.vertices)
+    for (const Vector2d& w : b.shape.vertices)
+      if ((to_world(at, v) - to_world(bt, w)).norm() < kCorner) return true;
+  return false;
+}
+
+Problem read_problem(const std::string& line, const std::map<std::string, Task>& tasks) {
+  std::istringstream words(line);
+  Problem problem;
+  std::string difficulty;
+  words >> problem.task >> difficulty >> problem.job.action;
+  const auto task = tasks.find(problem.task);
+  const auto kind = std::ranges::find(kDifficulties, difficulty);
+  if (!words || task == tasks.end() || kind == kDifficulties.end())
+    throw std::runtime_error("legal: TASK DIFFICULTY ACTION x y θ ...");
+  problem.difficulty = static_cast<Difficulty>(kind - kDifficulties.begin());
+  for (Pose p; words >> p.x >> p.y >> p.theta;) problem.job.end.push_back(p);
+  const std::size_t bodies = task->second.scene.size();
+  if (!words.eof() || problem.job.end.size() != bodies)
+    throw std::runtime_error("legal are the poses of " + std::to_string(bodies) + " bodies");
+  return problem;
+}
+
+}  // namespace
+
+Difficulty difficulty_of(const Task& task, const PhysicsConfig& physics, const ReverseJob& job) {
+  const double range = physics.range + physics.skin;
+  const Selection part =
+      select(task.scene, job.end, relevant_bodies(task.scene, task.push, job, range));
+  const std::vector<Body>& bodies = part.scene.bodies;
+  if (bodies.size() == 1) return Difficulty::kFree;
+  int touching = 0;
+  bool corner = false, wall = false;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const double gap = separation(bodies[i].shape, part.poses[i], bodies[j].shape, part.poses[j]);
+      if (gap >= range || bodies[j].fixed) continue;
+      ++touching;
+      corner |= vertices_meet(bodies[i], part.poses[i], bodies[j], part.poses[j]);
+      wall |= bodies[i].fixed;
+    }
+  if (wall || touching >= 3) return Difficulty::kJam;
+  if (corner) return Difficulty::kCorner;
+  return bodies.size() == 2 ? Difficulty::kSingle : Difficulty::kMulti;
+}
+
+std::map<std::string, Task> read_tasks(const std::filesystem::path& folder) {
+  std::map<std::string, Task> tasks;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".yaml") continue;
+    Task task = load_config(entry.path()).task;
+    const std::string name = task.name;
+    tasks.emplace(name, std::move(task));
+  }
+  return tasks;
+}
+
+Corpus read_corpus(const std::filesystem::path& folder) {
+  Corpus corpus{read_tasks(folder), {}};
+  const std::filesystem::path file = folder / "problems.txt";
+  std::ifstream in(file);
+  if (!in) throw std::runtime_error(file.string() + ": cannot be read");
+  int number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    try {
+      corpus.problems.push_back(read_problem(line, corpus.tasks));
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(file.string() + ":" + std::to_string(number) + ": " + error.what());
+    }
+  }
+  return corpus;
+}
+
+void write_problems(const std::filesystem::path& file, const std::vector<Problem>& problems) {
+  std::ofstream out(file);
+  out << std::setprecision(9);  // poses are single precision
+  for (const Problem& problem : problems) {
+    out << problem.task << ' ' << kDifficulties[static_cast<std::size_t>(problem.difficulty)] << ' '
+        << problem.job.action;
+    for (const Pose& p : problem.job.end) out << ' ' << p.x << ' ' << p.y << ' ' << p.theta;
+    out << '\n';
+  }
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+}  // namespace rtg::bench

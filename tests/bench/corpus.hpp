@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/reverse/reverse_job.hpp"
+#include "core/tasks/task.hpp"
+#include "core/world/physics_config.hpp"
+
+namespace rtg::bench {
+
+/// What makes a reverse problem hard, the worst that applies.
+enum class Difficulty {
+  kFree,    // the robot meets nobody
+  kSingle,  // it may drag one object
+  kMulti,   // two or more
+  kCorner,  // a vertex meets a vertex
+  kJam,     // three contacts among the bodies that may move, or one with a fixed body
+};
+inline constexpr std::array<std::string_view, 5> kDifficulties{"free", "single", "multi", "corner",
+                                                               "jam"};
+
+Difficulty difficulty_of(const Task& task, const PhysicsConfig& physics, const ReverseJob& job);
+
+/// One candidate that a search has asked for and pruning has let through.
+struct Problem {
+  std::string task;
+  Difficulty difficulty = Difficulty::kFree;
+  ReverseJob job;
+};
+
+/// Committed reverse problems. `folder` holds TASK.yaml and problems.txt, a line per problem:
+///
+///   TASK DIFFICULTY ACTION x y θ x y θ ...     poses of all bodies afterwards [m], [rad]
+struct Corpus {
+  std::map<std::string, Task> tasks;
+  std::vector<Problem> problems;
+};
+
+/// The tasks of FOLDER/TASK.yaml by name. Throws ConfigError.
+std::map<std::string, Task> read_tasks(const std::filesystem::path& folder);
+
+/// Throws std::runtime_error with file and line, ConfigError.
+Corpus read_corpus(const std::filesystem::path& folder);
+void write_problems(const std::filesystem::path& file, const std::vector<Problem>& problems);
+
+}  // namespace rtg::bench

@@ -1,0 +1,196 @@
+// Solves the committed reverse problems on one core and prints what became of them:
+//
+//   reverse_corpus FOLDER [--preset default|paper] [--every N] [--failures] [--set NAME NUMBER]...
+//
+// --every N: only each N-th problem; --failures: lists the unsolved ones, by cause; --set takes
+// numbers of the sections reverse and physics. Exit status 1 if a gate fails, 2 for bad input.
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "core/reverse/reverse_simulator.hpp"
+#include "core/search/thread_pool.hpp"
+#include "tests/bench/arguments.hpp"
+#include "tests/bench/corpus.hpp"
+
+namespace rtg::bench {
+namespace {
+
+struct Options {
+  ReverseConfig reverse;
+  PhysicsConfig physics;
+  std::size_t every = 1;
+  bool failures = false;
+};
+
+/// A problem's line in the file, and what became of it.
+struct Outcome {
+  std::size_t line = 0;
+  Difficulty difficulty = Difficulty::kFree;
+  SolveStatus status = SolveStatus::kNonFinite;
+  int iterations = 0;
+  double cpu_ms = 0.0;
+
+  bool decided() const {
+    return status == SolveStatus::kConverged || status == SolveStatus::kInfeasible;
+  }
+};
+
+template <class T>
+T quantile(std::vector<T> values, double share) {
+  if (values.empty()) return T{};
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+std::vector<int> iterations_of(std::span<const Outcome> outcomes, std::optional<Difficulty> of) {
+  std::vector<int> found;
+  for (const Outcome& o : outcomes)
+    if (o.decided() && (!of || o.difficulty == *of)) found.push_back(o.iterations);
+  return found;
+}
+
+std::vector<Outcome> solve(const Corpus& corpus, const Options& options) {
+  std::map<std::string, ReverseSimulator> simulators;
+  for (const auto& [name, task] : corpus.tasks)
+    simulators.try_emplace(name, task.scene, options.physics, task.push, options.reverse);
+  std::vector<Outcome> outcomes;
+  for (std::size_t k = 0; k < corpus.problems.size(); k += options.every) {
+    const Problem& problem = corpus.problems[k];
+    const double begin = thread_cpu_s();
+    const ReverseResult result = simulators.at(problem.task).solve(problem.job);
+    outcomes.push_back({k + 1, problem.difficulty, result.status, result.iterations,
+                        1e3 * (thread_cpu_s() - begin)});
+  }
+  return outcomes;
+}
+
+void print_by_difficulty(std::span<const Outcome> outcomes) {
+  std::printf("%-8s %6s %9s %10s %9s %7s %7s %9s\n", "", "count", "converged", "infeasible",
+              "undecided", "median", "p90", "CPU [ms]");
+  for (std::size_t k = 0; k < kDifficulties.size(); ++k) {
+    std::array<int, kSolveStatusCount> ends{};
+    int count = 0;
+    double cpu = 0.0;
+    for (const Outcome& o : outcomes) {
+      if (static_cast<std::size_t>(o.difficulty) != k) continue;
+      ++count;
+      ++ends[static_cast<std::size_t>(o.status)];
+      cpu += o.cpu_ms;
+    }
+    const int converged = ends[static_cast<std::size_t>(SolveStatus::kConverged)];
+    const int infeasible = ends[static_cast<std::size_t>(SolveStatus::kInfeasible)];
+    const std::vector<int> iterations = iterations_of(outcomes, static_cast<Difficulty>(k));
+    std::printf("%-8s %6d %9d %10d %9d %7d %7d %9.2f\n", kDifficulties[k].data(), count, converged,
+                infeasible, count - converged - infeasible, quantile(iterations, 0.5),
+                quantile(iterations, 0.9), count > 0 ? cpu / count : 0.0);
+  }
+}
+
+/// Share of problems decided within so many iterations, and within so much time.
+void print_profile(std::span<const Outcome> outcomes) {
+  const auto share = [&](auto within) {
+    return static_cast<double>(std::ranges::count_if(
+               outcomes, [&](const Outcome& o) { return o.decided() && within(o); })) /
+           static_cast<double>(outcomes.size());
+  };
+  std::printf("\ndecided within\n");
+  for (const int limit : {2, 5, 10, 15, 20, 30, 50, 100, 200})
+    std::printf("  %3d iterations %.3f\n", limit,
+                share([limit](const Outcome& o) { return o.iterations <= limit; }));
+  for (const double limit : {0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0})
+    std::printf("  %5.1f ms CPU %.3f\n", limit,
+                share([limit](const Outcome& o) { return o.cpu_ms <= limit; }));
+}
+
+void print_failures(std::span<const Outcome> outcomes) {
+  std::printf("\nundecided: cause, line of problems.txt, difficulty, iterations\n");
+  for (int status = 0; status < kSolveStatusCount; ++status)
+    for (const Outcome& o : outcomes)
+      if (!o.decided() && static_cast<int>(o.status) == status)
+        std::printf("  %-18s %4zu %-7s %4d\n", name(o.status).data(), o.line,
+                    kDifficulties[static_cast<std::size_t>(o.difficulty)].data(), o.iterations);
+}
+
+bool gate(const char* what, double value, const char* goal, bool passed) {
+  std::printf("gate %s %.4g %s %s\n", what, value, goal, passed ? "PASS" : "FAIL");
+  return passed;
+}
+
+bool gates(std::span<const Outcome> outcomes) {
+  const auto decided = std::ranges::count_if(outcomes, &Outcome::decided);
+  const double share = static_cast<double>(decided) / static_cast<double>(outcomes.size());
+  const std::vector<int> iterations = iterations_of(outcomes, std::nullopt);
+  const int median = quantile(iterations, 0.5), p90 = quantile(iterations, 0.9);
+  std::printf("\n");
+  const bool all[] = {gate("corpus.decided", share, ">=0.99", share >= 0.99),
+                      gate("corpus.iterations_median", median, "<=20", median <= 20),
+                      gate("corpus.iterations_p90", p90, "<=50", p90 <= 50)};
+  return std::ranges::all_of(all, [](bool passed) { return passed; });
+}
+
+bool apply(Options& options, std::span<char* const> words) {
+  const std::string_view flag = words[0];
+  if (flag == "--failures") return options.failures = true;
+  if (words.size() < 2) return false;
+  if (flag == "--every")
+    return read_number(words[1], std::size_t{1}, std::size_t{100000}, options.every);
+  if (flag == "--preset") {
+    const auto preset = std::ranges::find(kReversePresets, std::string_view(words[1]));
+    if (preset == kReversePresets.end()) return false;
+    options.reverse = reverse_preset(static_cast<ReversePreset>(preset - kReversePresets.begin()));
+    return true;
+  }
+  if (flag != "--set" || words.size() < 3) return false;
+  Setter setter{words[1], words[2]};
+  options.reverse.visit(setter);
+  options.physics.visit(setter);
+  return setter.done;
+}
+
+std::optional<Options> parsed(std::span<char* const> words) {
+  Options options;
+  while (!words.empty()) {
+    const std::string_view flag = words[0];
+    if (!apply(options, words)) {
+      std::fprintf(stderr, "reverse_corpus: %s is no argument, or its value is missing or wrong\n",
+                   words[0]);
+      return std::nullopt;
+    }
+    words = words.subspan(flag == "--failures" ? 1 : flag == "--set" ? 3 : 2);
+  }
+  return options;
+}
+
+int run(const std::filesystem::path& folder, const Options& options) {
+  const Corpus corpus = read_corpus(folder);
+  const std::vector<Outcome> outcomes = solve(corpus, options);
+  print_by_difficulty(outcomes);
+  print_profile(outcomes);
+  if (options.failures) print_failures(outcomes);
+  return gates(outcomes) ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace rtg::bench
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "reverse_corpus: name the folder of the corpus, tests/bench/corpus\n");
+    return 2;
+  }
+  const auto options = rtg::bench::parsed({argv + 2, argv + argc});
+  if (!options) return 2;
+  try {
+    return rtg::bench::run(argv[1], *options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "reverse_corpus: %s\n", error.what());
+    return 2;
+  }
+}

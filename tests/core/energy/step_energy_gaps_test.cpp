@@ -1,0 +1,61 @@
+// Which steps keep bodies apart.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/energy/step_energy.hpp"
+#include "tests/support/touching_scene.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::TouchingScene;
+
+/// Two bars that cross in their middles: no vertex of either is near the other.
+Scene crossing_bars() {
+  return {{{"robot", "robot", box(2.0, 0.2), 1.0, 0.3, false},
+           {"bar", "bar", box(0.2, 2.0), 1.0, 0.3, false}}};
+}
+
+TEST(StepEnergyGaps, CrossingBarsAreRejectedThoughEveryGapIsOpen) {
+  const StepEnergy energy(crossing_bars(), {}, {});
+  const VectorXd crossed = VectorXd::Zero(6);
+  for (const Contact& c : energy.contacts()) EXPECT_GT(energy.gap_value(c, crossed), 0.5);
+  EXPECT_FALSE(energy.separated(crossed));
+  EXPECT_TRUE(std::isfinite(energy.value(crossed, crossed, VectorXd::Zero(8))));
+  EXPECT_FALSE(energy.keeps_gaps(crossed, crossed, 0.1));
+  VectorXd apart = crossed;
+  apart[3] = 1.2;
+  EXPECT_TRUE(energy.separated(apart));
+  EXPECT_TRUE(energy.keeps_gaps(apart, apart, 0.1));
+}
+
+// Each tip lies beside the other body's, in neither of the two.
+TEST(StepEnergyGaps, TipsMayPassEachOtherByLittle) {
+  const Polygon tip = regular_polygon(3, 1.0);  // one vertex at (1, 0), 60° wide
+  const Scene scene{
+      {{"robot", "robot", tip, 1.0, 0.3, false}, {"tip", "tip", tip, 1.0, 0.3, false}}};
+  const StepEnergy energy(scene, {}, {});
+  const auto tips = [](double overlap) {
+    return stacked({{0, 0, 0}, {2.0 - overlap, 0, std::numbers::pi}});
+  };
+  EXPECT_TRUE(energy.separated(tips(0.08)));  // 0.08 m · cos 60° along the nearest normal
+  EXPECT_FALSE(energy.separated(tips(0.14)));
+}
+
+TEST(StepEnergyGaps, StepsMayLeaveNoLessThanAShareOfAGap) {
+  const TouchingScene scene;
+  const auto boxes_apart = [](double gap) {
+    return stacked({{-5, 0, 0}, {0, 0, 0}, {0.1, 1.2 + gap, 0}});
+  };
+  EXPECT_TRUE(scene.energy.keeps_gaps(boxes_apart(0.01), boxes_apart(0.0012), 0.1));
+  EXPECT_FALSE(scene.energy.keeps_gaps(boxes_apart(0.01), boxes_apart(0.0008), 0.1));
+  EXPECT_FALSE(scene.energy.keeps_gaps(boxes_apart(0.01), boxes_apart(-0.001), 0.1));
+  // Far gaps may shrink at will down to the share of the range.
+  EXPECT_TRUE(scene.energy.keeps_gaps(boxes_apart(2.0), boxes_apart(0.016), 0.1));
+  EXPECT_FALSE(scene.energy.keeps_gaps(boxes_apart(2.0), boxes_apart(0.014), 0.1));
+}
+
+}  // namespace
+}  // namespace rtg
