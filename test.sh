@@ -5,11 +5,12 @@
 #   ./test.sh tsan        C++ tests that use threads under ThreadSanitizer
 #   ./test.sh coverage    line coverage of the physics and the solver by their own tests
 #   ./test.sh bench       benchmarks and gates: JSON and a Markdown table in build/bench/
+#   ./test.sh peer        the reverse solver against CasADi and IPOPT, which it installs (ten minutes)
 set -euo pipefail
 # shellcheck source=setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 
-usage() { sed -n '3,7s/^# *//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '3,8s/^# *//p' "${BASH_SOURCE[0]}"; }
 
 set_up() { # PRESET TARGET
   lock_setup
@@ -62,6 +63,11 @@ case ${1:-all} in
   bench)
     set_up release all
     exec "$VENV/bin/python" "$ROOT/tests/bench/table.py" "$ROOT/build/release" "$ROOT/build/bench"
+    ;;
+  peer)
+    set_up release peer_dump
+    pip_install -r "$ROOT/tests/bench/requirements.txt"
+    exec "$VENV/bin/python" "$ROOT/tests/bench/peer.py" "$ROOT/build/release" "${@:2}"
     ;;
   -h | --help) usage ;;
   *)

@@ -1,14 +1,10 @@
 #include "core/reverse/reverse_simulator.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
-#include "core/energy/open_gaps.hpp"
-#include "core/reverse/merit_sqp.hpp"
+#include "core/reverse/candidate.hpp"
 #include "core/reverse/pruning.hpp"
-#include "core/reverse/restarts.hpp"
-#include "core/world/selection.hpp"
 
 namespace rtg {
 namespace {
@@ -25,18 +21,6 @@ bool objects_differ(const VectorXd& p, const VectorXd& other) {
     if (std::max(by[0], by[1]) >= kDragged || by[2] >= kTurned) return true;
   }
   return false;
-}
-
-/// The paper's SQP or the default one. kInfeasible also if the solution misses the given final
-/// state by more than the tolerance.
-SqpResult solve_problem(const ReverseProblem& problem) {
-  SqpResult solved = problem.config.preset == ReversePreset::kPaper
-                         ? merit_sqp(problem, static_iterate(problem))
-                         : solve_with_restarts(problem);
-  if (solved.status == SolveStatus::kConverged &&
-      terminal_miss(problem, solved.x) > problem.config.terminal_tolerance)
-    solved.status = SolveStatus::kInfeasible;
-  return solved;
 }
 
 /// The start of a quasi-static push p_0 ... p_h, and others of which it makes the same end: nothing
@@ -77,19 +61,12 @@ ReverseResult ReverseSimulator::solve(const ReverseJob& job) const {
 }
 
 ReverseResult ReverseSimulator::solve_legal(const ReverseJob& job) const {
-  // The plain barrier moves bodies at any distance.
-  const double reach = physics_.plain_barrier ? std::numeric_limits<double>::infinity()
-                                              : physics_.range + physics_.skin;
-  const std::vector<int> bodies = relevant_bodies(scene_, push_, job, reach);
-  const Selection part = select(scene_, job.end, bodies);
-  const StepEnergy energy(part.scene, physics_, push_);
-  const ReverseProblem problem{energy, config_, with_open_gaps(energy, stacked(part.poses)),
-                               direction(job.action, push_), physics_.sub_steps};
-  const SqpResult solved = solve_problem(problem);
+  const Candidate candidate(scene_, physics_, push_, config_, job);
+  const SqpResult solved = candidate.solve();
   ReverseResult result{solved.status, solved.iterations};
   if (result.status != SolveStatus::kConverged) return result;
   for (const VectorXd& start : predecessors(solved.x.p, config_.releases))
-    result.starts.push_back(merged(job.end, unstacked(start), bodies));
+    result.starts.push_back(merged(job.end, unstacked(start), candidate.bodies()));
   return result;
 }
 

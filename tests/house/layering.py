@@ -29,7 +29,7 @@ ONLY_IN = {
     r"box2d/.*": r"core/forward/box2d_\w+\.cpp",
     r"yaml-cpp/.*": r"nodes/common/\w+\.cpp",
     r"lcm/.*": r"nodes/common/bus\w*\.cpp",
-    r"nlohmann/.*": r"(core/search|nodes|train)/.*\.cpp",
+    r"nlohmann/.*": r"(core/search|nodes|train|tests/bench)/.*\.cpp",
     r"nanobind/.*": r"train/.*\.(cpp|hpp)",
     r"gtest/.*|gmock/.*": r"tests/.*\.(cpp|hpp)",
     r"benchmark/.*": r"tests/bench/.*\.(cpp|hpp)",

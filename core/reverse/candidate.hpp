@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "core/reverse/reverse_job.hpp"
+#include "core/reverse/sqp_result.hpp"
+#include "core/world/selection.hpp"
+
+namespace rtg {
+
+/// A reverse job as an optimisation problem over the bodies that can take part in the push.
+class Candidate {
+ public:
+  /// The configurations must outlive it; `job.end` is finite and has a pose for each body.
+  Candidate(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push,
+            const ReverseConfig& config, const ReverseJob& job);
+  Candidate(const Candidate&) = delete;
+  Candidate& operator=(const Candidate&) = delete;
+
+  const ReverseProblem& problem() const { return problem_; }
+  const std::vector<int>& bodies() const { return bodies_; }  // of the scene, as the problem counts
+  const Scene& scene() const { return part_.scene; }          // these
+
+  /// The SQP that the configuration names. kInfeasible also if the solution misses the given final
+  /// state by more than the tolerance.
+  SqpResult solve() const;
+
+ private:
+  std::vector<int> bodies_;
+  Selection part_;
+  StepEnergy energy_;
+  ReverseProblem problem_;
+};
+
+}  // namespace rtg

@@ -1,0 +1,121 @@
+// Solves every N-th committed problem in which bodies may touch and writes it with our solution:
+//
+//   peer_dump FOLDER N > problems.json
+//
+// a line of JSON per problem: all that defines it (shapes, configurations, final state, direction),
+// the warm start, our solution, and our own values of objective and constraints there. For
+// peer.py, which builds the same problem with CasADi and solves it with IPOPT.
+
+#include <cstdio>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/reverse/candidate.hpp"
+#include "core/reverse/rollout.hpp"
+#include "core/search/thread_pool.hpp"
+#include "tests/bench/arguments.hpp"
+#include "tests/bench/corpus.hpp"
+
+namespace rtg::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Visitor of a configuration that notes its numbers.
+struct Numbers {
+  Json found = Json::object();
+
+  void number(const char* key, double field, double, double, const char*) { found[key] = field; }
+  void integer(const char* key, int field, int, int, const char*) { found[key] = field; }
+  void flag(const char* key, bool field, const char*) { found[key] = field; }
+  template <class Enum, class Names>
+  void choice(const char*, Enum, const Names&, const char*) {}
+};
+
+template <class Config>
+Json numbers(Config config) {
+  Numbers numbers;
+  config.visit(numbers);
+  return numbers.found;
+}
+
+template <class Vector>
+Json rows(const std::vector<Vector>& levels) {
+  Json out = Json::array();
+  for (const Vector& v : levels) out.push_back(std::vector<double>(v.begin(), v.end()));
+  return out;
+}
+
+Json bodies(const Scene& scene) {
+  Json out = Json::array();
+  for (const Body& body : scene.bodies) {
+    Json vertices = Json::array();
+    for (const Vector2d& v : body.shape.vertices) vertices.push_back({v.x(), v.y()});
+    out.push_back({{"vertices", vertices},
+                   {"density", body.density},
+                   {"friction", body.friction},
+                   {"fixed", body.fixed}});
+  }
+  return out;
+}
+
+Json iterate(const Iterate& x) {
+  return {{"p", rows(x.p)}, {"forces", rows(x.forces)}, {"controls", rows(x.controls)}};
+}
+
+Json dumped(const Problem& problem, const Task& task, std::size_t line) {
+  const PhysicsConfig physics;
+  const ReverseConfig config;
+  const Candidate candidate(task.scene, physics, task.push, config, problem.job);
+  const ReverseProblem& nlp = candidate.problem();
+  const auto warm = warm_start(nlp);
+  const double begin = thread_cpu_s();
+  const SqpResult solved = candidate.solve();
+  const double cpu = thread_cpu_s() - begin;
+  const Violation v = violation(nlp, solved.x);
+  return {{"line", line},
+          {"difficulty", kDifficulties[static_cast<std::size_t>(problem.difficulty)]},
+          {"bodies", bodies(candidate.scene())},
+          {"physics", numbers(physics)},
+          {"push", numbers(task.push)},
+          {"reverse", numbers(config)},
+          {"end", std::vector<double>(nlp.end.begin(), nlp.end.end())},
+          {"direction", {nlp.direction.x(), nlp.direction.y()}},
+          {"warm", warm ? iterate(*warm) : Json()},
+          {"status", name(solved.status)},
+          {"iterations", solved.iterations},
+          {"cpu_s", cpu},
+          {"solution", iterate(solved.x)},
+          {"objective", objective(nlp, solved.x)},
+          {"residuals", rows(v.residuals)},
+          {"complementarity", rows(v.complementarity)}};
+}
+
+void dump(const std::filesystem::path& folder, std::size_t every) {
+  const Corpus corpus = read_corpus(folder);
+  std::size_t met = 0;
+  for (std::size_t k = 0; k < corpus.problems.size(); ++k) {
+    const Problem& problem = corpus.problems[k];
+    if (problem.difficulty == Difficulty::kFree || met++ % every != 0) continue;
+    std::puts(dumped(problem, corpus.tasks.at(problem.task), k + 1).dump().c_str());
+  }
+}
+
+}  // namespace
+}  // namespace rtg::bench
+
+int main(int argc, char** argv) {
+  std::size_t every = 0;
+  if (argc != 3 || !rtg::bench::read_number(argv[2], std::size_t{1}, std::size_t{100000}, every)) {
+    std::fprintf(stderr, "legal: peer_dump FOLDER N\n");
+    return 2;
+  }
+  try {
+    rtg::bench::dump(argv[1], every);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "peer_dump: %s\n", error.what());
+    return 2;
+  }
+}
