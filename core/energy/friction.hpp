@@ -27,37 +27,62 @@ struct Friction {
   Mat12<S> hessian;
 };
 
+/// The slip u itself, and φ(u) as a function of q₊ alone, which is all that a forward step needs.
+/// Refers to the two points.
+template <class S>
+class Slip {
+ public:
+  Slip(const HalfPlanes& planes, double alpha, double scale, const LocalPoint<S>& next,
+       const LocalPoint<S>& now)
+      : distance(planes, alpha, now.x), tangent(turned(distance.gradient)), next_(next) {
+    using std::sqrt;
+    const Vec2<S> moved = next.x - now.x;
+    way = {moved.y(), -moved.x()};  // Eᵀ (x₊ - x), so u = ∇d·way
+    const S u = distance.gradient.dot(way), e2(scale * scale);
+    const S root = sqrt(u * u + e2);
+    value = root - S(scale);
+    slope = u / root;
+    bend = e2 / (root * root * root);
+  }
+
+  Vec6<S> gradient() const { return next_.jacobian.transpose() * (tangent * slope); }
+  Mat6<S> hessian() const {
+    const Vec6<S> g = next_.jacobian.transpose() * tangent;
+    return g * g.transpose() * bend + next_.hessian(tangent) * slope;
+  }
+
+  SignedDistance<S> distance;  // of the point before
+  Vec2<S> tangent;             // t
+  Vec2<S> way;
+  S value, slope, bend;  // φ, φ', φ''
+
+ private:
+  const LocalPoint<S>& next_;
+};
+
 template <class S>
 Friction<S> friction(const HalfPlanes& planes, double alpha, double slip, const LocalPoint<S>& next,
                      const LocalPoint<S>& now) {
-  using std::sqrt;
-  const SignedDistance<S> d(planes, alpha, now.x);
-  const Vec2<S> t = turned(d.gradient);
-  const Vec2<S> moved = next.x - now.x;
-  const Vec2<S> a(moved.y(), -moved.x());  // Eᵀ (x₊ - x), so u = ∇d·a
-  const S u = d.gradient.dot(a);
-  const S root = sqrt(u * u + S(slip * slip));
-  const S slope = u / root, bend = S(slip * slip) / (root * root * root);  // φ', φ''
-
-  const Mat2<S> bent = d.hessian();
+  const Slip<S> s(planes, alpha, slip, next, now);
+  const Mat2<S> bent = s.distance.hessian();
   Mat2<S> tangent_slope;  // ∂t/∂x = E ∇²d
   tangent_slope << -bent(1, 0), -bent(1, 1), bent(0, 0), bent(0, 1);
-  const Vec2<S> u_x = bent * a - t;
-  const Mat2<S> u_xx = d.third(a) - tangent_slope - tangent_slope.transpose();
+  const Vec2<S> u_x = bent * s.way - s.tangent;
+  const Mat2<S> u_xx = s.distance.third(s.way) - tangent_slope - tangent_slope.transpose();
 
-  Vec12<S> g;
-  g.template head<6>() = next.jacobian.transpose() * t;
-  g.template tail<6>() = now.jacobian.transpose() * u_x;
   Friction<S> f;
-  f.value = root - S(slip);
-  f.gradient = g * slope;
-  f.hessian = (g * g.transpose()) * bend;
-  f.hessian.template topLeftCorner<6, 6>() += next.hessian(t) * slope;
-  const Mat6<S> cross = next.jacobian.transpose() * tangent_slope * now.jacobian * slope;
+  f.value = s.value;
+  Vec12<S> g;
+  g.template head<6>() = next.jacobian.transpose() * s.tangent;
+  g.template tail<6>() = now.jacobian.transpose() * u_x;
+  f.gradient = g * s.slope;
+  f.hessian = (g * g.transpose()) * s.bend;
+  f.hessian.template topLeftCorner<6, 6>() += next.hessian(s.tangent) * s.slope;
+  const Mat6<S> cross = next.jacobian.transpose() * tangent_slope * now.jacobian * s.slope;
   f.hessian.template topRightCorner<6, 6>() += cross;
   f.hessian.template bottomLeftCorner<6, 6>() += cross.transpose();
   f.hessian.template bottomRightCorner<6, 6>() +=
-      (now.jacobian.transpose() * u_xx * now.jacobian + now.hessian(u_x)) * slope;
+      (now.jacobian.transpose() * u_xx * now.jacobian + now.hessian(u_x)) * s.slope;
   return f;
 }
 

@@ -98,7 +98,7 @@ double StepEnergy::value(const VectorXd& next, const VectorXd& now, const Vector
     const Contact& c = contacts_[k];
     const double force = lag[static_cast<Eigen::Index>(k)];
     if (near(c, next)) sum += barrier_.value(gap_value(c, next));
-    if (force != 0.0) sum += c.friction * force * friction(c, point(c, next), point(c, now)).value;
+    if (force != 0.0) sum += c.friction * force * slip(c, point(c, next), point(c, now)).value;
   }
   return sum;
 }
@@ -132,10 +132,9 @@ void StepEnergy::add_contact(const Contact& c, const VectorXd& next, const Vecto
             model.hessian);
   }
   if (lag == 0.0) return;
-  const Friction<double> f = friction(c, ahead, point(c, now));
-  scatter(*this, c, Vec6<double>(c.friction * lag * f.gradient.head<6>()), model.gradient);
-  scatter(*this, c, Mat6<double>(c.friction * lag * f.hessian.topLeftCorner<6, 6>()),
-          model.hessian);
+  const Slip<double> s = slip(c, ahead, point(c, now));
+  scatter(*this, c, Vec6<double>(c.friction * lag * s.gradient()), model.gradient);
+  scatter(*this, c, Mat6<double>(c.friction * lag * s.hessian()), model.hessian);
 }
 
 /// Whether an edge normal of i separates it from j; corners may overlap by `cut`.

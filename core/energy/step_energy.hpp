@@ -72,6 +72,10 @@ class StepEnergy {
                        const LocalPoint<S>& now) const {
     return rtg::friction(planes_[c.other], sharpness_, slip_, next, now);
   }
+  Slip<double> slip(const Contact& c, const LocalPoint<double>& next,
+                    const LocalPoint<double>& now) const {
+    return {planes_[c.other], sharpness_, slip_, next, now};
+  }
 
   /// λ(g(p)) of every contact [contacts].
   VectorXd forces(const VectorXd& p) const;

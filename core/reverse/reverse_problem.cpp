@@ -105,8 +105,8 @@ Violation violation(const ReverseProblem& problem, const Iterate& x) {
           force * g.value - energy.barrier().weight * energy.barrier().window(g.value).w;
       if (k > 0) scatter(energy, c, Vec6<double>(-force * g.gradient), v.residuals[k]);
       if (k == h || force == 0.0) continue;
-      const Friction<double> f = energy.friction(c, energy.point(c, x.p[k + 1]), here);
-      scatter(energy, c, Vec6<double>(c.friction * force * f.gradient.head<6>()),
+      const LocalPoint<double> next = energy.point(c, x.p[k + 1]);
+      scatter(energy, c, Vec6<double>(c.friction * force * energy.slip(c, next, here).gradient()),
               v.residuals[k + 1]);
     }
   return v;
