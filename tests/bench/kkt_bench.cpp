@@ -1,11 +1,12 @@
-// Factorisation and solution of the KKT system of a row of six bodies in contact, over the number
-// of sub-steps h.
+// A row of six bodies in contact, over the number of sub-steps h: factorisation and solution of the
+// KKT system; a whole SQP iteration with one trial point.
 
 #include <benchmark/benchmark.h>
 
 #include <string>
 
 #include "core/reverse/linearisation.hpp"
+#include "core/reverse/trial.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg {
@@ -21,7 +22,8 @@ class Row {
  public:
   explicit Row(int sub_steps) : problem_{energy_, config_, poses(), Vector2d::UnitX(), sub_steps} {}
 
-  Linearisation linearisation() const { return {problem_, static_iterate(problem_), {false, 1.0}}; }
+  const ReverseProblem& problem() const { return problem_; }
+  Linearisation linearisation() const { return {problem_, static_iterate(problem_), {true, 1.0}}; }
 
  private:
   static Scene scene() {
@@ -57,6 +59,21 @@ void kkt(benchmark::State& state, KktMethod method) {
   const double residual = (joined(product(lin.matrix(), x)) - joined(r)).lpNorm<Eigen::Infinity>();
   if (!(residual <= kResidual * norm(r))) state.SkipWithError("the residual is too large");
 }
+
+void sqp_iteration(benchmark::State& state) {
+  const Row row(static_cast<int>(state.range(0)));
+  const Iterate x = static_iterate(row.problem());
+  const std::unique_ptr<KktSolver> solver = make_kkt_solver({});
+  for (auto _ : state) {
+    const Linearisation lin = row.linearisation();
+    if (!solver->factorize(lin.matrix())) return state.SkipWithError("singular");
+    const BlockVector step = solver->solve(lin.right_hand_side(lin.violation()));
+    const auto trial = trial_point(row.problem(), x, lin.direction(step, lin.violation()), 1e-3);
+    if (!trial) return state.SkipWithError("the step is too long");
+    benchmark::DoNotOptimize(violation(row.problem(), *trial).l1());
+  }
+}
+BENCHMARK(sqp_iteration)->RangeMultiplier(2)->Range(8, 256)->Unit(benchmark::kMicrosecond);
 
 const bool kRegistered = [] {
   for (std::size_t m = 0; m < kKktMethods.size(); ++m)

@@ -1,0 +1,51 @@
+"""Goals of the benchmarks (design 6), ratios within one run."""
+
+from __future__ import annotations
+
+import math
+import operator
+import statistics
+from collections.abc import Callable, Mapping
+
+# CPU time by benchmark, in whatever unit the benchmark reports; ratios take one unit.
+Times = Mapping[str, float]
+
+
+def ratio(slow: str, fast: str) -> Callable[[Times], float]:
+    """How many times the benchmark `slow` takes what `fast` takes."""
+    return lambda times: times[slow] / times[fast]
+
+
+def growth(family: str) -> Callable[[Times], float]:
+    """Exponent of the time of FAMILY/N in N, by least squares."""
+
+    def exponent(times: Times) -> float:
+        own = {name: time for name, time in times.items() if name.startswith(f"{family}/")}
+        sizes = [math.log(int(name.rsplit("/", 1)[1])) for name in own]
+        return statistics.linear_regression(sizes, [math.log(t) for t in own.values()]).slope
+
+    return exponent
+
+
+_GATES: tuple[tuple[str, Callable[[Times], float], str, float], ...] = (
+    ("action48.paper_by_default", ratio("action48/paper", "action48/default"), ">=", 200.0),
+    (
+        "kkt.cyclic_reduction_by_ours",
+        ratio("kkt/cyclic_reduction/16", "kkt/block_elimination/16"),
+        ">=",
+        30.0,
+    ),
+    ("kkt.umfpack_by_ours", ratio("kkt/suitesparse/16", "kkt/block_elimination/16"), ">=", 120.0),
+    ("sqp_iteration.growth_with_h", growth("sqp_iteration"), "<=", 1.1),
+)
+_HOLDS = {">=": operator.ge, "<=": operator.le}
+
+
+def check(times: Times) -> bool:
+    """Prints a line per gate; whether all hold."""
+    passed = []
+    for name, value_of, relation, bound in _GATES:
+        value = value_of(times)
+        passed.append(_HOLDS[relation](value, bound))
+        print(f"gate {name} {value:.4g} {relation}{bound:g} {'PASS' if passed[-1] else 'FAIL'}")
+    return all(passed)
