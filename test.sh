@@ -66,7 +66,9 @@ case ${1:-all} in
     ;;
   peer)
     set_up release peer_dump
+    lock_setup
     pip_install -r "$ROOT/tests/bench/requirements.txt"
+    unlock_setup
     exec "$VENV/bin/python" "$ROOT/tests/bench/peer.py" "$ROOT/build/release" "${@:2}"
     ;;
   -h | --help) usage ;;

@@ -27,8 +27,8 @@ struct Friction {
   Mat12<S> hessian;
 };
 
-/// The slip u itself, and φ(u) as a function of q₊ alone, which is all that a forward step needs.
-/// Refers to the two points.
+/// φ(u) as a function of q₊ alone, which is all that a forward step needs. Refers to the point
+/// after the sub-step.
 template <class S>
 class Slip {
  public:

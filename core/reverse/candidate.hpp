@@ -11,7 +11,7 @@ namespace rtg {
 /// A reverse job as an optimisation problem over the bodies that can take part in the push.
 class Candidate {
  public:
-  /// The configurations must outlive it; `job.end` is finite and has a pose for each body.
+  /// `config` must outlive it; `job.end` is finite and has a pose for each body.
   Candidate(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push,
             const ReverseConfig& config, const ReverseJob& job);
   Candidate(const Candidate&) = delete;

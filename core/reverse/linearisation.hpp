@@ -49,9 +49,8 @@ class Linearisation {
   /// Whether constraints and gradients are; the maxima of the norms overlook a NaN.
   bool finite() const;
 
-  /// Right-hand side for constraint values `v`: those at the iterate, or with those at a trial
-  /// point added for a second-order correction. Its solution is the step and its multipliers'
-  /// change.
+  /// Right-hand side for constraint values `v`, those at the iterate or others. Its solution is the
+  /// step and its multipliers' change.
   BlockVector right_hand_side(const Violation& v) const;
 
   /// The step that `solution` of the system with right_hand_side(v) stands for.

@@ -1,5 +1,6 @@
 #include "core/reverse/restarts.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "core/reverse/filter_sqp.hpp"
@@ -24,13 +25,14 @@ Iterate with_fixed_end(const ReverseProblem& problem, Iterate x) {
 
 SqpResult solve_with_restarts(const ReverseProblem& problem) {
   SqpResult result{SolveStatus::kInfeasible, static_iterate(problem), 0, 0.0, 0.0};
-  std::optional<Iterate> start = warm_start(problem);
-  if (!start) return result;
-  start = with_fixed_end(problem, *std::move(start));
+  const VectorXd none = VectorXd::Zero(result.x.forces[0].size());
+  if (!std::isfinite(problem.energy.value(problem.end, problem.end, none))) return result;
+  const Iterate start =
+      with_fixed_end(problem, warm_start(problem).value_or(static_iterate(problem)));
   int iterations = 0;
   double proximal = problem.config.proximal_start;
   for (int attempt = 0; attempt < kAttempts; ++attempt, proximal *= kProximalGrowth) {
-    result = filter_sqp(problem, *start, problem.config.max_iterations - iterations, proximal);
+    result = filter_sqp(problem, start, problem.config.max_iterations - iterations, proximal);
     iterations += result.iterations;
     if (result.status == SolveStatus::kConverged || iterations >= problem.config.max_iterations)
       break;

@@ -25,7 +25,7 @@ struct ReverseConfig {
   double control_weight = 1e-3;      // ε of eq. (6)
   double path_weight = 100.0;        // κ_x, action consistency; 0: the paper's objective
   double heading_weight = 100.0;     // κ_θ
-  double speed_weight = 0.2;         // ρ, holds objects to about the robot's speed
+  double speed_weight = 0.2;         // χ, holds objects to about the robot's speed
   double terminal_weight = 300.0;    // spring to the given final state; 0: that state is fixed,
                                      // and few at which Box2D comes to rest have a predecessor
   double terminal_tolerance = 0.05;  // a solution that misses the final state by more fails [m]

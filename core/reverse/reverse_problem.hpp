@@ -11,17 +11,17 @@ namespace rtg {
 /// The reverse problem of one candidate, eq. (6) and (7), over the sub-steps k = 1 ... h of a push:
 ///
 ///   min  Σ_i w_i (x_i, y_i)_0·d + ε Σ_k |c_k|² + Σ b(g(p_0)) + κ_x Σ_k |t₀ - t̄₀|²_k
-///        + κ_θ Σ_k (θ₀ - θ̄₀)²_k + ρ Σ_k Σ_{i>0} q³_{k,i} + K/2 |p_h - p̄|²
+///        + κ_θ Σ_k (θ₀ - θ̄₀)²_k + χ Σ_k Σ_{i>0} q³_{k,i} + K/2 |p_h - p̄|²
 ///   s.t. Φ_k = ∂Ψ/∂p₊(p_k, p_{k-1}, c_k) = 0,   λ_k g(p_k) = μ̃ w(g(p_k)),   g > 0.
 ///
-/// p̄ is the given final state, (t̄₀, θ̄₀)_k the straight path of the robot that ends in it, q the
-/// squared speed of an object (SpeedPenalty).
+/// p̄ is the given final state, (t̄₀, θ̄₀)_k the straight path of the robot that ends in it, q half
+/// the squared speed of an object (SpeedPenalty).
 ///
 /// Departs from the paper: action consistency κ makes the controls those of the discrete action; no
-/// object outruns the push by much (ρ);
+/// object outruns the push by much (χ);
 /// the normal forces λ are unknowns (relaxed complementarity), bilinear instead of 1/g; a stiff
 /// spring K holds the final state, so that every forward simulation is feasible. With the preset
-/// `paper` κ = ρ = 0, λ = μ̃ w/g throughout, w = 1 at any gap, and the final state is fixed.
+/// `paper` κ = χ = 0, λ = μ̃ w/g throughout, w = 1 at any gap, and the final state is fixed.
 struct ReverseProblem {
   const StepEnergy& energy;
   const ReverseConfig& config;

@@ -7,7 +7,7 @@ namespace rtg {
 /// What an object pays for the way that it makes in one sub-step, (Δt, Δθ), in units of the robot's
 /// own way s = stride/h:
 ///
-///   ρ q³,   q = (|Δt|² + (J/m) Δθ²) / (2 s²)
+///   χ q³,   q = (|Δt|² + (J/m) Δθ²) / (2 s²)
 ///
 /// convex, next to nothing up to the robot's speed (q = ½), a wall beyond twice that. Departs from
 /// the paper: contact is felt only at the ends of sub-steps, and without it the optimiser finds

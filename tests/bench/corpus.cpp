@@ -33,10 +33,14 @@ Problem read_problem(const std::string& line, const std::map<std::string, Task>&
   if (!words || task == tasks.end() || kind == kDifficulties.end())
     throw std::runtime_error("legal: TASK DIFFICULTY ACTION x y θ ...");
   problem.difficulty = static_cast<Difficulty>(kind - kDifficulties.begin());
-  for (Pose p; words >> p.x >> p.y >> p.theta;) problem.job.end.push_back(p);
-  const std::size_t bodies = task->second.scene.size();
-  if (!words.eof() || problem.job.end.size() != bodies)
-    throw std::runtime_error("legal are the poses of " + std::to_string(bodies) + " bodies");
+  const int headings = task->second.push.headings;
+  if (problem.job.action < 0 || problem.job.action >= headings)
+    throw std::runtime_error("legal are actions from 0 to " + std::to_string(headings - 1));
+  problem.job.end.resize(task->second.scene.size());
+  for (Pose& p : problem.job.end) words >> p.x >> p.y >> p.theta;
+  if (!words || !(words >> std::ws).eof())
+    throw std::runtime_error("legal are the poses of " + std::to_string(problem.job.end.size()) +
+                             " bodies");
   return problem;
 }
 
@@ -71,6 +75,7 @@ std::map<std::string, Task> read_tasks(const std::filesystem::path& folder) {
     const std::string name = task.name;
     tasks.emplace(name, std::move(task));
   }
+  if (tasks.empty()) throw std::runtime_error(folder.string() + ": holds no TASK.yaml");
   return tasks;
 }
 
@@ -88,6 +93,7 @@ Corpus read_corpus(const std::filesystem::path& folder) {
       throw std::runtime_error(file.string() + ":" + std::to_string(number) + ": " + error.what());
     }
   }
+  if (corpus.problems.empty()) throw std::runtime_error(file.string() + ": holds no problem");
   return corpus;
 }
 

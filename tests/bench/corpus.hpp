@@ -41,10 +41,10 @@ struct Corpus {
   std::vector<Problem> problems;
 };
 
-/// The tasks of FOLDER/TASK.yaml by name. Throws ConfigError.
+/// The tasks of FOLDER/TASK.yaml by name, at least one. Throws std::runtime_error, ConfigError.
 std::map<std::string, Task> read_tasks(const std::filesystem::path& folder);
 
-/// Throws std::runtime_error with file and line, ConfigError.
+/// At least one problem. Throws std::runtime_error with file and line, ConfigError.
 Corpus read_corpus(const std::filesystem::path& folder);
 void write_problems(const std::filesystem::path& file, const std::vector<Problem>& problems);
 

@@ -77,7 +77,8 @@ void dump(const std::filesystem::path& folder, int transitions) {
 
 int main(int argc, char** argv) {
   int transitions = 20000;
-  if (argc < 2 || (argc > 2 && !rtg::bench::read_number(argv[2], 1, 10'000'000, transitions))) {
+  if (argc < 2 || argc > 3 ||
+      (argc > 2 && !rtg::bench::read_number(argv[2], 1, 10'000'000, transitions))) {
     std::fprintf(stderr, "legal: corpus_dump FOLDER [TRANSITIONS]\n");
     return 2;
   }
@@ -86,6 +87,6 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "corpus_dump: %s\n", error.what());
-    return 1;
+    return 2;
   }
 }

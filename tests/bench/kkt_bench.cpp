@@ -45,6 +45,12 @@ class Row {
 
 double norm(const BlockVector& x) { return joined(x).lpNorm<Eigen::Infinity>(); }
 
+void check_residual(benchmark::State& state, const Linearisation& lin, const BlockVector& x,
+                    const BlockVector& r) {
+  const double residual = (joined(product(lin.matrix(), x)) - joined(r)).lpNorm<Eigen::Infinity>();
+  if (!(residual <= kResidual * norm(r))) state.SkipWithError("the residual is too large");
+}
+
 void kkt(benchmark::State& state, KktMethod method) {
   const Row row(static_cast<int>(state.range(0)));
   const Linearisation lin = row.linearisation();
@@ -56,22 +62,25 @@ void kkt(benchmark::State& state, KktMethod method) {
     x = solver->solve(r);
     benchmark::DoNotOptimize(x.data());
   }
-  const double residual = (joined(product(lin.matrix(), x)) - joined(r)).lpNorm<Eigen::Infinity>();
-  if (!(residual <= kResidual * norm(r))) state.SkipWithError("the residual is too large");
+  check_residual(state, lin, x, r);
 }
 
 void sqp_iteration(benchmark::State& state) {
   const Row row(static_cast<int>(state.range(0)));
   const Iterate x = static_iterate(row.problem());
   const std::unique_ptr<KktSolver> solver = make_kkt_solver({});
+  BlockVector r, step;
   for (auto _ : state) {
     const Linearisation lin = row.linearisation();
     if (!solver->factorize(lin.matrix())) return state.SkipWithError("singular");
-    const BlockVector step = solver->solve(lin.right_hand_side(lin.violation()));
+    step = solver->solve(r = lin.right_hand_side(lin.violation()));
+    if (!(lin.model_curvature(step) > 0.0)) return state.SkipWithError("no descent");
     const auto trial = trial_point(row.problem(), x, lin.direction(step, lin.violation()), 1e-3);
     if (!trial) return state.SkipWithError("the step is too long");
     benchmark::DoNotOptimize(violation(row.problem(), *trial).l1());
+    benchmark::DoNotOptimize(objective(row.problem(), x) + objective(row.problem(), *trial));
   }
+  check_residual(state, row.linearisation(), step, r);
 }
 BENCHMARK(sqp_iteration)->RangeMultiplier(2)->Range(8, 256)->Unit(benchmark::kMicrosecond);
 

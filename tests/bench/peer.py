@@ -8,6 +8,7 @@ start to the same tolerances, and compares objectives and CPU times. Needs casad
 
 from __future__ import annotations
 
+import argparse
 import json
 import subprocess
 import sys
@@ -27,7 +28,9 @@ def dumped(build: Path, every: int) -> list[Json]:
     """The problems with our solutions."""
     corpus = Path(__file__).parent / "corpus"
     command = [str(build / "tests" / "peer_dump"), str(corpus), str(every)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(done.returncode)
     return [json.loads(line) for line in done.stdout.splitlines()]
 
 
@@ -41,7 +44,7 @@ def disagreement(problem: PeerProblem) -> float:
     for theirs, mine in zip(values, ours, strict=True):
         own = np.array(mine)
         gap = np.abs(np.array(theirs).ravel() - own) / np.maximum(1.0, np.abs(own))
-        worst = max(worst, float(gap.max(initial=0.0)))
+        worst = float(np.maximum(worst, gap.max(initial=0.0)))  # a NaN stays one
     return worst
 
 
@@ -86,7 +89,7 @@ def main(build: Path, every: int) -> int:
     for dump in problems:
         problem = PeerProblem(dump)
         error = disagreement(problem)
-        worst = max(worst, error)
+        worst = float(np.maximum(worst, error))
         solved = dump["status"] in ("converged", "infeasible")
         ours += solved
         words = f"{dump['line']:5} {dump['difficulty']:8} {error:8.1e} | {dump['status']:15}"
@@ -105,7 +108,9 @@ def main(build: Path, every: int) -> int:
     no_worse = float((both >= -NO_WORSE).mean())
     ratio = float(np.median(ratios))
     print(f"\n{len(problems)} problems, solved by us {ours}, by IPOPT {theirs}, both {len(both)}")
+    share = ours / len(problems)
     passed = [
+        gate("peer.decided_by_us", share, ">=0.95", share >= 0.95),
         gate("peer.disagreement", worst, f"<={AGREEMENT:g}", worst <= AGREEMENT),
         gate("peer.no_worse", no_worse, ">=0.95", no_worse >= 0.95),
         gate("peer.time_ratio", ratio, ">=100", ratio >= 100.0),
@@ -113,5 +118,14 @@ def main(build: Path, every: int) -> int:
     return int(not all(passed))
 
 
+def arguments() -> argparse.Namespace:
+    """Of the command line; exit status 2 if they are wrong."""
+    parser = argparse.ArgumentParser("peer", description=__doc__.split(":")[0], allow_abbrev=False)
+    parser.add_argument("build", metavar="BUILD_FOLDER", type=Path)
+    parser.add_argument("every", metavar="EVERY", type=int, nargs="?", default=20)
+    return parser.parse_args()
+
+
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 20))
+    given = arguments()
+    sys.exit(main(given.build, given.every))

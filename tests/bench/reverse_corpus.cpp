@@ -2,8 +2,9 @@
 //
 //   reverse_corpus FOLDER [--preset default|paper] [--every N] [--failures] [--set NAME NUMBER]...
 //
-// --every N: only each N-th problem; --failures: lists the unsolved ones, by cause; --set takes
-// numbers of the sections reverse and physics. Exit status 1 if a gate fails, 2 for bad input.
+// --preset: stands above the --set before it; --every N: only each N-th problem; --failures: lists
+// the unsolved ones, by cause; --set takes numbers of the sections reverse and physics. Exit status
+// 1 if a gate fails, 2 for bad input.
 
 #include <algorithm>
 #include <array>
@@ -126,10 +127,13 @@ bool gate(const char* what, double value, const char* goal, bool passed) {
 bool gates(std::span<const Outcome> outcomes) {
   const auto decided = std::ranges::count_if(outcomes, &Outcome::decided);
   const double share = static_cast<double>(decided) / static_cast<double>(outcomes.size());
+  const auto solved = std::ranges::count(outcomes, SolveStatus::kConverged, &Outcome::status);
+  const double converged = static_cast<double>(solved) / static_cast<double>(outcomes.size());
   const std::vector<int> iterations = iterations_of(outcomes, std::nullopt);
   const int median = quantile(iterations, 0.5), p90 = quantile(iterations, 0.9);
   std::printf("\n");
   const bool all[] = {gate("corpus.decided", share, ">=0.99", share >= 0.99),
+                      gate("corpus.converged", converged, ">=0.9", converged >= 0.9),
                       gate("corpus.iterations_median", median, "<=20", median <= 20),
                       gate("corpus.iterations_p90", p90, "<=50", p90 <= 50)};
   return std::ranges::all_of(all, [](bool passed) { return passed; });
@@ -159,8 +163,8 @@ std::optional<Options> parsed(std::span<char* const> words) {
   while (!words.empty()) {
     const std::string_view flag = words[0];
     if (!apply(options, words)) {
-      std::fprintf(stderr, "reverse_corpus: %s is no argument, or its value is missing or wrong\n",
-                   words[0]);
+      std::fprintf(stderr, "reverse_corpus: %s %s: no such argument, or its value is wrong\n",
+                   words[0], words.size() > 1 ? words[1] : "");
       return std::nullopt;
     }
     words = words.subspan(flag == "--failures" ? 1 : flag == "--set" ? 3 : 2);

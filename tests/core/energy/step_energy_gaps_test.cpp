@@ -31,8 +31,8 @@ TEST(StepEnergyGaps, CrossingBarsAreRejectedThoughEveryGapIsOpen) {
   EXPECT_TRUE(energy.keeps_gaps(apart, apart, 0.1));
 }
 
-// Each tip lies beside the other body's, in neither of the two.
-TEST(StepEnergyGaps, TipsMayPassEachOtherByLittle) {
+// Corners may overlap by what smoothing takes off them and as much again.
+TEST(StepEnergyGaps, CornersMayOverlapByLittle) {
   const Polygon tip = regular_polygon(3, 1.0);  // one vertex at (1, 0), 60° wide
   const Scene scene{
       {{"robot", "robot", tip, 1.0, 0.3, false}, {"tip", "tip", tip, 1.0, 0.3, false}}};
