@@ -9,10 +9,10 @@ namespace rtg {
 enum class SolveStatus : std::int8_t {
   kConverged,         // constraints and stationarity below their tolerances
   kPruned,            // the action cannot have been the last one; nothing was solved
-  kInfeasible,        // no warm start, the final state missed, or (naive) bodies overlap
+  kInfeasible,        // the solution misses the final state, or bodies overlap in it
   kIterationLimit,    // max_iterations
   kLineSearchFailed,  // no acceptable step, even with the largest regularisation
-  kSingular,          // the KKT system could not be factorised
+  kSingular,          // no descent step: the KKT system could not be factorised
   kNonFinite,         // NaN or infinity met
 };
 inline constexpr int kSolveStatusCount = 7;

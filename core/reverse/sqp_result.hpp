@@ -5,11 +5,11 @@
 
 namespace rtg {
 
-/// How an SQP run ended. `x`: the last iterate; the static one if there was no warm start.
+/// How an SQP run ended. `x`: the last iterate; the static one if bodies overlap in the end.
 struct SqpResult {
   SolveStatus status = SolveStatus::kNonFinite;
   Iterate x;
-  int iterations = 0;          // Newton systems solved
+  int iterations = 0;          // steps looked for
   double infeasibility = 0.0;  // ‖C‖∞
   double stationarity = 0.0;   // ‖∇L‖∞
 };

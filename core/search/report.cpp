@@ -1,21 +1,10 @@
 #include "core/search/report.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/math/quantile.hpp"
+
 namespace rtg {
-namespace {
-
-template <class Number>
-double quantile(std::vector<Number> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto at =
-      values.begin() + static_cast<long>(share * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-}  // namespace
 
 void fill(GenerationReport& report, const SearchStats& stats) {
   report.candidates = stats.candidates;

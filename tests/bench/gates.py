@@ -41,11 +41,13 @@ _GATES: tuple[tuple[str, Callable[[Times], float], str, float], ...] = (
 _HOLDS = {">=": operator.ge, "<=": operator.le}
 
 
+def gate(name: str, value: float, relation: str, bound: float) -> bool:
+    """Prints the line of a gate; whether it holds. `relation`: ">=" or "<="."""
+    passed = bool(_HOLDS[relation](value, bound))
+    print(f"gate {name} {value:.4g} {relation}{bound:g} {'PASS' if passed else 'FAIL'}")
+    return passed
+
+
 def check(times: Times) -> bool:
     """Prints a line per gate; whether all hold."""
-    passed = []
-    for name, value_of, relation, bound in _GATES:
-        value = value_of(times)
-        passed.append(_HOLDS[relation](value, bound))
-        print(f"gate {name} {value:.4g} {relation}{bound:g} {'PASS' if passed[-1] else 'FAIL'}")
-    return all(passed)
+    return all([gate(name, of(times), relation, bound) for name, of, relation, bound in _GATES])

@@ -18,6 +18,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+from gates import gate
 from peer_problem import Floats, Json, PeerProblem
 
 AGREEMENT = 1e-8  # of values
@@ -74,12 +75,6 @@ def solve(problem: PeerProblem) -> tuple[bool, float, float, int]:
     return bool(status["success"]), float(found["f"]), cpu, int(status["iter_count"])
 
 
-def gate(name: str, value: float, goal: str, passed: bool) -> bool:
-    """Prints the line of a gate."""
-    print(f"gate {name} {value:.4g} {goal} {'PASS' if passed else 'FAIL'}")
-    return passed
-
-
 def main(build: Path, every: int) -> int:
     """Exit status."""
     worst, margins, ratios = 0.0, [], []
@@ -108,12 +103,11 @@ def main(build: Path, every: int) -> int:
     no_worse = float((both >= -NO_WORSE).mean())
     ratio = float(np.median(ratios))
     print(f"\n{len(problems)} problems, solved by us {ours}, by IPOPT {theirs}, both {len(both)}")
-    share = ours / len(problems)
     passed = [
-        gate("peer.decided_by_us", share, ">=0.95", share >= 0.95),
-        gate("peer.disagreement", worst, f"<={AGREEMENT:g}", worst <= AGREEMENT),
-        gate("peer.no_worse", no_worse, ">=0.95", no_worse >= 0.95),
-        gate("peer.time_ratio", ratio, ">=100", ratio >= 100.0),
+        gate("peer.decided_by_us", ours / len(problems), ">=", 0.95),
+        gate("peer.disagreement", worst, "<=", AGREEMENT),
+        gate("peer.no_worse", no_worse, ">=", 0.95),
+        gate("peer.time_ratio", ratio, ">=", 100.0),
     ]
     return int(not all(passed))
 

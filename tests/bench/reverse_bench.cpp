@@ -2,8 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-
+#include "core/math/quantile.hpp"
 #include "core/reverse/reverse_simulator.hpp"
 #include "tests/bench/gathering_states.hpp"
 
@@ -23,13 +22,6 @@ struct Tally {
     if (result.status != SolveStatus::kConverged) return;
     ++converged;
     iterations.push_back(result.iterations);
-  }
-
-  double iterations_median() {
-    if (iterations.empty()) return 0.0;
-    const auto middle = iterations.begin() + static_cast<std::ptrdiff_t>(iterations.size() / 2);
-    std::nth_element(iterations.begin(), middle, iterations.end());
-    return *middle;
   }
 };
 
@@ -51,7 +43,7 @@ void candidates(benchmark::State& state, ReversePreset preset) {
   state.counters["pruned"] =
       static_cast<double>(tally.pruned) / static_cast<double>(tally.candidates);
   state.counters["converged"] = static_cast<double>(tally.converged) / solved;
-  state.counters["iterations_median"] = tally.iterations_median();
+  state.counters["iterations_median"] = quantile(tally.iterations, 0.5);
 }
 
 BENCHMARK_CAPTURE(candidates, default, ReversePreset::kDefault)

@@ -14,6 +14,7 @@
 #include <span>
 #include <string_view>
 
+#include "core/math/quantile.hpp"
 #include "core/reverse/reverse_simulator.hpp"
 #include "core/search/thread_pool.hpp"
 #include "tests/bench/arguments.hpp"
@@ -41,14 +42,6 @@ struct Outcome {
     return status == SolveStatus::kConverged || status == SolveStatus::kInfeasible;
   }
 };
-
-template <class T>
-T quantile(std::vector<T> values, double share) {
-  if (values.empty()) return T{};
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 std::vector<int> iterations_of(std::span<const Outcome> outcomes, std::optional<Difficulty> of) {
   std::vector<int> found;
@@ -88,8 +81,8 @@ void print_by_difficulty(std::span<const Outcome> outcomes) {
     const int converged = ends[static_cast<std::size_t>(SolveStatus::kConverged)];
     const int infeasible = ends[static_cast<std::size_t>(SolveStatus::kInfeasible)];
     const std::vector<int> iterations = iterations_of(outcomes, static_cast<Difficulty>(k));
-    std::printf("%-8s %6d %9d %10d %9d %7d %7d %9.2f\n", kDifficulties[k].data(), count, converged,
-                infeasible, count - converged - infeasible, quantile(iterations, 0.5),
+    std::printf("%-8s %6d %9d %10d %9d %7.0f %7.0f %9.2f\n", kDifficulties[k].data(), count,
+                converged, infeasible, count - converged - infeasible, quantile(iterations, 0.5),
                 quantile(iterations, 0.9), count > 0 ? cpu / count : 0.0);
   }
 }
@@ -130,7 +123,7 @@ bool gates(std::span<const Outcome> outcomes) {
   const auto solved = std::ranges::count(outcomes, SolveStatus::kConverged, &Outcome::status);
   const double converged = static_cast<double>(solved) / static_cast<double>(outcomes.size());
   const std::vector<int> iterations = iterations_of(outcomes, std::nullopt);
-  const int median = quantile(iterations, 0.5), p90 = quantile(iterations, 0.9);
+  const double median = quantile(iterations, 0.5), p90 = quantile(iterations, 0.9);
   std::printf("\n");
   const bool all[] = {gate("corpus.decided", share, ">=0.99", share >= 0.99),
                       gate("corpus.converged", converged, ">=0.9", converged >= 0.9),
