@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/math/elementary.hpp"
+
 namespace rtg {
 
 /// Contact barrier of weight μ̃ over the gap g,
@@ -21,31 +23,41 @@ struct Barrier {
   bool acts(double g) const { return plain || g < range; }
 
   /// b(g) [kg m²]; +∞ for g ≤ 0, so that line searches back off.
-  double value(double g) const {
-    if (g <= 0.0) return INFINITY;
-    if (plain) return -weight * std::log(g);
-    if (g >= range) return 0.0;
-    const double y = g / range;
-    return weight *
-           (-std::log(y) - 3.0 * (1.0 - y) + 1.5 * (1.0 - y * y) - (1.0 - y * y * y) / 3.0);
+  template <class T>
+  T value(const T& g) const {
+    const T open = select(g > T(0.0), g, T(1.0));
+    T b;
+    if (plain) {
+      b = T(-weight) * logarithm(open);
+    } else {
+      const T y = lesser(open * T(1.0 / range), T(1.0));
+      b = T(weight) * (-logarithm(y) - T(3.0) * (T(1.0) - y) + T(1.5) * (T(1.0) - y * y) -
+                       (T(1.0) - y * y * y) * T(1.0 / 3.0));
+    }
+    return select(g > T(0.0), b, T(INFINITY));
   }
 
   /// w and its derivatives with respect to g.
+  template <class T>
   struct Window {
-    double w = 0.0, d1 = 0.0, d2 = 0.0;
+    T w, d1, d2;
   };
-  Window window(double g) const {
-    if (plain) return {1.0, 0.0, 0.0};
-    if (g >= range) return {};
-    const double rest = 1.0 - g / range;
-    return {rest * rest * rest, -3.0 * rest * rest / range, 6.0 * rest / (range * range)};
+  template <class T>
+  Window<T> window(const T& g) const {
+    if (plain) return {T(1.0), T(0.0), T(0.0)};
+    const T rest = greater((T(range) - g) * T(1.0 / range), T(0.0));
+    return {rest * rest * rest, T(-3.0 / range) * rest * rest, T(6.0 / (range * range)) * rest};
   }
 
   /// λ(g) = -b'(g) ≥ 0 [kg m], and its derivative.
-  double force(double g) const { return weight * window(g).w / g; }
-  double force_slope(double g) const {
-    const Window w = window(g);
-    return weight * (w.d1 - w.w / g) / g;
+  template <class T>
+  T force(const T& g) const {
+    return T(weight) * window(g).w / g;
+  }
+  template <class T>
+  T force_slope(const T& g) const {
+    const Window<T> w = window(g);
+    return T(weight) * (w.d1 - w.w / g) / g;
   }
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cmath>
+#include "core/math/elementary.hpp"
 
 namespace rtg {
 
@@ -11,17 +11,18 @@ namespace rtg {
 ///
 /// Departs from the paper: quadratic is the default, because the periodic form has spurious roots
 /// at whole turns. The functions are those of the rotational part.
+template <class T>
 struct Damping {
-  double mass = 0.0;    // m [kg]
-  double moment = 0.0;  // J [kg m²]
+  T mass;    // m [kg]
+  T moment;  // J [kg m²]
   bool periodic = false;
 
-  double turn_value(double a) const {
-    return periodic ? moment * (1.0 - std::cos(a)) : 0.5 * moment * a * a;
+  T turn_value(const T& a) const {
+    return periodic ? moment * (T(1.0) - turn_of(a).c) : T(0.5) * moment * a * a;
   }
-  double turn_slope(double a) const { return moment * (periodic ? std::sin(a) : a); }
-  double turn_curvature(double a) const { return moment * (periodic ? std::cos(a) : 1.0); }
-  double turn_third(double a) const { return periodic ? -moment * std::sin(a) : 0.0; }
+  T turn_slope(const T& a) const { return moment * (periodic ? turn_of(a).s : a); }
+  T turn_curvature(const T& a) const { return periodic ? moment * turn_of(a).c : moment; }
+  T turn_third(const T& a) const { return periodic ? -moment * turn_of(a).s : T(0.0); }
 };
 
 }  // namespace rtg

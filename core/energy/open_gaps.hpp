@@ -12,6 +12,6 @@ double least_gap(const StepEnergy& energy, const VectorXd& p);
 
 /// `p` with bodies moved apart along the gradients of gaps below kGapFloor ĝ: Box2D lets resting
 /// bodies overlap by its slop, the barrier does not.
-VectorXd with_open_gaps(const StepEnergy& energy, VectorXd p);
+VectorXd with_open_gaps(const StepEnergy& energy, const VectorXd& p);
 
 }  // namespace rtg

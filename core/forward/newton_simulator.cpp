@@ -37,7 +37,7 @@ PushOutcome NewtonSimulator::follow(const Poses& start,
   if (!is_finite(start)) return {start, false};
   VectorXd p = with_open_gaps(energy_, stacked(select(scene_, start, order_).poses));
   for (const Vector3d& target : targets) {
-    const auto step = implicit_step(energy_, p, energy_.forces(p), Drive::towards(target));
+    const auto step = implicit_step(energy_, p, energy_.forces(p), Drive<double>::towards(target));
     if (!step) return {start, false};
     p = step->next;
   }

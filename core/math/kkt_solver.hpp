@@ -9,9 +9,9 @@
 
 namespace rtg {
 
-enum class KktMethod { kBlockElimination, kCyclicReduction, kSuiteSparse };
-inline constexpr std::array<std::string_view, 3> kKktMethods{"block_elimination",
-                                                             "cyclic_reduction", "suitesparse"};
+enum class KktMethod { kBlockElimination, kCyclicReduction, kUmfpack, kKlu };
+inline constexpr std::array<std::string_view, 4> kKktMethods{"block_elimination",
+                                                             "cyclic_reduction", "umfpack", "klu"};
 
 /// Direct solver of symmetric indefinite block-tridiagonal systems K x = r: factorised once, solved
 /// for several right-hand sides.
@@ -28,7 +28,8 @@ class KktSolver {
 ///   whole sub-step's KKT matrix and regular, the first one's alone is not,
 /// - cyclic reduction [Hockney 1965], the paper's A.3: every second block is eliminated, O(N) work,
 ///   O(log N) deep,
-/// - SuiteSparse's UMFPACK on the assembled sparse matrix: the oracle.
+/// - SuiteSparse's UMFPACK [Davis 2004] and KLU [Davis 2010] on the assembled sparse matrix: the
+///   oracles.
 std::unique_ptr<KktSolver> make_kkt_solver(KktMethod method);
 
 }  // namespace rtg

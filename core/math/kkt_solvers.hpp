@@ -49,7 +49,4 @@ class CyclicReduction final : public KktSolver {
   PivotBlock last_;
 };
 
-/// UMFPACK's LU of the whole sparse matrix [Davis 2004].
-std::unique_ptr<KktSolver> make_suitesparse_solver();
-
 }  // namespace rtg

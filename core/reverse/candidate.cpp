@@ -1,11 +1,16 @@
 #include "core/reverse/candidate.hpp"
 
 #include <limits>
+#include <map>
+#include <memory>
+#include <utility>
 
 #include "core/energy/open_gaps.hpp"
+#include "core/math/assembled_solver.hpp"
+#include "core/math/riccati.hpp"
+#include "core/reverse/filter_sqp.hpp"
 #include "core/reverse/merit_sqp.hpp"
 #include "core/reverse/pruning.hpp"
-#include "core/reverse/restarts.hpp"
 
 namespace rtg {
 namespace {
@@ -14,6 +19,36 @@ namespace {
 double reach(const PhysicsConfig& physics) {
   return physics.plain_barrier ? std::numeric_limits<double>::infinity()
                                : physics.range + physics.skin;
+}
+
+/// FilterSqp over candidates alike, in lanes where the configuration allows.
+std::vector<SqpResult> filter_sqp(std::span<const ReverseProblem* const> problems) {
+  const ReverseProblem& like = *problems[0];
+  const ReverseConfig& config = like.config;
+  const bool fixed_end = config.terminal_weight == 0.0;
+  if (config.kkt == KktMethod::kBlockElimination && !fixed_end)
+    return FilterSqp<Lanes>(like, std::make_unique<Riccati<Lanes>>(like.energy.scene().movable(),
+                                                                   like.sub_steps))
+        .solve(problems);
+  return FilterSqp<double>(like, std::make_unique<AssembledSolver>(config.kkt, fixed_end))
+      .solve(problems);
+}
+
+/// The same for candidates of any numbers of bodies.
+std::vector<SqpResult> filter_sqp_of_all(std::span<const Candidate* const> candidates) {
+  std::map<std::pair<int, int>, std::vector<std::size_t>> alike;  // by numbers of bodies
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const StepEnergy& energy = candidates[k]->problem().energy;
+    alike[{energy.dofs(), energy.bodies()}].push_back(k);
+  }
+  std::vector<SqpResult> results(candidates.size());
+  for (const auto& [count, members] : alike) {
+    std::vector<const ReverseProblem*> group;
+    for (const std::size_t k : members) group.push_back(&candidates[k]->problem());
+    std::vector<SqpResult> solved = filter_sqp(group);
+    for (std::size_t n = 0; n < members.size(); ++n) results[members[n]] = std::move(solved[n]);
+  }
+  return results;
 }
 
 }  // namespace
@@ -26,14 +61,20 @@ Candidate::Candidate(const Scene& scene, const PhysicsConfig& physics, const Pus
       problem_{energy_, config, with_open_gaps(energy_, stacked(part_.poses)),
                direction(job.action, push), physics.sub_steps} {}
 
-SqpResult Candidate::solve() const {
-  SqpResult solved = problem_.config.preset == ReversePreset::kPaper
-                         ? merit_sqp(problem_, static_iterate(problem_))
-                         : solve_with_restarts(problem_);
-  if (solved.status == SolveStatus::kConverged &&
-      terminal_miss(problem_, solved.x) > problem_.config.terminal_tolerance)
-    solved.status = SolveStatus::kInfeasible;
-  return solved;
+std::vector<SqpResult> solve_together(std::span<const Candidate* const> candidates) {
+  if (candidates.empty()) return {};
+  const ReverseConfig& config = candidates[0]->problem().config;
+  std::vector<SqpResult> results;
+  if (config.preset == ReversePreset::kDefault)
+    results = filter_sqp_of_all(candidates);
+  else
+    for (const Candidate* one : candidates)
+      results.push_back(merit_sqp(one->problem(), static_iterate(one->problem())));
+  for (std::size_t k = 0; k < results.size(); ++k)
+    if (results[k].status == SolveStatus::kConverged &&
+        terminal_miss(candidates[k]->problem(), results[k].x) > config.terminal_tolerance)
+      results[k].status = SolveStatus::kInfeasible;
+  return results;
 }
 
 }  // namespace rtg

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/reverse/reverse_job.hpp"
@@ -21,15 +22,16 @@ class Candidate {
   const std::vector<int>& bodies() const { return bodies_; }  // of the scene, as the problem counts
   const Scene& scene() const { return part_.scene; }          // these
 
-  /// The SQP that the configuration names. kInfeasible also if the solution misses the given final
-  /// state by more than the tolerance.
-  SqpResult solve() const;
-
  private:
   std::vector<int> bodies_;
   Selection part_;
   StepEnergy energy_;
   ReverseProblem problem_;
 };
+
+/// Solves candidates by the SQP that their common configuration names; results in their order, and
+/// the same whatever candidates are solved together. kInfeasible also if a solution misses the
+/// given final state by more than the tolerance.
+std::vector<SqpResult> solve_together(std::span<const Candidate* const> candidates);
 
 }  // namespace rtg

@@ -2,118 +2,224 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 
-#include "core/reverse/filter.hpp"
 #include "core/reverse/trial.hpp"
 
 namespace rtg {
 namespace {
 
 constexpr double kLeastProximal = 1e-8, kMostProximal = 1e6;
-constexpr double kLeastStep = 1e-4;
+constexpr double kLeastStep = 0.03;
 constexpr double kMostViolation = 0.3;             // θ may not grow beyond it
 constexpr double kShortStep = 0.2;                 // a step of at most this makes δ grow
 constexpr double kGrowth = 4.0, kShrinkage = 0.1;  // of δ
-
-class FilterSqp {
- public:
-  FilterSqp(const ReverseProblem& problem, const Iterate& start, double proximal)
-      : problem_(problem),
-        kkt_(make_kkt_solver(problem.config.kkt)),
-        proximal_(proximal),
-        result_{SolveStatus::kIterationLimit, start, 0, 0.0, 0.0} {}
-
-  SqpResult run(int max_iterations) {
-    while (!ended()) {
-      if (result_.iterations == max_iterations) break;
-      ++result_.iterations;
-      iterate();
-    }
-    return std::move(result_);
-  }
-
- private:
-  /// Linearises at the iterate and looks for a reason to stop.
-  bool ended() {
-    if (failed_) return true;
-    lin_.emplace(problem_, result_.x, Curvature{true, proximal_});
-    result_.infeasibility = lin_->violation().max();
-    result_.stationarity = lin_->stationarity();
-    if (!lin_->finite()) return stop(SolveStatus::kNonFinite);
-    if (result_.infeasibility < problem_.config.feasibility_tol &&
-        result_.stationarity < problem_.config.stationarity_tol)
-      return stop(SolveStatus::kConverged);
-    return false;
-  }
-
-  bool stop(SolveStatus status) {
-    result_.status = status;
-    return failed_ = true;
-  }
-
-  void iterate() {
-    std::optional<Direction> d = descent();
-    if (!d) {
-      lin_.emplace(problem_, result_.x, Curvature{false, proximal_});
-      d = descent();
-    }
-    if (!d) return regularise(SolveStatus::kSingular);
-    const double alpha = line_search(*d);
-    if (alpha == 0.0) return regularise(SolveStatus::kLineSearchFailed);
-    if (alpha <= kShortStep) proximal_ *= kGrowth;
-    if (alpha > 0.5) proximal_ = std::max(kShrinkage * proximal_, kLeastProximal);
-  }
-
-  void regularise(SolveStatus if_hopeless) {
-    proximal_ *= kGrowth;
-    if (proximal_ > kMostProximal) stop(if_hopeless);
-  }
-
-  /// The Newton step; none if the system is singular or the model not convex along the step.
-  std::optional<Direction> descent() {
-    if (!kkt_->factorize(lin_->matrix())) return std::nullopt;
-    const BlockVector solution = kkt_->solve(lin_->right_hand_side(lin_->violation()));
-    if (!(lin_->model_curvature(solution) > 0.0)) return std::nullopt;
-    return lin_->direction(solution, lin_->violation());
-  }
-
-  /// The step length taken; 0 if none is acceptable.
-  double line_search(const Direction& d) {
-    const Filter::Entry now{lin_->violation().l1(), objective(problem_, result_.x)};
-    for (double alpha = 1.0; alpha >= kLeastStep; alpha *= 0.5) {
-      std::optional<Iterate> trial = trial_point(problem_, result_.x, d, alpha);
-      if (!trial) continue;
-      const Filter::Entry then{violation(problem_, *trial).l1(), objective(problem_, *trial)};
-      if (!accepts(then, now)) continue;
-      filter_.add(now);
-      result_.x = *std::move(trial);
-      return alpha;
-    }
-    return 0.0;
-  }
-
-  bool accepts(const Filter::Entry& then, const Filter::Entry& now) const {
-    return std::isfinite(then.violation + then.objective) &&
-           then.violation <= std::max(kMostViolation, now.violation) && filter_.accepts(then) &&
-           Filter::improves(then, now);
-  }
-
-  const ReverseProblem& problem_;
-  std::unique_ptr<KktSolver> kkt_;
-  double proximal_;
-  Filter filter_;
-  std::optional<Linearisation> lin_;
-  bool failed_ = false;
-  SqpResult result_;
-};
+constexpr int kAttempts = 3;
+constexpr double kProximalGrowth = 4.0;  // per attempt
 
 }  // namespace
 
-SqpResult filter_sqp(const ReverseProblem& problem, const Iterate& start, int max_iterations,
-                     double proximal) {
-  return FilterSqp(problem, start, proximal).run(max_iterations);
+template <class T>
+FilterSqp<T>::FilterSqp(const ReverseProblem& like, std::unique_ptr<StageSolver<T>> kkt)
+    : config_(like.config),
+      queue_(like),
+      problem_(like),
+      newton_(problem_),
+      kkt_(std::move(kkt)),
+      evaluator_(problem_),
+      x_(problem_.energy, like.sub_steps),
+      trial_(x_),
+      start_(x_),
+      step_(problem_.energy.movable(), like.sub_steps),
+      force_step_(x_.forces),
+      gaps_(x_.forces),
+      trial_gaps_(x_.forces),
+      lane_(static_cast<std::size_t>(kWidth<T>)),
+      begun_(false),
+      stepping_(false) {}
+
+template <class T>
+std::vector<SqpResult> FilterSqp<T>::solve(std::span<const ReverseProblem* const> problems,
+                                           std::span<const Iterate> starts) {
+  problems_ = problems;
+  results_.clear();
+  for (const ReverseProblem* one : problems)
+    results_.push_back({SolveStatus::kInfeasible, static_iterate(*one)});
+  queue_.begin(problems, starts);
+  while (refill()) iterate();
+  return std::move(results_);
 }
+
+/// Gives lanes without a candidate the next one; false if none has one.
+template <class T>
+bool FilterSqp<T>::refill() {
+  for (int l = 0; l < kWidth<T>; ++l) {
+    if (lane_[l].job >= 0) continue;
+    lane_[l] = Lane{};
+    lane_[l].job = queue_.take(l, start_);
+    if (lane_[l].job >= 0) {
+      problem_.load(l, *problems_[lane_[l].job]);
+      begin_attempt(l);
+    } else {
+      problem_.energy.unload(l);
+    }
+  }
+  if (any(begun_)) evaluate_begun();
+  return std::ranges::any_of(lane_, [](const Lane& lane) { return lane.job >= 0; });
+}
+
+template <class T>
+void FilterSqp<T>::begin_attempt(int l) {
+  Lane& lane = lane_[l];
+  lane.proximal = config_.proximal_start * std::pow(kProximalGrowth, lane.attempt);
+  lane.exact = true;
+  lane.filter = Filter{};
+  x_.copy_lane(l, start_, l);
+  set_lane(begun_, l, true);
+}
+
+template <class T>
+void FilterSqp<T>::end_attempt(int l, SolveStatus status) {
+  if (lane_[l].attempt + 1 == kAttempts || lane_[l].iterations == config_.max_iterations)
+    return finish(l, status);
+  ++lane_[l].attempt;
+  begin_attempt(l);
+}
+
+template <class T>
+void FilterSqp<T>::finish(int l, SolveStatus status) {
+  SqpResult& result = results_[lane_[l].job];
+  result.status = status;
+  result.x = x_.unload(l, *problems_[lane_[l].job]);
+  result.iterations = lane_[l].iterations;
+  result.attempts = lane_[l].attempt + 1;
+  lane_[l].job = -1;
+}
+
+/// Merits and gaps of the trajectories that attempts begin with.
+template <class T>
+void FilterSqp<T>::evaluate_begun() {
+  for (std::vector<T>& level : trial_gaps_) std::ranges::fill(level, T(0.0));
+  Mask<T> legal = begun_;
+  adopt(begun_, evaluator_.evaluate(problem_, x_, trial_gaps_, trial_gaps_, legal));
+  begun_ = Mask<T>(false);
+}
+
+/// Merits and trial_gaps_ are those of x from now on.
+template <class T>
+void FilterSqp<T>::adopt(const Mask<T>& where, const Merits<T>& found) {
+  now_ = {select(where, found.objective, now_.objective),
+          select(where, found.violation, now_.violation),
+          select(where, found.infeasibility, now_.infeasibility)};
+  for (std::size_t k = 0; k < gaps_.size(); ++k)
+    for (std::size_t c = 0; c < gaps_[k].size(); ++c)
+      gaps_[k][c] = select(where, trial_gaps_[k][c], gaps_[k][c]);
+}
+
+template <class T>
+void FilterSqp<T>::iterate() {
+  T exact(0.0), proximal(1.0);
+  for (int l = 0; l < kWidth<T>; ++l) {
+    set_lane(exact, l, lane_[l].exact ? 1.0 : 0.0);
+    set_lane(proximal, l, lane_[l].proximal);
+    busy_ += lane_[l].job >= 0 ? 1 : 0;
+  }
+  lanes_ += kWidth<T>;
+  newton_.linearise(problem_, x_, {exact, proximal});
+  const T stationarity = newton_.stationarity();
+  stepping_ = Mask<T>(false);
+  for (int l = 0; l < kWidth<T>; ++l)
+    if (lane_[l].job >= 0) end_or_step(l, lane(stationarity, l));
+  if (!any(stepping_)) return;
+  const Mask<T> regular = kkt_->solve(newton_.system(), step_);
+  reject_ascent(regular && newton_.model_curvature(step_) > T(0.0));
+  if (!any(stepping_)) return;
+  newton_.force_steps(problem_, x_, step_, force_step_);
+  line_search();
+}
+
+/// Looks for a reason to stop; counts an iteration if there is none.
+template <class T>
+void FilterSqp<T>::end_or_step(int l, double stationarity) {
+  Lane& own = lane_[l];
+  const double infeasibility = lane(now_.infeasibility, l);
+  results_[own.job].infeasibility = infeasibility;
+  results_[own.job].stationarity = stationarity;
+  if (!std::isfinite(stationarity + infeasibility + lane(now_.objective, l)))
+    return end_attempt(l, SolveStatus::kNonFinite);
+  if (infeasibility < config_.feasibility_tol && stationarity < config_.stationarity_tol)
+    return finish(l, SolveStatus::kConverged);
+  if (own.exact) {
+    if (own.iterations == config_.max_iterations) return finish(l, SolveStatus::kIterationLimit);
+    ++own.iterations;
+  }
+  set_lane(stepping_, l, true);
+}
+
+/// Where the model is not convex along the step, the same iteration is done with the objective's
+/// Hessian, and with a larger δ where that was it.
+template <class T>
+void FilterSqp<T>::reject_ascent(const Mask<T>& descends) {
+  for (int l = 0; l < kWidth<T>; ++l) {
+    if (!lane(stepping_, l) || lane(descends, l)) continue;
+    set_lane(stepping_, l, false);
+    if (lane_[l].exact)
+      lane_[l].exact = false;
+    else
+      regularise(l, SolveStatus::kSingular);
+  }
+}
+
+template <class T>
+void FilterSqp<T>::regularise(int l, SolveStatus if_hopeless) {
+  lane_[l].proximal *= kGrowth;
+  lane_[l].exact = true;
+  if (lane_[l].proximal > kMostProximal) end_attempt(l, if_hopeless);
+}
+
+template <class T>
+void FilterSqp<T>::line_search() {
+  Mask<T> searching = stepping_;
+  for (std::size_t k = 0; k < x_.p.size(); ++k) trial_.p[k] = x_.p[k];  // bodies that do not move
+  for (double alpha = 1.0; alpha >= kLeastStep && any(searching); alpha *= 0.5) {
+    const T length = select(searching, T(alpha), T(0.0));
+    Mask<T> legal = searching && bounded(step_, length);
+    if (!any(legal)) continue;
+    make_trial(x_, step_, force_step_, length, trial_);
+    const Merits<T> then = evaluator_.evaluate(problem_, trial_, gaps_, trial_gaps_, legal);
+    const Mask<T> accepted = accept(legal, then, alpha);
+    if (!any(accepted)) continue;
+    x_.assign(accepted, trial_);
+    adopt(accepted, then);
+    searching = searching && !accepted;
+  }
+  for (int l = 0; l < kWidth<T>; ++l)
+    if (lane(searching, l)) regularise(l, SolveStatus::kLineSearchFailed);
+}
+
+/// The lanes whose filter takes the trial point.
+template <class T>
+Mask<T> FilterSqp<T>::accept(const Mask<T>& legal, const Merits<T>& then, double alpha) {
+  Mask<T> accepted(false);
+  for (int l = 0; l < kWidth<T>; ++l) {
+    if (!lane(legal, l)) continue;
+    Lane& own = lane_[l];
+    const Filter::Entry now{lane(now_.violation, l), lane(now_.objective, l)};
+    const Filter::Entry next{lane(then.violation, l), lane(then.objective, l)};
+    if (!std::isfinite(next.violation + next.objective) ||
+        next.violation > std::max(kMostViolation, now.violation) || !own.filter.accepts(next) ||
+        !Filter::improves(next, now))
+      continue;
+    own.filter.add(now);
+    own.exact = true;
+    if (alpha <= kShortStep) own.proximal *= kGrowth;
+    if (alpha > 0.5) own.proximal = std::max(kShrinkage * own.proximal, kLeastProximal);
+    set_lane(accepted, l, true);
+  }
+  return accepted;
+}
+
+template class FilterSqp<double>;
+template class FilterSqp<Lanes>;
 
 }  // namespace rtg

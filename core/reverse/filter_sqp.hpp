@@ -1,14 +1,72 @@
 #pragma once
 
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/reverse/filter.hpp"
+#include "core/reverse/merits.hpp"
+#include "core/reverse/newton_system.hpp"
 #include "core/reverse/sqp_result.hpp"
+#include "core/reverse/start_queue.hpp"
 
 namespace rtg {
 
-/// The default SQP: Newton steps on the relaxed problem with the exact Hessian of the Lagrangian
-/// and a proximal term δ, globalised by a filter line search [Fletcher & Leyffer 2002]. Where the
-/// exact model has no positive curvature along its step, the Hessian of the objective takes its
-/// place, which has. δ falls on full steps and rises on short ones or if none is acceptable.
-SqpResult filter_sqp(const ReverseProblem& problem, const Iterate& start, int max_iterations,
-                     double proximal);
+/// The SQP of the preset `default`: exact Hessian with the objective's in its place where the model
+/// is not convex along the step, proximal term δ, filter line search. Each lane of T works on a
+/// candidate and takes the next one when that has ended. A failure is followed by another attempt
+/// with a larger first δ.
+template <class T>
+class FilterSqp {
+ public:
+  /// For problems with the numbers of bodies and the configurations of `like`.
+  FilterSqp(const ReverseProblem& like, std::unique_ptr<StageSolver<T>> kkt);
+
+  /// From the given starts, one per problem; from warm starts if there are none. kInfeasible if
+  /// bodies overlap in the final state.
+  std::vector<SqpResult> solve(std::span<const ReverseProblem* const> problems,
+                               std::span<const Iterate> starts = {});
+
+  /// Share of the lanes at work, over all iterations so far.
+  double occupancy() const { return static_cast<double>(busy_) / static_cast<double>(lanes_); }
+
+ private:
+  struct Lane {
+    int job = -1;  // none
+    int attempt = 0, iterations = 0;
+    double proximal = 1.0;
+    bool exact = true;
+    Filter filter;
+  };
+
+  bool refill();
+  void begin_attempt(int l);
+  void end_attempt(int l, SolveStatus status);
+  void finish(int l, SolveStatus status);
+  void evaluate_begun();
+  void adopt(const Mask<T>& where, const Merits<T>& found);
+  void iterate();
+  void end_or_step(int l, double stationarity);
+  void reject_ascent(const Mask<T>& descends);
+  void regularise(int l, SolveStatus if_hopeless);
+  void line_search();
+  Mask<T> accept(const Mask<T>& legal, const Merits<T>& then, double alpha);
+
+  const ReverseConfig& config_;
+  std::span<const ReverseProblem* const> problems_;
+  std::vector<SqpResult> results_;
+  StartQueue<T> queue_;
+  ProblemLanes<T> problem_;
+  NewtonSystem<T> newton_;
+  std::unique_ptr<StageSolver<T>> kkt_;
+  Evaluator<T> evaluator_;
+  Trajectory<T> x_, trial_, start_;
+  StageStep<T> step_;
+  PerContact<T> force_step_, gaps_, trial_gaps_;
+  Merits<T> now_;  // of x
+  std::vector<Lane> lane_;
+  Mask<T> begun_, stepping_;  // at the start of an attempt; with a step to take
+  long busy_ = 0, lanes_ = 0;
+};
 
 }  // namespace rtg

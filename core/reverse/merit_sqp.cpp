@@ -1,9 +1,13 @@
 #include "core/reverse/merit_sqp.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <memory>
+#include <utility>
 
+#include "core/math/assembled_solver.hpp"
 #include "core/reverse/merit.hpp"
+#include "core/reverse/merits.hpp"
+#include "core/reverse/newton_system.hpp"
 #include "core/reverse/trial.hpp"
 
 namespace rtg {
@@ -14,60 +18,96 @@ constexpr double kLeastStep = 1e-12;
 constexpr double kProximal = 1e-6;  // keeps the poses' Hessian from being singular
 constexpr double kSafeguard = 1.0;  // ε_c [kg m]; far less lets even free pushes creep
 
-double largest_multiplier(const Iterate& x, const Direction& d) {
-  double top = 0.0;
-  for (std::size_t k = 1; k < x.multipliers.size(); ++k)
-    top = std::max(top, (x.multipliers[k] + d.multipliers[k]).lpNorm<Eigen::Infinity>());
-  return top;
-}
-
-/// Backtracking on the merit function, eq. (11), and the safeguard.
-std::optional<Iterate> line_search(const ReverseProblem& problem, const Iterate& x,
-                                   const Linearisation& lin, const Direction& d,
-                                   const Merit& merit) {
-  const double violation_now = lin.violation().l1();
-  const double now = merit.value(objective(problem, x), violation_now);
-  const double slope = merit.slope(lin.objective_slope(d), violation_now);
-  for (double alpha = 1.0; alpha >= kLeastStep; alpha *= 0.5) {
-    std::optional<Iterate> trial = trial_point(problem, x, d, alpha);
-    if (!trial) continue;
-    const double left = violation(problem, *trial).l1();
-    const double then = merit.value(objective(problem, *trial), left);
-    const bool safe = left <= std::max(kSafeguard, violation_now);
-    if (safe && then <= now + kArmijo * alpha * slope) return trial;
+class MeritSqp {
+ public:
+  MeritSqp(const ReverseProblem& one, const Iterate& start)
+      : one_(one),
+        problem_(one),
+        newton_(problem_),
+        kkt_(one.config.kkt, problem_.fixed_end()),
+        evaluator_(problem_),
+        x_(problem_.energy, one.sub_steps),
+        trial_(x_),
+        step_(problem_.energy.movable(), one.sub_steps),
+        no_force_step_(x_.forces),
+        gaps_(x_.forces),
+        trial_gaps_(x_.forces) {
+    problem_.load(0, one);
+    x_.load(0, one, start);
+    trial_ = x_;
+    for (std::vector<double>& level : gaps_) std::ranges::fill(level, 0.0);
+    bool legal = true;
+    now_ = evaluator_.evaluate(problem_, x_, gaps_, gaps_, legal);
   }
-  return std::nullopt;
-}
+
+  SqpResult run() {
+    const ReverseConfig& config = problem_.config;
+    for (int iterations = 0;;) {
+      newton_.linearise(problem_, x_, {0.0, kProximal});
+      const double stationarity = newton_.stationarity();
+      const auto ended = [&](SolveStatus status) {
+        return SqpResult{status, x_.unload(0, one_), iterations,
+                         1,      now_.infeasibility, stationarity};
+      };
+      if (!std::isfinite(stationarity + now_.violation + now_.objective))
+        return ended(SolveStatus::kNonFinite);
+      if (now_.infeasibility < config.feasibility_tol && stationarity < config.stationarity_tol)
+        return ended(SolveStatus::kConverged);
+      if (iterations == config.max_iterations) return ended(SolveStatus::kIterationLimit);
+      ++iterations;
+      if (!kkt_.solve(newton_.system(), step_)) return ended(SolveStatus::kSingular);
+      merit_.raise_weight_above(largest_multiplier());
+      if (!line_search()) return ended(SolveStatus::kLineSearchFailed);
+    }
+  }
+
+ private:
+  double largest_multiplier() const {
+    double top = 0.0;
+    for (std::size_t k = 1; k < x_.p.size(); ++k)
+      for (std::size_t m = 0; m < x_.multipliers[k].size(); ++m)
+        top = std::max(top, std::abs(x_.multipliers[k][m] + step_.multipliers[k][m / 3][m % 3]));
+    return top;
+  }
+
+  /// Backtracking on the merit function, eq. (11), and the safeguard.
+  bool line_search() {
+    const double before = merit_.value(now_.objective, now_.violation);
+    const double slope = merit_.slope(newton_.objective_slope(x_, step_), now_.violation);
+    for (double alpha = 1.0; alpha >= kLeastStep; alpha *= 0.5) {
+      bool legal = bounded(step_, alpha);
+      if (!legal) continue;
+      make_trial(x_, step_, no_force_step_, alpha, trial_);
+      for (std::size_t k = 0; k < trial_.p.size(); ++k)
+        problem_.energy.forces(trial_.p[k], trial_.forces[k].data());
+      const Merits<double> then = evaluator_.evaluate(problem_, trial_, gaps_, trial_gaps_, legal);
+      if (!legal || then.violation > std::max(kSafeguard, now_.violation)) continue;
+      if (!(merit_.value(then.objective, then.violation) <= before + kArmijo * alpha * slope))
+        continue;
+      std::swap(x_, trial_);
+      std::swap(gaps_, trial_gaps_);
+      now_ = then;
+      return true;
+    }
+    return false;
+  }
+
+  const ReverseProblem& one_;
+  ProblemLanes<double> problem_;
+  NewtonSystem<double> newton_;
+  AssembledSolver kkt_;
+  Evaluator<double> evaluator_;
+  Trajectory<double> x_, trial_;
+  StageStep<double> step_;
+  PerContact<double> no_force_step_, gaps_, trial_gaps_;
+  Merits<double> now_;
+  Merit merit_;
+};
 
 }  // namespace
 
 SqpResult merit_sqp(const ReverseProblem& problem, const Iterate& start) {
-  const ReverseConfig& config = problem.config;
-  const std::unique_ptr<KktSolver> kkt = make_kkt_solver(config.kkt);
-  SqpResult result{SolveStatus::kNonFinite, start, 0, 0.0, 0.0};
-  const auto ended = [&result](SolveStatus status) {
-    result.status = status;
-    return result;
-  };
-  Merit merit;
-  for (;;) {
-    const Linearisation lin(problem, result.x, {false, kProximal});
-    result.infeasibility = lin.violation().max();
-    result.stationarity = lin.stationarity();
-    if (!lin.finite()) return ended(SolveStatus::kNonFinite);
-    if (result.infeasibility < config.feasibility_tol &&
-        result.stationarity < config.stationarity_tol)
-      return ended(SolveStatus::kConverged);
-    if (result.iterations == config.max_iterations) return ended(SolveStatus::kIterationLimit);
-    ++result.iterations;
-    if (!kkt->factorize(lin.matrix())) return ended(SolveStatus::kSingular);
-    const BlockVector solution = kkt->solve(lin.right_hand_side(lin.violation()));
-    const Direction d = lin.direction(solution, lin.violation());
-    merit.raise_weight_above(largest_multiplier(result.x, d));
-    std::optional<Iterate> next = line_search(problem, result.x, lin, d, merit);
-    if (!next) return ended(SolveStatus::kLineSearchFailed);
-    result.x = std::move(*next);
-  }
+  return MeritSqp(problem, start).run();
 }
 
 }  // namespace rtg

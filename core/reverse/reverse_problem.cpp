@@ -1,39 +1,30 @@
 #include "core/reverse/reverse_problem.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "core/reverse/merits.hpp"
 
 namespace rtg {
 namespace {
 
-/// Damping and actuation of Φ_k.
-VectorXd free_residual(const ReverseProblem& problem, const Iterate& x, int k) {
-  const StepEnergy& energy = problem.energy;
-  VectorXd residual(energy.dofs());
-  for (int i = 0; 3 * i < energy.dofs(); ++i) {
-    const Vector3d moved = x.p[k].segment<3>(3 * i) - x.p[k - 1].segment<3>(3 * i);
-    const Damping& body = energy.damping(i);
-    residual.segment<3>(3 * i) << body.mass * moved.head<2>(), body.turn_slope(moved[2]);
+/// One candidate's evaluation by the kernels.
+struct Evaluation {
+  ProblemLanes<double> problem;
+  Evaluator<double> evaluator;
+  Merits<double> merits;
+
+  Evaluation(const ReverseProblem& one, const Iterate& x) : problem(one), evaluator(problem) {
+    problem.load(0, one);
+    Trajectory<double> trajectory(problem.energy, problem.sub_steps);
+    trajectory.load(0, one, x);
+    PerContact<double> gaps = trajectory.forces;
+    for (std::vector<double>& level : gaps) std::ranges::fill(level, 0.0);
+    bool legal = true;
+    merits = evaluator.evaluate(problem, trajectory, gaps, gaps, legal);
   }
-  const Vector3d push = x.controls[k].array().tanh();
-  residual.head<3>() -= energy.control_bound().cwiseProduct(push);
-  return residual;
-}
+};
 
 }  // namespace
-
-Vector3d ReverseProblem::robot_path(int k) const {
-  const double back = energy.stride() * (sub_steps - k);
-  Vector3d pose = end.head<3>();
-  pose.head<2>() -= back * direction;
-  return pose;
-}
-
-SpeedPenalty ReverseProblem::speed(const std::vector<VectorXd>& p, int k, int i) const {
-  const auto level = static_cast<std::size_t>(k);
-  return speed_penalty(config.speed_weight, energy.stride(), energy.damping(i),
-                       (p[level] - p[level - 1]).segment<3>(3 * i));
-}
 
 Iterate static_iterate(const ReverseProblem& problem) {
   const auto levels = static_cast<std::size_t>(problem.sub_steps) + 1;
@@ -43,32 +34,8 @@ Iterate static_iterate(const ReverseProblem& problem) {
           std::vector<VectorXd>(levels, VectorXd::Zero(problem.energy.dofs()))};
 }
 
-bool may_act(const ReverseProblem& problem, const Iterate& x, int level, int contact) {
-  return x.forces[level][contact] != 0.0 ||
-         problem.energy.near(problem.energy.contacts()[contact], x.p[level]);
-}
-
 double objective(const ReverseProblem& problem, const Iterate& x) {
-  const ReverseConfig& config = problem.config;
-  const StepEnergy& energy = problem.energy;
-  const int h = problem.sub_steps;
-  double sum = 0.0;
-  for (int i = 0; 3 * i < energy.dofs(); ++i) {
-    const Vector2d moved = x.p[0].segment<2>(3 * i) - problem.end.segment<2>(3 * i);
-    sum += (i == 0 ? config.robot_weight : config.object_weight) * problem.direction.dot(moved);
-  }
-  for (const Contact& c : energy.contacts())
-    if (energy.near(c, x.p[0])) sum += energy.barrier().value(energy.gap_value(c, x.p[0]));
-  for (int k = 0; k <= h; ++k) {
-    if (k > 0) sum += config.control_weight * x.controls[k].squaredNorm();
-    const Vector3d off = x.p[k].head<3>() - problem.robot_path(k);
-    sum +=
-        config.path_weight * off.head<2>().squaredNorm() + config.heading_weight * off[2] * off[2];
-  }
-  for (int k = 1; k <= h; ++k)
-    for (int i = 1; 3 * i < energy.dofs(); ++i) sum += problem.speed(x.p, k, i).value;
-  const VectorXd miss = (x.p[h] - problem.end).head(energy.dofs());
-  return sum + 0.5 * config.terminal_weight * miss.squaredNorm();
+  return Evaluation(problem, x).merits.objective;
 }
 
 double Violation::l1() const {
@@ -87,28 +54,12 @@ double Violation::max() const {
 }
 
 Violation violation(const ReverseProblem& problem, const Iterate& x) {
-  const StepEnergy& energy = problem.energy;
-  const int h = problem.sub_steps, contacts = static_cast<int>(energy.contacts().size());
+  const Evaluation at(problem, x);
   Violation v;
-  v.residuals.assign(x.p.size(), VectorXd::Zero(energy.dofs()));
-  v.complementarity.assign(x.p.size(), VectorXd::Zero(contacts));
-  for (int k = 1; k <= h; ++k) v.residuals[k] = free_residual(problem, x, k);
-  for (int k = 0; k <= h; ++k)
-    for (int n = 0; n < contacts; ++n) {
-      if (!may_act(problem, x, k, n)) continue;
-      const Contact& c = energy.contacts()[n];
-      const double force = x.forces[k][n];
-      const LocalPoint<double> here = energy.point(c, x.p[k]);
-      if (force == 0.0 && !energy.barrier().acts(energy.gap_value(c, here))) continue;
-      const GapSlope<double> g = energy.gap_slope(c, here);
-      v.complementarity[k][n] =
-          force * g.value - energy.barrier().weight * energy.barrier().window(g.value).w;
-      if (k > 0) scatter(energy, c, Vec6<double>(-force * g.gradient), v.residuals[k]);
-      if (k == h || force == 0.0) continue;
-      const LocalPoint<double> next = energy.point(c, x.p[k + 1]);
-      scatter(energy, c, Vec6<double>(c.friction * force * energy.slip(c, next, here).gradient()),
-              v.residuals[k + 1]);
-    }
+  for (const std::vector<double>& r : at.evaluator.residuals())
+    v.residuals.push_back(Eigen::Map<const VectorXd>(r.data(), problem.energy.dofs()));
+  for (const std::vector<double>& c : at.evaluator.complementarity())
+    v.complementarity.push_back(problem.energy.gathered(c));
   return v;
 }
 

@@ -4,7 +4,6 @@
 
 #include "core/energy/step_energy.hpp"
 #include "core/reverse/reverse_config.hpp"
-#include "core/reverse/speed_penalty.hpp"
 
 namespace rtg {
 
@@ -28,14 +27,6 @@ struct ReverseProblem {
   VectorXd end;        // p̄ [3·bodies]
   Vector2d direction;  // d(a)
   int sub_steps = 1;   // h
-
-  bool fixed_end() const { return config.terminal_weight == 0.0; }
-  /// Normal forces follow from the gaps at once instead of being unknowns.
-  bool slaved_forces() const { return config.preset == ReversePreset::kPaper; }
-  /// (t̄₀, θ̄₀) after sub-step k.
-  Vector3d robot_path(int k) const;
-  /// Of object i in sub-step k of `p`.
-  SpeedPenalty speed(const std::vector<VectorXd>& p, int k, int i) const;
 };
 
 /// A trajectory with its forces and multipliers; entry k belongs to the end of sub-step k, entry 0
@@ -49,9 +40,6 @@ struct Iterate {
 
 /// At rest in the final state: λ = λ(g), c = 0.
 Iterate static_iterate(const ReverseProblem& problem);
-
-/// Whether a contact may take part at a level: bodies close, or with a force left over.
-bool may_act(const ReverseProblem& problem, const Iterate& x, int level, int contact);
 
 double objective(const ReverseProblem& problem, const Iterate& x);
 

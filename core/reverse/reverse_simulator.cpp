@@ -1,6 +1,7 @@
 #include "core/reverse/reverse_simulator.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "core/reverse/candidate.hpp"
@@ -55,14 +56,31 @@ ReverseSimulator::ReverseSimulator(Scene scene, const PhysicsConfig& physics,
 }
 
 ReverseResult ReverseSimulator::solve(const ReverseJob& job) const {
-  if (job.end.size() != scene_.size() || !is_finite(job.end)) return {SolveStatus::kNonFinite};
-  if (is_pruned(scene_, push_, job)) return {SolveStatus::kPruned};
-  return solve_legal(job);
+  return std::move(solve(std::span(&job, 1)).front());
 }
 
-ReverseResult ReverseSimulator::solve_legal(const ReverseJob& job) const {
-  const Candidate candidate(scene_, physics_, push_, config_, job);
-  const SqpResult solved = candidate.solve();
+std::vector<ReverseResult> ReverseSimulator::solve(std::span<const ReverseJob> jobs) const {
+  std::vector<ReverseResult> results(jobs.size());
+  std::vector<std::unique_ptr<Candidate>> candidates(jobs.size());
+  std::vector<const Candidate*> legal;
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    if (jobs[k].end.size() != scene_.size() || !is_finite(jobs[k].end)) continue;
+    if (is_pruned(scene_, push_, jobs[k])) {
+      results[k].status = SolveStatus::kPruned;
+      continue;
+    }
+    candidates[k] = std::make_unique<Candidate>(scene_, physics_, push_, config_, jobs[k]);
+    legal.push_back(candidates[k].get());
+  }
+  const std::vector<SqpResult> solved = solve_together(legal);
+  auto next = solved.begin();
+  for (std::size_t k = 0; k < jobs.size(); ++k)
+    if (candidates[k]) results[k] = answer(jobs[k], *candidates[k], *next++);
+  return results;
+}
+
+ReverseResult ReverseSimulator::answer(const ReverseJob& job, const Candidate& candidate,
+                                       const SqpResult& solved) const {
   ReverseResult result{solved.status, solved.iterations};
   if (result.status != SolveStatus::kConverged) return result;
   for (const VectorXd& start : predecessors(solved.x.p, config_.releases))

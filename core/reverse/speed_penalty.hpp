@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/energy/step_energy.hpp"
+#include "core/energy/damping.hpp"
+#include "core/math/block_matrix.hpp"
 
 namespace rtg {
 
@@ -12,21 +13,23 @@ namespace rtg {
 /// convex, next to nothing up to the robot's speed (q = ½), a wall beyond twice that. Departs from
 /// the paper: contact is felt only at the ends of sub-steps, and without it the optimiser finds
 /// trajectories on which a thin body steps over the robot.
+template <class T>
 struct SpeedPenalty {
-  double value = 0.0;
-  Vector3d gradient = Vector3d::Zero();  // with respect to (Δt, Δθ)
-  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
-};
+  T value;
+  Vec3<T> gradient;  // with respect to (Δt, Δθ)
+  Block<T> hessian;
 
-inline SpeedPenalty speed_penalty(double weight, double stride, const Damping& body,
-                                  const Vector3d& way) {
-  const Vector3d metric = Vector3d(1.0, 1.0, body.moment / body.mass) / (2.0 * stride * stride);
-  const Vector3d slope = 2.0 * metric.cwiseProduct(way);  // ∂q
-  const double q = way.dot(metric.cwiseProduct(way));
-  SpeedPenalty penalty{weight * q * q * q, 3.0 * weight * q * q * slope, {}};
-  penalty.hessian = 6.0 * weight * q * slope * slope.transpose();
-  penalty.hessian.diagonal() += 6.0 * weight * q * q * metric;
-  return penalty;
-}
+  SpeedPenalty(double weight, double stride, const Damping<T>& body, const Vec3<T>& way) {
+    const T scale(1.0 / (2.0 * stride * stride)), w(weight);
+    const Vec3<T> metric(scale, scale, scale * body.moment / body.mass);
+    Vec3<T> slope;  // ½ ∂q
+    for (int m = 0; m < 3; ++m) slope[m] = metric[m] * way[m];
+    const T q = way.dot(slope);
+    value = w * q * q * q;
+    gradient = slope * (T(6.0) * w * q * q);
+    hessian = (slope * (T(24.0) * w * q)) * slope.transpose();
+    for (int m = 0; m < 3; ++m) hessian(m, m) += T(6.0) * w * q * q * metric[m];
+  }
+};
 
 }  // namespace rtg

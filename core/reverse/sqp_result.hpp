@@ -10,6 +10,7 @@ struct SqpResult {
   SolveStatus status = SolveStatus::kNonFinite;
   Iterate x;
   int iterations = 0;          // steps looked for
+  int attempts = 1;            // from the start
   double infeasibility = 0.0;  // ‖C‖∞
   double stationarity = 0.0;   // ‖∇L‖∞
 };

@@ -1,44 +1,50 @@
 #include "core/reverse/trial.hpp"
 
-#include <cmath>
-
 namespace rtg {
 namespace {
 
-constexpr double kKeptGap = 0.1;
 constexpr double kLongestMove = 1.0;  // [m]
 constexpr double kLargestTurn = 0.5;  // [rad]
 constexpr double kNoForce = 1e-14;    // [kg m], the rest of a contact that has opened
 
-bool bounded(const VectorXd& step) {
-  for (Eigen::Index i = 0; i < step.size(); i += 3)
-    if (!(step.segment<2>(i).norm() <= kLongestMove && std::abs(step[i + 2]) <= kLargestTurn))
-      return false;
-  return true;
-}
-
 }  // namespace
 
-std::optional<Iterate> trial_point(const ReverseProblem& problem, const Iterate& x,
-                                   const Direction& d, double alpha) {
-  const StepEnergy& energy = problem.energy;
-  Iterate trial = x;
+template <class T>
+Mask<T> bounded(const StageStep<T>& step, const T& alpha) {
+  Mask<T> near(true);
+  for (const BlockColumn<T>& poses : step.poses)
+    for (const Vec3<T>& d : poses)
+      near = near &&
+             alpha * alpha * (d[0] * d[0] + d[1] * d[1]) <= T(kLongestMove * kLongestMove) &&
+             alpha * magnitude(d[2]) <= T(kLargestTurn);
+  return near;
+}
+
+template <class T>
+void make_trial(const Trajectory<T>& x, const StageStep<T>& step, const PerContact<T>& force_step,
+                const T& alpha, Trajectory<T>& trial) {
   for (std::size_t k = 0; k < x.p.size(); ++k) {
-    const VectorXd step = alpha * d.p[k];
-    if (!bounded(step)) return std::nullopt;
-    trial.p[k].head(energy.dofs()) += step;
-    trial.controls[k] += alpha * d.controls[k];
-    trial.multipliers[k] += alpha * d.multipliers[k];
-    if (!energy.keeps_gaps(x.p[k], trial.p[k], kKeptGap)) return std::nullopt;
-    if (problem.slaved_forces()) {
-      trial.forces[k] = energy.forces(trial.p[k]);
-    } else {
-      trial.forces[k] += alpha * d.forces[k];
-      trial.forces[k] =
-          trial.forces[k].unaryExpr([](double f) { return std::abs(f) < kNoForce ? 0.0 : f; });
+    for (std::size_t m = 0; m < x.multipliers[k].size(); ++m) {
+      const auto body = m / 3;
+      const auto row = static_cast<Eigen::Index>(m % 3);
+      trial.p[k].p[m] = x.p[k].p[m] + alpha * step.poses[k][body][row];
+      if (k > 0)
+        trial.multipliers[k][m] = x.multipliers[k][m] + alpha * step.multipliers[k][body][row];
+    }
+    trial.p[k].update();
+    if (k > 0) trial.controls[k] = x.controls[k] + step.controls[k] * alpha;
+    for (std::size_t c = 0; c < trial.forces[k].size(); ++c) {
+      const T force = x.forces[k][c] + alpha * force_step[k][c];
+      trial.forces[k][c] = select(magnitude(force) < T(kNoForce), T(0.0), force);
     }
   }
-  return trial;
 }
+
+template Mask<double> bounded(const StageStep<double>&, const double&);
+template Mask<Lanes> bounded(const StageStep<Lanes>&, const Lanes&);
+template void make_trial(const Trajectory<double>&, const StageStep<double>&,
+                         const PerContact<double>&, const double&, Trajectory<double>&);
+template void make_trial(const Trajectory<Lanes>&, const StageStep<Lanes>&,
+                         const PerContact<Lanes>&, const Lanes&, Trajectory<Lanes>&);
 
 }  // namespace rtg

@@ -1,15 +1,18 @@
 #pragma once
 
-#include <optional>
-
-#include "core/reverse/linearisation.hpp"
+#include "core/math/stage_system.hpp"
+#include "core/reverse/problem_lanes.hpp"
 
 namespace rtg {
 
-/// x + α d, if it is a legal iterate: every gap stays open and, below a tenth of the barrier's
-/// range, keeps a tenth of itself, no two bodies overlap by the separating-axis test, no pose moves
-/// by more than 1 m or 0.5 rad; nothing otherwise.
-std::optional<Iterate> trial_point(const ReverseProblem& problem, const Iterate& x,
-                                   const Direction& d, double alpha);
+/// Where no pose moves by more than 1 m or 0.5 rad in α step.
+template <class T>
+Mask<T> bounded(const StageStep<T>& step, const T& alpha);
+
+/// trial ← x + α step, forces by `force_step` [h + 1][contacts]. Poses of fixed bodies are left as
+/// they are in `trial`.
+template <class T>
+void make_trial(const Trajectory<T>& x, const StageStep<T>& step, const PerContact<T>& force_step,
+                const T& alpha, Trajectory<T>& trial);
 
 }  // namespace rtg

@@ -10,13 +10,17 @@
 
 namespace rtg {
 
-SolveOne reverse_solver(const Task& task, const PhysicsConfig& physics,
-                        const ReverseConfig& reverse, ReverseMode mode) {
+SolveBatch reverse_solver(const Task& task, const PhysicsConfig& physics,
+                          const ReverseConfig& reverse, ReverseMode mode) {
   if (mode == ReverseMode::kNaive)
     return [naive = std::make_shared<const NaiveReverse>(task.scene, task.push)](
-               const ReverseJob& job) { return naive->solve(job); };
+               std::span<const ReverseJob> jobs) {
+      std::vector<ReverseResult> results;
+      for (const ReverseJob& job : jobs) results.push_back(naive->solve(job));
+      return results;
+    };
   return [rrbs = std::make_shared<const ReverseSimulator>(task.scene, physics, task.push, reverse)](
-             const ReverseJob& job) { return rrbs->solve(job); };
+             std::span<const ReverseJob> jobs) { return rrbs->solve(jobs); };
 }
 
 ReplayOne forward_replay(const Task& task, const PhysicsConfig& physics) {
@@ -28,7 +32,7 @@ ReplayOne forward_replay(const Task& task, const PhysicsConfig& physics) {
   };
 }
 
-GenerationSeams in_process_seams(SolveOne solve, ReplayOne replay, int threads) {
+GenerationSeams in_process_seams(SolveBatch solve, ReplayOne replay, int threads) {
   GenerationSeams seams;
   seams.solve = solve_on_threads(std::move(solve), threads);
   seams.replay = replay_on_threads(std::move(replay), threads);

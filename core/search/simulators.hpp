@@ -11,20 +11,18 @@
 
 namespace rtg {
 
-/// One reverse job after the other; pure, and callable from several threads at once.
-using SolveOne = std::function<ReverseResult(const ReverseJob&)>;
-/// One replay job after the other; likewise.
+/// One replay job after the other; pure, and callable from several threads at once.
 using ReplayOne = std::function<ReplayResult(const ReplayJob&)>;
 
-/// The reverse simulator that `mode` names.
-SolveOne reverse_solver(const Task& task, const PhysicsConfig& physics,
-                        const ReverseConfig& reverse, ReverseMode mode);
+/// The reverse simulator that `mode` names; pure, and callable from several threads at once.
+SolveBatch reverse_solver(const Task& task, const PhysicsConfig& physics,
+                          const ReverseConfig& reverse, ReverseMode mode);
 
 /// The true dynamics, Box2D; kSettle is answered, too.
 ReplayOne forward_replay(const Task& task, const PhysicsConfig& physics);
 
 /// The seams with all simulators on `threads` threads of this process; store, progress and
 /// cancelled are left to the caller.
-GenerationSeams in_process_seams(SolveOne solve, ReplayOne replay, int threads);
+GenerationSeams in_process_seams(SolveBatch solve, ReplayOne replay, int threads);
 
 }  // namespace rtg

@@ -13,6 +13,15 @@
 namespace rtg {
 namespace {
 
+constexpr std::size_t kFullLanes = 24;  // jobs at least that a thread solves together
+
+/// How many jobs to hand out together: two slices per thread even out what they take.
+std::size_t slice_of(std::size_t jobs, int threads) {
+  if (threads <= 1) return std::max<std::size_t>(jobs, 1);
+  const std::size_t slices = 2 * static_cast<std::size_t>(threads);
+  return std::max(kFullLanes, (jobs + slices - 1) / slices);
+}
+
 /// The exception of the least index among those thrown.
 class FirstError {
  public:
@@ -31,20 +40,6 @@ class FirstError {
   std::size_t index_ = 0;
   std::exception_ptr error_;
 };
-
-template <class Job, class Result>
-std::function<std::vector<Result>(std::span<const Job>)> on_threads(
-    std::function<Result(const Job&)> answer, int threads) {
-  return [answer = std::move(answer), threads](std::span<const Job> jobs) {
-    std::vector<Result> results(jobs.size());
-    parallel_for(jobs.size(), threads, [&](std::size_t k) {
-      const double begin = thread_cpu_s();
-      results[k] = answer(jobs[k]);
-      results[k].cpu_s = thread_cpu_s() - begin;
-    });
-    return results;
-  };
-}
 
 }  // namespace
 
@@ -81,12 +76,34 @@ double thread_cpu_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-SolveBatch solve_on_threads(std::function<ReverseResult(const ReverseJob&)> solve, int threads) {
-  return on_threads<ReverseJob, ReverseResult>(std::move(solve), threads);
+SolveBatch solve_on_threads(SolveBatch solve, int threads) {
+  return [solve = std::move(solve), threads](std::span<const ReverseJob> jobs) {
+    std::vector<ReverseResult> results(jobs.size());
+    const std::size_t most = slice_of(jobs.size(), threads);
+    parallel_for((jobs.size() + most - 1) / most, threads, [&](std::size_t slice) {
+      const std::size_t first = slice * most, count = std::min(most, jobs.size() - first);
+      const double begin = thread_cpu_s();
+      std::vector<ReverseResult> some = solve(jobs.subspan(first, count));
+      const double share = (thread_cpu_s() - begin) / static_cast<double>(count);
+      for (std::size_t k = 0; k < count; ++k) {
+        results[first + k] = std::move(some[k]);
+        results[first + k].cpu_s = share;
+      }
+    });
+    return results;
+  };
 }
 
 ReplayBatch replay_on_threads(std::function<ReplayResult(const ReplayJob&)> replay, int threads) {
-  return on_threads<ReplayJob, ReplayResult>(std::move(replay), threads);
+  return [replay = std::move(replay), threads](std::span<const ReplayJob> jobs) {
+    std::vector<ReplayResult> results(jobs.size());
+    parallel_for(jobs.size(), threads, [&](std::size_t k) {
+      const double begin = thread_cpu_s();
+      results[k] = replay(jobs[k]);
+      results[k].cpu_s = thread_cpu_s() - begin;
+    });
+    return results;
+  };
 }
 
 }  // namespace rtg

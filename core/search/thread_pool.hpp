@@ -15,10 +15,10 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
 /// CPU time the calling thread has used so far [s].
 double thread_cpu_s();
 
-/// The in-process homes of the two seams: every job is answered by `solve` / `replay`, which must
-/// be pure and callable from several threads at once. Results come in job order, with cpu_s filled
-/// in.
-SolveBatch solve_on_threads(std::function<ReverseResult(const ReverseJob&)> solve, int threads);
+/// The in-process homes of the two seams: jobs are answered by `solve`, some at a time, and one by
+/// one by `replay`, which must be pure and callable from several threads at once. Results come in
+/// job order, with cpu_s filled in: of jobs answered together each has an equal share.
+SolveBatch solve_on_threads(SolveBatch solve, int threads);
 ReplayBatch replay_on_threads(std::function<ReplayResult(const ReplayJob&)> replay, int threads);
 
 }  // namespace rtg

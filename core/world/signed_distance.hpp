@@ -1,35 +1,38 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 
-#include "core/math/dual.hpp"
+#include "core/math/elementary.hpp"
 #include "core/world/polygon.hpp"
 
 namespace rtg {
 
-template <class S>
-using Vec2 = Eigen::Matrix<S, 2, 1>;
-template <class S>
-using Mat2 = Eigen::Matrix<S, 2, 2>;
+template <class T>
+using Vec2 = Eigen::Matrix<T, 2, 1>;
+template <class T>
+using Mat2 = Eigen::Matrix<T, 2, 2>;
 
 /// A convex polygon as the intersection of its half planes n_k·x ≤ b_k, n_k the outward unit
-/// normals, in the body frame.
-struct HalfPlanes {
+/// normals, in the body frame; one polygon per lane. Where lanes differ in the number of planes,
+/// those that a polygon lacks are far from everything.
+template <class T>
+struct Planes {
   int count = 0;
-  Vector2d normal[kMaxVertices];
-  double offset[kMaxVertices] = {};  // [m]
+  Vec2<T> normal[kMaxVertices];
+  T offset[kMaxVertices] = {};  // [m]
 };
+using HalfPlanes = Planes<double>;
 
 HalfPlanes half_planes(const Polygon& shape);
 
-/// Largest half-plane distance of a point, max_k (n_k·x - b_k) ≤ d(x).
-inline double mitred_distance(const HalfPlanes& planes, const Vector2d& x) {
-  double top = -INFINITY;
-  for (int k = 0; k < planes.count; ++k)
-    top = std::max(top, planes.normal[k].dot(x) - planes.offset[k]);
+/// n_k·x - b_k of each plane; returns the largest, which is at most d(x).
+template <class T>
+T plane_distances(const Planes<T>& planes, const Vec2<T>& x, T* distances) {
+  T top = distances[0] = planes.normal[0].dot(x) - planes.offset[0];
+  for (int k = 1; k < planes.count; ++k) {
+    distances[k] = planes.normal[k].dot(x) - planes.offset[k];
+    top = greater(top, distances[k]);
+  }
   return top;
 }
 
@@ -39,60 +42,76 @@ inline double mitred_distance(const HalfPlanes& planes, const Vector2d& x) {
 ///   ∇d = n̄ = Σ w n,   ∇²d = α (Σ w n nᵀ - n̄ n̄ᵀ),   ∇³d = α² Σ w (n - n̄)^⊗3,
 ///
 /// all in the polygon's frame. Exact on faces; right angles are cut by at most
-/// √2 ln 2/α. S is double or Dual.
-template <class S>
+/// √2 ln 2/α.
+template <class T>
 class SignedDistance {
  public:
-  SignedDistance(const HalfPlanes& planes, double alpha, const Vec2<S>& x)
+  /// `distances`, `top`: plane_distances() at x.
+  SignedDistance(const Planes<T>& planes, double alpha, const T* distances, const T& top)
       : planes_(planes), alpha_(alpha) {
-    S top(-INFINITY);
+    T exponent[kMaxVertices];
     for (int k = 0; k < planes.count; ++k) {
-      weight_[k] = normal(k).dot(x) - S(planes.offset[k]);
-      if (weight_[k] > top) top = weight_[k];
+      exponent[k] = T(alpha) * (distances[k] - top);
+      weight_[k] = greater(exponent[k], T(kNothing));
     }
-    using std::exp, std::log;
-    S sum(0.0);
+    exponentials(weight_, planes.count);
+    T sum(0.0);
     for (int k = 0; k < planes.count; ++k) {
-      weight_[k] = exp(S(alpha) * (weight_[k] - top));
-      sum += weight_[k];
+      weight_[k] = select(exponent[k] > T(kNothing), weight_[k], T(0.0));
+      sum = sum + weight_[k];
     }
-    gradient.setZero();
+    const T scale = T(1.0) / sum;
+    gradient.setConstant(T(0.0));
     for (int k = 0; k < planes.count; ++k) {
-      weight_[k] /= sum;
-      gradient += normal(k) * weight_[k];
+      weight_[k] = weight_[k] * scale;
+      gradient += planes.normal[k] * weight_[k];
     }
-    value = top + log(sum) / S(alpha);
+    value = top + logarithm(sum) * T(1.0 / alpha);
   }
 
   /// ∇²d [1/m].
-  Mat2<S> hessian() const {
-    Mat2<S> sum = Mat2<S>::Zero();
-    for (int k = 0; k < planes_.count; ++k) {
-      const Vec2<S> m = normal(k) - gradient;
-      sum += (m * m.transpose()) * (S(alpha_) * weight_[k]);
-    }
-    return sum;
+  Mat2<T> hessian() const {
+    return moments([](const T& weight, const Vec2<T>&) { return weight; }, alpha_);
   }
-
   /// ∇³d contracted with `a`: the derivative of ∇²d along a, [1/m²] times the unit of a.
-  Mat2<S> third(const Vec2<S>& a) const {
-    Mat2<S> sum = Mat2<S>::Zero();
-    for (int k = 0; k < planes_.count; ++k) {
-      const Vec2<S> m = normal(k) - gradient;
-      sum += (m * m.transpose()) * (S(alpha_ * alpha_) * weight_[k] * m.dot(a));
-    }
-    return sum;
+  Mat2<T> third(const Vec2<T>& a) const {
+    return moments([&a](const T& weight, const Vec2<T>& m) { return weight * m.dot(a); },
+                   alpha_ * alpha_);
   }
 
-  S value;           // d [m]
-  Vec2<S> gradient;  // ∇d, |∇d| ≤ 1
+  T value;           // d [m]
+  Vec2<T> gradient;  // ∇d, |∇d| ≤ 1
 
  private:
-  Vec2<S> normal(int k) const { return planes_.normal[k].template cast<S>(); }
+  static constexpr double kNothing = -100.0;  // logarithm of a weight that is none
 
-  const HalfPlanes& planes_;
+  /// scale Σ weight(w, n - n̄) (n - n̄)(n - n̄)ᵀ.
+  template <class Weight>
+  Mat2<T> moments(Weight&& weight, double scale) const {
+    T xx(0.0), xy(0.0), yy(0.0);
+    for (int k = 0; k < planes_.count; ++k) {
+      const Vec2<T> m = planes_.normal[k] - gradient;
+      const T w = weight(weight_[k], m);
+      xx = xx + w * m.x() * m.x();
+      xy = xy + w * m.x() * m.y();
+      yy = yy + w * m.y() * m.y();
+    }
+    Mat2<T> out;
+    out << T(scale) * xx, T(scale) * xy, T(scale) * xy, T(scale) * yy;
+    return out;
+  }
+
+  const Planes<T>& planes_;
   double alpha_;
-  S weight_[kMaxVertices];
+  T weight_[kMaxVertices];
 };
+
+/// At a point of one polygon.
+inline SignedDistance<double> signed_distance(const HalfPlanes& planes, double alpha,
+                                              const Vector2d& x) {
+  double distances[kMaxVertices];
+  const double top = plane_distances(planes, x, distances);
+  return {planes, alpha, distances, top};
+}
 
 }  // namespace rtg

@@ -59,10 +59,10 @@ void dump(const std::filesystem::path& folder, int transitions) {
     search.transitions = transitions;
     search.rollout_share = 0.0;
     Sample sample(task);
-    const SolveOne solve = reverse_solver(task, {}, {}, search.reverse);
-    const auto sampled = [&](const ReverseJob& job) {
-      sample.add(job);
-      return solve(job);
+    const SolveBatch solve = reverse_solver(task, {}, {}, search.reverse);
+    const auto sampled = [&](std::span<const ReverseJob> jobs) {
+      for (const ReverseJob& job : jobs) sample.add(job);
+      return solve(jobs);
     };
     GenerationSeams seams = in_process_seams(sampled, forward_replay(task, {}), 2);
     seams.store = [](std::span<const Transition>) {};

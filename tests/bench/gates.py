@@ -31,11 +31,12 @@ _GATES: tuple[tuple[str, Callable[[Times], float], str, float], ...] = (
     ("action48.paper_by_default", ratio("action48/paper", "action48/default"), ">=", 200.0),
     (
         "kkt.cyclic_reduction_by_ours",
-        ratio("kkt/cyclic_reduction/16", "kkt/block_elimination/16"),
+        ratio("kkt/cyclic_reduction/16", "kkt/lanes/16"),
         ">=",
         30.0,
     ),
-    ("kkt.umfpack_by_ours", ratio("kkt/suitesparse/16", "kkt/block_elimination/16"), ">=", 120.0),
+    ("kkt.umfpack_by_ours", ratio("kkt/umfpack/16", "kkt/lanes/16"), ">=", 120.0),
+    ("kkt.klu_by_ours", ratio("kkt/klu/16", "kkt/lanes/16"), ">=", 25.0),
     ("sqp_iteration.growth_with_h", growth("sqp_iteration"), "<=", 1.1),
 )
 _HOLDS = {">=": operator.ge, "<=": operator.le}

@@ -1,11 +1,15 @@
-// A row of six bodies in contact, over the number of sub-steps h: factorisation and solution of the
-// KKT system; a whole SQP iteration with one trial point.
+// A row of six bodies in contact, over the number of sub-steps h: solution of the KKT system, in
+// lanes and by its peers; a whole SQP iteration with one trial point. Times of lanes are those of
+// all of them, as many as the counter `candidates` says.
 
 #include <benchmark/benchmark.h>
 
 #include <string>
 
-#include "core/reverse/linearisation.hpp"
+#include "core/math/assembled_solver.hpp"
+#include "core/math/riccati.hpp"
+#include "core/reverse/merits.hpp"
+#include "core/reverse/newton_system.hpp"
 #include "core/reverse/trial.hpp"
 #include "tests/support/gathering.hpp"
 
@@ -17,13 +21,26 @@ using testing::gathering;
 constexpr int kBodies = 6;
 constexpr double kResidual = 1e-9;  // of the right-hand side, largest accepted
 
-/// The robot and five boxes in a row, nearly touching.
+/// The robot and five boxes in a row, nearly touching, in every lane.
+template <class T>
 class Row {
  public:
-  explicit Row(int sub_steps) : problem_{energy_, config_, poses(), Vector2d::UnitX(), sub_steps} {}
+  explicit Row(int sub_steps)
+      : problem_{energy_, config_, poses(), Vector2d::UnitX(), sub_steps},
+        lanes_(problem_),
+        x_(lanes_.energy, sub_steps),
+        newton_(lanes_) {
+    for (int l = 0; l < kWidth<T>; ++l) {
+      lanes_.load(l, problem_);
+      x_.load(l, problem_, static_iterate(problem_));
+    }
+    linearise();
+  }
+  void linearise() { newton_.linearise(lanes_, x_, {T(1.0), T(1.0)}); }
 
-  const ReverseProblem& problem() const { return problem_; }
-  Linearisation linearisation() const { return {problem_, static_iterate(problem_), {true, 1.0}}; }
+  const ProblemLanes<T>& problem() const { return lanes_; }
+  const Trajectory<T>& x() const { return x_; }
+  const NewtonSystem<T>& newton() const { return newton_; }
 
  private:
   static Scene scene() {
@@ -41,56 +58,96 @@ class Row {
   ReverseConfig config_;
   StepEnergy energy_{scene(), {}, gathering().push};
   ReverseProblem problem_;
+  ProblemLanes<T> lanes_;
+  Trajectory<T> x_;
+  NewtonSystem<T> newton_;
 };
 
-double norm(const BlockVector& x) { return joined(x).lpNorm<Eigen::Infinity>(); }
-
-void check_residual(benchmark::State& state, const Linearisation& lin, const BlockVector& x,
-                    const BlockVector& r) {
-  const double residual = (joined(product(lin.matrix(), x)) - joined(r)).lpNorm<Eigen::Infinity>();
-  if (!(residual <= kResidual * norm(r))) state.SkipWithError("the residual is too large");
+/// Whether the step solves the system that is assembled of the same row in double.
+template <class T>
+bool is_solved(const Row<double>& row, const StageStep<T>& step) {
+  StageStep<double> one(kBodies, row.problem().sub_steps);
+  const auto first_lane = [](const auto& from, auto& to) {
+    for (int m = 0; m < 3; ++m) to[m] = lane(from[m], 0);
+  };
+  for (std::size_t k = 0; k < step.poses.size(); ++k) {
+    for (std::size_t i = 0; i < kBodies; ++i) first_lane(step.poses[k][i], one.poses[k][i]);
+    if (k == 0) continue;
+    first_lane(step.controls[k], one.controls[k]);
+    for (std::size_t i = 0; i < kBodies; ++i)
+      first_lane(step.multipliers[k][i], one.multipliers[k][i]);
+  }
+  const Assembled assembled(row.newton().system(), false);
+  const VectorXd r = joined(assembled.right_hand_side());
+  const VectorXd left = joined(product(assembled.matrix(), assembled.written(one)));
+  return (left - r).lpNorm<Eigen::Infinity>() <= kResidual * r.lpNorm<Eigen::Infinity>();
 }
 
-void kkt(benchmark::State& state, KktMethod method) {
-  const Row row(static_cast<int>(state.range(0)));
-  const Linearisation lin = row.linearisation();
-  const BlockVector r = lin.right_hand_side(lin.violation());
+void kkt_lanes(benchmark::State& state) {
+  const int h = static_cast<int>(state.range(0));
+  const Row<Lanes> row(h);
+  Riccati<Lanes> solver(kBodies, h);
+  StageStep<Lanes> step(kBodies, h);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(solver.solve(row.newton().system(), step));
+    benchmark::ClobberMemory();
+  }
+  if (!is_solved(Row<double>(h), step)) state.SkipWithError("the residual is too large");
+  state.counters["candidates"] = kWidth<Lanes>;
+}
+
+/// Factorisation and solution of the assembled matrix; assembling is not counted.
+void kkt_peer(benchmark::State& state, KktMethod method) {
+  const Row<double> row(static_cast<int>(state.range(0)));
+  const Assembled assembled(row.newton().system(), false);
   const std::unique_ptr<KktSolver> solver = make_kkt_solver(method);
   BlockVector x;
   for (auto _ : state) {
-    if (!solver->factorize(lin.matrix())) return state.SkipWithError("singular");
-    x = solver->solve(r);
+    if (!solver->factorize(assembled.matrix())) return state.SkipWithError("singular");
+    x = solver->solve(assembled.right_hand_side());
     benchmark::DoNotOptimize(x.data());
   }
-  check_residual(state, lin, x, r);
+  StageStep<double> step(kBodies, row.problem().sub_steps);
+  assembled.read(x, step);
+  if (!is_solved(row, step)) state.SkipWithError("the residual is too large");
 }
 
 void sqp_iteration(benchmark::State& state) {
-  const Row row(static_cast<int>(state.range(0)));
-  const Iterate x = static_iterate(row.problem());
-  const std::unique_ptr<KktSolver> solver = make_kkt_solver({});
-  BlockVector r, step;
+  const int h = static_cast<int>(state.range(0));
+  Row<Lanes> row(h);
+  Riccati<Lanes> solver(kBodies, h);
+  StageStep<Lanes> step(kBodies, h);
+  Evaluator<Lanes> evaluator(row.problem());
+  Trajectory<Lanes> trial = row.x();
+  PerContact<Lanes> force_step = trial.forces, gaps = trial.forces, trial_gaps = trial.forces;
+  for (std::vector<Lanes>& level : gaps) level.assign(level.size(), Lanes(0.0));
   for (auto _ : state) {
-    const Linearisation lin = row.linearisation();
-    if (!solver->factorize(lin.matrix())) return state.SkipWithError("singular");
-    step = solver->solve(r = lin.right_hand_side(lin.violation()));
-    if (!(lin.model_curvature(step) > 0.0)) return state.SkipWithError("no descent");
-    const auto trial = trial_point(row.problem(), x, lin.direction(step, lin.violation()), 1e-3);
-    if (!trial) return state.SkipWithError("the step is too long");
-    benchmark::DoNotOptimize(violation(row.problem(), *trial).l1());
-    benchmark::DoNotOptimize(objective(row.problem(), x) + objective(row.problem(), *trial));
+    row.linearise();
+    benchmark::DoNotOptimize(row.newton().stationarity());
+    benchmark::DoNotOptimize(solver.solve(row.newton().system(), step));
+    benchmark::DoNotOptimize(row.newton().model_curvature(step));
+    row.newton().force_steps(row.problem(), row.x(), step, force_step);
+    Mask<Lanes> legal = bounded(step, Lanes(1e-3));
+    make_trial(row.x(), step, force_step, Lanes(1e-3), trial);
+    benchmark::DoNotOptimize(evaluator.evaluate(row.problem(), trial, gaps, trial_gaps, legal));
+    if (!any(legal)) return state.SkipWithError("the trial point is not legal");
   }
-  check_residual(state, row.linearisation(), step, r);
+  if (!is_solved(Row<double>(h), step)) state.SkipWithError("the residual is too large");
+  state.counters["candidates"] = kWidth<Lanes>;
 }
-BENCHMARK(sqp_iteration)->RangeMultiplier(2)->Range(8, 256)->Unit(benchmark::kMicrosecond);
 
 const bool kRegistered = [] {
-  for (std::size_t m = 0; m < kKktMethods.size(); ++m)
-    benchmark::RegisterBenchmark(("kkt/" + std::string(kKktMethods[m])).c_str(), kkt,
-                                 static_cast<KktMethod>(m))
-        ->RangeMultiplier(4)
-        ->Range(16, 256)
-        ->Unit(benchmark::kMicrosecond);
+  std::vector<benchmark::internal::Benchmark*> all{
+      benchmark::RegisterBenchmark("kkt/lanes", kkt_lanes)};
+  for (const KktMethod method :
+       {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu}) {
+    const std::string name = "kkt/" + std::string(kKktMethods[static_cast<std::size_t>(method)]);
+    all.push_back(benchmark::RegisterBenchmark(name.c_str(), kkt_peer, method));
+  }
+  for (auto* one : all) one->RangeMultiplier(4)->Range(16, 256);
+  all.push_back(benchmark::RegisterBenchmark("sqp_iteration", sqp_iteration));
+  all.back()->RangeMultiplier(2)->Range(8, 256);
+  for (auto* one : all) one->Unit(benchmark::kMicrosecond);
   return true;
 }();
 

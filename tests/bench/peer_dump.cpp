@@ -4,15 +4,18 @@
 //
 // a line of JSON per problem: all that defines it (shapes, configurations, final state, direction),
 // the warm start, our solution, and our own values of objective and constraints there. For
-// peer.py, which builds the same problem with CasADi and solves it with IPOPT.
+// peer.py, which builds the same problem with CasADi and solves it with IPOPT. The problems of a
+// task are solved together; "cpu_s" is the share of each.
 
 #include <cstdio>
 #include <exception>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/reverse/candidate.hpp"
-#include "core/reverse/rollout.hpp"
+#include "core/reverse/warm_start.hpp"
 #include "core/search/thread_pool.hpp"
 #include "tests/bench/arguments.hpp"
 #include "tests/bench/corpus.hpp"
@@ -64,22 +67,29 @@ Json iterate(const Iterate& x) {
   return {{"p", rows(x.p)}, {"forces", rows(x.forces)}, {"controls", rows(x.controls)}};
 }
 
-Json dumped(const Problem& problem, const Task& task, std::size_t line) {
-  const PhysicsConfig physics;
-  const ReverseConfig config;
-  const Candidate candidate(task.scene, physics, task.push, config, problem.job);
+/// The configurations that all problems are solved with.
+const PhysicsConfig kPhysics;
+const ReverseConfig kReverse;
+
+/// A problem with its place in the corpus.
+struct Entry {
+  std::size_t line = 0;
+  const Problem* problem = nullptr;
+  std::unique_ptr<Candidate> candidate;
+};
+
+Json dumped(const Entry& entry, const Task& task, const SqpResult& solved, double cpu) {
+  const Problem& problem = *entry.problem;
+  const Candidate& candidate = *entry.candidate;
   const ReverseProblem& nlp = candidate.problem();
   const auto warm = warm_start(nlp);
-  const double begin = thread_cpu_s();
-  const SqpResult solved = candidate.solve();
-  const double cpu = thread_cpu_s() - begin;
   const Violation v = violation(nlp, solved.x);
-  return {{"line", line},
+  return {{"line", entry.line},
           {"difficulty", kDifficulties[static_cast<std::size_t>(problem.difficulty)]},
           {"bodies", bodies(candidate.scene())},
-          {"physics", numbers(physics)},
+          {"physics", numbers(kPhysics)},
           {"push", numbers(task.push)},
-          {"reverse", numbers(config)},
+          {"reverse", numbers(kReverse)},
           {"end", std::vector<double>(nlp.end.begin(), nlp.end.end())},
           {"direction", {nlp.direction.x(), nlp.direction.y()}},
           {"warm", warm ? iterate(*warm) : Json()},
@@ -94,11 +104,25 @@ Json dumped(const Problem& problem, const Task& task, std::size_t line) {
 
 void dump(const std::filesystem::path& folder, std::size_t every) {
   const Corpus corpus = read_corpus(folder);
+  std::map<std::string, std::vector<Entry>> entries;  // by task
   std::size_t met = 0;
   for (std::size_t k = 0; k < corpus.problems.size(); ++k) {
     const Problem& problem = corpus.problems[k];
     if (problem.difficulty == Difficulty::kFree || met++ % every != 0) continue;
-    std::puts(dumped(problem, corpus.tasks.at(problem.task), k + 1).dump().c_str());
+    const Task& task = corpus.tasks.at(problem.task);
+    entries[problem.task].push_back(
+        {k + 1, &problem,
+         std::make_unique<Candidate>(task.scene, kPhysics, task.push, kReverse, problem.job)});
+  }
+  for (const auto& [name, some] : entries) {
+    const Task& task = corpus.tasks.at(name);
+    std::vector<const Candidate*> candidates;
+    for (const Entry& entry : some) candidates.push_back(entry.candidate.get());
+    const double begin = thread_cpu_s();
+    const std::vector<SqpResult> solved = solve_together(candidates);
+    const double share = (thread_cpu_s() - begin) / static_cast<double>(some.size());
+    for (std::size_t k = 0; k < some.size(); ++k)
+      std::puts(dumped(some[k], task, solved[k], share).dump().c_str());
   }
 }
 

@@ -33,8 +33,9 @@ void candidates(benchmark::State& state, ReversePreset preset) {
   std::size_t k = 0;
   for (auto _ : state) {
     const Poses& end = states[k++ % states.size()];
-    for (int action = 0; action < task.push.headings; ++action)
-      tally.add(reverse.solve({end, action}));
+    std::vector<ReverseJob> jobs;
+    for (int action = 0; action < task.push.headings; ++action) jobs.push_back({end, action});
+    for (const ReverseResult& result : reverse.solve(jobs)) tally.add(result);
   }
   // `paper` may fail throughout, that is its figure.
   if (tally.converged == 0 && preset == ReversePreset::kDefault)

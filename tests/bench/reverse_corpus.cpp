@@ -30,7 +30,9 @@ struct Options {
   bool failures = false;
 };
 
-/// A problem's line in the file, and what became of it.
+constexpr std::size_t kTogether = 48;
+
+/// A problem's line in the file, and what became of it; its share of the CPU time.
 struct Outcome {
   std::size_t line = 0;
   Difficulty difficulty = Difficulty::kFree;
@@ -50,17 +52,26 @@ std::vector<int> iterations_of(std::span<const Outcome> outcomes, std::optional<
   return found;
 }
 
+/// Problems of one task and difficulty are solved together, kTogether at a time.
 std::vector<Outcome> solve(const Corpus& corpus, const Options& options) {
-  std::map<std::string, ReverseSimulator> simulators;
-  for (const auto& [name, task] : corpus.tasks)
-    simulators.try_emplace(name, task.scene, options.physics, task.push, options.reverse);
+  std::map<std::pair<std::string, Difficulty>, std::vector<std::size_t>> alike;
+  for (std::size_t k = 0; k < corpus.problems.size(); k += options.every)
+    alike[{corpus.problems[k].task, corpus.problems[k].difficulty}].push_back(k);
   std::vector<Outcome> outcomes;
-  for (std::size_t k = 0; k < corpus.problems.size(); k += options.every) {
-    const Problem& problem = corpus.problems[k];
-    const double begin = thread_cpu_s();
-    const ReverseResult result = simulators.at(problem.task).solve(problem.job);
-    outcomes.push_back({k + 1, problem.difficulty, result.status, result.iterations,
-                        1e3 * (thread_cpu_s() - begin)});
+  for (const auto& [kind, lines] : alike) {
+    const Task& task = corpus.tasks.at(kind.first);
+    const ReverseSimulator simulator(task.scene, options.physics, task.push, options.reverse);
+    for (std::size_t first = 0; first < lines.size(); first += kTogether) {
+      std::vector<ReverseJob> jobs;
+      for (std::size_t k = first; k < std::min(first + kTogether, lines.size()); ++k)
+        jobs.push_back(corpus.problems[lines[k]].job);
+      const double begin = thread_cpu_s();
+      const std::vector<ReverseResult> results = simulator.solve(jobs);
+      const double share = 1e3 * (thread_cpu_s() - begin) / static_cast<double>(jobs.size());
+      for (std::size_t k = 0; k < jobs.size(); ++k)
+        outcomes.push_back(
+            {lines[first + k] + 1, kind.second, results[k].status, results[k].iterations, share});
+    }
   }
   return outcomes;
 }

@@ -60,6 +60,12 @@ def name_of(benchmark: dict[str, Any]) -> str:
     return name.removesuffix(f"/iterations:{benchmark['iterations']}")
 
 
+def share(benchmark: dict[str, Any]) -> float:
+    """CPU time per candidate, of benchmarks that solve several at once."""
+    time: float = benchmark["cpu_time"] / benchmark.get("candidates", 1.0)
+    return time
+
+
 def row(benchmark: dict[str, Any]) -> str:
     """One line of the table."""
     name = name_of(benchmark)
@@ -94,7 +100,7 @@ def main(build: Path, out: Path, smoke: bool) -> int:
         return 1
     passed = solves_the_corpus(build)
     if not smoke:
-        passed &= gates.check({name_of(b): b["cpu_time"] for b in result["benchmarks"]})
+        passed &= gates.check({name_of(b): share(b) for b in result["benchmarks"]})
     return int(not passed)
 
 

@@ -7,11 +7,11 @@
 namespace rtg {
 namespace {
 
-const Damping kQuadratic{1.7, 0.4, false}, kPeriodic{1.7, 0.4, true};
+const Damping<double> kQuadratic{1.7, 0.4, false}, kPeriodic{1.7, 0.4, true};
 
 TEST(Damping, DerivativesMatchDifferences) {
   const double t = 1e-5;
-  for (const Damping& d : {kQuadratic, kPeriodic})
+  for (const Damping<double>& d : {kQuadratic, kPeriodic})
     for (const double a : {-2.5, -0.3, 0.0, 0.05, 1.4}) {
       EXPECT_NEAR(d.turn_slope(a), (d.turn_value(a + t) - d.turn_value(a - t)) / (2.0 * t), 1e-10);
       EXPECT_NEAR(d.turn_curvature(a), (d.turn_slope(a + t) - d.turn_slope(a - t)) / (2.0 * t),
@@ -26,7 +26,7 @@ TEST(Damping, DerivativesMatchDifferences) {
 TEST(Damping, PeriodicFormIsTheAreaIntegralOfSquaredDisplacement) {
   const double width = 1.3, height = 0.7, density = 1.9;
   const Mass mass = mass_of({"b", "box", box(width, height), density, 0.3, false});
-  const Damping damping{mass.mass, mass.moment, true};
+  const Damping<double> damping{mass.mass, mass.moment, true};
   const Pose before{0.2, -0.4, 0.3}, after{0.5, 0.1, 1.2};
   double integral = 0.0;
   const double node = 0.5 / std::sqrt(3.0);

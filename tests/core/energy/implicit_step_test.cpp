@@ -4,8 +4,8 @@
 
 #include <Eigen/LU>
 
-#include "core/reverse/linearisation.hpp"
 #include "tests/support/differences.hpp"
+#include "tests/support/linearisation.hpp"
 #include "tests/support/touching_scene.hpp"
 
 namespace rtg {
@@ -19,7 +19,7 @@ const Vector3d kControl(0.3, -0.2, 0.1);
 /// Everything far from everything else.
 VectorXd scattered() { return stacked({{0, 0, 0.4}, {5, 0, 0.1}, {0, 5, 0.2}}); }
 
-VectorXd step(const StepEnergy& energy, const VectorXd& now, const Drive& drive) {
+VectorXd step(const StepEnergy& energy, const VectorXd& now, const Drive<double>& drive) {
   const auto result = implicit_step(energy, now, energy.forces(now), drive);
   EXPECT_TRUE(result);
   return result ? result->next : now;
@@ -28,9 +28,10 @@ VectorXd step(const StepEnergy& energy, const VectorXd& now, const Drive& drive)
 // m (t₊ - t) = B_f tanh(f), J (θ₊ - θ) = B_ω tanh(τ).
 TEST(ImplicitStep, FreePushIsTheClosedForm) {
   const TouchingScene scene;
-  const Damping& robot = scene.energy.damping(0);
+  const Damping<double>& robot = scene.energy.damping(0);
   const Vector3d push = scene.energy.control_bound().array() * kControl.array().tanh();
-  const VectorXd moved = step(scene.energy, scattered(), Drive::controls(kControl)) - scattered();
+  const VectorXd moved =
+      step(scene.energy, scattered(), Drive<double>::controls(kControl)) - scattered();
   EXPECT_NEAR(moved[0], push[0] / robot.mass, 1e-10);
   EXPECT_NEAR(moved[1], push[1] / robot.mass, 1e-10);
   EXPECT_NEAR(moved[2], push[2] / robot.moment, 1e-10);
@@ -42,7 +43,8 @@ TEST(ImplicitStep, FreeTurnWithPeriodicDampingIsTheArcSine) {
   scene.physics.periodic_damping = true;
   const StepEnergy energy(scene.scene, scene.physics, scene.task.push);
   const double torque = energy.control_bound()[2] * std::tanh(0.1);
-  const VectorXd moved = step(energy, scattered(), Drive::controls({0, 0, 0.1})) - scattered();
+  const VectorXd moved =
+      step(energy, scattered(), Drive<double>::controls({0, 0, 0.1})) - scattered();
   EXPECT_NEAR(moved[2], std::asin(torque / energy.damping(0).moment), 1e-9);
 }
 
@@ -58,11 +60,12 @@ double servo_advance(double resistance, double bound, double scale, double e) {
 
 TEST(ImplicitStep, FreeServoBalancesDampingAgainstItsForce) {
   const TouchingScene scene;
-  const Vector3d bound = scene.energy.control_bound(), scale = servo_scale(scene.energy);
+  const Vector3d bound = scene.energy.control_bound();
+  const Vector3d scale = Vector3d::Constant(servo_scale(scene.energy.stride()));
   for (const double e : {0.01, 0.2, 5.0}) {  // beyond reach the force saturates
     const Vector3d target(e, 0.0, 0.4);
-    const auto result =
-        implicit_step(scene.energy, scattered(), VectorXd::Zero(28), Drive::towards(target));
+    const auto result = implicit_step(scene.energy, scattered(), VectorXd::Zero(28),
+                                      Drive<double>::towards(target));
     ASSERT_TRUE(result);
     const double advance = servo_advance(scene.energy.damping(0).mass, bound[0], scale[0], e);
     EXPECT_NEAR(result->next[0], advance, 1e-9);
@@ -74,10 +77,11 @@ TEST(ImplicitStep, FreeServoBalancesDampingAgainstItsForce) {
 TEST(ImplicitStep, TheServosControlsLeadToTheSameEnd) {
   const TouchingScene scene;
   const VectorXd now = stacked(scene.poses);
-  const auto servo =
-      implicit_step(scene.energy, now, scene.energy.forces(now), Drive::towards({0.2, 0.01, 0.0}));
+  const auto servo = implicit_step(scene.energy, now, scene.energy.forces(now),
+                                   Drive<double>::towards({0.2, 0.01, 0.0}));
   ASSERT_TRUE(servo);
-  EXPECT_LT((step(scene.energy, now, Drive::controls(servo->control)) - servo->next).norm(), 1e-8);
+  EXPECT_LT((step(scene.energy, now, Drive<double>::controls(servo->control)) - servo->next).norm(),
+            1e-8);
 }
 
 TEST(ImplicitStep, EndsWhereTheGradientVanishesAndEnergyIsLeast) {
@@ -88,7 +92,7 @@ TEST(ImplicitStep, EndsWhereTheGradientVanishesAndEnergyIsLeast) {
     return scene.energy.value(p, now, lag) -
            bound.dot(kControl.array().tanh().matrix().cwiseProduct(p.head<3>()));
   };
-  const VectorXd end = step(scene.energy, now, Drive::controls(kControl));
+  const VectorXd end = step(scene.energy, now, Drive<double>::controls(kControl));
   EXPECT_GT((end - now).segment<3>(3).norm(), 1e-3);  // the box was pushed
   Rng rng(1);
   for (int trial = 0; trial < 20; ++trial) EXPECT_GT(total(end + noise(9, 1e-3, rng)), total(end));
@@ -102,7 +106,7 @@ TEST(ImplicitStep, EndsWhereTheGradientVanishesAndEnergyIsLeast) {
 TEST(ImplicitStep, MomentumComesFromTheRobotsForceAlone) {
   const TouchingScene scene;
   const VectorXd now = stacked(scene.poses);
-  const VectorXd moved = step(scene.energy, now, Drive::controls(kControl)) - now;
+  const VectorXd moved = step(scene.energy, now, Drive<double>::controls(kControl)) - now;
   Vector2d momentum = Vector2d::Zero();
   for (int i = 0; i < 3; ++i) momentum += scene.energy.damping(i).mass * moved.segment<2>(3 * i);
   const Vector3d force = scene.energy.control_bound().array() * kControl.array().tanh();
@@ -116,7 +120,7 @@ struct ResidualJacobians {
 
 ResidualJacobians residual_jacobians(const ReverseProblem& problem, const Iterate& x) {
   const int n = problem.energy.dofs();
-  const BlockTridiagonal K = Linearisation(problem, x, {false, 0.0}).matrix();
+  const BlockTridiagonal K = testing::Linearisation(problem, x, {false, 0.0}).matrix();
   const MatrixXd rows = K.A[1].bottomRows(n);
   return {rows.leftCols(n), K.B[1].bottomRows(n), rows.middleCols(n, 3)};
 }
@@ -129,22 +133,27 @@ TEST(ImplicitStep, DerivativesOfTheEndMatchStepsSolvedAgain) {
   ReverseProblem problem = scene.problem(config);
   problem.sub_steps = 1;
   const Vector3d target(0.2, 0.01, 0.02);
-  const auto x = roll_out(problem, problem.end, {Vector3d::Zero(), target});
-  ASSERT_TRUE(x);
-  const ResidualJacobians J = residual_jacobians(problem, *x);
+  Iterate x = static_iterate(problem);
+  const auto first =
+      implicit_step(scene.energy, problem.end, x.forces[0], Drive<double>::towards(target));
+  ASSERT_TRUE(first);
+  x.p[1] = first->next;
+  x.controls[1] = first->control;
+  x.forces[1] = scene.energy.forces(x.p[1]);
+  const ResidualJacobians J = residual_jacobians(problem, x);
   const Eigen::PartialPivLU<MatrixXd> lu(J.next);
   const auto end_from = [&](const VectorXd& p) {
-    return step(scene.energy, p, Drive::controls(x->controls[1]));
+    return step(scene.energy, p, Drive<double>::controls(x.controls[1]));
   };
   const auto end_by = [&](const VectorXd& c) {
-    return step(scene.energy, x->p[0], Drive::controls(Vector3d(c)));
+    return step(scene.energy, x.p[0], Drive<double>::controls(Vector3d(c)));
   };
   Rng rng(2);
   const MatrixXd by_now = -lu.solve(J.now), by_control = -lu.solve(J.control);
-  EXPECT_LT(testing::derivative_error(end_from, by_now, x->p[0],
+  EXPECT_LT(testing::derivative_error(end_from, by_now, x.p[0],
                                       testing::test_directions(by_now.row(3), rng)),
             2e-4);
-  EXPECT_LT(testing::derivative_error(end_by, by_control, x->controls[1],
+  EXPECT_LT(testing::derivative_error(end_by, by_control, x.controls[1],
                                       testing::test_directions(by_control.row(3), rng)),
             2e-4);
 }
@@ -153,13 +162,13 @@ TEST(ImplicitStep, ImpossibleStartsGiveNothing) {
   const TouchingScene scene;
   const VectorXd overlapping = stacked({{0, 0, 0}, {1.0, 0, 0}, {5, 0, 0}});
   EXPECT_FALSE(implicit_step(scene.energy, overlapping, VectorXd::Zero(28),
-                             Drive::controls(Vector3d::Zero())));
+                             Drive<double>::controls(Vector3d::Zero())));
   VectorXd nan = scattered();
   nan[1] = NAN;
-  EXPECT_FALSE(
-      implicit_step(scene.energy, nan, VectorXd::Zero(28), Drive::controls(Vector3d::Zero())));
+  EXPECT_FALSE(implicit_step(scene.energy, nan, VectorXd::Zero(28),
+                             Drive<double>::controls(Vector3d::Zero())));
   EXPECT_FALSE(implicit_step(scene.energy, scattered(), VectorXd::Zero(28),
-                             Drive::controls(Vector3d::Constant(NAN))));
+                             Drive<double>::controls(Vector3d::Constant(NAN))));
 }
 
 }  // namespace

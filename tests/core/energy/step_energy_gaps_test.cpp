@@ -1,4 +1,4 @@
-// Which steps keep bodies apart.
+// Which poses keep bodies apart.
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,6 @@
 namespace rtg {
 namespace {
 
-using testing::TouchingScene;
-
 /// Two bars that cross in their middles: no vertex of either is near the other.
 Scene crossing_bars() {
   return {{{"robot", "robot", box(2.0, 0.2), 1.0, 0.3, false},
@@ -21,14 +19,13 @@ Scene crossing_bars() {
 TEST(StepEnergyGaps, CrossingBarsAreRejectedThoughEveryGapIsOpen) {
   const StepEnergy energy(crossing_bars(), {}, {});
   const VectorXd crossed = VectorXd::Zero(6);
-  for (const Contact& c : energy.contacts()) EXPECT_GT(energy.gap_value(c, crossed), 0.5);
+  for (const Contact& c : energy.contacts())
+    EXPECT_GT(energy.gap_value(c, crossed), energy.barrier().range);
   EXPECT_FALSE(energy.separated(crossed));
   EXPECT_TRUE(std::isfinite(energy.value(crossed, crossed, VectorXd::Zero(8))));
-  EXPECT_FALSE(energy.keeps_gaps(crossed, crossed, 0.1));
   VectorXd apart = crossed;
   apart[3] = 1.2;
   EXPECT_TRUE(energy.separated(apart));
-  EXPECT_TRUE(energy.keeps_gaps(apart, apart, 0.1));
 }
 
 // Corners may overlap by what smoothing takes off them and as much again.
@@ -42,19 +39,6 @@ TEST(StepEnergyGaps, CornersMayOverlapByLittle) {
   };
   EXPECT_TRUE(energy.separated(tips(0.08)));  // 0.08 m · cos 60° along the nearest normal
   EXPECT_FALSE(energy.separated(tips(0.14)));
-}
-
-TEST(StepEnergyGaps, StepsMayLeaveNoLessThanAShareOfAGap) {
-  const TouchingScene scene;
-  const auto boxes_apart = [](double gap) {
-    return stacked({{-5, 0, 0}, {0, 0, 0}, {0.1, 1.2 + gap, 0}});
-  };
-  EXPECT_TRUE(scene.energy.keeps_gaps(boxes_apart(0.01), boxes_apart(0.0012), 0.1));
-  EXPECT_FALSE(scene.energy.keeps_gaps(boxes_apart(0.01), boxes_apart(0.0008), 0.1));
-  EXPECT_FALSE(scene.energy.keeps_gaps(boxes_apart(0.01), boxes_apart(-0.001), 0.1));
-  // Far gaps may shrink at will down to the share of the range.
-  EXPECT_TRUE(scene.energy.keeps_gaps(boxes_apart(2.0), boxes_apart(0.016), 0.1));
-  EXPECT_FALSE(scene.energy.keeps_gaps(boxes_apart(2.0), boxes_apart(0.014), 0.1));
 }
 
 }  // namespace

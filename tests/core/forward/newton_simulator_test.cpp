@@ -30,7 +30,7 @@ NewtonSimulator simulator() { return {robot_and_boxes(), kPush, kPhysics}; }
 
 /// How far the servo lags behind where it pulls with share·B: e = s artanh(share).
 double servo_lag(double share) {
-  return kServoShare * kPush.stride / kPhysics.sub_steps * std::atanh(share);
+  return servo_scale(kPush.stride / kPhysics.sub_steps) * std::atanh(share);
 }
 
 /// Where a free push by `action` ends: at push speed the drag along d(a) is B/force_factor, and

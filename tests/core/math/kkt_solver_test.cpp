@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <string>
 
-#include "core/reverse/linearisation.hpp"
+#include "tests/support/linearisation.hpp"
 #include "tests/support/touching_scene.hpp"
 
 namespace rtg {
@@ -14,7 +14,7 @@ namespace {
 using testing::noise;
 
 constexpr KktMethod kMethods[] = {KktMethod::kBlockElimination, KktMethod::kCyclicReduction,
-                                  KktMethod::kSuiteSparse};
+                                  KktMethod::kUmfpack, KktMethod::kKlu};
 
 std::string name_of(KktMethod method) {
   return std::string(kKktMethods[static_cast<std::size_t>(method)]);
@@ -107,8 +107,9 @@ std::vector<BlockTridiagonal> newton_systems() {
     config.terminal_weight = terminal_weight;
     const ReverseProblem problem = scene.problem(config);
     const Iterate x = testing::disturbed(*warm_start(problem), 1e-3, rng);
-    for (const Curvature curvature : {Curvature{false, 1.0}, Curvature{true, 1e-2}})
-      systems.push_back(Linearisation(problem, x, curvature).matrix());
+    for (const testing::Curvature curvature :
+         {testing::Curvature{false, 1.0}, testing::Curvature{true, 1e-2}})
+      systems.push_back(testing::Linearisation(problem, x, curvature).matrix());
   }
   return systems;
 }

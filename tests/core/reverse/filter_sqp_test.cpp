@@ -4,8 +4,8 @@
 
 #include "core/energy/implicit_step.hpp"
 #include "core/forward/newton_simulator.hpp"
-#include "core/reverse/rollout.hpp"
 #include "tests/support/free_push.hpp"
+#include "tests/support/one_candidate.hpp"
 #include "tests/support/random_push.hpp"
 #include "tests/support/touching_scene.hpp"
 
@@ -13,11 +13,9 @@ namespace rtg {
 namespace {
 
 using testing::noise;
+using testing::solved;
+using testing::solved_from;
 using testing::TouchingScene;
-
-SqpResult solved(const ReverseProblem& problem) {
-  return filter_sqp(problem, *warm_start(problem), 200, problem.config.proximal_start);
-}
 
 /// Forward simulation of the solution's start under the solution's controls.
 Iterate replayed(const ReverseProblem& problem, const Iterate& x) {
@@ -25,7 +23,7 @@ Iterate replayed(const ReverseProblem& problem, const Iterate& x) {
   for (std::size_t k = 1; k < x.p.size(); ++k) {
     again.forces[k - 1] = problem.energy.forces(again.p[k - 1]);
     const auto step = implicit_step(problem.energy, again.p[k - 1], again.forces[k - 1],
-                                    Drive::controls(x.controls[k]));
+                                    Drive<double>::controls(x.controls[k]));
     EXPECT_TRUE(step);
     if (step) again.p[k] = step->next;
   }
@@ -40,7 +38,7 @@ TEST(FilterSqp, ReverseOfAFreePushIsTheClosedForm) {
   ReverseProblem problem = scene.problem(config);
   problem.end = stacked({{1, 2, 0.3}, {40, 0, 0}, {0, 40, 0}});
   problem.direction = {0.6, 0.8};
-  const SqpResult result = filter_sqp(problem, static_iterate(problem), 200, 1.0);
+  const SqpResult result = solved_from(problem, static_iterate(problem));
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   testing::expect_closed_form(problem, result.x, 1e-6);
   EXPECT_LT((result.x.p[0] - problem.end).tail(6).norm(), 1e-15);
@@ -77,7 +75,7 @@ TEST(FilterSqp, ForwardOfReverseIsTheGivenStateWhereItIsFixed) {
   ReverseProblem problem = scene.problem(config);
   problem.end = warm_start(problem)->p.back();
   config.terminal_weight = 0.0;
-  const SqpResult result = filter_sqp(problem, static_iterate(problem), 200, 1.0);
+  const SqpResult result = solved_from(problem, static_iterate(problem));
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   EXPECT_EQ(result.x.p.back(), problem.end);
   EXPECT_LT((replayed(problem, result.x).p.back() - problem.end).norm(), 1e-6);
@@ -130,7 +128,7 @@ TEST(FilterSqp, WithoutFrictionSubStepsAreExplicitBackwards) {
     const Vector3d push = result.x.controls[k].array().tanh();
     force.head<3>() -= scene.energy.control_bound().cwiseProduct(push);
     for (int i = 0; i < 3; ++i) {
-      const Damping& body = scene.energy.damping(i);
+      const Damping<double>& body = scene.energy.damping(i);
       const Vector3d mass(body.mass, body.mass, body.moment);
       EXPECT_LT((next.segment<3>(3 * i) + force.segment<3>(3 * i).cwiseQuotient(mass) -
                  result.x.p[k - 1].segment<3>(3 * i))
@@ -163,7 +161,7 @@ TEST(FilterSqp, EveryKktMethodGivesTheSameSolution) {
   const ReverseProblem problem = scene.problem(config);
   const SqpResult first = solved(problem);
   ASSERT_EQ(first.status, SolveStatus::kConverged);
-  for (const KktMethod method : {KktMethod::kCyclicReduction, KktMethod::kSuiteSparse}) {
+  for (const KktMethod method : {KktMethod::kCyclicReduction, KktMethod::kUmfpack}) {
     config.kkt = method;
     const SqpResult other = solved(problem);
     ASSERT_EQ(other.status, SolveStatus::kConverged);
@@ -174,13 +172,50 @@ TEST(FilterSqp, EveryKktMethodGivesTheSameSolution) {
 
 TEST(FilterSqp, StopsAtTheIterationLimit) {
   const TouchingScene scene;
-  const ReverseConfig config;
+  ReverseConfig config;
   const ReverseProblem problem = scene.problem(config);
   for (const int limit : {0, 1, 3}) {
-    const SqpResult result = filter_sqp(problem, *warm_start(problem), limit, 1.0);
+    config.max_iterations = limit;
+    const SqpResult result = solved(problem);
     EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
     EXPECT_EQ(result.iterations, limit);
   }
+}
+
+TEST(FilterSqp, SolutionsMeetTheirTolerances) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const SqpResult result = solved(problem);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_LT(violation(problem, result.x).max(), config.feasibility_tol);
+  EXPECT_LT(terminal_miss(problem, result.x), config.terminal_tolerance);
+  EXPECT_NEAR(result.infeasibility, violation(problem, result.x).max(), 1e-15);
+}
+
+// The warm start alone ends elsewhere.
+TEST(FilterSqp, WhereTheFinalStateIsFixedTheSolutionEndsInIt) {
+  const TouchingScene scene;
+  ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0}, {1.41, 0.2, 0.05}, {20, 0, 0}});
+  config.terminal_weight = 0.0;
+  ASSERT_GT(terminal_miss(problem, *warm_start(problem)), 1e-4);
+  const SqpResult result = solved(problem);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_EQ(result.x.p.back(), problem.end);
+  EXPECT_LT(violation(problem, result.x).max(), config.feasibility_tol);
+}
+
+TEST(FilterSqp, AnOverlappingEndIsInfeasible) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
+  const SqpResult result = solved(problem);
+  EXPECT_EQ(result.status, SolveStatus::kInfeasible);
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_EQ(result.x.p[0], problem.end);
 }
 
 TEST(FilterSqp, ReportsWhatIsNotFinite) {
@@ -189,28 +224,30 @@ TEST(FilterSqp, ReportsWhatIsNotFinite) {
   const ReverseProblem problem = scene.problem(config);
   Iterate start = static_iterate(problem);
   start.controls[3][1] = NAN;
-  EXPECT_EQ(filter_sqp(problem, start, 200, 1.0).status, SolveStatus::kNonFinite);
+  EXPECT_EQ(solved_from(problem, start).status, SolveStatus::kNonFinite);
 }
 
-// No step leads from overlapping bodies to a legal iterate.
-TEST(FilterSqp, ReportsAStartFromWhichNoStepIsLegal) {
+// The barrier of overlapping bodies is infinite.
+TEST(FilterSqp, ReportsAStartThatIsNoLegalIterate) {
   const TouchingScene scene;
   const ReverseConfig config;
   ReverseProblem problem = scene.problem(config);
   problem.end = stacked({{0, 0, 0}, {40, 0, 0}, {40.9, 0.2, 0}});
-  const SqpResult result = filter_sqp(problem, static_iterate(problem), 200, 1.0);
-  EXPECT_EQ(result.status, SolveStatus::kLineSearchFailed);
+  const SqpResult result = solved_from(problem, static_iterate(problem));
+  EXPECT_EQ(result.status, SolveStatus::kNonFinite);
 }
 
-// A body heavier than the others by a factor beyond double precision.
+// A body heavier than the others by a factor beyond double precision, and a solver that pivots over
+// all of them.
 TEST(FilterSqp, ReportsSingularSystems) {
   TouchingScene scene;
   scene.scene.bodies[2].density = 1e25;
   scene.energy = StepEnergy(scene.scene, scene.physics, scene.task.push);
-  const ReverseConfig config;
+  ReverseConfig config;
+  config.kkt = KktMethod::kCyclicReduction;
   ReverseProblem problem = scene.problem(config);
   problem.end = stacked({{0, 0, 0}, {40, 0, 0}, {0, 40, 0}});
-  const SqpResult result = filter_sqp(problem, static_iterate(problem), 200, 1.0);
+  const SqpResult result = solved_from(problem, static_iterate(problem));
   EXPECT_EQ(result.status, SolveStatus::kSingular);
 }
 

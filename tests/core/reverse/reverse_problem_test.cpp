@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/reverse/problem_lanes.hpp"
 #include "tests/support/touching_scene.hpp"
 
 namespace rtg {
@@ -18,15 +19,22 @@ Iterate in_contact(const ReverseProblem& problem) {
   return x;
 }
 
+/// (t̄₀, θ̄₀) after sub-step k.
+Vector3d robot_path(const ReverseProblem& problem, int k) {
+  ProblemLanes<double> lanes(problem);
+  lanes.load(0, problem);
+  return lanes.robot_path(k);
+}
+
 TEST(ReverseProblem, RobotPathIsStraightAndEndsInTheEnd) {
   const TouchingScene scene;
   const ReverseConfig config;
   ReverseProblem problem = scene.problem(config);
   problem.direction = {0.6, 0.8};
   problem.end.head<3>() = Vector3d(1, 2, 0.3);
-  EXPECT_LT((problem.robot_path(10) - Vector3d(1, 2, 0.3)).norm(), 1e-15);
-  EXPECT_LT((problem.robot_path(0) - Vector3d(1 - 1.2, 2 - 1.6, 0.3)).norm(), 1e-15);
-  EXPECT_LT((problem.robot_path(4) - Vector3d(1 - 0.72, 2 - 0.96, 0.3)).norm(), 1e-15);
+  EXPECT_LT((robot_path(problem, 10) - Vector3d(1, 2, 0.3)).norm(), 1e-15);
+  EXPECT_LT((robot_path(problem, 0) - Vector3d(1 - 1.2, 2 - 1.6, 0.3)).norm(), 1e-15);
+  EXPECT_LT((robot_path(problem, 4) - Vector3d(1 - 0.72, 2 - 0.96, 0.3)).norm(), 1e-15);
 }
 
 TEST(ReverseProblem, StaticIterateRestsInTheEnd) {
@@ -89,7 +97,7 @@ TEST(ReverseProblem, ObjectiveIsTheSumOfItsTerms) {
   ReverseProblem problem = scene.problem(config);
   problem.end = stacked({{0, 0, 0}, {20, 0, 0}, {0, 20, 0}});
   Iterate x = static_iterate(problem);
-  for (int k = 0; k <= 10; ++k) x.p[static_cast<std::size_t>(k)].head<3>() = problem.robot_path(k);
+  for (int k = 0; k <= 10; ++k) x.p[static_cast<std::size_t>(k)].head<3>() = robot_path(problem, k);
   EXPECT_NEAR(objective(problem, x), -config.robot_weight * 2.0, 1e-14);
   x.p[0][3] -= 0.5;  // box 1 further back
   x.p[3][1] += 0.1;  // robot beside its path, and turned
@@ -110,7 +118,7 @@ TEST(ReverseProblem, ObjectsPayForTheirSpeedTheRobotDoesNot) {
   ReverseProblem problem = scene.problem(config);
   problem.end = stacked({{0, 0, 0}, {20, 0, 0}, {0, 20, 0}});
   Iterate x = static_iterate(problem);
-  for (int k = 0; k <= 10; ++k) x.p[static_cast<std::size_t>(k)].head<3>() = problem.robot_path(k);
+  for (int k = 0; k <= 10; ++k) x.p[static_cast<std::size_t>(k)].head<3>() = robot_path(problem, k);
   const double before = objective(problem, x), stride = scene.energy.stride();
   for (std::size_t k = 0; k < 5; ++k) x.p[k][4] += 2.0 * stride;  // box 1, in one sub-step
   EXPECT_NEAR(objective(problem, x) - before, 0.7 * 8.0, 1e-12);
@@ -130,19 +138,6 @@ TEST(ReverseProblem, ObjectiveHoldsTheBarrierOfTheStart) {
       barrier += scene.energy.barrier().value(scene.energy.gap_value(c, problem.end));
   EXPECT_GT(barrier, 0.0);
   EXPECT_NEAR(objective(problem, touching) - objective(problem, apart), barrier, 1e-12);
-}
-
-TEST(ReverseProblem, ContactsMayActWhenNearOrWithAForceLeft) {
-  const TouchingScene scene;
-  const ReverseConfig config;
-  const ReverseProblem problem = scene.problem(config);
-  Iterate x = static_iterate(problem);
-  EXPECT_TRUE(may_act(problem, x, 0, 0));
-  x.p[0] = stacked({{0, 0, 0}, {20, 0, 0}, {0, 20, 0}});
-  x.forces[0].setZero();
-  EXPECT_FALSE(may_act(problem, x, 0, 0));
-  x.forces[0][0] = 1e-9;
-  EXPECT_TRUE(may_act(problem, x, 0, 0));
 }
 
 }  // namespace

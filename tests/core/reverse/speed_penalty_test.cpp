@@ -10,9 +10,9 @@ namespace rtg {
 namespace {
 
 constexpr double kWeight = 0.3, kStride = 0.2;
-const Damping kBody{2.0, 0.5, false};
+const Damping<double> kBody{2.0, 0.5, false};
 
-SpeedPenalty at(const Vector3d& way) { return speed_penalty(kWeight, kStride, kBody, way); }
+SpeedPenalty<double> at(const Vector3d& way) { return {kWeight, kStride, kBody, way}; }
 
 TEST(SpeedPenalty, IsTheCubeOfTheSquaredSpeed) {
   EXPECT_EQ(at(Vector3d::Zero()).value, 0.0);
@@ -26,7 +26,8 @@ TEST(SpeedPenalty, DerivativesMatchDifferences) {
   for (int trial = 0; trial < 20; ++trial) {
     const Vector3d way = testing::noise(3, 0.3, rng), along = testing::noise(3, 1.0, rng);
     const double t = 1e-5;
-    const SpeedPenalty here = at(way), ahead = at(way + t * along), behind = at(way - t * along);
+    const SpeedPenalty<double> here = at(way), ahead = at(way + t * along),
+                               behind = at(way - t * along);
     EXPECT_NEAR((ahead.value - behind.value) / (2.0 * t), here.gradient.dot(along), 1e-6);
     EXPECT_LT(((ahead.gradient - behind.gradient) / (2.0 * t) - here.hessian * along).norm(), 1e-5);
   }

@@ -9,110 +9,85 @@ namespace {
 
 using testing::TouchingScene;
 
-/// A trajectory at rest with two boxes 0.01 apart, and directions from it.
+/// A trajectory at rest in contact, and steps from it.
 struct Trial {
   TouchingScene scene;
   ReverseConfig config;
-  ReverseProblem problem{scene.energy, config, stacked({{-5, 0, 0}, {0, 0, 0}, {0.1, 1.21, 0}}),
-                         Vector2d::UnitX(), 3};
-  Iterate x = static_iterate(problem);
+  ReverseProblem problem = scene.problem(config);
+  ProblemLanes<double> lanes{problem};
+  Trajectory<double> x{lanes.energy, problem.sub_steps}, moved = x;
+  StageStep<double> step{3, problem.sub_steps};
+  PerContact<double> force_step = x.forces;
 
-  Direction none() const {
-    return {std::vector<VectorXd>(4, VectorXd::Zero(9)),
-            std::vector<VectorXd>(4, VectorXd::Zero(x.forces[0].size())),
-            std::vector<Vector3d>(4, Vector3d::Zero()),
-            std::vector<VectorXd>(4, VectorXd::Zero(9))};
+  Trial() {
+    lanes.load(0, problem);
+    x.load(0, problem, static_iterate(problem));
+    moved = x;
+    for (std::size_t k = 0; k < step.poses.size(); ++k) {
+      for (Vec3<double>& block : step.poses[k]) block.setZero();
+      for (Vec3<double>& block : step.multipliers[k]) block.setZero();
+      step.controls[k].setZero();
+    }
   }
-  /// One coordinate of one pose alone.
-  Direction coordinate(std::size_t level, int m, double size) const {
-    Direction d = none();
-    d.p[level][m] = size;
-    return d;
-  }
-  std::optional<Iterate> operator()(const Direction& d, double alpha = 1.0) const {
-    return trial_point(problem, x, d, alpha);
+  bool is_bounded(std::size_t body, int m, double size, double alpha = 1.0) {
+    step.poses[2][body][m] = size;
+    const bool answer = bounded(step, alpha);
+    step.poses[2][body][m] = 0.0;
+    return answer;
   }
 };
 
-TEST(TrialPoint, MovesEverythingByAlphaTimesTheDirection) {
-  const Trial trial;
-  Direction d = trial.none();
-  Rng rng(1);
-  for (std::size_t k = 0; k < 4; ++k) {
-    d.p[k].head<3>() = testing::noise(3, 0.1, rng);
-    d.forces[k] = testing::noise(d.forces[k].size(), 1.0, rng);
-    d.controls[k] = testing::noise(3, 1.0, rng);
-    d.multipliers[k] = testing::noise(9, 1.0, rng);
-  }
-  const auto moved = trial(d, 0.25);
-  ASSERT_TRUE(moved);
-  for (std::size_t k = 0; k < 4; ++k) {
-    EXPECT_EQ(moved->p[k], trial.x.p[k] + 0.25 * d.p[k]);
-    EXPECT_EQ(moved->forces[k], trial.x.forces[k] + 0.25 * d.forces[k]);
-    EXPECT_EQ(moved->controls[k], Vector3d(trial.x.controls[k] + 0.25 * d.controls[k]));
-    EXPECT_EQ(moved->multipliers[k], trial.x.multipliers[k] + 0.25 * d.multipliers[k]);
-  }
-}
-
-TEST(TrialPoint, LongMovesTurnsAndNonsenseAreRefused) {
-  const Trial trial;
-  EXPECT_TRUE(trial(trial.coordinate(2, 0, 0.99)));
-  EXPECT_FALSE(trial(trial.coordinate(2, 0, 1.01)));
-  EXPECT_TRUE(trial(trial.coordinate(2, 0, 1.01), 0.5));
-  EXPECT_TRUE(trial(trial.coordinate(2, 2, 0.49)));
-  EXPECT_FALSE(trial(trial.coordinate(2, 2, -0.51)));
-  EXPECT_FALSE(trial(trial.coordinate(0, 1, NAN)));
-  EXPECT_FALSE(trial(trial.coordinate(3, 5, INFINITY)));
-}
-
-TEST(TrialPoint, GapsKeepATenthOfThemselves) {
-  const Trial trial;
-  EXPECT_TRUE(trial(trial.coordinate(1, 7, -0.0088)));
-  EXPECT_FALSE(trial(trial.coordinate(1, 7, -0.0092)));
-  EXPECT_FALSE(trial(trial.coordinate(1, 7, -0.02)));
-  EXPECT_TRUE(trial(trial.coordinate(1, 7, 0.5)));
-}
-
-TEST(TrialPoint, BodiesMayNotCrossThoughTheirVerticesAreApart) {
-  const Scene bars{{{"robot", "robot", box(2.0, 0.2), 1.0, 0.3, false},
-                    {"bar", "bar", box(0.2, 2.0), 1.0, 0.3, false}}};
-  const StepEnergy energy(bars, {}, {});
-  const ReverseConfig config;
-  const ReverseProblem problem{energy, config, stacked({{0, 0, 0}, {0.9, 1.3, 0}}),
-                               Vector2d::UnitX(), 1};
-  const Iterate x = static_iterate(problem);
-  Direction d{std::vector<VectorXd>(2, VectorXd::Zero(6)),
-              std::vector<VectorXd>(2, VectorXd::Zero(8)),
-              std::vector<Vector3d>(2),
-              {}};
-  d.multipliers = d.p;
-  d.controls.assign(2, Vector3d::Zero());
-  d.p[0].tail<3>() = Vector3d(-0.4, -0.9, 0.0);  // from beside the bar's end onto its middle
-  EXPECT_FALSE(trial_point(problem, x, d, 1.0));
-  d.p[0].tail<3>() = Vector3d(0.4, -0.9, 0.0);  // past its end
-  EXPECT_TRUE(trial_point(problem, x, d, 1.0));
-}
-
-TEST(TrialPoint, AForceThatIsAllButGoneIsGone) {
-  const Trial trial;
-  Direction d = trial.none();
-  Eigen::Index contact = 0;
-  const double force = trial.x.forces[1].maxCoeff(&contact);
-  ASSERT_GT(force, 0.0);
-  d.forces[1][contact] = -force * (1.0 - 1e-15);
-  EXPECT_EQ(trial(d)->forces[1][contact], 0.0);
-  d.forces[1][contact] = -force * (1.0 - 1e-9);
-  EXPECT_GT(trial(d)->forces[1][contact], 0.0);
-}
-
-TEST(TrialPoint, ForcesOfThePaperFollowTheGaps) {
+TEST(Trial, MovesEverythingByAlphaTimesTheStep) {
   Trial trial;
-  trial.config = reverse_preset(ReversePreset::kPaper);
-  Direction d = trial.coordinate(1, 7, 0.005);
-  d.forces[1].setConstant(7.0);
-  const auto moved = trial(d);
-  ASSERT_TRUE(moved);
-  EXPECT_EQ(moved->forces[1], trial.scene.energy.forces(moved->p[1]));
+  Rng rng(1);
+  for (std::size_t k = 0; k < trial.step.poses.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      trial.step.poses[k][i] = testing::noise(3, 0.1, rng);
+      trial.step.multipliers[k][i] = testing::noise(3, 1.0, rng);
+    }
+    trial.step.controls[k] = testing::noise(3, 1.0, rng);
+    for (double& force : trial.force_step[k]) force = rng.uniform(0.1, 1.0);
+  }
+  make_trial(trial.x, trial.step, trial.force_step, 0.25, trial.moved);
+  for (std::size_t k = 0; k < trial.step.poses.size(); ++k) {
+    for (std::size_t m = 0; m < 9; ++m) {
+      const auto row = static_cast<Eigen::Index>(m % 3);
+      EXPECT_EQ(trial.moved.p[k].p[m], trial.x.p[k].p[m] + 0.25 * trial.step.poses[k][m / 3][row]);
+      if (k > 0) {
+        EXPECT_EQ(trial.moved.multipliers[k][m], 0.25 * trial.step.multipliers[k][m / 3][row]);
+      }
+    }
+    for (std::size_t c = 0; c < trial.x.forces[k].size(); ++c)
+      EXPECT_DOUBLE_EQ(trial.moved.forces[k][c],
+                       trial.x.forces[k][c] + 0.25 * trial.force_step[k][c]);
+    if (k > 0) {
+      EXPECT_EQ(trial.moved.controls[k], Vector3d(0.25 * trial.step.controls[k]));
+    }
+    EXPECT_EQ(trial.moved.p[k].turns[1].s, std::sin(trial.moved.p[k].p[5]));
+  }
+}
+
+TEST(Trial, LongMovesTurnsAndNonsenseAreRefused) {
+  Trial trial;
+  EXPECT_TRUE(trial.is_bounded(0, 0, 0.99));
+  EXPECT_FALSE(trial.is_bounded(0, 0, 1.01));
+  EXPECT_TRUE(trial.is_bounded(0, 0, 1.01, 0.5));
+  EXPECT_TRUE(trial.is_bounded(0, 2, 0.49));
+  EXPECT_FALSE(trial.is_bounded(0, 2, -0.51));
+  EXPECT_FALSE(trial.is_bounded(1, 1, NAN));
+  EXPECT_FALSE(trial.is_bounded(2, 2, INFINITY));
+}
+
+TEST(Trial, AForceThatIsAllButGoneIsGone) {
+  Trial trial;
+  const auto most = std::ranges::max_element(trial.x.forces[1]);
+  const auto contact = static_cast<std::size_t>(most - trial.x.forces[1].begin());
+  ASSERT_GT(*most, 0.0);
+  for (const auto& [rest, gone] : {std::pair{1e-15, true}, std::pair{1e-9, false}}) {
+    trial.force_step[1][contact] = -*most * (1.0 - rest);
+    make_trial(trial.x, trial.step, trial.force_step, 1.0, trial.moved);
+    EXPECT_EQ(trial.moved.forces[1][contact] == 0.0, gone) << rest;
+  }
 }
 
 }  // namespace

@@ -28,11 +28,16 @@ std::vector<ReverseJob> layer(const Task& task) {
   return jobs;
 }
 
+// Enough of them that threads solve different slices of it together.
 TEST(Simulators, ALayerOfReverseSolvesHasTheSameBitsOn1To16Threads) {
-  Task task = gathering();
-  task.push.headings = 8;
-  const std::vector<ReverseJob> jobs = layer(task);
-  const SolveOne solve = reverse_solver(task, {}, {}, ReverseMode::kRrbs);
+  const Task task = gathering();
+  std::vector<ReverseJob> jobs;
+  for (int node = 0; node < 3; ++node)
+    for (ReverseJob job : layer(task)) {
+      job.end[1].y += 0.02 * node;
+      jobs.push_back(std::move(job));
+    }
+  const SolveBatch solve = reverse_solver(task, {}, {}, ReverseMode::kRrbs);
   const std::vector<ReverseResult> reference = solve_on_threads(solve, 1)(jobs);
   const auto iterations = std::ranges::max(reference, {}, &ReverseResult::iterations).iterations;
   ASSERT_GT(iterations, 10);  // solves in contact are among them
@@ -61,11 +66,14 @@ TEST(Simulators, ReplayIsBox2dsPushAndItsSettling) {
 
 TEST(Simulators, NaiveModeIsTheNaiveReverse) {
   const Task task = gathering();
-  const SolveOne solve = reverse_solver(task, {}, {}, ReverseMode::kNaive);
+  const SolveBatch solve = reverse_solver(task, {}, {}, ReverseMode::kNaive);
   const NaiveReverse naive(task.scene, task.push);
-  for (const ReverseJob& job : layer(task)) {
-    EXPECT_EQ(solve(job).status, naive.solve(job).status);
-    EXPECT_EQ(solve(job).starts, naive.solve(job).starts);
+  const std::vector<ReverseJob> jobs = layer(task);
+  const std::vector<ReverseResult> results = solve(jobs);
+  ASSERT_EQ(results.size(), jobs.size());
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    EXPECT_EQ(results[k].status, naive.solve(jobs[k]).status);
+    EXPECT_EQ(results[k].starts, naive.solve(jobs[k]).starts);
   }
 }
 

@@ -72,8 +72,11 @@ TEST(ThreadPool, SolvesInJobOrderForAnyNumberOfThreads) {
   const std::vector<ReverseJob> jobs = numbered<ReverseJob>(100);
   for (int threads = 1; threads <= 8; ++threads) {
     const SolveBatch solve = solve_on_threads(
-        [](const ReverseJob& job) {
-          return ReverseResult{SolveStatus::kInfeasible, 2 * job.action, {job.end}, -1.0};
+        [](std::span<const ReverseJob> some) {
+          std::vector<ReverseResult> answers;
+          for (const ReverseJob& job : some)
+            answers.push_back({SolveStatus::kInfeasible, 2 * job.action, {job.end}, -1.0});
+          return answers;
         },
         threads);
     const std::vector<ReverseResult> results = solve(jobs);
@@ -109,9 +112,10 @@ TEST(ThreadPool, ReplaysInJobOrderForAnyNumberOfThreads) {
 
 TEST(ThreadPool, PassesExceptionsOnToTheCaller) {
   const SolveBatch solve = solve_on_threads(
-      [](const ReverseJob& job) -> ReverseResult {
-        if (job.action >= 7) throw std::runtime_error("job " + std::to_string(job.action));
-        return {};
+      [](std::span<const ReverseJob> some) {
+        for (const ReverseJob& job : some)
+          if (job.action >= 7) throw std::runtime_error("job " + std::to_string(job.action));
+        return std::vector<ReverseResult>(some.size());
       },
       4);
   try {

@@ -12,7 +12,7 @@ namespace {
 constexpr double kAlpha = 50.0;
 
 double distance(const HalfPlanes& planes, const Vector2d& x) {
-  return SignedDistance<double>(planes, kAlpha, x).value;
+  return signed_distance(planes, kAlpha, x).value;
 }
 
 TEST(SignedDistance, HalfPlanesHaveUnitNormals) {
@@ -41,9 +41,9 @@ TEST(SignedDistance, CutsCornersByTheKnownLength) {
 
 void expect_derivatives(const HalfPlanes& planes, const Vector2d& x, const Vector2d& along) {
   const double t = 1e-6;
-  const SignedDistance<double> d(planes, kAlpha, x);
-  const SignedDistance<double> up(planes, kAlpha, x + t * along);
-  const SignedDistance<double> down(planes, kAlpha, x - t * along);
+  const SignedDistance<double> d = signed_distance(planes, kAlpha, x);
+  const SignedDistance<double> up = signed_distance(planes, kAlpha, x + t * along);
+  const SignedDistance<double> down = signed_distance(planes, kAlpha, x - t * along);
   EXPECT_NEAR(d.gradient.dot(along), (up.value - down.value) / (2.0 * t), 1e-8);
   EXPECT_LT((d.hessian() * along - (up.gradient - down.gradient) / (2.0 * t)).norm(), 1e-6);
   EXPECT_LT((d.third(along) - (up.hessian() - down.hessian()) / (2.0 * t)).norm(), 1e-4);
@@ -60,7 +60,7 @@ TEST(SignedDistance, DerivativesMatchDifferences) {
     const Vector2d off(rng.uniform(-reach, reach), rng.uniform(-reach, reach));
     const Vector2d x = trial % 2 == 0 ? off : Vector2d(corner + off);
     expect_derivatives(hexagon, x, {rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0)});
-    expect_derivatives(hexagon, x, SignedDistance<double>(hexagon, kAlpha, x).gradient);
+    expect_derivatives(hexagon, x, signed_distance(hexagon, kAlpha, x).gradient);
   }
 }
 

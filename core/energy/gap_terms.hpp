@@ -1,0 +1,49 @@
+#pragma once
+
+#include "core/energy/contact_point.hpp"
+#include "core/world/signed_distance.hpp"
+
+namespace rtg {
+
+/// Derivatives of the gap g = d(x) - d₀ of a contact in the pair's coordinates.
+template <class T>
+struct GapTerms {
+  Vec4<T> gradient;
+  Mat4<T> hessian;
+
+  GapTerms(const SignedDistance<T>& d, const Mat2<T>& D, const ContactPoint<T>& p)
+      : gradient(p.pulled(d.gradient)), hessian(p.pulled(D, p)) {
+    p.add_curvature(d.gradient, hessian);
+  }
+};
+
+/// What changes of them along a motion y, turn of the frame included: y·∇ of the gradient and of
+/// the Hessian in q.
+template <class T>
+struct GapRates {
+  Vec4<T> gradient;
+  Mat4<T> hessian;
+
+  GapRates(const SignedDistance<T>& d, const Mat2<T>& D, const ContactPoint<T>& p,
+           const GapTerms<T>& g, const Vec4<T>& y) {
+    const ContactPoint<T> rate = p.along(y);
+    const Vec2<T> n = product(D, rate.x);
+    gradient = p.pulled(n) + rate.pulled_rate(d.gradient) + frame_turn(y[3], g.gradient);
+    const Mat4<T> moving = rate_product(rate, D, p) + row_turn(y[3], g.hessian);
+    hessian = p.pulled(d.third(rate.x), p) + moving + moving.transpose();
+    p.add_curvature(n, hessian);
+    rate.add_curvature_rate(d.gradient, hessian);
+  }
+
+ private:
+  /// Ẋᵀ D X.
+  static Mat4<T> rate_product(const ContactPoint<T>& rate, const Mat2<T>& D,
+                              const ContactPoint<T>& p) {
+    Mat4<T> out = rate.pulled(D, p);
+    out.row(0).setConstant(T(0.0));
+    out.row(1).setConstant(T(0.0));
+    return out;
+  }
+};
+
+}  // namespace rtg

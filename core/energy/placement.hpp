@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "core/math/elementary.hpp"
+
+namespace rtg {
+
+/// Poses of all bodies with the cosines and sines of their angles.
+template <class T>
+struct Placement {
+  explicit Placement(int bodies = 0)
+      : p(3 * static_cast<std::size_t>(bodies), T(0.0)), turns(static_cast<std::size_t>(bodies)) {}
+
+  /// To be called when p has changed.
+  void update() {
+    for (std::size_t i = 0; i < turns.size(); ++i) turns[i] = turn_of(p[3 * i + 2]);
+  }
+  T* body(int i) { return p.data() + 3 * i; }
+  const T* body(int i) const { return p.data() + 3 * i; }
+
+  /// Becomes the other in the lanes of the mask.
+  void assign(const Mask<T>& where, const Placement& other) {
+    for (std::size_t m = 0; m < p.size(); ++m) p[m] = select(where, other.p[m], p[m]);
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+      turns[i].c = select(where, other.turns[i].c, turns[i].c);
+      turns[i].s = select(where, other.turns[i].s, turns[i].s);
+    }
+  }
+
+  std::vector<T> p;  // x, y, θ per body
+  std::vector<Turn<T>> turns;
+};
+
+}  // namespace rtg

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "core/energy/scene_model.hpp"
+
+namespace rtg {
+
+/// Entries of a body in a stacked vector; null for a body that does not move.
+template <class T, class V>
+V* entries(const SceneModel<T>& scene, V* stacked, int body) {
+  return scene.movable(body) ? stacked + 3 * body : nullptr;
+}
+
+/// V y of a pair, y [3·movable].
+template <class T>
+Vec4<T> pushed(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame, const T* y) {
+  const auto [i, j] = scene.pairs()[pair];
+  return frame.pushed(entries(scene, y, i), entries(scene, y, j));
+}
+
+/// Adds Vᵀ g of a pair.
+template <class T>
+void pull(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame, const Vec4<T>& g,
+          T* into) {
+  const auto [i, j] = scene.pairs()[pair];
+  frame.pull(g, entries(scene, into, i), entries(scene, into, j));
+}
+
+/// Adds the blocks of a pair where both bodies move.
+template <class T>
+void scatter(const SceneModel<T>& scene, int pair, const PulledBlocks<T>& blocks,
+             BlockMatrix<T>& into) {
+  const auto [i, j] = scene.pairs()[pair];
+  if (scene.movable(i)) into.add(i, i, blocks.ii);
+  if (scene.movable(j)) into.add(j, j, blocks.jj);
+  if (!scene.movable(i) || !scene.movable(j)) return;
+  into.add(i, j, blocks.ij);
+  into.add(j, i, blocks.ji);
+}
+
+/// The same for a symmetric matrix, the lower half alone: Vᵀ H V.
+template <class T>
+void scatter_lower(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame,
+                   const Mat4<T>& H, BlockMatrix<T>& into) {
+  const auto [i, j] = scene.pairs()[pair];
+  const PulledBlocks<T> blocks(frame, H, frame);
+  if (scene.movable(i)) into.add(i, i, blocks.ii);
+  if (scene.movable(j)) into.add(j, j, blocks.jj);
+  if (!scene.movable(i) || !scene.movable(j)) return;
+  if (j < i)
+    into.add(i, j, blocks.ij);
+  else
+    into.add(j, i, blocks.ji);
+}
+
+}  // namespace rtg

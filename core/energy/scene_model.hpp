@@ -1,0 +1,108 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/energy/barrier.hpp"
+#include "core/energy/contact_point.hpp"
+#include "core/energy/damping.hpp"
+#include "core/energy/placement.hpp"
+#include "core/energy/separating_edges.hpp"
+#include "core/world/physics_config.hpp"
+#include "core/world/push.hpp"
+#include "core/world/scene.hpp"
+
+namespace rtg {
+
+/// Ordered pair of bodies: vertices of `body` against the planes of `other`.
+struct BodyPair {
+  int body = 0, other = 0;
+};
+
+/// Contacts of pair n are n kMaxVertices, n kMaxVertices + 1, ..., one per vertex.
+inline int contact_of(int pair, int vertex) {
+  return pair * static_cast<int>(kMaxVertices) + vertex;
+}
+
+/// Scenes of the same numbers of bodies, one per lane: what energies and contacts are computed
+/// from, in units of k_D/Δt² (core/NOTATION.md). Bodies of a lane may have shapes of their own.
+template <class T>
+class SceneModel {
+ public:
+  /// That scene in every lane: movable bodies first, body 0 is the robot.
+  SceneModel(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push);
+  /// Room for scenes like that one, as many bodies and the same constants, and none in it yet.
+  static SceneModel room_for(const SceneModel<double>& like) { return {like, Room{}}; }
+
+  void load(int lane, const SceneModel<double>& one);
+  /// Nothing in that lane touches anything.
+  void unload(int lane);
+
+  int bodies() const { return bodies_; }
+  int movable() const { return movable_; }
+  bool movable(int body) const { return body < movable_; }
+  /// Pair n + 1 is pair n turned round for even n.
+  const std::vector<BodyPair>& pairs() const { return pairs_; }
+  int pair_count() const { return static_cast<int>(pairs_.size()); }
+  int contacts() const { return contact_of(pair_count(), 0); }
+  const Barrier& barrier() const { return barrier_; }
+  double stride() const { return stride_; }  // of a sub-step [m]
+  double sharpness() const { return sharpness_; }
+  double slip() const { return slip_; }
+  double skin() const { return skin_; }
+  const Damping<T>& damping(int body) const { return damping_[body]; }
+  const Vec3<T>& control_bound() const { return control_bound_; }
+  const T& friction(int pair) const { return friction_[pair]; }
+
+  /// Whether the bodies are close enough for any of their contacts to act.
+  Mask<T> near(int pair, const Placement<T>& at) const {
+    const auto [i, j] = pairs_[pair];
+    const T x = at.body(i)[0] - at.body(j)[0], y = at.body(i)[1] - at.body(j)[1];
+    const T reach = radius_[i] + radius_[j] + T(barrier_.range + skin_);
+    const Mask<T> real = corner_count_[i] > T(0.0);
+    return barrier_.plain ? real : real && x * x + y * y < reach * reach;
+  }
+  PairFrame<T> frame(int pair, const Placement<T>& at) const {
+    const auto [i, j] = pairs_[pair];
+    return {at.body(i), at.turns[i], at.body(j), at.turns[j]};
+  }
+  /// Most vertices that the pair's first body has in any lane.
+  int corners(int pair) const { return corners_[pairs_[pair].body]; }
+  Mask<T> real(int pair, int vertex) const { return corner_count_[pairs_[pair].body] > T(vertex); }
+  ContactPoint<T> point(int pair, int vertex, const PairFrame<T>& frame) const {
+    return {vertices_[pairs_[pair].body][vertex], frame};
+  }
+  const Planes<T>& planes(int pair) const { return planes_[pairs_[pair].other]; }
+  SeparatingEdges<T> edges(int pair) const {
+    return {planes(pair), corner_count_[pairs_[pair].other]};
+  }
+
+  /// λ(g(p)) of every contact [contacts].
+  void forces(const Placement<T>& at, T* lambda) const;
+  /// Least gap of all contacts, at most ĝ [m].
+  T least_gap(const Placement<T>& at) const;
+  /// Separating-axis test of all pairs of which one may move.
+  Mask<T> separated(const Placement<T>& at) const;
+
+ private:
+  template <class U>
+  friend class SceneModel;
+  struct Room {};
+  SceneModel(const SceneModel<double>& like, Room);
+  void add_pairs();
+
+  int movable_, bodies_;
+  std::vector<BodyPair> pairs_;
+  std::vector<T> friction_;  // per pair
+  std::vector<std::array<Vec2<T>, kMaxVertices>> vertices_;
+  std::vector<int> corners_;  // most of any lane
+  std::vector<T> corner_count_;
+  std::vector<Planes<T>> planes_;
+  std::vector<T> radius_;
+  std::vector<Damping<T>> damping_;
+  Vec3<T> control_bound_;
+  Barrier barrier_;
+  double sharpness_, skin_, slip_, stride_;
+};
+
+}  // namespace rtg

@@ -1,0 +1,130 @@
+#pragma once
+
+#include "core/energy/contact_point.hpp"
+
+namespace rtg {
+
+/// Lagged friction of one contact for unit μ_f λ: the potential of the slip u over a sub-step,
+///
+///   φ(u) = √(u² + ε²) - ε,   u = t·(x₊ - x),   t = E ∇d(x),
+///
+/// and its derivatives in the pair's coordinates after (first) and before (second).
+template <class T>
+struct SlipTerms {
+  Vec2<T> tangent;      // t = ∂u/∂x₊
+  Vec2<T> way;          // Eᵀ (x₊ - x), so u = ∇d·way
+  T root, slope, bend;  // √(u² + ε²), φ', φ''
+  T slip;               // u
+  Vec4<T> ahead;        // X₊ᵀ t
+
+  /// `normal`: ∇d(x); `x`: the point before.
+  SlipTerms(const Vec2<T>& normal, const ContactPoint<T>& next, const Vec2<T>& x, double scale)
+      : tangent(turned(normal)) {
+    const Vec2<T> moved = next.x - x;
+    way = {moved.y(), -moved.x()};
+    slip = normal.dot(way);
+    const T e2(scale * scale);
+    root = rtg::root(slip * slip + e2);
+    const T inverse = T(1.0) / root;
+    slope = slip * inverse;
+    bend = e2 * inverse * inverse * inverse;
+    ahead = next.pulled(tangent);
+  }
+
+  T value(double scale) const { return root - T(scale); }
+  /// ∂φ/∂u₊.
+  Vec4<T> gradient() const { return ahead * slope; }
+  /// ∂²φ/∂u₊².
+  Mat4<T> hessian(const ContactPoint<T>& next) const {
+    Mat4<T> H = Mat4<T>::Constant(T(0.0));
+    next.add_curvature(tangent, H);
+    H = H * slope;
+    H += (ahead * bend) * ahead.transpose();
+    return H;
+  }
+};
+
+/// Where a contact slips.
+template <class T>
+struct SlipPlace {
+  const SignedDistance<T>& d;  // of the point before
+  const Mat2<T>& D;            // ∇²d
+  const ContactPoint<T>&after, &before;
+};
+
+/// The rest of φ's second derivatives, and the derivatives of its gradient and Hessian along a
+/// motion y of the pose after (x₊ moves, x stays), turn of the frame included.
+template <class T>
+class SlipRates {
+ public:
+  /// `hessian`: ∂²φ/∂u₊².
+  SlipRates(const SlipTerms<T>& s, const SlipPlace<T>& at, const Mat4<T>& hessian, const Vec4<T>& y)
+      : s_(s), at_(at), rate_(at.after.along(y)), way_(rate_.x.y(), -rate_.x.x()) {
+    tangent_slope_ << -at.D(1, 0), -at.D(1, 1), at.D(0, 0), at.D(0, 1);
+    u_x_ = product(at.D, s.way) - s.tangent;
+    const T slip = s.tangent.dot(rate_.x);
+    slope_ = s.bend * slip;
+    bend_ = T(-3.0) * s.slip * s.bend * slip / (s.root * s.root);
+    ahead_ = rate_.pulled_rate(s.tangent);
+    behind_ = at.before.pulled(u_x_);
+    behind_rate_ = at.before.pulled(product(at.D, way_));
+    next = s.ahead * slope_ + ahead_ * s.slope + frame_turn(y[3], s.gradient());
+    now = behind_ * slope_ + behind_rate_ * s.slope;
+    set_next_next(row_turn(y[3], hessian));
+    set_mixed(y[3]);
+    set_now_now();
+  }
+
+  Mat4<T> cross;                         // ∂²φ/∂u₊∂u
+  Vec4<T> next, now;                     // y·∇₊ of the gradient, after and before
+  Mat4<T> next_next, next_now, now_now;  // y·∇₊ of the Hessian
+
+ private:
+  void set_next_next(const Mat4<T>& turn) {
+    const Mat4<T> half = (ahead_ * s_.bend) * s_.ahead.transpose() + turn;
+    Mat4<T> bent = Mat4<T>::Constant(T(0.0)), bent_rate = bent;
+    at_.after.add_curvature(s_.tangent, bent);
+    rate_.add_curvature_rate(s_.tangent, bent_rate);
+    next_next = bent * slope_ + bent_rate * s_.slope;
+    next_next += (s_.ahead * bend_) * s_.ahead.transpose();
+    next_next += half;
+    next_next += half.transpose();
+  }
+
+  void set_mixed(const T& turn) {
+    const Mat4<T> mixed = at_.after.pulled(tangent_slope_, at_.before);
+    cross = (s_.ahead * s_.bend) * behind_.transpose() + mixed * s_.slope;
+    Mat4<T> mixed_rate = rate_.pulled(tangent_slope_, at_.before);
+    mixed_rate.row(0).setConstant(T(0.0));
+    mixed_rate.row(1).setConstant(T(0.0));
+    next_now = (s_.ahead * bend_ + ahead_ * s_.bend) * behind_.transpose() +
+               (s_.ahead * s_.bend) * behind_rate_.transpose() + mixed * slope_ +
+               mixed_rate * s_.slope + row_turn(turn, cross);
+  }
+
+  void set_now_now() {
+    Mat2<T> u_xx = at_.d.third(s_.way);
+    u_xx -= tangent_slope_;
+    u_xx -= tangent_slope_.transpose();
+    Mat4<T> own = at_.before.pulled(u_xx, at_.before);
+    at_.before.add_curvature(u_x_, own);
+    Mat4<T> own_rate = at_.before.pulled(at_.d.third(way_), at_.before);
+    at_.before.add_curvature(product(at_.D, way_), own_rate);
+    const Mat4<T> half = (behind_rate_ * s_.bend) * behind_.transpose();
+    now_now = (behind_ * bend_) * behind_.transpose() + half + half.transpose() + own * slope_ +
+              own_rate * s_.slope;
+  }
+
+  const SlipTerms<T>& s_;
+  const SlipPlace<T>& at_;
+  ContactPoint<T> rate_;   // (ẋ₊, ȧ₊)
+  Vec2<T> way_;            // rate of Eᵀ (x₊ - x)
+  Mat2<T> tangent_slope_;  // ∂t/∂x = E D
+  Vec2<T> u_x_;            // ∂u/∂x
+  T slope_, bend_;         // rates of φ', φ''
+  Vec4<T> ahead_;          // rate of X₊ᵀ t
+  Vec4<T> behind_;         // Xᵀ ∂u/∂x
+  Vec4<T> behind_rate_;
+};
+
+}  // namespace rtg

@@ -1,0 +1,135 @@
+#include "core/energy/step_potential.hpp"
+
+#include "core/energy/gap_terms.hpp"
+
+namespace rtg {
+
+template <class T>
+void StepPotential<T>::begin(const Placement<T>& now, const T* lag) {
+  now_ = &now;
+  for (int n = 0; n < scene_.pair_count(); ++n) {
+    drags_[n] = 0;
+    const PairFrame<T> frame = scene_.frame(n, now);
+    for (int v = 0; v < scene_.corners(n); ++v) {
+      Lagged& contact = lagged_[contact_of(n, v)];
+      const T& force = lag[contact_of(n, v)];
+      contact.drags = any(force != T(0.0));
+      if (!contact.drags) continue;
+      drags_[n] = 1;
+      const Touch<T> before(scene_, n, v, frame, Mask<T>(true));
+      contact.x = before.point.x;
+      contact.normal = before.distance().gradient;
+      contact.load = scene_.friction(n) * force;
+    }
+  }
+}
+
+template <class T>
+T StepPotential<T>::damping(const Placement<T>& next) const {
+  T sum(0.0);
+  for (int i = 0; i < scene_.movable(); ++i) {
+    const T *after = next.body(i), *before = now_->body(i);
+    const T x = after[0] - before[0], y = after[1] - before[1];
+    const Damping<T>& body = scene_.damping(i);
+    sum = sum + T(0.5) * body.mass * (x * x + y * y) + body.turn_value(after[2] - before[2]);
+  }
+  return sum;
+}
+
+template <class T>
+T StepPotential<T>::value(const Placement<T>& next, const T* were, T* gaps, Mask<T>& legal) const {
+  T sum = damping(next);
+  legal = Mask<T>(true);
+  Mask<T> apart(true);
+  for (int n = 0; n < scene_.pair_count(); ++n) {
+    const Mask<T> close = scene_.near(n, next);
+    if (n % 2 == 0) apart = !close;
+    if (!any(close) && !drags_[n]) {
+      for (int v = 0; v < scene_.corners(n); ++v) gaps[contact_of(n, v)] = Touch<T>::far(scene_);
+      continue;
+    }
+    const PairFrame<T> frame = scene_.frame(n, next);
+    SeparatingEdges<T> edges = scene_.edges(n);
+    for (int v = 0; v < scene_.corners(n); ++v) {
+      const int c = contact_of(n, v);
+      const Touch<T> touch(scene_, n, v, frame, close);
+      edges.note(touch.distances, scene_.real(n, v));
+      gaps[c] = touch.gap();
+      if (any(touch.within)) {
+        legal = legal && keeps_gap(gaps[c], were[c], scene_.barrier());
+        sum = sum + scene_.barrier().value(gaps[c]);
+      }
+      if (!lagged_[c].drags) continue;
+      const SlipTerms<T> s(lagged_[c].normal, touch.point, lagged_[c].x, scene_.slip());
+      sum = sum + lagged_[c].load * s.value(scene_.slip());
+    }
+    apart = apart || edges.separate(scene_.sharpness());  // an edge of either body will do
+    if (n % 2 == 1) legal = legal && apart;
+  }
+  return sum;
+}
+
+template <class T>
+void StepPotential<T>::add_damping(const Placement<T>& next, T* gradient,
+                                   BlockMatrix<T>& hessian) const {
+  for (int i = 0; i < scene_.movable(); ++i) {
+    const T *after = next.body(i), *before = now_->body(i);
+    const Damping<T>& body = scene_.damping(i);
+    const T turn = after[2] - before[2];
+    gradient[3 * i] = gradient[3 * i] + body.mass * (after[0] - before[0]);
+    gradient[3 * i + 1] = gradient[3 * i + 1] + body.mass * (after[1] - before[1]);
+    gradient[3 * i + 2] = gradient[3 * i + 2] + body.turn_slope(turn);
+    Block<T> own = Block<T>::Constant(T(0.0));
+    own(0, 0) = own(1, 1) = body.mass;
+    own(2, 2) = body.turn_curvature(turn);
+    hessian.add(i, i, own);
+  }
+}
+
+template <class T>
+void StepPotential<T>::add_contact(const Touch<T>& touch, const Lagged& lagged, Vec4<T>& slope,
+                                   Mat4<T>& H) const {
+  if (any(touch.within)) {
+    const Barrier& barrier = scene_.barrier();
+    const SignedDistance<T> d = touch.distance();
+    const GapTerms<T> terms(d, d.hessian(), touch.point);
+    const T g = touch.gap(d, touch.within);
+    const T force = select(touch.within, barrier.force(g), T(0.0));
+    const T bend = select(touch.within, barrier.force_slope(g), T(0.0));
+    slope -= terms.gradient * force;
+    H -= (terms.gradient * bend) * terms.gradient.transpose();
+    H -= terms.hessian * force;
+  }
+  if (!lagged.drags) return;
+  const SlipTerms<T> s(lagged.normal, touch.point, lagged.x, scene_.slip());
+  slope += s.gradient() * lagged.load;
+  H += s.hessian(touch.point) * lagged.load;
+}
+
+template <class T>
+void StepPotential<T>::model(const Placement<T>& next, T* gradient, BlockMatrix<T>& hessian) const {
+  add_damping(next, gradient, hessian);
+  for (int n = 0; n < scene_.pair_count(); ++n) {
+    const Mask<T> close = scene_.near(n, next);
+    if (!any(close) && !drags_[n]) continue;
+    const PairFrame<T> frame = scene_.frame(n, next);
+    Vec4<T> slope = Vec4<T>::Constant(T(0.0));
+    Mat4<T> H = Mat4<T>::Constant(T(0.0));
+    bool touched = false;
+    for (int v = 0; v < scene_.corners(n); ++v) {
+      const Touch<T> touch(scene_, n, v, frame, close);
+      const Lagged& lagged = lagged_[contact_of(n, v)];
+      if (!any(touch.within) && !lagged.drags) continue;
+      touched = true;
+      add_contact(touch, lagged, slope, H);
+    }
+    if (!touched) continue;
+    pull(scene_, n, frame, slope, gradient);
+    scatter_lower(scene_, n, frame, H, hessian);
+  }
+}
+
+template class StepPotential<double>;
+template class StepPotential<Lanes>;
+
+}  // namespace rtg

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "core/math/lanes.hpp"
+
+namespace rtg {
+
+template <class T>
+using Block = Eigen::Matrix<T, 3, 3>;
+template <class T>
+using Vec3 = Eigen::Matrix<T, 3, 1>;
+
+/// Bit j of entry i: block (i, j) may differ from zero, in some lane.
+using BlockPattern = std::vector<std::uint64_t>;
+
+/// Square matrix of M × M blocks of 3 × 3, a block row and column per body, row by row. Blocks
+/// outside the pattern are not looked at.
+template <class T>
+struct BlockMatrix {
+  explicit BlockMatrix(int count = 0)
+      : M(count),
+        blocks(static_cast<std::size_t>(count) * static_cast<std::size_t>(count)),
+        pattern(static_cast<std::size_t>(count)) {}
+
+  Block<T>& at(int i, int j) { return blocks[index(i, j)]; }
+  const Block<T>& at(int i, int j) const { return blocks[index(i, j)]; }
+  bool has(int i, int j) const { return (pattern[static_cast<std::size_t>(i)] >> j & 1U) != 0; }
+
+  /// Adds X to block (i, j), which joins the pattern.
+  template <class Summand>
+  void add(int i, int j, const Summand& X) {
+    if (has(i, j)) {
+      at(i, j) += X;
+    } else {
+      pattern[static_cast<std::size_t>(i)] |= std::uint64_t{1} << j;
+      at(i, j) = X;
+    }
+  }
+  void clear() { pattern.assign(pattern.size(), 0); }
+
+  int M;
+  std::vector<Block<T>> blocks;
+  BlockPattern pattern;
+
+ private:
+  std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(M) + static_cast<std::size_t>(j);
+  }
+};
+
+/// A vector cut alike.
+template <class T>
+using BlockColumn = std::vector<Vec3<T>>;
+
+/// The bits of a pattern's row, in order: for (const int j : Bits(row)) ...
+class Bits {
+ public:
+  explicit Bits(std::uint64_t bits) : bits_(bits) {}
+  struct Iterator {
+    std::uint64_t rest;
+    int operator*() const { return std::countr_zero(rest); }
+    Iterator& operator++() {
+      rest &= rest - 1;
+      return *this;
+    }
+    bool operator!=(const Iterator& other) const { return rest != other.rest; }
+  };
+  Iterator begin() const { return {bits_}; }
+  Iterator end() const { return {0}; }
+
+ private:
+  std::uint64_t bits_;
+};
+
+/// The inverse of a symmetric block, by cofactors; `determinant` as found.
+template <class T>
+Block<T> symmetric_inverse(const Block<T>& A, T& determinant) {
+  const T c00 = A(1, 1) * A(2, 2) - A(2, 1) * A(2, 1);
+  const T c10 = A(2, 0) * A(2, 1) - A(1, 0) * A(2, 2);
+  const T c20 = A(1, 0) * A(2, 1) - A(2, 0) * A(1, 1);
+  const T c11 = A(0, 0) * A(2, 2) - A(2, 0) * A(2, 0);
+  const T c21 = A(1, 0) * A(2, 0) - A(0, 0) * A(2, 1);
+  const T c22 = A(0, 0) * A(1, 1) - A(1, 0) * A(1, 0);
+  determinant = A(0, 0) * c00 + A(1, 0) * c10 + A(2, 0) * c20;
+  const T scale = T(1.0) / determinant;
+  Block<T> out;
+  out << c00 * scale, c10 * scale, c20 * scale, c10 * scale, c11 * scale, c21 * scale, c20 * scale,
+      c21 * scale, c22 * scale;
+  return out;
+}
+
+/// Whether the determinant of A is more than rounding.
+template <class T>
+Mask<T> is_regular(const Block<T>& A, const T& determinant) {
+  constexpr double kRounding = 1e-14;
+  T size(0.0);
+  for (int m = 0; m < 3; ++m)
+    for (int n = 0; n <= m; ++n) size = greater(size, magnitude(A(m, n)));
+  return magnitude(determinant) > T(kRounding) * size * size * size;
+}
+
+}  // namespace rtg

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <experimental/simd>
+
+namespace rtg {
+
+/// As many doubles as a vector register holds: one number of that many candidates at once. Kernels
+/// are templates over a scalar T, which is double (one candidate) or Lanes. No operation mixes
+/// lanes, so what becomes of a candidate does not depend on those beside it.
+using Lanes = std::experimental::native_simd<double>;
+
+/// Truth per lane: bool for double.
+template <class T>
+struct MaskOf {
+  using type = bool;
+};
+template <>
+struct MaskOf<Lanes> {
+  using type = Lanes::mask_type;
+};
+template <class T>
+using Mask = typename MaskOf<T>::type;
+
+template <class T>
+inline constexpr int kWidth = 1;
+template <>
+inline constexpr int kWidth<Lanes> = static_cast<int>(Lanes::size());
+
+inline double select(bool mask, double yes, double no) { return mask ? yes : no; }
+inline Lanes select(const Lanes::mask_type& mask, const Lanes& yes, const Lanes& no) {
+  Lanes out = no;
+  where(mask, out) = yes;
+  return out;
+}
+
+inline bool any(bool mask) { return mask; }
+inline bool any(const Lanes::mask_type& mask) { return any_of(mask); }
+
+inline double greater(double a, double b) { return a > b ? a : b; }
+inline double lesser(double a, double b) { return a < b ? a : b; }
+inline Lanes greater(const Lanes& a, const Lanes& b) { return select(a > b, a, b); }
+inline Lanes lesser(const Lanes& a, const Lanes& b) { return select(a < b, a, b); }
+
+inline double magnitude(double x) { return std::abs(x); }
+inline Lanes magnitude(const Lanes& x) { return std::experimental::abs(x); }
+inline double root(double x) { return std::sqrt(x); }
+inline Lanes root(const Lanes& x) { return std::experimental::sqrt(x); }
+
+/// Lane l of x.
+inline double lane(double x, int) { return x; }
+inline double lane(const Lanes& x, int l) { return x[static_cast<std::size_t>(l)]; }
+inline bool lane(bool x, int) { return x; }
+inline bool lane(const Lanes::mask_type& x, int l) { return x[static_cast<std::size_t>(l)]; }
+inline void set_lane(double& x, int, double value) { x = value; }
+inline void set_lane(Lanes& x, int l, double value) { x[static_cast<std::size_t>(l)] = value; }
+inline void set_lane(bool& x, int, bool value) { x = value; }
+inline void set_lane(Lanes::mask_type& x, int l, bool value) {
+  x[static_cast<std::size_t>(l)] = value;
+}
+
+}  // namespace rtg
+
+template <>
+struct Eigen::NumTraits<rtg::Lanes> : Eigen::NumTraits<double> {
+  using Real = rtg::Lanes;
+  using NonInteger = rtg::Lanes;
+  using Nested = rtg::Lanes;
+  enum { IsComplex = 0, RequireInitialization = 1, ReadCost = 1, AddCost = 1, MulCost = 1 };
+};

@@ -1,0 +1,102 @@
+#pragma once
+
+#include "core/math/block_matrix.hpp"
+
+namespace rtg {
+
+/// A sum of products of blocks, member by member, so that it stays in registers: the compiler keeps
+/// an Eigen matrix, even a local one, in memory. A: 3 × 3, B: as the sum, 3 × 3 or 3 × 1; both may
+/// be transposed.
+template <class Entry>
+class RegisterSum;
+
+template <class T>
+class RegisterSum<Block<T>> {
+ public:
+  RegisterSum() : a_(0.0), b_(0.0), c_(0.0), d_(0.0), e_(0.0), f_(0.0), g_(0.0), h_(0.0), i_(0.0) {}
+  explicit RegisterSum(const Block<T>& X)
+      : a_(X(0, 0)),
+        b_(X(1, 0)),
+        c_(X(2, 0)),
+        d_(X(0, 1)),
+        e_(X(1, 1)),
+        f_(X(2, 1)),
+        g_(X(0, 2)),
+        h_(X(1, 2)),
+        i_(X(2, 2)) {}
+
+  template <class Left, class Right>
+  void add(const Left& A, const Right& B) {
+    for (int k = 0; k < 3; ++k) {
+      const T x = A(0, k), y = A(1, k), z = A(2, k), u = B(k, 0), v = B(k, 1), w = B(k, 2);
+      a_ = a_ + x * u, b_ = b_ + y * u, c_ = c_ + z * u;
+      d_ = d_ + x * v, e_ = e_ + y * v, f_ = f_ + z * v;
+      g_ = g_ + x * w, h_ = h_ + y * w, i_ = i_ + z * w;
+    }
+  }
+  template <class Left, class Right>
+  void subtract(const Left& A, const Right& B) {
+    for (int k = 0; k < 3; ++k) {
+      const T x = A(0, k), y = A(1, k), z = A(2, k), u = B(k, 0), v = B(k, 1), w = B(k, 2);
+      a_ = a_ - x * u, b_ = b_ - y * u, c_ = c_ - z * u;
+      d_ = d_ - x * v, e_ = e_ - y * v, f_ = f_ - z * v;
+      g_ = g_ - x * w, h_ = h_ - y * w, i_ = i_ - z * w;
+    }
+  }
+  void add(const Block<T>& X) {
+    a_ = a_ + X(0, 0), b_ = b_ + X(1, 0), c_ = c_ + X(2, 0);
+    d_ = d_ + X(0, 1), e_ = e_ + X(1, 1), f_ = f_ + X(2, 1);
+    g_ = g_ + X(0, 2), h_ = h_ + X(1, 2), i_ = i_ + X(2, 2);
+  }
+  void add_transposed(const Block<T>& X) {
+    a_ = a_ + X(0, 0), b_ = b_ + X(0, 1), c_ = c_ + X(0, 2);
+    d_ = d_ + X(1, 0), e_ = e_ + X(1, 1), f_ = f_ + X(1, 2);
+    g_ = g_ + X(2, 0), h_ = h_ + X(2, 1), i_ = i_ + X(2, 2);
+  }
+  void subtract(const Block<T>& X) {
+    a_ = a_ - X(0, 0), b_ = b_ - X(1, 0), c_ = c_ - X(2, 0);
+    d_ = d_ - X(0, 1), e_ = e_ - X(1, 1), f_ = f_ - X(2, 1);
+    g_ = g_ - X(0, 2), h_ = h_ - X(1, 2), i_ = i_ - X(2, 2);
+  }
+  void scale(const T& by) {
+    a_ = a_ * by, b_ = b_ * by, c_ = c_ * by, d_ = d_ * by, e_ = e_ * by;
+    f_ = f_ * by, g_ = g_ * by, h_ = h_ * by, i_ = i_ * by;
+  }
+  void store(Block<T>& X) const {
+    X(0, 0) = a_, X(1, 0) = b_, X(2, 0) = c_;
+    X(0, 1) = d_, X(1, 1) = e_, X(2, 1) = f_;
+    X(0, 2) = g_, X(1, 2) = h_, X(2, 2) = i_;
+  }
+  void store_transposed(Block<T>& X) const {
+    X(0, 0) = a_, X(0, 1) = b_, X(0, 2) = c_;
+    X(1, 0) = d_, X(1, 1) = e_, X(1, 2) = f_;
+    X(2, 0) = g_, X(2, 1) = h_, X(2, 2) = i_;
+  }
+
+ private:
+  T a_, b_, c_, d_, e_, f_, g_, h_, i_;
+};
+
+template <class T>
+class RegisterSum<Vec3<T>> {
+ public:
+  RegisterSum() : a_(0.0), b_(0.0), c_(0.0) {}
+  explicit RegisterSum(const Vec3<T>& x) : a_(x[0]), b_(x[1]), c_(x[2]) {}
+
+  template <class Left>
+  void add(const Left& A, const Vec3<T>& x) {
+    for (int k = 0; k < 3; ++k)
+      a_ = a_ + A(0, k) * x[k], b_ = b_ + A(1, k) * x[k], c_ = c_ + A(2, k) * x[k];
+  }
+  template <class Left>
+  void subtract(const Left& A, const Vec3<T>& x) {
+    for (int k = 0; k < 3; ++k)
+      a_ = a_ - A(0, k) * x[k], b_ = b_ - A(1, k) * x[k], c_ = c_ - A(2, k) * x[k];
+  }
+  void store(Vec3<T>& x) const { x[0] = a_, x[1] = b_, x[2] = c_; }
+
+ private:
+  T a_, b_, c_;
+};
+
+}  // namespace rtg

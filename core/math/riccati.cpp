@@ -1,0 +1,270 @@
+#include "core/math/riccati.hpp"
+
+#include <algorithm>
+
+namespace rtg {
+namespace {
+
+/// y ← y + A x.
+template <class T>
+void add_to(BlockColumn<T>& y, const BlockMatrix<T>& A, const BlockColumn<T>& x) {
+  for (int i = 0; i < A.M; ++i) {
+    RegisterSum<Vec3<T>> sum(y[i]);
+    for (const int j : Bits(A.pattern[i])) sum.add(A.at(i, j), x[j]);
+    sum.store(y[i]);
+  }
+}
+
+template <class T>
+void add_product(Vec3<T>& y, const Block<T>& A, const Vec3<T>& x) {
+  RegisterSum<Vec3<T>> sum(y);
+  sum.add(A, x);
+  sum.store(y);
+}
+template <class T>
+void add_transposed_product(Vec3<T>& y, const Block<T>& A, const Vec3<T>& x) {
+  RegisterSum<Vec3<T>> sum(y);
+  sum.add(A.transpose(), x);
+  sum.store(y);
+}
+
+/// y ← y + Aᵀ x.
+template <class T>
+void add_transposed_to(BlockColumn<T>& y, const BlockMatrix<T>& A, const BlockColumn<T>& x) {
+  for (int i = 0; i < A.M; ++i)
+    for (const int j : Bits(A.pattern[i])) add_transposed_product(y[j], A.at(i, j), x[i]);
+}
+
+/// y ← y + A x for a symmetric A, whose lower half counts.
+template <class T>
+void add_symmetric_to(BlockColumn<T>& y, const BlockMatrix<T>& A, const BlockColumn<T>& x) {
+  for (int i = 0; i < A.M; ++i)
+    for (const int j : Bits(A.pattern[i])) {
+      if (j > i) break;
+      add_product(y[i], A.at(i, j), x[j]);
+      if (j < i) add_transposed_product(y[j], A.at(i, j), x[i]);
+    }
+}
+
+}  // namespace
+
+template <class T>
+Riccati<T>::Riccati(int count, int sub_steps)
+    : M_(count),
+      E_(static_cast<std::size_t>(sub_steps) + 1, BlockLdl<T>(count)),
+      start_(count),
+      gain_(E_.size(), Gain{std::vector<Block<T>>(static_cast<std::size_t>(count)),
+                            Vec3<T>::Constant(T(0.0))}),
+      P_(static_cast<std::size_t>(count) * static_cast<std::size_t>(count)),
+      W_(P_),
+      X_(P_),
+      columns_(static_cast<std::size_t>(count)),
+      C_(static_cast<std::size_t>(count)),
+      v_(static_cast<std::size_t>(count)),
+      w_(v_),
+      Se_(v_),
+      row_(C_),
+      whole_(count) {}
+
+template <class T>
+Mask<T> Riccati<T>::solve(const StageSystem<T>& system, StageStep<T>& step) {
+  regular_ = Mask<T>(true);
+  set_end(system.stages.back());
+  for (int k = system.h; k > 0; --k) eliminate(system.stages[k], system.stages[k - 1], k);
+  for (int i = 0; i < M_; ++i)
+    for (int j = 0; j <= i; ++j) whole_.add(i, j, P_[i * M_ + j]);
+  start_.factorize(whole_);
+  whole_.clear();
+  roll_forward(system, step);
+  find_multipliers(system, step);
+  return regular_ && start_.regular();
+}
+
+/// P and v of the last stage.
+template <class T>
+void Riccati<T>::set_end(const Stage& stage) {
+  for (int i = 0; i < M_; ++i)
+    for (int j = 0; j <= i; ++j) {
+      const bool has = stage.Q.has(i, j);
+      const RegisterSum<Block<T>> own =
+          has ? RegisterSum<Block<T>>(stage.Q.at(i, j)) : RegisterSum<Block<T>>();
+      own.store(P_[i * M_ + j]);
+      own.store_transposed(P_[j * M_ + i]);
+    }
+  v_ = stage.q;
+}
+
+/// W. Row by row, each in and out once: what is worked on stays in the fastest cache.
+template <class T>
+void Riccati<T>::sandwich(const BlockLdl<T>& E) {
+  for (int i = 0; i < M_; ++i) {  // P S, transposed
+    std::copy_n(P_.begin() + i * M_, M_, row_.begin());
+    E.solve_row(row_.data(), 0, 0);
+    for (int j = 0; j < M_; ++j) X_[j * M_ + i] = row_[j].transpose();
+  }
+  for (int i = 0; i < M_; ++i) {  // times S, a symmetric product
+    std::copy_n(X_.begin() + i * M_, M_, row_.begin());
+    E.solve_row(row_.data(), 0, i);
+    for (int j = i; j < M_; ++j) {
+      W_[i * M_ + j] = row_[j];
+      if (j > i) W_[j * M_ + i] = row_[j].transpose();
+    }
+  }
+}
+
+/// C and X, row by row.
+template <class T>
+void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E) {
+  for (int i = 0; i < M_; ++i) {
+    find_coupling(stage, E, i);
+    for (int j = 0; j < M_; ++j) {
+      RegisterSum<Block<T>> sum;
+      for (const int k : Bits(columns_[j])) sum.add(row_[k], stage.F.at(k, j));
+      sum.store(X_[i * M_ + j]);
+    }
+  }
+}
+
+/// row_ ← row i of ½ Fᵀ W - Nᵀ S; block i of C.
+template <class T>
+void Riccati<T>::find_coupling(const Stage& stage, const BlockLdl<T>& E, int i) {
+  int first = M_;
+  for (int k = M_; k-- > 0;) {
+    if (stage.N.has(k, i)) {
+      row_[k] = stage.N.at(k, i).transpose();
+      first = k;
+    } else {
+      row_[k].setConstant(T(0.0));
+    }
+  }
+  if (first < M_) E.solve_row(row_.data(), first, 0);
+  for (int j = 0; j < M_; ++j) {
+    RegisterSum<Block<T>> sum;
+    for (const int k : Bits(columns_[i])) sum.add(stage.F.at(k, i).transpose(), W_[k * M_ + j]);
+    if (j == 0) {
+      Block<T> whole;
+      sum.store(whole);
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) C_[i](a, b) = stage.B[a] * (whole(b, a) - row_[0](b, a));
+    }
+    sum.scale(T(0.5));
+    sum.subtract(row_[j]);
+    sum.store(row_[j]);
+  }
+}
+
+template <class T>
+void Riccati<T>::eliminate(const Stage& stage, const Stage& before, int k) {
+  BlockLdl<T>& E = E_[k];
+  E.factorize(stage.E);
+  regular_ = regular_ && E.regular();
+  for (std::uint64_t& column : columns_) column = 0;
+  for (int i = 0; i < M_; ++i)
+    for (const int j : Bits(stage.F.pattern[i])) columns_[j] |= std::uint64_t{1} << i;
+  sandwich(E);
+  couple(stage, E);
+  E.solve(v_.data());  // S v
+  for (int i = 0; i < M_; ++i) {
+    RegisterSum<Vec3<T>> sum(-v_[i]);
+    for (int j = 0; j < M_; ++j) sum.add(W_[i * M_ + j], stage.e[j]);
+    sum.store(w_[i]);
+  }
+  find_gain(stage, gain_[k]);
+  Se_ = stage.e;
+  E.solve(Se_.data());
+  fold(stage, before, gain_[k]);
+}
+
+/// R'⁻¹ C and R'⁻¹ r'.
+template <class T>
+void Riccati<T>::find_gain(const Stage& stage, Gain& gain) {
+  Block<T> R = W_[0];
+  Vec3<T> r = stage.r;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) R(a, b) = R(a, b) * stage.B[a] * stage.B[b];
+    R(a, a) += stage.R[a];
+    r[a] = r[a] + stage.B[a] * w_[0][a];
+  }
+  T determinant;
+  const Block<T> inverse = symmetric_inverse(R, determinant);
+  regular_ = regular_ && is_regular(R, determinant);
+  RegisterSum<Vec3<T>> product;
+  product.add(inverse, r);
+  product.store(gain.r);
+  for (int j = 0; j < M_; ++j) {
+    RegisterSum<Block<T>> scaled;
+    scaled.add(inverse, C_[j]);
+    scaled.store(gain.C[j]);
+  }
+}
+
+/// P and v of the stage before.
+template <class T>
+void Riccati<T>::fold(const Stage& stage, const Stage& before, const Gain& gain) {
+  for (int i = 0; i < M_; ++i)
+    for (int j = 0; j <= i; ++j) {
+      RegisterSum<Block<T>> sum(X_[i * M_ + j]);
+      sum.add_transposed(X_[j * M_ + i]);
+      if (before.Q.has(i, j)) sum.add(before.Q.at(i, j));
+      sum.subtract(C_[i].transpose(), gain.C[j]);
+      sum.store(P_[i * M_ + j]);
+      if (j < i) sum.store_transposed(P_[j * M_ + i]);
+    }
+  v_ = before.q;
+  for (int i = 0; i < M_; ++i) {
+    RegisterSum<Vec3<T>> sum(v_[i]);
+    for (const int m : Bits(columns_[i])) sum.add(stage.F.at(m, i).transpose(), w_[m]);
+    sum.subtract(C_[i].transpose(), gain.r);
+    sum.store(v_[i]);
+    for (const int j : Bits(stage.N.pattern[i])) {
+      RegisterSum<Vec3<T>> less(v_[j]);
+      less.subtract(stage.N.at(i, j).transpose(), Se_[i]);
+      less.store(v_[j]);
+    }
+  }
+}
+
+template <class T>
+void Riccati<T>::roll_forward(const StageSystem<T>& system, StageStep<T>& step) const {
+  for (int i = 0; i < M_; ++i) step.poses[0][i] = -v_[i];
+  start_.solve(step.poses[0].data());
+  for (int k = 1; k <= system.h; ++k) {
+    const Stage& stage = system.stages[k];
+    const BlockColumn<T>& before = step.poses[k - 1];
+    RegisterSum<Vec3<T>> control(-gain_[k].r);
+    for (int j = 0; j < M_; ++j) control.subtract(gain_[k].C[j], before[j]);
+    Vec3<T>& c = step.controls[k];
+    control.store(c);
+    BlockColumn<T>& p = step.poses[k];
+    p = stage.e;
+    add_to(p, stage.F, before);
+    for (int a = 0; a < 3; ++a) p[0][a] = p[0][a] + stage.B[a] * c[a];
+    for (Vec3<T>& block : p) block = -block;
+    E_[k].solve(p.data());
+  }
+}
+
+/// Stationarity in Δp_k, from the last sub-step to the first:
+///   Q Δp_k + q + N_k Δp_{k-1} + N_{k+1}ᵀ Δp_{k+1} + E Δy_k + F_{k+1}ᵀ Δy_{k+1} = 0.
+template <class T>
+void Riccati<T>::find_multipliers(const StageSystem<T>& system, StageStep<T>& step) const {
+  for (int k = system.h; k > 0; --k) {
+    const Stage& stage = system.stages[k];
+    BlockColumn<T>& y = step.multipliers[k];
+    y = stage.q;
+    add_symmetric_to(y, stage.Q, step.poses[k]);
+    add_to(y, stage.N, step.poses[k - 1]);
+    if (k < system.h) {
+      const Stage& next = system.stages[k + 1];
+      add_transposed_to(y, next.N, step.poses[k + 1]);
+      add_transposed_to(y, next.F, step.multipliers[k + 1]);
+    }
+    for (Vec3<T>& block : y) block = -block;
+    E_[k].solve(y.data());
+  }
+}
+
+template class Riccati<double>;
+template class Riccati<Lanes>;
+
+}  // namespace rtg

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <vector>
+
+#include "core/math/block_ldl.hpp"
+
+namespace rtg {
+
+/// Newton system of an optimal control problem with implicit dynamics over h sub-steps, M bodies:
+///
+///   min  Σ_k ½ Δp_kᵀ Q_k Δp_k + q_k·Δp_k + Δp_kᵀ N_k Δp_{k-1} + ½ Δc_kᵀ R_k Δc_k + r_k·Δc_k
+///   s.t. E_k Δp_k + F_k Δp_{k-1} + B_k Δc_k + e_k = 0,  k = 1 ... h        (multipliers Δy_k)
+///
+/// Δp_0 ... Δp_h [M blocks], Δc_k [3] acts on body 0 alone; Q_k and E_k symmetric, of which the
+/// lower halves count, R_k and B_k diagonal.
+template <class T>
+struct StageSystem {
+  struct Stage {
+    explicit Stage(int count)
+        : Q(count),
+          E(count),
+          F(count),
+          N(count),
+          q(static_cast<std::size_t>(count), Vec3<T>::Constant(T(0.0))),
+          e(q),
+          R(q[0]),
+          B(q[0]),
+          r(q[0]) {}
+    BlockMatrix<T> Q, E, F, N;
+    BlockColumn<T> q, e;
+    Vec3<T> R, B, r;
+  };
+  StageSystem(int count, int sub_steps)
+      : M(count), h(sub_steps), stages(static_cast<std::size_t>(sub_steps) + 1, Stage(count)) {}
+
+  int M, h;
+  std::vector<Stage> stages;  // entry 0 has Q and q alone
+};
+
+/// Solution of a StageSystem; entry 0 of `controls` and `multipliers` is unused.
+template <class T>
+struct StageStep {
+  StageStep(int count, int sub_steps)
+      : poses(static_cast<std::size_t>(sub_steps) + 1,
+              BlockColumn<T>(static_cast<std::size_t>(count))),
+        multipliers(poses),
+        controls(poses.size()) {}
+  std::vector<BlockColumn<T>> poses;        // Δp_k
+  std::vector<BlockColumn<T>> multipliers;  // Δy_k
+  std::vector<Vec3<T>> controls;            // Δc_k
+};
+
+/// Direct solver of such systems.
+template <class T>
+class StageSolver {
+ public:
+  virtual ~StageSolver() = default;
+
+  /// Returns the lanes in which the system was found to be regular; elsewhere the step is
+  /// arbitrary.
+  virtual Mask<T> solve(const StageSystem<T>& system, StageStep<T>& step) = 0;
+};
+
+}  // namespace rtg

@@ -1,0 +1,163 @@
+#include "core/reverse/warm_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/energy/open_gaps.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr int kCorrections = 3;
+constexpr double kGoodEnough = 1e-2;  // miss of a reverse step that needs no correction [m]
+constexpr double kLeastCorrection = 0.05;
+constexpr double kTolerance = 1e-6;  // of a forward step [kg m]
+
+}  // namespace
+
+template <class T>
+WarmStart<T>::WarmStart(const ProblemLanes<T>& problem)
+    : problem_(problem),
+      scene_(problem.energy),
+      step_(scene_, kTolerance),
+      start_(scene_.bodies()),
+      pushed_(start_),
+      still_(start_),
+      best_(start_),
+      p_(start_),
+      reached_(start_),
+      trial_(start_),
+      by_(start_.p),
+      lag_(static_cast<std::size_t>(scene_.contacts()), T(0.0)),
+      moved_(start_.p) {}
+
+/// The straight path's pose after sub-step k, led by what the servo lags behind in free motion.
+template <class T>
+Vec3<T> WarmStart<T>::straight_target(int k) const {
+  const T share = scene_.damping(0).mass * T(scene_.stride()) / scene_.control_bound()[0];
+  const T bounded = lesser(share, T(1.0 - 1e-12));
+  const T artanh = T(0.5) * logarithm((T(1.0) + bounded) / (T(1.0) - bounded));
+  const T lead = select(share < T(1.0), artanh * T(servo_scale(scene_.stride())), T(0.0));
+  Vec3<T> pose = problem_.robot_path(k);
+  for (int m = 0; m < 2; ++m) pose[m] += lead * problem_.direction[m];
+  return pose;
+}
+
+/// F(from), begun with how far the last push went.
+template <class T>
+Mask<T> WarmStart<T>::push(const Placement<T>& from, const Vec3<T>& target, const Mask<T>& wanted,
+                           Placement<T>& to) {
+  scene_.forces(from, lag_.data());
+  const Mask<T> found =
+      step_.solve({from, lag_.data(), moved_.data()}, Drive<T>::towards(target), wanted, to);
+  for (std::size_t m = 0; m < moved_.size(); ++m)
+    moved_[m] = select(found, to.p[m] - from.p[m], moved_[m]);
+  return found;
+}
+
+/// A sub-step in which the robot is held where it is.
+template <class T>
+Mask<T> WarmStart<T>::hold(const Placement<T>& from, const Mask<T>& wanted, Placement<T>& to) {
+  scene_.forces(from, lag_.data());
+  const Vec3<T> here(from.p[0], from.p[1], from.p[2]);
+  return step_.solve({from, lag_.data()}, Drive<T>::towards(here), wanted, to);
+}
+
+/// `p` with its objects moved by -share·by_ for the largest share in 1, ½, ... that leaves the gaps
+/// open; returns where there is one. The robot's part of by_ is ignored.
+template <class T>
+Mask<T> WarmStart<T>::moved_back(const Placement<T>& p, const Mask<T>& wanted, Placement<T>& out) {
+  const T floor = lesser(T(kGapFloor * scene_.barrier().range), scene_.least_gap(p));
+  Mask<T> searching = wanted;
+  for (double share = 1.0; share > kLeastCorrection && any(searching); share *= 0.5) {
+    trial_ = p;
+    for (int m = 3; m < 3 * scene_.movable(); ++m) trial_.p[m] = p.p[m] - T(share) * by_[m];
+    trial_.update();
+    const Mask<T> open = searching && scene_.least_gap(trial_) >= floor && scene_.separated(trial_);
+    out.assign(open, trial_);
+    searching = searching && !open;
+  }
+  return wanted && !searching;
+}
+
+/// best_: the state before sub-step k by a mirrored forward step, the robot on its straight path.
+template <class T>
+Mask<T> WarmStart<T>::mirror(int k, const Placement<T>& end, const Mask<T>& wanted) {
+  const T stride(scene_.stride());
+  const Vec3<T> ahead(end.p[0] + stride * problem_.direction.x(),
+                      end.p[1] + stride * problem_.direction.y(), end.p[2]);
+  const Mask<T> going = hold(end, push(end, ahead, wanted, pushed_), still_);
+  p_ = end;
+  const Vec3<T> before = problem_.robot_path(k - 1);
+  for (int m = 0; m < 3; ++m) p_.p[m] = before[m];
+  p_.update();
+  for (std::size_t m = 0; m < by_.size(); ++m) by_[m] = pushed_.p[m] - still_.p[m];
+  best_ = p_;
+  moved_back(p_, going, best_);
+  return going;
+}
+
+/// Fixed-point corrections of best_, so that sub-step k leads close to `end`.
+template <class T>
+void WarmStart<T>::correct(int k, const Placement<T>& end, Mask<T> correcting) {
+  const Vec3<T> target = straight_target(k);
+  T best_miss(INFINITY);
+  p_ = best_;
+  for (int i = 0; i < kCorrections && any(correcting); ++i) {
+    correcting = push(p_, target, correcting, reached_);
+    T miss(0.0);
+    for (int m = 0; m < 3 * scene_.movable(); ++m) {
+      by_[m] = reached_.p[m] - end.p[m];
+      if (m >= 3) miss = miss + by_[m] * by_[m];
+    }
+    miss = root(miss);
+    const Mask<T> better = correcting && miss < best_miss;
+    best_miss = select(better, miss, best_miss);
+    best_.assign(better, p_);
+    correcting = correcting && best_miss > T(kGoodEnough);
+    if (any(correcting)) correcting = moved_back(p_, correcting, p_);
+  }
+}
+
+template <class T>
+Mask<T> WarmStart<T>::roll_out(const Mask<T>& wanted, Trajectory<T>& x) {
+  scene_.forces(x.p[0], x.forces[0].data());
+  Mask<T> going = wanted;
+  for (int k = 1; k <= problem_.sub_steps; ++k) {
+    const Vec3<T> target = straight_target(k);
+    going = push(x.p[k - 1], target, going, x.p[k]);
+    x.controls[k] = Drive<T>::towards(target).control_at(x.p[k], servo_scale(scene_.stride()));
+    scene_.forces(x.p[k], x.forces[k].data());
+  }
+  return going;
+}
+
+template <class T>
+Mask<T> WarmStart<T>::find(const Mask<T>& wanted, Trajectory<T>& x) {
+  std::ranges::fill(moved_, T(0.0));
+  start_.p = problem_.end;
+  start_.update();
+  Mask<T> going = wanted;
+  for (int k = problem_.sub_steps; k > 0 && any(going); --k) {
+    going = mirror(k, start_, going);
+    correct(k, start_, going);
+    start_.assign(going, best_);
+  }
+  x.p[0] = start_;
+  for (std::vector<T>& y : x.multipliers) std::ranges::fill(y, T(0.0));
+  return roll_out(going, x);
+}
+
+std::optional<Iterate> warm_start(const ReverseProblem& problem) {
+  ProblemLanes<double> one(problem);
+  one.load(0, problem);
+  Trajectory<double> x(one.energy, one.sub_steps);
+  x.load(0, problem, static_iterate(problem));
+  if (!WarmStart<double>(one).find(true, x)) return std::nullopt;
+  return x.unload(0, problem);
+}
+
+template class WarmStart<double>;
+template class WarmStart<Lanes>;
+
+}  // namespace rtg

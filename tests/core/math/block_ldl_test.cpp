@@ -1,0 +1,103 @@
+#include "core/math/block_ldl.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "core/math/block_tridiagonal.hpp"
+#include "tests/support/random_stages.hpp"
+
+namespace rtg {
+namespace {
+
+/// A random symmetric matrix of M bodies coupled over `reach` places.
+BlockMatrix<double> random_matrix(int M, int reach, double diagonal, Rng& rng) {
+  BlockMatrix<double> A(M);
+  testing::RandomBlocks{0.5, diagonal, true}.fill(A, 0, reach, rng);
+  return A;
+}
+
+MatrixXd dense(const BlockMatrix<double>& A) {
+  MatrixXd out = MatrixXd::Zero(3 * A.M, 3 * A.M);
+  for (int i = 0; i < A.M; ++i)
+    for (int j = 0; j <= i; ++j) {
+      if (!A.has(i, j)) continue;
+      out.block<3, 3>(3 * i, 3 * j) = A.at(i, j);
+      out.block<3, 3>(3 * j, 3 * i) = A.at(i, j).transpose();
+    }
+  return out;
+}
+
+TEST(BlockLdl, SolvesSparseAndDenseSystems) {
+  Rng rng(1);
+  for (const int M : {1, 2, 5, 8})
+    for (const int reach : {0, 1, 3, 7}) {
+      const BlockMatrix<double> A = random_matrix(M, reach, 3.0, rng);
+      BlockLdl<double> factor(M);
+      factor.factorize(A);
+      EXPECT_TRUE(factor.regular());
+      VectorXd x = VectorXd::NullaryExpr(3 * M, [&] { return rng.uniform(-1.0, 1.0); });
+      const VectorXd r = x;
+      BlockColumn<double> blocks(static_cast<std::size_t>(M));
+      for (int i = 0; i < M; ++i) blocks[static_cast<std::size_t>(i)] = r.segment<3>(3 * i);
+      factor.solve(blocks.data());
+      for (int i = 0; i < M; ++i) x.segment<3>(3 * i) = blocks[static_cast<std::size_t>(i)];
+      EXPECT_LT((dense(A) * x - r).norm(), 1e-12) << M << ", " << reach;
+    }
+}
+
+/// A row of blocks.
+MatrixXd dense(const std::vector<Block<double>>& row) {
+  MatrixXd out(3, 3 * static_cast<Eigen::Index>(row.size()));
+  for (std::size_t i = 0; i < row.size(); ++i)
+    out.middleCols<3>(3 * static_cast<Eigen::Index>(i)) = row[i];
+  return out;
+}
+
+TEST(BlockLdl, SolvesForRowsOfBlocks) {
+  Rng rng(2);
+  constexpr int M = 5;
+  const BlockMatrix<double> A = random_matrix(M, 2, 3.0, rng);
+  BlockLdl<double> factor(M);
+  factor.factorize(A);
+  for (int first = 0; first < M; ++first) {
+    std::vector<Block<double>> row(M, Block<double>::Zero());
+    for (int i = first; i < M; ++i)
+      row[static_cast<std::size_t>(i)] =
+          Block<double>::NullaryExpr([&] { return rng.uniform(-1.0, 1.0); });
+    const MatrixXd given = dense(row);
+    std::vector<Block<double>> rest = row;
+    factor.solve_row(row.data(), first, 0);
+    EXPECT_LT((dense(row) * dense(A) - given).norm(), 1e-12) << first;
+    factor.solve_row(rest.data(), 0, first);  // what is zero may as well be read
+    for (int i = first; i < M; ++i)
+      EXPECT_LT((rest[static_cast<std::size_t>(i)] - row[static_cast<std::size_t>(i)]).norm(),
+                1e-15);
+  }
+}
+
+TEST(BlockLdl, TellsWhetherAMatrixIsPositiveDefinite) {
+  Rng rng(3);
+  int positive = 0, negative = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    const BlockMatrix<double> A = random_matrix(4, 2, rng.uniform(0.5, 3.0), rng);
+    const double least = Eigen::SelfAdjointEigenSolver<MatrixXd>(dense(A)).eigenvalues().minCoeff();
+    EXPECT_EQ(BlockLdl<double>(4).factorize(A), least > 0.0) << least;
+    ++(least > 0.0 ? positive : negative);
+  }
+  EXPECT_GT(positive, 10);
+  EXPECT_GT(negative, 10);
+}
+
+TEST(BlockLdl, SingularPivotsAreReported) {
+  Rng rng(4);
+  BlockMatrix<double> A = random_matrix(3, 1, 3.0, rng);
+  A.at(0, 0).row(1).setZero();
+  A.at(0, 0).col(1).setZero();
+  BlockLdl<double> factor(3);
+  factor.factorize(A);
+  EXPECT_FALSE(factor.regular());
+}
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,259 @@
+#include "core/reverse/newton_system.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/linearisation.hpp"
+#include "tests/support/touching_scene.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::Curvature;
+using testing::Direction;
+using testing::disturbed;
+using testing::Linearisation;
+using testing::noise;
+using testing::TouchingScene;
+
+/// x moved by t along d.
+Iterate moved(Iterate x, const Direction& d, double t) {
+  for (std::size_t k = 0; k < x.p.size(); ++k) {
+    x.p[k] += t * d.p[k];
+    x.forces[k] += t * d.forces[k];
+    x.controls[k] += t * d.controls[k];
+    x.multipliers[k] += t * d.multipliers[k];
+  }
+  return x;
+}
+
+/// The first-order conditions (∇L; Φ) with complementarity left out.
+VectorXd conditions(const ReverseProblem& problem, const Iterate& x) {
+  return joined(Linearisation(problem, x, {true, 0.0}).conditions());
+}
+
+/// A zero vector of the system.
+BlockVector nothing(const Linearisation& lin) {
+  BlockVector all;
+  for (const MatrixXd& A : lin.matrix().A) all.push_back(VectorXd::Zero(A.rows()));
+  return all;
+}
+
+/// Five random directions and that of the gradient, along which errors do not average out.
+std::vector<BlockVector> directions(const Linearisation& lin) {
+  Rng rng(5);
+  std::vector<BlockVector> all(5);
+  for (BlockVector& along : all)
+    for (const MatrixXd& A : lin.matrix().A) along.push_back(noise(A.rows(), 1.0, rng));
+  all.push_back(lin.conditions());
+  const double size = joined(all.back()).lpNorm<Eigen::Infinity>();
+  for (VectorXd& block : all.back()) block /= size;
+  return all;
+}
+
+/// The system's matrix against central differences of the first-order conditions along directions
+/// on which the forces follow the gaps (Δλ = b·Δp).
+void expect_matrix_is_derivative(const ReverseProblem& problem, const Iterate& x) {
+  const Linearisation lin(problem, x, {true, 0.0});
+  for (const BlockVector& along : directions(lin)) {
+    const Direction d = lin.direction(along, false);
+    const double t = 1e-7;
+    const VectorXd difference =
+        (conditions(problem, moved(x, d, t)) - conditions(problem, moved(x, d, -t))) / (2.0 * t);
+    const VectorXd product = joined(rtg::product(lin.matrix(), along));
+    EXPECT_LT((difference - product).lpNorm<Eigen::Infinity>(),
+              1e-5 * product.lpNorm<Eigen::Infinity>());
+  }
+}
+
+TEST(NewtonSystem, MatrixIsDerivativeOfFirstOrderConditions) {
+  TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const auto start = warm_start(problem);
+  ASSERT_TRUE(start);
+  Rng rng(1);
+  expect_matrix_is_derivative(problem, disturbed(*start, 1e-3, rng));
+}
+
+// Bodies far apart that turn by up to 0.5 rad per sub-step; entry by entry, as what the sine adds
+// to the curvature is small beside the largest.
+TEST(NewtonSystem, MatrixIsDerivativeWithPeriodicDamping) {
+  TouchingScene scene;
+  scene.physics.periodic_damping = true;
+  scene.energy = StepEnergy(scene.scene, scene.physics, scene.task.push);
+  scene.poses = {{0.0, 0.0, 0.0}, {5.0, 0.0, 0.0}, {0.0, 5.0, 0.0}};
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  Rng rng(2);
+  const Iterate x = disturbed(static_iterate(problem), 0.25, rng);
+  const Linearisation lin(problem, x, {true, 0.0});
+  for (std::size_t block = 0; block < lin.matrix().A.size(); ++block)
+    for (Eigen::Index row = 0; row < lin.matrix().A[block].rows(); ++row) {
+      BlockVector along = nothing(lin);
+      along[block][row] = 1.0;
+      const Direction d = lin.direction(along, false);
+      const double t = 1e-5;
+      const VectorXd difference =
+          (conditions(problem, moved(x, d, t)) - conditions(problem, moved(x, d, -t))) / (2.0 * t);
+      const VectorXd column = joined(product(lin.matrix(), along));
+      EXPECT_LT((difference - column).lpNorm<Eigen::Infinity>(), 1e-6) << block << ", " << row;
+    }
+}
+
+TEST(NewtonSystem, MatrixIsDerivativeWithFixedEnd) {
+  TouchingScene scene;
+  ReverseConfig config;
+  config.terminal_weight = 0.0;
+  const ReverseProblem problem = scene.problem(config);
+  Rng rng(3);
+  Iterate x = disturbed(static_iterate(problem), 1e-3, rng);
+  x.p.back() = problem.end;
+  expect_matrix_is_derivative(problem, x);
+}
+
+/// Touching scene, disturbed from its warm start, with random multipliers.
+struct Disturbed {
+  TouchingScene scene;
+  ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  Iterate x;
+
+  explicit Disturbed(std::uint64_t seed) {
+    Rng rng(seed);
+    x = disturbed(*warm_start(problem), 1e-3, rng);
+  }
+};
+
+/// J + Σ y·Φ.
+double lagrangian(const ReverseProblem& problem, const Iterate& x) {
+  const Violation v = violation(problem, x);
+  double sum = objective(problem, x);
+  for (std::size_t k = 1; k < x.p.size(); ++k) sum += x.multipliers[k].dot(v.residuals[k]);
+  return sum;
+}
+
+// Along directions that keep complementarity (Δλ = b·Δp) its multipliers drop out.
+TEST(NewtonSystem, RightHandSideIsMinusTheGradientOfTheLagrangian) {
+  const Disturbed at(4);
+  const Linearisation lin(at.problem, at.x, {true, 0.0});
+  const VectorXd gradient = joined(lin.conditions());
+  for (const BlockVector& along : directions(lin)) {
+    const Direction d = lin.direction(along, false);
+    const double t = 1e-7, slope = gradient.dot(joined(along));
+    EXPECT_NEAR(
+        (lagrangian(at.problem, moved(at.x, d, t)) - lagrangian(at.problem, moved(at.x, d, -t))) /
+            (2.0 * t),
+        slope, 1e-6 * std::abs(slope));
+  }
+}
+
+TEST(NewtonSystem, StationarityIsTheLargestGradientOfThePrimalUnknowns) {
+  const Disturbed at(6);
+  const Linearisation lin(at.problem, at.x, {true, 0.0});
+  const BlockVector r = lin.conditions();
+  double largest = r[0].lpNorm<Eigen::Infinity>();
+  for (std::size_t k = 1; k < r.size(); ++k)
+    largest = std::max(largest, r[k].head(9 + 3).lpNorm<Eigen::Infinity>());
+  EXPECT_DOUBLE_EQ(lin.newton().stationarity(), largest);
+}
+
+/// The Newton step.
+BlockVector solution_of(const Linearisation& lin) {
+  const auto solver = make_kkt_solver(KktMethod::kBlockElimination);
+  EXPECT_TRUE(solver->factorize(lin.matrix()));
+  return solver->solve(lin.right_hand_side());
+}
+
+// To first order in α, x + α d leaves (1 - α) of every constraint.
+TEST(NewtonSystem, StepSolvesTheLinearisedConstraints) {
+  const Disturbed at(7);
+  for (const Curvature curvature : {Curvature{false, 1.0}, Curvature{true, 0.1}}) {
+    const Linearisation lin(at.problem, at.x, curvature);
+    const Direction d = lin.direction(solution_of(lin), true);
+    const double t = 1e-6;
+    const Violation now = violation(at.problem, at.x);
+    const Violation up = violation(at.problem, moved(at.x, d, t));
+    const Violation down = violation(at.problem, moved(at.x, d, -t));
+    for (std::size_t k = 0; k < now.residuals.size(); ++k) {
+      const VectorXd slope = (up.residuals[k] - down.residuals[k]) / (2.0 * t);
+      EXPECT_LT((slope + now.residuals[k]).lpNorm<Eigen::Infinity>(), 1e-6);
+      const VectorXd other = (up.complementarity[k] - down.complementarity[k]) / (2.0 * t);
+      EXPECT_LT((other + now.complementarity[k]).lpNorm<Eigen::Infinity>(), 1e-6);
+    }
+  }
+}
+
+TEST(NewtonSystem, ObjectiveSlopeMatchesDifferences) {
+  const Disturbed at(8);
+  const Linearisation lin(at.problem, at.x, {});
+  const Direction d = lin.direction(solution_of(lin), true);
+  const double t = 1e-6,
+               slope = lin.newton().objective_slope(lin.trajectory(), lin.step(solution_of(lin)));
+  EXPECT_NEAR(
+      (objective(at.problem, moved(at.x, d, t)) - objective(at.problem, moved(at.x, d, -t))) /
+          (2.0 * t),
+      slope, 1e-6 * std::abs(slope));
+}
+
+/// |Δp|² + |Δc|² + 0.01 |Δλ|² of the step that s + t·u stands for.
+double step_size(const Linearisation& lin, BlockVector s, const BlockVector& u, double t) {
+  for (std::size_t k = 0; k < s.size(); ++k) s[k] += t * u[k];
+  const Direction d = lin.direction(s, true);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < d.p.size(); ++k)
+    sum += d.p[k].squaredNorm() + d.controls[k].squaredNorm() + 0.01 * d.forces[k].squaredNorm();
+  return sum;
+}
+
+// Newton's equations K s = r with it, less those without. The forces follow from the poses and from
+// how far complementarity is from holding.
+TEST(NewtonSystem, ProximalTermIsTheGradientOfTheSquaredStep) {
+  const Disturbed at(10);
+  const double proximal = 0.7;
+  for (const bool exact : {false, true}) {
+    const Linearisation with(at.problem, at.x, {exact, proximal});
+    const Linearisation without(at.problem, at.x, {exact, 0.0});
+    const auto left = [](const Linearisation& lin, const BlockVector& s) {
+      return VectorXd(joined(product(lin.matrix(), s)) - joined(lin.right_hand_side()));
+    };
+    const std::vector<BlockVector> all = directions(with);
+    const VectorXd term = left(with, all[0]) - left(without, all[0]);
+    for (const BlockVector& u : all) {
+      const double slope =
+          0.25 * proximal * (step_size(with, all[0], u, 1.0) - step_size(with, all[0], u, -1.0));
+      EXPECT_NEAR(term.dot(joined(u)), slope, 1e-9 * std::abs(slope));
+    }
+  }
+}
+
+/// Curvature along the primal part of a vector of the system.
+double curvature(const Linearisation& lin, const BlockVector& solution) {
+  StageStep<double> primal = lin.step(solution);
+  for (BlockColumn<double>& y : primal.multipliers)
+    for (Vec3<double>& block : y) block.setZero();
+  const BlockVector s = lin.assembled().written(primal);
+  return joined(s).dot(joined(product(lin.matrix(), s)));
+}
+
+TEST(NewtonSystem, ModelCurvatureIsThatAlongTheStep) {
+  const Disturbed at(9);
+  for (const bool exact : {false, true}) {
+    const Linearisation lin(at.problem, at.x, {exact, 0.3});
+    const BlockVector s = solution_of(lin);
+    const double expected = curvature(lin, s);
+    EXPECT_NEAR(lin.newton().model_curvature(lin.step(s)), expected, 1e-5 * std::abs(expected));
+  }
+}
+
+// Controls enter the objective as ε |c|² alone.
+TEST(NewtonSystem, CurvatureOfTheControlsIsThatOfTheObjectiveAndTheProximalTerm) {
+  const Disturbed at(9);
+  const double proximal = 0.3;
+  const Linearisation lin(at.problem, at.x, {false, proximal});
+  BlockVector along = nothing(lin);
+  along[3].segment<3>(9) = Vector3d(1.0, -2.0, 2.0);
+  EXPECT_NEAR(curvature(lin, along), 9.0 * (2.0 * at.config.control_weight + proximal), 1e-12);
+}
+
+}  // namespace
+}  // namespace rtg
