@@ -1,17 +1,14 @@
 #include "core/reverse/warm_start.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/energy/open_gaps.hpp"
 
 namespace rtg {
 namespace {
 
-constexpr int kCorrections = 3;
-constexpr double kGoodEnough = 1e-2;  // miss of a reverse step that needs no correction [m]
-constexpr double kLeastCorrection = 0.05;
-constexpr double kTolerance = 1e-6;  // of a forward step [kg m]
+constexpr double kLeastShare = 0.05;  // of a mirrored step
+constexpr double kTolerance = 1e-6;   // of a forward step [kg m]
 
 }  // namespace
 
@@ -23,9 +20,7 @@ WarmStart<T>::WarmStart(const ProblemLanes<T>& problem)
       start_(scene_.bodies()),
       pushed_(start_),
       still_(start_),
-      best_(start_),
-      p_(start_),
-      reached_(start_),
+      robot_back_(start_),
       trial_(start_),
       by_(start_.p),
       lag_(static_cast<std::size_t>(scene_.contacts()), T(0.0)),
@@ -69,7 +64,7 @@ template <class T>
 Mask<T> WarmStart<T>::moved_back(const Placement<T>& p, const Mask<T>& wanted, Placement<T>& out) {
   const T floor = lesser(T(kGapFloor * scene_.barrier().range), scene_.least_gap(p));
   Mask<T> searching = wanted;
-  for (double share = 1.0; share > kLeastCorrection && any(searching); share *= 0.5) {
+  for (double share = 1.0; share > kLeastShare && any(searching); share *= 0.5) {
     trial_ = p;
     for (int m = 3; m < 3 * scene_.movable(); ++m) trial_.p[m] = p.p[m] - T(share) * by_[m];
     trial_.update();
@@ -80,43 +75,21 @@ Mask<T> WarmStart<T>::moved_back(const Placement<T>& p, const Mask<T>& wanted, P
   return wanted && !searching;
 }
 
-/// best_: the state before sub-step k by a mirrored forward step, the robot on its straight path.
+/// start_ ← the state before sub-step k by a mirrored forward step, the robot on its straight path.
 template <class T>
-Mask<T> WarmStart<T>::mirror(int k, const Placement<T>& end, const Mask<T>& wanted) {
+Mask<T> WarmStart<T>::mirror(int k, const Mask<T>& wanted) {
   const T stride(scene_.stride());
-  const Vec3<T> ahead(end.p[0] + stride * problem_.direction.x(),
-                      end.p[1] + stride * problem_.direction.y(), end.p[2]);
-  const Mask<T> going = hold(end, push(end, ahead, wanted, pushed_), still_);
-  p_ = end;
-  const Vec3<T> before = problem_.robot_path(k - 1);
-  for (int m = 0; m < 3; ++m) p_.p[m] = before[m];
-  p_.update();
+  const Vec3<T> ahead(start_.p[0] + stride * problem_.direction.x(),
+                      start_.p[1] + stride * problem_.direction.y(), start_.p[2]);
+  const Mask<T> going = hold(start_, push(start_, ahead, wanted, pushed_), still_);
   for (std::size_t m = 0; m < by_.size(); ++m) by_[m] = pushed_.p[m] - still_.p[m];
-  best_ = p_;
-  moved_back(p_, going, best_);
+  robot_back_ = start_;
+  const Vec3<T> before = problem_.robot_path(k - 1);
+  for (int m = 0; m < 3; ++m) robot_back_.p[m] = before[m];
+  robot_back_.update();
+  start_.assign(going, robot_back_);
+  moved_back(robot_back_, going, start_);
   return going;
-}
-
-/// Fixed-point corrections of best_, so that sub-step k leads close to `end`.
-template <class T>
-void WarmStart<T>::correct(int k, const Placement<T>& end, Mask<T> correcting) {
-  const Vec3<T> target = straight_target(k);
-  T best_miss(INFINITY);
-  p_ = best_;
-  for (int i = 0; i < kCorrections && any(correcting); ++i) {
-    correcting = push(p_, target, correcting, reached_);
-    T miss(0.0);
-    for (int m = 0; m < 3 * scene_.movable(); ++m) {
-      by_[m] = reached_.p[m] - end.p[m];
-      if (m >= 3) miss = miss + by_[m] * by_[m];
-    }
-    miss = root(miss);
-    const Mask<T> better = correcting && miss < best_miss;
-    best_miss = select(better, miss, best_miss);
-    best_.assign(better, p_);
-    correcting = correcting && best_miss > T(kGoodEnough);
-    if (any(correcting)) correcting = moved_back(p_, correcting, p_);
-  }
 }
 
 template <class T>
@@ -138,11 +111,7 @@ Mask<T> WarmStart<T>::find(const Mask<T>& wanted, Trajectory<T>& x) {
   start_.p = problem_.end;
   start_.update();
   Mask<T> going = wanted;
-  for (int k = problem_.sub_steps; k > 0 && any(going); --k) {
-    going = mirror(k, start_, going);
-    correct(k, start_, going);
-    start_.assign(going, best_);
-  }
+  for (int k = problem_.sub_steps; k > 0 && any(going); --k) going = mirror(k, going);
   x.p[0] = start_;
   for (std::vector<T>& y : x.multipliers) std::ranges::fill(y, T(0.0));
   return roll_out(going, x);

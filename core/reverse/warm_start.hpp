@@ -14,9 +14,9 @@ class WarmStart {
   /// The problem must outlive it.
   explicit WarmStart(const ProblemLanes<T>& problem);
 
-  /// A forward simulation that nearly ends in the final state, from mirrored forward steps: against
-  /// a push the contacts drag, p_{k-1} = p_k - (F(p_k) - p_k), improved by fixed-point corrections
-  /// towards F(p_{k-1}) = p_k, then rolled out. Returns the lanes in which it succeeded.
+  /// A forward simulation that ends near the final state, from mirrored forward steps: against a
+  /// push the contacts drag, p_{k-1} = p_k - (F(p_k) - p_k). Corrections towards F(p_{k-1}) = p_k
+  /// would end nearer, but in worse minima. Returns the lanes in which it succeeded.
   Mask<T> find(const Mask<T>& wanted, Trajectory<T>& x);
 
  private:
@@ -25,14 +25,13 @@ class WarmStart {
                Placement<T>& to);
   Mask<T> hold(const Placement<T>& from, const Mask<T>& wanted, Placement<T>& to);
   Mask<T> moved_back(const Placement<T>& p, const Mask<T>& wanted, Placement<T>& out);
-  Mask<T> mirror(int k, const Placement<T>& end, const Mask<T>& wanted);
-  void correct(int k, const Placement<T>& end, Mask<T> correcting);
+  Mask<T> mirror(int k, const Mask<T>& wanted);
   Mask<T> roll_out(const Mask<T>& wanted, Trajectory<T>& x);
 
   const ProblemLanes<T>& problem_;
   const SceneModel<T>& scene_;
   ForwardStep<T> step_;
-  Placement<T> start_, pushed_, still_, best_, p_, reached_, trial_;
+  Placement<T> start_, pushed_, still_, robot_back_, trial_;
   std::vector<T> by_, lag_, moved_;  // moved_: by the push last solved
 };
 

@@ -23,14 +23,14 @@ TEST(WarmStart, AFreeRobotKeepsToItsPath) {
   }
 }
 
-TEST(WarmStart, IsFeasibleAndNearlyEndsInTheEnd) {
+TEST(WarmStart, IsFeasibleAndEndsNearTheEnd) {
   const TouchingScene scene;
   const ReverseConfig config;
   const ReverseProblem problem = scene.problem(config);
   const auto x = warm_start(problem);
   ASSERT_TRUE(x);
   EXPECT_LT(violation(problem, *x).max(), 1e-6);
-  EXPECT_LT(terminal_miss(problem, *x), 0.05);
+  EXPECT_LT(terminal_miss(problem, *x), 0.1);
 }
 
 // A gap of 0.0087 carries the box's drag at push speed: before the last sub-step it was a stride of
