@@ -20,8 +20,6 @@ struct Barrier {
   double range = 1.0;   // ĝ [m]
   bool plain = false;
 
-  bool acts(double g) const { return plain || g < range; }
-
   /// b(g) [kg m²]; +∞ for g ≤ 0, so that line searches back off.
   template <class T>
   T value(const T& g) const {

@@ -1,7 +1,6 @@
 #include "core/energy/forward_step.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace rtg {
@@ -10,6 +9,7 @@ namespace {
 constexpr int kMaxIterations = 100;
 constexpr double kArmijo = 1e-4;
 constexpr double kLeastStep = 1e-12;
+constexpr double kLargestShift = 1e6;  // of the largest diagonal entry
 
 template <class T>
 T log_cosh(const T& x) {
@@ -65,15 +65,17 @@ void ForwardStep<T>::linearise(const Placement<T>& at, const Drive<T>& drive) {
   }
 }
 
-/// Newton direction of the Hessian made positive definite by a growing multiple of its diagonal.
+/// Newton direction of the Hessian made positive definite by a growing multiple of its diagonal;
+/// returns the lanes in which there is one.
 template <class T>
-void ForwardStep<T>::find_direction(const Mask<T>& wanted) {
+Mask<T> ForwardStep<T>::find_direction(Mask<T> wanted) {
   T size(0.0), shift(0.0);
   for (int i = 0; i < hessian_.M; ++i)
     for (int m = 0; m < 3; ++m) size = greater(size, magnitude(hessian_.at(i, i)(m, m)));
   for (;;) {
     const Mask<T> indefinite = wanted && !factor_.factorize(hessian_);
-    if (!any(indefinite)) break;
+    wanted = wanted && !(indefinite && !(shift <= T(kLargestShift) * size));
+    if (!any(indefinite && wanted)) break;
     const T more = select(indefinite, greater(T(9.0) * shift, T(1e-6) * size), T(0.0));
     shift = shift + more;
     for (int i = 0; i < hessian_.M; ++i)
@@ -81,6 +83,7 @@ void ForwardStep<T>::find_direction(const Mask<T>& wanted) {
   }
   for (int i = 0; i < hessian_.M; ++i) direction_[i] = -gradient_[i];
   factor_.solve(direction_.data());
+  return wanted;
 }
 
 /// p ← trial_ and its gaps.
@@ -159,8 +162,7 @@ Mask<T> ForwardStep<T>::solve(const StepStart<T>& start, const Drive<T>& drive,
     there = there || ended;
     pending = pending && !ended;
     if (!any(pending)) break;
-    find_direction(pending);
-    pending = line_search(drive, pending, next, value);
+    pending = line_search(drive, find_direction(pending), next, value);
   }
   return there;
 }

@@ -25,7 +25,7 @@ void pull(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame, const
   frame.pull(g, entries(scene, into, i), entries(scene, into, j));
 }
 
-/// Adds the blocks of a pair where both bodies move.
+/// Adds the blocks of a pair, those of bodies that move.
 template <class T>
 void scatter(const SceneModel<T>& scene, int pair, const PulledBlocks<T>& blocks,
              BlockMatrix<T>& into) {

@@ -57,7 +57,7 @@ T StepPotential<T>::value(const Placement<T>& next, const T* were, T* gaps, Mask
       gaps[c] = touch.gap();
       if (any(touch.within)) {
         legal = legal && keeps_gap(gaps[c], were[c], scene_.barrier());
-        sum = sum + scene_.barrier().value(gaps[c]);
+        sum = sum + select(touch.within, scene_.barrier().value(gaps[c]), T(0.0));
       }
       if (!lagged_[c].drags) continue;
       const SlipTerms<T> s(lagged_[c].normal, touch.point, lagged_[c].x, scene_.slip());

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "core/energy/scene_model.hpp"
 
 namespace rtg {

@@ -54,7 +54,7 @@ Mask<T> BlockLdl<T>::factorize(const BlockMatrix<T>& A) {
     regular_ = regular_ && is_regular(D, determinant);
     positive = positive && D(0, 0) > T(0.0) && D(0, 0) * D(1, 1) - D(1, 0) * D(1, 0) > T(0.0) &&
                determinant > T(0.0);
-    const std::uint64_t below = L_.pattern[i] & ~((std::uint64_t{2} << i) - 1);
+    const std::uint64_t below = after(i);
     for (const int j : Bits(below)) {
       column_[j] = L_.at(j, i);
       RegisterSum<Block<T>> scaled;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -13,7 +14,7 @@ using Block = Eigen::Matrix<T, 3, 3>;
 template <class T>
 using Vec3 = Eigen::Matrix<T, 3, 1>;
 
-/// Bit j of entry i: block (i, j) may differ from zero, in some lane.
+/// Bit j of entry i: block (i, j) may differ from zero, in some lane. At most 64 bodies.
 using BlockPattern = std::vector<std::uint64_t>;
 
 /// Square matrix of M × M blocks of 3 × 3, a block row and column per body, row by row. Blocks
@@ -23,7 +24,9 @@ struct BlockMatrix {
   explicit BlockMatrix(int count = 0)
       : M(count),
         blocks(static_cast<std::size_t>(count) * static_cast<std::size_t>(count)),
-        pattern(static_cast<std::size_t>(count)) {}
+        pattern(static_cast<std::size_t>(count)) {
+    assert(count <= 64);
+  }
 
   Block<T>& at(int i, int j) { return blocks[index(i, j)]; }
   const Block<T>& at(int i, int j) const { return blocks[index(i, j)]; }

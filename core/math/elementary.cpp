@@ -1,17 +1,19 @@
 #include "core/math/elementary.hpp"
 
+#include <cassert>
+
 #include "core/math/vector_math.hpp"
 
 namespace rtg {
 namespace {
 
-constexpr int kChunk = 8;
 constexpr int kWide = kWidth<Lanes>;
 
-/// Calls f on the numbers of `count` ≤ kChunk lanes.
+/// Calls f on the numbers of `count` lanes.
 template <class F>
 void as_numbers(Lanes* x, int count, F&& f) {
-  double buffer[kChunk * kWide];
+  assert(count <= kMostNumbers);
+  double buffer[kMostNumbers * kWide];
   for (int k = 0; k < count; ++k)
     x[k].copy_to(buffer + k * kWide, std::experimental::element_aligned);
   f(buffer, count * kWide);

@@ -4,8 +4,10 @@
 
 namespace rtg {
 
+inline constexpr int kMostNumbers = 8;
+
 /// Elementary functions, of lanes to a few units in the last place of those of double; e^x in
-/// place, for at most 8 numbers.
+/// place, for at most kMostNumbers.
 void exponentials(double* x, int count);
 void exponentials(Lanes* x, int count);
 

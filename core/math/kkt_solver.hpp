@@ -2,7 +2,6 @@
 
 #include <array>
 #include <memory>
-#include <optional>
 #include <string_view>
 
 #include "core/math/block_tridiagonal.hpp"

@@ -42,7 +42,7 @@ class ContactLinearisation {
   /// Whether any of the contacts may act. If not, there is nothing to add.
   bool relevant() const { return relevant_; }
 
-  /// Adds contact `vertex` and returns its force as eliminated; null if it does not act.
+  /// Adds contact `vertex`, with its force as eliminated; whether it acts.
   bool add(int vertex, Eliminated<T>& eliminated);
 
   const PairFrame<T>& frame() const { return here_; }

@@ -101,7 +101,9 @@ template <class T>
 void FilterSqp<T>::evaluate_begun() {
   for (std::vector<T>& level : trial_gaps_) std::ranges::fill(level, T(0.0));
   Mask<T> legal = begun_;
-  adopt(begun_, evaluator_.evaluate(problem_, x_, trial_gaps_, trial_gaps_, legal));
+  Merits<T> found = evaluator_.evaluate(problem_, x_, trial_gaps_, trial_gaps_, legal);
+  found.objective = select(legal, found.objective, T(INFINITY));
+  adopt(begun_, found);
   begun_ = Mask<T>(false);
 }
 

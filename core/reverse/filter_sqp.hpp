@@ -22,8 +22,9 @@ class FilterSqp {
   /// For problems with the numbers of bodies and the configurations of `like`.
   FilterSqp(const ReverseProblem& like, std::unique_ptr<StageSolver<T>> kkt);
 
-  /// From the given starts, one per problem; from warm starts if there are none. kInfeasible if
-  /// bodies overlap in the final state.
+  /// From the given starts, one per problem (kNonFinite where one is not legal, its barrier being
+  /// infinite); from warm starts if there are none (kInfeasible where bodies overlap in the final
+  /// state).
   std::vector<SqpResult> solve(std::span<const ReverseProblem* const> problems,
                                std::span<const Iterate> starts = {});
 

@@ -38,6 +38,7 @@ class MeritSqp {
     for (std::vector<double>& level : gaps_) std::ranges::fill(level, 0.0);
     bool legal = true;
     now_ = evaluator_.evaluate(problem_, x_, gaps_, gaps_, legal);
+    if (!legal) now_.objective = INFINITY;
   }
 
   SqpResult run() {

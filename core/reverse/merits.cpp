@@ -128,8 +128,9 @@ struct Evaluator<T>::Pass {
 };
 
 template <class T>
-Evaluator<T>::Evaluator(const ProblemLanes<T>& problem)
-    : residuals_(static_cast<std::size_t>(problem.sub_steps) + 1,
+Evaluator<T>::Evaluator(const ProblemLanes<T>& problem, bool to_the_end)
+    : to_the_end_(to_the_end),
+      residuals_(static_cast<std::size_t>(problem.sub_steps) + 1,
                  std::vector<T>(3 * static_cast<std::size_t>(problem.energy.movable()), T(0.0))),
       complementarity_(
           residuals_.size(),
@@ -140,7 +141,7 @@ Merits<T> Evaluator<T>::evaluate(const ProblemLanes<T>& problem, const Trajector
                                  const PerContact<T>& were, PerContact<T>& gaps, Mask<T>& legal) {
   Pass pass{*this, problem, x, were, gaps, legal};
   pass.sum.objective = free_objective(problem, x);
-  for (int k = 0; k <= problem.sub_steps && any(legal); ++k) {
+  for (int k = 0; k <= problem.sub_steps && (to_the_end_ || any(legal)); ++k) {
     if (k < problem.sub_steps) set_free_residual(problem, x, k + 1, residuals_[k + 1].data());
     pass.add_level(k);
     if (k == 0) continue;

@@ -16,7 +16,8 @@ struct Merits {
 template <class T>
 class Evaluator {
  public:
-  explicit Evaluator(const ProblemLanes<T>& problem);
+  /// `to_the_end`: also where no lane is legal any more.
+  explicit Evaluator(const ProblemLanes<T>& problem, bool to_the_end = false);
 
   /// A trial point of an iterate whose gaps `were`; their own in `gaps`. `legal`, where x is to be
   /// looked at, comes back as where it is a legal iterate: every gap open and, below a tenth of the
@@ -32,6 +33,7 @@ class Evaluator {
  private:
   struct Pass;
 
+  bool to_the_end_;
   std::vector<std::vector<T>> residuals_;
   PerContact<T> complementarity_;
 };

@@ -13,7 +13,7 @@ struct Evaluation {
   Evaluator<double> evaluator;
   Merits<double> merits;
 
-  Evaluation(const ReverseProblem& one, const Iterate& x) : problem(one), evaluator(problem) {
+  Evaluation(const ReverseProblem& one, const Iterate& x) : problem(one), evaluator(problem, true) {
     problem.load(0, one);
     Trajectory<double> trajectory(problem.energy, problem.sub_steps);
     trajectory.load(0, one, x);

@@ -57,7 +57,7 @@ void StartQueue<T>::find_starts(const Mask<T>& wanted) {
   for (std::vector<T>& lambda : x_.forces) energy.forces(x_.p[0], lambda.data());
   for (Vec3<T>& c : x_.controls) c.setConstant(T(0.0));
   for (std::vector<T>& y : x_.multipliers) std::ranges::fill(y, T(0.0));
-  const T least = energy.least_gap(x_.p[0]);
+  const Mask<T> open = energy.least_gap(x_.p[0]) > T(0.0) && energy.separated(x_.p[0]);
   warm_x_ = x_;
   const Mask<T> found = warm_.find(wanted, warm_x_);
   if (problem_.fixed_end()) {  // a forward simulation ends near it
@@ -66,7 +66,7 @@ void StartQueue<T>::find_starts(const Mask<T>& wanted) {
   }
   x_.assign(found, warm_x_);
   for (std::size_t l = 0; l < ready_.size(); ++l)
-    if (!(lane(least, static_cast<int>(l)) > 0.0)) ready_[l] = -1;
+    if (!lane(open, static_cast<int>(l))) ready_[l] = -1;
 }
 
 template class StartQueue<double>;

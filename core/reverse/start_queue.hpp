@@ -21,7 +21,7 @@ class StartQueue {
   void begin(std::span<const ReverseProblem* const> problems, std::span<const Iterate> starts);
 
   /// Index of the next candidate, whose trajectory it puts into lane l of x; -1 if that was all.
-  /// Candidates in whose final state bodies overlap are skipped.
+  /// Candidates in whose final state bodies overlap have no warm start and are skipped.
   int take(int l, Trajectory<T>& x);
 
  private:

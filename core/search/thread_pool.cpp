@@ -10,16 +10,17 @@
 #include <utility>
 #include <vector>
 
+#include "core/math/lanes.hpp"
+
 namespace rtg {
 namespace {
 
-constexpr std::size_t kFullLanes = 24;  // jobs at least that a thread solves together
-
-/// How many jobs to hand out together: two slices per thread even out what they take.
+/// How many jobs to hand out together: two slices per thread even out what they take, but no slice
+/// leaves lanes idle.
 std::size_t slice_of(std::size_t jobs, int threads) {
   if (threads <= 1) return std::max<std::size_t>(jobs, 1);
   const std::size_t slices = 2 * static_cast<std::size_t>(threads);
-  return std::max(kFullLanes, (jobs + slices - 1) / slices);
+  return std::max(static_cast<std::size_t>(kWidth<Lanes>), (jobs + slices - 1) / slices);
 }
 
 /// The exception of the least index among those thrown.

@@ -46,6 +46,8 @@ T plane_distances(const Planes<T>& planes, const Vec2<T>& x, T* distances) {
 template <class T>
 class SignedDistance {
  public:
+  static_assert(kMaxVertices <= static_cast<std::size_t>(kMostNumbers));
+
   /// `distances`, `top`: plane_distances() at x.
   SignedDistance(const Planes<T>& planes, double alpha, const T* distances, const T& top)
       : planes_(planes), alpha_(alpha) {

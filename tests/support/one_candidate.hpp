@@ -22,6 +22,9 @@ inline SqpResult solved(const ReverseProblem& problem) {
   return FilterSqp<double>(problem, stage_solver(problem)).solve({&one, 1}).front();
 }
 
+/// A trajectory in contact from end to end, where the scene allows: the solution.
+inline Iterate in_contact(const ReverseProblem& problem) { return solved(problem).x; }
+
 inline SqpResult solved_from(const ReverseProblem& problem, const Iterate& start) {
   const ReverseProblem* one = &problem;
   return FilterSqp<double>(problem, stage_solver(problem)).solve({&one, 1}, {&start, 1}).front();

@@ -43,13 +43,19 @@ TEST(Elementary, ALanesBitsDoNotDependOnTheOthers) {
   Rng rng(2);
   for (int trial = 0; trial < 200; ++trial) {
     const Lanes x = numbers(-90.0, 3.0, rng);
-    Lanes all = x;
-    exponentials(&all, 1);
-    for (int l = 0; l < kWidth<Lanes>; ++l) {
-      Lanes alone(lane(x, l));
+    Lanes all[kMostNumbers];
+    for (Lanes& one : all) one = x;
+    set_lane(all[0], 0, NAN);
+    exponentials(all, 1 + trial % kMostNumbers);
+    for (int l = 1; l < kWidth<Lanes>; ++l) {
+      const Lanes same(lane(x, l)), positive(std::abs(lane(x, l)));
+      Lanes alone = same;
       exponentials(&alone, 1);
-      for (int m = 0; m < kWidth<Lanes>; ++m) EXPECT_EQ(lane(alone, m), lane(all, l));
-      EXPECT_EQ(lane(turn_of(Lanes(lane(x, l))).s, 0), lane(turn_of(x).s, l));
+      for (int m = 0; m < kWidth<Lanes>; ++m) EXPECT_EQ(lane(alone, m), lane(all[0], l));
+      EXPECT_EQ(lane(turn_of(same).s, 0), lane(turn_of(x).s, l));
+      EXPECT_EQ(lane(turn_of(same).c, 0), lane(turn_of(x).c, l));
+      EXPECT_EQ(lane(hyperbolic_tangent(same), 0), lane(hyperbolic_tangent(x), l));
+      EXPECT_EQ(lane(logarithm(positive), 0), lane(logarithm(magnitude(x)), l));
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/support/linearisation.hpp"
+#include "tests/support/one_candidate.hpp"
 #include "tests/support/touching_scene.hpp"
 
 namespace rtg {
@@ -95,7 +96,7 @@ TEST_P(KktMethods, SingularAndNonFiniteSystemsAreReported) {
   }
 }
 
-/// Newton systems of a solve: at the warm start, disturbed, with the objective's Hessian and the
+/// Newton systems of a solve: at the solution, disturbed, with the objective's Hessian and the
 /// exact one, final state
 /// held by a spring and fixed.
 std::vector<BlockTridiagonal> newton_systems() {
@@ -106,7 +107,7 @@ std::vector<BlockTridiagonal> newton_systems() {
     ReverseConfig config;
     config.terminal_weight = terminal_weight;
     const ReverseProblem problem = scene.problem(config);
-    const Iterate x = testing::disturbed(*warm_start(problem), 1e-3, rng);
+    const Iterate x = testing::disturbed(testing::in_contact(problem), 1e-3, rng);
     for (const testing::Curvature curvature :
          {testing::Curvature{false, 1.0}, testing::Curvature{true, 1e-2}})
       systems.push_back(testing::Linearisation(problem, x, curvature).matrix());

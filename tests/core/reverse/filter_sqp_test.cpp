@@ -161,7 +161,8 @@ TEST(FilterSqp, EveryKktMethodGivesTheSameSolution) {
   const ReverseProblem problem = scene.problem(config);
   const SqpResult first = solved(problem);
   ASSERT_EQ(first.status, SolveStatus::kConverged);
-  for (const KktMethod method : {KktMethod::kCyclicReduction, KktMethod::kUmfpack}) {
+  for (const KktMethod method :
+       {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu}) {
     config.kkt = method;
     const SqpResult other = solved(problem);
     ASSERT_EQ(other.status, SolveStatus::kConverged);

@@ -145,7 +145,8 @@ TEST(MeritSqp, EveryKktMethodTakesTheSameSteps) {
   const ReverseProblem problem = scene.problem();
   const SqpResult first = merit_sqp(problem, static_iterate(problem));
   ASSERT_EQ(first.status, SolveStatus::kIterationLimit);
-  for (const KktMethod method : {KktMethod::kCyclicReduction, KktMethod::kUmfpack}) {
+  for (const KktMethod method :
+       {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu}) {
     scene.config.kkt = method;
     const SqpResult other = merit_sqp(problem, static_iterate(problem));
     for (std::size_t k = 0; k < first.x.p.size(); ++k)

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/one_candidate.hpp"
 #include "tests/support/touching_scene.hpp"
 
 namespace rtg {
@@ -66,7 +67,7 @@ TEST(Evaluator, LanesAreEvaluatedAsIfAlone) {
   std::vector<Iterate> each;
   Rng rng(1);
   for (int l = 0; l < kWidth<Lanes>; ++l) {
-    each.push_back(testing::disturbed(*warm_start(problem), 1e-3, rng));
+    each.push_back(testing::disturbed(testing::in_contact(problem), 1e-3, rng));
     lanes.load(l, problem);
     if (l == 1) each[1].p[4] = stacked({{0, 0, 0}, {0.5, 0, 0}, {9, 9, 0}});  // overlap
     x.load(l, problem, each.back());

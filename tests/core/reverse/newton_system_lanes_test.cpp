@@ -4,6 +4,7 @@
 
 #include "core/math/riccati.hpp"
 #include "tests/support/linearisation.hpp"
+#include "tests/support/one_candidate.hpp"
 #include "tests/support/touching_scene.hpp"
 
 namespace rtg {
@@ -32,7 +33,7 @@ struct InLanes {
 
   InLanes() {
     Rng rng(11);
-    const Iterate start = *warm_start(problem);
+    const Iterate start = testing::in_contact(problem);
     for (int l = 0; l < kWidth<Lanes>; ++l) {
       each.push_back(disturbed(start, 1e-3, rng));
       lanes.load(l, problem);

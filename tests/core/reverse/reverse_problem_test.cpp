@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/reverse/problem_lanes.hpp"
+#include "tests/support/one_candidate.hpp"
 #include "tests/support/touching_scene.hpp"
 
 namespace rtg {
@@ -11,10 +12,10 @@ namespace {
 using testing::disturbed;
 using testing::TouchingScene;
 
-/// A trajectory in contact: the warm start, moved at random, forces those of its gaps.
-Iterate in_contact(const ReverseProblem& problem) {
+/// A trajectory in contact, moved at random, forces those of its gaps.
+Iterate near_contact(const ReverseProblem& problem) {
   Rng rng(1);
-  Iterate x = disturbed(*warm_start(problem), 1e-3, rng);
+  Iterate x = disturbed(testing::in_contact(problem), 1e-3, rng);
   for (std::size_t k = 0; k < x.p.size(); ++k) x.forces[k] = problem.energy.forces(x.p[k]);
   return x;
 }
@@ -55,7 +56,7 @@ TEST(ReverseProblem, ResidualsAreTheStepEnergysGradients) {
   const TouchingScene scene;
   const ReverseConfig config;
   const ReverseProblem problem = scene.problem(config);
-  const Iterate x = in_contact(problem);
+  const Iterate x = near_contact(problem);
   const Violation v = violation(problem, x);
   for (std::size_t k = 1; k < x.p.size(); ++k) {
     VectorXd expected = scene.energy.model(x.p[k], x.p[k - 1], x.forces[k - 1]).gradient;
@@ -70,7 +71,7 @@ TEST(ReverseProblem, AForceTooLargeViolatesComplementarityByItselfTimesTheGap) {
   const TouchingScene scene;
   const ReverseConfig config;
   const ReverseProblem problem = scene.problem(config);
-  Iterate x = in_contact(problem);
+  Iterate x = near_contact(problem);
   Eigen::Index contact = 0;
   ASSERT_GT(x.forces[5].maxCoeff(&contact), 0.0);
   x.forces[5][contact] += 0.01;
