@@ -21,6 +21,7 @@ struct Batch {
   std::vector<const ReverseProblem*> all;
 
   Batch() {
+    config.max_iterations = 60;
     for (int action = 0; action < 48; ++action) {
       problems.push_back(scene.problem(config));
       problems.back().direction = direction(action, scene.task.push);

@@ -30,9 +30,10 @@ std::vector<ReverseJob> layer(const Task& task) {
 
 // Enough of them that threads solve different slices of it together.
 TEST(Simulators, ALayerOfReverseSolvesHasTheSameBitsOn1To16Threads) {
-  const Task task = gathering();
+  Task task = gathering();
+  task.push.headings = 20;
   std::vector<ReverseJob> jobs;
-  for (int node = 0; node < 3; ++node)
+  for (int node = 0; node < 2; ++node)
     for (ReverseJob job : layer(task)) {
       job.end[1].y += 0.02 * node;
       jobs.push_back(std::move(job));
@@ -41,7 +42,7 @@ TEST(Simulators, ALayerOfReverseSolvesHasTheSameBitsOn1To16Threads) {
   const std::vector<ReverseResult> reference = solve_on_threads(solve, 1)(jobs);
   const auto iterations = std::ranges::max(reference, {}, &ReverseResult::iterations).iterations;
   ASSERT_GT(iterations, 10);  // solves in contact are among them
-  for (int threads = 2; threads <= 16; ++threads) {
+  for (const int threads : {2, 3, 5, 16}) {
     const std::vector<ReverseResult> results = solve_on_threads(solve, threads)(jobs);
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       ASSERT_EQ(results[k].status, reference[k].status);
