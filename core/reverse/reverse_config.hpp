@@ -56,8 +56,9 @@ struct ReverseConfig {
 
 /// The values that `preset` stands for. `paper` is App. E: the printed objective, l1 merit,
 /// Hessian of the objective only, static start, 1000 iterations, final state fixed, plain barrier.
-/// Its weight is one at which moves without contact converge (8 of 9 from goal states of Gathering;
-/// 1 of 9 at 0.2, none at the 24 of the barrier of finite range). No solve with contact does.
+/// Its weight is one at which it converges at all: for 78 % of the candidates of Gathering's goal
+/// states that survive pruning, in 147 iterations in the median (`action48/paper` of the
+/// benchmarks).
 inline ReverseConfig reverse_preset(ReversePreset preset) {
   ReverseConfig config;
   if (preset == ReversePreset::kDefault) return config;
