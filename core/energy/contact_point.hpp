@@ -58,13 +58,16 @@ struct ContactPoint {
     }
     return out;
   }
+  /// Ẋᵀ D Y of a rate of change.
+  Mat4<T> pulled_rate(const Mat2<T>& D, const ContactPoint& other) const {
+    Mat4<T> out = pulled(D, other);
+    out.row(0).setConstant(T(0.0));
+    out.row(1).setConstant(T(0.0));
+    return out;
+  }
   /// Adds the second derivatives of x in q, contracted with w, as coefficients of u.
   void add_curvature(const Vec2<T>& w, Mat4<T>& H) const {
-    const T arm = w.dot(a);
-    H(2, 2) -= arm;
-    H(2, 3) += arm;
-    H(3, 2) += arm;
-    H(3, 3) -= w.dot(x);
+    add_curvature_rate(w, H);
     H(0, 3) -= w.y();
     H(3, 0) -= w.y();
     H(1, 3) += w.x();

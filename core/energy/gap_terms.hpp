@@ -29,20 +29,10 @@ struct GapRates {
     const ContactPoint<T> rate = p.along(y);
     const Vec2<T> n = product(D, rate.x);
     gradient = p.pulled(n) + rate.pulled_rate(d.gradient) + frame_turn(y[3], g.gradient);
-    const Mat4<T> moving = rate_product(rate, D, p) + row_turn(y[3], g.hessian);
+    const Mat4<T> moving = rate.pulled_rate(D, p) + row_turn(y[3], g.hessian);
     hessian = p.pulled(d.third(rate.x), p) + moving + moving.transpose();
     p.add_curvature(n, hessian);
     rate.add_curvature_rate(d.gradient, hessian);
-  }
-
- private:
-  /// Ẋᵀ D X.
-  static Mat4<T> rate_product(const ContactPoint<T>& rate, const Mat2<T>& D,
-                              const ContactPoint<T>& p) {
-    Mat4<T> out = rate.pulled(D, p);
-    out.row(0).setConstant(T(0.0));
-    out.row(1).setConstant(T(0.0));
-    return out;
   }
 };
 

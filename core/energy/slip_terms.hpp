@@ -94,9 +94,7 @@ class SlipRates {
   void set_mixed(const T& turn) {
     const Mat4<T> mixed = at_.after.pulled(tangent_slope_, at_.before);
     cross = (s_.ahead * s_.bend) * behind_.transpose() + mixed * s_.slope;
-    Mat4<T> mixed_rate = rate_.pulled(tangent_slope_, at_.before);
-    mixed_rate.row(0).setConstant(T(0.0));
-    mixed_rate.row(1).setConstant(T(0.0));
+    const Mat4<T> mixed_rate = rate_.pulled_rate(tangent_slope_, at_.before);
     next_now = (s_.ahead * bend_ + ahead_ * s_.bend) * behind_.transpose() +
                (s_.ahead * s_.bend) * behind_rate_.transpose() + mixed * slope_ +
                mixed_rate * s_.slope + row_turn(turn, cross);

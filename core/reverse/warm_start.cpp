@@ -38,30 +38,21 @@ Vec3<T> WarmStart<T>::straight_target(int k) const {
   return pose;
 }
 
-/// F(from), begun with how far the last push went.
+/// F(from) with normal forces `lag` before it, begun with how far the last push went.
 template <class T>
-Mask<T> WarmStart<T>::push(const Placement<T>& from, const Vec3<T>& target, const Mask<T>& wanted,
-                           Placement<T>& to) {
-  scene_.forces(from, lag_.data());
+Mask<T> WarmStart<T>::push(const Placement<T>& from, const T* lag, const Vec3<T>& target,
+                           const Mask<T>& wanted, Placement<T>& to) {
   const Mask<T> found =
-      step_.solve({from, lag_.data(), moved_.data()}, Drive<T>::towards(target), wanted, to);
+      step_.solve({from, lag, moved_.data()}, Drive<T>::towards(target), wanted, to);
   for (std::size_t m = 0; m < moved_.size(); ++m)
     moved_[m] = select(found, to.p[m] - from.p[m], moved_[m]);
   return found;
 }
 
-/// A sub-step in which the robot is held where it is.
+/// out ← `p` with its objects moved by -share·by_ for the largest share in 1, ½, ... that leaves
+/// the gaps open, where there is one. The robot's part of by_ is ignored.
 template <class T>
-Mask<T> WarmStart<T>::hold(const Placement<T>& from, const Mask<T>& wanted, Placement<T>& to) {
-  scene_.forces(from, lag_.data());
-  const Vec3<T> here(from.p[0], from.p[1], from.p[2]);
-  return step_.solve({from, lag_.data()}, Drive<T>::towards(here), wanted, to);
-}
-
-/// `p` with its objects moved by -share·by_ for the largest share in 1, ½, ... that leaves the gaps
-/// open; returns where there is one. The robot's part of by_ is ignored.
-template <class T>
-Mask<T> WarmStart<T>::moved_back(const Placement<T>& p, const Mask<T>& wanted, Placement<T>& out) {
+void WarmStart<T>::move_back(const Placement<T>& p, const Mask<T>& wanted, Placement<T>& out) {
   const T floor = lesser(T(kGapFloor * scene_.barrier().range), scene_.least_gap(p));
   Mask<T> searching = wanted;
   for (double share = 1.0; share > kLeastShare && any(searching); share *= 0.5) {
@@ -72,7 +63,6 @@ Mask<T> WarmStart<T>::moved_back(const Placement<T>& p, const Mask<T>& wanted, P
     out.assign(open, trial_);
     searching = searching && !open;
   }
-  return wanted && !searching;
 }
 
 /// start_ ← the state before sub-step k by a mirrored forward step, the robot on its straight path.
@@ -81,14 +71,17 @@ Mask<T> WarmStart<T>::mirror(int k, const Mask<T>& wanted) {
   const T stride(scene_.stride());
   const Vec3<T> ahead(start_.p[0] + stride * problem_.direction.x(),
                       start_.p[1] + stride * problem_.direction.y(), start_.p[2]);
-  const Mask<T> going = hold(start_, push(start_, ahead, wanted, pushed_), still_);
+  const Vec3<T> here(start_.p[0], start_.p[1], start_.p[2]);
+  scene_.forces(start_, lag_.data());
+  Mask<T> going = push(start_, lag_.data(), ahead, wanted, pushed_);
+  going = step_.solve({start_, lag_.data()}, Drive<T>::towards(here), going, still_);
   for (std::size_t m = 0; m < by_.size(); ++m) by_[m] = pushed_.p[m] - still_.p[m];
   robot_back_ = start_;
   const Vec3<T> before = problem_.robot_path(k - 1);
   for (int m = 0; m < 3; ++m) robot_back_.p[m] = before[m];
   robot_back_.update();
   start_.assign(going, robot_back_);
-  moved_back(robot_back_, going, start_);
+  move_back(robot_back_, going, start_);
   return going;
 }
 
@@ -98,7 +91,7 @@ Mask<T> WarmStart<T>::roll_out(const Mask<T>& wanted, Trajectory<T>& x) {
   Mask<T> going = wanted;
   for (int k = 1; k <= problem_.sub_steps; ++k) {
     const Vec3<T> target = straight_target(k);
-    going = push(x.p[k - 1], target, going, x.p[k]);
+    going = push(x.p[k - 1], x.forces[k - 1].data(), target, going, x.p[k]);
     x.controls[k] = Drive<T>::towards(target).control_at(x.p[k], servo_scale(scene_.stride()));
     scene_.forces(x.p[k], x.forces[k].data());
   }

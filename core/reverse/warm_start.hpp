@@ -21,10 +21,9 @@ class WarmStart {
 
  private:
   Vec3<T> straight_target(int k) const;
-  Mask<T> push(const Placement<T>& from, const Vec3<T>& target, const Mask<T>& wanted,
+  Mask<T> push(const Placement<T>& from, const T* lag, const Vec3<T>& target, const Mask<T>& wanted,
                Placement<T>& to);
-  Mask<T> hold(const Placement<T>& from, const Mask<T>& wanted, Placement<T>& to);
-  Mask<T> moved_back(const Placement<T>& p, const Mask<T>& wanted, Placement<T>& out);
+  void move_back(const Placement<T>& p, const Mask<T>& wanted, Placement<T>& out);
   Mask<T> mirror(int k, const Mask<T>& wanted);
   Mask<T> roll_out(const Mask<T>& wanted, Trajectory<T>& x);
 
