@@ -29,15 +29,17 @@ struct Drive {
 };
 
 /// Where a sub-step begins: the poses, with open gaps, their normal forces [contacts], and, if not
-/// null, a guess of how far they will move [3·bodies].
+/// null, a guess of how far they will move [3·bodies] and the poses one sub-step before, which
+/// inertia asks for; null: at rest.
 template <class T>
 struct StepStart {
   const Placement<T>& now;
   const T* lag;
   const T* guess = nullptr;
+  const Placement<T>* before = nullptr;
 };
 
-/// One quasi-static sub-step, eq. (5): p₊ = argmin Ψ(·, p) under a drive, by Newton's method with
+/// One sub-step, eq. (5): p₊ = argmin Ψ(·, p) under a drive, by Newton's method with
 /// line search.
 template <class T>
 class ForwardStep {

@@ -7,15 +7,15 @@
 
 namespace rtg {
 
-/// One quasi-static sub-step of one scene, eq. (5): p₊ = argmin Ψ(·, p) under the drive.
+/// One sub-step of one scene, eq. (5): p₊ = argmin Ψ(·, p, p₋) under the drive.
 struct ImplicitStep {
   VectorXd next;     // p₊ [3·bodies]
   Vector3d control;  // c that the drive amounted to
 };
 
-/// From `now`, whose gaps must be positive; `lag` are the normal forces there [contacts]. Ends at
-/// ‖∂Ψ/∂p₊‖∞ < 1e-10 kg m. Nothing if it does not get there.
-std::optional<ImplicitStep> implicit_step(const StepEnergy& energy, const VectorXd& now,
-                                          const VectorXd& lag, const Drive<double>& drive);
+/// From poses whose gaps must be positive. Ends at ‖∂Ψ/∂p₊‖∞ < 1e-10 kg m. Nothing if it does not
+/// get there.
+std::optional<ImplicitStep> implicit_step(const StepEnergy& energy, const StepFrom& from,
+                                          const Drive<double>& drive);
 
 }  // namespace rtg

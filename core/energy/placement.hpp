@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/math/block_matrix.hpp"
 #include "core/math/elementary.hpp"
 
 namespace rtg {
@@ -31,5 +32,12 @@ struct Placement {
   std::vector<T> p;  // x, y, θ per body
   std::vector<Turn<T>> turns;
 };
+
+/// (Δt, Δθ) of a body between two placements.
+template <class T>
+Vec3<T> way(const Placement<T>& from, const Placement<T>& to, int body) {
+  const T *a = from.body(body), *b = to.body(body);
+  return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+}
 
 }  // namespace rtg

@@ -41,12 +41,13 @@ SceneModel<T>::SceneModel(const Scene& scene, const PhysicsConfig& physics, cons
       sharpness_(physics.sharpness),
       skin_(physics.skin),
       slip_(physics.slip),
-      stride_(push.stride / physics.sub_steps) {
+      stride_(push.stride / physics.sub_steps),
+      inertia_weight_(physics.inertia_weight()) {
   const double unit = physics.damping / (physics.time_step * physics.time_step);  // k_D/Δt²
   barrier_ = {physics.barrier / unit, physics.range, physics.plain_barrier};
   for (const Body& body : scene.bodies) {
     const Mass mass = mass_of(body);
-    damping_.push_back({T(mass.mass), T(mass.moment), physics.periodic_damping});
+    damping_.push_back({T(mass.mass), T(mass.moment), physics.periodic_turns});
     radius_.push_back(T(bounding_radius(body.shape)));
     corners_.push_back(static_cast<int>(body.shape.size()));
     corner_count_.push_back(T(corners_.back()));
@@ -56,7 +57,8 @@ SceneModel<T>::SceneModel(const Scene& scene, const PhysicsConfig& physics, cons
     for (std::size_t v = 0; v < body.shape.size(); ++v)
       vertices_.back()[v] = {T(body.shape.vertices[v].x()), T(body.shape.vertices[v].y())};
   }
-  const T drag = damping_[0].mass * T(stride_);  // of the robot at push speed
+  // Of the robot: what push speed takes, and what gains it in a sub-step.
+  const T drag = damping_[0].mass * T(stride_ * (1.0 + inertia_weight_));
   control_bound_ = {T(physics.force_factor) * drag, T(physics.force_factor) * drag,
                     T(physics.torque_factor) * drag * radius_[0]};
   add_pairs();
@@ -79,7 +81,8 @@ SceneModel<T>::SceneModel(const SceneModel<double>& like, Room)
       sharpness_(like.sharpness_),
       skin_(like.skin_),
       slip_(like.slip_),
-      stride_(like.stride_) {
+      stride_(like.stride_),
+      inertia_weight_(like.inertia_weight_) {
   add_pairs();
 }
 

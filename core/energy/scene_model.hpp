@@ -6,6 +6,7 @@
 #include "core/energy/barrier.hpp"
 #include "core/energy/contact_point.hpp"
 #include "core/energy/damping.hpp"
+#include "core/energy/inertia.hpp"
 #include "core/energy/placement.hpp"
 #include "core/energy/separating_edges.hpp"
 #include "core/world/physics_config.hpp"
@@ -51,6 +52,14 @@ class SceneModel {
   double slip() const { return slip_; }
   double skin() const { return skin_; }
   const Damping<T>& damping(int body) const { return damping_[body]; }
+  /// Whether a sub-step depends on the one before it.
+  bool inertial() const { return inertia_weight_ > 0.0; }
+  /// How far what moves at push speed coasts, in strides of a sub-step: v Δt/k_D.
+  double coasting() const { return inertia_weight_; }
+  Inertia<T> inertia(int body) const {
+    const Damping<T>& d = damping_[body];
+    return {d.mass * T(inertia_weight_), d.moment * T(inertia_weight_), d.periodic};
+  }
   const Vec3<T>& control_bound() const { return control_bound_; }
   const T& friction(int pair) const { return friction_[pair]; }
 
@@ -102,7 +111,7 @@ class SceneModel {
   std::vector<Damping<T>> damping_;
   Vec3<T> control_bound_;
   Barrier barrier_;
-  double sharpness_, skin_, slip_, stride_;
+  double sharpness_, skin_, slip_, stride_, inertia_weight_;
 };
 
 }  // namespace rtg

@@ -23,23 +23,34 @@ VectorXd StepEnergy::forces(const VectorXd& p) const {
   return gathered(lambda);
 }
 
-double StepEnergy::value(const VectorXd& next, const VectorXd& now, const VectorXd& lag) const {
-  const Placement<double> before = placed(now);
-  StepPotential<double> potential(scene_);
-  potential.begin(before, spread(lag).data());
+namespace {
+
+/// A StepPotential with the placements that it begins from.
+struct Begun {
+  Placement<double> now, before;
+  StepPotential<double> potential;
+
+  Begun(const StepEnergy& energy, const StepFrom& from)
+      : now(placed(from.now)),
+        before(from.before ? placed(*from.before) : Placement<double>()),
+        potential(energy.scene()) {
+    potential.begin(now, energy.spread(from.lag).data(), from.before ? &before : nullptr);
+  }
+};
+
+}  // namespace
+
+double StepEnergy::value(const VectorXd& next, const StepFrom& from) const {
+  const Begun begun(*this, from);
   std::vector<double> gaps(static_cast<std::size_t>(scene_.contacts()), 0.0);
   bool legal;
-  return potential.value(placed(next), gaps.data(), gaps.data(), legal);
+  return begun.potential.value(placed(next), gaps.data(), gaps.data(), legal);
 }
 
-StepEnergy::Model StepEnergy::model(const VectorXd& next, const VectorXd& now,
-                                    const VectorXd& lag) const {
-  const Placement<double> before = placed(now);
+StepEnergy::Model StepEnergy::model(const VectorXd& next, const StepFrom& from) const {
   Model model{VectorXd::Zero(dofs()), MatrixXd::Zero(dofs(), dofs())};
   BlockMatrix<double> H(scene_.movable());
-  StepPotential<double> potential(scene_);
-  potential.begin(before, spread(lag).data());
-  potential.model(placed(next), model.gradient.data(), H);
+  Begun(*this, from).potential.model(placed(next), model.gradient.data(), H);
   for (int i = 0; i < H.M; ++i)
     for (int j = 0; j <= i; ++j) {
       if (!H.has(i, j)) continue;

@@ -19,13 +19,22 @@ struct Contact {
   int pair = 0, vertex = 0;
 };
 
-/// The quasi-static step energy of one scene, eq. (8) without inertia, in units of k_D/Δt² (so
-/// damping has weight one and energies are [kg m²]):
+/// Where a sub-step begins: poses p [3·bodies], their normal forces [contacts], and the poses p₋
+/// one sub-step before, of which inertia alone makes use; null: at rest.
+struct StepFrom {
+  const VectorXd& now;
+  const VectorXd& lag;
+  const VectorXd* before = nullptr;
+};
+
+/// The step energy of one scene, eq. (8), in units of k_D/Δt² (so damping has weight one and
+/// energies are [kg m²]):
 ///
-///   Ψ(p₊, p, c) = I_D(p₊ - p) + Σ b(g(p₊)) + Σ μ_f λ φ(u(p₊, p)) - B·tanh(c)·p₊₀,
+///   Ψ(p₊, p, p₋, c) = I(p₊, p, p₋) + I_D(p₊ - p) + Σ b(g(p₊)) + Σ μ_f λ φ(u(p₊, p))
+///                     - B·tanh(c)·p₊₀,
 ///
-/// sums over all contacts: every vertex of either body of a pair against the other. λ is the normal
-/// force before the sub-step. ∂Ψ/∂p₊ = 0 is the step, eq. (5).
+/// in quasi-static mode without I; sums over all contacts: every vertex of either body of a pair
+/// against the other. λ is the normal force before the sub-step. ∂Ψ/∂p₊ = 0 is the step, eq. (5).
 ///
 /// Poses are stacked as (x, y, θ) per body [3·bodies]; the first `dofs()` of them are unknowns, the
 /// rest belong to fixed bodies. Const and free of mutable state: may be used by many threads.
@@ -53,12 +62,12 @@ class StepEnergy {
 
   /// Ψ without actuation: its value, gradient and Hessian with respect to p₊ [dofs]; +∞ if a gap
   /// is not positive.
-  double value(const VectorXd& next, const VectorXd& now, const VectorXd& lag) const;
+  double value(const VectorXd& next, const StepFrom& from) const;
   struct Model {
     VectorXd gradient;  // [dofs]
     MatrixXd hessian;   // [dofs × dofs]
   };
-  Model model(const VectorXd& next, const VectorXd& now, const VectorXd& lag) const;
+  Model model(const VectorXd& next, const StepFrom& from) const;
 
   /// Separating-axis test of all pairs of which one may move; see SeparatingEdges.
   bool separated(const VectorXd& p) const;

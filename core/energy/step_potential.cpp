@@ -5,8 +5,9 @@
 namespace rtg {
 
 template <class T>
-void StepPotential<T>::begin(const Placement<T>& now, const T* lag) {
+void StepPotential<T>::begin(const Placement<T>& now, const T* lag, const Placement<T>* before) {
   now_ = &now;
+  before_ = before;
   for (int n = 0; n < scene_.pair_count(); ++n) {
     drags_[n] = 0;
     const PairFrame<T> frame = scene_.frame(n, now);
@@ -16,29 +17,40 @@ void StepPotential<T>::begin(const Placement<T>& now, const T* lag) {
       contact.drags = any(force != T(0.0));
       if (!contact.drags) continue;
       drags_[n] = 1;
-      const Touch<T> before(scene_, n, v, frame, Mask<T>(true));
-      contact.x = before.point.x;
-      contact.normal = before.distance().gradient;
+      const Touch<T> touch(scene_, n, v, frame, Mask<T>(true));
+      contact.x = touch.point.x;
+      contact.normal = touch.distance().gradient;
       contact.load = scene_.friction(n) * force;
     }
   }
 }
 
+/// How far a body moved in the sub-step before.
 template <class T>
-T StepPotential<T>::damping(const Placement<T>& next) const {
+Vec3<T> StepPotential<T>::way_before(int body) const {
+  return before_ ? way(*before_, *now_, body) : Vec3<T>(T(0.0), T(0.0), T(0.0));
+}
+
+/// Damping and inertia.
+template <class T>
+T StepPotential<T>::motion(const Placement<T>& next) const {
   T sum(0.0);
   for (int i = 0; i < scene_.movable(); ++i) {
-    const T *after = next.body(i), *before = now_->body(i);
-    const T x = after[0] - before[0], y = after[1] - before[1];
+    const Vec3<T> a = way(*now_, next, i);
     const Damping<T>& body = scene_.damping(i);
-    sum = sum + T(0.5) * body.mass * (x * x + y * y) + body.turn_value(after[2] - before[2]);
+    sum = sum + T(0.5) * body.mass * (a[0] * a[0] + a[1] * a[1]) + body.turn_value(a[2]);
+    if (!scene_.inertial()) continue;
+    const Vec3<T> b = way_before(i), gain = a - b;
+    const Inertia<T> inertia = scene_.inertia(i);
+    sum = sum + T(0.5) * inertia.mass * (gain[0] * gain[0] + gain[1] * gain[1]) +
+          inertia.turn_value(a[2], b[2]);
   }
   return sum;
 }
 
 template <class T>
 T StepPotential<T>::value(const Placement<T>& next, const T* were, T* gaps, Mask<T>& legal) const {
-  T sum = damping(next);
+  T sum = motion(next);
   legal = Mask<T>(true);
   Mask<T> apart(true);
   for (int n = 0; n < scene_.pair_count(); ++n) {
@@ -70,19 +82,22 @@ T StepPotential<T>::value(const Placement<T>& next, const T* were, T* gaps, Mask
 }
 
 template <class T>
-void StepPotential<T>::add_damping(const Placement<T>& next, T* gradient,
-                                   BlockMatrix<T>& hessian) const {
+void StepPotential<T>::add_motion(const Placement<T>& next, T* gradient,
+                                  BlockMatrix<T>& hessian) const {
   for (int i = 0; i < scene_.movable(); ++i) {
-    const T *after = next.body(i), *before = now_->body(i);
+    const Vec3<T> a = way(*now_, next, i);
     const Damping<T>& body = scene_.damping(i);
-    const T turn = after[2] - before[2];
-    gradient[3 * i] = gradient[3 * i] + body.mass * (after[0] - before[0]);
-    gradient[3 * i + 1] = gradient[3 * i + 1] + body.mass * (after[1] - before[1]);
-    gradient[3 * i + 2] = gradient[3 * i + 2] + body.turn_slope(turn);
-    Block<T> own = Block<T>::Constant(T(0.0));
-    own(0, 0) = own(1, 1) = body.mass;
-    own(2, 2) = body.turn_curvature(turn);
-    hessian.add(i, i, own);
+    Vec3<T> slope(body.mass * a[0], body.mass * a[1], body.turn_slope(a[2]));
+    Vec3<T> curvature(body.mass, body.mass, body.turn_curvature(a[2]));
+    if (scene_.inertial()) {
+      const Vec3<T> b = way_before(i);
+      const Inertia<T> inertia = scene_.inertia(i);
+      const auto turn = inertia.turn_slope(a[2], b[2]);
+      slope += Vec3<T>(inertia.mass * (a[0] - b[0]), inertia.mass * (a[1] - b[1]), turn.value);
+      curvature += Vec3<T>(inertia.mass, inertia.mass, turn.a);
+    }
+    for (int m = 0; m < 3; ++m) gradient[3 * i + m] = gradient[3 * i + m] + slope[m];
+    hessian.add(i, i, diagonal(curvature));
   }
 }
 
@@ -108,7 +123,7 @@ void StepPotential<T>::add_contact(const Touch<T>& touch, const Lagged& lagged, 
 
 template <class T>
 void StepPotential<T>::model(const Placement<T>& next, T* gradient, BlockMatrix<T>& hessian) const {
-  add_damping(next, gradient, hessian);
+  add_motion(next, gradient, hessian);
   for (int n = 0; n < scene_.pair_count(); ++n) {
     const Mask<T> close = scene_.near(n, next);
     if (!any(close) && !drags_[n]) continue;

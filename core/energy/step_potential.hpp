@@ -15,8 +15,9 @@ class StepPotential {
         lagged_(static_cast<std::size_t>(scene.contacts())),
         drags_(scene.pairs().size()) {}
 
-  /// The sub-step begins at `now`, which must outlive the calls below, with normal forces `lag`.
-  void begin(const Placement<T>& now, const T* lag);
+  /// The sub-step begins at `now` with normal forces `lag`. With inertia `before` are the poses a
+  /// sub-step earlier, null where everything is at rest. Placements must outlive the calls below.
+  void begin(const Placement<T>& now, const T* lag, const Placement<T>* before = nullptr);
 
   /// Its value, infinite where a gap is not open; `gaps` [contacts]; `legal`: where they keep
   /// enough of what they `were` and bodies are separated.
@@ -32,12 +33,13 @@ class StepPotential {
     T load;             // μ_f λ
     bool drags = false;
   };
-  T damping(const Placement<T>& next) const;
-  void add_damping(const Placement<T>& next, T* gradient, BlockMatrix<T>& hessian) const;
+  T motion(const Placement<T>& next) const;
+  void add_motion(const Placement<T>& next, T* gradient, BlockMatrix<T>& hessian) const;
+  Vec3<T> way_before(int body) const;
   void add_contact(const Touch<T>& touch, const Lagged& lagged, Vec4<T>& slope, Mat4<T>& H) const;
 
   const SceneModel<T>& scene_;
-  const Placement<T>* now_ = nullptr;
+  const Placement<T>*now_ = nullptr, *before_ = nullptr;
   std::vector<Lagged> lagged_;
   std::vector<char> drags_;  // per pair
 };

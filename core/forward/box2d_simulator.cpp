@@ -16,7 +16,7 @@ constexpr double kMaxAngle = 1e4;  // ... likewise [rad]
 constexpr double kCatchUp = 1.5;   // largest servo speed / push speed
 constexpr int kCatchUpSteps = 2;   // make up for what first contacts cost at the end of the path
 constexpr double kClear = 0.1;     // bodies farther apart do not meet in the next steps [m]
-constexpr int kMaxRestSteps = 400;
+constexpr int kRestSteps = 400;
 constexpr double kRestSpeed = 1e-4;  // [m/s] and [rad/s]
 constexpr double kSlowSpeed = 1e-2;  // still good enough when the steps run out
 constexpr double kRestShift =
@@ -34,6 +34,7 @@ struct Servo {
   double advance = 0.0;  // of the robot per Box2D step [m]
   double radius = 0.0;   // r₀ [m]
   double max_force = 0.0, max_torque = 0.0;
+  int rest_steps = 0;  // in which everything should come to rest
 };
 
 // A joint impulse is not damped in its own step, an applied force is: the same motion takes 1/(1 +
@@ -44,9 +45,16 @@ Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& 
   const double speed = push.stride / (physics.sub_steps * physics.time_step);
   const double step_s = physics.time_step / physics.box2d_steps;
   const double radius = bounding_radius(scene.bodies[0].shape);
-  const double drag = mass_of(scene.bodies[0]).mass * damping * speed / (1.0 + step_s * damping);
-  return {step_s, speed * step_s, radius, physics.force_factor * drag,
-          physics.torque_factor * drag * radius};
+  const double drag = mass_of(scene.bodies[0]).mass * damping * speed *
+                      (1.0 + physics.inertia_weight()) / (1.0 + step_s * damping);
+  // Free bodies lose 1 + h d of their speed in each step.
+  const double coasting = std::log(kCatchUp * speed / kRestSpeed) / std::log1p(step_s * damping);
+  return {step_s,
+          speed * step_s,
+          radius,
+          physics.force_factor * drag,
+          physics.torque_factor * drag * radius,
+          kRestSteps + static_cast<int>(std::clamp(coasting, 0.0, 1e6))};
 }
 
 /// Distance of x from the segment from a to b [m].
@@ -104,7 +112,7 @@ class Table {
   /// moves, or not finite.
   bool come_to_rest() {
     const Pose hold = pose_of(*bodies_[0]);
-    for (int k = 0; k < kMaxRestSteps; ++k) {
+    for (int k = 0; k < servo_.rest_steps; ++k) {
       if (!step_towards(hold)) return false;
       if (fastest_ < kRestSpeed && shift_ < kRestShift) return true;
     }

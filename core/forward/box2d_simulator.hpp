@@ -13,7 +13,8 @@ namespace rtg {
 /// path with the heading held;
 ///
 ///   B_f = force_factor · F [N],   B_ω = torque_factor · F r₀ [N·m],
-///   F = m₀ k_D/Δt · stride/(hΔt), the robot's own drag at push speed,
+///   F = m₀ k_D/Δt · stride/(hΔt), the robot's own drag at push speed; (1 + 1/k_D) F in dynamic
+///   mode, what gains that speed within a sub-step,
 ///
 /// with r₀ the robot's bounding radius. It stops short where that is not enough, and never moves
 /// faster than 1.5 × the push speed, so nothing jumps when a blocked robot comes free.

@@ -13,6 +13,7 @@ NewtonSimulator::NewtonSimulator(Scene scene, const PushConfig& push, const Phys
     : scene_(std::move(scene)),
       push_(push),
       sub_steps_(physics.sub_steps),
+      settling_(static_cast<std::size_t>(physics.settling_steps())),
       order_(movable_first(scene_)),
       energy_(select(scene_, Poses(scene_.size()), order_).scene, physics, push) {}
 
@@ -23,23 +24,26 @@ PushOutcome NewtonSimulator::push(const Poses& start, int action) const {
   std::vector<Vector3d> targets;
   for (int k = 1; k <= sub_steps_; ++k)
     targets.push_back(from + static_cast<double>(k) / sub_steps_ * (to - from));
+  targets.resize(targets.size() + settling_, to);
   return follow(start, targets);
 }
 
 PushOutcome NewtonSimulator::settle(const Poses& start) const {
   if (start.size() != scene_.size()) return {start, false};
   const Vector3d hold(start[0].x, start[0].y, start[0].theta);
-  return follow(start, std::vector<Vector3d>(static_cast<std::size_t>(sub_steps_), hold));
+  return follow(start, {static_cast<std::size_t>(sub_steps_) + settling_, hold});
 }
 
 PushOutcome NewtonSimulator::follow(const Poses& start,
                                     const std::vector<Vector3d>& targets) const {
   if (!is_finite(start)) return {start, false};
   VectorXd p = with_open_gaps(energy_, stacked(select(scene_, start, order_).poses));
+  VectorXd before = p;
   for (const Vector3d& target : targets) {
-    const auto step = implicit_step(energy_, p, energy_.forces(p), Drive<double>::towards(target));
+    const auto step =
+        implicit_step(energy_, {p, energy_.forces(p), &before}, Drive<double>::towards(target));
     if (!step) return {start, false};
-    p = step->next;
+    before = std::exchange(p, step->next);
   }
   return {merged(start, unstacked(p), order_), true};
 }

@@ -7,15 +7,17 @@
 
 namespace rtg {
 
-/// Quasi-static forward simulation, eq. (5): every sub-step minimises Ψ, the robot on a bounded
-/// servo along the straight path. The model that the reverse simulator inverts; the true dynamics
+/// Forward simulation, eq. (5): every sub-step minimises Ψ, the robot on a bounded servo along the
+/// straight path; in dynamic mode (PhysicsConfig::inertia) from rest and with sub-steps in which
+/// what still moves comes to rest. The model that the reverse simulator inverts; the true dynamics
 /// is Box2dSimulator.
 class NewtonSimulator final : public Simulator {
  public:
   /// `scene`: legal shapes only (polygon_defect() empty), bodies[0] movable.
   NewtonSimulator(Scene scene, const PushConfig& push, const PhysicsConfig& physics);
 
-  /// As Simulator::push. Without inertia everything is at rest after the last sub-step. Not ok:
+  /// As Simulator::push. Without inertia everything is at rest after the last sub-step, with it all
+  /// speeds are less than a hundredth of what they were when the robot stopped. Not ok:
   /// `start` has the wrong size, is not finite, overlaps, or a sub-step failed.
   [[nodiscard]] PushOutcome push(const Poses& start, int action) const override;
 
@@ -28,6 +30,7 @@ class NewtonSimulator final : public Simulator {
   Scene scene_;
   PushConfig push_;
   int sub_steps_;
+  std::size_t settling_;    // sub-steps
   std::vector<int> order_;  // of the bodies in energy_
   StepEnergy energy_;
 };

@@ -1,5 +1,8 @@
 #include "core/math/assembled_solver.hpp"
 
+#include <algorithm>
+#include <cassert>
+
 namespace rtg {
 namespace {
 
@@ -10,6 +13,10 @@ void write(const BlockColumn<double>& from, double sign, VectorXd& to, Eigen::In
     to.segment<3>(at + static_cast<Eigen::Index>(3 * i)) = sign * from[i];
 }
 
+bool has_inertia(const StageSystem<double>& system) {
+  return std::ranges::any_of(system.stages, [](const auto& stage) { return !stage.G.empty(); });
+}
+
 void read_column(const VectorXd& from, Eigen::Index at, BlockColumn<double>& to) {
   for (std::size_t i = 0; i < to.size(); ++i)
     to[i] = from.segment<3>(at + static_cast<Eigen::Index>(3 * i));
@@ -18,70 +25,112 @@ void read_column(const VectorXd& from, Eigen::Index at, BlockColumn<double>& to)
 }  // namespace
 
 Assembled::Assembled(const StageSystem<double>& system, bool fixed_end)
-    : M_(system.M), n_(3 * system.M), h_(system.h), fixed_end_(fixed_end) {
-  const int blocks = fixed_end ? h_ : h_ + 1;
-  for (int k = 0; k < blocks; ++k) {
-    const int rows = k == 0 && !fixed_end ? n_ : 2 * n_ + 3;
-    K_.A.push_back(MatrixXd::Zero(rows, rows));
-    K_.B.push_back(k == 0 ? MatrixXd() : MatrixXd::Zero(rows, K_.A[k - 1].cols()));
-    r_.push_back(VectorXd::Zero(rows));
-  }
-  for (int k = 0; k <= h_; ++k) {
-    const auto& stage = system.stages[k];
-    if (has_pose(k)) {
-      add(stage.Q, true, k, 0, k);
-      write(stage.q, -1.0, r_[k], 0);
-    }
-    if (k == 0) continue;
-    const int own = block_of(k);
-    if (has_pose(k)) {
-      add(stage.E, true, own, n_ + 3, k);
-      add(stage.N, false, k, 0, k - 1);
-    }
-    add(stage.F, false, own, n_ + 3, k - 1);
-    for (int m = 0; m < 3; ++m) {
-      entry(own, n_ + m, own, n_ + m) += stage.R[m];
-      entry(own, n_ + 3 + m, own, n_ + m) += stage.B[m];
-      r_[own][n_ + m] = -stage.r[m];
-    }
-    for (int m = 0; m < n_; ++m) entry(own, n_ + 3 + m, own, n_ + 3 + m) -= kMultiplierShift;
-    write(stage.e, -1.0, r_[own], n_ + 3);
-  }
+    : M_(system.M),
+      n_(3 * system.M),
+      h_(system.h),
+      per_block_(has_inertia(system) ? 2 : 1),
+      fixed_end_(fixed_end) {
+  assert(!(fixed_end && per_block_ == 2));
+  set_sizes();
+  for (int k = 0; k <= h_; ++k) add_stage(system.stages[k], k);
   for (MatrixXd& A : K_.A) A = MatrixXd(A.selfadjointView<Eigen::Lower>());
 }
 
-/// Below (or on) the diagonal of K.
-double& Assembled::entry(int row_block, int row, int column_block, int column) {
-  if (row_block < column_block) return entry(column_block, column, row_block, row);
-  return row_block == column_block ? K_.A[row_block](row, column) : K_.B[row_block](row, column);
+Assembled::Place Assembled::pose(int level) const {
+  if (fixed_end_ || level == 0) return {level, 0};
+  return {(level - 1) / per_block_ + 1, (level - 1) % per_block_ * (2 * n_ + 3)};
 }
 
-/// M with its rows from `row` of a block, its columns those of the poses of another.
-void Assembled::add(const BlockMatrix<double>& M, bool symmetric, int row_block, int row,
-                    int column_block) {
+Assembled::Place Assembled::control(int step) const {
+  const Place at = pose(fixed_end_ ? step - 1 : step);
+  return {at.block, at.row + n_};
+}
+
+Assembled::Place Assembled::multiplier(int step) const {
+  const Place at = control(step);
+  return {at.block, at.row + 3};
+}
+
+void Assembled::set_sizes() {
+  const int last = multiplier(h_).block;
+  for (int block = 0; block <= last; ++block) {
+    const int rows = block == 0 && !fixed_end_ ? n_
+                     : block == last           ? multiplier(h_).row + n_
+                                               : per_block_ * (2 * n_ + 3);
+    K_.A.push_back(MatrixXd::Zero(rows, rows));
+    K_.B.push_back(block == 0 ? MatrixXd() : MatrixXd::Zero(rows, K_.A[block - 1].cols()));
+    r_.push_back(VectorXd::Zero(rows));
+  }
+}
+
+void Assembled::add_stage(const StageSystem<double>::Stage& stage, int k) {
+  if (has_pose(k)) {
+    add_symmetric(stage.Q, pose(k), pose(k));
+    write(stage.q, -1.0, r_[pose(k).block], pose(k).row);
+  }
+  if (k == 0) return;
+  const Place c = control(k), y = multiplier(k);
+  if (has_pose(k)) {
+    add_symmetric(stage.E, y, pose(k));
+    add(stage.N, pose(k), pose(k - 1));
+  }
+  add(stage.F, y, pose(k - 1));
+  if (k > 1) {
+    add(stage.U, pose(k), pose(k - 2));
+    add(stage.G, y, pose(k - 2));
+  }
+  for (int m = 0; m < 3; ++m) {
+    const Place own{c.block, c.row + m};
+    entry(own, own) += stage.R[m];
+    entry({y.block, y.row + m}, own) += stage.B[m];
+    r_[c.block][own.row] = -stage.r[m];
+  }
+  for (int m = 0; m < n_; ++m) {
+    const Place own{y.block, y.row + m};
+    entry(own, own) -= kMultiplierShift;
+  }
+  write(stage.e, -1.0, r_[y.block], y.row);
+}
+
+/// Below (or on) the diagonal of K.
+double& Assembled::entry(const Place& row, const Place& column) {
+  if (row.block < column.block || (row.block == column.block && row.row < column.row))
+    return entry(column, row);
+  return row.block == column.block ? K_.A[row.block](row.row, column.row)
+                                   : K_.B[row.block](row.row, column.row);
+}
+
+/// M off the diagonal of K.
+void Assembled::add(const BlockMatrix<double>& M, const Place& row, const Place& column) {
   for (int i = 0; i < M_; ++i)
-    for (int j = 0; j < M_; ++j) {
-      const bool mirrored = symmetric && j > i;
-      if (!(mirrored ? M.has(j, i) : M.has(i, j))) continue;
+    for (const int j : Bits(M.pattern[i]))
       for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) {
-          const int at = row + 3 * i + a, column = 3 * j + b;
-          if (row_block == column_block && at < column) continue;
-          entry(row_block, at, column_block, column) +=
-              mirrored ? M.at(j, i)(b, a) : M.at(i, j)(a, b);
-        }
+        for (int b = 0; b < 3; ++b)
+          entry({row.block, row.row + 3 * i + a}, {column.block, column.row + 3 * j + b}) +=
+              M.at(i, j)(a, b);
+}
+
+/// M symmetric, of which the lower half counts; on the diagonal of K that half alone.
+void Assembled::add_symmetric(const BlockMatrix<double>& M, const Place& row, const Place& column) {
+  const bool own = row.block == column.block && row.row == column.row;
+  for (int i = 0; i < n_; ++i)
+    for (int j = 0; j <= i; ++j) {
+      if (!M.has(i / 3, j / 3)) continue;
+      const double x = M.at(i / 3, j / 3)(i % 3, j % 3);
+      entry({row.block, row.row + i}, {column.block, column.row + j}) += x;
+      if (!own && i != j) entry({row.block, row.row + j}, {column.block, column.row + i}) += x;
     }
 }
 
 void Assembled::read(const BlockVector& x, StageStep<double>& step) const {
   for (int k = 0; k <= h_; ++k) {
     if (has_pose(k))
-      read_column(x[k], 0, step.poses[k]);
+      read_column(x[pose(k).block], pose(k).row, step.poses[k]);
     else
       for (Vec3<double>& block : step.poses[k]) block.setZero();
     if (k == 0) continue;
-    step.controls[k] = x[block_of(k)].segment<3>(n_);
-    read_column(x[block_of(k)], n_ + 3, step.multipliers[k]);
+    step.controls[k] = x[control(k).block].segment<3>(control(k).row);
+    read_column(x[multiplier(k).block], multiplier(k).row, step.multipliers[k]);
   }
 }
 
@@ -89,10 +138,10 @@ BlockVector Assembled::written(const StageStep<double>& step) const {
   BlockVector x;
   for (const VectorXd& block : r_) x.push_back(VectorXd::Zero(block.size()));
   for (int k = 0; k <= h_; ++k) {
-    if (has_pose(k)) write(step.poses[k], 1.0, x[k], 0);
+    if (has_pose(k)) write(step.poses[k], 1.0, x[pose(k).block], pose(k).row);
     if (k == 0) continue;
-    x[block_of(k)].segment<3>(n_) = step.controls[k];
-    write(step.multipliers[k], 1.0, x[block_of(k)], n_ + 3);
+    x[control(k).block].segment<3>(control(k).row) = step.controls[k];
+    write(step.multipliers[k], 1.0, x[multiplier(k).block], multiplier(k).row);
   }
   return x;
 }

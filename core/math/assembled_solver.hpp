@@ -18,6 +18,9 @@ namespace rtg {
 ///
 ///   ζ_k = (Δp_k, Δc_{k+1}, Δy_{k+1}), k = 0 ... h-1.
 ///
+/// With inertia, which couples three levels, a block holds two sub-steps: (ζ_1, ζ_2), (ζ_3, ζ_4),
+/// ... after ζ_0; the final state is not fixed then.
+///
 /// Departs from the paper: its printed pairing is pentadiagonal.
 class Assembled {
  public:
@@ -30,12 +33,21 @@ class Assembled {
   BlockVector written(const StageStep<double>& step) const;
 
  private:
+  /// First row of something, within its block.
+  struct Place {
+    int block, row;
+  };
   bool has_pose(int level) const { return level < h_ || !fixed_end_; }
-  int block_of(int step) const { return fixed_end_ ? step - 1 : step; }  // of control, multiplier
-  double& entry(int row_block, int row, int column_block, int column);
-  void add(const BlockMatrix<double>& M, bool symmetric, int row_block, int row, int column_block);
+  Place pose(int level) const;
+  Place control(int step) const;
+  Place multiplier(int step) const;
+  void set_sizes();
+  void add_stage(const StageSystem<double>::Stage& stage, int k);
+  double& entry(const Place& row, const Place& column);
+  void add(const BlockMatrix<double>& M, const Place& row, const Place& column);
+  void add_symmetric(const BlockMatrix<double>& M, const Place& row, const Place& column);
 
-  int M_, n_, h_;
+  int M_, n_, h_, per_block_;  // sub-steps per block
   bool fixed_end_;
   BlockTridiagonal K_;
   BlockVector r_;

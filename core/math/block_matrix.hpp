@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cstdint>
@@ -43,6 +44,9 @@ struct BlockMatrix {
     }
   }
   void clear() { pattern.assign(pattern.size(), 0); }
+  bool empty() const {
+    return std::ranges::all_of(pattern, [](std::uint64_t row) { return row == 0; });
+  }
 
   int M;
   std::vector<Block<T>> blocks;
@@ -77,6 +81,13 @@ class Bits {
  private:
   std::uint64_t bits_;
 };
+
+template <class T>
+Block<T> diagonal(const Vec3<T>& entries) {
+  Block<T> D = Block<T>::Constant(T(0.0));
+  for (int m = 0; m < 3; ++m) D(m, m) = entries[m];
+  return D;
+}
 
 /// The inverse of a symmetric block, by cofactors; `determinant` as found.
 template <class T>

@@ -2,66 +2,30 @@
 
 #include <algorithm>
 
+#include "core/math/block_products.hpp"
+
 namespace rtg {
-namespace {
-
-/// y ← y + A x.
-template <class T>
-void add_to(BlockColumn<T>& y, const BlockMatrix<T>& A, const BlockColumn<T>& x) {
-  for (int i = 0; i < A.M; ++i) {
-    RegisterSum<Vec3<T>> sum(y[i]);
-    for (const int j : Bits(A.pattern[i])) sum.add(A.at(i, j), x[j]);
-    sum.store(y[i]);
-  }
-}
-
-template <class T>
-void add_product(Vec3<T>& y, const Block<T>& A, const Vec3<T>& x) {
-  RegisterSum<Vec3<T>> sum(y);
-  sum.add(A, x);
-  sum.store(y);
-}
-template <class T>
-void add_transposed_product(Vec3<T>& y, const Block<T>& A, const Vec3<T>& x) {
-  RegisterSum<Vec3<T>> sum(y);
-  sum.add(A.transpose(), x);
-  sum.store(y);
-}
-
-/// y ← y + Aᵀ x.
-template <class T>
-void add_transposed_to(BlockColumn<T>& y, const BlockMatrix<T>& A, const BlockColumn<T>& x) {
-  for (int i = 0; i < A.M; ++i)
-    for (const int j : Bits(A.pattern[i])) add_transposed_product(y[j], A.at(i, j), x[i]);
-}
-
-/// y ← y + A x for a symmetric A, whose lower half counts.
-template <class T>
-void add_symmetric_to(BlockColumn<T>& y, const BlockMatrix<T>& A, const BlockColumn<T>& x) {
-  for (int i = 0; i < A.M; ++i)
-    for (const int j : Bits(A.pattern[i])) {
-      if (j > i) break;
-      add_product(y[i], A.at(i, j), x[j]);
-      if (j < i) add_transposed_product(y[j], A.at(i, j), x[i]);
-    }
-}
-
-}  // namespace
-
 template <class T>
 Riccati<T>::Riccati(int count, int sub_steps)
     : M_(count),
       E_(static_cast<std::size_t>(sub_steps) + 1, BlockLdl<T>(count)),
       start_(count),
       gain_(E_.size(), Gain{std::vector<Block<T>>(static_cast<std::size_t>(count)),
+                            std::vector<Block<T>>(static_cast<std::size_t>(count)),
                             Vec3<T>::Constant(T(0.0))}),
       P_(static_cast<std::size_t>(count) * static_cast<std::size_t>(count)),
       W_(P_),
       X_(P_),
+      Y_(P_),
+      Z_(P_),
+      V_(P_),
+      US_(P_),
       columns_(static_cast<std::size_t>(count)),
       C_(static_cast<std::size_t>(count)),
+      D_(C_),
       v_(static_cast<std::size_t>(count)),
       w_(v_),
+      z_(v_),
       Se_(v_),
       row_(C_),
       whole_(count) {}
@@ -92,6 +56,7 @@ void Riccati<T>::set_end(const Stage& stage) {
       own.store_transposed(P_[j * M_ + i]);
     }
   v_ = stage.q;
+  carries_ = false;
 }
 
 /// W. Row by row, each in and out once: what is worked on stays in the fastest cache.
@@ -112,45 +77,47 @@ void Riccati<T>::sandwich(const BlockLdl<T>& E) {
   }
 }
 
-/// C and X, row by row.
+/// C, and X + ½ Z, row by row.
 template <class T>
 void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E) {
   for (int i = 0; i < M_; ++i) {
     find_coupling(stage, E, i);
     for (int j = 0; j < M_; ++j) {
-      RegisterSum<Block<T>> sum;
+      RegisterSum<Block<T>> sum =
+          carries_ ? RegisterSum<Block<T>>(Z_[i * M_ + j]) : RegisterSum<Block<T>>();
+      if (carries_) sum.scale(T(0.5));
       for (const int k : Bits(columns_[j])) sum.add(row_[k], stage.F.at(k, j));
       sum.store(X_[i * M_ + j]);
     }
   }
 }
 
-/// row_ ← row i of ½ Fᵀ W - Nᵀ S; block i of C.
+/// row_ ← row i of ½ Fᵀ W - N̂ᵀ S, row i of P ← that of Fᵀ W - N̂ᵀ S; block i of C.
 template <class T>
 void Riccati<T>::find_coupling(const Stage& stage, const BlockLdl<T>& E, int i) {
   int first = M_;
   for (int k = M_; k-- > 0;) {
-    if (stage.N.has(k, i)) {
-      row_[k] = stage.N.at(k, i).transpose();
-      first = k;
-    } else {
+    const bool has = stage.N.has(k, i);
+    if (has || carries_) first = k;
+    if (carries_)
+      row_[k] = Y_[k * M_ + i].transpose();
+    else
       row_[k].setConstant(T(0.0));
-    }
+    if (has) row_[k] += stage.N.at(k, i).transpose();
   }
   if (first < M_) E.solve_row(row_.data(), first, 0);
   for (int j = 0; j < M_; ++j) {
     RegisterSum<Block<T>> sum;
     for (const int k : Bits(columns_[i])) sum.add(stage.F.at(k, i).transpose(), W_[k * M_ + j]);
-    if (j == 0) {
-      Block<T> whole;
-      sum.store(whole);
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) C_[i](a, b) = stage.B[a] * (whole(b, a) - row_[0](b, a));
-    }
+    RegisterSum<Block<T>> whole = sum;
+    whole.subtract(row_[j]);
+    whole.store(P_[i * M_ + j]);
     sum.scale(T(0.5));
     sum.subtract(row_[j]);
     sum.store(row_[j]);
   }
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) C_[i](a, b) = stage.B[a] * P_[i * M_](b, a);
 }
 
 template <class T>
@@ -169,15 +136,18 @@ void Riccati<T>::eliminate(const Stage& stage, const Stage& before, int k) {
     for (int j = 0; j < M_; ++j) sum.add(W_[i * M_ + j], stage.e[j]);
     sum.store(w_[i]);
   }
-  find_gain(stage, gain_[k]);
+  const Block<T> inverse = find_gain(stage, gain_[k]);
   Se_ = stage.e;
   E.solve(Se_.data());
-  fold(stage, before, gain_[k]);
+  fold_gradient(stage, before, gain_[k]);
+  carries_ = !stage.G.empty();
+  if (carries_) reach_back(stage, E, inverse, gain_[k]);
+  fold_hessian(before, gain_[k]);
 }
 
-/// R'⁻¹ C and R'⁻¹ r'.
+/// R'⁻¹ C and R'⁻¹ r'; returns R'⁻¹.
 template <class T>
-void Riccati<T>::find_gain(const Stage& stage, Gain& gain) {
+Block<T> Riccati<T>::find_gain(const Stage& stage, Gain& gain) {
   Block<T> R = W_[0];
   Vec3<T> r = stage.r;
   for (int a = 0; a < 3; ++a) {
@@ -196,11 +166,12 @@ void Riccati<T>::find_gain(const Stage& stage, Gain& gain) {
     scaled.add(inverse, C_[j]);
     scaled.store(gain.C[j]);
   }
+  return inverse;
 }
 
-/// P and v of the stage before.
+/// P of the stage before.
 template <class T>
-void Riccati<T>::fold(const Stage& stage, const Stage& before, const Gain& gain) {
+void Riccati<T>::fold_hessian(const Stage& before, const Gain& gain) {
   for (int i = 0; i < M_; ++i)
     for (int j = 0; j <= i; ++j) {
       RegisterSum<Block<T>> sum(X_[i * M_ + j]);
@@ -210,18 +181,20 @@ void Riccati<T>::fold(const Stage& stage, const Stage& before, const Gain& gain)
       sum.store(P_[i * M_ + j]);
       if (j < i) sum.store_transposed(P_[j * M_ + i]);
     }
-  v_ = before.q;
+}
+
+/// v of the stage before.
+template <class T>
+void Riccati<T>::fold_gradient(const Stage& stage, const Stage& before, const Gain& gain) {
   for (int i = 0; i < M_; ++i) {
-    RegisterSum<Vec3<T>> sum(v_[i]);
+    RegisterSum<Vec3<T>> sum(before.q[i]);
     for (const int m : Bits(columns_[i])) sum.add(stage.F.at(m, i).transpose(), w_[m]);
     sum.subtract(C_[i].transpose(), gain.r);
+    for (int m = 0; m < M_ && carries_; ++m) sum.subtract(Y_[m * M_ + i].transpose(), Se_[m]);
     sum.store(v_[i]);
-    for (const int j : Bits(stage.N.pattern[i])) {
-      RegisterSum<Vec3<T>> less(v_[j]);
-      less.subtract(stage.N.at(i, j).transpose(), Se_[i]);
-      less.store(v_[j]);
-    }
+    if (carries_) v_[i] += z_[i];
   }
+  subtract_transposed(v_, stage.N, Se_);
 }
 
 template <class T>
@@ -233,11 +206,14 @@ void Riccati<T>::roll_forward(const StageSystem<T>& system, StageStep<T>& step) 
     const BlockColumn<T>& before = step.poses[k - 1];
     RegisterSum<Vec3<T>> control(-gain_[k].r);
     for (int j = 0; j < M_; ++j) control.subtract(gain_[k].C[j], before[j]);
+    const bool reaches = !stage.G.empty();
+    for (int j = 0; j < M_ && reaches; ++j) control.subtract(gain_[k].D[j], step.poses[k - 2][j]);
     Vec3<T>& c = step.controls[k];
     control.store(c);
     BlockColumn<T>& p = step.poses[k];
     p = stage.e;
     add_to(p, stage.F, before);
+    if (reaches) add_to(p, stage.G, step.poses[k - 2]);
     for (int a = 0; a < 3; ++a) p[0][a] = p[0][a] + stage.B[a] * c[a];
     for (Vec3<T>& block : p) block = -block;
     E_[k].solve(p.data());
@@ -245,7 +221,8 @@ void Riccati<T>::roll_forward(const StageSystem<T>& system, StageStep<T>& step) 
 }
 
 /// Stationarity in Δp_k, from the last sub-step to the first:
-///   Q Δp_k + q + N_k Δp_{k-1} + N_{k+1}ᵀ Δp_{k+1} + E Δy_k + F_{k+1}ᵀ Δy_{k+1} = 0.
+///   Q Δp_k + q + N_k Δp_{k-1} + U_k Δp_{k-2} + N_{k+1}ᵀ Δp_{k+1} + U_{k+2}ᵀ Δp_{k+2}
+///     + E Δy_k + F_{k+1}ᵀ Δy_{k+1} + G_{k+2}ᵀ Δy_{k+2} = 0.
 template <class T>
 void Riccati<T>::find_multipliers(const StageSystem<T>& system, StageStep<T>& step) const {
   for (int k = system.h; k > 0; --k) {
@@ -254,10 +231,16 @@ void Riccati<T>::find_multipliers(const StageSystem<T>& system, StageStep<T>& st
     y = stage.q;
     add_symmetric_to(y, stage.Q, step.poses[k]);
     add_to(y, stage.N, step.poses[k - 1]);
+    if (!stage.U.empty()) add_to(y, stage.U, step.poses[k - 2]);
     if (k < system.h) {
       const Stage& next = system.stages[k + 1];
       add_transposed_to(y, next.N, step.poses[k + 1]);
       add_transposed_to(y, next.F, step.multipliers[k + 1]);
+    }
+    if (k + 2 <= system.h) {
+      const Stage& next = system.stages[k + 2];
+      add_transposed_to(y, next.U, step.poses[k + 2]);
+      add_transposed_to(y, next.G, step.multipliers[k + 2]);
     }
     for (Vec3<T>& block : y) block = -block;
     E_[k].solve(y.data());

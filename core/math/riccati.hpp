@@ -5,16 +5,21 @@
 namespace rtg {
 
 /// Solves a StageSystem by block elimination in time, from the last sub-step to the first, O(h).
-/// With S = E⁻¹ (sparse LDLᵀ, by the graph of the bodies in contact) and P, v the Hessian and
-/// gradient of what the sub-steps from k on cost as a function of Δp_k,
+/// What the sub-steps from k on cost is a quadratic function of (Δp_k, Δp_{k-1}) with the Hessian
+/// (P Y; Yᵀ Z) and the gradient (v, z); Y, Z and z are there where inertia is. With S = E⁻¹ (sparse
+/// LDLᵀ, by the graph of the bodies in contact) and N̂ = N + Y,
 ///
-///   W = S P S,  G = W F - S N,  w = W e - S v
-///   R' = R + B W₀₀ B,  C = B (G)₀,  r' = r + B w₀
-///   P ← Q + X + Xᵀ - Cᵀ R'⁻¹ C,  X = (½ Fᵀ W - Nᵀ S) F
-///   v ← q + Fᵀ w - Nᵀ S e - Cᵀ R'⁻¹ r'
+///   W = S P S,  V = W G - S U,  w = W e - S v
+///   R' = R + B W₀₀ B,  C = B (W F - S N̂)₀,  D = B V₀,  r' = r + B w₀
+///   P ← Q + X + Xᵀ + Z - Cᵀ R'⁻¹ C,  X = (½ Fᵀ W - N̂ᵀ S) F
+///   Y ← (Fᵀ W - N̂ᵀ S) G - Fᵀ S U - Cᵀ R'⁻¹ D
+///   Z ← Gᵀ V - Uᵀ S G - Dᵀ R'⁻¹ D
+///   v ← q + z + Fᵀ w - N̂ᵀ S e - Cᵀ R'⁻¹ r'
+///   z ← Gᵀ w - Uᵀ S e - Dᵀ R'⁻¹ r'
 ///
-/// and forward in time Δc = -R'⁻¹ (C Δp_{k-1} + r'), Δp_k = -S (F Δp_{k-1} + B Δc + e). P is dense,
-/// all else has the graph's pattern. Allocates only when made.
+/// and forward in time Δc = -R'⁻¹ (C Δp_{k-1} + D Δp_{k-2} + r'),
+/// Δp_k = -S (F Δp_{k-1} + G Δp_{k-2} + B Δc + e). P, Y and Z are dense, all else has the graph's
+/// pattern. Allocates only when made.
 template <class T>
 class Riccati final : public StageSolver<T> {
  public:
@@ -25,8 +30,8 @@ class Riccati final : public StageSolver<T> {
 
  private:
   struct Gain {
-    std::vector<Block<T>> C;  // R'⁻¹ C, a block per body
-    Vec3<T> r;                // R'⁻¹ r'
+    std::vector<Block<T>> C, D;  // R'⁻¹ C, R'⁻¹ D, a block per body
+    Vec3<T> r;                   // R'⁻¹ r'
   };
   using Stage = typename StageSystem<T>::Stage;
   void eliminate(const Stage& stage, const Stage& before, int k);
@@ -34,8 +39,13 @@ class Riccati final : public StageSolver<T> {
   void sandwich(const BlockLdl<T>& E);
   void couple(const Stage& stage, const BlockLdl<T>& E);
   void find_coupling(const Stage& stage, const BlockLdl<T>& E, int i);
-  void find_gain(const Stage& stage, Gain& gain);
-  void fold(const Stage& stage, const Stage& before, const Gain& gain);
+  Block<T> find_gain(const Stage& stage, Gain& gain);
+  void fold_gradient(const Stage& stage, const Stage& before, const Gain& gain);
+  void fold_hessian(const Stage& before, const Gain& gain);
+  void reach_back(const Stage& stage, const BlockLdl<T>& E, const Block<T>& inverse, Gain& gain);
+  void find_V(const Stage& stage, const BlockLdl<T>& E);
+  void carry(const Stage& stage, const Gain& gain);
+  void carry_gradient(const Stage& stage, const Gain& gain);
   void roll_forward(const StageSystem<T>& system, StageStep<T>& step) const;
   void find_multipliers(const StageSystem<T>& system, StageStep<T>& step) const;
 
@@ -43,12 +53,15 @@ class Riccati final : public StageSolver<T> {
   std::vector<BlockLdl<T>> E_;
   BlockLdl<T> start_;
   std::vector<Gain> gain_;
-  std::vector<Block<T>> P_, W_, X_;  // [M × M] row by row
+  std::vector<Block<T>> P_, W_, X_;  // [M × M] row by row; P also Fᵀ W - N̂ᵀ S, on its way to Y
+  std::vector<Block<T>> Y_, Z_, V_;  // [M × M]
+  std::vector<Block<T>> US_;         // Uᵀ S
+  bool carries_ = false;             // Y, Z and z are not zero
   BlockPattern columns_;             // of F
-  std::vector<Block<T>> C_;
-  BlockColumn<T> v_, w_, Se_;  // Se: S e
-  std::vector<Block<T>> row_;  // at work
-  BlockMatrix<T> whole_;       // P_0
+  std::vector<Block<T>> C_, D_;
+  BlockColumn<T> v_, w_, z_, Se_;  // Se: S e
+  std::vector<Block<T>> row_;      // at work
+  BlockMatrix<T> whole_;           // P_0
   Mask<T> regular_;
 };
 

@@ -8,11 +8,13 @@ namespace rtg {
 
 /// Newton system of an optimal control problem with implicit dynamics over h sub-steps, M bodies:
 ///
-///   min  Σ_k ½ Δp_kᵀ Q_k Δp_k + q_k·Δp_k + Δp_kᵀ N_k Δp_{k-1} + ½ Δc_kᵀ R_k Δc_k + r_k·Δc_k
-///   s.t. E_k Δp_k + F_k Δp_{k-1} + B_k Δc_k + e_k = 0,  k = 1 ... h        (multipliers Δy_k)
+///   min  Σ_k ½ Δp_kᵀ Q_k Δp_k + q_k·Δp_k + Δp_kᵀ (N_k Δp_{k-1} + U_k Δp_{k-2})
+///            + ½ Δc_kᵀ R_k Δc_k + r_k·Δc_k
+///   s.t. E_k Δp_k + F_k Δp_{k-1} + G_k Δp_{k-2} + B_k Δc_k + e_k = 0,  k = 1 ... h
 ///
-/// Δp_0 ... Δp_h [M blocks], Δc_k [3] acts on body 0 alone; Q_k and E_k symmetric, of which the
-/// lower halves count, R_k and B_k diagonal.
+/// with multipliers Δy_k. Δp_0 ... Δp_h [M blocks], Δc_k [3] acts on body 0 alone; Q_k and E_k
+/// symmetric, of which the lower halves count, R_k and B_k diagonal. G and U, from k = 2 on, are
+/// those of inertia; without it they are empty.
 template <class T>
 struct StageSystem {
   struct Stage {
@@ -20,13 +22,15 @@ struct StageSystem {
         : Q(count),
           E(count),
           F(count),
+          G(count),
           N(count),
+          U(count),
           q(static_cast<std::size_t>(count), Vec3<T>::Constant(T(0.0))),
           e(q),
           R(q[0]),
           B(q[0]),
           r(q[0]) {}
-    BlockMatrix<T> Q, E, F, N;
+    BlockMatrix<T> Q, E, F, G, N, U;
     BlockColumn<T> q, e;
     Vec3<T> R, B, r;
   };

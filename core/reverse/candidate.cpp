@@ -55,11 +55,17 @@ std::vector<SqpResult> filter_sqp_of_all(std::span<const Candidate* const> candi
 
 Candidate::Candidate(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push,
                      const ReverseConfig& config, const ReverseJob& job)
-    : bodies_(relevant_bodies(scene, push, job, reach(physics))),
+    : bodies_(relevant_bodies(
+          scene, push, job,
+          reach(physics) + physics.inertia_weight() * push.stride / physics.sub_steps)),
       part_(select(scene, job.end, bodies_)),
       energy_(part_.scene, physics, push),
-      problem_{energy_, config, with_open_gaps(energy_, stacked(part_.poses)),
-               direction(job.action, push), physics.sub_steps} {}
+      problem_{energy_,
+               config,
+               with_open_gaps(energy_, stacked(part_.poses)),
+               direction(job.action, push),
+               physics.sub_steps + physics.settling_steps(),
+               physics.settling_steps()} {}
 
 std::vector<SqpResult> solve_together(std::span<const Candidate* const> candidates) {
   if (candidates.empty()) return {};

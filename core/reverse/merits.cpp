@@ -1,5 +1,7 @@
 #include "core/reverse/merits.hpp"
 
+#include <algorithm>
+
 #include "core/energy/scatter.hpp"
 #include "core/energy/slip_terms.hpp"
 #include "core/energy/touch.hpp"
@@ -12,11 +14,17 @@ template <class T>
 void set_free_residual(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k, T* e) {
   const SceneModel<T>& energy = problem.energy;
   for (int i = 0; i < energy.movable(); ++i) {
-    const T *after = x.p[k].body(i), *before = x.p[k - 1].body(i);
+    const Vec3<T> a = way(x.p[k - 1], x.p[k], i);
     const Damping<T>& body = energy.damping(i);
-    e[3 * i] = body.mass * (after[0] - before[0]);
-    e[3 * i + 1] = body.mass * (after[1] - before[1]);
-    e[3 * i + 2] = body.turn_slope(after[2] - before[2]);
+    e[3 * i] = body.mass * a[0];
+    e[3 * i + 1] = body.mass * a[1];
+    e[3 * i + 2] = body.turn_slope(a[2]);
+    if (!energy.inertial()) continue;
+    const Inertia<T> inertia = energy.inertia(i);
+    const Vec3<T> b = way(x.p[std::max(k - 2, 0)], x.p[k - 1], i);
+    e[3 * i] = e[3 * i] + inertia.mass * (a[0] - b[0]);
+    e[3 * i + 1] = e[3 * i + 1] + inertia.mass * (a[1] - b[1]);
+    e[3 * i + 2] = e[3 * i + 2] + inertia.turn_slope(a[2], b[2]).value;
   }
   for (int m = 0; m < 3; ++m)
     e[m] = e[m] - energy.control_bound()[m] * hyperbolic_tangent(x.controls[k][m]);
@@ -44,10 +52,11 @@ T free_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x) {
   for (int k = 1; k <= problem.sub_steps; ++k)
     for (int i = 1; i < energy.movable(); ++i) sum = sum + problem.speed(x, k, i).value;
   T miss(0.0);
-  for (int m = 0; m < 3 * energy.movable(); ++m) {
-    const T off = x.p.back().p[m] - problem.end[m];
-    miss = miss + off * off;
-  }
+  for (int k = problem.sub_steps; k > 0 && problem.ends(k); --k)
+    for (int m = 0; m < 3 * energy.movable(); ++m) {
+      const T off = x.p[k].p[m] - problem.end[m];
+      miss = miss + off * off;
+    }
   return sum + T(0.5 * config.terminal_weight) * miss;
 }
 

@@ -1,6 +1,20 @@
 #include "core/reverse/newton_system.hpp"
 
 namespace rtg {
+namespace {
+
+template <class T>
+Vec3<T> nothing() {
+  return Vec3<T>::Constant(T(0.0));
+}
+
+template <class T>
+Vec3<T> multipliers_of(const Trajectory<T>& x, int k, int body) {
+  const T* y = x.multipliers[k].data() + 3 * body;
+  return {y[0], y[1], y[2]};
+}
+
+}  // namespace
 
 template <class T>
 NewtonSystem<T>::NewtonSystem(const ProblemLanes<T>& problem)
@@ -20,6 +34,7 @@ void NewtonSystem<T>::linearise(const ProblemLanes<T>& problem, const Trajectory
   for (int k = 0; k <= h; ++k) set_objective(problem, x, k);
   for (int k = 1; k <= h; ++k) {
     add_motion(problem, x, k);
+    if (problem.energy.inertial()) add_inertia(problem, x, k);
     add_control(problem, x, k);
   }
   for (int k = 0; k <= h; ++k)
@@ -34,8 +49,9 @@ template <class T>
 void NewtonSystem<T>::set_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   const ReverseConfig& config = problem.config;
   Stage& stage = system_.stages[k];
-  for (BlockMatrix<T>* block : {&stage.Q, &stage.E, &stage.F, &stage.N}) block->clear();
-  const bool end = k == problem.sub_steps;
+  for (BlockMatrix<T>* block : {&stage.Q, &stage.E, &stage.F, &stage.G, &stage.N, &stage.U})
+    block->clear();
+  const bool end = k > 0 && problem.ends(k);
   const T spring(end ? config.terminal_weight : 0.0);
   for (int i = 0; i < system_.M; ++i) {
     stage.q[i].setConstant(T(0.0));
@@ -66,32 +82,68 @@ template <class T>
 void NewtonSystem<T>::add_motion(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   Stage &stage = system_.stages[k], &before = system_.stages[k - 1];
   for (int i = 0; i < system_.M; ++i) {
-    const T *to = x.p[k].body(i), *from = x.p[k - 1].body(i);
-    const T* y = x.multipliers[k].data() + 3 * i;
+    const Vec3<T> moved = way(x.p[k - 1], x.p[k], i), y = multipliers_of(x, k, i);
     const Damping<T>& body = problem.energy.damping(i);
-    const T turn = to[2] - from[2];
-    const Vec3<T> slope(body.mass, body.mass, body.turn_curvature(turn));
-    stage.e[i] += Vec3<T>(body.mass * (to[0] - from[0]), body.mass * (to[1] - from[1]),
-                          body.turn_slope(turn));
-    Block<T> E = Block<T>::Constant(T(0.0)), H = E;
-    for (int m = 0; m < 3; ++m) {
-      E(m, m) = slope[m];
-      gradient_[k][i][m] += slope[m] * y[m];
-      gradient_[k - 1][i][m] -= slope[m] * y[m];
-    }
-    H(2, 2) = curvature_.exact * body.turn_third(turn) * y[2];
+    const Vec3<T> slope(body.mass, body.mass, body.turn_curvature(moved[2]));
+    stage.e[i] += Vec3<T>(body.mass * moved[0], body.mass * moved[1], body.turn_slope(moved[2]));
+    gradient_[k][i] += slope.cwiseProduct(y);
+    gradient_[k - 1][i] -= slope.cwiseProduct(y);
+    Block<T> H =
+        diagonal<T>(Vec3<T>(T(0.0), T(0.0), curvature_.exact * body.turn_third(moved[2]) * y[2]));
     if (i > 0) {
       const SpeedPenalty<T> speed = problem.speed(x, k, i);
       H += speed.hessian;
       gradient_[k][i] += speed.gradient;
       gradient_[k - 1][i] -= speed.gradient;
     }
-    stage.E.add(i, i, E);
-    stage.F.add(i, i, -E);
+    stage.E.add(i, i, diagonal<T>(slope));
+    stage.F.add(i, i, diagonal<T>(-slope));
     stage.Q.add(i, i, H);
     before.Q.add(i, i, H);
     stage.N.add(i, i, -H);
   }
+}
+
+/// Inertia over the sub-steps k - 1 and k; before the first everything is at rest.
+template <class T>
+void NewtonSystem<T>::add_inertia(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
+  const bool first = k == 1;
+  for (int i = 0; i < system_.M; ++i) {
+    const Inertia<T> body = problem.energy.inertia(i);
+    const Vec3<T> a = way(x.p[k - 1], x.p[k], i);
+    const Vec3<T> b = first ? nothing<T>() : way(x.p[k - 2], x.p[k - 1], i);
+    const Vec3<T> y = multipliers_of(x, k, i);
+    auto turn = body.turn_slope(a[2], b[2]);
+    if (first) turn.b = turn.ab = turn.bb = T(0.0);
+    const Vec3<T> by_a(body.mass, body.mass, turn.a);
+    const Vec3<T> by_b = first ? nothing<T>() : Vec3<T>(-body.mass, -body.mass, turn.b);
+    Stage& stage = system_.stages[k];
+    stage.e[i] += Vec3<T>(body.mass * (a[0] - b[0]), body.mass * (a[1] - b[1]), turn.value);
+    stage.E.add(i, i, diagonal<T>(by_a));
+    stage.F.add(i, i, diagonal<T>(by_b - by_a));
+    gradient_[k][i] += by_a.cwiseProduct(y);
+    gradient_[k - 1][i] += (by_b - by_a).cwiseProduct(y);
+    if (!first) {
+      stage.G.add(i, i, diagonal<T>(-by_b));
+      gradient_[k - 2][i] -= by_b.cwiseProduct(y);
+    }
+    if (body.periodic) add_turn_curvature(turn, curvature_.exact * y[2], k, i);
+  }
+}
+
+/// Second derivatives of y·Φ_k in the angles of body i.
+template <class T>
+void NewtonSystem<T>::add_turn_curvature(const typename Inertia<T>::Slope& s, const T& y, int k,
+                                         int i) {
+  const auto entry = [](const T& x) { return diagonal<T>(Vec3<T>(T(0.0), T(0.0), x)); };
+  Stage &stage = system_.stages[k], &before = system_.stages[k - 1];
+  stage.Q.add(i, i, entry(y * s.aa));
+  stage.N.add(i, i, entry(y * (s.ab - s.aa)));
+  before.Q.add(i, i, entry(y * (s.aa - T(2.0) * s.ab + s.bb)));
+  if (k == 1) return;
+  stage.U.add(i, i, entry(-y * s.ab));
+  before.N.add(i, i, entry(y * (s.ab - s.bb)));
+  system_.stages[k - 2].Q.add(i, i, entry(y * s.bb));
 }
 
 template <class T>

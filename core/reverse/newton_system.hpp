@@ -38,6 +38,8 @@ class NewtonSystem {
   using Stage = typename StageSystem<T>::Stage;
   void set_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
   void add_motion(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
+  void add_inertia(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
+  void add_turn_curvature(const typename Inertia<T>::Slope& s, const T& y, int k, int i);
   void add_control(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
   void add_pair(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k, int n);
   void add_own(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame,

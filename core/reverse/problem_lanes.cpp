@@ -1,5 +1,7 @@
 #include "core/reverse/problem_lanes.hpp"
 
+#include <algorithm>
+
 namespace rtg {
 
 template <class T>
@@ -8,7 +10,8 @@ ProblemLanes<T>::ProblemLanes(const ReverseProblem& like)
       config(like.config),
       end(static_cast<std::size_t>(like.end.size()), T(0.0)),
       direction(T(0.0), T(0.0)),
-      sub_steps(like.sub_steps) {}
+      sub_steps(like.sub_steps),
+      settling(like.settling) {}
 
 template <class T>
 void ProblemLanes<T>::load(int lane, const ReverseProblem& one) {
@@ -20,7 +23,7 @@ void ProblemLanes<T>::load(int lane, const ReverseProblem& one) {
 
 template <class T>
 Vec3<T> ProblemLanes<T>::robot_path(int k) const {
-  const T back(energy.stride() * (sub_steps - k));
+  const T back(energy.stride() * std::max(sub_steps - settling - k, 0));
   return {end[0] - back * direction.x(), end[1] - back * direction.y(), end[2]};
 }
 

@@ -16,6 +16,9 @@ struct ProblemLanes {
   void load(int lane, const ReverseProblem& one);
 
   bool fixed_end() const { return config.terminal_weight == 0.0; }
+  /// Whether the final state names the poses after sub-step k: its own, and with inertia those
+  /// before.
+  bool ends(int k) const { return k >= sub_steps - (energy.inertial() ? 1 : 0); }
   /// (t̄₀, θ̄₀) after sub-step k.
   Vec3<T> robot_path(int k) const;
   /// Of object i in sub-step k.
@@ -25,7 +28,7 @@ struct ProblemLanes {
   const ReverseConfig& config;
   std::vector<T> end;  // p̄ [3·bodies]
   Vec2<T> direction;
-  int sub_steps;
+  int sub_steps, settling;
 };
 
 /// Trajectories with their forces and multipliers, as Iterate; contacts are numbered as the kernels

@@ -10,11 +10,12 @@ namespace rtg {
 /// The reverse problem of one candidate, eq. (6) and (7), over the sub-steps k = 1 ... h of a push:
 ///
 ///   min  Σ_i w_i (x_i, y_i)_0·d + ε Σ_k |c_k|² + Σ b(g(p_0)) + κ_x Σ_k |t₀ - t̄₀|²_k
-///        + κ_θ Σ_k (θ₀ - θ̄₀)²_k + χ Σ_k Σ_{i>0} q³_{k,i} + K/2 |p_h - p̄|²
-///   s.t. Φ_k = ∂Ψ/∂p₊(p_k, p_{k-1}, c_k) = 0,   λ_k g(p_k) = μ̃ w(g(p_k)),   g > 0.
+///        + κ_θ Σ_k (θ₀ - θ̄₀)²_k + χ Σ_k Σ_{i>0} q³_{k,i} + K/2 |p_h - p̄|² [+ K/2 |p_{h-1} - p̄|²]
+///   s.t. Φ_k = ∂Ψ/∂p₊(p_k, p_{k-1}, p_{k-2}, c_k) = 0,   λ_k g(p_k) = μ̃ w(g(p_k)),   g > 0.
 ///
 /// p̄ is the given final state, (t̄₀, θ̄₀)_k the straight path of the robot that ends in it, q half
-/// the squared speed of an object (SpeedPenalty).
+/// the squared speed of an object (SpeedPenalty). In dynamic mode the push begins at rest, p_{-1} =
+/// p_0, and the states s_h = (p_h, p_{h-1}) end there, after sub-steps in which the robot is held.
 ///
 /// Departs from the paper: action consistency κ makes the controls those of the discrete action; no
 /// object outruns the push by much (χ);
@@ -27,6 +28,7 @@ struct ReverseProblem {
   VectorXd end;        // p̄ [3·bodies]
   Vector2d direction;  // d(a)
   int sub_steps = 1;   // h
+  int settling = 0;    // the last of them, in which the robot is held
 };
 
 /// A trajectory with its forces and multipliers; entry k belongs to the end of sub-step k, entry 0

@@ -26,7 +26,7 @@ bool objects_differ(const VectorXd& p, const VectorXd& other) {
 
 /// The start of a quasi-static push p_0 ... p_h, and others of which it makes the same end: nothing
 /// but the robot moves until the robot is where it meets the objects, so they may as well stand
-/// where they are at a later sub-step k, the robot at its start.
+/// where they are at a later sub-step k, the robot at its start. With inertia, releases = 0.
 ///
 ///   start_j = (robot of p_0, objects of p_k),  k = h·j/(releases + 1),  j = 0 ... releases
 std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int releases) {
@@ -83,7 +83,8 @@ ReverseResult ReverseSimulator::answer(const ReverseJob& job, const Candidate& c
                                        const SqpResult& solved) const {
   ReverseResult result{solved.status, solved.iterations};
   if (result.status != SolveStatus::kConverged) return result;
-  for (const VectorXd& start : predecessors(solved.x.p, config_.releases))
+  const int releases = physics_.inertia ? 0 : config_.releases;
+  for (const VectorXd& start : predecessors(solved.x.p, releases))
     result.starts.push_back(merged(job.end, unstacked(start), candidate.bodies()));
   return result;
 }

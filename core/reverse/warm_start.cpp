@@ -1,6 +1,7 @@
 #include "core/reverse/warm_start.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/energy/open_gaps.hpp"
 
@@ -9,6 +10,12 @@ namespace {
 
 constexpr double kLeastShare = 0.05;  // of a mirrored step
 constexpr double kTolerance = 1e-6;   // of a forward step [kg m]
+
+template <class T>
+void put_robot(const Vec3<T>& pose, Placement<T>& at) {
+  for (int m = 0; m < 3; ++m) at.p[m] = pose[m];
+  at.update();
+}
 
 }  // namespace
 
@@ -26,7 +33,7 @@ WarmStart<T>::WarmStart(const ProblemLanes<T>& problem)
       lag_(static_cast<std::size_t>(scene_.contacts()), T(0.0)),
       moved_(start_.p) {}
 
-/// The straight path's pose after sub-step k, led by what the servo lags behind in free motion.
+/// The straight path's pose after sub-step k, led by what the servo lags behind in steady motion.
 template <class T>
 Vec3<T> WarmStart<T>::straight_target(int k) const {
   const T share = scene_.damping(0).mass * T(scene_.stride()) / scene_.control_bound()[0];
@@ -34,18 +41,18 @@ Vec3<T> WarmStart<T>::straight_target(int k) const {
   const T artanh = T(0.5) * logarithm((T(1.0) + bounded) / (T(1.0) - bounded));
   const T lead = select(share < T(1.0), artanh * T(servo_scale(scene_.stride())), T(0.0));
   Vec3<T> pose = problem_.robot_path(k);
+  if (k > problem_.sub_steps - problem_.settling) return pose;
   for (int m = 0; m < 2; ++m) pose[m] += lead * problem_.direction[m];
   return pose;
 }
 
-/// F(from) with normal forces `lag` before it, begun with how far the last push went.
+/// F(from); notes how far it went.
 template <class T>
-Mask<T> WarmStart<T>::push(const Placement<T>& from, const T* lag, const Vec3<T>& target,
-                           const Mask<T>& wanted, Placement<T>& to) {
-  const Mask<T> found =
-      step_.solve({from, lag, moved_.data()}, Drive<T>::towards(target), wanted, to);
+Mask<T> WarmStart<T>::push(const StepStart<T>& from, const Vec3<T>& target, const Mask<T>& wanted,
+                           Placement<T>& to) {
+  const Mask<T> found = step_.solve(from, Drive<T>::towards(target), wanted, to);
   for (std::size_t m = 0; m < moved_.size(); ++m)
-    moved_[m] = select(found, to.p[m] - from.p[m], moved_[m]);
+    moved_[m] = select(found, to.p[m] - from.now.p[m], moved_[m]);
   return found;
 }
 
@@ -65,7 +72,8 @@ void WarmStart<T>::move_back(const Placement<T>& p, const Mask<T>& wanted, Place
   }
 }
 
-/// start_ ← the state before sub-step k by a mirrored forward step, the robot on its straight path.
+/// start_ ← the state before by a mirrored forward step, the robot on its straight path, at
+/// mirrored_path(k - 1).
 template <class T>
 Mask<T> WarmStart<T>::mirror(int k, const Mask<T>& wanted) {
   const T stride(scene_.stride());
@@ -73,13 +81,11 @@ Mask<T> WarmStart<T>::mirror(int k, const Mask<T>& wanted) {
                       start_.p[1] + stride * problem_.direction.y(), start_.p[2]);
   const Vec3<T> here(start_.p[0], start_.p[1], start_.p[2]);
   scene_.forces(start_, lag_.data());
-  Mask<T> going = push(start_, lag_.data(), ahead, wanted, pushed_);
+  Mask<T> going = push({start_, lag_.data(), moved_.data()}, ahead, wanted, pushed_);
   going = step_.solve({start_, lag_.data()}, Drive<T>::towards(here), going, still_);
   for (std::size_t m = 0; m < by_.size(); ++m) by_[m] = pushed_.p[m] - still_.p[m];
   robot_back_ = start_;
-  const Vec3<T> before = problem_.robot_path(k - 1);
-  for (int m = 0; m < 3; ++m) robot_back_.p[m] = before[m];
-  robot_back_.update();
+  put_robot(mirrored_path(k - 1), robot_back_);
   start_.assign(going, robot_back_);
   move_back(robot_back_, going, start_);
   return going;
@@ -91,11 +97,36 @@ Mask<T> WarmStart<T>::roll_out(const Mask<T>& wanted, Trajectory<T>& x) {
   Mask<T> going = wanted;
   for (int k = 1; k <= problem_.sub_steps; ++k) {
     const Vec3<T> target = straight_target(k);
-    going = push(x.p[k - 1], x.forces[k - 1].data(), target, going, x.p[k]);
+    const StepStart<T> from{x.p[k - 1], x.forces[k - 1].data(), moved_.data(),
+                            &x.p[std::max(k - 2, 0)]};
+    going = push(from, target, going, x.p[k]);
     x.controls[k] = Drive<T>::towards(target).control_at(x.p[k], servo_scale(scene_.stride()));
     scene_.forces(x.p[k], x.forces[k].data());
   }
   return going;
+}
+
+/// The robot's straight path, and on beyond its end as far as objects coast.
+template <class T>
+Vec3<T> WarmStart<T>::mirrored_path(int k) const {
+  const int beyond = k - (problem_.sub_steps - problem_.settling);
+  Vec3<T> pose = problem_.robot_path(k);
+  const double steps = std::min(static_cast<double>(beyond), scene_.coasting());
+  for (int m = 0; m < 2 && beyond > 0; ++m)
+    pose[m] += T(steps * scene_.stride()) * problem_.direction[m];
+  return pose;
+}
+
+/// start_ ← start_ with the robot where mirrored_path(k) is, in those of the lanes where that is
+/// legal; returns them.
+template <class T>
+Mask<T> WarmStart<T>::begin_at(int k, const Mask<T>& wanted) {
+  robot_back_ = start_;
+  put_robot(mirrored_path(k), robot_back_);
+  const Mask<T> open =
+      wanted && scene_.least_gap(robot_back_) > T(0.0) && scene_.separated(robot_back_);
+  start_.assign(open, robot_back_);
+  return open;
 }
 
 template <class T>
@@ -103,8 +134,13 @@ Mask<T> WarmStart<T>::find(const Mask<T>& wanted, Trajectory<T>& x) {
   std::ranges::fill(moved_, T(0.0));
   start_.p = problem_.end;
   start_.update();
-  Mask<T> going = wanted;
-  for (int k = problem_.sub_steps; k > 0 && any(going); --k) going = mirror(k, going);
+  // What has coasted was pushed by a robot that went on: mirroring begins there.
+  const int stop = problem_.sub_steps - problem_.settling;
+  Mask<T> going = wanted, begun(false);
+  for (int k = stop + static_cast<int>(std::ceil(scene_.coasting())); k > 0 && any(going); --k) {
+    begun = begun || (k <= stop ? going : begin_at(k, going && !begun));
+    going = going && (mirror(k, going && begun) || !begun);
+  }
   x.p[0] = start_;
   for (std::vector<T>& y : x.multipliers) std::ranges::fill(y, T(0.0));
   return roll_out(going, x);

@@ -21,9 +21,11 @@ class WarmStart {
 
  private:
   Vec3<T> straight_target(int k) const;
-  Mask<T> push(const Placement<T>& from, const T* lag, const Vec3<T>& target, const Mask<T>& wanted,
+  Mask<T> push(const StepStart<T>& from, const Vec3<T>& target, const Mask<T>& wanted,
                Placement<T>& to);
   void move_back(const Placement<T>& p, const Mask<T>& wanted, Placement<T>& out);
+  Vec3<T> mirrored_path(int k) const;
+  Mask<T> begin_at(int k, const Mask<T>& wanted);
   Mask<T> mirror(int k, const Mask<T>& wanted);
   Mask<T> roll_out(const Mask<T>& wanted, Trajectory<T>& x);
 
@@ -31,7 +33,7 @@ class WarmStart {
   const SceneModel<T>& scene_;
   ForwardStep<T> step_;
   Placement<T> start_, pushed_, still_, robot_back_, trial_;
-  std::vector<T> by_, lag_, moved_;  // moved_: by the push last solved
+  std::vector<T> by_, lag_, moved_;  // moved_: by the push last solved, a guess for the next
 };
 
 /// Of one candidate. Nothing if a step fails.

@@ -1,6 +1,11 @@
 #pragma once
 
+#include <cmath>
+
 namespace rtg {
+
+/// Least k_D in dynamic mode: with less, bodies coast for more than a hundred sub-steps.
+inline constexpr double kLeastInertialDamping = 0.05;
 
 /// Constants of the step energy Ψ and of the Box2D world matched to it.
 struct PhysicsConfig {
@@ -15,10 +20,20 @@ struct PhysicsConfig {
   double force_factor = 6.0;   // B_f in units of the robot's own drag at push speed
   double torque_factor = 6.0;  // B_ω, the same times the robot's radius
   bool plain_barrier = false;  // the paper's -μ log g, of infinite range
-  bool periodic_damping = false;  // the paper's 1 - cos Δθ for turns
-  int box2d_steps = 5;            // Box2D steps per sub-step
+  bool inertia = false;        // dynamic mode: bodies keep their speed, and coast after a push
+  bool periodic_turns = false;  // the paper's 1 - cos Δθ in damping and inertia
+  int box2d_steps = 5;          // Box2D steps per sub-step
   int box2d_velocity_iterations = 16;
   int box2d_position_iterations = 8;
+
+  /// Weight of inertia beside damping, ι = 1/k_D.
+  double inertia_weight() const { return inertia ? 1.0 / damping : 0.0; }
+
+  /// Sub-steps after those of a push, the robot held, in which the speed of a free body falls to a
+  /// hundredth, by 1 + k_D in each; none where nothing coasts.
+  int settling_steps() const {
+    return inertia ? static_cast<int>(std::ceil(std::log(100.0) / std::log1p(damping))) : 0;
+  }
 
   template <class Visitor>
   void visit(Visitor& v) {
@@ -33,7 +48,8 @@ struct PhysicsConfig {
     v.number("force_factor", force_factor, 0.1, 1e6, "largest force / robot's own drag");
     v.number("torque_factor", torque_factor, 0.1, 1e6, "largest torque / (drag x robot radius)");
     v.flag("plain_barrier", plain_barrier, "-mu log g, of infinite range");
-    v.flag("periodic_damping", periodic_damping, "1 - cos instead of the square of turns");
+    v.flag("inertia", inertia, "dynamic instead of quasi-static steps; damping from 0.05 on");
+    v.flag("periodic_turns", periodic_turns, "1 - cos instead of the square of turns");
     v.integer("box2d_steps", box2d_steps, 1, 1000, "Box2D steps per sub-step");
     v.integer("box2d_velocity_iterations", box2d_velocity_iterations, 1, 1000, "");
     v.integer("box2d_position_iterations", box2d_position_iterations, 1, 1000, "");

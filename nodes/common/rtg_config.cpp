@@ -106,6 +106,22 @@ void check_physics(const ConfigNode& root, const PhysicsConfig& physics) {
                     "less than " + number_text(physics.range));
 }
 
+/// What dynamic mode asks of the other fields.
+void check_inertia(const ConfigNode& root, const RtgConfig& config) {
+  if (!config.physics.inertia) return;
+  const ConfigEntry* physics = find(root, "physics");
+  const ConfigEntry *flag = find(physics->value, "inertia"),
+                    *damping = find(physics->value, "damping");
+  if (config.physics.damping < kLeastInertialDamping)
+    throw ConfigError((damping ? damping : flag)->value.origin, "physics.damping",
+                      number_text(config.physics.damping) + " with physics.inertia",
+                      number_text(kLeastInertialDamping) + " or more");
+  if (config.reverse.terminal_weight == 0.0)
+    throw ConfigError(flag->value.origin, "physics.inertia",
+                      "true with a fixed final state (reverse.terminal_weight is 0)",
+                      "false, or reverse.terminal_weight above 0 and not reverse.preset paper");
+}
+
 void check_bus(const ConfigNode& root, const std::string& url) {
   try {
     checked_bus_url(url);
@@ -148,6 +164,7 @@ RtgConfig read_config(const ConfigNode& root) {
   read_preset_section(root, "train", train_preset, config.train);
   read_section(root, "run", config.run);
   check_physics(root, config.physics);
+  check_inertia(root, config);
   check_jitters(config, root);
   check_bus(root, config.run.bus);
   if (config.run.workers == 0)

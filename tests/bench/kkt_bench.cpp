@@ -1,10 +1,12 @@
-// A row of six bodies in contact, over the number of sub-steps h: solution of the KKT system, in
-// lanes and by its peers; a whole SQP iteration with one trial point. Times of lanes are those of
-// all of them, as many as the counter `candidates` says.
+// Six bodies over the number of sub-steps h: solution of the KKT system, in lanes and by its peers;
+// a whole SQP iteration with one trial point. Times of lanes are those of all of them, as many as
+// the counter `candidates` says.
 
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <string>
+#include <string_view>
 
 #include "core/math/assembled_solver.hpp"
 #include "core/math/riccati.hpp"
@@ -12,6 +14,7 @@
 #include "core/reverse/newton_system.hpp"
 #include "core/reverse/trial.hpp"
 #include "tests/support/gathering.hpp"
+#include "tests/support/random_stages.hpp"
 
 namespace rtg {
 namespace {
@@ -19,14 +22,15 @@ namespace {
 using testing::gathering;
 
 constexpr int kBodies = 6;
-constexpr double kResidual = 1e-9;  // of the right-hand side, largest accepted
+constexpr double kResidual = 2e-9;  // largest accepted; the assembled matrix is shifted by 1e-9
 
 /// The robot and five boxes in a row, nearly touching, in every lane.
 template <class T>
 class Row {
  public:
-  explicit Row(int sub_steps)
-      : problem_{energy_, config_, poses(), Vector2d::UnitX(), sub_steps},
+  explicit Row(int sub_steps, const PhysicsConfig& physics = {})
+      : energy_(scene(), physics, gathering().push),
+        problem_{energy_, config_, poses(), Vector2d::UnitX(), sub_steps},
         lanes_(problem_),
         x_(lanes_.energy, sub_steps),
         newton_(lanes_) {
@@ -56,17 +60,35 @@ class Row {
   }
 
   ReverseConfig config_;
-  StepEnergy energy_{scene(), {}, gathering().push};
+  StepEnergy energy_;
   ReverseProblem problem_;
   ProblemLanes<T> lanes_;
   Trajectory<T> x_;
   NewtonSystem<T> newton_;
 };
 
-/// Whether the step solves the system that is assembled of the same row in double.
+/// Newton systems of six bodies: of a row in contact, quasi-static or with inertia, and random ones
+/// in which every body is coupled with every other.
+enum class Family { kRow, kInertia, kRandom };
+constexpr std::array<std::string_view, 3> kFamilies{"kkt", "kkt_inertia", "kkt_random"};
+
 template <class T>
-bool is_solved(const Row<double>& row, const StageStep<T>& step) {
-  StageStep<double> one(kBodies, row.problem().sub_steps);
+StageSystem<T> instance(Family family, int h) {
+  StageSystem<T> random(kBodies, h);
+  if (family == Family::kRandom) {
+    for (int l = 0; l < kWidth<T>; ++l)
+      testing::randomise(random, l, kBodies, static_cast<std::uint64_t>(l));
+    return random;
+  }
+  PhysicsConfig physics;
+  physics.inertia = family == Family::kInertia;
+  return Row<T>(h, physics).newton().system();
+}
+
+/// Whether the step of lane 0 solves the system.
+template <class T>
+bool is_solved(const StageSystem<double>& system, const StageStep<T>& step) {
+  StageStep<double> one(kBodies, system.h);
   const auto first_lane = [](const auto& from, auto& to) {
     for (int m = 0; m < 3; ++m) to[m] = lane(from[m], 0);
   };
@@ -77,29 +99,32 @@ bool is_solved(const Row<double>& row, const StageStep<T>& step) {
     for (std::size_t i = 0; i < kBodies; ++i)
       first_lane(step.multipliers[k][i], one.multipliers[k][i]);
   }
-  const Assembled assembled(row.newton().system(), false);
+  const Assembled assembled(system, false);
   const VectorXd r = joined(assembled.right_hand_side());
-  const VectorXd left = joined(product(assembled.matrix(), assembled.written(one)));
-  return (left - r).lpNorm<Eigen::Infinity>() <= kResidual * r.lpNorm<Eigen::Infinity>();
+  const BlockVector x = assembled.written(one);
+  const double scale = r.lpNorm<Eigen::Infinity>() + joined(x).lpNorm<Eigen::Infinity>();
+  const VectorXd off = joined(product(assembled.matrix(), x)) - r;
+  return off.lpNorm<Eigen::Infinity>() <= kResidual * scale;
 }
 
-void kkt_lanes(benchmark::State& state) {
+void kkt_lanes(benchmark::State& state, Family family) {
   const int h = static_cast<int>(state.range(0));
-  const Row<Lanes> row(h);
+  const StageSystem<Lanes> system = instance<Lanes>(family, h);
   Riccati<Lanes> solver(kBodies, h);
   StageStep<Lanes> step(kBodies, h);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(solver.solve(row.newton().system(), step));
+    benchmark::DoNotOptimize(solver.solve(system, step));
     benchmark::ClobberMemory();
   }
-  if (!is_solved(Row<double>(h), step)) state.SkipWithError("the residual is too large");
+  if (!is_solved(instance<double>(family, h), step))
+    state.SkipWithError("the residual is too large");
   state.counters["candidates"] = kWidth<Lanes>;
 }
 
 /// Factorisation and solution of the assembled matrix; assembling is not counted.
-void kkt_peer(benchmark::State& state, KktMethod method) {
-  const Row<double> row(static_cast<int>(state.range(0)));
-  const Assembled assembled(row.newton().system(), false);
+void kkt_peer(benchmark::State& state, Family family, KktMethod method) {
+  const StageSystem<double> system = instance<double>(family, static_cast<int>(state.range(0)));
+  const Assembled assembled(system, false);
   const std::unique_ptr<KktSolver> solver = make_kkt_solver(method);
   BlockVector x;
   for (auto _ : state) {
@@ -107,9 +132,9 @@ void kkt_peer(benchmark::State& state, KktMethod method) {
     x = solver->solve(assembled.right_hand_side());
     benchmark::DoNotOptimize(x.data());
   }
-  StageStep<double> step(kBodies, row.problem().sub_steps);
+  StageStep<double> step(kBodies, system.h);
   assembled.read(x, step);
-  if (!is_solved(row, step)) state.SkipWithError("the residual is too large");
+  if (!is_solved(system, step)) state.SkipWithError("the residual is too large");
 }
 
 void sqp_iteration(benchmark::State& state) {
@@ -132,22 +157,31 @@ void sqp_iteration(benchmark::State& state) {
     benchmark::DoNotOptimize(evaluator.evaluate(row.problem(), trial, gaps, trial_gaps, legal));
     if (!any(legal)) return state.SkipWithError("the trial point is not legal");
   }
-  if (!is_solved(Row<double>(h), step)) state.SkipWithError("the residual is too large");
+  if (!is_solved(Row<double>(h).newton().system(), step))
+    state.SkipWithError("the residual is too large");
   state.counters["candidates"] = kWidth<Lanes>;
 }
 
-const bool kRegistered = [] {
+void register_family(Family family) {
+  const std::string name(kFamilies[static_cast<std::size_t>(family)]);
   std::vector<benchmark::internal::Benchmark*> all{
-      benchmark::RegisterBenchmark("kkt/lanes", kkt_lanes)};
+      benchmark::RegisterBenchmark((name + "/lanes").c_str(), kkt_lanes, family)};
   for (const KktMethod method :
        {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu}) {
-    const std::string name = "kkt/" + std::string(kKktMethods[static_cast<std::size_t>(method)]);
-    all.push_back(benchmark::RegisterBenchmark(name.c_str(), kkt_peer, method));
+    const std::string peer(kKktMethods[static_cast<std::size_t>(method)]);
+    all.push_back(
+        benchmark::RegisterBenchmark((name + '/' + peer).c_str(), kkt_peer, family, method));
   }
-  for (auto* one : all) one->RangeMultiplier(4)->Range(16, 256);
-  all.push_back(benchmark::RegisterBenchmark("sqp_iteration", sqp_iteration));
-  all.back()->RangeMultiplier(2)->Range(8, 256);
-  for (auto* one : all) one->Unit(benchmark::kMicrosecond);
+  for (auto* one : all) one->RangeMultiplier(4)->Range(16, 256)->Unit(benchmark::kMicrosecond);
+}
+
+const bool kRegistered = [] {
+  for (const Family family : {Family::kRow, Family::kInertia, Family::kRandom})
+    register_family(family);
+  benchmark::RegisterBenchmark("sqp_iteration", sqp_iteration)
+      ->RangeMultiplier(2)
+      ->Range(8, 256)
+      ->Unit(benchmark::kMicrosecond);
   return true;
 }();
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "nodes/common/config_error.hpp"
 #include "nodes/common/field_writer.hpp"
 #include "tests/nodes/two_boxes.hpp"
 #include "tests/support/gathering.hpp"
@@ -177,6 +178,28 @@ TEST(NumberText, IsTheShortestThatReadsBackAndIsARealForYamlAndJson) {
   EXPECT_EQ(number_text(1.0 / 3.0), "0.3333333333333333");
   EXPECT_EQ(single_text(1.13f), "1.13");
   EXPECT_EQ(single_text(std::numeric_limits<float>::min()), "1.1754944e-38");
+}
+
+/// The message that a configuration is refused with.
+std::string refusal(const std::string& more, const std::vector<std::string>& overrides = {}) {
+  try {
+    (void)parsed(more, overrides);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(RtgConfig, DynamicModeNeedsDampingAndAFreeFinalState) {
+  EXPECT_TRUE(parsed("physics: {inertia: true, damping: 0.05}\n").physics.inertia);
+  EXPECT_TRUE(
+      refusal("physics: {inertia: true, damping: 0.04}\n")
+          .ends_with(": key 'physics.damping': 0.04 with physics.inertia; legal: 0.05 or more"));
+  EXPECT_EQ(
+      refusal("", {"physics.inertia=true", "reverse.preset=paper"}),
+      "--set physics.inertia=true: key 'physics.inertia': true with a fixed final state "
+      "(reverse.terminal_weight is 0); legal: false, or reverse.terminal_weight above 0 and not "
+      "reverse.preset paper");
 }
 
 }  // namespace

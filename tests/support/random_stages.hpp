@@ -34,15 +34,23 @@ struct RandomBlocks {
   }
 };
 
+/// What randomise() makes.
+enum class Levels { kTwo, kThree };  // kThree: with G and U, as inertia has them
+
 /// A well-conditioned system in lane l; bodies are coupled with those at most `reach` places away.
 template <class T>
-void randomise(StageSystem<T>& system, int l, int reach, std::uint64_t seed) {
+void randomise(StageSystem<T>& system, int l, int reach, std::uint64_t seed,
+               Levels levels = Levels::kTwo) {
   Rng rng(seed);
   const auto vector = [&](BlockColumn<T>& v) {
     for (Vec3<T>& block : v)
       for (int m = 0; m < 3; ++m) set_lane(block[m], l, rng.uniform(-1.0, 1.0));
   };
   for (auto& stage : system.stages) {
+    if (levels == Levels::kThree && &stage - system.stages.data() > 1) {
+      RandomBlocks{0.1, 0.4, false}.fill(stage.G, l, 0, rng);
+      RandomBlocks{0.1, 0.0, false}.fill(stage.U, l, 0, rng);
+    }
     RandomBlocks{0.2, 2.0, true}.fill(stage.Q, l, reach, rng);
     RandomBlocks{0.2, 2.0, true}.fill(stage.E, l, reach, rng);
     RandomBlocks{0.2, -1.0, false}.fill(stage.F, l, reach, rng);

@@ -16,9 +16,27 @@ struct TouchingScene {
   StepEnergy energy{scene, physics, task.push};
   Poses poses{{0.0, 0.0, 0.0}, {1.46, 0.15, 0.05}, {2.95, 0.35, 0.6}};
 
+  /// To be called when the physics have changed.
+  void update() { energy = StepEnergy(scene, physics, task.push); }
+
   /// The reverse problem that ends in these poses.
   ReverseProblem problem(const ReverseConfig& config) const {
-    return {energy, config, stacked(poses), Vector2d::UnitX(), physics.sub_steps};
+    return {energy,
+            config,
+            stacked(poses),
+            Vector2d::UnitX(),
+            physics.sub_steps + physics.settling_steps(),
+            physics.settling_steps()};
+  }
+};
+
+/// The same where bodies coast: k_D = 1.
+struct CoastingScene : TouchingScene {
+  CoastingScene() {
+    physics.inertia = true;
+    physics.damping = 1.0;
+    physics.barrier /= 20.0;  // in units of k_D/Δt²
+    update();
   }
 };
 

@@ -20,7 +20,7 @@ const Vector3d kControl(0.3, -0.2, 0.1);
 VectorXd scattered() { return stacked({{0, 0, 0.4}, {5, 0, 0.1}, {0, 5, 0.2}}); }
 
 VectorXd step(const StepEnergy& energy, const VectorXd& now, const Drive<double>& drive) {
-  const auto result = implicit_step(energy, now, energy.forces(now), drive);
+  const auto result = implicit_step(energy, {now, energy.forces(now)}, drive);
   EXPECT_TRUE(result);
   return result ? result->next : now;
 }
@@ -40,7 +40,7 @@ TEST(ImplicitStep, FreePushIsTheClosedForm) {
 
 TEST(ImplicitStep, FreeTurnWithPeriodicDampingIsTheArcSine) {
   TouchingScene scene;
-  scene.physics.periodic_damping = true;
+  scene.physics.periodic_turns = true;
   const StepEnergy energy(scene.scene, scene.physics, scene.task.push);
   const double torque = energy.control_bound()[2] * std::tanh(0.1);
   const VectorXd moved =
@@ -64,7 +64,7 @@ TEST(ImplicitStep, FreeServoBalancesDampingAgainstItsForce) {
   const Vector3d scale = Vector3d::Constant(servo_scale(scene.energy.stride()));
   for (const double e : {0.01, 0.2, 5.0}) {  // beyond reach the force saturates
     const Vector3d target(e, 0.0, 0.4);
-    const auto result = implicit_step(scene.energy, scattered(), VectorXd::Zero(28),
+    const auto result = implicit_step(scene.energy, {scattered(), VectorXd::Zero(28)},
                                       Drive<double>::towards(target));
     ASSERT_TRUE(result);
     const double advance = servo_advance(scene.energy.damping(0).mass, bound[0], scale[0], e);
@@ -77,7 +77,7 @@ TEST(ImplicitStep, FreeServoBalancesDampingAgainstItsForce) {
 TEST(ImplicitStep, TheServosControlsLeadToTheSameEnd) {
   const TouchingScene scene;
   const VectorXd now = stacked(scene.poses);
-  const auto servo = implicit_step(scene.energy, now, scene.energy.forces(now),
+  const auto servo = implicit_step(scene.energy, {now, scene.energy.forces(now)},
                                    Drive<double>::towards({0.2, 0.01, 0.0}));
   ASSERT_TRUE(servo);
   EXPECT_LT((step(scene.energy, now, Drive<double>::controls(servo->control)) - servo->next).norm(),
@@ -89,14 +89,14 @@ TEST(ImplicitStep, EndsWhereTheGradientVanishesAndEnergyIsLeast) {
   const VectorXd now = stacked(scene.poses), lag = scene.energy.forces(now);
   const Vector3d bound = scene.energy.control_bound();
   const auto total = [&](const VectorXd& p) {
-    return scene.energy.value(p, now, lag) -
+    return scene.energy.value(p, {now, lag}) -
            bound.dot(kControl.array().tanh().matrix().cwiseProduct(p.head<3>()));
   };
   const VectorXd end = step(scene.energy, now, Drive<double>::controls(kControl));
   EXPECT_GT((end - now).segment<3>(3).norm(), 1e-3);  // the box was pushed
   Rng rng(1);
   for (int trial = 0; trial < 20; ++trial) EXPECT_GT(total(end + noise(9, 1e-3, rng)), total(end));
-  VectorXd residual = scene.energy.model(end, now, lag).gradient;
+  VectorXd residual = scene.energy.model(end, {now, lag}).gradient;
   residual.head<3>() -= bound.cwiseProduct(kControl.array().tanh().matrix());
   EXPECT_LT(residual.lpNorm<Eigen::Infinity>(), 1e-10);
 }
@@ -135,7 +135,7 @@ TEST(ImplicitStep, DerivativesOfTheEndMatchStepsSolvedAgain) {
   const Vector3d target(0.2, 0.01, 0.02);
   Iterate x = static_iterate(problem);
   const auto first =
-      implicit_step(scene.energy, problem.end, x.forces[0], Drive<double>::towards(target));
+      implicit_step(scene.energy, {problem.end, x.forces[0]}, Drive<double>::towards(target));
   ASSERT_TRUE(first);
   x.p[1] = first->next;
   x.controls[1] = first->control;
@@ -161,13 +161,13 @@ TEST(ImplicitStep, DerivativesOfTheEndMatchStepsSolvedAgain) {
 TEST(ImplicitStep, ImpossibleStartsGiveNothing) {
   const TouchingScene scene;
   const VectorXd overlapping = stacked({{0, 0, 0}, {1.0, 0, 0}, {5, 0, 0}});
-  EXPECT_FALSE(implicit_step(scene.energy, overlapping, VectorXd::Zero(28),
+  EXPECT_FALSE(implicit_step(scene.energy, {overlapping, VectorXd::Zero(28)},
                              Drive<double>::controls(Vector3d::Zero())));
   VectorXd nan = scattered();
   nan[1] = NAN;
-  EXPECT_FALSE(implicit_step(scene.energy, nan, VectorXd::Zero(28),
+  EXPECT_FALSE(implicit_step(scene.energy, {nan, VectorXd::Zero(28)},
                              Drive<double>::controls(Vector3d::Zero())));
-  EXPECT_FALSE(implicit_step(scene.energy, scattered(), VectorXd::Zero(28),
+  EXPECT_FALSE(implicit_step(scene.energy, {scattered(), VectorXd::Zero(28)},
                              Drive<double>::controls(Vector3d::Constant(NAN))));
 }
 

@@ -22,7 +22,7 @@ TEST(StepEnergyGaps, CrossingBarsAreRejectedThoughEveryGapIsOpen) {
   for (const Contact& c : energy.contacts())
     EXPECT_GT(energy.gap_value(c, crossed), energy.barrier().range);
   EXPECT_FALSE(energy.separated(crossed));
-  EXPECT_TRUE(std::isfinite(energy.value(crossed, crossed, VectorXd::Zero(8))));
+  EXPECT_TRUE(std::isfinite(energy.value(crossed, {crossed, VectorXd::Zero(8)})));
   VectorXd apart = crossed;
   apart[3] = 1.2;
   EXPECT_TRUE(energy.separated(apart));

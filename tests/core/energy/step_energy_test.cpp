@@ -17,9 +17,11 @@ using testing::noise;
 using testing::test_directions;
 using testing::TouchingScene;
 
-/// Poses before and after a sub-step in contact, with the normal forces before it.
+/// Poses before and after a sub-step in contact, with the normal forces before it and the poses one
+/// sub-step earlier.
 struct Step {
-  VectorXd next, now, lag;
+  VectorXd next, now, lag, before;
+  StepFrom from() const { return {now, lag, &before}; }
 };
 
 /// p with its unknowns moved by d [dofs].
@@ -34,7 +36,7 @@ Step random_step(const StepEnergy& energy, const Poses& poses, Rng& rng) {
     const VectorXd now = moved(stacked(poses), noise(energy.dofs(), 1e-3, rng));
     const VectorXd next = moved(now, noise(energy.dofs(), 5e-3, rng));
     if (least_gap(energy, now) > 0.003 && least_gap(energy, next) > 0.003)
-      return {next, now, energy.forces(now)};
+      return {next, now, energy.forces(now), moved(now, noise(energy.dofs(), 5e-3, rng))};
   }
 }
 
@@ -45,12 +47,12 @@ void expect_exact_derivatives(const StepEnergy& energy, const Poses& poses) {
     const Step s = random_step(energy, poses, rng);
     ASSERT_GT(s.lag.maxCoeff(), 0.0);
     const auto value = [&](const VectorXd& d) {
-      return VectorXd::Constant(1, energy.value(moved(s.next, d), s.now, s.lag));
+      return VectorXd::Constant(1, energy.value(moved(s.next, d), s.from()));
     };
     const auto gradient = [&](const VectorXd& d) {
-      return energy.model(moved(s.next, d), s.now, s.lag).gradient;
+      return energy.model(moved(s.next, d), s.from()).gradient;
     };
-    const StepEnergy::Model model = energy.model(s.next, s.now, s.lag);
+    const StepEnergy::Model model = energy.model(s.next, s.from());
     const auto directions = test_directions(model.gradient, rng);
     EXPECT_LT(derivative_error(value, model.gradient.transpose(), origin, directions), 1e-8);
     EXPECT_LT(derivative_error(gradient, model.hessian, origin, directions), 1e-6);
@@ -65,9 +67,17 @@ TEST(StepEnergy, DerivativesMatchDifferences) {
 
 TEST(StepEnergy, DerivativesOfThePapersFormMatchDifferences) {
   TouchingScene scene;
-  scene.physics.plain_barrier = scene.physics.periodic_damping = true;
+  scene.physics.plain_barrier = scene.physics.periodic_turns = true;
   scene.physics.skin = 0.004;
   expect_exact_derivatives(StepEnergy(scene.scene, scene.physics, scene.task.push), scene.poses);
+}
+
+TEST(StepEnergy, DerivativesWithInertiaMatchDifferences) {
+  testing::CoastingScene scene;
+  expect_exact_derivatives(scene.energy, scene.poses);
+  scene.physics.periodic_turns = true;
+  scene.update();
+  expect_exact_derivatives(scene.energy, scene.poses);
 }
 
 /// Forces and torques about the origin of all bodies, summed.
@@ -84,7 +94,7 @@ TEST(StepEnergy, ContactForcesAreActionAndReaction) {
   const TouchingScene scene;
   Rng rng(2);
   const Step s = random_step(scene.energy, scene.poses, rng);
-  VectorXd contact = scene.energy.model(s.next, s.now, s.lag).gradient;
+  VectorXd contact = scene.energy.model(s.next, {s.now, s.lag}).gradient;
   for (int i = 0; i < scene.energy.bodies(); ++i) {  // less damping
     const Damping<double>& body = scene.energy.damping(i);
     const Vector3d moved = (s.next - s.now).segment<3>(3 * i);
@@ -109,10 +119,10 @@ TEST(StepEnergy, DoesNotChangeWithARigidMotionOfTheScene) {
   const Vector2d shift(4.0, -3.0);
   const VectorXd next = rigidly_moved(s.next, 2.2, shift), now = rigidly_moved(s.now, 2.2, shift);
   EXPECT_LT((scene.energy.forces(now) - s.lag).norm(), 1e-12);
-  EXPECT_NEAR(scene.energy.value(next, now, s.lag), scene.energy.value(s.next, s.now, s.lag),
+  EXPECT_NEAR(scene.energy.value(next, {now, s.lag}), scene.energy.value(s.next, {s.now, s.lag}),
               1e-14);
-  const VectorXd gradient = scene.energy.model(s.next, s.now, s.lag).gradient;
-  EXPECT_LT((scene.energy.model(next, now, s.lag).gradient -
+  const VectorXd gradient = scene.energy.model(s.next, {s.now, s.lag}).gradient;
+  EXPECT_LT((scene.energy.model(next, {now, s.lag}).gradient -
              rigidly_moved(gradient, 2.2, Vector2d::Zero()) +
              VectorXd::NullaryExpr(9, [](Eigen::Index m) { return m % 3 == 2 ? 2.2 : 0.0; }))
                 .norm(),
@@ -128,12 +138,29 @@ TEST(StepEnergy, FreeBodiesAreDampedAlone) {
   const Mass box = mass_of(scene.scene.bodies[1]);
   const VectorXd lag = scene.energy.forces(now);
   EXPECT_EQ(lag, VectorXd::Zero(lag.size()));
-  EXPECT_NEAR(scene.energy.value(next, now, lag), 0.5 * box.mass * 0.25 + 0.5 * box.moment * 0.04,
+  EXPECT_NEAR(scene.energy.value(next, {now, lag}), 0.5 * box.mass * 0.25 + 0.5 * box.moment * 0.04,
               1e-15);
-  const VectorXd gradient = scene.energy.model(next, now, lag).gradient;
+  const VectorXd gradient = scene.energy.model(next, {now, lag}).gradient;
   EXPECT_LT(
       (gradient.segment<3>(3) - Vector3d(0.3 * box.mass, -0.4 * box.mass, 0.2 * box.moment)).norm(),
       1e-15);
+}
+
+// ... and with inertia + ½ ι m |Δt - Δt₋|² + ½ ι J (Δθ - Δθ₋)², ι = 1/k_D.
+TEST(StepEnergy, InertiaIsMeasuredFromTheMotionBefore) {
+  testing::CoastingScene scene;
+  scene.physics.damping = 0.5;
+  scene.update();
+  const VectorXd now = stacked({{0, 0, 0}, {5, 0, 0}, {0, 5, 0}});
+  VectorXd next = now, before = now;
+  next.segment<3>(3) += Vector3d(0.3, -0.4, 0.2);
+  before.segment<3>(3) -= Vector3d(0.2, 0.1, 0.3);
+  const Mass box = mass_of(scene.scene.bodies[1]);
+  const VectorXd lag = scene.energy.forces(now);
+  const double damping = 0.5 * box.mass * 0.25 + 0.5 * box.moment * 0.04;
+  EXPECT_NEAR(scene.energy.value(next, {now, lag, &before}),
+              damping + 2.0 * (0.5 * box.mass * 0.26 + 0.5 * box.moment * 0.01), 1e-15);
+  EXPECT_NEAR(scene.energy.value(next, {now, lag}), 3.0 * damping, 1e-15);  // from rest
 }
 
 TEST(StepEnergy, EveryVertexMayTouchEveryOtherBody) {
@@ -176,7 +203,7 @@ TEST(StepEnergy, ForcesAreThoseOfTheBarrierAtTheGap) {
 TEST(StepEnergy, OverlapHasInfiniteEnergy) {
   const TouchingScene scene;
   const VectorXd p = stacked({{0, 0, 0}, {1.3, 0, 0}, {5, 0, 0}});
-  EXPECT_EQ(scene.energy.value(p, p, VectorXd::Zero(28)), INFINITY);
+  EXPECT_EQ(scene.energy.value(p, {p, VectorXd::Zero(28)}), INFINITY);
 }
 
 TEST(StepEnergy, GapsAreDistancesLessTheSkinWithinTheRange) {
@@ -232,8 +259,8 @@ TEST(StepEnergy, FixedBodiesTakePartWithoutCoordinates) {
   // What the movable bodies feel is what they would feel from a movable one.
   const VectorXd p = stacked(scene.poses), lag = scene.energy.forces(p);
   EXPECT_EQ(energy.forces(p), lag);
-  EXPECT_EQ(energy.model(p, p, lag).gradient,
-            VectorXd(scene.energy.model(p, p, lag).gradient.head(6)));
+  EXPECT_EQ(energy.model(p, {p, lag}).gradient,
+            VectorXd(scene.energy.model(p, {p, lag}).gradient.head(6)));
 }
 
 TEST(StepEnergy, TwoFixedBodiesDoNotTouch) {

@@ -8,6 +8,7 @@
 namespace rtg {
 namespace {
 
+using testing::Levels;
 using testing::randomise;
 
 constexpr int kSubSteps = 7;
@@ -38,13 +39,30 @@ constexpr Sizes kSizes[] = {{1, 0}, {2, 1}, {3, 1}, {5, 2}, {6, 1}, {6, 5}, {9, 
 
 // The oracle shifts the multipliers' diagonal by 1e-9.
 TEST(Riccati, SolvesRandomSystemsAsSuiteSparseDoes) {
-  for (const auto [bodies, reach] : kSizes) {
-    StageSystem<double> system(bodies, kSubSteps);
-    randomise(system, 0, reach, 1);
-    StageStep<double> step(bodies, kSubSteps), oracle = step;
-    ASSERT_TRUE(Riccati<double>(bodies, kSubSteps).solve(system, step));
-    ASSERT_TRUE(AssembledSolver(KktMethod::kUmfpack, false).solve(system, oracle));
-    EXPECT_LT(difference(step, 0, oracle), 1e-7) << bodies << " bodies, reach " << reach;
+  for (const Levels levels : {Levels::kTwo, Levels::kThree})
+    for (const auto [bodies, reach] : kSizes)
+      for (const int sub_steps : {kSubSteps, 1, 2}) {
+        StageSystem<double> system(bodies, sub_steps);
+        randomise(system, 0, reach, 1, levels);
+        StageStep<double> step(bodies, sub_steps), oracle = step;
+        ASSERT_TRUE(Riccati<double>(bodies, sub_steps).solve(system, step));
+        ASSERT_TRUE(AssembledSolver(KktMethod::kUmfpack, false).solve(system, oracle));
+        EXPECT_LT(difference(step, 0, oracle), 1e-7)
+            << bodies << " bodies, reach " << reach << ", " << sub_steps << " sub-steps";
+      }
+}
+
+TEST(Riccati, EveryMethodSolvesSystemsWithInertia) {
+  for (const int sub_steps : {1, 6, 7}) {
+    StageSystem<double> system(3, sub_steps);
+    randomise(system, 0, 2, 5, Levels::kThree);
+    StageStep<double> step(3, sub_steps), other = step;
+    ASSERT_TRUE(Riccati<double>(3, sub_steps).solve(system, step));
+    for (const KktMethod method : {KktMethod::kBlockElimination, KktMethod::kCyclicReduction,
+                                   KktMethod::kUmfpack, KktMethod::kKlu}) {
+      ASSERT_TRUE(AssembledSolver(method, false).solve(system, other));
+      EXPECT_LT(difference(step, 0, other), 1e-7) << sub_steps;
+    }
   }
 }
 
@@ -52,7 +70,7 @@ TEST(Riccati, SolvesRandomSystemsAsSuiteSparseDoes) {
 TEST(Riccati, EveryLaneIsSolvedAsIfAlone) {
   constexpr int kBodies = 6;
   StageSystem<Lanes> system(kBodies, kSubSteps);
-  for (int l = 0; l < kWidth<Lanes>; ++l) randomise(system, l, l % kBodies, 10 + l);
+  for (int l = 0; l < kWidth<Lanes>; ++l) randomise(system, l, l % kBodies, 10 + l, Levels::kThree);
   for (auto& stage : system.stages)  // lanes that do not couple a pair
     for (BlockMatrix<Lanes>* A : {&stage.Q, &stage.E, &stage.F, &stage.N})
       for (int i = 0; i < kBodies; ++i)
@@ -64,7 +82,7 @@ TEST(Riccati, EveryLaneIsSolvedAsIfAlone) {
   const Mask<Lanes> regular = Riccati<Lanes>(kBodies, kSubSteps).solve(system, step);
   for (int l = 0; l < kWidth<Lanes>; ++l) {
     StageSystem<double> alone(kBodies, kSubSteps);
-    randomise(alone, 0, l % kBodies, 10 + l);
+    randomise(alone, 0, l % kBodies, 10 + l, Levels::kThree);
     StageStep<double> expected(kBodies, kSubSteps);
     ASSERT_TRUE(Riccati<double>(kBodies, kSubSteps).solve(alone, expected));
     ASSERT_TRUE(lane(regular, l));

@@ -22,8 +22,9 @@ Iterate replayed(const ReverseProblem& problem, const Iterate& x) {
   Iterate again = x;
   for (std::size_t k = 1; k < x.p.size(); ++k) {
     again.forces[k - 1] = problem.energy.forces(again.p[k - 1]);
-    const auto step = implicit_step(problem.energy, again.p[k - 1], again.forces[k - 1],
-                                    Drive<double>::controls(x.controls[k]));
+    const auto step = implicit_step(
+        problem.energy, {again.p[k - 1], again.forces[k - 1], &again.p[k > 1 ? k - 2 : 0]},
+        Drive<double>::controls(x.controls[k]));
     EXPECT_TRUE(step);
     if (step) again.p[k] = step->next;
   }
@@ -75,6 +76,7 @@ TEST(FilterSqp, ForwardOfReverseIsTheGivenStateWhereItIsFixed) {
   ReverseProblem problem = scene.problem(config);
   problem.end = warm_start(problem)->p.back();
   config.terminal_weight = 0.0;
+  config.feasibility_tol = 1e-9;
   const SqpResult result = solved_from(problem, static_iterate(problem));
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   EXPECT_EQ(result.x.p.back(), problem.end);
@@ -124,7 +126,7 @@ TEST(FilterSqp, WithoutFrictionSubStepsAreExplicitBackwards) {
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   for (std::size_t k = 1; k < result.x.p.size(); ++k) {
     const VectorXd& next = result.x.p[k];
-    VectorXd force = scene.energy.model(next, next, VectorXd::Zero(28)).gradient;  // ∂P_⊥
+    VectorXd force = scene.energy.model(next, {next, VectorXd::Zero(28)}).gradient;  // ∂P_⊥
     const Vector3d push = result.x.controls[k].array().tanh();
     force.head<3>() -= scene.energy.control_bound().cwiseProduct(push);
     for (int i = 0; i < 3; ++i) {

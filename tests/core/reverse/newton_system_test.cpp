@@ -9,6 +9,7 @@
 namespace rtg {
 namespace {
 
+using testing::CoastingScene;
 using testing::Curvature;
 using testing::Direction;
 using testing::disturbed;
@@ -74,12 +75,20 @@ TEST(NewtonSystem, MatrixIsDerivativeOfFirstOrderConditions) {
   expect_matrix_is_derivative(problem, disturbed(testing::in_contact(problem), 1e-3, rng));
 }
 
+TEST(NewtonSystem, MatrixIsDerivativeWithInertia) {
+  CoastingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  Rng rng(1);
+  expect_matrix_is_derivative(problem, disturbed(static_iterate(problem), 1e-3, rng));
+}
+
 // Bodies far apart that turn by up to 0.5 rad per sub-step; entry by entry, as what the sine adds
 // to the curvature is small beside the largest.
-TEST(NewtonSystem, MatrixIsDerivativeWithPeriodicDamping) {
-  TouchingScene scene;
-  scene.physics.periodic_damping = true;
-  scene.energy = StepEnergy(scene.scene, scene.physics, scene.task.push);
+void expect_columns_are_derivatives(TouchingScene scene) {
+  scene.physics.periodic_turns = true;
+  scene.physics.sub_steps = 4;
+  scene.update();
   scene.poses = {{0.0, 0.0, 0.0}, {5.0, 0.0, 0.0}, {0.0, 5.0, 0.0}};
   const ReverseConfig config;
   const ReverseProblem problem = scene.problem(config);
@@ -97,6 +106,14 @@ TEST(NewtonSystem, MatrixIsDerivativeWithPeriodicDamping) {
       const VectorXd column = joined(product(lin.matrix(), along));
       EXPECT_LT((difference - column).lpNorm<Eigen::Infinity>(), 1e-6) << block << ", " << row;
     }
+}
+
+TEST(NewtonSystem, MatrixIsDerivativeWithPeriodicTurns) {
+  expect_columns_are_derivatives(TouchingScene());
+}
+
+TEST(NewtonSystem, MatrixIsDerivativeWithPeriodicTurnsAndInertia) {
+  expect_columns_are_derivatives(CoastingScene());
 }
 
 TEST(NewtonSystem, MatrixIsDerivativeWithFixedEnd) {

@@ -59,7 +59,7 @@ TEST(ReverseProblem, ResidualsAreTheStepEnergysGradients) {
   const Iterate x = near_contact(problem);
   const Violation v = violation(problem, x);
   for (std::size_t k = 1; k < x.p.size(); ++k) {
-    VectorXd expected = scene.energy.model(x.p[k], x.p[k - 1], x.forces[k - 1]).gradient;
+    VectorXd expected = scene.energy.model(x.p[k], {x.p[k - 1], x.forces[k - 1]}).gradient;
     const Vector3d push = x.controls[k].array().tanh();
     expected.head<3>() -= scene.energy.control_bound().cwiseProduct(push);
     EXPECT_LT((v.residuals[k] - expected).norm(), 1e-14) << k;

@@ -1,0 +1,87 @@
+// The part of the recursion that reaches two sub-steps back.
+
+#include "core/math/riccati.hpp"
+
+namespace rtg {
+
+/// V, D and what is carried to the stage before: Y, Z, z. Expects Fᵀ W - N̂ᵀ S in P.
+template <class T>
+void Riccati<T>::reach_back(const Stage& stage, const BlockLdl<T>& E, const Block<T>& inverse,
+                            Gain& gain) {
+  find_V(stage, E);
+  for (int j = 0; j < M_; ++j) {
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) D_[j](a, b) = stage.B[a] * V_[j](a, b);
+    RegisterSum<Block<T>> scaled;
+    scaled.add(inverse, D_[j]);
+    scaled.store(gain.D[j]);
+  }
+  carry(stage, gain);
+  carry_gradient(stage, gain);
+}
+
+template <class T>
+void Riccati<T>::find_V(const Stage& stage, const BlockLdl<T>& E) {
+  const bool bends = !stage.U.empty();
+  for (int j = 0; j < M_ && bends; ++j) {  // Uᵀ S
+    Block<T>* row = US_.data() + j * M_;
+    for (int k = 0; k < M_; ++k) {
+      if (stage.U.has(k, j))
+        row[k] = stage.U.at(k, j).transpose();
+      else
+        row[k].setConstant(T(0.0));
+    }
+    E.solve_row(row, 0, 0);
+  }
+  for (int i = 0; i < M_; ++i)
+    for (int j = 0; j < M_; ++j) {
+      RegisterSum<Block<T>> sum;
+      for (int k = 0; k < M_; ++k)
+        if (stage.G.has(k, j)) sum.add(W_[i * M_ + k], stage.G.at(k, j));
+      if (bends) sum.subtract(US_[j * M_ + i].transpose());
+      sum.store(V_[i * M_ + j]);
+    }
+}
+
+template <class T>
+void Riccati<T>::carry(const Stage& stage, const Gain& gain) {
+  const bool bends = !stage.U.empty();
+  for (int i = 0; i < M_; ++i)
+    for (int j = 0; j < M_; ++j) {
+      RegisterSum<Block<T>> y, z;
+      for (int k = 0; k < M_; ++k) {
+        if (stage.G.has(k, j)) y.add(P_[i * M_ + k], stage.G.at(k, j));
+        if (bends && stage.F.has(k, i))
+          y.subtract(stage.F.at(k, i).transpose(), US_[j * M_ + k].transpose());
+        if (j > i) continue;
+        if (stage.G.has(k, i)) z.add(stage.G.at(k, i).transpose(), V_[k * M_ + j]);
+        if (bends && stage.G.has(k, j)) z.subtract(US_[i * M_ + k], stage.G.at(k, j));
+      }
+      y.subtract(C_[i].transpose(), gain.D[j]);
+      y.store(Y_[i * M_ + j]);
+      if (j > i) continue;
+      z.subtract(D_[i].transpose(), gain.D[j]);
+      z.store(Z_[i * M_ + j]);
+      z.store_transposed(Z_[j * M_ + i]);
+    }
+}
+
+template <class T>
+void Riccati<T>::carry_gradient(const Stage& stage, const Gain& gain) {
+  for (int i = 0; i < M_; ++i) {
+    RegisterSum<Vec3<T>> sum;
+    for (int k = 0; k < M_; ++k) {
+      if (stage.G.has(k, i)) sum.add(stage.G.at(k, i).transpose(), w_[k]);
+      if (stage.U.has(k, i)) sum.subtract(stage.U.at(k, i).transpose(), Se_[k]);
+    }
+    sum.subtract(D_[i].transpose(), gain.r);
+    sum.store(z_[i]);
+  }
+}
+
+template void Riccati<double>::reach_back(const Stage&, const BlockLdl<double>&,
+                                          const Block<double>&, Gain&);
+template void Riccati<Lanes>::reach_back(const Stage&, const BlockLdl<Lanes>&, const Block<Lanes>&,
+                                         Gain&);
+
+}  // namespace rtg
