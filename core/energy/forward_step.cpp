@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/energy/hinge_step.hpp"
+
 namespace rtg {
 namespace {
 
@@ -63,6 +65,22 @@ void ForwardStep<T>::linearise(const Placement<T>& at, const Drive<T>& drive) {
     gradient_[0][m] -= bound * push;
     if (drive.servo) hessian_.at(0, 0)(m, m) += bound * (T(1.0) - push * push) * T(1.0 / scale);
   }
+  reduce(at);
+}
+
+/// Gradient and Hessian over the coordinates of jointed bodies.
+template <class T>
+void ForwardStep<T>::reduce(const Placement<T>& at) {
+  const Articulation<T>& articulation = scene_.articulation();
+  if (articulation.empty()) return;
+  mirror_lower(hessian_);
+  const auto& hinges = articulation.hinges();
+  for (auto hinge = hinges.rbegin(); hinge != hinges.rend(); ++hinge) {
+    const HingeStep<T> step(articulation, *hinge, at);
+    step.gather_both(hessian_);
+    step.add_curvature(gradient_[0].data(), T(1.0), hessian_);
+    step.gather(gradient_[0].data());
+  }
 }
 
 /// Newton direction of the Hessian made positive definite by a growing multiple of its diagonal;
@@ -99,7 +117,7 @@ template <class T>
 void ForwardStep<T>::take_guess(const Drive<T>& drive, const T* guess, Placement<T>& p, T& value) {
   trial_ = p;
   for (int m = 0; m < 3 * scene_.movable(); ++m) trial_.p[m] = p.p[m] + guess[m];
-  trial_.update();
+  scene_.place(trial_);
   Mask<T> legal;
   const T after = this->value(trial_, drive, legal);
   const Mask<T> better = legal && after < value;
@@ -120,7 +138,7 @@ Mask<T> ForwardStep<T>::line_search(const Drive<T>& drive, const Mask<T>& wanted
     const T length = select(searching, T(step), T(0.0));
     for (int i = 0; i < hessian_.M; ++i)
       for (int m = 0; m < 3; ++m) trial_.p[3 * i + m] = p.p[3 * i + m] + length * direction_[i][m];
-    trial_.update();
+    scene_.place(trial_);
     Mask<T> legal;
     const T after = this->value(trial_, drive, legal);
     const Mask<T> better = searching && legal && after <= value + T(kArmijo * step) * slope + noise;

@@ -1,5 +1,9 @@
 #include "core/energy/open_gaps.hpp"
 
+#include <utility>
+
+#include "core/energy/joint_limit.hpp"
+#include "core/energy/scatter.hpp"
 #include "core/energy/touch.hpp"
 
 namespace rtg {
@@ -7,10 +11,19 @@ namespace {
 
 constexpr int kRounds = 50;
 
+/// Moves the bodies along ∇g [3·movable] until the gap is that much larger, to first order.
+void open_by(const SceneModel<double>& scene, double amount, VectorXd gradient,
+             Placement<double>& at) {
+  scene.articulation().gather(at, gradient.data());
+  const double size = gradient.squaredNorm();
+  for (Eigen::Index m = 0; m < gradient.size(); ++m)
+    at.p[static_cast<std::size_t>(m)] += amount / size * gradient[m];
+  scene.place(at);
+}
+
 /// Moves the bodies of a pair apart where gaps are below the floor; whether there was one.
 bool open_pair(const SceneModel<double>& scene, int n, double floor, Placement<double>& at) {
   bool opened = false;
-  const auto [i, j] = scene.pairs()[n];
   for (int v = 0; v < scene.corners(n); ++v) {
     const PairFrame<double> frame = scene.frame(n, at);
     const Touch<double> touch(scene, n, v, frame, true);
@@ -18,17 +31,25 @@ bool open_pair(const SceneModel<double>& scene, int n, double floor, Placement<d
     const SignedDistance<double> d = touch.distance();
     const double gap = d.value - scene.skin();
     if (gap >= floor) continue;
-    Vector3d slope[2] = {Vector3d::Zero(), Vector3d::Zero()};
-    frame.pull(touch.point.pulled(d.gradient), scene.movable(i) ? slope[0].data() : nullptr,
-               scene.movable(j) ? slope[1].data() : nullptr);
-    const double step = (1.1 * floor - gap) / (slope[0].squaredNorm() + slope[1].squaredNorm());
-    for (int m = 0; m < 3; ++m) {
-      at.body(i)[m] += step * slope[0][m];
-      at.body(j)[m] += step * slope[1][m];
-    }
-    at.update();
+    VectorXd slope = VectorXd::Zero(3 * scene.movable());
+    pull(scene, n, frame, touch.point.pulled(d.gradient), slope.data());
+    open_by(scene, 1.1 * floor - gap, std::move(slope), at);
     opened = true;
   }
+  return opened;
+}
+
+/// The same for the limits of joints.
+bool open_limits(const SceneModel<double>& scene, double floor, Placement<double>& at) {
+  bool opened = false;
+  const Placement<double> was = at;
+  for_each_limit(scene.articulation(), was, [&](int, const JointLimit<double>& limit) {
+    if (limit.gap >= floor) return;
+    VectorXd slope = VectorXd::Zero(3 * scene.movable());
+    limit.add_gradient(1.0, scene.movable(), slope.data());
+    open_by(scene, 1.1 * floor - limit.gap, std::move(slope), at);
+    opened = true;
+  });
   return opened;
 }
 
@@ -42,9 +63,10 @@ VectorXd with_open_gaps(const StepEnergy& energy, const VectorXd& p) {
   const SceneModel<double>& scene = energy.scene();
   const double floor = kGapFloor * energy.barrier().range;
   Placement<double> at = placed(p);
+  scene.place(at);
   bool open = false;
   for (int round = 0; round < kRounds && !open; ++round) {
-    open = true;
+    open = !open_limits(scene, floor, at);
     for (int n = 0; n < scene.pair_count(); ++n)
       if (scene.near(n, at) && open_pair(scene, n, floor, at)) open = false;
   }

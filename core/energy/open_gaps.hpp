@@ -11,7 +11,7 @@ inline constexpr double kGapFloor = 0.03;
 double least_gap(const StepEnergy& energy, const VectorXd& p);
 
 /// `p` with bodies moved apart along the gradients of gaps below kGapFloor ĝ: Box2D lets resting
-/// bodies overlap by its slop, the barrier does not.
+/// bodies overlap by its slop, the barrier does not. Joints are closed.
 VectorXd with_open_gaps(const StepEnergy& energy, const VectorXd& p);
 
 }  // namespace rtg

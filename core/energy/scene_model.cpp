@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/energy/joint_limit.hpp"
 #include "core/energy/touch.hpp"
 
 namespace rtg {
@@ -38,6 +39,7 @@ template <class T>
 SceneModel<T>::SceneModel(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push)
     : movable_(movable_bodies(scene)),
       bodies_(static_cast<int>(scene.size())),
+      articulation_(scene),
       sharpness_(physics.sharpness),
       skin_(physics.skin),
       slip_(physics.slip),
@@ -61,15 +63,23 @@ SceneModel<T>::SceneModel(const Scene& scene, const PhysicsConfig& physics, cons
   const T drag = damping_[0].mass * T(stride_ * (1.0 + inertia_weight_));
   control_bound_ = {T(physics.force_factor) * drag, T(physics.force_factor) * drag,
                     T(physics.torque_factor) * drag * radius_[0]};
-  add_pairs();
-  for (std::size_t n = 0; n < pairs_.size(); ++n)
-    friction_[n] = T(pair_friction(scene.bodies[pairs_[n].body], scene.bodies[pairs_[n].other]));
+  for (int i = 0; i < bodies_; ++i)
+    for (int j = i + 1; j < bodies_; ++j)
+      if ((movable(i) || movable(j)) && !jointed(scene, i, j)) {
+        pairs_.push_back({i, j});
+        pairs_.push_back({j, i});
+      }
+  for (const BodyPair& pair : pairs_)
+    friction_.push_back(T(pair_friction(scene.bodies[pair.body], scene.bodies[pair.other])));
 }
 
 template <class T>
 SceneModel<T>::SceneModel(const SceneModel<double>& like, Room)
     : movable_(like.movable_),
       bodies_(like.bodies_),
+      articulation_(Articulation<T>::room_for(like.articulation_)),
+      pairs_(like.pairs_),
+      friction_(pairs_.size(), T(0.0)),
       vertices_(like.vertices_.size()),
       corners_(vertices_.size(), 0),
       corner_count_(vertices_.size(), T(0.0)),
@@ -82,29 +92,18 @@ SceneModel<T>::SceneModel(const SceneModel<double>& like, Room)
       skin_(like.skin_),
       slip_(like.slip_),
       stride_(like.stride_),
-      inertia_weight_(like.inertia_weight_) {
-  add_pairs();
-}
-
-template <class T>
-void SceneModel<T>::add_pairs() {
-  for (int i = 0; i < bodies_; ++i)
-    for (int j = i + 1; j < bodies_; ++j)
-      if (movable(i) || movable(j)) {
-        pairs_.push_back({i, j});
-        pairs_.push_back({j, i});
-      }
-  friction_.assign(pairs_.size(), T(0.0));
-}
+      inertia_weight_(like.inertia_weight_) {}
 
 template <class T>
 void SceneModel<T>::unload(int lane) {
   for (T& count : corner_count_) set_lane(count, lane, 0.0);
+  articulation_.unload(lane);
 }
 
 template <class T>
 void SceneModel<T>::load(int lane, const SceneModel<double>& one) {
   assert(one.bodies_ == bodies_ && one.movable_ == movable_);
+  articulation_.load(lane, one.articulation_);
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     set_lane(damping_[i].mass, lane, one.damping_[i].mass);
     set_lane(damping_[i].moment, lane, one.damping_[i].moment);
@@ -137,6 +136,9 @@ void SceneModel<T>::forces(const Placement<T>& at, T* lambda) const {
       if (any(touch.within)) of[v] = select(touch.within, barrier_.force(touch.gap()), T(0.0));
     }
   }
+  for_each_limit(articulation_, at, [&](int l, const JointLimit<T>& limit) {
+    lambda[limit_contact(l)] = barrier_.force(limit.gap);
+  });
 }
 
 template <class T>
@@ -149,6 +151,8 @@ T SceneModel<T>::least_gap(const Placement<T>& at) const {
     for (int v = 0; v < corners(n); ++v)
       least = lesser(least, Touch<T>(*this, n, v, pair, close).gap());
   }
+  for_each_limit(articulation_, at,
+                 [&](int, const JointLimit<T>& limit) { least = lesser(least, limit.gap); });
   return least;
 }
 

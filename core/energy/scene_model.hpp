@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "core/energy/articulation.hpp"
 #include "core/energy/barrier.hpp"
 #include "core/energy/contact_point.hpp"
 #include "core/energy/damping.hpp"
@@ -20,7 +21,8 @@ struct BodyPair {
   int body = 0, other = 0;
 };
 
-/// Contacts of pair n are n kMaxVertices, n kMaxVertices + 1, ..., one per vertex.
+/// Contacts of pair n are n kMaxVertices, n kMaxVertices + 1, ..., one per vertex. Behind those of
+/// all pairs come the limits of joints.
 inline int contact_of(int pair, int vertex) {
   return pair * static_cast<int>(kMaxVertices) + vertex;
 }
@@ -42,10 +44,14 @@ class SceneModel {
   int bodies() const { return bodies_; }
   int movable() const { return movable_; }
   bool movable(int body) const { return body < movable_; }
-  /// Pair n + 1 is pair n turned round for even n.
+  /// Pair n + 1 is pair n turned round for even n. Jointed bodies are no pair.
   const std::vector<BodyPair>& pairs() const { return pairs_; }
   int pair_count() const { return static_cast<int>(pairs_.size()); }
-  int contacts() const { return contact_of(pair_count(), 0); }
+  int contacts() const {
+    return limit_contact(2 * static_cast<int>(articulation_.hinges().size()));
+  }
+  int limit_contact(int limit) const { return contact_of(pair_count(), 0) + limit; }
+  const Articulation<T>& articulation() const { return articulation_; }
   const Barrier& barrier() const { return barrier_; }
   double stride() const { return stride_; }  // of a sub-step [m]
   double sharpness() const { return sharpness_; }
@@ -86,6 +92,12 @@ class SceneModel {
     return {planes(pair), corner_count_[pairs_[pair].other]};
   }
 
+  /// To be called when poses have changed: jointed bodies go where their joints close.
+  void place(Placement<T>& at) const {
+    at.update();
+    articulation_.close(at);
+  }
+
   /// λ(g(p)) of every contact [contacts].
   void forces(const Placement<T>& at, T* lambda) const;
   /// Least gap of all contacts, at most ĝ [m].
@@ -98,9 +110,9 @@ class SceneModel {
   friend class SceneModel;
   struct Room {};
   SceneModel(const SceneModel<double>& like, Room);
-  void add_pairs();
 
   int movable_, bodies_;
+  Articulation<T> articulation_;
   std::vector<BodyPair> pairs_;
   std::vector<T> friction_;  // per pair
   std::vector<std::array<Vec2<T>, kMaxVertices>> vertices_;

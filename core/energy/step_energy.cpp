@@ -1,5 +1,6 @@
 #include "core/energy/step_energy.hpp"
 
+#include "core/energy/joint_limit.hpp"
 #include "core/energy/step_potential.hpp"
 
 namespace rtg {
@@ -9,10 +10,23 @@ StepEnergy::StepEnergy(const Scene& scene, const PhysicsConfig& physics, const P
     for (int v = 0; v < scene_.corners(n); ++v)
       contacts_.push_back(
           {scene_.pairs()[n].body, scene_.pairs()[n].other, scene_.friction(n), n, v});
+  constexpr int kPerPair = static_cast<int>(kMaxVertices);
+  int limit = 0;
+  for (const Hinge<double>& hinge : scene_.articulation().hinges())
+    for (int side = 0; side < 2; ++side, ++limit)
+      contacts_.push_back({hinge.child, hinge.parent, 0.0, scene_.pair_count() + limit / kPerPair,
+                           limit % kPerPair});
 }
 
 double StepEnergy::gap_value(const Contact& c, const VectorXd& p) const {
   const Placement<double> at = placed(p);
+  if (c.pair >= scene_.pair_count()) {
+    double gap = 0.0;
+    for_each_limit(scene_.articulation(), at, [&](int l, const JointLimit<double>& limit) {
+      if (scene_.limit_contact(l) == contact_of(c.pair, c.vertex)) gap = limit.gap;
+    });
+    return gap;
+  }
   return Touch<double>(scene_, c.pair, c.vertex, scene_.frame(c.pair, at), scene_.near(c.pair, at))
       .gap();
 }

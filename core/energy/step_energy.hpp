@@ -12,7 +12,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// A vertex of body `body` that may touch body `other`.
+/// A vertex of body `body` that may touch body `other`; or a limit of a joint, body its child.
 struct Contact {
   int body = 0, other = 0;
   double friction = 0.0;  // μ_f of the pair
@@ -60,8 +60,8 @@ class StepEnergy {
   /// λ(g(p)) of every contact [contacts].
   VectorXd forces(const VectorXd& p) const;
 
-  /// Ψ without actuation: its value, gradient and Hessian with respect to p₊ [dofs]; +∞ if a gap
-  /// is not positive.
+  /// Ψ without actuation: its value, gradient and Hessian with respect to p₊ [dofs], as if there
+  /// were no joints; +∞ if a gap is not positive.
   double value(const VectorXd& next, const StepFrom& from) const;
   struct Model {
     VectorXd gradient;  // [dofs]

@@ -1,6 +1,7 @@
 #include "core/energy/step_potential.hpp"
 
 #include "core/energy/gap_terms.hpp"
+#include "core/energy/joint_limit.hpp"
 
 namespace rtg {
 
@@ -78,6 +79,12 @@ T StepPotential<T>::value(const Placement<T>& next, const T* were, T* gaps, Mask
     apart = apart || edges.separate(scene_.sharpness());  // an edge of either body will do
     if (n % 2 == 1) legal = legal && apart;
   }
+  for_each_limit(scene_.articulation(), next, [&](int l, const JointLimit<T>& limit) {
+    const int c = scene_.limit_contact(l);
+    gaps[c] = limit.gap;
+    legal = legal && keeps_gap(limit.gap, were[c], scene_.barrier());
+    sum = sum + scene_.barrier().value(limit.gap);
+  });
   return sum;
 }
 
@@ -142,6 +149,10 @@ void StepPotential<T>::model(const Placement<T>& next, T* gradient, BlockMatrix<
     pull(scene_, n, frame, slope, gradient);
     scatter_lower(scene_, n, frame, H, hessian);
   }
+  for_each_limit(scene_.articulation(), next, [&](int, const JointLimit<T>& limit) {
+    limit.add_gradient(-scene_.barrier().force(limit.gap), scene_.movable(), gradient);
+    limit.add_hessian(-scene_.barrier().force_slope(limit.gap), scene_.movable(), hessian);
+  });
 }
 
 template class StepPotential<double>;

@@ -89,7 +89,8 @@ class Table {
       add(scene.bodies[i], start[i], i == 0 || !sweep_is_clear(scene, start, i, at, at));
     }
     touched_[0] = true;
-    add_joint();
+    add_servo();
+    for (const Joint& joint : scene.joints) add_joint(joint);
   }
 
   /// One Box2D step in which the servo heads for `target`. False: not finite, the step is
@@ -101,8 +102,8 @@ class Table {
     if (ahead.norm() > reach) ahead *= reach / ahead.norm();
     const double turn =
         std::clamp(target.theta - robot.theta, -reach / servo_.radius, reach / servo_.radius);
-    joint_->SetLinearOffset(to_b2(robot.position() + ahead));
-    joint_->SetAngularOffset(static_cast<float>(robot.theta + turn));
+    servo_joint_->SetLinearOffset(to_b2(robot.position() + ahead));
+    servo_joint_->SetAngularOffset(static_cast<float>(robot.theta + turn));
     world_.Step(static_cast<float>(servo_.step_s), physics_.box2d_velocity_iterations,
                 physics_.box2d_position_iterations);
     return observe();
@@ -153,7 +154,22 @@ class Table {
     bodies_.push_back(added);
   }
 
-  void add_joint() {
+  void add_joint(const Joint& joint) {
+    b2RevoluteJointDef def;
+    def.bodyA = bodies_[static_cast<std::size_t>(joint.parent)];
+    def.bodyB = bodies_[static_cast<std::size_t>(joint.child)];
+    def.localAnchorA = to_b2(joint.on_parent);
+    def.localAnchorB = to_b2(joint.on_child);
+    def.enableLimit = std::isfinite(joint.lower) || std::isfinite(joint.upper);
+    // Box2D lets a pressed joint go on by its slop.
+    const double slop =
+        std::min(static_cast<double>(b2_angularSlop), 0.5 * (joint.upper - joint.lower));
+    def.lowerAngle = static_cast<float>(std::max(joint.lower + slop, -kMaxAngle));
+    def.upperAngle = static_cast<float>(std::min(joint.upper - slop, kMaxAngle));
+    world_.CreateJoint(&def);
+  }
+
+  void add_servo() {
     const b2BodyDef ground;
     b2MotorJointDef def;
     def.bodyA = world_.CreateBody(&ground);
@@ -162,7 +178,7 @@ class Table {
     def.maxTorque = static_cast<float>(servo_.max_torque);
     def.correctionFactor = 1.0f;
     def.collideConnected = true;
-    joint_ = static_cast<b2MotorJoint*>(world_.CreateJoint(&def));
+    servo_joint_ = static_cast<b2MotorJoint*>(world_.CreateJoint(&def));
   }
 
   bool observe() {
@@ -189,7 +205,7 @@ class Table {
   const Servo& servo_;
   b2World world_{b2Vec2(0.0f, 0.0f)};
   std::vector<b2Body*> bodies_;
-  b2MotorJoint* joint_ = nullptr;
+  b2MotorJoint* servo_joint_ = nullptr;
   Poses good_;                 // after the last finite step
   std::vector<bool> touched_;  // has had a velocity
   double fastest_ = 0.0;       // largest speed of a touched body [m/s] or [rad/s]

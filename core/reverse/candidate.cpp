@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "core/energy/open_gaps.hpp"
 #include "core/math/assembled_solver.hpp"
@@ -34,15 +35,21 @@ std::vector<SqpResult> filter_sqp(std::span<const ReverseProblem* const> problem
       .solve(problems);
 }
 
-/// The same for candidates of any numbers of bodies.
+/// What candidates in the lanes of one solver have in common: numbers of bodies, and joints.
+std::vector<int> structure_of(const StepEnergy& energy) {
+  std::vector<int> structure{energy.dofs(), energy.bodies()};
+  for (const Hinge<double>& hinge : energy.scene().articulation().hinges())
+    structure.insert(structure.end(), {hinge.parent, hinge.child});
+  return structure;
+}
+
+/// The same for candidates of any structure.
 std::vector<SqpResult> filter_sqp_of_all(std::span<const Candidate* const> candidates) {
-  std::map<std::pair<int, int>, std::vector<std::size_t>> alike;  // by numbers of bodies
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const StepEnergy& energy = candidates[k]->problem().energy;
-    alike[{energy.dofs(), energy.bodies()}].push_back(k);
-  }
+  std::map<std::vector<int>, std::vector<std::size_t>> alike;
+  for (std::size_t k = 0; k < candidates.size(); ++k)
+    alike[structure_of(candidates[k]->problem().energy)].push_back(k);
   std::vector<SqpResult> results(candidates.size());
-  for (const auto& [count, members] : alike) {
+  for (const auto& [structure, members] : alike) {
     std::vector<const ReverseProblem*> group;
     for (const std::size_t k : members) group.push_back(&candidates[k]->problem());
     std::vector<SqpResult> solved = filter_sqp(group);

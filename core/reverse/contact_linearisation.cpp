@@ -3,8 +3,6 @@
 namespace rtg {
 namespace {
 
-constexpr double kForceProximal = 0.01;  // share of δ on the forces
-
 template <class T>
 Vec4<T> nothing() {
   return Vec4<T>::Constant(T(0.0));
@@ -77,7 +75,8 @@ void ContactLinearisation<T>::add_normal_force(Contact& c) {
   const GapRates<T> rates(c.d, c.D, c.touch.point, c.gap, y_);
   own.E -= c.gap.hessian * c.force;
   own.E -= c.gap.gradient * c.b.transpose();
-  own.e -= c.gap.gradient * (c.force + c.a);
+  own.e -= c.gap.gradient * c.a;
+  own.residual -= c.gap.gradient * c.force;
   own.gradient -= rates.gradient * c.force;
   own.Q -= rates.hessian * (curvature_.exact * c.force);
   c.now -= rates.gradient;
@@ -94,7 +93,8 @@ void ContactLinearisation<T>::add_friction(Contact& c, const ContactPoint<T>& af
   const T mu = scene_.friction(pair_), load = mu * c.force, bent = curvature_.exact * load;
   const Vec4<T> drag = slip.gradient() * mu;
   next.E += hessian * load;
-  next.e += drag * (c.force + c.a);
+  next.e += drag * c.a;
+  next.residual += drag * c.force;
   next.gradient += rates.next * load;
   own.gradient += rates.now * load;
   F += rates.cross * load;

@@ -8,11 +8,13 @@
 
 namespace rtg {
 
+inline constexpr double kForceProximal = 0.01;  // share of δ on the forces
+
 /// How second derivatives are formed, by lane.
 template <class T>
 struct Curvature {
   T exact;     // 1: of the Lagrangian; 0: of the objective alone
-  T proximal;  // δ, on poses and controls, and 0.01 δ on forces
+  T proximal;  // δ, on poses and controls, and kForceProximal δ on forces
 };
 
 /// A force eliminated from the system: Δλ = a + b·V Δp.
@@ -28,7 +30,8 @@ template <class T>
 struct PairTerms {
   Mat4<T> Q = Mat4<T>::Constant(T(0.0)), E = Q;  // Hessian of the Lagrangian, ∂Φ/∂p
   Vec4<T> gradient = Vec4<T>::Constant(T(0.0));  // of the Lagrangian
-  Vec4<T> q = gradient, e = gradient;            // right-hand sides, gradient aside
+  Vec4<T> residual = gradient;                   // Φ
+  Vec4<T> q = gradient, e = gradient;            // the rest of the two right-hand sides
 };
 
 /// The contacts of a pair of bodies at a level k: normal forces in Φ_k, friction in Φ_{k+1}, their

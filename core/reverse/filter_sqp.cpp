@@ -187,7 +187,7 @@ void FilterSqp<T>::line_search() {
     const T length = select(searching, T(alpha), T(0.0));
     Mask<T> legal = searching && bounded(step_, length);
     if (!any(legal)) continue;
-    make_trial(x_, step_, force_step_, length, trial_);
+    make_trial(problem_.energy, x_, {step_, force_step_, length}, trial_);
     const Merits<T> then = evaluator_.evaluate(problem_, trial_, gaps_, trial_gaps_, legal);
     const Mask<T> accepted = accept(legal, then, alpha);
     if (!any(accepted)) continue;

@@ -19,7 +19,7 @@ namespace rtg {
 template <class T>
 class FilterSqp {
  public:
-  /// For problems with the numbers of bodies and the configurations of `like`.
+  /// For problems with the numbers of bodies, the joints and the configurations of `like`.
   FilterSqp(const ReverseProblem& like, std::unique_ptr<StageSolver<T>> kkt);
 
   /// From the given starts, one per problem (kNonFinite where one is not legal, its barrier being

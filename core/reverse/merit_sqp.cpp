@@ -78,7 +78,7 @@ class MeritSqp {
     for (double alpha = 1.0; alpha >= kLeastStep; alpha *= 0.5) {
       bool legal = bounded(step_, alpha);
       if (!legal) continue;
-      make_trial(x_, step_, no_force_step_, alpha, trial_);
+      make_trial(problem_.energy, x_, {step_, no_force_step_, alpha}, trial_);
       for (std::size_t k = 0; k < trial_.p.size(); ++k)
         problem_.energy.forces(trial_.p[k], trial_.forces[k].data());
       const Merits<double> then = evaluator_.evaluate(problem_, trial_, gaps_, trial_gaps_, legal);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/energy/joint_limit.hpp"
 #include "core/energy/scatter.hpp"
 #include "core/energy/slip_terms.hpp"
 #include "core/energy/touch.hpp"
@@ -87,6 +88,19 @@ struct Evaluator<T>::Pass {
       if (any(close) || has_force(k, n)) apart = add_pair(k, n, close) || apart;
       if (n % 2 == 1) legal = legal && apart;  // an edge of either body will do
     }
+    add_limits(k);
+  }
+
+  void add_limits(int k) {
+    for_each_limit(scene.articulation(), x.p[k], [&](int l, const JointLimit<T>& limit) {
+      const int contact = scene.limit_contact(l);
+      const T force = x.forces[k][contact];
+      if (k > 0) limit.add_gradient(-force, scene.movable(), into.residuals_[k].data());
+      note_gap(k, contact, limit.gap, scene.barrier().window(limit.gap).w);
+      gaps[k][contact] = limit.gap;
+      legal = legal && keeps_gap(limit.gap, were[k][contact], scene.barrier());
+      if (k == 0) sum.objective = sum.objective + scene.barrier().value(limit.gap);
+    });
   }
 
   bool has_force(int k, int n) const {
@@ -120,18 +134,22 @@ struct Evaluator<T>::Pass {
     return edges.separate(scene.sharpness());
   }
 
-  /// λ g - μ̃ w, and at the start the barrier of the objective.
-  void add_contact(int k, int contact, const Touch<T>& touch, const SignedDistance<T>& d) {
-    const Barrier& barrier = scene.barrier();
-    const T force = x.forces[k][contact];
-    const Mask<T> acts = touch.within || force != T(0.0);
-    const T g = touch.gap(d, acts);
-    gaps[k][contact] = select(touch.within, g, Touch<T>::far(scene));
-    legal = legal && keeps_gap(gaps[k][contact], were[k][contact], barrier);
-    const T off = force * g - T(barrier.weight) * select(acts, barrier.window(g).w, T(0.0));
+  /// λ g - μ̃ w.
+  void note_gap(int k, int contact, const T& g, const T& window) {
+    const T off = x.forces[k][contact] * g - T(scene.barrier().weight) * window;
     into.complementarity_[k][contact] = off;
     sum.violation = sum.violation + magnitude(off);
     sum.infeasibility = greater(sum.infeasibility, magnitude(off));
+  }
+
+  /// Its complementarity, legality, and at the start the barrier of the objective.
+  void add_contact(int k, int contact, const Touch<T>& touch, const SignedDistance<T>& d) {
+    const Barrier& barrier = scene.barrier();
+    const Mask<T> acts = touch.within || x.forces[k][contact] != T(0.0);
+    const T g = touch.gap(d, acts);
+    note_gap(k, contact, g, select(acts, barrier.window(g).w, T(0.0)));
+    gaps[k][contact] = select(touch.within, g, Touch<T>::far(scene));
+    legal = legal && keeps_gap(gaps[k][contact], were[k][contact], barrier);
     if (k == 0) sum.objective = sum.objective + select(touch.within, barrier.value(g), T(0.0));
   }
 };
@@ -154,6 +172,7 @@ Merits<T> Evaluator<T>::evaluate(const ProblemLanes<T>& problem, const Trajector
     if (k < problem.sub_steps) set_free_residual(problem, x, k + 1, residuals_[k + 1].data());
     pass.add_level(k);
     if (k == 0) continue;
+    problem.energy.articulation().gather(x.p[k], residuals_[k].data());
     for (const T& r : residuals_[k]) {
       pass.sum.violation = pass.sum.violation + magnitude(r);
       pass.sum.infeasibility = greater(pass.sum.infeasibility, magnitude(r));

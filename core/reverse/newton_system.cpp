@@ -1,30 +1,20 @@
 #include "core/reverse/newton_system.hpp"
 
+#include "core/reverse/joint_reduction.hpp"
+#include "core/reverse/limit_linearisation.hpp"
+
 namespace rtg {
-namespace {
-
-template <class T>
-Vec3<T> nothing() {
-  return Vec3<T>::Constant(T(0.0));
-}
-
-template <class T>
-Vec3<T> multipliers_of(const Trajectory<T>& x, int k, int body) {
-  const T* y = x.multipliers[k].data() + 3 * body;
-  return {y[0], y[1], y[2]};
-}
-
-}  // namespace
-
 template <class T>
 NewtonSystem<T>::NewtonSystem(const ProblemLanes<T>& problem)
     : fixed_end_(problem.fixed_end()),
       system_(problem.energy.movable(), problem.sub_steps),
       gradient_(system_.stages.size(), system_.stages[0].q),
+      residual_(gradient_),
       control_gradient_(gradient_.size()),
       eliminated_(gradient_.size(),
                   std::vector<Eliminated<T>>(static_cast<std::size_t>(problem.energy.contacts()))),
-      active_(gradient_.size(), std::vector<char>(problem.energy.pairs().size())) {}
+      active_(gradient_.size(), std::vector<char>(problem.energy.pairs().size())),
+      moved_(gradient_[0]) {}
 
 template <class T>
 void NewtonSystem<T>::linearise(const ProblemLanes<T>& problem, const Trajectory<T>& x,
@@ -39,126 +29,15 @@ void NewtonSystem<T>::linearise(const ProblemLanes<T>& problem, const Trajectory
   }
   for (int k = 0; k <= h; ++k)
     for (int n = 0; n < problem.energy.pair_count(); ++n) add_pair(problem, x, k, n);
+  if (!problem.energy.articulation().empty()) {
+    for (int k = 0; k <= h; ++k) add_limits(problem, x, k);
+    reduce_joints(problem, x, {system_, gradient_, residual_, curvature_.exact});
+  }
   for (int k = 0; k <= h; ++k)
-    for (int i = 0; i < system_.M; ++i) system_.stages[k].q[i] += gradient_[k][i];
-}
-
-/// Begins stage k with the terms of one level in the objective, barrier aside, and the proximal
-/// one.
-template <class T>
-void NewtonSystem<T>::set_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
-  const ReverseConfig& config = problem.config;
-  Stage& stage = system_.stages[k];
-  for (BlockMatrix<T>* block : {&stage.Q, &stage.E, &stage.F, &stage.G, &stage.N, &stage.U})
-    block->clear();
-  const bool end = k > 0 && problem.ends(k);
-  const T spring(end ? config.terminal_weight : 0.0);
-  for (int i = 0; i < system_.M; ++i) {
-    stage.q[i].setConstant(T(0.0));
-    stage.e[i].setConstant(T(0.0));
-    Vec3<T>& g = gradient_[k][i];
-    Block<T> own = Block<T>::Constant(T(0.0));
-    for (int m = 0; m < 3; ++m) {
-      g[m] = spring * (x.p[k].body(i)[m] - problem.end[3 * i + m]);
-      own(m, m) = curvature_.proximal + spring;
+    for (int i = 0; i < system_.M; ++i) {
+      system_.stages[k].q[i] += gradient_[k][i];
+      system_.stages[k].e[i] += residual_[k][i];
     }
-    if (k == 0) {
-      const T pull(i == 0 ? config.robot_weight : config.object_weight);
-      g[0] += pull * problem.direction.x();
-      g[1] += pull * problem.direction.y();
-    }
-    stage.Q.add(i, i, own);
-  }
-  const Vec3<T> path = problem.robot_path(k);
-  for (int m = 0; m < 3; ++m) {
-    const T weight(2.0 * (m < 2 ? config.path_weight : config.heading_weight));
-    stage.Q.at(0, 0)(m, m) += weight;
-    gradient_[k][0][m] += weight * (x.p[k].body(0)[m] - path[m]);
-  }
-}
-
-/// Damping and the price of speed of sub-step k.
-template <class T>
-void NewtonSystem<T>::add_motion(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
-  Stage &stage = system_.stages[k], &before = system_.stages[k - 1];
-  for (int i = 0; i < system_.M; ++i) {
-    const Vec3<T> moved = way(x.p[k - 1], x.p[k], i), y = multipliers_of(x, k, i);
-    const Damping<T>& body = problem.energy.damping(i);
-    const Vec3<T> slope(body.mass, body.mass, body.turn_curvature(moved[2]));
-    stage.e[i] += Vec3<T>(body.mass * moved[0], body.mass * moved[1], body.turn_slope(moved[2]));
-    gradient_[k][i] += slope.cwiseProduct(y);
-    gradient_[k - 1][i] -= slope.cwiseProduct(y);
-    Block<T> H =
-        diagonal<T>(Vec3<T>(T(0.0), T(0.0), curvature_.exact * body.turn_third(moved[2]) * y[2]));
-    if (i > 0) {
-      const SpeedPenalty<T> speed = problem.speed(x, k, i);
-      H += speed.hessian;
-      gradient_[k][i] += speed.gradient;
-      gradient_[k - 1][i] -= speed.gradient;
-    }
-    stage.E.add(i, i, diagonal<T>(slope));
-    stage.F.add(i, i, diagonal<T>(-slope));
-    stage.Q.add(i, i, H);
-    before.Q.add(i, i, H);
-    stage.N.add(i, i, -H);
-  }
-}
-
-/// Inertia over the sub-steps k - 1 and k; before the first everything is at rest.
-template <class T>
-void NewtonSystem<T>::add_inertia(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
-  const bool first = k == 1;
-  for (int i = 0; i < system_.M; ++i) {
-    const Inertia<T> body = problem.energy.inertia(i);
-    const Vec3<T> a = way(x.p[k - 1], x.p[k], i);
-    const Vec3<T> b = first ? nothing<T>() : way(x.p[k - 2], x.p[k - 1], i);
-    const Vec3<T> y = multipliers_of(x, k, i);
-    auto turn = body.turn_slope(a[2], b[2]);
-    if (first) turn.b = turn.ab = turn.bb = T(0.0);
-    const Vec3<T> by_a(body.mass, body.mass, turn.a);
-    const Vec3<T> by_b = first ? nothing<T>() : Vec3<T>(-body.mass, -body.mass, turn.b);
-    Stage& stage = system_.stages[k];
-    stage.e[i] += Vec3<T>(body.mass * (a[0] - b[0]), body.mass * (a[1] - b[1]), turn.value);
-    stage.E.add(i, i, diagonal<T>(by_a));
-    stage.F.add(i, i, diagonal<T>(by_b - by_a));
-    gradient_[k][i] += by_a.cwiseProduct(y);
-    gradient_[k - 1][i] += (by_b - by_a).cwiseProduct(y);
-    if (!first) {
-      stage.G.add(i, i, diagonal<T>(-by_b));
-      gradient_[k - 2][i] -= by_b.cwiseProduct(y);
-    }
-    if (body.periodic) add_turn_curvature(turn, curvature_.exact * y[2], k, i);
-  }
-}
-
-/// Second derivatives of y·Φ_k in the angles of body i.
-template <class T>
-void NewtonSystem<T>::add_turn_curvature(const typename Inertia<T>::Slope& s, const T& y, int k,
-                                         int i) {
-  const auto entry = [](const T& x) { return diagonal<T>(Vec3<T>(T(0.0), T(0.0), x)); };
-  Stage &stage = system_.stages[k], &before = system_.stages[k - 1];
-  stage.Q.add(i, i, entry(y * s.aa));
-  stage.N.add(i, i, entry(y * (s.ab - s.aa)));
-  before.Q.add(i, i, entry(y * (s.aa - T(2.0) * s.ab + s.bb)));
-  if (k == 1) return;
-  stage.U.add(i, i, entry(-y * s.ab));
-  before.N.add(i, i, entry(y * (s.ab - s.bb)));
-  system_.stages[k - 2].Q.add(i, i, entry(y * s.bb));
-}
-
-template <class T>
-void NewtonSystem<T>::add_control(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
-  Stage& stage = system_.stages[k];
-  const T price(2.0 * problem.config.control_weight);
-  for (int m = 0; m < 3; ++m) {
-    const T push = hyperbolic_tangent(x.controls[k][m]);
-    const T bound = problem.energy.control_bound()[m], y = x.multipliers[k][m];
-    const T slope = -bound * (T(1.0) - push * push);
-    stage.e[0][m] -= bound * push;
-    stage.B[m] = slope;
-    stage.R[m] = price + curvature_.proximal - curvature_.exact * T(2.0) * push * slope * y;
-    stage.r[m] = control_gradient_[k][m] = price * x.controls[k][m] + slope * y;
-  }
 }
 
 template <class T>
@@ -190,7 +69,33 @@ void NewtonSystem<T>::add_own(const SceneModel<T>& scene, int pair, const PairFr
   scatter_lower(scene, pair, frame, terms.Q, stage.Q);
   if (k == 0) return;
   pull(scene, pair, frame, terms.e, stage.e[0].data());
+  pull(scene, pair, frame, terms.residual, residual_[k][0].data());
   scatter_lower(scene, pair, frame, terms.E, stage.E);
+}
+
+/// The limits of joints at level k, over the poses of all bodies.
+template <class T>
+void NewtonSystem<T>::add_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
+  using Terms = LimitLinearisation<T>;
+  const SceneModel<T>& scene = problem.energy;
+  Stage& stage = system_.stages[k];
+  const typename Terms::Level level = k == 0 ? Terms::Level::kStart
+                                      : k == problem.sub_steps && fixed_end_
+                                          ? Terms::Level::kHeld
+                                          : Terms::Level::kWithin;
+  for_each_limit(scene.articulation(), x.p[k], [&](int l, const JointLimit<T>& limit) {
+    const T along = limit.along(x.multipliers[k].data(), system_.M);
+    const Terms terms({limit.gap, x.forces[k][scene.limit_contact(l)], along}, scene.barrier(),
+                      curvature_, level);
+    eliminated_[k][scene.limit_contact(l)].a = terms.a;
+    eliminated_[k][scene.limit_contact(l)].b[0] = terms.b;
+    limit.add_gradient(terms.gradient, system_.M, gradient_[k][0].data());
+    limit.add_gradient(terms.residual, system_.M, residual_[k][0].data());
+    limit.add_gradient(terms.q, system_.M, stage.q[0].data());
+    limit.add_gradient(terms.e, system_.M, stage.e[0].data());
+    limit.add_hessian(terms.Q, system_.M, stage.Q);
+    if (k > 0) limit.add_hessian(terms.E, system_.M, stage.E);
+  });
 }
 
 template <class T>
@@ -214,20 +119,33 @@ T NewtonSystem<T>::stationarity() const {
 template <class T>
 void NewtonSystem<T>::force_steps(const ProblemLanes<T>& problem, const Trajectory<T>& x,
                                   const StageStep<T>& step, PerContact<T>& out) const {
-  const SceneModel<T>& energy = problem.energy;
-  for (int k = 0; k <= problem.sub_steps; ++k)
-    for (int n = 0; n < energy.pair_count(); ++n) {
-      T* forces = out[k].data() + contact_of(n, 0);
-      if (!active_[k][n]) {
-        for (int v = 0; v < energy.corners(n); ++v) forces[v] = T(0.0);
-        continue;
-      }
-      const Vec4<T> moved = pushed(energy, n, energy.frame(n, x.p[k]), step.poses[k][0].data());
-      for (int v = 0; v < energy.corners(n); ++v) {
-        const Eliminated<T>& e = eliminated_[k][contact_of(n, v)];
-        forces[v] = e.a + e.b.dot(moved);
-      }
+  for (int k = 0; k <= problem.sub_steps; ++k) {
+    moved_ = step.poses[k];
+    problem.energy.articulation().spread(x.p[k], moved_[0].data());
+    find_force_steps(problem.energy, x.p[k], k, out[k].data());
+  }
+}
+
+/// Of one level, by moved_.
+template <class T>
+void NewtonSystem<T>::find_force_steps(const SceneModel<T>& scene, const Placement<T>& at, int k,
+                                       T* out) const {
+  for (int n = 0; n < scene.pair_count(); ++n) {
+    T* forces = out + contact_of(n, 0);
+    if (!active_[k][n]) {
+      for (int v = 0; v < scene.corners(n); ++v) forces[v] = T(0.0);
+      continue;
     }
+    const Vec4<T> along = pushed(scene, n, scene.frame(n, at), moved_[0].data());
+    for (int v = 0; v < scene.corners(n); ++v) {
+      const Eliminated<T>& e = eliminated_[k][contact_of(n, v)];
+      forces[v] = e.a + e.b.dot(along);
+    }
+  }
+  for_each_limit(scene.articulation(), at, [&](int l, const JointLimit<T>& limit) {
+    const Eliminated<T>& e = eliminated_[k][scene.limit_contact(l)];
+    out[scene.limit_contact(l)] = e.a + e.b[0] * limit.along(moved_[0].data(), scene.movable());
+  });
 }
 
 /// sᵀ H s = -g·s - y·A s, and A s = -e.

@@ -21,7 +21,8 @@ class NewtonSystem {
                  const Curvature<T>& curvature);
 
   const StageSystem<T>& system() const { return system_; }
-  /// Gradient of the Lagrangian over poses, forces eliminated [h + 1][bodies].
+  /// Gradient of the Lagrangian over poses (coordinates of jointed bodies), forces eliminated
+  /// [h + 1][bodies].
   const std::vector<BlockColumn<T>>& gradient() const { return gradient_; }
   /// ‖∇L‖∞ over poses and controls; NaN where it is not finite.
   T stationarity() const;
@@ -42,6 +43,8 @@ class NewtonSystem {
   void add_turn_curvature(const typename Inertia<T>::Slope& s, const T& y, int k, int i);
   void add_control(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
   void add_pair(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k, int n);
+  void add_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
+  void find_force_steps(const SceneModel<T>& scene, const Placement<T>& at, int k, T* out) const;
   void add_own(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame,
                const PairTerms<T>& terms, int k);
 
@@ -49,9 +52,11 @@ class NewtonSystem {
   Curvature<T> curvature_;
   StageSystem<T> system_;
   std::vector<BlockColumn<T>> gradient_;  // of the Lagrangian, forces eliminated
+  std::vector<BlockColumn<T>> residual_;  // Φ_k
   std::vector<Vec3<T>> control_gradient_;
   std::vector<std::vector<Eliminated<T>>> eliminated_;  // [h + 1][contacts]
   std::vector<std::vector<char>> active_;               // [h + 1][pairs]
+  mutable BlockColumn<T> moved_;                        // of all bodies, at work
 };
 
 }  // namespace rtg

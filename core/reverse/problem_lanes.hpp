@@ -32,7 +32,7 @@ struct ProblemLanes {
 };
 
 /// Trajectories with their forces and multipliers, as Iterate; contacts are numbered as the kernels
-/// do.
+/// do. Multipliers are those of all poses, w = J y, where bodies are jointed: y is part of w.
 template <class T>
 struct Trajectory {
   Trajectory(const SceneModel<T>& energy, int sub_steps);

@@ -14,6 +14,13 @@ double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
   return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
 }
 
+bool in_articulation(const Scene& scene, std::size_t body) {
+  return std::ranges::any_of(scene.joints, [body](const Joint& joint) {
+    return static_cast<std::size_t>(joint.parent) == body ||
+           static_cast<std::size_t>(joint.child) == body;
+  });
+}
+
 /// Counter-clockwise convex hull [Andrew 1979].
 std::vector<Vector2d> convex_hull(std::vector<Vector2d> points) {
   std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) {
@@ -64,10 +71,13 @@ std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, con
     const auto i = static_cast<std::size_t>(found[n]);
     if (scene.bodies[i].fixed) continue;
     const Polygon way = swept(scene.bodies[i].shape, job.end[i].theta, back);
-    const double reach = i == 0 ? range : range + kClearance;
+    double reach = i == 0 ? range : range + kClearance;
+    if (in_articulation(scene, i)) reach += push.stride;  // links swing as well
     for (std::size_t k = 1; k < scene.size(); ++k) {
       if (seen[k]) continue;
-      if (separation(way, job.end[i], scene.bodies[k].shape, job.end[k]) >= reach) continue;
+      if (!jointed(scene, i, k) &&
+          separation(way, job.end[i], scene.bodies[k].shape, job.end[k]) >= reach)
+        continue;
       seen[k] = true;
       found.push_back(static_cast<int>(k));
     }

@@ -21,20 +21,22 @@ Mask<T> bounded(const StageStep<T>& step, const T& alpha) {
 }
 
 template <class T>
-void make_trial(const Trajectory<T>& x, const StageStep<T>& step, const PerContact<T>& force_step,
-                const T& alpha, Trajectory<T>& trial) {
+void make_trial(const SceneModel<T>& scene, const Trajectory<T>& x, const Move<T>& move,
+                Trajectory<T>& trial) {
+  const T& alpha = move.alpha;
   for (std::size_t k = 0; k < x.p.size(); ++k) {
     for (std::size_t m = 0; m < x.multipliers[k].size(); ++m) {
       const auto body = m / 3;
       const auto row = static_cast<Eigen::Index>(m % 3);
-      trial.p[k].p[m] = x.p[k].p[m] + alpha * step.poses[k][body][row];
+      trial.p[k].p[m] = x.p[k].p[m] + alpha * move.step.poses[k][body][row];
       if (k > 0)
-        trial.multipliers[k][m] = x.multipliers[k][m] + alpha * step.multipliers[k][body][row];
+        trial.multipliers[k][m] = x.multipliers[k][m] + alpha * move.step.multipliers[k][body][row];
     }
-    trial.p[k].update();
-    if (k > 0) trial.controls[k] = x.controls[k] + step.controls[k] * alpha;
+    scene.place(trial.p[k]);
+    scene.articulation().spread(trial.p[k], trial.multipliers[k].data());
+    if (k > 0) trial.controls[k] = x.controls[k] + move.step.controls[k] * alpha;
     for (std::size_t c = 0; c < trial.forces[k].size(); ++c) {
-      const T force = x.forces[k][c] + alpha * force_step[k][c];
+      const T force = x.forces[k][c] + alpha * move.forces[k][c];
       trial.forces[k][c] = select(magnitude(force) < T(kNoForce), T(0.0), force);
     }
   }
@@ -42,9 +44,9 @@ void make_trial(const Trajectory<T>& x, const StageStep<T>& step, const PerConta
 
 template Mask<double> bounded(const StageStep<double>&, const double&);
 template Mask<Lanes> bounded(const StageStep<Lanes>&, const Lanes&);
-template void make_trial(const Trajectory<double>&, const StageStep<double>&,
-                         const PerContact<double>&, const double&, Trajectory<double>&);
-template void make_trial(const Trajectory<Lanes>&, const StageStep<Lanes>&,
-                         const PerContact<Lanes>&, const Lanes&, Trajectory<Lanes>&);
+template void make_trial(const SceneModel<double>&, const Trajectory<double>&, const Move<double>&,
+                         Trajectory<double>&);
+template void make_trial(const SceneModel<Lanes>&, const Trajectory<Lanes>&, const Move<Lanes>&,
+                         Trajectory<Lanes>&);
 
 }  // namespace rtg

@@ -9,10 +9,18 @@ namespace rtg {
 template <class T>
 Mask<T> bounded(const StageStep<T>& step, const T& alpha);
 
-/// trial ← x + α step, forces by `force_step` [h + 1][contacts]. Poses of fixed bodies are left as
-/// they are in `trial`.
+/// A share of a Newton step.
 template <class T>
-void make_trial(const Trajectory<T>& x, const StageStep<T>& step, const PerContact<T>& force_step,
-                const T& alpha, Trajectory<T>& trial);
+struct Move {
+  const StageStep<T>& step;
+  const PerContact<T>& forces;  // [h + 1][contacts]
+  const T& alpha;
+};
+
+/// trial ← x + α step; jointed bodies and their multipliers follow. Poses of fixed bodies are left
+/// as they are in `trial`.
+template <class T>
+void make_trial(const SceneModel<T>& scene, const Trajectory<T>& x, const Move<T>& move,
+                Trajectory<T>& trial);
 
 }  // namespace rtg

@@ -65,7 +65,7 @@ void WarmStart<T>::move_back(const Placement<T>& p, const Mask<T>& wanted, Place
   for (double share = 1.0; share > kLeastShare && any(searching); share *= 0.5) {
     trial_ = p;
     for (int m = 3; m < 3 * scene_.movable(); ++m) trial_.p[m] = p.p[m] - T(share) * by_[m];
-    trial_.update();
+    scene_.place(trial_);
     const Mask<T> open = searching && scene_.least_gap(trial_) >= floor && scene_.separated(trial_);
     out.assign(open, trial_);
     searching = searching && !open;

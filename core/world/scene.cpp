@@ -1,5 +1,7 @@
 #include "core/world/scene.hpp"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace rtg {
@@ -10,5 +12,51 @@ Mass mass_of(const Body& body) {
 }
 
 double pair_friction(const Body& a, const Body& b) { return std::sqrt(a.friction * b.friction); }
+
+bool jointed(const Scene& scene, std::size_t a, std::size_t b) {
+  return std::ranges::any_of(scene.joints, [a, b](const Joint& joint) {
+    const auto i = static_cast<std::size_t>(joint.parent),
+               j = static_cast<std::size_t>(joint.child);
+    return (i == a && j == b) || (i == b && j == a);
+  });
+}
+
+double joint_gap(const Joint& joint, const Poses& poses) {
+  return (to_world(poses[static_cast<std::size_t>(joint.parent)], joint.on_parent) -
+          to_world(poses[static_cast<std::size_t>(joint.child)], joint.on_child))
+      .norm();
+}
+
+std::vector<std::size_t> root_first(const Scene& scene) {
+  std::vector<std::size_t> order;
+  std::vector<int> waiting(scene.size(), 0);  // joints that have not been listed, by child
+  for (const Joint& joint : scene.joints) ++waiting[static_cast<std::size_t>(joint.child)];
+  for (bool found = true; found && order.size() < scene.joints.size();) {
+    found = false;
+    for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+      const Joint& joint = scene.joints[k];
+      if (waiting[static_cast<std::size_t>(joint.parent)] > 0 ||
+          waiting[static_cast<std::size_t>(joint.child)] == 0)
+        continue;
+      waiting[static_cast<std::size_t>(joint.child)] = 0;
+      order.push_back(k);
+      found = true;
+    }
+  }
+  assert(order.size() == scene.joints.size());
+  return order;
+}
+
+Poses with_closed_joints(const Scene& scene, Poses poses) {
+  for (const std::size_t k : root_first(scene)) {
+    const Joint& joint = scene.joints[k];
+    const Vector2d pin = to_world(poses[static_cast<std::size_t>(joint.parent)], joint.on_parent);
+    Pose& child = poses[static_cast<std::size_t>(joint.child)];
+    const Vector2d at = pin - rotate(child.theta, joint.on_child);
+    child.x = at.x();
+    child.y = at.y();
+  }
+  return poses;
+}
 
 }  // namespace rtg

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "core/world/polygon.hpp"
+#include "core/world/pose.hpp"
 
 namespace rtg {
 
@@ -19,12 +21,37 @@ struct Body {
   bool operator==(const Body&) const = default;
 };
 
-/// The bodies of a task; bodies[0] is the robot.
+/// Revolute joint: a point of the child is pinned to one of the parent. The two do not collide.
+struct Joint {
+  int parent = 0, child = 0;                                // bodies of the scene
+  Vector2d on_parent = Vector2d::Zero();                    // the pin in the parent's frame [m]
+  Vector2d on_child = Vector2d::Zero();                     // the pin in the child's frame [m]
+  double lower = -std::numeric_limits<double>::infinity();  // limits of θ_child - θ_parent [rad]
+  double upper = std::numeric_limits<double>::infinity();
+
+  bool operator==(const Joint&) const = default;
+};
+
+/// The bodies of a task; bodies[0] is the robot. Joints make trees of them: no body is the child of
+/// two, no child is the robot or fixed.
 struct Scene {
   std::vector<Body> bodies;
+  std::vector<Joint> joints = {};
 
   std::size_t size() const { return bodies.size(); }
 };
+
+/// Whether a joint connects the two bodies.
+bool jointed(const Scene& scene, std::size_t a, std::size_t b);
+
+/// Distance between the two points that a joint pins together [m].
+double joint_gap(const Joint& joint, const Poses& poses);
+
+/// Indices of joints, those of parents before those of their children.
+std::vector<std::size_t> root_first(const Scene& scene);
+
+/// `poses` with every child moved, its angle kept, to where its pin closes.
+Poses with_closed_joints(const Scene& scene, Poses poses);
 
 /// m and J (about the centroid) of a body [kg], [kg·m²].
 struct Mass {

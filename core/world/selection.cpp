@@ -11,6 +11,15 @@ Selection select(const Scene& scene, const Poses& poses, const std::vector<int>&
     s.scene.bodies.push_back(scene.bodies[static_cast<std::size_t>(k)]);
     s.poses.push_back(poses[static_cast<std::size_t>(k)]);
   }
+  const auto place_of = [&bodies](int body) {
+    return static_cast<int>(std::ranges::find(bodies, body) - bodies.begin());
+  };
+  const int count = static_cast<int>(bodies.size());
+  for (Joint joint : scene.joints) {
+    joint.parent = place_of(joint.parent);
+    joint.child = place_of(joint.child);
+    if (joint.parent < count && joint.child < count) s.scene.joints.push_back(joint);
+  }
   return s;
 }
 

@@ -12,6 +12,7 @@ struct Selection {
   Poses poses;
 };
 
+/// With the joints between them.
 Selection select(const Scene& scene, const Poses& poses, const std::vector<int>& bodies);
 
 /// All bodies, movable ones before fixed ones, otherwise in order.

@@ -44,7 +44,7 @@ std::optional<std::pair<std::size_t, std::size_t>> first_overlap(const Scene& sc
   for (std::size_t i = 0; i < scene.size(); ++i)
     for (std::size_t j = i + 1; j < scene.size(); ++j) {
       const Body &a = scene.bodies[i], &b = scene.bodies[j];
-      if (a.fixed && b.fixed) continue;
+      if ((a.fixed && b.fixed) || jointed(scene, i, j)) continue;
       const double reach = bounding_radius(a.shape) + bounding_radius(b.shape) + margin;
       if ((poses[i].position() - poses[j].position()).norm() > reach) continue;
       if (separation(a.shape, poses[i], b.shape, poses[j]) < margin) return {{i, j}};

@@ -15,7 +15,8 @@ namespace rtg {
 /// vertex distances it also sees crossing bars.
 double separation(const Polygon& a, const Pose& pose_a, const Polygon& b, const Pose& pose_b);
 
-/// The first pair of bodies closer than `margin` [m] (two fixed bodies may touch), or nothing.
+/// The first pair of bodies closer than `margin` [m] (two that are fixed, or jointed, may be), or
+/// nothing.
 std::optional<std::pair<std::size_t, std::size_t>> first_overlap(const Scene& scene,
                                                                  const Poses& poses,
                                                                  double margin = 0.0);

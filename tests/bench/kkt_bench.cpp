@@ -153,7 +153,7 @@ void sqp_iteration(benchmark::State& state) {
     benchmark::DoNotOptimize(row.newton().model_curvature(step));
     row.newton().force_steps(row.problem(), row.x(), step, force_step);
     Mask<Lanes> legal = bounded(step, Lanes(1e-3));
-    make_trial(row.x(), step, force_step, Lanes(1e-3), trial);
+    make_trial(row.problem().energy, row.x(), {step, force_step, Lanes(1e-3)}, trial);
     benchmark::DoNotOptimize(evaluator.evaluate(row.problem(), trial, gaps, trial_gaps, legal));
     if (!any(legal)) return state.SkipWithError("the trial point is not legal");
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include "core/math/assembled_solver.hpp"
 #include "core/reverse/newton_system.hpp"
 
@@ -31,6 +33,7 @@ class Linearisation {
     newton_.linearise(problem_, x_, {curvature.exact ? 1.0 : 0.0, curvature.proximal});
   }
 
+  const ReverseProblem& problem() const { return one_; }
   const NewtonSystem<double>& newton() const { return newton_; }
   const Trajectory<double>& trajectory() const { return x_; }
   const Violation& violation() const { return violation_; }
@@ -104,5 +107,12 @@ class Linearisation {
   NewtonSystem<double> newton_;
   Violation violation_;
 };
+
+/// The Newton step.
+inline BlockVector solution_of(const Linearisation& lin) {
+  const auto solver = make_kkt_solver(KktMethod::kBlockElimination);
+  EXPECT_TRUE(solver->factorize(lin.matrix()));
+  return solver->solve(lin.right_hand_side());
+}
 
 }  // namespace rtg::testing

@@ -13,14 +13,8 @@ namespace {
 using testing::Direction;
 using testing::disturbed;
 using testing::Linearisation;
+using testing::solution_of;
 using testing::TouchingScene;
-
-/// The Newton step.
-BlockVector solution_of(const Linearisation& lin) {
-  const auto solver = make_kkt_solver(KktMethod::kBlockElimination);
-  EXPECT_TRUE(solver->factorize(lin.matrix()));
-  return solver->solve(lin.right_hand_side());
-}
 
 /// Lane l holds a candidate of its own: the touching scene, disturbed differently.
 struct InLanes {

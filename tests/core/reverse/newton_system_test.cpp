@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/linearisation.hpp"
+#include "tests/support/first_order_conditions.hpp"
 #include "tests/support/one_candidate.hpp"
 #include "tests/support/touching_scene.hpp"
 
@@ -10,62 +10,18 @@ namespace rtg {
 namespace {
 
 using testing::CoastingScene;
+using testing::conditions;
 using testing::Curvature;
 using testing::Direction;
+using testing::directions;
 using testing::disturbed;
+using testing::expect_matrix_is_derivative;
+using testing::lagrangian;
 using testing::Linearisation;
-using testing::noise;
+using testing::moved;
+using testing::nothing;
+using testing::solution_of;
 using testing::TouchingScene;
-
-/// x moved by t along d.
-Iterate moved(Iterate x, const Direction& d, double t) {
-  for (std::size_t k = 0; k < x.p.size(); ++k) {
-    x.p[k] += t * d.p[k];
-    x.forces[k] += t * d.forces[k];
-    x.controls[k] += t * d.controls[k];
-    x.multipliers[k] += t * d.multipliers[k];
-  }
-  return x;
-}
-
-/// The first-order conditions (∇L; Φ) with complementarity left out.
-VectorXd conditions(const ReverseProblem& problem, const Iterate& x) {
-  return joined(Linearisation(problem, x, {true, 0.0}).conditions());
-}
-
-/// A zero vector of the system.
-BlockVector nothing(const Linearisation& lin) {
-  BlockVector all;
-  for (const MatrixXd& A : lin.matrix().A) all.push_back(VectorXd::Zero(A.rows()));
-  return all;
-}
-
-/// Five random directions and that of the gradient, along which errors do not average out.
-std::vector<BlockVector> directions(const Linearisation& lin) {
-  Rng rng(5);
-  std::vector<BlockVector> all(5);
-  for (BlockVector& along : all)
-    for (const MatrixXd& A : lin.matrix().A) along.push_back(noise(A.rows(), 1.0, rng));
-  all.push_back(lin.conditions());
-  const double size = joined(all.back()).lpNorm<Eigen::Infinity>();
-  for (VectorXd& block : all.back()) block /= size;
-  return all;
-}
-
-/// The system's matrix against central differences of the first-order conditions along directions
-/// on which the forces follow the gaps (Δλ = b·Δp).
-void expect_matrix_is_derivative(const ReverseProblem& problem, const Iterate& x) {
-  const Linearisation lin(problem, x, {true, 0.0});
-  for (const BlockVector& along : directions(lin)) {
-    const Direction d = lin.direction(along, false);
-    const double t = 1e-7;
-    const VectorXd difference =
-        (conditions(problem, moved(x, d, t)) - conditions(problem, moved(x, d, -t))) / (2.0 * t);
-    const VectorXd product = joined(rtg::product(lin.matrix(), along));
-    EXPECT_LT((difference - product).lpNorm<Eigen::Infinity>(),
-              1e-5 * product.lpNorm<Eigen::Infinity>());
-  }
-}
 
 TEST(NewtonSystem, MatrixIsDerivativeOfFirstOrderConditions) {
   TouchingScene scene;
@@ -101,8 +57,9 @@ void expect_columns_are_derivatives(TouchingScene scene) {
       along[block][row] = 1.0;
       const Direction d = lin.direction(along, false);
       const double t = 1e-5;
-      const VectorXd difference =
-          (conditions(problem, moved(x, d, t)) - conditions(problem, moved(x, d, -t))) / (2.0 * t);
+      const VectorXd difference = (conditions(problem, moved(problem, x, d, t)) -
+                                   conditions(problem, moved(problem, x, d, -t))) /
+                                  (2.0 * t);
       const VectorXd column = joined(product(lin.matrix(), along));
       EXPECT_LT((difference - column).lpNorm<Eigen::Infinity>(), 1e-6) << block << ", " << row;
     }
@@ -140,14 +97,6 @@ struct Disturbed {
   }
 };
 
-/// J + Σ y·Φ.
-double lagrangian(const ReverseProblem& problem, const Iterate& x) {
-  const Violation v = violation(problem, x);
-  double sum = objective(problem, x);
-  for (std::size_t k = 1; k < x.p.size(); ++k) sum += x.multipliers[k].dot(v.residuals[k]);
-  return sum;
-}
-
 // Along directions that keep complementarity (Δλ = b·Δp) its multipliers drop out.
 TEST(NewtonSystem, RightHandSideIsMinusTheGradientOfTheLagrangian) {
   const Disturbed at(4);
@@ -156,10 +105,10 @@ TEST(NewtonSystem, RightHandSideIsMinusTheGradientOfTheLagrangian) {
   for (const BlockVector& along : directions(lin)) {
     const Direction d = lin.direction(along, false);
     const double t = 1e-7, slope = gradient.dot(joined(along));
-    EXPECT_NEAR(
-        (lagrangian(at.problem, moved(at.x, d, t)) - lagrangian(at.problem, moved(at.x, d, -t))) /
-            (2.0 * t),
-        slope, 1e-6 * std::abs(slope));
+    EXPECT_NEAR((lagrangian(at.problem, moved(at.problem, at.x, d, t)) -
+                 lagrangian(at.problem, moved(at.problem, at.x, d, -t))) /
+                    (2.0 * t),
+                slope, 1e-6 * std::abs(slope));
   }
 }
 
@@ -173,13 +122,6 @@ TEST(NewtonSystem, StationarityIsTheLargestGradientOfThePrimalUnknowns) {
   EXPECT_DOUBLE_EQ(lin.newton().stationarity(), largest);
 }
 
-/// The Newton step.
-BlockVector solution_of(const Linearisation& lin) {
-  const auto solver = make_kkt_solver(KktMethod::kBlockElimination);
-  EXPECT_TRUE(solver->factorize(lin.matrix()));
-  return solver->solve(lin.right_hand_side());
-}
-
 // To first order in α, x + α d leaves (1 - α) of every constraint.
 TEST(NewtonSystem, StepSolvesTheLinearisedConstraints) {
   const Disturbed at(7);
@@ -188,8 +130,8 @@ TEST(NewtonSystem, StepSolvesTheLinearisedConstraints) {
     const Direction d = lin.direction(solution_of(lin), true);
     const double t = 1e-6;
     const Violation now = violation(at.problem, at.x);
-    const Violation up = violation(at.problem, moved(at.x, d, t));
-    const Violation down = violation(at.problem, moved(at.x, d, -t));
+    const Violation up = violation(at.problem, moved(at.problem, at.x, d, t));
+    const Violation down = violation(at.problem, moved(at.problem, at.x, d, -t));
     for (std::size_t k = 0; k < now.residuals.size(); ++k) {
       const VectorXd slope = (up.residuals[k] - down.residuals[k]) / (2.0 * t);
       EXPECT_LT((slope + now.residuals[k]).lpNorm<Eigen::Infinity>(), 1e-6);
@@ -205,10 +147,10 @@ TEST(NewtonSystem, ObjectiveSlopeMatchesDifferences) {
   const Direction d = lin.direction(solution_of(lin), true);
   const double t = 1e-6,
                slope = lin.newton().objective_slope(lin.trajectory(), lin.step(solution_of(lin)));
-  EXPECT_NEAR(
-      (objective(at.problem, moved(at.x, d, t)) - objective(at.problem, moved(at.x, d, -t))) /
-          (2.0 * t),
-      slope, 1e-6 * std::abs(slope) + 1e-7);  // K has -1e-9 on the multipliers
+  EXPECT_NEAR((objective(at.problem, moved(at.problem, at.x, d, t)) -
+               objective(at.problem, moved(at.problem, at.x, d, -t))) /
+                  (2.0 * t),
+              slope, 1e-6 * std::abs(slope) + 1e-7);  // K has -1e-9 on the multipliers
 }
 
 /// |Δp|² + |Δc|² + 0.01 |Δλ|² of the step that s + t·u stands for.

@@ -48,7 +48,8 @@ TEST(Trial, MovesEverythingByAlphaTimesTheStep) {
     trial.step.controls[k] = testing::noise(3, 1.0, rng);
     for (double& force : trial.force_step[k]) force = rng.uniform(0.1, 1.0);
   }
-  make_trial(trial.x, trial.step, trial.force_step, 0.25, trial.moved);
+  make_trial(trial.scene.energy.scene(), trial.x, {trial.step, trial.force_step, 0.25},
+             trial.moved);
   for (std::size_t k = 0; k < trial.step.poses.size(); ++k) {
     for (std::size_t m = 0; m < 9; ++m) {
       const auto row = static_cast<Eigen::Index>(m % 3);
@@ -85,7 +86,8 @@ TEST(Trial, AForceThatIsAllButGoneIsGone) {
   ASSERT_GT(*most, 0.0);
   for (const auto& [rest, gone] : {std::pair{1e-15, true}, std::pair{1e-9, false}}) {
     trial.force_step[1][contact] = -*most * (1.0 - rest);
-    make_trial(trial.x, trial.step, trial.force_step, 1.0, trial.moved);
+    make_trial(trial.scene.energy.scene(), trial.x, {trial.step, trial.force_step, 1.0},
+               trial.moved);
     EXPECT_EQ(trial.moved.forces[1][contact] == 0.0, gone) << rest;
   }
 }

@@ -1,0 +1,95 @@
+#include "core/energy/articulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/chain_scene.hpp"
+#include "tests/support/differences.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::ChainScene;
+using testing::closed;
+using testing::noise;
+using testing::of_coordinates;
+using testing::spread;
+
+/// Poses of the chain moved at random, jointed bodies off their pins.
+VectorXd scattered(const ChainScene& scene, std::uint64_t seed) {
+  Rng rng(seed);
+  VectorXd p = stacked(scene.poses);
+  p.head(scene.energy.dofs()) += noise(scene.energy.dofs(), 0.5, rng);
+  return p;
+}
+
+TEST(Articulation, PlacingClosesEveryJointAndKeepsRootsAndAngles) {
+  const ChainScene scene;
+  const VectorXd p = scattered(scene, 1), after = closed(scene.energy, p);
+  for (const Joint& joint : scene.scene.joints)
+    EXPECT_LT(joint_gap(joint, unstacked(after)), 1e-15);
+  EXPECT_GT(joint_gap(scene.scene.joints[0], unstacked(p)), 0.1);
+  for (const int root : {0, 2, 5}) EXPECT_EQ(after.segment<3>(3 * root), p.segment<3>(3 * root));
+  for (const int body : {1, 3, 4}) EXPECT_EQ(after[3 * body + 2], p[3 * body + 2]);
+  const VectorXd other = stacked(with_closed_joints(scene.scene, unstacked(p)));
+  EXPECT_LT((other - after).norm(), 1e-15);
+}
+
+TEST(Articulation, SpreadIsTheDerivativeOfThePoses) {
+  const ChainScene scene;
+  const int n = scene.energy.dofs();
+  const VectorXd p = closed(scene.energy, scattered(scene, 2));
+  Rng rng(3);
+  for (int trial = 0; trial < 5; ++trial) {
+    const VectorXd y = of_coordinates(scene.energy, noise(n, 1.0, rng));
+    const double t = 1e-6;
+    VectorXd up = p, down = p;
+    up.head(n) += t * y;
+    down.head(n) -= t * y;
+    const VectorXd slope = (closed(scene.energy, up) - closed(scene.energy, down)) / (2.0 * t);
+    EXPECT_LT((slope.head(n) - spread(scene.energy, p, y)).norm(), 1e-8);
+  }
+}
+
+TEST(Articulation, GatherIsTheTransposeOfSpread) {
+  const ChainScene scene;
+  const int n = scene.energy.dofs();
+  const VectorXd p = closed(scene.energy, scattered(scene, 4));
+  Rng rng(5);
+  const VectorXd force = noise(n, 1.0, rng);
+  VectorXd gathered = force;
+  scene.energy.scene().articulation().gather(placed(p), gathered.data());
+  EXPECT_EQ(gathered, of_coordinates(scene.energy, gathered));
+  for (int m = 0; m < n; ++m) {
+    const VectorXd unit = of_coordinates(scene.energy, VectorXd::Unit(n, m));
+    EXPECT_NEAR(force.dot(spread(scene.energy, p, unit)), gathered.dot(unit), 1e-14);
+  }
+}
+
+// A lane each for chains of other lengths; the last lane is empty.
+TEST(Articulation, EveryLaneHasPinsOfItsOwn) {
+  constexpr int kLast = kWidth<Lanes> - 1;
+  std::vector<ChainScene> scenes(static_cast<std::size_t>(kWidth<Lanes>));
+  Articulation<Lanes> all = Articulation<Lanes>::room_for(scenes[0].energy.scene().articulation());
+  Placement<Lanes> at(6);
+  for (int l = 0; l < kLast; ++l) {
+    ChainScene& scene = scenes[static_cast<std::size_t>(l)];
+    scene.scene.joints[0].on_parent.x() += 0.1 * l;
+    scene.update();
+    all.load(l, scene.energy.scene().articulation());
+    const VectorXd p = scattered(scene, 6);
+    for (std::size_t m = 0; m < at.p.size(); ++m)
+      set_lane(at.p[m], l, p[static_cast<Eigen::Index>(m)]);
+  }
+  at.update();
+  all.close(at);
+  for (int l = 0; l < kLast; ++l) {
+    const ChainScene& scene = scenes[static_cast<std::size_t>(l)];
+    const VectorXd expected = closed(scene.energy, scattered(scene, 6));
+    for (std::size_t m = 0; m < at.p.size(); ++m)
+      EXPECT_NEAR(lane(at.p[m], l), expected[static_cast<Eigen::Index>(m)], 1e-14);
+  }
+  for (const Lanes& x : at.p) EXPECT_EQ(lane(x, kLast), 0.0);
+}
+
+}  // namespace
+}  // namespace rtg

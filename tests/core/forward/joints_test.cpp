@@ -1,0 +1,136 @@
+// Both forward simulators on jointed bodies.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "core/energy/implicit_step.hpp"
+#include "core/forward/box2d_simulator.hpp"
+#include "core/forward/newton_simulator.hpp"
+#include "tests/support/chain_scene.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::ChainScene;
+using testing::closed;
+using testing::of_coordinates;
+
+const PhysicsConfig kPhysics;
+const PushConfig kPush;
+
+/// The robot and a chain of four links, straight along x.
+struct Table {
+  Scene scene{{testing::gathering().scene.bodies[0]}, {}};
+  Poses start;
+
+  Table() {
+    const Scene links = testing::chain(4);
+    for (const Body& link : links.bodies) scene.bodies.push_back(link);
+    for (Joint joint : links.joints) {
+      ++joint.parent;
+      ++joint.child;
+      scene.joints.push_back(joint);
+    }
+    start = with_closed_joints(scene, {{0, -4, 0}, {-3.6, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+  }
+};
+
+double widest_joint(const Scene& scene, const Poses& poses) {
+  double gap = 0.0;
+  for (const Joint& joint : scene.joints) gap = std::max(gap, joint_gap(joint, poses));
+  return gap;
+}
+
+/// The action nearest to the heading from the robot to a body, or a few beside it.
+int towards(const Poses& poses, std::size_t body, int beside) {
+  const Vector2d way = poses[body].position() - poses[0].position();
+  const double turns = std::atan2(way.y(), way.x()) / (2.0 * std::numbers::pi);
+  return (static_cast<int>(std::lround(turns * kPush.headings)) + 2 * kPush.headings + beside) %
+         kPush.headings;
+}
+
+// Sixty random pushes at the links in a row, each simulator from where Box2D ended.
+TEST(Joints, StayClosedAndWithinTheirLimitsOverAnEpisode) {
+  const Table table;
+  const Box2dSimulator box2d(table.scene, kPush, kPhysics);
+  const NewtonSimulator newton(table.scene, kPush, kPhysics);
+  Rng rng(3);
+  Poses state = table.start;
+  int moved = 0;
+  for (int k = 0; k < 60; ++k) {
+    const int action = towards(state, 1 + static_cast<std::size_t>(rng.below(4)), rng.below(7) - 3);
+    const PushOutcome a = box2d.push(state, action), b = newton.push(state, action);
+    ASSERT_TRUE(a.ok && b.ok) << k;
+    EXPECT_LT(widest_joint(table.scene, a.end), 1e-4);
+    EXPECT_LT(widest_joint(table.scene, b.end), 1e-14);
+    for (const Joint& joint : table.scene.joints)
+      for (const Poses& end : {a.end, b.end}) {
+        const double angle = end[static_cast<std::size_t>(joint.child)].theta -
+                             end[static_cast<std::size_t>(joint.parent)].theta;
+        EXPECT_LT(std::abs(angle), joint.upper + 0.01) << k;
+      }
+    moved += (a.end[2].position() - state[2].position()).norm() > 0.05;
+    state = a.end;
+  }
+  EXPECT_GT(moved, 15);
+}
+
+// Without contact but with the robot's: the last link swings about its pin as far as in Box2D.
+TEST(Joints, APushedLinkSwingsAsInBox2d) {
+  const Table table;
+  Poses start = table.start;
+  start[0] = {3.9, -2.5, 0.0};
+  const Poses newton = NewtonSimulator(table.scene, kPush, kPhysics).push(start, 12).end;
+  const Poses box2d = Box2dSimulator(table.scene, kPush, kPhysics).push(start, 12).end;
+  EXPECT_GT(box2d[4].theta, 0.1);
+  for (std::size_t i = 1; i < start.size(); ++i) {
+    EXPECT_LT((newton[i].position() - box2d[i].position()).norm(), 0.03) << i;
+    EXPECT_NEAR(newton[i].theta, box2d[i].theta, 0.03) << i;
+  }
+}
+
+/// A door that the robot pushes to its limit and on.
+struct Door {
+  Scene scene{{testing::gathering().scene.bodies[0],
+               {"door", "door", box(1.6, 0.3), 1.0, 0.5, false},
+               {"post", "wall", box(0.4, 0.4), 1.0, 0.5, true}},
+              {{2, 1, {0.0, 0.3}, {-0.8, 0.0}, -0.5, 0.4}}};
+  Poses start = with_closed_joints(scene, {{1.2, -1.2, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}});
+};
+
+TEST(Joints, ALimitStopsADoorAndTheRobotThatPushesIt) {
+  const Door door;
+  const Poses newton = NewtonSimulator(door.scene, kPush, kPhysics).push(door.start, 12).end;
+  const Poses box2d = Box2dSimulator(door.scene, kPush, kPhysics).push(door.start, 12).end;
+  EXPECT_NEAR(box2d[1].theta, 0.4, 0.02);
+  EXPECT_NEAR(newton[1].theta, 0.4, 0.03);
+  EXPECT_LT(newton[0].y, 0.0);  // the way is 2 m long
+  EXPECT_NEAR(newton[0].y, box2d[0].y, 0.05);
+  EXPECT_EQ(newton[2], door.start[2]);
+}
+
+TEST(Joints, AStepEndsWhereTheEnergyOverTheCoordinatesIsLeast) {
+  const ChainScene scene;
+  const StepEnergy& energy = scene.energy;
+  const VectorXd now = stacked(scene.poses), lag = energy.forces(now);
+  const Vector3d control(0.4, 0.3, 0.1);
+  const auto total = [&](const VectorXd& p) {
+    return energy.value(p, {now, lag}) -
+           energy.control_bound().dot(control.array().tanh().matrix().cwiseProduct(p.head<3>()));
+  };
+  const auto step = implicit_step(energy, {now, lag}, Drive<double>::controls(control));
+  ASSERT_TRUE(step);
+  EXPECT_LT(widest_joint(scene.scene, unstacked(step->next)), 1e-14);
+  EXPECT_GT((step->next - now).segment<3>(6).norm(), 1e-3);  // a link was pushed
+  Rng rng(1);
+  for (int trial = 0; trial < 20; ++trial) {
+    VectorXd p = step->next;
+    p.head(energy.dofs()) += of_coordinates(energy, testing::noise(energy.dofs(), 1e-3, rng));
+    EXPECT_GT(total(closed(energy, p)), total(step->next));
+  }
+}
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,144 @@
+// FilterSqp on jointed bodies.
+
+#include <gtest/gtest.h>
+
+#include "core/energy/implicit_step.hpp"
+#include "core/energy/open_gaps.hpp"
+#include "core/forward/box2d_simulator.hpp"
+#include "core/reverse/reverse_simulator.hpp"
+#include "tests/support/chain_scene.hpp"
+#include "tests/support/one_candidate.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::solved;
+
+double widest_joint(const Scene& scene, const Poses& poses) {
+  double gap = 0.0;
+  for (const Joint& joint : scene.joints) gap = std::max(gap, joint_gap(joint, poses));
+  return gap;
+}
+
+Scene robot_and_chain() {
+  Scene scene{{testing::gathering().scene.bodies[0]}, {}};
+  for (const Body& link : testing::chain(4).bodies) scene.bodies.push_back(link);
+  for (Joint joint : testing::chain(4).joints) {
+    ++joint.parent;
+    ++joint.child;
+    scene.joints.push_back(joint);
+  }
+  return scene;
+}
+
+/// States after pushes of Box2D at a chain of four links, with the action that led there.
+std::vector<ReverseJob> pushed_chains(const Scene& scene, const PushConfig& push,
+                                      const PhysicsConfig& physics) {
+  const Box2dSimulator box2d(scene, push, physics);
+  Rng rng(1);
+  std::vector<ReverseJob> jobs;
+  Poses state =
+      with_closed_joints(scene, {{0, -4, 0}, {-3.6, 0, 0}, {0, 0, 0.3}, {0, 0, -0.2}, {0, 0, 0.1}});
+  while (jobs.size() < 24) {
+    const Vector2d way = state[1 + rng.below(4)].position() - state[0].position();
+    const double turns = std::atan2(way.y(), way.x()) / 6.2832 + 1.0;
+    const int action = static_cast<int>(48.0 * turns + rng.uniform(-3.0, 3.0)) % 48;
+    const PushOutcome out = box2d.push(state, action);
+    if ((out.end[2].position() - state[2].position()).norm() > 0.1)
+      jobs.push_back({out.end, action});
+    state = out.end;
+  }
+  return jobs;
+}
+
+/// The reverse problem of the first of those pushes.
+struct PushedChain {
+  Scene scene = robot_and_chain();
+  PushConfig push;
+  PhysicsConfig physics;
+  ReverseConfig config;
+  StepEnergy energy{scene, physics, push};
+  ReverseJob job = pushed_chains(scene, push, physics).front();
+  ReverseProblem problem{energy, config, with_open_gaps(energy, stacked(job.end)),
+                         direction(job.action, push), physics.sub_steps};
+};
+
+TEST(FilterSqpJoints, ForwardOfReverseWithTheSolversControlsIsTheEnd) {
+  PushedChain chain;
+  chain.config.feasibility_tol = 1e-9;
+  const SqpResult result = solved(chain.problem);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_LT(terminal_miss(chain.problem, result.x), chain.config.terminal_tolerance);
+  EXPECT_GT((result.x.p[0] - chain.problem.end).segment<2>(6).norm(), 0.5);  // it was dragged
+  VectorXd p = result.x.p[0];
+  for (std::size_t k = 1; k < result.x.p.size(); ++k) {
+    EXPECT_LT(widest_joint(chain.scene, unstacked(result.x.p[k])), 1e-14);
+    const auto step = implicit_step(chain.energy, {p, chain.energy.forces(p)},
+                                    Drive<double>::controls(result.x.controls[k]));
+    ASSERT_TRUE(step);
+    p = step->next;
+  }
+  EXPECT_LT((p - result.x.p.back()).norm(), 1e-6);
+}
+
+TEST(FilterSqpJoints, EveryKktMethodGivesTheSameSolution) {
+  PushedChain chain;
+  const SqpResult first = solved(chain.problem);
+  ASSERT_EQ(first.status, SolveStatus::kConverged);
+  for (const KktMethod method : {KktMethod::kCyclicReduction, KktMethod::kUmfpack}) {
+    chain.config.kkt = method;
+    const SqpResult other = solved(chain.problem);
+    ASSERT_EQ(other.status, SolveStatus::kConverged);
+    for (std::size_t k = 0; k < first.x.p.size(); ++k)
+      EXPECT_LT((other.x.p[k] - first.x.p[k]).norm(), 1e-5) << k;
+  }
+}
+
+TEST(FilterSqpJoints, PushesOfAChainAreFoundBackAndReplay) {
+  const Scene scene = robot_and_chain();
+  const PushConfig push;
+  const PhysicsConfig physics;
+  const Box2dSimulator box2d(scene, push, physics);
+  const std::vector<ReverseJob> jobs = pushed_chains(scene, push, physics);
+  const std::vector<ReverseResult> results = ReverseSimulator(scene, physics, push, {}).solve(jobs);
+  int solved = 0, converged = 0, dragged = 0, replayed = 0;
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    if (results[k].status == SolveStatus::kPruned) continue;
+    ++solved;
+    if (results[k].status != SolveStatus::kConverged) continue;
+    ++converged;
+    const Poses &start = results[k].starts[0], &end = jobs[k].end;
+    EXPECT_LT(widest_joint(scene, start), 1e-14);
+    if ((start[2].position() - end[2].position()).norm() < 0.1) continue;
+    ++dragged;
+    const Poses again = box2d.push(start, jobs[k].action).end;
+    double gap = 0.0;
+    for (std::size_t i = 0; i < end.size(); ++i)
+      gap += (again[i].position() - end[i].position()).norm() / static_cast<double>(end.size());
+    replayed += gap < 0.15;
+  }
+  EXPECT_GE(solved, 12);
+  EXPECT_GE(10 * converged, 9 * solved);
+  EXPECT_GE(10 * dragged, 8 * converged);
+  EXPECT_GE(10 * replayed, 8 * dragged);
+}
+
+// Candidates of the same joints are solved in lanes, a robot alone beside them.
+TEST(FilterSqpJoints, LanesFindWhatEachFindsAlone) {
+  const Scene scene = robot_and_chain();
+  const ReverseSimulator simulator(scene, {}, {}, {});
+  std::vector<ReverseJob> jobs = pushed_chains(scene, {}, {});
+  jobs.resize(9);
+  jobs.push_back(jobs[0]);
+  jobs.back().end[0] = {-6.0, -6.0, 0.0};
+  const std::vector<ReverseResult> together = simulator.solve(jobs);
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    const ReverseResult alone = simulator.solve(jobs[k]);
+    EXPECT_EQ(together[k].status, alone.status);
+    EXPECT_EQ(together[k].iterations, alone.iterations);
+    EXPECT_EQ(together[k].starts, alone.starts);
+  }
+}
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "tests/support/chain_scene.hpp"
+#include "tests/support/linearisation.hpp"
+
+namespace rtg::testing {
+
+/// x moved by t along d; jointed bodies and their multipliers follow.
+inline Iterate moved(const ReverseProblem& problem, Iterate x, const Direction& d, double t) {
+  for (std::size_t k = 0; k < x.p.size(); ++k) {
+    x.p[k].head(d.p[k].size()) += t * d.p[k];
+    x.forces[k] += t * d.forces[k];
+    x.controls[k] += t * d.controls[k];
+    x.multipliers[k] += t * d.multipliers[k];
+    x.p[k] = closed(problem.energy, x.p[k]);
+    x.multipliers[k] = spread(problem.energy, x.p[k], x.multipliers[k]);
+  }
+  return x;
+}
+
+/// The first-order conditions (∇L; Φ) with complementarity left out.
+inline VectorXd conditions(const ReverseProblem& problem, const Iterate& x) {
+  return joined(Linearisation(problem, x, {true, 0.0}).conditions());
+}
+
+/// A zero vector of the system.
+inline BlockVector nothing(const Linearisation& lin) {
+  BlockVector all;
+  for (const MatrixXd& A : lin.matrix().A) all.push_back(VectorXd::Zero(A.rows()));
+  return all;
+}
+
+inline BlockVector noise_like(const BlockTridiagonal& K, Rng& rng) {
+  BlockVector x;
+  for (const MatrixXd& A : K.A) x.push_back(noise(A.rows(), 1.0, rng));
+  return x;
+}
+
+/// A vector of the system without the entries that belong to no coordinate.
+inline BlockVector of_coordinates(const Linearisation& lin, const BlockVector& x) {
+  StageStep<double> step = lin.step(x);
+  for (const Hinge<double>& hinge : lin.problem().energy.scene().articulation().hinges())
+    for (auto* levels : {&step.poses, &step.multipliers})
+      for (std::size_t k = levels == &step.poses ? 0 : 1; k < levels->size(); ++k)
+        (*levels)[k][static_cast<std::size_t>(hinge.child)].head<2>().setZero();
+  return lin.assembled().written(step);
+}
+
+/// Five random directions and that of the gradient, along which errors do not average out.
+inline std::vector<BlockVector> directions(const Linearisation& lin) {
+  Rng rng(5);
+  std::vector<BlockVector> all(5);
+  for (BlockVector& along : all) along = of_coordinates(lin, noise_like(lin.matrix(), rng));
+  all.push_back(lin.conditions());
+  const double size = joined(all.back()).lpNorm<Eigen::Infinity>();
+  for (VectorXd& block : all.back()) block /= size;
+  return all;
+}
+
+/// The system's matrix against central differences of the first-order conditions along directions
+/// on which the forces follow the gaps (Δλ = b·Δp).
+inline void expect_matrix_is_derivative(const ReverseProblem& problem, const Iterate& x) {
+  const Linearisation lin(problem, x, {true, 0.0});
+  for (const BlockVector& along : directions(lin)) {
+    const Direction d = lin.direction(along, false);
+    const double t = 1e-7;
+    const VectorXd difference = (conditions(problem, moved(problem, x, d, t)) -
+                                 conditions(problem, moved(problem, x, d, -t))) /
+                                (2.0 * t);
+    const VectorXd product = joined(rtg::product(lin.matrix(), along));
+    EXPECT_LT((difference - product).lpNorm<Eigen::Infinity>(),
+              1e-5 * product.lpNorm<Eigen::Infinity>());
+  }
+}
+
+/// J + Σ y·Φ.
+inline double lagrangian(const ReverseProblem& problem, const Iterate& x) {
+  const Violation v = violation(problem, x);
+  double sum = objective(problem, x);
+  for (std::size_t k = 1; k < x.p.size(); ++k) sum += x.multipliers[k].dot(v.residuals[k]);
+  return sum;
+}
+
+}  // namespace rtg::testing
