@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/forward/clear_way.hpp"
+
 namespace rtg {
 namespace {
 
@@ -57,20 +59,11 @@ Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& 
           kRestSteps + static_cast<int>(std::clamp(coasting, 0.0, 1e6))};
 }
 
-/// Distance of x from the segment from a to b [m].
-double distance_to_segment(const Vector2d& x, const Vector2d& a, const Vector2d& b) {
-  const Vector2d path = b - a;
-  const double along = path.dot(x - a) / std::max(path.squaredNorm(), 1e-12);
-  return (x - a - std::clamp(along, 0.0, 1.0) * path).norm();
-}
-
-/// Whether the bounding circle of body `i`, swept from `from` to `to`, stays clear of all other
-/// bodies.
-bool sweep_is_clear(const Scene& scene, const Poses& poses, std::size_t i, const Vector2d& from,
-                    const Vector2d& to) {
+/// Whether the bounding circle of body `i` is clear of those of all others.
+bool is_alone(const Scene& scene, const Poses& poses, std::size_t i) {
   const double radius = bounding_radius(scene.bodies[i].shape) + kClear;
   for (std::size_t j = 0; j < scene.size(); ++j)
-    if (j != i && distance_to_segment(poses[j].position(), from, to) <
+    if (j != i && (poses[j].position() - poses[i].position()).norm() <
                       radius + bounding_radius(scene.bodies[j].shape))
       return false;
   return true;
@@ -85,8 +78,7 @@ class Table {
     world_.SetContinuousPhysics(false);  // a Box2D step moves bodies by far less than their size
     for (std::size_t i = 0; i < scene.size(); ++i) {
       // A body on its own sleeps until something runs into it, which saves its island's cost.
-      const Vector2d at = start[i].position();
-      add(scene.bodies[i], start[i], i == 0 || !sweep_is_clear(scene, start, i, at, at));
+      add(scene.bodies[i], start[i], i == 0 || !is_alone(scene, start, i));
     }
     touched_[0] = true;
     add_servo();
@@ -118,6 +110,12 @@ class Table {
       if (fastest_ < kRestSpeed && shift_ < kRestShift) return true;
     }
     return fastest_ < kSlowSpeed;
+  }
+
+  /// The robot is on its way to `target`, at push speed.
+  void set_speed(const Pose& target) {
+    const Vector2d way = target.position() - pose_of(*bodies_[0]).position();
+    bodies_[0]->SetLinearVelocity(to_b2(servo_.advance / servo_.step_s * way.normalized()));
   }
 
   /// Counts every body as touched, so that overlaps at the start are resolved and not restored.
@@ -212,16 +210,31 @@ class Table {
   double shift_ = 0.0;         // largest displacement in the last step [m] or [rad]
 };
 
-/// Drives the robot from `from` to `to`. False: a step was not finite.
-bool drive(Table& table, const Servo& servo, const Pose& from, const Pose& to, int max_steps) {
-  const Vector2d path = to.position() - from.position();
-  const int steps =
-      std::min(max_steps, static_cast<int>(std::ceil(path.norm() / servo.advance - 1e-6)));
-  for (int k = 1; k <= steps + kCatchUpSteps; ++k) {
-    const double done = std::min(1.0, k * servo.advance / std::max(path.norm(), servo.advance));
-    const Vector2d at = from.position() + done * path;
-    if (!table.step_towards({at.x(), at.y(), from.theta})) return false;
+/// The robot's straight way, at push speed.
+struct Path {
+  Pose from, to;
+  double advance;  // per step [m]
+  int steps;
+
+  Path(const Pose& start, const Pose& end, double per_step, int most)
+      : from(start),
+        to(end),
+        advance(per_step),
+        steps(std::min(most, static_cast<int>(std::ceil(length() / advance - 1e-6)))) {}
+
+  double length() const { return (to.position() - from.position()).norm(); }
+  /// After k steps.
+  Pose at(int k) const {
+    const double done = std::min(1.0, k * advance / std::max(length(), advance));
+    const Vector2d x = from.position() + done * (to.position() - from.position());
+    return {x.x(), x.y(), from.theta};
   }
+};
+
+/// Drives the robot on from where it is after `done` steps. False: a step was not finite.
+bool drive(Table& table, const Path& path, int done) {
+  for (int k = done + 1; k <= path.steps + kCatchUpSteps; ++k)
+    if (!table.step_towards(path.at(k))) return false;
   return true;
 }
 
@@ -240,16 +253,20 @@ bool Box2dSimulator::plausible(const Poses& start) const {
 
 PushOutcome Box2dSimulator::push(const Poses& start, int action) const {
   if (!plausible(start)) return {start, false};
-  const Pose target = push_target(start[0], action, push_);
-  if (sweep_is_clear(scene_, start, 0, start[0].position(), target.position())) {
-    Poses end = start;  // nothing is met on the way
-    end[0] = to_single(target);
-    return {end, true};
-  }
   const Servo servo = servo_of(scene_, push_, physics_);
-  Table table(scene_, physics_, servo, start);
-  const int max_steps = physics_.sub_steps * physics_.box2d_steps;
-  const bool ok = drive(table, servo, start[0], target, max_steps) && table.come_to_rest();
+  const Path path(start[0], push_target(start[0], action, push_), servo.advance,
+                  physics_.sub_steps * physics_.box2d_steps);
+  const double clear = clear_way(scene_, start, path.to);
+  Poses begun = start;
+  if (clear >= path.length()) {  // nothing is met on the way
+    begun[0] = to_single(path.to);
+    return {begun, true};
+  }
+  const int done = static_cast<int>(clear / servo.advance);
+  begun[0] = path.at(done);
+  Table table(scene_, physics_, servo, begun);
+  if (done > 0) table.set_speed(path.to);
+  const bool ok = drive(table, path, done) && table.come_to_rest();
   return {table.poses(), ok};
 }
 

@@ -20,8 +20,9 @@ namespace rtg {
 /// faster than 1.5 × the push speed, so nothing jumps when a blocked robot comes free.
 ///
 /// Poses of bodies that moved are single-precision values widened to double, hence a result is
-/// reproduced exactly from its own start. A body that took no impulse keeps its pose bit for bit. A
-/// push whose way is clear of all bodies is not simulated: it ends at its target.
+/// reproduced exactly from its own start. A body that took no impulse keeps its pose bit for bit.
+/// The way of the robot up to the first body near it is not simulated; a push that meets none ends
+/// at its target.
 class Box2dSimulator final : public Simulator {
  public:
   /// `scene`: legal shapes only (polygon_defect() empty), bodies[0] movable.

@@ -55,6 +55,10 @@ bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job
   const Polygon way = swept(shape, robot.theta, back);
   for (std::size_t k = 1; k < scene.size(); ++k) {
     const Polygon& other = scene.bodies[k].shape;
+    const Vector2d from = robot.position();
+    if (distance_to_segment(job.end[k].position(), from, from + back) >
+        bounding_radius(shape) + bounding_radius(other))
+      continue;
     const double touching = std::min(0.0, separation(shape, robot, other, job.end[k]));
     if (separation(way, robot, other, job.end[k]) < touching - kOverlap) return true;
   }

@@ -19,12 +19,15 @@ void PushContact::describe(const Poses& state, int action, std::span<float> out)
   const Vector2d ahead = direction(action, push_);
   const Polygon& way = ways_[static_cast<std::size_t>(action)];
   const Pose robot{state[0].x, state[0].y, heading_};
-  const double reach = push_.stride + bounding_radius(scene_.bodies[0].shape);
+  const Vector2d target = robot.position() + push_.stride * ahead;
+  const double radius = bounding_radius(scene_.bodies[0].shape);
   const std::size_t bodies = scene_.size() - 1;
   for (std::size_t k = 1; k <= bodies; ++k) {
     const Polygon& shape = scene_.bodies[k].shape;
     const Vector2d arm = state[k].position() - robot.position();
-    if (arm.norm() > reach + bounding_radius(shape)) continue;
+    if (distance_to_segment(state[k].position(), robot.position(), target) >
+        radius + bounding_radius(shape))
+      continue;
     const double cut = std::max(0.0, -separation(way, robot, shape, state[k]));
     out[k - 1] = static_cast<float>(cut);
     out[bodies + k - 1] = static_cast<float>(cut * (ahead.x() * arm.y() - ahead.y() * arm.x()));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -16,15 +17,26 @@ constexpr float kDistanceWeight = 16.0F;  // actions per metre
 constexpr float kCell = 0.5F;             // side of a cell [m]
 constexpr float kRounding = 1e-5F;        // of a score, relative
 
-/// Squared distance of two points of `size` coordinates.
+/// Squared distance of two points of `size` coordinates; four sums that do not wait for each other.
 float square_distance(const float* a, const float* b, std::size_t size) {
-  float sum = 0.0F;
-  for (std::size_t k = 0; k < size; ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
-  return sum;
+  float sums[4] = {0.0F, 0.0F, 0.0F, 0.0F};
+  std::size_t k = 0;
+  for (; k + 4 <= size; k += 4)
+    for (std::size_t m = 0; m < 4; ++m) sums[m] += (a[k + m] - b[k + m]) * (a[k + m] - b[k + m]);
+  for (; k < size; ++k) sums[0] += (a[k] - b[k]) * (a[k] - b[k]);
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
 /// How far x is from [low, low + kCell].
 float outside(float x, float low) { return std::max({0.0F, low - x, x - (low + kCell)}); }
+
+/// Names the square of a robot's position.
+std::uint64_t square_of(const float* robot) {
+  const auto word = [](float x) {
+    return static_cast<std::uint64_t>(std::lround(std::floor(x / kCell)));
+  };
+  return hashed(hashed(0, word(robot[0])), word(robot[1]));
+}
 
 }  // namespace
 
@@ -53,11 +65,10 @@ bool TreePolicy::add(const Poses& state, int action, double depth) {
 void TreePolicy::place(int entry) {
   const auto k = static_cast<std::size_t>(entry);
   const float* robot = point_.data() + k * static_cast<std::size_t>(metric_.size());
-  const float column = std::floor(robot[0] / kCell), row = std::floor(robot[1] / kCell);
-  const auto word = [](float number) { return static_cast<std::uint64_t>(std::lround(number)); };
-  const auto [at, fresh] =
-      cell_at_.try_emplace(hashed(hashed(0, word(column)), word(row)), cells_.size());
-  if (fresh) cells_.push_back({kCell * column, kCell * row, kNone, {}});
+  const auto [at, fresh] = cell_at_.try_emplace(square_of(robot), cells_.size());
+  if (fresh)
+    cells_.push_back(
+        {kCell * std::floor(robot[0] / kCell), kCell * std::floor(robot[1] / kCell), kNone, {}});
   Cell& cell = cells_[at->second];
   cell.entries.push_back(entry);
   cell.least = std::min(cell.least, depth_[k]);
@@ -123,22 +134,31 @@ void TreePolicy::scan(const Cell& cell, Seen& seen, Choice& best) const {
   }
 }
 
-/// Cells in the order of the least score that an entry of theirs can have, until none can be better
-/// than the best entry seen.
+/// The robot's own cell, then others in the order of the least score that an entry of theirs can
+/// have, until none can be better than the best entry seen.
 TreePolicy::Choice TreePolicy::choose_one(const Query& query) const {
   Seen seen{query, std::vector<float>(static_cast<std::size_t>(metric_.size())),
             std::vector<std::vector<float>>(static_cast<std::size_t>(headings_))};
   metric_.embed(query.state, seen.point);
+  Choice best{-1, 0, kNone, kNone};
+  const Cell* own = nullptr;
+  if (const auto at = cell_at_.find(square_of(seen.point.data())); at != cell_at_.end()) {
+    own = &cells_[at->second];
+    scan(*own, seen, best);
+  }
   std::vector<std::pair<float, const Cell*>> order;
   for (const Cell& cell : cells_) {
     const float dx = outside(seen.point[0], cell.x), dy = outside(seen.point[1], cell.y);
-    order.emplace_back(cell.least + kDistanceWeight * std::hypot(dx, dy), &cell);
+    const float bound = cell.least + kDistanceWeight * std::sqrt(dx * dx + dy * dy);
+    if (bound * (1.0F - kRounding) <= best.score && &cell != own) order.emplace_back(bound, &cell);
   }
-  std::ranges::sort(order, {}, &std::pair<float, const Cell*>::first);
-  Choice best{-1, 0, kNone, kNone};
-  for (const auto& [bound, cell] : order) {
+  const auto by_bound = &std::pair<float, const Cell*>::first;  // few are ever looked at: a heap
+  std::ranges::make_heap(order, std::ranges::greater{}, by_bound);
+  for (; !order.empty(); order.pop_back()) {
+    const auto [bound, cell] = order.front();
     if (bound * (1.0F - kRounding) > best.score || bound == kNone) break;
     scan(*cell, seen, best);
+    std::ranges::pop_heap(order, std::ranges::greater{}, by_bound);
   }
   return best;
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/world/selection.hpp"
+
 #include <cmath>
 #include <numbers>
 
@@ -39,6 +41,44 @@ TEST(Scene, FrictionOfAPairIsTheGeometricMean) {
   const Polygon shape = box(1, 1);
   EXPECT_NEAR(pair_friction(body(shape, 1, 0.2), body(shape, 1, 0.8)), 0.4, 1e-15);
   EXPECT_EQ(pair_friction(body(shape, 1, 0.0), body(shape, 1, 0.8)), 0.0);
+}
+
+/// Three links, the middle one the root, joints not in that order.
+Scene linked() {
+  Scene scene;
+  for (const char* name : {"a", "b", "c", "d"})
+    scene.bodies.push_back({name, "link", box(2.0, 0.5), 1.0, 0.5, false});
+  scene.joints = {{2, 3, {1, 0}, {-1, 0}}, {1, 2, {1, 0}, {-1, 0}}, {1, 0, {-1, 0}, {1, 0}}};
+  return scene;
+}
+
+TEST(Scene, RootFirstListsJointsAfterThoseOfTheirParents) {
+  EXPECT_EQ(root_first(linked()), (std::vector<std::size_t>{1, 2, 0}));
+}
+
+TEST(Scene, ClosedJointsLeaveRootsAndAnglesAlone) {
+  const Poses poses{{9, 9, 0.3}, {1, 2, 0.5}, {7, 7, -1.0}, {-4, 0, 2.0}};
+  const Poses closed = with_closed_joints(linked(), poses);
+  EXPECT_EQ(closed[1], poses[1]);
+  for (const Joint& joint : linked().joints) {
+    EXPECT_LT(joint_gap(joint, closed), 1e-15);
+    EXPECT_GT(joint_gap(joint, poses), 1.0);
+    const auto child = static_cast<std::size_t>(joint.child);
+    EXPECT_EQ(closed[child].theta, poses[child].theta);
+  }
+}
+
+TEST(Scene, JointsConnectTheirTwoBodies) {
+  EXPECT_TRUE(jointed(linked(), 0, 1));
+  EXPECT_TRUE(jointed(linked(), 1, 0));
+  EXPECT_FALSE(jointed(linked(), 0, 2));
+  EXPECT_FALSE(jointed(linked(), 1, 3));
+}
+
+TEST(Scene, ASelectionHasTheJointsBetweenItsBodies) {
+  const Selection some = select(linked(), Poses(4), {3, 1, 2});
+  EXPECT_EQ(some.scene.joints,
+            (std::vector<Joint>{{2, 0, {1, 0}, {-1, 0}}, {1, 2, {1, 0}, {-1, 0}}}));
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/math/rng.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -169,6 +171,37 @@ TEST(FirstOverlap, LetsFixedBodiesTouchEachOtherButNothingElse) {
   scene.bodies[1].fixed = scene.bodies[2].fixed = true;
   EXPECT_EQ(first_overlap(scene, {{0, 0, 0}, {2, 0, 0}, {2.5, 0, 0}}), std::nullopt);
   EXPECT_EQ(first_overlap(scene, {{2.2, 0, 0}, {0, 0, 0}, {2.5, 0, 0}}), Indices(0, 2));
+}
+
+TEST(Separation, BodiesAreApartWhereTheirSeparationIsTheMargin) {
+  const Polygon a = box(1.0, 0.4), b = regular_polygon(5, 0.6);
+  Rng rng(7);
+  int apart = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    const Pose pose_a{0.0, 0.0, rng.uniform(-3.0, 3.0)};
+    const Pose pose_b{rng.uniform(-1.5, 1.5), rng.uniform(-1.5, 1.5), rng.uniform(-3.0, 3.0)};
+    for (const double margin : {-0.1, 0.0, 0.2}) {
+      const bool expected = separation(a, pose_a, b, pose_b) >= margin;
+      EXPECT_EQ(are_apart(a, pose_a, b, pose_b, margin), expected);
+      apart += expected;
+    }
+  }
+  EXPECT_GT(apart, 200);
+  EXPECT_LT(apart, 1300);
+}
+
+TEST(Separation, JointedBodiesMayOverlap) {
+  Scene scene{{{"a", "a", box(1, 1), 1.0, 0.5, false}, {"b", "b", box(1, 1), 1.0, 0.5, false}}};
+  const Poses poses{{0, 0, 0}, {0.5, 0, 0}};
+  EXPECT_TRUE(first_overlap(scene, poses));
+  scene.joints.push_back({0, 1, {0.25, 0.0}, {-0.25, 0.0}});
+  EXPECT_FALSE(first_overlap(scene, poses));
+}
+
+TEST(Separation, DistanceToASegmentIsThatToItsNearestPoint) {
+  EXPECT_DOUBLE_EQ(distance_to_segment({1, 2}, {0, 0}, {3, 0}), 2.0);
+  EXPECT_DOUBLE_EQ(distance_to_segment({-3, 4}, {0, 0}, {3, 0}), 5.0);
+  EXPECT_DOUBLE_EQ(distance_to_segment({3, 4}, {0, 0}, {0, 0}), 5.0);
 }
 
 }  // namespace

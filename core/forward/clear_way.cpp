@@ -1,0 +1,41 @@
+#include "core/forward/clear_way.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/world/separation.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kNear = 0.05;         // [m]
+constexpr double kNearEnough = 0.055;  // where strides end, which shrink towards kNear [m]
+
+}  // namespace
+
+/// By strides as long as the separating axes allow (conservative advancement).
+double clear_way(const Scene& scene, const Poses& poses, const Pose& to) {
+  const Vector2d from = poses[0].position();
+  const double length = (to.position() - from).norm();
+  const Polygon& robot = scene.bodies[0].shape;
+  const double radius = bounding_radius(robot) + kNear;
+  double clear = length;
+  for (std::size_t j = 1; j < scene.size(); ++j) {
+    const Polygon& shape = scene.bodies[j].shape;
+    if (distance_to_segment(poses[j].position(), from, to.position()) >
+        radius + bounding_radius(shape))
+      continue;
+    double way = 0.0;
+    for (double gap = INFINITY; way < clear && gap > kNearEnough;
+         way += std::max(gap - kNear, 0.0)) {
+      Pose at = poses[0];
+      at.x += way / length * (to.x - from.x());
+      at.y += way / length * (to.y - from.y());
+      gap = separation(robot, at, shape, poses[j]);
+    }
+    clear = std::min(clear, way);
+  }
+  return clear;
+}
+
+}  // namespace rtg
