@@ -16,14 +16,20 @@ constexpr double kPullCone = 0.5;  // [rad]
 constexpr double kReach = 0.15;    // the robot can pull what is nearer than this [m]
 constexpr double kTouching = 0.8;  // distance of touching bodies, of their bounding radii, about
 
+/// Distance of their centres beyond which the robot cannot pull a body [m].
+double farthest_pull(const Task& task, std::size_t body) {
+  return bounding_radius(task.scene.bodies[0].shape) +
+         bounding_radius(task.scene.bodies[body].shape) + kReach;
+}
+
 /// Whether a robot at `robot` touches an object on the side that `way` points to.
 bool can_pull(const Task& task, const Pose& robot, const Pose& object, std::size_t body,
               const Vector2d& way) {
   const Polygon& hand = task.scene.bodies[0].shape;
   const Polygon& shape = task.scene.bodies[body].shape;
   const Vector2d arm = robot.position() - object.position();
-  const double far = bounding_radius(hand) + bounding_radius(shape) + kReach;
-  if (arm.norm() > far || arm.dot(way) < std::cos(kPullCone) * arm.norm() * way.norm())
+  if (arm.norm() > farthest_pull(task, body) ||
+      arm.dot(way) < std::cos(kPullCone) * arm.norm() * way.norm())
     return false;
   const double gap = separation(hand, robot, shape, object);
   return gap >= 0.0 && gap <= kReach;
@@ -35,7 +41,9 @@ double walk(const Task& task, const Poses& poses, std::size_t body, const Vector
   const Pose& robot = poses[0];
   const Pose& object = poses[body];
   if (can_pull(task, robot, object, body, way)) return 0.0;
-  for (int a = 0; a < task.push.headings; ++a) {
+  const double left = (robot.position() - object.position()).norm() - task.push.stride;
+  const bool one_away = std::abs(left) <= farthest_pull(task, body);
+  for (int a = 0; one_away && a < task.push.headings; ++a) {
     const Vector2d at = robot.position() - task.push.stride * direction(a, task.push);
     if (can_pull(task, {at.x(), at.y(), robot.theta}, object, body, way)) return 1.0;
   }

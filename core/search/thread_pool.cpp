@@ -15,12 +15,20 @@
 namespace rtg {
 namespace {
 
-/// How many jobs to hand out together: two slices per thread even out what they take, but no slice
-/// leaves lanes idle.
-std::size_t slice_of(std::size_t jobs, int threads) {
-  if (threads <= 1) return std::max<std::size_t>(jobs, 1);
-  const std::size_t slices = 2 * static_cast<std::size_t>(threads);
-  return std::max(static_cast<std::size_t>(kWidth<Lanes>), (jobs + slices - 1) / slices);
+constexpr std::size_t kLeastSlice = 4 * static_cast<std::size_t>(kWidth<Lanes>);
+
+/// Ends of the slices of jobs that are handed out together, in order: each half a thread's share of
+/// what is left (guided self-scheduling [Polychronopoulos & Kuck 1987]), so that threads end
+/// together, but not so few that lanes idle.
+std::vector<std::size_t> slice_ends(std::size_t jobs, int threads) {
+  if (threads <= 1) return {jobs};
+  std::vector<std::size_t> ends;
+  for (std::size_t begun = 0; begun < jobs; begun = ends.back()) {
+    const std::size_t left = jobs - begun, share = left / (2 * static_cast<std::size_t>(threads));
+    const std::size_t size = std::max(kLeastSlice, share);
+    ends.push_back(left < size + kLeastSlice ? jobs : begun + size);
+  }
+  return ends;
 }
 
 /// The exception of the least index among those thrown.
@@ -80,9 +88,10 @@ double thread_cpu_s() {
 SolveBatch solve_on_threads(SolveBatch solve, int threads) {
   return [solve = std::move(solve), threads](std::span<const ReverseJob> jobs) {
     std::vector<ReverseResult> results(jobs.size());
-    const std::size_t most = slice_of(jobs.size(), threads);
-    parallel_for((jobs.size() + most - 1) / most, threads, [&](std::size_t slice) {
-      const std::size_t first = slice * most, count = std::min(most, jobs.size() - first);
+    const std::vector<std::size_t> ends = slice_ends(jobs.size(), threads);
+    parallel_for(ends.size(), threads, [&](std::size_t slice) {
+      const std::size_t first = slice == 0 ? 0 : ends[slice - 1], count = ends[slice] - first;
+      if (count == 0) return;
       const double begin = thread_cpu_s();
       std::vector<ReverseResult> some = solve(jobs.subspan(first, count));
       const double share = (thread_cpu_s() - begin) / static_cast<double>(count);

@@ -7,9 +7,10 @@ import operator
 import statistics
 from collections.abc import Callable, Mapping
 
-# CPU time by benchmark, in whatever unit the benchmark reports; ratios take one unit.
+# Time by benchmark, in whatever unit it reports (ratios take one unit): CPU time, or real time
+# where several threads work.
 Times = Mapping[str, float]
-# Name, value, relation and goal.
+# Name, value, relation, goal.
 Gate = tuple[str, Callable[[Times], float], str, float]
 
 
@@ -29,6 +30,18 @@ def growth(family: str) -> Callable[[Times], float]:
     return exponent
 
 
+def linearity(family: str) -> Callable[[Times], float]:
+    """R² of a straight line through the times of FAMILY/N over N."""
+
+    def squared_correlation(times: Times) -> float:
+        own = {name: time for name, time in times.items() if name.startswith(f"{family}/")}
+        sizes = [int(name.rsplit("/", 1)[1]) for name in own]
+        correlation: float = statistics.correlation(sizes, list(own.values()))
+        return correlation**2
+
+    return squared_correlation
+
+
 def kkt(family: str, peer: str, bound: float) -> Gate:
     """Our KKT solve in lanes against a peer's, of six bodies over 16 sub-steps."""
     value = ratio(f"{family}/{peer}/16", f"{family}/lanes/16")
@@ -44,6 +57,10 @@ _GATES: tuple[Gate, ...] = (
     kkt("kkt_inertia", "umfpack", 55.0),
     kkt("kkt_inertia", "klu", 25.0),
     ("sqp_iteration.growth_with_h", growth("sqp_iteration"), "<=", 1.1),
+    ("beam.linear_in_breadth", linearity("beam/breadth"), ">=", 0.99),
+    ("beam.linear_in_depth", linearity("beam/depth"), ">=", 0.99),
+    ("beam.two_threads_by_one", ratio("beam/threads/1", "beam/threads/2"), ">=", 1.8),
+    ("replay.two_threads_by_one", ratio("replay/threads/1", "replay/threads/2"), ">=", 1.8),
 )
 _HOLDS = {">=": operator.ge, "<=": operator.le}
 

@@ -1,6 +1,6 @@
 // Six bodies over the number of sub-steps h: solution of the KKT system, in lanes and by its peers;
-// a whole SQP iteration with one trial point. Times of lanes are those of all of them, as many as
-// the counter `candidates` says.
+// a whole SQP iteration with one trial point, over h and over the number of bodies. Times of lanes
+// are those of all of them, as many as the counter `candidates` says.
 
 #include <benchmark/benchmark.h>
 
@@ -24,13 +24,13 @@ using testing::gathering;
 constexpr int kBodies = 6;
 constexpr double kResidual = 2e-9;  // largest accepted; the assembled matrix is shifted by 1e-9
 
-/// The robot and five boxes in a row, nearly touching, in every lane.
+/// The robot and boxes in a row, nearly touching, in every lane.
 template <class T>
 class Row {
  public:
-  explicit Row(int sub_steps, const PhysicsConfig& physics = {})
-      : energy_(scene(), physics, gathering().push),
-        problem_{energy_, config_, poses(), Vector2d::UnitX(), sub_steps},
+  explicit Row(int sub_steps, const PhysicsConfig& physics = {}, int bodies = kBodies)
+      : energy_(scene(bodies), physics, gathering().push),
+        problem_{energy_, config_, poses(bodies), Vector2d::UnitX(), sub_steps},
         lanes_(problem_),
         x_(lanes_.energy, sub_steps),
         newton_(lanes_) {
@@ -47,15 +47,15 @@ class Row {
   const NewtonSystem<T>& newton() const { return newton_; }
 
  private:
-  static Scene scene() {
+  static Scene scene(int bodies) {
     const Task task = gathering();
     Scene row{{task.scene.bodies[0]}};
-    row.bodies.resize(kBodies, task.scene.bodies[1]);
+    row.bodies.resize(static_cast<std::size_t>(bodies), task.scene.bodies[1]);
     return row;
   }
-  static VectorXd poses() {
-    VectorXd p = VectorXd::Zero(3 * kBodies);
-    for (int k = 1; k < kBodies; ++k) p[3 * k] = 1.46 + 1.28 * (k - 1);
+  static VectorXd poses(int bodies) {
+    VectorXd p = VectorXd::Zero(3 * bodies);
+    for (int k = 1; k < bodies; ++k) p[3 * k] = 1.46 + 1.28 * (k - 1);
     return p;
   }
 
@@ -88,15 +88,16 @@ StageSystem<T> instance(Family family, int h) {
 /// Whether the step of lane 0 solves the system.
 template <class T>
 bool is_solved(const StageSystem<double>& system, const StageStep<T>& step) {
-  StageStep<double> one(kBodies, system.h);
+  StageStep<double> one(system.M, system.h);
   const auto first_lane = [](const auto& from, auto& to) {
     for (int m = 0; m < 3; ++m) to[m] = lane(from[m], 0);
   };
   for (std::size_t k = 0; k < step.poses.size(); ++k) {
-    for (std::size_t i = 0; i < kBodies; ++i) first_lane(step.poses[k][i], one.poses[k][i]);
+    for (std::size_t i = 0; i < one.poses[k].size(); ++i)
+      first_lane(step.poses[k][i], one.poses[k][i]);
     if (k == 0) continue;
     first_lane(step.controls[k], one.controls[k]);
-    for (std::size_t i = 0; i < kBodies; ++i)
+    for (std::size_t i = 0; i < one.poses[k].size(); ++i)
       first_lane(step.multipliers[k][i], one.multipliers[k][i]);
   }
   const Assembled assembled(system, false);
@@ -137,11 +138,10 @@ void kkt_peer(benchmark::State& state, Family family, KktMethod method) {
   if (!is_solved(system, step)) state.SkipWithError("the residual is too large");
 }
 
-void sqp_iteration(benchmark::State& state) {
-  const int h = static_cast<int>(state.range(0));
-  Row<Lanes> row(h);
-  Riccati<Lanes> solver(kBodies, h);
-  StageStep<Lanes> step(kBodies, h);
+void sqp_iteration(benchmark::State& state, int bodies, int h) {
+  Row<Lanes> row(h, {}, bodies);
+  Riccati<Lanes> solver(bodies, h);
+  StageStep<Lanes> step(bodies, h);
   Evaluator<Lanes> evaluator(row.problem());
   Trajectory<Lanes> trial = row.x();
   PerContact<Lanes> force_step = trial.forces, gaps = trial.forces, trial_gaps = trial.forces;
@@ -157,9 +157,31 @@ void sqp_iteration(benchmark::State& state) {
     benchmark::DoNotOptimize(evaluator.evaluate(row.problem(), trial, gaps, trial_gaps, legal));
     if (!any(legal)) return state.SkipWithError("the trial point is not legal");
   }
-  if (!is_solved(Row<double>(h).newton().system(), step))
+  if (!is_solved(Row<double>(h, {}, bodies).newton().system(), step))
     state.SkipWithError("the residual is too large");
   state.counters["candidates"] = kWidth<Lanes>;
+}
+
+void over_sub_steps(benchmark::State& state) {
+  sqp_iteration(state, kBodies, static_cast<int>(state.range(0)));
+}
+void over_bodies(benchmark::State& state) {
+  sqp_iteration(state, static_cast<int>(state.range(0)), 10);
+}
+
+/// Fused multiplications and additions in registers: what the processor can do at most.
+void peak(benchmark::State& state) {
+  constexpr int kChains = 16, kLength = 1000;
+  Lanes sums[kChains];
+  for (int k = 0; k < kChains; ++k) sums[k] = Lanes(1.0 + k);
+  const Lanes factor(0.999999), summand(1e-6);
+  for (auto _ : state) {
+    for (int n = 0; n < kLength; ++n)
+      for (Lanes& sum : sums) sum = sum * factor + summand;
+    benchmark::DoNotOptimize(sums);
+  }
+  state.counters["GFLOP/s"] = benchmark::Counter(2e-9 * kChains * kLength * kWidth<Lanes>,
+                                                 benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void register_family(Family family) {
@@ -176,12 +198,18 @@ void register_family(Family family) {
 }
 
 const bool kRegistered = [] {
+  benchmark::AddCustomContext("compiler", __VERSION__);
+  benchmark::AddCustomContext("lanes", std::to_string(kWidth<Lanes>));
   for (const Family family : {Family::kRow, Family::kInertia, Family::kRandom})
     register_family(family);
-  benchmark::RegisterBenchmark("sqp_iteration", sqp_iteration)
+  benchmark::RegisterBenchmark("sqp_iteration", over_sub_steps)
       ->RangeMultiplier(2)
       ->Range(8, 256)
       ->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("sqp_iteration_bodies", over_bodies)
+      ->DenseRange(2, 16, 2)
+      ->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("peak/fma", peak)->Unit(benchmark::kMicrosecond);
   return true;
 }();
 
