@@ -51,6 +51,7 @@ SceneModel<T>::SceneModel(const Scene& scene, const PhysicsConfig& physics, cons
     const Mass mass = mass_of(body);
     damping_.push_back({T(mass.mass), T(mass.moment), physics.periodic_turns});
     radius_.push_back(T(bounding_radius(body.shape)));
+    reach_.push_back(T(bounding_radius(offset_polygon(body.shape, physics.range + physics.skin))));
     corners_.push_back(static_cast<int>(body.shape.size()));
     corner_count_.push_back(T(corners_.back()));
     planes_.push_back(all_planes<T>(body.shape));
@@ -85,6 +86,7 @@ SceneModel<T>::SceneModel(const SceneModel<double>& like, Room)
       corner_count_(vertices_.size(), T(0.0)),
       planes_(vertices_.size()),
       radius_(corner_count_),
+      reach_(corner_count_),
       damping_(vertices_.size(), {T(1.0), T(1.0), like.damping_[0].periodic}),
       control_bound_(Vec3<T>::Constant(T(1.0))),
       barrier_(like.barrier_),
@@ -108,6 +110,7 @@ void SceneModel<T>::load(int lane, const SceneModel<double>& one) {
     set_lane(damping_[i].mass, lane, one.damping_[i].mass);
     set_lane(damping_[i].moment, lane, one.damping_[i].moment);
     set_lane(radius_[i], lane, one.radius_[i]);
+    set_lane(reach_[i], lane, one.reach_[i]);
     set_lane(corner_count_[i], lane, one.corner_count_[i]);
     corners_[i] = std::max(corners_[i], one.corners_[i]);
     planes_[i].count = std::max(planes_[i].count, one.planes_[i].count);

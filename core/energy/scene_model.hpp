@@ -69,11 +69,12 @@ class SceneModel {
   const Vec3<T>& control_bound() const { return control_bound_; }
   const T& friction(int pair) const { return friction_[pair]; }
 
-  /// Whether the bodies are close enough for any of their contacts to act.
+  /// Whether the bodies are close enough for any of their contacts to act, turned round or not: the
+  /// gap of a vertex is less than the range in all of the other's offset_polygon().
   Mask<T> near(int pair, const Placement<T>& at) const {
     const auto [i, j] = pairs_[pair];
     const T x = at.body(i)[0] - at.body(j)[0], y = at.body(i)[1] - at.body(j)[1];
-    const T reach = radius_[i] + radius_[j] + T(barrier_.range + skin_);
+    const T reach = greater(radius_[i] + reach_[j], radius_[j] + reach_[i]);
     const Mask<T> real = corner_count_[i] > T(0.0);
     return barrier_.plain ? real : real && x * x + y * y < reach * reach;
   }
@@ -119,7 +120,7 @@ class SceneModel {
   std::vector<int> corners_;  // most of any lane
   std::vector<T> corner_count_;
   std::vector<Planes<T>> planes_;
-  std::vector<T> radius_;
+  std::vector<T> radius_, reach_;  // of the corners, of those of the offset polygon
   std::vector<Damping<T>> damping_;
   Vec3<T> control_bound_;
   Barrier barrier_;

@@ -85,4 +85,19 @@ Polygon regular_polygon(int sides, double circumradius) {
   return shape;
 }
 
+Polygon offset_polygon(const Polygon& polygon, double by) {
+  const std::size_t count = polygon.size();
+  std::vector<Vector2d> normals;  // outward, of the edges that begin at the vertices
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vector2d edge = polygon.vertices[(k + 1) % count] - polygon.vertices[k];
+    normals.push_back(Vector2d(edge.y(), -edge.x()).normalized());
+  }
+  Polygon out;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vector2d &before = normals[(k + count - 1) % count], &after = normals[k];
+    out.vertices.push_back(polygon.vertices[k] + by / (1.0 + before.dot(after)) * (before + after));
+  }
+  return out;
+}
+
 }  // namespace rtg

@@ -42,4 +42,8 @@ double bounding_radius(const Polygon& shape);
 Polygon box(double width, double height);
 Polygon regular_polygon(int sides, double circumradius);
 
+/// All edges moved outwards by `by` [m], corners mitred: the points whose signed distance from all
+/// edges is at most that. At a sharp corner it reaches far.
+Polygon offset_polygon(const Polygon& polygon, double by);
+
 }  // namespace rtg

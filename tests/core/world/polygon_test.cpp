@@ -42,5 +42,13 @@ TEST(Polygon, DefectsAreNamed) {
   EXPECT_EQ(polygon_defect(box(1, 2).vertices), std::nullopt);
 }
 
+TEST(Polygon, AnOffsetMovesEveryEdgeAndMitresCorners) {
+  const Polygon larger = offset_polygon(box(1.0, 0.4), 0.1), expected = box(1.2, 0.6);
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_LT((larger.vertices[k] - expected.vertices[k]).norm(), 1e-15);
+  // A triangle's corner of 60° goes out by 1/sin 30° of the offset.
+  EXPECT_NEAR(bounding_radius(offset_polygon(regular_polygon(3, 1.0), 0.1)), 1.2, 1e-14);
+}
+
 }  // namespace
 }  // namespace rtg
