@@ -92,7 +92,8 @@ void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E) {
   }
 }
 
-/// row_ ← row i of ½ Fᵀ W - N̂ᵀ S, row i of P ← that of Fᵀ W - N̂ᵀ S; block i of C.
+/// row_ ← row i of ½ Fᵀ W - N̂ᵀ S; block i of C. Where the stage reaches back, row i of P ← that of
+/// Fᵀ W - N̂ᵀ S.
 template <class T>
 void Riccati<T>::find_coupling(const Stage& stage, const BlockLdl<T>& E, int i) {
   int first = M_;
@@ -109,9 +110,11 @@ void Riccati<T>::find_coupling(const Stage& stage, const BlockLdl<T>& E, int i) 
   for (int j = 0; j < M_; ++j) {
     RegisterSum<Block<T>> sum;
     for (const int k : Bits(columns_[i])) sum.add(stage.F.at(k, i).transpose(), W_[k * M_ + j]);
-    RegisterSum<Block<T>> whole = sum;
-    whole.subtract(row_[j]);
-    whole.store(P_[i * M_ + j]);
+    if (j == 0 || reaches_) {
+      RegisterSum<Block<T>> whole = sum;
+      whole.subtract(row_[j]);
+      whole.store(P_[i * M_ + j]);
+    }
     sum.scale(T(0.5));
     sum.subtract(row_[j]);
     sum.store(row_[j]);
@@ -128,6 +131,7 @@ void Riccati<T>::eliminate(const Stage& stage, const Stage& before, int k) {
   for (std::uint64_t& column : columns_) column = 0;
   for (int i = 0; i < M_; ++i)
     for (const int j : Bits(stage.F.pattern[i])) columns_[j] |= std::uint64_t{1} << i;
+  reaches_ = !stage.G.empty();
   sandwich(E);
   couple(stage, E);
   E.solve(v_.data());  // S v
@@ -140,7 +144,7 @@ void Riccati<T>::eliminate(const Stage& stage, const Stage& before, int k) {
   Se_ = stage.e;
   E.solve(Se_.data());
   fold_gradient(stage, before, gain_[k]);
-  carries_ = !stage.G.empty();
+  carries_ = reaches_;
   if (carries_) reach_back(stage, E, inverse, gain_[k]);
   fold_hessian(before, gain_[k]);
 }

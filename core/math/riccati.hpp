@@ -56,6 +56,7 @@ class Riccati final : public StageSolver<T> {
   std::vector<Block<T>> P_, W_, X_;  // [M × M] row by row; P also Fᵀ W - N̂ᵀ S, on its way to Y
   std::vector<Block<T>> Y_, Z_, V_;  // [M × M]
   std::vector<Block<T>> US_;         // Uᵀ S
+  bool reaches_ = false;             // the stage at hand has G
   bool carries_ = false;             // Y, Z and z are not zero
   BlockPattern columns_;             // of F
   std::vector<Block<T>> C_, D_;

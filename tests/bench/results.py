@@ -26,6 +26,12 @@ import matplotlib.pyplot as plt
 HERE = Path(__file__).parent
 Benchmarks = dict[str, dict[str, Any]]
 _THREADED = ("beam", "replay")
+_LABELS = {
+    "lanes": "ours",
+    "cyclic_reduction": "cyclic reduction",
+    "klu": "KLU",
+    "umfpack": "UMFPACK",
+}
 _PAPER_MS = 51.0  # one candidate, 48 in parallel on 16 cores (App. E)
 
 
@@ -143,15 +149,17 @@ def plots(benchmarks: Benchmarks) -> None:
     for axis, (family, size, time, logarithmic) in zip(axes, panels, strict=True):
         methods = ["lanes", "cyclic_reduction", "klu", "umfpack"] if "{}" in family else [""]
         for method in methods:
-            axis.plot(
-                *series(benchmarks, family.format(method)), "o-", label=method.replace("_", " ")
-            )
+            sizes, times = series(benchmarks, family.format(method))
+            axis.plot(sizes, times, "o-", label=_LABELS.get(method))
         if logarithmic:
             axis.set(xscale="log", yscale="log")
+            ticks = sizes if len(sizes) < 7 else sizes[::2]
+            axis.set_xticks(ticks, [str(n) for n in ticks])
+            axis.minorticks_off()
         else:
             axis.set(xlim=0, ylim=0)
         axis.set(xlabel=size, ylabel=time)
-        axis.grid(alpha=0.3, which="both")
+        axis.grid(alpha=0.3)
     axes[0].legend(fontsize=8)
     figure.savefig(HERE / "results.png", dpi=110)
 
