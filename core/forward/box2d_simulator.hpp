@@ -19,6 +19,9 @@ namespace rtg {
 /// with r₀ the robot's bounding radius. It stops short where that is not enough, and never moves
 /// faster than 1.5 × the push speed, so nothing jumps when a blocked robot comes free.
 ///
+/// Joints are Box2D's; their limits are drawn in by the angular slop that it allows a pressed
+/// joint.
+///
 /// Poses of bodies that moved are single-precision values widened to double, hence a result is
 /// reproduced exactly from its own start. A body that took no impulse keeps its pose bit for bit.
 /// The way of the robot up to the first body near it is not simulated; a push that meets none ends

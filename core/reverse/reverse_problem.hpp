@@ -37,7 +37,7 @@ struct Iterate {
   std::vector<VectorXd> p;            // p_k [3·bodies]
   std::vector<VectorXd> forces;       // λ_k [contacts]
   std::vector<Vector3d> controls;     // c_k
-  std::vector<VectorXd> multipliers;  // of Φ_k = 0 [dofs]
+  std::vector<VectorXd> multipliers;  // of Φ_k = 0 [dofs]; of jointed bodies J y, see Articulation
 };
 
 /// At rest in the final state: λ = λ(g), c = 0.

@@ -56,6 +56,15 @@ TEST(JointReduction, MatrixIsDerivativeWithInertia) {
   expect_matrix_is_derivative(at.problem, at.x);
 }
 
+TEST(JointReduction, MatrixIsDerivativeWithFixedEnd) {
+  Disturbed at(6);
+  at.config.terminal_weight = 0.0;
+  at.x.p.back() = at.problem.end;
+  at.x.multipliers.back() =
+      testing::spread(at.scene.energy, at.problem.end, at.x.multipliers.back());
+  expect_matrix_is_derivative(at.problem, at.x);
+}
+
 TEST(JointReduction, RightHandSideIsMinusTheGradientOfTheLagrangian) {
   const Disturbed at(3);
   const Linearisation lin(at.problem, at.x, {true, 0.0});
