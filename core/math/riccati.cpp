@@ -14,8 +14,8 @@ Riccati<T>::Riccati(int count, int sub_steps)
                             std::vector<Block<T>>(static_cast<std::size_t>(count)),
                             Vec3<T>::Constant(T(0.0))}),
       P_(static_cast<std::size_t>(count) * static_cast<std::size_t>(count)),
-      W_(P_),
       X_(P_),
+      T_(P_),
       Y_(P_),
       Z_(P_),
       V_(P_),
@@ -59,7 +59,7 @@ void Riccati<T>::set_end(const Stage& stage) {
   carries_ = false;
 }
 
-/// W. Row by row, each in and out once: what is worked on stays in the fastest cache.
+/// P ← W. Row by row, each in and out once: what is worked on stays in the fastest cache.
 template <class T>
 void Riccati<T>::sandwich(const BlockLdl<T>& E) {
   for (int i = 0; i < M_; ++i) {  // P S, transposed
@@ -71,8 +71,8 @@ void Riccati<T>::sandwich(const BlockLdl<T>& E) {
     std::copy_n(X_.begin() + i * M_, M_, row_.begin());
     E.solve_row(row_.data(), 0, i);
     for (int j = i; j < M_; ++j) {
-      W_[i * M_ + j] = row_[j];
-      if (j > i) W_[j * M_ + i] = row_[j].transpose();
+      P_[i * M_ + j] = row_[j];
+      if (j > i) P_[j * M_ + i] = row_[j].transpose();
     }
   }
 }
@@ -92,8 +92,7 @@ void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E) {
   }
 }
 
-/// row_ ← row i of ½ Fᵀ W - N̂ᵀ S; block i of C. Where the stage reaches back, row i of P ← that of
-/// Fᵀ W - N̂ᵀ S.
+/// row_ ← row i of ½ Fᵀ W - N̂ᵀ S; block i of C; row i of T, all of it where the stage reaches back.
 template <class T>
 void Riccati<T>::find_coupling(const Stage& stage, const BlockLdl<T>& E, int i) {
   int first = M_;
@@ -109,18 +108,18 @@ void Riccati<T>::find_coupling(const Stage& stage, const BlockLdl<T>& E, int i) 
   if (first < M_) E.solve_row(row_.data(), first, 0);
   for (int j = 0; j < M_; ++j) {
     RegisterSum<Block<T>> sum;
-    for (const int k : Bits(columns_[i])) sum.add(stage.F.at(k, i).transpose(), W_[k * M_ + j]);
+    for (const int k : Bits(columns_[i])) sum.add(stage.F.at(k, i).transpose(), P_[k * M_ + j]);
     if (j == 0 || reaches_) {
       RegisterSum<Block<T>> whole = sum;
       whole.subtract(row_[j]);
-      whole.store(P_[i * M_ + j]);
+      whole.store(T_[i * M_ + j]);
     }
     sum.scale(T(0.5));
     sum.subtract(row_[j]);
     sum.store(row_[j]);
   }
   for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) C_[i](a, b) = stage.B[a] * P_[i * M_](b, a);
+    for (int b = 0; b < 3; ++b) C_[i](a, b) = stage.B[a] * T_[i * M_](b, a);
 }
 
 template <class T>
@@ -137,7 +136,7 @@ void Riccati<T>::eliminate(const Stage& stage, const Stage& before, int k) {
   E.solve(v_.data());  // S v
   for (int i = 0; i < M_; ++i) {
     RegisterSum<Vec3<T>> sum(-v_[i]);
-    for (int j = 0; j < M_; ++j) sum.add(W_[i * M_ + j], stage.e[j]);
+    for (int j = 0; j < M_; ++j) sum.add(P_[i * M_ + j], stage.e[j]);
     sum.store(w_[i]);
   }
   const Block<T> inverse = find_gain(stage, gain_[k]);
@@ -152,7 +151,7 @@ void Riccati<T>::eliminate(const Stage& stage, const Stage& before, int k) {
 /// R'⁻¹ C and R'⁻¹ r'; returns R'⁻¹.
 template <class T>
 Block<T> Riccati<T>::find_gain(const Stage& stage, Gain& gain) {
-  Block<T> R = W_[0];
+  Block<T> R = P_[0];
   Vec3<T> r = stage.r;
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) R(a, b) = R(a, b) * stage.B[a] * stage.B[b];

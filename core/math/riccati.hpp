@@ -53,7 +53,8 @@ class Riccati final : public StageSolver<T> {
   std::vector<BlockLdl<T>> E_;
   BlockLdl<T> start_;
   std::vector<Gain> gain_;
-  std::vector<Block<T>> P_, W_, X_;  // [M × M] row by row; P also Fᵀ W - N̂ᵀ S, on its way to Y
+  std::vector<Block<T>> P_, X_;  // [M × M] row by row; in P also W: the fastest cache is small
+  std::vector<Block<T>> T_;      // Fᵀ W - N̂ᵀ S, the first column where nothing reaches back
   std::vector<Block<T>> Y_, Z_, V_;  // [M × M]
   std::vector<Block<T>> US_;         // Uᵀ S
   bool reaches_ = false;             // the stage at hand has G

@@ -4,7 +4,7 @@
 
 namespace rtg {
 
-/// V, D and what is carried to the stage before: Y, Z, z. Expects Fᵀ W - N̂ᵀ S in P.
+/// V, D and what is carried to the stage before: Y, Z, z. Expects W in P.
 template <class T>
 void Riccati<T>::reach_back(const Stage& stage, const BlockLdl<T>& E, const Block<T>& inverse,
                             Gain& gain) {
@@ -37,7 +37,7 @@ void Riccati<T>::find_V(const Stage& stage, const BlockLdl<T>& E) {
     for (int j = 0; j < M_; ++j) {
       RegisterSum<Block<T>> sum;
       for (int k = 0; k < M_; ++k)
-        if (stage.G.has(k, j)) sum.add(W_[i * M_ + k], stage.G.at(k, j));
+        if (stage.G.has(k, j)) sum.add(P_[i * M_ + k], stage.G.at(k, j));
       if (bends) sum.subtract(US_[j * M_ + i].transpose());
       sum.store(V_[i * M_ + j]);
     }
@@ -50,7 +50,7 @@ void Riccati<T>::carry(const Stage& stage, const Gain& gain) {
     for (int j = 0; j < M_; ++j) {
       RegisterSum<Block<T>> y, z;
       for (int k = 0; k < M_; ++k) {
-        if (stage.G.has(k, j)) y.add(P_[i * M_ + k], stage.G.at(k, j));
+        if (stage.G.has(k, j)) y.add(T_[i * M_ + k], stage.G.at(k, j));
         if (bends && stage.F.has(k, i))
           y.subtract(stage.F.at(k, i).transpose(), US_[j * M_ + k].transpose());
         if (j > i) continue;
