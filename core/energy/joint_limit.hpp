@@ -23,6 +23,7 @@ struct JointLimit {
       : parent(hinge.parent), child(hinge.child), slope(upper ? -hinge.reach : hinge.reach) {
     const T angle = at.body(child)[2] - at.body(parent)[2];
     gap = lesser(slope * (angle - (upper ? hinge.upper : hinge.lower)) + T(kSlack), T(kFar));
+    slope = select(gap < T(kFar), slope, T(0.0));
   }
 
   /// Adds f ∇g to [3·movable], or f ∇g ∇gᵀ to a symmetric matrix, of which the lower half counts.

@@ -10,12 +10,16 @@ namespace rtg {
 namespace {
 
 constexpr int kRounds = 50;
+constexpr double kLeastShare = 0.01;  // of |∇g|² that joints must leave
 
-/// Moves the bodies along ∇g [3·movable] until the gap is that much larger, to first order.
+/// Moves the bodies along ∇g [3·movable] until the gap is that much larger, to first order. Where
+/// joints leave next to no motion that opens it, it stays.
 void open_by(const SceneModel<double>& scene, double amount, VectorXd gradient,
              Placement<double>& at) {
+  const double free = gradient.squaredNorm();
   scene.articulation().gather(at, gradient.data());
   const double size = gradient.squaredNorm();
+  if (size < kLeastShare * free) return;
   for (Eigen::Index m = 0; m < gradient.size(); ++m)
     at.p[static_cast<std::size_t>(m)] += amount / size * gradient[m];
   scene.place(at);

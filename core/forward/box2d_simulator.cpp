@@ -262,7 +262,7 @@ PushOutcome Box2dSimulator::push(const Poses& start, int action) const {
     begun[0] = to_single(path.to);
     return {begun, true};
   }
-  const int done = static_cast<int>(clear / servo.advance);
+  const int done = std::min(path.steps, static_cast<int>(clear / servo.advance));
   begun[0] = path.at(done);
   Table table(scene_, physics_, servo, begun);
   if (done > 0) table.set_speed(path.to);

@@ -16,9 +16,9 @@ class NewtonSimulator final : public Simulator {
   /// `scene`: legal shapes only (polygon_defect() empty), bodies[0] movable.
   NewtonSimulator(Scene scene, const PushConfig& push, const PhysicsConfig& physics);
 
-  /// As Simulator::push. Without inertia everything is at rest after the last sub-step, with it all
-  /// speeds are less than a hundredth of what they were when the robot stopped. Not ok:
-  /// `start` has the wrong size, is not finite, overlaps, or a sub-step failed.
+  /// As Simulator::push. Without inertia everything is at rest after the last sub-step, with it the
+  /// speeds of free bodies are less than a hundredth of what they were when the robot stopped. Not
+  /// ok: `start` has the wrong size, is not finite, overlaps, or a sub-step failed.
   [[nodiscard]] PushOutcome push(const Poses& start, int action) const override;
 
   /// As Simulator::settle, for the time of one push.

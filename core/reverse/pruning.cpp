@@ -54,6 +54,7 @@ bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job
   const Polygon& shape = scene.bodies[0].shape;
   const Polygon way = swept(shape, robot.theta, back);
   for (std::size_t k = 1; k < scene.size(); ++k) {
+    if (in_articulation(scene, k)) continue;  // may have swung in behind the robot
     const Polygon& other = scene.bodies[k].shape;
     const Vector2d from = robot.position();
     if (distance_to_segment(job.end[k].position(), from, from + back) >

@@ -61,6 +61,7 @@ ReverseResult NaiveReverse::solve(const ReverseJob& job) const {
   if (touched != 0) {
     const double pull = Rng(key_of(job)).uniform(kLeastPull, 1.0) * push_.stride;
     start[touched] = moved(job.end[touched], -pull * ahead);
+    start = with_closed_joints(scene_, std::move(start));  // what hangs on it follows
   }
   if (first_overlap(scene_, start)) return {SolveStatus::kInfeasible};
   return {SolveStatus::kConverged, 0, {std::move(start)}};

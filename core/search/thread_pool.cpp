@@ -15,18 +15,21 @@
 namespace rtg {
 namespace {
 
-constexpr std::size_t kLeastSlice = 4 * static_cast<std::size_t>(kWidth<Lanes>);
+constexpr std::size_t kLanes = static_cast<std::size_t>(kWidth<Lanes>);
 
 /// Ends of the slices of jobs that are handed out together, in order: each half a thread's share of
 /// what is left (guided self-scheduling [Polychronopoulos & Kuck 1987]), so that threads end
 /// together, but not so few that lanes idle.
 std::vector<std::size_t> slice_ends(std::size_t jobs, int threads) {
   if (threads <= 1) return {jobs};
+  const auto workers = static_cast<std::size_t>(threads);
+  const std::size_t least =
+      std::clamp(jobs / workers / kLanes, std::size_t{1}, std::size_t{4}) * kLanes;
   std::vector<std::size_t> ends;
   for (std::size_t begun = 0; begun < jobs; begun = ends.back()) {
-    const std::size_t left = jobs - begun, share = left / (2 * static_cast<std::size_t>(threads));
-    const std::size_t size = std::max(kLeastSlice, share);
-    ends.push_back(left < size + kLeastSlice ? jobs : begun + size);
+    const std::size_t left = jobs - begun, share = left / (2 * workers);
+    const std::size_t size = std::max(least, share);
+    ends.push_back(left < size + kLanes ? jobs : begun + size);
   }
   return ends;
 }

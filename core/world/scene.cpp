@@ -30,7 +30,10 @@ double joint_gap(const Joint& joint, const Poses& poses) {
 std::vector<std::size_t> root_first(const Scene& scene) {
   std::vector<std::size_t> order;
   std::vector<int> waiting(scene.size(), 0);  // joints that have not been listed, by child
-  for (const Joint& joint : scene.joints) ++waiting[static_cast<std::size_t>(joint.child)];
+  for (const Joint& joint : scene.joints) {
+    assert(joint.parent > 0 && joint.child > 0 && joint.lower <= joint.upper);
+    ++waiting[static_cast<std::size_t>(joint.child)];
+  }
   for (bool found = true; found && order.size() < scene.joints.size();) {
     found = false;
     for (std::size_t k = 0; k < scene.joints.size(); ++k) {

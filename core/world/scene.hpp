@@ -22,6 +22,7 @@ struct Body {
 };
 
 /// Revolute joint: a point of the child is pinned to one of the parent. The two do not collide.
+/// lower ≤ upper.
 struct Joint {
   int parent = 0, child = 0;                                // bodies of the scene
   Vector2d on_parent = Vector2d::Zero();                    // the pin in the parent's frame [m]
@@ -32,8 +33,8 @@ struct Joint {
   bool operator==(const Joint&) const = default;
 };
 
-/// The bodies of a task; bodies[0] is the robot. Joints make trees of them: no body is the child of
-/// two, no child is the robot or fixed.
+/// The bodies of a task; bodies[0] is the robot, which has no joint. Joints make trees of the
+/// others: no body is the child of two, no child is fixed.
 struct Scene {
   std::vector<Body> bodies;
   std::vector<Joint> joints = {};

@@ -117,9 +117,10 @@ void check_inertia(const ConfigNode& root, const RtgConfig& config) {
                       number_text(config.physics.damping) + " with physics.inertia",
                       number_text(kLeastInertialDamping) + " or more");
   if (config.reverse.terminal_weight == 0.0)
-    throw ConfigError(flag->value.origin, "physics.inertia",
-                      "true with a fixed final state (reverse.terminal_weight is 0)",
-                      "false, or reverse.terminal_weight above 0 and not reverse.preset paper");
+    throw ConfigError(
+        flag->value.origin, "physics.inertia",
+        "true with a fixed final state (reverse.terminal_weight is 0)",
+        "false, or reverse.terminal_weight above 0 (reverse.preset paper sets it to 0)");
 }
 
 void check_bus(const ConfigNode& root, const std::string& url) {

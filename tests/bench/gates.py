@@ -59,6 +59,8 @@ _GATES: tuple[Gate, ...] = (
     ("sqp_iteration.growth_with_h", growth("sqp_iteration"), "<=", 1.1),
     ("beam.linear_in_breadth", linearity("beam/breadth"), ">=", 0.99),
     ("beam.linear_in_depth", linearity("beam/depth"), ">=", 0.99),
+    ("beam.growth_with_breadth", growth("beam/breadth"), "<=", 1.1),
+    ("beam.growth_with_depth", growth("beam/depth"), "<=", 1.1),
     ("beam.two_threads_by_one", ratio("beam/threads/1", "beam/threads/2"), ">=", 1.8),
     ("replay.two_threads_by_one", ratio("replay/threads/1", "replay/threads/2"), ">=", 1.8),
 )

@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import io
 import json
-import subprocess
 import sys
 import textwrap
 from pathlib import Path
@@ -25,6 +24,7 @@ import matplotlib.pyplot as plt
 
 HERE = Path(__file__).parent
 Benchmarks = dict[str, dict[str, Any]]
+_UNIT = 24  # jobs of a unit of work (nodes/common/work.hpp), at most
 _THREADED = ("beam", "replay")
 _LABELS = {
     "lanes": "ours",
@@ -61,15 +61,9 @@ def paragraph(*sentences: str) -> str:
 
 def machine(context: dict[str, Any], benchmarks: Benchmarks) -> str:
     """What it was measured on."""
-    commit = subprocess.run(
-        ["git", "rev-parse", "--short", "HEAD"],
-        cwd=HERE,
-        stdout=subprocess.PIPE,
-        text=True,
-        check=True,
-    ).stdout.strip()
     return paragraph(
-        f"`./test.sh bench` at commit `{commit}`, {context['date'][:10]}: {cpu()},",
+        f"`./test.sh bench` at commit `{context['commit']}`, {context['date'][:10]}:",
+        f"{cpu()},",
         f"{context['num_cpus']} cores at {context['mhz_per_cpu']} MHz,",
         f"GCC {context['compiler']}, {context['lanes']} lanes,",
         f"{benchmarks['peak/fma']['GFLOP/s']:.0f} GFLOP/s in registers.",
@@ -170,7 +164,8 @@ def many_workers(benchmarks: Benchmarks) -> str:
     layer, serial = one["layer_ms"], one["layer_ms"] * one["search_share"]
     breadth = round(one["nodes_per_layer"])
     jobs = 48 * breadth * (1.0 - benchmarks["action48/default"]["pruned"])
-    most = jobs / 8.0
+    most = jobs / benchmarks["kkt/lanes/16"]["candidates"]
+    fastest = layer / (serial + (layer - serial) / most)
     rows = ["| workers | layer [ms] | faster by |", "|---:|---:|---:|"]
     for workers in (1, 2, 4, 16, 64, 256, 1000):
         time = serial + (layer - serial) / min(workers, most)
@@ -178,16 +173,17 @@ def many_workers(benchmarks: Benchmarks) -> str:
     before = paragraph(
         f"A layer of {breadth} nodes takes {layer:.0f} ms on one core. The search itself, which is",
         f"serial, has {serial:.0f} ms of them ({100.0 * one['search_share']:.1f} %).",
-        f"The {jobs:.0f} solves that survive pruning, and their replays, are independent; at eight",
-        f"solves for a worker's lanes at most {most:.0f} workers have something to do at once.",
+        f"The solves that survive pruning, about {jobs:.0f}, and their replays are independent.",
+        f"Handed out by a worker's lanes they keep at most {most:.0f} workers busy at once, in the",
+        f"units of up to {_UNIT} that go over LCM {jobs / _UNIT:.0f}.",
         "Worked out from these figures of one core, with equal work for all and messages for",
         "nothing:",
     )
     after = paragraph(
-        f"So a thousand workers on one tree are no faster than {most:.0f}, and no number of them",
-        f"is faster than {layer / serial:.0f} ×: the serial part, then the longest single solve,",
-        "are what is left of a layer. More breadth keeps more workers busy but does not move that",
-        "bound, as both parts are linear in it; trees of their own, one per few dozen workers, do.",
+        f"So a thousand workers on one tree are no faster than {most:.0f}, {fastest:.0f} × one:",
+        "the serial part and the last solves are what is left of a layer.",
+        "More breadth keeps more workers busy but does not move that bound, as both parts are",
+        "linear in it; trees of their own, one per few dozen workers, do.",
     )
     return "\n\n".join([before, "\n".join(rows), after])
 

@@ -49,7 +49,20 @@ def measure(build: Path, out: Path, smoke: bool) -> dict[str, Any]:
         command += ["--benchmark_min_time=0.001", f"--benchmark_filter=-({_LONG})"]
     subprocess.run(command, check=True, stdout=sys.stderr)
     result: dict[str, Any] = json.loads(file.read_text())
+    result["context"]["commit"] = commit()
+    file.write_text(json.dumps(result, indent=1))
     return result
+
+
+def commit() -> str:
+    """What is measured, with a mark if it is not committed."""
+    return subprocess.run(
+        ["git", "describe", "--always", "--dirty"],
+        cwd=Path(__file__).parent,
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    ).stdout.strip()
 
 
 def solves_the_corpus(build: Path) -> bool:

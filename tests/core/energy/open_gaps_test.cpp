@@ -54,5 +54,21 @@ TEST(OpenGaps, ARowInContactOpensAtEveryJoint) {
   EXPECT_LT((open - closed).norm(), 0.05);
 }
 
+// A door whose tip points straight at a wall 2 mm away: no motion that its hinge leaves opens that.
+TEST(OpenGaps, StayWhereJointsDoNotLetThemOpen) {
+  const Scene scene{{{"robot", "robot", box(1.0, 1.0), 1.0, 0.5, false},
+                     {"door", "door", regular_polygon(4, 1.0), 1.0, 0.5, false},
+                     {"post", "wall", box(0.2, 0.2), 1.0, 0.5, true},
+                     {"wall", "wall", box(1.0, 4.0), 1.0, 0.5, true}},
+                    {{2, 1, {0.0, 0.0}, {-1.0, 0.0}}}};
+  const StepEnergy energy(scene, {}, {});
+  for (const double angle : {0.0, 1e-9, 1e-3}) {
+    const VectorXd p =
+        stacked(with_closed_joints(scene, {{0, -5, 0}, {0, 0, angle}, {0, 0, 0}, {2.502, 0, 0}}));
+    const VectorXd opened = with_open_gaps(energy, p);
+    EXPECT_LT((opened - p).lpNorm<Eigen::Infinity>(), 0.1) << angle;
+  }
+}
+
 }  // namespace
 }  // namespace rtg

@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "core/math/lanes.hpp"
 
 namespace rtg {
 namespace {
@@ -143,6 +147,37 @@ TEST(ThreadPool, CpuTimeIsThatOfTheCallingThread) {
   std::jthread([&worked] { worked = work(); }).join();
   EXPECT_TRUE(worked);
   EXPECT_LT(thread_cpu_s() - before, kWork);
+}
+
+/// Sizes of the slices that `count` jobs are solved in.
+std::vector<std::size_t> slices(std::size_t count, int threads) {
+  std::mutex mutex;
+  std::vector<std::size_t> sizes;
+  const SolveBatch solve = solve_on_threads(
+      [&](std::span<const ReverseJob> jobs) {
+        const std::lock_guard lock(mutex);
+        sizes.push_back(jobs.size());
+        return std::vector<ReverseResult>(jobs.size());
+      },
+      threads);
+  EXPECT_EQ(solve(std::vector<ReverseJob>(count)).size(), count);
+  return sizes;
+}
+
+TEST(ThreadPool, NoThreadWaitsForWorkAndNoSliceLeavesLanesIdle) {
+  constexpr std::size_t kLanes = kWidth<Lanes>;
+  for (const int threads : {2, 3, 8, 16})
+    for (const std::size_t count : {1U, 7U, 48U, 192U, 576U, 3072U}) {
+      const std::vector<std::size_t> sizes = slices(count, threads);
+      const std::size_t wanted =
+          std::min<std::size_t>(static_cast<std::size_t>(threads), count / kLanes);
+      EXPECT_GE(sizes.size(), wanted) << count << " jobs, " << threads << " threads";
+      if (count >= kLanes) {
+        EXPECT_GE(std::ranges::min(sizes), kLanes);
+      }
+    }
+  EXPECT_EQ(slices(48, 1), (std::vector<std::size_t>{48}));
+  EXPECT_TRUE(slices(0, 2).empty());
 }
 
 }  // namespace
