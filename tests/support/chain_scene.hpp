@@ -18,6 +18,26 @@ inline Scene chain(int links) {
   return scene;
 }
 
+/// Gathering's robot and a chain of four links.
+inline Scene robot_and_chain() {
+  const Scene links = chain(4);
+  Scene scene{{gathering().scene.bodies[0]}, {}};
+  for (const Body& link : links.bodies) scene.bodies.push_back(link);
+  for (Joint joint : links.joints) {
+    ++joint.parent;
+    ++joint.child;
+    scene.joints.push_back(joint);
+  }
+  return scene;
+}
+
+/// Largest distance between two points that a joint pins together [m].
+inline double widest_joint(const Scene& scene, const Poses& poses) {
+  double gap = 0.0;
+  for (const Joint& joint : scene.joints) gap = std::max(gap, joint_gap(joint, poses));
+  return gap;
+}
+
 /// Gathering's robot in contact with the middle one of three links and with a door hinged to a
 /// wall, which is close to its limit.
 struct ChainScene : TouchingScene {

@@ -16,6 +16,10 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 /// Sharpness at which the samples' corners are rounded.
 inline constexpr double kAlpha = 50.0;
 
+/// A vertex in its body's frame, and the box that it comes near.
+inline const Vector2d kVertex(0.5, -0.3);
+inline const HalfPlanes kBox = half_planes(box(1.2, 1.2));
+
 /// Points in the frame of a box of half width 0.6: on faces, beside and right at corners, near
 /// contact (gaps of 1e-4 to 0.1) and, for the smoothed distance has no gap in its domain, inside.
 inline std::vector<Vector2d> points_near_a_box() {

@@ -75,12 +75,46 @@ inline void expect_matrix_is_derivative(const ReverseProblem& problem, const Ite
   }
 }
 
+/// To first order in t, x + t d leaves (1 - t) of every constraint, d the Newton step with either
+/// Hessian; by central differences over t.
+inline void expect_step_solves_the_constraints(const ReverseProblem& problem, const Iterate& x,
+                                               double t, double tolerance) {
+  for (const Curvature curvature : {Curvature{false, 1.0}, Curvature{true, 0.1}}) {
+    const Linearisation lin(problem, x, curvature);
+    const Direction d = lin.direction(solution_of(lin), true);
+    const Violation now = violation(problem, x);
+    const Violation up = violation(problem, moved(problem, x, d, t));
+    const Violation down = violation(problem, moved(problem, x, d, -t));
+    for (std::size_t k = 0; k < now.residuals.size(); ++k) {
+      const VectorXd slope = (up.residuals[k] - down.residuals[k]) / (2.0 * t);
+      EXPECT_LT((slope + now.residuals[k]).lpNorm<Eigen::Infinity>(), tolerance);
+      const VectorXd other = (up.complementarity[k] - down.complementarity[k]) / (2.0 * t);
+      EXPECT_LT((other + now.complementarity[k]).lpNorm<Eigen::Infinity>(), tolerance);
+    }
+  }
+}
+
 /// J + Σ y·Φ.
 inline double lagrangian(const ReverseProblem& problem, const Iterate& x) {
   const Violation v = violation(problem, x);
   double sum = objective(problem, x);
   for (std::size_t k = 1; k < x.p.size(); ++k) sum += x.multipliers[k].dot(v.residuals[k]);
   return sum;
+}
+
+/// The right-hand side against differences of the Lagrangian, along directions that keep
+/// complementarity (Δλ = b·Δp): its multipliers drop out there.
+inline void expect_right_hand_side_is_gradient(const ReverseProblem& problem, const Iterate& x) {
+  const Linearisation lin(problem, x, {true, 0.0});
+  const VectorXd gradient = joined(lin.conditions());
+  for (const BlockVector& along : directions(lin)) {
+    const Direction d = lin.direction(along, false);
+    const double t = 1e-7, slope = gradient.dot(joined(along));
+    EXPECT_NEAR((lagrangian(problem, moved(problem, x, d, t)) -
+                 lagrangian(problem, moved(problem, x, d, -t))) /
+                    (2.0 * t),
+                slope, 1e-6 * std::abs(slope));
+  }
 }
 
 }  // namespace rtg::testing

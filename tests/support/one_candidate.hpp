@@ -1,7 +1,11 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <initializer_list>
 #include <memory>
 
+#include "core/energy/implicit_step.hpp"
 #include "core/math/assembled_solver.hpp"
 #include "core/math/riccati.hpp"
 #include "core/reverse/filter_sqp.hpp"
@@ -28,6 +32,34 @@ inline Iterate in_contact(const ReverseProblem& problem) { return solved(problem
 inline SqpResult solved_from(const ReverseProblem& problem, const Iterate& start) {
   const ReverseProblem* one = &problem;
   return FilterSqp<double>(problem, stage_solver(problem)).solve({&one, 1}, {&start, 1}).front();
+}
+
+/// Forward simulation of the trajectory's start, from rest, under its controls.
+inline Iterate replayed(const ReverseProblem& problem, const Iterate& x) {
+  Iterate again = x;
+  for (std::size_t k = 1; k < x.p.size(); ++k) {
+    again.forces[k - 1] = problem.energy.forces(again.p[k - 1]);
+    const auto step = implicit_step(
+        problem.energy, {again.p[k - 1], again.forces[k - 1], &again.p[k > 1 ? k - 2 : 0]},
+        Drive<double>::controls(x.controls[k]));
+    EXPECT_TRUE(step);
+    if (step) again.p[k] = step->next;
+  }
+  return again;
+}
+
+/// With each of the KKT methods as with block elimination; `config` is that of the problem.
+inline void expect_the_same_solution(const ReverseProblem& problem, ReverseConfig& config,
+                                     std::initializer_list<KktMethod> methods) {
+  const SqpResult first = solved(problem);
+  ASSERT_EQ(first.status, SolveStatus::kConverged);
+  for (const KktMethod method : methods) {
+    config.kkt = method;
+    const SqpResult other = solved(problem);
+    ASSERT_EQ(other.status, SolveStatus::kConverged);
+    for (std::size_t k = 0; k < first.x.p.size(); ++k)
+      EXPECT_LT((other.x.p[k] - first.x.p[k]).norm(), 1e-5) << k;
+  }
 }
 
 }  // namespace rtg::testing

@@ -11,14 +11,13 @@ namespace {
 using testing::derivative_error;
 using testing::frame_of;
 using testing::kAlpha;
+using testing::kBox;
+using testing::kVertex;
 using testing::points_near_a_box;
 using testing::poses_with_point_at;
 using testing::pushing;
 using testing::test_directions;
 using testing::Vec6;
-
-const Vector2d kVertex(0.5, -0.3);
-const HalfPlanes kBox = half_planes(box(1.2, 1.2));
 
 /// The gap of the vertex to the box at q, with all that is derived of it.
 struct At {

@@ -12,9 +12,9 @@ using testing::frame_of;
 using testing::pushing;
 using testing::Vec6;
 
-const Vector2d kVertex(0.5, -0.3);
-
-Vec6 some_poses(Rng& rng) { return testing::poses_with_point_at(kVertex, {0.6, 0.1}, rng); }
+Vec6 some_poses(Rng& rng) {
+  return testing::poses_with_point_at(testing::kVertex, {0.6, 0.1}, rng);
+}
 
 Mat4<double> some_matrix(Rng& rng) {
   return Mat4<double>::NullaryExpr([&] { return rng.uniform(-1.0, 1.0); });

@@ -11,6 +11,8 @@ namespace {
 using testing::derivative_error;
 using testing::frame_of;
 using testing::kAlpha;
+using testing::kBox;
+using testing::kVertex;
 using testing::points_near_a_box;
 using testing::poses_with_point_at;
 using testing::pushing;
@@ -19,8 +21,6 @@ using testing::Vec6;
 using Vec12 = Eigen::Matrix<double, 12, 1>;
 
 constexpr double kSlip = 0.025;
-const Vector2d kVertex(0.5, -0.3);
-const HalfPlanes kBox = half_planes(box(1.2, 1.2));
 
 /// Friction at z = (q₊, q) [12].
 struct At {

@@ -16,32 +16,17 @@ namespace {
 using testing::ChainScene;
 using testing::closed;
 using testing::of_coordinates;
+using testing::widest_joint;
 
 const PhysicsConfig kPhysics;
 const PushConfig kPush;
 
 /// The robot and a chain of four links, straight along x.
 struct Table {
-  Scene scene{{testing::gathering().scene.bodies[0]}, {}};
-  Poses start;
-
-  Table() {
-    const Scene links = testing::chain(4);
-    for (const Body& link : links.bodies) scene.bodies.push_back(link);
-    for (Joint joint : links.joints) {
-      ++joint.parent;
-      ++joint.child;
-      scene.joints.push_back(joint);
-    }
-    start = with_closed_joints(scene, {{0, -4, 0}, {-3.6, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
-  }
+  Scene scene = testing::robot_and_chain();
+  Poses start =
+      with_closed_joints(scene, {{0, -4, 0}, {-3.6, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
 };
-
-double widest_joint(const Scene& scene, const Poses& poses) {
-  double gap = 0.0;
-  for (const Joint& joint : scene.joints) gap = std::max(gap, joint_gap(joint, poses));
-  return gap;
-}
 
 /// The action nearest to the heading from the robot to a body, or a few beside it.
 int towards(const Poses& poses, std::size_t body, int beside) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/energy/implicit_step.hpp"
 #include "core/forward/newton_simulator.hpp"
 #include "core/reverse/reverse_simulator.hpp"
 #include "tests/support/one_candidate.hpp"
@@ -13,21 +12,9 @@ namespace rtg {
 namespace {
 
 using testing::CoastingScene;
+using testing::expect_the_same_solution;
+using testing::replayed;
 using testing::solved;
-
-/// Forward simulation of the solution's start, at rest, under the solution's controls.
-std::vector<VectorXd> replayed(const ReverseProblem& problem, const Iterate& x) {
-  std::vector<VectorXd> p{x.p[0]};
-  for (std::size_t k = 1; k < x.p.size(); ++k) {
-    const VectorXd& before = p[k > 1 ? k - 2 : 0];
-    const auto step =
-        implicit_step(problem.energy, {p[k - 1], problem.energy.forces(p[k - 1]), &before},
-                      Drive<double>::controls(x.controls[k]));
-    EXPECT_TRUE(step);
-    p.push_back(step ? step->next : p.back());
-  }
-  return p;
-}
 
 /// The touching scene's robot and box after a push in which it met the box, which coasted on. With
 /// k_D = 1 that is another 0.2 m.
@@ -59,7 +46,7 @@ TEST(FilterSqpInertia, ForwardOfReverseWithTheSolversControlsIsTheEnd) {
   const AfterAPush at;
   const SqpResult result = solved(at.problem);
   ASSERT_EQ(result.status, SolveStatus::kConverged);
-  const std::vector<VectorXd> p = replayed(at.problem, result.x);
+  const std::vector<VectorXd> p = replayed(at.problem, result.x).p;
   for (std::size_t k = 0; k < p.size(); ++k) EXPECT_LT((p[k] - result.x.p[k]).norm(), 1e-6) << k;
 }
 
@@ -101,16 +88,8 @@ TEST(FilterSqpInertia, WithoutFrictionSubStepsAreExplicitBackwards) {
 
 TEST(FilterSqpInertia, EveryKktMethodGivesTheSameSolution) {
   AfterAPush at;
-  const SqpResult first = solved(at.problem);
-  ASSERT_EQ(first.status, SolveStatus::kConverged);
-  for (const KktMethod method :
-       {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu}) {
-    at.config.kkt = method;
-    const SqpResult other = solved(at.problem);
-    ASSERT_EQ(other.status, SolveStatus::kConverged);
-    for (std::size_t k = 0; k < first.x.p.size(); ++k)
-      EXPECT_LT((other.x.p[k] - first.x.p[k]).norm(), 1e-5) << k;
-  }
+  expect_the_same_solution(at.problem, at.config,
+                           {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu});
 }
 
 TEST(FilterSqpInertia, PushesOfRandomScenesAreFoundBack) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/energy/implicit_step.hpp"
 #include "core/energy/open_gaps.hpp"
 #include "core/forward/box2d_simulator.hpp"
 #include "core/reverse/reverse_simulator.hpp"
@@ -12,24 +11,11 @@
 namespace rtg {
 namespace {
 
+using testing::expect_the_same_solution;
+using testing::replayed;
+using testing::robot_and_chain;
 using testing::solved;
-
-double widest_joint(const Scene& scene, const Poses& poses) {
-  double gap = 0.0;
-  for (const Joint& joint : scene.joints) gap = std::max(gap, joint_gap(joint, poses));
-  return gap;
-}
-
-Scene robot_and_chain() {
-  Scene scene{{testing::gathering().scene.bodies[0]}, {}};
-  for (const Body& link : testing::chain(4).bodies) scene.bodies.push_back(link);
-  for (Joint joint : testing::chain(4).joints) {
-    ++joint.parent;
-    ++joint.child;
-    scene.joints.push_back(joint);
-  }
-  return scene;
-}
+using testing::widest_joint;
 
 /// States after pushes of Box2D at a chain of four links, with the action that led there.
 std::vector<ReverseJob> pushed_chains(const Scene& scene, const PushConfig& push,
@@ -70,28 +56,16 @@ TEST(FilterSqpJoints, ForwardOfReverseWithTheSolversControlsIsTheEnd) {
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   EXPECT_LT(terminal_miss(chain.problem, result.x), chain.config.terminal_tolerance);
   EXPECT_GT((result.x.p[0] - chain.problem.end).segment<2>(6).norm(), 0.5);  // it was dragged
-  VectorXd p = result.x.p[0];
-  for (std::size_t k = 1; k < result.x.p.size(); ++k) {
+  for (std::size_t k = 1; k < result.x.p.size(); ++k)
     EXPECT_LT(widest_joint(chain.scene, unstacked(result.x.p[k])), 1e-14);
-    const auto step = implicit_step(chain.energy, {p, chain.energy.forces(p)},
-                                    Drive<double>::controls(result.x.controls[k]));
-    ASSERT_TRUE(step);
-    p = step->next;
-  }
+  const VectorXd p = replayed(chain.problem, result.x).p.back();
   EXPECT_LT((p - result.x.p.back()).norm(), 1e-6);
 }
 
 TEST(FilterSqpJoints, EveryKktMethodGivesTheSameSolution) {
   PushedChain chain;
-  const SqpResult first = solved(chain.problem);
-  ASSERT_EQ(first.status, SolveStatus::kConverged);
-  for (const KktMethod method : {KktMethod::kCyclicReduction, KktMethod::kUmfpack}) {
-    chain.config.kkt = method;
-    const SqpResult other = solved(chain.problem);
-    ASSERT_EQ(other.status, SolveStatus::kConverged);
-    for (std::size_t k = 0; k < first.x.p.size(); ++k)
-      EXPECT_LT((other.x.p[k] - first.x.p[k]).norm(), 1e-5) << k;
-  }
+  expect_the_same_solution(chain.problem, chain.config,
+                           {KktMethod::kCyclicReduction, KktMethod::kUmfpack});
 }
 
 TEST(FilterSqpJoints, PushesOfAChainAreFoundBackAndReplay) {

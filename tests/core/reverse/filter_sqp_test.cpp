@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/energy/implicit_step.hpp"
 #include "core/forward/newton_simulator.hpp"
 #include "tests/support/free_push.hpp"
 #include "tests/support/one_candidate.hpp"
@@ -12,24 +11,12 @@
 namespace rtg {
 namespace {
 
+using testing::expect_the_same_solution;
 using testing::noise;
+using testing::replayed;
 using testing::solved;
 using testing::solved_from;
 using testing::TouchingScene;
-
-/// Forward simulation of the solution's start under the solution's controls.
-Iterate replayed(const ReverseProblem& problem, const Iterate& x) {
-  Iterate again = x;
-  for (std::size_t k = 1; k < x.p.size(); ++k) {
-    again.forces[k - 1] = problem.energy.forces(again.p[k - 1]);
-    const auto step = implicit_step(
-        problem.energy, {again.p[k - 1], again.forces[k - 1], &again.p[k > 1 ? k - 2 : 0]},
-        Drive<double>::controls(x.controls[k]));
-    EXPECT_TRUE(step);
-    if (step) again.p[k] = step->next;
-  }
-  return again;
-}
 
 TEST(FilterSqp, ReverseOfAFreePushIsTheClosedForm) {
   const TouchingScene scene;
@@ -160,17 +147,8 @@ TEST(FilterSqp, NoForwardSimulationNearbyIsBetter) {
 TEST(FilterSqp, EveryKktMethodGivesTheSameSolution) {
   const TouchingScene scene;
   ReverseConfig config;
-  const ReverseProblem problem = scene.problem(config);
-  const SqpResult first = solved(problem);
-  ASSERT_EQ(first.status, SolveStatus::kConverged);
-  for (const KktMethod method :
-       {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu}) {
-    config.kkt = method;
-    const SqpResult other = solved(problem);
-    ASSERT_EQ(other.status, SolveStatus::kConverged);
-    for (std::size_t k = 0; k < first.x.p.size(); ++k)
-      EXPECT_LT((other.x.p[k] - first.x.p[k]).norm(), 1e-5) << k;
-  }
+  expect_the_same_solution(scene.problem(config), config,
+                           {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu});
 }
 
 TEST(FilterSqp, StopsAtTheIterationLimit) {

@@ -7,11 +7,11 @@ namespace rtg {
 namespace {
 
 using testing::ChainScene;
-using testing::Curvature;
 using testing::Direction;
 using testing::directions;
 using testing::expect_matrix_is_derivative;
-using testing::lagrangian;
+using testing::expect_right_hand_side_is_gradient;
+using testing::expect_step_solves_the_constraints;
 using testing::Linearisation;
 using testing::moved;
 using testing::solution_of;
@@ -67,35 +67,12 @@ TEST(JointReduction, MatrixIsDerivativeWithFixedEnd) {
 
 TEST(JointReduction, RightHandSideIsMinusTheGradientOfTheLagrangian) {
   const Disturbed at(3);
-  const Linearisation lin(at.problem, at.x, {true, 0.0});
-  const VectorXd gradient = joined(lin.conditions());
-  for (const BlockVector& along : directions(lin)) {
-    const Direction d = lin.direction(along, false);
-    const double t = 1e-7, slope = gradient.dot(joined(along));
-    EXPECT_NEAR((lagrangian(at.problem, moved(at.problem, at.x, d, t)) -
-                 lagrangian(at.problem, moved(at.problem, at.x, d, -t))) /
-                    (2.0 * t),
-                slope, 1e-6 * std::abs(slope));
-  }
+  expect_right_hand_side_is_gradient(at.problem, at.x);
 }
 
-// To first order in α, x + α d leaves (1 - α) of every constraint.
 TEST(JointReduction, StepSolvesTheLinearisedConstraints) {
   const Disturbed at(4);
-  for (const Curvature curvature : {Curvature{false, 1.0}, Curvature{true, 0.1}}) {
-    const Linearisation lin(at.problem, at.x, curvature);
-    const Direction d = lin.direction(solution_of(lin), true);
-    const double t = 1e-7;
-    const Violation now = violation(at.problem, at.x);
-    const Violation up = violation(at.problem, moved(at.problem, at.x, d, t));
-    const Violation down = violation(at.problem, moved(at.problem, at.x, d, -t));
-    for (std::size_t k = 0; k < now.residuals.size(); ++k) {
-      const VectorXd slope = (up.residuals[k] - down.residuals[k]) / (2.0 * t);
-      EXPECT_LT((slope + now.residuals[k]).lpNorm<Eigen::Infinity>(), 1e-5);
-      const VectorXd other = (up.complementarity[k] - down.complementarity[k]) / (2.0 * t);
-      EXPECT_LT((other + now.complementarity[k]).lpNorm<Eigen::Infinity>(), 1e-5);
-    }
-  }
+  expect_step_solves_the_constraints(at.problem, at.x, 1e-7, 1e-5);
 }
 
 TEST(JointReduction, EntriesThatBelongToNoCoordinateDoNotMove) {
