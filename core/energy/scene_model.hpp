@@ -66,6 +66,16 @@ class SceneModel {
     const Damping<T>& d = damping_[body];
     return {d.mass * T(inertia_weight_), d.moment * T(inertia_weight_), d.periodic};
   }
+  /// What damping and inertia have in Φ of a body that moves by a = (Δt, Δθ) after it moved by b.
+  Vec3<T> motion_force(int body, const Vec3<T>& a, const Vec3<T>& b) const {
+    const Damping<T>& d = damping_[body];
+    Vec3<T> force(d.mass * a[0], d.mass * a[1], d.turn_slope(a[2]));
+    if (!inertial()) return force;
+    const Inertia<T> own = inertia(body);
+    force += Vec3<T>(own.mass * (a[0] - b[0]), own.mass * (a[1] - b[1]),
+                     own.turn_slope(a[2], b[2]).value);
+    return force;
+  }
   const Vec3<T>& control_bound() const { return control_bound_; }
   const T& friction(int pair) const { return friction_[pair]; }
 

@@ -92,16 +92,13 @@ template <class T>
 void StepPotential<T>::add_motion(const Placement<T>& next, T* gradient,
                                   BlockMatrix<T>& hessian) const {
   for (int i = 0; i < scene_.movable(); ++i) {
-    const Vec3<T> a = way(*now_, next, i);
+    const Vec3<T> a = way(*now_, next, i), b = way_before(i);
+    const Vec3<T> slope = scene_.motion_force(i, a, b);
     const Damping<T>& body = scene_.damping(i);
-    Vec3<T> slope(body.mass * a[0], body.mass * a[1], body.turn_slope(a[2]));
     Vec3<T> curvature(body.mass, body.mass, body.turn_curvature(a[2]));
     if (scene_.inertial()) {
-      const Vec3<T> b = way_before(i);
       const Inertia<T> inertia = scene_.inertia(i);
-      const auto turn = inertia.turn_slope(a[2], b[2]);
-      slope += Vec3<T>(inertia.mass * (a[0] - b[0]), inertia.mass * (a[1] - b[1]), turn.value);
-      curvature += Vec3<T>(inertia.mass, inertia.mass, turn.a);
+      curvature += Vec3<T>(inertia.mass, inertia.mass, inertia.turn_slope(a[2], b[2]).a);
     }
     for (int m = 0; m < 3; ++m) gradient[3 * i + m] = gradient[3 * i + m] + slope[m];
     hessian.add(i, i, diagonal(curvature));

@@ -15,17 +15,9 @@ template <class T>
 void set_free_residual(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k, T* e) {
   const SceneModel<T>& energy = problem.energy;
   for (int i = 0; i < energy.movable(); ++i) {
-    const Vec3<T> a = way(x.p[k - 1], x.p[k], i);
-    const Damping<T>& body = energy.damping(i);
-    e[3 * i] = body.mass * a[0];
-    e[3 * i + 1] = body.mass * a[1];
-    e[3 * i + 2] = body.turn_slope(a[2]);
-    if (!energy.inertial()) continue;
-    const Inertia<T> inertia = energy.inertia(i);
-    const Vec3<T> b = way(x.p[std::max(k - 2, 0)], x.p[k - 1], i);
-    e[3 * i] = e[3 * i] + inertia.mass * (a[0] - b[0]);
-    e[3 * i + 1] = e[3 * i + 1] + inertia.mass * (a[1] - b[1]);
-    e[3 * i + 2] = e[3 * i + 2] + inertia.turn_slope(a[2], b[2]).value;
+    const Vec3<T> force = energy.motion_force(i, way(x.p[k - 1], x.p[k], i),
+                                              way(x.p[std::max(k - 2, 0)], x.p[k - 1], i));
+    for (int m = 0; m < 3; ++m) e[3 * i + m] = force[m];
   }
   for (int m = 0; m < 3; ++m)
     e[m] = e[m] - energy.control_bound()[m] * hyperbolic_tangent(x.controls[k][m]);
@@ -97,8 +89,6 @@ struct Evaluator<T>::Pass {
       const T force = x.forces[k][contact];
       if (k > 0) limit.add_gradient(-force, scene.movable(), into.residuals_[k].data());
       note_gap(k, contact, limit.gap, scene.barrier().window(limit.gap).w);
-      gaps[k][contact] = limit.gap;
-      legal = legal && keeps_gap(limit.gap, were[k][contact], scene.barrier());
       if (k == 0) sum.objective = sum.objective + scene.barrier().value(limit.gap);
     });
   }
@@ -134,22 +124,22 @@ struct Evaluator<T>::Pass {
     return edges.separate(scene.sharpness());
   }
 
-  /// λ g - μ̃ w.
+  /// Legality, and λ g - μ̃ w.
   void note_gap(int k, int contact, const T& g, const T& window) {
+    gaps[k][contact] = g;
+    legal = legal && keeps_gap(g, were[k][contact], scene.barrier());
     const T off = x.forces[k][contact] * g - T(scene.barrier().weight) * window;
     into.complementarity_[k][contact] = off;
     sum.violation = sum.violation + magnitude(off);
     sum.infeasibility = greater(sum.infeasibility, magnitude(off));
   }
 
-  /// Its complementarity, legality, and at the start the barrier of the objective.
+  /// Its gap, and at the start the barrier of the objective.
   void add_contact(int k, int contact, const Touch<T>& touch, const SignedDistance<T>& d) {
     const Barrier& barrier = scene.barrier();
     const Mask<T> acts = touch.within || x.forces[k][contact] != T(0.0);
     const T g = touch.gap(d, acts);
     note_gap(k, contact, g, select(acts, barrier.window(g).w, T(0.0)));
-    gaps[k][contact] = select(touch.within, g, Touch<T>::far(scene));
-    legal = legal && keeps_gap(gaps[k][contact], were[k][contact], barrier);
     if (k == 0) sum.objective = sum.objective + select(touch.within, barrier.value(g), T(0.0));
   }
 };

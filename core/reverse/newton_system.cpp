@@ -120,23 +120,27 @@ template <class T>
 void NewtonSystem<T>::force_steps(const ProblemLanes<T>& problem, const Trajectory<T>& x,
                                   const StageStep<T>& step, PerContact<T>& out) const {
   for (int k = 0; k <= problem.sub_steps; ++k) {
-    moved_ = step.poses[k];
-    problem.energy.articulation().spread(x.p[k], moved_[0].data());
-    find_force_steps(problem.energy, x.p[k], k, out[k].data());
+    const T* moved = step.poses[k][0].data();
+    if (!problem.energy.articulation().empty()) {
+      moved_ = step.poses[k];
+      problem.energy.articulation().spread(x.p[k], moved_[0].data());
+      moved = moved_[0].data();
+    }
+    find_force_steps(problem.energy, x.p[k], k, moved, out[k].data());
   }
 }
 
-/// Of one level, by moved_.
+/// Of one level, by how far all bodies move [3·movable].
 template <class T>
 void NewtonSystem<T>::find_force_steps(const SceneModel<T>& scene, const Placement<T>& at, int k,
-                                       T* out) const {
+                                       const T* moved, T* out) const {
   for (int n = 0; n < scene.pair_count(); ++n) {
     T* forces = out + contact_of(n, 0);
     if (!active_[k][n]) {
       for (int v = 0; v < scene.corners(n); ++v) forces[v] = T(0.0);
       continue;
     }
-    const Vec4<T> along = pushed(scene, n, scene.frame(n, at), moved_[0].data());
+    const Vec4<T> along = pushed(scene, n, scene.frame(n, at), moved);
     for (int v = 0; v < scene.corners(n); ++v) {
       const Eliminated<T>& e = eliminated_[k][contact_of(n, v)];
       forces[v] = e.a + e.b.dot(along);
@@ -144,7 +148,7 @@ void NewtonSystem<T>::find_force_steps(const SceneModel<T>& scene, const Placeme
   }
   for_each_limit(scene.articulation(), at, [&](int l, const JointLimit<T>& limit) {
     const Eliminated<T>& e = eliminated_[k][scene.limit_contact(l)];
-    out[scene.limit_contact(l)] = e.a + e.b[0] * limit.along(moved_[0].data(), scene.movable());
+    out[scene.limit_contact(l)] = e.a + e.b[0] * limit.along(moved, scene.movable());
   });
 }
 

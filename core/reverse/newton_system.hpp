@@ -44,7 +44,8 @@ class NewtonSystem {
   void add_control(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
   void add_pair(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k, int n);
   void add_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
-  void find_force_steps(const SceneModel<T>& scene, const Placement<T>& at, int k, T* out) const;
+  void find_force_steps(const SceneModel<T>& scene, const Placement<T>& at, int k, const T* moved,
+                        T* out) const;
   void add_own(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame,
                const PairTerms<T>& terms, int k);
 
