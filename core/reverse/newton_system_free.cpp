@@ -16,6 +16,12 @@ Vec3<T> multipliers_of(const Trajectory<T>& x, int k, int body) {
   return {y[0], y[1], y[2]};
 }
 
+/// How far a body moved in the sub-step before; everything is at rest before the first.
+template <class T>
+Vec3<T> way_before(const Trajectory<T>& x, int k, int body) {
+  return k == 1 ? nothing<T>() : way(x.p[k - 2], x.p[k - 1], body);
+}
+
 }  // namespace
 
 /// Begins stage k with the terms of one level in the objective, barrier aside, and the proximal
@@ -61,8 +67,7 @@ void NewtonSystem<T>::add_motion(const ProblemLanes<T>& problem, const Trajector
     const Vec3<T> moved = way(x.p[k - 1], x.p[k], i), y = multipliers_of(x, k, i);
     const Damping<T>& body = problem.energy.damping(i);
     const Vec3<T> slope(body.mass, body.mass, body.turn_curvature(moved[2]));
-    const Vec3<T> drag(body.mass * moved[0], body.mass * moved[1], body.turn_slope(moved[2]));
-    residual_[k][i] += drag;
+    residual_[k][i] += problem.energy.motion_force(i, moved, way_before(x, k, i));
     gradient_[k][i] += slope.cwiseProduct(y);
     gradient_[k - 1][i] -= slope.cwiseProduct(y);
     Block<T> H =
@@ -81,21 +86,20 @@ void NewtonSystem<T>::add_motion(const ProblemLanes<T>& problem, const Trajector
   }
 }
 
-/// Inertia over the sub-steps k - 1 and k; before the first everything is at rest.
+/// Derivatives of inertia over the sub-steps k - 1 and k; before the first everything is at rest.
 template <class T>
 void NewtonSystem<T>::add_inertia(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   const bool first = k == 1;
   for (int i = 0; i < system_.M; ++i) {
     const Inertia<T> body = problem.energy.inertia(i);
     const Vec3<T> a = way(x.p[k - 1], x.p[k], i);
-    const Vec3<T> b = first ? nothing<T>() : way(x.p[k - 2], x.p[k - 1], i);
+    const Vec3<T> b = way_before(x, k, i);
     const Vec3<T> y = multipliers_of(x, k, i);
     auto turn = body.turn_slope(a[2], b[2]);
     if (first) turn.b = turn.ab = turn.bb = T(0.0);
     const Vec3<T> by_a(body.mass, body.mass, turn.a);
     const Vec3<T> by_b = first ? nothing<T>() : Vec3<T>(-body.mass, -body.mass, turn.b);
     Stage& stage = system_.stages[k];
-    residual_[k][i] += Vec3<T>(body.mass * (a[0] - b[0]), body.mass * (a[1] - b[1]), turn.value);
     stage.E.add(i, i, diagonal<T>(by_a));
     stage.F.add(i, i, diagonal<T>(by_b - by_a));
     gradient_[k][i] += by_a.cwiseProduct(y);
