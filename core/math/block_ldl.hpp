@@ -10,7 +10,7 @@ template <class T>
 class BlockLdl {
  public:
   explicit BlockLdl(int count = 0)
-      : L_(count), inverse_(static_cast<std::size_t>(count)), column_(inverse_) {}
+      : L_(count), inverse_(static_cast<std::size_t>(count)), row_(inverse_) {}
 
   /// Reads the lower half of A. Returns in which lanes A is positive definite.
   Mask<T> factorize(const BlockMatrix<T>& A);
@@ -20,59 +20,59 @@ class BlockLdl {
   /// x ← A⁻¹ x.
   void solve(Vec3<T>* x) const;
 
-  /// r ← r A⁻¹ for a row r of M blocks. Those before `first` are zero; the result is wanted from
-  /// `from` on.
-  void solve_row(Block<T>* r, int first, int from) const;
+  /// out ← r A⁻¹ for a row r of M blocks, of which `load`(i) returns the RegisterSum r_i. Those
+  /// before `first` are zero; the result is wanted from `from` on, before it `out` is arbitrary.
+  template <class Load>
+  void solve_row(const Load& load, int first, int from, Block<T>* out) const;
 
  private:
+  void eliminate_row(const BlockMatrix<T>& A, int i);
   std::uint64_t before(int i) const { return L_.pattern[i] & ((std::uint64_t{1} << i) - 1); }
   std::uint64_t after(int i) const { return L_.pattern[i] & ~((std::uint64_t{2} << i) - 1); }
 
   BlockMatrix<T> L_;               // strictly lower half; (j, i) of the pattern beside (i, j)
   std::vector<Block<T>> inverse_;  // D_i⁻¹
-  std::vector<Block<T>> column_;   // of A, what is left of it
+  std::vector<Block<T>> row_;      // of L D
   Mask<T> regular_ = Mask<T>(true);
 };
 
 template <class T>
 Mask<T> BlockLdl<T>::factorize(const BlockMatrix<T>& A) {
-  const int M = A.M;
   L_.clear();
-  for (int i = 0; i < M; ++i)
-    for (const int j : Bits(A.pattern[i])) {
-      if (j > i) break;
-      L_.at(i, j) = A.at(i, j);
-      L_.pattern[i] |= std::uint64_t{1} << j;
-      L_.pattern[j] |= std::uint64_t{1} << i;
-    }
   Mask<T> positive(true);
   regular_ = Mask<T>(true);
-  for (int i = 0; i < M; ++i) {
-    const Block<T> D = L_.at(i, i);
+  for (int i = 0; i < A.M; ++i) {
+    eliminate_row(A, i);
+    RegisterSum<Block<T>> rest(A.at(i, i));
+    for (const int j : Bits(before(i))) {
+      RegisterSum<Block<T>> scaled;
+      scaled.add(row_[j], inverse_[j]);
+      scaled.store(L_.at(i, j));
+      rest.subtract(row_[j], L_.at(i, j).transpose());
+    }
+    Block<T> D;
+    rest.store(D);
     T determinant;
     inverse_[i] = symmetric_inverse(D, determinant);
     regular_ = regular_ && is_regular(D, determinant);
     positive = positive && D(0, 0) > T(0.0) && D(0, 0) * D(1, 1) - D(1, 0) * D(1, 0) > T(0.0) &&
                determinant > T(0.0);
-    const std::uint64_t below = after(i);
-    for (const int j : Bits(below)) {
-      column_[j] = L_.at(j, i);
-      RegisterSum<Block<T>> scaled;
-      scaled.add(column_[j], inverse_[i]);
-      scaled.store(L_.at(j, i));
-      for (const int k : Bits(below & ((std::uint64_t{2} << j) - 1))) {
-        if (!L_.has(j, k)) {
-          L_.at(j, k).setConstant(T(0.0));
-          L_.pattern[j] |= std::uint64_t{1} << k;
-          L_.pattern[k] |= std::uint64_t{1} << j;
-        }
-        RegisterSum<Block<T>> rest(L_.at(j, k));
-        rest.subtract(L_.at(j, i), column_[k].transpose());
-        rest.store(L_.at(j, k));
-      }
-    }
   }
   return positive;
+}
+
+/// Row i of L D left of the diagonal, and its pattern.
+template <class T>
+void BlockLdl<T>::eliminate_row(const BlockMatrix<T>& A, int i) {
+  for (int j = 0; j < i; ++j) {
+    const std::uint64_t terms = before(i) & before(j);
+    if (!A.has(i, j) && terms == 0) continue;
+    RegisterSum<Block<T>> sum = A.has(i, j) ? RegisterSum<Block<T>>(A.at(i, j)) : RegisterSum<Block<T>>();
+    for (const int k : Bits(terms)) sum.subtract(row_[k], L_.at(j, k).transpose());
+    sum.store(row_[j]);
+    L_.pattern[i] |= std::uint64_t{1} << j;
+    L_.pattern[j] |= std::uint64_t{1} << i;
+  }
 }
 
 template <class T>
@@ -91,20 +91,19 @@ void BlockLdl<T>::solve(Vec3<T>* x) const {
 }
 
 template <class T>
-void BlockLdl<T>::solve_row(Block<T>* r, int first, int from) const {
+template <class Load>
+void BlockLdl<T>::solve_row(const Load& load, int first, int from, Block<T>* out) const {
   const std::uint64_t filled = ~((std::uint64_t{1} << first) - 1);
-  for (int i = first + 1; i < L_.M; ++i) {
-    const std::uint64_t terms = before(i) & filled;
-    if (terms == 0) continue;
-    RegisterSum<Block<T>> sum(r[i]);
-    for (const int k : Bits(terms)) sum.subtract(r[k], L_.at(i, k).transpose());
-    sum.store(r[i]);
+  for (int i = first; i < L_.M; ++i) {
+    RegisterSum<Block<T>> sum = load(i);
+    for (const int k : Bits(before(i) & filled)) sum.subtract(out[k], L_.at(i, k).transpose());
+    sum.store(out[i]);
   }
   for (int i = L_.M; i-- > from;) {
     RegisterSum<Block<T>> sum;
-    if (i >= first) sum.add(r[i], inverse_[i]);
-    for (const int k : Bits(after(i))) sum.subtract(r[k], L_.at(k, i));
-    sum.store(r[i]);
+    if (i >= first) sum.add(out[i], inverse_[i]);
+    for (const int k : Bits(after(i))) sum.subtract(out[k], L_.at(k, i));
+    sum.store(out[i]);
   }
 }
 

@@ -43,6 +43,12 @@ struct BlockMatrix {
       at(i, j) = X;
     }
   }
+  /// The pattern of column j.
+  std::uint64_t column(int j) const {
+    std::uint64_t rows = 0;
+    for (int i = 0; i < M; ++i) rows |= std::uint64_t{has(i, j)} << i;
+    return rows;
+  }
   void clear() { pattern.assign(pattern.size(), 0); }
   bool empty() const {
     return std::ranges::all_of(pattern, [](std::uint64_t row) { return row == 0; });

@@ -4,56 +4,29 @@
 
 namespace rtg {
 
-/// y ← y + A x.
+/// sum ← sum + (A x)_i.
 template <class T>
-void add_to(BlockColumn<T>& y, const BlockMatrix<T>& A, const BlockColumn<T>& x) {
-  for (int i = 0; i < A.M; ++i) {
-    RegisterSum<Vec3<T>> sum(y[i]);
-    for (const int j : Bits(A.pattern[i])) sum.add(A.at(i, j), x[j]);
-    sum.store(y[i]);
+void add_row(RegisterSum<Vec3<T>>& sum, const BlockMatrix<T>& A, int i, const BlockColumn<T>& x) {
+  for (const int j : Bits(A.pattern[i])) sum.add(A.at(i, j), x[j]);
+}
+
+/// sum ← sum + (Aᵀ x)_i.
+template <class T>
+void add_column(RegisterSum<Vec3<T>>& sum, const BlockMatrix<T>& A, int i,
+                const BlockColumn<T>& x) {
+  for (const int j : Bits(A.column(i))) sum.add(A.at(j, i).transpose(), x[j]);
+}
+
+/// sum ← sum + (A x)_i for a symmetric A, whose lower half counts.
+template <class T>
+void add_symmetric_row(RegisterSum<Vec3<T>>& sum, const BlockMatrix<T>& A, int i,
+                       const BlockColumn<T>& x) {
+  for (const int j : Bits(A.pattern[i])) {
+    if (j > i) break;
+    sum.add(A.at(i, j), x[j]);
   }
-}
-
-template <class T>
-void add_product(Vec3<T>& y, const Block<T>& A, const Vec3<T>& x) {
-  RegisterSum<Vec3<T>> sum(y);
-  sum.add(A, x);
-  sum.store(y);
-}
-template <class T>
-void add_transposed_product(Vec3<T>& y, const Block<T>& A, const Vec3<T>& x) {
-  RegisterSum<Vec3<T>> sum(y);
-  sum.add(A.transpose(), x);
-  sum.store(y);
-}
-
-/// y ← y + Aᵀ x.
-template <class T>
-void add_transposed_to(BlockColumn<T>& y, const BlockMatrix<T>& A, const BlockColumn<T>& x) {
-  for (int i = 0; i < A.M; ++i)
-    for (const int j : Bits(A.pattern[i])) add_transposed_product(y[j], A.at(i, j), x[i]);
-}
-
-/// y ← y - Aᵀ x.
-template <class T>
-void subtract_transposed(BlockColumn<T>& y, const BlockMatrix<T>& A, const BlockColumn<T>& x) {
-  for (int i = 0; i < A.M; ++i)
-    for (const int j : Bits(A.pattern[i])) {
-      RegisterSum<Vec3<T>> less(y[j]);
-      less.subtract(A.at(i, j).transpose(), x[i]);
-      less.store(y[j]);
-    }
-}
-
-/// y ← y + A x for a symmetric A, whose lower half counts.
-template <class T>
-void add_symmetric_to(BlockColumn<T>& y, const BlockMatrix<T>& A, const BlockColumn<T>& x) {
-  for (int i = 0; i < A.M; ++i)
-    for (const int j : Bits(A.pattern[i])) {
-      if (j > i) break;
-      add_product(y[i], A.at(i, j), x[j]);
-      if (j < i) add_transposed_product(y[j], A.at(i, j), x[i]);
-    }
+  for (const int j : Bits(A.column(i)))
+    if (j > i) sum.add(A.at(j, i).transpose(), x[j]);
 }
 
 }  // namespace rtg

@@ -5,8 +5,8 @@
 namespace rtg {
 
 /// A sum of products of blocks, member by member, so that it stays in registers: the compiler keeps
-/// an Eigen matrix, even a local one, in memory. A: 3 × 3, B: as the sum, 3 × 3 or 3 × 1; both may
-/// be transposed.
+/// an Eigen matrix, even a local one, in memory. A: 3 × 3, B: as the sum, 3 × 3 or 3 × 1; both, and
+/// a summand X, may be transposed.
 template <class Entry>
 class RegisterSum;
 
@@ -14,7 +14,8 @@ template <class T>
 class RegisterSum<Block<T>> {
  public:
   RegisterSum() : a_(0.0), b_(0.0), c_(0.0), d_(0.0), e_(0.0), f_(0.0), g_(0.0), h_(0.0), i_(0.0) {}
-  explicit RegisterSum(const Block<T>& X)
+  template <class Summand>
+  explicit RegisterSum(const Summand& X)
       : a_(X(0, 0)),
         b_(X(1, 0)),
         c_(X(2, 0)),
@@ -43,17 +44,14 @@ class RegisterSum<Block<T>> {
       g_ = g_ - x * w, h_ = h_ - y * w, i_ = i_ - z * w;
     }
   }
-  void add(const Block<T>& X) {
+  template <class Summand>
+  void add(const Summand& X) {
     a_ = a_ + X(0, 0), b_ = b_ + X(1, 0), c_ = c_ + X(2, 0);
     d_ = d_ + X(0, 1), e_ = e_ + X(1, 1), f_ = f_ + X(2, 1);
     g_ = g_ + X(0, 2), h_ = h_ + X(1, 2), i_ = i_ + X(2, 2);
   }
-  void add_transposed(const Block<T>& X) {
-    a_ = a_ + X(0, 0), b_ = b_ + X(0, 1), c_ = c_ + X(0, 2);
-    d_ = d_ + X(1, 0), e_ = e_ + X(1, 1), f_ = f_ + X(1, 2);
-    g_ = g_ + X(2, 0), h_ = h_ + X(2, 1), i_ = i_ + X(2, 2);
-  }
-  void subtract(const Block<T>& X) {
+  template <class Summand>
+  void subtract(const Summand& X) {
     a_ = a_ - X(0, 0), b_ = b_ - X(1, 0), c_ = c_ - X(2, 0);
     d_ = d_ - X(0, 1), e_ = e_ - X(1, 1), f_ = f_ - X(2, 1);
     g_ = g_ - X(0, 2), h_ = h_ - X(1, 2), i_ = i_ - X(2, 2);
@@ -93,6 +91,8 @@ class RegisterSum<Vec3<T>> {
     for (int k = 0; k < 3; ++k)
       a_ = a_ - A(0, k) * x[k], b_ = b_ - A(1, k) * x[k], c_ = c_ - A(2, k) * x[k];
   }
+  void add(const Vec3<T>& x) { a_ = a_ + x[0], b_ = b_ + x[1], c_ = c_ + x[2]; }
+  void subtract(const Vec3<T>& x) { a_ = a_ - x[0], b_ = b_ - x[1], c_ = c_ - x[2]; }
   void store(Vec3<T>& x) const { x[0] = a_, x[1] = b_, x[2] = c_; }
 
  private:

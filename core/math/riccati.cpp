@@ -1,7 +1,5 @@
 #include "core/math/riccati.hpp"
 
-#include <algorithm>
-
 #include "core/math/block_products.hpp"
 
 namespace rtg {
@@ -26,9 +24,22 @@ Riccati<T>::Riccati(int count, int sub_steps)
       v_(static_cast<std::size_t>(count)),
       w_(v_),
       z_(v_),
-      Se_(v_),
+      Ne_(v_),
       row_(C_),
       whole_(count) {}
+
+/// Block (i, j) of a symmetric matrix of which the upper half counts.
+template <class T>
+RegisterSum<Block<T>> Riccati<T>::upper(const std::vector<Block<T>>& X, int i, int j) const {
+  return i <= j ? RegisterSum<Block<T>>(X[i * M_ + j])
+                : RegisterSum<Block<T>>(X[j * M_ + i].transpose());
+}
+
+/// Block (i, j) of Aᵀ.
+template <class T>
+RegisterSum<Block<T>> transposed(const BlockMatrix<T>& A, int i, int j) {
+  return A.has(j, i) ? RegisterSum<Block<T>>(A.at(j, i).transpose()) : RegisterSum<Block<T>>();
+}
 
 template <class T>
 Mask<T> Riccati<T>::solve(const StageSystem<T>& system, StageStep<T>& step) {
@@ -36,7 +47,7 @@ Mask<T> Riccati<T>::solve(const StageSystem<T>& system, StageStep<T>& step) {
   set_end(system.stages.back());
   for (int k = system.h; k > 0; --k) eliminate(system.stages[k], system.stages[k - 1], k);
   for (int i = 0; i < M_; ++i)
-    for (int j = 0; j <= i; ++j) whole_.add(i, j, P_[i * M_ + j]);
+    for (int j = 0; j <= i; ++j) whole_.add(i, j, P_[j * M_ + i].transpose());
   start_.factorize(whole_);
   whole_.clear();
   roll_forward(system, step);
@@ -48,67 +59,40 @@ Mask<T> Riccati<T>::solve(const StageSystem<T>& system, StageStep<T>& step) {
 template <class T>
 void Riccati<T>::set_end(const Stage& stage) {
   for (int i = 0; i < M_; ++i)
-    for (int j = 0; j <= i; ++j) {
-      const bool has = stage.Q.has(i, j);
-      const RegisterSum<Block<T>> own =
-          has ? RegisterSum<Block<T>>(stage.Q.at(i, j)) : RegisterSum<Block<T>>();
-      own.store(P_[i * M_ + j]);
-      own.store_transposed(P_[j * M_ + i]);
-    }
+    for (int j = i; j < M_; ++j) transposed(stage.Q, i, j).store(P_[i * M_ + j]);
   v_ = stage.q;
   carries_ = false;
 }
 
-/// P ← W. Row by row, each in and out once: what is worked on stays in the fastest cache.
+/// P ← W.
 template <class T>
 void Riccati<T>::sandwich(const BlockLdl<T>& E) {
-  for (int i = 0; i < M_; ++i) {  // P S, transposed
-    std::copy_n(P_.begin() + i * M_, M_, row_.begin());
-    E.solve_row(row_.data(), 0, 0);
-    for (int j = 0; j < M_; ++j) X_[j * M_ + i] = row_[j].transpose();
-  }
-  for (int i = 0; i < M_; ++i) {  // times S, a symmetric product
-    std::copy_n(X_.begin() + i * M_, M_, row_.begin());
-    E.solve_row(row_.data(), 0, i);
-    for (int j = i; j < M_; ++j) {
-      P_[i * M_ + j] = row_[j];
-      if (j > i) P_[j * M_ + i] = row_[j].transpose();
-    }
-  }
+  for (int i = 0; i < M_; ++i)  // P S
+    E.solve_row([&](int j) { return upper(P_, i, j); }, 0, 0, &X_[i * M_]);
+  for (int i = 0; i < M_; ++i)
+    E.solve_row([&](int j) { return RegisterSum<Block<T>>(X_[j * M_ + i].transpose()); }, 0, i,
+                &P_[i * M_]);
 }
 
-/// C, and X + ½ Z, row by row.
+/// sum ← sum + A W_ij.
 template <class T>
-void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E) {
-  for (int i = 0; i < M_; ++i) {
-    find_coupling(stage, E, i);
-    for (int j = 0; j < M_; ++j) {
-      RegisterSum<Block<T>> sum =
-          carries_ ? RegisterSum<Block<T>>(Z_[i * M_ + j]) : RegisterSum<Block<T>>();
-      if (carries_) sum.scale(T(0.5));
-      for (const int k : Bits(columns_[j])) sum.add(row_[k], stage.F.at(k, j));
-      sum.store(X_[i * M_ + j]);
-    }
-  }
+template <class Left>
+void Riccati<T>::add_W(RegisterSum<Block<T>>& sum, const Left& A, int i, int j) const {
+  if (i <= j)
+    sum.add(A, P_[i * M_ + j]);
+  else
+    sum.add(A, P_[j * M_ + i].transpose());
 }
 
-/// row_ ← row i of ½ Fᵀ W - N̂ᵀ S; block i of C; row i of T, all of it where the stage reaches back.
+/// Row i of X, C and N̂ᵀ S e; row i of T, all of it where the stage reaches back.
 template <class T>
-void Riccati<T>::find_coupling(const Stage& stage, const BlockLdl<T>& E, int i) {
-  int first = M_;
-  for (int k = M_; k-- > 0;) {
-    const bool has = stage.N.has(k, i);
-    if (has || carries_) first = k;
-    if (carries_)
-      row_[k] = Y_[k * M_ + i].transpose();
-    else
-      row_[k].setConstant(T(0.0));
-    if (has) row_[k] += stage.N.at(k, i).transpose();
-  }
-  if (first < M_) E.solve_row(row_.data(), first, 0);
+void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E, int i) {
+  find_NS(stage, E, i);
+  RegisterSum<Vec3<T>> product;
   for (int j = 0; j < M_; ++j) {
+    product.add(row_[j], stage.e[j]);
     RegisterSum<Block<T>> sum;
-    for (const int k : Bits(columns_[i])) sum.add(stage.F.at(k, i).transpose(), P_[k * M_ + j]);
+    for (const int k : Bits(columns_[i])) add_W(sum, stage.F.at(k, i).transpose(), k, j);
     if (j == 0 || reaches_) {
       RegisterSum<Block<T>> whole = sum;
       whole.subtract(row_[j]);
@@ -116,10 +100,24 @@ void Riccati<T>::find_coupling(const Stage& stage, const BlockLdl<T>& E, int i) 
     }
     sum.scale(T(0.5));
     sum.subtract(row_[j]);
-    sum.store(row_[j]);
+    sum.store(X_[i * M_ + j]);
   }
+  product.store(Ne_[i]);
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) C_[i](a, b) = stage.B[a] * T_[i * M_](b, a);
+}
+
+/// row_ ← row i of N̂ᵀ S.
+template <class T>
+void Riccati<T>::find_NS(const Stage& stage, const BlockLdl<T>& E, int i) {
+  const std::uint64_t column = stage.N.column(i);
+  const int first = carries_ ? 0 : std::min(std::countr_zero(column), M_);
+  const auto load = [&](int k) {
+    RegisterSum<Block<T>> sum = transposed(stage.N, i, k);
+    if (carries_) sum.add(Y_[k * M_ + i].transpose());
+    return sum;
+  };
+  E.solve_row(load, first, 0, row_.data());
 }
 
 template <class T>
@@ -127,25 +125,30 @@ void Riccati<T>::eliminate(const Stage& stage, const Stage& before, int k) {
   BlockLdl<T>& E = E_[k];
   E.factorize(stage.E);
   regular_ = regular_ && E.regular();
-  for (std::uint64_t& column : columns_) column = 0;
-  for (int i = 0; i < M_; ++i)
-    for (const int j : Bits(stage.F.pattern[i])) columns_[j] |= std::uint64_t{1} << i;
+  for (int j = 0; j < M_; ++j) columns_[j] = stage.F.column(j);
   reaches_ = !stage.G.empty();
   sandwich(E);
-  couple(stage, E);
   E.solve(v_.data());  // S v
+  for (int i = 0; i < M_; ++i) couple(stage, E, i);
+  find_w(stage);
+  const Block<T> inverse = find_gain(stage, gain_[k]);
+  fold_gradient(before, stage, gain_[k]);
+  if (reaches_) find_V(stage, E, inverse, gain_[k]);
+  fold_hessian(before, stage, gain_[k]);
+  carries_ = reaches_;
+  if (carries_) carry(stage, gain_[k]);
+}
+
+/// w; expects S v in v.
+template <class T>
+void Riccati<T>::find_w(const Stage& stage) {
   for (int i = 0; i < M_; ++i) {
-    RegisterSum<Vec3<T>> sum(-v_[i]);
-    for (int j = 0; j < M_; ++j) sum.add(P_[i * M_ + j], stage.e[j]);
+    RegisterSum<Vec3<T>> sum;
+    for (int j = 0; j < i; ++j) sum.add(P_[j * M_ + i].transpose(), stage.e[j]);
+    for (int j = i; j < M_; ++j) sum.add(P_[i * M_ + j], stage.e[j]);
+    sum.subtract(v_[i]);
     sum.store(w_[i]);
   }
-  const Block<T> inverse = find_gain(stage, gain_[k]);
-  Se_ = stage.e;
-  E.solve(Se_.data());
-  fold_gradient(stage, before, gain_[k]);
-  carries_ = reaches_;
-  if (carries_) reach_back(stage, E, inverse, gain_[k]);
-  fold_hessian(before, gain_[k]);
 }
 
 /// R'⁻¹ C and R'⁻¹ r'; returns R'⁻¹.
@@ -174,30 +177,30 @@ Block<T> Riccati<T>::find_gain(const Stage& stage, Gain& gain) {
 
 /// P of the stage before.
 template <class T>
-void Riccati<T>::fold_hessian(const Stage& before, const Gain& gain) {
+void Riccati<T>::fold_hessian(const Stage& before, const Stage& stage, const Gain& gain) {
   for (int i = 0; i < M_; ++i)
-    for (int j = 0; j <= i; ++j) {
-      RegisterSum<Block<T>> sum(X_[i * M_ + j]);
-      sum.add_transposed(X_[j * M_ + i]);
-      if (before.Q.has(i, j)) sum.add(before.Q.at(i, j));
+    for (int j = i; j < M_; ++j) {
+      RegisterSum<Block<T>> sum = transposed(before.Q, i, j);
+      if (carries_) sum.add(Z_[i * M_ + j]);
+      for (const int k : Bits(columns_[j])) sum.add(X_[i * M_ + k], stage.F.at(k, j));
+      for (const int k : Bits(columns_[i]))
+        sum.add(stage.F.at(k, i).transpose(), X_[j * M_ + k].transpose());
       sum.subtract(C_[i].transpose(), gain.C[j]);
       sum.store(P_[i * M_ + j]);
-      if (j < i) sum.store_transposed(P_[j * M_ + i]);
     }
 }
 
 /// v of the stage before.
 template <class T>
-void Riccati<T>::fold_gradient(const Stage& stage, const Stage& before, const Gain& gain) {
+void Riccati<T>::fold_gradient(const Stage& before, const Stage& stage, const Gain& gain) {
   for (int i = 0; i < M_; ++i) {
     RegisterSum<Vec3<T>> sum(before.q[i]);
     for (const int m : Bits(columns_[i])) sum.add(stage.F.at(m, i).transpose(), w_[m]);
     sum.subtract(C_[i].transpose(), gain.r);
-    for (int m = 0; m < M_ && carries_; ++m) sum.subtract(Y_[m * M_ + i].transpose(), Se_[m]);
+    sum.subtract(Ne_[i]);
+    if (carries_) sum.add(z_[i]);
     sum.store(v_[i]);
-    if (carries_) v_[i] += z_[i];
   }
-  subtract_transposed(v_, stage.N, Se_);
 }
 
 template <class T>
@@ -214,9 +217,12 @@ void Riccati<T>::roll_forward(const StageSystem<T>& system, StageStep<T>& step) 
     Vec3<T>& c = step.controls[k];
     control.store(c);
     BlockColumn<T>& p = step.poses[k];
-    p = stage.e;
-    add_to(p, stage.F, before);
-    if (reaches) add_to(p, stage.G, step.poses[k - 2]);
+    for (int i = 0; i < M_; ++i) {
+      RegisterSum<Vec3<T>> sum(stage.e[i]);
+      add_row(sum, stage.F, i, before);
+      if (reaches) add_row(sum, stage.G, i, step.poses[k - 2]);
+      sum.store(p[i]);
+    }
     for (int a = 0; a < 3; ++a) p[0][a] = p[0][a] + stage.B[a] * c[a];
     for (Vec3<T>& block : p) block = -block;
     E_[k].solve(p.data());
@@ -231,19 +237,22 @@ void Riccati<T>::find_multipliers(const StageSystem<T>& system, StageStep<T>& st
   for (int k = system.h; k > 0; --k) {
     const Stage& stage = system.stages[k];
     BlockColumn<T>& y = step.multipliers[k];
-    y = stage.q;
-    add_symmetric_to(y, stage.Q, step.poses[k]);
-    add_to(y, stage.N, step.poses[k - 1]);
-    if (!stage.U.empty()) add_to(y, stage.U, step.poses[k - 2]);
-    if (k < system.h) {
-      const Stage& next = system.stages[k + 1];
-      add_transposed_to(y, next.N, step.poses[k + 1]);
-      add_transposed_to(y, next.F, step.multipliers[k + 1]);
-    }
-    if (k + 2 <= system.h) {
-      const Stage& next = system.stages[k + 2];
-      add_transposed_to(y, next.U, step.poses[k + 2]);
-      add_transposed_to(y, next.G, step.multipliers[k + 2]);
+    for (int i = 0; i < M_; ++i) {
+      RegisterSum<Vec3<T>> sum(stage.q[i]);
+      add_symmetric_row(sum, stage.Q, i, step.poses[k]);
+      add_row(sum, stage.N, i, step.poses[k - 1]);
+      if (!stage.U.empty()) add_row(sum, stage.U, i, step.poses[k - 2]);
+      if (k < system.h) {
+        const Stage& next = system.stages[k + 1];
+        add_column(sum, next.N, i, step.poses[k + 1]);
+        add_column(sum, next.F, i, step.multipliers[k + 1]);
+      }
+      if (k + 2 <= system.h) {
+        const Stage& next = system.stages[k + 2];
+        add_column(sum, next.U, i, step.poses[k + 2]);
+        add_column(sum, next.G, i, step.multipliers[k + 2]);
+      }
+      sum.store(y[i]);
     }
     for (Vec3<T>& block : y) block = -block;
     E_[k].solve(y.data());

@@ -34,16 +34,19 @@ class Riccati final : public StageSolver<T> {
     Vec3<T> r;                   // R'⁻¹ r'
   };
   using Stage = typename StageSystem<T>::Stage;
+  RegisterSum<Block<T>> upper(const std::vector<Block<T>>& X, int i, int j) const;
+  template <class Left>
+  void add_W(RegisterSum<Block<T>>& sum, const Left& A, int i, int j) const;
   void eliminate(const Stage& stage, const Stage& before, int k);
   void set_end(const Stage& stage);
   void sandwich(const BlockLdl<T>& E);
-  void couple(const Stage& stage, const BlockLdl<T>& E);
-  void find_coupling(const Stage& stage, const BlockLdl<T>& E, int i);
+  void couple(const Stage& stage, const BlockLdl<T>& E, int i);
+  void find_NS(const Stage& stage, const BlockLdl<T>& E, int i);
+  void find_w(const Stage& stage);
   Block<T> find_gain(const Stage& stage, Gain& gain);
-  void fold_gradient(const Stage& stage, const Stage& before, const Gain& gain);
-  void fold_hessian(const Stage& before, const Gain& gain);
-  void reach_back(const Stage& stage, const BlockLdl<T>& E, const Block<T>& inverse, Gain& gain);
-  void find_V(const Stage& stage, const BlockLdl<T>& E);
+  void fold_gradient(const Stage& before, const Stage& stage, const Gain& gain);
+  void fold_hessian(const Stage& before, const Stage& stage, const Gain& gain);
+  void find_V(const Stage& stage, const BlockLdl<T>& E, const Block<T>& inverse, Gain& gain);
   void carry(const Stage& stage, const Gain& gain);
   void carry_gradient(const Stage& stage, const Gain& gain);
   void roll_forward(const StageSystem<T>& system, StageStep<T>& step) const;
@@ -53,16 +56,19 @@ class Riccati final : public StageSolver<T> {
   std::vector<BlockLdl<T>> E_;
   BlockLdl<T> start_;
   std::vector<Gain> gain_;
-  std::vector<Block<T>> P_, X_;  // [M × M] row by row; in P also W: the fastest cache is small
-  std::vector<Block<T>> T_;      // Fᵀ W - N̂ᵀ S, the first column where nothing reaches back
-  std::vector<Block<T>> Y_, Z_, V_;  // [M × M]
+  // [M × M] row by row. P: the upper half; in its place also W, as the fastest cache is small.
+  std::vector<Block<T>> P_;
+  std::vector<Block<T>> X_;  // P S, then ½ Fᵀ W - N̂ᵀ S
+  std::vector<Block<T>> T_;  // Fᵀ W - N̂ᵀ S, the first column where nothing reaches back
+  std::vector<Block<T>> Y_, Z_, V_;
   std::vector<Block<T>> US_;         // Uᵀ S
   bool reaches_ = false;             // the stage at hand has G
   bool carries_ = false;             // Y, Z and z are not zero
   BlockPattern columns_;             // of F
   std::vector<Block<T>> C_, D_;
-  BlockColumn<T> v_, w_, z_, Se_;  // Se: S e
-  std::vector<Block<T>> row_;      // at work
+  BlockColumn<T> v_, w_, z_;
+  BlockColumn<T> Ne_;              // N̂ᵀ S e
+  std::vector<Block<T>> row_;      // at work: of N̂ᵀ S
   BlockMatrix<T> whole_;           // P_0
   Mask<T> regular_;
 };

@@ -4,11 +4,31 @@
 
 namespace rtg {
 
-/// V, D and what is carried to the stage before: Y, Z, z. Expects W in P.
+/// V, D. Expects W in P.
 template <class T>
-void Riccati<T>::reach_back(const Stage& stage, const BlockLdl<T>& E, const Block<T>& inverse,
-                            Gain& gain) {
-  find_V(stage, E);
+void Riccati<T>::find_V(const Stage& stage, const BlockLdl<T>& E, const Block<T>& inverse,
+                        Gain& gain) {
+  const bool bends = !stage.U.empty();
+  for (int j = 0; j < M_ && bends; ++j) {  // Uᵀ S
+    const auto load = [&](int k) {
+      return stage.U.has(k, j) ? RegisterSum<Block<T>>(stage.U.at(k, j).transpose())
+                               : RegisterSum<Block<T>>();
+    };
+    E.solve_row(load, 0, 0, &US_[j * M_]);
+  }
+  for (int i = 0; i < M_; ++i)
+    for (int j = 0; j < M_; ++j) {
+      RegisterSum<Block<T>> sum;
+      for (int k = 0; k < M_; ++k)
+        if (stage.G.has(k, j)) {
+          if (i <= k)
+            sum.add(P_[i * M_ + k], stage.G.at(k, j));
+          else
+            sum.add(P_[k * M_ + i].transpose(), stage.G.at(k, j));
+        }
+      if (bends) sum.subtract(US_[j * M_ + i].transpose());
+      sum.store(V_[i * M_ + j]);
+    }
   for (int j = 0; j < M_; ++j) {
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) D_[j](a, b) = stage.B[a] * V_[j](a, b);
@@ -16,33 +36,9 @@ void Riccati<T>::reach_back(const Stage& stage, const BlockLdl<T>& E, const Bloc
     scaled.add(inverse, D_[j]);
     scaled.store(gain.D[j]);
   }
-  carry(stage, gain);
-  carry_gradient(stage, gain);
 }
 
-template <class T>
-void Riccati<T>::find_V(const Stage& stage, const BlockLdl<T>& E) {
-  const bool bends = !stage.U.empty();
-  for (int j = 0; j < M_ && bends; ++j) {  // Uᵀ S
-    Block<T>* row = US_.data() + j * M_;
-    for (int k = 0; k < M_; ++k) {
-      if (stage.U.has(k, j))
-        row[k] = stage.U.at(k, j).transpose();
-      else
-        row[k].setConstant(T(0.0));
-    }
-    E.solve_row(row, 0, 0);
-  }
-  for (int i = 0; i < M_; ++i)
-    for (int j = 0; j < M_; ++j) {
-      RegisterSum<Block<T>> sum;
-      for (int k = 0; k < M_; ++k)
-        if (stage.G.has(k, j)) sum.add(P_[i * M_ + k], stage.G.at(k, j));
-      if (bends) sum.subtract(US_[j * M_ + i].transpose());
-      sum.store(V_[i * M_ + j]);
-    }
-}
-
+/// Y, Z and z of the stage before.
 template <class T>
 void Riccati<T>::carry(const Stage& stage, const Gain& gain) {
   const bool bends = !stage.U.empty();
@@ -64,24 +60,26 @@ void Riccati<T>::carry(const Stage& stage, const Gain& gain) {
       z.store(Z_[i * M_ + j]);
       z.store_transposed(Z_[j * M_ + i]);
     }
+  carry_gradient(stage, gain);
 }
 
 template <class T>
 void Riccati<T>::carry_gradient(const Stage& stage, const Gain& gain) {
+  const bool bends = !stage.U.empty();
   for (int i = 0; i < M_; ++i) {
     RegisterSum<Vec3<T>> sum;
-    for (int k = 0; k < M_; ++k) {
-      if (stage.G.has(k, i)) sum.add(stage.G.at(k, i).transpose(), w_[k]);
-      if (stage.U.has(k, i)) sum.subtract(stage.U.at(k, i).transpose(), Se_[k]);
-    }
+    for (const int k : Bits(stage.G.column(i))) sum.add(stage.G.at(k, i).transpose(), w_[k]);
+    for (int k = 0; k < M_ && bends; ++k) sum.subtract(US_[i * M_ + k], stage.e[k]);
     sum.subtract(D_[i].transpose(), gain.r);
     sum.store(z_[i]);
   }
 }
 
-template void Riccati<double>::reach_back(const Stage&, const BlockLdl<double>&,
-                                          const Block<double>&, Gain&);
-template void Riccati<Lanes>::reach_back(const Stage&, const BlockLdl<Lanes>&, const Block<Lanes>&,
-                                         Gain&);
+template void Riccati<double>::find_V(const Stage&, const BlockLdl<double>&, const Block<double>&,
+                                      Gain&);
+template void Riccati<Lanes>::find_V(const Stage&, const BlockLdl<Lanes>&, const Block<Lanes>&,
+                                     Gain&);
+template void Riccati<double>::carry(const Stage&, const Gain&);
+template void Riccati<Lanes>::carry(const Stage&, const Gain&);
 
 }  // namespace rtg

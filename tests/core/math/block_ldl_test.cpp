@@ -67,9 +67,15 @@ TEST(BlockLdl, SolvesForRowsOfBlocks) {
           Block<double>::NullaryExpr([&] { return rng.uniform(-1.0, 1.0); });
     const MatrixXd given = dense(row);
     std::vector<Block<double>> rest = row;
-    factor.solve_row(row.data(), first, 0);
+    const auto solve = [&](std::vector<Block<double>>& r, int zeros, int from) {
+      const std::vector<Block<double>> right = r;
+      factor.solve_row(
+          [&](int i) { return RegisterSum<Block<double>>(right[static_cast<std::size_t>(i)]); },
+          zeros, from, r.data());
+    };
+    solve(row, first, 0);
     EXPECT_LT((dense(row) * dense(A) - given).norm(), 1e-12) << first;
-    factor.solve_row(rest.data(), 0, first);  // what is zero may as well be read
+    solve(rest, 0, first);  // what is zero may as well be read
     for (int i = first; i < M; ++i)
       EXPECT_LT((rest[static_cast<std::size_t>(i)] - row[static_cast<std::size_t>(i)]).norm(),
                 1e-15);
