@@ -43,12 +43,12 @@ TEST(Scene, FrictionOfAPairIsTheGeometricMean) {
   EXPECT_EQ(pair_friction(body(shape, 1, 0.0), body(shape, 1, 0.8)), 0.0);
 }
 
-/// Three links, the middle one the root, joints not in that order.
+/// A robot, three links, the middle one the root, and one more; joints not in that order.
 Scene linked() {
   Scene scene;
-  for (const char* name : {"a", "b", "c", "d"})
+  for (const char* name : {"robot", "a", "b", "c", "d"})
     scene.bodies.push_back({name, "link", box(2.0, 0.5), 1.0, 0.5, false});
-  scene.joints = {{2, 3, {1, 0}, {-1, 0}}, {1, 2, {1, 0}, {-1, 0}}, {1, 0, {-1, 0}, {1, 0}}};
+  scene.joints = {{3, 4, {1, 0}, {-1, 0}}, {2, 3, {1, 0}, {-1, 0}}, {2, 1, {-1, 0}, {1, 0}}};
   return scene;
 }
 
@@ -57,9 +57,10 @@ TEST(Scene, RootFirstListsJointsAfterThoseOfTheirParents) {
 }
 
 TEST(Scene, ClosedJointsLeaveRootsAndAnglesAlone) {
-  const Poses poses{{9, 9, 0.3}, {1, 2, 0.5}, {7, 7, -1.0}, {-4, 0, 2.0}};
+  const Poses poses{{0, 5, 0}, {9, 9, 0.3}, {1, 2, 0.5}, {7, 7, -1.0}, {-4, 0, 2.0}};
   const Poses closed = with_closed_joints(linked(), poses);
-  EXPECT_EQ(closed[1], poses[1]);
+  EXPECT_EQ(closed[0], poses[0]);
+  EXPECT_EQ(closed[2], poses[2]);
   for (const Joint& joint : linked().joints) {
     EXPECT_LT(joint_gap(joint, closed), 1e-15);
     EXPECT_GT(joint_gap(joint, poses), 1.0);
@@ -69,14 +70,14 @@ TEST(Scene, ClosedJointsLeaveRootsAndAnglesAlone) {
 }
 
 TEST(Scene, JointsConnectTheirTwoBodies) {
-  EXPECT_TRUE(jointed(linked(), 0, 1));
-  EXPECT_TRUE(jointed(linked(), 1, 0));
-  EXPECT_FALSE(jointed(linked(), 0, 2));
+  EXPECT_TRUE(jointed(linked(), 1, 2));
+  EXPECT_TRUE(jointed(linked(), 2, 1));
   EXPECT_FALSE(jointed(linked(), 1, 3));
+  EXPECT_FALSE(jointed(linked(), 2, 4));
 }
 
 TEST(Scene, ASelectionHasTheJointsBetweenItsBodies) {
-  const Selection some = select(linked(), Poses(4), {3, 1, 2});
+  const Selection some = select(linked(), Poses(5), {4, 2, 3});
   EXPECT_EQ(some.scene.joints,
             (std::vector<Joint>{{2, 0, {1, 0}, {-1, 0}}, {1, 2, {1, 0}, {-1, 0}}}));
 }
