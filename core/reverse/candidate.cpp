@@ -77,16 +77,10 @@ Candidate::Candidate(const Scene& scene, const PhysicsConfig& physics, const Pus
 std::vector<SqpResult> solve_together(std::span<const Candidate* const> candidates) {
   if (candidates.empty()) return {};
   const ReverseConfig& config = candidates[0]->problem().config;
+  if (config.preset == ReversePreset::kDefault) return filter_sqp_of_all(candidates);
   std::vector<SqpResult> results;
-  if (config.preset == ReversePreset::kDefault)
-    results = filter_sqp_of_all(candidates);
-  else
-    for (const Candidate* one : candidates)
-      results.push_back(merit_sqp(one->problem(), static_iterate(one->problem())));
-  for (std::size_t k = 0; k < results.size(); ++k)
-    if (results[k].status == SolveStatus::kConverged &&
-        terminal_miss(candidates[k]->problem(), results[k].x) > config.terminal_tolerance)
-      results[k].status = SolveStatus::kInfeasible;
+  for (const Candidate* one : candidates)
+    results.push_back(merit_sqp(one->problem(), static_iterate(one->problem())));
   return results;
 }
 

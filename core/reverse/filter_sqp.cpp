@@ -16,6 +16,11 @@ constexpr double kShortStep = 0.2;                 // a step of at most this mak
 constexpr double kGrowth = 4.0, kShrinkage = 0.1;  // of δ
 constexpr int kAttempts = 3;
 constexpr double kProximalGrowth = 4.0;  // per attempt
+// Shaking: iterations before it (an iterate that has not come near a solution by then is not
+// shaken), with a soft spring, and between; what is soft, in parts of K; what is near.
+constexpr int kBefore = 12, kSoft = 6, kBetween = 4;
+constexpr double kSoftness = 0.2;
+constexpr double kNearFeasible = 1e-2, kNearStationary = 1e-1;
 
 }  // namespace
 
@@ -50,11 +55,14 @@ std::vector<SqpResult> FilterSqp<T>::solve(std::span<const ReverseProblem* const
   return std::move(results_);
 }
 
-/// Gives lanes without a candidate the next one; false if none has one.
+/// Gives lanes without a candidate the next one; false if none has one. Begins phases that are due.
 template <class T>
 bool FilterSqp<T>::refill() {
   for (int l = 0; l < kWidth<T>; ++l) {
-    if (lane_[l].job >= 0) continue;
+    if (lane_[l].job >= 0) {
+      if (lane_[l].shaking > 0 && lane_[l].left == 0) end_phase(l);
+      continue;
+    }
     lane_[l] = Lane{};
     lane_[l].job = queue_.take(l, start_);
     if (lane_[l].job >= 0) {
@@ -71,29 +79,55 @@ bool FilterSqp<T>::refill() {
 template <class T>
 void FilterSqp<T>::begin_attempt(int l) {
   Lane& lane = lane_[l];
-  lane.proximal = config_.proximal_start * std::pow(kProximalGrowth, lane.attempt);
-  lane.exact = true;
-  lane.filter = Filter{};
   x_.copy_lane(l, start_, l);
+  begin_phase(l, lane.attempt == 0 && config_.terminal_weight > 0.0 ? 2 * config_.shakes : 0);
+  lane.left = kBefore;
+  lane.proximal *= std::pow(kProximalGrowth, lane.attempt);
+}
+
+/// At the iterate; `shaking` phases follow.
+template <class T>
+void FilterSqp<T>::begin_phase(int l, int shaking) {
+  Lane& lane = lane_[l];
+  const bool soft = shaking % 2 != 0;
+  lane.proximal = config_.proximal_start;
+  lane.exact = true;
+  lane.shaking = shaking;
+  lane.left = soft ? kSoft : kBetween;
+  lane.filter = Filter{};
+  set_lane(problem_.terminal_weight, l, config_.terminal_weight * (soft ? kSoftness : 1.0));
   set_lane(begun_, l, true);
+}
+
+/// Its iterations are used up.
+template <class T>
+void FilterSqp<T>::end_phase(int l) {
+  if (lane_[l].shaking == 2 * config_.shakes)
+    lane_[l].shaking = 0;
+  else
+    begin_phase(l, lane_[l].shaking - 1);
 }
 
 template <class T>
 void FilterSqp<T>::end_attempt(int l, SolveStatus status) {
-  if (lane_[l].attempt + 1 == kAttempts || lane_[l].iterations == config_.max_iterations)
-    return finish(l, status);
-  ++lane_[l].attempt;
+  Lane& own = lane_[l];
+  const ReverseProblem& problem = *problems_[own.job];
+  SqpResult& result = results_[own.job];
+  Iterate x = x_.unload(l, problem);
+  if (status == SolveStatus::kConverged) status = judged(problem, x);
+  if (own.attempt == 0 || status == SolveStatus::kConverged ||
+      result.status != SolveStatus::kInfeasible)
+    result = {status, std::move(x), 0, 0, lane(now_.infeasibility, l), own.stationarity};
+  result.iterations = own.iterations;
+  result.attempts = own.attempt + 1;
+  const bool missed_twice = own.attempt > 0 && status == SolveStatus::kInfeasible;
+  if (status == SolveStatus::kConverged || missed_twice || result.attempts == kAttempts ||
+      own.iterations == config_.max_iterations) {
+    own.job = -1;
+    return;
+  }
+  ++own.attempt;
   begin_attempt(l);
-}
-
-template <class T>
-void FilterSqp<T>::finish(int l, SolveStatus status) {
-  SqpResult& result = results_[lane_[l].job];
-  result.status = status;
-  result.x = x_.unload(l, *problems_[lane_[l].job]);
-  result.iterations = lane_[l].iterations;
-  result.attempts = lane_[l].attempt + 1;
-  lane_[l].job = -1;
 }
 
 /// Merits and gaps of the trajectories that attempts begin with.
@@ -144,16 +178,19 @@ void FilterSqp<T>::iterate() {
 template <class T>
 void FilterSqp<T>::end_or_step(int l, double stationarity) {
   Lane& own = lane_[l];
+  own.stationarity = stationarity;
   const double infeasibility = lane(now_.infeasibility, l);
-  results_[own.job].infeasibility = infeasibility;
-  results_[own.job].stationarity = stationarity;
   if (!std::isfinite(stationarity + infeasibility + lane(now_.objective, l)))
     return end_attempt(l, SolveStatus::kNonFinite);
+  if (own.shaking > 0 && infeasibility < kNearFeasible && stationarity < kNearStationary)
+    return begin_phase(l, own.shaking - 1);
   if (infeasibility < config_.feasibility_tol && stationarity < config_.stationarity_tol)
-    return finish(l, SolveStatus::kConverged);
+    return end_attempt(l, SolveStatus::kConverged);
   if (own.exact) {
-    if (own.iterations == config_.max_iterations) return finish(l, SolveStatus::kIterationLimit);
+    if (own.iterations == config_.max_iterations)
+      return end_attempt(l, SolveStatus::kIterationLimit);
     ++own.iterations;
+    if (own.shaking > 0) --own.left;
   }
   set_lane(stepping_, l, true);
 }
@@ -176,7 +213,11 @@ template <class T>
 void FilterSqp<T>::regularise(int l, SolveStatus if_hopeless) {
   lane_[l].proximal *= kGrowth;
   lane_[l].exact = true;
-  if (lane_[l].proximal > kMostProximal) end_attempt(l, if_hopeless);
+  if (lane_[l].proximal <= kMostProximal) return;
+  if (lane_[l].shaking > 0)
+    begin_phase(l, lane_[l].shaking - 1);
+  else
+    end_attempt(l, if_hopeless);
 }
 
 template <class T>

@@ -14,8 +14,13 @@ namespace rtg {
 
 /// The SQP of the preset `default`: exact Hessian with the objective's in its place where the model
 /// is not convex along the step, proximal term δ, filter line search. Each lane of T works on a
-/// candidate and takes the next one when that has ended. A failure is followed by another attempt
-/// with a larger first δ.
+/// candidate and takes the next one when that has ended.
+///
+/// The first attempt shakes iterates that come near a solution soon: ReverseConfig::shakes times it
+/// softens the spring K to the final state for a few iterations, which leads out of poor minima in
+/// which an object is let go of that could be dragged along. An attempt that fails, or misses the
+/// final state, is followed by others without shaking and with a larger first δ. Of two solutions
+/// that miss the final state the first is kept, and that is the end.
 template <class T>
 class FilterSqp {
  public:
@@ -37,13 +42,17 @@ class FilterSqp {
     int attempt = 0, iterations = 0;
     double proximal = 1.0;
     bool exact = true;
+    int shaking = 0;  // phases that are to follow this one; odd: the spring is soft
+    int left = 0;     // iterations of this phase, where others are to follow
+    double stationarity = 0.0;
     Filter filter;
   };
 
   bool refill();
   void begin_attempt(int l);
+  void begin_phase(int l, int shaking);
+  void end_phase(int l);
   void end_attempt(int l, SolveStatus status);
-  void finish(int l, SolveStatus status);
   void evaluate_begun();
   void adopt(const Mask<T>& where, const Merits<T>& found);
   void iterate();

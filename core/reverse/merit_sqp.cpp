@@ -47,8 +47,9 @@ class MeritSqp {
       newton_.linearise(problem_, x_, {0.0, kProximal});
       const double stationarity = newton_.stationarity();
       const auto ended = [&](SolveStatus status) {
-        return SqpResult{status, x_.unload(0, one_), iterations,
-                         1,      now_.infeasibility, stationarity};
+        Iterate x = x_.unload(0, one_);
+        if (status == SolveStatus::kConverged) status = judged(one_, x);
+        return SqpResult{status, std::move(x), iterations, 1, now_.infeasibility, stationarity};
       };
       if (!std::isfinite(stationarity + now_.violation + now_.objective))
         return ended(SolveStatus::kNonFinite);

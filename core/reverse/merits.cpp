@@ -50,7 +50,7 @@ T free_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x) {
       const T off = x.p[k].p[m] - problem.end[m];
       miss = miss + off * off;
     }
-  return sum + T(0.5 * config.terminal_weight) * miss;
+  return sum + T(0.5) * problem.terminal_weight * miss;
 }
 
 }  // namespace

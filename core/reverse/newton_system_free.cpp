@@ -33,7 +33,7 @@ void NewtonSystem<T>::set_objective(const ProblemLanes<T>& problem, const Trajec
   for (BlockMatrix<T>* block : {&stage.Q, &stage.E, &stage.F, &stage.G, &stage.N, &stage.U})
     block->clear();
   const bool end = k > 0 && problem.ends(k);
-  const T spring(end ? config.terminal_weight : 0.0);
+  const T spring = end ? problem.terminal_weight : T(0.0);
   for (int i = 0; i < system_.M; ++i) {
     stage.q[i].setConstant(T(0.0));
     stage.e[i].setConstant(T(0.0));

@@ -63,6 +63,11 @@ Violation violation(const ReverseProblem& problem, const Iterate& x) {
   return v;
 }
 
+SolveStatus judged(const ReverseProblem& problem, const Iterate& x) {
+  return terminal_miss(problem, x) > problem.config.terminal_tolerance ? SolveStatus::kInfeasible
+                                                                       : SolveStatus::kConverged;
+}
+
 double terminal_miss(const ReverseProblem& problem, const Iterate& x) {
   double most = 0.0;
   for (int i = 0; 3 * i < problem.energy.dofs(); ++i)

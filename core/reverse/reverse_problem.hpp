@@ -4,6 +4,7 @@
 
 #include "core/energy/step_energy.hpp"
 #include "core/reverse/reverse_config.hpp"
+#include "core/reverse/solve_status.hpp"
 
 namespace rtg {
 
@@ -53,6 +54,9 @@ struct Violation {
   double max() const;
 };
 Violation violation(const ReverseProblem& problem, const Iterate& x);
+
+/// Of a converged iterate: kInfeasible if it misses the final state by more than the tolerance.
+SolveStatus judged(const ReverseProblem& problem, const Iterate& x);
 
 /// Largest distance of a movable body from where it should end [m].
 double terminal_miss(const ReverseProblem& problem, const Iterate& x);
