@@ -67,7 +67,8 @@ void BlockLdl<T>::eliminate_row(const BlockMatrix<T>& A, int i) {
   for (int j = 0; j < i; ++j) {
     const std::uint64_t terms = before(i) & before(j);
     if (!A.has(i, j) && terms == 0) continue;
-    RegisterSum<Block<T>> sum = A.has(i, j) ? RegisterSum<Block<T>>(A.at(i, j)) : RegisterSum<Block<T>>();
+    RegisterSum<Block<T>> sum =
+        A.has(i, j) ? RegisterSum<Block<T>>(A.at(i, j)) : RegisterSum<Block<T>>();
     for (const int k : Bits(terms)) sum.subtract(row_[k], L_.at(j, k).transpose());
     sum.store(row_[j]);
     L_.pattern[i] |= std::uint64_t{1} << j;

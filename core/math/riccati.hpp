@@ -61,15 +61,15 @@ class Riccati final : public StageSolver<T> {
   std::vector<Block<T>> X_;  // P S, then ½ Fᵀ W - N̂ᵀ S
   std::vector<Block<T>> T_;  // Fᵀ W - N̂ᵀ S, the first column where nothing reaches back
   std::vector<Block<T>> Y_, Z_, V_;
-  std::vector<Block<T>> US_;         // Uᵀ S
-  bool reaches_ = false;             // the stage at hand has G
-  bool carries_ = false;             // Y, Z and z are not zero
-  BlockPattern columns_;             // of F
+  std::vector<Block<T>> US_;  // Uᵀ S
+  bool reaches_ = false;      // the stage at hand has G
+  bool carries_ = false;      // Y, Z and z are not zero
+  BlockPattern columns_;      // of F
   std::vector<Block<T>> C_, D_;
   BlockColumn<T> v_, w_, z_;
-  BlockColumn<T> Ne_;              // N̂ᵀ S e
-  std::vector<Block<T>> row_;      // at work: of N̂ᵀ S
-  BlockMatrix<T> whole_;           // P_0
+  BlockColumn<T> Ne_;          // N̂ᵀ S e
+  std::vector<Block<T>> row_;  // at work: of N̂ᵀ S
+  BlockMatrix<T> whole_;       // P_0
   Mask<T> regular_;
 };
 

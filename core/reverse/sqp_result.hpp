@@ -10,7 +10,7 @@ namespace rtg {
 struct SqpResult {
   SolveStatus status = SolveStatus::kNonFinite;
   Iterate x;
-  int iterations = 0;          // steps looked for, in all attempts
+  int iterations = 0;  // steps looked for, in all attempts
   int attempts = 1;
   double infeasibility = 0.0;  // ‖C‖∞
   double stationarity = 0.0;   // ‖∇L‖∞

@@ -4,15 +4,18 @@
 //
 // a line of JSON per problem: all that defines it (shapes, configurations, final state, direction),
 // the warm start, our solution, and our own values of objective and constraints there. For
-// peer.py, which builds the same problem with CasADi and solves it with IPOPT. The problems of a
-// task are solved together; "cpu_s" is the share of each.
+// peer.py, which builds the same problem with CasADi and solves it with IPOPT. All problems of a
+// task with the same numbers of bodies are solved together, as a search does; "cpu_s" is a
+// problem's share of that time, by its number of iterations.
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <tuple>
 
 #include "core/reverse/candidate.hpp"
 #include "core/reverse/warm_start.hpp"
@@ -75,8 +78,12 @@ const ReverseConfig kReverse;
 struct Entry {
   std::size_t line = 0;
   const Problem* problem = nullptr;
+  bool wanted = false;
   std::unique_ptr<Candidate> candidate;
 };
+
+/// Task and numbers of degrees of freedom and bodies: an iteration costs problems alike the same.
+using Kind = std::tuple<std::string, int, int>;
 
 Json dumped(const Entry& entry, const Task& task, const SqpResult& solved, double cpu) {
   const Problem& problem = *entry.problem;
@@ -102,27 +109,38 @@ Json dumped(const Entry& entry, const Task& task, const SqpResult& solved, doubl
           {"complementarity", rows(v.complementarity)}};
 }
 
-void dump(const std::filesystem::path& folder, std::size_t every) {
-  const Corpus corpus = read_corpus(folder);
-  std::map<std::string, std::vector<Entry>> entries;  // by task
+std::map<Kind, std::vector<Entry>> entries(const Corpus& corpus, std::size_t every) {
+  std::map<Kind, std::vector<Entry>> out;
   std::size_t met = 0;
   for (std::size_t k = 0; k < corpus.problems.size(); ++k) {
     const Problem& problem = corpus.problems[k];
-    if (problem.difficulty == Difficulty::kFree || met++ % every != 0) continue;
+    if (problem.difficulty == Difficulty::kFree) continue;
     const Task& task = corpus.tasks.at(problem.task);
-    entries[problem.task].push_back(
-        {k + 1, &problem,
-         std::make_unique<Candidate>(task.scene, kPhysics, task.push, kReverse, problem.job)});
+    Entry entry{
+        k + 1, &problem, met++ % every == 0,
+        std::make_unique<Candidate>(task.scene, kPhysics, task.push, kReverse, problem.job)};
+    const StepEnergy& energy = entry.candidate->problem().energy;
+    out[{problem.task, energy.dofs(), energy.bodies()}].push_back(std::move(entry));
   }
-  for (const auto& [name, some] : entries) {
-    const Task& task = corpus.tasks.at(name);
+  return out;
+}
+
+void dump(const std::filesystem::path& folder, std::size_t every) {
+  const Corpus corpus = read_corpus(folder);
+  for (const auto& [kind, alike] : entries(corpus, every)) {
     std::vector<const Candidate*> candidates;
-    for (const Entry& entry : some) candidates.push_back(entry.candidate.get());
+    for (const Entry& entry : alike) candidates.push_back(entry.candidate.get());
     const double begin = thread_cpu_s();
     const std::vector<SqpResult> solved = solve_together(candidates);
-    const double share = (thread_cpu_s() - begin) / static_cast<double>(some.size());
-    for (std::size_t k = 0; k < some.size(); ++k)
-      std::puts(dumped(some[k], task, solved[k], share).dump().c_str());
+    const double cpu = thread_cpu_s() - begin;
+    int steps = 0;
+    for (const SqpResult& one : solved) steps += one.iterations;
+    for (std::size_t k = 0; k < alike.size(); ++k)
+      if (alike[k].wanted)
+        std::puts(dumped(alike[k], corpus.tasks.at(std::get<0>(kind)), solved[k],
+                         cpu * solved[k].iterations / std::max(steps, 1))
+                      .dump()
+                      .c_str());
   }
 }
 

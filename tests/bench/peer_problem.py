@@ -180,6 +180,12 @@ class PeerProblem:
         squared = (x**2 + y**2 + moment / mass * turn**2) / (2 * self._stride**2)
         return self._reverse["speed_weight"] * squared**3
 
+    def terminal_miss(self, x: Floats) -> float:
+        """Largest distance of a movable body from its final position [m]."""
+        level = x[self._steps * self._dofs :][: self._dofs]
+        off = (level - self._end[: self._dofs]).reshape(-1, 3)
+        return float(np.hypot(off[:, 0], off[:, 1]).max())
+
     def unknowns(self, iterate: Json) -> Floats:
         """x of an iterate as the solver dumps it."""
         poses = [level[: self._dofs] for level in iterate["p"]]
