@@ -55,15 +55,13 @@ std::vector<SqpResult> FilterSqp<T>::solve(std::span<const ReverseProblem* const
   return std::move(results_);
 }
 
-/// Gives lanes without a candidate the next one; false if none has one. Begins phases that are due.
+/// Gives lanes without a candidate the next one; false if none has one.
 template <class T>
 bool FilterSqp<T>::refill() {
   for (int l = 0; l < kWidth<T>; ++l) {
-    if (lane_[l].job >= 0) {
-      if (lane_[l].shaking > 0 && lane_[l].left == 0) end_phase(l);
-      continue;
-    }
+    if (lane_[l].job >= 0) continue;
     lane_[l] = Lane{};
+    lane_[l].first_proximal = config_.proximal_start;
     lane_[l].job = queue_.take(l, start_);
     if (lane_[l].job >= 0) {
       problem_.load(l, *problems_[lane_[l].job]);
@@ -82,7 +80,6 @@ void FilterSqp<T>::begin_attempt(int l) {
   x_.copy_lane(l, start_, l);
   begin_phase(l, lane.attempt == 0 && config_.terminal_weight > 0.0 ? 2 * config_.shakes : 0);
   lane.left = kBefore;
-  lane.proximal *= std::pow(kProximalGrowth, lane.attempt);
 }
 
 /// At the iterate; `shaking` phases follow.
@@ -90,22 +87,14 @@ template <class T>
 void FilterSqp<T>::begin_phase(int l, int shaking) {
   Lane& lane = lane_[l];
   const bool soft = shaking % 2 != 0;
-  lane.proximal = config_.proximal_start;
+  lane.proximal = lane.first_proximal;
   lane.exact = true;
   lane.shaking = shaking;
+  lane.shaken = lane.shaken || soft;
   lane.left = soft ? kSoft : kBetween;
   lane.filter = Filter{};
   set_lane(problem_.terminal_weight, l, config_.terminal_weight * (soft ? kSoftness : 1.0));
   set_lane(begun_, l, true);
-}
-
-/// Its iterations are used up.
-template <class T>
-void FilterSqp<T>::end_phase(int l) {
-  if (lane_[l].shaking == 2 * config_.shakes)
-    lane_[l].shaking = 0;
-  else
-    begin_phase(l, lane_[l].shaking - 1);
 }
 
 template <class T>
@@ -115,22 +104,24 @@ void FilterSqp<T>::end_attempt(int l, SolveStatus status) {
   SqpResult& result = results_[own.job];
   Iterate x = x_.unload(l, problem);
   if (status == SolveStatus::kConverged) status = judged(problem, x);
-  if (own.attempt == 0 || status == SolveStatus::kConverged ||
-      result.status != SolveStatus::kInfeasible)
+  const bool missed = status == SolveStatus::kInfeasible;
+  const bool missed_before = own.attempt > 0 && result.status == SolveStatus::kInfeasible;
+  if (status == SolveStatus::kConverged || !missed_before)
     result = {status, std::move(x), 0, 0, lane(now_.infeasibility, l), own.stationarity};
   result.iterations = own.iterations;
   result.attempts = own.attempt + 1;
-  const bool missed_twice = own.attempt > 0 && status == SolveStatus::kInfeasible;
-  if (status == SolveStatus::kConverged || missed_twice || result.attempts == kAttempts ||
-      own.iterations == config_.max_iterations) {
+  if (status == SolveStatus::kConverged || (missed && missed_before) ||
+      result.attempts == kAttempts || own.iterations == config_.max_iterations) {
     own.job = -1;
     return;
   }
+  // Where shaking led to a failure, a small δ may still do.
+  if (missed || own.attempt > 0 || !own.shaken) own.first_proximal *= kProximalGrowth;
   ++own.attempt;
   begin_attempt(l);
 }
 
-/// Merits and gaps of the trajectories that attempts begin with.
+/// Merits and gaps of the trajectories that attempts and phases begin with.
 template <class T>
 void FilterSqp<T>::evaluate_begun() {
   for (std::vector<T>& level : trial_gaps_) std::ranges::fill(level, T(0.0));
@@ -182,8 +173,13 @@ void FilterSqp<T>::end_or_step(int l, double stationarity) {
   const double infeasibility = lane(now_.infeasibility, l);
   if (!std::isfinite(stationarity + infeasibility + lane(now_.objective, l)))
     return end_attempt(l, SolveStatus::kNonFinite);
-  if (own.shaking > 0 && infeasibility < kNearFeasible && stationarity < kNearStationary)
+  if (own.shaking > 0 && infeasibility < std::max(kNearFeasible, config_.feasibility_tol) &&
+      stationarity < std::max(kNearStationary, config_.stationarity_tol))
     return begin_phase(l, own.shaking - 1);
+  if (own.shaking > 0 && own.left == 0) {
+    if (own.shaking < 2 * config_.shakes) return begin_phase(l, own.shaking - 1);
+    own.shaking = 0;
+  }
   if (infeasibility < config_.feasibility_tol && stationarity < config_.stationarity_tol)
     return end_attempt(l, SolveStatus::kConverged);
   if (own.exact) {
@@ -214,8 +210,9 @@ void FilterSqp<T>::regularise(int l, SolveStatus if_hopeless) {
   lane_[l].proximal *= kGrowth;
   lane_[l].exact = true;
   if (lane_[l].proximal <= kMostProximal) return;
-  if (lane_[l].shaking > 0)
-    begin_phase(l, lane_[l].shaking - 1);
+  const int shaking = lane_[l].shaking;
+  if (shaking > 0 && shaking < 2 * config_.shakes)
+    begin_phase(l, shaking - 1);
   else
     end_attempt(l, if_hopeless);
 }

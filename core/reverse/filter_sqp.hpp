@@ -17,10 +17,11 @@ namespace rtg {
 /// candidate and takes the next one when that has ended.
 ///
 /// The first attempt shakes iterates that come near a solution soon: ReverseConfig::shakes times it
-/// softens the spring K to the final state for a few iterations, which leads out of poor minima in
-/// which an object is let go of that could be dragged along. An attempt that fails, or misses the
-/// final state, is followed by others without shaking and with a larger first δ. Of two solutions
-/// that miss the final state the first is kept, and that is the end.
+/// softens the spring K to the final state for a few iterations. That mostly leads out of poor
+/// minima, in which an object is let go of that could be dragged along, now and then into one. An
+/// attempt that fails, or misses the final state, is followed by others, up to three in all,
+/// without shaking and mostly with a larger first δ. Of two solutions that miss the final state the
+/// first is kept, and that is the end.
 template <class T>
 class FilterSqp {
  public:
@@ -40,10 +41,11 @@ class FilterSqp {
   struct Lane {
     int job = -1;  // none
     int attempt = 0, iterations = 0;
-    double proximal = 1.0;
+    double proximal = 1.0, first_proximal = 1.0;  // δ; of a phase's first iteration
     bool exact = true;
     int shaking = 0;  // phases that are to follow this one; odd: the spring is soft
     int left = 0;     // iterations of this phase, where others are to follow
+    bool shaken = false;
     double stationarity = 0.0;
     Filter filter;
   };
@@ -51,7 +53,6 @@ class FilterSqp {
   bool refill();
   void begin_attempt(int l);
   void begin_phase(int l, int shaking);
-  void end_phase(int l);
   void end_attempt(int l, SolveStatus status);
   void evaluate_begun();
   void adopt(const Mask<T>& where, const Merits<T>& found);
@@ -75,7 +76,7 @@ class FilterSqp {
   PerContact<T> force_step_, gaps_, trial_gaps_;
   Merits<T> now_;  // of x
   std::vector<Lane> lane_;
-  Mask<T> begun_, stepping_;  // at the start of an attempt; with a step to take
+  Mask<T> begun_, stepping_;  // at the start of a phase; with a step to take
   long busy_ = 0, lanes_ = 0;
 };
 
