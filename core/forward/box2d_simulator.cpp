@@ -283,6 +283,7 @@ PushOutcome Box2dSimulator::settle(const Poses& start) const {
 
 // b2World::Step reads the clock some ten times for a profile that nobody looks at, an eighth of a
 // generation. It cannot be switched off, but the dynamic linker takes these for the library's own.
+// The members are those of Linux and macOS.
 b2Timer::b2Timer() : m_start_sec(0), m_start_usec(0) {}
 void b2Timer::Reset() {}
 float b2Timer::GetMilliseconds() const { return 0.0f; }

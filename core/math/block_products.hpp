@@ -4,6 +4,18 @@
 
 namespace rtg {
 
+/// Block (i, j) of Aᵀ; 0 outside the pattern.
+template <class T>
+RegisterSum<Block<T>> transposed(const BlockMatrix<T>& A, int i, int j) {
+  return A.has(j, i) ? RegisterSum<Block<T>>(A.at(j, i).transpose()) : RegisterSum<Block<T>>();
+}
+
+/// use(block (i, j)) of a symmetric [M × M], row by row, whose upper half counts.
+template <class T, class Use>
+decltype(auto) with_upper(const std::vector<Block<T>>& X, int M, int i, int j, const Use& use) {
+  return i <= j ? use(X[i * M + j]) : use(X[j * M + i].transpose());
+}
+
 /// sum ← sum + (A x)_i.
 template <class T>
 void add_row(RegisterSum<Vec3<T>>& sum, const BlockMatrix<T>& A, int i, const BlockColumn<T>& x) {

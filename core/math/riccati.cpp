@@ -13,7 +13,7 @@ Riccati<T>::Riccati(int count, int sub_steps)
                             Vec3<T>::Constant(T(0.0))}),
       P_(static_cast<std::size_t>(count) * static_cast<std::size_t>(count)),
       X_(P_),
-      T_(P_),
+      A_(P_),
       Y_(P_),
       Z_(P_),
       V_(P_),
@@ -27,19 +27,6 @@ Riccati<T>::Riccati(int count, int sub_steps)
       Ne_(v_),
       row_(C_),
       whole_(count) {}
-
-/// Block (i, j) of a symmetric matrix of which the upper half counts.
-template <class T>
-RegisterSum<Block<T>> Riccati<T>::upper(const std::vector<Block<T>>& X, int i, int j) const {
-  return i <= j ? RegisterSum<Block<T>>(X[i * M_ + j])
-                : RegisterSum<Block<T>>(X[j * M_ + i].transpose());
-}
-
-/// Block (i, j) of Aᵀ.
-template <class T>
-RegisterSum<Block<T>> transposed(const BlockMatrix<T>& A, int i, int j) {
-  return A.has(j, i) ? RegisterSum<Block<T>>(A.at(j, i).transpose()) : RegisterSum<Block<T>>();
-}
 
 template <class T>
 Mask<T> Riccati<T>::solve(const StageSystem<T>& system, StageStep<T>& step) {
@@ -67,24 +54,15 @@ void Riccati<T>::set_end(const Stage& stage) {
 /// P ← W.
 template <class T>
 void Riccati<T>::sandwich(const BlockLdl<T>& E) {
+  const auto loaded = [](const auto& block) { return RegisterSum<Block<T>>(block); };
   for (int i = 0; i < M_; ++i)  // P S
-    E.solve_row([&](int j) { return upper(P_, i, j); }, 0, 0, &X_[i * M_]);
+    E.solve_row([&](int j) { return with_upper(P_, M_, i, j, loaded); }, 0, 0, &X_[i * M_]);
   for (int i = 0; i < M_; ++i)
     E.solve_row([&](int j) { return RegisterSum<Block<T>>(X_[j * M_ + i].transpose()); }, 0, i,
                 &P_[i * M_]);
 }
 
-/// sum ← sum + A W_ij.
-template <class T>
-template <class Left>
-void Riccati<T>::add_W(RegisterSum<Block<T>>& sum, const Left& A, int i, int j) const {
-  if (i <= j)
-    sum.add(A, P_[i * M_ + j]);
-  else
-    sum.add(A, P_[j * M_ + i].transpose());
-}
-
-/// Row i of X, C and N̂ᵀ S e; row i of T, all of it where the stage reaches back.
+/// Row i of X, C and N̂ᵀ S e; row i of A, all of it where the stage reaches back.
 template <class T>
 void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E, int i) {
   find_NS(stage, E, i);
@@ -92,11 +70,12 @@ void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E, int i) {
   for (int j = 0; j < M_; ++j) {
     product.add(row_[j], stage.e[j]);
     RegisterSum<Block<T>> sum;
-    for (const int k : Bits(columns_[i])) add_W(sum, stage.F.at(k, i).transpose(), k, j);
+    for (const int k : Bits(columns_[i]))
+      with_upper(P_, M_, k, j, [&](const auto& W) { sum.add(stage.F.at(k, i).transpose(), W); });
     if (j == 0 || reaches_) {
       RegisterSum<Block<T>> whole = sum;
       whole.subtract(row_[j]);
-      whole.store(T_[i * M_ + j]);
+      whole.store(A_[i * M_ + j]);
     }
     sum.scale(T(0.5));
     sum.subtract(row_[j]);
@@ -104,7 +83,7 @@ void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E, int i) {
   }
   product.store(Ne_[i]);
   for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) C_[i](a, b) = stage.B[a] * T_[i * M_](b, a);
+    for (int b = 0; b < 3; ++b) C_[i](a, b) = stage.B[a] * A_[i * M_](b, a);
 }
 
 /// row_ ← row i of N̂ᵀ S.
@@ -144,8 +123,8 @@ template <class T>
 void Riccati<T>::find_w(const Stage& stage) {
   for (int i = 0; i < M_; ++i) {
     RegisterSum<Vec3<T>> sum;
-    for (int j = 0; j < i; ++j) sum.add(P_[j * M_ + i].transpose(), stage.e[j]);
-    for (int j = i; j < M_; ++j) sum.add(P_[i * M_ + j], stage.e[j]);
+    for (int j = 0; j < M_; ++j)
+      with_upper(P_, M_, i, j, [&](const auto& W) { sum.add(W, stage.e[j]); });
     sum.subtract(v_[i]);
     sum.store(w_[i]);
   }

@@ -9,17 +9,17 @@ namespace rtg {
 /// (P Y; Yᵀ Z) and the gradient (v, z); Y, Z and z are there where inertia is. With S = E⁻¹ (sparse
 /// LDLᵀ, by the graph of the bodies in contact) and N̂ = N + Y,
 ///
-///   W = S P S,  V = W G - S U,  w = W e - S v
-///   R' = R + B W₀₀ B,  C = B (W F - S N̂)₀,  D = B V₀,  r' = r + B w₀
-///   P ← Q + X + Xᵀ + Z - Cᵀ R'⁻¹ C,  X = (½ Fᵀ W - N̂ᵀ S) F
-///   Y ← (Fᵀ W - N̂ᵀ S) G - Fᵀ S U - Cᵀ R'⁻¹ D
+///   W = S P S,  A = Fᵀ W - N̂ᵀ S,  X = A - ½ Fᵀ W,  V = W G - S U,  w = W e - S v
+///   R' = R + B W₀₀ B,  C = B (Aᵀ)₀,  D = B V₀,  r' = r + B w₀
+///   P ← Q + X F + (X F)ᵀ + Z - Cᵀ R'⁻¹ C
+///   Y ← A G - Fᵀ S U - Cᵀ R'⁻¹ D
 ///   Z ← Gᵀ V - Uᵀ S G - Dᵀ R'⁻¹ D
 ///   v ← q + z + Fᵀ w - N̂ᵀ S e - Cᵀ R'⁻¹ r'
 ///   z ← Gᵀ w - Uᵀ S e - Dᵀ R'⁻¹ r'
 ///
 /// and forward in time Δc = -R'⁻¹ (C Δp_{k-1} + D Δp_{k-2} + r'),
-/// Δp_k = -S (F Δp_{k-1} + G Δp_{k-2} + B Δc + e). P, Y and Z are dense, all else has the graph's
-/// pattern. Allocates only when made.
+/// Δp_k = -S (F Δp_{k-1} + G Δp_{k-2} + B Δc + e). Q, E, F, G, N and U have the graph's pattern, P,
+/// W, A, X, V, Y and Z are dense. Allocates only when made.
 template <class T>
 class Riccati final : public StageSolver<T> {
  public:
@@ -34,9 +34,6 @@ class Riccati final : public StageSolver<T> {
     Vec3<T> r;                   // R'⁻¹ r'
   };
   using Stage = typename StageSystem<T>::Stage;
-  RegisterSum<Block<T>> upper(const std::vector<Block<T>>& X, int i, int j) const;
-  template <class Left>
-  void add_W(RegisterSum<Block<T>>& sum, const Left& A, int i, int j) const;
   void eliminate(const Stage& stage, const Stage& before, int k);
   void set_end(const Stage& stage);
   void sandwich(const BlockLdl<T>& E);
@@ -58,8 +55,8 @@ class Riccati final : public StageSolver<T> {
   std::vector<Gain> gain_;
   // [M × M] row by row. P: the upper half; in its place also W, as the fastest cache is small.
   std::vector<Block<T>> P_;
-  std::vector<Block<T>> X_;  // P S, then ½ Fᵀ W - N̂ᵀ S
-  std::vector<Block<T>> T_;  // Fᵀ W - N̂ᵀ S, the first column where nothing reaches back
+  std::vector<Block<T>> X_;  // first P S
+  std::vector<Block<T>> A_;  // the first column where nothing reaches back
   std::vector<Block<T>> Y_, Z_, V_;
   std::vector<Block<T>> US_;  // Uᵀ S
   bool reaches_ = false;      // the stage at hand has G

@@ -1,5 +1,6 @@
 // The part of the recursion that reaches two sub-steps back.
 
+#include "core/math/block_products.hpp"
 #include "core/math/riccati.hpp"
 
 namespace rtg {
@@ -9,23 +10,13 @@ template <class T>
 void Riccati<T>::find_V(const Stage& stage, const BlockLdl<T>& E, const Block<T>& inverse,
                         Gain& gain) {
   const bool bends = !stage.U.empty();
-  for (int j = 0; j < M_ && bends; ++j) {  // Uᵀ S
-    const auto load = [&](int k) {
-      return stage.U.has(k, j) ? RegisterSum<Block<T>>(stage.U.at(k, j).transpose())
-                               : RegisterSum<Block<T>>();
-    };
-    E.solve_row(load, 0, 0, &US_[j * M_]);
-  }
+  for (int j = 0; j < M_ && bends; ++j)
+    E.solve_row([&](int k) { return transposed(stage.U, j, k); }, 0, 0, &US_[j * M_]);
   for (int i = 0; i < M_; ++i)
     for (int j = 0; j < M_; ++j) {
       RegisterSum<Block<T>> sum;
-      for (int k = 0; k < M_; ++k)
-        if (stage.G.has(k, j)) {
-          if (i <= k)
-            sum.add(P_[i * M_ + k], stage.G.at(k, j));
-          else
-            sum.add(P_[k * M_ + i].transpose(), stage.G.at(k, j));
-        }
+      for (const int k : Bits(stage.G.column(j)))
+        with_upper(P_, M_, i, k, [&](const auto& W) { sum.add(W, stage.G.at(k, j)); });
       if (bends) sum.subtract(US_[j * M_ + i].transpose());
       sum.store(V_[i * M_ + j]);
     }
@@ -45,17 +36,16 @@ void Riccati<T>::carry(const Stage& stage, const Gain& gain) {
   for (int i = 0; i < M_; ++i)
     for (int j = 0; j < M_; ++j) {
       RegisterSum<Block<T>> y, z;
-      for (int k = 0; k < M_; ++k) {
-        if (stage.G.has(k, j)) y.add(T_[i * M_ + k], stage.G.at(k, j));
-        if (bends && stage.F.has(k, i))
-          y.subtract(stage.F.at(k, i).transpose(), US_[j * M_ + k].transpose());
-        if (j > i) continue;
-        if (stage.G.has(k, i)) z.add(stage.G.at(k, i).transpose(), V_[k * M_ + j]);
-        if (bends && stage.G.has(k, j)) z.subtract(US_[i * M_ + k], stage.G.at(k, j));
-      }
+      for (const int k : Bits(stage.G.column(j))) y.add(A_[i * M_ + k], stage.G.at(k, j));
+      for (const int k : Bits(columns_[i]))
+        if (bends) y.subtract(stage.F.at(k, i).transpose(), US_[j * M_ + k].transpose());
       y.subtract(C_[i].transpose(), gain.D[j]);
       y.store(Y_[i * M_ + j]);
       if (j > i) continue;
+      for (const int k : Bits(stage.G.column(i)))
+        z.add(stage.G.at(k, i).transpose(), V_[k * M_ + j]);
+      for (const int k : Bits(stage.G.column(j)))
+        if (bends) z.subtract(US_[i * M_ + k], stage.G.at(k, j));
       z.subtract(D_[i].transpose(), gain.D[j]);
       z.store(Z_[i * M_ + j]);
       z.store_transposed(Z_[j * M_ + i]);

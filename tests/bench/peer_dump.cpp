@@ -6,9 +6,8 @@
 // the warm start, our solution, and our own values of objective and constraints there. For
 // peer.py, which builds the same problem with CasADi and solves it with IPOPT. All problems of a
 // task with the same numbers of bodies are solved together, as a search does; "cpu_s" is a
-// problem's share of that time, by its number of iterations.
+// problem's share of that time, warm starts and all, by its number of iterations and one.
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <map>
@@ -133,12 +132,13 @@ void dump(const std::filesystem::path& folder, std::size_t every) {
     const double begin = thread_cpu_s();
     const std::vector<SqpResult> solved = solve_together(candidates);
     const double cpu = thread_cpu_s() - begin;
-    int steps = 0;
-    for (const SqpResult& one : solved) steps += one.iterations;
+    const auto weight = [](const SqpResult& one) { return one.iterations + 1; };
+    int all = 0;
+    for (const SqpResult& one : solved) all += weight(one);
     for (std::size_t k = 0; k < alike.size(); ++k)
       if (alike[k].wanted)
         std::puts(dumped(alike[k], corpus.tasks.at(std::get<0>(kind)), solved[k],
-                         cpu * solved[k].iterations / std::max(steps, 1))
+                         cpu * weight(solved[k]) / all)
                       .dump()
                       .c_str());
   }

@@ -26,7 +26,7 @@ MAY_INCLUDE = {
 # Third-party headers by their first path component or name -> the files that may include them.
 ONLY_IN = {
     r"(umfpack|cholmod|klu|SuiteSparse|amd|colamd)\w*\.h|suitesparse/.*": r"core/math/\w+\.cpp",
-    r"box2d/.*": r"core/forward/box2d_\w+\.cpp",
+    r"box2d/.*": r"(tests/)?core/forward/box2d_\w+\.cpp",
     r"yaml-cpp/.*": r"nodes/common/\w+\.cpp",
     r"lcm/.*": r"nodes/common/bus\w*\.cpp",
     r"nlohmann/.*": r"(core/search|nodes|train|tests/bench)/.*\.cpp",

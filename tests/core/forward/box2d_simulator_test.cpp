@@ -1,5 +1,6 @@
 #include "core/forward/box2d_simulator.hpp"
 
+#include <box2d/box2d.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -214,6 +215,21 @@ TEST(Box2dSimulator, DeepOverlapComesApartOrIsReported) {
     const PushOutcome rest = simulator.settle(start);
     EXPECT_TRUE(!rest.ok || !first_overlap(task.scene, rest.end, 0.0)) << k;
   }
+}
+
+// With Box2D's own timer the profile of such a step is a millisecond.
+TEST(Box2dSimulator, StepsDoNotReadTheClock) {
+  b2World world({0.0F, 0.0F});
+  b2CircleShape disc;
+  disc.m_radius = 1.0F;
+  for (int k = 0; k < 400; ++k) {
+    b2BodyDef body;
+    body.type = b2_dynamicBody;
+    body.position = {0.1F * static_cast<float>(k), 0.0F};
+    world.CreateBody(&body)->CreateFixture(&disc, 1.0F);
+  }
+  world.Step(0.01F, 8, 3);
+  EXPECT_EQ(world.GetProfile().step, 0.0F);
 }
 
 }  // namespace

@@ -61,14 +61,17 @@ TEST(FilterSqpShaking, FindsThatAnObjectCanBeDraggedAlong) {
   EXPECT_GE(found, 3);
 }
 
+// A direction in which the solver is soon near the solution, as shaking wants.
 TEST(FilterSqpShaking, IsNotTriedWhereTheFinalStateIsFixed) {
   const testing::TouchingScene scene;
   ReverseConfig config;
   config.terminal_weight = 0.0;
-  const ReverseProblem problem = scene.problem(config);
+  ReverseProblem problem = scene.problem(config);
+  problem.direction = direction(12, scene.task.push);
   const SqpResult shaken = testing::solved(problem);
   config.shakes = 0;
   const SqpResult still = testing::solved(problem);
+  ASSERT_LT(still.iterations, 12);
   EXPECT_EQ(shaken.iterations, still.iterations);
   EXPECT_EQ(shaken.x.p[0], still.x.p[0]);
 }
@@ -88,6 +91,10 @@ TEST(FilterSqpAttempts, OfSolutionsThatMissTheFinalStateTheFirstIsKept) {
   EXPECT_GT(missed.iterations, hit.iterations);
   EXPECT_EQ(missed.x.p[0], hit.x.p[0]);
   EXPECT_EQ(missed.stationarity, hit.stationarity);
+  ReverseConfig second;  // as the second attempt: not shaken, with a larger first δ
+  second.shakes = 0;
+  second.proximal_start = 4.0;
+  EXPECT_EQ(missed.iterations, hit.iterations + solve(job, second).iterations);
   config.max_iterations = hit.iterations + 1;  // ends the second attempt
   const SqpResult cut = solve(job, config);
   EXPECT_EQ(cut.status, SolveStatus::kInfeasible);
