@@ -10,6 +10,7 @@ benchmark refused its own result or a gate failed.
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -20,6 +21,8 @@ import gates
 # Keys of a benchmark in Google Benchmark's JSON that are not counters of ours.
 _OWN_KEYS = {
     "name",
+    "aggregate_name",
+    "aggregate_unit",
     "family_index",
     "per_family_instance_index",
     "run_name",
@@ -45,10 +48,16 @@ def measure(build: Path, out: Path, smoke: bool) -> dict[str, Any]:
     """Runs the benchmarks; returns what Google Benchmark wrote."""
     file = out / "rtg_bench.json"
     command = [str(build / "tests" / "rtg_bench"), f"--benchmark_out={file}"]
+    command.append("--benchmark_enable_random_interleaving=true")  # of repetitions
     if smoke:
         command += ["--benchmark_min_time=0.001", f"--benchmark_filter=-({_LONG})"]
     subprocess.run(command, check=True, stdout=sys.stderr)
     result: dict[str, Any] = json.loads(file.read_text())
+    single = (None, "median")  # of benchmarks that are repeated
+    result["benchmarks"] = sorted(
+        (b for b in result["benchmarks"] if b.get("aggregate_name") in single),
+        key=lambda b: (b["family_index"], b["per_family_instance_index"]),
+    )
     result["context"]["commit"] = commit()
     file.write_text(json.dumps(result, indent=1))
     return result
@@ -76,13 +85,12 @@ _REAL = "/real_time"  # at the end of the names of benchmarks that are measured 
 
 def name_of(benchmark: dict[str, Any]) -> str:
     """Without how often it ran and how it was measured."""
-    name: str = benchmark["name"]
-    return name.removesuffix(_REAL).removesuffix(f"/iterations:{benchmark['iterations']}")
+    return re.sub(rf"/(iterations|repeats):\d+|{_REAL}$", "", benchmark["run_name"])
 
 
 def time_of(benchmark: dict[str, Any]) -> float:
     """Real time of benchmarks over threads, CPU time of the others."""
-    real = benchmark["name"].endswith(_REAL)
+    real = benchmark["run_name"].endswith(_REAL)
     time: float = benchmark["real_time" if real else "cpu_time"]
     return time
 
