@@ -94,6 +94,10 @@ void BlockLdl<T>::solve(Vec3<T>* x) const {
 template <class T>
 template <class Load>
 void BlockLdl<T>::solve_row(const Load& load, int first, int from, Block<T>* out) const {
+  if (first == L_.M) {
+    for (int i = from; i < L_.M; ++i) out[i].setConstant(T(0.0));
+    return;
+  }
   const std::uint64_t filled = ~((std::uint64_t{1} << first) - 1);
   for (int i = first; i < L_.M; ++i) {
     RegisterSum<Block<T>> sum = load(i);

@@ -60,7 +60,7 @@ TEST(BlockLdl, SolvesForRowsOfBlocks) {
   const BlockMatrix<double> A = random_matrix(M, 2, 3.0, rng);
   BlockLdl<double> factor(M);
   factor.factorize(A);
-  for (int first = 0; first < M; ++first) {
+  for (int first = 0; first <= M; ++first) {
     std::vector<Block<double>> row(M, Block<double>::Zero());
     for (int i = first; i < M; ++i)
       row[static_cast<std::size_t>(i)] =
