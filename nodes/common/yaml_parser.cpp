@@ -1,9 +1,11 @@
 #include "nodes/common/yaml_parser.hpp"
 
+#include <utf8cpp/utf8.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include <algorithm>
 #include <functional>
 #include <sstream>
 #include <utility>
@@ -130,10 +132,18 @@ class TreeBuilder : public YAML::EventHandler {
   std::vector<Level> levels_;
 };
 
+void check_utf8(const std::string& text, const OriginOfLine& origin) {
+  const auto wrong = utf8::find_invalid(text.begin(), text.end());
+  if (wrong == text.end()) return;
+  const auto line = static_cast<int>(std::count(text.begin(), wrong, '\n'));
+  throw ConfigError(origin(line) + ": a byte that is no UTF-8; legal: text in UTF-8");
+}
+
 ConfigNode parse(const std::string& text, const OriginOfLine& origin) {
   if (text.size() > kMaxBytes)
     throw ConfigError(origin(0) + ": too long; legal: at most " + std::to_string(kMaxBytes) +
                       " bytes");
+  check_utf8(text, origin);
   std::istringstream stream(text);
   TreeBuilder builder(origin);
   try {

@@ -27,7 +27,7 @@ MAY_INCLUDE = {
 ONLY_IN = {
     r"(umfpack|cholmod|klu|SuiteSparse|amd|colamd)\w*\.h|suitesparse/.*": r"core/math/\w+\.cpp",
     r"box2d/.*": r"(tests/)?core/forward/box2d_\w+\.cpp",
-    r"yaml-cpp/.*": r"nodes/common/\w+\.cpp",
+    r"(yaml-cpp|utf8cpp)/.*": r"nodes/common/\w+\.cpp",
     r"lcm/.*": r"nodes/common/bus\w*\.cpp",
     r"nlohmann/.*": r"(core/search|nodes|train|tests/bench)/.*\.cpp",
     r"nanobind/.*": r"train/.*\.(cpp|hpp)",

@@ -90,6 +90,21 @@ WALLS = """\
 HARDLY = "m hardly a start is free of overlaps, or short of the goal; legal: up to"
 
 
+def test_text_must_be_utf8(file: Path, tmp_path: Path) -> None:
+    wrong = "a byte that is no UTF-8; legal: text in UTF-8"
+    path = tmp_path / "latin.yaml"
+    path.write_bytes(file.read_bytes() + "# größer\n".encode("latin-1"))
+    lines = file.read_bytes().count(b"\n") + 1
+    done = rtg_config(path, "--check")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"{path}:{lines}: {wrong}\n"
+    setting = b"task.name=gr\xf6sser"
+    command = [paths.program("rtg_config"), file, "--set", setting, "--check"]
+    raw = subprocess.run(command, capture_output=True, check=False)
+    assert (raw.returncode, raw.stdout) == (2, b"")
+    assert raw.stderr == b"--set " + setting + b": " + wrong.encode() + b"\n"
+
+
 def test_jitters_must_leave_room_for_starts(tmp_path: Path) -> None:
     """Between the walls, box a may move by 0.01 m: of starts within 0.1 m one in 100 is legal."""
     path = tmp_path / "walls.yaml"

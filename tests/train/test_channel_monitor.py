@@ -77,6 +77,21 @@ def test_a_trainer_goes_on_after_the_good_bye_or_is_silent():
     assert monitor.nodes(5.0)[0].state == "silent 5 s"
 
 
+def test_a_trainer_that_says_so_has_ended():
+    message = message_type("node_status_t")()
+    message.node, message.state = "trainer", "ended"
+    monitor = ChannelMonitor()
+    monitor.on_message("RTG_STATUS", message.encode(), 0.0)
+    assert monitor.nodes(0.1)[0].state == "ended"
+    assert monitor.nodes(60.0)[0].state == "ended"
+
+
+def test_lcm_trying_itself_is_no_channel_of_ours():
+    monitor = ChannelMonitor()
+    monitor.on_message("LCM_SELF_TEST", b"lcm self test", 0.0)
+    assert monitor.channels() == []
+
+
 def progress(leaving):
     message = message_type("search_progress_t")()
     message.phase, message.leaving = "sealed", leaving

@@ -80,6 +80,19 @@ def test_a_mistake_is_named_and_ends_with_status_2(name):
     assert done.stdout == ""
 
 
+def test_text_that_is_no_utf8_is_a_mistake(tmp_path):
+    file = tmp_path / "latin.yaml"
+    file.write_bytes("task: gathering  # größer\n".encode("latin-1"))
+    for words, shown in {
+        ("check", file): f"{file}:1",
+        ("--set", b"task.name=gr\xf6\xdfer"): "task.name=gr\\xf6\\xdfer",
+        ("--out", b"runs/\xff"): "runs/\\xff",
+    }.items():
+        done = rtg(*words)
+        assert done.stderr == f"rtg: {shown}: a byte that is no UTF-8; legal: text in UTF-8\n"
+        assert (done.returncode, done.stdout) == (2, "")
+
+
 def test_help_names_every_flag_of_the_contract():
     done = rtg("--help")
     assert done.returncode == 0

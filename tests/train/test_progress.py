@@ -89,3 +89,10 @@ def test_the_rate_is_that_of_the_last_stretch():
     for second in range(2, 30):
         rate = meter.rate(100 + 5 * second, float(second))
     assert rate == pytest.approx(5.0)
+
+
+def test_a_rate_is_never_negative_when_the_count_falls_back_to_a_checkpoint():
+    meter = RateMeter(stretch=10.0)
+    meter.rate(12_000, 0.0)
+    assert meter.rate(10_000, 1.0) == 0.0
+    assert meter.rate(10_500, 2.0) == 500.0

@@ -8,7 +8,7 @@ import pytest
 from rtg.bus import Bus
 from rtg.channel_monitor import ChannelMonitor
 from rtg.messages import message_type
-from rtg.node_status import NodeStatus
+from rtg.node_status import ENDED, NodeStatus
 from rtg.spy import SpyApp, bandwidth, watch_plainly
 
 
@@ -82,3 +82,7 @@ def test_a_python_node_is_shown_like_any_other(bus, monitor):
     assert (row.name, row.state, row.done) == ("trainer 0", "learning", 400)
     assert row.counters == "bus.malformed 2"
     assert monitor.channels()[0].messages == 1
+    status.tick(ENDED, 402)  # a new state is said at once
+    bus.spin(0.0)
+    (row,) = monitor.nodes(time.monotonic())
+    assert (row.state, row.done) == (ENDED, 402)

@@ -9,10 +9,11 @@ from typing import Any, NamedTuple
 
 from rtg.bus import decoded
 from rtg.messages import type_of
+from rtg.node_status import ENDED
 
 STRETCH = 4.0  # [s], over which rates are taken
 SILENT = 3.0  # [s] without a status: the node counts as silent
-ENDED = "ended"  # state of a silent node, no trainer, whose coordinator has said good-bye
+_OF_LCM = "LCM_SELF_TEST"  # channel on which every process tries whether it hears itself
 
 
 class Rates:
@@ -90,6 +91,8 @@ class ChannelMonitor:
 
     def on_message(self, channel: str, data: bytes, now: float) -> None:
         """Takes one message in. now [s]."""
+        if channel == _OF_LCM:
+            return
         stats = self._channels.setdefault(channel, _Channel())
         stats.messages += 1
         stats.size += len(data)
@@ -158,8 +161,10 @@ def _channel_row(name: str, stats: _Channel) -> ChannelRow:
 def _node_row(node: _Node, silence: float, over: bool) -> NodeRow:
     status = node.status
     state, (rate, cpu) = status.state, node.rates.per_second
-    if silence >= SILENT:
-        state, rate, cpu = ENDED if over else f"silent {silence:.0f} s", 0.0, 0.0
+    if state != ENDED and silence >= SILENT:
+        state = ENDED if over else f"silent {silence:.0f} s"
+    if state == ENDED or silence >= SILENT:
+        rate = cpu = 0.0
     counters = zip(status.counter_name, status.counter_value, strict=True)
     return NodeRow(
         f"{status.node} {status.number}",

@@ -90,11 +90,21 @@ _TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
 }
 
 
+def _check_utf8(words: Sequence[str]) -> None:
+    for word in words:
+        try:
+            word.encode()
+        except UnicodeEncodeError:
+            shown = os.fsencode(word).decode(errors="backslashreplace")
+            raise UserError(f"{shown}: a byte that is no UTF-8; legal: text in UTF-8") from None
+
+
 def main(words: Sequence[str] | None = None) -> int:
     """Exit status: 0 success, 2 bad input, 1 anything else."""
     words = list(sys.argv[1:] if words is None else words)
     tool = _TOOLS.get(words[0]) if words else None
     try:
+        _check_utf8(words)
         status = tool(words[1:]) if tool else _run(words)
         sys.stdout.flush()  # or Python does it after main(), where nobody can catch what it meets
         return status

@@ -1,4 +1,4 @@
-"""Tells people what a process does and what it has counted, twice a second: RTG_STATUS."""
+"""Tells people what a process does and what it has counted: RTG_STATUS."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from rtg.bus import Bus
 from rtg.messages import message_type
 
 INTERVAL = 0.5  # [s]
+ENDED = "ended"  # the last state of a process that says good-bye
 
 
 class NodeStatus:
@@ -15,14 +16,14 @@ class NodeStatus:
 
     def __init__(self, bus: Bus, node: str, number: int = 0) -> None:
         self._bus, self._node, self._number = bus, node, number
-        self._said_at = -1e9
+        self._said, self._said_at = "", -1e9
 
     def tick(self, state: str, done: int) -> None:
-        """To be called as often as one likes."""
+        """Sends a new state at once, the same one twice a second; call it as often as you like."""
         now = time.monotonic()
-        if now - self._said_at < INTERVAL:
+        if state == self._said and now - self._said_at < INTERVAL:
             return
-        self._said_at = now
+        self._said, self._said_at = state, now
         message = message_type("node_status_t")()
         message.node, message.number = self._node, self._number
         message.state, message.done = state, done

@@ -187,7 +187,9 @@ class RateMeter:
         self._samples: list[tuple[float, int]] = []
 
     def rate(self, count: int, now: float) -> float:
-        """Takes the count at time `now` [s] in."""
+        """Takes the count at time `now` [s] in; one below the last begins anew."""
+        if self._samples and count < self._samples[-1][1]:
+            self._samples.clear()
         if not self._samples or count != self._samples[-1][1]:
             self._samples.append((now, count))
         while len(self._samples) > 2 and now - self._samples[0][0] > self._stretch:

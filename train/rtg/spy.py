@@ -16,8 +16,9 @@ from textual.widgets import Footer, Header, Static
 
 from rtg import multicast
 from rtg.bus import Bus
-from rtg.channel_monitor import ENDED, ChannelMonitor, ChannelRow, NodeRow
+from rtg.channel_monitor import ChannelMonitor, ChannelRow, NodeRow
 from rtg.errors import RunError
+from rtg.node_status import ENDED
 
 _REFRESH = 0.5  # [s]
 _POLL = 0.05  # [s]

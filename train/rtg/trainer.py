@@ -24,7 +24,7 @@ import torch as th
 from rtg import _core
 from rtg.bus import Bus
 from rtg.errors import RunError, UserError
-from rtg.node_status import NodeStatus
+from rtg.node_status import ENDED, NodeStatus
 from rtg.offline_data import FileSource, Source
 from rtg.training import Training
 from rtg.transition_stream import TransitionStream
@@ -90,9 +90,12 @@ def train(args: argparse.Namespace, stop: StopSignals) -> int:
     if args.resume and training.has_checkpoint():
         training.restore()
     with contextlib.closing(_source(training, args)) as source:
-        if not training.run(source, stop, record=not args.no_stream):
-            return 128 + stop.number
-        training.finish(source.lost)
+        try:
+            if not training.run(source, stop, record=not args.no_stream):
+                return 128 + stop.number
+            training.finish(source.lost)
+        finally:
+            training.tell(ENDED, training.interactions)
     return 0
 
 
