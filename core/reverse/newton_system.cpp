@@ -4,6 +4,14 @@
 #include "core/reverse/limit_linearisation.hpp"
 
 namespace rtg {
+namespace {
+
+/// Pairs of level k are added once stage k + kReach has begun: what motion and inertia add to stages
+/// k and k + 1 is there by then, and both are still in the cache.
+constexpr int kReach = 3;
+
+}  // namespace
+
 template <class T>
 NewtonSystem<T>::NewtonSystem(const ProblemLanes<T>& problem)
     : fixed_end_(problem.fixed_end()),
@@ -21,14 +29,17 @@ void NewtonSystem<T>::linearise(const ProblemLanes<T>& problem, const Trajectory
                                 const Curvature<T>& curvature) {
   curvature_ = curvature;
   const int h = problem.sub_steps;
-  for (int k = 0; k <= h; ++k) set_objective(problem, x, k);
-  for (int k = 1; k <= h; ++k) {
-    add_motion(problem, x, k);
-    if (problem.energy.inertial()) add_inertia(problem, x, k);
-    add_control(problem, x, k);
+  for (int k = 0; k <= h + kReach; ++k) {
+    if (k <= h) set_objective(problem, x, k);
+    if (k > 0 && k <= h) {
+      add_motion(problem, x, k);
+      if (problem.energy.inertial()) add_inertia(problem, x, k);
+      add_control(problem, x, k);
+    }
+    const int behind = k - kReach;
+    for (int n = 0; n < problem.energy.pair_count() && behind >= 0; ++n)
+      add_pair(problem, x, behind, n);
   }
-  for (int k = 0; k <= h; ++k)
-    for (int n = 0; n < problem.energy.pair_count(); ++n) add_pair(problem, x, k, n);
   if (!problem.energy.articulation().empty()) {
     for (int k = 0; k <= h; ++k) add_limits(problem, x, k);
     reduce_joints(problem, x, {system_, gradient_, residual_, curvature_.exact});

@@ -205,6 +205,8 @@ const bool kRegistered = [] {
   benchmark::RegisterBenchmark("sqp_iteration", over_sub_steps)
       ->RangeMultiplier(2)
       ->Range(8, 256)
+      ->Repetitions(3)
+      ->ReportAggregatesOnly()
       ->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("sqp_iteration_bodies", over_bodies)
       ->DenseRange(2, 16, 2)
