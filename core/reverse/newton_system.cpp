@@ -6,8 +6,8 @@
 namespace rtg {
 namespace {
 
-/// Pairs of level k are added once stage k + kReach has begun: what motion and inertia add to stages
-/// k and k + 1 is there by then, and both are still in the cache.
+/// Pairs of level k are added once stage k + kReach has begun: what motion and inertia add to
+/// stages k and k + 1 is there by then, and both are still in the cache.
 constexpr int kReach = 3;
 
 }  // namespace
