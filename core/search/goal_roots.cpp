@@ -9,7 +9,15 @@
 namespace rtg {
 namespace {
 
-bool look_the_same(const Body& a, const Body& b) {
+bool has_joint(const Scene& scene, std::size_t body) {
+  return std::ranges::any_of(scene.joints, [k = static_cast<int>(body)](const Joint& joint) {
+    return joint.parent == k || joint.child == k;
+  });
+}
+
+bool look_the_same(const Scene& scene, std::size_t i, std::size_t j) {
+  const Body &a = scene.bodies[i], &b = scene.bodies[j];
+  if (has_joint(scene, i) || has_joint(scene, j)) return false;
   return a.kind == b.kind && a.shape == b.shape && a.density == b.density &&
          a.friction == b.friction && !a.fixed && !b.fixed;
 }
@@ -24,7 +32,7 @@ Poses relabelled(const Task& task, const Poses& poses, const Poses& target) {
     improved = false;
     for (std::size_t i = 1; i < poses.size(); ++i)
       for (std::size_t j = i + 1; j < poses.size(); ++j) {
-        if (!look_the_same(task.scene.bodies[i], task.scene.bodies[j])) continue;
+        if (!look_the_same(task.scene, i, j)) continue;
         Poses trial = best;
         std::swap(trial[i], trial[j]);
         const double distance = metric.layout_distance(trial, target);

@@ -25,7 +25,7 @@ Poses StretchProbe::disturbed(Poses poses) {
     poses[body].y += rng_.uniform(-most, most);
     if (body > 0) poses[body].theta += kTurnPerMetre * rng_.uniform(-most, most);
   }
-  return float_rounded(poses);
+  return float_rounded(with_closed_joints(task_.scene, std::move(poses)));
 }
 
 std::vector<StretchProbe::Twin> StretchProbe::draw(std::span<const Candidate> candidates) {

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <utility>
 
 #include "core/tasks/task.hpp"
 #include "core/world/separation.hpp"
@@ -10,7 +12,7 @@ namespace {
 
 constexpr int kAttempts = 1000;
 constexpr int kProposals = 50;         // per body and attempt
-constexpr double kTighten = 0.05;      // what the goal is satisfied with to spare [m]
+constexpr double kTighten = 0.05;      // what the goal is satisfied with to spare [m], [rad]
 constexpr double kClearance = 0.0215;  // closer than 0.02 bodies are in contact for Box2D [m]
 constexpr double kSlideError = 1e-3;   // [m]
 constexpr double kBesideShare = 0.5;   // of the proposals that put a body beside another one
@@ -34,7 +36,7 @@ struct Layout {
 double clearance(const Task& task, const Layout& layout, std::size_t i, const Pose& pose) {
   double least = 1e9;
   for (std::size_t j = 0; j < layout.poses.size(); ++j)
-    if (j != i && layout.placed[j])
+    if (j != i && layout.placed[j] && !jointed(task.scene, i, j))
       least = std::min(least, separation(task.scene.bodies[i].shape, pose,
                                          task.scene.bodies[j].shape, layout.poses[j]));
   return least;
@@ -64,21 +66,37 @@ std::optional<Pose> slide(const Task& task, const Layout& layout, std::size_t i,
   return std::nullopt;
 }
 
-/// A point uniform in the arena, moved into the target sets that apply to body `i`: anywhere in a
-/// disc, behind the line of a half-plane the closer the likelier.
-Vector2d point_in_goal(const Task& task, std::size_t i, Rng& rng) {
-  Vector2d x(rng.uniform(-task.push.arena, task.push.arena),
-             rng.uniform(-task.push.arena, task.push.arena));
-  for (const GoalTerm& term : task.goal) {
-    if (!applies_to(term, task, i)) continue;
-    if (term.region == GoalTerm::Region::kDisc) {
-      const double r = (term.radius - kTighten) * std::sqrt(rng.uniform(0.0, 1.0));
-      x = term.centre + r * unit(rng.uniform(0.0, kTwoPi));
-    } else {
-      const double depth = term.offset - kTighten - term.normal.dot(x);
-      x += (depth - rng.uniform(0.0, 1.0) * std::abs(depth)) * term.normal;
-    }
+/// x moved into the region of a term: anywhere in a disc, behind the line of a half-plane the
+/// closer the likelier.
+Vector2d moved_into(const GoalTerm& term, const Vector2d& x, Rng& rng) {
+  if (term.region == GoalTerm::Region::kDisc) {
+    const double r = (term.radius - kTighten) * std::sqrt(rng.uniform(0.0, 1.0));
+    return term.centre + r * unit(rng.uniform(0.0, kTwoPi));
   }
+  const double depth = term.offset - kTighten - term.normal.dot(x);
+  return x + (depth - rng.uniform(0.0, 1.0) * std::abs(depth)) * term.normal;
+}
+
+Vector2d point_in_arena(const Task& task, Rng& rng) {
+  const double a = task.push.arena;
+  const double x = rng.uniform(-a, a);
+  return {x, rng.uniform(-a, a)};
+}
+
+/// Whether every region that the centre of that body has to be in contains x, with room to spare.
+bool in_target(const Task& task, std::size_t body, const Vector2d& x) {
+  return std::ranges::all_of(task.goal, [&](const GoalTerm& term) {
+    return term.subject != GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||
+           contains(term, x, kTighten);
+  });
+}
+
+/// A point uniform in the arena, moved into the regions that the centre of body `i` has to be in.
+Vector2d point_in_goal(const Task& task, std::size_t i, Rng& rng) {
+  Vector2d x = point_in_arena(task, rng);
+  for (const GoalTerm& term : task.goal)
+    if (term.subject == GoalTerm::Subject::kEvery && concerns(term, task.scene, i))
+      x = moved_into(term, x, rng);
   return x;
 }
 
@@ -121,11 +139,71 @@ bool place_object(const Task& task, Layout& layout, std::size_t i, Rng& rng) {
       const Vector2d x = point_in_goal(task, i, rng);
       pose = Pose{x.x(), x.y(), rng.uniform(-std::numbers::pi, std::numbers::pi)};
     }
-    if (!pose || !in_target(task, i, pose->position(), kTighten)) continue;
+    if (!pose || !in_target(task, i, pose->position())) continue;
     if (clearance(task, layout, i, *pose) < kClearance - kSlideError) continue;
     layout.poses[i] = *pose;
     layout.placed[i] = true;
     return true;
+  }
+  return false;
+}
+
+/// An angle of the joint within its limits and the goal.
+double angle_in_goal(const Task& task, const Joint& joint, Rng& rng) {
+  double least = std::max(joint.lower, -std::numbers::pi);
+  double most = std::min(joint.upper, std::numbers::pi);
+  for (const GoalTerm& term : task.goal) {
+    if (!concerns(term, task.scene, joint)) continue;
+    least = std::max(least, term.least + kTighten);
+    most = std::min(most, term.most - kTighten);
+  }
+  return rng.uniform(least, most);
+}
+
+/// Takes the bodies of a tree of joints over from `poses` if all are in their regions and clear of
+/// what is placed and of each other.
+bool stand(const Task& task, Layout& layout, const Poses& poses, std::size_t root,
+           std::span<const std::size_t> roots) {
+  Layout trial = layout;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    if (roots[i] != root) continue;
+    if (!task.scene.bodies[i].fixed &&
+        (!in_target(task, i, poses[i].position()) ||
+         clearance(task, trial, i, poses[i]) < kClearance - kSlideError))
+      return false;
+    trial.poses[i] = poses[i];
+    trial.placed[i] = true;
+  }
+  layout = std::move(trial);
+  return true;
+}
+
+/// Bodies that joints connect, as one: at random angles, then moved to where the root, or the
+/// centroid that the goal speaks of, is in its region. A fixed root stays.
+bool place_tree(const Task& task, Layout& layout, std::size_t root,
+                std::span<const std::size_t> roots, Rng& rng) {
+  const bool fixed = task.scene.bodies[root].fixed;
+  for (int k = 0; k < kProposals; ++k) {
+    Poses poses = layout.poses;
+    if (!fixed) poses[root].theta = rng.uniform(-std::numbers::pi, std::numbers::pi);
+    for (const std::size_t n : root_first(task.scene)) {
+      const Joint& joint = task.scene.joints[n];
+      const auto child = static_cast<std::size_t>(joint.child);
+      if (roots[child] == root)
+        poses[child].theta =
+            poses[static_cast<std::size_t>(joint.parent)].theta + angle_in_goal(task, joint, rng);
+    }
+    poses = with_closed_joints(task.scene, std::move(poses));
+    if (!fixed) {
+      Vector2d by = point_in_goal(task, root, rng) - poses[root].position();
+      for (const GoalTerm& term : task.goal)
+        if (term.subject == GoalTerm::Subject::kCentroid && concerns(term, task.scene, root))
+          by = moved_into(term, point_in_arena(task, rng), rng) -
+               centroid_of(term, task.scene, poses);
+      for (std::size_t i = 1; i < poses.size(); ++i)
+        if (roots[i] == root) poses[i] = {poses[i].x + by.x(), poses[i].y + by.y(), poses[i].theta};
+    }
+    if (stand(task, layout, poses, root, roots)) return true;
   }
   return false;
 }
@@ -166,12 +244,24 @@ bool place_robot(const Task& task, Layout& layout, Rng& rng) {
   return false;
 }
 
+bool place_objects(const Task& task, Layout& layout, Rng& rng) {
+  const std::vector<std::size_t> roots = roots_of(task.scene);
+  for (std::size_t i = 1; i < task.scene.size(); ++i) {
+    if (roots[i] != i) continue;
+    const bool alone = std::ranges::count(roots, i) == 1;
+    if (alone && task.scene.bodies[i].fixed) continue;
+    if (alone ? !place_object(task, layout, i, rng) : !place_tree(task, layout, i, roots, rng))
+      return false;
+  }
+  return true;
+}
+
 std::optional<Poses> attempt(const Task& task, Rng& rng) {
   Layout layout{task.start, std::vector<bool>(task.scene.size(), false)};
   for (std::size_t i = 1; i < task.scene.size(); ++i) layout.placed[i] = task.scene.bodies[i].fixed;
-  for (std::size_t i = 1; i < task.scene.size(); ++i)
-    if (!layout.placed[i] && !place_object(task, layout, i, rng)) return std::nullopt;
+  if (!place_objects(task, layout, rng)) return std::nullopt;
   if (task.scene.size() > 1 && !place_robot(task, layout, rng)) return std::nullopt;
+  if (!succeeded(task, layout.poses, kTighten)) return std::nullopt;
   std::transform(layout.poses.begin(), layout.poses.end(), layout.poses.begin(), to_single);
   return layout.poses;
 }

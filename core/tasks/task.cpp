@@ -13,12 +13,6 @@ namespace {
 constexpr double kLengthScale = 8.0;  // of the observation [m]
 constexpr int kAttempts = 1000;
 
-bool holds(const GoalTerm& term, const Vector2d& x, double tighten) {
-  if (term.region == GoalTerm::Region::kDisc)
-    return (x - term.centre).norm() <= term.radius - tighten;
-  return term.normal.dot(x) <= term.offset - tighten;
-}
-
 bool movable_object(const Task& task, std::size_t body) {
   return body > 0 && !task.scene.bodies[body].fixed;
 }
@@ -27,12 +21,14 @@ bool movable_object(const Task& task, std::size_t body) {
 std::optional<Poses> draw_start(const Task& task, double amplitude, Rng& rng) {
   if (amplitude <= 0.0) return task.start;
   Poses poses = task.start;
+  const std::vector<std::size_t> roots = roots_of(task.scene);
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    if (!movable_object(task, i)) continue;
+    if (!movable_object(task, i) || roots[i] != i) continue;
     poses[i].x += rng.uniform(-amplitude, amplitude);
     poses[i].y += rng.uniform(-amplitude, amplitude);
-    poses[i] = to_single(poses[i]);
   }
+  poses = with_closed_joints(task.scene, std::move(poses));
+  std::transform(poses.begin(), poses.end(), poses.begin(), to_single);
   if (first_overlap(task.scene, poses, kStartClearance) || succeeded(task, poses))
     return std::nullopt;
   return poses;
@@ -40,21 +36,9 @@ std::optional<Poses> draw_start(const Task& task, double amplitude, Rng& rng) {
 
 }  // namespace
 
-bool applies_to(const GoalTerm& term, const Task& task, std::size_t body) {
-  if (body == 0) return false;
-  return term.kind == "*" ? movable_object(task, body) : term.kind == task.scene.bodies[body].kind;
-}
-
-bool in_target(const Task& task, std::size_t body, const Vector2d& x, double tighten) {
-  return std::all_of(task.goal.begin(), task.goal.end(), [&](const GoalTerm& term) {
-    return !applies_to(term, task, body) || holds(term, x, tighten);
-  });
-}
-
 bool succeeded(const Task& task, const Poses& poses, double tighten) {
-  for (std::size_t i = 1; i < poses.size(); ++i)
-    if (!in_target(task, i, poses[i].position(), tighten)) return false;
-  return true;
+  return std::ranges::all_of(
+      task.goal, [&](const GoalTerm& term) { return holds(term, task.scene, poses, tighten); });
 }
 
 std::vector<float> observation(const Task& task, const Poses& poses) {
@@ -74,11 +58,16 @@ std::vector<float> observation(const Task& task, const Poses& poses) {
     append_length(poses[i].x - robot.x);
     append_length(poses[i].y - robot.y);
   }
+  for (const Joint& joint : task.scene.joints) {
+    const double angle = joint_angle(joint, poses);
+    append(std::sin(angle));
+    append(std::cos(angle));
+  }
   return out;
 }
 
 int observation_size(const Task& task) {
-  int size = 2;
+  int size = 2 + 2 * static_cast<int>(task.scene.joints.size());
   for (std::size_t i = 1; i < task.scene.size(); ++i)
     if (movable_object(task, i)) size += 6;
   return size;

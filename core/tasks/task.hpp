@@ -5,22 +5,10 @@
 #include <vector>
 
 #include "core/math/rng.hpp"
+#include "core/tasks/goal.hpp"
 #include "core/world/push.hpp"
-#include "core/world/scene.hpp"
 
 namespace rtg {
-
-/// One condition on the centres of the bodies of a kind ("*" means all movable ones but the robot).
-/// A goal is the conjunction of its terms. `tighten` [m] shrinks the target set from all sides.
-struct GoalTerm {
-  enum class Region { kDisc, kHalfPlane };
-  std::string kind = "*";
-  Region region = Region::kDisc;
-  Vector2d centre = Vector2d::Zero();   // kDisc: |x - centre| ≤ radius
-  double radius = 0.0;                  // [m]
-  Vector2d normal = Vector2d::UnitX();  // kHalfPlane: normal·x ≤ offset, |normal| = 1
-  double offset = 0.0;                  // [m]
-};
 
 /// A sparse-reward task: reward +1 and termination when the goal holds, nothing otherwise.
 struct Task {
@@ -50,34 +38,29 @@ struct Task {
 /// [m].
 inline constexpr double kStartClearance = 0.02;
 
-/// Whether `term` constrains that body.
-bool applies_to(const GoalTerm& term, const Task& task, std::size_t body);
-
-/// Whether every target set that applies to that body, shrunk by `tighten` [m], contains x.
-bool in_target(const Task& task, std::size_t body, const Vector2d& x, double tighten);
-
-/// Whether the goal holds in `poses`, with every target set shrunk by `tighten` [m].
+/// Whether the goal holds in `poses`, with every region shrunk by `tighten` [m], [rad].
 bool succeeded(const Task& task, const Poses& poses, double tighten = 0.0);
 
 /// The learner's view, float32, lengths / 8 m: robot x, y; per movable body x, y, cos θ, sin θ,
-/// x - x_robot, y - y_robot. Fixed body order carries the class.
+/// x - x_robot, y - y_robot; per joint sin, cos of its angle. Fixed body order carries the class.
 std::vector<float> observation(const Task& task, const Poses& poses);
 int observation_size(const Task& task);
 
 /// Start state with every movable object's position moved by ± amplitude in x and y (uniform),
-/// overlaps and states in which the goal holds drawn again. Poses are to_single(). Throws
-/// std::invalid_argument if no draw of 1000 was legal: see allows_jitter().
+/// bodies that joints connect as one; overlaps and states in which the goal holds are drawn again.
+/// Poses are to_single(). Throws std::invalid_argument if no draw of 1000 was legal: see
+/// allows_jitter().
 Poses jittered_start(const Task& task, double amplitude, Rng& rng);
 
 /// Whether at least 5 of 250 draws of jittered_start() are legal. Where one in 50 is, a thousand in
 /// a row are not with probability 2e-9.
 bool allows_jitter(const Task& task, double amplitude);
 
-/// A layout that satisfies the goal with 0.05 m to spare: each body somewhere in its target set or
-/// beside one that is already there, corner or face towards it, at random angles; the robot,
-/// heading as at the start, just behind one as after a push (3 of 4) or clear of all. Fixed bodies
-/// stay. Poses are to_single(). Nearly at rest: settle it. Empty if none was found in 1000
-/// attempts.
+/// A layout that satisfies the goal with 0.05 m and rad to spare: each body somewhere in its region
+/// or beside one that is already there, corner or face towards it, at random angles; bodies that
+/// joints connect as one; the robot, heading as at the start, just behind one as after a push (3 of
+/// 4) or clear of all. Fixed bodies stay. Poses are to_single(). Nearly at rest: settle it. Empty
+/// if none was found in 1000 attempts.
 std::optional<Poses> sample_goal(const Task& task, Rng& rng);
 
 }  // namespace rtg

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace rtg {
 
@@ -27,6 +28,11 @@ double joint_gap(const Joint& joint, const Poses& poses) {
       .norm();
 }
 
+double joint_angle(const Joint& joint, const Poses& poses) {
+  return poses[static_cast<std::size_t>(joint.child)].theta -
+         poses[static_cast<std::size_t>(joint.parent)].theta;
+}
+
 std::vector<std::size_t> root_first(const Scene& scene) {
   std::vector<std::size_t> order;
   std::vector<int> waiting(scene.size(), 0);  // joints that have not been listed, by child
@@ -48,6 +54,15 @@ std::vector<std::size_t> root_first(const Scene& scene) {
   }
   assert(order.size() == scene.joints.size());
   return order;
+}
+
+std::vector<std::size_t> roots_of(const Scene& scene) {
+  std::vector<std::size_t> roots(scene.size());
+  std::iota(roots.begin(), roots.end(), std::size_t{0});
+  for (const std::size_t k : root_first(scene))
+    roots[static_cast<std::size_t>(scene.joints[k].child)] =
+        roots[static_cast<std::size_t>(scene.joints[k].parent)];
+  return roots;
 }
 
 Poses with_closed_joints(const Scene& scene, Poses poses) {

@@ -48,8 +48,14 @@ bool jointed(const Scene& scene, std::size_t a, std::size_t b);
 /// Distance between the two points that a joint pins together [m].
 double joint_gap(const Joint& joint, const Poses& poses);
 
+/// θ_child - θ_parent [rad].
+double joint_angle(const Joint& joint, const Poses& poses);
+
 /// Indices of joints, those of parents before those of their children.
 std::vector<std::size_t> root_first(const Scene& scene);
+
+/// Per body the one at the root of the tree of joints that it belongs to; itself without a joint.
+std::vector<std::size_t> roots_of(const Scene& scene);
 
 /// `poses` with every child moved, its angle kept, to where its pin closes.
 Poses with_closed_joints(const Scene& scene, Poses poses);

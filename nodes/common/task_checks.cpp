@@ -75,27 +75,42 @@ std::string legal_kinds(const Task& task) {
   return listed(kinds);
 }
 
-/// Whether some point of the arena, |x|, |y| ≤ a, lies in the target set.
+/// Whether some point of the arena, |x|, |y| ≤ a, lies in the region.
 bool meets_arena(const GoalTerm& term, double a) {
+  if (term.region == GoalTerm::Region::kAngles) return true;
   if (term.region == GoalTerm::Region::kHalfPlane)
     return -a * term.normal.lpNorm<1>() <= term.offset;
   const Vector2d nearest = term.centre.cwiseMax(-a).cwiseMin(a);
   return (term.centre - nearest).norm() <= term.radius;
 }
 
+/// The children of joints, and "*".
+std::string legal_joints(const Task& task) {
+  std::vector<std::string> names{"\"*\""};
+  for (const Joint& joint : task.scene.joints)
+    names.push_back(task.scene.bodies[static_cast<std::size_t>(joint.child)].name);
+  return task.scene.joints.empty() ? "task.joints, of which there are none" : listed(names);
+}
+
+bool concerns_something(const GoalTerm& term, const Scene& scene) {
+  for (std::size_t i = 1; i < scene.size(); ++i)
+    if (concerns(term, scene, i) && !scene.bodies[i].fixed) return true;
+  return std::ranges::any_of(scene.joints,
+                             [&](const Joint& joint) { return concerns(term, scene, joint); });
+}
+
 void check_term(const Task& task, std::size_t k, const ConfigNode& section) {
   const GoalTerm& term = task.goal[k];
   const ConfigNode& node = find(section, "goal")->value.items[k];
   const std::string path = "task.goal." + std::to_string(k);
-  bool concerns_movable = false;
-  for (std::size_t i = 1; i < task.scene.size(); ++i) {
-    const Body& body = task.scene.bodies[i];
-    if (applies_to(term, task, i) && !body.fixed) concerns_movable = true;
-  }
-  if (!concerns_movable) {
-    const ConfigEntry* kind = find(node, "kind");
-    throw ConfigError(kind ? kind->value.origin : node.origin, path + ".kind",
-                      "no object that can move is of kind '" + term.kind + "'", legal_kinds(task));
+  if (!concerns_something(term, task.scene)) {
+    const bool of_joint = term.subject == GoalTerm::Subject::kJoint;
+    const char* key = of_joint ? "joint" : find(node, "centroid") ? "centroid" : "kind";
+    const ConfigEntry* subject = find(node, key);
+    throw ConfigError(subject ? subject->value.origin : node.origin, path + '.' + key,
+                      of_joint ? "no joint has a child '" + term.kind + "'"
+                               : "no object that can move is of kind '" + term.kind + "'",
+                      of_joint ? legal_joints(task) : legal_kinds(task));
   }
   const std::string arena = number_text(task.push.arena);
   if (!meets_arena(term, task.push.arena))
@@ -104,11 +119,19 @@ void check_term(const Task& task, std::size_t k, const ConfigNode& section) {
         "regions with points of x and y from -" + arena + " to " + arena + " (task.push.arena)");
 }
 
+/// Whether a fixed body is where the terms that speak of it want it.
+bool stands_right(const Task& task, std::size_t body) {
+  return std::ranges::all_of(task.goal, [&](const GoalTerm& term) {
+    return term.subject != GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||
+           contains(term, task.start[body].position(), 0.0);
+  });
+}
+
 void check_goal(const Task& task, const ConfigNode& section) {
   for (std::size_t k = 0; k < task.goal.size(); ++k) check_term(task, k, section);
   const std::string& origin = find(section, "goal")->value.origin;
   for (std::size_t i = 1; i < task.scene.size(); ++i)
-    if (task.scene.bodies[i].fixed && !in_target(task, i, task.start[i].position(), 0.0))
+    if (task.scene.bodies[i].fixed && !stands_right(task, i))
       throw ConfigError(origin, "task.goal",
                         "asks fixed body '" + task.scene.bodies[i].name + "' to be elsewhere",
                         "terms that the fixed bodies of that kind meet");
@@ -118,7 +141,7 @@ void check_goal(const Task& task, const ConfigNode& section) {
   Rng rng(1);
   if (!sample_goal(task, rng))
     throw ConfigError(origin, "task.goal", "no layout of the bodies that meets it was found",
-                      "terms that all objects can meet at once, with 0.05 m to spare");
+                      "terms that all objects can meet at once, with 0.05 m and rad to spare");
 }
 
 }  // namespace

@@ -1,15 +1,16 @@
 #include "nodes/common/task_section.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "nodes/common/config_error.hpp"
 #include "nodes/common/field_reader.hpp"
 #include "nodes/common/field_writer.hpp"
+#include "nodes/common/goal_section.hpp"
+#include "nodes/common/joint_section.hpp"
 #include "nodes/common/shape_section.hpp"
 #include "nodes/common/task_checks.hpp"
+#include "nodes/common/task_words.hpp"
 
 namespace rtg {
 namespace {
@@ -18,32 +19,9 @@ using Kind = ConfigNode::Kind;
 
 constexpr std::size_t kMaxBodies = 32;
 constexpr std::size_t kMaxTerms = 32;
-constexpr std::size_t kMaxName = 40;  // characters
-constexpr double kMaxPlace = 1000.0;  // |x|, |y|, |θ| of a start pose
-constexpr double kUnitWithin = 1e-6;  // of the length of a normal
 
 const std::vector<std::string> kBodyKeys{"name",     "kind",  "shape", "density",
                                          "friction", "fixed", "start"};
-const std::vector<std::string> kTermKeys{"kind", "disc", "half_plane"};
-const std::vector<std::string> kDiscKeys{"centre", "radius"};
-const std::vector<std::string> kHalfPlaneKeys{"normal", "offset"};
-const std::string kNameLegal = "a letter, then letters, digits, _ and -, 40 at most";
-const std::string kTermLegal =
-    "{kind: word, disc: {centre: [x, y], radius: m}} or "
-    "{kind: word, half_plane: {normal: [x, y], offset: m}}";
-
-std::string name_at(const FieldReader& reader, const char* key, const std::string& legal) {
-  const ConfigNode& node = reader.required(key, legal).value;
-  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  const auto is_legal = [&](char c) {
-    return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  };
-  const std::string& name = node.scalar;
-  if (node.kind != Kind::kScalar || name.empty() || name.size() > kMaxName || !is_letter(name[0]) ||
-      !std::all_of(name.begin(), name.end(), is_legal))
-    throw ConfigError(node.origin, reader.path(key), in_words(node) + " is no name", legal);
-  return name;
-}
 
 Body read_body(const ConfigNode& section, const std::string& path, Poses& start) {
   FieldReader reader(section, path, kBodyKeys);
@@ -58,47 +36,6 @@ Body read_body(const ConfigNode& section, const std::string& path, Poses& start)
   const auto pose = reader.numbers("start", 3, -kMaxPlace, kMaxPlace, "[x, y, theta] in m and rad");
   start.push_back(to_single({pose[0], pose[1], pose[2]}));
   return body;
-}
-
-Vector2d read_point(const FieldReader& reader, const char* key) {
-  const auto x = reader.numbers(key, 2, -kMaxPlace, kMaxPlace, "[x, y]");
-  return {x[0], x[1]};
-}
-
-void read_disc(const ConfigNode& section, const std::string& path, GoalTerm& term) {
-  FieldReader reader(section, path, kDiscKeys);
-  term.region = GoalTerm::Region::kDisc;
-  term.centre = read_point(reader, "centre");
-  reader.required("radius", "a number from 0.1 to 1000.0 [m]");
-  reader.number("radius", term.radius, 0.1, kMaxPlace);
-}
-
-void read_half_plane(const ConfigNode& section, const std::string& path, GoalTerm& term) {
-  FieldReader reader(section, path, kHalfPlaneKeys);
-  term.region = GoalTerm::Region::kHalfPlane;
-  term.normal = read_point(reader, "normal");
-  const double length = term.normal.norm();
-  if (std::abs(length - 1.0) > kUnitWithin)
-    throw ConfigError(find(section, "normal")->value.origin, reader.path("normal"),
-                      "has length " + number_text(length), "[x, y] of length 1");
-  reader.required("offset", "a number, largest normal . x [m]");
-  reader.number("offset", term.offset, -kMaxPlace, kMaxPlace);
-}
-
-GoalTerm read_term(const ConfigNode& section, const std::string& path) {
-  const FieldReader reader(section, path, kTermKeys);
-  const ConfigEntry *kind = find(section, "kind"), *disc = find(section, "disc"),
-                    *half_plane = find(section, "half_plane");
-  if (!disc == !half_plane)
-    throw ConfigError(section.origin, path, disc ? "has two regions" : "has no region", kTermLegal);
-  GoalTerm term;
-  if (kind && kind->value.scalar != "*")
-    term.kind = name_at(reader, "kind", "the kind of a body, or \"*\" for all objects");
-  if (disc)
-    read_disc(disc->value, reader.path("disc"), term);
-  else
-    read_half_plane(half_plane->value, reader.path("half_plane"), term);
-  return term;
 }
 
 /// The list `key`, with between `least` and `most` entries.
@@ -135,25 +72,10 @@ ConfigNode body_node(const Body& body, const Pose& start) {
   return node;
 }
 
-ConfigNode term_node(const GoalTerm& term) {
-  const bool is_disc = term.region == GoalTerm::Region::kDisc;
-  const Vector2d& point = is_disc ? term.centre : term.normal;
-  ConfigNode region = map_node();
-  region.entries.push_back(
-      {is_disc ? "centre" : "normal", "",
-       list_node({token_node(number_text(point.x())), token_node(number_text(point.y()))})});
-  region.entries.push_back({is_disc ? "radius" : "offset", "",
-                            token_node(number_text(is_disc ? term.radius : term.offset))});
-  ConfigNode node = map_node();
-  node.entries.push_back({"kind", "", text_node(term.kind)});
-  node.entries.push_back({is_disc ? "disc" : "half_plane", "", std::move(region)});
-  return node;
-}
-
 }  // namespace
 
 Task read_task(const ConfigNode& section) {
-  std::vector<std::string> keys{"name", "bodies", "goal", "push"};
+  std::vector<std::string> keys{"name", "bodies", "joints", "goal", "push"};
   Task task;
   for (const ConfigEntry& field : fields_of(task).entries) keys.push_back(field.key);
   FieldReader reader(section, "task", keys);
@@ -162,24 +84,33 @@ Task read_task(const ConfigNode& section) {
   for (std::size_t i = 0; i < bodies.items.size(); ++i)
     task.scene.bodies.push_back(
         read_body(bodies.items[i], "task.bodies." + std::to_string(i), task.start));
+  if (find(section, "joints")) {
+    const ConfigNode& joints = list_at(reader, "joints", 0, kMaxBodies);
+    for (std::size_t i = 0; i < joints.items.size(); ++i)
+      task.scene.joints.push_back(
+          read_joint(joints.items[i], "task.joints." + std::to_string(i), task.scene));
+  }
   const ConfigNode& goal = list_at(reader, "goal", 1, kMaxTerms);
   for (std::size_t i = 0; i < goal.items.size(); ++i)
     task.goal.push_back(read_term(goal.items[i], "task.goal." + std::to_string(i)));
   if (const ConfigEntry* push = find(section, "push"))
     read_fields(push->value, "task.push", task.push);
   task.visit(reader);
+  close_joints(task, section);
   check_task(task, section);
   return task;
 }
 
 ConfigNode task_node(Task task) {
   ConfigNode node = map_node();
-  std::vector<ConfigNode> bodies, goal;
+  std::vector<ConfigNode> bodies, joints, goal;
   for (std::size_t i = 0; i < task.scene.size(); ++i)
     bodies.push_back(body_node(task.scene.bodies[i], task.start[i]));
+  for (const Joint& joint : task.scene.joints) joints.push_back(joint_node(joint, task.scene));
   for (const GoalTerm& term : task.goal) goal.push_back(term_node(term));
   node.entries.push_back({"name", "", text_node(task.name)});
   node.entries.push_back({"bodies", "", list_node(std::move(bodies)), "the first is the robot"});
+  if (!joints.empty()) node.entries.push_back({"joints", "", list_node(std::move(joints))});
   node.entries.push_back({"goal", "", list_node(std::move(goal)), "all must hold"});
   node.entries.push_back({"push", "", fields_of(task.push)});
   for (ConfigEntry& field : fields_of(task).entries) node.entries.push_back(std::move(field));

@@ -1,6 +1,7 @@
 #include "nodes/rtg_config/description.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <numbers>
@@ -19,6 +20,8 @@ namespace {
   va_end(values);
   return line;
 }
+
+double degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
 
 /// Width and height of the smallest upright rectangle around a shape, as it lies at angle 0.
 Vector2d extent(const Polygon& shape) {
@@ -40,7 +43,7 @@ std::string body_line(const Body& body, const Pose& start, std::size_t width) {
   return print("  %-*s  %-8s  %s  %9s  friction %.2f  at (%.2f, %.2f), %.1f deg\n",
                static_cast<int>(width), body.name.c_str(), body.kind.c_str(),
                shape_in_words(body.shape).c_str(), mass.c_str(), body.friction, start.x, start.y,
-               start.theta * 180.0 / std::numbers::pi);
+               degrees(start.theta));
 }
 
 std::string bodies_in_words(const Task& task) {
@@ -60,18 +63,45 @@ std::string half_plane_in_words(const Vector2d& normal, double offset) {
   return print("%.4g x %+.4g y <= %.4g m", normal.x(), normal.y(), offset);
 }
 
+std::string angles_in_words(double least, double most) {
+  return print("from %.4g to %.4g deg", degrees(least), degrees(most));
+}
+
+std::string joint_line(const Joint& joint, const Scene& scene) {
+  const auto name = [&scene](int body) {
+    return scene.bodies[static_cast<std::size_t>(body)].name;
+  };
+  const std::string limits =
+      std::isfinite(joint.lower) ? angles_in_words(joint.lower, joint.upper) : "any angle";
+  return "  '" + name(joint.child) + "' on '" + name(joint.parent) + "', " + limits + '\n';
+}
+
+std::string joints_in_words(const Scene& scene) {
+  if (scene.joints.empty()) return "";
+  std::string out = "joints\n";
+  for (const Joint& joint : scene.joints) out += joint_line(joint, scene);
+  return out;
+}
+
 std::string term_in_words(const GoalTerm& term) {
-  const std::string who = term.kind == "*" ? "movable object" : "'" + term.kind + "'";
+  const bool any = term.kind == "*";
+  if (term.subject == GoalTerm::Subject::kJoint)
+    return (any ? "  every joint" : "  the joint of '" + term.kind + "'") + " has an angle " +
+           angles_in_words(term.least, term.most) + '\n';
+  const std::string who = any ? "movable object" : "'" + term.kind + "'";
   const std::string where =
       term.region == GoalTerm::Region::kDisc
           ? print("within %.4g m of (%.4g, %.4g)", term.radius, term.centre.x(), term.centre.y())
           : "at " + half_plane_in_words(term.normal, term.offset);
-  return "  the centre of every " + who + " lies " + where + '\n';
+  const bool mean = term.subject == GoalTerm::Subject::kCentroid;
+  return (mean ? "  the mean centre of all " : "  the centre of every ") + who + " lies " + where +
+         '\n';
 }
 
 /// `training`: amplitude of the training starts [m].
 std::string task_in_words(const Task& task, double training) {
-  std::string out = "task " + task.name + "\n" + bodies_in_words(task) + "goal, all of\n";
+  std::string out = "task " + task.name + "\n" + bodies_in_words(task) +
+                    joints_in_words(task.scene) + "goal, all of\n";
   for (const GoalTerm& term : task.goal) out += term_in_words(term);
   const PushConfig& push = task.push;
   out += print(

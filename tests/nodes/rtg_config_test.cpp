@@ -9,6 +9,7 @@
 #include "nodes/common/config_error.hpp"
 #include "nodes/common/field_writer.hpp"
 #include "tests/nodes/two_boxes.hpp"
+#include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg {
@@ -40,15 +41,8 @@ void expect_same_task(const Task& a, const Task& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.scene.bodies, b.scene.bodies);
   EXPECT_EQ(a.start, b.start);
-  ASSERT_EQ(a.goal.size(), b.goal.size());
-  for (std::size_t k = 0; k < a.goal.size(); ++k) {
-    EXPECT_EQ(a.goal[k].kind, b.goal[k].kind);
-    EXPECT_EQ(a.goal[k].region, b.goal[k].region);
-    EXPECT_EQ(a.goal[k].centre, b.goal[k].centre);
-    EXPECT_EQ(a.goal[k].radius, b.goal[k].radius);
-    EXPECT_EQ(a.goal[k].normal, b.goal[k].normal);
-    EXPECT_EQ(a.goal[k].offset, b.goal[k].offset);
-  }
+  EXPECT_EQ(a.scene.joints, b.scene.joints);
+  EXPECT_EQ(a.goal, b.goal);
   EXPECT_EQ(text_of(a.push), text_of(b.push));
   EXPECT_EQ(text_of(a), text_of(b));
 }
@@ -68,6 +62,7 @@ TEST(RtgConfig, EveryFileOfOursIsLegalAndItsCanonicalTextReadsBackToItself) {
 TEST(RtgConfig, TheLayoutsOfTheFilesAreThoseOfTheTests) {
   expect_same_task(load_config(kConfig / "gathering.yaml").task, gathering());
   expect_same_task(load_config(kConfig / "gathering_hard.yaml").task, gathering_hard());
+  expect_same_task(load_config(kConfig / "art_manip.yaml").task, testing::art_manip());
 }
 
 TEST(RtgConfig, WhatIsNotGivenHasTheDefaultOfItsStruct) {

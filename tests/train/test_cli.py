@@ -8,12 +8,12 @@ import pytest
 from rtg import paths
 
 MISTAKES = {
-    "unknown task": (["sortign"], "sortign: no task of that name; legal: gathering, "),
+    "unknown task": (["sortign"], "sortign: no task of that name; legal: art_manip, gathering, "),
     "unknown flag": (
         ["--wokers", "2"],
         "unrecognized arguments: --wokers; legal: ./run.sh [-h] [--in-proc",
     ),
-    "missing file": (["mine.yaml"], "mine.yaml: no such task file; legal: gathering, "),
+    "missing file": (["mine.yaml"], "mine.yaml: no such task file; legal: art_manip, gathering, "),
     "workers no number": (["--workers", "two"], "--workers two: "),
     "workers negative": (["--workers", "-1"], "--workers"),
     "too many workers": (["--workers", "5000"], "--workers 5000: "),
@@ -39,7 +39,7 @@ MISTAKES = {
     "flag of lcm-spy": (["lcm-spy", "-x"], "unrecognized arguments: -x; legal: ./run.sh lcm-spy ["),
     "spy for no time": (["spy", "--seconds", "0"], "--seconds 0: legal is a number of seconds"),
     "spy on nothing": (["spy", "sortign"], "sortign: no task of that name"),
-    "spy on a folder": (["spy", "tests"], "tests: no such task file; legal: gathering, "),
+    "spy on a folder": (["spy", "tests"], "tests: no such task file; legal: art_manip, "),
 }
 
 

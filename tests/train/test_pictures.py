@@ -7,7 +7,19 @@ import numpy as np
 import pytest
 from PIL import Image
 from rtg import _core, paths, plots
-from rtg.draw import FAINT, KINDS, PAPER, ROBOT, Canvas, arena_window, episode_window, state_image
+from rtg.draw import (
+    FAINT,
+    GOAL,
+    KINDS,
+    PAPER,
+    ROBOT,
+    Canvas,
+    arena_window,
+    draw_joints,
+    episode_window,
+    outline,
+    state_image,
+)
 from rtg.episode_pictures import between, film, strip
 
 TASK = _core.Config.from_file(paths.CONFIG / "gathering.yaml").task
@@ -43,9 +55,10 @@ def test_a_reached_goal_is_stronger():
 
 
 def test_a_disc_on_a_half_plane_is_seen_in_any_order():
-    disc = SimpleNamespace(kind="box", region="disc", centre=(4.0, 4.0), radius=1.0)
-    plane = SimpleNamespace(kind="*", region="half_plane", normal=(-1.0, 0.0), offset=0.0)
-    names = ("kinds", "names", "shapes", "start", "arena")
+    every = {"subject": "every"}
+    disc = SimpleNamespace(**every, kind="box", region="disc", centre=(4.0, 4.0), radius=1.0)
+    plane = SimpleNamespace(**every, kind="*", region="half_plane", normal=(-1.0, 0.0), offset=0.0)
+    names = ("kinds", "names", "shapes", "joints", "start", "arena")
     shown = {name: getattr(TASK, name) for name in names}
     pictures = [
         state_image(SimpleNamespace(**shown, goal=goal), SOLVED[None])
@@ -54,6 +67,18 @@ def test_a_disc_on_a_half_plane_is_seen_in_any_order():
     assert np.array_equal(*pictures)
     window = arena_window(TASK)
     assert pixel(pictures[0], 4.0, 4.0, window) != pixel(pictures[0], 7.0, 4.0, window)
+
+
+def test_a_pin_shows_whether_its_angle_is_as_asked():
+    task = _core.Config.from_file(paths.CONFIG / "art_manip.yaml").task
+    poses = np.array(task.start)
+    poses[2:, 2] = 1.5  # the first joint is right, the others are not
+    canvas = Canvas(arena_window(task))
+    draw_joints(canvas, task, poses)
+    picture, window = canvas.pixels(), arena_window(task)
+    pins = [outline(np.array([[1.2, 0.0]]), poses[k])[0] for k in (1, 2)]
+    assert pixel(picture, *pins[0], window) == GOAL
+    assert pixel(picture, *pins[1], window) == PAPER
 
 
 def test_the_window_holds_all_that_happens_and_no_more_than_the_arena():

@@ -1,7 +1,9 @@
 #include "core/tasks/task.hpp"
 
 #include <nanobind/eigen/dense.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "train/bindings/arrays.hpp"
@@ -64,12 +66,30 @@ nb::ndarray<nb::numpy, double> start(const Task& task, double amplitude, std::ui
   return state_array(jittered_start(task, amplitude, rng));
 }
 
+/// As (parent, child, pin in the frame of the parent).
+std::vector<std::tuple<int, int, Vector2d>> joints(const Task& task) {
+  std::vector<std::tuple<int, int, Vector2d>> out;
+  for (const Joint& joint : task.scene.joints)
+    out.emplace_back(joint.parent, joint.child, joint.on_parent);
+  return out;
+}
+
 void bind_goal_term(nb::module_& module) {
   nb::class_<GoalTerm>(module, "GoalTerm")
       .def_ro("kind", &GoalTerm::kind)
       .def_prop_ro("region",
                    [](const GoalTerm& term) {
-                     return term.region == GoalTerm::Region::kDisc ? "disc" : "half_plane";
+                     constexpr const char* kNames[] = {"disc", "half_plane", "angles"};
+                     return kNames[static_cast<std::size_t>(term.region)];
+                   })
+      .def_prop_ro("subject",
+                   [](const GoalTerm& term) {
+                     constexpr const char* kNames[] = {"every", "centroid", "joint"};
+                     return kNames[static_cast<std::size_t>(term.subject)];
+                   })
+      .def_prop_ro("angles",
+                   [](const GoalTerm& term) {
+                     return std::array{term.least, term.most};
                    })
       .def_ro("centre", &GoalTerm::centre)
       .def_ro("radius", &GoalTerm::radius)
@@ -86,6 +106,7 @@ void bind_task(nb::module_& module) {
       .def_prop_ro("shapes", &shapes)
       .def_prop_ro("names", &names)
       .def_prop_ro("kinds", &kinds)
+      .def_prop_ro("joints", &joints)
       .def_ro("goal", &Task::goal)
       .def_prop_ro("arena", [](const Task& task) { return task.push.arena; })
       .def_prop_ro("headings", [](const Task& task) { return task.push.headings; })

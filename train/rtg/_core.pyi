@@ -11,13 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 class GoalTerm:
-    """A target set for the centres of the bodies of a kind; "*" means all objects."""
+    """One condition on a state: what the subject is lies in the region."""
 
+    @property
+    def subject(self) -> str:
+        """ "every": the centres of the bodies of the kind ("*": all objects); "centroid": their
+        mean; "joint": the angle of the joint whose child is named `kind` ("*": of every joint)."""
     @property
     def kind(self) -> str: ...
     @property
     def region(self) -> str:
-        """ "disc": |x - centre| <= radius; "half_plane": normal·x <= offset."""
+        """ "disc": |x - centre| <= radius; "half_plane": normal·x <= offset; "angles"."""
     @property
     def centre(self) -> NDArray[np.float64]:
         """[2], m"""
@@ -28,6 +32,9 @@ class GoalTerm:
         """[2], a unit vector"""
     @property
     def offset(self) -> float: ...
+    @property
+    def angles(self) -> list[float]:
+        """The least and the most [rad]."""
 
 class Task:
     """A sparse-reward task: reward 1 and the end when the goal holds. Body 0 is the robot."""
@@ -43,6 +50,9 @@ class Task:
     @property
     def kinds(self) -> list[str]:
         """The class of each body."""
+    @property
+    def joints(self) -> list[tuple[int, int, NDArray[np.float64]]]:
+        """(parent, child, pin in the frame of the parent [2])."""
     @property
     def goal(self) -> list[GoalTerm]:
         """All must hold."""

@@ -36,7 +36,14 @@ class GoalLike(Protocol):
     def kind(self) -> str: ...
     @property
     def region(self) -> str:
-        """ "disc" or "half_plane"."""
+        """ "disc", "half_plane" or "angles"."""
+
+    @property
+    def subject(self) -> str:
+        """ "every", "centroid" or "joint"."""
+
+    @property
+    def angles(self) -> Sequence[float]: ...
 
     @property
     def centre(self) -> Floats: ...
@@ -59,6 +66,10 @@ class TaskLike(Protocol):
     def names(self) -> Sequence[str]: ...
     @property
     def kinds(self) -> Sequence[str]: ...
+    @property
+    def joints(self) -> Sequence[tuple[int, int, Floats]]:
+        """(parent, child, pin in the frame of the parent)."""
+
     @property
     def goal(self) -> Sequence[GoalLike]: ...
     @property
@@ -185,9 +196,10 @@ def _half_plane(term: GoalLike, reach: float) -> Floats:
 
 
 def draw_goal(canvas: Canvas, task: TaskLike, reached: bool = False) -> None:
-    """The target sets, stronger when they hold; discs lie on half-planes."""
+    """The regions of the goal, stronger when they hold; discs lie on half-planes."""
     colours = kind_colours(task)
-    for term in sorted(task.goal, key=lambda term: term.region == "disc"):
+    regions = [term for term in task.goal if term.region != "angles"]
+    for term in sorted(regions, key=lambda term: term.region == "disc"):
         colour = colours.get(term.kind, GOAL)
         if term.region == "disc":
             shape = circle(term.centre, term.radius)
@@ -205,6 +217,29 @@ def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
         canvas.polygon(xy, colour, edge=INK)
         if body > 0:
             canvas.dot(poses[body][:2], INK, 0.08)
+
+
+def draw_joints(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
+    """A pin per joint, in the colour of the goal where its angle is as asked; a cross at each mean
+    centre that the goal speaks of. poses [bodies, 3]
+    """
+    for parent, child, pin in task.joints:
+        angle = poses[child][2] - poses[parent][2]
+        asked = [
+            term.angles
+            for term in task.goal
+            if term.subject == "joint" and term.kind in ("*", task.names[child])
+        ]
+        right = asked and all(least <= angle <= most for least, most in asked)
+        at = outline(np.asarray(pin).reshape(1, 2), poses[parent])[0]
+        canvas.dot(at, INK, 0.24)
+        canvas.dot(at, GOAL if right else PAPER, 0.17)
+    for term in task.goal:
+        if term.subject == "centroid":
+            bodies = [k for k in range(1, len(task.kinds)) if term.kind in ("*", task.kinds[k])]
+            x, y = poses[bodies, :2].mean(axis=0)
+            canvas.line([(x - 0.25, y), (x + 0.25, y)], INK, 0.09)
+            canvas.line([(x, y - 0.25), (x, y + 0.25)], INK, 0.09)
 
 
 def draw_ghosts(canvas: Canvas, task: TaskLike, before: Floats, poses: Floats) -> None:
@@ -238,6 +273,7 @@ def state_image(
         draw_ghosts(canvas, task, path[0], path[-1])
         canvas.line(path[:, 0, :2], TRAIL, 0.1)
     draw_bodies(canvas, task, path[-1])
+    draw_joints(canvas, task, path[-1])
     if caption:
         canvas.text(canvas.window.at(-0.96, 0.96), caption, size=0.09 * canvas.window.half)
     return canvas.pixels()

@@ -127,7 +127,7 @@ def _scene(axis: Axes, task: TaskLike, body: int) -> None:
     a = task.arena
     for term in task.goal:
         colour = _rgb(colours.get(term.kind, GOAL))
-        if term.kind not in ("*", task.kinds[body]):
+        if term.subject != "every" or term.kind not in ("*", task.kinds[body]):
             continue
         if term.region == "disc":
             axis.fill(*circle(term.centre, term.radius).T, color=colour, alpha=0.18, lw=0)

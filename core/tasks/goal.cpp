@@ -1,0 +1,53 @@
+#include "core/tasks/goal.hpp"
+
+#include <algorithm>
+
+namespace rtg {
+
+bool concerns(const GoalTerm& term, const Scene& scene, std::size_t body) {
+  if (body == 0 || term.subject == GoalTerm::Subject::kJoint) return false;
+  const Body& one = scene.bodies[body];
+  return term.kind == "*" ? !one.fixed : term.kind == one.kind;
+}
+
+bool concerns(const GoalTerm& term, const Scene& scene, const Joint& joint) {
+  if (term.subject != GoalTerm::Subject::kJoint) return false;
+  return term.kind == "*" || term.kind == scene.bodies[static_cast<std::size_t>(joint.child)].name;
+}
+
+bool contains(const GoalTerm& term, const Vector2d& x, double tighten) {
+  if (term.region == GoalTerm::Region::kDisc)
+    return (x - term.centre).norm() <= term.radius - tighten;
+  return term.normal.dot(x) <= term.offset - tighten;
+}
+
+Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& poses) {
+  Vector2d sum = Vector2d::Zero();
+  double count = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    if (!concerns(term, scene, i)) continue;
+    sum += poses[i].position();
+    count += 1.0;
+  }
+  return sum / count;
+}
+
+bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten) {
+  switch (term.subject) {
+    case GoalTerm::Subject::kCentroid:
+      return contains(term, centroid_of(term, scene, poses), tighten);
+    case GoalTerm::Subject::kJoint:
+      return std::ranges::all_of(scene.joints, [&](const Joint& joint) {
+        const double angle = joint_angle(joint, poses);
+        return !concerns(term, scene, joint) ||
+               (angle >= term.least + tighten && angle <= term.most - tighten);
+      });
+    case GoalTerm::Subject::kEvery:
+      break;
+  }
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    if (concerns(term, scene, i) && !contains(term, poses[i].position(), tighten)) return false;
+  return true;
+}
+
+}  // namespace rtg

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+
+#include "core/world/scene.hpp"
+
+namespace rtg {
+
+/// One condition on a state; a goal is the conjunction of its terms. What lies in the region:
+///
+///   kEvery     the centre of every body of the kind ("*": of all movable ones but the robot)
+///   kCentroid  the mean of these centres
+///   kJoint     θ_child - θ_parent of the joint whose child has that name ("*": of every joint)
+struct GoalTerm {
+  enum class Subject { kEvery, kCentroid, kJoint };
+  enum class Region { kDisc, kHalfPlane, kAngles };
+  std::string kind = "*";  // or the name of a joint's child
+  Region region = Region::kDisc;
+  Vector2d centre = Vector2d::Zero();   // kDisc: |x - centre| ≤ radius
+  double radius = 0.0;                  // [m]
+  Vector2d normal = Vector2d::UnitX();  // kHalfPlane: normal·x ≤ offset, |normal| = 1
+  double offset = 0.0;                  // [m]
+  Subject subject = Subject::kEvery;
+  double least = 0.0, most = 0.0;  // kAngles: least ≤ φ ≤ most [rad]
+
+  bool operator==(const GoalTerm&) const = default;
+};
+
+/// Whether the centre of `body`, or of a centroid's bodies, is what `term` speaks of; never with
+/// kJoint.
+bool concerns(const GoalTerm& term, const Scene& scene, std::size_t body);
+/// Whether it is the angle of `joint`.
+bool concerns(const GoalTerm& term, const Scene& scene, const Joint& joint);
+
+/// Whether x lies in the region of a term, shrunk by `tighten` [m].
+bool contains(const GoalTerm& term, const Vector2d& x, double tighten);
+
+/// The mean of the centres that `term` speaks of.
+Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& poses);
+
+/// Whether `term` holds, its region shrunk by `tighten` [m], [rad].
+bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten);
+
+}  // namespace rtg

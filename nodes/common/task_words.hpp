@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "core/world/pose.hpp"
+#include "nodes/common/field_reader.hpp"
+
+namespace rtg {
+
+// What the sections of a task have in common; all functions throw ConfigError.
+
+inline constexpr double kMaxPlace = 1000.0;   // |x|, |y|, |θ| of a start pose
+inline constexpr double kMaxAngle = 100.0;    // of a range of angles [rad]
+inline constexpr double kLeastAngles = 0.15;  // between its ends [rad]
+
+inline const std::string kNameLegal = "a letter, then letters, digits, _ and -, 40 at most";
+
+/// A name or a kind: a letter, then letters, digits, _ and -.
+std::string name_at(const FieldReader& reader, const char* key, const std::string& legal);
+
+/// A point [x, y].
+Vector2d point_at(const FieldReader& reader, const char* key);
+
+/// A range of angles [least, most] in rad.
+Vector2d angles_at(const FieldReader& reader, const char* key);
+
+ConfigNode point_node(const Vector2d& x);
+
+}  // namespace rtg

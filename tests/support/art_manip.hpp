@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "core/tasks/task.hpp"
+
+namespace rtg::testing {
+
+/// The task of config/art_manip.yaml.
+inline Task art_manip() {
+  Task task;
+  task.name = "art_manip";
+  task.scene.bodies.push_back({"robot", "robot", regular_polygon(6, 0.8), 1.0, 0.5, false});
+  task.start.push_back({0.0, -4.0, 0.0});
+  for (int k = 1; k <= 4; ++k) {
+    task.scene.bodies.push_back(
+        {"link" + std::to_string(k), "link", box(2.4, 0.7), 1.0, 0.5, false});
+    task.start.push_back(to_single({-6.0 + 2.4 * k, 0.0, 0.0}));
+    if (k > 1) task.scene.joints.push_back({k - 1, k, {1.2, 0.0}, {-1.2, 0.0}, -2.391, 2.391});
+  }
+  task.start = with_closed_joints(task.scene, task.start);
+  for (Pose& pose : task.start) pose = to_single(pose);
+  GoalTerm square;
+  square.subject = GoalTerm::Subject::kJoint;
+  square.region = GoalTerm::Region::kAngles;
+  square.least = 1.309;
+  square.most = 1.833;
+  GoalTerm place;
+  place.subject = GoalTerm::Subject::kCentroid;
+  place.kind = "link";
+  place.centre = {0.0, 3.0};
+  place.radius = 1.0;
+  task.goal = {square, place};
+  task.discount = 0.9;
+  return task;
+}
+
+}  // namespace rtg::testing
