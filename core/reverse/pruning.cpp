@@ -14,13 +14,6 @@ double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
   return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
 }
 
-bool in_articulation(const Scene& scene, std::size_t body) {
-  return std::ranges::any_of(scene.joints, [body](const Joint& joint) {
-    return static_cast<std::size_t>(joint.parent) == body ||
-           static_cast<std::size_t>(joint.child) == body;
-  });
-}
-
 /// Counter-clockwise convex hull [Andrew 1979].
 std::vector<Vector2d> convex_hull(std::vector<Vector2d> points) {
   std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) {
@@ -54,7 +47,7 @@ bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job
   const Polygon& shape = scene.bodies[0].shape;
   const Polygon way = swept(shape, robot.theta, back);
   for (std::size_t k = 1; k < scene.size(); ++k) {
-    if (in_articulation(scene, k)) continue;  // may have swung in behind the robot
+    if (has_joint(scene, k) && !scene.bodies[k].fixed) continue;  // may have swung in behind it
     const Polygon& other = scene.bodies[k].shape;
     const Vector2d from = robot.position();
     if (distance_to_segment(job.end[k].position(), from, from + back) >
@@ -77,7 +70,7 @@ std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, con
     if (scene.bodies[i].fixed) continue;
     const Polygon way = swept(scene.bodies[i].shape, job.end[i].theta, back);
     double reach = i == 0 ? range : range + kClearance;
-    if (in_articulation(scene, i)) reach += push.stride;  // links swing as well
+    if (has_joint(scene, i)) reach += push.stride;  // links swing as well
     for (std::size_t k = 1; k < scene.size(); ++k) {
       if (seen[k]) continue;
       if (!jointed(scene, i, k) &&

@@ -18,12 +18,23 @@ bool in_start_region(const Task& task, const StateMetric& metric, const Poses& p
   return off.position <= kStartRegion && off.angle <= kStartAngle;
 }
 
-Coverage::Coverage(const Task& task) : task_(task), metric_(task.scene) {}
+Coverage::Coverage(const Task& task)
+    : task_(task), metric_(task.scene), roots_(roots_of(task.scene)) {}
+
+/// Whether two objects moved that no joint connects.
+bool Coverage::moves_several(const Transition& t) const {
+  std::size_t first = 0;
+  for (std::size_t k = 1; k < t.poses.size(); ++k) {
+    if ((t.poses[k].position() - t.next[k].position()).norm() <= kMoved) continue;
+    if (first != 0 && roots_[k] != first) return true;
+    first = roots_[k];
+  }
+  return false;
+}
 
 void Coverage::add(const Transition& t) {
-  const int moved = objects_moved(t.poses, t.next);
-  contacts_ += moved >= 1;
-  multi_body_ += moved >= 2;
+  contacts_ += objects_moved(t.poses, t.next) >= 1;
+  multi_body_ += moves_several(t);
   const bool in_region = in_start_region(task_, metric_, t.poses);
   start_region_ += in_region;
   start_region_trees_ += in_region && t.source != Source::kRollOut;

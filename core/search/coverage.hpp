@@ -28,7 +28,7 @@ class Coverage {
 
   long transitions() const { return static_cast<long>(links_.size()); }
   double contact_share() const;     // moved an object by more than kMoved
-  double multi_body_share() const;  // moved two or more
+  double multi_body_share() const;  // moved two or more that no joint connects
   long start_region() const { return start_region_; }
   long start_region_trees() const { return start_region_trees_; }  // roll-outs left out
 
@@ -46,8 +46,11 @@ class Coverage {
     bool success = false;
   };
 
+  bool moves_several(const Transition& t) const;
+
   const Task& task_;
   StateMetric metric_;
+  std::vector<std::size_t> roots_;  // as roots_of()
   std::vector<Link> links_;
   long contacts_ = 0, multi_body_ = 0, start_region_ = 0, start_region_trees_ = 0;
 };

@@ -9,12 +9,6 @@
 namespace rtg {
 namespace {
 
-bool has_joint(const Scene& scene, std::size_t body) {
-  return std::ranges::any_of(scene.joints, [k = static_cast<int>(body)](const Joint& joint) {
-    return joint.parent == k || joint.child == k;
-  });
-}
-
 bool look_the_same(const Scene& scene, std::size_t i, std::size_t j) {
   const Body &a = scene.bodies[i], &b = scene.bodies[j];
   if (has_joint(scene, i) || has_joint(scene, j)) return false;

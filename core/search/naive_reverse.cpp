@@ -60,8 +60,10 @@ ReverseResult NaiveReverse::solve(const ReverseJob& job) const {
     return {SolveStatus::kPruned};
   if (touched != 0) {
     const double pull = Rng(key_of(job)).uniform(kLeastPull, 1.0) * push_.stride;
-    start[touched] = moved(job.end[touched], -pull * ahead);
-    start = with_closed_joints(scene_, std::move(start));  // what hangs on it follows
+    const std::size_t root = roots_of(scene_)[touched];
+    if (scene_.bodies[root].fixed) return {SolveStatus::kInfeasible};
+    start[root] = moved(job.end[root], -pull * ahead);
+    start = with_closed_joints(scene_, std::move(start));  // what joints connect goes as one
   }
   if (first_overlap(scene_, start)) return {SolveStatus::kInfeasible};
   return {SolveStatus::kConverged, 0, {std::move(start)}};

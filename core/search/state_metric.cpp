@@ -48,7 +48,8 @@ double angle_difference(double a, double b, int order) {
 
 StateMetric::StateMetric(const Scene& scene) {
   for (std::size_t k = 1; k < scene.size(); ++k)
-    if (!scene.bodies[k].fixed) objects_.push_back({k, symmetry_order(scene.bodies[k].shape)});
+    if (!scene.bodies[k].fixed)
+      objects_.push_back({k, has_joint(scene, k) ? 1 : symmetry_order(scene.bodies[k].shape)});
 }
 
 void StateMetric::embed(const Poses& poses, std::span<float> out) const {

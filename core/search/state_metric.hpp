@@ -18,8 +18,9 @@ double angle_difference(double a, double b, int order);
 ///
 ///   robot (x, y),  per movable object  w·(x, y, (r/k) cos kθ, (r/k) sin kθ),
 ///
-/// k the symmetry order of the object, so that poses which look the same are the same point. The
-/// robot's heading is held by every push and does not count; fixed bodies do not move.
+/// k the symmetry order of the object (1 with a joint), so that poses which look the same are the
+/// same point. The robot's heading is held by every push and does not count; fixed bodies do not
+/// move.
 class StateMetric {
  public:
   explicit StateMetric(const Scene& scene);

@@ -1,5 +1,6 @@
 #include "core/search/stretch_probe.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace rtg {
@@ -8,6 +9,17 @@ namespace {
 constexpr int kDraws = 5;  // per twin; those that are no legal state are drawn again
 constexpr double kTurnPerMetre = 1.0 / 1.5;  // [rad/m]
 
+/// Children turned back to where the limits of their joints end.
+Poses within_limits(const Scene& scene, Poses poses) {
+  for (const std::size_t k : root_first(scene)) {
+    const Joint& joint = scene.joints[k];
+    const double parent = poses[static_cast<std::size_t>(joint.parent)].theta;
+    poses[static_cast<std::size_t>(joint.child)].theta =
+        parent + std::clamp(joint_angle(joint, poses), joint.lower, joint.upper);
+  }
+  return poses;
+}
+
 }  // namespace
 
 bool repeatable(const Candidate& push, const SearchConfig& config) {
@@ -15,17 +27,21 @@ bool repeatable(const Candidate& push, const SearchConfig& config) {
 }
 
 StretchProbe::StretchProbe(const Task& task, const SearchConfig& config, std::uint64_t seed)
-    : task_(task), config_(config), metric_(task.scene), rng_(seed) {}
+    : task_(task), config_(config), metric_(task.scene), roots_(roots_of(task.scene)), rng_(seed) {}
 
 Poses StretchProbe::disturbed(Poses poses) {
   const double most = config_.twin_jitter;
   for (std::size_t body = 0; body < poses.size(); ++body) {
     if (task_.scene.bodies[body].fixed) continue;
-    poses[body].x += rng_.uniform(-most, most);
-    poses[body].y += rng_.uniform(-most, most);
-    if (body > 0) poses[body].theta += kTurnPerMetre * rng_.uniform(-most, most);
+    if (roots_[body] == body) {
+      poses[body].x += rng_.uniform(-most, most);
+      poses[body].y += rng_.uniform(-most, most);
+    }
+    const auto together = static_cast<double>(std::ranges::count(roots_, roots_[body]));
+    const double turn = kTurnPerMetre / together * most;
+    if (body > 0) poses[body].theta += rng_.uniform(-turn, turn);
   }
-  return float_rounded(with_closed_joints(task_.scene, std::move(poses)));
+  return float_rounded(with_closed_joints(task_.scene, within_limits(task_.scene, poses)));
 }
 
 std::vector<StretchProbe::Twin> StretchProbe::draw(std::span<const Candidate> candidates) {

@@ -31,8 +31,9 @@ class StretchProbe {
   /// Fills in `stretch` of the replayed candidates that a plan may go through: they turn no object
   /// by more than config.turn_tolerance, and miss by no more than config.gap_tolerance or reach the
   /// goal. Each gets config.twins twins, bodies moved by up to ± config.twin_jitter in x and y,
-  /// objects turned by up to 2/3 rad per metre of it; fixed bodies stay. Without a legal twin that
-  /// the simulator finishes it stays 1.
+  /// objects turned by up to 2/3 rad per metre of it; of bodies that joints connect the
+  /// root is moved and each turned by its share of that, within limits; fixed bodies stay. Without
+  /// a legal twin that the simulator finishes it stays 1.
   void measure(std::span<Candidate> candidates, const ReplayBatch& replay, SearchStats& stats);
 
  private:
@@ -46,6 +47,7 @@ class StretchProbe {
   const Task& task_;
   SearchConfig config_;
   StateMetric metric_;
+  std::vector<std::size_t> roots_;  // as roots_of()
   Rng rng_;
 };
 

@@ -21,6 +21,10 @@ bool contains(const GoalTerm& term, const Vector2d& x, double tighten) {
   return term.normal.dot(x) <= term.offset - tighten;
 }
 
+bool contains(const GoalTerm& term, double angle, double tighten) {
+  return angle >= term.least + tighten && angle <= term.most - tighten;
+}
+
 Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& poses) {
   Vector2d sum = Vector2d::Zero();
   double count = 0.0;
@@ -38,9 +42,7 @@ bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double 
       return contains(term, centroid_of(term, scene, poses), tighten);
     case GoalTerm::Subject::kJoint:
       return std::ranges::all_of(scene.joints, [&](const Joint& joint) {
-        const double angle = joint_angle(joint, poses);
-        return !concerns(term, scene, joint) ||
-               (angle >= term.least + tighten && angle <= term.most - tighten);
+        return !concerns(term, scene, joint) || contains(term, joint_angle(joint, poses), tighten);
       });
     case GoalTerm::Subject::kEvery:
       break;

@@ -32,8 +32,9 @@ bool concerns(const GoalTerm& term, const Scene& scene, std::size_t body);
 /// Whether it is the angle of `joint`.
 bool concerns(const GoalTerm& term, const Scene& scene, const Joint& joint);
 
-/// Whether x lies in the region of a term, shrunk by `tighten` [m].
+/// Whether a point [m] or an angle [rad] lies in the region of a term, shrunk by `tighten`.
 bool contains(const GoalTerm& term, const Vector2d& x, double tighten);
+bool contains(const GoalTerm& term, double angle, double tighten);
 
 /// The mean of the centres that `term` speaks of.
 Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& poses);

@@ -148,16 +148,17 @@ bool place_object(const Task& task, Layout& layout, std::size_t i, Rng& rng) {
   return false;
 }
 
-/// An angle of the joint within its limits and the goal.
-double angle_in_goal(const Task& task, const Joint& joint, Rng& rng) {
-  double least = std::max(joint.lower, -std::numbers::pi);
-  double most = std::min(joint.upper, std::numbers::pi);
+/// The angles of the joint within its limits and the goal; empty if there is none.
+std::optional<std::pair<double, double>> angles_in_goal(const Task& task, const Joint& joint) {
+  double least = std::isfinite(joint.lower) ? joint.lower : -std::numbers::pi;
+  double most = std::isfinite(joint.upper) ? joint.upper : std::numbers::pi;
   for (const GoalTerm& term : task.goal) {
     if (!concerns(term, task.scene, joint)) continue;
     least = std::max(least, term.least + kTighten);
     most = std::min(most, term.most - kTighten);
   }
-  return rng.uniform(least, most);
+  if (least > most) return std::nullopt;
+  return std::pair{least, most};
 }
 
 /// Takes the bodies of a tree of joints over from `poses` if all are in their regions and clear of
@@ -189,9 +190,11 @@ bool place_tree(const Task& task, Layout& layout, std::size_t root,
     for (const std::size_t n : root_first(task.scene)) {
       const Joint& joint = task.scene.joints[n];
       const auto child = static_cast<std::size_t>(joint.child);
-      if (roots[child] == root)
-        poses[child].theta =
-            poses[static_cast<std::size_t>(joint.parent)].theta + angle_in_goal(task, joint, rng);
+      if (roots[child] != root) continue;
+      const auto angles = angles_in_goal(task, joint);
+      if (!angles) return false;
+      poses[child].theta = poses[static_cast<std::size_t>(joint.parent)].theta +
+                           rng.uniform(angles->first, angles->second);
     }
     poses = with_closed_joints(task.scene, std::move(poses));
     if (!fixed) {
@@ -261,7 +264,10 @@ std::optional<Poses> attempt(const Task& task, Rng& rng) {
   for (std::size_t i = 1; i < task.scene.size(); ++i) layout.placed[i] = task.scene.bodies[i].fixed;
   if (!place_objects(task, layout, rng)) return std::nullopt;
   if (task.scene.size() > 1 && !place_robot(task, layout, rng)) return std::nullopt;
-  if (!succeeded(task, layout.poses, kTighten)) return std::nullopt;
+  for (const GoalTerm& term : task.goal)  // what concerns each alone holds since it was placed
+    if (term.subject != GoalTerm::Subject::kEvery &&
+        !holds(term, task.scene, layout.poses, kTighten))
+      return std::nullopt;
   std::transform(layout.poses.begin(), layout.poses.end(), layout.poses.begin(), to_single);
   return layout.poses;
 }

@@ -14,6 +14,13 @@ Mass mass_of(const Body& body) {
 
 double pair_friction(const Body& a, const Body& b) { return std::sqrt(a.friction * b.friction); }
 
+bool has_joint(const Scene& scene, std::size_t body) {
+  return std::ranges::any_of(scene.joints, [body](const Joint& joint) {
+    return static_cast<std::size_t>(joint.parent) == body ||
+           static_cast<std::size_t>(joint.child) == body;
+  });
+}
+
 bool jointed(const Scene& scene, std::size_t a, std::size_t b) {
   return std::ranges::any_of(scene.joints, [a, b](const Joint& joint) {
     const auto i = static_cast<std::size_t>(joint.parent),

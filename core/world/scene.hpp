@@ -42,6 +42,9 @@ struct Scene {
   std::size_t size() const { return bodies.size(); }
 };
 
+/// Whether the body has a joint.
+bool has_joint(const Scene& scene, std::size_t body);
+
 /// Whether a joint connects the two bodies.
 bool jointed(const Scene& scene, std::size_t a, std::size_t b);
 

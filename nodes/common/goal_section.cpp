@@ -40,11 +40,11 @@ void read_half_plane(const ConfigNode& section, const std::string& path, GoalTer
 }
 
 /// What a term speaks of: kind (the default), centroid or joint.
-void read_subject(const FieldReader& reader, GoalTerm& term) {
+void read_subject(const FieldReader& reader, const std::string& path, GoalTerm& term) {
   const ConfigNode& section = reader.section();
   const bool of_joint = find(section, "joint"), of_centroid = find(section, "centroid");
   if (of_joint + of_centroid + (find(section, "kind") != nullptr) > 1)
-    throw ConfigError(section.origin, reader.path("kind"), "has two subjects", kTermLegal);
+    throw ConfigError(section.origin, path, "has two subjects", kTermLegal);
   const char* key = of_joint ? "joint" : of_centroid ? "centroid" : "kind";
   term.subject = of_joint      ? GoalTerm::Subject::kJoint
                  : of_centroid ? GoalTerm::Subject::kCentroid
@@ -78,7 +78,7 @@ GoalTerm read_term(const ConfigNode& section, const std::string& path) {
     throw ConfigError(section.origin, path, regions ? "has two regions" : "has no region",
                       kTermLegal);
   GoalTerm term;
-  read_subject(reader, term);
+  read_subject(reader, path, term);
   if ((angles != nullptr) != (term.subject == GoalTerm::Subject::kJoint))
     throw ConfigError(section.origin, path,
                       angles ? "has angles of what is no joint" : "has a joint without angles",

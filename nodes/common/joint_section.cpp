@@ -11,7 +11,8 @@
 namespace rtg {
 namespace {
 
-constexpr double kOffPin = 1e-3;  // of a start state [m]
+constexpr double kOffPin = 1e-3;    // of a start state [m]
+constexpr double kRounding = 1e-5;  // of angles to single precision [rad]
 
 const std::vector<std::string> kJointKeys{"parent", "child", "on_parent", "on_child", "limits"};
 
@@ -22,8 +23,8 @@ int read_body_name(const FieldReader& reader, const char* key, const Scene& scen
     if (scene.bodies[i].name == name) return static_cast<int>(i);
     names.push_back(scene.bodies[i].name);
   }
-  throw ConfigError(reader.required(key, "").value.origin, reader.path(key),
-                    "'" + name + "' is no body but the robot", listed(names));
+  throw ConfigError(reader.required(key, "").value.origin, reader.path(key), "names no object",
+                    listed(names));
 }
 
 const ConfigNode& joint_at(const ConfigNode& section, std::size_t k) {
@@ -76,7 +77,7 @@ void check_start(const Task& task, const ConfigNode& section) {
               ", " + single_text(static_cast<float>(at.y())) + "], to 0.001 m");
     }
     const double angle = joint_angle(joint, task.start);
-    if (angle < joint.lower || angle > joint.upper)
+    if (angle < joint.lower - kRounding || angle > joint.upper + kRounding)
       fail_at(section, k, "limits",
               "exclude the angle of the start state, " + single_text(static_cast<float>(angle)) +
                   " rad",

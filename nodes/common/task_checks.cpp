@@ -1,6 +1,7 @@
 #include "nodes/common/task_checks.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <string>
 
 #include "core/world/separation.hpp"
@@ -112,6 +113,10 @@ void check_term(const Task& task, std::size_t k, const ConfigNode& section) {
                                : "no object that can move is of kind '" + term.kind + "'",
                       of_joint ? legal_joints(task) : legal_kinds(task));
   }
+  for (const Joint& joint : task.scene.joints)
+    if (concerns(term, task.scene, joint) && !(joint.upper - joint.lower < 2.0 * std::numbers::pi))
+      throw ConfigError(node.origin, path + ".joint", "can turn round and round",
+                        "joints with limits less than 6.28 rad apart");
   const std::string arena = number_text(task.push.arena);
   if (!meets_arena(term, task.push.arena))
     throw ConfigError(

@@ -7,7 +7,9 @@
 namespace rtg {
 namespace {
 
-constexpr std::size_t kMaxName = 40;  // characters
+constexpr std::size_t kMaxName = 40;   // characters
+constexpr double kLeastAngles = 0.15;  // between the ends of a range, more than goals keep clear
+constexpr double kRounding = 1e-9;     // [rad]
 
 }  // namespace
 
@@ -32,7 +34,7 @@ Vector2d point_at(const FieldReader& reader, const char* key) {
 Vector2d angles_at(const FieldReader& reader, const char* key) {
   const std::string legal = "[least, most] in rad, at least 0.15 apart";
   const auto angles = reader.numbers(key, 2, -kMaxAngle, kMaxAngle, legal);
-  if (angles[1] - angles[0] < kLeastAngles)
+  if (angles[1] - angles[0] < kLeastAngles - kRounding)
     throw ConfigError(reader.required(key, legal).value.origin, reader.path(key),
                       "leaves hardly any angle", legal);
   return {angles[0], angles[1]};

@@ -9,9 +9,8 @@ namespace rtg {
 
 // What the sections of a task have in common; all functions throw ConfigError.
 
-inline constexpr double kMaxPlace = 1000.0;   // |x|, |y|, |θ| of a start pose
-inline constexpr double kMaxAngle = 100.0;    // of a range of angles [rad]
-inline constexpr double kLeastAngles = 0.15;  // between its ends [rad]
+inline constexpr double kMaxPlace = 1000.0;  // of any place or length [m], angle of a start [rad]
+inline constexpr double kMaxAngle = 100.0;   // of a range of angles [rad]
 
 inline const std::string kNameLegal = "a letter, then letters, digits, _ and -, 40 at most";
 

@@ -88,12 +88,13 @@ std::string term_in_words(const GoalTerm& term) {
   if (term.subject == GoalTerm::Subject::kJoint)
     return (any ? "  every joint" : "  the joint of '" + term.kind + "'") + " has an angle " +
            angles_in_words(term.least, term.most) + '\n';
-  const std::string who = any ? "movable object" : "'" + term.kind + "'";
+  const bool mean = term.subject == GoalTerm::Subject::kCentroid;
+  const std::string who =
+      any ? (mean ? "movable objects" : "movable object") : "'" + term.kind + "'";
   const std::string where =
       term.region == GoalTerm::Region::kDisc
           ? print("within %.4g m of (%.4g, %.4g)", term.radius, term.centre.x(), term.centre.y())
           : "at " + half_plane_in_words(term.normal, term.offset);
-  const bool mean = term.subject == GoalTerm::Subject::kCentroid;
   return (mean ? "  the mean centre of all " : "  the centre of every ") + who + " lies " + where +
          '\n';
 }

@@ -58,7 +58,7 @@ def test_a_disc_on_a_half_plane_is_seen_in_any_order():
     every = {"subject": "every"}
     disc = SimpleNamespace(**every, kind="box", region="disc", centre=(4.0, 4.0), radius=1.0)
     plane = SimpleNamespace(**every, kind="*", region="half_plane", normal=(-1.0, 0.0), offset=0.0)
-    names = ("kinds", "names", "shapes", "joints", "start", "arena")
+    names = ("kinds", "names", "shapes", "joints", "start", "arena", "joints_reached", "centroids")
     shown = {name: getattr(TASK, name) for name in names}
     pictures = [
         state_image(SimpleNamespace(**shown, goal=goal), SOLVED[None])
@@ -90,13 +90,23 @@ def test_the_window_holds_all_that_happens_and_no_more_than_the_arena():
     assert episode_window(TASK, path) == arena_window(TASK)
 
 
+FREE = SimpleNamespace(joints=[])
+
+
+def test_what_joints_connect_moves_together():
+    before, after = np.zeros((3, 3)), np.array([[2.0, 0, 0], [0.5, 0, 0], [0.0, 0, 0.4]])
+    chain = SimpleNamespace(joints=[(1, 2, np.zeros(2))])
+    assert between(chain, before, after, 0.5)[2].tolist() == [0.0, 0.0, 0.0]
+    assert np.allclose(between(chain, before, after, 0.875)[2], [0.0, 0.0, 0.2])
+
+
 def test_an_object_waits_for_the_robot_and_then_goes_along():
     before, after = np.zeros((2, 3)), np.array([[2.0, 0.0, 0.0], [0.5, 0.0, 0.4]])
-    early = between(before, after, 0.5)
+    early = between(FREE, before, after, 0.5)
     assert early.tolist() == [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
-    late = between(before, after, 0.875)
+    late = between(FREE, before, after, 0.875)
     assert np.allclose(late, [[1.75, 0.0, 0.0], [0.25, 0.0, 0.2]])
-    assert np.allclose(between(before, after, 1.0), after)
+    assert np.allclose(between(FREE, before, after, 1.0), after)
 
 
 def test_a_strip_has_ten_states_at_most_the_first_and_the_last_among_them(tmp_path):

@@ -1,7 +1,6 @@
 #include "core/tasks/task.hpp"
 
 #include <nanobind/eigen/dense.h>
-#include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -74,6 +73,33 @@ std::vector<std::tuple<int, int, Vector2d>> joints(const Task& task) {
   return out;
 }
 
+/// Per joint, whether the goal speaks of its angle and the angle is as asked.
+std::vector<bool> joints_reached(const Task& task, const StateArray& states) {
+  check_bodies(states, task.scene.size());
+  const Poses poses = state_at(states, 0);
+  std::vector<bool> out;
+  for (const Joint& joint : task.scene.joints) {
+    int asked = 0, held = 0;
+    for (const GoalTerm& term : task.goal) {
+      if (!concerns(term, task.scene, joint)) continue;
+      ++asked;
+      held += contains(term, joint_angle(joint, poses), 0.0);
+    }
+    out.push_back(asked > 0 && held == asked);
+  }
+  return out;
+}
+
+/// The mean centres that the goal speaks of.
+std::vector<Vector2d> centroids(const Task& task, const StateArray& states) {
+  check_bodies(states, task.scene.size());
+  std::vector<Vector2d> out;
+  for (const GoalTerm& term : task.goal)
+    if (term.subject == GoalTerm::Subject::kCentroid)
+      out.push_back(centroid_of(term, task.scene, state_at(states, 0)));
+  return out;
+}
+
 void bind_goal_term(nb::module_& module) {
   nb::class_<GoalTerm>(module, "GoalTerm")
       .def_ro("kind", &GoalTerm::kind)
@@ -86,10 +112,6 @@ void bind_goal_term(nb::module_& module) {
                    [](const GoalTerm& term) {
                      constexpr const char* kNames[] = {"every", "centroid", "joint"};
                      return kNames[static_cast<std::size_t>(term.subject)];
-                   })
-      .def_prop_ro("angles",
-                   [](const GoalTerm& term) {
-                     return std::array{term.least, term.most};
                    })
       .def_ro("centre", &GoalTerm::centre)
       .def_ro("radius", &GoalTerm::radius)
@@ -119,6 +141,8 @@ void bind_task(nb::module_& module) {
       .def_prop_ro("bodies", [](const Task& task) { return task.scene.size(); })
       .def_prop_ro("observation_size", &observation_size)
       .def("observation", &observations, nb::arg("states"))
+      .def("joints_reached", &joints_reached, nb::arg("states"))
+      .def("centroids", &centroids, nb::arg("states"))
       .def("succeeded", &successes, nb::arg("states"))
       .def("jittered_start", &start, nb::arg("amplitude"), nb::arg("seed"), nb::arg("index") = 0);
 }

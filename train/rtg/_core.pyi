@@ -32,9 +32,6 @@ class GoalTerm:
         """[2], a unit vector"""
     @property
     def offset(self) -> float: ...
-    @property
-    def angles(self) -> list[float]:
-        """The least and the most [rad]."""
 
 class Task:
     """A sparse-reward task: reward 1 and the end when the goal holds. Body 0 is the robot."""
@@ -82,6 +79,10 @@ class Task:
     def observation_size(self) -> int: ...
     def observation(self, states: NDArray[np.float64]) -> NDArray[np.float32]:
         """The learner's view. [N, bodies, 3] -> [N, observation_size]"""
+    def joints_reached(self, states: NDArray[np.float64]) -> list[bool]:
+        """Per joint, whether the goal speaks of its angle and it is as asked. [1, bodies, 3]"""
+    def centroids(self, states: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+        """The mean centres that the goal speaks of. [1, bodies, 3] -> each [2]"""
     def succeeded(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Whether the goal holds. [N, bodies, 3] -> [N]"""
     def jittered_start(self, amplitude: float, seed: int, index: int = 0) -> NDArray[np.float64]:

@@ -43,9 +43,6 @@ class GoalLike(Protocol):
         """ "every", "centroid" or "joint"."""
 
     @property
-    def angles(self) -> Sequence[float]: ...
-
-    @property
     def centre(self) -> Floats: ...
     @property
     def radius(self) -> float: ...
@@ -78,6 +75,8 @@ class TaskLike(Protocol):
 
     @property
     def arena(self) -> float: ...
+    def joints_reached(self, states: Floats) -> Sequence[bool]: ...
+    def centroids(self, states: Floats) -> Sequence[Floats]: ...
 
 
 def kind_colours(task: TaskLike) -> dict[str, Colour]:
@@ -223,23 +222,14 @@ def draw_joints(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
     """A pin per joint, in the colour of the goal where its angle is as asked; a cross at each mean
     centre that the goal speaks of. poses [bodies, 3]
     """
-    for parent, child, pin in task.joints:
-        angle = poses[child][2] - poses[parent][2]
-        asked = [
-            term.angles
-            for term in task.goal
-            if term.subject == "joint" and term.kind in ("*", task.names[child])
-        ]
-        right = asked and all(least <= angle <= most for least, most in asked)
+    reached = task.joints_reached(poses[None])
+    for (parent, _, pin), right in zip(task.joints, reached, strict=True):
         at = outline(np.asarray(pin).reshape(1, 2), poses[parent])[0]
         canvas.dot(at, INK, 0.24)
         canvas.dot(at, GOAL if right else PAPER, 0.17)
-    for term in task.goal:
-        if term.subject == "centroid":
-            bodies = [k for k in range(1, len(task.kinds)) if term.kind in ("*", task.kinds[k])]
-            x, y = poses[bodies, :2].mean(axis=0)
-            canvas.line([(x - 0.25, y), (x + 0.25, y)], INK, 0.09)
-            canvas.line([(x, y - 0.25), (x, y + 0.25)], INK, 0.09)
+    for x, y in task.centroids(poses[None]):
+        canvas.line([(x - 0.25, y), (x + 0.25, y)], INK, 0.09)
+        canvas.line([(x, y - 0.25), (x, y + 0.25)], INK, 0.09)
 
 
 def draw_ghosts(canvas: Canvas, task: TaskLike, before: Floats, poses: Floats) -> None:

@@ -21,13 +21,16 @@ _FRAME_MS = 45
 _HOLD_MS = 1200  # at the start and at the end
 
 
-def between(before: Floats, after: Floats, share: float) -> Floats:
+def between(task: TaskLike, before: Floats, after: Floats, share: float) -> Floats:
     """The state when `share` of a push is done. [bodies, 3]
 
     The robot moves evenly; an object stands still until the rest of the push covers its way, then
-    moves along. Exact for straight drags, good enough to watch.
+    moves along, with all that joints connect to it. Exact for straight drags, good enough to watch.
     """
     way = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)  # [bodies]
+    for _ in task.joints:  # the longest way spreads along every chain
+        for parent, child, _ in task.joints:
+            way[[parent, child]] = max(way[parent], way[child])
     stride = max(float(way[0]), 1e-9)
     rest = np.clip(way / stride, 1e-9, 1.0)  # share of the push in which a body moves
     moved = np.clip((share - (1.0 - rest)) / rest, 0.0, 1.0)
@@ -100,7 +103,7 @@ def film(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -
     add(poses[0], 0, _HOLD_MS)
     for step in range(last):
         for frame in range(1, per_push + 1):
-            state = between(poses[step], poses[step + 1], frame / per_push)
+            state = between(task, poses[step], poses[step + 1], frame / per_push)
             add(state, step, _FRAME_MS)
     add(poses[last], last, 2 * _HOLD_MS, reached=success)
     pair = _side_by_side(frames[len(frames) // 2], frames[-1])  # has all colours

@@ -8,6 +8,7 @@
 
 #include "core/search/ranking.hpp"
 #include "core/search/state_metric.hpp"
+#include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg {
@@ -42,6 +43,12 @@ double least_distance(const Task& task, const Poses& poses, const Poses& target)
     least = std::min(least, distance(task, trial, target));
   } while (std::ranges::next_permutation(order).found);
   return least;
+}
+
+TEST(Relabelled, LeavesBodiesWithJointsAlone) {
+  const Task task = testing::art_manip();
+  const Poses mixed = exchanged(task.start, 1, 4);
+  EXPECT_EQ(relabelled(task, mixed, task.start), mixed);
 }
 
 TEST(Relabelled, UndoesEveryExchangeOfThreeAlike) {

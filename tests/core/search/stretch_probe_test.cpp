@@ -7,6 +7,7 @@
 
 #include "core/search/beam_search.hpp"
 #include "core/search/simulators.hpp"
+#include "tests/support/art_manip.hpp"
 #include "tests/support/dragging_world.hpp"
 #include "tests/support/gathering.hpp"
 
@@ -51,6 +52,27 @@ TEST(StretchProbe, IsTheRatioOfTheErrorsAfterAndBefore) {
   std::vector<Candidate> candidates{moving(task.start, thrice(task.start))};
   StretchProbe(task, {}, 1).measure(candidates, replay_by(thrice, asked), stats);
   EXPECT_NEAR(candidates[0].stretch, 3.0, 1e-4);  // embeddings have single precision, 1e-6 of 15 m
+}
+
+TEST(StretchProbe, TwinsOfAChainAreClosedAndWithinItsLimits) {
+  Task task = testing::art_manip();
+  task.scene.joints[0].lower = -0.01;
+  SearchConfig config;
+  config.twins = 20;
+  std::vector<ReplayJob> asked;
+  SearchStats stats;
+  std::vector<Candidate> candidates{moving(task.start, task.start)};
+  StretchProbe(task, config, 1).measure(candidates, replay_by(same, asked), stats);
+  ASSERT_EQ(asked.size(), 20U);
+  double turn = 0.0;
+  for (const ReplayJob& job : asked) {
+    for (const Joint& joint : task.scene.joints) EXPECT_LT(joint_gap(joint, job.start), 1e-5);
+    EXPECT_GE(joint_angle(task.scene.joints[0], job.start), -0.01 - 1e-6);
+    for (std::size_t body = 1; body < job.start.size(); ++body)
+      turn = std::max(turn, std::abs(job.start[body].theta));
+  }
+  EXPECT_GT(turn, 0.03);
+  EXPECT_LT(turn, 0.2);
 }
 
 TEST(StretchProbe, TwinsAreDisturbedByNoMoreThanTheJitter) {

@@ -92,5 +92,45 @@ TEST(Goal, SampledGoalsOfAChainHoldAreClosedAndVary) {
   EXPECT_GT(most, 2.5);
 }
 
+TEST(Goal, SampledAnglesKeepToLimitsBeyondHalfATurn) {
+  Task task = art_manip();
+  task.goal.erase(task.goal.begin());
+  for (Joint& joint : task.scene.joints) {
+    joint.lower = 4.0;
+    joint.upper = 5.5;
+  }
+  Rng rng(1);
+  for (int draw = 0; draw < 20; ++draw) {
+    const Poses poses = sample_goal(task, rng).value();
+    for (const Joint& joint : task.scene.joints) {
+      EXPECT_GE(joint_angle(joint, poses), 4.0 - 1e-6);
+      EXPECT_LE(joint_angle(joint, poses), 5.5 + 1e-6);
+    }
+  }
+}
+
+TEST(Goal, AChainOnAFixedBodyKeepsItsFoot) {
+  Task task = art_manip();
+  task.scene.bodies[1].fixed = true;
+  task.goal.pop_back();
+  Rng rng(1);
+  EXPECT_EQ(jittered_start(task, 0.5, rng), task.start);
+  const Poses poses = sample_goal(task, rng).value();
+  EXPECT_EQ(poses[1], task.start[1]);
+  for (const Joint& joint : task.scene.joints) EXPECT_LT(joint_gap(joint, poses), 1e-6);
+}
+
+TEST(Goal, AFixedBodyMayStandAtTheEdgeOfItsRegion) {
+  Task task = testing::gathering();
+  task.scene.bodies[3].fixed = true;
+  task.scene.bodies[3].kind = "post";
+  task.start[3] = to_single({1.97, 0.0, 0.0});
+  GoalTerm posts = task.goal[0];
+  posts.kind = "post";
+  task.goal.push_back(posts);
+  Rng rng(1);
+  EXPECT_TRUE(sample_goal(task, rng).has_value());
+}
+
 }  // namespace
 }  // namespace rtg
