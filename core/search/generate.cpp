@@ -11,6 +11,7 @@
 #include "core/search/coverage.hpp"
 #include "core/search/lost_state.hpp"
 #include "core/search/policy_learning.hpp"
+#include "core/search/random_episodes.hpp"
 #include "core/search/roll_out.hpp"
 
 namespace rtg {
@@ -269,7 +270,9 @@ class Generation {
 GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams) {
   const auto start = std::chrono::steady_clock::now();
-  GenerationReport report = Generation(task, config, seed, seams).run();
+  GenerationReport report = config.reverse == ReverseMode::kRandom
+                                ? random_episodes(task, config, seed, seams)
+                                : Generation(task, config, seed, seams).run();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   report.generate_wall_s = wall.count();
   return report;

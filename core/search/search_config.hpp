@@ -5,8 +5,9 @@
 
 namespace rtg {
 
-enum class ReverseMode { kRrbs, kNaive };
-inline constexpr std::array<std::string_view, 2> kReverseModes{"rrbs", "naive"};
+/// How reverse steps are found; kRandom: not at all, the data are episodes of the random policy.
+enum class ReverseMode { kRrbs, kNaive, kRandom };
+inline constexpr std::array<std::string_view, 3> kReverseModes{"rrbs", "naive", "random"};
 
 enum class Ranking { kStartDistance, kNovelty, kDisplacement };
 inline constexpr std::array<std::string_view, 3> kRankings{"start_distance", "novelty",
@@ -41,7 +42,8 @@ struct SearchConfig {
 
   template <class Visitor>
   void visit(Visitor& v) {
-    v.choice("reverse", reverse, kReverseModes, "reverse simulator: rrbs or naive");
+    v.choice("reverse", reverse, kReverseModes,
+             "reverse simulator; random: episodes of the random policy");
     v.choice("ranking", ranking, kRankings, "what a good node is");
     v.integer("transitions", transitions, 1, 100000000, "transitions to store");
     v.number("rollout_share", rollout_share, 0.0, 0.95, "share of them from tree-policy episodes");

@@ -13,7 +13,7 @@ enum class Source : std::int8_t {
   kStepReplay,   // one reverse candidate replayed forward
   kChainReplay,  // part of a whole chain replayed end to end from its far end, but for its first
                  // step and any other that is stored already
-  kRollOut,      // part of an episode of the tree policy from a jittered start
+  kRollOut,      // part of an episode of the tree policy, or the random one, from a jittered start
 };
 
 /// One true transition of the true dynamics (Box2D). Success is the task's predicate on `next`.

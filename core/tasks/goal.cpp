@@ -36,20 +36,29 @@ Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& pose
   return sum / count;
 }
 
-bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten) {
+std::vector<bool> atoms(const GoalTerm& term, const Scene& scene, const Poses& poses,
+                        double tighten) {
+  std::vector<bool> held;
   switch (term.subject) {
-    case GoalTerm::Subject::kCentroid:
-      return contains(term, centroid_of(term, scene, poses), tighten);
-    case GoalTerm::Subject::kJoint:
-      return std::ranges::all_of(scene.joints, [&](const Joint& joint) {
-        return !concerns(term, scene, joint) || contains(term, joint_angle(joint, poses), tighten);
-      });
     case GoalTerm::Subject::kEvery:
+      for (std::size_t i = 1; i < poses.size(); ++i)
+        if (concerns(term, scene, i)) held.push_back(contains(term, poses[i].position(), tighten));
+      break;
+    case GoalTerm::Subject::kCentroid:
+      held.push_back(contains(term, centroid_of(term, scene, poses), tighten));
+      break;
+    case GoalTerm::Subject::kJoint:
+      for (const Joint& joint : scene.joints)
+        if (concerns(term, scene, joint))
+          held.push_back(contains(term, joint_angle(joint, poses), tighten));
       break;
   }
-  for (std::size_t i = 1; i < poses.size(); ++i)
-    if (concerns(term, scene, i) && !contains(term, poses[i].position(), tighten)) return false;
-  return true;
+  return held;
+}
+
+bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten) {
+  const std::vector<bool> held = atoms(term, scene, poses, tighten);
+  return std::ranges::all_of(held, [](bool one) { return one; });
 }
 
 }  // namespace rtg

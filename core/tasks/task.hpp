@@ -20,7 +20,7 @@ struct Task {
   int horizon = 60;            // episode length, a truncation
   double discount = 0.8;       // γ
   double start_jitter = 0.1;   // evaluation starts: object positions ± this [m]
-  double randomisation = 0.0;  // training starts: object positions ± this [m]
+  double randomisation = 0.0;  // how far domain randomisation goes: object positions ± this [m]
 
   /// The plain numbers; the rest has a structure of its own.
   template <class Visitor>
@@ -30,7 +30,7 @@ struct Task {
     v.number("start_jitter", start_jitter, 0.0, 10.0,
              "evaluation starts: object positions +- this [m]");
     v.number("randomisation", randomisation, 0.0, 10.0,
-             "training starts: object positions +- this [m]");
+             "domain randomisation, where asked for: object positions +- this [m]");
   }
 };
 
@@ -40,6 +40,9 @@ inline constexpr double kStartClearance = 0.02;
 
 /// Whether the goal holds in `poses`, with every region shrunk by `tighten` [m], [rad].
 bool succeeded(const Task& task, const Poses& poses, double tighten = 0.0);
+
+/// The atoms of all terms of the goal, one after the other; the goal holds when all do.
+std::vector<bool> goal_atoms(const Task& task, const Poses& poses);
 
 /// The learner's view, float32, lengths / 8 m: robot x, y; per movable body x, y, cos θ, sin θ,
 /// x - x_robot, y - y_robot; per joint sin, cos of its angle. Fixed body order carries the class.

@@ -32,6 +32,7 @@ inline Task art_manip() {
   place.radius = 1.0;
   task.goal = {square, place};
   task.discount = 0.9;
+  task.randomisation = 0.5;
   return task;
 }
 

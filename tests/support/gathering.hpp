@@ -24,6 +24,7 @@ inline Task gathering() {
   GoalTerm near_origin;
   near_origin.radius = 2.0;
   task.goal.push_back(near_origin);
+  task.randomisation = 0.5;
   return task;
 }
 
