@@ -12,6 +12,7 @@
 #include "nodes/common/config_overrides.hpp"
 #include "nodes/common/content_hash.hpp"
 #include "nodes/common/field_writer.hpp"
+#include "nodes/common/method.hpp"
 #include "nodes/common/start_checks.hpp"
 #include "nodes/common/task_section.hpp"
 #include "nodes/common/yaml_parser.hpp"
@@ -74,17 +75,50 @@ void clear_for_preset(ConfigNode& root, const std::string& section, Config (*val
   }
 }
 
+/// The same with the keys that methods decide.
+void clear_for_method(ConfigNode& root) {
+  for (std::size_t k = 0; k < kMethods.size(); ++k)
+    for (const MethodSetting& setting : settings_of(static_cast<Method>(k)))
+      for (ConfigEntry& entry : root.entries)
+        if (entry.key == setting.section)
+          std::erase_if(entry.value.entries,
+                        [&](const ConfigEntry& field) { return field.key == setting.key; });
+}
+
 void apply_overrides(ConfigNode& root, std::span<const std::string> overrides) {
   for (const std::string& setting : overrides) {
     if (setting.starts_with("reverse.preset=")) clear_for_preset(root, "reverse", reverse_preset);
     if (setting.starts_with("train.preset=")) clear_for_preset(root, "train", train_preset);
+    if (setting.starts_with("run.method=")) clear_for_method(root);
   }
   for (const std::string& setting : overrides) apply_override(root, setting);
+}
+
+/// The mapping of that section, made if it is not there.
+ConfigNode& section_of(ConfigNode& root, std::string_view name, const std::string& origin) {
+  for (ConfigEntry& entry : root.entries)
+    if (entry.key == name) return entry.value;
+  root.entries.push_back({std::string(name), origin, map_node(origin)});
+  return root.entries.back().value;
 }
 
 template <class Config>
 void read_section(const ConfigNode& root, const std::string& name, Config& config) {
   if (const ConfigEntry* section = find(root, name)) read_fields(section->value, name, config);
+}
+
+/// Gives the fields that the method decides its values where nothing else does.
+void apply_method(ConfigNode& root) {
+  RunConfig run;
+  read_section(root, "run", run);
+  for (const auto& [name, key, value] : settings_of(run.method)) {
+    const std::string origin =
+        "run.method " + std::string(kMethods[static_cast<std::size_t>(run.method)]);
+    ConfigNode& section = section_of(root, name, origin);
+    if (section.kind != Kind::kMap || find(section, key)) continue;
+    section.entries.push_back(
+        {std::string(key), origin, parse_yaml_value(std::string(value), origin)});
+  }
 }
 
 /// A section whose field `preset` chooses the values of the fields that are not given.
@@ -121,6 +155,13 @@ void check_inertia(const ConfigNode& root, const RtgConfig& config) {
         flag->value.origin, "physics.inertia",
         "true with a fixed final state (reverse.terminal_weight is 0)",
         "false, or reverse.terminal_weight above 0 (reverse.preset paper sets it to 0)");
+}
+
+/// What `train.randomise` asks of the task.
+void check_randomisation(const ConfigNode& root, const RtgConfig& config) {
+  if (!config.train.randomise || config.task.randomisation > 0.0) return;
+  throw ConfigError(find(find(root, "train")->value, "randomise")->value.origin,
+                    "task.randomisation", "0 with train.randomise", "more than 0");
 }
 
 void check_bus(const ConfigNode& root, const std::string& url) {
@@ -166,6 +207,7 @@ RtgConfig read_config(const ConfigNode& root) {
   read_section(root, "run", config.run);
   check_physics(root, config.physics);
   check_inertia(root, config);
+  check_randomisation(root, config);
   check_jitters(config, root);
   check_bus(root, config.run.bus);
   if (config.run.workers == 0)
@@ -179,6 +221,7 @@ RtgConfig read_config(const ConfigNode& file, std::span<const std::string> overr
   try {
     ConfigNode root = file;
     apply_overrides(root, overrides);
+    apply_method(root);
     return read_config(root);
   } catch (const ConfigError& error) {
     const std::string message = error.what();

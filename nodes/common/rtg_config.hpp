@@ -28,7 +28,7 @@ struct RtgConfig {
 /// Reads a configuration file. Only its section `task` must be there: a mapping, or the path of the
 /// file, relative to this one, that holds it. `overrides` are `section.key=value` and stand above
 /// the file in their order; a preset among them also stands above the file's values of the keys
-/// that presets decide. Throws ConfigError.
+/// that presets decide, and likewise a method, which stands above presets. Throws ConfigError.
 RtgConfig load_config(const std::filesystem::path& file,
                       std::span<const std::string> overrides = {});
 

@@ -8,6 +8,9 @@ namespace rtg {
 enum class TrainPreset { kDefault, kPaper };
 inline constexpr std::array<std::string_view, 2> kTrainPresets{"default", "paper"};
 
+enum class Device { kAuto, kCpu, kCuda };
+inline constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"};
+
 /// How the Python trainer learns. The values here are the preset `default`: what works
 /// best within Table 2's interaction budget. A loader begins with train_preset(preset) and reads
 /// the other fields over it. At b7950a3 (Gathering, 60,000 transitions of rrbs) success with a hard
@@ -16,6 +19,7 @@ inline constexpr std::array<std::string_view, 2> kTrainPresets{"default", "paper
 struct TrainConfig {
   TrainPreset preset = TrainPreset::kDefault;
   int interactions = 350000;    // Table 2
+  bool offline = true;          // learn from generated transitions, too
   int start_at = 40000;         // transitions in hand before learning starts
   int buffer = 1500000;         // Table 2; of each of the two buffers
   int batch = 256;              // half of Table 2's: a third less time per step, learns as fast
@@ -39,12 +43,32 @@ struct TrainConfig {
   double nearby_share = 0.5;  // of the exploring actions: near the greedy heading
   int nearby_headings = 2;    // how near
   double start_jitter = 0.1;  // training starts: object positions ± this [m]
+  bool randomise = false;     // all starts: object positions ± task.randomisation
+  int hindsight = 0;          // goals reached later on that each online transition is seen with
+  double curriculum = 0.0;    // share of the episodes that start where learning is at its edge
   int eval_every = 5000;      // interactions
   int eval_episodes = 100;
   int checkpoint_every = 20000;   // interactions
   double stop_at_success = 0.95;  // end early at this success rate; 0: use all interactions
   int stop_evaluations = 3;       // ... of so many evaluations in a row
   bool reduced_precision = true;  // inner layers in bfloat16 where the processor has it
+  Device device = Device::kAuto;  // of the networks; auto: a GPU if PyTorch sees one
+
+  /// The fields on how online transitions are made.
+  template <class Visitor>
+  void visit_experience(Visitor& v) {
+    v.number("epsilon_start", epsilon_start, 0.0, 1.0, "exploration at the first interaction");
+    v.number("epsilon_end", epsilon_end, 0.0, 1.0, "exploration after its decay");
+    v.number("epsilon_share", epsilon_share, 0.0, 1.0, "share of the interactions it decays over");
+    v.number("nearby_share", nearby_share, 0.0, 1.0,
+             "share of exploration near the greedy heading");
+    v.integer("nearby_headings", nearby_headings, 1, 180, "how many headings away, at most");
+    v.number("start_jitter", start_jitter, 0.0, 10.0,
+             "training starts: object positions +- this [m]");
+    v.flag("randomise", randomise, "training and evaluation start all over task.randomisation");
+    v.integer("hindsight", hindsight, 0, 100, "goals reached later per online transition; 0: none");
+    v.number("curriculum", curriculum, 0.0, 1.0, "share of episodes from a reverse curriculum");
+  }
 
   template <class Visitor>
   void visit(Visitor& v) {
@@ -52,6 +76,7 @@ struct TrainConfig {
     constexpr int kTogether = 4;  // environments stepped at once, whose transitions must fit
     v.choice("preset", preset, kTrainPresets, "values of all fields that are not given");
     v.integer("interactions", interactions, 1, kMany, "environment steps of the learner");
+    v.flag("offline", offline, "generate transitions and learn from them, too");
     v.integer("start_at", start_at, 0, kMany, "transitions that must be in before learning starts");
     v.integer("buffer", buffer, kTogether, kMany, "capacity of each replay buffer");
     v.integer("batch", batch, 1, 1000000, "transitions per gradient step");
@@ -69,14 +94,7 @@ struct TrainConfig {
     v.flag("small_head", small_head, "last layer starts near 0");
     v.flag("clip_targets", clip_targets, "clip targets to [0, 1]");
     v.flag("value_bounds", value_bounds, "raise targets to what stored trajectories prove");
-    v.number("epsilon_start", epsilon_start, 0.0, 1.0, "exploration at the first interaction");
-    v.number("epsilon_end", epsilon_end, 0.0, 1.0, "exploration after its decay");
-    v.number("epsilon_share", epsilon_share, 0.0, 1.0, "share of the interactions it decays over");
-    v.number("nearby_share", nearby_share, 0.0, 1.0,
-             "share of exploration near the greedy heading");
-    v.integer("nearby_headings", nearby_headings, 1, 180, "how many headings away, at most");
-    v.number("start_jitter", start_jitter, 0.0, 10.0,
-             "training starts: object positions +- this, or task.randomisation if larger [m]");
+    visit_experience(v);
     v.integer("eval_every", eval_every, 1, kMany, "interactions between evaluations");
     v.integer("eval_episodes", eval_episodes, 1, 100000, "held-out starts of an evaluation");
     v.integer("checkpoint_every", checkpoint_every, 1, kMany, "interactions between checkpoints");
@@ -84,6 +102,7 @@ struct TrainConfig {
     v.integer("stop_evaluations", stop_evaluations, 1, 100000,
               "... in so many evaluations in a row");
     v.flag("reduced_precision", reduced_precision, "inner layers in bfloat16 where it is fast");
+    v.choice("device", device, kDevices, "where the networks are; auto: on a GPU if there is one");
   }
 };
 

@@ -99,8 +99,19 @@ std::string term_in_words(const GoalTerm& term) {
          '\n';
 }
 
-/// `training`: amplitude of the training starts [m].
-std::string task_in_words(const Task& task, double training) {
+/// How far objects are moved about in starts [m].
+struct Amplitudes {
+  double evaluation = 0.0, training = 0.0;
+};
+
+Amplitudes amplitudes(const RtgConfig& config) {
+  const Task& task = config.task;
+  const double training = config.train.start_jitter;
+  if (!config.train.randomise) return {task.start_jitter, training};
+  return {task.randomisation, std::max(training, task.randomisation)};
+}
+
+std::string task_in_words(const Task& task, const Amplitudes& starts) {
   std::string out = "task " + task.name + "\n" + bodies_in_words(task) +
                     joints_in_words(task.scene) + "goal, all of\n";
   for (const GoalTerm& term : task.goal) out += term_in_words(term);
@@ -112,33 +123,46 @@ std::string task_in_words(const Task& task, double training) {
   out += print("episodes\n  at most %d pushes, discount %.4g, observation of %d numbers\n",
                task.horizon, task.discount, observation_size(task));
   out += print("  objects start within %.4g m of the layout above (training: %.4g m)\n",
-               task.start_jitter, training);
+               starts.evaluation, starts.training);
   return out;
+}
+
+std::string training_in_words(const RtgConfig& config) {
+  const TrainConfig& train = config.train;
+  const std::string from =
+      train.offline ? print("from %d transitions on", train.start_at) : "without offline data";
+  return print("  train for %d interactions, preset %s, discount %.4g, %s\n", train.interactions,
+               kTrainPresets[static_cast<std::size_t>(train.preset)].data(),
+               train.discount > 0.0 ? train.discount : config.task.discount, from.c_str());
+}
+
+std::string processes_in_words(const RunConfig& run) {
+  return print("  seed %d, %d reverse workers, %s\n", run.seed, run.workers,
+               run.in_process ? "all in one process" : ("bus " + run.bus).c_str());
 }
 
 std::string work_in_words(const RtgConfig& config) {
   const SearchConfig& search = config.search;
   const TrainConfig& train = config.train;
   const RunConfig& run = config.run;
-  std::string out = "work\n";
-  out += print(
-      "  generate %d transitions, reverse steps by %s, beams of %d nodes, at most %d "
-      "layers a round\n",
-      search.transitions, kReverseModes[static_cast<std::size_t>(search.reverse)].data(),
-      search.breadth, search.depth);
-  out += print("  train for %d interactions, preset %s, discount %.4g, from %d transitions on\n",
-               train.interactions, kTrainPresets[static_cast<std::size_t>(train.preset)].data(),
-               train.discount > 0.0 ? train.discount : config.task.discount, train.start_at);
-  out += print("  seed %d, %d reverse workers, %s\n", run.seed, run.workers,
-               run.in_process ? "all in one process" : ("bus " + run.bus).c_str());
-  return out;
+  const auto method = kMethods[static_cast<std::size_t>(run.method)];
+  std::string out = print("work by method %s\n", method.data());
+  if (!train.offline) return out + training_in_words(config) + processes_in_words(run);
+  if (search.reverse == ReverseMode::kRandom)
+    out += print("  generate %d transitions, episodes of the random policy\n", search.transitions);
+  else
+    out += print(
+        "  generate %d transitions, reverse steps by %s, beams of %d nodes, at most %d "
+        "layers a round\n",
+        search.transitions, kReverseModes[static_cast<std::size_t>(search.reverse)].data(),
+        search.breadth, search.depth);
+  return out + training_in_words(config) + processes_in_words(run);
 }
 
 }  // namespace
 
 std::string description(const RtgConfig& config) {
-  const double training = std::max(config.train.start_jitter, config.task.randomisation);
-  return task_in_words(config.task, training) + work_in_words(config);
+  return task_in_words(config.task, amplitudes(config)) + work_in_words(config);
 }
 
 }  // namespace rtg

@@ -196,5 +196,46 @@ TEST(RtgConfig, DynamicModeNeedsDampingAndAFreeFinalState) {
             "(reverse.preset paper sets it to 0)");
 }
 
+TEST(RtgConfig, AMethodGivesTheValuesThatAreNotGiven) {
+  const RtgConfig config = parsed(
+      "train: {epsilon_start: 0.5}\n"
+      "run: {method: her}\n");
+  TrainConfig train;
+  train.offline = false;
+  train.epsilon_start = 0.5;  // of the file
+  train.nearby_share = 0.0;
+  train.hindsight = 4;
+  EXPECT_EQ(config.run.method, Method::kHer);
+  EXPECT_EQ(text_of(config.train), text_of(train));
+}
+
+TEST(RtgConfig, AMethodAmongTheOverridesStandsAboveTheFileButNotAboveTheOthers) {
+  const std::string file = "search: {reverse: naive}\ntrain: {hindsight: 9, epsilon_start: 0.5}\n";
+  const std::vector<std::string> overrides{"train.epsilon_start=0.7", "run.method=dqn",
+                                           "train.preset=paper"};
+  TrainConfig train = train_preset(TrainPreset::kPaper);
+  train.offline = train.double_q = false;
+  train.epsilon_start = 0.7;
+  EXPECT_EQ(text_of(parsed(file, overrides).train), text_of(train));
+  EXPECT_EQ(parsed(file, overrides).search.reverse, ReverseMode::kRrbs);
+  EXPECT_EQ(parsed(file).search.reverse, ReverseMode::kNaive);
+}
+
+TEST(RtgConfig, WhatAMethodStandsForReadsBackToItself) {
+  for (const std::string_view name : kMethods) {
+    const std::vector<std::string> method{"run.method=" + std::string(name),
+                                          "task.randomisation=0.3"};
+    const RtgConfig config = parsed("", method);
+    const RtgConfig again = parse_config(canonical_yaml(config), "canonical.yaml");
+    EXPECT_EQ(canonical_yaml(again), canonical_yaml(config)) << name;
+  }
+}
+
+TEST(RtgConfig, DomainRandomisationNeedsItsRange) {
+  EXPECT_EQ(refusal("", {"train.randomise=true"}),
+            "--set train.randomise=true: key 'task.randomisation': 0 with train.randomise; legal: "
+            "more than 0");
+}
+
 }  // namespace
 }  // namespace rtg

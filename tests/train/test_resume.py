@@ -13,6 +13,7 @@ CHANGES = {
     "transitions": (["--transitions", "9"], "--resume: search.transitions must stay 2000 as in "),
     "physics": (["--set", "physics.sub_steps=9"], "--resume: physics.sub_steps must stay 10 as "),
     "reverse": (["--set", "reverse.preset=paper"], "--resume: reverse."),
+    "method": (["--method", "ddqn_random"], "--resume: search.reverse must stay naive as in "),
     "task setting": (["--set", "task.horizon=9"], "--resume: task.horizon must stay 60 as in "),
     "task": (["--set", "task=gathering_hard"], "--set task=gathering_hard: key 'task': is "),
     "one of two": (["--workers", "1", "--seed", "9"], "--resume: run.seed must stay 1 as in "),
@@ -38,6 +39,9 @@ def test_a_change_of_the_transitions_is_refused_and_leaves_the_run_alone(name, f
 
 
 OF_CHECKPOINT = {
+    "offline": "False",
+    "hindsight": "4",
+    "curriculum": "0.5",
     "dueling": "False",
     "layer_norm": "False",
     "train_frequency": "8",

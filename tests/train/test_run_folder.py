@@ -7,7 +7,11 @@ import pytest
 from rtg import paths, run_folder
 from rtg.errors import UserError
 
-CONFIG = {"task": {"name": "gathering"}, "run": {"seed": 7, "workers": 2}}
+CONFIG = {
+    "task": {"name": "gathering"},
+    "run": {"method": "ddqn_rtg", "seed": 7, "workers": 2},
+    "train": {"offline": True},
+}
 
 
 def write_parts(folder):
@@ -25,6 +29,7 @@ def test_the_summary_merges_both_halves_and_what_was_measured(tmp_path):
     known = {key: value for key, value in summary.items() if value is not None}
     assert known == {
         "task": "gathering",
+        "method": "ddqn_rtg",
         "seed": 7,
         "mode": "lcm",
         "workers": 2,
@@ -46,7 +51,7 @@ def test_the_summary_of_a_run_without_learner_has_nulls_in_its_place(tmp_path):
 
 
 def test_the_summary_has_the_keys_that_are_promised():
-    contract = """task, seed, mode, workers, transitions, contact_share, multi_body_share,
+    contract = """task, method, seed, mode, workers, transitions, contact_share, multi_body_share,
     start_region_transitions, reachable_share, tree_policy_success, tree_policy_length_mean,
     candidates, pruned, converged, iterations_median, iterations_p90, replay_gap_median,
     replay_gap_p90, reverse_cpu_s, replay_cpu_s, generate_wall_s, train_wall_s, interactions,

@@ -44,18 +44,26 @@ def test_bounds_are_proven_before_all_transitions_are_in(tmp_path: Path, rows: R
     assert not stream.complete and ((bound > 0) & (bound < 1)).any()
 
 
-@pytest.mark.parametrize("randomisation", [0.0, 0.3])
-def test_training_starts_are_jittered(tmp_path: Path, randomisation: float) -> None:
-    """By train.start_jitter, or by task.randomisation if that is larger."""
-    wanted = ("train.start_jitter=0.2", f"task.randomisation={randomisation}")
+@pytest.mark.parametrize("randomise", [False, True])
+def test_training_starts_are_jittered(tmp_path: Path, randomise: bool) -> None:
+    """By train.start_jitter, or all over task.randomisation where it is asked for."""
+    method = "ddqn_rtg_dr" if randomise else "ddqn_rtg"
+    wanted = (
+        "train.start_jitter=0.2",
+        "task.randomisation=0.3",
+        f"run.method={method}",
+        "train.eval_episodes=50",
+    )
     one = training(run_folder(tmp_path / "run", None, *wanted))
     drawn = []
     for _ in range(50):
         one.env.reset()
         drawn.append(one.env.state()["poses"] - one.task.start)
-    jitter = max(0.2, randomisation)
+    jitter = 0.3 if randomise else 0.2
     spread = np.abs(np.concatenate(drawn)[:, 1:, :2]).max(axis=0)  # [objects, x and y]
     assert (spread <= jitter).all() and (spread > 0.9 * jitter).all()
+    judged = np.abs(one.starts - one.task.start)[:, 1:, :2].max()
+    assert judged <= 0.1 if not randomise else 0.2 < judged <= 0.3
 
 
 def test_the_least_legal_buffer_takes_a_step_of_all_environments(

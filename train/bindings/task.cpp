@@ -57,6 +57,25 @@ nb::ndarray<nb::numpy, bool> successes(const Task& task, const StateArray& state
   return out.release({states.shape(0)});
 }
 
+nb::ndarray<nb::numpy, bool> atoms_held(const Task& task, const StateArray& states) {
+  check_bodies(states, task.scene.size());
+  const std::size_t width = goal_atoms(task, task.start).size();
+  OwnedArray<bool> out(states.shape(0) * width);
+  for (std::size_t row = 0; row < states.shape(0); ++row) {
+    const std::vector<bool> held = goal_atoms(task, state_at(states, row));
+    std::copy(held.begin(), held.end(), out.data.get() + row * width);
+  }
+  return out.release({states.shape(0), width});
+}
+
+nb::ndarray<nb::numpy, double> goal_state(const Task& task, std::uint64_t seed,
+                                          std::uint64_t index) {
+  Rng rng(seed, index);
+  const std::optional<Poses> poses = sample_goal(task, rng);
+  if (!poses) throw nb::value_error("no goal state found in 1000 attempts");
+  return state_array(*poses);
+}
+
 nb::ndarray<nb::numpy, double> start(const Task& task, double amplitude, std::uint64_t seed,
                                      std::uint64_t index) {
   if (!(amplitude >= 0.0 && amplitude <= 10.0))
@@ -143,6 +162,10 @@ void bind_task(nb::module_& module) {
       .def("observation", &observations, nb::arg("states"))
       .def("joints_reached", &joints_reached, nb::arg("states"))
       .def("centroids", &centroids, nb::arg("states"))
+      .def_prop_ro("atom_count",
+                   [](const Task& task) { return goal_atoms(task, task.start).size(); })
+      .def("atoms", &atoms_held, nb::arg("states"))
+      .def("goal_state", &goal_state, nb::arg("seed"), nb::arg("index") = 0)
       .def("succeeded", &successes, nb::arg("states"))
       .def("jittered_start", &start, nb::arg("amplitude"), nb::arg("seed"), nb::arg("index") = 0);
 }

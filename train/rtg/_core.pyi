@@ -72,7 +72,7 @@ class Task:
         """Evaluation starts: object positions ± this [m]."""
     @property
     def randomisation(self) -> float:
-        """Training starts: object positions ± this [m]."""
+        """How far domain randomisation goes: object positions ± this [m]."""
     @property
     def bodies(self) -> int: ...
     @property
@@ -83,6 +83,18 @@ class Task:
         """Per joint, whether the goal speaks of its angle and it is as asked. [1, bodies, 3]"""
     def centroids(self, states: NDArray[np.float64]) -> list[NDArray[np.float64]]:
         """The mean centres that the goal speaks of. [1, bodies, 3] -> each [2]"""
+    @property
+    def atom_count(self) -> int:
+        """Of the goal: see atoms()."""
+    def atoms(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Which conditions of the goal hold, one per body, joint or mean that a term speaks of;
+        it holds when all do. [N, bodies, 3] -> [N, atoms]"""
+    def goal_state(self, seed: int, index: int = 0) -> NDArray[np.float64]:
+        """Sample number `index` of stream `seed` of the states where the goal holds, nearly at
+        rest. [bodies, 3]
+
+        Raises ValueError if none was found.
+        """
     def succeeded(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Whether the goal holds. [N, bodies, 3] -> [N]"""
     def jittered_start(self, amplitude: float, seed: int, index: int = 0) -> NDArray[np.float64]:

@@ -14,6 +14,8 @@ from stable_baselines3.common.utils import polyak_update
 from stable_baselines3.common.vec_env import VecEnv
 from torch.nn import functional
 
+from rtg import device
+from rtg.hindsight import HindsightReplayBuffer
 from rtg.networks import ValuePolicy
 from rtg.replay import Batch, MixedReplayBuffer, ReplayRules
 from rtg.settings import TrainSettings
@@ -58,6 +60,13 @@ class DoubleDqn(DQN):
         self.settings = settings
         self.statistics = Statistics()
         self.explorer = np.random.default_rng([seed, 1])
+        buffer: dict[str, Any] = {
+            "rules": ReplayRules(settings.offline_share, discount, settings.value_bounds, seed)
+        }
+        atoms = 0
+        if settings.hindsight:
+            atoms = env.get_attr("task")[0].atom_count
+            buffer.update(atoms=atoms, goals=settings.hindsight)
         super().__init__(
             ValuePolicy,
             env,
@@ -68,20 +77,19 @@ class DoubleDqn(DQN):
             gamma=discount,
             train_freq=max(1, settings.train_frequency // env.num_envs),
             gradient_steps=settings.gradient_steps,
-            replay_buffer_class=MixedReplayBuffer,  # type: ignore[arg-type]
-            replay_buffer_kwargs={
-                "rules": ReplayRules(settings.offline_share, discount, settings.value_bounds, seed)
-            },
+            replay_buffer_class=HindsightReplayBuffer if atoms else MixedReplayBuffer,  # type: ignore[arg-type]
+            replay_buffer_kwargs=buffer,
             policy_kwargs={
                 "network": {
                     "dueling": settings.dueling,
                     "layer_norm": settings.layer_norm,
                     "small_head": settings.small_head,
                     "reduced_precision": settings.reduced_precision,
+                    "atoms": atoms,
                 }
             },
             seed=seed,
-            device="cpu",
+            device=device.chosen(settings.device),
         )
         self.set_logger(Logger(folder=None, output_formats=[]))
         self.update_exploration()
@@ -155,7 +163,8 @@ class DoubleDqn(DQN):
         """The policy's Q of all actions. [N, observation] float32 -> [N, actions] float32"""
         self.policy.train(False)
         with th.no_grad():
-            q: Array = self.policy_net(th.from_numpy(np.ascontiguousarray(observation))).numpy()
+            seen = th.from_numpy(np.ascontiguousarray(observation)).to(self.device)
+            q: Array = self.policy_net(seen).cpu().numpy()
         return q
 
     def state(self) -> dict[str, Any]:

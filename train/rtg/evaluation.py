@@ -39,9 +39,13 @@ class Evaluation(NamedTuple):
         }
 
 
-def held_out_starts(task: _core.Task, count: int, seed: int = HELD_OUT) -> Floats:
-    """The same for every run: objects moved by ± task.start_jitter. [count, bodies, 3]"""
-    return np.stack([task.jittered_start(task.start_jitter, seed, k) for k in range(count)])
+def held_out_starts(
+    task: _core.Task, count: int, seed: int = HELD_OUT, randomise: bool = False
+) -> Floats:
+    """The same for every run: objects moved by ± task.start_jitter, or ± task.randomisation if
+    `randomise`. [count, bodies, 3]"""
+    amplitude = task.randomisation if randomise else task.start_jitter
+    return np.stack([task.jittered_start(amplitude, seed, k) for k in range(count)])
 
 
 def evaluate(config: _core.Config, policy: Policy, starts: Floats, discount: float) -> Evaluation:

@@ -100,6 +100,20 @@ class OfflineData:
         self._known = rows.after(0, count)
 
 
+class NoSource:
+    """For a learner without offline data."""
+
+    lost = 0
+    complete = True
+
+    def poll(self, timeout: float) -> int:
+        del timeout
+        return 0
+
+    def close(self) -> None:
+        pass
+
+
 class FileSource:
     """The transitions of a file, all at the first poll."""
 

@@ -25,6 +25,7 @@ def identity(task: _core.Task, settings: TrainSettings) -> dict[str, Any]:
         "headings": task.headings,
         "dueling": settings.dueling,
         "layer_norm": settings.layer_norm,
+        "atoms": task.atom_count if settings.hindsight else 0,
     }
 
 
@@ -51,7 +52,8 @@ def read(path: Path, task: _core.Task) -> Policy:
     check_identity(path, found, wanted)
     if not isinstance(weights, dict):
         raise UserError(f"{path}: holds no policy; legal: a model.pt")
-    network = {name: bool(found.get(name)) for name in ("dueling", "layer_norm")}
+    network: dict[str, Any] = {name: bool(found.get(name)) for name in ("dueling", "layer_norm")}
+    network["atoms"] = int(found.get("atoms") or 0)
     policy = ValuePolicy(
         observation_space(task),
         spaces.Discrete(task.headings),

@@ -159,7 +159,9 @@ class LiveDisplay:
             if begun and bar.tasks[0].start_time is None:
                 bar.start_task(only)
         generate.update(only, completed=state.transitions, total=state.target or None)
-        rows: list[RenderableType] = [generate, _under(generation_text(state))]
+        rows: list[RenderableType] = []
+        if state.phase or not state.interactions:  # else nothing is generated
+            rows += [generate, _under(generation_text(state))]
         if state.budget:
             train.update(only, completed=state.interactions, total=state.budget)
             rows += [train, _under(training_text(state))]

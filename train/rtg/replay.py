@@ -17,6 +17,7 @@ from rtg.value_bounds import value_bounds
 
 Array = npt.NDArray[Any]
 Infos = list[dict[str, Any]]
+Part = tuple["Store", Array]  # rows of one of the stores
 
 
 class Batch(NamedTuple):
@@ -37,7 +38,14 @@ class Store:
     The k-th transition written stands in row k modulo `capacity`.
     """
 
-    columns = ("observation", "next_observation", "action", "reward", "terminated", "bound")
+    columns: tuple[str, ...] = (
+        "observation",
+        "next_observation",
+        "action",
+        "reward",
+        "terminated",
+        "bound",
+    )
 
     def __init__(self, capacity: int, observation_size: int) -> None:
         self.capacity = capacity
@@ -172,11 +180,17 @@ class MixedReplayBuffer(BaseBuffer):
             reward=reward[kept],
             terminated=(np.asarray(done) & ~timeout)[kept],
             bound=reward[kept],
+            **self._more(infos, kept),
         )
         for env, number in zip(kept, numbers, strict=True):
             self._episodes[env].append(int(number))
         for env in np.flatnonzero(done):
             self._close_episode(int(env), success=bool(reward[env] > 0))
+
+    def _more(self, infos: Infos, kept: Array) -> dict[str, Array]:
+        """Further columns of the online store, of the environments `kept`."""
+        del infos, kept
+        return {}
 
     def _close_episode(self, env: int, success: bool) -> None:
         numbers = np.array(self._episodes[env])
@@ -186,14 +200,14 @@ class MixedReplayBuffer(BaseBuffer):
 
     def sample(self, batch_size: int, env: VecNormalize | None = None) -> Batch:
         offline = self._offline_rows(batch_size)
-        parts = []
+        parts: list[Part] = []
         for store, count in ((self.offline, offline), (self.online, batch_size - offline)):
             if count:
                 parts.append((store, self.rng.integers(store.count, size=count)))
+        columns = self._columns(parts)
 
         def column(name: str) -> th.Tensor:
-            picked = [getattr(store, name)[rows] for store, rows in parts]
-            tensor = th.from_numpy(np.concatenate(picked)).to(self.device)
+            tensor = th.from_numpy(columns[name]).to(self.device)
             return tensor if tensor.ndim == 2 else tensor[:, None]
 
         return Batch(
@@ -202,9 +216,19 @@ class MixedReplayBuffer(BaseBuffer):
             next_observations=column("next_observation"),
             rewards=column("reward"),
             terminated=column("terminated"),
-            bounds=column("bound") if self.use_bounds else th.full((batch_size, 1), -th.inf),
+            bounds=column("bound"),
             offline=offline,
         )
+
+    def _columns(self, parts: list[Part]) -> dict[str, Array]:
+        """The rows of a batch by column, as its tensors will hold them."""
+        columns = {
+            name: np.concatenate([getattr(store, name)[rows] for store, rows in parts])
+            for name in Store.columns
+        }
+        if not self.use_bounds:
+            columns["bound"].fill(-np.inf)
+        return columns
 
     def _offline_rows(self, batch_size: int) -> int:
         offline, online = self.offline.count, self.online.count

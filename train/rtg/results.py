@@ -70,20 +70,19 @@ def _draw_episode(plan: RunPlan, task: _core.Task) -> None:
 def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
     """Draws all pictures and writes summary.json; returns the summary."""
     task = _core.Config.from_file(plan.config_file).task
-    _draw_generation(plan, task)
+    if plan.offline:
+        _draw_generation(plan, task)
     if plan.train:
         curve = learning_curve(plan.folder / "progress.csv")
         plots.learning_curve(plan.folder / "learning_curve.png", plan.title, curve)
     _draw_episode(plan, task)
-    mode = "in_process" if plan.in_process else "lcm"
+    mode = ("in_process" if plan.in_process else "lcm") if plan.offline else None
     summary = run_folder.summary(plan.folder, plan.config, mode, measured)
     run_folder.write_json(plan.folder / "summary.json", summary)
     return summary
 
 
-def words(plan: RunPlan, summary: dict[str, Any]) -> str:
-    """What the run came to, for people."""
-    s = summary
+def _words_of_generation(s: dict[str, Any]) -> list[str]:
     lines = [
         f"{s['transitions']:,} transitions in {s['generate_wall_s']:.0f} s, "
         f"contact share {s['contact_share']:.2f}, tree policy {s['tree_policy_success']:.2f}"
@@ -93,6 +92,13 @@ def words(plan: RunPlan, summary: dict[str, Any]) -> str:
             "plans of the data seldom lead from the start to the goal: training may take long or "
             "fail, more transitions may help (--transitions)"
         )
+    return lines
+
+
+def words(plan: RunPlan, summary: dict[str, Any]) -> str:
+    """What the run came to, for people."""
+    s = summary
+    lines = [] if s["transitions"] is None else _words_of_generation(s)
     if plan.train:
         lines.append(
             f"success rate {s['success_rate']:.2f} after {s['interactions']:,} interactions in "

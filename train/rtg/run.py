@@ -40,7 +40,9 @@ def run(args: RunArgs) -> int:
 def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
     from rtg import graph_run, in_process, train_run
 
-    if plan.is_generated():
+    if not plan.offline:
+        shown.note("no offline data: the learner begins with nothing")
+    elif plan.is_generated():
         shown.note("the transitions are there already")
     elif plan.in_process:
         in_process.generate(plan, shown)

@@ -15,6 +15,7 @@ EPILOG = """\
 examples:
   ./run.sh                                     the whole job on Gathering
   ./run.sh gathering --no-train                only generate transitions
+  ./run.sh --method her                        a learner to compare with
   ./run.sh config/mine.yaml --seed 3 --out runs/mine
   ./run.sh --set search.breadth=32 --print-config
 
@@ -28,6 +29,7 @@ exit status: 0 success, 2 bad input, 1 anything else"""
 # Flag -> the configuration key that it sets.
 _KEYS = {
     "workers": "run.workers",
+    "method": "run.method",
     "reverse": "search.reverse",
     "transitions": "search.transitions",
     "interactions": "train.interactions",
@@ -78,7 +80,10 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("task", nargs="?", help="a task of config/ or a FILE.yaml (gathering)")
     p.add_argument("--in-process", action="store_true", help="everything in one process, no LCM")
     p.add_argument("--workers", metavar="N", help="reverse workers; 0: one per core")
-    p.add_argument("--reverse", metavar="rrbs|naive", help="how reverse steps are found (rrbs)")
+    p.add_argument("--method", metavar="ID", help="what is compared: dqn, ddqn, ... (ddqn_rtg)")
+    p.add_argument(
+        "--reverse", metavar="rrbs|naive|random", help="how reverse steps are found (rrbs)"
+    )
     p.add_argument("--transitions", metavar="N", help="transitions to generate")
     p.add_argument("--interactions", metavar="N", help="environment steps of the learner")
     p.add_argument("--no-train", action="store_true", help="stop after the generation")

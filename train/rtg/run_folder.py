@@ -18,6 +18,7 @@ from rtg.errors import UserError
 # What summary.json holds at least, null where a part did not run; train/SUMMARY.md explains it.
 SUMMARY_KEYS = (
     "task",
+    "method",
     "seed",
     "mode",
     "workers",
@@ -121,15 +122,16 @@ def versions() -> dict[str, Any]:
 
 
 def summary(
-    run: Path, config: dict[str, Any], mode: str, measured: dict[str, Any]
+    run: Path, config: dict[str, Any], mode: str | None, measured: dict[str, Any]
 ) -> dict[str, Any]:
     """Generation and training merged; the contract's keys first, then what else was counted."""
-    generation = read_json(run / "generation.json")
+    generation = read_json(run / "generation.json") if config["train"]["offline"] else {}
     known: dict[str, Any] = {
         **{key: value for key, value in generation.items() if key not in _SAMPLES},
         **measured,
         **read_json(run / "training.json"),
         "task": config["task"]["name"] if isinstance(config["task"], dict) else config["task"],
+        "method": config["run"]["method"],
         "seed": config["run"]["seed"],
         "workers": config["run"]["workers"],
         "mode": mode,

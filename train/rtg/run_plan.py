@@ -48,8 +48,14 @@ class RunPlan:
     @property
     def title(self) -> str:
         """For pictures and first words."""
-        reverse = self.config["search"]["reverse"]
-        return f"{self.config['task']['name']}, {reverse}, seed {self.config['run']['seed']}"
+        run = self.config["run"]
+        reverse = f", {self.config['search']['reverse']}" if self.offline else ""
+        return f"{self.config['task']['name']}, {run['method']}{reverse}, seed {run['seed']}"
+
+    @property
+    def offline(self) -> bool:
+        """Whether transitions are generated."""
+        return bool(self.config["train"]["offline"])
 
     @property
     def interactions(self) -> int:
@@ -61,9 +67,30 @@ class RunPlan:
         return self.resume and self.transitions_file.is_file() and self.report_file.is_file()
 
 
+def _check_offline(config: dict[str, Any], train: bool) -> None:
+    """Raises UserError for what makes no sense without generated transitions."""
+    if config["train"]["offline"]:
+        return
+    method = config["run"]["method"]
+    if not train:
+        raise UserError(
+            f"--no-train: nothing to do, run.method {method} generates no transitions "
+            "(train.offline is false); legal: another method, or with training"
+        )
+    if config["run"]["record"]:
+        raise UserError("run.record: without train.offline there are no messages; legal: false")
+
+
+def _check_device(config: dict[str, Any]) -> None:
+    if config["train"]["device"] == "cuda":  # PyTorch takes seconds to answer
+        from rtg import device
+
+        device.chosen("cuda")
+
+
 def _check_buffer(config: dict[str, Any]) -> None:
     transitions, buffer = config["search"]["transitions"], config["train"]["buffer"]
-    if buffer < transitions:
+    if config["train"]["offline"] and buffer < transitions:
         raise UserError(
             f"train.buffer: {buffer} is too small for search.transitions = {transitions}; legal "
             "are equal or larger ones, or --no-train"
@@ -77,6 +104,7 @@ def _fixed_values(config: dict[str, Any], has_checkpoint: bool) -> dict[str, Any
     for section in ("task", "physics", "reverse", "search"):
         found.update({f"{section}.{name}": value for name, value in config[section].items()})
     if has_checkpoint:
+        found["run.method"] = config["run"]["method"]
         found.update({f"train.{name}": config["train"][name] for name in OF_CHECKPOINT})
     return found
 
@@ -95,7 +123,8 @@ def _check_resumed(file: Path, config: dict[str, Any]) -> None:
             kept = old if isinstance(old, str) else json.dumps(old)
             raise UserError(
                 f"--resume: {name} must stay {kept} as in {file}; legal are changes of train and "
-                f"run, but for run.seed and, with a checkpoint, train.{{{','.join(OF_CHECKPOINT)}}}"
+                "run, but for run.seed and, with a checkpoint, run.method and "
+                f"train.{{{','.join(OF_CHECKPOINT)}}}"
             )
 
 
@@ -105,12 +134,15 @@ def make_plan(args: RunArgs) -> RunPlan:
     config = effective_config.values(args.file, overrides)
     if args.resume:
         _check_resumed(args.file, config)
+    _check_offline(config, args.train)
     if args.train:
         _check_buffer(config)
+        _check_device(config)
     if config["run"]["in_process"] and config["run"]["record"]:
         raise UserError("run.record: with run.in_process there are no messages; legal: false")
     notes = []
-    if not config["run"]["in_process"] and (why := multicast.defect(config["run"]["bus"])):
+    needs_bus = config["train"]["offline"] and not config["run"]["in_process"]
+    if needs_bus and (why := multicast.defect(config["run"]["bus"])):
         notes.append(f"no process graph: {why}")
         notes.append("going on as with --in-process, which gives the same transitions")
         overrides = (*overrides, Override("--in-process", "run.in_process=true"))

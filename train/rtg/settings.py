@@ -6,7 +6,16 @@ import dataclasses
 from typing import Any
 
 # What a checkpoint is bound to: the shape of its network and buffer, the returns it has counted.
-OF_CHECKPOINT = ("train_frequency", "buffer", "discount", "dueling", "layer_norm")
+OF_CHECKPOINT = (
+    "offline",
+    "train_frequency",
+    "buffer",
+    "discount",
+    "dueling",
+    "layer_norm",
+    "hindsight",
+    "curriculum",
+)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -15,6 +24,7 @@ class TrainSettings:
 
     preset: str = "default"
     interactions: int = 350_000
+    offline: bool = True
     start_at: int = 40_000
     buffer: int = 1_500_000
     batch: int = 256
@@ -38,12 +48,16 @@ class TrainSettings:
     nearby_share: float = 0.5
     nearby_headings: int = 2
     start_jitter: float = 0.1
+    randomise: bool = False
+    hindsight: int = 0
+    curriculum: float = 0.0
     eval_every: int = 5_000
     eval_episodes: int = 100
     checkpoint_every: int = 20_000
     stop_at_success: float = 0.95
     stop_evaluations: int = 3
     reduced_precision: bool = True
+    device: str = "auto"
 
     @classmethod
     def from_config(cls, section: dict[str, Any]) -> TrainSettings:

@@ -22,12 +22,12 @@ def trainer_command(plan: RunPlan, *flags: str) -> Sequence[str | Path]:
     return [sys.executable, "-m", "rtg.trainer", plan.folder, *resume, *flags]
 
 
-def run(plan: RunPlan, display: Display) -> None:
-    """Learns in a process of its own, so that it can be stopped at any time."""
-    graph = ProcessGraph(plan.folder / "logs")
-    watch = TrainingWatch(plan.folder)
+def _begun(plan: RunPlan) -> RunState:
+    """What a display shows of the generation, which is over."""
+    if not plan.offline:
+        return RunState(budget=plan.interactions)
     report = read_json(plan.report_file)
-    state = RunState(
+    return RunState(
         phase="done",
         transitions=report["transitions"],
         target=report["transitions"],
@@ -35,6 +35,13 @@ def run(plan: RunPlan, display: Display) -> None:
         start_region=report["start_region_transitions"],
         budget=plan.interactions,
     )
+
+
+def run(plan: RunPlan, display: Display) -> None:
+    """Learns in a process of its own, so that it can be stopped at any time."""
+    graph = ProcessGraph(plan.folder / "logs")
+    watch = TrainingWatch(plan.folder)
+    state = _begun(plan)
     with Interrupts(on_demand=graph.kill) as interrupts:
         try:
             graph.add("trainer", trainer_command(plan, "--no-stream"))

@@ -25,7 +25,7 @@ from rtg import _core
 from rtg.bus import Bus
 from rtg.errors import RunError, UserError
 from rtg.node_status import ENDED, NodeStatus
-from rtg.offline_data import FileSource, Source
+from rtg.offline_data import FileSource, NoSource, Source
 from rtg.training import Training
 from rtg.transition_stream import TransitionStream
 
@@ -71,6 +71,8 @@ def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
 
 
 def _source(training: Training, args: argparse.Namespace) -> Source:
+    if not training.settings.offline:
+        return NoSource()
     if args.no_stream:
         return FileSource(args.folder / "transitions.npz", training.task, training.data)
     url = json.loads(training.config.json)["run"]["bus"]

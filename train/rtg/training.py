@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from rtg import _core, checkpoint, policy_file, run_folder
+from rtg.curriculum import Curriculum
 from rtg.ddqn import DoubleDqn
 from rtg.errors import UserError
 from rtg.evaluation import FINAL, Evaluation, Floats, evaluate, held_out_starts
@@ -40,15 +41,17 @@ class Training:
         self.config, self.task, self.folder = config, config.task, folder
         self.settings = s = TrainSettings.from_config(values["train"])
         self.discount = s.discount or self.task.discount
-        jitter, seed = max(s.start_jitter, self.task.randomisation), values["run"]["seed"]
+        seed = values["run"]["seed"]
         count = math.gcd(s.train_frequency, MAX_ENVIRONMENTS)
-        self.env = PushVecEnv(config, count, jitter, seed)
+        jitter = max(s.start_jitter, self.task.randomisation) if s.randomise else s.start_jitter
+        curriculum = Curriculum(config, s.curriculum, seed) if s.curriculum else None
+        self.env = PushVecEnv(config, count, jitter, seed, curriculum)
         self.model = DoubleDqn(self.env, s, self.discount, seed)
         self.data = OfflineData(self.task, self.model.replay_buffer)
         self.log = TrainingLog(folder)
         fixed = {name: getattr(s, name) for name in OF_CHECKPOINT}
         self._identity = {"seed": seed, **fixed, **policy_file.identity(self.task, s)}
-        self._starts = held_out_starts(self.task, s.eval_episodes)
+        self.starts = held_out_starts(self.task, s.eval_episodes, randomise=s.randomise)
         self._clock = Clock()
         self.tell: Callable[[str, int], None] = lambda state, done: None  # as NodeStatus.tick
         self._checkpoint = run_folder.checkpoint_file(folder)
@@ -118,7 +121,7 @@ class Training:
 
     def evaluate(self) -> Evaluation:
         """The greedy policy on the held-out starts; changes nothing."""
-        return self._evaluate(self._starts)
+        return self._evaluate(self.starts)
 
     def _evaluate(self, starts: Floats) -> Evaluation:
         return evaluate(self.config, self.model.greedy, starts, self.discount)
@@ -211,9 +214,11 @@ class Training:
         The final figures are of starts that no evaluation before has seen: training may have been
         stopped because those of the others went well by chance.
         """
-        final = self._evaluate(held_out_starts(self.task, self.settings.eval_episodes, FINAL))
+        s = self.settings
+        starts = held_out_starts(self.task, s.eval_episodes, FINAL, s.randomise)
+        final = self._evaluate(starts)
         weights = self.model.policy_net.state_dict()
-        policy_file.write(self.folder / "model.pt", self.task, self.settings, weights)
+        policy_file.write(self.folder / "model.pt", self.task, s, weights)
         best = final.best()
         np.savez(
             self.folder / "best_episode.npz", poses=final.paths[best], success=final.success[best]
@@ -227,6 +232,7 @@ class Training:
             "train_wall_s": round(self._clock.seconds, 3),
             "offline_transitions": self.data.count,
             "lost_transitions": lost,
+            "device": self.model.device.type,
         }
         run_folder.write_json(self.folder / "training.json", training)
         self.log.display(self._state(), force=True)

@@ -11,22 +11,33 @@ from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
 from rtg import _core
+from rtg.curriculum import ELSEWHERE, Curriculum
 from rtg.env import observation_space
 
 
 class PushVecEnv(VecEnv):
     """The environments of rtg.env.PushEnv in SB3's manner: a finished one starts again at once.
 
-    Start number k of the whole run is start k of the stream `seed`, whichever environment is next.
+    Start number k of the whole run is start k of the stream `seed`, whichever environment is next;
+    with a curriculum some episodes begin at its starts instead.
     """
 
-    def __init__(self, config: _core.Config, count: int, jitter: float, seed: int) -> None:
+    def __init__(
+        self,
+        config: _core.Config,
+        count: int,
+        jitter: float,
+        seed: int,
+        curriculum: Curriculum | None = None,
+    ) -> None:
         self.render_mode = None
         self.task = task = config.task
         super().__init__(count, observation_space(task), spaces.Discrete(task.headings))
         self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
-        self._starts = 0  # drawn so far
+        self._curriculum = curriculum
+        self._origins = [ELSEWHERE] * count  # of the running episodes, in the curriculum
+        self._starts = 0  # drawn so far, the curriculum's left out
         self.successes = 0  # episodes that ended in one
         self._poses = np.zeros((count, task.bodies, 3))  # [count, bodies, 3]
         self._steps = np.zeros(count, np.int64)  # actions in the running episodes
@@ -43,13 +54,19 @@ class PushVecEnv(VecEnv):
     def step_wait(self) -> Any:
         after, ok = self._simulator.push(self._poses, self._actions)
         after[~ok] = self._poses[~ok]
+        held, held_next = self.task.atoms(self._poses), self.task.atoms(after)  # [count, atoms]
         self._poses, self._steps = after, self._steps + 1
         success = self.task.succeeded(after) & ok
         self.successes += int(success.sum())
         timeout = ~success & ((self._steps >= self.task.horizon) | ~ok)
         observation = self.task.observation(after)
         infos: list[dict[str, Any]] = [
-            {"TimeLimit.truncated": bool(timeout[env]), "rejected": not ok[env]}
+            {
+                "TimeLimit.truncated": bool(timeout[env]),
+                "rejected": not ok[env],
+                "held": held[env],
+                "held_next": held_next[env],
+            }
             for env in range(self.num_envs)
         ]
         done = success | timeout
@@ -58,14 +75,21 @@ class PushVecEnv(VecEnv):
                 infos[env]["terminal_observation"] = observation[env]
                 infos[env]["is_success"] = bool(success[env])
                 infos[env]["episode"] = {"r": float(success[env]), "l": int(self._steps[env])}
+                if self._curriculum:
+                    self._curriculum.note(self._origins[env], bool(success[env]))
                 self._begin(env)
             observation = self.task.observation(self._poses)
         return observation, success.astype(np.float32), done, infos
 
     def _begin(self, env: int) -> None:
-        self._poses[env] = self.task.jittered_start(self._jitter, self._seed, self._starts)
+        self._origins[env], start = (
+            self._curriculum.draw() if self._curriculum else (ELSEWHERE, None)
+        )
+        if start is None:
+            start = self.task.jittered_start(self._jitter, self._seed, self._starts)
+            self._starts += 1
+        self._poses[env] = start
         self._steps[env] = 0
-        self._starts += 1
 
     def state(self) -> dict[str, Any]:
         """Everything that the next steps depend on."""
@@ -74,6 +98,8 @@ class PushVecEnv(VecEnv):
             "steps": self._steps.copy(),
             "starts": self._starts,
             "successes": self.successes,
+            "origins": list(self._origins),
+            "curriculum": self._curriculum.state() if self._curriculum else None,
         }
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -81,6 +107,9 @@ class PushVecEnv(VecEnv):
         self._steps = np.asarray(state["steps"]).copy()
         self._starts = state["starts"]
         self.successes = state["successes"]
+        self._origins = list(state["origins"])
+        if self._curriculum:
+            self._curriculum.restore(state["curriculum"])
 
     # What SB3 asks of a VecEnv beyond that.
 

@@ -1,0 +1,40 @@
+#include "nodes/common/method.hpp"
+
+#include <vector>
+
+namespace rtg {
+namespace {
+
+using Settings = std::vector<MethodSetting>;
+
+/// A learner of its own experience alone.
+Settings online(const Settings& more) {
+  Settings all{{"train", "offline", "false"},
+               {"train", "epsilon_start", "1.0"},
+               {"train", "nearby_share", "0.0"}};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+/// In the order of Method.
+const std::array<Settings, kMethods.size()>& table() {
+  static const std::array<Settings, kMethods.size()> kTable{
+      online({{"train", "double_q", "false"}}),
+      online({{"train", "double_q", "true"}}),
+      Settings{{"search", "reverse", "random"}},
+      Settings{{"search", "reverse", "naive"}},
+      Settings{{"search", "reverse", "rrbs"}},
+      Settings{{"search", "reverse", "rrbs"}, {"train", "randomise", "true"}},
+      online({{"train", "double_q", "true"}, {"train", "hindsight", "4"}}),
+      online({{"train", "double_q", "true"}, {"train", "curriculum", "0.9"}}),
+  };
+  return kTable;
+}
+
+}  // namespace
+
+std::span<const MethodSetting> settings_of(Method method) {
+  return table()[static_cast<std::size_t>(method)];
+}
+
+}  // namespace rtg

@@ -1,0 +1,195 @@
+"""The methods: what each stands for, and that each learns, stops and goes on."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rtg import _core, checkpoint, cli, device, effective_config, policy_file, trainer
+from rtg.errors import UserError
+from rtg.hindsight import HindsightReplayBuffer
+from rtg.offline_data import NoSource
+from rtg.run_args import Override
+from rtg.transition_stream import Rows
+from test_training import flat
+from training_runs import TINY, after_polls, run_folder, training
+
+METHODS = ("dqn", "ddqn", "ddqn_random", "ddqn_naive", "ddqn_rtg", "ddqn_rtg_dr", "her", "rcg")
+ONLINE = ("dqn", "ddqn", "her", "rcg")
+
+
+def values(method: str, *more: str) -> dict:
+    return json.loads(_core.Config.from_file(TINY, [f"run.method={method}", *more]).json)
+
+
+def test_methods_differ_in_these_values_alone() -> None:
+    of = {name: values(name) for name in METHODS}
+    train, rtg = {name: of[name]["train"] for name in METHODS}, of["ddqn_rtg"]["train"]
+    vanilla = {**rtg, "offline": False, "epsilon_start": 1.0, "nearby_share": 0.0}
+    assert train == {
+        "dqn": {**vanilla, "double_q": False},
+        "ddqn": vanilla,
+        "ddqn_random": rtg,
+        "ddqn_naive": rtg,
+        "ddqn_rtg": rtg,
+        "ddqn_rtg_dr": {**rtg, "randomise": True},
+        "her": {**vanilla, "hindsight": 4},
+        "rcg": {**vanilla, "curriculum": 0.9},
+    }
+    assert (rtg["epsilon_end"], rtg["epsilon_share"]) == (0.05, 0.2)
+    reverse = {name: of[name]["search"]["reverse"] for name in METHODS if name not in ONLINE}
+    assert reverse == {
+        "ddqn_random": "random",
+        "ddqn_naive": "naive",
+        "ddqn_rtg": "rrbs",
+        "ddqn_rtg_dr": "rrbs",
+    }
+
+
+def test_settings_stand_above_the_method_and_it_above_presets_and_the_file() -> None:
+    assert values("her", "train.hindsight=2")["train"]["hindsight"] == 2
+    paper = values("ddqn_random", "train.preset=paper")
+    assert paper["search"]["reverse"] == "random" and not paper["train"]["dueling"]
+    without = json.loads(_core.Config.from_file(TINY).json)
+    assert (without["run"]["method"], without["search"]["reverse"]) == ("ddqn_rtg", "naive")
+
+
+def test_another_id_is_refused_and_the_legal_ones_are_named(capsys) -> None:
+    assert cli.main(["gathering", "--method", "sac"]) == 2
+    legal = ", ".join(METHODS)
+    words = f"rtg: --method sac: key 'run.method': 'sac' is none of them; legal: {legal}\n"
+    assert capsys.readouterr().err == words
+
+
+REFUSED = {
+    "nothing to do": (
+        ["--method", "her", "--no-train"],
+        "rtg: --no-train: nothing to do, run.method her generates no transitions ",
+    ),
+    "no messages": (
+        ["--method", "rcg", "--set", "run.record=true"],
+        "rtg: run.record: without train.offline there are no messages; legal: false",
+    ),
+    "no range": (
+        ["--method", "ddqn_rtg_dr", "--set", "task.randomisation=0"],
+        "rtg: --method ddqn_rtg_dr: run.method ddqn_rtg_dr: key 'task.randomisation': 0 with "
+        "train.randomise; legal: more than 0",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_does_not_go_together_is_refused(name, tmp_path: Path, capsys) -> None:
+    words, message = REFUSED[name]
+    assert cli.main(["gathering", *words, "--out", str(tmp_path / "run")]) == 2
+    assert capsys.readouterr().err.startswith(message)
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_each_method_runs_from_the_flag_to_the_summary(method: str, tmp_path: Path) -> None:
+    out = tmp_path / "run"
+    more = ["--set", "train.buffer=4000", "--set", "train.hindsight=2"] if method == "her" else []
+    small = ["--transitions", "800", "--set", "search.breadth=4", "--set", "search.depth=3"]
+    words = [str(TINY), "--method", method, "--in-process", "--out", str(out), *small, *more]
+    assert cli.main([*words, "--set", "search.twins=0"]) == 0
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["method"] == method and summary["interactions"] == 400
+    assert 0.0 <= summary["success_rate"] <= 1.0
+    offline = method not in ONLINE
+    assert summary["offline_transitions"] == (800 if offline else 0)
+    assert summary["transitions"] == (800 if offline else None)
+    assert summary["mode"] == ("in_process" if offline else None)
+    assert (out / "generation.json").exists() == (out / "coverage.png").exists() == offline
+    assert (out / "episode.gif").exists() and (out / "learning_curve.png").exists()
+    written = effective_config.values(out / "config.yaml")
+    given = [Override("", setting) for setting in (f"run.method={method}", *more[1::2])]
+    assert (
+        written["train"].items()
+        >= {
+            key: effective_config.values(TINY, given)["train"][key]
+            for key in ("offline", "double_q", "hindsight", "curriculum", "randomise")
+        }.items()
+    )
+    task = _core.Config.from_file(out / "config.yaml").task
+    policy = policy_file.read(out / "model.pt", task)
+    assert policy(task.observation(task.start[None])).shape == (1,)
+
+
+@pytest.mark.parametrize("method", ["ddqn", "her", "rcg"])
+@pytest.mark.parametrize("cut", [3, 41])
+def test_a_resumed_run_ends_with_the_same_bits(tmp_path: Path, method: str, cut: int) -> None:
+    """Cut off early and between evaluations. The robot stands where it pushes a box in at times."""
+    behind = ("task.bodies.0.start=[-4.9, 1.13, 0.0]", "task.horizon=6")
+    ends = []
+    for name, cuts in (("whole", []), ("cut", [cut, 7])):
+        folder = run_folder(tmp_path / name, None, f"run.method={method}", *behind)
+        for stop in [*map(after_polls, cuts), lambda: False]:
+            one = training(folder)
+            if one.has_checkpoint():
+                one.restore()
+            finished = one.run(NoSource(), stop, record=False)
+        assert finished and one.interactions == 240
+        assert method != "her" or one.model.replay_buffer.online.goals.any()
+        ends.append(flat(checkpoint.read(folder / "checkpoint" / "state.pt")))
+    same = ends[0] == ends[1]
+    assert same and len(ends[0]) > 50  # no diff of bytes
+
+
+def test_a_stopped_run_without_offline_data_is_resumed_by_its_command(tmp_path: Path) -> None:
+    folder = run_folder(tmp_path / "run", None, "run.method=her")
+    assert not training(folder).run(NoSource(), after_polls(20), record=False)
+    assert cli.main(["--resume", "--out", str(folder)]) == 0
+    with (folder / "progress.csv").open() as file:
+        assert [row["interactions"] for row in csv.DictReader(file)] == ["80", "160", "240"]
+
+
+def test_a_checkpoint_keeps_its_method(tmp_path: Path, capsys) -> None:
+    folder = run_folder(tmp_path / "run", None, "run.method=ddqn")
+    training(folder).save()
+    assert cli.main(["--resume", "--out", str(folder), "--method", "dqn"]) == 2
+    assert capsys.readouterr().err.startswith("rtg: --resume: run.method must stay ddqn as in ")
+
+
+def test_hindsight_is_told_what_the_states_of_an_episode_hold(tmp_path: Path) -> None:
+    one = training(run_folder(tmp_path / "run", None, "run.method=her", "task.horizon=5"))
+    assert one.run(NoSource(), lambda: False, record=False)
+    buffer = one.model.replay_buffer
+    assert isinstance(buffer, HindsightReplayBuffer)
+    store, n = buffer.online, buffer.online.count
+    centres = store.next_observation[:n, 2:].reshape(n, 3, 6)[:, :, :2] * 8.0
+    inside = np.linalg.norm(centres, axis=2) <= 2.0
+    np.testing.assert_array_equal(store.held_next[:n], inside)
+
+
+def test_domain_randomisation_is_judged_where_it_is_trained(tmp_path: Path, rows: Rows) -> None:
+    """The final evaluation, too."""
+    wanted = ("run.method=ddqn_rtg_dr", "train.interactions=4", "train.eval_episodes=30")
+    folder = run_folder(tmp_path / "run", rows, *wanted)
+    assert trainer.main([str(folder), "--no-stream"]) == 0
+    task = _core.Config.from_file(folder / "config.yaml").task
+    with np.load(folder / "best_episode.npz") as best:
+        moved = np.abs(best["poses"][0] - task.start)[1:, :2].max()
+    assert task.start_jitter < moved <= task.randomisation == 0.5
+
+
+def test_the_device_is_a_gpu_where_there_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    for seen in (False, True):
+        monkeypatch.setattr("torch.cuda.is_available", lambda seen=seen: seen)
+        assert device.chosen("auto") == ("cuda" if seen else "cpu")
+        assert device.chosen("cpu") == "cpu"
+    assert device.chosen("cuda") == "cuda"
+    monkeypatch.setattr("torch.cuda.is_available", lambda: False)
+    with pytest.raises(UserError, match=r"train\.device: cuda, but PyTorch sees no such device;"):
+        device.chosen("cuda")
+
+
+def test_a_device_that_is_not_there_is_refused_before_anything_starts(
+    tmp_path: Path, capsys, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("torch.cuda.is_available", lambda: False)
+    words = [str(TINY), "--set", "train.device=cuda", "--out", str(tmp_path / "run")]
+    assert cli.main(words) == 2
+    assert capsys.readouterr().err.startswith("rtg: train.device: cuda, but PyTorch sees no such")
+    assert not (tmp_path / "run").exists()

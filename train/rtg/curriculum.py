@@ -1,0 +1,124 @@
+"""Reverse curriculum generation [Florensa et al. 2017]: starts that grow back from goal states.
+
+A round trains from a pool of starts. Those that the learner solves now and then, but not always,
+are good: short walks of random pushes from them give most of the next pool, good ones of earlier
+rounds the rest. The first walks begin at states in which the goal holds.
+
+The bounds of a good start are the paper's. Its pools (200 new starts, 100 old ones) are halved, so
+that one round takes a tenth of Table 2's interactions at most; its walks of 50 small steps are 10
+whole pushes. Where no start of a round is good the next walks begin at those that were mastered,
+or again where the last ones began. A share of the episodes begins at the task's own starts, which
+is what the learner is judged by.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg import _core
+
+Floats = NDArray[np.float64]
+
+LEAST, MOST = 0.1, 0.9  # success from a good start
+NEW, OLD = 100, 50  # starts of a pool
+EPISODES = 3  # per start and round, in the mean
+GOALS = 100  # states that the first walks begin at
+WALKS, PUSHES = 100, 10  # from which the new starts are drawn
+OF_GOALS = 1 << 62  # seeds of goal states, beyond those of runs
+
+ELSEWHERE = -1  # number of a start that is not of the curriculum
+
+
+class Curriculum:
+    """Where a share of the training episodes begin; how they end decides where the next ones do."""
+
+    def __init__(self, config: _core.Config, share: float, seed: int) -> None:
+        self._task, self._simulator = config.task, _core.Simulator(config)
+        self._share = share
+        self._rng = np.random.default_rng([seed, 2])
+        goals = [self._task.goal_state(OF_GOALS + seed, k) for k in range(GOALS)]
+        self._seeds: Floats = np.stack(goals)  # [seeds, bodies, 3], where walks begin
+        self._good = self._seeds[:0]  # of all rounds
+        self._first = 0  # number of the pool's first start
+        self._drawn = 0  # starts of this pool
+        self._set_pool(self._nearby())
+
+    @property
+    def pool(self) -> Floats:
+        """The starts of this round. [starts, bodies, 3]"""
+        return self._pool
+
+    def draw(self) -> tuple[int, Floats | None]:
+        """The next episode's start with its number; ELSEWHERE if it shall begin as without."""
+        if self._rng.random() >= self._share:
+            return ELSEWHERE, None
+        k = self._drawn % len(self._pool)
+        self._drawn += 1
+        return self._first + k, self._pool[k]
+
+    def note(self, number: int, success: bool) -> None:
+        """How an episode from that start ended. Those of earlier rounds no longer count."""
+        k = number - self._first
+        if k < 0:  # ELSEWHERE, too
+            return
+        self._tries[k] += 1
+        self._wins[k] += success
+        if self._tries.sum() >= EPISODES * len(self._pool):
+            self._next_round()
+
+    def _next_round(self) -> None:
+        rate = self._wins / np.maximum(self._tries, 1)
+        good = self._pool[(rate >= LEAST) & (rate <= MOST)]
+        mastered = self._pool[rate > MOST]
+        self._seeds = next((few for few in (good, mastered) if len(few)), self._seeds)
+        old = self._some(self._good, OLD)
+        self._good = np.concatenate((self._good, good))
+        self._first += len(self._pool)
+        self._set_pool(np.concatenate((self._nearby(), old)))
+
+    def _set_pool(self, pool: Floats) -> None:
+        self._pool = pool
+        self._drawn = 0
+        self._tries = np.zeros(len(pool), np.int64)
+        self._wins = np.zeros(len(pool), np.int64)
+
+    def _some(self, states: Floats, count: int) -> Floats:
+        """`count` of them, or all, in random order."""
+        return states[self._rng.permutation(len(states))[:count]]
+
+    def _nearby(self) -> Floats:
+        """New starts: states on random walks from the seeds; the start of the task without any."""
+        states = self._seeds[self._rng.integers(len(self._seeds), size=WALKS)]
+        met = [states]
+        for _ in range(PUSHES):
+            actions = self._rng.integers(self._task.headings, size=WALKS)
+            after, ok = self._simulator.push(states, actions)
+            states = np.where(ok[:, None, None], after, states)
+            met.append(states[ok])
+        found = np.concatenate(met)
+        found = self._some(found[~self._task.succeeded(found)], NEW)
+        return found if len(found) else self._task.start[None]
+
+    def state(self) -> dict[str, Any]:
+        """Everything that the next starts depend on."""
+        return {
+            "rng": self._rng.bit_generator.state,
+            "seeds": self._seeds,
+            "good": self._good,
+            "pool": self._pool,
+            "tries": self._tries,
+            "wins": self._wins,
+            "first": self._first,
+            "drawn": self._drawn,
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        self._rng.bit_generator.state = state["rng"]
+        self._seeds, self._good = np.asarray(state["seeds"]), np.asarray(state["good"])
+        self._set_pool(np.asarray(state["pool"]))
+        self._tries = np.asarray(state["tries"]).copy()
+        self._wins = np.asarray(state["wins"]).copy()
+        self._first, self._drawn = state["first"], state["drawn"]
