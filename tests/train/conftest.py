@@ -1,3 +1,5 @@
+import os
+
 import numpy as np
 import pytest
 import torch as th
@@ -5,6 +7,7 @@ from rtg import _core
 from rtg.transition_stream import Rows
 from training_runs import TINY
 
+os.environ["CUDA_VISIBLE_DEVICES"] = ""  # what is compared bit by bit is computed on the processor
 th.set_num_threads(1)  # more threads than idle cores make small networks a hundred times slower
 
 
