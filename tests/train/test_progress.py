@@ -46,6 +46,14 @@ def test_nothing_is_said_about_a_generation_that_has_not_begun():
     assert plain(RunState(budget=1000), RunState(budget=1000)) == []
 
 
+def test_a_terminal_shows_no_generation_where_there_is_none():
+    out = io.StringIO()
+    with LiveDisplay(Console(file=out, force_terminal=True, width=100)) as shown:
+        shown.show(RunState(generates=False, budget=1000))
+    assert "train" in out.getvalue() and "starting" in out.getvalue()
+    assert "generate" not in out.getvalue() and "transitions" not in out.getvalue()
+
+
 def test_a_terminal_shows_a_bar_with_words_for_each_half_of_the_run():
     out = io.StringIO()
     console = Console(file=out, force_terminal=True, width=100)

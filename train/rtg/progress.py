@@ -27,6 +27,7 @@ _REDRAW = 0.2  # [s]
 class RunState:
     """Where a run stands."""
 
+    generates: bool = True  # whether there is a generation
     phase: str = ""  # of the generation: "round 1", "roll-outs", ...
     layer: int = 0  # of `depth`
     depth: int = 0
@@ -56,7 +57,7 @@ def generation_text(state: RunState) -> str:
 def training_text(state: RunState) -> str:
     """One line on the training."""
     if not state.interactions:
-        return "waiting for transitions"
+        return "waiting for transitions" if state.generates else "starting"
     success = "-" if state.success_rate is None else f"{state.success_rate:.2f}"
     rate = f"{state.rate:,.0f}" if state.rate else "-"
     return f"success {success}, {rate} interactions/s"
@@ -160,7 +161,7 @@ class LiveDisplay:
                 bar.start_task(only)
         generate.update(only, completed=state.transitions, total=state.target or None)
         rows: list[RenderableType] = []
-        if state.phase or not state.interactions:  # else nothing is generated
+        if state.generates:
             rows += [generate, _under(generation_text(state))]
         if state.budget:
             train.update(only, completed=state.interactions, total=state.budget)

@@ -25,7 +25,7 @@ def trainer_command(plan: RunPlan, *flags: str) -> Sequence[str | Path]:
 def _begun(plan: RunPlan) -> RunState:
     """What a display shows of the generation, which is over."""
     if not plan.offline:
-        return RunState(budget=plan.interactions)
+        return RunState(generates=False, budget=plan.interactions)
     report = read_json(plan.report_file)
     return RunState(
         phase="done",
