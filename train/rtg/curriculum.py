@@ -39,6 +39,7 @@ class Curriculum:
         self._task, self._simulator = config.task, _core.Simulator(config)
         self._share = share
         self._rng = np.random.default_rng([seed, 2])
+        # The loader has seen to it that there are some.
         goals = [self._task.goal_state(OF_GOALS + seed, k) for k in range(GOALS)]
         self._seeds: Floats = np.stack(goals)  # [seeds, bodies, 3], where walks begin
         self._good = self._seeds[:0]  # of all rounds
