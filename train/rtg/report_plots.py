@@ -42,7 +42,7 @@ def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
     return {label: (colours[k], _DASHES[k % len(_DASHES)]) for k, label in enumerate(labels)}
 
 
-def _names(labels: Sequence[str]) -> tuple[str, list[str]]:
+def split_names(labels: Sequence[str]) -> tuple[str, list[str]]:
     """What all labels begin with, up to a method or key, and what is left of each."""
     shared = os.path.commonprefix(labels)
     end = max(shared.rfind("@"), shared.rfind("=")) + 1
@@ -99,7 +99,7 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
         handles = [
             plt.Line2D([], [], color=styles[label][0], ls=styles[label][1], lw=2) for label in drawn
         ]
-        shared, names = _names(list(drawn))
+        shared, names = split_names(list(drawn))
         seeds = [len(runs) for runs in drawn.values()]
         words = [f"{name} ({count})" for name, count in zip(names, seeds, strict=True)]
         figure.legend(
@@ -138,7 +138,7 @@ def replay_gaps(path: Path, gaps: dict[str, Floats]) -> None:
 def sweep(path: Path, comparison: Comparison, task: str) -> None:
     """The final greedy success and the interactions to 0.95 of each swept value, a dot per run."""
     labels = [label for label in comparison.labels if "@" in label]
-    shared, names = _names(labels)
+    shared, names = split_names(labels)
     ticks = [name.replace("@", "\n") for name in names]
     with plots.style():
         figure, axes = plt.subplots(1, 2, figsize=(9.6, 3.6), layout="constrained")
