@@ -10,7 +10,6 @@ from PIL import Image
 from rtg import cli
 from rtg.cells import Cell
 from rtg.report_files import write_report
-from rtg.report_plots import split_names
 from rtg.report_tables import seeds, spread
 
 GOOD, BAD = [0.2, 0.8, 0.96], [0.0, 0.5, 0.6, 0.7]
@@ -169,9 +168,3 @@ def test_seeds_are_put_together_in_words(values, form, words):
 
 def test_seeds_in_a_row_are_written_short():
     assert seeds([3, 1, 2, 7]) == "1-3, 7"
-
-
-def test_labels_are_drawn_without_what_they_share():
-    labels = ["ddqn_rtg@train.batch=16", "ddqn_rtg@train.batch=128"]
-    assert split_names(labels) == ("ddqn_rtg, train.batch", ["16", "128"])
-    assert split_names(["ddqn", "ddqn_rtg"]) == ("", ["ddqn", "ddqn_rtg"])

@@ -19,13 +19,12 @@ TASKS = ("gathering", "sorting", "art_manip")
 SEEDS = "5"
 # Enough to see every part at work; no figure of such a run is a result.
 QUICK = (
-    "search.transitions=10000",
-    "search.breadth=48",
-    "train.interactions=10000",
-    "train.start_at=5000",
-    "train.eval_every=2000",
+    "search.transitions=30000",
+    "train.interactions=30000",
+    "train.start_at=10000",
+    "train.eval_every=2500",
     "train.eval_episodes=20",
-    "train.checkpoint_every=4000",
+    "train.checkpoint_every=5000",
 )
 QUICK_METHODS = ("ddqn_naive", REFERENCE)
 
