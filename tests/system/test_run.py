@@ -1,6 +1,5 @@
 """The whole command as the user types it, on a configuration that takes seconds."""
 
-import contextlib
 import json
 import os
 import re
@@ -8,11 +7,11 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import network
 import numpy as np
 import pytest
+from living import processes_of
 from PIL import Image
 from rtg import dataset, paths
 from rtg.run_folder import SUMMARY_KEYS
@@ -153,18 +152,6 @@ def test_the_written_configuration_makes_the_same_run(in_process, tmp_path):
         assert best["success"]
     assert (again / "transitions.npz").read_bytes() == (folder / "transitions.npz").read_bytes()
     assert {path.name for path in again.iterdir()} >= COMMON_FILES
-
-
-def processes_of(folder):
-    """Words of all living processes that were started with the folder among them, by id."""
-    found = {}
-    for entry in os.listdir("/proc"):
-        with contextlib.suppress(OSError):
-            if entry.isdigit() and int(entry) != os.getpid():
-                words = Path(f"/proc/{entry}/cmdline").read_bytes().decode(errors="replace")
-                if str(folder) in words:
-                    found[int(entry)] = words
-    return found
 
 
 def kill(folder, program):

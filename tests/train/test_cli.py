@@ -38,6 +38,19 @@ MISTAKES = {
     ),
     "flag of lcm-spy": (["lcm-spy", "-x"], "unrecognized arguments: -x; legal: ./run.sh lcm-spy ["),
     "spy for no time": (["spy", "--seconds", "0"], "--seconds 0: legal is a number of seconds"),
+    "reproduce of nothing": (
+        ["reproduce", "sortign"],
+        "sortign: no task of that name; legal: art_",
+    ),
+    "method": (
+        ["reproduce", "--methods", "magic"],
+        "--methods magic: no method of that name; legal",
+    ),
+    "swept value": (
+        ["reproduce", "--sweep", "train.offline_share=0.5,9", "--out", "/proc/rtg"],
+        "--sweep train.offline_share=9: key 'train.offline_share': 9 is out of range; legal: ",
+    ),
+    "plot of nothing": (["plot", "tests"], "tests: holds no comparison (no grid.json); legal: DIR"),
     "spy on nothing": (["spy", "sortign"], "sortign: no task of that name"),
     "spy on a folder": (["spy", "tests"], "tests: no such task file; legal: art_manip, "),
 }
@@ -121,7 +134,7 @@ def test_spy_names_the_remedy_where_nothing_can_be_heard():
     )
 
 
-@pytest.mark.parametrize("tool", ["run", "check", "spy", "lcm-spy"])
+@pytest.mark.parametrize("tool", ["run", "check", "spy", "lcm-spy", "reproduce", "plot"])
 def test_every_tool_has_help(tool):
     done = rtg(tool, "--help")
     assert done.returncode == 0 and done.stderr == ""

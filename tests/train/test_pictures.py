@@ -167,7 +167,7 @@ def test_curves_with_gaps_and_empty_samples_can_be_drawn(tmp_path):
 def figures(monkeypatch):
     """The figures that are drawn, instead of their files."""
     drawn = []
-    monkeypatch.setattr(plots, "_save", lambda figure, _: drawn.append(figure))
+    monkeypatch.setattr(plots, "save", lambda figure, _: drawn.append(figure))
     yield drawn
     plots.plt.close("all")
 

@@ -82,11 +82,36 @@ def _lcm_spy(words: Sequence[str]) -> int:
     return 0
 
 
+def _reproduce(words: Sequence[str]) -> int:
+    from rtg import reproduce_args
+
+    args = reproduce_args.parse(words)
+    from rtg.reproduce import reproduce
+
+    return reproduce(args)
+
+
+def _plot(words: Sequence[str]) -> int:
+    parser = run_args.Parser(
+        prog="./run.sh plot",
+        description="Make report, tables and pictures anew from the runs of a comparison.",
+    )
+    parser.add_argument("folder", metavar="DIR", type=Path, help="the --out of reproduce")
+    parser.add_argument("--out", metavar="DIR", type=Path, help="where to (the same folder)")
+    args = parser.parse_args(words)
+    from rtg.report_files import write_report
+
+    print(f"report: {write_report(args.folder, args.out or args.folder)}")
+    return 0
+
+
 _TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "run": _run,
     "check": _check,
     "spy": _spy,
     "lcm-spy": _lcm_spy,
+    "reproduce": _reproduce,
+    "plot": _plot,
 }
 
 

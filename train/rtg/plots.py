@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,7 @@ _STYLE: Any = {
     "axes.titlelocation": "left",
     "axes.titlesize": 11,
 }
+GAP_AXIS = "replay gap: mean distance between reverse-generated and replayed end [m]"
 _BLUE, _ORANGE = "#4a7ebb", "#d9822b"
 
 
@@ -45,7 +47,13 @@ def _rgb(colour: Sequence[int]) -> tuple[float, ...]:
     return tuple(c / 255 for c in colour)
 
 
-def _save(figure: Figure, path: Path) -> None:
+def style() -> AbstractContextManager[None]:
+    """The look of all our plots, within its `with`."""
+    return plt.rc_context(_STYLE)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Writes the picture and closes the figure."""
     figure.savefig(path, dpi=130)
     plt.close(figure)
 
@@ -61,7 +69,7 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats]) -> None:
         ("episode length [actions]", "episode_length_mean", "", None),
         ("discounted return", "episode_return_mean", "", None),
     ]
-    with plt.rc_context(_STYLE):
+    with style():
         figure, axes = plt.subplots(1, 3, figsize=(10.5, 3.2), layout="constrained")
         thousand = np.asarray(curve["interactions"]) / 1000.0
         for axis, (name, column, extra, limits) in zip(axes, panels, strict=True):
@@ -85,40 +93,46 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats]) -> None:
         lines = axes[0].get_lines()
         figure.legend(handles=lines, loc="outside upper right", ncols=len(lines), frameon=False)
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
-        _save(figure, path)
+        save(figure, path)
 
 
 def _metres(value: float, floor: float) -> str:
     return f"≤ {floor:g} m" if value <= floor else f"{value:.2g} m"
 
 
-def replay_gap(path: Path, title: str, gaps: Floats) -> None:
-    """Histogram of the replay gap over decades [m], with median and 90th percentile. gaps [N]."""
+def gap_histogram(axis: Axes, gaps: Floats) -> None:
+    """Counts over decades of the replay gap [m], with median and 90th percentile. gaps [N]."""
     floor = 1e-4
     values = np.maximum(np.asarray(gaps, dtype=float), floor)
-    with plt.rc_context(_STYLE):
+    top = max(float(values.max(initial=floor)), 10 * floor)
+    edges = np.geomspace(floor, 1.001 * top, 61)
+    axis.hist(values, bins=edges.tolist(), color=_BLUE, alpha=0.85)
+    axis.set_xscale("log")
+    axis.set_ylabel("replayed candidates")
+    if not len(values):
+        return
+    for share, words in ((50, "median"), (90, "90th percentile")):
+        at = float(np.percentile(values, share))
+        axis.axvline(at, color=_ORANGE, lw=1.5, ls="-" if share == 50 else "--")
+        axis.annotate(
+            f" {words} {_metres(at, floor)}",
+            (at, 0.99 if share == 50 else 0.90),
+            xycoords=("data", "axes fraction"),
+            va="top",
+            color="#a35d14",
+            bbox={"facecolor": _rgb(PAPER), "edgecolor": "none", "pad": 1.0},
+            zorder=5,  # above the other line
+        )
+
+
+def replay_gap(path: Path, title: str, gaps: Floats) -> None:
+    """Histogram of the replay gap of one run. gaps [N] in m."""
+    with style():
         figure, axis = plt.subplots(figsize=(6.4, 3.4), layout="constrained")
-        top = max(float(values.max(initial=floor)), 10 * floor)
-        edges = np.geomspace(floor, 1.001 * top, 61)
-        axis.hist(values, bins=edges.tolist(), color=_BLUE, alpha=0.85)
-        axis.set_xscale("log")
-        if len(values):
-            for share, words in ((50, "median"), (90, "90th percentile")):
-                at = float(np.percentile(values, share))
-                axis.axvline(at, color=_ORANGE, lw=1.5, ls="-" if share == 50 else "--")
-                axis.annotate(
-                    f" {words} {_metres(at, floor)}",
-                    (at, 0.99 if share == 50 else 0.90),
-                    xycoords=("data", "axes fraction"),
-                    va="top",
-                    color="#a35d14",
-                    bbox={"facecolor": _rgb(PAPER), "edgecolor": "none", "pad": 1.0},
-                    zorder=5,  # above the other line
-                )
-        axis.set_xlabel("replay gap: mean distance between reverse-generated and replayed end [m]")
-        axis.set_ylabel("replayed candidates")
+        gap_histogram(axis, gaps)
+        axis.set_xlabel(GAP_AXIS)
         axis.set_title(title)
-        _save(figure, path)
+        save(figure, path)
 
 
 def _scene(axis: Axes, task: TaskLike, body: int) -> None:
@@ -154,7 +168,7 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
     columns = min(4, len(objects))
     rows = -(-len(objects) // columns)
     order = np.argsort(depth, kind="stable")  # the far ones on top
-    with plt.rc_context(_STYLE):
+    with style():
         size = (3.1 * columns + 0.9, 3.1 * rows + 0.5)
         figure, axes = plt.subplots(
             rows, columns, figsize=size, layout="constrained", squeeze=False
@@ -183,4 +197,4 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
             fontsize=8,
         )
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
-        _save(figure, path)
+        save(figure, path)

@@ -107,6 +107,13 @@ def _debian_version(package: str) -> str | None:
     return _output("dpkg-query", "-W", "-f=${Version}", package)
 
 
+def _processor() -> str | None:
+    """Model name of the processor, as Linux tells it."""
+    lines = Path("/proc/cpuinfo").read_text().splitlines()
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else None
+
+
 def versions() -> dict[str, Any]:
     """What a run was made with; null where it cannot be told."""
     changes = _output("git", "status", "--porcelain", "--untracked-files=no")
@@ -116,6 +123,8 @@ def versions() -> dict[str, Any]:
         "python": platform.python_version(),
         "system": platform.platform(),
         "processors": os.cpu_count(),
+        "processor": _processor(),
+        "memory_gib": round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30),
         "packages": {name: importlib.metadata.version(name) for name in _PACKAGES},
         "debian": {name: _debian_version(name) for name in _DEBIAN},
     }

@@ -1,0 +1,121 @@
+"""A whole comparison as the user types it, on three tasks and budgets that take seconds."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from living import processes_of
+from rtg import paths
+
+PATIENCE = 300.0  # [s]; longer is a hang
+SMALL = (
+    "search.transitions=1500",
+    "search.breadth=8",
+    "search.depth=4",
+    "search.evaluation_starts=2",
+    "train.interactions=600",
+    "train.start_at=500",
+    "train.batch=32",
+    "train.eval_every=200",
+    "train.eval_episodes=2",
+    "train.checkpoint_every=100",
+)
+WORDS = ["--quick", "--methods", "ddqn_naive", "--jobs", "2"]
+WORDS += [word for setting in SMALL for word in ("--set", setting)]
+TWO = ("gathering", "sorting")
+CLOCKS = {"generate_wall_s", "train_wall_s", "reverse_cpu_s", "replay_cpu_s"}
+
+
+def start(folder, tasks=(), *words):
+    return subprocess.Popen(
+        [sys.executable, "-m", "rtg", "reproduce", *tasks, *WORDS, *words, "--out", folder],
+        cwd=paths.ROOT,
+        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def finish(process):
+    out, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 0, err
+    return out
+
+
+def wait_for(condition, process):
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        assert process.poll() is None, process.stderr.read()
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def figures(folder):
+    """All numbers of the tables of two tasks but those of clocks."""
+    rows = []
+    for name in ("runs.csv", "curves.csv"):
+        with (folder / name).open() as file:
+            rows += [row for row in csv.DictReader(file) if row["task"] in TWO]
+    assert set(rows[0]) >= CLOCKS
+    return [{key: value for key, value in row.items() if key not in CLOCKS} for row in rows]
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("comparison") / "undisturbed"
+    return folder, finish(start(folder))
+
+
+def test_a_comparison_of_all_tasks_ends_with_a_report(undisturbed):
+    folder, out = undisturbed
+    assert out.splitlines()[-2:] == ["3 of 3 runs done, 0 running", f"report: {folder}/report.md"]
+    report = json.loads((folder / "report.json").read_text())
+    assert list(report) == ["gathering", "sorting", "art_manip"]
+    for methods in report.values():
+        assert methods["ddqn_naive"][0]["interactions"] == 600
+    for name in ("curves_sorting.png", "strip_art_manip.png", "film_gathering.gif"):
+        assert f"]({name})" in (folder / "report.md").read_text()
+
+
+def test_each_run_keeps_to_one_thread_and_one_process(undisturbed):
+    folder, _ = undisturbed
+    summary = json.loads((folder / "sorting/ddqn_naive/seed-1/summary.json").read_text())
+    assert (summary["workers"], summary["mode"]) == (1, "in_process")
+
+
+def test_killed_and_begun_again_it_comes_to_the_same_figures(undisturbed, tmp_path):
+    folder = tmp_path / "disturbed"
+    process = start(folder, TWO)
+    saved = folder / "gathering/ddqn_naive/seed-1/checkpoint/state.pt"
+    wait_for(saved.exists, process)
+    process.kill()
+    process.communicate(timeout=PATIENCE)
+    deadline = time.monotonic() + PATIENCE
+    while left := processes_of(folder):
+        assert time.monotonic() < deadline, left
+        time.sleep(0.02)
+    assert not (saved.parents[1] / "summary.json").exists()
+    finish(start(folder, TWO))
+    assert figures(folder) == figures(undisturbed[0])
+    log = saved.parents[1].with_name("seed-1.log").read_text()
+    assert "the transitions are there already" in log
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_stops_all_runs_and_says_how_to_go_on(tmp_path, number):
+    folder = tmp_path / "stopped"
+    process = start(folder, TWO, "--set", "train.interactions=1000000")
+    wait_for((folder / "sorting/ddqn_naive/seed-1/training_state.json").exists, process)
+    process.send_signal(number)
+    _, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 1
+    assert err.startswith("rtg: stopped; to go on: ./run.sh reproduce gathering sorting --quick ")
+    assert err.endswith(f" --out {folder}\n")
+    assert processes_of(folder) == {}
+    assert json.loads((folder / "grid.json").read_text())["failed"] == {}

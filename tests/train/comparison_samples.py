@@ -1,0 +1,77 @@
+"""Run folders of a comparison that nobody ran: plausible figures, made up."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rtg import _core, paths
+from rtg.cells import Cell, Grid
+from rtg.run_folder import write_json
+from rtg.training_log import TrainingLog
+
+CONFIG = paths.CONFIG / "gathering.yaml"
+
+
+def row(interactions: int, success: float) -> dict[str, Any]:
+    """An evaluation."""
+    return {
+        "interactions": interactions,
+        "success_rate": success,
+        "rollout_success": 0.9 * success,
+        "episode_length_mean": 60.0 - 40.0 * success,
+        "episode_return_mean": 0.2 * success,
+    }
+
+
+def finished(folder: Path, cell: Cell, course: Sequence[float], **more: Any) -> None:
+    """The folder of a run that evaluated every 5,000 interactions, with these successes."""
+    run = folder / cell.name
+    run.mkdir(parents=True)
+    log = TrainingLog(run)
+    for at, success in enumerate(course, start=1):
+        log.add(row(5000 * at, success))
+    summary = {
+        "success_rate": course[-1],
+        "rollout_success": 0.9 * course[-1],
+        "interactions": 5000 * len(course),
+        "transitions": 120_000,
+        "generate_wall_s": 50.0,
+        "train_wall_s": 100.0,
+        "candidates": 2000,
+        "pruned": 1000,
+        "converged": 990,
+        "pushing_iterations_median": 31,
+        "pushing_iterations_p90": 53,
+        "reverse_cpu_s": 2.0,
+        "replay_cpu_s": 60.0,
+        "replay_gap_median": 0.006,
+        "replay_gap_p90": 0.026,
+        "contact_share": 0.5,
+        "tree_policy_success": 0.85,
+        "defects": [],
+        **more,
+    }
+    write_json(run / "summary.json", summary)
+    write_json(run / "versions.json", {"git_revision": "abc", "git_modified": False})
+    rng = np.random.default_rng(cell.seed)
+    gaps = np.exp(rng.normal(-5.0, 1.0, size=500)).tolist()
+    write_json(run / "generation.json", {"replay_gaps": gaps})
+    (run / "config.yaml").write_text(_core.Config.from_file(CONFIG).yaml)
+    start = _core.Config.from_file(CONFIG).task.start
+    np.savez(run / "best_episode.npz", poses=np.stack([start, start]), success=course[-1] > 0.5)
+
+
+def course(rng: np.random.Generator, middle: float, end: float, length: int) -> list[float]:
+    """A noisy rise to `end`, half of it at the share `middle` of the length."""
+    x = np.linspace(0.0, 1.0, length)
+    rise = end / (1.0 + np.exp(-(x - middle) / 0.06))
+    return np.clip(rise + rng.normal(0.0, 0.03, length), 0.0, 1.0).round(2).tolist()
+
+
+def write_grid(folder: Path, cells: Sequence[Cell], failed: dict[str, str] | None = None) -> None:
+    grid = Grid([], [], failed or {})
+    grid.add("./run.sh reproduce gathering", cells)
+    grid.write(folder)

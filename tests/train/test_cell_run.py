@@ -1,0 +1,101 @@
+"""A run of a comparison and what is there of it already."""
+
+import pytest
+from rtg import effective_config, run_args
+from rtg.cell_run import make_ready
+from rtg.errors import UserError
+from rtg.reproduce_args import parse
+from rtg.run_folder import write_json
+from training_runs import TINY
+
+
+@pytest.fixture
+def words(tmp_path):
+    """Of a comparison with two runs."""
+    return [
+        str(TINY),
+        "--methods",
+        "ddqn_naive,ddqn_rtg",
+        "--seeds",
+        "1",
+        "--out",
+        str(tmp_path),
+        "--set",
+        "train.batch=8",
+    ]
+
+
+def begin(run, *overrides):
+    """As `rtg run` does."""
+    run.folder.mkdir(parents=True)
+    args = run_args.parse([*run.words, *overrides, "--out", str(run.folder)])
+    text = effective_config.canonical(args.file, args.overrides)
+    (run.folder / "config.yaml").write_text(text)
+
+
+def test_a_new_run_begins_and_one_that_has_begun_goes_on(words):
+    naive, rtg = make_ready(parse(words))
+    assert naive.command()[-2:] == ["--out", str(naive.folder)]
+    assert "--resume" not in naive.command() and str(TINY) in naive.command()
+    begin(naive)
+    naive, _ = make_ready(parse(words))
+    assert "--resume" in naive.command() and str(TINY) not in naive.command()
+    assert not naive.done and not rtg.done
+    write_json(naive.folder / "summary.json", {})
+    assert naive.done
+
+
+def test_methods_stand_above_the_file_and_the_settings(words):
+    """The file says naive."""
+    for run, reverse in zip(make_ready(parse(words)), ("naive", "rrbs"), strict=True):
+        args = run_args.parse(run.words)
+        config = effective_config.values(args.file, args.overrides)
+        assert config["search"]["reverse"] == reverse
+        assert config["run"]["workers"] == 1 and config["run"]["in_process"]
+        assert config["train"]["batch"] == 8
+
+
+@pytest.mark.parametrize(
+    ("more", "what"),
+    [
+        (["--set", "train.batch=9"], "train.batch = 8, asked for is 9"),
+        (["--set", "search.breadth=9"], "search.breadth = 16, asked for is 9"),
+    ],
+)
+def test_a_run_with_another_configuration_is_refused_and_left_alone(words, more, what):
+    run = make_ready(parse(words))[0]
+    begin(run)
+    before = (run.folder / "config.yaml").read_bytes()
+    with pytest.raises(UserError) as error:
+        make_ready(parse([*words, *more]))
+    assert str(error.value).startswith(f"{run.folder}: was made with {what}; legal: the same, ")
+    assert (run.folder / "config.yaml").read_bytes() == before
+
+
+def test_a_run_killed_as_it_began_begins_again(words):
+    run = make_ready(parse(words))[0]
+    run.folder.mkdir(parents=True)
+    (run.folder / ".config.yaml.123").write_text("ta")
+    again = make_ready(parse(words))[0]
+    assert "--resume" not in again.command() and not any(run.folder.iterdir())
+
+
+def test_a_folder_of_another_kind_is_refused(words):
+    run = make_ready(parse(words))[0]
+    run.folder.mkdir(parents=True)
+    (run.folder / "notes.txt").write_text("mine")
+    with pytest.raises(UserError, match="holds no run; legal: an empty --out, or none"):
+        make_ready(parse(words))
+
+
+def test_wrong_values_are_named_by_the_flag_that_they_came_with(words):
+    for flag, setting in (("--set", "train.batch=0"), ("--sweep", "train.offline_share=0.5,3")):
+        key, value = setting.split("=")
+        with pytest.raises(UserError) as error:
+            make_ready(parse([*words, flag, setting]))
+        assert str(error.value).startswith(f"{flag} {key}={value.split(',')[-1]}: ")
+
+
+def test_values_that_make_the_same_run_are_refused(words):
+    with pytest.raises(UserError, match=r"=0\.50/seed-1: is the same run as .*=0\.5/seed-1; legal"):
+        make_ready(parse([*words, "--sweep", "train.offline_share=0.5,0.50"]))

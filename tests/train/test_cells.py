@@ -1,0 +1,30 @@
+"""The list of the runs of a comparison."""
+
+import pytest
+from rtg.cells import Cell, Grid, read_grid
+from rtg.errors import UserError
+
+ONE = Cell("gathering", "ddqn_rtg", (), 1)
+TWO = Cell("sorting", "ddqn_rtg", ("train.batch=8",), 2)
+
+
+def test_a_grid_reads_back_to_itself(tmp_path):
+    grid = Grid(["./run.sh reproduce"], [ONE, TWO], {TWO.name: "rtg: no memory"})
+    grid.write(tmp_path)
+    assert read_grid(tmp_path) == grid
+    assert read_grid(tmp_path / "elsewhere") == Grid([], [], {})
+
+
+def test_what_was_asked_for_before_stays():
+    grid = Grid([], [], {})
+    grid.add("first", [ONE])
+    grid.add("second", [TWO, ONE])
+    grid.add("first", [ONE])
+    assert grid.commands == ["first", "second"] and grid.cells == [ONE, TWO]
+
+
+@pytest.mark.parametrize("text", ["[]", "{", '{"cells": [{"task": "x"}]}', '{"cells": 3}'])
+def test_a_damaged_file_is_named(tmp_path, text):
+    (tmp_path / "grid.json").write_text(text)
+    with pytest.raises(UserError, match=r"grid\.json: damaged; legal: as "):
+        read_grid(tmp_path)

@@ -1,0 +1,78 @@
+"""Figures over seeds and tasks, against hand calculations."""
+
+import numpy as np
+import pytest
+from rtg.estimates import (
+    carried_forward,
+    first_reach,
+    improvement_interval,
+    interquartile_mean,
+    interval,
+    mean_std,
+    probability_of_improvement,
+)
+
+NAN = float("nan")
+
+
+def scores(*tasks):
+    return [np.array(task, float) for task in tasks]
+
+
+def test_the_spread_is_that_of_a_sample():
+    assert mean_std([1.0, 2.0, 3.0]) == (2.0, 1.0)
+    assert mean_std([2.0]) == (2.0, None)
+
+
+def test_the_interquartile_mean_drops_a_quarter_at_either_end():
+    assert interquartile_mean(scores([0.0, 1.0], [2.0, 9.0])) == 1.5
+    assert interquartile_mean(scores([0.0, 1.0, 5.0])) == 2.0  # a quarter of three is none
+    assert interquartile_mean(scores(range(8))) == 3.5
+
+
+def test_the_probability_of_improvement_counts_ties_half_and_tasks_alike():
+    assert probability_of_improvement(scores([2.0]), scores([1.0])) == 1.0
+    assert probability_of_improvement(scores([1.0, 1.0]), scores([1.0])) == 0.5
+    assert probability_of_improvement(scores([1.0, 3.0]), scores([2.0, 0.0])) == 0.75
+    uneven = scores([2.0], [0.0, 0.0, 0.0])
+    assert probability_of_improvement(uneven, scores([1.0], [1.0])) == 0.5
+
+
+def test_seeds_are_drawn_within_their_task():
+    """Without that the mean of the means of two constant tasks would vary."""
+    table = scores([0.0, 0.0, 0.0], [1.0, 1.0, 1.0])
+    assert interval(interquartile_mean, table) == (0.5, 0.5)
+
+
+def test_an_interval_is_that_of_the_mean_and_always_the_same():
+    rng = np.random.default_rng(1)
+    sample = scores(rng.normal(size=400))
+
+    def mean(drawn):
+        return float(drawn[0].mean())
+
+    low, high = interval(mean, sample)
+    wide = 1.96 * sample[0].std() / 20.0
+    assert low == pytest.approx(sample[0].mean() - wide, abs=0.02)
+    assert high == pytest.approx(sample[0].mean() + wide, abs=0.02)
+    assert interval(mean, sample) == (low, high)
+
+
+def test_the_interval_of_the_improvement_draws_seeds_of_both():
+    low, high = improvement_interval(scores([1.0, 3.0]), scores([2.0, 0.0]))
+    assert (low, high) == (0.0, 1.0)
+    assert improvement_interval(scores([3.0, 3.0]), scores([2.0, 0.0])) == (1.0, 1.0)
+
+
+def test_a_bar_is_reached_at_the_first_evaluation_that_has_it():
+    at, success = np.array([5.0, 10.0, 15.0]), np.array([0.5, 0.7, 0.6])
+    assert first_reach(at, success, 0.7) == 10
+    assert first_reach(at, success, 0.71) is None
+
+
+def test_a_course_that_ends_early_keeps_its_last_value():
+    at, values = np.array([10.0, 20.0, 30.0]), np.array([NAN, 0.5, 0.9])
+    found = carried_forward(at, values, np.array([5.0, 10.0, 20.0, 25.0, 30.0, 99.0]))
+    assert np.isnan(found[:2]).all()
+    assert found[2:].tolist() == [0.5, 0.5, 0.9, 0.9]
+    assert np.isnan(carried_forward(at, np.full(3, NAN), at)).all()

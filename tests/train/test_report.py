@@ -1,0 +1,170 @@
+"""The report of a comparison whose figures are made up."""
+
+import csv
+import json
+import re
+
+import pytest
+from comparison_samples import finished, write_grid
+from PIL import Image
+from rtg import cli
+from rtg.cells import Cell
+from rtg.report_files import write_report
+from rtg.report_tables import seeds, spread
+
+GOOD, BAD = [0.2, 0.8, 0.96], [0.0, 0.5, 0.6, 0.7]
+SWEPT = "train.offline_share=-1"
+CELLS = [
+    *(
+        Cell("gathering", method, (), seed)
+        for method in ("ddqn_rtg", "ddqn_naive")
+        for seed in (1, 2)
+    ),
+    Cell("gathering", "her", (), 1),
+    Cell("gathering", "ddqn_rtg", (SWEPT,), 1),
+    Cell("sorting", "ddqn_rtg", (), 1),
+    Cell("sorting", "rcg", (), 1),
+]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    path = tmp_path_factory.mktemp("comparison")
+    for cell in CELLS[:4]:
+        finished(path, cell, GOOD if cell.method == "ddqn_rtg" else BAD)
+    finished(path, CELLS[3 + 2], BAD, defects=["3 transitions lost"])
+    (path / CELLS[4].name).mkdir(parents=True)  # failed
+    (path / CELLS[6].name).mkdir(parents=True)  # unfinished
+    write_grid(path, CELLS, {CELLS[4].name: "Traceback\nMemoryError"})
+    write_report(path, path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def page(folder):
+    return (folder / "report.md").read_text()
+
+
+def row(page, label, after="## gathering"):
+    lines = page.split(after)[1].splitlines()
+    line = next(line for line in lines if line.startswith(f"| `{label}` |"))
+    return [cell.strip() for cell in line.strip("|").split("|")][1:]
+
+
+def test_a_row_has_the_figures_of_its_seeds(page):
+    figures = ["120 ± 0", "50 ± 0", "100 ± 0"]
+    good = ["1-2", "0.96 ± 0.00", "0.86 ± 0.00", "10 ± 0", "15 ± 0", "15 ± 0"]
+    assert row(page, "ddqn_rtg") == [*good, *figures]
+    bad = ["1-2", "0.70 ± 0.00", "0.63 ± 0.00", "20 ± 0", "never", "20 ± 0"]
+    assert row(page, "ddqn_naive") == [*bad, *figures]
+
+
+def test_runs_without_a_result_say_why(page):
+    assert row(page, "her")[:2] == ["1 failed", "–"]
+    assert row(page, "ddqn_rtg", "## sorting")[:2] == ["1 unfinished", "–"]
+    assert row(page, "rcg", "## sorting")[:2] == ["1 not run", "–"]
+    assert row(page, "rcg")[:2] == ["not run", "–"]
+    assert "Not run: `dqn`, `ddqn`, `ddqn_random`, `ddqn_rtg_dr`." in page
+    assert "- `gathering/her/seed-1` failed: MemoryError" in page
+    assert f"- `gathering/ddqn_rtg@{SWEPT}/seed-1`: 3 transitions lost" in page
+
+
+def test_all_tasks_are_pooled_and_compared_with_the_reference(page):
+    pooled = "## All tasks together"
+    assert row(page, "ddqn_rtg", pooled) == ["1", "2", "0.96 [0.96, 0.96]", "–"]
+    assert row(page, "ddqn_naive", pooled)[-1] == "0.00 [0.00, 0.00]"
+
+
+def test_the_page_says_where_it_comes_from_and_shows_all_pictures(folder, page):
+    assert "    ./run.sh reproduce gathering\n" in page and "- commit: `abc`\n" in page
+    shown = set(re.findall(r"\]\((\w+\.(?:png|gif))\)", page))
+    assert shown == {path.name for path in folder.iterdir() if path.suffix in {".png", ".gif"}}
+    expected = ("curves", "sweep", "strip")
+    assert shown == {
+        *(f"{name}_gathering.png" for name in expected),
+        "film_gathering.gif",
+        "replay_gap.png",
+    }
+    assert str(folder) not in page
+
+
+def test_the_pictures_are_pictures(folder):
+    for path in folder.glob("*.png"):
+        with Image.open(path) as picture:
+            assert len(picture.convert("RGB").getcolors(1 << 24)) > 50, path.name
+
+
+def test_the_numbers_are_there_for_programs(folder):
+    report = json.loads((folder / "report.json").read_text())
+    assert list(report) == ["gathering", "sorting"] and report["sorting"] == {}
+    assert report["gathering"]["ddqn_naive"][1] == {
+        "seed": 2,
+        "success_rate": 0.7,
+        "rollout_success": pytest.approx(0.63),
+        "interactions": 20000,
+        "interactions_to_70": 20000,
+        "interactions_to_95": None,
+        "transitions": 120000,
+        "generate_wall_s": 50.0,
+        "train_wall_s": 100.0,
+        "commit": "abc",
+    }
+
+
+def test_the_tables_for_programs_have_a_row_per_run_and_per_evaluation(folder):
+    with (folder / "runs.csv").open() as file:
+        runs = list(csv.DictReader(file))
+    assert [run["state"] for run in runs].count("done") == 5 and len(runs) == len(CELLS)
+    with (folder / "curves.csv").open() as file:
+        curves = list(csv.DictReader(file))
+    assert len(curves) == 2 * len(GOOD) + 3 * len(BAD)
+    assert curves[0]["success_rate"] == "0" or curves[0]["success_rate"] == "0.2"
+
+
+def test_made_again_all_files_are_the_same(folder, tmp_path):
+    write_report(folder, tmp_path / "results")
+    for path in (tmp_path / "results").iterdir():
+        assert path.read_bytes() == (folder / path.name).read_bytes(), path.name
+
+
+def test_a_picture_that_no_run_stands_behind_does_not_stay(folder, tmp_path):
+    (tmp_path / "curves_gone.png").write_bytes(b"old")
+    (tmp_path / "mine.png").write_bytes(b"mine")
+    write_report(folder, tmp_path)
+    assert not (tmp_path / "curves_gone.png").exists() and (tmp_path / "mine.png").exists()
+
+
+def test_a_comparison_without_a_result_has_a_report_too(tmp_path):
+    write_grid(tmp_path, CELLS)
+    page = write_report(tmp_path, tmp_path).read_text()
+    assert row(page, "ddqn_rtg")[:2] == ["1-2 not run", "–"]
+
+
+def test_the_command_writes_the_report_and_names_what_is_no_comparison(folder, tmp_path, capsys):
+    assert cli.main(["plot", str(folder), "--out", str(tmp_path / "results")]) == 0
+    assert capsys.readouterr().out == f"report: {tmp_path / 'results' / 'report.md'}\n"
+    assert cli.main(["plot", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.startswith(
+        f"rtg: {tmp_path}: holds no comparison (no grid.json)"
+    )
+    assert cli.main(["plot", str(folder), "--out", "/proc/rtg"]) == 2
+    assert capsys.readouterr().err.startswith("rtg: --out: /proc/rtg: ")
+
+
+@pytest.mark.parametrize(
+    ("values", "form", "words"),
+    [
+        ([1.0, 3.0], ".1f", "2.0 ± 1.4"),
+        ([2.0], ".1f", "2.0"),
+        ([2.0, None], ".1f", "2.0 (1 of 2)"),
+        ([None], ".1f", "–"),
+        ([9.0, 9.0], "count", "9.0 ± 0.0"),
+        ([350.0], "count", "350"),
+    ],
+)
+def test_seeds_are_put_together_in_words(values, form, words):
+    assert spread(values, form) == words
+
+
+def test_seeds_in_a_row_are_written_short():
+    assert seeds([3, 1, 2, 7]) == "1-3, 7"

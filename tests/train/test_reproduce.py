@@ -1,0 +1,99 @@
+"""Runs of a comparison side by side; shell scripts stand in for `rtg run`."""
+
+import fcntl
+import io
+import json
+import shlex
+
+import pytest
+from rtg import cli, effective_config, run_args
+from rtg.cell_run import CellRun, make_ready
+from rtg.cells import read_grid
+from rtg.grid_display import PlainGrid
+from rtg.reproduce import Crew
+from rtg.reproduce_args import parse
+from training_runs import TINY
+
+SUMMARY = {"success_rate": 0.5, "interactions": 400}
+SUCCEEDS = (
+    "mkdir -p $OUT; cp $CONFIG $OUT/config.yaml; "
+    f"echo {shlex.quote(json.dumps(SUMMARY))} > $OUT/summary.json"
+)
+FAILS = "echo working; echo no memory; exit 3"
+
+
+@pytest.fixture
+def comparison(tmp_path, monkeypatch):
+    """Gives a crew for three seeds whose runs do what the scripts say, one script each."""
+
+    def make(jobs, *scripts):
+        words = [str(TINY), "--methods", "ddqn_rtg", "--seeds", str(len(scripts))]
+        args = parse([*words, "--jobs", str(jobs), "--out", str(tmp_path / "out")])
+        runs = make_ready(args)
+        for run, script in zip(runs, scripts, strict=True):
+            config = tmp_path / f"{run.cell.seed}.yaml"
+            parsed = run_args.parse(run.words)
+            config.write_text(effective_config.canonical(parsed.file, parsed.overrides))
+            places = f"OUT={shlex.quote(str(run.folder))}; CONFIG={shlex.quote(str(config))}"
+            commands[run.folder] = ["sh", "-c", f"{places}; {script}"]
+        return Crew(args, runs, read_grid(args.out))
+
+    commands = {}
+    monkeypatch.setattr(CellRun, "command", lambda run: commands[run.folder])
+    return make
+
+
+def finish(crew):
+    """The most runs that were ever at work together."""
+    most = 0
+    with PlainGrid(io.StringIO()) as shown:
+        while crew.tend(shown):
+            most = max(most, [row.phase for row in crew.rows()].count("running"))
+            crew.wait(0.05)
+    return most
+
+
+def test_a_run_that_fails_leaves_the_others_alone_and_says_why(comparison, tmp_path):
+    crew = comparison(1, SUCCEEDS, FAILS, SUCCEEDS)
+    assert finish(crew) == 1
+    assert [row.phase for row in crew.rows()] == ["done", "failed", "done"]
+    assert crew.rows()[0].words == "success 0.50 after 400 interactions"
+    name = "tiny/ddqn_rtg/seed-2"
+    words = f"{name} ended with exit status 3; the end of its log:\nworking\nno memory"
+    assert crew.rows()[1].words == words
+    assert read_grid(tmp_path / "out").failed == {name: "working\nno memory"}
+
+
+def test_a_failed_run_gets_another_chance_and_a_done_one_is_left(comparison, tmp_path):
+    finish(comparison(2, SUCCEEDS, FAILS))
+    crew = comparison(2, "echo again; exit 1", SUCCEEDS)
+    finish(crew)
+    assert [row.phase for row in crew.rows()] == ["done", "done"]
+    assert read_grid(tmp_path / "out").failed == {}
+
+
+def test_so_many_are_at_work_as_there_are_jobs(comparison):
+    assert finish(comparison(2, *[f"sleep 0.3; {SUCCEEDS}"] * 3)) == 2
+
+
+def test_a_run_that_is_stopped_has_not_failed(comparison, tmp_path):
+    crew = comparison(1, "echo begun; sleep 1000")
+    with PlainGrid(io.StringIO()) as shown:
+        crew.tend(shown)
+        while "begun" not in (tmp_path / "out/tiny/ddqn_rtg/seed-1.log").read_text():
+            crew.wait(0.05)
+    crew.stop()
+    assert read_grid(tmp_path / "out").failed == {}
+    assert crew.rows()[0].phase == "running"
+
+
+def test_two_commands_do_not_work_in_one_folder(tmp_path, capsys):
+    with (tmp_path / ".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        assert cli.main(["reproduce", str(TINY), "--out", str(tmp_path)]) == 2
+    assert "another reproduce works there" in capsys.readouterr().err
+
+
+def test_a_folder_that_cannot_be_written_is_named(capsys):
+    assert cli.main(["reproduce", str(TINY), "--out", "/proc/rtg"]) == 2
+    assert capsys.readouterr().err.startswith("rtg: --out: /proc/rtg: ")

@@ -1,0 +1,97 @@
+"""The flags of `reproduce`: which runs they stand for, and what is said about mistakes."""
+
+import pytest
+from rtg import _core, paths, reproduce_args
+from rtg.cells import Cell
+from rtg.errors import UserError
+from rtg.methods import METHODS, REFERENCE, run_words
+from rtg.reproduce_args import parse, parse_seeds, parse_sweep
+
+
+def test_without_flags_all_methods_run_on_all_tasks_with_five_seeds():
+    args = parse([])
+    assert len(args.cells) == 3 * len(METHODS) * 5
+    assert list(args.files) == ["gathering", "sorting", "art_manip"]
+    assert {cell.seed for cell in args.cells} == {1, 2, 3, 4, 5}
+    assert args.out == paths.RUNS / "reproduce"
+    assert args.settings == ()
+
+
+def test_the_methods_are_those_of_the_loader():
+    with pytest.raises(_core.ConfigError) as told:
+        _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["run.method=none"])
+    assert str(told.value).endswith("legal: " + ", ".join(METHODS))
+    assert REFERENCE in METHODS and run_words(REFERENCE) == ("--method", REFERENCE)
+
+
+def test_quick_is_small_and_what_the_user_sets_stands_above_it():
+    args = parse(["--quick", "--set", "train.interactions=7"])
+    assert len(args.cells) == 6 and args.out.name == "reproduce-quick"
+    assert args.settings == (*reproduce_args.QUICK, "train.interactions=7")
+
+
+def test_a_sweep_is_one_more_axis_of_the_reference_method():
+    sweeps = ["--sweep", "train.batch=8,16", "--sweep", "train.dueling=false"]
+    args = parse(["gathering", "--seeds", "4,2", *sweeps])
+    settings = [("train.batch=8", "train.dueling=false"), ("train.batch=16", "train.dueling=false")]
+    cells = [Cell("gathering", REFERENCE, s, seed) for s in settings for seed in (4, 2)]
+    assert list(args.cells) == cells
+    assert cells[0].name == f"gathering/{REFERENCE}@train.batch=8@train.dueling=false/seed-4"
+
+
+def test_the_command_of_the_report_has_all_that_decides_the_results_and_no_more():
+    words = (
+        "gathering --out /tmp/x --jobs 3 --seeds 2 --set train.batch=9 --sweep train.dueling=true"
+    )
+    args = parse(words.split())
+    assert args.command == (
+        "./run.sh reproduce gathering --methods ddqn_rtg --seeds 2 --sweep train.dueling=true "
+        "--set train.batch=9"
+    )
+    assert args.typed == f"./run.sh reproduce {words}"
+    assert parse(args.command.split()[2:]).cells == args.cells
+
+
+@pytest.mark.parametrize(
+    ("words", "seeds"), [("3", (1, 2, 3)), ("1,2,7", (1, 2, 7)), ("7,", (7,)), ("2,2,0", (2, 0))]
+)
+def test_seeds_are_a_number_of_them_or_a_list(words, seeds):
+    assert parse_seeds(words) == seeds
+
+
+def test_the_values_of_a_sweep_may_be_negative():
+    assert parse_sweep("train.offline_share=0.5,-1") == (
+        "train.offline_share=0.5",
+        "train.offline_share=-1",
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["gatherin"], "gatherin: no task of that name; legal: art_manip, gathering, "),
+        (["gathering", "--methods", "magic"], "--methods magic: no method of that name; legal: "),
+        (["--methods", ""], "--methods : no method of that name; legal: "),
+        (["--seeds", "0"], "--seeds 0: legal: a number from 1, or a list 1,2,3"),
+        (["--seeds", "1,x"], "--seeds x: legal: a list 1,2,3"),
+        (["--seeds", ","], "--seeds : legal: a list 1,2,3"),
+        (["--jobs", "0"], "--jobs 0: legal: a number from 1"),
+        (["--jobs", "-1"], "--jobs -1: legal: a number from 1"),
+        (["--out", ""], "--out: '' is no folder; legal: the path of one"),
+        (["--sweep", "train.batch"], "--sweep train.batch: legal: KEY=V1,V2 "),
+        (["--sweep", "train.batch=1,"], "--sweep train.batch=1,: legal: KEY=V1,V2 "),
+        (["--sweep", "train.batch=1,a/b"], "--sweep train.batch=1,a/b: legal: KEY=V1,V2 "),
+        (["--sweep", "run.seed=1,2"], "--sweep run.seed=1,2: run.seed is no axis; legal: "),
+        (["--in-process"], "unrecognized arguments: --in-process; legal: ./run.sh reproduce [-h]"),
+    ],
+)
+def test_a_mistake_is_named(words, message):
+    with pytest.raises(UserError) as error:
+        parse(words)
+    assert str(error.value).startswith(message)
+
+
+def test_two_tasks_need_two_names(tmp_path):
+    (tmp_path / "gathering.yaml").write_text("")
+    with pytest.raises(UserError, match="gathering is named twice; legal: each name of a file"):
+        parse(["gathering", str(tmp_path / "gathering.yaml")])

@@ -1,0 +1,106 @@
+"""One cell of a comparison: its command, and what of it is done."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rtg import effective_config, run_args
+from rtg.cells import Cell
+from rtg.errors import UserError
+from rtg.methods import run_words
+from rtg.reproduce_args import ReproduceArgs
+from rtg.run_args import Override
+
+# One core each: libraries that would start a thread per core.
+_ONE_THREAD = [f"{name}_NUM_THREADS=1" for name in ("OMP", "OPENBLAS", "MKL")]
+
+
+@dataclass(frozen=True)
+class CellRun:
+    """A cell with its place on the disk."""
+
+    cell: Cell
+    folder: Path
+    words: tuple[str, ...]  # of `rtg run`, but for the folder
+
+    @property
+    def log(self) -> Path:
+        """What the run says; beside the folder, which the run itself makes."""
+        return self.folder.with_name(f"{self.folder.name}.log")
+
+    @property
+    def done(self) -> bool:
+        """Whether there is nothing left to do."""
+        return (self.folder / "summary.json").is_file()
+
+    def command(self) -> list[str]:
+        """Begins the run, or goes on with it."""
+        begun = (self.folder / "config.yaml").is_file()
+        words = ["--resume"] if begun else self.words
+        program = [sys.executable, "-m", "rtg", "run"]
+        return ["env", *_ONE_THREAD, *program, *words, "--out", str(self.folder)]
+
+
+def make_ready(args: ReproduceArgs) -> list[CellRun]:
+    """All cells, checked against the loader, each other and what is there already.
+
+    Raises UserError before anything has started.
+    """
+    runs, seen = [], dict[str, str]()
+    for cell in args.cells:
+        config = effective_config.values(args.files[cell.task], _overrides(args, cell))
+        twin = seen.setdefault(json.dumps(config), cell.name)
+        if twin != cell.name:
+            raise UserError(f"{cell.name}: is the same run as {twin}; legal: values that differ")
+        folder = args.out / cell.name
+        _check_folder(folder, config)
+        runs.append(CellRun(cell, folder, _words(args, cell)))
+    return runs
+
+
+def _flags(cell: Cell) -> list[str]:
+    flags = ["--in-process", "--workers", "1", "--seed", str(cell.seed)]
+    return [*flags, *run_words(cell.method)]
+
+
+def _words(args: ReproduceArgs, cell: Cell) -> tuple[str, ...]:
+    settings = [word for s in (*args.settings, *cell.settings) for word in ("--set", s)]
+    return (str(args.files[cell.task]), *_flags(cell), *settings)
+
+
+def _overrides(args: ReproduceArgs, cell: Cell) -> list[Override]:
+    """Those of the words, named by the flags that the user typed."""
+    overrides = [Override(f"--set {setting}", setting) for setting in args.settings]
+    overrides += [Override(f"--sweep {setting}", setting) for setting in cell.settings]
+    return [*overrides, *run_args.parse(_flags(cell)).overrides]
+
+
+def _check_folder(folder: Path, config: dict[str, Any]) -> None:
+    """Raises UserError unless the folder holds nothing, or a run with the same configuration."""
+    found = folder / "config.yaml"
+    if not found.is_file():
+        for draft in folder.glob(".config.yaml.*"):  # of a run killed as it began
+            draft.unlink()
+        if folder.exists() and any(folder.iterdir()):
+            raise UserError(f"{folder}: holds no run; legal: an empty --out, or none")
+        return
+    before = effective_config.values(found)
+    for section in sorted({*before, *config}):
+        old, new = before.get(section), config.get(section)
+        if old != new:
+            what = _difference(section, old, new)
+            remedy = f"another --out, or rm -r {shlex.quote(str(folder))}"
+            raise UserError(f"{folder}: was made with {what}; legal: the same, {remedy}")
+
+
+def _difference(section: str, old: Any, new: Any) -> str:
+    if not (isinstance(old, dict) and isinstance(new, dict)):
+        return f"another {section}"
+    key = next(key for key in (*old, *new) if old.get(key) != new.get(key))
+    words = f"{section}.{key} = {old.get(key)}, asked for is {new.get(key)}"
+    return words if len(words) < 160 else f"another {section}.{key}"

@@ -1,0 +1,20 @@
+"""The methods that are compared, and how a run is told which of them it is."""
+
+from __future__ import annotations
+
+METHODS = (
+    "dqn",
+    "ddqn",
+    "ddqn_random",
+    "ddqn_naive",
+    "ddqn_rtg",
+    "ddqn_rtg_dr",
+    "her",
+    "rcg",
+)
+REFERENCE = "ddqn_rtg"  # what the others are compared with
+
+
+def run_words(method: str) -> tuple[str, ...]:
+    """Flags of `rtg run` that make it a run of the method."""
+    return ("--method", method)

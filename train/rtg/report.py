@@ -1,0 +1,118 @@
+"""The report of a comparison: one Markdown page."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from rtg import report_tables as tables
+from rtg.cells import Grid
+from rtg.estimates import RESAMPLES
+from rtg.methods import REFERENCE
+from rtg.run_results import Comparison, RunResult
+
+_LEGEND = """\
+Means ± standard deviations over the seeds. **success**: of the final greedy policy from held-out
+starts, objects jittered, that nothing was chosen by; **roll-outs**: of the last 100 training
+episodes, exploration included; **to 0.70**, **to 0.95**: thousand interactions until the first
+evaluation with that greedy success ("2 of 3": so many of the seeds ever); **interactions**,
+**transitions** in thousands, used and generated. Times are of one core. All figures are in
+[runs.csv](runs.csv), the learning curves in [curves.csv](curves.csv); in their pictures a run that
+ended early keeps its last value."""
+_POOLED = f"""\
+IQM: mean of the middle half of all final successes, with a 95 % interval by stratified bootstrap
+(seeds drawn within a task, {RESAMPLES:,} resamples). Last column: the probability that a run of the
+method does better than one of `{REFERENCE}` on the same task, mean over the tasks, equal ones
+counted half. Methods with fewer tasks are not comparable with those with more. Of few seeds such
+intervals are too narrow."""
+_RUNTIME = """\
+CPU time per reverse solve that was not pruned, and per stored transition (replays of candidates and
+chains); how many solves, the share that converged, iterations of those that moved an object;
+environment steps of the learner per second, evaluations included."""
+_GAP = """\
+How far the replay of a reverse step ends from where it began, over all candidates replayed."""
+
+
+def _listed(found: Iterable[str]) -> str:
+    """What differs between runs, with how many; most often: one thing."""
+    counts = Counter(found).most_common()
+    words = [what if len(counts) == 1 else f"{what} ({count} runs)" for what, count in counts]
+    return "; ".join(words) or "unknown"
+
+
+def _machine(versions: dict[str, Any]) -> str:
+    model, memory = versions.get("processor"), versions.get("memory_gib")
+    parts = [model or "unknown processor", f"{versions.get('processors')} cores"]
+    return ", ".join([*parts, f"{memory} GiB"] if memory else parts)
+
+
+def _programs(versions: dict[str, Any]) -> str:
+    packages = {**versions.get("packages", {}), **versions.get("debian", {})}
+    named = [f"{name} {version}" for name, version in packages.items()]
+    return ", ".join([versions.get("system", "?"), f"Python {versions.get('python')}", *named])
+
+
+def _origin(grid: Grid, comparison: Comparison) -> str:
+    done = comparison.all_done()
+    lines = [f"    {command}" for command in grid.commands]
+    return "\n".join(
+        [
+            *lines,
+            "",
+            f"- commit: {_listed(f'`{run.commit}`' for run in done)}",
+            f"- machine: {_listed(_machine(run.versions) for run in done)}",
+            f"- with: {_listed(_programs(run.versions) for run in done)}",
+        ]
+    )
+
+
+def _troubles(grid: Grid, runs: Sequence[RunResult]) -> list[str]:
+    """What went wrong, run by run."""
+    lines = []
+    for run in runs:
+        name = f"`{run.cell.name}`"
+        if run.state == "failed":
+            lines.append(f"- {name} failed: {grid.failed[run.cell.name].splitlines()[-1]}")
+        lines += [f"- {name}: {defect}" for defect in run.summary.get("defects", [])]
+    return ["## Trouble", "\n".join(lines)] if lines else []
+
+
+def _picture(folder: Path, name: str, words: str) -> list[str]:
+    return [f"![{words}]({name})"] if (folder / name).is_file() else []
+
+
+def _of_task(folder: Path, comparison: Comparison, task: str) -> list[str]:
+    return [
+        f"## {task}",
+        tables.of_task(comparison, task),
+        *_picture(folder, f"curves_{task}.png", f"Learning curves on {task}"),
+        *_picture(folder, f"sweep_{task}.png", f"What the swept values do on {task}"),
+        *_picture(folder, f"strip_{task}.png", f"An episode of {task} in pictures"),
+        *_picture(folder, f"film_{task}.gif", f"The same episode of {task} as a film"),
+    ]
+
+
+def report(folder: Path, grid: Grid, comparison: Comparison) -> str:
+    """The page; pictures that lie in the folder are part of it."""
+    missing = ", ".join(f"`{method}`" for method in tables.not_run(comparison))
+    parts = [
+        "# Results",
+        "Written by `./run.sh plot` from the folders of these runs, never edited by hand.",
+        _origin(grid, comparison),
+        _LEGEND + (f" Not run: {missing}." if missing else ""),
+        *(part for task in comparison.tasks for part in _of_task(folder, comparison, task)),
+        "## All tasks together",
+        tables.pooled(comparison),
+        _POOLED,
+        "## Run time",
+        tables.runtime(comparison),
+        _RUNTIME,
+        "## Replay gap",
+        tables.replay_gap(comparison),
+        _GAP,
+        *_picture(folder, "replay_gap.png", "Histogram of the replay gap"),
+        *_troubles(grid, comparison.results),
+    ]
+    return "\n\n".join(parts) + "\n"

@@ -1,0 +1,130 @@
+"""`./run.sh plot`: report, tables and pictures of a comparison, made anew from its run folders."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rtg import _core, episode_pictures, report_plots, run_folder
+from rtg.cells import read_grid
+from rtg.errors import UserError
+from rtg.methods import REFERENCE
+from rtg.report import report
+from rtg.results import episode_title
+from rtg.run_results import CURVES, Comparison, RunResult, read_comparison
+
+_PICTURES = ("curves_*.png", "sweep_*.png", "strip_*.png", "film_*.gif", "replay_gap.png")
+
+
+def write_report(runs: Path, out: Path) -> Path:
+    """Replaces the files of the report in `out`; the page's path. Raises UserError."""
+    grid = read_grid(runs)
+    if not grid.cells:
+        raise UserError(f"{runs}: holds no comparison (no grid.json); legal: DIR of `reproduce`")
+    comparison = read_comparison(runs, grid)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        _draw(out, comparison)
+        _write_numbers(out, comparison)
+        run_folder.write_text(out / "report.md", report(out, grid, comparison))
+    except OSError as error:
+        raise UserError(f"--out: {out}: {error.strerror}; legal: a folder to write to") from None
+    return out / "report.md"
+
+
+def _draw(out: Path, comparison: Comparison) -> None:
+    for pattern in _PICTURES:  # also those of tasks and sweeps that are no longer there
+        for picture in out.glob(pattern):
+            picture.unlink()
+    gaps = {}
+    for task in comparison.tasks:
+        done = [run for run in comparison.all_done() if run.cell.task == task]
+        if any(run.curve for run in done):
+            report_plots.curves(out / f"curves_{task}.png", comparison, task)
+        if any(run.cell.settings for run in done):
+            report_plots.sweep(out / f"sweep_{task}.png", comparison, task)
+        _draw_episode(out, task, done)
+        samples = report_plots.gaps_of(_of_best_method(done))
+        if len(samples):
+            gaps[task] = samples
+    if gaps:
+        report_plots.replay_gaps(out / "replay_gap.png", gaps)
+
+
+def _of_best_method(done: Sequence[RunResult]) -> list[RunResult]:
+    """Those of the reference method; without any, those of the first label."""
+    labels = {run.cell.label for run in done}
+    label = REFERENCE if REFERENCE in labels else next((run.cell.label for run in done), "")
+    return [run for run in done if run.cell.label == label]
+
+
+def _draw_episode(out: Path, task_name: str, done: Sequence[RunResult]) -> None:
+    """The shortest success of the final evaluations, of the reference method if it has one."""
+    found = []
+    for run in done:
+        path = run.folder / "best_episode.npz"
+        if path.is_file():
+            with np.load(path) as file:
+                poses, success = file["poses"], bool(file["success"])
+            found.append((not success, run.cell.method != REFERENCE, len(poses), run, poses))
+    if not found:
+        return
+    missed, _, _, run, poses = min(found, key=lambda entry: entry[:3])
+    task = _core.Config.from_file(run.folder / "config.yaml").task
+    words = episode_title(task_name, len(poses) - 1, not missed, trained=True)
+    title = words.replace("learned policy", run.cell.label)
+    episode_pictures.strip(out / f"strip_{task_name}.png", task, poses, not missed, title)
+    episode_pictures.film(out / f"film_{task_name}.gif", task, poses, not missed, title)
+
+
+def _write_numbers(out: Path, comparison: Comparison) -> None:
+    tasks: dict[str, dict[str, list[Any]]] = {task: {} for task in comparison.tasks}
+    for run in comparison.all_done():
+        tasks[run.cell.task].setdefault(run.cell.label, []).append(run.figures())
+    run_folder.write_json(out / "report.json", tasks)
+    _write_csv(out / "runs.csv", [_row(run) for run in comparison.results])
+    _write_csv(
+        out / "curves.csv", [row for run in comparison.all_done() for row in _curve_rows(run)]
+    )
+
+
+def _name(run: RunResult) -> dict[str, Any]:
+    return {"task": run.cell.task, "method": run.cell.label, "seed": run.cell.seed}
+
+
+def _row(run: RunResult) -> dict[str, Any]:
+    """All of a run's figures that are single numbers."""
+    names = [name for name in run_folder.SUMMARY_KEYS if name not in ("task", "seed")]
+    summary = {name: run.summary.get(name) for name in names}
+    return {**_name(run), "state": run.state, **run.figures(), **summary}
+
+
+def _curve_rows(run: RunResult) -> list[dict[str, Any]]:
+    """A row per evaluation."""
+    names = ("interactions", *CURVES)
+    columns = [run.curve[name].tolist() for name in names if run.curve]
+    return [
+        {**_name(run), **dict(zip(names, values, strict=True))}
+        for values in zip(*columns, strict=True)
+    ]
+
+
+def _write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Numbers to six digits; empty where nothing was measured."""
+    text = io.StringIO()
+    table = csv.DictWriter(text, list(rows[0]) if rows else [], lineterminator="\n")
+    table.writeheader()
+    for row in rows:
+        table.writerow({name: _short(value) for name, value in row.items()})
+    run_folder.write_text(path, text.getvalue())
+
+
+def _short(value: Any) -> Any:
+    if isinstance(value, float):
+        return "" if np.isnan(value) else f"{value:.6g}"
+    return value

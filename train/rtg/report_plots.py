@@ -1,0 +1,166 @@
+"""Pictures of a comparison: learning curves, replay gaps, what a sweep changes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from numpy.typing import NDArray
+
+from rtg import plots
+from rtg.estimates import carried_forward
+from rtg.methods import METHODS
+from rtg.run_folder import read_json
+from rtg.run_results import Comparison, RunResult
+
+Floats = NDArray[np.float64]
+
+# Okabe and Ito's colours, told apart by colour-blind people, too; one per method.
+_PALETTE = ("#999999", "#000000", "#e69f00", "#56b4e9", "#0072b2", "#cc79a7", "#009e73", "#d55e00")
+_DASHES = ("-", "--", "-.", ":")
+_PANELS = (
+    ("greedy success, held-out starts", "success_rate"),
+    ("success of training roll-outs", "rollout_success"),
+    ("episode length, greedy [actions]", "episode_length_mean"),
+    ("discounted return, greedy", "episode_return_mean"),
+)
+_SHARES = ("success_rate", "rollout_success")
+
+
+def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Colour and dashes: a colour per method; of swept values a shade each."""
+    if len({label.split("@")[0] for label in labels}) == len(labels):
+        known = dict(zip(METHODS, _PALETTE, strict=True))
+        return {label: (known.get(label.split("@")[0], "#000000"), "-") for label in labels}
+    shades = plt.get_cmap("viridis")(np.linspace(0.0, 0.9, len(labels)))
+    colours = [to_hex(shade) for shade in shades]
+    return {label: (colours[k], _DASHES[k % len(_DASHES)]) for k, label in enumerate(labels)}
+
+
+def split_names(labels: Sequence[str]) -> tuple[str, list[str]]:
+    """What all labels begin with, up to a method or key, and what is left of each."""
+    shared = os.path.commonprefix(labels)
+    end = max(shared.rfind("@"), shared.rfind("=")) + 1
+    return shared[:end].rstrip("@=").replace("@", ", "), [label[end:] for label in labels]
+
+
+def _course(runs: Sequence[RunResult], column: str) -> tuple[Floats, Floats]:
+    """Interactions [N] and values [runs, N]; a run that ended early keeps its last value."""
+    grid = np.unique(np.concatenate([run.curve["interactions"] for run in runs]))
+    values = [carried_forward(run.curve["interactions"], run.curve[column], grid) for run in runs]
+    return grid, np.array(values)
+
+
+def _draw_course(
+    axis: Axes, runs: Sequence[RunResult], column: str, style: tuple[str, str]
+) -> None:
+    """Mean and standard deviation of the seeds, from where all of them have a value."""
+    grid, values = _course(runs, column)
+    known = np.isfinite(values).all(axis=0)
+    if not known.any():
+        return
+    thousand, values = grid[known] / 1000.0, values[:, known]
+    mean = values.mean(axis=0)
+    colour, dashes = style
+    axis.plot(thousand, mean, color=colour, ls=dashes, lw=2.0)
+    axis.plot(thousand[-1:], mean[-1:], color=colour, marker="o", ms=4)
+    if len(runs) > 1:
+        spread = values.std(axis=0, ddof=1)
+        low, high = mean - spread, mean + spread
+        if column in _SHARES:
+            low, high = np.clip(low, 0.0, 1.0), np.clip(high, 0.0, 1.0)
+        axis.fill_between(thousand, low, high, color=colour, alpha=0.18, lw=0)
+
+
+def curves(path: Path, comparison: Comparison, task: str) -> None:
+    """Success, episode length and return over interactions, a line per method."""
+    drawn = {label: comparison.done(task, label) for label in comparison.labels}
+    drawn = {label: [r for r in runs if r.curve] for label, runs in drawn.items()}
+    drawn = {label: runs for label, runs in drawn.items() if runs}
+    styles = _styles(list(drawn))
+    with plots.style():
+        figure, axes = plt.subplots(2, 2, figsize=(9.6, 6.4), layout="constrained", sharex=True)
+        for axis, (name, column) in zip(axes.flat, _PANELS, strict=True):
+            for label, runs in drawn.items():
+                _draw_course(axis, runs, column, styles[label])
+            axis.set_title(name)
+            if column in _SHARES:
+                axis.set_ylim(-0.03, 1.03)
+            else:
+                axis.set_ylim(bottom=0.0)
+        for axis in axes[-1]:
+            axis.set_xlabel("interactions / 1000")
+            axis.set_xlim(left=0.0)
+        handles = [
+            plt.Line2D([], [], color=styles[label][0], ls=styles[label][1], lw=2) for label in drawn
+        ]
+        shared, names = split_names(list(drawn))
+        seeds = [len(runs) for runs in drawn.values()]
+        words = [f"{name} ({count})" for name, count in zip(names, seeds, strict=True)]
+        figure.legend(
+            handles,
+            words,
+            loc="outside lower left",
+            ncols=4,
+            frameon=False,
+            title=f"{shared or 'method'} (seeds)",
+        )
+        title = f"{task}: mean ± standard deviation of the seeds, a dot where the last one stopped"
+        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        plots.save(figure, path)
+
+
+def gaps_of(runs: Sequence[RunResult]) -> Floats:
+    """All samples of the replay gap [m] of these runs. [N]"""
+    samples = [read_json(run.folder / "generation.json").get("replay_gaps", []) for run in runs]
+    return np.concatenate([np.array(s, float) for s in samples]) if samples else np.empty(0)
+
+
+def replay_gaps(path: Path, gaps: dict[str, Floats]) -> None:
+    """A histogram of the replay gap per task. gaps [N] each."""
+    with plots.style():
+        size = (6.4, 3.0 * len(gaps) + 0.3)
+        figure, axes = plt.subplots(
+            len(gaps), 1, figsize=size, layout="constrained", sharex=True, squeeze=False
+        )
+        for axis, (task, values) in zip(axes.flat, gaps.items(), strict=True):
+            plots.gap_histogram(axis, values)
+            axis.set_title(f"{task}: {len(values):,} replayed candidates")
+        axes[-1, 0].set_xlabel(plots.GAP_AXIS)
+        plots.save(figure, path)
+
+
+def sweep(path: Path, comparison: Comparison, task: str) -> None:
+    """The final greedy success and the interactions to 0.95 of each swept value, a dot per run."""
+    labels = [label for label in comparison.labels if "@" in label]
+    shared, names = split_names(labels)
+    ticks = [name.replace("@", "\n") for name in names]
+    with plots.style():
+        figure, axes = plt.subplots(1, 2, figsize=(9.6, 3.6), layout="constrained")
+        for axis, column in zip(axes, ("success_rate", "interactions_to_95"), strict=True):
+            for at, label in enumerate(labels):
+                runs = [run.figures()[column] for run in comparison.done(task, label)]
+                values = np.array([value for value in runs if value is not None], float)
+                values = values if column == "success_rate" else values / 1000.0
+                axis.plot(np.full(len(values), at), values, "o", color="#56b4e9", ms=5)
+                if len(values):
+                    axis.plot(at, values.mean(), "_", color="#0072b2", ms=22, mew=2.5)
+                if len(values) < len(runs):
+                    words = f"{len(runs) - len(values)} never"
+                    axis.annotate(
+                        words, (at, 0.02), xycoords=("data", "axes fraction"), ha="center"
+                    )
+            axis.set_xticks(range(len(labels)), ticks, fontsize=8)
+            axis.set_xlim(-0.6, len(labels) - 0.4)
+            axis.set_xlabel(shared)
+        axes[0].set(title="greedy success at the end, held-out starts", ylim=(-0.03, 1.03))
+        axes[1].set(title="interactions / 1000 to greedy success 0.95")
+        axes[1].set_ylim(bottom=0.0)
+        title = f"{task}: a dot per seed, a bar for their mean"
+        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        plots.save(figure, path)

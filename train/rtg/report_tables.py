@@ -1,0 +1,195 @@
+"""The tables of a comparison's report, in Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg import estimates
+from rtg.methods import METHODS, REFERENCE
+from rtg.run_results import Comparison, RunResult
+
+Floats = NDArray[np.float64]
+NOTHING = "–"
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> str:
+    """A Markdown table, its first columns to the left."""
+    lines = [head, ["---"] * left + ["---:"] * (len(head) - left), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def spread(values: Sequence[float | None], form: str) -> str:
+    """Mean ± standard deviation of what there is; how many of how many, if not all.
+
+    form: of the format function; below 10, "count" has a digit behind the point.
+    """
+    known = [value for value in values if value is not None]
+    if not known:
+        return NOTHING
+    mean, std = estimates.mean_std(known)
+    if form == "count":
+        form = ".0f" if mean >= 10.0 else ".1f"
+    words = format(mean, form) + ("" if std is None else f" ± {format(std, form)}")
+    return words if len(known) == len(values) else f"{words} ({len(known)} of {len(values)})"
+
+
+def seeds(numbers: Sequence[int]) -> str:
+    """1, 2, 3, 5 -> 1-3, 5."""
+    parts: list[list[int]] = []
+    for number in sorted(numbers):
+        if parts and number == parts[-1][-1] + 1:
+            parts[-1].append(number)
+        else:
+            parts.append([number])
+    return ", ".join(f"{p[0]}-{p[-1]}" if len(p) > 1 else f"{p[0]}" for p in parts)
+
+
+def states(runs: Sequence[RunResult]) -> str:
+    """Seeds by how far they have come."""
+    found = []
+    for state in dict.fromkeys(run.state for run in runs):
+        numbers = seeds([run.cell.seed for run in runs if run.state == state])
+        found.append(numbers if state == "done" else f"{numbers} {state}")
+    return "; ".join(found) or "not run"
+
+
+def _thousands(value: float | None) -> float | None:
+    return None if value is None else value / 1000.0
+
+
+def of_task(comparison: Comparison, task: str) -> str:
+    """What every method came to on one task."""
+    head = ["method", "seeds", "success", "roll-outs", "to 0.70", "to 0.95", "interactions"]
+    head += ["transitions", "generation [s]", "training [s]"]
+    rows = []
+    for label in comparison.labels:
+        runs = comparison.row(task, label)
+        done = [run.figures() for run in runs if run.done]
+        row = [f"`{label}`", states(runs)]
+        row += [
+            spread([f[name] for f in done], ".2f") for name in ("success_rate", "rollout_success")
+        ]
+        for name in ("interactions_to_70", "interactions_to_95", "interactions", "transitions"):
+            values = [_thousands(f[name]) for f in done]
+            never = name.startswith("interactions_to") and done and not any(values)
+            row.append("never" if never else spread(values, "count"))
+        row += [
+            spread([f[name] for f in done], "count") for name in ("generate_wall_s", "train_wall_s")
+        ]
+        rows.append(row)
+    return table(head, rows)
+
+
+def _scores(comparison: Comparison, label: str) -> dict[str, Floats]:
+    """Final success of the seeds, per task that has any."""
+    found = {task: comparison.done(task, label) for task in comparison.tasks}
+    return {
+        task: np.array([run.summary["success_rate"] for run in runs])
+        for task, runs in found.items()
+        if runs
+    }
+
+
+def _with_interval(value: float, interval: tuple[float, float]) -> str:
+    return f"{value:.2f} [{interval[0]:.2f}, {interval[1]:.2f}]"
+
+
+def pooled(comparison: Comparison) -> str:
+    """All tasks and seeds together."""
+    head = [
+        "method",
+        "tasks",
+        "runs",
+        "IQM of the success",
+        f"probability of a better run than `{REFERENCE}`",
+    ]
+    reference, rows = _scores(comparison, REFERENCE), []
+    for label in comparison.labels:
+        scores = _scores(comparison, label)
+        if not scores:
+            continue
+        values = list(scores.values())
+        iqm = estimates.interquartile_mean
+        common = [task for task in scores if task in reference and label != REFERENCE]
+        pair = [scores[task] for task in common], [reference[task] for task in common]
+        better = NOTHING
+        if common:
+            chance = estimates.probability_of_improvement(*pair)
+            better = _with_interval(chance, estimates.improvement_interval(*pair))
+        runs = str(sum(map(len, values)))
+        cell = _with_interval(iqm(values), estimates.interval(iqm, values))
+        rows.append([f"`{label}`", str(len(scores)), runs, cell, better])
+    return table(head, rows)
+
+
+def _ratio(
+    above: str, below: Callable[[RunResult], float], scale: float
+) -> Callable[[RunResult], float | None]:
+    """A key of the summary for each of what `below` counts; None where it was not counted."""
+
+    def of(run: RunResult) -> float | None:
+        value, count = run.summary.get(above), below(run)
+        return None if value is None or not count else scale * value / count
+
+    return of
+
+
+def _count(name: str) -> Callable[[RunResult], float]:
+    return lambda run: float(run.summary.get(name) or 0)
+
+
+def _solves(run: RunResult) -> float:
+    return _count("candidates")(run) - _count("pruned")(run)
+
+
+def _key(name: str) -> Callable[[RunResult], float | None]:
+    return lambda run: run.summary.get(name)
+
+
+_RUNTIME: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
+    ("backward action [ms]", _ratio("reverse_cpu_s", _solves, 1e3), ".2f"),
+    ("forward action [ms]", _ratio("replay_cpu_s", _count("transitions"), 1e3), ".2f"),
+    ("solves [1000]", lambda run: _solves(run) / 1000.0, "count"),
+    ("converged", _ratio("converged", _solves, 1.0), ".3f"),
+    ("iterations, median", _key("pushing_iterations_median"), ".0f"),
+    ("90th percentile", _key("pushing_iterations_p90"), ".0f"),
+    ("interactions per s", _ratio("interactions", _count("train_wall_s"), 1.0), ".0f"),
+)
+_GAP: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
+    ("replay gap, median [m]", _key("replay_gap_median"), ".4f"),
+    ("90th percentile [m]", _key("replay_gap_p90"), ".4f"),
+    ("contact share", _key("contact_share"), ".2f"),
+    ("tree policy", _key("tree_policy_success"), ".2f"),
+)
+
+
+def _per_method(
+    comparison: Comparison, columns: Sequence[tuple[str, Callable[[RunResult], float | None], str]]
+) -> str:
+    """A row per task and method that has generated something."""
+    rows = []
+    for task in comparison.tasks:
+        for label in comparison.labels:
+            done = [run for run in comparison.done(task, label) if run.summary.get("candidates")]
+            cells = [spread([of(run) for run in done], form) for _, of, form in columns]
+            rows += [[task, f"`{label}`", *cells]] if done else []
+    return table(["task", "method", *(name for name, _, _ in columns)], rows, left=2)
+
+
+def runtime(comparison: Comparison) -> str:
+    """Appendix E: what the actions cost, backward and forward."""
+    return _per_method(comparison, _RUNTIME)
+
+
+def replay_gap(comparison: Comparison) -> str:
+    """Appendix F: how well reverse steps replay, and what the data are like."""
+    return _per_method(comparison, _GAP)
+
+
+def not_run(comparison: Comparison) -> list[str]:
+    """Methods that were not asked for."""
+    asked = {run.cell.method for run in comparison.results}
+    return [method for method in METHODS if method not in asked]

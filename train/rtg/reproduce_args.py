@@ -1,0 +1,148 @@
+"""The flags of `./run.sh reproduce` and the cells that they stand for."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rtg import paths
+from rtg.cells import Cell
+from rtg.errors import UserError
+from rtg.methods import METHODS, REFERENCE
+from rtg.run_args import Parser, task_file
+
+TASKS = ("gathering", "sorting", "art_manip")
+SEEDS = "5"
+# Enough to see every part at work; no figure of such a run is a result.
+QUICK = (
+    "search.transitions=30000",
+    "train.interactions=30000",
+    "train.start_at=10000",
+    "train.eval_every=2500",
+    "train.eval_episodes=20",
+    "train.checkpoint_every=5000",
+)
+QUICK_METHODS = ("ddqn_naive", REFERENCE)
+
+EPILOG = f"""\
+methods: {", ".join(METHODS)}
+
+examples:
+  ./run.sh reproduce --quick
+  ./run.sh reproduce gathering sorting --methods ddqn_naive,ddqn_rtg --seeds 5
+  ./run.sh reproduce gathering --sweep train.offline_share=0.1,0.25,0.5,0.75,-1
+
+The same command again goes on where it was stopped. Report and pictures: DIR/report.md."""
+
+
+@dataclass(frozen=True)
+class ReproduceArgs:
+    """One call of `rtg reproduce`."""
+
+    files: dict[str, Path]  # by name of the task
+    cells: tuple[Cell, ...]
+    settings: tuple[str, ...]  # KEY=VALUE, of all cells
+    jobs: int
+    out: Path
+    command: str  # with all that decides the results, for the report
+    typed: str  # as the user typed it
+
+
+def parser() -> Parser:
+    """The flags."""
+    import argparse
+
+    p = Parser(
+        prog="./run.sh reproduce",
+        description="Run methods x seeds on tasks, one process per core, and write a report.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    p.add_argument("tasks", metavar="TASK", nargs="*", help=f"tasks or files ({' '.join(TASKS)})")
+    p.add_argument("--methods", metavar="a,b", help="what to compare (all; of a sweep: ddqn_rtg)")
+    p.add_argument("--seeds", metavar="N|1,2,3", help=f"how many, or which ({SEEDS})")
+    p.add_argument("--jobs", metavar="N", help="runs at a time (one per core)")
+    p.add_argument("--out", metavar="DIR", help="folder of the comparison (runs/reproduce)")
+    p.add_argument("--quick", action="store_true", help="small budgets, one seed: minutes")
+    p.add_argument(
+        "--sweep", metavar="KEY=V1,V2", action="append", default=[], help="one more axis"
+    )
+    p.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="of all runs")
+    return p
+
+
+def _number(flag: str, word: str, legal: str, least: int) -> int:
+    if not (word.isascii() and word.isdigit() and len(word) < 10 and int(word) >= least):
+        raise UserError(f"{flag} {word}: legal: {legal}")
+    return int(word)
+
+
+def parse_seeds(words: str) -> tuple[int, ...]:
+    """Raises UserError."""
+    if "," not in words:
+        return tuple(range(1, 1 + _number("--seeds", words, "a number from 1, or a list 1,2,3", 1)))
+    seeds = [_number("--seeds", word, "a list 1,2,3", 0) for word in words.strip(",").split(",")]
+    return tuple(dict.fromkeys(seeds))
+
+
+def _methods(words: str | None, default: Sequence[str]) -> tuple[str, ...]:
+    found = tuple(default) if words is None else tuple(dict.fromkeys(words.split(",")))
+    for method in found:
+        if method not in METHODS:
+            raise UserError(
+                f"--methods {method}: no method of that name; legal: {','.join(METHODS)}"
+            )
+    return found
+
+
+def _files(words: Sequence[str]) -> dict[str, Path]:
+    files: dict[str, Path] = {}
+    for word in dict.fromkeys(words):
+        path = task_file(word).absolute()
+        if path.stem in files:
+            raise UserError(f"{word}: {path.stem} is named twice; legal: each name of a file once")
+        files[path.stem] = path
+    return files
+
+
+def parse_sweep(words: str) -> tuple[str, ...]:
+    """KEY=V1,V2 -> (KEY=V1, KEY=V2). Raises UserError."""
+    key, sign, values = words.partition("=")
+    found = [f"{key}={value}" for value in values.split(",")]
+    if not (key and sign) or any(bad in words for bad in "/@ ") or "" in values.split(","):
+        raise UserError(f"--sweep {words}: legal: KEY=V1,V2 with values without blank, / or @")
+    if key.startswith("run.") or key == "task":
+        raise UserError(f"--sweep {words}: {key} is no axis; legal: keys of the other sections")
+    return tuple(dict.fromkeys(found))
+
+
+def parse(words: Sequence[str]) -> ReproduceArgs:
+    """Raises UserError, or SystemExit(0) after --help."""
+    args = parser().parse_args(words)
+    default = QUICK_METHODS if args.quick else (REFERENCE,) if args.sweep else METHODS
+    tasks, methods = args.tasks or TASKS, _methods(args.methods, default)
+    seeds = args.seeds or ("1" if args.quick else SEEDS)
+    files, sweeps = _files(tasks), [parse_sweep(sweep) for sweep in args.sweep]
+    axes = (files, methods, itertools.product(*sweeps), parse_seeds(seeds))
+    cells = [
+        Cell(task, method, swept, seed) for task, method, swept, seed in itertools.product(*axes)
+    ]
+    jobs = args.jobs or str(len(os.sched_getaffinity(0)))
+    if args.out == "":
+        raise UserError("--out: '' is no folder; legal: the path of one")
+    flags = ["--methods", ",".join(methods), "--seeds", seeds, *["--quick"] * args.quick]
+    flags += [word for sweep in args.sweep for word in ("--sweep", sweep)]
+    flags += [word for setting in args.set for word in ("--set", setting)]
+    return ReproduceArgs(
+        files=files,
+        cells=tuple(cells),
+        settings=(*(QUICK if args.quick else ()), *args.set),
+        jobs=_number("--jobs", jobs, "a number from 1", 1),
+        out=Path(args.out or paths.RUNS / f"reproduce{'-quick' * args.quick}").absolute(),
+        command=shlex.join(["./run.sh", "reproduce", *tasks, *flags]),
+        typed=shlex.join(["./run.sh", "reproduce", *words]),
+    )

@@ -1,0 +1,116 @@
+"""What the runs of a comparison came to, read from their folders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg.cells import Cell, Grid
+from rtg.estimates import first_reach
+from rtg.methods import METHODS
+from rtg.results import learning_curve
+from rtg.run_folder import read_json
+
+Floats = NDArray[np.float64]
+
+CURVES = ("success_rate", "rollout_success", "episode_length_mean", "episode_return_mean")
+_BARS = {"interactions_to_70": 0.70, "interactions_to_95": 0.95}
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """One cell and how far it has come."""
+
+    cell: Cell
+    folder: Path
+    state: str  # done, failed, unfinished, not run
+    summary: dict[str, Any]  # summary.json; of a run that is not done, empty like the next two
+    versions: dict[str, Any]
+    curve: dict[str, Floats]  # columns of progress.csv [N]
+
+    @property
+    def done(self) -> bool:
+        return self.state == "done"
+
+    @property
+    def commit(self) -> str | None:
+        """Of the program that ended the run."""
+        revision = self.versions.get("git_revision")
+        return f"{revision}-modified" if self.versions.get("git_modified") else revision
+
+    def figures(self) -> dict[str, Any]:
+        """The entry of report.json."""
+        names = ("success_rate", "rollout_success", "interactions")
+        more = ("transitions", "generate_wall_s", "train_wall_s")
+        return {
+            "seed": self.cell.seed,
+            **{name: self.summary.get(name) for name in names},
+            **{name: self.reached(bar) for name, bar in _BARS.items()},
+            **{name: self.summary.get(name) for name in more},
+            "commit": self.commit,
+        }
+
+    def reached(self, bar: float) -> int | None:
+        """Interactions at the first evaluation with that greedy success; None: never."""
+        if not self.curve:
+            return None
+        return first_reach(self.curve["interactions"], self.curve["success_rate"], bar)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All runs, in the order in which tables show them."""
+
+    results: tuple[RunResult, ...]
+
+    @property
+    def tasks(self) -> list[str]:
+        return list(dict.fromkeys(r.cell.task for r in self.results))
+
+    @property
+    def labels(self) -> list[str]:
+        """Methods, and what was swept of them."""
+        cells = sorted((r.cell for r in self.results), key=_place)
+        return list(dict.fromkeys(cell.label for cell in cells))
+
+    def row(self, task: str, label: str) -> list[RunResult]:
+        """The runs of all seeds."""
+        return [r for r in self.results if (r.cell.task, r.cell.label) == (task, label)]
+
+    def done(self, task: str, label: str) -> list[RunResult]:
+        """Those of them that have a result."""
+        return [r for r in self.row(task, label) if r.done]
+
+    def all_done(self) -> list[RunResult]:
+        return [r for r in self.results if r.done]
+
+
+def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
+    run = folder / cell.name
+    summary = read_json(run / "summary.json")
+    if summary:
+        progress = run / "progress.csv"
+        curve = learning_curve(progress) if progress.is_file() else {}
+        versions = read_json(run / "versions.json")
+        return RunResult(cell, run, "done", summary, versions, curve)
+    begun = "unfinished" if run.is_dir() else "not run"
+    return RunResult(cell, run, "failed" if cell.name in grid.failed else begun, {}, {}, {})
+
+
+def _place(cell: Cell) -> int:
+    return METHODS.index(cell.method) if cell.method in METHODS else len(METHODS)
+
+
+def read_comparison(folder: Path, grid: Grid) -> Comparison:
+    """Tasks and swept values in the order of the grid, methods in that of METHODS, then seeds."""
+    tasks = list(dict.fromkeys(cell.task for cell in grid.cells))
+    settings = list(dict.fromkeys(cell.settings for cell in grid.cells))
+    cells = sorted(
+        grid.cells,
+        key=lambda c: (tasks.index(c.task), _place(c), settings.index(c.settings), c.seed),
+    )
+    return Comparison(tuple(_result(folder, cell, grid) for cell in cells))
