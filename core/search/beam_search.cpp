@@ -26,8 +26,10 @@ BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, std::uint64
       rng_(seed),
       probe_(task, config, Rng(seed, kTwins).word()) {}
 
-void BeamSearch::aim(const Target& target, const ReplayBatch& replay, SearchStats& stats) {
+void BeamSearch::aim(const Target& target, int breadth, const ReplayBatch& replay,
+                     SearchStats& stats) {
   target_ = target;
+  config_.breadth = breadth;
   plant(replay, stats);
   std::vector<BeamEntry> entries;
   for (const Node& n : nodes_)
@@ -104,7 +106,7 @@ std::vector<BeamSearch::Growth> BeamSearch::grow(const SolveBatch& solve, const 
     c.parent = beam_[static_cast<std::size_t>(c.parent / task_.push.headings)];
   const Score score = layer_score();
   std::vector<Candidate> replayed =
-      replay_candidates(worth_replaying(std::move(found), score), replay, stats);
+      replay_candidates(task_, worth_replaying(std::move(found), score), replay, stats);
   probe_.measure(replayed, replay, stats);
   std::vector<Growth> out;
   for (Candidate& c : replayed) {

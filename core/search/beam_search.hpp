@@ -30,12 +30,12 @@ class BeamSearch {
   /// The task must outlive the search.
   BeamSearch(const Task& task, const SearchConfig& config, std::uint64_t seed);
 
-  /// Heads for `target`: plants up to `config.breadth` distinct goal states of the task's sampler,
-  /// brought to rest by `replay`: the ones nearest to the target among `config.root_draws` times as
-  /// many, objects that look the same exchanged so that each begins near its place. The next layer
-  /// grows from those of all nodes that start_distance() puts nearest, whatever the ranking: the
-  /// others judge a step, and an old node is none.
-  void aim(const Target& target, const ReplayBatch& replay, SearchStats& stats);
+  /// Heads for `target`, `breadth` nodes per layer: plants up to as many distinct goal states of
+  /// the task's sampler, brought to rest by `replay`: the ones nearest to the target among
+  /// `config.root_draws` times as many, objects that look the same exchanged so that each begins
+  /// near its place. The next layer grows from those of all nodes that start_distance() puts
+  /// nearest, whatever the ranking: the others judge a step, and an old node is none.
+  void aim(const Target& target, int breadth, const ReplayBatch& replay, SearchStats& stats);
 
   /// A replayed candidate with the node that it came from.
   struct Growth {

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <vector>
 
+#include "core/search/link_graph.hpp"
 #include "core/search/state_metric.hpp"
 #include "core/search/transition.hpp"
 #include "core/tasks/task.hpp"
@@ -26,32 +25,22 @@ class Coverage {
 
   void add(const Transition& transition);
 
-  long transitions() const { return static_cast<long>(links_.size()); }
+  long transitions() const { return links_.size(); }
   double contact_share() const;     // moved an object by more than kMoved
   double multi_body_share() const;  // moved two or more that no joint connects
   long start_region() const { return start_region_; }
   long start_region_trees() const { return start_region_trees_; }  // roll-outs left out
 
-  /// Share of the transitions from which a success is reachable in the stored graph: transition b
-  /// follows a if the start of b lies in the cell of the end of a, in one of kGrids grids shifted
-  /// against each other (so that neighbours across one grid's lines are found by another). Cells
-  /// have the side kLink.
-  double reachable_share() const;
+  /// Share of the transitions from which a success is reachable, see LinkGraph.
+  double reachable_share() const { return links_.reachable_share(); }
 
  private:
-  static constexpr std::size_t kGrids = 4;
-  static constexpr double kLink = 0.25;  // [m], [rad]; the default gap tolerance
-  struct Link {
-    std::array<std::uint64_t, kGrids> from, to;
-    bool success = false;
-  };
-
   bool moves_several(const Transition& t) const;
 
   const Task& task_;
   StateMetric metric_;
   std::vector<std::size_t> roots_;  // as roots_of()
-  std::vector<Link> links_;
+  LinkGraph links_;
   long contacts_ = 0, multi_body_ = 0, start_region_ = 0, start_region_trees_ = 0;
 };
 

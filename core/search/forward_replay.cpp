@@ -27,10 +27,10 @@ int objects_moved(const Poses& a, const Poses& b) {
   return count;
 }
 
-double largest_turn(const Poses& a, const Poses& b) {
+double largest_turn(const Scene& scene, const Poses& a, const Poses& b) {
   double turn = 0.0;
   for (std::size_t k = 1; k < a.size(); ++k)
-    turn = std::max(turn, std::abs(a[k].theta - b[k].theta));
+    if (!has_joint(scene, k)) turn = std::max(turn, std::abs(a[k].theta - b[k].theta));
   return turn;
 }
 
@@ -56,7 +56,7 @@ std::vector<Candidate> proposals(const Task& task, std::span<const ReverseJob> j
   return out;
 }
 
-std::vector<Candidate> replay_candidates(std::vector<Candidate> candidates,
+std::vector<Candidate> replay_candidates(const Task& task, std::vector<Candidate> candidates,
                                          const ReplayBatch& replay, SearchStats& stats) {
   std::vector<ReplayJob> pushes;
   for (const Candidate& c : candidates) pushes.push_back({c.start, c.action});
@@ -70,7 +70,7 @@ std::vector<Candidate> replay_candidates(std::vector<Candidate> candidates,
       c.miss = std::max(c.miss, (c.end[body].position() - results[k].end[body].position()).norm());
     c.end = results[k].end;
     c.moved = objects_moved(c.start, c.end);
-    c.turn = largest_turn(c.start, c.end);
+    c.turn = largest_turn(task.scene, c.start, c.end);
     out.push_back(std::move(c));
   }
   return out;

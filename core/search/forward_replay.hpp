@@ -20,7 +20,7 @@ struct Candidate {
   int moved = 0;         // objects moved by the push, objects_moved()
   double gap = 0.0;      // replay gap [m]; 0 before the replay
   double miss = 0.0;     // the same of the body that is off most [m]
-  double turn = 0.0;     // of the object that the push turned most [rad]; 0 before the replay
+  double turn = 0.0;     // largest_turn() [rad]; 0 before the replay
   double stretch = 1.0;  // of errors by the push, see StretchProbe; 1 until it is measured
 };
 
@@ -36,8 +36,9 @@ double replay_gap(const Poses& reverse_end, const Poses& replayed_end);
 /// Number of bodies, the robot left out, whose position differs by more than kMoved.
 int objects_moved(const Poses& a, const Poses& b);
 
-/// Largest angle between the two poses of an object [rad].
-double largest_turn(const Poses& a, const Poses& b);
+/// Largest angle between the two poses of an object without joints [rad]: links turn with whatever
+/// moves them.
+double largest_turn(const Scene& scene, const Poses& a, const Poses& b);
 
 /// Whether a state can be the start of a transition: finite, robot in the arena, no overlap.
 bool legal_state(const Task& task, const Poses& poses);
@@ -49,7 +50,7 @@ std::vector<Candidate> proposals(const Task& task, std::span<const ReverseJob> j
 
 /// Replaces `end` by what the push truly leads to and fills in moved, gap, miss and turn; those
 /// whose push the simulator rejects are left out, and counted.
-std::vector<Candidate> replay_candidates(std::vector<Candidate> candidates,
+std::vector<Candidate> replay_candidates(const Task& task, std::vector<Candidate> candidates,
                                          const ReplayBatch& replay, SearchStats& stats);
 
 /// A reverse trajectory read forward: actions from its far end towards the goal.

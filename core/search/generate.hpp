@@ -21,10 +21,11 @@ struct GenerationSeams {
 };
 
 /// The whole generation: trees of reverse steps from sampled goals (beam search), first towards the
-/// start, then to where the tree policy still gets lost; forward replay of the best
-/// predecessors found, end-to-end replay of chains, roll-outs of the policy, coverage. All is
-/// stored; the policy takes up what a round has found at the price that serves it best
-/// (policy_learning.hpp). A pure function of (task, config, seed) and the seams.
+/// start, then to where the tree policy still gets lost (exploration.hpp); forward replay of the
+/// best predecessors found, end-to-end replay of chains. A search that covers a task finds far more
+/// steps than a learner can use: stored are those that episodes of the policy use, and others drawn
+/// at random, all with the plans behind them; the policy keeps to these. Last, roll-outs of the
+/// policy. A pure function of (task, config, seed) and the seams.
 GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams);
 

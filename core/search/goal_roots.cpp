@@ -4,6 +4,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "core/search/forward_replay.hpp"
 #include "core/search/state_metric.hpp"
 
 namespace rtg {
@@ -14,6 +15,17 @@ bool look_the_same(const Scene& scene, std::size_t i, std::size_t j) {
   if (has_joint(scene, i) || has_joint(scene, j)) return false;
   return a.kind == b.kind && a.shape == b.shape && a.density == b.density &&
          a.friction == b.friction && !a.fixed && !b.fixed;
+}
+
+/// The goal state with the angles of the target where it stays one: pulls seldom turn an object.
+Poses turned_as(const Task& task, Poses goal, const Poses& target) {
+  for (std::size_t k = 1; k < goal.size(); ++k) {
+    if (has_joint(task.scene, k) || task.scene.bodies[k].fixed) continue;
+    Poses trial = goal;
+    trial[k].theta = target[k].theta;
+    if (legal_state(task, trial) && succeeded(task, trial)) goal = std::move(trial);
+  }
+  return goal;
 }
 
 }  // namespace
@@ -47,7 +59,7 @@ std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, cons
   for (int k = 0; k < config.breadth * config.root_draws; ++k) {
     const std::optional<Poses> goal = sample_goal(task, rng);
     if (!goal) break;
-    Poses root = relabelled(task, *goal, target.poses);
+    Poses root = turned_as(task, relabelled(task, *goal, target.poses), target.poses);
     if (!seen.insert(metric.cell(root, {})).second) continue;
     drawn.emplace_back(start_distance(task, metric, root, target), std::move(root));
   }

@@ -9,15 +9,11 @@
 
 namespace rtg {
 
-/// Whether the data set has a step.
-using IsStored = std::function<bool(const Poses& start, int action)>;
-
 /// Adds a step that was found behind one of `nodes`; with it the steps from there to success, as
 /// far as the policy lacks them (it may not have taken up the round that found them): a step is of
-/// use with the whole plan behind it only. The plan ends before a step that is not stored.
-/// Depths are those of the tree, also behind an entry that bears a price.
-void learn_step(TreePolicy& policy, const BeamSearch::Growth& step, std::span<const Node> nodes,
-                const IsStored& stored);
+/// use with the whole plan behind it only. Depths are those of the tree, also behind an entry that
+/// bears a price.
+void learn_step(TreePolicy& policy, const BeamSearch::Growth& step, std::span<const Node> nodes);
 
 /// Adds the steps of an episode that ended in success, none of any other.
 void learn_episode(TreePolicy& policy, std::span<const Transition> steps);

@@ -26,6 +26,7 @@ void fill(GenerationReport& report, const SearchStats& stats) {
 
 std::string to_json(const GenerationReport& r) {
   nlohmann::ordered_json out = {{"transitions", r.transitions},
+                                {"explored", r.explored},
                                 {"contact_share", r.contact_share},
                                 {"multi_body_share", r.multi_body_share},
                                 {"start_region_transitions", r.start_region_transitions},

@@ -31,6 +31,7 @@ struct ReportNode {
 /// What a generation did: the generation part of summary.json plus the samples behind its pictures.
 struct GenerationReport {
   long transitions = 0;
+  long explored = 0;  // steps that the trees found, of which theirs were chosen
   double contact_share =
       0.0;  // share of stored transitions that moved an object by more than 0.05 m
   double multi_body_share = 0.0;           // ... two objects or more

@@ -41,6 +41,7 @@ class Lockstep {
       if (!stats.count(results[k])) continue;
       states_[alive_[k]].used.push_back(choices[k].entry);
       episodes_[alive_[k]].strayed.push_back(choices[k].distance);
+      if (choices[k].entry >= 0) episodes_[alive_[k]].used.push_back(policy.key(choices[k].entry));
       if (record(alive_[k], pushes[k], results[k].end)) still.push_back(alive_[k]);
     }
     alive_ = std::move(still);

@@ -13,8 +13,9 @@ namespace rtg {
 
 /// One episode of the tree policy.
 struct Episode {
-  std::vector<Transition> steps;  // source kRollOut
-  std::vector<double> strayed;    // distance from the policy's entry at each step [m]
+  std::vector<Transition> steps;    // source kRollOut
+  std::vector<double> strayed;      // distance from the policy's entry at each step [m]
+  std::vector<std::uint64_t> used;  // TreePolicy::key() of these entries
   bool success = false;
 };
 

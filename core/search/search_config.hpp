@@ -19,8 +19,11 @@ struct SearchConfig {
   Ranking ranking = Ranking::kStartDistance;
   int transitions = 120000;     // stored in all
   double rollout_share = 0.5;   // of them from roll-outs of the tree policy
-  int breadth = 12;             // B, nodes kept per layer
-  int depth = 24;               // D, layers per round at most
+  double explored = 6.0;        // steps that the trees find per one of theirs that is stored
+  double others = 0.3;          // share of those drawn at random, not as episodes use them
+  int breadth = 400;            // B, nodes kept per layer until the policy solves some probe
+  int repair_breadth = 50;      // ... from then on, to where it gets lost
+  int depth = 40;               // D, layers per round at most
   double contact_quota = 0.4;   // share of the beam reserved for nodes whose step moved an object
   double random_share = 0.15;   // share of the beam drawn at random among the rest
   double gap_tolerance = 0.25;  // a node that misses by more is not expanded [m]
@@ -33,9 +36,9 @@ struct SearchConfig {
   int per_layout = 6;              // nodes of a beam that differ in the robot only, at most
   int root_draws = 4;              // goal states drawn per root kept
   int arrivals = 10;               // nodes at its target that end a round
-  int patience = 3;                // layers without a better node that end a round
+  int patience = 4;                // layers without a better node that end a round
   double target_jitter = 0.25;     // trees aim at the start with objects moved by up to ± this [m]
-  double chain_share = 0.1;        // of the tree transitions from chains replayed end to end
+  double chain_share = 0.1;        // of the steps found from chains replayed end to end
   double rollout_jitter = 0.25;    // roll-outs start with objects moved by up to ± this [m]
   double rollout_noise = 0.1;      // share of their actions replaced by a neighbouring heading
   int evaluation_starts = 100;     // episodes behind tree_policy_success
@@ -47,7 +50,11 @@ struct SearchConfig {
     v.choice("ranking", ranking, kRankings, "what a good node is");
     v.integer("transitions", transitions, 1, 100000000, "transitions to store");
     v.number("rollout_share", rollout_share, 0.0, 0.95, "share of them from tree-policy episodes");
+    v.number("explored", explored, 1.0, 1e6, "steps found per one of trees stored");
+    v.number("others", others, 0.0, 1.0, "share of those drawn at random, used or not");
     v.integer("breadth", breadth, 1, 100000, "nodes kept per layer");
+    v.integer("repair_breadth", repair_breadth, 1, 100000,
+              "... once the policy solves some starts");
     v.integer("depth", depth, 1, 1000, "layers per round at most");
     v.number("contact_quota", contact_quota, 0.0, 1.0, "share of the beam that moved an object");
     v.number("random_share", random_share, 0.0, 1.0, "share of the beam drawn at random");
@@ -64,7 +71,7 @@ struct SearchConfig {
     v.integer("arrivals", arrivals, 1, 1000000, "nodes at its target that end a round");
     v.integer("patience", patience, 1, 1000, "layers without a better node that end a round");
     v.number("target_jitter", target_jitter, 0.0, 10.0, "of the start layout a tree aims at [m]");
-    v.number("chain_share", chain_share, 0.0, 0.95, "share of tree transitions from whole chains");
+    v.number("chain_share", chain_share, 0.0, 0.95, "share of the steps found from whole chains");
     v.number("rollout_jitter", rollout_jitter, 0.0, 10.0, "of the starts of roll-outs [m]");
     v.number("rollout_noise", rollout_noise, 0.0, 1.0, "share of roll-out actions disturbed");
     v.integer("evaluation_starts", evaluation_starts, 1, 100000, "episodes that judge the data");

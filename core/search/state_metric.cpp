@@ -94,6 +94,16 @@ StateMetric::Spread StateMetric::spread(const Poses& a, const Poses& b) const {
   return out;
 }
 
+bool StateMetric::within(const Poses& a, const Poses& b, double tolerance) const {
+  const auto beside = [&](std::size_t k) {
+    return std::abs(a[k].x - b[k].x) <= tolerance && std::abs(a[k].y - b[k].y) <= tolerance;
+  };
+  return beside(0) && std::ranges::all_of(objects_, [&](const Object& o) {
+           return beside(o.body) && std::abs(angle_difference(a[o.body].theta, b[o.body].theta,
+                                                              o.order)) <= tolerance;
+         });
+}
+
 std::uint64_t StateMetric::cell(const Poses& poses, const Cells& cells) const {
   std::uint64_t hash = with_slot(0, slot(poses[0].x, cells.robot, cells.shift));
   hash = with_slot(hash, slot(poses[0].y, cells.robot, cells.shift));

@@ -43,6 +43,9 @@ class StateMetric {
   };
   Spread spread(const Poses& a, const Poses& b) const;
 
+  /// Whether all are within `tolerance` of each other: x and y [m], the objects' angles [rad].
+  bool within(const Poses& a, const Poses& b, double tolerance) const;
+
   /// Name of the cell that a state lies in, cells of side `robot` for the robot's x, y and of side
   /// `object` for the objects' x, y [m] and angle [rad] (rounded to a whole number of cells per
   /// period); `shift` in [0, 1) moves the grid by that share of a cell.

@@ -91,14 +91,45 @@ void TreePolicy::raise(int first, double price) {
 void TreePolicy::forget(int first) {
   const auto left = static_cast<std::size_t>(first);
   for (std::size_t k = left; k < key_.size(); ++k) known_.erase(key_[k]);
+  cut(left);
+  for (Cell& cell : cells_)
+    while (!cell.entries.empty() && cell.entries.back() >= first) cell.entries.pop_back();
+  bound_cells();
+}
+
+void TreePolicy::retain(const std::unordered_set<std::uint64_t>& keys) {
+  const auto coordinates = static_cast<std::size_t>(metric_.size());
+  const auto numbers = static_cast<std::size_t>(contact_.size());
+  const auto move = [](std::vector<float>& rows, std::size_t from, std::size_t to, std::size_t n) {
+    std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(from * n), n,
+                rows.begin() + static_cast<std::ptrdiff_t>(to * n));
+  };
+  std::size_t left = 0;
+  for (std::size_t k = 0; k < key_.size(); ++k) {
+    if (!keys.contains(key_[k])) {
+      known_.erase(key_[k]);
+      continue;
+    }
+    key_[left] = key_[k];
+    depth_[left] = depth_[k];
+    action_[left] = action_[k];
+    move(point_, k, left, coordinates);
+    move(contacts_, k, left, numbers);
+    ++left;
+  }
+  cells_.clear();
+  cell_at_.clear();
+  cut(left);
+  for (std::size_t k = 0; k < left; ++k) place(static_cast<int>(k));
+}
+
+/// Leaves the first `left` entries, but for the cells.
+void TreePolicy::cut(std::size_t left) {
   key_.resize(left);
   depth_.resize(left);
   action_.resize(left);
   point_.resize(left * static_cast<std::size_t>(metric_.size()));
   contacts_.resize(left * static_cast<std::size_t>(contact_.size()));
-  for (Cell& cell : cells_)
-    while (!cell.entries.empty() && cell.entries.back() >= first) cell.entries.pop_back();
-  bound_cells();
 }
 
 /// |s_e - s|² [m²].

@@ -36,6 +36,12 @@ class TreePolicy {
   /// Forgets the entries from index `first` on.
   void forget(int first);
 
+  /// Forgets all entries but those with these keys.
+  void retain(const std::unordered_set<std::uint64_t>& keys);
+
+  /// key_of() an entry's state and action.
+  std::uint64_t key(int entry) const { return key_[static_cast<std::size_t>(entry)]; }
+
   /// Number of entries.
   int size() const { return static_cast<int>(depth_.size()); }
 
@@ -71,6 +77,7 @@ class TreePolicy {
   void scan(const Cell& cell, Seen& seen, Choice& best) const;
   float state_gap(std::size_t entry, const Seen& seen) const;
   float contact_gap(std::size_t entry, Seen& seen) const;
+  void cut(std::size_t left);
   void place(int entry);
   void bound_cells();
 

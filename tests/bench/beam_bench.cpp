@@ -58,7 +58,7 @@ void beam(benchmark::State& state, const Size& size) {
   for (auto _ : state) {  // trees differ in how soon they meet objects
     SearchStats stats;
     BeamSearch search(task, config, ++seed);
-    search.aim({task.start}, seams.replay, stats);
+    search.aim({task.start}, config.breadth, seams.replay, stats);
     for (int layer = 0; layer < size.depth; ++layer, ++layers) {
       nodes += static_cast<long>(search.beam().size());
       if (search.grow(seams.solve, seams.replay, stats).empty())

@@ -1,21 +1,19 @@
 // Generates transitions in one process and prints the report without its samples. Exit status 2 if
 // an argument is not one of
 //
-//   generate_bench [--task gathering|gathering_hard] [--reverse rrbs|naive] [--transitions N]
-//                  [--seed S] [--threads T] [--set NAME NUMBER]...
+//   generate_bench FILE [--seed S] [--threads T] [SECTION.KEY=VALUE]...
 //
-// Without them it does what ./run.sh does, with two threads; --set takes numbers of the sections
-// search and reverse.
+// FILE is a configuration, as for ./run.sh; two threads if nothing is said.
 
-#include <algorithm>
 #include <cstdio>
-#include <optional>
-#include <span>
+#include <exception>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/search/simulators.hpp"
+#include "nodes/common/rtg_config.hpp"
 #include "tests/bench/arguments.hpp"
-#include "tests/support/gathering.hpp"
 
 namespace rtg {
 namespace {
@@ -23,52 +21,36 @@ namespace {
 using bench::read_number;
 
 struct Options {
-  Task task = testing::gathering();
-  SearchConfig search;
-  ReverseConfig reverse;
+  std::string file;
+  std::vector<std::string> overrides;
   std::uint64_t seed = 1;
   int threads = 2;
 };
 
-bool set(Options& options, std::string_view name, std::string_view value) {
-  bench::Setter setter{name, value};
-  options.search.visit(setter);
-  options.reverse.visit(setter);
-  return setter.done;
-}
-
-/// Whether `flag` takes one value and this is one.
-bool apply(Options& options, std::string_view flag, std::string_view value) {
-  if (flag == "--seed")
-    return read_number(value, std::uint64_t{0}, ~std::uint64_t{0}, options.seed);
-  if (flag == "--threads") return read_number(value, 1, 1024, options.threads);
-  if (flag == "--transitions") return set(options, "transitions", value);
-  if (flag == "--task" && (value == "gathering" || value == "gathering_hard")) {
-    options.task = value == "gathering" ? testing::gathering() : testing::gathering_hard();
-    return true;
-  }
-  const auto mode = std::ranges::find(kReverseModes, value);
-  if (flag != "--reverse" || mode == kReverseModes.end()) return false;
-  options.search.reverse = static_cast<ReverseMode>(mode - kReverseModes.begin());
-  return true;
-}
-
-/// None if an argument is illegal, which it tells.
-std::optional<Options> parsed(std::span<char* const> arguments) {
-  Options options;
-  for (std::size_t k = 0; k < arguments.size();) {
-    const std::string_view flag = arguments[k];
-    const std::size_t values = flag == "--set" ? 2 : 1;
-    if (k + values >= arguments.size() ||
-        !(values == 2 ? set(options, arguments[k + 1], arguments[k + 2])
-                      : apply(options, flag, arguments[k + 1]))) {
+/// Whether the arguments are legal; tells the first that is not.
+bool read(std::span<char* const> arguments, Options& options) {
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    const std::string_view word = arguments[k];
+    const std::string_view value = k + 1 < arguments.size() ? arguments[k + 1] : "";
+    bool legal = true;
+    if (word == "--seed")
+      legal = read_number(value, std::uint64_t{0}, ~std::uint64_t{0}, options.seed);
+    else if (word == "--threads")
+      legal = read_number(value, 1, 1024, options.threads);
+    else if (word.starts_with("-"))
+      legal = false;
+    else if (options.file.empty())
+      options.file = word;
+    else
+      options.overrides.emplace_back(word);
+    if (!legal) {
       std::fprintf(stderr, "generate_bench: %s is no argument, or its value is missing or wrong\n",
                    arguments[k]);
-      return std::nullopt;
+      return false;
     }
-    k += values + 1;
+    k += word.starts_with("-");
   }
-  return options;
+  return true;
 }
 
 void print_progress(const Progress& p) {
@@ -76,24 +58,30 @@ void print_progress(const Progress& p) {
                p.phase.c_str(), p.layer, p.transitions, p.target, p.contact_share, p.start_region);
 }
 
-int run(const Options& options) {
-  const Task& task = options.task;
-  GenerationSeams seams =
-      in_process_seams(reverse_solver(task, {}, options.reverse, options.search.reverse),
-                       forward_replay(task, {}), options.threads);
+void run(const Options& options) {
+  const RtgConfig config = load_config(options.file, options.overrides);
+  GenerationSeams seams = in_process_seams(
+      reverse_solver(config.task, config.physics, config.reverse, config.search.reverse),
+      forward_replay(config.task, config.physics), options.threads);
   seams.store = [](std::span<const Transition>) {};
   seams.progress = print_progress;
-  GenerationReport report = generate(task, options.search, options.seed, seams);
+  GenerationReport report = generate(config.task, config.search, options.seed, seams);
   report.replay_gaps.clear();
   report.nodes.clear();
   std::printf("%s\n", to_json(report).c_str());
-  return 0;
 }
 
 }  // namespace
 }  // namespace rtg
 
 int main(int argc, char** argv) {
-  const auto options = rtg::parsed({argv + 1, argv + argc});
-  return options ? rtg::run(*options) : 2;
+  rtg::Options options;
+  if (!rtg::read({argv + 1, argv + argc}, options)) return 2;
+  try {
+    rtg::run(options);
+    return 0;
+  } catch (const rtg::ConfigError& e) {
+    std::fprintf(stderr, "generate_bench: %s\n", e.what());
+    return 2;
+  }
 }

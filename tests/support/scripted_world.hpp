@@ -23,6 +23,7 @@ struct ScriptedWorld {
   std::function<Poses(const Poses&, int)> pushed;    // what a push does
   std::vector<std::vector<ReverseJob>> solves = {};  // batches
   std::vector<std::vector<ReplayJob>> replays = {};
+  std::vector<Transition> stored = {};
   std::vector<std::string> phases = {};  // of the progress
 
   /// The start with the robot `x` to the right and the first object `y` up [m].
@@ -47,7 +48,7 @@ struct ScriptedWorld {
     GenerationSeams out;
     out.solve = [this](auto jobs) { return answers(jobs); };
     out.replay = [this](auto jobs) { return ends(jobs); };
-    out.store = [](auto) {};
+    out.store = [this](auto rows) { stored.insert(stored.end(), rows.begin(), rows.end()); };
     out.progress = [this](const Progress& p) { phases.push_back(p.phase); };
     return out;
   }

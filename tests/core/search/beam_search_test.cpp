@@ -27,7 +27,7 @@ struct BeamSearchTest : ::testing::Test, testing::DraggingWorld {
 
   BeamSearch aimed(std::uint64_t seed = 1) {
     BeamSearch search(task, config, seed);
-    search.aim({task.start}, replay, stats);
+    search.aim({task.start}, config.breadth, replay, stats);
     return search;
   }
 
@@ -67,7 +67,7 @@ TEST_F(BeamSearchTest, GoalsThatComeToRestElsewhereAreCountedNotPlanted) {
     return results;
   };
   BeamSearch search(task, config, 1);
-  search.aim({task.start}, scattering, stats);
+  search.aim({task.start}, config.breadth, scattering, stats);
   EXPECT_TRUE(search.nodes().empty());
   EXPECT_TRUE(search.beam().empty());
   EXPECT_EQ(stats.unsettled_goals, 6);
@@ -250,7 +250,7 @@ TEST_F(BeamSearchTest, ATreeWithoutPredecessorsEndsUntilItIsAimedAgain) {
   EXPECT_TRUE(search.beam().empty());
   EXPECT_EQ(search.best(), std::numeric_limits<double>::infinity());
   EXPECT_TRUE(search.grow(solve, replay, stats).empty());
-  search.aim({task.start}, replay, stats);
+  search.aim({task.start}, config.breadth, replay, stats);
   EXPECT_FALSE(search.grow(solve, replay, stats).empty());
 }
 
@@ -264,7 +264,7 @@ TEST_F(BeamSearchTest, AimTakesTheNearestOfAllNodesWhateverTheRanking) {
       config.ranking = ranking;
       BeamSearch search = aimed();
       for (int layer = 0; layer < 4; ++layer) search.grow(solve, replay, stats);
-      search.aim({target}, replay, stats);
+      search.aim({target}, config.breadth, replay, stats);
       std::vector<double> nearest = distances(search, everything(search), target);
       nearest.resize(6);
       EXPECT_EQ(distances(search, search.beam(), target), nearest);

@@ -44,8 +44,8 @@ TEST(LargestTurn, IsThatOfAnObjectInEitherDirection) {
   next[0].theta = 3.0;  // the robot does not count
   next[1].theta = 0.2;
   next[3].theta = -0.7;
-  EXPECT_EQ(largest_turn(all_zero(), next), 0.7);
-  EXPECT_EQ(largest_turn(next, next), 0.0);
+  EXPECT_EQ(largest_turn(gathering().scene, all_zero(), next), 0.7);
+  EXPECT_EQ(largest_turn(gathering().scene, next, next), 0.0);
 }
 
 TEST(LegalState, IsFiniteInTheArenaAndWithoutOverlap) {
@@ -123,7 +123,8 @@ TEST(ReplayCandidates, FillInWhatThePushTrulyLedTo) {
   Poses aim = shifted(all_zero(), 10 * kStep);
   aim[2].y = 0.3;
   SearchStats stats;
-  const auto out = replay_candidates({candidate(4, 10, all_zero(), aim),
+  const auto out = replay_candidates(gathering(),
+                                     {candidate(4, 10, all_zero(), aim),
                                       candidate(5, 3, all_zero(), shifted(all_zero(), 2 * kStep))},
                                      fake_replay, stats);
   ASSERT_EQ(out.size(), 2U);
@@ -145,7 +146,8 @@ TEST(ReplayCandidates, FillInWhatThePushTrulyLedTo) {
 TEST(ReplayCandidates, LeaveOutAndCountWhatTheSimulatorRejects) {
   const Poses zero = all_zero();
   SearchStats stats;
-  const auto out = replay_candidates({candidate(0, 13, zero, zero), candidate(1, 1, zero, zero),
+  const auto out = replay_candidates(gathering(),
+                                     {candidate(0, 13, zero, zero), candidate(1, 1, zero, zero),
                                       candidate(2, 13, zero, zero), candidate(3, 2, zero, zero)},
                                      fake_replay, stats);
   ASSERT_EQ(out.size(), 2U);

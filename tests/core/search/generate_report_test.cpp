@@ -89,6 +89,7 @@ struct GenerationReportTest : ::testing::Test {
     SearchConfig config;
     config.transitions = 1500;
     config.breadth = 8;
+    config.explored = 12.0;
     config.patience = 1;
     config.twins = 2;
     config.evaluation_starts = 10;

@@ -23,6 +23,7 @@ SearchConfig small() {
   config.reverse = ReverseMode::kNaive;
   config.transitions = 3000;
   config.breadth = 8;
+  config.explored = 2.0;
   config.depth = 12;
   config.twins = 2;  // these tests are not about how good the policy is
   config.evaluation_starts = 10;
@@ -204,6 +205,7 @@ struct LuckyWorld {
 SearchConfig two_steps() {
   SearchConfig config = small();
   config.transitions = 2;
+  config.explored = 1.0;
   config.depth = 1;
   config.twins = 0;  // luck stretches errors without bound; here the policy has to find that out
   config.rollout_share = 0.0;

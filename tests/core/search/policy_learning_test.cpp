@@ -36,11 +36,9 @@ const std::vector<Node> kPlan{{robot_at(0.0), -1, -1, 0},
                               {robot_at(2.0), 1, 12, 2},
                               {robot_at(3.0), 2, 13, 3}};
 
-bool everything(const Poses&, int) { return true; }
-
 TEST(LearnStep, TakesUpThePlanBehindIt) {
   TreePolicy policy(gathering());
-  learn_step(policy, step(4.0, 14, 3, 4), kPlan, everything);
+  learn_step(policy, step(4.0, 14, 3, 4), kPlan);
   EXPECT_EQ(policy.size(), 4);
   for (int k = 1; k <= 4; ++k) {
     EXPECT_EQ(action_at(policy, k), 10 + k);
@@ -50,10 +48,10 @@ TEST(LearnStep, TakesUpThePlanBehindIt) {
 
 TEST(LearnStep, KeepsWhatIsKnownOfThePlan) {
   TreePolicy policy(gathering());
-  learn_step(policy, step(3.0, 13, 2, 3), kPlan, everything);
+  learn_step(policy, step(3.0, 13, 2, 3), kPlan);
   policy.raise(0, 5.0);
-  learn_step(policy, step(4.0, 14, 3, 4), kPlan, everything);
-  learn_step(policy, step(4.0, 14, 3, 4), kPlan, everything);
+  learn_step(policy, step(4.0, 14, 3, 4), kPlan);
+  learn_step(policy, step(4.0, 14, 3, 4), kPlan);
   EXPECT_EQ(policy.size(), 4);
   EXPECT_EQ(depth_at(policy, 2.0), 7.0);
   EXPECT_EQ(depth_at(policy, 4.0), 4.0);
@@ -61,7 +59,7 @@ TEST(LearnStep, KeepsWhatIsKnownOfThePlan) {
 
 TEST(LearnStep, NeedsNothingBehindAStepIntoTheGoal) {
   TreePolicy policy(gathering());
-  learn_step(policy, step(4.0, 14, 3, 1), kPlan, everything);
+  learn_step(policy, step(4.0, 14, 3, 1), kPlan);
   EXPECT_EQ(policy.size(), 1);
   EXPECT_EQ(depth_at(policy, 4.0), 1.0);
 }
@@ -71,18 +69,9 @@ TEST(LearnStep, ThePlanEndsWithANodeThatReachesTheGoalOnItsOwn) {
   nodes[2].depth = 1;
   nodes[3].depth = 2;
   TreePolicy policy(gathering());
-  learn_step(policy, step(4.0, 14, 3, 3), nodes, everything);
+  learn_step(policy, step(4.0, 14, 3, 3), nodes);
   EXPECT_EQ(policy.size(), 3);
   for (int k = 2; k <= 4; ++k) EXPECT_EQ(depth_at(policy, k), k - 1.0);
-}
-
-TEST(LearnStep, LearnsNoStepThatIsNotStored) {
-  TreePolicy policy(gathering());
-  learn_step(policy, step(4.0, 14, 3, 4), kPlan,
-             [](const Poses&, int action) { return action != 12; });
-  EXPECT_EQ(policy.size(), 2);
-  EXPECT_EQ(depth_at(policy, 3.0), 3.0);
-  EXPECT_EQ(depth_at(policy, 4.0), 4.0);
 }
 
 TEST(LearnEpisode, CountsTheActionsToItsEnd) {

@@ -9,6 +9,7 @@ namespace {
 GenerationReport filled() {
   GenerationReport r;
   r.transitions = 1;
+  r.explored = 70;
   r.contact_share = 0.25;
   r.multi_body_share = 0.125;
   r.start_region_transitions = 2;
@@ -40,7 +41,7 @@ GenerationReport filled() {
 
 TEST(Report, EveryFieldIsWrittenUnderItsName) {
   EXPECT_EQ(to_json(filled()),
-            R"({"transitions":1,"contact_share":0.25,"multi_body_share":0.125,)"
+            R"({"transitions":1,"explored":70,"contact_share":0.25,"multi_body_share":0.125,)"
             R"("start_region_transitions":2,"start_region_tree_transitions":3,)"
             R"("reachable_share":0.5,"tree_policy_success":0.75,"tree_policy_length_mean":4.5,)"
             R"("start_region_depth":5,"candidates":6,)"

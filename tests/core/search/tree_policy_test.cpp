@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/math/rng.hpp"
+#include "core/reverse/reverse_job.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg {
@@ -246,6 +247,33 @@ TEST(TreePolicy, ForgetsItsLastEntriesAndLearnsThemAgain) {
     EXPECT_EQ(tree.choose({entry(k).state, {}}).entry, k);
     EXPECT_EQ(tree.choose({entry(k).state, {}}).score, entry(k).depth);
   }
+}
+
+TEST(TreePolicy, RetainsWhatItIsToldAndForgetsTheRest) {
+  Rng rng(8);
+  std::vector<Entry> entries, kept;
+  for (int k = 0; k < 300; ++k) entries.push_back(random_entry(rng));
+  Policy all(entries);
+  all.policy.raise(200, 5.0);
+  std::unordered_set<std::uint64_t> keys;
+  for (std::size_t k = 0; k < entries.size(); k += 3) {
+    kept.push_back(entries[k]);
+    kept.back().depth += k >= 200 ? 5.0 : 0.0;
+    keys.insert(key_of(entries[k].state, entries[k].action));
+    EXPECT_EQ(all.policy.key(static_cast<int>(k)), key_of(entries[k].state, entries[k].action));
+  }
+  all.policy.retain(keys);
+  const Policy few(kept);
+  EXPECT_EQ(all.policy.size(), 100);
+  for (int k = 0; k < 100; ++k) {
+    const std::vector<TreePolicy::Query> query{{random_entry(rng).state, {}}};
+    const TreePolicy::Choice left = all.policy.choose(query)[0],
+                             fresh = few.policy.choose(query)[0];
+    EXPECT_EQ(left.entry, fresh.entry);
+    EXPECT_EQ(left.score, fresh.score);
+  }
+  EXPECT_TRUE(all.policy.add(entries[1].state, entries[1].action, 1.0)) << "forgotten";
+  EXPECT_FALSE(all.policy.add(entries[0].state, entries[0].action, 1.0)) << "retained";
 }
 
 TEST(TreePolicy, KnowsStatesThatLookTheSame) {

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "core/search/transition.hpp"
+
+namespace rtg {
+
+/// The steps that the trees have found, each with the one behind it in its plan. Those that are
+/// taken, to be stored, are taken with the whole plan behind them: on its own a step tells a
+/// learner nothing.
+class StepPool {
+ public:
+  using Index = std::size_t;
+
+  /// Adds a step, unless its start and action are known; `next`: the one behind it, if it ends
+  /// where that begins, about.
+  void add(Transition step, std::optional<Index> next);
+
+  /// The step with this start and action (key_of()).
+  std::optional<Index> find(std::uint64_t key) const;
+
+  /// Whether its plan goes on to success.
+  bool leads(Index k) const { return steps_[k].leads; }
+  std::size_t size() const { return steps_.size(); }
+
+  /// A step and its plan, without those that have been taken before; first the step itself, and no
+  /// more than `room`.
+  std::vector<Transition> take(Index k, std::size_t room);
+
+  /// Keys of what has been taken.
+  const std::unordered_set<std::uint64_t>& taken() const { return taken_; }
+
+ private:
+  struct Entry {
+    Transition step;
+    std::uint64_t key;
+    std::optional<Index> next;
+    bool leads;
+  };
+  std::vector<Entry> steps_;
+  std::unordered_map<std::uint64_t, Index> at_;  // by key
+  std::unordered_set<std::uint64_t> taken_;
+};
+
+}  // namespace rtg
