@@ -38,7 +38,7 @@ class Exploration {
   TreePolicy& policy() { return policy_; }
 
   /// All nodes, and the least depth of one in the start region but for goals; -1: there is none.
-  std::vector<ReportNode> nodes() const { return nodes_; }
+  const std::vector<ReportNode>& nodes() const { return nodes_; }
   int start_region_depth() const { return start_region_depth_; }
 
  private:

@@ -166,15 +166,10 @@ class Generation {
   }
 
   GenerationReport finished_report() {
-    report_.transitions = stored();
     report_.explored = static_cast<long>(exploration_.pool().size());
-    report_.contact_share = coverage_.contact_share();
-    report_.multi_body_share = coverage_.multi_body_share();
-    report_.start_region_transitions = coverage_.start_region();
-    report_.start_region_tree_transitions = coverage_.start_region_trees();
     report_.start_region_depth = exploration_.start_region_depth();
-    report_.reachable_share = coverage_.reachable_share();
     report_.nodes = exploration_.nodes();
+    fill(report_, coverage_);
     fill(report_, stats_);
     return std::move(report_);
   }

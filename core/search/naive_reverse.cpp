@@ -16,7 +16,8 @@ Pose moved(const Pose& p, const Vector2d& by) { return {p.x + by.x(), p.y + by.y
 
 }  // namespace
 
-NaiveReverse::NaiveReverse(Scene scene, PushConfig push) : scene_(std::move(scene)), push_(push) {}
+NaiveReverse::NaiveReverse(Scene scene, PushConfig push)
+    : scene_(std::move(scene)), push_(push), roots_(roots_of(scene_)) {}
 
 /// The movable object nearest to the robot within reach in front of it; 0 if there is none.
 std::size_t NaiveReverse::touched_object(const Poses& end, const Vector2d& ahead) const {
@@ -60,7 +61,7 @@ ReverseResult NaiveReverse::solve(const ReverseJob& job) const {
     return {SolveStatus::kPruned};
   if (touched != 0) {
     const double pull = Rng(key_of(job)).uniform(kLeastPull, 1.0) * push_.stride;
-    const std::size_t root = roots_of(scene_)[touched];
+    const std::size_t root = roots_[touched];
     if (scene_.bodies[root].fixed) return {SolveStatus::kInfeasible};
     start[root] = moved(job.end[root], -pull * ahead);
     start = with_closed_joints(scene_, std::move(start));  // what joints connect goes as one

@@ -27,6 +27,7 @@ class NaiveReverse {
 
   Scene scene_;
   PushConfig push_;
+  std::vector<std::size_t> roots_;  // as roots_of()
 };
 
 }  // namespace rtg

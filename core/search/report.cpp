@@ -6,6 +6,15 @@
 
 namespace rtg {
 
+void fill(GenerationReport& report, const Coverage& coverage) {
+  report.transitions = coverage.transitions();
+  report.contact_share = coverage.contact_share();
+  report.multi_body_share = coverage.multi_body_share();
+  report.start_region_transitions = coverage.start_region();
+  report.start_region_tree_transitions = coverage.start_region_trees();
+  report.reachable_share = coverage.reachable_share();
+}
+
 void fill(GenerationReport& report, const SearchStats& stats) {
   report.candidates = stats.candidates;
   report.statuses = stats.statuses;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/reverse/solve_status.hpp"
+#include "core/search/coverage.hpp"
 #include "core/search/search_stats.hpp"
 #include "core/world/pose.hpp"
 
@@ -54,6 +55,9 @@ struct GenerationReport {
   std::vector<float> replay_gaps;  // one per replayed candidate [m]
   std::vector<ReportNode> nodes;
 };
+
+/// Writes into `report` what the stored transitions cover.
+void fill(GenerationReport& report, const Coverage& coverage);
 
 /// Writes into `report` what `stats` has counted, with the medians and 90th percentiles.
 void fill(GenerationReport& report, const SearchStats& stats);

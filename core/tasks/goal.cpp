@@ -1,8 +1,29 @@
 #include "core/tasks/goal.hpp"
 
-#include <algorithm>
-
 namespace rtg {
+namespace {
+
+/// Calls `visit` with whether each atom holds, see atoms(). Nothing is allocated: a search asks
+/// whether goals hold all the time.
+template <class Visit>
+void for_each_atom(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten,
+                   Visit visit) {
+  switch (term.subject) {
+    case GoalTerm::Subject::kEvery:
+      for (std::size_t i = 1; i < poses.size(); ++i)
+        if (concerns(term, scene, i)) visit(contains(term, poses[i].position(), tighten));
+      break;
+    case GoalTerm::Subject::kCentroid:
+      visit(contains(term, centroid_of(term, scene, poses), tighten));
+      break;
+    case GoalTerm::Subject::kJoint:
+      for (const Joint& joint : scene.joints)
+        if (concerns(term, scene, joint)) visit(contains(term, joint_angle(joint, poses), tighten));
+      break;
+  }
+}
+
+}  // namespace
 
 bool concerns(const GoalTerm& term, const Scene& scene, std::size_t body) {
   if (body == 0 || term.subject == GoalTerm::Subject::kJoint) return false;
@@ -39,26 +60,14 @@ Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& pose
 std::vector<bool> atoms(const GoalTerm& term, const Scene& scene, const Poses& poses,
                         double tighten) {
   std::vector<bool> held;
-  switch (term.subject) {
-    case GoalTerm::Subject::kEvery:
-      for (std::size_t i = 1; i < poses.size(); ++i)
-        if (concerns(term, scene, i)) held.push_back(contains(term, poses[i].position(), tighten));
-      break;
-    case GoalTerm::Subject::kCentroid:
-      held.push_back(contains(term, centroid_of(term, scene, poses), tighten));
-      break;
-    case GoalTerm::Subject::kJoint:
-      for (const Joint& joint : scene.joints)
-        if (concerns(term, scene, joint))
-          held.push_back(contains(term, joint_angle(joint, poses), tighten));
-      break;
-  }
+  for_each_atom(term, scene, poses, tighten, [&held](bool one) { held.push_back(one); });
   return held;
 }
 
 bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten) {
-  const std::vector<bool> held = atoms(term, scene, poses, tighten);
-  return std::ranges::all_of(held, [](bool one) { return one; });
+  bool all = true;
+  for_each_atom(term, scene, poses, tighten, [&all](bool one) { all = all && one; });
+  return all;
 }
 
 }  // namespace rtg

@@ -27,16 +27,10 @@ int read_body_name(const FieldReader& reader, const char* key, const Scene& scen
                     listed(names));
 }
 
-const ConfigNode& joint_at(const ConfigNode& section, std::size_t k) {
-  return find(section, "joints")->value.items[k];
-}
-
 [[noreturn]] void fail_at(const ConfigNode& section, std::size_t k, const char* key,
                           const std::string& wrong, const std::string& legal) {
-  const ConfigNode& node = joint_at(section, k);
-  const ConfigEntry* entry = find(node, key);
-  throw ConfigError(entry ? entry->value.origin : node.origin,
-                    "task.joints." + std::to_string(k) + '.' + key, wrong, legal);
+  fail_at(find(section, "joints")->value.items[k], "task.joints." + std::to_string(k), key, wrong,
+          legal);
 }
 
 /// No body is the child of two joints, fixed, or its own ancestor.

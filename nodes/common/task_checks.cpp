@@ -7,6 +7,7 @@
 #include "core/world/separation.hpp"
 #include "nodes/common/config_error.hpp"
 #include "nodes/common/field_reader.hpp"
+#include "nodes/common/task_words.hpp"
 
 namespace rtg {
 namespace {
@@ -19,10 +20,7 @@ const ConfigNode& body_section(const ConfigNode& section, std::size_t i) {
 
 [[noreturn]] void fail_at(const ConfigNode& section, std::size_t body, const char* key,
                           const std::string& wrong, const std::string& legal) {
-  const ConfigNode& node = body_section(section, body);
-  const ConfigEntry* entry = find(node, key);
-  throw ConfigError(entry ? entry->value.origin : node.origin, body_path(body) + '.' + key, wrong,
-                    legal);
+  fail_at(body_section(section, body), body_path(body), key, wrong, legal);
 }
 
 void check_names(const Task& task, const ConfigNode& section) {

@@ -40,6 +40,12 @@ Vector2d angles_at(const FieldReader& reader, const char* key) {
   return {angles[0], angles[1]};
 }
 
+void fail_at(const ConfigNode& entry, const std::string& path, const char* key,
+             const std::string& wrong, const std::string& legal) {
+  const ConfigEntry* field = find(entry, key);
+  throw ConfigError(field ? field->value.origin : entry.origin, path + '.' + key, wrong, legal);
+}
+
 ConfigNode point_node(const Vector2d& x) {
   return list_node({token_node(number_text(x.x())), token_node(number_text(x.y()))});
 }

@@ -23,6 +23,11 @@ Vector2d point_at(const FieldReader& reader, const char* key);
 /// A range of angles [least, most] in rad.
 Vector2d angles_at(const FieldReader& reader, const char* key);
 
+/// Says what is wrong with `key` of an entry of a list of the task, at the key's place if it is
+/// given, else at the entry's.
+[[noreturn]] void fail_at(const ConfigNode& entry, const std::string& path, const char* key,
+                          const std::string& wrong, const std::string& legal);
+
 ConfigNode point_node(const Vector2d& x);
 
 }  // namespace rtg

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import time
 from pathlib import Path
 
 
@@ -17,3 +18,11 @@ def processes_of(folder: Path) -> dict[int, str]:
                 if str(folder) in words:
                     found[int(entry)] = words
     return found
+
+
+def wait_until_all_are_gone(folder: Path, patience: float) -> None:
+    """Of processes_of(folder); fails after so many seconds."""
+    deadline = time.monotonic() + patience
+    while left := processes_of(folder):
+        assert time.monotonic() < deadline, left
+        time.sleep(0.02)

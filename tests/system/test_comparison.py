@@ -9,7 +9,7 @@ import sys
 import time
 
 import pytest
-from living import processes_of
+from living import processes_of, wait_until_all_are_gone
 from rtg import paths
 
 PATIENCE = 300.0  # [s]; longer is a hang
@@ -96,10 +96,7 @@ def test_killed_and_begun_again_it_comes_to_the_same_figures(undisturbed, tmp_pa
     wait_for(saved.exists, process)
     process.kill()
     process.communicate(timeout=PATIENCE)
-    deadline = time.monotonic() + PATIENCE
-    while left := processes_of(folder):
-        assert time.monotonic() < deadline, left
-        time.sleep(0.02)
+    wait_until_all_are_gone(folder, PATIENCE)
     assert not (saved.parents[1] / "summary.json").exists()
     finish(start(folder, TWO))
     assert figures(folder) == figures(undisturbed[0])

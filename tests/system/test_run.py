@@ -6,12 +6,11 @@ import re
 import signal
 import subprocess
 import sys
-import time
 
 import network
 import numpy as np
 import pytest
-from living import processes_of
+from living import processes_of, wait_until_all_are_gone
 from PIL import Image
 from rtg import dataset, paths
 from rtg.run_folder import SUMMARY_KEYS
@@ -193,10 +192,7 @@ def test_killing_the_command_kills_all_of_its_processes(tmp_path):
     assert len(processes_of(folder)) == 6
     process.kill()
     process.communicate(timeout=PATIENCE)
-    deadline = time.monotonic() + PATIENCE
-    while left := processes_of(folder):
-        assert time.monotonic() < deadline, left
-        time.sleep(0.02)
+    wait_until_all_are_gone(folder, PATIENCE)
 
 
 def test_a_killed_worker_is_replaced_and_changes_nothing(tmp_path):

@@ -3,7 +3,7 @@ import os
 import numpy as np
 import pytest
 import torch as th
-from rtg import _core
+from rtg import _core, plots
 from rtg.transition_stream import Rows
 from training_runs import TINY
 
@@ -21,3 +21,12 @@ def rows() -> Rows:
 
     _core.generate(_core.Config.from_file(TINY), store, lambda line: None)
     return Rows(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+
+
+@pytest.fixture
+def figures(monkeypatch):
+    """The figures that are drawn, instead of their files."""
+    drawn = []
+    monkeypatch.setattr(plots, "save", lambda figure, _: drawn.append(figure))
+    yield drawn
+    plots.plt.close("all")

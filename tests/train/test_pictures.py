@@ -163,15 +163,6 @@ def test_curves_with_gaps_and_empty_samples_can_be_drawn(tmp_path):
             assert len(picture.convert("RGB").getcolors(1 << 24)) > 20
 
 
-@pytest.fixture
-def figures(monkeypatch):
-    """The figures that are drawn, instead of their files."""
-    drawn = []
-    monkeypatch.setattr(plots, "save", lambda figure, _: drawn.append(figure))
-    yield drawn
-    plots.plt.close("all")
-
-
 def test_the_coverage_of_a_body_bears_its_name(figures):
     plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1))
     titles = [axis.get_title(loc="left") for axis in figures[0].axes]

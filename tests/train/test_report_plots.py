@@ -1,21 +1,11 @@
 """What the pictures of a comparison show."""
 
 import numpy as np
-import pytest
 from comparison_samples import finished, write_grid
-from rtg import plots, report_plots
+from rtg import report_plots
 from rtg.cells import Cell, read_grid
 from rtg.report_plots import split_names
 from rtg.run_results import read_comparison
-
-
-@pytest.fixture
-def drawn(monkeypatch):
-    """The figures that are drawn, instead of their files."""
-    figures = []
-    monkeypatch.setattr(plots, "save", lambda figure, _: figures.append(figure))
-    yield figures
-    plots.plt.close("all")
 
 
 def comparison(folder, courses):
@@ -26,32 +16,32 @@ def comparison(folder, courses):
     return read_comparison(folder, read_grid(folder))
 
 
-def test_a_line_is_the_mean_of_the_seeds_of_which_one_may_have_ended_early(tmp_path, drawn):
+def test_a_line_is_the_mean_of_the_seeds_of_which_one_may_have_ended_early(tmp_path, figures):
     cells = {
         Cell("gathering", "ddqn_rtg", (), 1): [0.2, 0.9],
         Cell("gathering", "ddqn_rtg", (), 2): [0.0, 0.5, 0.7],
         Cell("gathering", "dqn", (), 1): [0.0, 0.1],
     }
     report_plots.curves(tmp_path / "curves.png", comparison(tmp_path, cells), "gathering")
-    axis = drawn[0].axes[0]
+    axis = figures[0].axes[0]
     lines = [line for line in axis.get_lines() if len(line.get_xdata()) > 1]
     assert [line.get_xdata().tolist() for line in lines] == [[5.0, 10.0], [5.0, 10.0, 15.0]]
     assert np.allclose(lines[0].get_ydata(), [0.0, 0.1])
     assert np.allclose(lines[1].get_ydata(), [0.1, 0.7, 0.8])
     assert len(axis.collections) == 1, "a single seed has no spread"
-    words = [text.get_text() for text in drawn[0].legends[0].get_texts()]
+    words = [text.get_text() for text in figures[0].legends[0].get_texts()]
     assert words == ["dqn (1)", "ddqn_rtg (2)"]
     assert lines[0].get_color() != lines[1].get_color()
 
 
-def test_a_sweep_shows_every_run_and_who_never_got_there(tmp_path, drawn):
+def test_a_sweep_shows_every_run_and_who_never_got_there(tmp_path, figures):
     cells = {
         Cell("gathering", "ddqn_rtg", ("train.batch=8",), 1): [0.5, 0.96],
         Cell("gathering", "ddqn_rtg", ("train.batch=16",), 1): [0.5, 0.6],
         Cell("gathering", "ddqn_rtg", ("train.batch=16",), 2): [0.95, 0.8],
     }
     report_plots.sweep(tmp_path / "sweep.png", comparison(tmp_path, cells), "gathering")
-    success, reached = drawn[0].axes
+    success, reached = figures[0].axes
     dots = [line.get_ydata().tolist() for line in success.get_lines() if line.get_marker() == "o"]
     assert dots == [[0.96], [0.6, 0.8]]
     dots = [line.get_ydata().tolist() for line in reached.get_lines() if line.get_marker() == "o"]
@@ -61,12 +51,12 @@ def test_a_sweep_shows_every_run_and_who_never_got_there(tmp_path, drawn):
     assert success.get_xlabel() == "ddqn_rtg, train.batch"
 
 
-def test_gaps_have_a_histogram_per_task(tmp_path, drawn):
+def test_gaps_have_a_histogram_per_task(tmp_path, figures):
     gaps = {"gathering": np.full(30, 0.01), "sorting": np.array([0.0, 0.5])}
     report_plots.replay_gaps(tmp_path / "gaps.png", gaps)
-    counts = [sum(bar.get_height() for bar in axis.patches) for axis in drawn[0].axes]
+    counts = [sum(bar.get_height() for bar in axis.patches) for axis in figures[0].axes]
     assert counts == [30, 2]
-    assert drawn[0].axes[0].get_title(loc="left") == "gathering: 30 replayed candidates"
+    assert figures[0].axes[0].get_title(loc="left") == "gathering: 30 replayed candidates"
 
 
 def test_labels_are_drawn_without_what_they_share():

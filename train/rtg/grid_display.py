@@ -5,13 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from types import TracebackType
 from typing import Protocol, Self, TextIO
 
 from rich.console import Console
 from rich.live import Live
 from rich.table import Table
 from rich.text import Text
+
+from rtg.progress import Shown, TimedLines
 
 _REDRAW = 0.5  # [s]
 _MARKS = {"waiting": " ", "running": "▸", "done": "✓", "failed": "✗"}
@@ -35,45 +36,26 @@ def counts(rows: Sequence[Row]) -> str:
     return f"{total['done']} of {len(rows)} runs done{failed}, {total['running']} running"
 
 
-class GridDisplay(Protocol):
-    """A context manager that shows rows."""
-
-    def __enter__(self) -> Self: ...
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None: ...
+class GridDisplay(Shown, Protocol):
+    """Shows rows."""
 
     def show(self, rows: Sequence[Row]) -> None:
         """The newest state of all runs; may be called as often as one likes."""
 
 
-class PlainGrid:
-    """A line per run that begins or ends, with the seconds since the start."""
+class PlainGrid(TimedLines):
+    """A line per run that begins or ends."""
 
     def __init__(self, out: TextIO) -> None:
-        self._out = out
-        self._start = time.monotonic()
+        super().__init__(out)
         self._phases: dict[str, str] = {}
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        pass
 
     def show(self, rows: Sequence[Row]) -> None:
         for row in rows:
             if self._phases.get(row.name, "waiting") != row.phase:
                 words = f" ({row.words})" if row.words else ""
-                self._say(f"{row.name}: {row.phase}{words}")
+                self.note(f"{row.name}: {row.phase}{words}")
             self._phases[row.name] = row.phase
-
-    def _say(self, words: str) -> None:
-        print(f"[{time.monotonic() - self._start:7.1f} s] {words}", file=self._out, flush=True)
 
 
 class LiveGrid:

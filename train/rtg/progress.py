@@ -63,8 +63,8 @@ def training_text(state: RunState) -> str:
     return f"success {success}, {rate} interactions/s"
 
 
-class Display(Protocol):
-    """A context manager that shows states and notes."""
+class Shown(Protocol):
+    """A context manager, within which something is on the screen."""
 
     def __enter__(self) -> Self: ...
 
@@ -75,6 +75,10 @@ class Display(Protocol):
         trace: TracebackType | None,
     ) -> None: ...
 
+
+class Display(Shown, Protocol):
+    """Shows states and notes."""
+
     def show(self, state: RunState) -> None:
         """The newest state; may be called as often as one likes."""
 
@@ -82,13 +86,12 @@ class Display(Protocol):
         """Something worth a line that stays."""
 
 
-class PlainDisplay:
-    """A line per change, with the seconds since the start."""
+class TimedLines:
+    """Lines with the seconds since the start."""
 
     def __init__(self, out: TextIO) -> None:
         self._out = out
         self._start = time.monotonic()
-        self._shown = RunState()
 
     def __enter__(self) -> Self:
         return self
@@ -98,6 +101,14 @@ class PlainDisplay:
 
     def note(self, message: str) -> None:
         print(f"[{time.monotonic() - self._start:7.1f} s] {message}", file=self._out, flush=True)
+
+
+class PlainDisplay(TimedLines):
+    """A line per change."""
+
+    def __init__(self, out: TextIO) -> None:
+        super().__init__(out)
+        self._shown = RunState()
 
     def show(self, state: RunState) -> None:
         last = self._shown

@@ -46,6 +46,7 @@ class Training:
         jitter = max(s.start_jitter, self.task.randomisation) if s.randomise else s.start_jitter
         curriculum = Curriculum(config, s.curriculum, seed) if s.curriculum else None
         self.env = PushVecEnv(config, count, jitter, seed, curriculum)
+        self.env.tells_atoms = s.hindsight > 0
         self.model = DoubleDqn(self.env, s, self.discount, seed)
         self.data = OfflineData(self.task, self.model.replay_buffer)
         self.log = TrainingLog(folder)

@@ -36,6 +36,7 @@ class PushVecEnv(VecEnv):
         self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
         self._curriculum = curriculum
+        self.tells_atoms = False  # whether infos say which atoms of the goal hold, before and after
         self._origins = [ELSEWHERE] * count  # of the running episodes, in the curriculum
         self._starts = 0  # drawn so far, the curriculum's left out
         self.successes = 0  # episodes that ended in one
@@ -54,21 +55,19 @@ class PushVecEnv(VecEnv):
     def step_wait(self) -> Any:
         after, ok = self._simulator.push(self._poses, self._actions)
         after[~ok] = self._poses[~ok]
-        held, held_next = self.task.atoms(self._poses), self.task.atoms(after)  # [count, atoms]
-        self._poses, self._steps = after, self._steps + 1
+        before, self._poses, self._steps = self._poses, after, self._steps + 1
         success = self.task.succeeded(after) & ok
         self.successes += int(success.sum())
         timeout = ~success & ((self._steps >= self.task.horizon) | ~ok)
         observation = self.task.observation(after)
         infos: list[dict[str, Any]] = [
-            {
-                "TimeLimit.truncated": bool(timeout[env]),
-                "rejected": not ok[env],
-                "held": held[env],
-                "held_next": held_next[env],
-            }
+            {"TimeLimit.truncated": bool(timeout[env]), "rejected": not ok[env]}
             for env in range(self.num_envs)
         ]
+        if self.tells_atoms:
+            for name, poses in (("held", before), ("held_next", after)):
+                for info, held in zip(infos, self.task.atoms(poses), strict=True):
+                    info[name] = held
         done = success | timeout
         if done.any():
             for env in map(int, np.flatnonzero(done)):
