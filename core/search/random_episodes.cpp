@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/search/coverage.hpp"
+#include "core/search/roll_out.hpp"
 
 namespace rtg {
 namespace {
@@ -12,53 +13,17 @@ constexpr int kWave = 50;               // episodes that run in lockstep
 constexpr int kMaxBarren = 8;           // waves without a transition before it gives up
 constexpr std::uint64_t kStream = 101;  // of random numbers, apart from those of the search
 
-struct RandomEpisode {
-  Rng rng;
-  Poses state;
-  std::vector<Transition> steps = {};
-  bool running = true;
-};
-
-std::vector<RandomEpisode> begun(const Task& task, double jitter, std::uint64_t seed, int wave) {
-  std::vector<RandomEpisode> episodes;
-  for (int k = 0; k < kWave; ++k) {
-    Rng rng(seed, kStream << 32 | static_cast<std::uint64_t>(wave * kWave + k));
-    Poses start = jittered_start(task, jitter, rng);
-    episodes.push_back({rng, std::move(start)});
-  }
-  return episodes;
-}
-
-/// Takes the outcome of one push over.
-void advance(const Task& task, RandomEpisode& episode, const ReplayJob& push, const Poses& end) {
-  const bool success = succeeded(task, end);
-  episode.steps.push_back({push.start, push.action, end, success, Source::kRollOut});
-  episode.state = end;
-  episode.running = !success && static_cast<int>(episode.steps.size()) < task.horizon;
-}
-
-void play(const Task& task, std::vector<RandomEpisode>& episodes, const ReplayBatch& replay,
-          SearchStats& stats) {
-  while (true) {
-    std::vector<RandomEpisode*> running;
-    std::vector<ReplayJob> pushes;
-    for (RandomEpisode& e : episodes) {
-      if (!e.running) continue;
-      running.push_back(&e);
-      pushes.push_back({e.state, e.rng.below(task.push.headings)});
-    }
-    if (running.empty()) return;
-    const std::vector<ReplayResult> results = replay(pushes);
-    for (std::size_t k = 0; k < running.size(); ++k) {
-      running[k]->running = stats.count(results[k]);
-      if (running[k]->running) advance(task, *running[k], pushes[k], results[k].end);
-    }
-  }
+/// A policy that knows nothing acts at random.
+std::vector<Episode> episodes(const Task& task, const SearchConfig& config, Rng rng,
+                              const ReplayBatch& replay, SearchStats& stats) {
+  std::vector<Poses> starts;
+  for (int k = 0; k < kWave; ++k)
+    starts.push_back(jittered_start(task, config.rollout_jitter, rng));
+  return run_episodes(task, TreePolicy(task), {starts, 0.0, rng.word()}, replay, stats);
 }
 
 /// Stores the first of them, as far as `room` allows.
-void store(const RandomEpisode& episode, long room, Coverage& coverage,
-           const TransitionSink& sink) {
+void store(const Episode& episode, long room, Coverage& coverage, const TransitionSink& sink) {
   const auto count = std::min(static_cast<std::size_t>(room), episode.steps.size());
   const auto kept = std::span(episode.steps).first(count);
   if (kept.empty()) return;
@@ -88,9 +53,8 @@ GenerationReport random_episodes(const Task& task, const SearchConfig& config, s
   for (int wave = 0, barren = 0; barren < kMaxBarren && !cancelled(); ++wave) {
     const long before = coverage.transitions();
     if (before >= config.transitions) break;
-    std::vector<RandomEpisode> episodes = begun(task, config.rollout_jitter, seed, wave);
-    play(task, episodes, seams.replay, stats);
-    for (const RandomEpisode& e : episodes)
+    Rng rng(seed, kStream << 32 | static_cast<std::uint64_t>(wave));
+    for (const Episode& e : episodes(task, config, rng, seams.replay, stats))
       store(e, config.transitions - coverage.transitions(), coverage, seams.store);
     barren = coverage.transitions() > before ? 0 : barren + 1;
     if (seams.progress)
