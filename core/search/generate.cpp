@@ -105,7 +105,7 @@ class Generation {
     for (int wave = 0; wave < kChoices && policy().size() > 0 && stored() < trees_ && !cancelled();
          ++wave) {
       std::vector<Transition> batch;
-      for (const Episode& e : episodes(kChoice, wave))
+      for (const Episode& e : episodes(kChoice, wave, 1))
         if (e.success)
           for (const std::uint64_t key : e.used)
             if (const auto step = exploration_.pool().find(key)) take(*step, batch);
@@ -131,10 +131,10 @@ class Generation {
   }
 
   /// A wave of them, with noise, from jittered starts.
-  std::vector<Episode> episodes(Stream stream, int wave) {
+  std::vector<Episode> episodes(Stream stream, int wave, int lookahead) {
     Rng rng(seed_, stream << 32 | static_cast<std::uint64_t>(wave));
     const auto starts = jittered_starts(task_, kWave, config_.rollout_jitter, rng);
-    const EpisodePlan plan{starts, config_.rollout_noise, rng.word()};
+    const EpisodePlan plan{starts, config_.rollout_noise, rng.word(), lookahead};
     return run_episodes(task_, policy(), plan, seams_.replay, stats_);
   }
 
@@ -151,7 +151,7 @@ class Generation {
 
   bool roll_out() {
     const long before = stored();
-    for (const Episode& e : episodes(kRollOuts, wave_count_))
+    for (const Episode& e : episodes(kRollOuts, wave_count_, config_.lookahead))
       learn_episode(policy(), store(e.steps, config_.transitions));
     report_progress("roll-outs", ++wave_count_, 0);
     return stored() > before;

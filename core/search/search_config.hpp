@@ -41,6 +41,7 @@ struct SearchConfig {
   double chain_share = 0.1;        // of the steps found from chains replayed end to end
   double rollout_jitter = 0.25;    // roll-outs start with objects moved by up to ± this [m]
   double rollout_noise = 0.1;      // share of their actions replaced by a neighbouring heading
+  int lookahead = 4;               // choices that they try in the simulator before each step
   int evaluation_starts = 100;     // episodes behind tree_policy_success
 
   template <class Visitor>
@@ -74,6 +75,7 @@ struct SearchConfig {
     v.number("chain_share", chain_share, 0.0, 0.95, "share of the steps found from whole chains");
     v.number("rollout_jitter", rollout_jitter, 0.0, 10.0, "of the starts of roll-outs [m]");
     v.number("rollout_noise", rollout_noise, 0.0, 1.0, "share of roll-out actions disturbed");
+    v.integer("lookahead", lookahead, 1, 360, "choices that roll-outs try before each step");
     v.integer("evaluation_starts", evaluation_starts, 1, 100000, "episodes that judge the data");
   }
 };

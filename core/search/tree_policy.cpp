@@ -157,6 +157,7 @@ void TreePolicy::scan(const Cell& cell, Seen& seen, Choice& best) const {
     const auto k = static_cast<std::size_t>(entry);
     const float gap = state_gap(k, seen);
     if (depth_[k] + kDistanceWeight * std::sqrt(gap) > best.score) continue;
+    if (seen.barred[static_cast<std::size_t>(action_[k])]) continue;
     if (std::ranges::find(seen.query.used, entry) != seen.query.used.end()) continue;
     const float distance = std::sqrt(gap + contact_gap(k, seen));
     const float score = depth_[k] + kDistanceWeight * distance;
@@ -165,12 +166,17 @@ void TreePolicy::scan(const Cell& cell, Seen& seen, Choice& best) const {
   }
 }
 
+TreePolicy::Seen TreePolicy::seen(const Query& query) const {
+  const auto headings = static_cast<std::size_t>(headings_);
+  Seen out{query, std::vector<float>(static_cast<std::size_t>(metric_.size())),
+           std::vector<std::vector<float>>(headings), std::vector<bool>(headings, false)};
+  metric_.embed(query.state, out.point);
+  return out;
+}
+
 /// The robot's own cell, then others in the order of the least score that an entry of theirs can
 /// have, until none can be better than the best entry seen.
-TreePolicy::Choice TreePolicy::choose_one(const Query& query) const {
-  Seen seen{query, std::vector<float>(static_cast<std::size_t>(metric_.size())),
-            std::vector<std::vector<float>>(static_cast<std::size_t>(headings_))};
-  metric_.embed(query.state, seen.point);
+TreePolicy::Choice TreePolicy::choose_one(Seen& seen) const {
   Choice best{-1, 0, kNone, kNone};
   const Cell* own = nullptr;
   if (const auto at = cell_at_.find(square_of(seen.point.data())); at != cell_at_.end()) {
@@ -196,7 +202,22 @@ TreePolicy::Choice TreePolicy::choose_one(const Query& query) const {
 
 std::vector<TreePolicy::Choice> TreePolicy::choose(std::span<const Query> queries) const {
   std::vector<Choice> out;
-  for (const Query& query : queries) out.push_back(choose_one(query));
+  for (const Query& query : queries) {
+    Seen here = seen(query);
+    out.push_back(choose_one(here));
+  }
+  return out;
+}
+
+std::vector<TreePolicy::Choice> TreePolicy::alternatives(const Query& query, int count) const {
+  std::vector<Choice> out;
+  Seen here = seen(query);
+  while (static_cast<int>(out.size()) < count) {
+    const Choice next = choose_one(here);
+    if (next.entry < 0) break;
+    out.push_back(next);
+    here.barred[static_cast<std::size_t>(next.action)] = true;
+  }
   return out;
 }
 

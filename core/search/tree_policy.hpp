@@ -60,6 +60,9 @@ class TreePolicy {
   /// One choice per query, ties to the oldest entry.
   std::vector<Choice> choose(std::span<const Query> queries) const;
 
+  /// The best choices for different actions, best first, at most `count`; none without an entry.
+  std::vector<Choice> alternatives(const Query& query, int count) const;
+
  private:
   /// Entries whose robot is in one square of the plane.
   struct Cell {
@@ -72,8 +75,10 @@ class TreePolicy {
     const Query& query;
     std::vector<float> point;                  // embedding
     std::vector<std::vector<float>> contacts;  // per action, empty until it is needed
+    std::vector<bool> barred;                  // actions that are not wanted
   };
-  Choice choose_one(const Query& query) const;
+  Seen seen(const Query& query) const;
+  Choice choose_one(Seen& seen) const;
   void scan(const Cell& cell, Seen& seen, Choice& best) const;
   float state_gap(std::size_t entry, const Seen& seen) const;
   float contact_gap(std::size_t entry, Seen& seen) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "core/math/rng.hpp"
 #include "core/reverse/reverse_job.hpp"
@@ -111,6 +112,32 @@ TEST(TreePolicy, ChoosesAsBruteForceDoes) {
     // Single precision of a score of up to 200.
     ASSERT_NEAR(choices[q].score, tree.score(best, queries[q].state), 1e-4);
     ASSERT_NEAR(choices[q].distance, tree.distance(best, queries[q].state), 1e-5);
+  }
+}
+
+TEST(TreePolicy, AlternativesAreTheBestOfEachActionBestFirst) {
+  const Policy tree = random_policy(400);
+  Rng rng(13);
+  for (int q = 0; q < 30; ++q) {
+    TreePolicy::Query query{random_entry(rng).state, {}};
+    query.used.push_back(tree.best(query));
+    std::map<int, double> least;  // score by action
+    for (int k = 0; k < tree.policy.size(); ++k) {
+      if (k == query.used[0]) continue;
+      const int action = tree.entries[static_cast<std::size_t>(k)].action;
+      const double score = tree.score(k, query.state);
+      least[action] = std::min(least.try_emplace(action, score).first->second, score);
+    }
+    std::vector<double> wanted;
+    for (const auto& [action, score] : least) wanted.push_back(score);
+    std::ranges::sort(wanted);
+    const std::vector<TreePolicy::Choice> found = tree.policy.alternatives(query, 5);
+    ASSERT_EQ(found.size(), 5U);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      EXPECT_NEAR(found[k].score, wanted[k], 1e-4);
+      EXPECT_NEAR(least.at(found[k].action), wanted[k], 1e-4);
+    }
+    EXPECT_EQ(tree.policy.alternatives(query, 100).size(), least.size());
   }
 }
 
