@@ -9,6 +9,10 @@ double share(long part, long whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
+bool of_trees(Source source) {
+  return source == Source::kStepReplay || source == Source::kChainReplay;
+}
+
 }  // namespace
 
 bool in_start_region(const Task& task, const StateMetric& metric, const Poses& poses) {
@@ -35,7 +39,7 @@ void Coverage::add(const Transition& t) {
   multi_body_ += moves_several(t);
   const bool in_region = in_start_region(task_, metric_, t.poses);
   start_region_ += in_region;
-  start_region_trees_ += in_region && t.source != Source::kRollOut;
+  start_region_trees_ += in_region && of_trees(t.source);
   links_.add(t);
 }
 

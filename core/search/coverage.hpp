@@ -29,7 +29,7 @@ class Coverage {
   double contact_share() const;     // moved an object by more than kMoved
   double multi_body_share() const;  // moved two or more that no joint connects
   long start_region() const { return start_region_; }
-  long start_region_trees() const { return start_region_trees_; }  // roll-outs left out
+  long start_region_trees() const { return start_region_trees_; }  // those found backwards
 
   /// Share of the transitions from which a success is reachable, see LinkGraph.
   double reachable_share() const { return links_.reachable_share(); }

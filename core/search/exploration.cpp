@@ -158,11 +158,11 @@ void Exploration::replay_chains_from(std::size_t first, std::size_t before, std:
     chains.push_back(search_.chain(node));
     planned += chains.back().actions.size() - 1;
   }
-  for (const auto& steps : replay_chains(task_, chains, seams_.replay, stats_)) add_chain(steps);
+  for (const auto& steps : replay_chains(task_, chains, seams_.replay, stats_))
+    add_plan(steps);  // the first step is, bit for bit, the one that found the chain's far end
 }
 
-/// The first step of a chain is, bit for bit, the one that found its far end.
-void Exploration::add_chain(std::span<const Transition> steps) {
+void Exploration::add_plan(std::span<const Transition> steps) {
   std::optional<StepPool::Index> next;
   for (std::size_t k = steps.size(); k-- > 0;) {
     pool_.add(steps[k], next);

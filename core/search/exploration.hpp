@@ -30,6 +30,10 @@ class Exploration {
   /// anything was found.
   bool round(std::size_t limit, const AfterLayer& after_layer);
 
+  /// Steps that follow on each other and end in success, or short of it: the pool and, if they
+  /// succeed, the policy take them up.
+  void add_plan(std::span<const Transition> steps);
+
   /// Rounds in a row, the last ones, at whose beginning the policy solved every probe.
   int mastered() const { return mastered_; }
 
@@ -52,7 +56,6 @@ class Exploration {
   void add(std::span<const BeamSearch::Growth> growths);
   void learn(const BeamSearch::Growth& growth);
   void replay_chains_from(std::size_t first, std::size_t before, std::size_t limit);
-  void add_chain(std::span<const Transition> steps);
   bool cancelled() const { return seams_.cancelled && seams_.cancelled(); }
 
   const Task& task_;

@@ -1,13 +1,16 @@
 #include "core/search/generate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <iterator>
 #include <numeric>
 #include <string>
 #include <utility>
 
 #include "core/search/coverage.hpp"
 #include "core/search/exploration.hpp"
+#include "core/search/plan_search.hpp"
 #include "core/search/policy_learning.hpp"
 #include "core/search/random_episodes.hpp"
 #include "core/search/roll_out.hpp"
@@ -16,10 +19,19 @@ namespace rtg {
 namespace {
 
 // Keys of the independent random streams of one run.
-enum Stream : std::uint64_t { kExploration = 1, kOthers, kChoice, kEvaluation, kRollOuts };
+enum Stream : std::uint64_t {
+  kExploration = 1,
+  kOthers,
+  kChoice,
+  kEvaluation,
+  kRollOuts,
+  kMending
+};
 
-constexpr int kWave = 50;        // episodes that run in lockstep
-constexpr int kChoices = 20;     // waves that show which steps serve
+constexpr int kWave = 50;  // episodes that run in lockstep
+constexpr std::array<std::size_t, 2> kMendFrom{0,
+                                               8};  // actions after which a lost episode is mended
+constexpr int kChoices = 20;                        // waves that show which steps serve
 constexpr int kMastered = 3;     // rounds that find nothing left to learn, and the search is over
 constexpr double kMisses = 0.3;  // share of the draws of steps whose plan misses that count
 constexpr int kMaxBarren = 8;    // rounds or waves without a transition before it gives up
@@ -40,6 +52,7 @@ class Generation {
   GenerationReport run() {
     trees_ = std::lround(static_cast<double>(config_.transitions) * (1.0 - config_.rollout_share));
     explore();
+    mend();
     if (!cancelled()) choose();
     if (!cancelled()) judge_trees();
     for (int barren = 0; stored() < config_.transitions && barren < kMaxBarren && !cancelled();)
@@ -80,6 +93,37 @@ class Generation {
       barren = exploration_.round(limit, after_layer) ? 0 : barren + 1;
   }
 
+  /// Waves of episodes of the policy until `mended` steps per stored one are found; it learns those
+  /// that succeed and, for the lost ones, the plans that a search forwards finds.
+  void mend() {
+    const StepPool& pool = exploration_.pool();
+    const auto wanted = static_cast<std::size_t>(static_cast<double>(trees_) * config_.mended);
+    const std::size_t limit = pool.size() + wanted;
+    for (int wave = 0; pool.size() < limit && policy().size() > 0 && !cancelled(); ++wave) {
+      const std::size_t before = pool.size();
+      mend(episodes(kMending, wave));
+      report_progress("mending " + std::to_string(wave + 1), 0, 0);
+      if (pool.size() == before) break;
+    }
+  }
+
+  void mend(std::vector<Episode> wave) {
+    std::vector<Poses> lost;
+    std::vector<std::vector<Transition>> plans;
+    for (Episode& e : wave) {
+      if (e.success) {
+        for (Transition& t : e.steps) t.source = Source::kMended;
+        plans.push_back(std::move(e.steps));
+        continue;
+      }
+      for (const std::size_t k : kMendFrom)
+        if (k < e.steps.size()) lost.push_back(e.steps[k].poses);
+    }
+    std::ranges::move(search_plans(task_, policy(), lost, seams_.replay, stats_),
+                      std::back_inserter(plans));
+    for (const auto& plan : plans) exploration_.add_plan(plan);
+  }
+
   /// Puts a step drawn at random and its plan into `batch`; of those whose plan misses, few.
   void take_other(StepPool::Index step, std::vector<Transition>& batch) {
     if (exploration_.pool().leads(step) || others_.uniform(0.0, 1.0) < kMisses) take(step, batch);
@@ -105,7 +149,7 @@ class Generation {
     for (int wave = 0; wave < kChoices && policy().size() > 0 && stored() < trees_ && !cancelled();
          ++wave) {
       std::vector<Transition> batch;
-      for (const Episode& e : episodes(kChoice, wave, 1))
+      for (const Episode& e : episodes(kChoice, wave))
         if (e.success)
           for (const std::uint64_t key : e.used)
             if (const auto step = exploration_.pool().find(key)) take(*step, batch);
@@ -131,10 +175,10 @@ class Generation {
   }
 
   /// A wave of them, with noise, from jittered starts.
-  std::vector<Episode> episodes(Stream stream, int wave, int lookahead) {
+  std::vector<Episode> episodes(Stream stream, int wave) {
     Rng rng(seed_, stream << 32 | static_cast<std::uint64_t>(wave));
     const auto starts = jittered_starts(task_, kWave, config_.rollout_jitter, rng);
-    const EpisodePlan plan{starts, config_.rollout_noise, rng.word(), lookahead};
+    const EpisodePlan plan{starts, config_.rollout_noise, rng.word()};
     return run_episodes(task_, policy(), plan, seams_.replay, stats_);
   }
 
@@ -151,7 +195,7 @@ class Generation {
 
   bool roll_out() {
     const long before = stored();
-    for (const Episode& e : episodes(kRollOuts, wave_count_, config_.lookahead))
+    for (const Episode& e : episodes(kRollOuts, wave_count_))
       learn_episode(policy(), store(e.steps, config_.transitions));
     report_progress("roll-outs", ++wave_count_, 0);
     return stored() > before;

@@ -32,7 +32,7 @@ struct ReportNode {
 /// What a generation did: the generation part of summary.json plus the samples behind its pictures.
 struct GenerationReport {
   long transitions = 0;
-  long explored = 0;  // steps that the trees found, of which theirs were chosen
+  long explored = 0;  // steps that trees and mended episodes found, chosen from
   double contact_share =
       0.0;  // share of stored transitions that moved an object by more than 0.05 m
   double multi_body_share = 0.0;           // ... two objects or more
@@ -40,7 +40,7 @@ struct GenerationReport {
   long start_region_tree_transitions = 0;  // of them from trees: roll-outs begin there anyway
   double reachable_share =
       0.0;  // share of transitions from which a success is reachable in the stored graph
-  double tree_policy_success = 0.0;  // of the trees alone, before any roll-out
+  double tree_policy_success = 0.0;  // of trees and mended episodes, before any roll-out
   double tree_policy_length_mean = 0.0;
   int start_region_depth = -1;  // least depth of a node in the start region; -1: never reached
   long candidates = 0;          // reverse jobs asked for, pruned ones included

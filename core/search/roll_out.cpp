@@ -1,6 +1,5 @@
 #include "core/search/roll_out.hpp"
 
-#include <limits>
 #include <utility>
 
 namespace rtg {
@@ -19,10 +18,7 @@ int noisy(int action, int headings, double noise, Rng& rng) {
 class Lockstep {
  public:
   Lockstep(const Task& task, const EpisodePlan& plan)
-      : task_(task),
-        noise_share_(plan.noise),
-        lookahead_(plan.lookahead),
-        episodes_(plan.starts.size()) {
+      : task_(task), noise_share_(plan.noise), episodes_(plan.starts.size()) {
     for (std::size_t k = 0; k < plan.starts.size(); ++k) {
       alive_.push_back(k);
       states_.push_back({plan.starts[k], {}});
@@ -35,8 +31,7 @@ class Lockstep {
   void step(const TreePolicy& policy, const ReplayBatch& replay, SearchStats& stats) {
     std::vector<TreePolicy::Query> queries;
     for (const std::size_t e : alive_) queries.push_back(states_[e]);
-    const std::vector<TreePolicy::Choice> choices =
-        lookahead_ > 1 ? look_ahead(policy, queries, replay, stats) : policy.choose(queries);
+    const std::vector<TreePolicy::Choice> choices = policy.choose(queries);
     std::vector<ReplayJob> pushes;
     for (std::size_t k = 0; k < alive_.size(); ++k)
       pushes.push_back({queries[k].state, action(choices[k], noise_[alive_[k]])});
@@ -55,45 +50,6 @@ class Lockstep {
   std::vector<Episode> take() { return std::move(episodes_); }
 
  private:
-  /// What the choices of one query lead to.
-  struct Outlook {
-    TreePolicy::Choice best;
-    float least = std::numeric_limits<float>::infinity();
-  };
-
-  std::vector<TreePolicy::Choice> look_ahead(const TreePolicy& policy,
-                                             std::span<const TreePolicy::Query> queries,
-                                             const ReplayBatch& replay, SearchStats& stats) const {
-    std::vector<TreePolicy::Choice> tried;
-    std::vector<std::size_t> of;  // query of each
-    std::vector<ReplayJob> pushes;
-    for (std::size_t q = 0; q < queries.size(); ++q)
-      for (const TreePolicy::Choice& choice : policy.alternatives(queries[q], lookahead_)) {
-        tried.push_back(choice);
-        of.push_back(q);
-        pushes.push_back({queries[q].state, choice.action});
-      }
-    const std::vector<ReplayResult> results = replay(pushes);
-    std::vector<Outlook> outlooks(queries.size());
-    for (std::size_t k = 0; k < tried.size(); ++k) {
-      if (!stats.count(results[k])) continue;
-      Outlook& outlook = outlooks[of[k]];
-      const float score = score_after(policy, queries[of[k]], tried[k].entry, results[k].end);
-      if (score < outlook.least) outlook = {tried[k], score};
-    }
-    std::vector<TreePolicy::Choice> out;
-    for (const Outlook& outlook : outlooks) out.push_back(outlook.best);
-    return out;
-  }
-
-  float score_after(const TreePolicy& policy, TreePolicy::Query query, int entry,
-                    const Poses& end) const {
-    if (succeeded(task_, end)) return 0.0F;
-    query.state = end;
-    query.used.push_back(entry);
-    return policy.choose({&query, 1}).front().score;
-  }
-
   int action(const TreePolicy::Choice& choice, Rng& rng) const {
     const int headings = task_.push.headings;
     return choice.entry < 0 ? rng.below(headings)
@@ -111,7 +67,6 @@ class Lockstep {
 
   const Task& task_;
   double noise_share_;
-  int lookahead_;
   std::vector<Episode> episodes_;
   std::vector<TreePolicy::Query> states_;
   std::vector<Rng> noise_;

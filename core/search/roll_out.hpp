@@ -24,8 +24,6 @@ struct EpisodePlan {
   std::span<const Poses> starts;
   double noise = 0.0;      // share of actions replaced by a neighbouring heading, ±1 or ±2
   std::uint64_t seed = 0;  // of the noise; episode k uses a stream of its own
-  int lookahead = 1;       // best choices tried in the simulator; taken is the one after which the
-                           // policy's next one has the least score (0 after success)
 };
 
 /// Follows the policy from every start until success, the task's horizon or a push that the

@@ -12,7 +12,7 @@
 
 namespace rtg {
 
-/// The steps that the trees have found, each with the one behind it in its plan. Those that are
+/// The steps that the search has found, each with the one behind it in its plan. Those that are
 /// taken, to be stored, are taken with the whole plan behind them: on its own a step tells a
 /// learner nothing.
 class StepPool {

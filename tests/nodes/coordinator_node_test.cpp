@@ -28,6 +28,7 @@ SearchConfig small() {
   config.reverse = ReverseMode::kNaive;
   config.transitions = 1200;
   config.explored = 1.0;
+  config.mended = 0.0;
   config.breadth = 6;
   config.depth = 10;
   config.evaluation_starts = 5;

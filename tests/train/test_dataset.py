@@ -77,7 +77,7 @@ def test_concatenate_keeps_order(transitions: Transitions) -> None:
         ({"terminated": np.ones(50, bool)}, "'terminated' is not reward == 1"),
         ({"action": np.full(50, -1, np.int32)}, "'action' has negative values"),
         ({"action": np.full(50, 48, np.int32)}, "action 48; the task's are 0 to 47"),
-        ({"source": np.full(50, 3, np.int8)}, "'source' has other values than 0 to 2"),
+        ({"source": np.full(50, 4, np.int8)}, "'source' has other values than 0 to 3"),
     ],
 )
 def test_wrong_arrays_are_named(

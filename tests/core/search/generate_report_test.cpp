@@ -90,6 +90,7 @@ struct GenerationReportTest : ::testing::Test {
     config.transitions = 1500;
     config.breadth = 8;
     config.explored = 12.0;
+    config.mended = 0.2;
     config.patience = 1;
     config.twins = 2;
     config.evaluation_starts = 10;
@@ -140,7 +141,7 @@ TEST_F(GenerationReportTest, CoverageIsThatOfTheStoredTransitions) {
     coverage.add(t);
     const bool inside = in_the_start_region(t.poses);
     region += inside;
-    trees += inside && t.source != Source::kRollOut;
+    trees += inside && t.source < Source::kMended;
   }
   EXPECT_EQ(report.reachable_share, coverage.reachable_share());
   EXPECT_GT(report.reachable_share, 0.1);

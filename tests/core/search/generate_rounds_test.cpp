@@ -24,6 +24,7 @@ SearchConfig trees_only(int transitions, int depth) {
   config.depth = depth;
   config.turn_tolerance = 10.0;
   config.twins = 0;
+  config.mended = 0.0;
   config.chain_share = 0.0;
   config.target_jitter = 0.0;
   config.evaluation_starts = 7;

@@ -25,6 +25,7 @@ SearchConfig small() {
   config.breadth = 8;
   config.explored = 2.0;
   config.depth = 12;
+  config.mended = 0.2;
   config.twins = 2;  // these tests are not about how good the policy is
   config.evaluation_starts = 10;
   return config;
@@ -91,7 +92,8 @@ TEST(Generate, EachSourceHasItsShare) {
   };
   EXPECT_EQ(count(Source::kRollOut), 1500);
   EXPECT_GT(count(Source::kChainReplay), 0);
-  EXPECT_GT(count(Source::kStepReplay), 1000);
+  EXPECT_GT(count(Source::kMended), 0);
+  EXPECT_GT(count(Source::kStepReplay), 450);  // those drawn at random
 }
 
 TEST(Generate, StepsOfChainsAndEpisodesFollowEachOther) {
@@ -206,6 +208,7 @@ SearchConfig two_steps() {
   SearchConfig config = small();
   config.transitions = 2;
   config.explored = 1.0;
+  config.mended = 0.0;
   config.depth = 1;
   config.twins = 0;  // luck stretches errors without bound; here the policy has to find that out
   config.rollout_share = 0.0;

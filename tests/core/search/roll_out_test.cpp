@@ -116,45 +116,6 @@ TEST_F(RollOutTest, TellsHowFarEachStateIsFromTheData) {
   EXPECT_EQ(run({robot_at(0.5)}).front().strayed, (std::vector{0.5, 1.0, 1.5, 2.0}));
 }
 
-/// Of two entries the better one leads away from all that is known, the other one to `there`.
-struct LookaheadTest : RollOutTest {
-  static constexpr int kAway = 3, kThere = 5, kOn = 7;
-  Poses there = robot_at(1.0);
-  std::vector<ReplayJob> tried;
-
-  LookaheadTest() {
-    task.horizon = 1;
-    policy.add(task.start, kAway, 1.0);
-    policy.add(task.start, kThere, 3.0);
-    policy.add(there, kOn, 2.0);
-    replay = [this](std::span<const ReplayJob> jobs) {
-      tried.insert(tried.end(), jobs.begin(), jobs.end());
-      std::vector<ReplayResult> results;
-      for (const ReplayJob& job : jobs)
-        results.push_back({job.action == kThere ? there : robot_at(-6.0), job.action != rejected});
-      return results;
-    };
-  }
-
-  int taken(int lookahead) {
-    const std::vector<Poses> starts{task.start};
-    const EpisodePlan plan{starts, 0.0, 3, lookahead};
-    return run_episodes(task, policy, plan, replay, stats).front().steps.front().action;
-  }
-};
-
-TEST_F(LookaheadTest, TakesTheChoiceThatEndsWhereThePolicyKnowsMost) {
-  EXPECT_EQ(taken(1), kAway);
-  EXPECT_EQ(tried.size(), 1U);
-  EXPECT_EQ(taken(2), kThere);
-  EXPECT_EQ(tried.size(), 4U);  // two that are tried, one that is taken
-}
-
-TEST_F(LookaheadTest, LeavesOutWhatTheSimulatorRejects) {
-  rejected = kThere;
-  EXPECT_EQ(taken(2), kAway);
-}
-
 TEST_F(RollOutTest, AnEpisodeUsesEachEntryOnce) {
   add_entries(7);
   task.horizon = 7;
