@@ -17,5 +17,5 @@ def random_transitions(count: int, bodies: int = 4, seed: int = 0) -> Transition
         terminated=reward == 1.0,
         observation=rng.normal(size=(count, size)).astype(np.float32),
         next_observation=rng.normal(size=(count, size)).astype(np.float32),
-        source=rng.integers(3, size=count).astype(np.int8),
+        source=rng.integers(4, size=count).astype(np.int8),
     )

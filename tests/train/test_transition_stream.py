@@ -160,7 +160,7 @@ class Message:
     def __init__(self, **changes):
         self.first, self.n, self.n_poses = 4, 2, 18
         self.poses, self.next_poses = tuple(range(18)), tuple(range(18, 36))
-        self.action, self.success, self.source = (0, 47), (0, 1), (0, 2)
+        self.action, self.success, self.source = (0, 47), (0, 1), (0, 3)
         self.__dict__.update(changes)
 
 
@@ -183,7 +183,7 @@ def test_rows_have_the_shapes_of_the_data_set():
         {"action": (0, 48)},
         {"action": (-1, 0)},
         {"success": (2, 0)},
-        {"source": (0, 3)},
+        {"source": (0, 4)},
     ],
 )
 def test_a_batch_that_makes_no_sense_is_refused(changes):
