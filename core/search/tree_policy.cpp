@@ -150,34 +150,55 @@ float TreePolicy::contact_gap(std::size_t entry, Seen& seen) const {
   return square_distance(contacts_.data() + entry * size, there.data(), size);
 }
 
-/// Lowers `best` to the best entry of a cell. What the push meets is looked at only where the
-/// states are near enough.
-void TreePolicy::scan(const Cell& cell, Seen& seen, Choice& best) const {
+/// The best choices so far for different actions, best first, ties to the oldest entry.
+class TreePolicy::Shortlist {
+ public:
+  explicit Shortlist(std::size_t count) : count_(count) {}
+
+  /// A score beyond which a choice is of no use.
+  float limit() const { return best_.size() < count_ ? kNone : best_.back().score; }
+
+  void offer(const Choice& choice) {
+    const auto known = std::ranges::find(best_, choice.action, &Choice::action);
+    if (known != best_.end()) {
+      if (!before(choice, *known)) return;
+      best_.erase(known);
+    }
+    best_.insert(std::ranges::upper_bound(best_, choice, before), choice);
+    if (best_.size() > count_) best_.pop_back();
+  }
+
+  std::vector<Choice> take() { return std::move(best_); }
+
+ private:
+  static bool before(const Choice& a, const Choice& b) {
+    return std::pair(a.score, a.entry) < std::pair(b.score, b.entry);
+  }
+
+  std::size_t count_;
+  std::vector<Choice> best_;
+};
+
+/// Offers the entries of a cell. What the push meets is looked at only where the states are near
+/// enough.
+void TreePolicy::scan(const Cell& cell, Seen& seen, Shortlist& best) const {
   for (const int entry : cell.entries) {
     const auto k = static_cast<std::size_t>(entry);
     const float gap = state_gap(k, seen);
-    if (depth_[k] + kDistanceWeight * std::sqrt(gap) > best.score) continue;
-    if (seen.barred[static_cast<std::size_t>(action_[k])]) continue;
+    if (depth_[k] + kDistanceWeight * std::sqrt(gap) > best.limit()) continue;
     if (std::ranges::find(seen.query.used, entry) != seen.query.used.end()) continue;
     const float distance = std::sqrt(gap + contact_gap(k, seen));
-    const float score = depth_[k] + kDistanceWeight * distance;
-    if (score < best.score || (score == best.score && entry < best.entry))
-      best = {entry, action_[k], score, distance};
+    best.offer({entry, action_[k], depth_[k] + kDistanceWeight * distance, distance});
   }
 }
 
-TreePolicy::Seen TreePolicy::seen(const Query& query) const {
-  const auto headings = static_cast<std::size_t>(headings_);
-  Seen out{query, std::vector<float>(static_cast<std::size_t>(metric_.size())),
-           std::vector<std::vector<float>>(headings), std::vector<bool>(headings, false)};
-  metric_.embed(query.state, out.point);
-  return out;
-}
-
 /// The robot's own cell, then others in the order of the least score that an entry of theirs can
-/// have, until none can be better than the best entry seen.
-TreePolicy::Choice TreePolicy::choose_one(Seen& seen) const {
-  Choice best{-1, 0, kNone, kNone};
+/// have, until none can be better than the entries seen.
+std::vector<TreePolicy::Choice> TreePolicy::alternatives(const Query& query, int count) const {
+  Seen seen{query, std::vector<float>(static_cast<std::size_t>(metric_.size())),
+            std::vector<std::vector<float>>(static_cast<std::size_t>(headings_))};
+  metric_.embed(query.state, seen.point);
+  Shortlist best(static_cast<std::size_t>(count));
   const Cell* own = nullptr;
   if (const auto at = cell_at_.find(square_of(seen.point.data())); at != cell_at_.end()) {
     own = &cells_[at->second];
@@ -187,36 +208,25 @@ TreePolicy::Choice TreePolicy::choose_one(Seen& seen) const {
   for (const Cell& cell : cells_) {
     const float dx = outside(seen.point[0], cell.x), dy = outside(seen.point[1], cell.y);
     const float bound = cell.least + kDistanceWeight * std::sqrt(dx * dx + dy * dy);
-    if (bound * (1.0F - kRounding) <= best.score && &cell != own) order.emplace_back(bound, &cell);
+    if (bound * (1.0F - kRounding) <= best.limit() && &cell != own)
+      order.emplace_back(bound, &cell);
   }
   const auto by_bound = &std::pair<float, const Cell*>::first;  // few are ever looked at: a heap
   std::ranges::make_heap(order, std::ranges::greater{}, by_bound);
   for (; !order.empty(); order.pop_back()) {
     const auto [bound, cell] = order.front();
-    if (bound * (1.0F - kRounding) > best.score || bound == kNone) break;
+    if (bound * (1.0F - kRounding) > best.limit() || bound == kNone) break;
     scan(*cell, seen, best);
     std::ranges::pop_heap(order, std::ranges::greater{}, by_bound);
   }
-  return best;
+  return best.take();
 }
 
 std::vector<TreePolicy::Choice> TreePolicy::choose(std::span<const Query> queries) const {
   std::vector<Choice> out;
   for (const Query& query : queries) {
-    Seen here = seen(query);
-    out.push_back(choose_one(here));
-  }
-  return out;
-}
-
-std::vector<TreePolicy::Choice> TreePolicy::alternatives(const Query& query, int count) const {
-  std::vector<Choice> out;
-  Seen here = seen(query);
-  while (static_cast<int>(out.size()) < count) {
-    const Choice next = choose_one(here);
-    if (next.entry < 0) break;
-    out.push_back(next);
-    here.barred[static_cast<std::size_t>(next.action)] = true;
+    const std::vector<Choice> best = alternatives(query, 1);
+    out.push_back(best.empty() ? Choice{-1, 0, kNone, kNone} : best.front());
   }
   return out;
 }

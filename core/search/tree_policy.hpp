@@ -70,16 +70,15 @@ class TreePolicy {
     float least = 0.0F;        // depth of them all at least
     std::vector<int> entries;  // ascending
   };
+  class Shortlist;
+
   /// A query in the coordinates of the entries.
   struct Seen {
     const Query& query;
     std::vector<float> point;                  // embedding
     std::vector<std::vector<float>> contacts;  // per action, empty until it is needed
-    std::vector<bool> barred;                  // actions that are not wanted
   };
-  Seen seen(const Query& query) const;
-  Choice choose_one(Seen& seen) const;
-  void scan(const Cell& cell, Seen& seen, Choice& best) const;
+  void scan(const Cell& cell, Seen& seen, Shortlist& best) const;
   float state_gap(std::size_t entry, const Seen& seen) const;
   float contact_gap(std::size_t entry, Seen& seen) const;
   void cut(std::size_t left);
