@@ -64,13 +64,18 @@ bool TreePolicy::add(const Poses& state, int action, double depth) {
 /// Puts an entry into its cell. The robot's position leads its embedding.
 void TreePolicy::place(int entry) {
   const auto k = static_cast<std::size_t>(entry);
-  const float* robot = point_.data() + k * static_cast<std::size_t>(metric_.size());
+  const auto size = static_cast<std::size_t>(metric_.size());
+  const float* robot = point_.data() + k * size;
   const auto [at, fresh] = cell_at_.try_emplace(square_of(robot), cells_.size());
   if (fresh)
-    cells_.push_back(
-        {kCell * std::floor(robot[0] / kCell), kCell * std::floor(robot[1] / kCell), kNone, {}});
+    cells_.push_back({kCell * std::floor(robot[0] / kCell),
+                      kCell * std::floor(robot[1] / kCell),
+                      kNone,
+                      {},
+                      {}});
   Cell& cell = cells_[at->second];
   cell.entries.push_back(entry);
+  cell.points.insert(cell.points.end(), robot, robot + size);
   cell.least = std::min(cell.least, depth_[k]);
 }
 
@@ -92,8 +97,10 @@ void TreePolicy::forget(int first) {
   const auto left = static_cast<std::size_t>(first);
   for (std::size_t k = left; k < key_.size(); ++k) known_.erase(key_[k]);
   cut(left);
-  for (Cell& cell : cells_)
+  for (Cell& cell : cells_) {
     while (!cell.entries.empty() && cell.entries.back() >= first) cell.entries.pop_back();
+    cell.points.resize(cell.entries.size() * static_cast<std::size_t>(metric_.size()));
+  }
   bound_cells();
 }
 
@@ -130,12 +137,6 @@ void TreePolicy::cut(std::size_t left) {
   action_.resize(left);
   point_.resize(left * static_cast<std::size_t>(metric_.size()));
   contacts_.resize(left * static_cast<std::size_t>(contact_.size()));
-}
-
-/// |s_e - s|² [m²].
-float TreePolicy::state_gap(std::size_t entry, const Seen& seen) const {
-  const std::size_t size = seen.point.size();
-  return square_distance(point_.data() + entry * size, seen.point.data(), size);
 }
 
 /// |c(s_e, a) - c(s, a)|² [m²].
@@ -182,9 +183,12 @@ class TreePolicy::Shortlist {
 /// Offers the entries of a cell. What the push meets is looked at only where the states are near
 /// enough.
 void TreePolicy::scan(const Cell& cell, Seen& seen, Shortlist& best) const {
-  for (const int entry : cell.entries) {
+  const std::size_t size = seen.point.size();
+  for (std::size_t i = 0; i < cell.entries.size(); ++i) {
+    const int entry = cell.entries[i];
     const auto k = static_cast<std::size_t>(entry);
-    const float gap = state_gap(k, seen);
+    if (depth_[k] > best.limit()) continue;
+    const float gap = square_distance(cell.points.data() + i * size, seen.point.data(), size);
     if (depth_[k] + kDistanceWeight * std::sqrt(gap) > best.limit()) continue;
     if (std::ranges::find(seen.query.used, entry) != seen.query.used.end()) continue;
     const float distance = std::sqrt(gap + contact_gap(k, seen));

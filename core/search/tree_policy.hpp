@@ -66,9 +66,10 @@ class TreePolicy {
  private:
   /// Entries whose robot is in one square of the plane.
   struct Cell {
-    float x = 0.0F, y = 0.0F;  // lower corner [m]
-    float least = 0.0F;        // depth of them all at least
-    std::vector<int> entries;  // ascending
+    float x = 0.0F, y = 0.0F;   // lower corner [m]
+    float least = 0.0F;         // depth of them all at least
+    std::vector<int> entries;   // ascending
+    std::vector<float> points;  // their embeddings once more, side by side: scanning is all loads
   };
   class Shortlist;
 
@@ -79,7 +80,6 @@ class TreePolicy {
     std::vector<std::vector<float>> contacts;  // per action, empty until it is needed
   };
   void scan(const Cell& cell, Seen& seen, Shortlist& best) const;
-  float state_gap(std::size_t entry, const Seen& seen) const;
   float contact_gap(std::size_t entry, Seen& seen) const;
   void cut(std::size_t left);
   void place(int entry);
