@@ -10,6 +10,7 @@
 
 #include "core/search/coverage.hpp"
 #include "core/search/exploration.hpp"
+#include "core/search/lost_state.hpp"
 #include "core/search/plan_search.hpp"
 #include "core/search/policy_learning.hpp"
 #include "core/search/random_episodes.hpp"
@@ -196,7 +197,7 @@ class Generation {
   bool roll_out() {
     const long before = stored();
     for (const Episode& e : episodes(kRollOuts, wave_count_))
-      learn_episode(policy(), store(e.steps, config_.transitions));
+      learn_episode(policy(), store(worth_keeping(e), config_.transitions));
     report_progress("roll-outs", ++wave_count_, 0);
     return stored() > before;
   }

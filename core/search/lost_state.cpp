@@ -3,14 +3,26 @@
 #include <algorithm>
 
 namespace rtg {
+namespace {
+
+/// The first step at which the policy is lost; none: the number of steps.
+std::size_t lost_at(const Episode& e) {
+  const auto far = std::ranges::find_if(e.strayed, [](double d) { return d > kLost; });
+  return static_cast<std::size_t>(far - e.strayed.begin());
+}
+
+}  // namespace
 
 std::optional<Poses> lost_state(std::span<const Episode> episodes) {
-  for (const Episode& e : episodes) {
-    const auto far = std::ranges::find_if(e.strayed, [](double d) { return d > kLost; });
-    if (!e.success && far != e.strayed.end())
-      return e.steps[static_cast<std::size_t>(far - e.strayed.begin())].poses;
-  }
+  for (const Episode& e : episodes)
+    if (const std::size_t at = lost_at(e); !e.success && at < e.steps.size())
+      return e.steps[at].poses;
   return std::nullopt;
+}
+
+std::span<const Transition> worth_keeping(const Episode& e) {
+  const std::size_t kept = e.success ? e.steps.size() : lost_at(e) + kAfter;
+  return std::span(e.steps).first(std::min(kept, e.steps.size()));
 }
 
 }  // namespace rtg

@@ -43,5 +43,17 @@ TEST(LostState, IsNoneWithoutSuchAnEpisode) {
   EXPECT_EQ(lost_state(std::vector{episode(true, {2.0}), episode(false, {1.0})}), std::nullopt);
 }
 
+TEST(LostState, StepsLongAfterItAreNotWorthKeeping) {
+  const auto kept = [](const Episode& e) { return worth_keeping(e).size(); };
+  const std::vector<double> lost_at_2{0.1, 0.1, 2.0, 0.1, 2.0, 2.0, 2.0, 2.0, 2.0};
+  EXPECT_EQ(kept(episode(false, lost_at_2)), 2U + kAfter);
+  EXPECT_EQ(kept(episode(true, lost_at_2)), 9U);
+  EXPECT_EQ(kept(episode(false, {0.1, 2.0})), 2U);
+  EXPECT_EQ(kept(episode(false, std::vector(30, 0.5))), 30U);
+  EXPECT_EQ(kept(episode(false, {})), 0U);
+  const Episode e = episode(false, lost_at_2);
+  EXPECT_EQ(worth_keeping(e).data(), e.steps.data());
+}
+
 }  // namespace
 }  // namespace rtg
