@@ -186,9 +186,10 @@ class Generation {
   /// How the policy of the trees does before it learns from roll-outs of its own.
   void judge_trees() {
     Rng rng(seed_, kEvaluation << 32);
+    const double amplitude = config_.randomise ? task_.randomisation : task_.start_jitter;
     std::vector<Poses> starts;
     for (int k = 0; k < config_.evaluation_starts; ++k)
-      starts.push_back(jittered_start(task_, task_.start_jitter, rng));
+      starts.push_back(jittered_start(task_, amplitude, rng));
     const PolicyScore score = evaluate_policy(task_, policy(), starts, seams_.replay, stats_);
     report_.tree_policy_success = score.success;
     report_.tree_policy_length_mean = score.length_mean;
@@ -232,14 +233,20 @@ class Generation {
   int wave_count_ = 0;
 };
 
+/// With `randomise`, starts lie all over the task's randomisation.
+SearchConfig spread(SearchConfig config, const Task& task) {
+  if (config.randomise) config.target_jitter = config.rollout_jitter = task.randomisation;
+  return config;
+}
+
 }  // namespace
 
 GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams) {
   const auto start = std::chrono::steady_clock::now();
   GenerationReport report = config.reverse == ReverseMode::kRandom
-                                ? random_episodes(task, config, seed, seams)
-                                : Generation(task, config, seed, seams).run();
+                                ? random_episodes(task, spread(config, task), seed, seams)
+                                : Generation(task, spread(config, task), seed, seams).run();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   report.generate_wall_s = wall.count();
   return report;

@@ -42,6 +42,7 @@ struct SearchConfig {
   double mended = 1.0;             // steps found by mending lost episodes per one of trees stored
   double rollout_jitter = 0.25;    // roll-outs start with objects moved by up to ± this [m]
   double rollout_noise = 0.1;      // share of their actions replaced by a neighbouring heading
+  bool randomise = false;          // all these starts: objects moved by ± task.randomisation
   int evaluation_starts = 100;     // episodes behind tree_policy_success
 
   template <class Visitor>
@@ -76,6 +77,7 @@ struct SearchConfig {
     v.number("mended", mended, 0.0, 1e6, "steps of mended episodes per one of trees stored");
     v.number("rollout_jitter", rollout_jitter, 0.0, 10.0, "of the starts of roll-outs [m]");
     v.number("rollout_noise", rollout_noise, 0.0, 1.0, "share of roll-out actions disturbed");
+    v.flag("randomise", randomise, "targets and roll-outs all over task.randomisation");
     v.integer("evaluation_starts", evaluation_starts, 1, 100000, "episodes that judge the data");
   }
 };

@@ -24,7 +24,9 @@ const std::array<Settings, kMethods.size()>& table() {
       Settings{{"search", "reverse", "random"}},
       Settings{{"search", "reverse", "naive"}},
       Settings{{"search", "reverse", "rrbs"}},
-      Settings{{"search", "reverse", "rrbs"}, {"train", "randomise", "true"}},
+      Settings{{"search", "reverse", "rrbs"},
+               {"search", "randomise", "true"},
+               {"train", "randomise", "true"}},
       online({{"train", "double_q", "true"}, {"train", "hindsight", "4"}}),
       online({{"train", "double_q", "true"}, {"train", "curriculum", "0.9"}}),
   };

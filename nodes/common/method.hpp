@@ -24,7 +24,7 @@ struct MethodSetting {
 ///   ddqn_random  as ddqn_rtg; the offline data are episodes of the uniform random policy
 ///   ddqn_naive   as ddqn_rtg; reverse steps by kinematics alone
 ///   ddqn_rtg     offline data of reverse trajectory generation
-///   ddqn_rtg_dr  the same, episodes start all over task.randomisation  [App. D]
+///   ddqn_rtg_dr  the same, all episodes start all over task.randomisation  [App. D]
 ///   her          as ddqn, with hindsight goals  [Andrychowicz et al. 2017]
 ///   rcg          as ddqn, with starts grown back from goal states  [Florensa et al. 2017]
 ///

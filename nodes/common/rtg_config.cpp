@@ -157,11 +157,15 @@ void check_inertia(const ConfigNode& root, const RtgConfig& config) {
         "false, or reverse.terminal_weight above 0 (reverse.preset paper sets it to 0)");
 }
 
-/// What `train.randomise` asks of the task.
+/// What `randomise` asks of the task.
 void check_randomisation(const ConfigNode& root, const RtgConfig& config) {
-  if (!config.train.randomise || config.task.randomisation > 0.0) return;
-  throw ConfigError(find(find(root, "train")->value, "randomise")->value.origin,
-                    "task.randomisation", "0 with train.randomise", "more than 0");
+  if (config.task.randomisation > 0.0) return;
+  for (const auto& [section, asked] :
+       {std::pair{"train", config.train.randomise}, std::pair{"search", config.search.randomise}})
+    if (asked)
+      throw ConfigError(find(find(root, section)->value, "randomise")->value.origin,
+                        "task.randomisation", std::string("0 with ") + section + ".randomise",
+                        "more than 0");
 }
 
 void check_bus(const ConfigNode& root, const std::string& url) {

@@ -45,6 +45,8 @@ def test_methods_differ_in_these_values_alone() -> None:
         "ddqn_rtg": "rrbs",
         "ddqn_rtg_dr": "rrbs",
     }
+    randomised = [name for name in METHODS if of[name]["search"]["randomise"]]
+    assert randomised == ["ddqn_rtg_dr"]
 
 
 def test_settings_stand_above_the_method_and_it_above_presets_and_the_file() -> None:

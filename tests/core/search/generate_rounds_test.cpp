@@ -199,6 +199,25 @@ TEST(GenerateRounds, AnglesCountOnceThePolicySolvesAll) {
   }
 }
 
+TEST(GenerateRounds, RandomisedStartsLieAllOverTheTasksRandomisation) {
+  for (const bool randomise : {false, true}) {
+    ScriptedWorld world;
+    world.task.randomisation = 0.5;
+    world.pushed = [](const Poses& poses, int) { return poses; };
+    SearchConfig config = trees_only(100, 1);
+    config.rollout_share = 0.5;
+    config.rollout_jitter = 0.0;
+    config.randomise = randomise;
+    world.generation(config);
+    double farthest = 0.0;
+    for (const Transition& t : world.stored)
+      if (t.source == Source::kRollOut)
+        farthest = std::max(farthest, std::abs(t.poses[1].x - world.task.start[1].x));
+    EXPECT_LE(farthest, randomise ? 0.5 : 0.0);
+    EXPECT_GE(farthest, randomise ? 0.3 : 0.0);
+  }
+}
+
 struct RollOutsTest : ::testing::TestWithParam<double> {};
 
 /// Waves of 50, after the judgement of no policy at all.
