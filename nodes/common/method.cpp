@@ -11,6 +11,7 @@ using Settings = std::vector<MethodSetting>;
 Settings online(const Settings& more) {
   Settings all{{"train", "offline", "false"},
                {"train", "epsilon_start", "1.0"},
+               {"train", "epsilon_end", "0.05"},
                {"train", "nearby_share", "0.0"}};
   all.insert(all.end(), more.begin(), more.end());
   return all;

@@ -15,7 +15,8 @@ inline constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"}
 /// best within Table 2's interaction budget. A loader begins with train_preset(preset) and reads
 /// the other fields over it. At b7950a3 (Gathering, 60,000 transitions of rrbs) success with a hard
 /// copy every 500 steps instead of target_rate swung between 0.7 and 1 from one evaluation to the
-/// next.
+/// next. At d819b41 (Sorting) training episodes succeed at a rate of 0.97 to 1.00 from 80,000
+/// interactions on with epsilon_end 0.02, of 0.83 after 70,000 with 0.05.
 struct TrainConfig {
   TrainPreset preset = TrainPreset::kDefault;
   int interactions = 350000;    // Table 2
@@ -38,7 +39,7 @@ struct TrainConfig {
   bool clip_targets = true;     // to [0, 1], where the values lie
   bool value_bounds = true;     // raise targets to what stored trajectories prove
   double epsilon_start = 0.3;   // exploration at the first interaction
-  double epsilon_end = 0.05;    // ... and from epsilon_share of the interactions on
+  double epsilon_end = 0.02;    // ... and from epsilon_share of the interactions on
   double epsilon_share = 0.2;
   double nearby_share = 0.5;  // of the exploring actions: near the greedy heading
   int nearby_headings = 2;    // how near
@@ -122,6 +123,7 @@ inline TrainConfig train_preset(TrainPreset preset) {
   config.dueling = config.layer_norm = config.small_head = false;
   config.clip_targets = config.value_bounds = false;
   config.epsilon_start = 1.0;
+  config.epsilon_end = 0.05;
   config.epsilon_share = 0.1;
   config.nearby_share = 0.0;
   config.start_jitter = 0.0;

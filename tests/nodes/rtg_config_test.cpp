@@ -203,6 +203,7 @@ TEST(RtgConfig, AMethodGivesTheValuesThatAreNotGiven) {
   TrainConfig train;
   train.offline = false;
   train.epsilon_start = 0.5;  // of the file
+  train.epsilon_end = 0.05;
   train.nearby_share = 0.0;
   train.hindsight = 4;
   EXPECT_EQ(config.run.method, Method::kHer);

@@ -26,7 +26,8 @@ def values(method: str, *more: str) -> dict:
 def test_methods_differ_in_these_values_alone() -> None:
     of = {name: values(name) for name in METHODS}
     train, rtg = {name: of[name]["train"] for name in METHODS}, of["ddqn_rtg"]["train"]
-    vanilla = {**rtg, "offline": False, "epsilon_start": 1.0, "nearby_share": 0.0}
+    vanilla = {**rtg, "offline": False, "epsilon_start": 1.0, "epsilon_end": 0.05}
+    vanilla["nearby_share"] = 0.0
     assert train == {
         "dqn": {**vanilla, "double_q": False},
         "ddqn": vanilla,
@@ -37,7 +38,7 @@ def test_methods_differ_in_these_values_alone() -> None:
         "her": {**vanilla, "hindsight": 4},
         "rcg": {**vanilla, "curriculum": 0.9},
     }
-    assert (rtg["epsilon_end"], rtg["epsilon_share"]) == (0.05, 0.2)
+    assert (rtg["epsilon_end"], rtg["epsilon_share"]) == (0.02, 0.2)
     reverse = {name: of[name]["search"]["reverse"] for name in METHODS if name not in ONLINE}
     assert reverse == {
         "ddqn_random": "random",

@@ -43,7 +43,7 @@ class TrainSettings:
     clip_targets: bool = True
     value_bounds: bool = True
     epsilon_start: float = 0.3
-    epsilon_end: float = 0.05
+    epsilon_end: float = 0.02
     epsilon_share: float = 0.2
     nearby_share: float = 0.5
     nearby_headings: int = 2
