@@ -29,10 +29,9 @@ enum Stream : std::uint64_t {
   kMending
 };
 
-constexpr int kWave = 50;  // episodes that run in lockstep
-constexpr std::array<std::size_t, 2> kMendFrom{0,
-                                               8};  // actions after which a lost episode is mended
-constexpr int kChoices = 20;                        // waves that show which steps serve
+constexpr int kWave = 50;                              // episodes that run in lockstep
+constexpr std::array<std::size_t, 2> kMendFrom{0, 8};  // actions before a failed one is mended
+constexpr int kChoices = 20;                           // waves that show which steps serve
 constexpr int kMastered = 3;     // rounds that find nothing left to learn, and the search is over
 constexpr double kMisses = 0.3;  // share of the draws of steps whose plan misses that count
 constexpr int kMaxBarren = 8;    // rounds or waves without a transition before it gives up
@@ -94,16 +93,20 @@ class Generation {
       barren = exploration_.round(limit, after_layer) ? 0 : barren + 1;
   }
 
-  /// Waves of episodes of the policy until `mended` steps per stored one are found; it learns those
-  /// that succeed and, for the lost ones, the plans that a search forwards finds.
+  /// Waves of episodes of the policy until `mended` steps per stored one are found at least; it
+  /// learns those that succeed and, for the others, the plans that a search forwards finds.
   void mend() {
     const StepPool& pool = exploration_.pool();
     const auto wanted = static_cast<std::size_t>(static_cast<double>(trees_) * config_.mended);
     const std::size_t limit = pool.size() + wanted;
     for (int wave = 0; pool.size() < limit && policy().size() > 0 && !cancelled(); ++wave) {
       const std::size_t before = pool.size();
-      mend(episodes(kMending, wave));
-      report_progress("mending " + std::to_string(wave + 1), 0, 0);
+      const std::string phase = "mending " + std::to_string(wave + 1);
+      std::vector<Episode> tried = episodes(kMending, wave);
+      report_progress(phase, 0, 0);
+      if (cancelled()) break;
+      mend(std::move(tried));
+      report_progress(phase, 0, 0);
       if (pool.size() == before) break;
     }
   }
@@ -229,13 +232,15 @@ class Generation {
   Exploration exploration_;
   Rng others_;
   GenerationReport report_;
-  long trees_ = 0;  // transitions of trees to be stored
+  long trees_ = 0;  // transitions of trees and mended episodes to be stored
   int wave_count_ = 0;
 };
 
 /// With `randomise`, starts lie all over the task's randomisation.
-SearchConfig spread(SearchConfig config, const Task& task) {
-  if (config.randomise) config.target_jitter = config.rollout_jitter = task.randomisation;
+SearchConfig randomised(SearchConfig config, const Task& task) {
+  if (config.randomise)
+    for (double* jitter : {&config.target_jitter, &config.rollout_jitter})
+      *jitter = std::max(*jitter, task.randomisation);
   return config;
 }
 
@@ -245,8 +250,8 @@ GenerationReport generate(const Task& task, const SearchConfig& config, std::uin
                           const GenerationSeams& seams) {
   const auto start = std::chrono::steady_clock::now();
   GenerationReport report = config.reverse == ReverseMode::kRandom
-                                ? random_episodes(task, spread(config, task), seed, seams)
-                                : Generation(task, spread(config, task), seed, seams).run();
+                                ? random_episodes(task, randomised(config, task), seed, seams)
+                                : Generation(task, randomised(config, task), seed, seams).run();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   report.generate_wall_s = wall.count();
   return report;

@@ -22,7 +22,8 @@ struct GenerationSeams {
 
 /// The whole generation: trees of reverse steps from sampled goals (beam search), first towards the
 /// start, then to where the tree policy still gets lost (exploration.hpp); forward replay of the
-/// best predecessors found, end-to-end replay of chains. A search that covers a task finds far more
+/// best predecessors found, end-to-end replay of chains; then, where episodes of the policy fail,
+/// plans searched forwards (plan_search.hpp). A search that covers a task finds far more
 /// steps than a learner can use: stored are those that episodes of the policy use, and others drawn
 /// at random, all with the plans behind them; the policy keeps to these. Last, roll-outs of the
 /// policy. A pure function of (task, config, seed) and the seams.

@@ -21,7 +21,8 @@ std::optional<Poses> lost_state(std::span<const Episode> episodes) {
 }
 
 std::span<const Transition> worth_keeping(const Episode& e) {
-  const std::size_t kept = e.success ? e.steps.size() : lost_at(e) + kAfter;
+  const bool wandered = !e.success && !e.used.empty();
+  const std::size_t kept = wandered ? lost_at(e) + kAfter : e.steps.size();
   return std::span(e.steps).first(std::min(kept, e.steps.size()));
 }
 

@@ -11,7 +11,7 @@ namespace rtg {
 namespace {
 
 constexpr std::size_t kBreadth = 4;  // states kept after each action
-constexpr int kChoices = 4;          // actions tried from each
+constexpr int kActions = 4;          // actions tried from each
 constexpr int kPatience = 10;        // actions that bring no state nearer to success end a search
 constexpr double kTwin = 0.05;       // states so near are the same to the beam [m]
 
@@ -36,7 +36,7 @@ class Beam {
     tried_.clear();
     for (const std::size_t k : front_)
       for (const TreePolicy::Choice& c :
-           guide.policy.alternatives({nodes_[k].poses, nodes_[k].used}, kChoices)) {
+           guide.policy.alternatives({nodes_[k].poses, nodes_[k].used}, kActions)) {
         tried_.push_back({k, c.entry});
         pushes.push_back({nodes_[k].poses, c.action});
       }

@@ -37,7 +37,7 @@ struct GenerationReport {
       0.0;  // share of stored transitions that moved an object by more than 0.05 m
   double multi_body_share = 0.0;           // ... two objects or more
   long start_region_transitions = 0;       // that begin in the start region
-  long start_region_tree_transitions = 0;  // of them from trees: roll-outs begin there anyway
+  long start_region_tree_transitions = 0;  // of them found backwards: episodes begin there anyway
   double reachable_share =
       0.0;  // share of transitions from which a success is reachable in the stored graph
   double tree_policy_success = 0.0;  // of trees and mended episodes, before any roll-out

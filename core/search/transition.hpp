@@ -13,9 +13,9 @@ enum class Source : std::int8_t {
   kStepReplay,   // one reverse candidate replayed forward
   kChainReplay,  // part of a whole chain replayed end to end from its far end, but for its first
                  // step and any other that is stored already
-  kMended,   // part of a plan found forwards from where an episode of the tree policy was lost, or
-             // of an episode that was not lost meanwhile
-  kRollOut,  // part of an episode of the tree policy, or the random one, from a jittered start
+  kRollOut,      // part of an episode of the tree policy, or the random one, from a jittered start
+  kMended,  // part of a plan found forwards where an episode of the tree policy failed, or of an
+            // episode that succeeded meanwhile
 };
 
 /// One true transition of the true dynamics (Box2D). Success is the task's predicate on `next`.

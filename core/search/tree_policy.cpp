@@ -1,6 +1,7 @@
 #include "core/search/tree_policy.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -154,7 +155,7 @@ float TreePolicy::contact_gap(std::size_t entry, Seen& seen) const {
 /// The best choices so far for different actions, best first, ties to the oldest entry.
 class TreePolicy::Shortlist {
  public:
-  explicit Shortlist(std::size_t count) : count_(count) {}
+  explicit Shortlist(std::size_t count) : count_(count) { assert(count > 0); }
 
   /// A score beyond which a choice is of no use.
   float limit() const { return best_.size() < count_ ? kNone : best_.back().score; }

@@ -22,12 +22,12 @@ def episodes(transitions: Transitions, source: str) -> list[slice]:
 
 
 def best_episode(transitions: Transitions) -> Floats | None:
-    """States of the shortest successful roll-out, else of the longest stretch of a chain.
+    """States of the shortest successful roll-out or mended episode, else of a long chain.
 
     Steps that were stored before their chain are not part of it.
     [T+1, bodies, 3]; None if there is neither.
     """
-    for source, sign in (("roll_out", 1), ("chain_replay", -1)):
+    for source, sign in (("roll_out", 1), ("mended", 1), ("chain_replay", -1)):
         solved = [e for e in episodes(transitions, source) if transitions.terminated[e.stop - 1]]
         if solved:
             best = min(solved, key=lambda e: (sign * (e.stop - e.start), e.start))

@@ -75,13 +75,14 @@ TEST(Coverage, CountsWhatBeginsInTheStartRegionWithAndWithoutRollOuts) {
   const Task task = gathering();
   Coverage coverage(task);
   Transition t = moving(0, 0.0);
-  for (const Source source : {Source::kRollOut, Source::kStepReplay, Source::kChainReplay}) {
+  for (const Source source :
+       {Source::kRollOut, Source::kStepReplay, Source::kChainReplay, Source::kMended}) {
     t.source = source;
     coverage.add(t);
   }
   t.poses[1].x += 1.0;  // begins outside, ends inside
   coverage.add(t);
-  EXPECT_EQ(coverage.start_region(), 3);
+  EXPECT_EQ(coverage.start_region(), 4);
   EXPECT_EQ(coverage.start_region_trees(), 2);
 }
 

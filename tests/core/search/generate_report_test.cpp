@@ -141,7 +141,7 @@ TEST_F(GenerationReportTest, CoverageIsThatOfTheStoredTransitions) {
     coverage.add(t);
     const bool inside = in_the_start_region(t.poses);
     region += inside;
-    trees += inside && t.source < Source::kMended;
+    trees += inside && t.source < Source::kRollOut;
   }
   EXPECT_EQ(report.reachable_share, coverage.reachable_share());
   EXPECT_GT(report.reachable_share, 0.1);

@@ -203,6 +203,7 @@ TEST(GenerateRounds, RandomisedStartsLieAllOverTheTasksRandomisation) {
   for (const bool randomise : {false, true}) {
     ScriptedWorld world;
     world.task.randomisation = 0.5;
+    world.task.horizon = 1;
     world.pushed = [](const Poses& poses, int) { return poses; };
     SearchConfig config = trees_only(100, 1);
     config.rollout_share = 0.5;

@@ -16,6 +16,7 @@ Episode episode(bool success, std::vector<double> strayed) {
     poses[0].x = static_cast<double>(k);
     out.steps.push_back({poses, 0, poses});
   }
+  out.used.assign(strayed.size(), 1);
   out.strayed = std::move(strayed);
   return out;
 }
@@ -51,6 +52,9 @@ TEST(LostState, StepsLongAfterItAreNotWorthKeeping) {
   EXPECT_EQ(kept(episode(false, {0.1, 2.0})), 2U);
   EXPECT_EQ(kept(episode(false, std::vector(30, 0.5))), 30U);
   EXPECT_EQ(kept(episode(false, {})), 0U);
+  Episode at_random = episode(false, std::vector(30, 99.0));
+  at_random.used.clear();
+  EXPECT_EQ(kept(at_random), 30U);
   const Episode e = episode(false, lost_at_2);
   EXPECT_EQ(worth_keeping(e).data(), e.steps.data());
 }
