@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rtg import _core, paths
+from rtg import _core, paths, replay_gaps
 from rtg.cells import Cell, Grid
 from rtg.run_folder import write_json
 from rtg.training_log import TrainingLog
@@ -33,6 +33,8 @@ def finished(folder: Path, cell: Cell, course: Sequence[float], **more: Any) -> 
     log = TrainingLog(run)
     for at, success in enumerate(course, start=1):
         log.add(row(5000 * at, success))
+    rng = np.random.default_rng(cell.seed)
+    gaps = np.exp(rng.normal(-5.0, 1.0, size=500)).tolist()
     summary = {
         "success_rate": course[-1],
         "rollout_success": 0.9 * course[-1],
@@ -52,13 +54,11 @@ def finished(folder: Path, cell: Cell, course: Sequence[float], **more: Any) -> 
         "contact_share": 0.5,
         "tree_policy_success": 0.85,
         "defects": [],
+        "replay_gap_counts": replay_gaps.counts(gaps),
         **more,
     }
     write_json(run / "summary.json", summary)
     write_json(run / "versions.json", {"git_revision": "abc", "git_modified": False})
-    rng = np.random.default_rng(cell.seed)
-    gaps = np.exp(rng.normal(-5.0, 1.0, size=500)).tolist()
-    write_json(run / "generation.json", {"replay_gaps": gaps})
     (run / "config.yaml").write_text(_core.Config.from_file(CONFIG).yaml)
     start = _core.Config.from_file(CONFIG).task.start
     np.savez(run / "best_episode.npz", poses=np.stack([start, start]), success=course[-1] > 0.5)

@@ -155,7 +155,8 @@ def test_curves_with_gaps_and_empty_samples_can_be_drawn(tmp_path):
         "rollout_success": np.array([nan, nan, nan]),
     }
     plots.learning_curve(tmp_path / "curve.png", "a run", curve)
-    plots.replay_gap(tmp_path / "gap.png", "a run", np.zeros(0))
+    report = {"replay_gaps": [0.0, 0.02], "replay_gap_median": 0.01, "replay_gap_p90": 0.02}
+    plots.replay_gap(tmp_path / "gap.png", "a run", report)
     none = np.zeros((0, 4, 3))
     plots.coverage(tmp_path / "coverage.png", "a run", TASK, none, np.zeros(0))
     for file in tmp_path.iterdir():

@@ -51,12 +51,18 @@ def test_a_sweep_shows_every_run_and_who_never_got_there(tmp_path, figures):
     assert success.get_xlabel() == "ddqn_rtg, train.batch"
 
 
-def test_gaps_have_a_histogram_per_task(tmp_path, figures):
-    gaps = {"gathering": np.full(30, 0.01), "sorting": np.array([0.0, 0.5])}
-    report_plots.replay_gaps(tmp_path / "gaps.png", gaps)
-    counts = [sum(bar.get_height() for bar in axis.patches) for axis in figures[0].axes]
-    assert counts == [30, 2]
-    assert figures[0].axes[0].get_title(loc="left") == "gathering: 30 replayed candidates"
+def test_gaps_have_a_histogram_per_task_over_all_its_runs(tmp_path, figures):
+    cells = {
+        Cell("gathering", "ddqn_rtg", (), 1): [0.5],
+        Cell("gathering", "ddqn_rtg", (), 2): [0.5],
+        Cell("sorting", "ddqn_rtg", (), 1): [0.5],
+    }
+    runs = comparison(tmp_path, cells)
+    of_tasks = {task: runs.done(task, "ddqn_rtg") for task in runs.tasks}
+    report_plots.replay_gaps(tmp_path / "gaps.png", of_tasks)
+    heights = [sum(bar.get_height() for bar in axis.patches) for axis in figures[0].axes]
+    assert heights == [1000, 500]
+    assert figures[0].axes[0].get_title(loc="left") == "gathering: 1,000 replayed candidates"
 
 
 def test_labels_are_drawn_without_what_they_share():

@@ -4,7 +4,7 @@ import json
 import re
 
 import pytest
-from rtg import paths, run_folder
+from rtg import paths, replay_gaps, run_folder
 from rtg.errors import UserError
 
 CONFIG = {
@@ -40,7 +40,13 @@ def test_the_summary_merges_both_halves_and_what_was_measured(tmp_path):
         "lost_transitions": 3,  # the learner knows better than the display
         "worker_restarts": 2,
         "epsilon": 0.1,
+        "replay_gap_counts": replay_gaps.counts([0.1]),
     }
+
+
+def test_gaps_are_counted_in_bins_of_the_same_ratio():
+    counts = replay_gaps.counts([0.0, 1e-4, 0.0099, 0.0101, 99.0])
+    assert {at: count for at, count in enumerate(counts) if count} == {0: 2, 39: 1, 40: 1, 99: 1}
 
 
 def test_the_summary_of_a_run_without_learner_has_nulls_in_its_place(tmp_path):

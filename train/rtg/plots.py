@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from rtg import replay_gaps
 from rtg.draw import GOAL, INK, PAPER, ROBOT, TaskLike, circle, kind_colours, outline
 
 Floats = NDArray[np.float64]
@@ -96,27 +97,25 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats]) -> None:
         save(figure, path)
 
 
-def _metres(value: float, floor: float) -> str:
+def _metres(value: float) -> str:
+    floor = replay_gaps.EDGES[0]
     return f"≤ {floor:g} m" if value <= floor else f"{value:.2g} m"
 
 
-def gap_histogram(axis: Axes, gaps: Floats) -> None:
-    """Counts over decades of the replay gap [m], with median and 90th percentile. gaps [N]."""
-    floor = 1e-4
-    values = np.maximum(np.asarray(gaps, dtype=float), floor)
-    top = max(float(values.max(initial=floor)), 10 * floor)
-    edges = np.geomspace(floor, 1.001 * top, 61)
-    axis.hist(values, bins=edges.tolist(), color=_BLUE, alpha=0.85)
+def gap_histogram(axis: Axes, counts: Sequence[int], median: float, p90: float) -> None:
+    """The bins of rtg.replay_gaps as bars, with median and 90th percentile [m]. counts [bins]."""
+    bounds, top = replay_gaps.EDGES, int(np.flatnonzero(counts).max(initial=0)) + 1
+    axis.bar(bounds[:-1], counts, np.diff(bounds), align="edge", color=_BLUE, alpha=0.85)
     axis.set_xscale("log")
+    axis.set_xlim(bounds[0] / 1.1, bounds[top] * 1.1)
     axis.set_ylabel("replayed candidates")
-    if not len(values):
-        return
-    for share, words in ((50, "median"), (90, "90th percentile")):
-        at = float(np.percentile(values, share))
-        axis.axvline(at, color=_ORANGE, lw=1.5, ls="-" if share == 50 else "--")
+    marks = (("median", median, "-", 0.99), ("90th percentile", p90, "--", 0.9))
+    for words, gap, dashes, height in marks:
+        at = max(gap, float(bounds[0]))
+        axis.axvline(at, color=_ORANGE, lw=1.5, ls=dashes)
         axis.annotate(
-            f" {words} {_metres(at, floor)}",
-            (at, 0.99 if share == 50 else 0.90),
+            f" {words} {_metres(gap)}",
+            (at, height),
             xycoords=("data", "axes fraction"),
             va="top",
             color="#a35d14",
@@ -125,11 +124,12 @@ def gap_histogram(axis: Axes, gaps: Floats) -> None:
         )
 
 
-def replay_gap(path: Path, title: str, gaps: Floats) -> None:
-    """Histogram of the replay gap of one run. gaps [N] in m."""
+def replay_gap(path: Path, title: str, report: Mapping[str, Any]) -> None:
+    """Histogram of the replay gap of one run. report: generation.json."""
     with style():
         figure, axis = plt.subplots(figsize=(6.4, 3.4), layout="constrained")
-        gap_histogram(axis, gaps)
+        counts = replay_gaps.counts(report["replay_gaps"])
+        gap_histogram(axis, counts, report["replay_gap_median"], report["replay_gap_p90"])
         axis.set_xlabel(GAP_AXIS)
         axis.set_title(title)
         save(figure, path)

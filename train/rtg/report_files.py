@@ -49,9 +49,9 @@ def _draw(out: Path, comparison: Comparison) -> None:
         if any(run.cell.settings for run in done):
             report_plots.sweep(out / f"sweep_{task}.png", comparison, task)
         _draw_episode(out, task, done)
-        samples = report_plots.gaps_of(_of_best_method(done))
-        if len(samples):
-            gaps[task] = samples
+        replayed = [run for run in _of_best_method(done) if "replay_gap_counts" in run.summary]
+        if replayed:
+            gaps[task] = replayed
     if gaps:
         report_plots.replay_gaps(out / "replay_gap.png", gaps)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from rtg import plots
 from rtg.estimates import carried_forward
 from rtg.methods import METHODS
-from rtg.run_folder import read_json
 from rtg.run_results import Comparison, RunResult
 
 Floats = NDArray[np.float64]
@@ -115,22 +114,20 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
         plots.save(figure, path)
 
 
-def gaps_of(runs: Sequence[RunResult]) -> Floats:
-    """All samples of the replay gap [m] of these runs. [N]"""
-    samples = [read_json(run.folder / "generation.json").get("replay_gaps", []) for run in runs]
-    return np.concatenate([np.array(s, float) for s in samples]) if samples else np.empty(0)
-
-
-def replay_gaps(path: Path, gaps: dict[str, Floats]) -> None:
-    """A histogram of the replay gap per task. gaps [N] each."""
+def replay_gaps(path: Path, of_tasks: Mapping[str, Sequence[RunResult]]) -> None:
+    """A histogram of the replay gap per task, over its runs; median and 90th percentile are means
+    over them, as in the table."""
     with plots.style():
-        size = (6.4, 3.0 * len(gaps) + 0.3)
+        size = (6.4, 3.0 * len(of_tasks) + 0.3)
         figure, axes = plt.subplots(
-            len(gaps), 1, figsize=size, layout="constrained", sharex=True, squeeze=False
+            len(of_tasks), 1, figsize=size, layout="constrained", sharex=True, squeeze=False
         )
-        for axis, (task, values) in zip(axes.flat, gaps.items(), strict=True):
-            plots.gap_histogram(axis, values)
-            axis.set_title(f"{task}: {len(values):,} replayed candidates")
+        for axis, (task, runs) in zip(axes.flat, of_tasks.items(), strict=True):
+            counts = np.sum([run.summary["replay_gap_counts"] for run in runs], axis=0)
+            names = ("replay_gap_median", "replay_gap_p90")
+            marks = [float(np.mean([run.summary[name] for run in runs])) for name in names]
+            plots.gap_histogram(axis, counts, *marks)
+            axis.set_title(f"{task}: {counts.sum():,} replayed candidates")
         axes[-1, 0].set_xlabel(plots.GAP_AXIS)
         plots.save(figure, path)
 

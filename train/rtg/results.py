@@ -28,8 +28,8 @@ def learning_curve(path: Path) -> dict[str, Floats]:
 
 def _draw_generation(plan: RunPlan, task: _core.Task) -> None:
     report = run_folder.read_json(plan.report_file)
-    gaps = np.array(report["replay_gaps"], float)
-    plots.replay_gap(plan.folder / "replay_gap.png", plan.title, gaps)
+    if report["replay_gaps"]:
+        plots.replay_gap(plan.folder / "replay_gap.png", plan.title, report)
     nodes = report["nodes"]
     poses = np.array([node["poses"] for node in nodes]).reshape(-1, task.bodies, 3)
     depth = np.array([node["depth"] for node in nodes], float)

@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from rtg import paths
+from rtg import paths, replay_gaps
 from rtg.errors import UserError
 
 # What summary.json holds at least, null where a part did not run; train/SUMMARY.md explains it.
@@ -146,4 +146,6 @@ def summary(
         "mode": mode,
     }
     first = {key: known.get(key) for key in SUMMARY_KEYS}
-    return {**first, **{key: value for key, value in known.items() if key not in first}}
+    rest = {key: value for key, value in known.items() if key not in first}
+    gaps = generation.get("replay_gaps", [])
+    return {**first, **rest, **({"replay_gap_counts": replay_gaps.counts(gaps)} if gaps else {})}
