@@ -29,7 +29,8 @@ run_ctest() { # PRESET [CTEST_OPTION...]
 
 run_pytest() {
   say "pytest"
-  (cd "$ROOT" && "$VENV/bin/python" -m pytest -c train/pyproject.toml --rootdir . "$@")
+  (cd "$ROOT" && "$VENV/bin/python" -m pytest -c train/pyproject.toml --rootdir . \
+    --numprocesses "$(nproc)" --dist loadfile)
 }
 
 coverage() {

@@ -39,7 +39,7 @@ struct SearchConfig {
   int patience = 4;                // layers without a better node that end a round
   double target_jitter = 0.25;     // trees aim at the start with objects moved by up to ± this [m]
   double chain_share = 0.1;        // of the steps found from chains replayed end to end
-  double mended = 1.0;           // steps found by mending failed episodes per one of theirs stored
+  double mended = 2.0;           // steps found by mending failed episodes per one of theirs stored
   double rollout_jitter = 0.25;  // roll-outs start with objects moved by up to ± this [m]
   double rollout_noise = 0.1;    // share of their actions replaced by a neighbouring heading
   bool randomise = false;        // targets, roll-outs, judgement: ± task.randomisation at least

@@ -152,21 +152,24 @@ def test_exploration_follows_the_interactions_not_the_calls() -> None:
     assert one.exploration_rate == pytest.approx(0.1)
 
 
-def test_noise_is_nearby_or_anywhere_and_as_frequent_as_asked() -> None:
-    one = model(nearby_share=1.0, nearby_headings=2, epsilon_start=0.3, epsilon_end=0.3)
-    shift = (one._explore(np.full(20_000, 1)) - 1 + 4) % 8 - 4
-    assert set(shift) == {-2, -1, 0, 1, 2}
-    assert abs((shift != 0).mean() - 0.3) < 4 * np.sqrt(0.3 * 0.7 / 20_000)  # four sigma
-    anywhere = model(nearby_share=0.0, epsilon_start=1.0, epsilon_end=1.0)
-    counts = np.bincount(anywhere._explore(np.full(20_000, 1)), minlength=8)
-    assert (np.abs(counts / 20_000 - 1 / 8) < 0.012).all()  # five sigma
-
-
 def test_deterministic_predictions_do_not_explore() -> None:
     one = model(epsilon_start=1.0, epsilon_end=1.0)
     x = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
     action, _ = one.predict(x, deterministic=True)
     np.testing.assert_array_equal(action, one.values(x).argmax(axis=1))
+
+
+@pytest.mark.parametrize("of_target", [True, False])
+def test_one_network_acts_in_evaluations_and_in_training(of_target: bool) -> None:
+    one = model(target_policy=of_target, epsilon_start=0.0, epsilon_end=0.0)
+    th.nn.init.normal_(one.q_net.head.weight)  # the two disagree
+    x = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
+    with th.no_grad():
+        choices = [net(th.from_numpy(x)).argmax(dim=1) for net in (one.q_net, one.q_net_target)]
+    assert (choices[0] != choices[1]).any()
+    for deterministic in (True, False):
+        action, _ = one.predict(x, deterministic=deterministic)
+        np.testing.assert_array_equal(action, choices[of_target])
 
 
 def test_learns_the_line() -> None:

@@ -15,6 +15,7 @@ from stable_baselines3.common.vec_env import VecEnv
 from torch.nn import functional
 
 from rtg import device
+from rtg.exploration import Exploration
 from rtg.hindsight import HindsightReplayBuffer
 from rtg.networks import ValuePolicy
 from rtg.replay import Batch, MixedReplayBuffer, ReplayRules
@@ -48,10 +49,10 @@ def td_targets(bootstrap: th.Tensor, bounds: th.Tensor, clip: bool) -> th.Tensor
 class DoubleDqn(DQN):
     """SB3's DQN with the batch of MixedReplayBuffer.
 
-    Departs from SB3: Double-Q, target updates counted in gradient steps (`target_sync`), a greedy
-    policy that may be the target network's (a running mean over weights, steadier by far),
-    ε over absolute interactions (learning in pieces and resuming leave the schedule alone),
-    exploration that often picks a heading near the greedy one.
+    Departs from SB3: Double-Q, target updates counted in gradient steps (`target_sync`), a policy
+    that may be the target network's (a running mean over weights, steadier by far), in training
+    episodes as in evaluations, exploration of our own, by absolute interactions (learning in pieces
+    and resuming leave its schedule alone).
     """
 
     replay_buffer: MixedReplayBuffer  # type: ignore[assignment]
@@ -59,7 +60,6 @@ class DoubleDqn(DQN):
     def __init__(self, env: VecEnv, settings: TrainSettings, discount: float, seed: int) -> None:
         self.settings = settings
         self.statistics = Statistics()
-        self.explorer = np.random.default_rng([seed, 1])
         buffer: dict[str, Any] = {
             "rules": ReplayRules(settings.offline_share, discount, settings.value_bounds, seed)
         }
@@ -92,6 +92,8 @@ class DoubleDqn(DQN):
             device=device.chosen(settings.device),
         )
         self.set_logger(Logger(folder=None, output_formats=[]))
+        headings = int(self.action_space.n)  # type: ignore[attr-defined]
+        self.exploration = Exploration(settings, headings, seed)
         self.update_exploration()
 
     def train(self, gradient_steps: int, batch_size: int = 100) -> None:
@@ -123,10 +125,7 @@ class DoubleDqn(DQN):
         self.update_exploration()
 
     def update_exploration(self) -> None:
-        """ε, linear from start to end over the first `epsilon_share` of the interactions."""
-        s = self.settings
-        done = min(1.0, self.num_timesteps / max(1.0, s.epsilon_share * s.interactions))
-        self.exploration_rate = s.epsilon_start + done * (s.epsilon_end - s.epsilon_start)
+        self.exploration_rate = self.exploration.epsilon(self.num_timesteps)
 
     def predict(
         self,
@@ -135,20 +134,10 @@ class DoubleDqn(DQN):
         episode_start: Any = None,
         deterministic: bool = False,
     ) -> tuple[Array, Any]:
-        action, state = self.policy.predict(observation, state, episode_start, deterministic=True)
+        action = self.greedy(observation)
         if not deterministic:
-            action = self._explore(action)
+            action = self.exploration.actions(action, observation, self.exploration_rate)
         return action, state
-
-    def _explore(self, greedy: Array) -> Array:
-        """ε-greedy per environment; `nearby_share` of it stays near the greedy heading. [N]"""
-        n, actions = len(greedy), int(self.action_space.n)  # type: ignore[attr-defined]
-        span = self.settings.nearby_headings
-        explores = self.explorer.random(n) < self.exploration_rate
-        nearby = self.explorer.random(n) < self.settings.nearby_share
-        offset = self.explorer.integers(1, span + 1, n) * self.explorer.choice((-1, 1), n)
-        anywhere = self.explorer.integers(actions, size=n)
-        return np.where(explores, np.where(nearby, (greedy + offset) % actions, anywhere), greedy)
 
     @property
     def policy_net(self) -> th.nn.Module:
@@ -173,7 +162,7 @@ class DoubleDqn(DQN):
             "q_net": self.q_net.state_dict(),
             "q_net_target": self.q_net_target.state_dict(),
             "optimizer": self.policy.optimizer.state_dict(),
-            "explorer": self.explorer.bit_generator.state,
+            "exploration": self.exploration.state(),
             "statistics": self.statistics.state(),
             "interactions": self.num_timesteps,
             "gradient_steps": self._n_updates,
@@ -187,7 +176,7 @@ class DoubleDqn(DQN):
         self.q_net.load_state_dict(state["q_net"])
         self.q_net_target.load_state_dict(state["q_net_target"])
         self.policy.optimizer.load_state_dict(state["optimizer"])
-        self.explorer.bit_generator.state = state["explorer"]
+        self.exploration.restore(state["exploration"])
         self.statistics.restore(state["statistics"])
         self.num_timesteps = state["interactions"]
         self._n_updates = state["gradient_steps"]

@@ -34,7 +34,7 @@ class TrainSettings:
     target_sync: int = 1
     target_rate: float = 0.005
     target_policy: bool = True
-    discount: float = 0.9
+    discount: float = 0.95
     offline_share: float = 0.5
     double_q: bool = True
     dueling: bool = True
@@ -47,6 +47,7 @@ class TrainSettings:
     epsilon_share: float = 0.2
     nearby_share: float = 0.5
     nearby_headings: int = 2
+    leave_loops: bool = True
     start_jitter: float = 0.1
     randomise: bool = False
     hindsight: int = 0

@@ -1,0 +1,74 @@
+import dataclasses
+from typing import Any
+
+import numpy as np
+from rtg.exploration import LOOP, Exploration
+from rtg.settings import TrainSettings
+
+
+def exploration(seed: int = 0, **changes: Any) -> Exploration:
+    settings = dataclasses.replace(TrainSettings(leave_loops=False), **changes)
+    return Exploration(settings, headings=8, seed=seed)
+
+
+def explored(one: Exploration, states: list[float], epsilon: float = 0.0) -> list[bool]:
+    """Whether one environment, whose greedy heading is 3, does something else in each state."""
+    done = [one.actions(np.array([3]), np.full((1, 5), x), epsilon)[0] for x in states]
+    return [bool(action != 3) for action in done]
+
+
+def test_noise_is_nearby_or_anywhere_and_as_frequent_as_asked() -> None:
+    n = 20_000
+    greedy, seen = np.full(n, 1), np.zeros((n, 5))
+    one = exploration(nearby_share=1.0, nearby_headings=2)
+    shift = (one.actions(greedy, seen, 0.3) - 1 + 4) % 8 - 4
+    assert set(shift) == {-2, -1, 0, 1, 2}
+    assert abs((shift != 0).mean() - 0.3) < 4 * np.sqrt(0.3 * 0.7 / n)  # four sigma
+    anywhere = exploration(nearby_share=0.0).actions(greedy, seen, 1.0)
+    counts = np.bincount(anywhere, minlength=8)
+    assert (np.abs(counts / n - 1 / 8) < 0.012).all()  # five sigma
+
+
+def test_a_loop_is_left_where_it_closes() -> None:
+    nearby = {"nearby_share": 1.0}  # what explores differs
+    states = [0.0, 1.0, 0.01, 1.01, 2.0, 2.03, 2.1]
+    left = [False, False, True, True, False, False, False]
+    assert explored(exploration(leave_loops=True, **nearby), states) == left
+    assert explored(exploration(leave_loops=False, **nearby), states) == [False] * 7
+
+
+def test_one_number_that_differs_makes_another_state() -> None:
+    one = exploration(leave_loops=True, nearby_share=1.0)
+    seen = np.zeros((1, 5))
+    one.actions(np.array([3]), seen, 0.0)
+    seen[0, 4] = 0.03  # in place: what is remembered is a copy
+    assert one.actions(np.array([3]), seen, 0.0) == [3]
+    assert one.actions(np.array([3]), seen, 0.0) != [3]
+
+
+def test_environments_have_loops_of_their_own() -> None:
+    one = exploration(leave_loops=True, nearby_share=1.0)
+    greedy = np.array([3, 3])
+    one.actions(greedy, np.array([[0.0], [5.0]]), 0.0)
+    done = one.actions(greedy, np.array([[5.0], [5.0]]), 0.0)
+    assert (done == 3).tolist() == [True, False]
+
+
+def test_what_was_long_ago_is_forgotten() -> None:
+    steps = [float(k) for k in range(LOOP)]
+    one = exploration(leave_loops=True, nearby_share=1.0)
+    assert explored(one, [*steps, 0.0])[-1]
+    one = exploration(leave_loops=True, nearby_share=1.0)
+    assert not explored(one, [*steps, float(LOOP), 0.0])[-1]
+
+
+def test_goes_on_from_its_state() -> None:
+    one = exploration(leave_loops=True)
+    rng = np.random.default_rng(5)
+    states = rng.integers(4, size=60).astype(float).tolist()
+    explored(one, states[:30], 0.5)
+    other = exploration(seed=9, leave_loops=True)
+    other.restore(one.state())
+    rest = explored(one, states[30:], 0.5)
+    assert explored(other, states[30:], 0.5) == rest
+    assert 0 < sum(rest) < 30
