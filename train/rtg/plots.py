@@ -136,12 +136,13 @@ def replay_gap(path: Path, title: str, report: Mapping[str, Any]) -> None:
 
 
 def _scene(axis: Axes, task: TaskLike, body: int) -> None:
-    """Goal, arena, the start layout in outline, the body in question filled."""
+    """Goal, also of means that the body is part of, arena, start layout in outline, the body's
+    own in bold."""
     colours = kind_colours(task)
     a = task.arena
     for term in task.goal:
         colour = _rgb(colours.get(term.kind, GOAL))
-        if term.subject != "every" or term.kind not in ("*", task.kinds[body]):
+        if term.region == "angles" or term.kind not in ("*", task.kinds[body]):
             continue
         if term.region == "disc":
             axis.fill(*circle(term.centre, term.radius).T, color=colour, alpha=0.18, lw=0)
@@ -193,7 +194,8 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
         bar.locator = MaxNLocator(integer=True)
         figure.supxlabel(
             "dots: centres of the object in the search's nodes; outlines: start layout; "
-            f"shaded: goal; frame: arena, {2 * task.arena:g} m wide",
+            "shaded: goal, of the centre or a mean it is part of; "
+            f"frame: arena, {2 * task.arena:g} m wide",
             fontsize=8,
         )
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")

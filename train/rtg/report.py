@@ -25,7 +25,8 @@ _POOLED = f"""\
 IQM: mean of the middle half of all final successes, with a 95 % interval by stratified bootstrap
 (seeds drawn within a task, {RESAMPLES:,} resamples). Last column: the probability that a run of the
 method does better than one of `{REFERENCE}` on the same task, mean over the tasks, equal ones
-counted half. Methods with fewer tasks are not comparable with those with more. Of few seeds such
+counted half. Methods with fewer tasks are not comparable with those with more, nor is `ddqn_rtg_dr`
+with any: its starts, also those it is measured from, lie all over a wider region. Of few seeds such
 intervals are too narrow."""
 _RUNTIME = """\
 CPU time per reverse solve that was not pruned, and per stored transition (replays of candidates and
