@@ -104,6 +104,19 @@ def test_killed_and_begun_again_it_comes_to_the_same_figures(undisturbed, tmp_pa
     assert "the transitions are there already" in log
 
 
+def test_seeds_that_learn_together_come_to_the_same_figures(undisturbed, tmp_path):
+    methods = ("--methods", "ddqn,ddqn_naive", "--seeds", "1,2")
+    out = finish(start(tmp_path, ("gathering",), *methods, "--together"))
+    assert "gathering/ddqn: 2 seeds learn: done (learned)" in out
+    assert "gathering/ddqn_naive: 2 seeds learn: done (learned)" in out
+    assert "4 of 4 runs done" in out
+    alone, found = (
+        [row for row in figures(folder) if (row["task"], row["seed"]) == ("gathering", "1")]
+        for folder in (undisturbed[0], tmp_path)
+    )
+    assert [row for row in found if row["method"] == "ddqn_naive"] == alone
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_stops_all_runs_and_says_how_to_go_on(tmp_path, number):
     folder = tmp_path / "stopped"

@@ -41,7 +41,9 @@ def test_a_new_run_begins_and_one_that_has_begun_goes_on(words):
     naive, _ = make_ready(parse(words))
     assert "--resume" in naive.command() and str(TINY) not in naive.command()
     assert not naive.done and not rtg.done
-    write_json(naive.folder / "summary.json", {})
+    write_json(naive.folder / "summary.json", {"interactions": None})  # of --no-train
+    assert not naive.done
+    write_json(naive.folder / "summary.json", {"interactions": 400})
     assert naive.done
 
 

@@ -10,7 +10,7 @@ from rtg import cli, effective_config, run_args
 from rtg.cell_run import CellRun, make_ready
 from rtg.cells import read_grid
 from rtg.grid_display import PlainGrid
-from rtg.reproduce import Crew
+from rtg.reproduce import Crew, Failures
 from rtg.reproduce_args import parse
 from training_runs import TINY
 
@@ -36,7 +36,7 @@ def comparison(tmp_path, monkeypatch):
             config.write_text(effective_config.canonical(parsed.file, parsed.overrides))
             places = f"OUT={shlex.quote(str(run.folder))}; CONFIG={shlex.quote(str(config))}"
             commands[run.folder] = ["sh", "-c", f"{places}; {script}"]
-        return Crew(args, runs, read_grid(args.out))
+        return Crew(runs, args.jobs, Failures(read_grid(args.out), args.out))
 
     commands = {}
     monkeypatch.setattr(CellRun, "command", lambda run: commands[run.folder])

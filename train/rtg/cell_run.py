@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rtg import effective_config, run_args
+from rtg import effective_config, run_args, run_folder
 from rtg.cells import Cell
 from rtg.errors import UserError
 from rtg.methods import run_words
@@ -27,6 +27,12 @@ class CellRun:
     cell: Cell
     folder: Path
     words: tuple[str, ...]  # of `rtg run`, but for the folder
+    offline: bool = True  # whether transitions are generated
+    device: str = "auto"  # train.device
+
+    @property
+    def name(self) -> str:
+        return self.cell.name
 
     @property
     def log(self) -> Path:
@@ -36,14 +42,27 @@ class CellRun:
     @property
     def done(self) -> bool:
         """Whether there is nothing left to do."""
-        return (self.folder / "summary.json").is_file()
+        return bool(run_folder.result(self.folder))
+
+    @property
+    def begun(self) -> bool:
+        """Whether its folder holds the run, perhaps an unfinished one."""
+        return (self.folder / "config.yaml").is_file()
 
     def command(self) -> list[str]:
         """Begins the run, or goes on with it."""
-        begun = (self.folder / "config.yaml").is_file()
-        words = ["--resume"] if begun else self.words
-        program = [sys.executable, "-m", "rtg", "run"]
-        return ["env", *_ONE_THREAD, *program, *words, "--out", str(self.folder)]
+        words = ["--resume"] if self.begun else self.words
+        return program("rtg", "run", *words, "--out", str(self.folder))
+
+    def outcome(self) -> str:
+        """Of a run that is done."""
+        found = run_folder.result(self.folder)
+        return f"success {found['success_rate']:.2f} after {found['interactions']:,} interactions"
+
+
+def program(module: str, *words: str) -> list[str]:
+    """A Python program of ours that keeps to one core."""
+    return ["env", *_ONE_THREAD, sys.executable, "-m", module, *words]
 
 
 def make_ready(args: ReproduceArgs) -> list[CellRun]:
@@ -59,7 +78,8 @@ def make_ready(args: ReproduceArgs) -> list[CellRun]:
             raise UserError(f"{cell.name}: is the same run as {twin}; legal: values that differ")
         folder = args.out / cell.name
         _check_folder(folder, config)
-        runs.append(CellRun(cell, folder, _words(args, cell)))
+        offline, device = config["train"]["offline"], config["train"]["device"]
+        runs.append(CellRun(cell, folder, _words(args, cell), offline, device))
     return runs
 
 

@@ -1,16 +1,17 @@
-"""Methods x seeds x tasks: runs what is not done yet, one process per core, and reports on all."""
+"""Methods x seeds x tasks: runs what is not done yet, side by side, and reports on all."""
 
 from __future__ import annotations
 
 import contextlib
 import fcntl
-import json
 import re
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Protocol
 
-from rtg.cell_run import CellRun, make_ready
+from rtg import together
+from rtg.cell_run import make_ready
 from rtg.cells import Grid, read_grid
 from rtg.errors import RunError, StoppedError, UserError
 from rtg.grid_display import GridDisplay, Row, counts, display
@@ -30,7 +31,9 @@ def reproduce(args: ReproduceArgs) -> int:
         grid = read_grid(args.out)
         grid.add(args.command, args.cells)
         grid.write(args.out)
-        rows = _run_all(args, runs, grid)
+        for stage in together.stages(runs, args.together):
+            _run_all(args, Crew(stage, args.jobs))
+        rows = _run_all(args, Crew(runs, args.jobs, Failures(grid, args.out)))
     from rtg.report_files import write_report  # heavy
 
     report = write_report(args.out, args.out)
@@ -56,9 +59,8 @@ def _alone(folder: Path) -> Iterator[None]:
         yield
 
 
-def _run_all(args: ReproduceArgs, runs: Sequence[CellRun], grid: Grid) -> list[Row]:
-    """How each run ended."""
-    crew = Crew(args, runs, grid)
+def _run_all(args: ReproduceArgs, crew: Crew) -> list[Row]:
+    """How each job ended."""
     with display(sys.stdout) as shown, Interrupts(on_demand=crew.kill) as interrupts:
         try:
             while crew.tend(shown):
@@ -71,30 +73,66 @@ def _run_all(args: ReproduceArgs, runs: Sequence[CellRun], grid: Grid) -> list[R
     return crew.rows()
 
 
-class Crew:
-    """The runs of a comparison, so many of them at work at a time."""
+class Job(Protocol):
+    """What a crew does in a process, as CellRun."""
 
-    def __init__(self, args: ReproduceArgs, runs: Sequence[CellRun], grid: Grid) -> None:
-        self._args, self._grid = args, grid
-        self._runs = list(runs)
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def log(self) -> Path:
+        """What it says."""
+
+    @property
+    def done(self) -> bool:
+        """Whether there is nothing left to do."""
+
+    def command(self) -> list[str]:
+        """Begins the job, or goes on with it."""
+
+    def outcome(self) -> str:
+        """Of a job that is done, in words."""
+
+
+class Failures:
+    """The last words of the jobs that failed, kept in the list of cells."""
+
+    def __init__(self, grid: Grid, folder: Path) -> None:
+        self._grid, self._folder = grid, folder
+
+    def add(self, name: str, words: str) -> None:
+        self._grid.failed[name] = words
+        self._grid.write(self._folder)
+
+    def drop(self, name: str) -> None:
+        """It gets another chance."""
+        if self._grid.failed.pop(name, None) is not None:
+            self._grid.write(self._folder)
+
+
+class Crew:
+    """Jobs, so many of them at work at a time."""
+
+    def __init__(self, jobs: Sequence[Job], places: int, failures: Failures | None = None) -> None:
+        self._jobs, self._places, self._failures = list(jobs), places, failures
         self._nodes: dict[str, Node] = {}  # at work
-        self._rows = {run.cell.name: _first_row(run) for run in runs}
+        self._rows = {job.name: _first_row(job) for job in jobs}
 
     def tend(self, shown: GridDisplay) -> bool:
-        """Takes note of what has ended, starts what there is a core for; whether any is at work."""
-        for run in self._runs:
-            node = self._nodes.get(run.cell.name)
+        """Takes note of what has ended, starts what there is room for; whether any is at work."""
+        for job in self._jobs:
+            node = self._nodes.get(job.name)
             if node is not None:
-                self._look_at(run, node)
-        for run in self._runs:
-            idle = len(self._nodes) < self._args.jobs
-            if idle and self._rows[run.cell.name].phase == "waiting":
-                self._start(run)
+                self._look_at(job, node)
+        for job in self._jobs:
+            idle = len(self._nodes) < self._places
+            if idle and self._rows[job.name].phase == "waiting":
+                self._start(job)
         shown.show(self.rows())
         return bool(self._nodes)
 
     def rows(self) -> list[Row]:
-        """In the order of the runs."""
+        """In the order of the jobs."""
         return list(self._rows.values())
 
     def wait(self, seconds: float) -> None:
@@ -102,40 +140,36 @@ class Crew:
         next(iter(self._nodes.values())).wait(seconds)
 
     def stop(self) -> None:
-        """Ends all runs, so that they can go on."""
+        """Ends all jobs, so that they can go on."""
         stop_all(self._nodes.values(), _GRACE)
 
     def kill(self) -> None:
-        """Ends all runs at once."""
+        """Ends all jobs at once."""
         kill_all(self._nodes.values())
 
-    def _start(self, run: CellRun) -> None:
-        name = run.cell.name
-        if self._grid.failed.pop(name, None) is not None:
-            self._grid.write(self._args.out)
-        run.log.parent.mkdir(parents=True, exist_ok=True)
-        self._nodes[name] = Node(name, run.command(), run.log)
-        self._rows[name] = Row(name, "running")
+    def _start(self, job: Job) -> None:
+        if self._failures:
+            self._failures.drop(job.name)
+        job.log.parent.mkdir(parents=True, exist_ok=True)
+        self._nodes[job.name] = Node(job.name, job.command(), job.log)
+        self._rows[job.name] = Row(job.name, "running")
 
-    def _look_at(self, run: CellRun, node: Node) -> None:
-        name = run.cell.name
+    def _look_at(self, job: Job, node: Node) -> None:
         if node.exit_status() is None:
-            self._rows[name] = Row(name, "running", _STAMP.sub("", node.last_words(lines=1)))
+            words = _STAMP.sub("", node.last_words(lines=1))
+            self._rows[job.name] = Row(job.name, "running", words)
             return
-        del self._nodes[name]
-        if run.done:
-            self._rows[name] = _first_row(run)
+        del self._nodes[job.name]
+        if job.done:
+            self._rows[job.name] = _first_row(job)
             return
         words = node.last_words() or node.epitaph()
-        self._grid.failed[name] = words
-        self._grid.write(self._args.out)
-        self._rows[name] = Row(name, "failed", f"{node.epitaph()}; the end of its log:\n{words}")
+        if self._failures:
+            self._failures.add(job.name, words)
+        words = f"{node.epitaph()}; the end of its log:\n{words}"
+        self._rows[job.name] = Row(job.name, "failed", words)
 
 
-def _first_row(run: CellRun) -> Row:
-    """Of a run that is not at work."""
-    if not run.done:
-        return Row(run.cell.name)
-    summary = json.loads((run.folder / "summary.json").read_text())
-    rate, interactions = summary["success_rate"], summary["interactions"]
-    return Row(run.cell.name, "done", f"success {rate:.2f} after {interactions:,} interactions")
+def _first_row(job: Job) -> Row:
+    """Of a job that is not at work."""
+    return Row(job.name, "done", job.outcome()) if job.done else Row(job.name)

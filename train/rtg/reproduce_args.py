@@ -47,6 +47,7 @@ class ReproduceArgs:
     cells: tuple[Cell, ...]
     settings: tuple[str, ...]  # KEY=VALUE, of all cells
     jobs: int
+    together: bool  # seeds of a method learn in one process even without a GPU
     out: Path
     command: str  # with all that decides the results, for the report
     typed: str  # as the user typed it
@@ -70,6 +71,9 @@ def parser() -> Parser:
     p.add_argument("--quick", action="store_true", help="small budgets, one seed: minutes")
     p.add_argument(
         "--sweep", metavar="KEY=V1,V2", action="append", default=[], help="one more axis"
+    )
+    p.add_argument(
+        "--together", action="store_true", help="a method's seeds learn in one process, as on a GPU"
     )
     p.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="of all runs")
     return p
@@ -142,6 +146,7 @@ def parse(words: Sequence[str]) -> ReproduceArgs:
         cells=tuple(cells),
         settings=(*(QUICK if args.quick else ()), *args.set),
         jobs=_number("--jobs", jobs, "a number from 1", 1),
+        together=args.together,
         out=Path(args.out or paths.RUNS / f"reproduce{'-quick' * args.quick}").absolute(),
         command=shlex.join(["./run.sh", "reproduce", *tasks, *flags]),
         typed=shlex.join(["./run.sh", "reproduce", *words]),

@@ -86,6 +86,12 @@ def read_json(path: Path) -> dict[str, Any]:
     return value
 
 
+def result(run: Path) -> dict[str, Any]:
+    """summary.json of a run that has learned to its end; of any other, empty."""
+    found = read_json(run / "summary.json")
+    return {} if found.get("interactions") is None else found
+
+
 def default_path(task: str) -> Path:
     """runs/TASK-TIME, with a number behind it if that second has one already."""
     base = paths.RUNS / f"{task}-{time.strftime('%Y%m%d-%H%M%S')}"

@@ -13,7 +13,7 @@ from rtg.cells import Cell, Grid
 from rtg.estimates import first_reach
 from rtg.methods import METHODS
 from rtg.results import learning_curve
-from rtg.run_folder import read_json
+from rtg.run_folder import read_json, result
 
 Floats = NDArray[np.float64]
 
@@ -91,7 +91,7 @@ class Comparison:
 
 def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
     run = folder / cell.name
-    summary = read_json(run / "summary.json")
+    summary = result(run)
     if summary:
         progress = run / "progress.csv"
         curve = learning_curve(progress) if progress.is_file() else {}

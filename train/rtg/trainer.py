@@ -1,10 +1,11 @@
 """The learner's process, which ./run.sh starts.
 
-`python -m rtg.trainer RUN_FOLDER [--resume] [--no-stream] [--run-name NAME]` reads
+`python -m rtg.trainer RUN_FOLDER... [--resume] [--no-stream] [--run-name NAME]` reads
 RUN_FOLDER/config.yaml, takes the transitions of the run in while it learns, and leaves
 transitions.npz, progress.csv, training_state.json (for displays), checkpoint/, model.pt,
-best_episode.npz and training.json there. SIGINT or SIGTERM: checkpoint and exit with 128 + number;
-a second one: exit at once.
+best_episode.npz and training.json there. Several runs learn side by side, a thread each, and come
+to the same bits as alone. SIGINT or SIGTERM: checkpoint and exit with 128 + number; a second one:
+exit at once.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Self
 
@@ -57,7 +59,7 @@ class StopSignals:
 def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
     summary = __doc__.split("\n")[0]
     parser = argparse.ArgumentParser("rtg.trainer", description=summary, allow_abbrev=False)
-    parser.add_argument("folder", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("folders", type=Path, metavar="RUN_FOLDER", nargs="+")
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint, if any")
     parser.add_argument(
         "--no-stream", action="store_true", help="learn from RUN_FOLDER/transitions.npz"
@@ -67,16 +69,19 @@ def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
         metavar="NAME",
         help="the run on the bus whose stream to take (the folder's name)",
     )
-    return parser.parse_args(argv)
+    args = parser.parse_args(argv)
+    if len(args.folders) > 1 and not args.no_stream:
+        parser.error("several RUN_FOLDERs have no stream of their own; legal: with --no-stream")
+    return args
 
 
 def _source(training: Training, args: argparse.Namespace) -> Source:
     if not training.settings.offline:
         return NoSource()
     if args.no_stream:
-        return FileSource(args.folder / "transitions.npz", training.task, training.data)
+        return FileSource(training.folder / "transitions.npz", training.task, training.data)
     url = json.loads(training.config.json)["run"]["bus"]
-    bus = Bus(url, args.run_name or args.folder.resolve().name)
+    bus = Bus(url, args.run_name or training.folder.resolve().name)
     training.tell = NodeStatus(bus, "trainer").tick
     task = training.task
     stream = TransitionStream(bus, task.bodies, task.headings, training.data.take)
@@ -85,12 +90,15 @@ def _source(training: Training, args: argparse.Namespace) -> Source:
     return stream
 
 
-def train(args: argparse.Namespace, stop: StopSignals) -> int:
-    """The exit status. Raises UserError, RunError."""
-    config = _core.Config.from_file(args.folder / "config.yaml")
-    training = Training(config, args.folder)
-    if args.resume and training.has_checkpoint():
+def _begin(folder: Path, resume: bool) -> Training:
+    training = Training(_core.Config.from_file(folder / "config.yaml"), folder)
+    if resume and training.has_checkpoint():
         training.restore()
+    return training
+
+
+def _learn(training: Training, args: argparse.Namespace, stop: StopSignals) -> int:
+    """The exit status. Raises UserError, RunError."""
     with contextlib.closing(_source(training, args)) as source:
         try:
             if not training.run(source, stop, record=not args.no_stream):
@@ -101,8 +109,23 @@ def train(args: argparse.Namespace, stop: StopSignals) -> int:
     return 0
 
 
+def train(args: argparse.Namespace, stop: StopSignals) -> int:
+    """The exit status, of several runs the highest. Raises UserError, RunError; of several runs
+    what the first one raised, at the end of the others."""
+    # One after the other: the first weights come from the generator of the process.
+    trainings = [_begin(folder, args.resume) for folder in args.folders]
+    with ThreadPoolExecutor(len(trainings), initializer=_keep_to_one_thread) as pool:
+        return max(pool.map(lambda training: _learn(training, args, stop), trainings))
+
+
+def _keep_to_one_thread() -> None:
+    """Of PyTorch, in this thread: more are slower for networks this small, a hundred times on a
+    busy core."""
+    th.set_num_threads(1)
+
+
 def main(argv: Sequence[str] | None = None) -> int:
-    th.set_num_threads(1)  # more are slower for networks this small, a hundred times on a busy core
+    _keep_to_one_thread()
     try:
         with StopSignals() as stop:
             return train(_parse(argv), stop)

@@ -1,0 +1,47 @@
+"""The learner's program on several runs at once."""
+
+from pathlib import Path
+
+import pytest
+from rtg import trainer
+from rtg.transition_stream import Rows
+from training_runs import run_folder
+
+
+def learn(*words: object) -> int:
+    return trainer.main([str(word) for word in words])
+
+
+def test_several_runs_come_to_the_same_bits_as_alone(tmp_path: Path, rows: Rows) -> None:
+    def made(name: str) -> list[Path]:
+        (tmp_path / name).mkdir()
+        return [
+            run_folder(tmp_path / name / f"{seed}", rows, f"run.seed={seed}") for seed in (3, 4, 5)
+        ]
+
+    alone, beside = made("alone"), made("beside")
+    for folder in alone:
+        assert learn(folder, "--no-stream") == 0
+    assert learn(*beside, "--no-stream") == 0
+    weights = [
+        [(folder / "model.pt").read_bytes() for folder in found] for found in (alone, beside)
+    ]
+    assert weights[0] == weights[1]
+    assert len(set(weights[0])) == 3
+
+
+def test_a_run_that_cannot_learn_leaves_the_others_alone(
+    tmp_path: Path, rows: Rows, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bad = run_folder(tmp_path / "bad", None)
+    good = run_folder(tmp_path / "good", rows)
+    assert learn(bad, good, "--no-stream") == 2
+    assert f"{bad}/transitions.npz" in capsys.readouterr().err
+    assert (good / "training.json").exists()
+
+
+def test_several_runs_have_no_stream(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as status:
+        learn("one", "other")
+    assert status.value.code == 2
+    assert "legal: with --no-stream" in capsys.readouterr().err
