@@ -20,6 +20,7 @@ void fill(GenerationReport& report, const SearchStats& stats) {
   report.statuses = stats.statuses;
   report.illegal_starts = stats.illegal_starts;
   report.unsettled_goals = stats.unsettled_goals;
+  report.replays = stats.replays;
   report.rejected_pushes = stats.rejected_pushes;
   report.iterations_median = quantile(stats.iterations, 0.5);
   report.iterations_p90 = quantile(stats.iterations, 0.9);
@@ -49,6 +50,7 @@ std::string to_json(const GenerationReport& r) {
     out[std::string(name(static_cast<SolveStatus>(k)))] = r.statuses[k];
   out["illegal_starts"] = r.illegal_starts;
   out["unsettled_goals"] = r.unsettled_goals;
+  out["replays"] = r.replays;
   out["rejected_pushes"] = r.rejected_pushes;
   out["units_given_up"] = r.units_given_up;
   out["iterations_median"] = r.iterations_median;

@@ -46,6 +46,7 @@ struct GenerationReport {
   long candidates = 0;          // reverse jobs asked for, pruned ones included
   std::array<long, kSolveStatusCount> statuses{};                     // by SolveStatus
   long illegal_starts = 0, unsettled_goals = 0, rejected_pushes = 0;  // as in SearchStats
+  long replays = 0;                                                   // as in SearchStats
   long units_given_up = 0;  // of work, as no worker survived them; the coordinator fills it in
   double iterations_median = 0.0, iterations_p90 = 0.0;  // over converged ones
   long pushing_converged = 0;                            // that moved an object

@@ -16,6 +16,7 @@ struct SearchStats {
   std::vector<int> pushing_iterations;             // of those of them that moved an object
   long illegal_starts = 0;   // converged, yet the start overlaps or leaves the arena
   long unsettled_goals = 0;  // sampled goals that do not come to rest as legal goal states
+  long replays = 0;          // pushes that the simulator was asked for, probes included
   long rejected_pushes = 0;  // replays that the simulator could not finish
   std::vector<float> gaps;   // of replayed candidates [m]
   double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
@@ -32,6 +33,7 @@ struct SearchStats {
 
   /// Whether the simulator finished the push.
   bool count(const ReplayResult& answer) {
+    ++replays;
     rejected_pushes += !answer.ok;
     replay_cpu_s += answer.cpu_s;
     return answer.ok;

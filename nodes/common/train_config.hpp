@@ -16,7 +16,7 @@ inline constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"}
 /// the other fields over it. At b7950a3 (Gathering, 60,000 transitions of rrbs) success with a hard
 /// copy every 500 steps instead of target_rate swung between 0.7 and 1 from one evaluation to the
 /// next. At d819b41 (Sorting) training episodes succeed at a rate of 0.97 to 1.00 from 80,000
-/// interactions on with epsilon_end 0.02; at 60,000 of 0.85, of 0.71 with 0.05. At 893682d
+/// interactions on with epsilon_end 0.02; at 60,000 of 0.85, of 0.71 with 0.05. At e491782
 /// (ArtManip, its plans take 24 pushes; 115,000 to 140,000 interactions, means) evaluations and
 /// training episodes succeed at rates of 0.90, 0.80 with discount 0.9, which is best for plans of
 /// 9; of 0.95, 0.87 with 0.95; of 0.95, 0.95 with the target network acting in training, too, and

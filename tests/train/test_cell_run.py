@@ -1,5 +1,7 @@
 """A run of a comparison and what is there of it already."""
 
+import re
+
 import pytest
 from rtg import effective_config, run_args
 from rtg.cell_run import make_ready
@@ -72,6 +74,27 @@ def test_a_run_with_another_configuration_is_refused_and_left_alone(words, more,
         make_ready(parse([*words, *more]))
     assert str(error.value).startswith(f"{run.folder}: was made with {what}; legal: the same, ")
     assert (run.folder / "config.yaml").read_bytes() == before
+
+
+def test_a_run_of_a_version_without_one_of_the_settings_is_refused(words):
+    """Its value was another then, perhaps."""
+    run = make_ready(parse(words))[0]
+    begin(run)
+    file = run.folder / "config.yaml"
+    file.write_text(re.sub(r"\n  stop_evaluations: .*", "", file.read_text()))
+    with pytest.raises(UserError) as error:
+        make_ready(parse(words))
+    assert str(error.value).startswith(
+        f"{file}: has no line 'stop_evaluations: 3': another version of RTG wrote it; legal: "
+    )
+
+
+def test_seeds_with_another_configuration_are_refused_though_not_asked_for(words):
+    begin(make_ready(parse(words))[0])
+    other = [word if word != "1" else "2," for word in words]
+    assert len(make_ready(parse(other))) == 2
+    with pytest.raises(UserError, match=r"seed-1: was made with train\.batch = 8, asked for"):
+        make_ready(parse([*other, "--set", "train.batch=9"]))
 
 
 def test_a_run_killed_as_it_began_begins_again(words):

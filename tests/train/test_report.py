@@ -3,12 +3,14 @@
 import csv
 import json
 import re
+import shutil
 
 import pytest
 from comparison_samples import finished, write_grid
 from PIL import Image
 from rtg import cli
 from rtg.cells import Cell
+from rtg.errors import UserError
 from rtg.report_files import write_report
 from rtg.report_tables import seeds, spread
 
@@ -25,6 +27,7 @@ CELLS = [
     Cell("sorting", "ddqn_rtg", (), 1),
     Cell("sorting", "rcg", (), 1),
 ]
+BY_METHOD = [CELLS[k] for k in (2, 3, 0, 1, 5, 4, 6, 7)]  # as tables show them
 
 
 @pytest.fixture(scope="module")
@@ -114,7 +117,10 @@ def test_the_numbers_are_there_for_programs(folder):
 def test_the_tables_for_programs_have_a_row_per_run_and_per_evaluation(folder):
     with (folder / "runs.csv").open() as file:
         runs = list(csv.DictReader(file))
-    assert [run["state"] for run in runs].count("done") == 5 and len(runs) == len(CELLS)
+    assert [run["state"] for run in runs].count("done") == 5
+    assert [(run["task"], run["method"], int(run["seed"])) for run in runs] == [
+        (cell.task, cell.label, cell.seed) for cell in BY_METHOD
+    ]
     with (folder / "curves.csv").open() as file:
         curves = list(csv.DictReader(file))
     assert len(curves) == 2 * len(GOOD) + 3 * len(BAD)
@@ -147,8 +153,45 @@ def test_the_command_writes_the_report_and_names_what_is_no_comparison(folder, t
     assert capsys.readouterr().err.startswith(
         f"rtg: {tmp_path}: holds no comparison (no grid.json)"
     )
+    assert cli.main(["plot", str(folder), "--out", ""]) == 2
+    assert capsys.readouterr().err == "rtg: --out: '' is no folder; legal: the path of one\n"
     assert cli.main(["plot", str(folder), "--out", "/proc/rtg"]) == 2
     assert capsys.readouterr().err.startswith("rtg: --out: /proc/rtg: ")
+
+
+DAMAGED = {
+    "summary.json": ('{"interactions": 5}', "no success_rate; legal: "),
+    "versions.json": ("{", "damaged; legal: "),
+    "progress.csv": ("interactions,success_rate\n5,much\n", "damaged; legal: "),
+    "best_episode.npz": ("PK", "damaged; legal: "),
+    "config.yaml": ("task: {", ""),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGED)
+def test_a_damaged_file_is_named_and_the_report_before_stays(folder, tmp_path, name):
+    runs = tmp_path / "runs"
+    shutil.copytree(folder, runs)
+    text, words = DAMAGED[name]
+    path = runs / CELLS[0].name / name
+    path.write_text(text)
+    before = {p.name: p.read_bytes() for p in runs.iterdir() if p.is_file()}
+    with pytest.raises(UserError, match=re.escape(f"{path}:") + f".*{words}"):
+        write_report(runs, runs)
+    assert {p.name: p.read_bytes() for p in runs.iterdir() if p.is_file()} == before
+
+
+def test_replay_gaps_of_another_method_are_drawn_where_the_reference_has_none(tmp_path):
+    cells = Cell("gathering", "ddqn", (), 1), Cell("gathering", "ddqn_naive", (), 1)
+    finished(tmp_path, cells[0], BAD)
+    summary = tmp_path / cells[0].name / "summary.json"
+    known = json.loads(summary.read_text())
+    del known["replay_gap_counts"]  # nothing was generated
+    summary.write_text(json.dumps(known))
+    finished(tmp_path, cells[1], BAD)
+    write_grid(tmp_path, cells)
+    write_report(tmp_path, tmp_path)
+    assert (tmp_path / "replay_gap.png").is_file()
 
 
 @pytest.mark.parametrize(

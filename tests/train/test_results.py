@@ -1,9 +1,11 @@
-"""What is said of a run at its end, in words and titles."""
+"""What is drawn and said of a run at its end."""
 
+import json
 from pathlib import Path
 
+import numpy as np
 import pytest
-from rtg import results
+from rtg import _core, effective_config, results, run_args
 from rtg.run_plan import RunPlan
 
 
@@ -19,6 +21,22 @@ def test_the_pictures_of_an_episode_say_how_it_ended_and_whose_it_is(
     actions, success, trained, title
 ):
     assert results.episode_title("gathering", actions, success, trained) == title
+
+
+def test_a_run_that_was_never_evaluated_ends_without_a_curve(tmp_path):
+    """Resumed with a budget below what it had used, before the first evaluation."""
+    args = run_args.parse(["gathering", "--method", "ddqn"])
+    file = tmp_path / "config.yaml"
+    file.write_text(effective_config.canonical(args.file, args.overrides))
+    (tmp_path / "progress.csv").write_text("interactions,success_rate\n")
+    config = _core.Config.from_file(file)
+    poses = config.task.start[None]
+    np.savez(tmp_path / "best_episode.npz", poses=poses, success=False)
+    values = json.loads(config.json)
+    plan = RunPlan(tmp_path, "x", values, train=True, resume=True, notes=())
+    assert results.finish(plan, {})["method"] == "ddqn"
+    pictures = {path.name for path in tmp_path.iterdir() if path.suffix in {".png", ".gif"}}
+    assert pictures == {"episode.png", "episode.gif"}
 
 
 @pytest.mark.parametrize(("success", "told"), [(0.0, True), (0.05, True), (0.6, False)])

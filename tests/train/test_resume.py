@@ -1,5 +1,7 @@
 """What may change when a run goes on: nothing that decides its transitions or its checkpoint."""
 
+import re
+
 import pytest
 from rtg import cli, effective_config, multicast, paths, settings
 from rtg.run_args import parse
@@ -36,6 +38,16 @@ def test_a_change_of_the_transitions_is_refused_and_leaves_the_run_alone(name, f
     assert capsys.readouterr().err.startswith(f"rtg: {message}")
     assert [path.name for path in folder.iterdir()] == ["config.yaml"]
     assert (folder / "config.yaml").read_bytes() == before
+
+
+def test_a_run_of_another_version_is_refused_and_left_alone(folder, capsys):
+    """Its default of a setting that is not in the file was another one, perhaps."""
+    file = folder / "config.yaml"
+    file.write_text(re.sub(r"\n  breadth: .*", "", file.read_text()))
+    before = file.read_bytes()
+    assert cli.main(["--resume", "--out", str(folder)]) == 2
+    assert capsys.readouterr().err.startswith(f"rtg: {file}: has no line 'breadth: 400'")
+    assert file.read_bytes() == before
 
 
 OF_CHECKPOINT = {

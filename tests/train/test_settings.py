@@ -14,6 +14,34 @@ def test_python_and_cpp_have_the_same_defaults() -> None:
     assert settings() == TrainSettings()
 
 
+def test_the_preset_paper_is_these_values() -> None:
+    """None of what the default departs by."""
+    assert settings("train.preset=paper") == TrainSettings(
+        preset="paper",
+        batch=512,
+        learning_rate=5e-5,
+        target_sync=2500,
+        target_rate=1.0,
+        target_policy=False,
+        discount=0.0,
+        offline_share=-1.0,
+        dueling=False,
+        layer_norm=False,
+        small_head=False,
+        clip_targets=False,
+        value_bounds=False,
+        epsilon_start=1.0,
+        epsilon_end=0.05,
+        epsilon_share=0.1,
+        nearby_share=0.0,
+        leave_loops=False,
+        start_jitter=0.0,
+        eval_every=10_000,
+        stop_at_success=0.0,
+        reduced_precision=False,
+    )
+
+
 def test_the_preset_paper_is_table_2_with_the_defaults_of_sb3() -> None:
     paper = settings("train.preset=paper")
     table_2 = (paper.interactions, paper.buffer, paper.batch, paper.learning_rate)

@@ -1,5 +1,6 @@
 import numpy as np
 from rtg import _core, paths
+from rtg.curriculum import ELSEWHERE
 from rtg.env import PushEnv
 from rtg.vector_env import PushVecEnv
 
@@ -48,6 +49,31 @@ def test_a_finished_episode_reports_its_end_and_starts_again() -> None:
         start = TASK.observation(TASK.jittered_start(0.1, 9, 2 + k)[None])[0]
         np.testing.assert_array_equal(observation[k], start)
         assert not np.array_equal(info["terminal_observation"], observation[k])
+
+
+class Turns:
+    """A curriculum of every other episode."""
+
+    def __init__(self) -> None:
+        self.drawn, self.noted = 0, []
+
+    def draw(self):
+        self.drawn += 1
+        return (0, TASK.start) if self.drawn % 2 else (ELSEWHERE, None)
+
+    def note(self, origin, success):
+        self.noted.append((origin, success))
+
+
+def test_only_episodes_from_the_starts_of_the_task_count() -> None:
+    curriculum = Turns()
+    env = PushVecEnv(CONFIG, 2, jitter=0.1, seed=9, curriculum=curriculum)
+    env.reset()
+    for _ in range(60):
+        _, _, done, infos = env.step(np.array([36, 36]))
+    assert done.all() and curriculum.noted == [(0, False), (ELSEWHERE, False)]
+    assert ["is_success" in info for info in infos] == [False, True]
+    assert ["episode" in info for info in infos] == [False, True]
 
 
 def test_a_restored_environment_goes_on_with_the_same_bits() -> None:

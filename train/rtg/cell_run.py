@@ -70,14 +70,17 @@ def make_ready(args: ReproduceArgs) -> list[CellRun]:
 
     Raises UserError before anything has started.
     """
-    runs, seen = [], dict[str, str]()
+    runs, seen, checked = [], dict[str, str](), set[Path]()
     for cell in args.cells:
         config = effective_config.values(args.files[cell.task], _overrides(args, cell))
         twin = seen.setdefault(json.dumps(config), cell.name)
         if twin != cell.name:
             raise UserError(f"{cell.name}: is the same run as {twin}; legal: values that differ")
         folder = args.out / cell.name
-        _check_folder(folder, config)
+        _check_folder(folder)
+        if folder.parent not in checked:
+            _check_seeds(folder.parent, config)
+            checked.add(folder.parent)
         offline, device = config["train"]["offline"], config["train"]["device"]
         runs.append(CellRun(cell, folder, _words(args, cell), offline, device))
     return runs
@@ -100,15 +103,28 @@ def _overrides(args: ReproduceArgs, cell: Cell) -> list[Override]:
     return [*overrides, *run_args.parse(_flags(cell)).overrides]
 
 
-def _check_folder(folder: Path, config: dict[str, Any]) -> None:
-    """Raises UserError unless the folder holds nothing, or a run with the same configuration."""
-    found = folder / "config.yaml"
-    if not found.is_file():
-        for draft in folder.glob(".config.yaml.*"):  # of a run killed as it began
-            draft.unlink()
-        if folder.exists() and any(folder.iterdir()):
-            raise UserError(f"{folder}: holds no run; legal: an empty --out, or none")
+def _check_folder(folder: Path) -> None:
+    """Raises UserError unless the folder holds a run, or nothing."""
+    if (folder / "config.yaml").is_file():
         return
+    for draft in folder.glob(".config.yaml.*"):  # of a run killed as it began
+        draft.unlink()
+    if folder.exists() and any(folder.iterdir()):
+        raise UserError(f"{folder}: holds no run; legal: an empty --out, or none")
+
+
+def _check_seeds(label: Path, config: dict[str, Any]) -> None:
+    """Raises UserError unless all runs in the folder, also of seeds not asked for now, have this
+    configuration but for the seed: tables show means over them."""
+    for found in sorted(label.glob("seed-*/config.yaml")):
+        seed = found.parent.name.removeprefix("seed-")
+        if seed.isdigit():
+            _check_same(found.parent, {**config, "run": {**config["run"], "seed": int(seed)}})
+
+
+def _check_same(folder: Path, config: dict[str, Any]) -> None:
+    """Raises UserError unless the run was made with this configuration, by this version."""
+    found = folder / "config.yaml"
     before = effective_config.values(found)
     for section in sorted({*before, *config}):
         old, new = before.get(section), config.get(section)
@@ -116,6 +132,7 @@ def _check_folder(folder: Path, config: dict[str, Any]) -> None:
             what = _difference(section, old, new)
             remedy = f"another --out, or rm -r {shlex.quote(str(folder))}"
             raise UserError(f"{folder}: was made with {what}; legal: the same, {remedy}")
+    effective_config.check_version(found)
 
 
 def _difference(section: str, old: Any, new: Any) -> str:

@@ -97,11 +97,13 @@ def _plot(words: Sequence[str]) -> int:
         description="Make report, tables and pictures anew from the runs of a comparison.",
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="the --out of reproduce")
-    parser.add_argument("--out", metavar="DIR", type=Path, help="where to (the same folder)")
+    parser.add_argument("--out", metavar="DIR", help="where to (the same folder)")
     args = parser.parse_args(words)
+    if args.out == "":
+        raise UserError("--out: '' is no folder; legal: the path of one")
     from rtg.report_files import write_report
 
-    print(f"report: {write_report(args.folder, args.out or args.folder)}")
+    print(f"report: {write_report(args.folder, Path(args.out or args.folder))}")
     return 0
 
 

@@ -39,6 +39,23 @@ def values(file: Path, overrides: Sequence[Override] = ()) -> dict[str, Any]:
     return result
 
 
+def check_version(file: Path) -> None:
+    """Raises UserError unless this version writes the configuration of `file` as it stands there:
+    one of another version may lack a setting whose default was different then."""
+    found = _settings(file.read_text())
+    missing = [line for line in _settings(canonical(file)) if line not in found]
+    if missing:
+        raise UserError(
+            f"{file}: has no line '{missing[0]}': another version of RTG wrote it; legal: that "
+            "version (git_revision in versions.json), or another --out"
+        )
+
+
+def _settings(text: str) -> list[str]:
+    """The lines without their comments."""
+    return [line.split("  #")[0].strip() for line in text.splitlines()]
+
+
 def check(file: Path) -> str:
     """What a task file says, for people. Raises UserError."""
     return _rtg_config(file, (), "--check")

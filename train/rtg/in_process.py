@@ -80,11 +80,11 @@ def generate(plan: RunPlan, display: Display) -> None:
     """Writes generation.json and transitions.npz."""
     config = _core.Config.from_file(plan.config_file)
     recorder = Recorder(config.task)
-    with Interrupts(on_demand=lambda: None) as interrupts:
+    with Interrupts() as interrupts:
         generation = Generation(config, recorder)
         while not generation.wait(_POLL):
             display.show(replace(generation.state(), budget=plan.interactions))
-            if interrupts.requested:
+            if interrupts.requested():
                 generation.stop()
                 raise StoppedError
     recorder.write(plan.transitions_file)

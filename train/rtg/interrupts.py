@@ -14,12 +14,12 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Interrupts:
-    """While entered, the first SIGINT, SIGTERM or SIGHUP sets `requested`; the second calls
-    `on_demand` and ends this process at once with exit status 1. Main thread only.
+    """While entered, the first SIGINT, SIGTERM or SIGHUP is kept in `number`; the second calls
+    `on_demand` and ends this process at once, with exit status 128 + its number. Main thread only.
     """
 
-    def __init__(self, on_demand: Callable[[], None]) -> None:
-        self.requested = False
+    def __init__(self, on_demand: Callable[[], None] = lambda: None) -> None:
+        self.number = 0  # none yet
         self._on_demand = on_demand
         self._before: dict[int, Any] = {}
 
@@ -36,13 +36,17 @@ class Interrupts:
         for number, handler in self._before.items():
             signal.signal(number, handler)
 
+    def requested(self) -> bool:
+        """Whether there was a signal."""
+        return self.number != 0
+
     def raise_if_requested(self) -> None:
         """Raises StoppedError after the first signal."""
-        if self.requested:
+        if self.requested():
             raise StoppedError
 
     def _handle(self, number: int, frame: FrameType | None) -> None:
-        if self.requested:
+        if self.requested():
             self._on_demand()
-            os._exit(1)
-        self.requested = True
+            os._exit(128 + number)
+        self.number = number

@@ -16,9 +16,10 @@ from rtg.run_results import Comparison, RunResult
 _LEGEND = """\
 Means ± standard deviations over the seeds. **success**: of the final greedy policy from held-out
 starts, objects jittered, that nothing was chosen by; **roll-outs**: of the last 100 training
-episodes, exploration included; **to 0.70**, **to 0.95**: thousand interactions until the first
-evaluation with that greedy success ("2 of 3": so many of the seeds ever); **interactions**,
-**transitions** in thousands, used and generated. Times are of one core. All figures are in
+episodes from the starts of the task, exploration included; **to 0.70**, **to 0.95**: thousand
+interactions until the first evaluation with that greedy success ("2 of 3": so many of the seeds
+ever); **interactions**, **transitions** in thousands, used and generated. Times are wall clock, of
+generation on one core, of training on what is named *learner* above. All figures are in
 [runs.csv](runs.csv), the learning curves in [curves.csv](curves.csv); in their pictures a run that
 ended early keeps its last value."""
 _POOLED = f"""\
@@ -29,8 +30,8 @@ counted half. Methods with fewer tasks are not comparable with those with more, 
 with any: its starts, also those it is measured from, lie all over a wider region. Of few seeds such
 intervals are too narrow."""
 _RUNTIME = """\
-CPU time per reverse solve that was not pruned, and per stored transition (replays of candidates and
-chains); how many solves, the share that converged, iterations of those that moved an object;
+CPU time per reverse solve that was not pruned, and per push of the simulator; how many solves and
+pushes, the share of the solves that converged, iterations of those that moved an object;
 environment steps of the learner per second, evaluations included."""
 _GAP = """\
 How far the replay of a reverse step ends from where it began, over all candidates replayed."""
@@ -49,6 +50,12 @@ def _machine(versions: dict[str, Any]) -> str:
     return ", ".join([*parts, f"{memory} GiB"] if memory else parts)
 
 
+def _learner(summary: dict[str, Any]) -> str:
+    runs = summary.get("runs_in_process") or 1
+    shared = f", {runs} runs in one process" if runs > 1 else ", one core"
+    return f"{summary.get('device') or 'unknown device'}{shared}"
+
+
 def _programs(versions: dict[str, Any]) -> str:
     packages = {**versions.get("packages", {}), **versions.get("debian", {})}
     named = [f"{name} {version}" for name, version in packages.items()]
@@ -64,6 +71,7 @@ def _origin(grid: Grid, comparison: Comparison) -> str:
             "",
             f"- commit: {_listed(f'`{run.commit}`' for run in done)}",
             f"- machine: {_listed(_machine(run.versions) for run in done)}",
+            f"- learner: {_listed(_learner(run.summary) for run in done)}",
             f"- with: {_listed(_programs(run.versions) for run in done)}",
         ]
     )

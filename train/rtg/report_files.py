@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
+import zipfile
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rtg import _core, episode_pictures, report_plots, run_folder
 from rtg.cells import read_grid
@@ -27,9 +30,10 @@ def write_report(runs: Path, out: Path) -> Path:
     if not grid.cells:
         raise UserError(f"{runs}: holds no comparison (no grid.json); legal: DIR of `reproduce`")
     comparison = read_comparison(runs, grid)
+    episodes = {task: _best_episode(comparison, task) for task in comparison.tasks}
     try:
         out.mkdir(parents=True, exist_ok=True)
-        _draw(out, comparison)
+        _draw(out, comparison, episodes)
         _write_numbers(out, comparison)
         run_folder.write_text(out / "report.md", report(out, grid, comparison))
     except OSError as error:
@@ -37,7 +41,7 @@ def write_report(runs: Path, out: Path) -> Path:
     return out / "report.md"
 
 
-def _draw(out: Path, comparison: Comparison) -> None:
+def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | None]) -> None:
     for pattern in _PICTURES:  # also those of tasks and sweeps that are no longer there
         for picture in out.glob(pattern):
             picture.unlink()
@@ -48,8 +52,8 @@ def _draw(out: Path, comparison: Comparison) -> None:
             report_plots.curves(out / f"curves_{task}.png", comparison, task)
         if any(run.cell.settings for run in done):
             report_plots.sweep(out / f"sweep_{task}.png", comparison, task)
-        _draw_episode(out, task, done)
-        replayed = [run for run in _of_best_method(done) if "replay_gap_counts" in run.summary]
+        _draw_episode(out, task, episodes[task])
+        replayed = _of_best_method([run for run in done if "replay_gap_counts" in run.summary])
         if replayed:
             gaps[task] = replayed
     if gaps:
@@ -63,23 +67,52 @@ def _of_best_method(done: Sequence[RunResult]) -> list[RunResult]:
     return [run for run in done if run.cell.label == label]
 
 
-def _draw_episode(out: Path, task_name: str, done: Sequence[RunResult]) -> None:
+@dataclass(frozen=True)
+class Episode:
+    """One to show."""
+
+    task: _core.Task
+    label: str  # what was learned with
+    poses: NDArray[np.float64]  # [states, bodies, 3]
+    success: bool
+
+
+def _read_episode(run: RunResult) -> Episode | None:
+    """The best one of the run's final evaluation. Raises UserError."""
+    path, config = run.folder / "best_episode.npz", run.folder / "config.yaml"
+    if not path.is_file():
+        return None
+    try:
+        task = _core.Config.from_file(config).task
+    except _core.ConfigError as error:
+        raise UserError(str(error)) from None
+    try:
+        with np.load(path) as file:
+            poses, success = file["poses"].astype(float), bool(file["success"])
+        if poses.ndim != 3 or poses.shape[1:] != (task.bodies, 3) or not len(poses):
+            raise ValueError(poses.shape)
+    except (OSError, ValueError, TypeError, KeyError, zipfile.BadZipFile):
+        raise UserError(f"{path}: damaged; legal: as the run left it, or none") from None
+    return Episode(task, run.cell.label, poses, success)
+
+
+def _best_episode(comparison: Comparison, task: str) -> Episode | None:
     """The shortest success of the final evaluations, of the reference method if it has one."""
-    found = []
-    for run in done:
-        path = run.folder / "best_episode.npz"
-        if path.is_file():
-            with np.load(path) as file:
-                poses, success = file["poses"], bool(file["success"])
-            found.append((not success, run.cell.method != REFERENCE, len(poses), run, poses))
-    if not found:
-        return
-    missed, _, _, run, poses = min(found, key=lambda entry: entry[:3])
-    task = _core.Config.from_file(run.folder / "config.yaml").task
-    words = episode_title(task_name, len(poses) - 1, not missed, trained=True)
-    title = words.replace("learned policy", run.cell.label)
-    episode_pictures.strip(out / f"strip_{task_name}.png", task, poses, not missed, title)
-    episode_pictures.film(out / f"film_{task_name}.gif", task, poses, not missed, title)
+    runs = [run for run in comparison.all_done() if run.cell.task == task]
+    found = [episode for run in runs if (episode := _read_episode(run))]
+    return min(
+        found,
+        key=lambda one: (not one.success, one.label.split("@")[0] != REFERENCE, len(one.poses)),
+        default=None,
+    )
+
+
+def _draw_episode(out: Path, task: str, one: Episode | None) -> None:
+    if one is not None:
+        words = episode_title(task, len(one.poses) - 1, one.success, trained=True)
+        what = one.task, one.poses, one.success, words.replace("learned policy", one.label)
+        episode_pictures.strip(out / f"strip_{task}.png", *what)
+        episode_pictures.film(out / f"film_{task}.gif", *what)
 
 
 def _write_numbers(out: Path, comparison: Comparison) -> None:
@@ -99,7 +132,7 @@ def _name(run: RunResult) -> dict[str, Any]:
 
 def _row(run: RunResult) -> dict[str, Any]:
     """All of a run's figures that are single numbers."""
-    names = [name for name in run_folder.SUMMARY_KEYS if name not in ("task", "seed")]
+    names = [name for name in run_folder.SUMMARY_KEYS if name not in _name(run)]
     summary = {name: run.summary.get(name) for name in names}
     return {**_name(run), "state": run.state, **run.figures(), **summary}
 

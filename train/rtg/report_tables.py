@@ -151,8 +151,9 @@ def _key(name: str) -> Callable[[RunResult], float | None]:
 
 _RUNTIME: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
     ("backward action [ms]", _ratio("reverse_cpu_s", _solves, 1e3), ".2f"),
-    ("forward action [ms]", _ratio("replay_cpu_s", _count("transitions"), 1e3), ".2f"),
+    ("forward action [ms]", _ratio("replay_cpu_s", _count("replays"), 1e3), ".3f"),
     ("solves [1000]", lambda run: _solves(run) / 1000.0, "count"),
+    ("pushes [1000]", lambda run: _thousands(run.summary.get("replays")), "count"),
     ("converged", _ratio("converged", _solves, 1.0), ".3f"),
     ("iterations, median", _key("pushing_iterations_median"), ".0f"),
     ("90th percentile", _key("pushing_iterations_p90"), ".0f"),

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rtg import _core, dataset, episode_pictures, plots, run_folder
 from rtg.episodes import best_episode
+from rtg.errors import UserError
 from rtg.run_plan import RunPlan
 
 Floats = NDArray[np.float64]
@@ -19,11 +20,14 @@ _POOR = 0.1  # tree policy below which start and goal are hardly connected by th
 
 
 def learning_curve(path: Path) -> dict[str, Floats]:
-    """Columns of progress.csv, NaN where a cell is empty. [N] each"""
-    with path.open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    names = rows[0].keys() if rows else ()
-    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in names}
+    """Columns of progress.csv, NaN where a cell is empty, [N] each. Raises UserError."""
+    try:
+        with path.open(newline="") as file:
+            rows = list(csv.DictReader(file, strict=True))
+        names = rows[0].keys() if rows else ()
+        return {name: np.array([float(row[name] or "nan") for row in rows]) for name in names}
+    except (ValueError, TypeError, csv.Error):
+        raise UserError(f"{path}: damaged; legal: as the run left it") from None
 
 
 def _draw_generation(plan: RunPlan, task: _core.Task) -> None:
@@ -74,7 +78,8 @@ def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
         _draw_generation(plan, task)
     if plan.train:
         curve = learning_curve(plan.folder / "progress.csv")
-        plots.learning_curve(plan.folder / "learning_curve.png", plan.title, curve)
+        if curve:  # none of a run resumed with a budget below its first evaluation
+            plots.learning_curve(plan.folder / "learning_curve.png", plan.title, curve)
     _draw_episode(plan, task)
     mode = ("in_process" if plan.in_process else "lcm") if plan.offline else None
     summary = run_folder.summary(plan.folder, plan.config, mode, measured)

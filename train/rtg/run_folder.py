@@ -122,7 +122,10 @@ def _processor() -> str | None:
 
 def versions() -> dict[str, Any]:
     """What a run was made with; null where it cannot be told."""
-    changes = _output("git", "status", "--porcelain", "--untracked-files=no")
+    # But for results/, where the runs of the committed report are made.
+    changes = _output(
+        "git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!results"
+    )
     return {
         "git_revision": _output("git", "rev-parse", "HEAD"),
         "git_modified": None if changes is None else bool(changes),

@@ -114,6 +114,7 @@ def _check_resumed(file: Path, config: dict[str, Any]) -> None:
 
     Also without training: the configuration in the folder stays the one of its checkpoint.
     """
+    effective_config.check_version(file)
     has_checkpoint = run_folder.checkpoint_file(file.parent).exists()
     before = _fixed_values(effective_config.values(file), has_checkpoint)
     after = _fixed_values(config, has_checkpoint)

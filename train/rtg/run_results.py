@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg.cells import Cell, Grid
+from rtg.errors import UserError
 from rtg.estimates import first_reach
 from rtg.methods import METHODS
 from rtg.results import learning_curve
@@ -93,8 +94,12 @@ def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
     run = folder / cell.name
     summary = result(run)
     if summary:
+        if not isinstance(summary.get("success_rate"), float):
+            raise UserError(f"{run / 'summary.json'}: no success_rate; legal: as the run left it")
         progress = run / "progress.csv"
         curve = learning_curve(progress) if progress.is_file() else {}
+        if curve and not {"interactions", *CURVES} <= curve.keys():
+            raise UserError(f"{progress}: lacks columns; legal: as the run left it")
         versions = read_json(run / "versions.json")
         return RunResult(cell, run, "done", summary, versions, curve)
     begun = "unfinished" if run.is_dir() else "not run"

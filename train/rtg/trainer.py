@@ -4,8 +4,8 @@
 RUN_FOLDER/config.yaml, takes the transitions of the run in while it learns, and leaves
 transitions.npz, progress.csv, training_state.json (for displays), checkpoint/, model.pt,
 best_episode.npz and training.json there. Several runs learn side by side, a thread each, and come
-to the same bits as alone. SIGINT or SIGTERM: checkpoint and exit with 128 + number; a second one:
-exit at once.
+to the same bits as alone. SIGINT, SIGTERM or SIGHUP: checkpoint and exit with 128 + number; a
+second one: exit at once.
 """
 
 from __future__ import annotations
@@ -13,47 +13,21 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
-import os
-import signal
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Self
 
 import torch as th
 
 from rtg import _core
 from rtg.bus import Bus
 from rtg.errors import RunError, UserError
+from rtg.interrupts import Interrupts
 from rtg.node_status import ENDED, NodeStatus
 from rtg.offline_data import FileSource, NoSource, Source
 from rtg.training import Training
 from rtg.transition_stream import TransitionStream
-
-
-class StopSignals:
-    """Within its `with`, SIGINT and SIGTERM are a wish; the second one ends the process."""
-
-    def __init__(self) -> None:
-        self.number = 0
-
-    def __enter__(self) -> Self:
-        numbers = (signal.SIGINT, signal.SIGTERM)
-        self._before = {number: signal.signal(number, self._on_signal) for number in numbers}
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        for number, handler in self._before.items():
-            signal.signal(number, handler)
-
-    def _on_signal(self, number: int, _: object) -> None:
-        if self.number:
-            os._exit(128 + number)
-        self.number = number
-
-    def __call__(self) -> bool:
-        return self.number != 0
 
 
 def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
@@ -97,25 +71,25 @@ def _begin(folder: Path, resume: bool) -> Training:
     return training
 
 
-def _learn(training: Training, args: argparse.Namespace, stop: StopSignals) -> int:
+def _learn(training: Training, args: argparse.Namespace, interrupts: Interrupts) -> int:
     """The exit status. Raises UserError, RunError."""
     with contextlib.closing(_source(training, args)) as source:
         try:
-            if not training.run(source, stop, record=not args.no_stream):
-                return 128 + stop.number
-            training.finish(source.lost)
+            if not training.run(source, interrupts.requested, record=not args.no_stream):
+                return 128 + interrupts.number
+            training.finish(source.lost, len(args.folders))
         finally:
             training.tell(ENDED, training.interactions)
     return 0
 
 
-def train(args: argparse.Namespace, stop: StopSignals) -> int:
+def train(args: argparse.Namespace, interrupts: Interrupts) -> int:
     """The exit status, of several runs the highest. Raises UserError, RunError; of several runs
     what the first one raised, at the end of the others."""
     # One after the other: the first weights come from the generator of the process.
     trainings = [_begin(folder, args.resume) for folder in args.folders]
     with ThreadPoolExecutor(len(trainings), initializer=_keep_to_one_thread) as pool:
-        return max(pool.map(lambda training: _learn(training, args, stop), trainings))
+        return max(pool.map(lambda training: _learn(training, args, interrupts), trainings))
 
 
 def _keep_to_one_thread() -> None:
@@ -127,8 +101,8 @@ def _keep_to_one_thread() -> None:
 def main(argv: Sequence[str] | None = None) -> int:
     _keep_to_one_thread()
     try:
-        with StopSignals() as stop:
-            return train(_parse(argv), stop)
+        with Interrupts() as interrupts:
+            return train(_parse(argv), interrupts)
     except (UserError, _core.ConfigError, FileNotFoundError) as error:
         print(f"rtg.trainer: {error}", file=sys.stderr)
         return 2

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from rtg import _core, checkpoint, policy_file, run_folder
+from rtg import _core, checkpoint, device, policy_file, run_folder
 from rtg.curriculum import Curriculum
 from rtg.ddqn import DoubleDqn
 from rtg.errors import UserError
@@ -22,6 +22,7 @@ from rtg.training_log import TrainingLog
 from rtg.vector_env import PushVecEnv
 
 MAX_ENVIRONMENTS = 4  # stepped together; the least legal train.buffer
+_FORMAT = 2  # of the checkpoint; another one is not read
 WAIT = 0.1  # [s], for transitions when there is nothing else to do
 
 Stop = Callable[[], bool]
@@ -51,7 +52,12 @@ class Training:
         self.data = OfflineData(self.task, self.model.replay_buffer)
         self.log = TrainingLog(folder)
         fixed = {name: getattr(s, name) for name in OF_CHECKPOINT}
-        self._identity = {"seed": seed, **fixed, **policy_file.identity(self.task, s)}
+        self._identity = {
+            "format": _FORMAT,
+            "seed": seed,
+            **fixed,
+            **policy_file.identity(self.task, s),
+        }
         self.starts = held_out_starts(self.task, s.eval_episodes, randomise=s.randomise)
         self._clock = Clock()
         self.tell: Callable[[str, int], None] = lambda state, done: None  # as NodeStatus.tick
@@ -209,11 +215,11 @@ class Training:
             f"{self._checkpoint.parent} whole, or removed, to learn anew"
         )
 
-    def finish(self, lost: int) -> None:
+    def finish(self, lost: int, runs: int = 1) -> None:
         """Writes the model, the best final episode and training.json.
 
         The final figures are of starts that no evaluation before has seen: training may have been
-        stopped because those of the others went well by chance.
+        stopped because those of the others went well by chance. `runs`: that learn in this process.
         """
         s = self.settings
         starts = held_out_starts(self.task, s.eval_episodes, FINAL, s.randomise)
@@ -233,7 +239,8 @@ class Training:
             "train_wall_s": round(self._clock.seconds, 3),
             "offline_transitions": self.data.count,
             "lost_transitions": lost,
-            "device": self.model.device.type,
+            "device": device.name(self.model.device.type),
+            "runs_in_process": runs,
         }
         run_folder.write_json(self.folder / "training.json", training)
         self.log.display(self._state(), force=True)

@@ -72,8 +72,9 @@ class PushVecEnv(VecEnv):
         if done.any():
             for env in map(int, np.flatnonzero(done)):
                 infos[env]["terminal_observation"] = observation[env]
-                infos[env]["is_success"] = bool(success[env])
-                infos[env]["episode"] = {"r": float(success[env]), "l": int(self._steps[env])}
+                if self._origins[env] == ELSEWHERE:  # what the learner is judged by
+                    infos[env]["is_success"] = bool(success[env])
+                    infos[env]["episode"] = {"r": float(success[env]), "l": int(self._steps[env])}
                 if self._curriculum:
                     self._curriculum.note(self._origins[env], bool(success[env]))
                 self._begin(env)

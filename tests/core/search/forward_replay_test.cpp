@@ -212,6 +212,7 @@ TEST_F(ReplayChainsTest, EndWithARejectedPushThatIsCountedAndNotStored) {
   EXPECT_EQ(out[1].size(), 0U);
   EXPECT_EQ(out[2].size(), 2U);
   EXPECT_EQ(stats.rejected_pushes, 2);
+  EXPECT_EQ(stats.replays, 6);
   EXPECT_EQ(stats.replay_cpu_s, 0.25 * 6);
 }
 

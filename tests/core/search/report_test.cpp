@@ -23,6 +23,7 @@ GenerationReport filled() {
   r.illegal_starts = 20;
   r.unsettled_goals = 21;
   r.rejected_pushes = 22;
+  r.replays = 24;
   r.units_given_up = 23;
   r.iterations_median = 30.0;
   r.iterations_p90 = 31.0;
@@ -47,7 +48,7 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
             R"("start_region_depth":5,"candidates":6,)"
             R"("converged":10,"pruned":11,"infeasible":12,"iteration_limit":13,)"
             R"("line_search_failed":14,"singular":15,"non_finite":16,)"
-            R"("illegal_starts":20,"unsettled_goals":21,"rejected_pushes":22,)"
+            R"("illegal_starts":20,"unsettled_goals":21,"replays":24,"rejected_pushes":22,)"
             R"("units_given_up":23,)"
             R"("iterations_median":30.0,"iterations_p90":31.0,"pushing_converged":32,)"
             R"("pushing_iterations_median":33.0,"pushing_iterations_p90":34.0,)"
