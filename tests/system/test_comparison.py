@@ -117,6 +117,18 @@ def test_seeds_that_learn_together_come_to_the_same_figures(undisturbed, tmp_pat
     assert [row for row in found if row["method"] == "ddqn_naive"] == alone
 
 
+def test_runs_that_differ_in_the_learner_share_their_transitions(undisturbed, tmp_path):
+    sweep = ("--sweep", "train.batch=32,16")
+    finish(start(tmp_path, ("gathering",), *sweep))
+    runs = [tmp_path / f"gathering/ddqn_naive@train.batch={batch}/seed-1" for batch in (32, 16)]
+    logs = [run.with_name("seed-1.log").read_text() for run in runs]
+    assert [("the transitions are there already" in log) for log in logs] == [False, True]
+    assert runs[0].joinpath("transitions.npz").samefile(runs[1] / "transitions.npz")
+    alone = [row for row in figures(undisturbed[0]) if row["task"] == "gathering"]
+    found = [row for row in figures(tmp_path) if row["method"].endswith("=32")]
+    assert [{**row, "method": "ddqn_naive"} for row in found] == alone
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_stops_all_runs_and_says_how_to_go_on(tmp_path, number):
     folder = tmp_path / "stopped"

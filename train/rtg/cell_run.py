@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rtg import effective_config, run_args, run_folder
+from rtg import effective_config, run_args, run_folder, shared_transitions
 from rtg.cells import Cell
 from rtg.errors import UserError
 from rtg.methods import run_words
 from rtg.reproduce_args import ReproduceArgs
 from rtg.run_args import Override
+from rtg.run_plan import make_plan
 
 # One core each: libraries that would start a thread per core.
 _ONE_THREAD = [f"{name}_NUM_THREADS=1" for name in ("OMP", "OPENBLAS", "MKL")]
@@ -27,7 +28,7 @@ class CellRun:
     cell: Cell
     folder: Path
     words: tuple[str, ...]  # of `rtg run`, but for the folder
-    offline: bool = True  # whether transitions are generated
+    kind: str | None = None  # of its transitions, as shared_transitions.kind()
     device: str = "auto"  # train.device
 
     @property
@@ -49,8 +50,23 @@ class CellRun:
         """Whether its folder holds the run, perhaps an unfinished one."""
         return (self.folder / "config.yaml").is_file()
 
+    @property
+    def generates(self) -> str | None:
+        """The kind of its transitions while they are not there."""
+        return None if shared_transitions.are_there(self.folder) else self.kind
+
+    def begin(self) -> None:
+        """Makes the folder, without `rtg run`."""
+        make_plan(run_args.parse([*self.words, "--out", str(self.folder)]))
+
     def command(self) -> list[str]:
-        """Begins the run, or goes on with it."""
+        """Begins the run, or goes on with it; takes over the transitions of another run that has
+        the same. Raises UserError."""
+        if self.kind and not self.begun:
+            place = self.folder.parents[1], self.folder.name
+            if source := shared_transitions.find(self.kind, *place):
+                self.begin()
+                shared_transitions.take_over(source, self.folder)
         words = ["--resume"] if self.begun else self.words
         return program("rtg", "run", *words, "--out", str(self.folder))
 
@@ -81,8 +97,8 @@ def make_ready(args: ReproduceArgs) -> list[CellRun]:
         if folder.parent not in checked:
             _check_seeds(folder.parent, config)
             checked.add(folder.parent)
-        offline, device = config["train"]["offline"], config["train"]["device"]
-        runs.append(CellRun(cell, folder, _words(args, cell), offline, device))
+        kind, device = shared_transitions.kind(config), config["train"]["device"]
+        runs.append(CellRun(cell, folder, _words(args, cell), kind, device))
     return runs
 
 

@@ -87,6 +87,11 @@ class Job(Protocol):
     def done(self) -> bool:
         """Whether there is nothing left to do."""
 
+    @property
+    def generates(self) -> str | None:
+        """The kind of transitions that it makes and others may wait for; None if there are none,
+        or they are there."""
+
     def command(self) -> list[str]:
         """Begins the job, or goes on with it."""
 
@@ -126,7 +131,7 @@ class Crew:
                 self._look_at(job, node)
         for job in self._jobs:
             idle = len(self._nodes) < self._places
-            if idle and self._rows[job.name].phase == "waiting":
+            if idle and self._rows[job.name].phase == "waiting" and not self._is_made(job):
                 self._start(job)
         shown.show(self.rows())
         return bool(self._nodes)
@@ -146,6 +151,11 @@ class Crew:
     def kill(self) -> None:
         """Ends all jobs at once."""
         kill_all(self._nodes.values())
+
+    def _is_made(self, job: Job) -> bool:
+        """Whether one at work makes the transitions that the job would make."""
+        kinds = {other.generates for other in self._jobs if other.name in self._nodes}
+        return job.generates is not None and job.generates in kinds
 
     def _start(self, job: Job) -> None:
         if self._failures:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rtg import effective_config, multicast, run_folder
+from rtg import effective_config, multicast, run_folder, shared_transitions
 from rtg.errors import UserError
 from rtg.run_args import Override, RunArgs
 from rtg.settings import OF_CHECKPOINT
@@ -64,7 +64,7 @@ class RunPlan:
 
     def is_generated(self) -> bool:
         """Whether an earlier process of this run has done the generation."""
-        return self.resume and self.transitions_file.is_file() and self.report_file.is_file()
+        return self.resume and shared_transitions.are_there(self.folder)
 
 
 def _check_offline(config: dict[str, Any], train: bool) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from rtg import run_args, run_plan
+from rtg import shared_transitions
 from rtg.cell_run import CellRun, program
 
 
@@ -30,8 +30,11 @@ class Generation:
 
     @property
     def done(self) -> bool:
-        files = ("transitions.npz", "generation.json")
-        return all((self.run.folder / name).is_file() for name in files)
+        return shared_transitions.are_there(self.run.folder)
+
+    @property
+    def generates(self) -> str | None:
+        return self.run.generates
 
     def command(self) -> list[str]:
         return [*self.run.command(), "--no-train"]
@@ -58,10 +61,14 @@ class Learning:
     def done(self) -> bool:
         return all((run.folder / "training.json").is_file() for run in self.runs)
 
+    @property
+    def generates(self) -> str | None:
+        return None
+
     def command(self) -> list[str]:
         for run in self.runs:
             if not run.begun:  # nothing was generated for it
-                run_plan.make_plan(run_args.parse([*run.words, "--out", str(run.folder)]))
+                run.begin()
         folders = [str(run.folder) for run in self.runs]
         return program("rtg.trainer", *folders, "--no-stream", "--resume")
 
@@ -81,7 +88,7 @@ def stages(runs: Sequence[CellRun], wanted: bool) -> tuple[list[Generation], lis
         if not run.done and (wanted or _on_gpu(run)):
             groups.setdefault(run.folder.parent, []).append(run)
     several = [tuple(group) for group in groups.values() if len(group) > 1]
-    generations = [Generation(run) for group in several for run in group if run.offline]
+    generations = [Generation(run) for group in several for run in group if run.kind]
     return generations, [Learning(group) for group in several]
 
 

@@ -89,7 +89,8 @@ def train(args: argparse.Namespace, interrupts: Interrupts) -> int:
     # One after the other: the first weights come from the generator of the process.
     trainings = [_begin(folder, args.resume) for folder in args.folders]
     with ThreadPoolExecutor(len(trainings), initializer=_keep_to_one_thread) as pool:
-        return max(pool.map(lambda training: _learn(training, args, interrupts), trainings))
+        ends = [pool.submit(_learn, training, args, interrupts) for training in trainings]
+    return max(end.result() for end in ends)
 
 
 def _keep_to_one_thread() -> None:
