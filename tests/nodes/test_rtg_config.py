@@ -205,6 +205,29 @@ def test_check_says_what_it_understood(file: Path) -> None:
     assert done.stdout == understood.replace("{file}", str(file))
 
 
+SORTING = {
+    "robot": ("robot", [0.0, -6.5, 0.0]),
+    "a1": ("a", [1.2, 3.0, 0.1]),
+    "a2": ("a", [1.2, -1.0, -0.2]),
+    "b1": ("b", [-1.2, 1.0, 0.2]),
+    "b2": ("b", [-1.2, -3.0, 0.3]),
+}
+HARD = {**SORTING, "a3": ("a", [1.2, -5.0, 0.2]), "b3": ("b", [-1.2, 5.0, -0.1])}
+
+
+@pytest.mark.parametrize(("name", "bodies"), [("sorting", SORTING), ("sorting_hard", HARD)])
+def test_sorting_is_laid_out_in_two_columns(name: str, bodies: dict[str, object]) -> None:
+    done = rtg_config(paths.CONFIG / f"{name}.yaml", "--json")
+    task = json.loads(done.stdout)["task"]
+    found = {body["name"]: (body["kind"], body["start"]) for body in task["bodies"]}
+    assert list(found.items()) == list(bodies.items())
+    assert task["goal"] == [
+        {"kind": "a", "half_plane": {"normal": [1.0, 0.0], "offset": -2.0}},
+        {"kind": "b", "half_plane": {"normal": [-1.0, 0.0], "offset": -2.0}},
+    ]
+    assert (task["discount"], task["randomisation"]) == (0.9, 1.0)
+
+
 def test_json_holds_the_values_with_their_types(file: Path) -> None:
     done = rtg_config(file, "--set", "run.workers=3", "--set", "search.breadth=7", "--json")
     config = json.loads(done.stdout)

@@ -20,6 +20,8 @@ RRBS = (
     "search.rollout_share=0.2",
     "search.evaluation_starts=1",
 )
+# Most of them are found forwards, on the server alone.
+MENDED = ("search.mended=1", "search.transitions=800", "search.rollout_share=0")
 
 
 @pytest.fixture
@@ -56,13 +58,14 @@ def test_any_number_of_workers(
     assert graph.transitions() == tiny
 
 
-def test_the_reverse_simulator(net: network.Network, tmp_path: Path) -> None:
-    graph = Graph(net, tmp_path, *RRBS)
+@pytest.mark.parametrize("words", [RRBS, MENDED], ids=["rrbs", "mended"])
+def test_other_searches(net: network.Network, tmp_path: Path, words: tuple[str, ...]) -> None:
+    graph = Graph(net, tmp_path, *words)
     helpers = [graph.server(), graph.worker(1), graph.worker(2)]
     consumer, coordinator = graph.consumer(), graph.coordinator()
     assert rest(consumer) == "lost 0"
     assert_all_left(coordinator, *helpers)
-    assert graph.transitions() == generated_in_process(tmp_path / "direct.npz", *RRBS)
+    assert graph.transitions() == generated_in_process(tmp_path / "direct.npz", *words)
 
 
 def test_a_killed_worker(net: network.Network, tmp_path: Path, long: bytes) -> None:

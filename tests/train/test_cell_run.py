@@ -89,6 +89,12 @@ def test_a_run_of_a_version_without_one_of_the_settings_is_refused(words):
     )
 
 
+def test_what_no_run_can_do_is_refused_before_anything_starts(words, tmp_path):
+    with pytest.raises(UserError, match=r"train\.buffer: 100 is too small for search\.transitions"):
+        make_ready(parse([*words, "--set", "train.buffer=100"]))
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_seeds_with_another_configuration_are_refused_though_not_asked_for(words):
     begin(make_ready(parse(words))[0])
     other = [word if word != "1" else "2," for word in words]

@@ -9,13 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rtg import effective_config, run_args, run_folder, shared_transitions
+from rtg import effective_config, run_args, run_folder, run_plan, shared_transitions
 from rtg.cells import Cell
 from rtg.errors import UserError
 from rtg.methods import run_words
 from rtg.reproduce_args import ReproduceArgs
 from rtg.run_args import Override
-from rtg.run_plan import make_plan
 
 # One core each: libraries that would start a thread per core.
 _ONE_THREAD = [f"{name}_NUM_THREADS=1" for name in ("OMP", "OPENBLAS", "MKL")]
@@ -57,7 +56,7 @@ class CellRun:
 
     def begin(self) -> None:
         """Makes the folder, without `rtg run`."""
-        make_plan(run_args.parse([*self.words, "--out", str(self.folder)]))
+        run_plan.make_plan(run_args.parse([*self.words, "--out", str(self.folder)]))
 
     def command(self) -> list[str]:
         """Begins the run, or goes on with it; takes over the transitions of another run that has
@@ -92,6 +91,7 @@ def make_ready(args: ReproduceArgs) -> list[CellRun]:
         twin = seen.setdefault(json.dumps(config), cell.name)
         if twin != cell.name:
             raise UserError(f"{cell.name}: is the same run as {twin}; legal: values that differ")
+        run_plan.check(config, train=True)
         folder = args.out / cell.name
         _check_folder(folder)
         if folder.parent not in checked:

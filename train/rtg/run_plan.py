@@ -97,6 +97,16 @@ def _check_buffer(config: dict[str, Any]) -> None:
         )
 
 
+def check(config: dict[str, Any], train: bool) -> None:
+    """Raises UserError for what the loader takes and no run can do."""
+    _check_offline(config, train)
+    if train:
+        _check_buffer(config)
+        _check_device(config)
+    if config["run"]["in_process"] and config["run"]["record"]:
+        raise UserError("run.record: with run.in_process there are no messages; legal: false")
+
+
 def _fixed_values(config: dict[str, Any], has_checkpoint: bool) -> dict[str, Any]:
     """What a run keeps for good, by dotted name: what decides the transitions, and what a
     checkpoint is bound to once there is one."""
@@ -135,12 +145,7 @@ def make_plan(args: RunArgs) -> RunPlan:
     config = effective_config.values(args.file, overrides)
     if args.resume:
         _check_resumed(args.file, config)
-    _check_offline(config, args.train)
-    if args.train:
-        _check_buffer(config)
-        _check_device(config)
-    if config["run"]["in_process"] and config["run"]["record"]:
-        raise UserError("run.record: with run.in_process there are no messages; legal: false")
+    check(config, args.train)
     notes = []
     needs_bus = config["train"]["offline"] and not config["run"]["in_process"]
     if needs_bus and (why := multicast.defect(config["run"]["bus"])):
