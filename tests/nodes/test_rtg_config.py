@@ -205,6 +205,20 @@ def test_check_says_what_it_understood(file: Path) -> None:
     assert done.stdout == understood.replace("{file}", str(file))
 
 
+def test_check_says_joints_and_goals_of_a_chain() -> None:
+    done = rtg_config(paths.CONFIG / "art_manip.yaml", "--check")
+    said = done.stdout.split("actions\n")[0].splitlines()
+    assert said[said.index("joints") :] == [
+        "joints",
+        "  'link2' on 'link1', from -137 to 137 deg",
+        "  'link3' on 'link2', from -137 to 137 deg",
+        "  'link4' on 'link3', from -137 to 137 deg",
+        "goal, all of",
+        "  every joint has an angle from 75 to 105 deg",
+        "  the mean centre of all 'link' lies within 1 m of (0, 3)",
+    ]
+
+
 SORTING = {
     "robot": ("robot", [0.0, -6.5, 0.0]),
     "a1": ("a", [1.2, 3.0, 0.1]),
