@@ -60,7 +60,8 @@ def finished(folder: Path, cell: Cell, course: Sequence[float], **more: Any) -> 
     }
     write_json(run / "summary.json", summary)
     write_json(run / "versions.json", {"git_revision": "abc", "git_modified": False})
-    (run / "config.yaml").write_text(_core.Config.from_file(CONFIG).yaml)
+    budget = f"train.interactions={5000 * len(course)}"
+    (run / "config.yaml").write_text(_core.Config.from_file(CONFIG, overrides=[budget]).yaml)
     start = _core.Config.from_file(CONFIG).task.start
     np.savez(run / "best_episode.npz", poses=np.stack([start, start]), success=course[-1] > 0.5)
 

@@ -16,10 +16,11 @@ from rtg.run_results import Comparison, RunResult
 _LEGEND = """\
 Means ± standard deviations over the seeds. **success**: of the final greedy policy from held-out
 starts, objects jittered, that nothing was chosen by; **roll-outs**: of the last 100 training
-episodes from the starts of the task, exploration included; **to 0.70**, **to 0.95**: thousand
-interactions until the first evaluation with that greedy success ("2 of 3": so many of the seeds
-ever); **interactions**, **transitions** in thousands, used and generated. Times are wall clock, of
-generation on one core, of training on what is named *learner* above. All figures are in
+episodes from the starts of the task, exploration included; **at ⅓**: greedy success, other held-out
+starts, at a third of the budget; **to 0.70**, **to 0.95**: thousand interactions until the first
+evaluation with that greedy success ("2 of 3": so many of the seeds ever); **interactions**,
+**transitions** in thousands, used and generated. Times are wall clock, of generation on one core,
+of training on what is named *learner* above. All figures are in
 [runs.csv](runs.csv), the learning curves in [curves.csv](curves.csv); in their pictures a run that
 ended early keeps its last value."""
 _POOLED = f"""\
@@ -33,8 +34,12 @@ _RUNTIME = """\
 CPU time per reverse solve that was not pruned, and per push of the simulator; how many solves and
 pushes, the share of the solves that converged, iterations of those that moved an object;
 environment steps of the learner per second, evaluations included."""
-_GAP = """\
-How far the replay of a reverse step ends from where it began, over all candidates replayed."""
+_DATA = """\
+**replay gap**: how far the replay of a reverse step ends from where it began, over all candidates
+replayed; **contact share**: of the transitions, those that move an object; **tree policy**: success
+of the plans found, before any roll-out, from jittered starts, and in how many pushes;
+**reachable**: transitions from which stored ones lead to success; **start region**: transitions
+that begin there."""
 
 
 def _listed(found: Iterable[str]) -> str:
@@ -118,9 +123,9 @@ def report(folder: Path, grid: Grid, comparison: Comparison) -> str:
         "## Run time",
         tables.runtime(comparison),
         _RUNTIME,
-        "## Replay gap",
-        tables.replay_gap(comparison),
-        _GAP,
+        "## Data",
+        tables.data(comparison),
+        _DATA,
         *_picture(folder, "replay_gap.png", "Histogram of the replay gap"),
         *_troubles(grid, comparison.results),
     ]

@@ -82,10 +82,7 @@ def _read_episode(run: RunResult) -> Episode | None:
     path, config = run.folder / "best_episode.npz", run.folder / "config.yaml"
     if not path.is_file():
         return None
-    try:
-        task = _core.Config.from_file(config).task
-    except _core.ConfigError as error:
-        raise UserError(str(error)) from None
+    task = _core.Config.from_file(config).task
     try:
         with np.load(path) as file:
             poses, success = file["poses"].astype(float), bool(file["success"])

@@ -62,16 +62,15 @@ def _thousands(value: float | None) -> float | None:
 
 def of_task(comparison: Comparison, task: str) -> str:
     """What every method came to on one task."""
-    head = ["method", "seeds", "success", "roll-outs", "to 0.70", "to 0.95", "interactions"]
-    head += ["transitions", "generation [s]", "training [s]"]
+    head = ["method", "seeds", "success", "roll-outs", "at ⅓", "to 0.70", "to 0.95"]
+    head += ["interactions", "transitions", "generation [s]", "training [s]"]
     rows = []
     for label in comparison.labels:
         runs = comparison.row(task, label)
         done = [run.figures() for run in runs if run.done]
         row = [f"`{label}`", states(runs)]
-        row += [
-            spread([f[name] for f in done], ".2f") for name in ("success_rate", "rollout_success")
-        ]
+        shares = ("success_rate", "rollout_success", "success_at_third")
+        row += [spread([f[name] for f in done], ".2f") for name in shares]
         for name in ("interactions_to_70", "interactions_to_95", "interactions", "transitions"):
             values = [_thousands(f[name]) for f in done]
             never = name.startswith("interactions_to") and done and not any(values)
@@ -159,11 +158,14 @@ _RUNTIME: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
     ("90th percentile", _key("pushing_iterations_p90"), ".0f"),
     ("interactions per s", _ratio("interactions", _count("train_wall_s"), 1.0), ".0f"),
 )
-_GAP: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
+_DATA: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
     ("replay gap, median [m]", _key("replay_gap_median"), ".4f"),
     ("90th percentile [m]", _key("replay_gap_p90"), ".4f"),
     ("contact share", _key("contact_share"), ".2f"),
     ("tree policy", _key("tree_policy_success"), ".2f"),
+    ("its pushes", _key("tree_policy_length_mean"), ".1f"),
+    ("reachable", _key("reachable_share"), ".2f"),
+    ("start region", _key("start_region_transitions"), "count"),
 )
 
 
@@ -185,9 +187,9 @@ def runtime(comparison: Comparison) -> str:
     return _per_method(comparison, _RUNTIME)
 
 
-def replay_gap(comparison: Comparison) -> str:
-    """Appendix F: how well reverse steps replay, and what the data are like."""
-    return _per_method(comparison, _GAP)
+def data(comparison: Comparison) -> str:
+    """How well reverse steps replay (Appendix F), and what the data cover."""
+    return _per_method(comparison, _DATA)
 
 
 def not_run(comparison: Comparison) -> list[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rtg import _core
 from rtg.cells import Cell, Grid
 from rtg.errors import UserError
 from rtg.estimates import first_reach
@@ -32,6 +35,7 @@ class RunResult:
     summary: dict[str, Any]  # summary.json; of a run that is not done, empty like the next two
     versions: dict[str, Any]
     curve: dict[str, Floats]  # columns of progress.csv [N]
+    budget: int  # of interactions; 0 of a run that is not done
 
     @property
     def done(self) -> bool:
@@ -50,10 +54,19 @@ class RunResult:
         return {
             "seed": self.cell.seed,
             **{name: self.summary.get(name) for name in names},
+            "success_at_third": self.success_at_third(),
             **{name: self.reached(bar) for name, bar in _BARS.items()},
             **{name: self.summary.get(name) for name in more},
             "commit": self.commit,
         }
+
+    def success_at_third(self) -> float | None:
+        """Of the last evaluation within a third of the budget, rounded up to thousands."""
+        if not self.curve:
+            return None
+        third = 1000 * math.ceil(self.budget / 3000)
+        known = self.curve["success_rate"][self.curve["interactions"] <= third]
+        return float(known[-1]) if len(known) else None
 
     def reached(self, bar: float) -> int | None:
         """Interactions at the first evaluation with that greedy success; None: never."""
@@ -100,10 +113,18 @@ def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
         curve = learning_curve(progress) if progress.is_file() else {}
         if curve and not {"interactions", *CURVES} <= curve.keys():
             raise UserError(f"{progress}: lacks columns; legal: as the run left it")
-        versions = read_json(run / "versions.json")
-        return RunResult(cell, run, "done", summary, versions, curve)
+        versions, budget = read_json(run / "versions.json"), _budget(run / "config.yaml")
+        return RunResult(cell, run, "done", summary, versions, curve, budget)
     begun = "unfinished" if run.is_dir() else "not run"
-    return RunResult(cell, run, "failed" if cell.name in grid.failed else begun, {}, {}, {})
+    return RunResult(cell, run, "failed" if cell.name in grid.failed else begun, {}, {}, {}, 0)
+
+
+def _budget(config: Path) -> int:
+    try:
+        train = json.loads(_core.Config.from_file(config).json)["train"]
+    except _core.ConfigError as error:
+        raise UserError(str(error)) from None
+    return int(train["interactions"])
 
 
 def _place(cell: Cell) -> int:
