@@ -38,7 +38,7 @@ def folder(tmp_path_factory):
     finished(path, CELLS[3 + 2], BAD, defects=["3 transitions lost"])
     (path / CELLS[4].name).mkdir(parents=True)  # failed
     (path / CELLS[6].name).mkdir(parents=True)  # unfinished
-    write_grid(path, CELLS, {CELLS[4].name: "Traceback\nMemoryError"})
+    write_grid(path, CELLS[::-1], {CELLS[4].name: "Traceback\nMemoryError"})
     write_report(path, path)
     return path
 

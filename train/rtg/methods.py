@@ -1,7 +1,8 @@
-"""The methods that are compared, and how a run is told which of them it is."""
+"""The tasks and methods that are compared, and how a run is told its method."""
 
 from __future__ import annotations
 
+TASKS = ("gathering", "sorting", "art_manip")
 METHODS = (
     "dqn",
     "ddqn",

@@ -12,10 +12,9 @@ from pathlib import Path
 from rtg import paths
 from rtg.cells import Cell
 from rtg.errors import UserError
-from rtg.methods import METHODS, REFERENCE
+from rtg.methods import METHODS, REFERENCE, TASKS
 from rtg.run_args import Parser, task_file
 
-TASKS = ("gathering", "sorting", "art_manip")
 SEEDS = "5"
 # Enough to see every part at work; no figure of such a run is a result.
 QUICK = (

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ from rtg import _core
 from rtg.cells import Cell, Grid
 from rtg.errors import UserError
 from rtg.estimates import first_reach
-from rtg.methods import METHODS
+from rtg.methods import METHODS, TASKS
 from rtg.results import learning_curve
 from rtg.run_folder import read_json, result
 
@@ -61,10 +60,10 @@ class RunResult:
         }
 
     def success_at_third(self) -> float | None:
-        """Of the last evaluation within a third of the budget, rounded up to thousands."""
+        """Of the last evaluation within a third of the budget, rounded to thousands."""
         if not self.curve:
             return None
-        third = 1000 * math.ceil(self.budget / 3000)
+        third = 1000 * round(self.budget / 3000)
         known = self.curve["success_rate"][self.curve["interactions"] <= third]
         return float(known[-1]) if len(known) else None
 
@@ -132,8 +131,9 @@ def _place(cell: Cell) -> int:
 
 
 def read_comparison(folder: Path, grid: Grid) -> Comparison:
-    """Tasks and swept values in the order of the grid, methods in that of METHODS, then seeds."""
-    tasks = list(dict.fromkeys(cell.task for cell in grid.cells))
+    """Tasks in the order of TASKS, methods in that of METHODS, what is not among them after them,
+    like swept values in the order of the grid; then seeds."""
+    tasks = list(dict.fromkeys((*TASKS, *(cell.task for cell in grid.cells))))
     settings = list(dict.fromkeys(cell.settings for cell in grid.cells))
     cells = sorted(
         grid.cells,
