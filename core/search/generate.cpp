@@ -36,6 +36,10 @@ constexpr int kMastered = 3;     // rounds that find nothing left to learn, and 
 constexpr double kMisses = 0.3;  // share of the draws of steps whose plan misses that count
 constexpr int kMaxBarren = 8;    // rounds or waves without a transition before it gives up
 
+std::string percent(std::size_t part, std::size_t whole) {
+  return std::to_string(100 * std::min(part, whole) / std::max<std::size_t>(whole, 1)) + " %";
+}
+
 /// One run of generate().
 class Generation {
  public:
@@ -84,9 +88,11 @@ class Generation {
   /// Rounds of trees until `explored` steps per stored one are found, or there is nothing to learn.
   void explore() {
     const auto limit = static_cast<std::size_t>(static_cast<double>(trees_) * config_.explored);
-    const auto after_layer = [this](int layer, std::size_t first) {
+    const auto after_layer = [this, limit](int layer, std::size_t first) {
       store_some(first);
-      report_progress("round " + std::to_string(exploration_.rounds() + 1), layer, config_.depth);
+      report_progress("round " + std::to_string(exploration_.rounds() + 1) + " (" +
+                          percent(exploration_.pool().size(), limit) + ")",
+                      layer, config_.depth);
     };
     for (int barren = 0; exploration_.pool().size() < limit && barren < kMaxBarren &&
                          exploration_.mastered() < kMastered && !cancelled();)
@@ -98,10 +104,10 @@ class Generation {
   void mend() {
     const StepPool& pool = exploration_.pool();
     const auto wanted = static_cast<std::size_t>(static_cast<double>(trees_) * config_.mended);
-    const std::size_t limit = pool.size() + wanted;
+    const std::size_t explored = pool.size(), limit = explored + wanted;
     for (int wave = 0; pool.size() < limit && policy().size() > 0 && !cancelled(); ++wave) {
       const std::size_t before = pool.size();
-      const std::string phase = "mending " + std::to_string(wave + 1);
+      const std::string phase = "mending (" + percent(before - explored, wanted) + ")";
       std::vector<Episode> tried = episodes(kMending, wave);
       report_progress(phase, 0, 0);
       if (cancelled()) break;

@@ -1,6 +1,7 @@
 #include "core/search/report.hpp"
 
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "core/math/quantile.hpp"
 
@@ -34,7 +35,25 @@ void fill(GenerationReport& report, const SearchStats& stats) {
   report.replay_gaps = stats.gaps;
 }
 
+namespace {
+
+nlohmann::ordered_json to_json(std::span<const ReportNode> nodes) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const ReportNode& n : nodes) {
+    nlohmann::ordered_json poses = nlohmann::ordered_json::array();
+    for (const Pose& p : n.poses) poses.push_back({p.x, p.y, p.theta});
+    out.push_back({{"poses", poses}, {"depth", n.depth}, {"tree", n.tree}});
+  }
+  return out;
+}
+
+}  // namespace
+
 std::string to_json(const GenerationReport& r) {
+  // Random episodes have no reverse steps and no plans: null.
+  const auto searched = [&r](double value) {
+    return r.candidates > 0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+  };
   nlohmann::ordered_json out = {{"transitions", r.transitions},
                                 {"explored", r.explored},
                                 {"contact_share", r.contact_share},
@@ -42,8 +61,8 @@ std::string to_json(const GenerationReport& r) {
                                 {"start_region_transitions", r.start_region_transitions},
                                 {"start_region_tree_transitions", r.start_region_tree_transitions},
                                 {"reachable_share", r.reachable_share},
-                                {"tree_policy_success", r.tree_policy_success},
-                                {"tree_policy_length_mean", r.tree_policy_length_mean},
+                                {"tree_policy_success", searched(r.tree_policy_success)},
+                                {"tree_policy_length_mean", searched(r.tree_policy_length_mean)},
                                 {"start_region_depth", r.start_region_depth},
                                 {"candidates", r.candidates}};
   for (std::size_t k = 0; k < r.statuses.size(); ++k)
@@ -53,23 +72,18 @@ std::string to_json(const GenerationReport& r) {
   out["replays"] = r.replays;
   out["rejected_pushes"] = r.rejected_pushes;
   out["units_given_up"] = r.units_given_up;
-  out["iterations_median"] = r.iterations_median;
-  out["iterations_p90"] = r.iterations_p90;
+  out["iterations_median"] = searched(r.iterations_median);
+  out["iterations_p90"] = searched(r.iterations_p90);
   out["pushing_converged"] = r.pushing_converged;
-  out["pushing_iterations_median"] = r.pushing_iterations_median;
-  out["pushing_iterations_p90"] = r.pushing_iterations_p90;
-  out["replay_gap_median"] = r.replay_gap_median;
-  out["replay_gap_p90"] = r.replay_gap_p90;
+  out["pushing_iterations_median"] = searched(r.pushing_iterations_median);
+  out["pushing_iterations_p90"] = searched(r.pushing_iterations_p90);
+  out["replay_gap_median"] = searched(r.replay_gap_median);
+  out["replay_gap_p90"] = searched(r.replay_gap_p90);
   out["reverse_cpu_s"] = r.reverse_cpu_s;
   out["replay_cpu_s"] = r.replay_cpu_s;
   out["generate_wall_s"] = r.generate_wall_s;
   out["replay_gaps"] = r.replay_gaps;
-  out["nodes"] = nlohmann::ordered_json::array();
-  for (const ReportNode& n : r.nodes) {
-    nlohmann::ordered_json poses = nlohmann::ordered_json::array();
-    for (const Pose& p : n.poses) poses.push_back({p.x, p.y, p.theta});
-    out["nodes"].push_back({{"poses", poses}, {"depth", n.depth}, {"tree", n.tree}});
-  }
+  out["nodes"] = to_json(r.nodes);
   return out.dump();
 }
 

@@ -36,7 +36,9 @@ struct TrainConfig {
   bool target_policy = true;    // the policy is the target network's, a mean over recent weights
   double discount = 0.95;       // γ; 0: the task's
   double offline_share = 0.5;   // of a batch; negative: uniform over all transitions
+  double recent_share = 0.5;    // of the online part of a batch: among the 10,000 latest
   bool double_q = true;         // van Hasselt et al. 2016
+  bool cautious = true;         // ... with the lesser of both networks' values of that action
   bool dueling = true;          // Wang et al. 2016
   bool layer_norm = true;       // after each hidden layer
   bool small_head = true;       // last layer starts near 0
@@ -95,7 +97,9 @@ struct TrainConfig {
     v.flag("target_policy", target_policy, "evaluate and keep the target network's policy");
     v.number("discount", discount, 0.0, 0.9999, "of the learner; 0: the task's");
     v.number("offline_share", offline_share, -1.0, 1.0, "of a batch; negative: uniform over all");
+    v.number("recent_share", recent_share, 0.0, 1.0, "of its online part: from the latest 10,000");
     v.flag("double_q", double_q, "Double-Q targets");
+    v.flag("cautious", cautious, "... valued by the network that thinks less of it");
     v.flag("dueling", dueling, "dueling head");
     v.flag("layer_norm", layer_norm, "layer normalisation");
     v.flag("small_head", small_head, "last layer starts near 0");
@@ -126,6 +130,8 @@ inline TrainConfig train_preset(TrainPreset preset) {
   config.target_policy = false;
   config.discount = 0.0;
   config.offline_share = -1.0;
+  config.recent_share = 0.0;
+  config.cautious = false;
   config.dueling = config.layer_norm = config.small_head = false;
   config.clip_targets = config.value_bounds = false;
   config.epsilon_start = 1.0;

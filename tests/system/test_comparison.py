@@ -87,6 +87,7 @@ def test_each_run_keeps_to_one_thread_and_one_process(undisturbed):
     folder, _ = undisturbed
     summary = json.loads((folder / "sorting/ddqn_naive/seed-1/summary.json").read_text())
     assert (summary["workers"], summary["mode"]) == (1, "in_process")
+    assert summary["runs_in_process"] == 1
 
 
 def test_killed_and_begun_again_it_comes_to_the_same_figures(undisturbed, tmp_path):
@@ -110,6 +111,8 @@ def test_seeds_that_learn_together_come_to_the_same_figures(undisturbed, tmp_pat
     assert "gathering/ddqn: 2 seeds learn: done (learned)" in out
     assert "gathering/ddqn_naive: 2 seeds learn: done (learned)" in out
     assert "4 of 4 runs done" in out
+    for run in tmp_path.glob("gathering/*/seed-[12]"):
+        assert json.loads((run / "summary.json").read_text())["runs_in_process"] == 2
     alone, found = (
         [row for row in figures(folder) if (row["task"], row["seed"]) == ("gathering", "1")]
         for folder in (undisturbed[0], tmp_path)

@@ -45,8 +45,11 @@ def test_a_new_run_begins_and_one_that_has_begun_goes_on(words):
     assert not naive.done and not rtg.done
     write_json(naive.folder / "summary.json", {"interactions": None})  # of --no-train
     assert not naive.done
-    write_json(naive.folder / "summary.json", {"interactions": 400})
+    write_json(naive.folder / "summary.json", {"interactions": 400, "success_rate": 0.5})
     assert naive.done
+    write_json(naive.folder / "summary.json", {"interactions": 400})
+    with pytest.raises(UserError, match=r"summary\.json: no success_rate; legal: as the run left"):
+        make_ready(parse(words))[0].outcome()
 
 
 def test_methods_stand_above_the_file_and_the_settings(words):
@@ -108,7 +111,43 @@ def test_a_run_killed_as_it_began_begins_again(words):
     run.folder.mkdir(parents=True)
     (run.folder / ".config.yaml.123").write_text("ta")
     again = make_ready(parse(words))[0]
-    assert "--resume" not in again.command() and not any(run.folder.iterdir())
+    assert "--resume" not in again.command()
+
+
+def test_a_run_that_has_begun_takes_transitions_over_too(words, monkeypatch):
+    """Killed between the one and the other."""
+    found = []
+    monkeypatch.setattr("rtg.shared_transitions.find", lambda *place: found.append(place))
+    run = make_ready(parse(words))[0]
+    begin(run)
+    assert "--resume" in run.command()
+    assert found == [(run.kind, run.folder.parents[1], "seed-1")]
+
+
+def test_a_file_where_a_run_belongs_is_refused(words):
+    run = make_ready(parse(words))[0]
+    run.folder.parent.mkdir(parents=True)
+    run.folder.write_text("mine")
+    with pytest.raises(UserError, match="holds no run; legal: an empty --out, or none"):
+        make_ready(parse(words))
+
+
+@pytest.mark.parametrize(
+    ("more", "what"),
+    [
+        ("train.interactions=9", r"train\.interactions = \d+, asked for is 9"),
+        ("task.horizon=9", r"task\.horizon = \d+, asked for is 9"),
+    ],
+)
+def test_methods_that_cannot_be_compared_are_refused(words, more, what):
+    naive, rtg = make_ready(parse(words))
+    begin(naive)
+    alone = [word.replace("ddqn_naive,", "") for word in words]
+    make_ready(parse([*alone, "--set", "train.learning_rate=0.5"]))
+    make_ready(parse([*alone, "--sweep", more]))
+    with pytest.raises(UserError, match=f"ddqn_naive/seed-1: was made with {what}; legal: "):
+        make_ready(parse([*alone, "--set", more]))
+    assert not rtg.begun
 
 
 def test_a_folder_of_another_kind_is_refused(words):

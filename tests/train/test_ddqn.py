@@ -51,14 +51,18 @@ def test_targets_are_raised_to_proven_bounds() -> None:
 def test_double_q_agrees_with_a_plain_loop() -> None:
     rng = np.random.default_rng(1)
     online, target = rng.normal(size=(2, 64, 48)).astype(np.float32)
-    double, single = np.zeros((2, 64, 1), np.float32)
+    single, double, lesser = np.zeros((3, 64, 1), np.float32)
     for i in range(64):
-        double[i] = target[i, int(np.argmax(online[i]))]
         single[i] = max(target[i])
-    pair = (th.from_numpy(online), th.from_numpy(target))
-    np.testing.assert_array_equal(next_values(*pair, double_q=True), double)
-    np.testing.assert_array_equal(next_values(*pair, double_q=False), single)
+        double[i] = target[i, int(np.argmax(online[i]))]
+        lesser[i] = min(double[i], max(online[i]))
+    seen, held = th.from_numpy(online), th.from_numpy(target)
+    for cautious in (False, True):  # plain Q: one network does both
+        np.testing.assert_array_equal(next_values(held, held, cautious), single)
+    np.testing.assert_array_equal(next_values(seen, held, cautious=False), double)
+    np.testing.assert_array_equal(next_values(seen, held, cautious=True), lesser)
     assert (double <= single).all() and (double < single).any()
+    assert (lesser <= double).all() and (lesser < double).any()
 
 
 @pytest.mark.parametrize("dueling", [True, False])

@@ -32,6 +32,17 @@ def test_the_first_signal_only_asks():
     assert signal.getsignal(signal.SIGTERM) is before
 
 
+def test_what_nohup_started_does_not_hear_that_the_terminal_closed():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with Interrupts() as interrupts:
+            os.kill(os.getpid(), signal.SIGHUP)
+            assert not interrupts.requested()
+        assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
 def test_the_second_signal_ends_the_process():
     done = subprocess.run(
         [sys.executable, "-c", TWO_SIGNALS],

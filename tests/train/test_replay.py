@@ -91,6 +91,18 @@ def test_batches_are_offline_until_a_batch_of_online_data_exists() -> None:
     assert replay.sample(32).offline == 16
 
 
+@pytest.mark.parametrize("capacity", [3000, 1200])  # the ring not yet full, and full
+def test_a_share_of_the_online_rows_is_recent(capacity: int, monkeypatch) -> None:
+    monkeypatch.setattr("rtg.replay.RECENT", 100)
+    replay = buffer(capacity=capacity, recent_share=0.25)
+    for tag in range(2000):
+        add_online(replay, float(tag))
+    drawn = replay.sample(400).observations[:, 0].numpy()
+    assert set(drawn[:100]) <= set(range(1900, 2000))
+    assert {1900.0, 1999.0} <= set(replay.sample(8000).observations[:2000, 0].tolist())
+    assert np.sum(drawn[100:] >= 1900) < 60 and drawn[100:].min() < 1000  # uniform
+
+
 def test_uniform_mixing_follows_the_sizes() -> None:
     replay = buffer(offline_share=-1.0)
     replay.add_offline(random_transitions(300))

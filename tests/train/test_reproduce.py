@@ -61,7 +61,23 @@ def test_a_run_that_fails_leaves_the_others_alone_and_says_why(comparison, tmp_p
     name = "tiny/ddqn_rtg/seed-2"
     words = f"{name} ended with exit status 3; the end of its log:\nworking\nno memory"
     assert crew.rows()[1].words == words
-    assert read_grid(tmp_path / "out").failed == {name: "working\nno memory"}
+    assert read_grid(tmp_path / "out").failed == {name: words}
+
+
+def test_of_a_run_that_ended_without_a_word_earlier_words_are_not_repeated(comparison, tmp_path):
+    finish(comparison(1, FAILS))
+    crew = comparison(1, "kill -9 $$")
+    finish(crew)
+    assert crew.rows()[0].words == "tiny/ddqn_rtg/seed-1 was killed by SIGKILL"
+
+
+def test_a_run_that_cannot_start_leaves_the_others_alone(comparison, tmp_path):
+    crew = comparison(1, SUCCEEDS, SUCCEEDS)
+    label = tmp_path / "out/tiny/ddqn_rtg/seed-1.log"
+    label.mkdir(parents=True)
+    finish(crew)
+    assert [row.phase for row in crew.rows()] == ["failed", "done"]
+    assert "seed-1.log" in crew.rows()[0].words
 
 
 def test_a_failed_run_gets_another_chance_and_a_done_one_is_left(comparison, tmp_path):

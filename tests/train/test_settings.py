@@ -25,6 +25,8 @@ def test_the_preset_paper_is_these_values() -> None:
         target_policy=False,
         discount=0.0,
         offline_share=-1.0,
+        recent_share=0.0,
+        cautious=False,
         dueling=False,
         layer_norm=False,
         small_head=False,

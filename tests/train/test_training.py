@@ -234,6 +234,21 @@ def test_the_result_is_measured_on_starts_that_did_not_stop_training(
     assert json.loads((one.folder / "training.json").read_text())["success_rate"] == 0.0
 
 
+def test_the_learner_is_named_where_it_learned_not_where_it_was_looked_at(
+    tmp_path: Path, rows: Rows
+) -> None:
+    folder = run_folder(tmp_path / "run", rows)
+    for runs in (2, 1):
+        one = training(folder)
+        one.runs = runs
+        if one.has_checkpoint():
+            one.restore()
+        source = FileSource(folder / "transitions.npz", one.task, one.data)
+        assert one.run(source, lambda: False, record=False)
+        one.finish(lost=0)
+        assert json.loads((folder / "training.json").read_text())["runs_in_process"] == 2
+
+
 def test_evaluation_agrees_with_single_episodes() -> None:
     config = _core.Config.from_file(TINY)
     starts = held_out_starts(config.task, 3)

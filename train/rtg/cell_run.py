@@ -16,6 +16,8 @@ from rtg.methods import run_words
 from rtg.reproduce_args import ReproduceArgs
 from rtg.run_args import Override
 
+# Of `train`: what runs of different methods must have in common.
+_ALIKE = ("interactions", "eval_episodes", "stop_at_success", "stop_evaluations")
 # One core each: libraries that would start a thread per core.
 _ONE_THREAD = [f"{name}_NUM_THREADS=1" for name in ("OMP", "OPENBLAS", "MKL")]
 
@@ -61,10 +63,11 @@ class CellRun:
     def command(self) -> list[str]:
         """Begins the run, or goes on with it; takes over the transitions of another run that has
         the same. Raises UserError."""
-        if self.kind and not self.begun:
+        if self.generates:
             place = self.folder.parents[1], self.folder.name
-            if source := shared_transitions.find(self.kind, *place):
-                self.begin()
+            if source := shared_transitions.find(self.generates, *place):
+                if not self.begun:
+                    self.begin()
                 shared_transitions.take_over(source, self.folder)
         words = ["--resume"] if self.begun else self.words
         return program("rtg", "run", *words, "--out", str(self.folder))
@@ -96,6 +99,7 @@ def make_ready(args: ReproduceArgs) -> list[CellRun]:
         _check_folder(folder)
         if folder.parent not in checked:
             _check_seeds(folder.parent, config)
+            _check_methods(folder.parent, config)
             checked.add(folder.parent)
         kind, device = shared_transitions.kind(config), config["train"]["device"]
         runs.append(CellRun(cell, folder, _words(args, cell), kind, device))
@@ -123,10 +127,13 @@ def _check_folder(folder: Path) -> None:
     """Raises UserError unless the folder holds a run, or nothing."""
     if (folder / "config.yaml").is_file():
         return
-    for draft in folder.glob(".config.yaml.*"):  # of a run killed as it began
-        draft.unlink()
-    if folder.exists() and any(folder.iterdir()):
+    if folder.exists() and not (folder.is_dir() and all(map(_is_draft, folder.iterdir()))):
         raise UserError(f"{folder}: holds no run; legal: an empty --out, or none")
+
+
+def _is_draft(file: Path) -> bool:
+    """Left by a run that was killed as it began."""
+    return file.name.startswith(".config.yaml.")
 
 
 def _check_seeds(label: Path, config: dict[str, Any]) -> None:
@@ -149,6 +156,22 @@ def _check_same(folder: Path, config: dict[str, Any]) -> None:
             remedy = f"another --out, or rm -r {shlex.quote(str(folder))}"
             raise UserError(f"{folder}: was made with {what}; legal: the same, {remedy}")
     effective_config.check_version(found)
+
+
+def _check_methods(label: Path, config: dict[str, Any]) -> None:
+    """Raises UserError unless all methods in the folder of the task have that task, budget and
+    evaluation: tables compare them. What is swept may change them."""
+    for found in sorted(label.parent.glob("*/seed-*/config.yaml")):
+        if "@" in label.name + found.parts[-3]:
+            continue
+        before = effective_config.values(found)
+        for section, keys in (("task", tuple(config["task"])), ("train", _ALIKE)):
+            old, new = ({key: of[section].get(key) for key in keys} for of in (before, config))
+            if old != new:
+                what = _difference(section, old, new)
+                raise UserError(
+                    f"{found.parent}: was made with {what}; legal: the same, or another --out"
+                )
 
 
 def _difference(section: str, old: Any, new: Any) -> str:

@@ -61,14 +61,22 @@ def _cell(value: dict[str, Any]) -> Cell:
     return Cell(str(value["task"]), str(value["method"]), settings, int(value["seed"]))
 
 
+def _texts(value: Any) -> list[str]:
+    """Raises TypeError unless they are, none of them empty."""
+    if not (isinstance(value, list) and all(isinstance(one, str) and one for one in value)):
+        raise TypeError
+    return value
+
+
 def read_grid(folder: Path) -> Grid:
     """An empty one where there is none yet. Raises UserError if it is damaged."""
     value = read_json(_file(folder))
     try:
+        failed = value.get("failed", {})
         return Grid(
-            commands=list(value.get("commands", [])),
+            commands=_texts(value.get("commands", [])),
             cells=[_cell(cell) for cell in value.get("cells", [])],
-            failed=dict(value.get("failed", {})),
+            failed=dict(zip(failed, _texts(list(failed.values())), strict=True)),
         )
-    except (KeyError, TypeError, ValueError):
+    except (AttributeError, KeyError, TypeError, ValueError):
         raise UserError(f"{_file(folder)}: damaged; legal: as `reproduce` left it") from None

@@ -26,13 +26,16 @@ Array = npt.NDArray[Any]
 MAX_GRADIENT_NORM = 10.0
 
 
-def next_values(online: th.Tensor, target: th.Tensor, double_q: bool) -> th.Tensor:
+def next_values(online: th.Tensor, target: th.Tensor, cautious: bool) -> th.Tensor:
     """Value of s' from the Q of both networks, [B, actions] each -> [B, 1].
 
-    Double Q: the online network chooses, the target network values [van Hasselt et al. 2016].
+    Double Q: the online network chooses, the target network values [van Hasselt et al. 2016];
+    `cautious`: the one of both that thinks less of the choice does [cf. Fujimoto et al. 2018], so
+    that a network alone cannot think up a value. With the target network twice, plain Q.
     """
-    chooser = online if double_q else target
-    return target.gather(1, chooser.argmax(dim=1, keepdim=True))
+    choice = online.argmax(dim=1, keepdim=True)
+    value = target.gather(1, choice)
+    return th.minimum(value, online.gather(1, choice)) if cautious else value
 
 
 def bootstrap_targets(batch: Batch, next_value: th.Tensor, discount: float) -> th.Tensor:
@@ -44,6 +47,16 @@ def td_targets(bootstrap: th.Tensor, bounds: th.Tensor, clip: bool) -> th.Tensor
     """The bootstrap targets, raised to the proven bounds, in [0, 1] if `clip`. [B, 1]"""
     y = th.maximum(bootstrap, bounds)
     return y.clamp(0.0, 1.0) if clip else y
+
+
+def _rules(settings: TrainSettings, discount: float, seed: int) -> ReplayRules:
+    return ReplayRules(
+        offline_share=settings.offline_share,
+        recent_share=settings.recent_share,
+        discount=discount,
+        use_bounds=settings.value_bounds,
+        seed=seed,
+    )
 
 
 class DoubleDqn(DQN):
@@ -60,9 +73,7 @@ class DoubleDqn(DQN):
     def __init__(self, env: VecEnv, settings: TrainSettings, discount: float, seed: int) -> None:
         self.settings = settings
         self.statistics = Statistics()
-        buffer: dict[str, Any] = {
-            "rules": ReplayRules(settings.offline_share, discount, settings.value_bounds, seed)
-        }
+        buffer: dict[str, Any] = {"rules": _rules(settings, discount, seed)}
         atoms = 0
         if settings.hindsight:
             atoms = env.get_attr("task")[0].atom_count
@@ -110,7 +121,7 @@ class DoubleDqn(DQN):
         with th.no_grad():
             target = self.q_net_target(batch.next_observations)
             online = self.q_net(batch.next_observations) if self.settings.double_q else target
-            value = next_values(online, target, self.settings.double_q)
+            value = next_values(online, target, self.settings.cautious)
             bootstrap = bootstrap_targets(batch, value, self.gamma)
             y = td_targets(bootstrap, batch.bounds, self.settings.clip_targets)
         q = self.q_net(batch.observations).gather(1, batch.actions)

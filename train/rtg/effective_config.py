@@ -17,7 +17,9 @@ def _rtg_config(file: Path, overrides: Sequence[Override], mode: str) -> str:
     command = [str(paths.program("rtg_config")), str(file)]
     for override in overrides:
         command += ["--set", override.setting]
-    done = subprocess.run([*command, mode], capture_output=True, text=True, check=False)
+    done = subprocess.run(  # Ctrl-C is for us
+        [*command, mode], capture_output=True, text=True, check=False, start_new_session=True
+    )
     if done.returncode == 2:
         message = done.stderr.strip()
         for override in overrides:
@@ -46,14 +48,18 @@ def check_version(file: Path) -> None:
     missing = [line for line in _settings(canonical(file)) if line not in found]
     if missing:
         raise UserError(
-            f"{file}: has no line '{missing[0]}': another version of RTG wrote it; legal: that "
+            f"{file}: has no line '{missing[0][1]}': another version of RTG wrote it; legal: that "
             "version (git_revision in versions.json), or another --out"
         )
 
 
-def _settings(text: str) -> list[str]:
-    """The lines without their comments."""
-    return [line.split("  #")[0].strip() for line in text.splitlines()]
+def _settings(text: str) -> list[tuple[str, str]]:
+    """The lines without their comments, each with the section that it stands in."""
+    found, section = [], ""
+    for line in text.splitlines():
+        section = section if line.startswith((" ", "#")) else line
+        found.append((section, line.split("  #")[0].strip()))
+    return found
 
 
 def check(file: Path) -> str:

@@ -15,7 +15,8 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 class Interrupts:
     """While entered, the first SIGINT, SIGTERM or SIGHUP is kept in `number`; the second calls
-    `on_demand` and ends this process at once, with exit status 128 + its number. Main thread only.
+    `on_demand` and ends this process at once, with exit status 128 + its number. SIGHUP means
+    nothing to what nohup started. Main thread only.
     """
 
     def __init__(self, on_demand: Callable[[], None] = lambda: None) -> None:
@@ -24,7 +25,9 @@ class Interrupts:
         self._before: dict[int, Any] = {}
 
     def __enter__(self) -> Self:
-        self._before = {number: signal.signal(number, self._handle) for number in _SIGNALS}
+        spared = [signal.SIGHUP] * (signal.getsignal(signal.SIGHUP) is signal.SIG_IGN)
+        heard = [number for number in _SIGNALS if number not in spared]
+        self._before = {number: signal.signal(number, self._handle) for number in heard}
         return self
 
     def __exit__(

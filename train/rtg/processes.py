@@ -41,6 +41,7 @@ class Node:
         self.started = time.monotonic()
         self._gone = False
         with self.log.open("ab") as output:
+            self._said_before = output.tell()
             self._process = subprocess.Popen(
                 self.command,
                 stdin=subprocess.DEVNULL,
@@ -78,9 +79,9 @@ class Node:
         return self.exit_status() is not None
 
     def last_words(self, lines: int = 8) -> str:
-        """The end of its log."""
-        text = self.log.read_text(errors="replace") if self.log.exists() else ""
-        return "\n".join(text.splitlines()[-lines:])
+        """The end of what it wrote to its log since it was last started."""
+        said = self.log.read_bytes()[self._said_before :] if self.log.exists() else b""
+        return "\n".join(said.decode(errors="replace").splitlines()[-lines:])
 
     def epitaph(self) -> str:
         """How it ended, for people."""

@@ -28,7 +28,7 @@ class RunState:
     """Where a run stands."""
 
     generates: bool = True  # whether there is a generation
-    phase: str = ""  # of the generation: "round 1", "roll-outs", ...
+    phase: str = ""  # of the generation: "round 1 (20 %)", "roll-outs", ...
     layer: int = 0  # of `depth`
     depth: int = 0
     transitions: int = 0

@@ -19,6 +19,8 @@ Array = npt.NDArray[Any]
 Infos = list[dict[str, Any]]
 Part = tuple["Store", Array]  # rows of one of the stores
 
+RECENT = 10_000  # online transitions that count as recent
+
 
 class Batch(NamedTuple):
     """A sample for one gradient step; its first `offline` rows are offline transitions."""
@@ -106,6 +108,7 @@ class ReplayRules:
     """What a batch is made of."""
 
     offline_share: float = 0.5  # of a batch, once as many online ones exist; negative: no shares
+    recent_share: float = 0.0  # of its online rows: from the RECENT latest
     discount: float = 0.9  # of the value bounds
     use_bounds: bool = True
     seed: int = 0
@@ -115,7 +118,9 @@ class MixedReplayBuffer(BaseBuffer):
     """What SB3's DQN samples from.
 
     `offline_share` of every batch is drawn from the offline transitions once a batch of online ones
-    exists (before that, all of it); a negative share draws uniformly over both.
+    exists (before that, all of it); a negative share draws uniformly over both. `recent_share` of
+    the online rows are drawn from the latest: what a policy does wrong it does now, and among all
+    that was ever stored its mistakes would come up too rarely to be mended soon.
     """
 
     def __init__(
@@ -136,6 +141,7 @@ class MixedReplayBuffer(BaseBuffer):
         self.offline = Store(buffer_size, size)
         self.online = Store(buffer_size, size)
         self.offline_share = rules.offline_share
+        self.recent_share = rules.recent_share
         self.discount = rules.discount
         self.use_bounds = rules.use_bounds
         self.rng = np.random.default_rng(rules.seed)
@@ -201,9 +207,10 @@ class MixedReplayBuffer(BaseBuffer):
     def sample(self, batch_size: int, env: VecNormalize | None = None) -> Batch:
         offline = self._offline_rows(batch_size)
         parts: list[Part] = []
-        for store, count in ((self.offline, offline), (self.online, batch_size - offline)):
-            if count:
-                parts.append((store, self.rng.integers(store.count, size=count)))
+        if offline:
+            parts.append((self.offline, self.rng.integers(self.offline.count, size=offline)))
+        if offline < batch_size:
+            parts.append((self.online, self._online_rows(batch_size - offline)))
         columns = self._columns(parts)
 
         def column(name: str) -> th.Tensor:
@@ -229,6 +236,14 @@ class MixedReplayBuffer(BaseBuffer):
         if not self.use_bounds:
             columns["bound"].fill(-np.inf)
         return columns
+
+    def _online_rows(self, count: int) -> Array:
+        """Rows of the online store; the first are recent ones."""
+        store = self.online
+        rows = self.rng.integers(store.count, size=count)
+        back = self.rng.integers(min(store.count, RECENT), size=round(self.recent_share * count))
+        rows[: len(back)] = (store.written - 1 - back) % store.capacity
+        return rows
 
     def _offline_rows(self, batch_size: int) -> int:
         offline, online = self.offline.count, self.online.count

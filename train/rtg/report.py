@@ -82,13 +82,20 @@ def _origin(grid: Grid, comparison: Comparison) -> str:
     )
 
 
+def _brief(name: str, words: str) -> str:
+    """The first of the words of a failure, and the last of its log."""
+    how, *log = words.splitlines()
+    how = how.removeprefix(f"{name} ").removesuffix("; the end of its log:")
+    return f"{how}: {log[-1]}" if log else how
+
+
 def _troubles(grid: Grid, runs: Sequence[RunResult]) -> list[str]:
     """What went wrong, run by run."""
     lines = []
     for run in runs:
         name = f"`{run.cell.name}`"
         if run.state == "failed":
-            lines.append(f"- {name} failed: {grid.failed[run.cell.name].splitlines()[-1]}")
+            lines.append(f"- {name} failed: {_brief(run.cell.name, grid.failed[run.cell.name])}")
         lines += [f"- {name}: {defect}" for defect in run.summary.get("defects", [])]
     return ["## Trouble", "\n".join(lines)] if lines else []
 

@@ -26,7 +26,7 @@ _PANELS = (
     ("greedy success, held-out starts", "success_rate"),
     ("success of training roll-outs", "rollout_success"),
     ("episode length, greedy [actions]", "episode_length_mean"),
-    ("discounted return, greedy", "episode_return_mean"),
+    ("return, greedy, discounted as in learning", "episode_return_mean"),
 )
 _SHARES = ("success_rate", "rollout_success")
 

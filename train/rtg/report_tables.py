@@ -170,13 +170,15 @@ _DATA: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
 
 
 def _per_method(
-    comparison: Comparison, columns: Sequence[tuple[str, Callable[[RunResult], float | None], str]]
+    comparison: Comparison,
+    made: str,
+    columns: Sequence[tuple[str, Callable[[RunResult], float | None], str]],
 ) -> str:
-    """A row per task and method that has generated something."""
+    """A row per task and method whose runs have `made` any, a count of their summaries."""
     rows = []
     for task in comparison.tasks:
         for label in comparison.labels:
-            done = [run for run in comparison.done(task, label) if run.summary.get("candidates")]
+            done = [run for run in comparison.done(task, label) if run.summary.get(made)]
             cells = [spread([of(run) for run in done], form) for _, of, form in columns]
             rows += [[task, f"`{label}`", *cells]] if done else []
     return table(["task", "method", *(name for name, _, _ in columns)], rows, left=2)
@@ -184,12 +186,12 @@ def _per_method(
 
 def runtime(comparison: Comparison) -> str:
     """Appendix E: what the actions cost, backward and forward."""
-    return _per_method(comparison, _RUNTIME)
+    return _per_method(comparison, "candidates", _RUNTIME)
 
 
 def data(comparison: Comparison) -> str:
     """How well reverse steps replay (Appendix F), and what the data cover."""
-    return _per_method(comparison, _DATA)
+    return _per_method(comparison, "transitions", _DATA)
 
 
 def not_run(comparison: Comparison) -> list[str]:

@@ -31,12 +31,12 @@ def reproduce(args: ReproduceArgs) -> int:
         grid = read_grid(args.out)
         grid.add(args.command, args.cells)
         grid.write(args.out)
-        for stage in together.stages(runs, args.together):
+        for stage in together.stages(runs, args.together):  # what fails there, its run does again
             _run_all(args, Crew(stage, args.jobs))
         rows = _run_all(args, Crew(runs, args.jobs, Failures(grid, args.out)))
-    from rtg.report_files import write_report  # heavy
+        from rtg.report_files import write_report  # heavy
 
-    report = write_report(args.out, args.out)
+        report = write_report(args.out, args.out)
     print(f"{counts(rows)}\nreport: {report}")
     return 1 if any(row.phase == "failed" for row in rows) else 0
 
@@ -100,7 +100,7 @@ class Job(Protocol):
 
 
 class Failures:
-    """The last words of the jobs that failed, kept in the list of cells."""
+    """How jobs failed, with their last words, kept in the list of cells."""
 
     def __init__(self, grid: Grid, folder: Path) -> None:
         self._grid, self._folder = grid, folder
@@ -160,9 +160,12 @@ class Crew:
     def _start(self, job: Job) -> None:
         if self._failures:
             self._failures.drop(job.name)
-        job.log.parent.mkdir(parents=True, exist_ok=True)
-        self._nodes[job.name] = Node(job.name, job.command(), job.log)
-        self._rows[job.name] = Row(job.name, "running")
+        try:
+            job.log.parent.mkdir(parents=True, exist_ok=True)
+            self._nodes[job.name] = Node(job.name, job.command(), job.log)
+            self._rows[job.name] = Row(job.name, "running")
+        except (UserError, OSError) as error:
+            self._fail(job, str(error))
 
     def _look_at(self, job: Job, node: Node) -> None:
         if node.exit_status() is None:
@@ -173,10 +176,14 @@ class Crew:
         if job.done:
             self._rows[job.name] = _first_row(job)
             return
-        words = node.last_words() or node.epitaph()
+        words = node.last_words()
+        self._fail(
+            job, f"{node.epitaph()}; the end of its log:\n{words}" if words else node.epitaph()
+        )
+
+    def _fail(self, job: Job, words: str) -> None:
         if self._failures:
             self._failures.add(job.name, words)
-        words = f"{node.epitaph()}; the end of its log:\n{words}"
         self._rows[job.name] = Row(job.name, "failed", words)
 
 

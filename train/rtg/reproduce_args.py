@@ -25,6 +25,7 @@ QUICK = (
     "train.eval_episodes=20",
     "train.checkpoint_every=5000",
 )
+MAX_SEEDS = 1000
 QUICK_METHODS = ("ddqn_naive", REFERENCE)
 
 EPILOG = f"""\
@@ -78,17 +79,22 @@ def parser() -> Parser:
     return p
 
 
-def _number(flag: str, word: str, legal: str, least: int) -> int:
-    if not (word.isascii() and word.isdigit() and len(word) < 10 and int(word) >= least):
-        raise UserError(f"{flag} {word}: legal: {legal}")
+def _number(flag: str, word: str, least: int, most: int, legal: str = "") -> int:
+    if not (word.isascii() and word.isdigit() and least <= int(word) <= most):
+        legal = legal or f"a number from {least} to {most}"
+        raise UserError(f"{flag} {word or repr(word)}: legal: {legal}")
     return int(word)
 
 
 def parse_seeds(words: str) -> tuple[int, ...]:
     """Raises UserError."""
     if "," not in words:
-        return tuple(range(1, 1 + _number("--seeds", words, "a number from 1, or a list 1,2,3", 1)))
-    seeds = [_number("--seeds", word, "a list 1,2,3", 0) for word in words.strip(",").split(",")]
+        legal = f"a number from 1 to {MAX_SEEDS}, or a list 1,2,3"
+        return tuple(range(1, 1 + _number("--seeds", words, 1, MAX_SEEDS, legal)))
+    seeds = [
+        _number("--seeds", word, 0, 2**31 - 1, "a list 1,2,3")
+        for word in words.strip(",").split(",")
+    ]
     return tuple(dict.fromkeys(seeds))
 
 
@@ -123,18 +129,28 @@ def parse_sweep(words: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
+def _check_keys(sweeps: Sequence[tuple[str, ...]]) -> None:
+    """Raises UserError if a key has two axes."""
+    seen = set[str]()
+    for key in (sweep[0].partition("=")[0] for sweep in sweeps):
+        if key in seen:
+            raise UserError(f"--sweep {key}: stands twice; legal: once, {key}=V1,V2")
+        seen.add(key)
+
+
 def parse(words: Sequence[str]) -> ReproduceArgs:
     """Raises UserError, or SystemExit(0) after --help."""
     args = parser().parse_args(words)
     default = QUICK_METHODS if args.quick else (REFERENCE,) if args.sweep else METHODS
     tasks, methods = args.tasks or TASKS, _methods(args.methods, default)
-    seeds = args.seeds or ("1" if args.quick else SEEDS)
+    seeds = ("1" if args.quick else SEEDS) if args.seeds is None else args.seeds
     files, sweeps = _files(tasks), [parse_sweep(sweep) for sweep in args.sweep]
+    _check_keys(sweeps)
     axes = (files, methods, itertools.product(*sweeps), parse_seeds(seeds))
     cells = [
         Cell(task, method, swept, seed) for task, method, swept, seed in itertools.product(*axes)
     ]
-    jobs = args.jobs or str(len(os.sched_getaffinity(0)))
+    jobs = str(len(os.sched_getaffinity(0))) if args.jobs is None else args.jobs
     if args.out == "":
         raise UserError("--out: '' is no folder; legal: the path of one")
     flags = ["--methods", ",".join(methods), "--seeds", seeds, *["--quick"] * args.quick]
@@ -144,7 +160,7 @@ def parse(words: Sequence[str]) -> ReproduceArgs:
         files=files,
         cells=tuple(cells),
         settings=(*(QUICK if args.quick else ()), *args.set),
-        jobs=_number("--jobs", jobs, "a number from 1", 1),
+        jobs=_number("--jobs", jobs, 1, 1000),
         together=args.together,
         out=Path(args.out or paths.RUNS / f"reproduce{'-quick' * args.quick}").absolute(),
         command=shlex.join(["./run.sh", "reproduce", *tasks, *flags]),

@@ -90,9 +90,13 @@ def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
 def _words_of_generation(s: dict[str, Any]) -> list[str]:
     lines = [
         f"{s['transitions']:,} transitions in {s['generate_wall_s']:.0f} s, "
-        f"contact share {s['contact_share']:.2f}, tree policy {s['tree_policy_success']:.2f}"
+        f"contact share {s['contact_share']:.2f}"
     ]
-    if s["tree_policy_success"] < _POOR:
+    policy = s["tree_policy_success"]
+    if policy is None:  # no trees
+        return lines
+    lines[0] += f", tree policy {policy:.2f}"
+    if policy < _POOR:
         lines.append(
             "plans of the data seldom lead from the start to the goal: training may take long or "
             "fail, more transitions may help (--transitions)"

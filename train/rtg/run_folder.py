@@ -87,9 +87,14 @@ def read_json(path: Path) -> dict[str, Any]:
 
 
 def result(run: Path) -> dict[str, Any]:
-    """summary.json of a run that has learned to its end; of any other, empty."""
+    """summary.json of a run that has learned to its end; of any other, empty. Raises UserError if
+    it is damaged."""
     found = read_json(run / "summary.json")
-    return {} if found.get("interactions") is None else found
+    if found.get("interactions") is None:
+        return {}
+    if not isinstance(found.get("success_rate"), float):
+        raise UserError(f"{run / 'summary.json'}: no success_rate; legal: as the run left it")
+    return found
 
 
 def default_path(task: str) -> Path:
@@ -120,6 +125,11 @@ def _processor() -> str | None:
     return names[0] if names else None
 
 
+def git_revision() -> str | None:
+    """The commit that is checked out; None without git."""
+    return _output("git", "rev-parse", "HEAD")
+
+
 def versions() -> dict[str, Any]:
     """What a run was made with; null where it cannot be told."""
     # But for results/, where the runs of the committed report are made.
@@ -127,7 +137,7 @@ def versions() -> dict[str, Any]:
         "git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!results"
     )
     return {
-        "git_revision": _output("git", "rev-parse", "HEAD"),
+        "git_revision": git_revision(),
         "git_modified": None if changes is None else bool(changes),
         "python": platform.python_version(),
         "system": platform.platform(),

@@ -106,8 +106,6 @@ def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
     run = folder / cell.name
     summary = result(run)
     if summary:
-        if not isinstance(summary.get("success_rate"), float):
-            raise UserError(f"{run / 'summary.json'}: no success_rate; legal: as the run left it")
         progress = run / "progress.csv"
         curve = learning_curve(progress) if progress.is_file() else {}
         if curve and not {"interactions", *CURVES} <= curve.keys():

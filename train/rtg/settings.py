@@ -36,7 +36,9 @@ class TrainSettings:
     target_policy: bool = True
     discount: float = 0.95
     offline_share: float = 0.5
+    recent_share: float = 0.5
     double_q: bool = True
+    cautious: bool = True
     dueling: bool = True
     layer_norm: bool = True
     small_head: bool = True

@@ -8,7 +8,8 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-from rtg import effective_config
+from rtg import effective_config, run_folder
+from rtg.errors import UserError
 
 _FILES = ("transitions.npz", "generation.json")
 
@@ -28,12 +29,25 @@ def are_there(run: Path) -> bool:
 
 
 def find(wanted: str, folder: Path, name: str) -> Path | None:
-    """A run folder/*/name whose transitions are there and of that kind. Raises UserError."""
+    """A run folder/*/name whose transitions are there and of that kind, made by this commit."""
     for run in sorted(folder.glob(f"*/{name}")):
-        config = run / "config.yaml"
-        if config.is_file() and are_there(run) and kind(effective_config.values(config)) == wanted:
+        if are_there(run) and _made_kind(run) == wanted:
             return run
     return None
+
+
+def _made_kind(run: Path) -> str | None:
+    """The kind of what this commit has made there. What was made by another one, or cannot be
+    read, is nothing to take over, whatever it may be to others."""
+    config = run / "config.yaml"
+    try:
+        versions = run_folder.read_json(run / "versions.json")
+        if not versions or versions.get("git_revision") != run_folder.git_revision():
+            return None
+        effective_config.check_version(config)
+        return kind(effective_config.values(config))
+    except (UserError, OSError):
+        return None
 
 
 def take_over(source: Path, run: Path) -> None:

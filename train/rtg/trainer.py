@@ -64,9 +64,10 @@ def _source(training: Training, args: argparse.Namespace) -> Source:
     return stream
 
 
-def _begin(folder: Path, resume: bool) -> Training:
+def _begin(folder: Path, args: argparse.Namespace) -> Training:
     training = Training(_core.Config.from_file(folder / "config.yaml"), folder)
-    if resume and training.has_checkpoint():
+    training.runs = len(args.folders)
+    if args.resume and training.has_checkpoint():
         training.restore()
     return training
 
@@ -77,7 +78,7 @@ def _learn(training: Training, args: argparse.Namespace, interrupts: Interrupts)
         try:
             if not training.run(source, interrupts.requested, record=not args.no_stream):
                 return 128 + interrupts.number
-            training.finish(source.lost, len(args.folders))
+            training.finish(source.lost)
         finally:
             training.tell(ENDED, training.interactions)
     return 0
@@ -87,7 +88,7 @@ def train(args: argparse.Namespace, interrupts: Interrupts) -> int:
     """The exit status, of several runs the highest. Raises UserError, RunError; of several runs
     what the first one raised, at the end of the others."""
     # One after the other: the first weights come from the generator of the process.
-    trainings = [_begin(folder, args.resume) for folder in args.folders]
+    trainings = [_begin(folder, args) for folder in args.folders]
     with ThreadPoolExecutor(len(trainings), initializer=_keep_to_one_thread) as pool:
         ends = [pool.submit(_learn, training, args, interrupts) for training in trainings]
     return max(end.result() for end in ends)

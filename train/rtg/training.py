@@ -22,7 +22,7 @@ from rtg.training_log import TrainingLog
 from rtg.vector_env import PushVecEnv
 
 MAX_ENVIRONMENTS = 4  # stepped together; the least legal train.buffer
-_FORMAT = 2  # of the checkpoint; another one is not read
+_FORMAT = 3  # of the checkpoint; another one is not read
 WAIT = 0.1  # [s], for transitions when there is nothing else to do
 
 Stop = Callable[[], bool]
@@ -60,6 +60,8 @@ class Training:
         }
         self.starts = held_out_starts(self.task, s.eval_episodes, randomise=s.randomise)
         self._clock = Clock()
+        self.runs = 1  # that learn in this process
+        self._learner: dict[str, Any] = {}  # where it has last learned something
         self.tell: Callable[[str, int], None] = lambda state, done: None  # as NodeStatus.tick
         self._checkpoint = run_folder.checkpoint_file(folder)
         self._saved_at = 0  # interactions
@@ -86,6 +88,9 @@ class Training:
         """
         while not (stop() or source.complete or self.data.count >= self.settings.start_at):
             self._take_in(source, record, WAIT)
+        if not self.done:
+            place = device.name(self.model.device.type)
+            self._learner = {"device": place, "runs_in_process": self.runs}
         self._clock.start()
         while not (stop() or self.done):
             self._take_in(source, record, 0.0)
@@ -180,6 +185,7 @@ class Training:
             "data": self.data.state(),
             "rows": self.log.rows,
             "wall_s": self._clock.seconds,
+            "learner": self._learner,
         }
         checkpoint.write(self._checkpoint, state)
         self._saved_at = self.interactions
@@ -200,6 +206,7 @@ class Training:
         self.log.rows = state["rows"]
         self.log.write()
         self._clock.restore(state["wall_s"])
+        self._learner = state["learner"]
         self._saved_at, self._saved_rows = self.interactions, self.data.count
 
     def _transition_files(self) -> tuple[Path, Path]:
@@ -215,11 +222,11 @@ class Training:
             f"{self._checkpoint.parent} whole, or removed, to learn anew"
         )
 
-    def finish(self, lost: int, runs: int = 1) -> None:
+    def finish(self, lost: int) -> None:
         """Writes the model, the best final episode and training.json.
 
         The final figures are of starts that no evaluation before has seen: training may have been
-        stopped because those of the others went well by chance. `runs`: that learn in this process.
+        stopped because those of the others went well by chance.
         """
         s = self.settings
         starts = held_out_starts(self.task, s.eval_episodes, FINAL, s.randomise)
@@ -239,8 +246,7 @@ class Training:
             "train_wall_s": round(self._clock.seconds, 3),
             "offline_transitions": self.data.count,
             "lost_transitions": lost,
-            "device": device.name(self.model.device.type),
-            "runs_in_process": runs,
+            **self._learner,
         }
         run_folder.write_json(self.folder / "training.json", training)
         self.log.display(self._state(), force=True)

@@ -59,6 +59,17 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
             R"({"poses":[[-0.5,0.0,0.5]],"depth":9,"tree":50}]})");
 }
 
+TEST(Report, OfRandomEpisodesSaysNothingOfASearch) {
+  GenerationReport r = filled();
+  r.candidates = 0;
+  const std::string json = to_json(r);
+  for (const char* field : {"tree_policy_success", "tree_policy_length_mean", "iterations_median",
+                            "iterations_p90", "pushing_iterations_median", "pushing_iterations_p90",
+                            "replay_gap_median", "replay_gap_p90"})
+    EXPECT_NE(json.find('"' + std::string(field) + "\":null,"), std::string::npos) << field;
+  EXPECT_NE(json.find(R"("contact_share":0.25,)"), std::string::npos);
+}
+
 TEST(Report, OfNothingHasEmptyListsAndNoDepth) {
   const std::string text = to_json({});
   EXPECT_NE(text.find(R"("start_region_depth":-1,)"), std::string::npos);

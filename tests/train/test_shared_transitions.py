@@ -1,0 +1,95 @@
+"""What of the transitions of one run is good for another."""
+
+import copy
+
+import pytest
+from rtg import effective_config, run_folder
+from rtg.shared_transitions import are_there, find, kind, take_over
+from training_runs import TINY
+
+CONFIG = effective_config.values(TINY)
+
+
+def changed(section, key, value):
+    config = copy.deepcopy(CONFIG)
+    assert config[section][key] != value
+    config[section][key] = value
+    return config
+
+
+@pytest.fixture
+def made(tmp_path):
+    """A run of this commit that has generated."""
+    run = tmp_path / "ddqn_naive" / "seed-1"
+    run.mkdir(parents=True)
+    (run / "config.yaml").write_text(effective_config.canonical(TINY))
+    run_folder.write_json(run / "versions.json", {"git_revision": run_folder.git_revision()})
+    for name in ("transitions.npz", "generation.json"):
+        (run / name).write_text(name)
+    return run
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "value"),
+    [
+        ("task", "horizon", 7),
+        ("physics", "inertia", True),
+        ("reverse", "shakes", 99),
+        ("search", "reverse", "rrbs"),
+        ("search", "transitions", 7),
+        ("run", "seed", 7),
+    ],
+)
+def test_what_changes_the_transitions_changes_their_kind(section, key, value):
+    assert kind(changed(section, key, value)) != kind(CONFIG)
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "value"),
+    [("train", "batch", 7), ("run", "method", "her"), ("run", "workers", 7)],
+)
+def test_what_changes_how_they_are_learned_from_does_not(section, key, value):
+    assert kind(changed(section, key, value)) == kind(CONFIG)
+
+
+def test_without_offline_data_there_is_none():
+    assert kind(changed("train", "offline", False)) is None
+
+
+def test_a_run_of_the_same_kind_is_found_and_taken_over(made, tmp_path):
+    assert find(kind(CONFIG), tmp_path, "seed-1") == made
+    new = tmp_path / "other" / "seed-1"
+    new.mkdir(parents=True)
+    take_over(made, new)
+    assert are_there(new) and (new / "transitions.npz").read_text() == "transitions.npz"
+    assert sorted(path.name for path in new.iterdir()) == ["generation.json", "transitions.npz"]
+
+
+def test_another_kind_or_seed_is_not_found(made, tmp_path):
+    assert find(kind(changed("search", "reverse", "rrbs")), tmp_path, "seed-1") is None
+    assert find(kind(CONFIG), tmp_path, "seed-2") is None
+
+
+DEFECTS = {
+    "config.yaml": "search: {unknown: 1}\n",
+    "versions.json": '{"git_revision": "another"}',
+    "generation.json": None,
+    "transitions.npz": None,
+}
+
+
+@pytest.mark.parametrize("name", DEFECTS)
+def test_what_another_commit_made_or_is_not_whole_is_not_found(made, tmp_path, name):
+    if DEFECTS[name] is None:
+        (made / name).unlink()
+    else:
+        (made / name).write_text(DEFECTS[name])
+    assert find(kind(CONFIG), tmp_path, "seed-1") is None
+
+
+def test_a_version_without_one_of_the_settings_is_not_found(made, tmp_path):
+    lines = (made / "config.yaml").read_text().splitlines(keepends=True)
+    kept = [line for line in lines if not line.startswith("  shakes:")]
+    assert len(kept) == len(lines) - 1
+    (made / "config.yaml").write_text("".join(kept))
+    assert find(kind(CONFIG), tmp_path, "seed-1") is None
