@@ -79,6 +79,20 @@ def test_all_tasks_are_pooled_and_compared_with_the_reference(page):
     assert row(page, "ddqn_naive", pooled)[-1] == "0.00 [0.00, 0.00]"
 
 
+def test_a_method_that_is_no_worse_than_the_reference_is_named(folder, page, tmp_path):
+    course = "0.96 ± 0.00, 0.95 after 15 ± 0; `ddqn_rtg`: 0.70 ± 0.00, never at 0.95"
+    assert "aside):\n\nNone.\n" in page
+    for cell in CELLS[:4]:
+        finished(tmp_path, cell, BAD if cell.method == "ddqn_rtg" else GOOD)
+    write_grid(tmp_path, CELLS[:2])
+    write_report(tmp_path, tmp_path)
+    assert "aside):\n\nNothing to compare yet.\n" in (tmp_path / "report.md").read_text()
+    write_grid(tmp_path, CELLS[:4])
+    write_report(tmp_path, tmp_path)
+    report = (tmp_path / "report.md").read_text()
+    assert f"aside):\n\n- gathering, `ddqn_naive`: {course}\n\n" in report
+
+
 def test_the_page_says_where_it_comes_from_and_shows_all_pictures(folder, page):
     assert "    ./run.sh reproduce gathering\n" in page and "- commit: `abc`\n" in page
     shown = set(re.findall(r"\]\((\w+\.(?:png|gif))\)", page))

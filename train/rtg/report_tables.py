@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import estimates
-from rtg.methods import METHODS, REFERENCE
+from rtg.methods import METHODS, REFERENCE, WIDER
 from rtg.run_results import Comparison, RunResult
 
 Floats = NDArray[np.float64]
@@ -122,6 +122,32 @@ def pooled(comparison: Comparison) -> str:
         cell = _with_interval(iqm(values), estimates.interval(iqm, values))
         rows.append([f"`{label}`", str(len(scores)), runs, cell, better])
     return table(head, rows)
+
+
+def rivals(comparison: Comparison) -> str:
+    """Methods that end no worse than the reference on a task, line by line."""
+    lines, compared = [], False
+    for task in comparison.tasks:
+        reference = comparison.done(task, REFERENCE)
+        for label in comparison.labels:
+            done = comparison.done(task, label)
+            if label in (REFERENCE, WIDER) or not (done and reference):
+                continue
+            compared = True
+            if _mean_success(done) >= _mean_success(reference):
+                what = f"{_course(done)}; `{REFERENCE}`: {_course(reference)}"
+                lines.append(f"- {task}, `{label}`: {what}")
+    return "\n".join(lines) or ("None." if compared else "Nothing to compare yet.")
+
+
+def _mean_success(runs: Sequence[RunResult]) -> float:
+    return estimates.mean_std([run.summary["success_rate"] for run in runs])[0]
+
+
+def _course(runs: Sequence[RunResult]) -> str:
+    reached = [_thousands(run.reached(0.95)) for run in runs]
+    to_95 = f"0.95 after {spread(reached, 'count')}" if any(reached) else "never at 0.95"
+    return f"{spread([run.summary['success_rate'] for run in runs], '.2f')}, {to_95}"
 
 
 def _ratio(
