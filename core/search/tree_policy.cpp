@@ -17,6 +17,7 @@ constexpr float kNone = std::numeric_limits<float>::infinity();
 constexpr float kDistanceWeight = 16.0F;  // actions per metre
 constexpr float kCell = 0.5F;             // side of a cell [m]
 constexpr float kRounding = 1e-5F;        // of a score, relative
+constexpr std::size_t kBlock = 8;         // entries that are left out together
 
 /// Squared distance of two points of `size` coordinates; four sums that do not wait for each other.
 float square_distance(const float* a, const float* b, std::size_t size) {
@@ -28,8 +29,18 @@ float square_distance(const float* a, const float* b, std::size_t size) {
   return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
-/// How far x is from [low, low + kCell].
-float outside(float x, float low) { return std::max({0.0F, low - x, x - (low + kCell)}); }
+/// How far x is from [low, high].
+float outside(float x, float low, float high) { return std::max({0.0F, low - x, x - high}); }
+
+/// Squared distance of a point of `size` coordinates from a box.
+float square_outside(const float* x, const float* low, const float* high, std::size_t size) {
+  float sum = 0.0F;
+  for (std::size_t k = 0; k < size; ++k) {
+    const float gap = outside(x[k], low[k], high[k]);
+    sum += gap * gap;
+  }
+  return sum;
+}
 
 /// Names the square of a robot's position.
 std::uint64_t square_of(const float* robot) {
@@ -68,23 +79,44 @@ void TreePolicy::place(int entry) {
   const auto size = static_cast<std::size_t>(metric_.size());
   const float* robot = point_.data() + k * size;
   const auto [at, fresh] = cell_at_.try_emplace(square_of(robot), cells_.size());
-  if (fresh)
-    cells_.push_back({kCell * std::floor(robot[0] / kCell),
-                      kCell * std::floor(robot[1] / kCell),
-                      kNone,
-                      {},
-                      {}});
+  if (fresh) {
+    cells_.emplace_back();
+    cells_.back().x = kCell * std::floor(robot[0] / kCell);
+    cells_.back().y = kCell * std::floor(robot[1] / kCell);
+    cells_.back().least = kNone;
+  }
   Cell& cell = cells_[at->second];
   cell.entries.push_back(entry);
   cell.points.insert(cell.points.end(), robot, robot + size);
-  cell.least = std::min(cell.least, depth_[k]);
+  enclose(cell, cell.entries.size() - 1);
+}
+
+/// Widens the bounds of a cell and its block to those of its entry `at`.
+void TreePolicy::enclose(Cell& cell, std::size_t at) const {
+  const auto size = static_cast<std::size_t>(metric_.size());
+  const std::size_t block = at / kBlock;
+  const float* point = cell.points.data() + at * size;
+  const float depth = depth_[static_cast<std::size_t>(cell.entries[at])];
+  if (at % kBlock == 0) {
+    cell.depths.push_back(depth);
+    cell.low.insert(cell.low.end(), point, point + size);
+    cell.high.insert(cell.high.end(), point, point + size);
+  }
+  cell.least = std::min(cell.least, depth);
+  cell.depths[block] = std::min(cell.depths[block], depth);
+  for (std::size_t k = 0; k < size; ++k) {
+    cell.low[block * size + k] = std::min(cell.low[block * size + k], point[k]);
+    cell.high[block * size + k] = std::max(cell.high[block * size + k], point[k]);
+  }
 }
 
 void TreePolicy::bound_cells() {
   for (Cell& cell : cells_) {
     cell.least = kNone;
-    for (const int entry : cell.entries)
-      cell.least = std::min(cell.least, depth_[static_cast<std::size_t>(entry)]);
+    cell.depths.clear();
+    cell.low.clear();
+    cell.high.clear();
+    for (std::size_t at = 0; at < cell.entries.size(); ++at) enclose(cell, at);
   }
 }
 
@@ -182,19 +214,31 @@ class TreePolicy::Shortlist {
 };
 
 /// Offers the entries of a cell. What the push meets is looked at only where the states are near
-/// enough.
+/// enough, the states only where their block is.
 void TreePolicy::scan(const Cell& cell, Seen& seen, Shortlist& best) const {
   const std::size_t size = seen.point.size();
-  for (std::size_t i = 0; i < cell.entries.size(); ++i) {
-    const int entry = cell.entries[i];
-    const auto k = static_cast<std::size_t>(entry);
-    if (depth_[k] > best.limit()) continue;
-    const float gap = square_distance(cell.points.data() + i * size, seen.point.data(), size);
-    if (depth_[k] + kDistanceWeight * std::sqrt(gap) > best.limit()) continue;
-    if (std::ranges::find(seen.query.used, entry) != seen.query.used.end()) continue;
-    const float distance = std::sqrt(gap + contact_gap(k, seen));
-    best.offer({entry, action_[k], depth_[k] + kDistanceWeight * distance, distance});
+  for (std::size_t block = 0; block < cell.depths.size(); ++block) {
+    if (cell.depths[block] > best.limit()) continue;
+    const float gap = square_outside(seen.point.data(), cell.low.data() + block * size,
+                                     cell.high.data() + block * size, size);
+    const float bound = cell.depths[block] + kDistanceWeight * std::sqrt(gap);
+    if (bound * (1.0F - kRounding) > best.limit()) continue;
+    const std::size_t end = std::min((block + 1) * kBlock, cell.entries.size());
+    for (std::size_t at = block * kBlock; at < end; ++at) offer(cell, at, seen, best);
   }
+}
+
+/// Offers one entry of a cell.
+void TreePolicy::offer(const Cell& cell, std::size_t at, Seen& seen, Shortlist& best) const {
+  const std::size_t size = seen.point.size();
+  const int entry = cell.entries[at];
+  const auto k = static_cast<std::size_t>(entry);
+  if (depth_[k] > best.limit()) return;
+  const float gap = square_distance(cell.points.data() + at * size, seen.point.data(), size);
+  if (depth_[k] + kDistanceWeight * std::sqrt(gap) > best.limit()) return;
+  if (std::ranges::find(seen.query.used, entry) != seen.query.used.end()) return;
+  const float distance = std::sqrt(gap + contact_gap(k, seen));
+  best.offer({entry, action_[k], depth_[k] + kDistanceWeight * distance, distance});
 }
 
 /// The robot's own cell, then others in the order of the least score that an entry of theirs can
@@ -211,7 +255,8 @@ std::vector<TreePolicy::Choice> TreePolicy::alternatives(const Query& query, int
   }
   std::vector<std::pair<float, const Cell*>> order;
   for (const Cell& cell : cells_) {
-    const float dx = outside(seen.point[0], cell.x), dy = outside(seen.point[1], cell.y);
+    const float dx = outside(seen.point[0], cell.x, cell.x + kCell);
+    const float dy = outside(seen.point[1], cell.y, cell.y + kCell);
     const float bound = cell.least + kDistanceWeight * std::sqrt(dx * dx + dy * dy);
     if (bound * (1.0F - kRounding) <= best.limit() && &cell != own)
       order.emplace_back(bound, &cell);

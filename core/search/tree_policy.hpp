@@ -64,12 +64,15 @@ class TreePolicy {
   std::vector<Choice> alternatives(const Query& query, int count) const;
 
  private:
-  /// Entries whose robot is in one square of the plane.
+  /// Entries whose robot is in one square of the plane, in blocks of kBlock: entries that came one
+  /// after the other are of one tree or episode, so that a block's embeddings are alike.
   struct Cell {
     float x = 0.0F, y = 0.0F;   // lower corner [m]
     float least = 0.0F;         // depth of them all at least
     std::vector<int> entries;   // ascending
     std::vector<float> points;  // their embeddings once more, side by side: scanning is all loads
+    std::vector<float> depths;  // of a block at least
+    std::vector<float> low, high;  // of a block: the box around its embeddings
   };
   class Shortlist;
 
@@ -80,9 +83,11 @@ class TreePolicy {
     std::vector<std::vector<float>> contacts;  // per action, empty until it is needed
   };
   void scan(const Cell& cell, Seen& seen, Shortlist& best) const;
+  void offer(const Cell& cell, std::size_t at, Seen& seen, Shortlist& best) const;
   float contact_gap(std::size_t entry, Seen& seen) const;
   void cut(std::size_t left);
   void place(int entry);
+  void enclose(Cell& cell, std::size_t at) const;
   void bound_cells();
 
   StateMetric metric_;
