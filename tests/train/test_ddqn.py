@@ -14,7 +14,7 @@ SETTINGS = TrainSettings(
     batch=32,
     target_sync=10,
     target_rate=1.0,
-    target_policy=False,
+    policy_rate=1.0,
     buffer=10_000,
     reduced_precision=False,
 )
@@ -117,15 +117,25 @@ def test_target_network_moves_by_the_target_rate() -> None:
     th.testing.assert_close(weights(one.q_net_target), 0.75 * start + 0.25 * weights(one.q_net))
 
 
-def test_target_policy_is_the_target_networks() -> None:
+def test_the_policy_is_of_a_mean_over_weights() -> None:
+    """At first of the last tenth of them, then as the rate says; with 1 it is the learner's."""
+    one = model(policy_rate=0.25)
+    mean = weights(one.mean_net).clone()
+    one.learn(4, reset_num_timesteps=False)
+    for step in range(1, 60):
+        rate = max(0.25, 10 / (10 + step))
+        mean += rate * (weights(one.q_net) - mean)
+        th.testing.assert_close(weights(one.mean_net), mean)
+        one.train(1, 32)
+    assert rate == 0.25
     x = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
-    for target_policy in (False, True):
-        one = model(target_policy=target_policy, target_sync=10**6)
-        one.learn(400, reset_num_timesteps=False)
-        net = one.q_net_target if target_policy else one.q_net
+    for policy_rate in (0.25, 1.0):
+        other = model(policy_rate=policy_rate)
+        other.learn(400, reset_num_timesteps=False)
+        net = other.q_net if policy_rate == 1.0 else other.mean_net
         with th.no_grad():
-            np.testing.assert_array_equal(one.values(x), net(th.from_numpy(x)).numpy())
-        assert not th.equal(weights(one.q_net), weights(one.q_net_target))
+            np.testing.assert_array_equal(other.values(x), net.eval()(th.from_numpy(x)).numpy())
+        assert not th.equal(weights(other.q_net), weights(other.mean_net))
 
 
 def test_target_network_follows_every_target_sync_gradient_steps() -> None:
@@ -163,17 +173,17 @@ def test_deterministic_predictions_do_not_explore() -> None:
     np.testing.assert_array_equal(action, one.values(x).argmax(axis=1))
 
 
-@pytest.mark.parametrize("of_target", [True, False])
-def test_one_network_acts_in_evaluations_and_in_training(of_target: bool) -> None:
-    one = model(target_policy=of_target, epsilon_start=0.0, epsilon_end=0.0)
+@pytest.mark.parametrize("of_mean", [True, False])
+def test_one_network_acts_in_evaluations_and_in_training(of_mean: bool) -> None:
+    one = model(policy_rate=0.1 if of_mean else 1.0, epsilon_start=0.0, epsilon_end=0.0)
     th.nn.init.normal_(one.q_net.head.weight)  # the two disagree
     x = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
     with th.no_grad():
-        choices = [net(th.from_numpy(x)).argmax(dim=1) for net in (one.q_net, one.q_net_target)]
+        choices = [net(th.from_numpy(x)).argmax(dim=1) for net in (one.q_net, one.mean_net)]
     assert (choices[0] != choices[1]).any()
     for deterministic in (True, False):
         action, _ = one.predict(x, deterministic=deterministic)
-        np.testing.assert_array_equal(action, choices[of_target])
+        np.testing.assert_array_equal(action, choices[of_mean])
 
 
 def test_learns_the_line() -> None:

@@ -22,7 +22,7 @@ def test_the_preset_paper_is_these_values() -> None:
         learning_rate=5e-5,
         target_sync=2500,
         target_rate=1.0,
-        target_policy=False,
+        policy_rate=1.0,
         discount=0.0,
         offline_share=-1.0,
         recent_share=0.0,
@@ -50,5 +50,5 @@ def test_the_preset_paper_is_table_2_with_the_defaults_of_sb3() -> None:
     assert table_2 == (350_000, 1_500_000, 512, 5e-5)
     assert (paper.train_frequency, paper.gradient_steps) == (4, 1)
     assert (paper.target_sync * paper.train_frequency, paper.target_rate) == (10_000, 1.0)
-    assert paper.offline_share < 0 and paper.stop_at_success == 0 and not paper.target_policy
+    assert paper.offline_share < 0 and paper.stop_at_success == 0 and paper.policy_rate == 1
     assert (paper.epsilon_start, paper.epsilon_end, paper.epsilon_share) == (1.0, 0.05, 0.1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections import deque
 from typing import Any
 
@@ -24,6 +25,7 @@ from rtg.settings import TrainSettings
 Array = npt.NDArray[Any]
 
 MAX_GRADIENT_NORM = 10.0
+YOUTH = 10.0  # a mean is of the last 1 / YOUTH of the gradient steps until policy_rate bounds it
 
 
 def next_values(online: th.Tensor, target: th.Tensor, cautious: bool) -> th.Tensor:
@@ -62,10 +64,13 @@ def _rules(settings: TrainSettings, discount: float, seed: int) -> ReplayRules:
 class DoubleDqn(DQN):
     """SB3's DQN with the batch of MixedReplayBuffer.
 
-    Departs from SB3: Double-Q, target updates counted in gradient steps (`target_sync`), a policy
-    that may be the target network's (a running mean over weights, steadier by far), in training
-    episodes as in evaluations, exploration of our own, by absolute interactions (learning in pieces
-    and resuming leave its schedule alone).
+    Departs from SB3: Double-Q; target updates counted in gradient steps (`target_sync`);
+    exploration of our own, by absolute interactions (learning in pieces and resuming leave its
+    schedule alone); and a policy that is of a mean over weights [Polyak and Juditsky 1992], in
+    training episodes as in evaluations. After gradient step t the mean moves by
+    max(`policy_rate`, 10 / (10 + t)) towards the learner's weights, so it is over the last tenth of
+    the steps, or the last 1 / `policy_rate`. The policies of the learner's weights come and go: a
+    long plan breaks where a single action is wrong.
     """
 
     replay_buffer: MixedReplayBuffer  # type: ignore[assignment]
@@ -102,6 +107,7 @@ class DoubleDqn(DQN):
             seed=seed,
             device=device.chosen(settings.device),
         )
+        self.mean_net = copy.deepcopy(self.q_net).requires_grad_(False)
         self.set_logger(Logger(folder=None, output_formats=[]))
         headings = int(self.action_space.n)  # type: ignore[attr-defined]
         self.exploration = Exploration(settings, headings, seed)
@@ -116,6 +122,12 @@ class DoubleDqn(DQN):
             if self._n_updates % self.settings.target_sync == 0:
                 online, target = self.q_net.parameters(), self.q_net_target.parameters()
                 polyak_update(online, target, self.settings.target_rate)
+            self._average()
+
+    def _average(self) -> None:
+        rate = max(self.settings.policy_rate, YOUTH / (YOUTH + self._n_updates))
+        if self.settings.policy_rate < 1.0:
+            polyak_update(self.q_net.parameters(), self.mean_net.parameters(), rate)
 
     def _gradient_step(self, batch: Batch) -> None:
         with th.no_grad():
@@ -153,7 +165,7 @@ class DoubleDqn(DQN):
     @property
     def policy_net(self) -> th.nn.Module:
         """The network whose greedy policy is the result."""
-        return self.q_net_target if self.settings.target_policy else self.q_net
+        return self.mean_net if self.settings.policy_rate < 1.0 else self.q_net
 
     def greedy(self, observation: Array) -> Array:
         """The policy's own choice. [N, observation] float32 -> [N] int"""
@@ -161,7 +173,7 @@ class DoubleDqn(DQN):
 
     def values(self, observation: Array) -> Array:
         """The policy's Q of all actions. [N, observation] float32 -> [N, actions] float32"""
-        self.policy.train(False)
+        self.policy_net.train(False)
         with th.no_grad():
             seen = th.from_numpy(np.ascontiguousarray(observation)).to(self.device)
             q: Array = self.policy_net(seen).cpu().numpy()
@@ -172,6 +184,7 @@ class DoubleDqn(DQN):
         return {
             "q_net": self.q_net.state_dict(),
             "q_net_target": self.q_net_target.state_dict(),
+            "mean_net": self.mean_net.state_dict(),
             "optimizer": self.policy.optimizer.state_dict(),
             "exploration": self.exploration.state(),
             "statistics": self.statistics.state(),
@@ -186,6 +199,7 @@ class DoubleDqn(DQN):
     def restore(self, state: dict[str, Any]) -> None:
         self.q_net.load_state_dict(state["q_net"])
         self.q_net_target.load_state_dict(state["q_net_target"])
+        self.mean_net.load_state_dict(state["mean_net"])
         self.policy.optimizer.load_state_dict(state["optimizer"])
         self.exploration.restore(state["exploration"])
         self.statistics.restore(state["statistics"])

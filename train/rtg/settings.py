@@ -33,7 +33,7 @@ class TrainSettings:
     gradient_steps: int = 1
     target_sync: int = 1
     target_rate: float = 0.005
-    target_policy: bool = True
+    policy_rate: float = 0.0003
     discount: float = 0.95
     offline_share: float = 0.5
     recent_share: float = 0.5

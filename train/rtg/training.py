@@ -22,7 +22,7 @@ from rtg.training_log import TrainingLog
 from rtg.vector_env import PushVecEnv
 
 MAX_ENVIRONMENTS = 4  # stepped together; the least legal train.buffer
-_FORMAT = 3  # of the checkpoint; another one is not read
+_FORMAT = 4  # of the checkpoint; another one is not read
 WAIT = 0.1  # [s], for transitions when there is nothing else to do
 
 Stop = Callable[[], bool]
