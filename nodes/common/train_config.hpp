@@ -11,21 +11,13 @@ inline constexpr std::array<std::string_view, 2> kTrainPresets{"default", "paper
 enum class Device { kAuto, kCpu, kCuda };
 inline constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"};
 
-/// How the Python trainer learns. The values here are the preset `default`: what works
-/// best within Table 2's interaction budget. A loader begins with train_preset(preset) and reads
-/// the other fields over it. At b7950a3 (Gathering, 60,000 transitions of rrbs) success with a hard
-/// copy every 500 steps instead of target_rate swung between 0.7 and 1 from one evaluation to the
-/// next. At d819b41 (Sorting) training episodes succeed at a rate of 0.97 to 1.00 from 80,000
-/// interactions on with epsilon_end 0.02; at 60,000 of 0.85, of 0.71 with 0.05. At e491782
-/// (ArtManip, its plans take 24 pushes; 115,000 to 140,000 interactions, means) evaluations and
-/// training episodes succeed at rates of 0.90, 0.80 with discount 0.9, which is best for plans of
-/// 9; of 0.95, 0.87 with 0.95; of 0.95, 0.95 with a mean over weights (the target network) acting
-/// in training, too, and leave_loops. What still fails then is mostly a robot that goes to and fro.
-/// At 659259f (ArtManip, the same 90,000 transitions) a policy that had solved 0.95 solved 0.01 for
-/// 20,000 interactions; with recent_share it still fell, with cautious as well evaluations from
-/// 115,000 to 155,000 have a mean of 0.97. At 82a072b (sorting_hard, learning 40,000 interactions
-/// on from the same checkpoint, eight evaluations) the target network's policy solved 0.77 to 0.95,
-/// that of a mean at policy_rate 0.0003 from the third on 0.96 to 1.00.
+/// How the Python trainer learns. The values here are the preset `default`: what works best within
+/// Table 2's interaction budget. A loader begins with train_preset(preset) and reads the other
+/// fields over it. With a hard copy every 500 steps instead of target_rate success swings between
+/// 0.7 and 1. Without recent_share and cautious a policy of ArtManip fell from 0.95 to 0.01 for
+/// 20,000 interactions. On the same transitions (ArtManip, 85,000 to 110,000 interactions, means)
+/// the target network's policy solves 0.85, the mean's 0.97, and 0.90 if the mean acts in training,
+/// too: its mistakes are then seen too late.
 struct TrainConfig {
   TrainPreset preset = TrainPreset::kDefault;
   int interactions = 350000;    // Table 2
@@ -38,7 +30,8 @@ struct TrainConfig {
   int gradient_steps = 1;       // per training round, Table 2
   int target_sync = 1;          // gradient steps between updates of the target network
   double target_rate = 0.005;   // τ: share that it moves then; 1: a copy
-  double policy_rate = 0.0003;  // least share by which the policy's mean weights move per step
+  bool target_acts = true;      // the target network acts in training, not the learner's
+  double policy_rate = 1.5e-4;  // least share by which the policy's mean weights move per step
   double discount = 0.95;       // γ; 0: the task's
   double offline_share = 0.5;   // of a batch; negative: uniform over all transitions
   double recent_share = 0.5;    // of the online part of a batch: among the 10,000 latest
@@ -99,8 +92,9 @@ struct TrainConfig {
     v.integer("gradient_steps", gradient_steps, 1, 100000, "gradient steps per training round");
     v.integer("target_sync", target_sync, 1, kMany, "gradient steps between target updates");
     v.number("target_rate", target_rate, 1e-6, 1.0, "how far the target network moves; 1: a copy");
+    v.flag("target_acts", target_acts, "the target network acts in training, not the learner's");
     v.number("policy_rate", policy_rate, 1e-6, 1.0,
-             "least move of the mean weights that act, per gradient step; 1: the learner's own");
+             "least move of the policy's mean weights, per gradient step; 1: the learner's own");
     v.number("discount", discount, 0.0, 0.9999, "of the learner; 0: the task's");
     v.number("offline_share", offline_share, -1.0, 1.0, "of a batch; negative: uniform over all");
     v.number("recent_share", recent_share, 0.0, 1.0, "of its online part: from the latest 10,000");
@@ -133,6 +127,7 @@ inline TrainConfig train_preset(TrainPreset preset) {
   config.learning_rate = 5e-5;
   config.target_sync = 2500;  // 10,000 interactions
   config.target_rate = 1.0;
+  config.target_acts = false;
   config.policy_rate = 1.0;
   config.discount = 0.0;
   config.offline_share = -1.0;

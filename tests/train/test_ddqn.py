@@ -14,6 +14,7 @@ SETTINGS = TrainSettings(
     batch=32,
     target_sync=10,
     target_rate=1.0,
+    target_acts=False,
     policy_rate=1.0,
     buffer=10_000,
     reduced_precision=False,
@@ -118,12 +119,12 @@ def test_target_network_moves_by_the_target_rate() -> None:
 
 
 def test_the_policy_is_of_a_mean_over_weights() -> None:
-    """At first of the last tenth of them, then as the rate says; with 1 it is the learner's."""
+    """At first over the last fifth of them, then as the rate says; with 1 it is the learner's."""
     one = model(policy_rate=0.25)
     mean = weights(one.mean_net).clone()
     one.learn(4, reset_num_timesteps=False)
     for step in range(1, 60):
-        rate = max(0.25, 10 / (10 + step))
+        rate = max(0.25, 5 / (5 + step))
         mean += rate * (weights(one.q_net) - mean)
         th.testing.assert_close(weights(one.mean_net), mean)
         one.train(1, 32)
@@ -173,17 +174,22 @@ def test_deterministic_predictions_do_not_explore() -> None:
     np.testing.assert_array_equal(action, one.values(x).argmax(axis=1))
 
 
-@pytest.mark.parametrize("of_mean", [True, False])
-def test_one_network_acts_in_evaluations_and_in_training(of_mean: bool) -> None:
-    one = model(policy_rate=0.1 if of_mean else 1.0, epsilon_start=0.0, epsilon_end=0.0)
-    th.nn.init.normal_(one.q_net.head.weight)  # the two disagree
+@pytest.mark.parametrize("target_acts", [True, False])
+@pytest.mark.parametrize("policy_rate", [0.1, 1.0])
+def test_who_acts_in_evaluations_and_in_training(target_acts: bool, policy_rate: float) -> None:
+    never = {"epsilon_start": 0.0, "epsilon_end": 0.0}
+    one = model(target_acts=target_acts, policy_rate=policy_rate, **never)
+    nets = (one.q_net, one.q_net_target, one.mean_net)
+    for net in nets:
+        th.nn.init.normal_(net.head.weight)  # they disagree
     x = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
     with th.no_grad():
-        choices = [net(th.from_numpy(x)).argmax(dim=1) for net in (one.q_net, one.mean_net)]
-    assert (choices[0] != choices[1]).any()
-    for deterministic in (True, False):
-        action, _ = one.predict(x, deterministic=deterministic)
-        np.testing.assert_array_equal(action, choices[of_mean])
+        own, target, mean = (net(th.from_numpy(x)).argmax(dim=1).numpy() for net in nets)
+    assert (own != target).any() and (own != mean).any() and (target != mean).any()
+    kept = own if policy_rate == 1.0 else mean
+    np.testing.assert_array_equal(one.predict(x, deterministic=True)[0], kept)
+    acting = target if target_acts else own
+    np.testing.assert_array_equal(one.predict(x, deterministic=False)[0], acting)
 
 
 def test_learns_the_line() -> None:

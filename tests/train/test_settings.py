@@ -22,6 +22,7 @@ def test_the_preset_paper_is_these_values() -> None:
         learning_rate=5e-5,
         target_sync=2500,
         target_rate=1.0,
+        target_acts=False,
         policy_rate=1.0,
         discount=0.0,
         offline_share=-1.0,

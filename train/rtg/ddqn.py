@@ -25,7 +25,7 @@ from rtg.settings import TrainSettings
 Array = npt.NDArray[Any]
 
 MAX_GRADIENT_NORM = 10.0
-YOUTH = 10.0  # a mean is of the last 1 / YOUTH of the gradient steps until policy_rate bounds it
+YOUTH = 5.0  # the mean is over the last 1 / YOUTH of the gradient steps, or as policy_rate says
 
 
 def next_values(online: th.Tensor, target: th.Tensor, cautious: bool) -> th.Tensor:
@@ -66,11 +66,12 @@ class DoubleDqn(DQN):
 
     Departs from SB3: Double-Q; target updates counted in gradient steps (`target_sync`);
     exploration of our own, by absolute interactions (learning in pieces and resuming leave its
-    schedule alone); and a policy that is of a mean over weights [Polyak and Juditsky 1992], in
-    training episodes as in evaluations. After gradient step t the mean moves by
-    max(`policy_rate`, 10 / (10 + t)) towards the learner's weights, so it is over the last tenth of
-    the steps, or the last 1 / `policy_rate`. The policies of the learner's weights come and go: a
-    long plan breaks where a single action is wrong.
+    schedule alone); and three policies. The learner's own comes and goes: a long plan breaks where
+    a single action is wrong. In training episodes the target network acts (`target_acts`), which is
+    a mean over few weights: steady, and yet its mistakes are soon seen and mended. What is
+    evaluated and kept is a mean over many [Polyak and Juditsky 1992]: after gradient step t it
+    moves by max(`policy_rate`, 5 / (5 + t)) towards the learner's weights, so it is over the last
+    fifth of the steps, or the last 1 / `policy_rate`.
     """
 
     replay_buffer: MixedReplayBuffer  # type: ignore[assignment]
@@ -157,10 +158,12 @@ class DoubleDqn(DQN):
         episode_start: Any = None,
         deterministic: bool = False,
     ) -> tuple[Array, Any]:
-        action = self.greedy(observation)
-        if not deterministic:
-            action = self.exploration.actions(action, observation, self.exploration_rate)
-        return action, state
+        """The policy's choice, or where it is not `deterministic` one of a training episode."""
+        if deterministic:
+            return self.greedy(observation), state
+        net = self.q_net_target if self.settings.target_acts else self.q_net
+        action = self._values_of(net, observation).argmax(axis=1)
+        return self.exploration.actions(action, observation, self.exploration_rate), state
 
     @property
     def policy_net(self) -> th.nn.Module:
@@ -173,10 +176,13 @@ class DoubleDqn(DQN):
 
     def values(self, observation: Array) -> Array:
         """The policy's Q of all actions. [N, observation] float32 -> [N, actions] float32"""
-        self.policy_net.train(False)
+        return self._values_of(self.policy_net, observation)
+
+    def _values_of(self, net: th.nn.Module, observation: Array) -> Array:
+        net.train(False)
         with th.no_grad():
             seen = th.from_numpy(np.ascontiguousarray(observation)).to(self.device)
-            q: Array = self.policy_net(seen).cpu().numpy()
+            q: Array = net(seen).cpu().numpy()
         return q
 
     def state(self) -> dict[str, Any]:

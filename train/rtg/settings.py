@@ -33,7 +33,8 @@ class TrainSettings:
     gradient_steps: int = 1
     target_sync: int = 1
     target_rate: float = 0.005
-    policy_rate: float = 0.0003
+    target_acts: bool = True
+    policy_rate: float = 1.5e-4
     discount: float = 0.95
     offline_share: float = 0.5
     recent_share: float = 0.5
