@@ -36,19 +36,32 @@ def test_a_line_is_the_mean_of_the_seeds_of_which_one_may_have_ended_early(tmp_p
 
 def test_a_sweep_shows_every_run_and_who_never_got_there(tmp_path, figures):
     cells = {
+        Cell("gathering", "ddqn_rtg", (), 1): [0.5, 0.97],
         Cell("gathering", "ddqn_rtg", ("train.batch=8",), 1): [0.5, 0.96],
         Cell("gathering", "ddqn_rtg", ("train.batch=16",), 1): [0.5, 0.6],
         Cell("gathering", "ddqn_rtg", ("train.batch=16",), 2): [0.95, 0.8],
+        Cell("gathering", "dqn", (), 1): [0.0, 0.0],
     }
     report_plots.sweep(tmp_path / "sweep.png", comparison(tmp_path, cells), "gathering")
     success, reached = figures[0].axes
-    dots = [line.get_ydata().tolist() for line in success.get_lines() if line.get_marker() == "o"]
-    assert dots == [[0.96], [0.6, 0.8]]
-    dots = [line.get_ydata().tolist() for line in reached.get_lines() if line.get_marker() == "o"]
-    assert dots == [[10.0], [5.0]]
+    dots = [line.get_xdata().tolist() for line in success.get_lines() if line.get_marker() == "o"]
+    assert dots == [[0.97], [0.96], [0.6, 0.8]]
+    dots = [line.get_xdata().tolist() for line in reached.get_lines() if line.get_marker() == "o"]
+    assert dots == [[10.0], [10.0], [5.0]]
     assert [text.get_text() for text in reached.texts] == ["1 never"]
-    assert [tick.get_text() for tick in success.get_xticklabels()] == ["8", "16"]
-    assert success.get_xlabel() == "ddqn_rtg, train.batch"
+    names = [tick.get_text() for tick in success.get_yticklabels()]
+    assert names == ["ddqn_rtg as it is", "train.batch=8", "train.batch=16"]
+
+
+def test_swept_values_of_two_methods_are_told_apart(tmp_path, figures):
+    cells = {
+        Cell("gathering", method, ("train.batch=8", "train.dueling=true"), 1): [0.5]
+        for method in ("dqn", "ddqn_rtg")
+    }
+    report_plots.sweep(tmp_path / "sweep.png", comparison(tmp_path, cells), "gathering")
+    names = [tick.get_text() for tick in figures[0].axes[0].get_yticklabels()]
+    swept = "train.batch=8\ntrain.dueling=true"
+    assert names == [f"dqn\n{swept}", f"ddqn_rtg\n{swept}"]
 
 
 def test_gaps_have_a_histogram_per_task_over_all_its_runs(tmp_path, figures):

@@ -39,6 +39,21 @@ def test_a_sweep_is_one_more_axis_of_the_reference_method():
     assert cells[0].name == f"gathering/{REFERENCE}@train.batch=8@train.dueling=false/seed-4"
 
 
+def test_ablations_are_runs_as_they_are_with_each_departure_taken_back_and_as_the_paper():
+    args = parse(["sorting", "--ablations", "--seeds", "1", "--set", "train.interactions=9"])
+    settings = [cell.settings for cell in args.cells]
+    assert {cell.method for cell in args.cells} == {REFERENCE}
+    assert settings[0] == () and settings[-1] == ("train.preset=paper",)
+    assert ("train.batch=512",) in settings and ("train.dueling=false",) in settings
+    assert ("train.target_sync=2500", "train.target_rate=1.0") in settings
+    assert not any("eval_every" in word or "stop" in word for words in settings for word in words)
+    assert args.command == (
+        "./run.sh reproduce sorting --methods ddqn_rtg --seeds 1 --ablations "
+        "--set train.interactions=9"
+    )
+    assert parse(args.command.split()[2:]).cells == args.cells
+
+
 def test_the_command_of_the_report_has_all_that_decides_the_results_and_no_more():
     words = (
         "gathering --out /tmp/x --jobs 3 --seeds 2 --set train.batch=9 --sweep train.dueling=true"
@@ -88,6 +103,10 @@ def test_the_values_of_a_sweep_may_be_negative():
         (["--sweep", "train.batch"], "--sweep train.batch: legal: KEY=V1,V2 "),
         (["--sweep", "train.batch=1,"], "--sweep train.batch=1,: legal: KEY=V1,V2 "),
         (["--sweep", "train.batch=1,a/b"], "--sweep train.batch=1,a/b: legal: KEY=V1,V2 "),
+        (
+            ["--ablations", "--sweep", "train.batch=1,2"],
+            "--ablations: not with --sweep, which changes settings, too; legal: one",
+        ),
         (["--sweep", "run.seed=1,2"], "--sweep run.seed=1,2: run.seed is no axis; legal: "),
         (["--in-process"], "unrecognized arguments: --in-process; legal: ./run.sh reproduce [-h]"),
     ],

@@ -21,6 +21,7 @@ from rtg.report import report
 from rtg.results import episode_title
 from rtg.run_results import CURVES, Comparison, RunResult, read_comparison
 
+_MOST_CURVES = 12  # that one can tell apart in a picture
 _PICTURES = ("curves_*.png", "sweep_*.png", "strip_*.png", "film_*.gif", "replay_gap.png")
 
 
@@ -48,7 +49,7 @@ def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | No
     gaps = {}
     for task in comparison.tasks:
         done = [run for run in comparison.all_done() if run.cell.task == task]
-        if any(run.curve for run in done):
+        if 0 < len({run.cell.label for run in done if run.curve}) <= _MOST_CURVES:
             report_plots.curves(out / f"curves_{task}.png", comparison, task)
         if any(run.cell.settings for run in done):
             report_plots.sweep(out / f"sweep_{task}.png", comparison, task)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -29,6 +30,7 @@ _PANELS = (
     ("return, greedy, discounted as in learning", "episode_return_mean"),
 )
 _SHARES = ("success_rate", "rollout_success")
+_RIGHT: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8}
 
 
 def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
@@ -132,32 +134,40 @@ def replay_gaps(path: Path, of_tasks: Mapping[str, Sequence[RunResult]]) -> None
         plots.save(figure, path)
 
 
+def _swept(comparison: Comparison, task: str) -> dict[str, Sequence[RunResult]]:
+    """The runs of each swept value, and of their methods as they are, under short names."""
+    labels = [label for label in comparison.labels if comparison.row(task, label)]
+    methods = {label.split("@")[0] for label in labels if "@" in label}
+    shown = [label for label in labels if label.split("@")[0] in methods]
+    names = [label.replace("@", "\n") for label in shown]
+    if len(methods) == 1:
+        names = [name.partition("\n")[2] or f"{name} as it is" for name in names]
+    return {name: comparison.done(task, label) for name, label in zip(names, shown, strict=True)}
+
+
 def sweep(path: Path, comparison: Comparison, task: str) -> None:
     """The final greedy success and the interactions to 0.95 of each swept value, a dot per run."""
-    labels = [label for label in comparison.labels if "@" in label]
-    shared, names = split_names(labels)
-    ticks = [name.replace("@", "\n") for name in names]
+    rows = _swept(comparison, task)
     with plots.style():
-        figure, axes = plt.subplots(1, 2, figsize=(9.6, 3.6), layout="constrained")
+        size = (9.6, 1.2 + 0.16 * sum(2 + name.count("\n") for name in rows))
+        figure, axes = plt.subplots(1, 2, figsize=size, layout="constrained", sharey=True)
         for axis, column in zip(axes, ("success_rate", "interactions_to_95"), strict=True):
-            for at, label in enumerate(labels):
-                runs = [run.figures()[column] for run in comparison.done(task, label)]
-                values = np.array([value for value in runs if value is not None], float)
+            for at, runs in enumerate(rows.values()):
+                found = [run.figures()[column] for run in runs]
+                values = np.array([value for value in found if value is not None], float)
                 values = values if column == "success_rate" else values / 1000.0
-                axis.plot(np.full(len(values), at), values, "o", color="#56b4e9", ms=5)
+                axis.plot(values, np.full(len(values), at), "o", color="#56b4e9", ms=5)
                 if len(values):
-                    axis.plot(at, values.mean(), "_", color="#0072b2", ms=22, mew=2.5)
-                if len(values) < len(runs):
-                    words = f"{len(runs) - len(values)} never"
-                    axis.annotate(
-                        words, (at, 0.02), xycoords=("data", "axes fraction"), ha="center"
-                    )
-            axis.set_xticks(range(len(labels)), ticks, fontsize=8)
-            axis.set_xlim(-0.6, len(labels) - 0.4)
-            axis.set_xlabel(shared)
-        axes[0].set(title="greedy success at the end, held-out starts", ylim=(-0.03, 1.03))
-        axes[1].set(title="interactions / 1000 to greedy success 0.95")
-        axes[1].set_ylim(bottom=0.0)
+                    axis.plot(values.mean(), at, "|", color="#0072b2", ms=14, mew=2.5)
+                if len(values) < len(found):
+                    words = f"{len(found) - len(values)} never"
+                    axis.annotate(words, (0.99, at), xycoords=axis.get_yaxis_transform(), **_RIGHT)
+            axis.grid(axis="y", alpha=0.3)
+        axes[0].set_yticks(range(len(rows)), list(rows), fontsize=8)
+        axes[0].set(title="greedy success at the end", xlim=(-0.03, 1.03))
+        axes[0].set_ylim(len(rows) - 0.5, -0.5)
+        axes[1].set_title("interactions / 1000 to 0.95")
+        axes[1].set_xlim(left=0.0)
         title = f"{task}: a dot per seed, a bar for their mean"
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
         plots.save(figure, path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import itertools
 import os
 import shlex
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rtg import paths
+from rtg.ablations import ablations
 from rtg.cells import Cell
 from rtg.errors import UserError
 from rtg.methods import METHODS, REFERENCE, TASKS
@@ -35,6 +37,7 @@ examples:
   ./run.sh reproduce --quick
   ./run.sh reproduce gathering sorting --methods ddqn_naive,ddqn_rtg --seeds 5
   ./run.sh reproduce gathering --sweep train.offline_share=0.1,0.25,0.5,0.75,-1
+  ./run.sh reproduce sorting --ablations --seeds 1
 
 The same command again goes on where it was stopped. Report and pictures: DIR/report.md."""
 
@@ -55,8 +58,6 @@ class ReproduceArgs:
 
 def parser() -> Parser:
     """The flags."""
-    import argparse
-
     p = Parser(
         prog="./run.sh reproduce",
         description="Run methods x seeds on tasks, one process per core, and write a report.",
@@ -64,13 +65,19 @@ def parser() -> Parser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     p.add_argument("tasks", metavar="TASK", nargs="*", help=f"tasks or files ({' '.join(TASKS)})")
-    p.add_argument("--methods", metavar="a,b", help="what to compare (all; of a sweep: ddqn_rtg)")
+    what = "what to compare (all; of a sweep and ablations: ddqn_rtg)"
+    p.add_argument("--methods", metavar="a,b", help=what)
     p.add_argument("--seeds", metavar="N|1,2,3", help=f"how many, or which ({SEEDS})")
     p.add_argument("--jobs", metavar="N", help="runs at a time (one per core)")
     p.add_argument("--out", metavar="DIR", help="folder of the comparison (runs/reproduce)")
     p.add_argument("--quick", action="store_true", help="small budgets, one seed: minutes")
     p.add_argument(
         "--sweep", metavar="KEY=V1,V2", action="append", default=[], help="one more axis"
+    )
+    p.add_argument(
+        "--ablations",
+        action="store_true",
+        help="also with each departure from the preset paper taken back, and with that preset",
     )
     p.add_argument(
         "--together", action="store_true", help="a method's seeds learn in one process, as on a GPU"
@@ -98,14 +105,24 @@ def parse_seeds(words: str) -> tuple[int, ...]:
     return tuple(dict.fromkeys(seeds))
 
 
-def _methods(words: str | None, default: Sequence[str]) -> tuple[str, ...]:
-    found = tuple(default) if words is None else tuple(dict.fromkeys(words.split(",")))
+def _methods(args: argparse.Namespace) -> tuple[str, ...]:
+    """Raises UserError."""
+    if args.methods is None:
+        is_of_reference = args.sweep or args.ablations
+        return QUICK_METHODS if args.quick else (REFERENCE,) if is_of_reference else METHODS
+    found = tuple(dict.fromkeys(args.methods.split(",")))
     for method in found:
         if method not in METHODS:
             raise UserError(
                 f"--methods {method}: no method of that name; legal: {','.join(METHODS)}"
             )
     return found
+
+
+def _seeds(args: argparse.Namespace) -> str:
+    """As the user types them."""
+    default = "1" if args.quick else SEEDS
+    return default if args.seeds is None else str(args.seeds)
 
 
 def _files(words: Sequence[str]) -> dict[str, Path]:
@@ -138,27 +155,36 @@ def _check_keys(sweeps: Sequence[tuple[str, ...]]) -> None:
         seen.add(key)
 
 
+def _cells(args: argparse.Namespace, files: dict[str, Path]) -> tuple[Cell, ...]:
+    """Tasks x methods x settings x seeds. Raises UserError."""
+    sweeps = [parse_sweep(sweep) for sweep in args.sweep]
+    _check_keys(sweeps)
+    if args.ablations and sweeps:
+        raise UserError("--ablations: not with --sweep, which changes settings, too; legal: one")
+    found = []
+    for task, file in files.items():
+        settings = ablations(file) if args.ablations else list(itertools.product(*sweeps))
+        axes = _methods(args), settings, parse_seeds(_seeds(args))
+        found += [Cell(task, method, changed, n) for method, changed, n in itertools.product(*axes)]
+    return tuple(found)
+
+
 def parse(words: Sequence[str]) -> ReproduceArgs:
     """Raises UserError, or SystemExit(0) after --help."""
     args = parser().parse_args(words)
-    default = QUICK_METHODS if args.quick else (REFERENCE,) if args.sweep else METHODS
-    tasks, methods = args.tasks or TASKS, _methods(args.methods, default)
-    seeds = ("1" if args.quick else SEEDS) if args.seeds is None else args.seeds
-    files, sweeps = _files(tasks), [parse_sweep(sweep) for sweep in args.sweep]
-    _check_keys(sweeps)
-    axes = (files, methods, itertools.product(*sweeps), parse_seeds(seeds))
-    cells = [
-        Cell(task, method, swept, seed) for task, method, swept, seed in itertools.product(*axes)
-    ]
+    tasks = args.tasks or TASKS
+    files = _files(tasks)
+    cells = _cells(args, files)
     jobs = str(len(os.sched_getaffinity(0))) if args.jobs is None else args.jobs
     if args.out == "":
         raise UserError("--out: '' is no folder; legal: the path of one")
-    flags = ["--methods", ",".join(methods), "--seeds", seeds, *["--quick"] * args.quick]
+    flags = ["--methods", ",".join(_methods(args)), "--seeds", _seeds(args)]
+    flags += [*["--quick"] * args.quick, *["--ablations"] * args.ablations]
     flags += [word for sweep in args.sweep for word in ("--sweep", sweep)]
     flags += [word for setting in args.set for word in ("--set", setting)]
     return ReproduceArgs(
         files=files,
-        cells=tuple(cells),
+        cells=cells,
         settings=(*(QUICK if args.quick else ()), *args.set),
         jobs=_number("--jobs", jobs, 1, 1000),
         together=args.together,
