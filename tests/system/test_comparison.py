@@ -83,7 +83,7 @@ def test_a_comparison_of_all_tasks_ends_with_a_report(undisturbed):
         assert f"]({name})" in (folder / "report.md").read_text()
 
 
-def test_each_run_keeps_to_one_thread_and_one_process(undisturbed):
+def test_each_run_keeps_to_one_process(undisturbed):
     folder, _ = undisturbed
     summary = json.loads((folder / "sorting/ddqn_naive/seed-1/summary.json").read_text())
     assert (summary["workers"], summary["mode"]) == (1, "in_process")

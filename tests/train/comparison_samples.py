@@ -26,8 +26,11 @@ def row(interactions: int, success: float) -> dict[str, Any]:
     }
 
 
-def finished(folder: Path, cell: Cell, course: Sequence[float], **more: Any) -> None:
-    """The folder of a run that evaluated every 5,000 interactions, with these successes."""
+def finished(
+    folder: Path, cell: Cell, course: Sequence[float], *, budget: int = 0, **more: Any
+) -> None:
+    """The folder of a run that evaluated every 5,000 interactions, with these successes, and used
+    its budget up if none is given."""
     run = folder / cell.name
     run.mkdir(parents=True)
     log = TrainingLog(run)
@@ -60,8 +63,9 @@ def finished(folder: Path, cell: Cell, course: Sequence[float], **more: Any) -> 
     }
     write_json(run / "summary.json", summary)
     write_json(run / "versions.json", {"git_revision": "abc", "git_modified": False})
-    budget = f"train.interactions={5000 * len(course)}"
-    (run / "config.yaml").write_text(_core.Config.from_file(CONFIG, overrides=[budget]).yaml)
+    budget = budget or 5000 * len(course)
+    config = _core.Config.from_file(CONFIG, overrides=[f"train.interactions={budget}"])
+    (run / "config.yaml").write_text(config.yaml)
     start = _core.Config.from_file(CONFIG).task.start
     np.savez(run / "best_episode.npz", poses=np.stack([start, start]), success=course[-1] > 0.5)
 

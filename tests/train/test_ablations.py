@@ -20,8 +20,20 @@ def test_keys_that_belong_together_are_taken_back_together():
 
 
 def test_all_departures_together_are_the_paper_but_for_how_it_is_measured():
-    taken_back = [Override("", word) for words in ablations(FILE)[1:-1] for word in words]
+    *departures, as_paper = ablations(FILE, [])
+    taken_back = [Override("", word) for words in departures for word in words]
     found = effective_config.values(FILE, taken_back)["train"]
-    paper = effective_config.values(FILE, [Override("", PAPER)])["train"]
-    differ = {key for key in paper if found[key] != paper[key]}
-    assert differ == {"preset", "eval_every", "stop_at_success"}
+    paper = effective_config.values(FILE, [Override("", word) for word in as_paper])["train"]
+    assert {key for key in paper if found[key] != paper[key]} == {"preset"}
+    ours = effective_config.values(FILE)["train"]
+    watched = ("interactions", "eval_every", "stop_at_success", "stop_evaluations")
+    assert [paper[key] for key in watched] == [ours[key] for key in watched]
+
+
+def test_what_is_set_for_all_is_no_departure():
+    common = [Override("", "train.batch=512"), Override("", "run.method=ddqn")]
+    common.append(Override("", "train.stop_at_success=0.5"))
+    found = ablations(FILE, common)
+    words = [word.partition("=")[0] for settings in found for word in settings]
+    assert not {"train.batch", "train.nearby_share"} & set(words)
+    assert found[-1] == (PAPER, "train.eval_every=5000", "train.stop_at_success=0.5")

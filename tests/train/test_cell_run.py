@@ -52,6 +52,11 @@ def test_a_new_run_begins_and_one_that_has_begun_goes_on(words):
         make_ready(parse(words))[0].outcome()
 
 
+def test_a_run_keeps_to_one_thread(words):
+    command = make_ready(parse(words))[0].command()
+    assert {"OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1", "MKL_NUM_THREADS=1"} <= set(command)
+
+
 def test_methods_stand_above_the_file_and_the_settings(words):
     """The file says naive."""
     for run, reverse in zip(make_ready(parse(words)), ("naive", "rrbs"), strict=True):
@@ -111,7 +116,12 @@ def test_a_run_killed_as_it_began_begins_again(words):
     run.folder.mkdir(parents=True)
     (run.folder / ".config.yaml.123").write_text("ta")
     again = make_ready(parse(words))[0]
-    assert "--resume" not in again.command()
+    command = again.command()
+    assert "--resume" not in command
+    assert run_args.parse(command[command.index("run") + 1 :]).out == run.folder
+    (run.folder / ".config.yaml.124").write_text("ta")
+    again.begin()
+    assert again.begun
 
 
 def test_a_run_that_has_begun_takes_transitions_over_too(words, monkeypatch):
@@ -137,6 +147,10 @@ def test_a_file_where_a_run_belongs_is_refused(words):
     [
         ("train.interactions=9", r"train\.interactions = \d+, asked for is 9"),
         ("task.horizon=9", r"task\.horizon = \d+, asked for is 9"),
+        ("physics.damping=0.3", r"physics\.damping = [\d.]+, asked for is 0\.3"),
+        ("train.eval_every=9", r"train\.eval_every = \d+, asked for is 9"),
+        ("search.transitions=9999", r"search\.transitions = \d+, asked for is 9999"),
+        ("train.preset=paper", r"train\.eval_every = \d+, asked for is 10000"),
     ],
 )
 def test_methods_that_cannot_be_compared_are_refused(words, more, what):
@@ -147,6 +161,8 @@ def test_methods_that_cannot_be_compared_are_refused(words, more, what):
     make_ready(parse([*alone, "--sweep", more]))
     with pytest.raises(UserError, match=f"ddqn_naive/seed-1: was made with {what}; legal: "):
         make_ready(parse([*alone, "--set", more]))
+    with pytest.raises(UserError, match=f"ddqn_naive/seed-1: was made with {what}; legal: "):
+        make_ready(parse([*alone, "--sweep", "train.dueling=false", "--set", more]))
     assert not rtg.begun
 
 

@@ -13,6 +13,7 @@ from rtg.cells import Cell
 from rtg.errors import UserError
 from rtg.report_files import write_report
 from rtg.report_tables import seeds, spread
+from rtg.run_folder import write_json
 
 GOOD, BAD = [0.2, 0.8, 0.96], [0.0, 0.5, 0.6, 0.7]
 SWEPT = "train.offline_share=-1"
@@ -93,6 +94,43 @@ def test_a_method_that_is_no_worse_than_the_reference_is_named(folder, page, tmp
     assert f"aside):\n\n- gathering, `ddqn_naive`: {course}\n\n" in report
 
 
+def test_domain_randomisation_is_compared_with_nothing(tmp_path):
+    cells = [
+        Cell("gathering", "ddqn_rtg", (), 1),
+        Cell("gathering", "ddqn_rtg_dr", (), 1),
+        Cell("gathering", "ddqn_rtg_dr", (SWEPT,), 1),
+    ]
+    for cell in cells:
+        finished(tmp_path, cell, GOOD)
+    write_grid(tmp_path, cells)
+    page = write_report(tmp_path, tmp_path).read_text()
+    for cell in cells[1:]:
+        assert row(page, cell.label, "## All tasks together")[-1] == "–"
+    assert "aside):\n\nNothing to compare yet.\n" in page
+
+
+def test_the_third_of_a_run_that_ended_before_is_its_final_success(tmp_path):
+    """The evaluations that ended it went well, perhaps by chance."""
+    cells = [Cell("gathering", "ddqn_rtg", (), seed) for seed in (1, 2, 3)]
+    for cell, budget in zip(cells, (30_000, 44_999, 45_000), strict=True):
+        finished(tmp_path, cell, GOOD, budget=budget, success_rate=0.9)
+    write_grid(tmp_path, cells)
+    write_report(tmp_path, tmp_path)
+    runs = json.loads((tmp_path / "report.json").read_text())["gathering"]["ddqn_rtg"]
+    assert [run["success_at_third"] for run in runs] == [0.8, 0.8, 0.9]
+
+
+def test_transitions_of_another_commit_are_told(tmp_path):
+    cells = [Cell("gathering", "ddqn_rtg", (), seed) for seed in (1, 2)]
+    for cell, maker in zip(cells, ("abc", "old"), strict=True):
+        finished(tmp_path, cell, GOOD)
+        made_with = {"git_revision": "abc", "generator": {"git_revision": maker}}
+        write_json(tmp_path / cell.name / "versions.json", made_with)
+    write_grid(tmp_path, cells)
+    page = write_report(tmp_path, tmp_path).read_text()
+    assert "- commit: `abc` (1 runs); `abc`, transitions by `old` (1 runs)\n" in page
+
+
 def test_the_page_says_where_it_comes_from_and_shows_all_pictures(folder, page):
     assert "    ./run.sh reproduce gathering\n" in page and "- commit: `abc`\n" in page
     shown = set(re.findall(r"\]\((\w+\.(?:png|gif))\)", page))
@@ -134,6 +172,7 @@ def test_the_tables_for_programs_have_a_row_per_run_and_per_evaluation(folder):
     with (folder / "runs.csv").open() as file:
         runs = list(csv.DictReader(file))
     assert [run["state"] for run in runs].count("done") == 5
+    assert {run["replays"] for run in runs} == {"1200000", ""}  # no key of every summary
     assert [(run["task"], run["method"], int(run["seed"])) for run in runs] == [
         (cell.task, cell.label, cell.seed) for cell in BY_METHOD
     ]

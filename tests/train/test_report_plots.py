@@ -4,6 +4,7 @@ import numpy as np
 from comparison_samples import finished, write_grid
 from rtg import report_plots
 from rtg.cells import Cell, read_grid
+from rtg.methods import METHODS
 from rtg.report_plots import split_names
 from rtg.run_results import read_comparison
 
@@ -32,6 +33,20 @@ def test_a_line_is_the_mean_of_the_seeds_of_which_one_may_have_ended_early(tmp_p
     words = [text.get_text() for text in figures[0].legends[0].get_texts()]
     assert words == ["dqn (1)", "ddqn_rtg (2)"]
     assert lines[0].get_color() != lines[1].get_color()
+
+
+def test_of_many_labels_the_methods_alone_have_curves(tmp_path):
+    swept = [Cell("gathering", "dqn", (f"train.batch={k}",), 1) for k in range(1, 12)]
+    cells = [Cell("gathering", "dqn", (), 1), *swept, Cell("sorting", "her", (), 1)]
+    few = comparison(tmp_path / "few", {cell: [0.1] for cell in cells[:12]})
+    assert len(report_plots.curve_labels(few, "gathering")) == 12
+    more = [*cells, Cell("gathering", "ddqn", (), 1)]
+    many = comparison(tmp_path / "many", {cell: [0.1] for cell in more})
+    assert report_plots.curve_labels(many, "gathering") == ["dqn", "ddqn"]
+
+
+def test_each_method_has_a_colour():
+    assert len(set(report_plots._PALETTE)) == len(METHODS)
 
 
 def test_a_sweep_shows_every_run_and_who_never_got_there(tmp_path, figures):

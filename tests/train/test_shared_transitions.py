@@ -3,7 +3,8 @@
 import copy
 
 import pytest
-from rtg import effective_config, run_folder
+from rtg import effective_config, run_args, versions
+from rtg.run_plan import make_plan
 from rtg.shared_transitions import are_there, find, kind, take_over
 from training_runs import TINY
 
@@ -19,11 +20,11 @@ def changed(section, key, value):
 
 @pytest.fixture
 def made(tmp_path):
-    """A run of this commit that has generated."""
+    """A run of this program that has generated."""
     run = tmp_path / "ddqn_naive" / "seed-1"
     run.mkdir(parents=True)
     (run / "config.yaml").write_text(effective_config.canonical(TINY))
-    run_folder.write_json(run / "versions.json", {"git_revision": run_folder.git_revision()})
+    versions.note(run)
     for name in ("transitions.npz", "generation.json"):
         (run / name).write_text(name)
     return run
@@ -62,7 +63,9 @@ def test_a_run_of_the_same_kind_is_found_and_taken_over(made, tmp_path):
     new.mkdir(parents=True)
     take_over(made, new)
     assert are_there(new) and (new / "transitions.npz").read_text() == "transitions.npz"
-    assert sorted(path.name for path in new.iterdir()) == ["generation.json", "transitions.npz"]
+    names = ["generation.json", "transitions.npz", "versions.json"]
+    assert sorted(path.name for path in new.iterdir()) == names
+    assert versions.generator(new) == versions.generator(made) != {}
 
 
 def test_another_kind_or_seed_is_not_found(made, tmp_path):
@@ -72,19 +75,31 @@ def test_another_kind_or_seed_is_not_found(made, tmp_path):
 
 DEFECTS = {
     "config.yaml": "search: {unknown: 1}\n",
-    "versions.json": '{"git_revision": "another"}',
+    "versions.json": '{"generator": {"core_sha256": "another"}}',
     "generation.json": None,
     "transitions.npz": None,
 }
 
 
 @pytest.mark.parametrize("name", DEFECTS)
-def test_what_another_commit_made_or_is_not_whole_is_not_found(made, tmp_path, name):
+def test_what_another_program_made_or_is_not_whole_is_not_found(made, tmp_path, name):
     if DEFECTS[name] is None:
         (made / name).unlink()
     else:
         (made / name).write_text(DEFECTS[name])
     assert find(kind(CONFIG), tmp_path, "seed-1") is None
+
+
+def test_what_another_program_made_stays_that_of_the_other(made, tmp_path):
+    """Also when this one goes on with the run."""
+    other = {"git_revision": "another", "core_sha256": "another"}
+    versions.note(made, other)
+    make_plan(run_args.parse(["--resume", "--out", str(made)]))
+    assert versions.generator(made) == other
+    assert find(kind(CONFIG), tmp_path, "seed-1") is None
+    (made / "generation.json").unlink()  # to be generated again
+    make_plan(run_args.parse(["--resume", "--out", str(made)]))
+    assert versions.generator(made)["core_sha256"] == versions.core_digest()
 
 
 def test_a_version_without_one_of_the_settings_is_not_found(made, tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,8 @@ from rtg import effective_config
 from rtg.run_args import Override
 
 PAPER = "train.preset=paper"
-# What decides how learning is measured, not how it goes.
-_OF_MEASUREMENT = ("preset", "eval_every", "stop_at_success")
+# How learning is watched and ended: alike for all, so that their figures can be compared.
+_ALIKE = ("eval_every", "stop_at_success")
 # Keys that mean something only with each other.
 _TOGETHER = (
     ("target_sync", "target_rate"),
@@ -21,19 +22,24 @@ _TOGETHER = (
 Settings = tuple[str, ...]
 
 
-def ablations(file: Path) -> list[Settings]:
+def ablations(file: Path, common: Sequence[Override]) -> list[Settings]:
     """Of the cells of a task: nothing changed; one departure after the other, as in the paper; the
-    whole preset `paper`. Raises UserError."""
-    ours = effective_config.values(file)["train"]
-    paper = effective_config.values(file, [Override(f"--set {PAPER}", PAPER)])["train"]
-    return [(), *departures(ours, paper), (PAPER,)]
+    whole preset `paper`. common: what else all of them are set to. Raises UserError."""
+    ours = effective_config.values(file, common)["train"]
+    paper = effective_config.values(file, [Override(f"--set {PAPER}", PAPER), *common])["train"]
+    alike = _settings(_ALIKE, ours)
+    return [(), *departures(ours, paper), (PAPER, *alike)]
 
 
 def departures(ours: dict[str, Any], paper: dict[str, Any]) -> list[Settings]:
     """The settings that take back what `ours` does otherwise than `paper`, one by one."""
     found = dict[tuple[str, ...], Settings]()
     for key in ours:
-        if ours[key] != paper[key] and key not in _OF_MEASUREMENT:
+        if ours[key] != paper[key] and key not in ("preset", *_ALIKE):
             group = next((keys for keys in _TOGETHER if key in keys), (key,))
-            found[group] = tuple(f"train.{name}={json.dumps(paper[name])}" for name in group)
+            found[group] = _settings(group, paper)
     return list(found.values())
+
+
+def _settings(keys: Sequence[str], values: dict[str, Any]) -> Settings:
+    return tuple(f"train.{key}={json.dumps(values[key])}" for key in keys)

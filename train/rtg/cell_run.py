@@ -17,7 +17,7 @@ from rtg.reproduce_args import ReproduceArgs
 from rtg.run_args import Override
 
 # Of `train`: what runs of different methods must have in common.
-_ALIKE = ("interactions", "eval_episodes", "stop_at_success", "stop_evaluations")
+_ALIKE = ("interactions", "eval_every", "eval_episodes", "stop_at_success", "stop_evaluations")
 # One core each: libraries that would start a thread per core.
 _ONE_THREAD = [f"{name}_NUM_THREADS=1" for name in ("OMP", "OPENBLAS", "MKL")]
 
@@ -58,6 +58,7 @@ class CellRun:
 
     def begin(self) -> None:
         """Makes the folder, without `rtg run`."""
+        _remove_drafts(self.folder)
         run_plan.make_plan(run_args.parse([*self.words, "--out", str(self.folder)]))
 
     def command(self) -> list[str]:
@@ -69,6 +70,8 @@ class CellRun:
                 if not self.begun:
                     self.begin()
                 shared_transitions.take_over(source, self.folder)
+        if not self.begun:
+            _remove_drafts(self.folder)
         words = ["--resume"] if self.begun else self.words
         return program("rtg", "run", *words, "--out", str(self.folder))
 
@@ -99,7 +102,7 @@ def make_ready(args: ReproduceArgs) -> list[CellRun]:
         _check_folder(folder)
         if folder.parent not in checked:
             _check_seeds(folder.parent, config)
-            _check_methods(folder.parent, config)
+            _check_methods(folder, config)
             checked.add(folder.parent)
         kind, device = shared_transitions.kind(config), config["train"]["device"]
         runs.append(CellRun(cell, folder, _words(args, cell), kind, device))
@@ -136,6 +139,12 @@ def _is_draft(file: Path) -> bool:
     return file.name.startswith(".config.yaml.")
 
 
+def _remove_drafts(folder: Path) -> None:
+    if folder.is_dir():
+        for file in filter(_is_draft, folder.iterdir()):
+            file.unlink()
+
+
 def _check_seeds(label: Path, config: dict[str, Any]) -> None:
     """Raises UserError unless all runs in the folder, also of seeds not asked for now, have this
     configuration but for the seed: tables show means over them."""
@@ -158,20 +167,42 @@ def _check_same(folder: Path, config: dict[str, Any]) -> None:
     effective_config.check_version(found)
 
 
-def _check_methods(label: Path, config: dict[str, Any]) -> None:
-    """Raises UserError unless all methods in the folder of the task have that task, budget and
-    evaluation: tables compare them. What is swept may change them."""
-    for found in sorted(label.parent.glob("*/seed-*/config.yaml")):
-        if "@" in label.name + found.parts[-3]:
-            continue
+def _check_methods(folder: Path, config: dict[str, Any]) -> None:
+    """Raises UserError unless all runs in the folder of the task have that task, its physics, that
+    budget and evaluation, but for what is swept: tables compare them. folder: of the run."""
+    for found in sorted(folder.parents[1].glob("*/seed-*/config.yaml")):
+        swept = _swept(found.parts[-3]) | _swept(folder.parts[-2])
         before = effective_config.values(found)
-        for section, keys in (("task", tuple(config["task"])), ("train", _ALIKE)):
-            old, new = ({key: of[section].get(key) for key in keys} for of in (before, config))
-            if old != new:
-                what = _difference(section, old, new)
+        old, new = _compared(before, swept), _compared(config, swept)
+        if not (before["train"]["offline"] and config["train"]["offline"]):
+            del old["search"], new["search"]
+        for section in old:
+            if old[section] != new[section]:
+                what = _difference(section, old[section], new[section])
                 raise UserError(
                     f"{found.parent}: was made with {what}; legal: the same, or another --out"
                 )
+
+
+def _swept(label: str) -> set[str]:
+    """The keys whose values a label names, or decides."""
+    found = {setting.partition("=")[0] for setting in label.split("@")[1:]}
+    of_preset = {f"train.{key}" for key in _ALIKE} if "train.preset" in found else set()
+    return found | of_preset
+
+
+def _compared(config: dict[str, Any], swept: set[str]) -> dict[str, dict[str, Any]]:
+    """What runs in one table have in common, by section."""
+    keys = {
+        "task": tuple(config["task"]),
+        "physics": tuple(config["physics"]),
+        "search": ("transitions",),
+        "train": _ALIKE,
+    }
+    return {
+        section: {name: config[section][name] for name in names if f"{section}.{name}" not in swept}
+        for section, names in keys.items()
+    }
 
 
 def _difference(section: str, old: Any, new: Any) -> str:

@@ -16,13 +16,15 @@ from rtg.run_results import Comparison, RunResult
 _LEGEND = """\
 Means ± standard deviations over the seeds. **success**: of the final greedy policy from held-out
 starts, objects jittered, that nothing was chosen by; **roll-outs**: of the last 100 training
-episodes from the starts of the task, exploration included; **at ⅓**: greedy success, other held-out
-starts, at a third of the budget; **to 0.70**, **to 0.95**: thousand interactions until the first
-evaluation with that greedy success ("2 of 3": so many of the seeds ever); **interactions**,
-**transitions** in thousands, used and generated. Times are wall clock, of generation on one core,
-of training on what is named *learner* above. All figures are in
-[runs.csv](runs.csv), the learning curves in [curves.csv](curves.csv); in their pictures a run that
-ended early keeps its last value."""
+episodes from the starts of the task, exploration included; **at ⅓**: greedy success at a third of
+the budget, from other held-out starts, or the final one of a run that had ended by then;
+**to 0.70**, **to 0.95**: thousand interactions until the first evaluation with that greedy success
+("2 of 3": so many of the seeds ever); **interactions**, **transitions** in thousands, used and
+generated. Interactions are those of the learner: what generation takes beside them stands under
+[Run time](#run-time) as pushes. Times are wall clock, of generation on one core, of training on
+what is named *learner* above. All figures are in [runs.csv](runs.csv), the learning curves in
+[curves.csv](curves.csv); in their pictures a run that ended early keeps its last value, and of more
+than twelve rows those with swept settings are left out."""
 _POOLED = f"""\
 IQM: mean of the middle half of all final successes, with a 95 % interval by stratified bootstrap
 (seeds drawn within a task, {RESAMPLES:,} resamples). Last column: the probability that a run of the
@@ -77,7 +79,7 @@ def _origin(grid: Grid, comparison: Comparison) -> str:
         [
             *lines,
             "",
-            f"- commit: {_listed(f'`{run.commit}`' for run in done)}",
+            f"- commit: {_listed(run.commits for run in done)}",
             f"- machine: {_listed(_machine(run.versions) for run in done)}",
             f"- learner: {_listed(_learner(run.summary) for run in done)}",
             f"- with: {_listed(_programs(run.versions) for run in done)}",

@@ -21,7 +21,6 @@ from rtg.report import report
 from rtg.results import episode_title
 from rtg.run_results import CURVES, Comparison, RunResult, read_comparison
 
-_MOST_CURVES = 12  # that one can tell apart in a picture
 _PICTURES = ("curves_*.png", "sweep_*.png", "strip_*.png", "film_*.gif", "replay_gap.png")
 
 
@@ -49,7 +48,7 @@ def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | No
     gaps = {}
     for task in comparison.tasks:
         done = [run for run in comparison.all_done() if run.cell.task == task]
-        if 0 < len({run.cell.label for run in done if run.curve}) <= _MOST_CURVES:
+        if report_plots.curve_labels(comparison, task):
             report_plots.curves(out / f"curves_{task}.png", comparison, task)
         if any(run.cell.settings for run in done):
             report_plots.sweep(out / f"sweep_{task}.png", comparison, task)
@@ -118,7 +117,7 @@ def _write_numbers(out: Path, comparison: Comparison) -> None:
     for run in comparison.all_done():
         tasks[run.cell.task].setdefault(run.cell.label, []).append(run.figures())
     run_folder.write_json(out / "report.json", tasks)
-    _write_csv(out / "runs.csv", [_row(run) for run in comparison.results])
+    _write_csv(out / "runs.csv", _rows(comparison))
     _write_csv(
         out / "curves.csv", [row for run in comparison.all_done() for row in _curve_rows(run)]
     )
@@ -128,11 +127,24 @@ def _name(run: RunResult) -> dict[str, Any]:
     return {"task": run.cell.task, "method": run.cell.label, "seed": run.cell.seed}
 
 
-def _row(run: RunResult) -> dict[str, Any]:
-    """All of a run's figures that are single numbers."""
-    names = [name for name in run_folder.SUMMARY_KEYS if name not in _name(run)]
-    summary = {name: run.summary.get(name) for name in names}
-    return {**_name(run), "state": run.state, **run.figures(), **summary}
+def _rows(comparison: Comparison) -> list[dict[str, Any]]:
+    """All of each run's figures that are single numbers or words."""
+    more = [
+        name
+        for run in comparison.all_done()
+        for name, value in run.summary.items()
+        if not isinstance(value, (dict, list))
+    ]
+    names = list(dict.fromkeys((*run_folder.SUMMARY_KEYS, *more)))
+    return [
+        {
+            **{name: run.summary.get(name) for name in names},
+            **_name(run),
+            "state": run.state,
+            **run.figures(),
+        }
+        for run in comparison.results
+    ]
 
 
 def _curve_rows(run: RunResult) -> list[dict[str, Any]]:

@@ -30,6 +30,7 @@ _PANELS = (
     ("return, greedy, discounted as in learning", "episode_return_mean"),
 )
 _SHARES = ("success_rate", "rollout_success")
+_MOST_CURVES = 12
 _RIGHT: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8}
 
 
@@ -78,11 +79,21 @@ def _draw_course(
         axis.fill_between(thousand, low, high, color=colour, alpha=0.18, lw=0)
 
 
+def curve_labels(comparison: Comparison, task: str) -> list[str]:
+    """Those with learning curves; of more than one can tell apart, those without swept settings."""
+    found = [
+        label
+        for label in comparison.labels
+        if any(run.curve for run in comparison.done(task, label))
+    ]
+    few = len(found) <= _MOST_CURVES
+    return found if few else [label for label in found if "@" not in label]
+
+
 def curves(path: Path, comparison: Comparison, task: str) -> None:
     """Success, episode length and return over interactions, a line per method."""
-    drawn = {label: comparison.done(task, label) for label in comparison.labels}
-    drawn = {label: [r for r in runs if r.curve] for label, runs in drawn.items()}
-    drawn = {label: runs for label, runs in drawn.items() if runs}
+    labels = curve_labels(comparison, task)
+    drawn = {label: [r for r in comparison.done(task, label) if r.curve] for label in labels}
     styles = _styles(list(drawn))
     with plots.style():
         figure, axes = plt.subplots(2, 2, figsize=(9.6, 6.4), layout="constrained", sharex=True)

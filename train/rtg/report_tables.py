@@ -96,6 +96,10 @@ def _with_interval(value: float, interval: tuple[float, float]) -> str:
     return f"{value:.2f} [{interval[0]:.2f}, {interval[1]:.2f}]"
 
 
+def _is_wider(label: str) -> bool:
+    return label.split("@")[0] == WIDER
+
+
 def pooled(comparison: Comparison) -> str:
     """All tasks and seeds together."""
     head = [
@@ -112,7 +116,8 @@ def pooled(comparison: Comparison) -> str:
             continue
         values = list(scores.values())
         iqm = estimates.interquartile_mean
-        common = [task for task in scores if task in reference and label != REFERENCE]
+        alike = label != REFERENCE and not _is_wider(label)
+        common = [task for task in scores if task in reference and alike]
         pair = [scores[task] for task in common], [reference[task] for task in common]
         better = NOTHING
         if common:
@@ -131,7 +136,7 @@ def rivals(comparison: Comparison) -> str:
         reference = comparison.done(task, REFERENCE)
         for label in comparison.labels:
             done = comparison.done(task, label)
-            if label in (REFERENCE, WIDER) or not (done and reference):
+            if label == REFERENCE or _is_wider(label) or not (done and reference):
                 continue
             compared = True
             if _mean_success(done) >= _mean_success(reference):

@@ -14,8 +14,9 @@ from rtg import paths
 from rtg.ablations import ablations
 from rtg.cells import Cell
 from rtg.errors import UserError
-from rtg.methods import METHODS, REFERENCE, TASKS
-from rtg.run_args import Parser, task_file
+from rtg.methods import METHODS, REFERENCE, TASKS, run_words
+from rtg.run_args import Override, Parser, task_file
+from rtg.run_args import parse as parse_run
 
 SEEDS = "5"
 # Enough to see every part at work; no figure of such a run is a result.
@@ -162,11 +163,23 @@ def _cells(args: argparse.Namespace, files: dict[str, Path]) -> tuple[Cell, ...]
     if args.ablations and sweeps:
         raise UserError("--ablations: not with --sweep, which changes settings, too; legal: one")
     found = []
-    for task, file in files.items():
-        settings = ablations(file) if args.ablations else list(itertools.product(*sweeps))
-        axes = _methods(args), settings, parse_seeds(_seeds(args))
-        found += [Cell(task, method, changed, n) for method, changed, n in itertools.product(*axes)]
+    for task, method in itertools.product(files, _methods(args)):
+        changes = list(itertools.product(*sweeps))
+        if args.ablations:
+            changes = ablations(files[task], _common(args, method))
+        axes = changes, parse_seeds(_seeds(args))
+        found += [Cell(task, method, changed, seed) for changed, seed in itertools.product(*axes)]
     return tuple(found)
+
+
+def _settings(args: argparse.Namespace) -> tuple[str, ...]:
+    return (*(QUICK if args.quick else ()), *args.set)
+
+
+def _common(args: argparse.Namespace, method: str) -> list[Override]:
+    """What all cells of a method are set to."""
+    of_method = parse_run(run_words(method)).overrides
+    return [*of_method, *(Override(f"--set {setting}", setting) for setting in _settings(args))]
 
 
 def parse(words: Sequence[str]) -> ReproduceArgs:
@@ -185,7 +198,7 @@ def parse(words: Sequence[str]) -> ReproduceArgs:
     return ReproduceArgs(
         files=files,
         cells=cells,
-        settings=(*(QUICK if args.quick else ()), *args.set),
+        settings=_settings(args),
         jobs=_number("--jobs", jobs, 1, 1000),
         together=args.together,
         out=Path(args.out or paths.RUNS / f"reproduce{'-quick' * args.quick}").absolute(),

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import json
 import os
-import platform
-import shutil
-import subprocess
 import time
 from pathlib import Path
 from typing import Any
@@ -49,8 +45,6 @@ SUMMARY_KEYS = (
 )
 # Samples behind the pictures, too long for a summary.
 _SAMPLES = ("replay_gaps", "nodes")
-_PACKAGES = ("torch", "stable-baselines3", "gymnasium", "numpy", "lcm")
-_DEBIAN = ("g++", "libeigen3-dev", "libsuitesparse-dev", "libbox2d-dev", "libyaml-cpp-dev")
 
 
 def checkpoint_file(run: Path) -> Path:
@@ -105,48 +99,6 @@ def default_path(task: str) -> Path:
         count += 1
         path = base.with_name(f"{base.name}-{count}")
     return path
-
-
-def _output(*command: str) -> str | None:
-    if shutil.which(command[0]) is None:
-        return None
-    done = subprocess.run(command, cwd=paths.ROOT, capture_output=True, text=True, check=False)
-    return done.stdout.strip() if done.returncode == 0 else None
-
-
-def _debian_version(package: str) -> str | None:
-    return _output("dpkg-query", "-W", "-f=${Version}", package)
-
-
-def _processor() -> str | None:
-    """Model name of the processor, as Linux tells it."""
-    lines = Path("/proc/cpuinfo").read_text().splitlines()
-    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else None
-
-
-def git_revision() -> str | None:
-    """The commit that is checked out; None without git."""
-    return _output("git", "rev-parse", "HEAD")
-
-
-def versions() -> dict[str, Any]:
-    """What a run was made with; null where it cannot be told."""
-    # But for results/, where the runs of the committed report are made.
-    changes = _output(
-        "git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!results"
-    )
-    return {
-        "git_revision": git_revision(),
-        "git_modified": None if changes is None else bool(changes),
-        "python": platform.python_version(),
-        "system": platform.platform(),
-        "processors": os.cpu_count(),
-        "processor": _processor(),
-        "memory_gib": round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30),
-        "packages": {name: importlib.metadata.version(name) for name in _PACKAGES},
-        "debian": {name: _debian_version(name) for name in _DEBIAN},
-    }
 
 
 def summary(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rtg import effective_config, multicast, run_folder, shared_transitions
+from rtg import effective_config, multicast, run_folder, shared_transitions, versions
 from rtg.errors import UserError
 from rtg.run_args import Override, RunArgs
 from rtg.settings import OF_CHECKPOINT
@@ -163,6 +163,7 @@ def make_plan(args: RunArgs) -> RunPlan:
         run_folder.write_text(folder / "config.yaml", canonical)
     except OSError as error:
         raise UserError(f"--out: {folder}: {error.strerror}; legal: a folder to write to") from None
-    run_folder.write_json(folder / "versions.json", run_folder.versions())
     name = f"{folder.name}-{secrets.token_hex(4)}"
-    return RunPlan(folder, name, config, args.train, args.resume, tuple(notes))
+    plan = RunPlan(folder, name, config, args.train, args.resume, tuple(notes))
+    versions.note(folder, versions.generator(folder) if plan.is_generated() else None)
+    return plan

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rtg import _core
+from rtg import _core, versions
 from rtg.cells import Cell, Grid
 from rtg.errors import UserError
 from rtg.estimates import first_reach
@@ -43,8 +43,14 @@ class RunResult:
     @property
     def commit(self) -> str | None:
         """Of the program that ended the run."""
-        revision = self.versions.get("git_revision")
-        return f"{revision}-modified" if self.versions.get("git_modified") else revision
+        return versions.commit(self.versions)
+
+    @property
+    def commits(self) -> str:
+        """In words, with that of the program which made the transitions if it was another."""
+        generator = versions.commit(self.versions.get("generator", {}))
+        is_other = generator not in (None, self.commit) and self.summary.get("transitions")
+        return f"`{self.commit}`" + (f", transitions by `{generator}`" if is_other else "")
 
     def figures(self) -> dict[str, Any]:
         """The entry of report.json."""
@@ -60,10 +66,13 @@ class RunResult:
         }
 
     def success_at_third(self) -> float | None:
-        """Of the last evaluation within a third of the budget, rounded to thousands."""
+        """Of the last evaluation within a third of the budget; of a run that had ended by then the
+        final one, as it may have ended because the others went well by chance."""
         if not self.curve:
             return None
-        third = 1000 * round(self.budget / 3000)
+        third = self.budget / 3
+        if self.summary["interactions"] <= third:
+            return float(self.summary["success_rate"])
         known = self.curve["success_rate"][self.curve["interactions"] <= third]
         return float(known[-1]) if len(known) else None
 
@@ -110,8 +119,8 @@ def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
         curve = learning_curve(progress) if progress.is_file() else {}
         if curve and not {"interactions", *CURVES} <= curve.keys():
             raise UserError(f"{progress}: lacks columns; legal: as the run left it")
-        versions, budget = read_json(run / "versions.json"), _budget(run / "config.yaml")
-        return RunResult(cell, run, "done", summary, versions, curve, budget)
+        made_with, budget = read_json(run / versions.FILE), _budget(run / "config.yaml")
+        return RunResult(cell, run, "done", summary, made_with, curve, budget)
     begun = "unfinished" if run.is_dir() else "not run"
     return RunResult(cell, run, "failed" if cell.name in grid.failed else begun, {}, {}, {}, 0)
 

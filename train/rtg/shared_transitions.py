@@ -8,7 +8,7 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-from rtg import effective_config, run_folder
+from rtg import effective_config, versions
 from rtg.errors import UserError
 
 _FILES = ("transitions.npz", "generation.json")
@@ -29,7 +29,7 @@ def are_there(run: Path) -> bool:
 
 
 def find(wanted: str, folder: Path, name: str) -> Path | None:
-    """A run folder/*/name whose transitions are there and of that kind, made by this commit."""
+    """A run folder/*/name whose transitions are there and of that kind, made by this program."""
     for run in sorted(folder.glob(f"*/{name}")):
         if are_there(run) and _made_kind(run) == wanted:
             return run
@@ -37,12 +37,11 @@ def find(wanted: str, folder: Path, name: str) -> Path | None:
 
 
 def _made_kind(run: Path) -> str | None:
-    """The kind of what this commit has made there. What was made by another one, or cannot be
+    """The kind of what this program has made there. What was made by another one, or cannot be
     read, is nothing to take over, whatever it may be to others."""
     config = run / "config.yaml"
     try:
-        versions = run_folder.read_json(run / "versions.json")
-        if not versions or versions.get("git_revision") != run_folder.git_revision():
+        if versions.generator(run).get("core_sha256") != versions.core_digest():
             return None
         effective_config.check_version(config)
         return kind(effective_config.values(config))
@@ -52,6 +51,7 @@ def _made_kind(run: Path) -> str | None:
 
 def take_over(source: Path, run: Path) -> None:
     """Into the folder of a run that has begun, without a copy where the disk allows that."""
+    versions.note(run, versions.generator(source))
     for name in _FILES:
         draft = run / f".{name}.{os.getpid()}"
         try:

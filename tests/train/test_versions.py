@@ -1,0 +1,25 @@
+"""What a run says it was made with."""
+
+import re
+
+from rtg import versions
+
+
+def test_versions_name_what_a_run_was_made_with():
+    found = versions.versions()
+    assert found["packages"]["lcm"] == "1.5.3"
+    revision = found["git_revision"]
+    assert revision is None or re.fullmatch("[0-9a-f]{40}", revision)
+    assert set(found["debian"]) >= {"libbox2d-dev", "libeigen3-dev"}
+
+
+def test_a_commit_says_whether_files_were_changed():
+    assert versions.commit({"git_revision": "abc", "git_modified": False}) == "abc"
+    assert versions.commit({"git_revision": "abc", "git_modified": True}) == "abc-modified"
+    assert versions.commit({"git_revision": None}) is None
+
+
+def test_unknown_makers_stay_unknown(tmp_path):
+    assert versions.generator(tmp_path) == {}
+    versions.note(tmp_path, {})
+    assert versions.generator(tmp_path) == {}
