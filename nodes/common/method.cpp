@@ -1,5 +1,6 @@
 #include "nodes/common/method.hpp"
 
+#include <utility>
 #include <vector>
 
 namespace rtg {
@@ -7,14 +8,19 @@ namespace {
 
 using Settings = std::vector<MethodSetting>;
 
+/// A learner that no data shows a success.
+Settings unguided(Settings more) {
+  const Settings exploration{{"train", "epsilon_start", "1.0"},
+                             {"train", "epsilon_end", "0.05"},
+                             {"train", "nearby_share", "0.0"}};
+  more.insert(more.end(), exploration.begin(), exploration.end());
+  return more;
+}
+
 /// A learner of its own experience alone.
-Settings online(const Settings& more) {
-  Settings all{{"train", "offline", "false"},
-               {"train", "epsilon_start", "1.0"},
-               {"train", "epsilon_end", "0.05"},
-               {"train", "nearby_share", "0.0"}};
-  all.insert(all.end(), more.begin(), more.end());
-  return all;
+Settings online(Settings more) {
+  more.push_back({"train", "offline", "false"});
+  return unguided(std::move(more));
 }
 
 /// In the order of Method.
@@ -22,7 +28,7 @@ const std::array<Settings, kMethods.size()>& table() {
   static const std::array<Settings, kMethods.size()> kTable{
       online({{"train", "double_q", "false"}}),
       online({{"train", "double_q", "true"}}),
-      Settings{{"search", "reverse", "random"}},
+      unguided({{"search", "reverse", "random"}}),
       Settings{{"search", "reverse", "naive"}},
       Settings{{"search", "reverse", "rrbs"}},
       Settings{{"search", "reverse", "rrbs"},

@@ -28,8 +28,8 @@ struct MethodSetting {
 ///   her          as ddqn, with hindsight goals  [Andrychowicz et al. 2017]
 ///   rcg          as ddqn, with starts grown back from goal states  [Florensa et al. 2017]
 ///
-/// Without offline data exploration begins at 1 and is uniform over all headings: there is nothing
-/// yet to stay near to.
+/// Without offline data, and with random ones, exploration begins at 1 and is uniform over all
+/// headings: there is nothing yet to stay near to.
 std::span<const MethodSetting> settings_of(Method method);
 
 }  // namespace rtg

@@ -1,7 +1,16 @@
 """Shared data of the learner's tests."""
 
+from typing import Any
+
 import numpy as np
 from rtg.dataset import Transitions
+from rtg.replay import ReplayRules
+
+
+def replay_rules(**changes: Any) -> ReplayRules:
+    """Half of a batch offline, none of it recent, with bounds."""
+    usual = {"offline_share": 0.5, "recent_share": 0.0, "discount": 0.9, "use_bounds": True}
+    return ReplayRules(**{**usual, "seed": 0, **changes})
 
 
 def random_transitions(count: int, bodies: int = 4, seed: int = 0) -> Transitions:

@@ -231,6 +231,51 @@ def test_targets_of_a_network_that_says_less_than_0_count_as_clipped(value_bound
     assert (shares["bound_share"] > 0) == value_bounds
 
 
+def constant(net: th.nn.Module, *q: float) -> None:
+    """The network says these values of the first actions, -9 of the others, in every state."""
+    with th.no_grad():
+        net.head.weight.zero_()
+        net.head.bias.fill_(-9.0)
+        net.head.bias[: len(q)] = th.tensor(q)
+
+
+@pytest.mark.parametrize(
+    ("changes", "online", "target", "value"),
+    [
+        ({"double_q": False}, (0.5, 0.2), (0.7, 0.9), 0.9),
+        ({"double_q": False, "cautious": False}, (0.5, 0.2), (0.7, 0.9), 0.9),
+        ({"cautious": False}, (0.5, 0.2), (0.7, 0.9), 0.7),
+        ({}, (0.5, 0.2), (0.7, 0.9), 0.5),
+        ({}, (-0.5, -0.6), (-0.3, -0.1), 0.0),
+        ({"clip_targets": False}, (-0.5, -0.6), (-0.3, -0.1), -0.5),
+    ],
+)
+def test_a_gradient_step_learns_what_the_settings_say_of_the_next_state(
+    changes: dict[str, bool],
+    online: tuple[float, ...],
+    target: tuple[float, ...],
+    value: float,
+) -> None:
+    one = model(dueling=False, value_bounds=False, **changes)
+    one.learn(400)
+    constant(one.q_net, *online)
+    constant(one.q_net_target, *target)
+    one.statistics.take()
+    data = one.replay_buffer.sample(256)
+    q = th.full((8,), -9.0)
+    q[:2] = th.tensor(online)
+    y = data.rewards + 0.9 * (1 - data.terminated) * value
+    one._gradient_step(data)
+    error = (q[data.actions] - y).square().mean().sqrt()
+    assert one.statistics.take()["td_error"] == pytest.approx(float(error), rel=1e-5)
+
+
+def test_a_batch_is_made_of_what_the_settings_say() -> None:
+    buffer = model(offline_share=0.25, recent_share=0.125, value_bounds=False).replay_buffer
+    rules = (buffer.offline_share, buffer.recent_share, buffer.use_bounds, buffer.discount)
+    assert rules == (0.25, 0.125, False, 0.9)
+
+
 def test_statistics_are_means_since_the_last_take() -> None:
     one = model()
     one.learn(100)

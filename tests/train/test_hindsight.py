@@ -8,8 +8,7 @@ from gymnasium import spaces
 from rtg import _core, paths
 from rtg.hindsight import HindsightReplayBuffer, future_goals
 from rtg.networks import ValuePolicy
-from rtg.replay import ReplayRules
-from samples import random_transitions
+from samples import random_transitions, replay_rules
 
 TASK = _core.Config.from_file(paths.CONFIG / "gathering.yaml").task
 
@@ -50,7 +49,7 @@ def buffer(capacity: int = 1000, **rules: Any) -> HindsightReplayBuffer:
     space = spaces.Box(-1e4, 1e4, (20,), np.float32)
     rules = {"discount": 0.5, "offline_share": 0.25, **rules}
     return HindsightReplayBuffer(
-        capacity, space, spaces.Discrete(48), rules=ReplayRules(**rules), atoms=3, goals=4
+        capacity, space, spaces.Discrete(48), rules=replay_rules(**rules), atoms=3, goals=4
     )
 
 

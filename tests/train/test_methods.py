@@ -26,12 +26,12 @@ def values(method: str, *more: str) -> dict:
 def test_methods_differ_in_these_values_alone() -> None:
     of = {name: values(name) for name in METHODS}
     train, rtg = {name: of[name]["train"] for name in METHODS}, of["ddqn_rtg"]["train"]
-    vanilla = {**rtg, "offline": False, "epsilon_start": 1.0, "epsilon_end": 0.05}
-    vanilla["nearby_share"] = 0.0
+    unguided = {**rtg, "epsilon_start": 1.0, "epsilon_end": 0.05, "nearby_share": 0.0}
+    vanilla = {**unguided, "offline": False}
     assert train == {
         "dqn": {**vanilla, "double_q": False},
         "ddqn": vanilla,
-        "ddqn_random": rtg,
+        "ddqn_random": unguided,
         "ddqn_naive": rtg,
         "ddqn_rtg": rtg,
         "ddqn_rtg_dr": {**rtg, "randomise": True},

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import torch as th
 from gymnasium import spaces
-from rtg.replay import MixedReplayBuffer, ReplayRules, Store
-from samples import random_transitions
+from rtg.replay import MixedReplayBuffer, Store
+from samples import random_transitions, replay_rules
 
 SIZE = 20
 SPACE = spaces.Box(-1e4, 1e4, (SIZE,), np.float32)
@@ -13,7 +13,7 @@ SPACE = spaces.Box(-1e4, 1e4, (SIZE,), np.float32)
 
 def buffer(capacity: int = 1000, n_envs: int = 1, **rules: Any) -> MixedReplayBuffer:
     actions = spaces.Discrete(48)
-    return MixedReplayBuffer(capacity, SPACE, actions, n_envs=n_envs, rules=ReplayRules(**rules))
+    return MixedReplayBuffer(capacity, SPACE, actions, n_envs=n_envs, rules=replay_rules(**rules))
 
 
 def add_online(replay: MixedReplayBuffer, tag: float, **changes: object) -> None:

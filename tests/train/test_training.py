@@ -266,6 +266,29 @@ def test_evaluation_agrees_with_single_episodes() -> None:
     assert found.summary()["success_rate"] == pytest.approx(1 / 3)
 
 
+def test_an_episode_ends_in_failure_where_the_simulator_gives_up(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Also in a state that would be a success."""
+    config = _core.Config.from_file(TINY)
+    starts = held_out_starts(config.task, 2)
+    goal = config.task.goal_state(0)
+    assert config.task.succeeded(goal[None])[0]
+    starts[1] = goal
+
+    class GivesUp:
+        def __init__(self, config: _core.Config) -> None:
+            pass
+
+        def push(self, states: np.ndarray, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return np.full_like(states, np.nan), np.zeros(len(states), np.bool_)
+
+    monkeypatch.setattr("rtg.evaluation._core.Simulator", GivesUp)
+    found = evaluate(config, lambda seen: np.zeros(len(seen), int), starts, discount=0.9)
+    assert not found.success.any() and not found.discounted.any()
+    np.testing.assert_array_equal(np.stack(found.paths), np.stack([starts, starts], axis=1))
+
+
 def test_empty_transition_set_has_the_right_shapes() -> None:
     config = _core.Config.from_file(TINY)
     empty = Recorder(config.task).transitions()

@@ -51,7 +51,7 @@ def held_out_starts(
 def evaluate(config: _core.Config, policy: Policy, starts: Floats, discount: float) -> Evaluation:
     """One episode from each start, up to task.horizon actions. starts [N, bodies, 3]
 
-    An episode in which the simulator gives up ends there as a failure.
+    An episode in which the simulator gives up a push ends there as a failure.
     """
     task, simulator = config.task, _core.Simulator(config)
     success = np.zeros(len(starts), np.bool_)
@@ -64,6 +64,7 @@ def evaluate(config: _core.Config, policy: Policy, starts: Floats, discount: flo
         states = np.stack([paths[k][-1] for k in running])
         actions = np.asarray(policy(task.observation(states)), np.int64)
         after, ok = simulator.push(states, actions)
+        after[~ok] = states[~ok]
         for k, state in zip(running, after, strict=True):
             paths[k].append(state)
         length[running] += 1

@@ -107,11 +107,11 @@ class Store:
 class ReplayRules:
     """What a batch is made of."""
 
-    offline_share: float = 0.5  # of a batch, once as many online ones exist; negative: no shares
-    recent_share: float = 0.0  # of its online rows: from the RECENT latest
-    discount: float = 0.9  # of the value bounds
-    use_bounds: bool = True
-    seed: int = 0
+    offline_share: float  # of a batch, once as many online ones exist; negative: no shares
+    recent_share: float  # of its online rows: from the RECENT latest
+    discount: float  # of the value bounds
+    use_bounds: bool
+    seed: int
 
 
 class MixedReplayBuffer(BaseBuffer):
@@ -128,7 +128,7 @@ class MixedReplayBuffer(BaseBuffer):
         buffer_size: int,
         observation_space: spaces.Space[Any],
         action_space: spaces.Space[Any],
-        rules: ReplayRules | None = None,
+        rules: ReplayRules,
         **of_sb3: Any,
     ) -> None:
         """`of_sb3`: `device`, `n_envs` and `optimize_memory_usage`, which SB3 passes by name."""
@@ -136,7 +136,6 @@ class MixedReplayBuffer(BaseBuffer):
         of_sb3.pop("optimize_memory_usage", None)
         arguments = {"device": "cpu", **of_sb3}
         super().__init__(buffer_size, observation_space, action_space, **arguments)
-        rules = rules or ReplayRules()
         size = self.obs_shape[0]
         self.offline = Store(buffer_size, size)
         self.online = Store(buffer_size, size)
