@@ -44,7 +44,7 @@ void BeamSearch::aim(const Target& target, int breadth, const ReplayBatch& repla
 
 void BeamSearch::plant(const ReplayBatch& replay, SearchStats& stats) {
   std::vector<ReplayJob> goals;
-  for (Poses& goal : goal_roots(task_, config_, target_, rng_))
+  for (Poses& goal : goal_roots(task_, config_, target_, rng_, stats))
     goals.push_back({std::move(goal), kSettle});
   for (const ReplayResult& settled : replay(goals)) {
     if (!stats.count(settled)) continue;

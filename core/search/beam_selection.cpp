@@ -24,7 +24,10 @@ std::vector<std::size_t> distinct(std::span<const BeamEntry> entries, int per_la
   });
   std::unordered_map<std::uint64_t, int> layouts;
   std::erase_if(order, [&](std::size_t k) {
-    return !seen.insert(entries[k].cell).second || ++layouts[entries[k].layout] > per_layout;
+    int& alike = layouts[entries[k].layout];
+    if (alike == per_layout || !seen.insert(entries[k].cell).second) return true;
+    ++alike;
+    return false;
   });
   return order;
 }

@@ -21,15 +21,15 @@ bool in_start_region(const Task& task, const StateMetric& metric, const Poses& p
 }
 
 Coverage::Coverage(const Task& task)
-    : task_(task), metric_(task.scene), roots_(roots_of(task.scene)), links_(task.scene) {}
+    : task_(task), metric_(task.scene), movers_(movers_of(task.scene)), links_(task.scene) {}
 
 /// Whether two objects moved that no joint connects.
 bool Coverage::moves_several(const Transition& t) const {
   std::size_t first = 0;
   for (std::size_t k = 1; k < t.poses.size(); ++k) {
     if ((t.poses[k].position() - t.next[k].position()).norm() <= kMoved) continue;
-    if (first != 0 && roots_[k] != first) return true;
-    first = roots_[k];
+    if (first != 0 && movers_[k] != first) return true;
+    first = movers_[k];
   }
   return false;
 }

@@ -39,7 +39,7 @@ class Coverage {
 
   const Task& task_;
   StateMetric metric_;
-  std::vector<std::size_t> roots_;  // as roots_of()
+  std::vector<std::size_t> movers_;  // as movers_of()
   LinkGraph links_;
   long contacts_ = 0, multi_body_ = 0, start_region_ = 0, start_region_trees_ = 0;
 };

@@ -15,9 +15,10 @@ namespace rtg {
 struct GenerationSeams {
   SolveBatch solve;
   ReplayBatch replay;
-  TransitionSink store;                                // receives every transition, in order
-  std::function<void(const Progress&)> progress = {};  // called after each layer; may be empty
-  std::function<bool()> cancelled = {};                // polled between layers; may be empty
+  TransitionSink store;  // receives every transition, in order
+  // Called and polled after each layer of trees and each wave of episodes; may be empty.
+  std::function<void(const Progress&)> progress = {};
+  std::function<bool()> cancelled = {};
 };
 
 /// The whole generation: trees of reverse steps from sampled goals (beam search), first towards the

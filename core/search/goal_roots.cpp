@@ -10,6 +10,8 @@
 namespace rtg {
 namespace {
 
+constexpr int kMaxFailures = 20;  // draws in vain in a row, and there are no more
+
 bool look_the_same(const Scene& scene, std::size_t i, std::size_t j) {
   const Body &a = scene.bodies[i], &b = scene.bodies[j];
   if (has_joint(scene, i) || has_joint(scene, j)) return false;
@@ -52,13 +54,16 @@ Poses relabelled(const Task& task, const Poses& poses, const Poses& target) {
 }
 
 std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, const Target& target,
-                              Rng& rng) {
+                              Rng& rng, SearchStats& stats) {
   const StateMetric metric(task.scene);
   std::unordered_set<std::uint64_t> seen;
   std::vector<std::pair<double, Poses>> drawn;
-  for (int k = 0; k < config.breadth * config.root_draws; ++k) {
+  for (int k = 0, failures = 0; k < config.breadth * config.root_draws; ++k) {
     const std::optional<Poses> goal = sample_goal(task, rng);
-    if (!goal) break;
+    stats.undrawn_goals += !goal;
+    failures = goal ? 0 : failures + 1;
+    if (failures == kMaxFailures) break;
+    if (!goal) continue;
     Poses root = turned_as(task, relabelled(task, *goal, target.poses), target.poses);
     if (!seen.insert(metric.cell(root, {})).second) continue;
     drawn.emplace_back(start_distance(task, metric, root, target), std::move(root));

@@ -4,6 +4,7 @@
 
 #include "core/search/ranking.hpp"
 #include "core/search/search_config.hpp"
+#include "core/search/search_stats.hpp"
 #include "core/tasks/task.hpp"
 
 namespace rtg {
@@ -17,6 +18,6 @@ Poses relabelled(const Task& task, const Poses& poses, const Poses& target);
 /// config.root_draws times as many draws those of least start_distance to `target`. Not yet at
 /// rest.
 std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, const Target& target,
-                              Rng& rng);
+                              Rng& rng, SearchStats& stats);
 
 }  // namespace rtg

@@ -59,15 +59,27 @@ ReverseResult NaiveReverse::solve(const ReverseJob& job) const {
   start[0] = moved(job.end[0], -push_.stride * ahead);
   if (!in_arena(start[0], push_) || blocked(job.end, touched, -push_.stride * ahead))
     return {SolveStatus::kPruned};
-  if (touched != 0) {
-    const double pull = Rng(key_of(job)).uniform(kLeastPull, 1.0) * push_.stride;
-    const std::size_t root = roots_[touched];
-    if (scene_.bodies[root].fixed) return {SolveStatus::kInfeasible};
-    start[root] = moved(job.end[root], -pull * ahead);
-    start = with_closed_joints(scene_, std::move(start));  // what joints connect goes as one
+  std::vector<Poses> starts{start};
+  if (touched != 0) starts = pulled(job, roots_[touched], start);
+  std::erase_if(starts, [this](const Poses& s) { return first_overlap(scene_, s).has_value(); });
+  if (starts.empty()) return {SolveStatus::kInfeasible};
+  return {SolveStatus::kConverged, 0, std::move(starts)};
+}
+
+/// `start` with that object, and what joints connect with it, pulled back, once per draw of L.
+std::vector<Poses> NaiveReverse::pulled(const ReverseJob& job, std::size_t object,
+                                        const Poses& start) const {
+  std::vector<Poses> out;
+  if (scene_.bodies[object].fixed) return out;
+  const Vector2d ahead = direction(job.action, push_);
+  Rng rng(key_of(job));
+  for (int draw = 0; draw < kMaxStarts; ++draw) {
+    const double pull = rng.uniform(kLeastPull, 1.0) * push_.stride;
+    Poses one = start;
+    one[object] = moved(job.end[object], -pull * ahead);
+    out.push_back(with_closed_joints(scene_, std::move(one)));
   }
-  if (first_overlap(scene_, start)) return {SolveStatus::kInfeasible};
-  return {SolveStatus::kConverged, 0, {std::move(start)}};
+  return out;
 }
 
 }  // namespace rtg

@@ -6,15 +6,16 @@
 
 namespace rtg {
 
-/// Kinematic guess of a predecessor, without any physics: the robot moves back one stride against
-/// its heading; the one object that it touches in front (if any) is pulled back with it, unturned.
-/// The baseline that the reverse simulator must beat.
+/// Kinematic guess of predecessors, without any physics: the robot moves back one stride against
+/// its heading; the one object that it touches in front (if any) is pulled back with it, unturned,
+/// and with it what joints connect. The baseline that the reverse simulator must beat.
 ///
 ///   start(robot) = end(robot) - stride·d,   start(object) = end(object) - L·d
 ///
-/// L is drawn from [0.2, 1]·stride as a function of the job: the robot may have met the object
-/// anywhere on its way. Statuses: kPruned if the robot would start outside of the arena or its way
-/// back is blocked; kInfeasible if the pulled object would overlap another body.
+/// L is drawn from [0.2, 1]·stride, kMaxStarts times as a function of the job: the robot may have
+/// met the object anywhere on its way. Statuses: kPruned if the robot would start outside of the
+/// arena or its way back is blocked; kInfeasible if bodies would overlap with every L, or if the
+/// object hangs on a fixed body.
 class NaiveReverse {
  public:
   NaiveReverse(Scene scene, PushConfig push);
@@ -22,6 +23,7 @@ class NaiveReverse {
   [[nodiscard]] ReverseResult solve(const ReverseJob& job) const;
 
  private:
+  std::vector<Poses> pulled(const ReverseJob& job, std::size_t object, const Poses& start) const;
   bool blocked(const Poses& end, std::size_t touched, const Vector2d& back) const;
   std::size_t touched_object(const Poses& end, const Vector2d& ahead) const;
 

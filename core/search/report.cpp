@@ -20,6 +20,7 @@ void fill(GenerationReport& report, const SearchStats& stats) {
   report.candidates = stats.candidates;
   report.statuses = stats.statuses;
   report.illegal_starts = stats.illegal_starts;
+  report.undrawn_goals = stats.undrawn_goals;
   report.unsettled_goals = stats.unsettled_goals;
   report.replays = stats.replays;
   report.rejected_pushes = stats.rejected_pushes;
@@ -68,6 +69,7 @@ std::string to_json(const GenerationReport& r) {
   for (std::size_t k = 0; k < r.statuses.size(); ++k)
     out[std::string(name(static_cast<SolveStatus>(k)))] = r.statuses[k];
   out["illegal_starts"] = r.illegal_starts;
+  out["undrawn_goals"] = r.undrawn_goals;
   out["unsettled_goals"] = r.unsettled_goals;
   out["replays"] = r.replays;
   out["rejected_pushes"] = r.rejected_pushes;

@@ -35,7 +35,7 @@ struct GenerationReport {
   long explored = 0;  // steps that trees and mended episodes found, chosen from
   double contact_share =
       0.0;  // share of stored transitions that moved an object by more than 0.05 m
-  double multi_body_share = 0.0;           // ... two objects or more
+  double multi_body_share = 0.0;           // ... two or more that no joint connects
   long start_region_transitions = 0;       // that begin in the start region
   long start_region_tree_transitions = 0;  // of them found backwards: episodes begin there anyway
   double reachable_share =
@@ -44,9 +44,9 @@ struct GenerationReport {
   double tree_policy_length_mean = 0.0;
   int start_region_depth = -1;  // least depth of a node in the start region; -1: never reached
   long candidates = 0;          // reverse jobs asked for, pruned ones included
-  std::array<long, kSolveStatusCount> statuses{};                     // by SolveStatus
-  long illegal_starts = 0, unsettled_goals = 0, rejected_pushes = 0;  // as in SearchStats
-  long replays = 0;                                                   // as in SearchStats
+  std::array<long, kSolveStatusCount> statuses{};  // by SolveStatus
+  // As in SearchStats.
+  long illegal_starts = 0, undrawn_goals = 0, unsettled_goals = 0, replays = 0, rejected_pushes = 0;
   long units_given_up = 0;  // of work, as no worker survived them; the coordinator fills it in
   double iterations_median = 0.0, iterations_p90 = 0.0;  // over converged ones
   long pushing_converged = 0;                            // that moved an object

@@ -15,6 +15,7 @@ struct SearchStats {
   std::vector<int> iterations;                     // of converged solves
   std::vector<int> pushing_iterations;             // of those of them that moved an object
   long illegal_starts = 0;   // converged, yet the start overlaps or leaves the arena
+  long undrawn_goals = 0;    // draws of a goal state in vain
   long unsettled_goals = 0;  // sampled goals that do not come to rest as legal goal states
   long replays = 0;          // pushes that the simulator was asked for, probes included
   long rejected_pushes = 0;  // replays that the simulator could not finish

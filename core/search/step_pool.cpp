@@ -8,9 +8,17 @@ namespace rtg {
 
 void StepPool::add(Transition step, std::optional<Index> next) {
   const std::uint64_t key = key_of(step.poses, step.action);
-  if (!at_.try_emplace(key, steps_.size()).second) return;
-  const bool leads = step.success || (next && steps_[*next].leads);
-  steps_.push_back({std::move(step), key, next, leads});
+  const auto [at, is_new] = at_.try_emplace(key, steps_.size());
+  if (is_new)
+    steps_.push_back({std::move(step), key, next});
+  else if (next && leads(*next) && !leads(at->second))  // so it is not behind *next
+    steps_[at->second].next = next;
+}
+
+bool StepPool::leads(Index k) const {
+  std::optional<Index> at = k;
+  while (at && !steps_[*at].step.success) at = steps_[*at].next;
+  return at.has_value();
 }
 
 std::optional<StepPool::Index> StepPool::find(std::uint64_t key) const {

@@ -19,15 +19,15 @@ class StepPool {
  public:
   using Index = std::size_t;
 
-  /// Adds a step, unless its start and action are known; `next`: the one behind it, if it ends
-  /// where that begins, about.
+  /// Adds a step; `next`: the one behind it, if it ends where that begins, about. One whose start
+  /// and action are known stays, but takes up a plan to success if it has none.
   void add(Transition step, std::optional<Index> next);
 
   /// The step with this start and action (key_of()).
   std::optional<Index> find(std::uint64_t key) const;
 
   /// Whether its plan goes on to success.
-  bool leads(Index k) const { return steps_[k].leads; }
+  bool leads(Index k) const;
   std::size_t size() const { return steps_.size(); }
 
   /// A step and its plan, without those that have been taken before; first the step itself, and no
@@ -42,7 +42,6 @@ class StepPool {
     Transition step;
     std::uint64_t key;
     std::optional<Index> next;
-    bool leads;
   };
   std::vector<Entry> steps_;
   std::unordered_map<std::uint64_t, Index> at_;  // by key

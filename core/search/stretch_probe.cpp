@@ -27,17 +27,21 @@ bool repeatable(const Candidate& push, const SearchConfig& config) {
 }
 
 StretchProbe::StretchProbe(const Task& task, const SearchConfig& config, std::uint64_t seed)
-    : task_(task), config_(config), metric_(task.scene), roots_(roots_of(task.scene)), rng_(seed) {}
+    : task_(task),
+      config_(config),
+      metric_(task.scene),
+      movers_(movers_of(task.scene)),
+      rng_(seed) {}
 
 Poses StretchProbe::disturbed(Poses poses) {
   const double most = config_.twin_jitter;
   for (std::size_t body = 0; body < poses.size(); ++body) {
     if (task_.scene.bodies[body].fixed) continue;
-    if (roots_[body] == body) {
+    if (movers_[body] == body) {
       poses[body].x += rng_.uniform(-most, most);
       poses[body].y += rng_.uniform(-most, most);
     }
-    const auto together = static_cast<double>(std::ranges::count(roots_, roots_[body]));
+    const auto together = static_cast<double>(std::ranges::count(movers_, movers_[body]));
     const double turn = kTurnPerMetre / together * most;
     if (body > 0) poses[body].theta += rng_.uniform(-turn, turn);
   }

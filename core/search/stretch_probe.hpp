@@ -47,7 +47,7 @@ class StretchProbe {
   const Task& task_;
   SearchConfig config_;
   StateMetric metric_;
-  std::vector<std::size_t> roots_;  // as roots_of()
+  std::vector<std::size_t> movers_;  // as movers_of()
   Rng rng_;
 };
 

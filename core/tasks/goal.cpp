@@ -57,10 +57,9 @@ Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& pose
   return sum / count;
 }
 
-std::vector<bool> atoms(const GoalTerm& term, const Scene& scene, const Poses& poses,
-                        double tighten) {
+std::vector<bool> atoms(const GoalTerm& term, const Scene& scene, const Poses& poses) {
   std::vector<bool> held;
-  for_each_atom(term, scene, poses, tighten, [&held](bool one) { held.push_back(one); });
+  for_each_atom(term, scene, poses, 0.0, [&held](bool one) { held.push_back(one); });
   return held;
 }
 

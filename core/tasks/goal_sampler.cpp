@@ -4,17 +4,14 @@
 #include <span>
 #include <utility>
 
+#include "core/tasks/placement.hpp"
 #include "core/tasks/task.hpp"
-#include "core/world/separation.hpp"
 
 namespace rtg {
 namespace {
 
 constexpr int kAttempts = 1000;
 constexpr int kProposals = 50;         // per body and attempt
-constexpr double kTighten = 0.05;      // what the goal is satisfied with to spare [m], [rad]
-constexpr double kClearance = 0.0215;  // closer than 0.02 bodies are in contact for Box2D [m]
-constexpr double kSlideError = 1e-3;   // [m]
 constexpr double kBesideShare = 0.5;   // of the proposals that put a body beside another one
 constexpr double kBesideGap = 0.1;     // ... at most so far from it [m]
 constexpr double kBehindShare = 0.75;  // of the robots that stand as after a push
@@ -26,54 +23,14 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 Vector2d unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
-/// Bodies placed so far: `placed[i]` says whether `poses[i]` counts.
-struct Layout {
-  Poses poses;
-  std::vector<bool> placed;
-};
-
-/// Least separation of body `i` at `pose` from all placed bodies.
-double clearance(const Task& task, const Layout& layout, std::size_t i, const Pose& pose) {
-  double least = 1e9;
-  for (std::size_t j = 0; j < layout.poses.size(); ++j)
-    if (j != i && layout.placed[j] && !jointed(task.scene, i, j))
-      least = std::min(least, separation(task.scene.bodies[i].shape, pose,
-                                         task.scene.bodies[j].shape, layout.poses[j]));
-  return least;
-}
-
-/// A straight way of a body towards the placed ones.
-struct Approach {
-  Pose from;
-  Vector2d heading;
-  double gap = 0.0;    // left between them [m]
-  double range = 0.0;  // its longest [m]
-};
-
-/// Where body `i` ends its approach, `gap` away from the first placed body; empty if it meets none
-/// within `range`. The separating-axis gap never exceeds the distance, so no step passes through.
-std::optional<Pose> slide(const Task& task, const Layout& layout, std::size_t i,
-                          const Approach& way) {
-  Pose pose = way.from;
-  double gone = 0.0;
-  while (gone < way.range) {
-    const double free = clearance(task, layout, i, pose) - way.gap;
-    if (free < kSlideError) return free > -kSlideError ? std::optional(pose) : std::nullopt;
-    pose.x += free * way.heading.x();
-    pose.y += free * way.heading.y();
-    gone += free;
-  }
-  return std::nullopt;
-}
-
 /// x moved into the region of a term: anywhere in a disc, behind the line of a half-plane the
 /// closer the likelier.
 Vector2d moved_into(const GoalTerm& term, const Vector2d& x, Rng& rng) {
   if (term.region == GoalTerm::Region::kDisc) {
-    const double r = (term.radius - kTighten) * std::sqrt(rng.uniform(0.0, 1.0));
+    const double r = (term.radius - kGoalSpare) * std::sqrt(rng.uniform(0.0, 1.0));
     return term.centre + r * unit(rng.uniform(0.0, kTwoPi));
   }
-  const double depth = term.offset - kTighten - term.normal.dot(x);
+  const double depth = term.offset - kGoalSpare - term.normal.dot(x);
   return x + (depth - rng.uniform(0.0, 1.0) * std::abs(depth)) * term.normal;
 }
 
@@ -87,7 +44,7 @@ Vector2d point_in_arena(const Task& task, Rng& rng) {
 bool in_target(const Task& task, std::size_t body, const Vector2d& x) {
   return std::ranges::all_of(task.goal, [&](const GoalTerm& term) {
     return term.subject != GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||
-           contains(term, x, kTighten);
+           contains(term, x, kGoalSpare);
   });
 }
 
@@ -130,20 +87,74 @@ std::optional<Pose> beside(const Task& task, const Layout& layout, std::size_t i
                 .range = 2.0 * reach});
 }
 
+/// Bodies that are placed together, and where they are meant to be.
+struct Group {
+  std::size_t root;
+  std::vector<std::size_t> members;  // the root too
+  Poses poses;                       // of all bodies
+};
+
+void move(Group& group, const Vector2d& by) {
+  for (const std::size_t i : group.members) {
+    group.poses[i].x += by.x();
+    group.poses[i].y += by.y();
+  }
+}
+
+/// Whether the mean centre of a term is decided by where the group goes: it is of some of its
+/// bodies, and all others have their places.
+bool decides(const Group& group, const GoalTerm& term, const Task& task, const Layout& layout) {
+  const auto concerned = [&](std::size_t i) { return concerns(term, task.scene, i); };
+  if (term.subject != GoalTerm::Subject::kCentroid) return false;
+  for (std::size_t i = 1; i < task.scene.size(); ++i)
+    if (concerned(i) && !layout.placed[i] && !std::ranges::count(group.members, i)) return false;
+  return std::ranges::any_of(group.members, concerned);
+}
+
+/// Moves the group so that the mean centres which it decides come into their regions.
+void aim_at_centroids(const Task& task, const Layout& layout, Group& group, Rng& rng) {
+  for (const GoalTerm& term : task.goal) {
+    if (!decides(group, term, task, layout)) continue;
+    const auto concerned = [&](std::size_t i) { return concerns(term, task.scene, i); };
+    std::size_t all = 0;
+    for (std::size_t i = 1; i < task.scene.size(); ++i) all += concerned(i);
+    const auto ours = static_cast<double>(std::ranges::count_if(group.members, concerned));
+    const Vector2d by = moved_into(term, point_in_arena(task, rng), rng) -
+                        centroid_of(term, task.scene, group.poses);
+    move(group, static_cast<double>(all) / ours * by);
+  }
+}
+
+/// Takes the bodies of a group over if all that can move are in their regions and in the arena,
+/// clear of what is placed and of each other.
+bool stand(const Task& task, Layout& layout, const Group& group) {
+  Layout trial = layout;
+  for (const std::size_t i : group.members) {
+    const Pose& pose = group.poses[i];
+    if (!task.scene.bodies[i].fixed &&
+        (!in_target(task, i, pose.position()) || !in_arena(pose, task.push) ||
+         !is_clear(task, trial, i, pose)))
+      return false;
+    trial.poses[i] = pose;
+    trial.placed[i] = true;
+  }
+  layout = std::move(trial);
+  return true;
+}
+
 bool place_object(const Task& task, Layout& layout, std::size_t i, Rng& rng) {
   for (int k = 0; k < kProposals; ++k) {
-    std::optional<Pose> pose;
+    Group group{i, {i}, layout.poses};
     if (rng.uniform(0.0, 1.0) < kBesideShare) {
-      pose = beside(task, layout, i, rng);
+      const std::optional<Pose> pose = beside(task, layout, i, rng);
+      if (!pose) continue;
+      group.poses[i] = *pose;
     } else {
       const Vector2d x = point_in_goal(task, i, rng);
-      pose = Pose{x.x(), x.y(), rng.uniform(-std::numbers::pi, std::numbers::pi)};
+      group.poses[i] = {x.x(), x.y(), rng.uniform(-std::numbers::pi, std::numbers::pi)};
+      aim_at_centroids(task, layout, group, rng);
     }
-    if (!pose || !in_target(task, i, pose->position())) continue;
-    if (clearance(task, layout, i, *pose) < kClearance - kSlideError) continue;
-    layout.poses[i] = *pose;
-    layout.placed[i] = true;
-    return true;
+    if (stand(task, layout, group)) return true;
   }
   return false;
 }
@@ -154,59 +165,50 @@ std::optional<std::pair<double, double>> angles_in_goal(const Task& task, const 
   double most = std::isfinite(joint.upper) ? joint.upper : std::numbers::pi;
   for (const GoalTerm& term : task.goal) {
     if (!concerns(term, task.scene, joint)) continue;
-    least = std::max(least, term.least + kTighten);
-    most = std::min(most, term.most - kTighten);
+    least = std::max(least, term.least + kGoalSpare);
+    most = std::min(most, term.most - kGoalSpare);
   }
   if (least > most) return std::nullopt;
   return std::pair{least, most};
 }
 
-/// Takes the bodies of a tree of joints over from `poses` if all are in their regions and clear of
-/// what is placed and of each other.
-bool stand(const Task& task, Layout& layout, const Poses& poses, std::size_t root,
-           std::span<const std::size_t> roots) {
-  Layout trial = layout;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    if (roots[i] != root) continue;
-    if (!task.scene.bodies[i].fixed &&
-        (!in_target(task, i, poses[i].position()) ||
-         clearance(task, trial, i, poses[i]) < kClearance - kSlideError))
-      return false;
-    trial.poses[i] = poses[i];
-    trial.placed[i] = true;
+/// The member whose own region decides where the group goes: the first that has one, or the root.
+std::size_t aimed_member(const Task& task, const Group& group) {
+  for (const std::size_t i : group.members)
+    for (const GoalTerm& term : task.goal)
+      if (term.subject == GoalTerm::Subject::kEvery && concerns(term, task.scene, i)) return i;
+  return group.root;
+}
+
+/// Turns the children of joints to random angles; false if there are none within limits and goal.
+bool turn(const Task& task, Group& group, Rng& rng) {
+  for (const std::size_t n : root_first(task.scene)) {
+    const Joint& joint = task.scene.joints[n];
+    const auto child = static_cast<std::size_t>(joint.child);
+    if (!std::ranges::count(group.members, child)) continue;
+    const auto angles = angles_in_goal(task, joint);
+    if (!angles) return false;
+    group.poses[child].theta = group.poses[static_cast<std::size_t>(joint.parent)].theta +
+                               rng.uniform(angles->first, angles->second);
   }
-  layout = std::move(trial);
+  group.poses = with_closed_joints(task.scene, std::move(group.poses));
   return true;
 }
 
-/// Bodies that joints connect, as one: at random angles, then moved to where the root, or the
-/// centroid that the goal speaks of, is in its region. A fixed root stays.
-bool place_tree(const Task& task, Layout& layout, std::size_t root,
-                std::span<const std::size_t> roots, Rng& rng) {
-  const bool fixed = task.scene.bodies[root].fixed;
+/// Bodies that joints connect, as one: at random angles, then moved to where a member, or the mean
+/// centre that the goal speaks of, is in its region. A fixed root stays.
+bool place_tree(const Task& task, Layout& layout, const Group& tree, Rng& rng) {
   for (int k = 0; k < kProposals; ++k) {
-    Poses poses = layout.poses;
-    if (!fixed) poses[root].theta = rng.uniform(-std::numbers::pi, std::numbers::pi);
-    for (const std::size_t n : root_first(task.scene)) {
-      const Joint& joint = task.scene.joints[n];
-      const auto child = static_cast<std::size_t>(joint.child);
-      if (roots[child] != root) continue;
-      const auto angles = angles_in_goal(task, joint);
-      if (!angles) return false;
-      poses[child].theta = poses[static_cast<std::size_t>(joint.parent)].theta +
-                           rng.uniform(angles->first, angles->second);
-    }
-    poses = with_closed_joints(task.scene, std::move(poses));
+    Group group = tree;
+    const bool fixed = task.scene.bodies[group.root].fixed;
+    if (!fixed) group.poses[group.root].theta = rng.uniform(-std::numbers::pi, std::numbers::pi);
+    if (!turn(task, group, rng)) return false;
     if (!fixed) {
-      Vector2d by = point_in_goal(task, root, rng) - poses[root].position();
-      for (const GoalTerm& term : task.goal)
-        if (term.subject == GoalTerm::Subject::kCentroid && concerns(term, task.scene, root))
-          by = moved_into(term, point_in_arena(task, rng), rng) -
-               centroid_of(term, task.scene, poses);
-      for (std::size_t i = 1; i < poses.size(); ++i)
-        if (roots[i] == root) poses[i] = {poses[i].x + by.x(), poses[i].y + by.y(), poses[i].theta};
+      const std::size_t aimed = aimed_member(task, group);
+      move(group, point_in_goal(task, aimed, rng) - group.poses[aimed].position());
+      aim_at_centroids(task, layout, group, rng);
     }
-    if (stand(task, layout, poses, root, roots)) return true;
+    if (stand(task, layout, group)) return true;
   }
   return false;
 }
@@ -240,7 +242,7 @@ bool place_robot(const Task& task, Layout& layout, Rng& rng) {
                   layout.poses[j].y + rng.uniform(-kFreeRange, kFreeRange), task.start[0].theta};
     }
     if (!pose || !in_arena(*pose, task.push)) continue;
-    if (clearance(task, layout, 0, *pose) < kClearance - kSlideError) continue;
+    if (!is_clear(task, layout, 0, *pose)) continue;
     layout.poses[0] = *pose;
     return true;
   }
@@ -251,9 +253,12 @@ bool place_objects(const Task& task, Layout& layout, Rng& rng) {
   const std::vector<std::size_t> roots = roots_of(task.scene);
   for (std::size_t i = 1; i < task.scene.size(); ++i) {
     if (roots[i] != i) continue;
-    const bool alone = std::ranges::count(roots, i) == 1;
+    Group group{i, {}, layout.poses};
+    for (std::size_t j = 1; j < task.scene.size(); ++j)
+      if (roots[j] == i) group.members.push_back(j);
+    const bool alone = group.members.size() == 1;
     if (alone && task.scene.bodies[i].fixed) continue;
-    if (alone ? !place_object(task, layout, i, rng) : !place_tree(task, layout, i, roots, rng))
+    if (alone ? !place_object(task, layout, i, rng) : !place_tree(task, layout, group, rng))
       return false;
   }
   return true;
@@ -266,7 +271,7 @@ std::optional<Poses> attempt(const Task& task, Rng& rng) {
   if (task.scene.size() > 1 && !place_robot(task, layout, rng)) return std::nullopt;
   for (const GoalTerm& term : task.goal)  // what concerns each alone holds since it was placed
     if (term.subject != GoalTerm::Subject::kEvery &&
-        !holds(term, task.scene, layout.poses, kTighten))
+        !holds(term, task.scene, layout.poses, kGoalSpare))
       return std::nullopt;
   std::transform(layout.poses.begin(), layout.poses.end(), layout.poses.begin(), to_single);
   return layout.poses;

@@ -59,11 +59,15 @@ Poses jittered_start(const Task& task, double amplitude, Rng& rng);
 /// a row are not with probability 2e-9.
 bool allows_jitter(const Task& task, double amplitude);
 
-/// A layout that satisfies the goal with 0.05 m and rad to spare: each body somewhere in its region
+/// What a sampled goal state meets the goal with to spare [m], [rad].
+inline constexpr double kGoalSpare = 0.05;
+
+/// A layout that satisfies the goal with kGoalSpare: each body somewhere in its region
 /// or beside one that is already there, corner or face towards it, at random angles; bodies that
 /// joints connect as one; the robot, heading as at the start, just behind one as after a push (3 of
-/// 4) or clear of all. Fixed bodies stay. Poses are to_single(). Nearly at rest: settle it. Empty
-/// if none was found in 1000 attempts.
+/// 4) or clear of all; the last of those whose mean a term speaks of where it brings that into its
+/// region. Fixed bodies stay, the others are in the arena. Poses are to_single(). Nearly at rest:
+/// settle it. Empty if none was found in 1000 attempts.
 std::optional<Poses> sample_goal(const Task& task, Rng& rng);
 
 }  // namespace rtg

@@ -63,13 +63,28 @@ std::vector<std::size_t> root_first(const Scene& scene) {
   return order;
 }
 
+namespace {
+
+/// Per body the first of its ancestors on the way to which all joints `bind`.
+template <class Binds>
+std::vector<std::size_t> first_of(const Scene& scene, Binds binds) {
+  std::vector<std::size_t> first(scene.size());
+  std::iota(first.begin(), first.end(), std::size_t{0});
+  for (const std::size_t k : root_first(scene)) {
+    const auto parent = static_cast<std::size_t>(scene.joints[k].parent);
+    if (binds(parent)) first[static_cast<std::size_t>(scene.joints[k].child)] = first[parent];
+  }
+  return first;
+}
+
+}  // namespace
+
 std::vector<std::size_t> roots_of(const Scene& scene) {
-  std::vector<std::size_t> roots(scene.size());
-  std::iota(roots.begin(), roots.end(), std::size_t{0});
-  for (const std::size_t k : root_first(scene))
-    roots[static_cast<std::size_t>(scene.joints[k].child)] =
-        roots[static_cast<std::size_t>(scene.joints[k].parent)];
-  return roots;
+  return first_of(scene, [](std::size_t) { return true; });
+}
+
+std::vector<std::size_t> movers_of(const Scene& scene) {
+  return first_of(scene, [&](std::size_t parent) { return !scene.bodies[parent].fixed; });
 }
 
 Poses with_closed_joints(const Scene& scene, Poses poses) {

@@ -60,6 +60,10 @@ std::vector<std::size_t> root_first(const Scene& scene);
 /// Per body the one at the root of the tree of joints that it belongs to; itself without a joint.
 std::vector<std::size_t> roots_of(const Scene& scene);
 
+/// Per body the one that stands for all that move with it: as roots_of(), but what hangs on a fixed
+/// body moves alone.
+std::vector<std::size_t> movers_of(const Scene& scene);
+
 /// `poses` with every child moved, its angle kept, to where its pin closes.
 Poses with_closed_joints(const Scene& scene, Poses poses);
 

@@ -16,8 +16,8 @@ namespace rtg {
 /// throw ConfigError for what is not legal.
 class FieldReader {
  public:
-  /// `section`: the entry that holds the mapping, or nullptr for an absent one. `path`: its dotted
-  /// key, "" at the root. `keys`: all that are legal in it.
+  /// `section`: the mapping. `path`: its dotted key, "" at the root. `keys`: all that are legal in
+  /// it.
   FieldReader(const ConfigNode& section, std::string path, std::span<const std::string> keys);
 
   void number(const char* key, double& value, double least, double most, const char* doc = "");

@@ -9,7 +9,8 @@
 namespace rtg {
 namespace {
 
-constexpr double kUnitWithin = 1e-6;  // of the length of a normal
+constexpr double kUnitWithin = 1e-2;    // length of a normal, so that [0.71, 0.71] will do
+constexpr double kUnitExactly = 1e-12;  // ... that stays as it is
 
 const std::vector<std::string> kTermKeys{"kind", "centroid",   "joint",
                                          "disc", "half_plane", "angles"};
@@ -34,7 +35,8 @@ void read_half_plane(const ConfigNode& section, const std::string& path, GoalTer
   const double length = term.normal.norm();
   if (std::abs(length - 1.0) > kUnitWithin)
     throw ConfigError(find(section, "normal")->value.origin, reader.path("normal"),
-                      "has length " + number_text(length), "[x, y] of length 1");
+                      "has length " + number_text(length), "[x, y] of length 1, within 0.01");
+  if (std::abs(length - 1.0) > kUnitExactly) term.normal /= length;
   reader.required("offset", "a number, largest normal . x [m]");
   reader.number("offset", term.offset, -kMaxPlace, kMaxPlace);
 }

@@ -8,6 +8,7 @@
 #include "nodes/common/config_error.hpp"
 #include "nodes/common/field_reader.hpp"
 #include "nodes/common/field_writer.hpp"
+#include "nodes/common/task_words.hpp"
 
 namespace rtg {
 namespace {
@@ -60,10 +61,6 @@ Polygon read_vertices(const ConfigNode& list, const std::string& path) {
   shape = checked(std::move(shape), list.origin, path);
   const bool is_centred = moments(shape).centroid.norm() <= kCentredWithin * bounding_radius(shape);
   return is_centred ? shape : checked(centred(shape), list.origin, path);
-}
-
-ConfigNode point_node(const Vector2d& x) {
-  return list_node({token_node(number_text(x.x())), token_node(number_text(x.y()))});
 }
 
 ConfigNode keyed(const std::string& key, ConfigNode value) {

@@ -23,16 +23,6 @@ const ConfigNode& body_section(const ConfigNode& section, std::size_t i) {
   fail_at(body_section(section, body), body_path(body), key, wrong, legal);
 }
 
-void check_names(const Task& task, const ConfigNode& section) {
-  const auto& bodies = task.scene.bodies;
-  for (std::size_t i = 1; i < bodies.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (bodies[i].name == bodies[j].name)
-        fail_at(section, i, "name",
-                "'" + bodies[i].name + "' is the name of body " + std::to_string(j) + " too",
-                "names that differ");
-}
-
 void check_movable(const Task& task, const ConfigNode& section) {
   const auto& bodies = task.scene.bodies;
   if (bodies[0].fixed)
@@ -98,6 +88,23 @@ bool concerns_something(const GoalTerm& term, const Scene& scene) {
                              [&](const Joint& joint) { return concerns(term, scene, joint); });
 }
 
+/// Throws unless the joint can have the angles that the term asks for, with room to spare.
+void check_angles(const GoalTerm& term, const Joint& joint, const Task& task,
+                  const ConfigEntry& angles, const std::string& path) {
+  if (!concerns(term, task.scene, joint)) return;
+  if (!(joint.upper - joint.lower < 2.0 * std::numbers::pi))
+    throw ConfigError(angles.value.origin, path + ".joint", "can turn round and round",
+                      "joints with limits less than 6.28 rad apart");
+  if (std::max(joint.lower, term.least + kGoalSpare) >
+      std::min(joint.upper, term.most - kGoalSpare))
+    throw ConfigError(angles.value.origin, path + ".angles",
+                      "are none that the joint of '" +
+                          task.scene.bodies[static_cast<std::size_t>(joint.child)].name +
+                          "' can have",
+                      "angles from " + number_text(joint.lower) + " to " +
+                          number_text(joint.upper) + " (its limits), with 0.05 rad to spare");
+}
+
 void check_term(const Task& task, std::size_t k, const ConfigNode& section) {
   const GoalTerm& term = task.goal[k];
   const ConfigNode& node = find(section, "goal")->value.items[k];
@@ -111,10 +118,8 @@ void check_term(const Task& task, std::size_t k, const ConfigNode& section) {
                                : "no object that can move is of kind '" + term.kind + "'",
                       of_joint ? legal_joints(task) : legal_kinds(task));
   }
-  for (const Joint& joint : task.scene.joints)
-    if (concerns(term, task.scene, joint) && !(joint.upper - joint.lower < 2.0 * std::numbers::pi))
-      throw ConfigError(node.origin, path + ".joint", "can turn round and round",
-                        "joints with limits less than 6.28 rad apart");
+  if (const ConfigEntry* angles = find(node, "angles"))
+    for (const Joint& joint : task.scene.joints) check_angles(term, joint, task, *angles, path);
   const std::string arena = number_text(task.push.arena);
   if (!meets_arena(term, task.push.arena))
     throw ConfigError(
@@ -149,8 +154,17 @@ void check_goal(const Task& task, const ConfigNode& section) {
 
 }  // namespace
 
+void check_names(const Task& task, const ConfigNode& section) {
+  const auto& bodies = task.scene.bodies;
+  for (std::size_t i = 1; i < bodies.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (bodies[i].name == bodies[j].name)
+        fail_at(section, i, "name",
+                "'" + bodies[i].name + "' is the name of body " + std::to_string(j) + " too",
+                "names that differ");
+}
+
 void check_task(const Task& task, const ConfigNode& section) {
-  check_names(task, section);
   check_movable(task, section);
   check_start(task, section);
   check_goal(task, section);

@@ -84,6 +84,7 @@ Task read_task(const ConfigNode& section) {
   for (std::size_t i = 0; i < bodies.items.size(); ++i)
     task.scene.bodies.push_back(
         read_body(bodies.items[i], "task.bodies." + std::to_string(i), task.start));
+  check_names(task, section);
   if (find(section, "joints")) {
     const ConfigNode& joints = list_at(reader, "joints", 0, kMaxBodies);
     for (std::size_t i = 0; i < joints.items.size(); ++i)

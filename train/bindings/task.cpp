@@ -92,10 +92,16 @@ std::vector<std::tuple<int, int, Vector2d>> joints(const Task& task) {
   return out;
 }
 
+/// The one state of an array. Throws std::invalid_argument of none or several.
+Poses only_state(const Task& task, const StateArray& states) {
+  check_bodies(states, task.scene.size());
+  if (states.shape(0) != 1) throw std::invalid_argument("one state is wanted, [1, bodies, 3]");
+  return state_at(states, 0);
+}
+
 /// Per joint, whether the goal speaks of its angle and the angle is as asked.
 std::vector<bool> joints_reached(const Task& task, const StateArray& states) {
-  check_bodies(states, task.scene.size());
-  const Poses poses = state_at(states, 0);
+  const Poses poses = only_state(task, states);
   std::vector<bool> out;
   for (const Joint& joint : task.scene.joints) {
     int asked = 0, held = 0;
@@ -111,11 +117,11 @@ std::vector<bool> joints_reached(const Task& task, const StateArray& states) {
 
 /// The mean centres that the goal speaks of.
 std::vector<Vector2d> centroids(const Task& task, const StateArray& states) {
-  check_bodies(states, task.scene.size());
+  const Poses poses = only_state(task, states);
   std::vector<Vector2d> out;
   for (const GoalTerm& term : task.goal)
     if (term.subject == GoalTerm::Subject::kCentroid)
-      out.push_back(centroid_of(term, task.scene, state_at(states, 0)));
+      out.push_back(centroid_of(term, task.scene, poses));
   return out;
 }
 

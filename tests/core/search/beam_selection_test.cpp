@@ -36,12 +36,12 @@ Indices select(const std::vector<BeamEntry>& entries, const SearchConfig& c, Cel
   return select_beam(entries, c, rng, seen);
 }
 
-/// Entries as a search meets them: few scores, cells and layouts; a cell belongs to one layout.
+/// Entries as a search meets them: few scores, cells and layouts; a cell spans two layouts.
 std::vector<BeamEntry> random_entries(Rng& rng, int count) {
   std::vector<BeamEntry> entries;
   for (int k = 0; k < count; ++k) {
     const auto layout = static_cast<std::uint64_t>(rng.below(40));
-    const std::uint64_t cell = 8 * layout + static_cast<std::uint64_t>(rng.below(8));
+    const std::uint64_t cell = 8 * (layout / 2) + static_cast<std::uint64_t>(rng.below(16));
     entries.push_back({rng.uniform(0.0, 1.0), cell, layout, rng.below(3) == 0});
   }
   return entries;
@@ -135,6 +135,15 @@ TEST(BeamSelection, KeepsTheBestOfEachLayout) {
   SearchConfig c = config(10, 0.0, 0.5);
   c.per_layout = 2;
   EXPECT_EQ(select(entries, c), (Indices{0, 1, 7, 8, 9}));
+}
+
+TEST(BeamSelection, WhatItsLayoutHasNoRoomForLeavesItsCellToOthers) {
+  std::vector<BeamEntry> entries = ranked(4);
+  entries[1].layout = entries[0].layout;
+  entries[2].cell = entries[1].cell;
+  SearchConfig c = config(10, 0.0, 0.0);
+  c.per_layout = 1;
+  EXPECT_EQ(select(entries, c), (Indices{0, 2, 3}));
 }
 
 TEST(BeamSelection, HoldsAllItsPromisesOnRandomLayers) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg {
@@ -69,6 +70,24 @@ TEST(Coverage, CountsTransitionsThatMoveOneObjectOrMore) {
   EXPECT_EQ(coverage.transitions(), 10);
   EXPECT_DOUBLE_EQ(coverage.contact_share(), 0.4);
   EXPECT_DOUBLE_EQ(coverage.multi_body_share(), 0.2);
+}
+
+/// Share of transitions that move several, of one that moves all movable bodies.
+double multi_body_share(const Task& task) {
+  Transition t{task.start, 0, task.start, false, Source::kStepReplay};
+  for (std::size_t k = 1; k < task.scene.size(); ++k)
+    if (!task.scene.bodies[k].fixed) t.next[k].y += 1.0;
+  Coverage coverage(task);
+  coverage.add(t);
+  return coverage.multi_body_share();
+}
+
+TEST(Coverage, WhatJointsConnectCountsAsOneButForWhatHangsOnAFixedBody) {
+  Task task = testing::art_manip();
+  EXPECT_EQ(multi_body_share(task), 0.0);
+  task.scene.bodies[2].fixed = true;  // 1 hangs on it, and 3 with 4
+  std::swap(task.scene.joints[0].parent, task.scene.joints[0].child);
+  EXPECT_EQ(multi_body_share(task), 1.0);
 }
 
 TEST(Coverage, CountsWhatBeginsInTheStartRegionWithAndWithoutRollOuts) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg {
@@ -46,6 +47,13 @@ TEST(LargestTurn, IsThatOfAnObjectInEitherDirection) {
   next[3].theta = -0.7;
   EXPECT_EQ(largest_turn(gathering().scene, all_zero(), next), 0.7);
   EXPECT_EQ(largest_turn(gathering().scene, next, next), 0.0);
+}
+
+TEST(LargestTurn, OfWhatHangsOnAJointDoesNotCount) {
+  const Task chain = testing::art_manip();
+  Poses next = chain.start;
+  for (Pose& pose : next) pose.theta += 1.0;
+  EXPECT_EQ(largest_turn(chain.scene, chain.start, next), 0.0);
 }
 
 TEST(LegalState, IsFiniteInTheArenaAndWithoutOverlap) {

@@ -141,29 +141,37 @@ Rng stream(std::uint64_t key, std::uint64_t number, std::uint64_t seed = Scripte
   return Rng(seed, key << 32 | number);
 }
 
-TEST(GenerateRounds, EveryPhaseJittersItsStartsFromAStreamOfItsOwn) {
+struct JitterTest : ::testing::TestWithParam<bool> {};
+
+TEST_P(JitterTest, EveryPhaseJittersItsStartsFromAStreamOfItsOwn) {
+  const bool randomise = GetParam();
   ScriptedWorld world;
   world.task.horizon = 1;
+  world.task.randomisation = 0.25;
   world.layers = {{{kFirst, world.task.start}}, {{kLast, world.start_but(1.0)}}};
   world.pushed = [&](const Poses&, int) { return world.goal(); };
   SearchConfig config = trees_only(102, 1);
   config.rollout_share = 100.0 / 102.0;
   config.target_jitter = 0.3;
   config.rollout_jitter = 0.2;
+  config.randomise = randomise;
   world.generation(config);
+  const double rollouts = randomise ? 0.25 : 0.2, judgement = randomise ? 0.25 : 0.1;
   const auto jittered = [&](Rng rng, double amplitude) {
     return begun_in(world, jittered_starts(world.task, 50, amplitude, rng));
   };
   Rng rng = stream(4, 0);
   std::vector<Poses> judged;
-  while (judged.size() < 7) judged.push_back(jittered_start(world.task, 0.1, rng));
+  while (judged.size() < 7) judged.push_back(jittered_start(world.task, judgement, rng));
   // the first round has no policy to follow
   const std::vector<long> order{jittered(stream(2, 1, stream(1, 0).word()), 0.3),
-                                jittered(stream(3, 0), 0.2), begun_in(world, judged),
-                                jittered(stream(5, 0), 0.2), jittered(stream(5, 1), 0.2)};
+                                jittered(stream(3, 0), rollouts), begun_in(world, judged),
+                                jittered(stream(5, 0), rollouts), jittered(stream(5, 1), rollouts)};
   EXPECT_GE(order.front(), 0);
   EXPECT_EQ(std::ranges::adjacent_find(order, std::greater_equal{}), order.end());
 }
+
+INSTANTIATE_TEST_SUITE_P(Randomise, JitterTest, ::testing::Bool());
 
 TEST(GenerateRounds, ARoundHeadsForWhereThePolicyGotLost) {
   // From half of the starts `kFirst` throws the robot 6 m away, where the policy knows nothing.
@@ -201,13 +209,16 @@ TEST(GenerateRounds, AnglesCountOnceThePolicySolvesAll) {
   }
 }
 
-TEST(GenerateRounds, RandomisedStartsLieAllOverTheTasksRandomisation) {
+struct RandomisedTest : ::testing::TestWithParam<ReverseMode> {};
+
+TEST_P(RandomisedTest, EpisodesStartAllOverTheTasksRandomisation) {
   for (const bool randomise : {false, true}) {
     ScriptedWorld world;
     world.task.randomisation = 0.5;
     world.task.horizon = 1;
     world.pushed = [](const Poses& poses, int) { return poses; };
     SearchConfig config = trees_only(100, 1);
+    config.reverse = GetParam();
     config.rollout_share = 0.5;
     config.rollout_jitter = 0.0;
     config.randomise = randomise;
@@ -220,6 +231,9 @@ TEST(GenerateRounds, RandomisedStartsLieAllOverTheTasksRandomisation) {
     EXPECT_GE(farthest, randomise ? 0.3 : 0.0);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Reverse, RandomisedTest,
+                         ::testing::Values(ReverseMode::kRrbs, ReverseMode::kRandom));
 
 struct RollOutsTest : ::testing::TestWithParam<double> {};
 

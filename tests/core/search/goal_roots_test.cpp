@@ -139,7 +139,17 @@ SearchConfig of(int breadth, int root_draws) {
 
 std::vector<Poses> roots(const Task& task, const SearchConfig& config, std::uint64_t seed) {
   Rng rng(seed);
-  return goal_roots(task, config, {task.start}, rng);
+  SearchStats stats;
+  return goal_roots(task, config, {task.start}, rng, stats);
+}
+
+TEST(GoalRoots, DrawsInVainAreCountedAndEndNothingUntilThereAreTooMany) {
+  Task task = gathering();
+  task.goal[0].radius = 0.4;  // three boxes do not fit
+  Rng rng(1);
+  SearchStats stats;
+  EXPECT_TRUE(goal_roots(task, of(20, 4), {task.start}, rng, stats).empty());
+  EXPECT_EQ(stats.undrawn_goals, 20);
 }
 
 TEST(GoalRoots, AreDistinctGoalsNearestFirst) {

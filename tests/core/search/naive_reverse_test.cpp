@@ -6,10 +6,12 @@
 #include <cmath>
 
 #include "core/math/rng.hpp"
+#include "core/world/separation.hpp"
 
 namespace rtg {
 namespace {
 
+constexpr auto kDraws = static_cast<std::size_t>(kMaxStarts);
 constexpr int kRight = 0;  // of 4 actions; the robot comes from the left
 
 /// A square robot of 1 m and objects of the given shapes; pushes of 2 m in an arena of ±8 m.
@@ -30,10 +32,15 @@ struct NaiveReverseTest : ::testing::Test {
   void expect_pulled(std::size_t body) const {
     const ReverseResult result = solve();
     ASSERT_EQ(result.status, SolveStatus::kConverged);
+    ASSERT_EQ(result.starts.size(), body == 0 ? 1U : kDraws);
+    for (const Poses& start : result.starts) expect_pulled(body, start);
+  }
+
+  void expect_pulled(std::size_t body, const Poses& start) const {
     for (std::size_t k = 0; k < end.size(); ++k) {
-      const double pull = end[k].x - result.starts[0][k].x;
-      EXPECT_EQ(result.starts[0][k].y, end[k].y);
-      EXPECT_EQ(result.starts[0][k].theta, end[k].theta);
+      const double pull = end[k].x - start[k].x;
+      EXPECT_EQ(start[k].y, end[k].y);
+      EXPECT_EQ(start[k].theta, end[k].theta);
       if (k == 0) {
         EXPECT_NEAR(pull, 2.0, 1e-15);
       } else if (k == body) {
@@ -94,13 +101,16 @@ TEST_F(NaiveReverseTest, PullsNoFixedBody) {
 TEST_F(NaiveReverseTest, ThePullIsAFunctionOfTheJobSpreadOverItsRange) {
   add(box(1, 1), {2.1, 0.5, 0.0});
   double least = INFINITY, most = 0.0, mean = 0.0;
-  for (int k = 0; k < 1000; ++k) {
+  for (int k = 0; k < 125; ++k) {
     end[1].theta = 1e-4 * k;
-    const double pull = end[1].x - solve().starts[0][1].x;
-    ASSERT_EQ(end[1].x - solve().starts[0][1].x, pull);
-    least = std::min(least, pull);
-    most = std::max(most, pull);
-    mean += pull / 1000.0;
+    const ReverseResult result = solve();
+    ASSERT_EQ(result.starts, solve().starts);
+    for (const Poses& start : result.starts) {
+      const double pull = end[1].x - start[1].x;
+      least = std::min(least, pull);
+      most = std::max(most, pull);
+      mean += pull / 1000.0;
+    }
   }
   // 1000 even draws from [0.4, 2]: standard deviation of the mean 1.6/√12/√1000 = 0.015.
   EXPECT_NEAR(mean, 1.2, 5 * 0.015);
@@ -142,14 +152,42 @@ TEST_F(NaiveReverseTest, RobotThatWouldStartOutsideTheArenaPrunes) {
   EXPECT_EQ(solve().status, SolveStatus::kConverged);
 }
 
-TEST_F(NaiveReverseTest, AnswersWithOneFiniteStartOfAllBodiesOrNone) {
+TEST_F(NaiveReverseTest, PullsThatOverlapAreLeftOut) {
+  add(box(1, 1), {2.1, 0.5, 0.0});
+  end[1].y = 1.2;
+  add(box(0.1, 4.0), {0.7, 3.2, 0.0});  // beside the robot's way, but not the object's
+  const ReverseResult result = solve();
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_LT(result.starts.size(), kDraws);
+  for (const Poses& start : result.starts) EXPECT_FALSE(first_overlap(scene, start));
+}
+
+TEST_F(NaiveReverseTest, WhatJointsConnectIsPulledAsOne) {
+  add(box(1, 1), {2.1, 0.5, 0.0});
+  add(box(1, 1), {3.3, 0.5, 0.0});
+  scene.joints.push_back({1, 2, {0.6, 0.0}, {-0.6, 0.0}});
+  const ReverseResult result = solve();
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  for (const Poses& start : result.starts)
+    EXPECT_NEAR(end[1].x - start[1].x, end[2].x - start[2].x, 1e-12);
+}
+
+TEST_F(NaiveReverseTest, WhatHangsOnAFixedBodyIsNotPulled) {
+  add(box(1, 1), {2.1, 0.5, 0.0});
+  add(box(1, 1), {3.3, 0.5, 0.0}, true);
+  scene.joints.push_back({2, 1, {-0.6, 0.0}, {0.6, 0.0}});
+  EXPECT_EQ(solve().status, SolveStatus::kInfeasible);
+}
+
+TEST_F(NaiveReverseTest, AnswersWithFiniteStartsOfAllBodiesOrNone) {
   Rng rng(41);
   add(box(1, 1), {});
   add(box(1, 2), {});
   for (int trial = 0; trial < 300; ++trial) {
     for (Pose& p : end) p = {rng.uniform(-9, 9), rng.uniform(-9, 9), rng.uniform(-9, 9)};
     const ReverseResult result = solve(rng.below(4));
-    ASSERT_EQ(result.starts.size(), result.status == SolveStatus::kConverged ? 1U : 0U);
+    ASSERT_EQ(!result.starts.empty(), result.status == SolveStatus::kConverged);
+    ASSERT_LE(result.starts.size(), kDraws);
     for (const Poses& start : result.starts) {
       ASSERT_EQ(start.size(), 3U);
       ASSERT_TRUE(is_finite(start));

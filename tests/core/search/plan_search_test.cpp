@@ -97,6 +97,20 @@ TEST_F(PlanSearchTest, BeamsGoInLockstepAndKnowNothingOfEachOther) {
   EXPECT_TRUE(plans({}).empty());
 }
 
+TEST_F(PlanSearchTest, EndsAfterTenStepsWithoutProgress) {
+  task.horizon = 60;
+  for (int k = 0; k < 40; ++k) policy.add(robot_at(-1.0), 12 + k % 30, 1.0 + k);
+  const ReplayBatch stuck = [this](std::span<const ReplayJob> jobs) {
+    batches.push_back(jobs.size());
+    std::vector<ReplayResult> results;
+    for (const ReplayJob& job : jobs) results.push_back({job.start, true, 0.0});
+    return results;
+  };
+  const std::vector<Poses> starts{robot_at(-1.0)};
+  EXPECT_TRUE(search_plans(task, policy, starts, stuck, stats)[0].empty());
+  EXPECT_EQ(batches.size(), 11U) << "the first is the best so far";
+}
+
 TEST_F(PlanSearchTest, StatesThatAreTheSameAreKeptOnce) {
   task.horizon = 4;
   for (int k = 0; k < 40; ++k) {  // many ways back to one state

@@ -21,6 +21,7 @@ GenerationReport filled() {
   r.candidates = 6;
   for (std::size_t k = 0; k < r.statuses.size(); ++k) r.statuses[k] = 10 + static_cast<long>(k);
   r.illegal_starts = 20;
+  r.undrawn_goals = 25;
   r.unsettled_goals = 21;
   r.rejected_pushes = 22;
   r.replays = 24;
@@ -41,22 +42,23 @@ GenerationReport filled() {
 }
 
 TEST(Report, EveryFieldIsWrittenUnderItsName) {
-  EXPECT_EQ(to_json(filled()),
-            R"({"transitions":1,"explored":70,"contact_share":0.25,"multi_body_share":0.125,)"
-            R"("start_region_transitions":2,"start_region_tree_transitions":3,)"
-            R"("reachable_share":0.5,"tree_policy_success":0.75,"tree_policy_length_mean":4.5,)"
-            R"("start_region_depth":5,"candidates":6,)"
-            R"("converged":10,"pruned":11,"infeasible":12,"iteration_limit":13,)"
-            R"("line_search_failed":14,"singular":15,"non_finite":16,)"
-            R"("illegal_starts":20,"unsettled_goals":21,"replays":24,"rejected_pushes":22,)"
-            R"("units_given_up":23,)"
-            R"("iterations_median":30.0,"iterations_p90":31.0,"pushing_converged":32,)"
-            R"("pushing_iterations_median":33.0,"pushing_iterations_p90":34.0,)"
-            R"("replay_gap_median":0.0625,"replay_gap_p90":0.375,)"
-            R"("reverse_cpu_s":40.5,"replay_cpu_s":41.5,"generate_wall_s":42.5,)"
-            R"("replay_gaps":[1.5,2.5],"nodes":[)"
-            R"({"poses":[[1.0,2.0,3.0],[4.0,5.0,6.0]],"depth":7,"tree":8},)"
-            R"({"poses":[[-0.5,0.0,0.5]],"depth":9,"tree":50}]})");
+  EXPECT_EQ(
+      to_json(filled()),
+      R"({"transitions":1,"explored":70,"contact_share":0.25,"multi_body_share":0.125,)"
+      R"("start_region_transitions":2,"start_region_tree_transitions":3,)"
+      R"("reachable_share":0.5,"tree_policy_success":0.75,"tree_policy_length_mean":4.5,)"
+      R"("start_region_depth":5,"candidates":6,)"
+      R"("converged":10,"pruned":11,"infeasible":12,"iteration_limit":13,)"
+      R"("line_search_failed":14,"singular":15,"non_finite":16,)"
+      R"("illegal_starts":20,"undrawn_goals":25,"unsettled_goals":21,"replays":24,"rejected_pushes":22,)"
+      R"("units_given_up":23,)"
+      R"("iterations_median":30.0,"iterations_p90":31.0,"pushing_converged":32,)"
+      R"("pushing_iterations_median":33.0,"pushing_iterations_p90":34.0,)"
+      R"("replay_gap_median":0.0625,"replay_gap_p90":0.375,)"
+      R"("reverse_cpu_s":40.5,"replay_cpu_s":41.5,"generate_wall_s":42.5,)"
+      R"("replay_gaps":[1.5,2.5],"nodes":[)"
+      R"({"poses":[[1.0,2.0,3.0],[4.0,5.0,6.0]],"depth":7,"tree":8},)"
+      R"({"poses":[[-0.5,0.0,0.5]],"depth":9,"tree":50}]})");
 }
 
 TEST(Report, OfRandomEpisodesSaysNothingOfASearch) {

@@ -91,6 +91,20 @@ TEST(StateMetric, ObjectsAreTheMovableBodiesButTheRobot) {
   EXPECT_EQ(metric.size(), 2 + 4 * 3);
 }
 
+TEST(StateMetric, WhatHangsOnAJointLooksTheSameAfterWholeTurnsAlone) {
+  Scene scene{{body(regular_polygon(6, 0.8)), body(box(1, 1)), body(box(1, 1)), body(box(1, 1))}};
+  scene.joints.push_back({1, 2, {0.5, 0.0}, {-0.5, 0.0}});
+  const StateMetric metric(scene);
+  const Poses poses(4);
+  for (const std::size_t k : {1U, 2U, 3U}) {
+    Poses turned = poses;
+    turned[k].theta = kPi / 2.0;
+    EXPECT_NEAR(metric.spread(poses, turned).angle, k == 3 ? 0.0 : kPi / 2.0, 1e-12);
+    turned[k].theta = 2.0 * kPi;
+    EXPECT_NEAR(metric.spread(poses, turned).angle, 0.0, 1e-12);
+  }
+}
+
 TEST(StateMetric, DistanceIsTheNormOfTheNaiveEmbeddings) {
   // Weight 1.5 of objects, angles at a radius of 0.5 m; a chord of an angle d is 2 sin(d/2).
   const StateMetric metric(mixed_scene());

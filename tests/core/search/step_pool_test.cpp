@@ -44,6 +44,20 @@ TEST(StepPool, KeepsTheFirstOfAStep) {
   EXPECT_EQ(actions(pool.take(2, 10)), (std::vector{3, 2, 1}));
 }
 
+TEST(StepPool, AKnownStepTakesUpAPlanToSuccessIfItHasNone) {
+  StepPool pool = plan();
+  pool.add(step(20), std::nullopt);
+  pool.add(step(21), 4);
+  pool.add(step(20), 5);  // leads nowhere, and would go in circles
+  EXPECT_FALSE(pool.leads(5));
+  pool.add(step(20), 1);
+  EXPECT_TRUE(pool.leads(4));
+  EXPECT_TRUE(pool.leads(5)) << "it goes on there";
+  pool.add(step(20), 2);
+  EXPECT_EQ(pool.size(), 6U);
+  EXPECT_EQ(actions(pool.take(5, 10)), (std::vector{21, 20, 2, 1})) << "it has one already";
+}
+
 TEST(StepPool, TakesAStepWithItsPlanOnce) {
   StepPool pool = plan();
   EXPECT_EQ(actions(pool.take(1, 10)), (std::vector{2, 1}));

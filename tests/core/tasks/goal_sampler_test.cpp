@@ -2,6 +2,7 @@
 
 #include "core/forward/box2d_simulator.hpp"
 #include "core/world/separation.hpp"
+#include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg {
@@ -33,9 +34,39 @@ TEST(GoalSampler, GoalsHoldWithRoomToSpareAndDoNotOverlap) {
     for (const Poses& poses : goals(task, 1)) {
       EXPECT_TRUE(succeeded(task, poses, 0.049));
       EXPECT_EQ(first_overlap(task.scene, poses, 0.02), std::nullopt);
-      EXPECT_TRUE(in_arena(poses[0], task.push));
+      for (const Pose& pose : poses) EXPECT_TRUE(in_arena(pose, task.push));
       EXPECT_EQ(poses[0].theta, task.start[0].theta);
     }
+}
+
+TEST(GoalSampler, BringsTheMeanOfLooseBodiesIntoASmallRegion) {
+  Task task = gathering();
+  task.goal = {
+      {"*", GoalTerm::Region::kDisc, {0.0, 3.0}, 0.2, {}, 0.0, GoalTerm::Subject::kCentroid}};
+  task.scene.bodies[2].kind = "b";
+  task.goal.push_back({"b", GoalTerm::Region::kHalfPlane, {}, 0.0, {1.0, 0.0}, -2.0});
+  for (const Poses& poses : goals(task, 4)) {
+    EXPECT_TRUE(succeeded(task, poses, 0.049));
+    EXPECT_EQ(first_overlap(task.scene, poses, 0.02), std::nullopt);
+    for (const Pose& pose : poses) EXPECT_TRUE(in_arena(pose, task.push));
+  }
+}
+
+TEST(GoalSampler, BringsALinkThatIsNoRootIntoItsRegion) {
+  Task task = testing::art_manip();
+  task.scene.bodies.back().kind = "tip";
+  task.goal = {{"tip", GoalTerm::Region::kDisc, {3.0, 3.0}, 0.3}};
+  for (const Poses& poses : goals(task, 5)) EXPECT_TRUE(succeeded(task, poses, 0.049));
+}
+
+TEST(GoalSampler, BringsTheMeanOfALinkAndALooseBodyIntoASmallRegion) {
+  Task task = testing::art_manip();
+  task.scene.bodies.push_back({"box", "tip", box(1.0, 1.0), 1.0, 0.5, false});
+  task.start.push_back({6.0, 6.0, 0.0});
+  task.scene.bodies[4].kind = "tip";
+  task.goal = {
+      {"tip", GoalTerm::Region::kDisc, {0.0, 0.0}, 0.2, {}, 0.0, GoalTerm::Subject::kCentroid}};
+  for (const Poses& poses : goals(task, 6)) EXPECT_TRUE(succeeded(task, poses, 0.049));
 }
 
 TEST(GoalSampler, SettledGoalsStillHold) {

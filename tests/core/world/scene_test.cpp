@@ -69,6 +69,16 @@ TEST(Scene, ClosedJointsLeaveRootsAndAnglesAlone) {
   }
 }
 
+TEST(Scene, WhatHangsOnAFixedBodyMovesAlone) {
+  Scene scene;
+  for (const bool fixed : {false, true, false, false, false})
+    scene.bodies.push_back({"", "", box(1, 1), 1.0, 0.5, fixed});
+  for (const auto& [parent, child] : {std::pair{2, 4}, {1, 2}, {1, 3}})
+    scene.joints.push_back({parent, child});
+  EXPECT_EQ(roots_of(scene), (std::vector<std::size_t>{0, 1, 1, 1, 1}));
+  EXPECT_EQ(movers_of(scene), (std::vector<std::size_t>{0, 1, 2, 3, 2}));
+}
+
 TEST(Scene, JointsConnectTheirTwoBodies) {
   EXPECT_TRUE(jointed(linked(), 1, 2));
   EXPECT_TRUE(jointed(linked(), 2, 1));

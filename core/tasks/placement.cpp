@@ -1,0 +1,43 @@
+#include "core/tasks/placement.hpp"
+
+#include <algorithm>
+
+#include "core/world/separation.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kSlideError = 1e-3;  // [m]
+
+/// Least separation of body `i` at `pose` from all placed bodies.
+double clearance(const Task& task, const Layout& layout, std::size_t i, const Pose& pose) {
+  double least = 1e9;
+  for (std::size_t j = 0; j < layout.poses.size(); ++j)
+    if (j != i && layout.placed[j] && !jointed(task.scene, i, j))
+      least = std::min(least, separation(task.scene.bodies[i].shape, pose,
+                                         task.scene.bodies[j].shape, layout.poses[j]));
+  return least;
+}
+
+}  // namespace
+
+bool is_clear(const Task& task, const Layout& layout, std::size_t i, const Pose& pose) {
+  return clearance(task, layout, i, pose) >= kClearance - kSlideError;
+}
+
+/// The separating-axis gap never exceeds the distance, so no step passes through.
+std::optional<Pose> slide(const Task& task, const Layout& layout, std::size_t i,
+                          const Approach& way) {
+  Pose pose = way.from;
+  double gone = 0.0;
+  while (gone < way.range) {
+    const double free = clearance(task, layout, i, pose) - way.gap;
+    if (free < kSlideError) return free > -kSlideError ? std::optional(pose) : std::nullopt;
+    pose.x += free * way.heading.x();
+    pose.y += free * way.heading.y();
+    gone += free;
+  }
+  return std::nullopt;
+}
+
+}  // namespace rtg
