@@ -16,6 +16,7 @@ from rtg import dataset, paths
 from rtg.run_folder import SUMMARY_KEYS
 
 TINY = "config/tests/tiny.yaml"
+WHOLE = (TINY, "--set", "search.chain_share=0.3")  # with chains to success among the data
 NETWORK = paths.ROOT / "tests" / "support" / "private_network.sh"
 ENDLESS = (TINY, "--transitions", "20000000", "--set", "train.buffer=20000000")
 PATIENCE = 300.0  # [s]; longer is a hang
@@ -58,13 +59,13 @@ def run(*words):
 @pytest.fixture(scope="module")
 def in_process(tmp_path_factory):
     folder = tmp_path_factory.mktemp("run") / "in_process"
-    return folder, run(TINY, "--in-process", "--out", folder)
+    return folder, run(*WHOLE, "--in-process", "--out", folder)
 
 
 @pytest.fixture(scope="module")
 def over_lcm(tmp_path_factory):
     folder = tmp_path_factory.mktemp("run") / "over_lcm"
-    return folder, run(TINY, "--out", folder, "--set", "run.record=true")
+    return folder, run(*WHOLE, "--out", folder, "--set", "run.record=true")
 
 
 @pytest.fixture(params=["in_process", "over_lcm"])
@@ -224,7 +225,7 @@ def test_without_trainer_or_coordinator_the_run_ends(tmp_path, program):
 
 def test_a_stopped_run_goes_on_where_it_was(in_process, tmp_path):
     folder = tmp_path / "run"
-    process = start(TINY, "--in-process", "--out", folder)
+    process = start(*WHOLE, "--in-process", "--out", folder)
     wait_for_line(process, "interactions")
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=PATIENCE)
