@@ -14,6 +14,7 @@ from typing import Any
 from rtg import _core, paths, run_folder
 
 FILE = "versions.json"
+_REVISION = ("git_revision", "git_modified")
 _PACKAGES = ("torch", "stable-baselines3", "gymnasium", "numpy", "lcm")
 _DEBIAN = ("g++", "libeigen3-dev", "libsuitesparse-dev", "libbox2d-dev", "libyaml-cpp-dev")
 
@@ -36,16 +37,13 @@ def _processor() -> str | None:
     return names[0] if names else None
 
 
-def _revision() -> dict[str, Any]:
-    """The commit that is checked out, and whether files differ from it; null without git."""
+def _revision() -> tuple[str | None, bool | None]:
+    """The commit that is checked out, and whether files differ from it; None without git."""
     # But for results/, where the runs of the committed report are made.
     changes = _output(
         "git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!results"
     )
-    return {
-        "git_revision": _output("git", "rev-parse", "HEAD"),
-        "git_modified": None if changes is None else bool(changes),
-    }
+    return _output("git", "rev-parse", "HEAD"), None if changes is None else bool(changes)
 
 
 def core_digest() -> str:
@@ -63,7 +61,7 @@ def generator(run: Path) -> dict[str, Any]:
 def versions() -> dict[str, Any]:
     """Null where it cannot be told."""
     return {
-        **_revision(),
+        **dict(zip(_REVISION, _revision(), strict=True)),
         "python": platform.python_version(),
         "system": platform.platform(),
         "processors": os.cpu_count(),
@@ -77,10 +75,10 @@ def versions() -> dict[str, Any]:
 def note(run: Path, made_by: dict[str, Any] | None = None) -> None:
     """Writes what the run goes on with, and what makes its transitions: `made_by`, or if that is
     not given, this program."""
-    ours = {**_revision(), "core_sha256": core_digest()}
-    run_folder.write_json(
-        run / FILE, {**versions(), "generator": ours if made_by is None else made_by}
-    )
+    found = versions()
+    if made_by is None:
+        made_by = {key: found[key] for key in _REVISION} | {"core_sha256": core_digest()}
+    run_folder.write_json(run / FILE, {**found, "generator": made_by})
 
 
 def commit(made_with: dict[str, Any]) -> str | None:
