@@ -134,9 +134,7 @@ build_preset() {
   : >"$log"
   if [[ ! -f $folder/build.ninja ]]; then
     say "configuring build/$preset"
-    local launcher=()
-    if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
-    if ! (cd "$ROOT" && cmake --preset "$preset" "${launcher[@]}" "$@") >"$log" 2>&1 9>&-; then
+    if ! (cd "$ROOT" && cmake --preset "$preset" "$@") >"$log" 2>&1 9>&-; then
       tail -n 30 "$log" >&2
       fail "cmake could not configure (whole log: build/$preset.log)"
     fi
