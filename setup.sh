@@ -29,7 +29,7 @@ lock_setup() {
     flock 9
   fi
   if [[ ! -f $MADE_FROM ]]; then
-    say "first call: sets everything up, which takes about ten minutes; a second one starts at once"
+    say "first call: sets everything up, which takes five to ten minutes; a second one starts at once"
   fi
 }
 
@@ -145,7 +145,7 @@ build_preset() {
     if [[ -n $todo && $todo != *'Re-running CMake'* ]]; then # which says nothing of the steps after it
       steps=$(grep -c '^\[' <<<"$todo" || true)
       cores=$(nproc)
-      estimate=": $steps steps, about $((steps / 15 / cores + 1)) min on $cores cores" # 4 s of a core each
+      estimate=": $steps steps, about $((steps / 30 / cores + 1)) min on $cores cores" # 2 s of a core each
     fi
     say "building build/$preset$estimate"
     if ! (set -o pipefail && ninja -C "$folder" "$target" 2>&1 9>&- | build_progress "$log"); then

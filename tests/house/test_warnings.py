@@ -9,12 +9,9 @@ import pytest
 from layering import ROOT
 
 COMMANDS = ROOT / "build" / "release" / "compile_commands.json"
-UNINITIALISED = """#include <Eigen/Dense>
-int read(int*);
-int f(int a) {
+UNINITIALISED = """int f(int a) {
   int x;
-  if (a > 0) x = read(&a);
-  return x;
+  return a + x;
 }
 """
 

@@ -38,7 +38,7 @@ def set_up(folder, command, dry_run=FORTY_STEPS):
 
 def test_a_build_says_how_long_it_takes(tmp_path):
     said = set_up(tmp_path, "build_preset release rtg_run")
-    assert said == "rtg: building build/release: 40 steps, about 2 min on 2 cores\n"
+    assert said == "rtg: building build/release: 40 steps, about 1 min on 2 cores\n"
 
 
 def test_a_build_whose_steps_are_not_known_says_no_time(tmp_path):
