@@ -1,4 +1,4 @@
-"""What is kept quiet for the compiler's own headers still counts for our code."""
+"""Though some warnings are off that the compiler gets wrong, a plain mistake is an error."""
 
 import json
 import shlex
