@@ -78,6 +78,6 @@ def course(rng: np.random.Generator, middle: float, end: float, length: int) -> 
 
 
 def write_grid(folder: Path, cells: Sequence[Cell], failed: dict[str, str] | None = None) -> None:
-    grid = Grid([], [], failed or {})
+    grid = Grid({}, failed or {})
     grid.add("./run.sh reproduce gathering", cells)
     grid.write(folder)

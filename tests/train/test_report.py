@@ -81,17 +81,18 @@ def test_all_tasks_are_pooled_and_compared_with_the_reference(page):
 
 
 def test_a_method_that_is_no_worse_than_the_reference_is_named(folder, page, tmp_path):
-    course = "0.96 ± 0.00, 0.95 after 15 ± 0; `ddqn_rtg`: 0.70 ± 0.00, never at 0.95"
-    assert "aside):\n\nNone.\n" in page
+    plans, said = "tree policy 0.85 ± 0.00", "no more to go on from either.\n\n"
+    good, bad = f"0.96 ± 0.00, 0.95 after 15 ± 0, {plans}", f"0.70 ± 0.00, never at 0.95, {plans}"
+    assert f"{said}None.\n" in page
     for cell in CELLS[:4]:
         finished(tmp_path, cell, BAD if cell.method == "ddqn_rtg" else GOOD)
     write_grid(tmp_path, CELLS[:2])
     write_report(tmp_path, tmp_path)
-    assert "aside):\n\nNothing to compare yet.\n" in (tmp_path / "report.md").read_text()
+    assert f"{said}Nothing to compare yet.\n" in (tmp_path / "report.md").read_text()
     write_grid(tmp_path, CELLS[:4])
     write_report(tmp_path, tmp_path)
     report = (tmp_path / "report.md").read_text()
-    assert f"aside):\n\n- gathering, `ddqn_naive`: {course}\n\n" in report
+    assert f"{said}- gathering, `ddqn_naive`: {good}; `ddqn_rtg`: {bad}\n\n" in report
 
 
 def test_domain_randomisation_is_compared_with_nothing(tmp_path):
@@ -106,7 +107,7 @@ def test_domain_randomisation_is_compared_with_nothing(tmp_path):
     page = write_report(tmp_path, tmp_path).read_text()
     for cell in cells[1:]:
         assert row(page, cell.label, "## All tasks together")[-1] == "–"
-    assert "aside):\n\nNothing to compare yet.\n" in page
+    assert "from either.\n\nNothing to compare yet.\n" in page
 
 
 def test_the_third_of_a_run_that_ended_before_is_its_final_success(tmp_path):
@@ -128,7 +129,7 @@ def test_transitions_of_another_commit_are_told(tmp_path):
         write_json(tmp_path / cell.name / "versions.json", made_with)
     write_grid(tmp_path, cells)
     page = write_report(tmp_path, tmp_path).read_text()
-    assert "- commit: `abc` (1 runs); `abc`, transitions by `old` (1 runs)\n" in page
+    assert "- commit: `abc` (1 run); `abc`, transitions by `old` (1 run)\n" in page
 
 
 def test_the_page_says_where_it_comes_from_and_shows_all_pictures(folder, page):

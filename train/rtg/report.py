@@ -33,8 +33,10 @@ counted half. Methods with fewer tasks are not comparable with those with more, 
 with any: its starts, also those it is measured from, lie all over a wider region. Of few seeds such
 intervals are too narrow."""
 _RIVALS = f"""\
-Methods that end no worse than `{REFERENCE}` on a task, with their success and the thousands of
-interactions to their first evaluation at 0.95 (`{WIDER}` aside):"""
+Methods that end no worse than `{REFERENCE}` on a task (`{WIDER}` aside), with their success, the
+thousands of interactions to their first evaluation at 0.95, and the success of the plans in their
+data, before anything is learned (tree policy): where that is alike, their data cover the task as
+well, and the learner has no more to go on from either."""
 _RUNTIME = """\
 CPU time per reverse solve that was not pruned, and per push of the simulator; how many solves and
 pushes, the share of the solves that converged, iterations of those that moved an object;
@@ -50,14 +52,17 @@ that begin there."""
 def _listed(found: Iterable[str]) -> str:
     """What differs between runs, with how many; most often: one thing."""
     counts = Counter(found).most_common()
-    words = [what if len(counts) == 1 else f"{what} ({count} runs)" for what, count in counts]
+    if len(counts) == 1:
+        return counts[0][0]
+    words = [f"{what} ({count} run{'' if count == 1 else 's'})" for what, count in counts]
     return "; ".join(words) or "unknown"
 
 
 def _machine(versions: dict[str, Any]) -> str:
     model, memory = versions.get("processor"), versions.get("memory_gib")
     parts = [model or "unknown processor", f"{versions.get('processors')} cores"]
-    return ", ".join([*parts, f"{memory} GiB"] if memory else parts)
+    parts += [f"{memory} GiB"] if memory else []
+    return ", ".join([*parts, versions.get("system", "unknown system")])
 
 
 def _learner(summary: dict[str, Any]) -> str:
@@ -69,7 +74,7 @@ def _learner(summary: dict[str, Any]) -> str:
 def _programs(versions: dict[str, Any]) -> str:
     packages = {**versions.get("packages", {}), **versions.get("debian", {})}
     named = [f"{name} {version}" for name, version in packages.items()]
-    return ", ".join([versions.get("system", "?"), f"Python {versions.get('python')}", *named])
+    return ", ".join([f"Python {versions.get('python')}", *named])
 
 
 def _origin(grid: Grid, comparison: Comparison) -> str:

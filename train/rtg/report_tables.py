@@ -152,7 +152,9 @@ def _mean_success(runs: Sequence[RunResult]) -> float:
 def _course(runs: Sequence[RunResult]) -> str:
     reached = [_thousands(run.reached(0.95)) for run in runs]
     to_95 = f"0.95 after {spread(reached, 'count')}" if any(reached) else "never at 0.95"
-    return f"{spread([run.summary['success_rate'] for run in runs], '.2f')}, {to_95}"
+    plans = [run.summary.get("tree_policy_success") for run in runs]
+    of_data = f", tree policy {spread(plans, '.2f')}" if any(plans) else ""
+    return f"{spread([run.summary['success_rate'] for run in runs], '.2f')}, {to_95}{of_data}"
 
 
 def _ratio(
