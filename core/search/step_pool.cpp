@@ -30,8 +30,7 @@ std::vector<Transition> StepPool::take(Index k, std::size_t room) {
   std::vector<Transition> out;
   for (std::optional<Index> at = k; at && out.size() < room; at = steps_[*at].next) {
     const Entry& entry = steps_[*at];
-    if (!taken_.insert(entry.key).second) break;  // so are those behind it
-    out.push_back(entry.step);
+    if (taken_.insert(entry.key).second) out.push_back(entry.step);
   }
   return out;
 }

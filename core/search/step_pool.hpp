@@ -30,8 +30,8 @@ class StepPool {
   bool leads(Index k) const;
   std::size_t size() const { return steps_.size(); }
 
-  /// A step and its plan, without those that have been taken before; first the step itself, and no
-  /// more than `room`.
+  /// A step and its plan, in this order, without those that have been taken before; no more than
+  /// `room`.
   std::vector<Transition> take(Index k, std::size_t room);
 
   /// Keys of what has been taken.

@@ -28,7 +28,8 @@ const std::array<Settings, kMethods.size()>& table() {
   static const std::array<Settings, kMethods.size()> kTable{
       online({{"train", "double_q", "false"}}),
       online({{"train", "double_q", "true"}}),
-      unguided({{"search", "reverse", "random"}}),
+      // Half of every batch would be of data without any success.
+      unguided({{"search", "reverse", "random"}, {"train", "offline_share", "-1.0"}}),
       Settings{{"search", "reverse", "naive"}},
       Settings{{"search", "reverse", "rrbs"}},
       Settings{{"search", "reverse", "rrbs"},

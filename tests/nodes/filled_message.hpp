@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "nodes/common/wire_fields.hpp"
 
 namespace rtg::test {

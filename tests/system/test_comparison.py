@@ -83,6 +83,16 @@ def test_a_comparison_of_all_tasks_ends_with_a_report(undisturbed):
         assert f"]({name})" in (folder / "report.md").read_text()
 
 
+def test_the_reference_is_compared_with_its_rival(tmp_path):
+    finish(start(tmp_path, ("gathering",), "--methods", "ddqn_naive,ddqn_rtg"))
+    page = (tmp_path / "report.md").read_text()
+    pooled, run_time = page.split("## All tasks together")[1].split("## Run time")
+    rival, reference = (f"| `{method}` | 1 | 1 |" for method in ("ddqn_naive", "ddqn_rtg"))
+    assert rival in pooled and reference in pooled and "Nothing to compare" not in pooled
+    summary = json.loads((tmp_path / "gathering/ddqn_rtg/seed-1/summary.json").read_text())
+    assert summary["pushing_converged"] > 0 and "| gathering | `ddqn_rtg` |" in run_time
+
+
 def test_each_run_keeps_to_one_process(undisturbed):
     folder, _ = undisturbed
     summary = json.loads((folder / "sorting/ddqn_naive/seed-1/summary.json").read_text())

@@ -78,6 +78,13 @@ def course(rng: np.random.Generator, middle: float, end: float, length: int) -> 
 
 
 def write_grid(folder: Path, cells: Sequence[Cell], failed: dict[str, str] | None = None) -> None:
-    grid = Grid([], [], failed or {})
+    grid = Grid({}, failed or {})
     grid.add("./run.sh reproduce gathering", cells)
     grid.write(folder)
+
+
+def table_row(page: str, label: str, after: str = "## gathering") -> list[str]:
+    """Cells of the row of a method in the first table behind that heading."""
+    lines = page.split(after)[1].splitlines()
+    line = next(line for line in lines if line.startswith(f"| `{label}` |"))
+    return [cell.strip() for cell in line.strip("|").split("|")][1:]

@@ -30,6 +30,14 @@ def test_all_departures_together_are_the_paper_but_for_how_it_is_measured():
     assert [paper[key] for key in watched] == [ours[key] for key in watched]
 
 
+def test_data_found_forwards_are_left_out_one_by_one_and_together():
+    mended, roll_outs = "search.mended=0", "search.rollout_share=0"
+    assert ablations(FILE, [])[:4] == [(), (mended,), (roll_outs,), (mended, roll_outs)]
+    assert ablations(FILE, [Override("", mended)])[1] == (roll_outs,)
+    for words in ablations(FILE, [Override("", "run.method=her")]):
+        assert not {mended, roll_outs} & set(words)
+
+
 def test_what_is_set_for_all_is_no_departure():
     common = [Override("", "train.batch=512"), Override("", "run.method=ddqn")]
     common.append(Override("", "train.stop_at_success=0.5"))

@@ -9,18 +9,21 @@ TWO = Cell("sorting", "ddqn_rtg", ("train.batch=8",), 2)
 
 
 def test_a_grid_reads_back_to_itself(tmp_path):
-    grid = Grid(["./run.sh reproduce"], [ONE, TWO], {TWO.name: "rtg: no memory"})
+    grid = Grid({ONE: "./run.sh reproduce", TWO: "again"}, {TWO.name: "rtg: no memory"})
     grid.write(tmp_path)
     assert read_grid(tmp_path) == grid
-    assert read_grid(tmp_path / "elsewhere") == Grid([], [], {})
+    assert read_grid(tmp_path / "elsewhere") == Grid({}, {})
 
 
-def test_what_was_asked_for_before_stays():
-    grid = Grid([], [], {})
-    grid.add("first", [ONE])
-    grid.add("second", [TWO, ONE])
-    grid.add("first", [ONE])
-    assert grid.commands == ["first", "second"] and grid.cells == [ONE, TWO]
+def test_a_command_is_forgotten_once_others_ask_for_all_that_it_asked_for():
+    grid = Grid({}, {})
+    grid.add("one", [ONE])
+    grid.add("two", [TWO])
+    assert grid.commands == ["one", "two"]
+    grid.add("both", [TWO, ONE])
+    assert grid.commands == ["both"] and list(grid.cells) == [ONE, TWO]
+    grid.add("two", [TWO])
+    assert grid.commands == ["both", "two"]
 
 
 @pytest.mark.parametrize("text", ["[]", "{", '{"cells": [{"task": "x"}]}', '{"cells": 3}'])

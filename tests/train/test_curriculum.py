@@ -1,10 +1,15 @@
 """Which starts the reverse curriculum keeps, and where the next ones come from."""
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 from rtg import _core, curriculum, paths
-from rtg.curriculum import ELSEWHERE, EPISODES, NEW, OLD, Curriculum
+from rtg.curriculum import ELSEWHERE, EPISODES, NEW, OLD, PUSHES, WALKS, Curriculum
+from rtg.offline_data import NoSource
 from rtg.vector_env import PushVecEnv
+from training_runs import run_folder, training
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
 TASK = CONFIG.task
@@ -32,6 +37,14 @@ def test_the_first_starts_are_near_goals_and_do_not_meet_them() -> None:
     assert not TASK.succeeded(pool).any()
     assert (np.linalg.norm(pool[:, 1:, :2], axis=2) < 2.0).mean() > 0.4  # at the start none is
     assert len(np.unique(pool[:, 0, 0])) > NEW / 2
+
+
+def test_pushes_of_the_walks_are_counted() -> None:
+    one = Curriculum(CONFIG, 1.0, seed=1)
+    assert one.pushes == PUSHES * WALKS
+    for number in range(NEW * EPISODES):
+        one.note(number % NEW, success=False)
+    assert one.pushes == 2 * PUSHES * WALKS
 
 
 def test_starts_are_drawn_in_turn_and_as_often_as_asked() -> None:
@@ -117,5 +130,16 @@ def test_a_restored_curriculum_goes_on_with_the_same_starts() -> None:
 
     starts(one)
     other.restore(one.state())
+    first_round = one.state()["pushes"]
     same = starts(one) == starts(other)
     assert same  # no diff of bytes
+    assert one.pushes == other.pushes > first_round
+
+
+def test_pushes_for_starts_of_a_curriculum_are_told(tmp_path: Path) -> None:
+    folder = run_folder(tmp_path / "run", None, "run.method=rcg")
+    one = training(folder)
+    assert one.run(NoSource(), lambda: False, record=False)
+    one.finish(lost=0)
+    found = json.loads((folder / "training.json").read_text())
+    assert found["curriculum_pushes"] == one.env.curriculum.pushes > 0

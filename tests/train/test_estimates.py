@@ -44,6 +44,13 @@ def test_seeds_are_drawn_within_their_task():
     assert interval(interquartile_mean, table) == (0.5, 0.5)
 
 
+def test_single_seeds_have_no_interval():
+    alone = scores([0.3], [0.9])
+    assert interval(interquartile_mean, alone) is None
+    assert improvement_interval(alone, alone) is None
+    assert improvement_interval(alone, scores([0.3, 0.4], [0.9])) is not None
+
+
 def test_an_interval_is_that_of_the_mean_and_always_the_same():
     rng = np.random.default_rng(1)
     sample = scores(rng.normal(size=400))

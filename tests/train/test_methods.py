@@ -31,7 +31,7 @@ def test_methods_differ_in_these_values_alone() -> None:
     assert train == {
         "dqn": {**vanilla, "double_q": False},
         "ddqn": vanilla,
-        "ddqn_random": unguided,
+        "ddqn_random": {**unguided, "offline_share": -1.0},
         "ddqn_naive": rtg,
         "ddqn_rtg": rtg,
         "ddqn_rtg_dr": {**rtg, "randomise": True},

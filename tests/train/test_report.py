@@ -6,7 +6,7 @@ import re
 import shutil
 
 import pytest
-from comparison_samples import finished, write_grid
+from comparison_samples import finished, table_row, write_grid
 from PIL import Image
 from rtg import cli
 from rtg.cells import Cell
@@ -50,25 +50,19 @@ def page(folder):
     return (folder / "report.md").read_text()
 
 
-def row(page, label, after="## gathering"):
-    lines = page.split(after)[1].splitlines()
-    line = next(line for line in lines if line.startswith(f"| `{label}` |"))
-    return [cell.strip() for cell in line.strip("|").split("|")][1:]
-
-
 def test_a_row_has_the_figures_of_its_seeds(page):
-    figures = ["120 ± 0", "50 ± 0", "100 ± 0"]
+    figures = ["1200 ± 0", "120 ± 0", "50 ± 0", "100 ± 0"]
     good = ["1-2", "0.96 ± 0.00", "0.86 ± 0.00", "0.20 ± 0.00", "10 ± 0", "15 ± 0", "15 ± 0"]
-    assert row(page, "ddqn_rtg") == [*good, *figures]
+    assert table_row(page, "ddqn_rtg") == [*good, *figures]
     bad = ["1-2", "0.70 ± 0.00", "0.63 ± 0.00", "0.00 ± 0.00", "20 ± 0", "never", "20 ± 0"]
-    assert row(page, "ddqn_naive") == [*bad, *figures]
+    assert table_row(page, "ddqn_naive") == [*bad, *figures]
 
 
 def test_runs_without_a_result_say_why(page):
-    assert row(page, "her")[:2] == ["1 failed", "–"]
-    assert row(page, "ddqn_rtg", "## sorting")[:2] == ["1 unfinished", "–"]
-    assert row(page, "rcg", "## sorting")[:2] == ["1 not run", "–"]
-    assert row(page, "rcg")[:2] == ["not run", "–"]
+    assert table_row(page, "her")[:2] == ["1 failed", "–"]
+    assert table_row(page, "ddqn_rtg", "## sorting")[:2] == ["1 unfinished", "–"]
+    assert table_row(page, "rcg", "## sorting")[:2] == ["1 not run", "–"]
+    assert table_row(page, "rcg")[:2] == ["not run", "–"]
     assert "Not run: `dqn`, `ddqn`, `ddqn_random`, `ddqn_rtg_dr`." in page
     assert "- `gathering/her/seed-1` failed: ended with exit status 1: MemoryError" in page
     assert f"- `gathering/ddqn_rtg@{SWEPT}/seed-1`: 3 transitions lost" in page
@@ -76,37 +70,16 @@ def test_runs_without_a_result_say_why(page):
 
 def test_all_tasks_are_pooled_and_compared_with_the_reference(page):
     pooled = "## All tasks together"
-    assert row(page, "ddqn_rtg", pooled) == ["1", "2", "0.96 [0.96, 0.96]", "–"]
-    assert row(page, "ddqn_naive", pooled)[-1] == "0.00 [0.00, 0.00]"
+    assert table_row(page, "ddqn_rtg", pooled) == ["1", "2", "0.96 [0.96, 0.96]", "–"]
+    assert table_row(page, "ddqn_naive", pooled)[-1] == "0.00 [0.00, 0.00]"
 
 
-def test_a_method_that_is_no_worse_than_the_reference_is_named(folder, page, tmp_path):
-    course = "0.96 ± 0.00, 0.95 after 15 ± 0; `ddqn_rtg`: 0.70 ± 0.00, never at 0.95"
-    assert "aside):\n\nNone.\n" in page
-    for cell in CELLS[:4]:
-        finished(tmp_path, cell, BAD if cell.method == "ddqn_rtg" else GOOD)
-    write_grid(tmp_path, CELLS[:2])
-    write_report(tmp_path, tmp_path)
-    assert "aside):\n\nNothing to compare yet.\n" in (tmp_path / "report.md").read_text()
-    write_grid(tmp_path, CELLS[:4])
-    write_report(tmp_path, tmp_path)
-    report = (tmp_path / "report.md").read_text()
-    assert f"aside):\n\n- gathering, `ddqn_naive`: {course}\n\n" in report
-
-
-def test_domain_randomisation_is_compared_with_nothing(tmp_path):
-    cells = [
-        Cell("gathering", "ddqn_rtg", (), 1),
-        Cell("gathering", "ddqn_rtg_dr", (), 1),
-        Cell("gathering", "ddqn_rtg_dr", (SWEPT,), 1),
-    ]
-    for cell in cells:
-        finished(tmp_path, cell, GOOD)
-    write_grid(tmp_path, cells)
-    page = write_report(tmp_path, tmp_path).read_text()
-    for cell in cells[1:]:
-        assert row(page, cell.label, "## All tasks together")[-1] == "–"
-    assert "aside):\n\nNothing to compare yet.\n" in page
+def test_remarks_beside_the_runs_are_part_of_the_report(folder, page, tmp_path):
+    assert "## Remarks" not in page
+    runs = shutil.copytree(folder, tmp_path / "runs")
+    (runs / "remarks.md").write_text("The robot was tired.\n")
+    report = write_report(runs, tmp_path / "out").read_text()
+    assert "\n\n## Remarks\n\nThe robot was tired.\n" in report
 
 
 def test_the_third_of_a_run_that_ended_before_is_its_final_success(tmp_path):
@@ -128,7 +101,7 @@ def test_transitions_of_another_commit_are_told(tmp_path):
         write_json(tmp_path / cell.name / "versions.json", made_with)
     write_grid(tmp_path, cells)
     page = write_report(tmp_path, tmp_path).read_text()
-    assert "- commit: `abc` (1 runs); `abc`, transitions by `old` (1 runs)\n" in page
+    assert "- commit: `abc` (1 run); `abc`, transitions by `old` (1 run)\n" in page
 
 
 def test_the_page_says_where_it_comes_from_and_shows_all_pictures(folder, page):
@@ -164,6 +137,7 @@ def test_the_numbers_are_there_for_programs(folder):
         "transitions": 120000,
         "generate_wall_s": 50.0,
         "train_wall_s": 100.0,
+        "pushes": 1200000,
         "commit": "abc",
     }
 
@@ -201,7 +175,7 @@ def test_a_picture_that_no_run_stands_behind_does_not_stay(folder, tmp_path):
 def test_a_comparison_without_a_result_has_a_report_too(tmp_path):
     write_grid(tmp_path, CELLS)
     page = write_report(tmp_path, tmp_path).read_text()
-    assert row(page, "ddqn_rtg")[:2] == ["1-2 not run", "–"]
+    assert table_row(page, "ddqn_rtg")[:2] == ["1-2 not run", "–"]
 
 
 def test_the_command_writes_the_report_and_names_what_is_no_comparison(folder, tmp_path, capsys):

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch as th
-from rtg import _core, checkpoint, dataset, policy_file, trainer
+from rtg import _core, checkpoint, dataset, networks, policy_file, trainer
 from rtg.errors import RunError, UserError
 from rtg.evaluation import FINAL, HELD_OUT, evaluate, held_out_starts
 from rtg.offline_data import FileSource
@@ -246,7 +246,10 @@ def test_the_learner_is_named_where_it_learned_not_where_it_was_looked_at(
         source = FileSource(folder / "transitions.npz", one.task, one.data)
         assert one.run(source, lambda: False, record=False)
         one.finish(lost=0)
-        assert json.loads((folder / "training.json").read_text())["runs_in_process"] == 2
+        found = json.loads((folder / "training.json").read_text())
+        assert found["runs_in_process"] == 2
+        assert found["precision"] == networks.precision(True, "cpu")
+        assert "curriculum_pushes" not in found
 
 
 def test_evaluation_agrees_with_single_episodes() -> None:

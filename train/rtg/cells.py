@@ -35,21 +35,25 @@ class Cell:
 class Grid:
     """All that was ever asked for in one folder."""
 
-    commands: list[str]
-    cells: list[Cell]
+    cells: dict[Cell, str]  # with the command that asked last; they all come to the same run
     failed: dict[str, str]  # name of the cell -> its last words
 
+    @property
+    def commands(self) -> list[str]:
+        """Those that are still the last to ask for a cell."""
+        return list(dict.fromkeys(self.cells.values()))
+
     def add(self, command: str, cells: Iterable[Cell]) -> None:
-        """What is there already stays as it is."""
-        self.commands += [command] if command not in self.commands else []
-        known = set(self.cells)
-        self.cells += [cell for cell in cells if cell not in known]
+        """What is there already stays where it is."""
+        self.cells.update(dict.fromkeys(cells, command))
 
     def write(self, folder: Path) -> None:
         """Replaces grid.json."""
-        cells = [{**vars(cell), "settings": list(cell.settings)} for cell in self.cells]
-        grid = {"commands": self.commands, "cells": cells, "failed": self.failed}
-        write_json(_file(folder), grid)
+        cells = [
+            {**vars(cell), "settings": list(cell.settings), "command": command}
+            for cell, command in self.cells.items()
+        ]
+        write_json(_file(folder), {"cells": cells, "failed": self.failed})
 
 
 def _file(folder: Path) -> Path:
@@ -73,9 +77,10 @@ def read_grid(folder: Path) -> Grid:
     value = read_json(_file(folder))
     try:
         failed = value.get("failed", {})
+        cells = value.get("cells", [])
+        commands = _texts([cell["command"] for cell in cells])
         return Grid(
-            commands=_texts(value.get("commands", [])),
-            cells=[_cell(cell) for cell in value.get("cells", [])],
+            cells=dict(zip(map(_cell, cells), commands, strict=True)),
             failed=dict(zip(failed, _texts(list(failed.values())), strict=True)),
         )
     except (AttributeError, KeyError, TypeError, ValueError):

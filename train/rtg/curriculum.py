@@ -45,6 +45,7 @@ class Curriculum:
         self._good = self._seeds[:0]  # of all rounds
         self._first = 0  # number of the pool's first start
         self._drawn = 0  # starts of this pool
+        self.pushes = 0  # of the simulator on walks, beside the learner's interactions
         self._set_pool(self._nearby())
 
     @property
@@ -97,6 +98,7 @@ class Curriculum:
         for _ in range(PUSHES):
             actions = self._rng.integers(self._task.headings, size=WALKS)
             after, ok = self._simulator.push(states, actions)
+            self.pushes += WALKS
             states = np.where(ok[:, None, None], after, states)
             met.append(states[ok])
         found = np.concatenate(met)
@@ -114,6 +116,7 @@ class Curriculum:
             "wins": self._wins,
             "first": self._first,
             "drawn": self._drawn,
+            "pushes": self.pushes,
         }
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -123,3 +126,4 @@ class Curriculum:
         self._tries = np.asarray(state["tries"]).copy()
         self._wins = np.asarray(state["wins"]).copy()
         self._first, self._drawn = state["first"], state["drawn"]
+        self.pushes = state["pushes"]

@@ -39,8 +39,11 @@ def probability_of_improvement(scores: Scores, others: Scores) -> float:
     return 0.5 + 0.5 * float(np.mean(wins))
 
 
-def interval(estimate: Callable[[Scores], float], scores: Scores) -> tuple[float, float]:
-    """Percentile interval of `estimate` by stratified bootstrap: seeds are drawn within a task."""
+def interval(estimate: Callable[[Scores], float], scores: Scores) -> tuple[float, float] | None:
+    """Percentile interval of `estimate` by stratified bootstrap: seeds are drawn within a task. Of
+    single seeds None."""
+    if all(len(task) == 1 for task in scores):
+        return None
     rng = np.random.default_rng(_SEED)
     drawn = [
         estimate([task[rng.integers(len(task), size=len(task))] for task in scores])
@@ -50,7 +53,7 @@ def interval(estimate: Callable[[Scores], float], scores: Scores) -> tuple[float
     return float(low), float(high)
 
 
-def improvement_interval(scores: Scores, others: Scores) -> tuple[float, float]:
+def improvement_interval(scores: Scores, others: Scores) -> tuple[float, float] | None:
     """The same of the probability of improvement: seeds of both methods are drawn."""
     count = len(scores)
     return interval(

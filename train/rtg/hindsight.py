@@ -10,6 +10,10 @@ Drawn are the sets of atoms that hold in a later state of the episode. Left out 
 in s already, the empty one among them: an episode that is asked for such a set is over before s,
 so it would teach the values of states that no policy acts in. Where none is left the goal of the
 task stays.
+
+Departs from the paper: goals are sets of atoms and not positions that were reached, so an episode
+in which no atom comes to hold teaches nothing in hindsight; episodes are asked for the one goal of
+the task, as in the paper's section 4.3, never for others.
 """
 
 from __future__ import annotations

@@ -25,6 +25,11 @@ def has_fast_bfloat16(device: str = "cpu") -> bool:
     return bool(getattr(th.cpu, "_is_avx512_bf16_supported", lambda: False)())
 
 
+def precision(reduced: bool, device: str) -> str:
+    """What the inner layers learn in."""
+    return "bfloat16" if reduced and has_fast_bfloat16(device) else "float32"
+
+
 class ValueNetwork(QNetwork):
     """Q(s, ·): three hidden layers, optionally LayerNorm and the dueling head
 
@@ -69,8 +74,8 @@ class ValueNetwork(QNetwork):
         seen = self.extract_features(obs, self.features_extractor)
         hidden = self.first(functional.pad(seen, (0, self.inputs - seen.shape[1]), value=1.0))
         device = hidden.device.type
-        reduced = self.reduced_precision and self.training and has_fast_bfloat16(device)
-        with th.autocast(device, th.bfloat16, enabled=reduced):
+        reduced = precision(self.reduced_precision, device) == "bfloat16"
+        with th.autocast(device, th.bfloat16, enabled=reduced and self.training):
             hidden = self.inner(hidden)
         out: th.Tensor = self.head(hidden.float())
         if not self.dueling:

@@ -19,22 +19,25 @@ starts, objects jittered, that nothing was chosen by; **roll-outs**: of the last
 episodes from the starts of the task, exploration included; **at ⅓**: greedy success at a third of
 the budget, from other held-out starts, or the final one of a run that had ended by then;
 **to 0.70**, **to 0.95**: thousand interactions until the first evaluation with that greedy success
-("2 of 3": so many of the seeds ever); **interactions**, **transitions** in thousands, used and
-generated. Interactions are those of the learner: what generation takes beside them stands under
-[Run time](#run-time) as pushes. Times are wall clock, of generation on one core, of training on
-what is named *learner* above. All figures are in [runs.csv](runs.csv), the learning curves in
-[curves.csv](curves.csv); in their pictures a run that ended early keeps its last value, and of more
-than twelve rows those with swept settings are left out."""
+("2 of 3": so many of the seeds ever); **interactions**, **pushes**, **transitions** in thousands:
+of the learner; of the simulator beside them, for data or starts; generated. Times are wall clock,
+of generation on one core, of training on what is named *learner* above. All figures are in
+[runs.csv](runs.csv), the learning curves in [curves.csv](curves.csv); in their pictures a run that
+ended early keeps its last value, and of more than twelve rows those with swept settings are left
+out."""
 _POOLED = f"""\
 IQM: mean of the middle half of all final successes, with a 95 % interval by stratified bootstrap
-(seeds drawn within a task, {RESAMPLES:,} resamples). Last column: the probability that a run of the
-method does better than one of `{REFERENCE}` on the same task, mean over the tasks, equal ones
-counted half. Methods with fewer tasks are not comparable with those with more, nor is `{WIDER}`
-with any: its starts, also those it is measured from, lie all over a wider region. Of few seeds such
-intervals are too narrow."""
+(seeds drawn within a task, {RESAMPLES:,} resamples), over the tasks that more than one method was
+run on. Last column: the probability that a run of the method does better than one of `{REFERENCE}`
+on the same task, mean over the tasks, equal ones counted half. Single seeds have no interval, and
+of few it is too narrow. Methods with fewer tasks are not comparable with those with more, nor is
+`{WIDER}` with any: its starts, also those it is measured from, lie all over a wider region."""
+REMARKS = "remarks.md"  # beside grid.json
 _RIVALS = f"""\
-Methods that end no worse than `{REFERENCE}` on a task, with their success and the thousands of
-interactions to their first evaluation at 0.95 (`{WIDER}` aside):"""
+Methods that end no worse than `{REFERENCE}` on a task (`{WIDER}` aside), with their success, the
+thousands of interactions to their first evaluation at 0.95, and the success of the plans in their
+data, before anything is learned (tree policy): where that is alike, their data cover the task as
+well, and the learner has no more to go on from either."""
 _RUNTIME = """\
 CPU time per reverse solve that was not pruned, and per push of the simulator; how many solves and
 pushes, the share of the solves that converged, iterations of those that moved an object;
@@ -42,34 +45,40 @@ environment steps of the learner per second, evaluations included."""
 _DATA = """\
 **replay gap**: how far the replay of a reverse step ends from where it began, over all candidates
 replayed; **contact share**: of the transitions, those that move an object; **tree policy**: success
-of the plans found, before any roll-out, from jittered starts, and in how many pushes;
-**reachable**: transitions from which stored ones lead to success; **start region**: transitions
-that begin there."""
+of the plans in the data from jittered starts, those of trees and those found forwards (mended
+episodes), and in how many pushes; **reachable**: transitions from which stored ones lead to
+success; **start region**: transitions that begin there, of roll-outs and mended episodes above all;
+**of trees**: those of steps and chains found backwards; **depth**: pushes of the shortest plan of a
+tree from there."""
 
 
 def _listed(found: Iterable[str]) -> str:
     """What differs between runs, with how many; most often: one thing."""
     counts = Counter(found).most_common()
-    words = [what if len(counts) == 1 else f"{what} ({count} runs)" for what, count in counts]
+    if len(counts) == 1:
+        return counts[0][0]
+    words = [f"{what} ({count} run{'' if count == 1 else 's'})" for what, count in counts]
     return "; ".join(words) or "unknown"
 
 
 def _machine(versions: dict[str, Any]) -> str:
     model, memory = versions.get("processor"), versions.get("memory_gib")
     parts = [model or "unknown processor", f"{versions.get('processors')} cores"]
-    return ", ".join([*parts, f"{memory} GiB"] if memory else parts)
+    parts += [f"{memory} GiB"] if memory else []
+    return ", ".join([*parts, versions.get("system", "unknown system")])
 
 
 def _learner(summary: dict[str, Any]) -> str:
     runs = summary.get("runs_in_process") or 1
-    shared = f", {runs} runs in one process" if runs > 1 else ", one core"
-    return f"{summary.get('device') or 'unknown device'}{shared}"
+    shared = f"{runs} runs in one process" if runs > 1 else "one core"
+    parts = summary.get("device") or "unknown device", summary.get("precision"), shared
+    return ", ".join(filter(None, parts))
 
 
 def _programs(versions: dict[str, Any]) -> str:
     packages = {**versions.get("packages", {}), **versions.get("debian", {})}
     named = [f"{name} {version}" for name, version in packages.items()]
-    return ", ".join([versions.get("system", "?"), f"Python {versions.get('python')}", *named])
+    return ", ".join([f"Python {versions.get('python')}", *named])
 
 
 def _origin(grid: Grid, comparison: Comparison) -> str:
@@ -120,12 +129,18 @@ def _of_task(folder: Path, comparison: Comparison, task: str) -> list[str]:
     ]
 
 
-def report(folder: Path, grid: Grid, comparison: Comparison) -> str:
-    """The page; pictures that lie in the folder are part of it."""
+def _remarks(runs: Path) -> list[str]:
+    """What people have to say, in their own words."""
+    path = runs / REMARKS
+    return ["## Remarks", path.read_text().strip()] if path.is_file() else []
+
+
+def report(runs: Path, folder: Path, grid: Grid, comparison: Comparison) -> str:
+    """The page for `folder`, with the pictures that lie there and the remarks beside the runs."""
     missing = ", ".join(f"`{method}`" for method in tables.not_run(comparison))
     parts = [
         "# Results",
-        "Written by `./run.sh plot` from the folders of these runs, never edited by hand.",
+        f"Written by `./run.sh plot` from the folders of these runs and `{REMARKS}`.",
         _origin(grid, comparison),
         _LEGEND + (f" Not run: {missing}." if missing else ""),
         *(part for task in comparison.tasks for part in _of_task(folder, comparison, task)),
@@ -141,6 +156,7 @@ def report(folder: Path, grid: Grid, comparison: Comparison) -> str:
         tables.data(comparison),
         _DATA,
         *_picture(folder, "replay_gap.png", "Histogram of the replay gap"),
+        *_remarks(runs),
         *_troubles(grid, comparison.results),
     ]
     return "\n\n".join(parts) + "\n"

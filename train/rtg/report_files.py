@@ -35,7 +35,7 @@ def write_report(runs: Path, out: Path) -> Path:
         out.mkdir(parents=True, exist_ok=True)
         _draw(out, comparison, episodes)
         _write_numbers(out, comparison)
-        run_folder.write_text(out / "report.md", report(out, grid, comparison))
+        run_folder.write_text(out / "report.md", report(runs, out, grid, comparison))
     except OSError as error:
         raise UserError(f"--out: {out}: {error.strerror}; legal: a folder to write to") from None
     return out / "report.md"

@@ -63,7 +63,7 @@ def _thousands(value: float | None) -> float | None:
 def of_task(comparison: Comparison, task: str) -> str:
     """What every method came to on one task."""
     head = ["method", "seeds", "success", "roll-outs", "at ⅓", "to 0.70", "to 0.95"]
-    head += ["interactions", "transitions", "generation [s]", "training [s]"]
+    head += ["interactions", "pushes", "transitions", "generation [s]", "training [s]"]
     rows = []
     for label in comparison.labels:
         runs = comparison.row(task, label)
@@ -71,7 +71,8 @@ def of_task(comparison: Comparison, task: str) -> str:
         row = [f"`{label}`", states(runs)]
         shares = ("success_rate", "rollout_success", "success_at_third")
         row += [spread([f[name] for f in done], ".2f") for name in shares]
-        for name in ("interactions_to_70", "interactions_to_95", "interactions", "transitions"):
+        names = "interactions_to_70", "interactions_to_95", "interactions", "pushes", "transitions"
+        for name in names:
             values = [_thousands(f[name]) for f in done]
             never = name.startswith("interactions_to") and done and not any(values)
             row.append("never" if never else spread(values, "count"))
@@ -82,9 +83,18 @@ def of_task(comparison: Comparison, task: str) -> str:
     return table(head, rows)
 
 
+def _shared_tasks(comparison: Comparison) -> list[str]:
+    """Those that more than one method was run on; all if there are none."""
+    rows = {
+        task: [bool(comparison.done(task, label)) for label in comparison.labels]
+        for task in comparison.tasks
+    }
+    return [task for task in rows if sum(rows[task]) > 1] or comparison.tasks
+
+
 def _scores(comparison: Comparison, label: str) -> dict[str, Floats]:
     """Final success of the seeds, per task that has any."""
-    found = {task: comparison.done(task, label) for task in comparison.tasks}
+    found = {task: comparison.done(task, label) for task in _shared_tasks(comparison)}
     return {
         task: np.array([run.summary["success_rate"] for run in runs])
         for task, runs in found.items()
@@ -92,8 +102,8 @@ def _scores(comparison: Comparison, label: str) -> dict[str, Floats]:
     }
 
 
-def _with_interval(value: float, interval: tuple[float, float]) -> str:
-    return f"{value:.2f} [{interval[0]:.2f}, {interval[1]:.2f}]"
+def _with_interval(value: float, interval: tuple[float, float] | None) -> str:
+    return f"{value:.2f}" + (f" [{interval[0]:.2f}, {interval[1]:.2f}]" if interval else "")
 
 
 def _is_wider(label: str) -> bool:
@@ -152,7 +162,9 @@ def _mean_success(runs: Sequence[RunResult]) -> float:
 def _course(runs: Sequence[RunResult]) -> str:
     reached = [_thousands(run.reached(0.95)) for run in runs]
     to_95 = f"0.95 after {spread(reached, 'count')}" if any(reached) else "never at 0.95"
-    return f"{spread([run.summary['success_rate'] for run in runs], '.2f')}, {to_95}"
+    plans = [run.summary.get("tree_policy_success") for run in runs]
+    of_data = f", tree policy {spread(plans, '.2f')}" if any(plans) else ""
+    return f"{spread([run.summary['success_rate'] for run in runs], '.2f')}, {to_95}{of_data}"
 
 
 def _ratio(
@@ -179,6 +191,11 @@ def _key(name: str) -> Callable[[RunResult], float | None]:
     return lambda run: run.summary.get(name)
 
 
+def _depth(run: RunResult) -> float | None:
+    depth = run.summary.get("start_region_depth", -1)
+    return None if depth < 0 else depth
+
+
 _RUNTIME: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
     ("backward action [ms]", _ratio("reverse_cpu_s", _solves, 1e3), ".2f"),
     ("forward action [ms]", _ratio("replay_cpu_s", _count("replays"), 1e3), ".3f"),
@@ -197,6 +214,8 @@ _DATA: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
     ("its pushes", _key("tree_policy_length_mean"), ".1f"),
     ("reachable", _key("reachable_share"), ".2f"),
     ("start region", _key("start_region_transitions"), "count"),
+    ("of trees", _key("start_region_tree_transitions"), "count"),
+    ("depth", _depth, ".0f"),
 )
 
 

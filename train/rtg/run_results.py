@@ -62,8 +62,13 @@ class RunResult:
             "success_at_third": self.success_at_third(),
             **{name: self.reached(bar) for name, bar in _BARS.items()},
             **{name: self.summary.get(name) for name in more},
+            "pushes": self.pushes(),
             "commit": self.commit,
         }
+
+    def pushes(self) -> int:
+        """Of the simulator, beside the learner's interactions."""
+        return sum(self.summary.get(name) or 0 for name in ("replays", "curriculum_pushes"))
 
     def success_at_third(self) -> float | None:
         """Of the last evaluation within a third of the budget; of a run that had ended by then the

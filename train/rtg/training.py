@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from rtg import _core, checkpoint, device, policy_file, run_folder
+from rtg import _core, checkpoint, device, networks, policy_file, run_folder
 from rtg.curriculum import Curriculum
 from rtg.ddqn import DoubleDqn
 from rtg.errors import UserError
@@ -22,7 +22,7 @@ from rtg.training_log import TrainingLog
 from rtg.vector_env import PushVecEnv
 
 MAX_ENVIRONMENTS = 4  # stepped together; the least legal train.buffer
-_FORMAT = 4  # of the checkpoint; another one is not read
+_FORMAT = 5  # of the checkpoint; another one is not read
 WAIT = 0.1  # [s], for transitions when there is nothing else to do
 
 Stop = Callable[[], bool]
@@ -89,8 +89,7 @@ class Training:
         while not (stop() or source.complete or self.data.count >= self.settings.start_at):
             self._take_in(source, record, WAIT)
         if not self.done:
-            place = device.name(self.model.device.type)
-            self._learner = {"device": place, "runs_in_process": self.runs}
+            self._learner = self._place()
         self._clock.start()
         while not (stop() or self.done):
             self._take_in(source, record, 0.0)
@@ -101,6 +100,14 @@ class Training:
             self._take_in(source, record, WAIT)
         self.save()
         return self.done and source.complete
+
+    def _place(self) -> dict[str, Any]:
+        kind = self.model.device.type
+        return {
+            "device": device.name(kind),
+            "precision": networks.precision(self.settings.reduced_precision, kind),
+            "runs_in_process": self.runs,
+        }
 
     def _take_in(self, source: Source, record: bool, timeout: float) -> None:
         news = not source.complete
@@ -233,7 +240,7 @@ class Training:
         final = self._evaluate(starts)
         weights = self.model.policy_net.state_dict()
         policy_file.write(self.folder / "model.pt", self.task, s, weights)
-        best = final.best()
+        best, curriculum = final.best(), self.env.curriculum
         np.savez(
             self.folder / "best_episode.npz", poses=final.paths[best], success=final.success[best]
         )
@@ -247,6 +254,7 @@ class Training:
             "offline_transitions": self.data.count,
             "lost_transitions": lost,
             **self._learner,
+            **({"curriculum_pushes": curriculum.pushes} if curriculum else {}),
         }
         run_folder.write_json(self.folder / "training.json", training)
         self.log.display(self._state(), force=True)

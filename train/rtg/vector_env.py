@@ -35,7 +35,7 @@ class PushVecEnv(VecEnv):
         super().__init__(count, observation_space(task), spaces.Discrete(task.headings))
         self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
-        self._curriculum = curriculum
+        self.curriculum = curriculum
         self.tells_atoms = False  # whether infos say which atoms of the goal hold, before and after
         self._origins = [ELSEWHERE] * count  # of the running episodes, in the curriculum
         self._starts = 0  # drawn so far, the curriculum's left out
@@ -75,16 +75,14 @@ class PushVecEnv(VecEnv):
                 if self._origins[env] == ELSEWHERE:  # what the learner is judged by
                     infos[env]["is_success"] = bool(success[env])
                     infos[env]["episode"] = {"r": float(success[env]), "l": int(self._steps[env])}
-                if self._curriculum:
-                    self._curriculum.note(self._origins[env], bool(success[env]))
+                if self.curriculum:
+                    self.curriculum.note(self._origins[env], bool(success[env]))
                 self._begin(env)
             observation = self.task.observation(self._poses)
         return observation, success.astype(np.float32), done, infos
 
     def _begin(self, env: int) -> None:
-        self._origins[env], start = (
-            self._curriculum.draw() if self._curriculum else (ELSEWHERE, None)
-        )
+        self._origins[env], start = self.curriculum.draw() if self.curriculum else (ELSEWHERE, None)
         if start is None:
             start = self.task.jittered_start(self._jitter, self._seed, self._starts)
             self._starts += 1
@@ -99,7 +97,7 @@ class PushVecEnv(VecEnv):
             "starts": self._starts,
             "successes": self.successes,
             "origins": list(self._origins),
-            "curriculum": self._curriculum.state() if self._curriculum else None,
+            "curriculum": self.curriculum.state() if self.curriculum else None,
         }
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -108,8 +106,8 @@ class PushVecEnv(VecEnv):
         self._starts = state["starts"]
         self.successes = state["successes"]
         self._origins = list(state["origins"])
-        if self._curriculum:
-            self._curriculum.restore(state["curriculum"])
+        if self.curriculum:
+            self.curriculum.restore(state["curriculum"])
 
     # What SB3 asks of a VecEnv beyond that.
 

@@ -67,6 +67,15 @@ TEST(StepPool, TakesAStepWithItsPlanOnce) {
   EXPECT_EQ(pool.taken().size(), 4U);
 }
 
+TEST(StepPool, TakesAPlanThatWasFoundAfterItsFirstStepWasTaken) {
+  StepPool pool = plan();
+  pool.add(step(20), std::nullopt);
+  pool.add(step(21), 4);
+  EXPECT_EQ(actions(pool.take(4, 10)), (std::vector{20}));
+  pool.add(step(20), 1);
+  EXPECT_EQ(actions(pool.take(5, 10)), (std::vector{21, 2, 1}));
+}
+
 TEST(StepPool, KnowsWhichPlansEndInSuccess) {
   StepPool pool = plan();
   pool.add(step(20), std::nullopt);
