@@ -235,6 +235,7 @@ def test_replay_gaps_of_another_method_are_drawn_where_the_reference_has_none(tm
         ([None], ".1f", "–"),
         ([9.0, 9.0], "count", "9.0 ± 0.0"),
         ([350.0], "count", "350"),
+        ([0.0], "count", "0"),
     ],
 )
 def test_seeds_are_put_together_in_words(values, form, words):

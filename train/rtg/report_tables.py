@@ -24,14 +24,14 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> 
 def spread(values: Sequence[float | None], form: str) -> str:
     """Mean ± standard deviation of what there is; how many of how many, if not all.
 
-    form: of the format function; below 10, "count" has a digit behind the point.
+    form: of the format function; between 0 and 10, "count" has a digit behind the point.
     """
     known = [value for value in values if value is not None]
     if not known:
         return NOTHING
     mean, std = estimates.mean_std(known)
     if form == "count":
-        form = ".0f" if mean >= 10.0 else ".1f"
+        form = ".1f" if 0.0 < mean < 10.0 else ".0f"
     words = format(mean, form) + ("" if std is None else f" ± {format(std, form)}")
     return words if len(known) == len(values) else f"{words} ({len(known)} of {len(values)})"
 
