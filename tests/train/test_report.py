@@ -98,10 +98,11 @@ def test_transitions_of_another_commit_are_told(tmp_path):
     for cell, maker in zip(cells, ("abc", "old"), strict=True):
         finished(tmp_path, cell, GOOD)
         made_with = {"git_revision": "abc", "generator": {"git_revision": maker}}
+        made_with["begun_by"] = ["old"] if maker == "old" else []
         write_json(tmp_path / cell.name / "versions.json", made_with)
     write_grid(tmp_path, cells)
     page = write_report(tmp_path, tmp_path).read_text()
-    assert "- commit: `abc` (1 run); `abc`, transitions by `old` (1 run)\n" in page
+    assert "- commit: `abc` (1 run); `abc`, begun by `old`, transitions by `old` (1 run)\n" in page
 
 
 def test_the_page_says_where_it_comes_from_and_shows_all_pictures(folder, page):

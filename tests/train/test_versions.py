@@ -1,5 +1,6 @@
 """What a run says it was made with."""
 
+import json
 import re
 
 from rtg import versions
@@ -17,6 +18,14 @@ def test_a_commit_says_whether_files_were_changed():
     assert versions.commit({"git_revision": "abc", "git_modified": False}) == "abc"
     assert versions.commit({"git_revision": "abc", "git_modified": True}) == "abc-modified"
     assert versions.commit({"git_revision": None}) is None
+
+
+def test_a_run_that_another_commit_goes_on_with_says_so(tmp_path, monkeypatch):
+    for revision in ("old", "old", "new"):
+        monkeypatch.setattr(versions, "_revision", lambda revision=revision: (revision, False))
+        versions.note(tmp_path, {})
+    found = json.loads((tmp_path / versions.FILE).read_text())
+    assert (found["git_revision"], found["begun_by"]) == ("new", ["old"])
 
 
 def test_unknown_makers_stay_unknown(tmp_path):

@@ -47,10 +47,12 @@ class RunResult:
 
     @property
     def commits(self) -> str:
-        """In words, with that of the program which made the transitions if it was another."""
+        """In words, with others that learned before it was resumed or made the transitions."""
         generator = versions.commit(self.versions.get("generator", {}))
         is_other = generator not in (None, self.commit) and self.summary.get("transitions")
-        return f"`{self.commit}`" + (f", transitions by `{generator}`" if is_other else "")
+        words = [f"`{self.commit}`"]
+        words += [f"begun by `{other}`" for other in self.versions.get("begun_by", [])]
+        return ", ".join([*words, f"transitions by `{generator}`"] if is_other else words)
 
     def figures(self) -> dict[str, Any]:
         """The entry of report.json."""

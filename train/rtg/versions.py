@@ -73,12 +73,15 @@ def versions() -> dict[str, Any]:
 
 
 def note(run: Path, made_by: dict[str, Any] | None = None) -> None:
-    """Writes what the run goes on with, and what makes its transitions: `made_by`, or if that is
-    not given, this program."""
-    found = versions()
+    """Writes what the run goes on with, which other commits it was begun by, and what makes its
+    transitions: `made_by`, or if that is not given, this program."""
+    found, before = versions(), run_folder.read_json(run / FILE)
     if made_by is None:
         made_by = {key: found[key] for key in _REVISION} | {"core_sha256": core_digest()}
-    run_folder.write_json(run / FILE, {**found, "generator": made_by})
+    begun_by, last = before.get("begun_by", []), commit(before)
+    if last not in (None, commit(found)):
+        begun_by = [*begun_by, last]
+    run_folder.write_json(run / FILE, {**found, "begun_by": begun_by, "generator": made_by})
 
 
 def commit(made_with: dict[str, Any]) -> str | None:
