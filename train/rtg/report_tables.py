@@ -92,9 +92,9 @@ def _shared_tasks(comparison: Comparison) -> list[str]:
     return [task for task in rows if sum(rows[task]) > 1] or comparison.tasks
 
 
-def _scores(comparison: Comparison, label: str) -> dict[str, Floats]:
+def _scores(comparison: Comparison, tasks: Sequence[str], label: str) -> dict[str, Floats]:
     """Final success of the seeds, per task that has any."""
-    found = {task: comparison.done(task, label) for task in _shared_tasks(comparison)}
+    found = {task: comparison.done(task, label) for task in tasks}
     return {
         task: np.array([run.summary["success_rate"] for run in runs])
         for task, runs in found.items()
@@ -119,9 +119,10 @@ def pooled(comparison: Comparison) -> str:
         "IQM of the success",
         f"probability of a better run than `{REFERENCE}`",
     ]
-    reference, rows = _scores(comparison, REFERENCE), []
+    tasks = _shared_tasks(comparison)
+    reference, rows = _scores(comparison, tasks, REFERENCE), []
     for label in comparison.labels:
-        scores = _scores(comparison, label)
+        scores = _scores(comparison, tasks, label)
         if not scores:
             continue
         values = list(scores.values())
@@ -163,7 +164,8 @@ def _course(runs: Sequence[RunResult]) -> str:
     reached = [_thousands(run.reached(0.95)) for run in runs]
     to_95 = f"0.95 after {spread(reached, 'count')}" if any(reached) else "never at 0.95"
     plans = [run.summary.get("tree_policy_success") for run in runs]
-    of_data = f", tree policy {spread(plans, '.2f')}" if any(plans) else ""
+    has_data = any(value is not None for value in plans)
+    of_data = f", tree policy {spread(plans, '.2f')}" if has_data else ""
     return f"{spread([run.summary['success_rate'] for run in runs], '.2f')}, {to_95}{of_data}"
 
 

@@ -240,10 +240,11 @@ class Training:
         final = self._evaluate(starts)
         weights = self.model.policy_net.state_dict()
         policy_file.write(self.folder / "model.pt", self.task, s, weights)
-        best, curriculum = final.best(), self.env.curriculum
+        best = final.best()
         np.savez(
             self.folder / "best_episode.npz", poses=final.paths[best], success=final.success[best]
         )
+        curriculum = self.env.curriculum
         training = {
             "interactions": self.interactions,
             "gradient_steps": self.model.gradient_steps_done,
