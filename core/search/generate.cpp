@@ -107,12 +107,10 @@ class Generation {
     const std::size_t explored = pool.size(), limit = explored + wanted;
     for (int wave = 0; pool.size() < limit && policy().size() > 0 && !cancelled(); ++wave) {
       const std::size_t before = pool.size();
-      const std::string phase = "mending (" + percent(before - explored, wanted) + ")";
       std::vector<Episode> tried = episodes(kMending, wave);
-      report_progress(phase, 0, 0);
       if (cancelled()) break;
       mend(std::move(tried));
-      report_progress(phase, 0, 0);
+      report_progress("mending (" + percent(pool.size() - explored, wanted) + ")", 0, 0);
       if (pool.size() == before) break;
     }
   }

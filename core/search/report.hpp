@@ -13,7 +13,7 @@ namespace rtg {
 
 /// One line of the progress display.
 struct Progress {
-  std::string phase;  // "round 1", "roll-outs", ...
+  std::string phase;  // "round 1 (20 %)", "mending (5 %)", "choice", "roll-outs", "random episodes"
   int layer = 0;      // of `depth`
   int depth = 0;
   long transitions = 0;  // stored so far

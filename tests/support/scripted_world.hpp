@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,6 +45,21 @@ struct ScriptedWorld {
     return generate(task, config, kSeed, seams());
   }
   static constexpr std::uint64_t kSeed = 1;
+
+  /// Index of the first batch of pushes that begin in `starts`; -1: none does.
+  long begun_in(std::span<const Poses> starts) const {
+    const auto at = std::ranges::find_if(replays, [&](const std::vector<ReplayJob>& batch) {
+      return std::ranges::equal(batch, starts, {}, &ReplayJob::start);
+    });
+    return at == replays.end() ? -1 : at - replays.begin();
+  }
+
+  /// Keys of generate(): 1 the exploration, 3 a wave that shows what serves, 4 the judgement of
+  /// the trees, 5 a wave of roll-outs, 6 one of episodes to mend; of the exploration: 2 the target
+  /// of a round.
+  static Rng stream(std::uint64_t key, std::uint64_t number, std::uint64_t seed = kSeed) {
+    return Rng(seed, key << 32 | number);
+  }
 
  private:
   GenerationSeams seams() {

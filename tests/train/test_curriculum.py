@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from rtg import _core, curriculum, paths
 from rtg.curriculum import ELSEWHERE, EPISODES, NEW, OLD, PUSHES, WALKS, Curriculum
+from rtg.errors import UserError
 from rtg.offline_data import NoSource
 from rtg.vector_env import PushVecEnv
 from training_runs import run_folder, training
@@ -37,6 +38,25 @@ def test_the_first_starts_are_near_goals_and_do_not_meet_them() -> None:
     assert not TASK.succeeded(pool).any()
     assert (np.linalg.norm(pool[:, 1:, :2], axis=2) < 2.0).mean() > 0.4  # at the start none is
     assert len(np.unique(pool[:, 0, 0])) > NEW / 2
+
+
+class Rarely:
+    """A task whose goal states are drawn in vain but for three."""
+
+    def goal_state(self, seed: int, index: int) -> np.ndarray | None:
+        return np.full((2, 3), seed + index) if index in (1, 41, 99) else None
+
+
+class Never(Rarely):
+    def goal_state(self, seed: int, index: int) -> np.ndarray | None:
+        return None
+
+
+def test_draws_of_goal_states_in_vain_are_left_out() -> None:
+    found = curriculum.goal_states(Rarely(), seed=5)
+    np.testing.assert_array_equal(found[:, 0, 0], [6, 46, 104])
+    with pytest.raises(UserError, match="goal: none of 100 draws"):
+        curriculum.goal_states(Never(), seed=5)
 
 
 def test_pushes_of_the_walks_are_counted() -> None:

@@ -52,7 +52,17 @@ def test_the_best_episode_is_the_shortest_solved_roll_out():
     assert best_episode(data)[:, 0, 0].tolist() == [7, 8, 9]
 
 
-def test_without_solved_roll_outs_it_is_the_longest_chain():
+def test_without_solved_roll_outs_it_is_the_shortest_mended_one():
+    data = transitions(
+        chain("roll_out", [1, 2], False),
+        chain("mended", [3, 4, 5], True),
+        chain("chain_replay", [10, 11], True),
+        chain("mended", [6, 7], True),
+    )
+    assert best_episode(data)[:, 0, 0].tolist() == [6, 7]
+
+
+def test_without_any_it_is_the_longest_chain():
     data = transitions(
         chain("roll_out", [1, 2, 3, 4], False),
         chain("chain_replay", [10, 11], True),

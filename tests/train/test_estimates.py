@@ -48,7 +48,9 @@ def test_single_seeds_have_no_interval():
     alone = scores([0.3], [0.9])
     assert interval(interquartile_mean, alone) is None
     assert improvement_interval(alone, alone) is None
-    assert improvement_interval(alone, scores([0.3, 0.4], [0.9])) is not None
+    several = scores([0.3, 0.4], [0.9])
+    assert improvement_interval(alone, several) is improvement_interval(several, alone) is None
+    assert improvement_interval(several, several) is not None
 
 
 def test_an_interval_is_that_of_the_mean_and_always_the_same():

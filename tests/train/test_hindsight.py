@@ -15,6 +15,7 @@ TASK = _core.Config.from_file(paths.CONFIG / "gathering.yaml").task
 # Of s_0 to s_4. The first atom is reached, lost and reached again; the second for good in s_3.
 HELD = np.array([[0, 0, 0], [1, 0, 0], [0, 0, 0], [1, 1, 0], [1, 1, 0]], np.bool_)
 ONE, BOTH = (1, 0, 0), (1, 1, 0)
+NOTHING = {"held": HELD[0], "held_next": HELD[0]}
 
 
 def goals_by_hand(count: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
@@ -45,11 +46,17 @@ def test_bounds_are_those_that_the_episode_proves() -> None:
     assert not bounds[3].any()
 
 
-def buffer(capacity: int = 1000, **rules: Any) -> HindsightReplayBuffer:
+def buffer(capacity: int = 1000, n_envs: int = 1, **rules: Any) -> HindsightReplayBuffer:
     space = spaces.Box(-1e4, 1e4, (20,), np.float32)
     rules = {"discount": 0.5, "offline_share": 0.25, **rules}
     return HindsightReplayBuffer(
-        capacity, space, spaces.Discrete(48), rules=replay_rules(**rules), atoms=3, goals=4
+        capacity,
+        space,
+        spaces.Discrete(48),
+        rules=replay_rules(**rules),
+        atoms=3,
+        goals=4,
+        n_envs=n_envs,
     )
 
 
@@ -101,6 +108,29 @@ def test_an_episode_longer_than_the_ring_is_relabelled_as_far_as_it_is_left() ->
     assert sorted(steps) == [1, 2, 3]
     for step, goals in zip(steps, replay.online.goals, strict=True):
         assert {tuple(map(int, goal)) for goal in goals} == {BOTH if step < 3 else (0, 0, 0)}
+
+
+def test_episodes_side_by_side_are_relabelled_each_by_its_own() -> None:
+    """The first plays HELD; in the second nothing ever holds, and the simulator gives up s_2."""
+    replay = buffer(n_envs=2)
+    for t in range(4):
+        rows = np.repeat([[t], [10 + t]], 20, axis=1).astype(np.float32)
+        last, rejected = t == 3, t == 2
+        infos = [
+            {"TimeLimit.truncated": last, "held": HELD[t], "held_next": HELD[t + 1]},
+            {"rejected": rejected, "TimeLimit.truncated": rejected or last, **NOTHING},
+        ]
+        done = np.array([last, rejected or last])
+        replay.add(rows, rows + 1, np.array([t, 10 + t]), np.zeros(2), done, infos)
+    store = replay.online
+    of_step = {
+        int(action): {tuple(map(int, goal)) for goal in goals}
+        for action, goals in zip(store.action[: store.count], store.goals, strict=False)
+    }
+    nothing = {(0, 0, 0)}
+    assert of_step.keys() == {0, 10, 1, 11, 2, 3, 13}
+    assert of_step[0] <= {ONE, BOTH} and of_step[1] == of_step[2] == {BOTH}
+    assert all(of_step[action] == nothing for action in (3, 10, 11, 13))
 
 
 def test_unused_bounds_bound_nothing() -> None:

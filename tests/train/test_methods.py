@@ -161,9 +161,9 @@ def test_hindsight_is_told_what_the_states_of_an_episode_hold(tmp_path: Path) ->
     buffer = one.model.replay_buffer
     assert isinstance(buffer, HindsightReplayBuffer)
     store, n = buffer.online, buffer.online.count
-    centres = store.next_observation[:n, 2:].reshape(n, 3, 6)[:, :, :2] * 8.0
-    inside = np.linalg.norm(centres, axis=2) <= 2.0
-    np.testing.assert_array_equal(store.held_next[:n], inside)
+    for held, seen in ((store.held, store.observation), (store.held_next, store.next_observation)):
+        centres = seen[:n, 2:].reshape(n, 3, 6)[:, :, :2] * 8.0
+        np.testing.assert_array_equal(held[:n], np.linalg.norm(centres, axis=2) <= 2.0)
 
 
 def test_domain_randomisation_is_judged_where_it_is_trained(tmp_path: Path, rows: Rows) -> None:

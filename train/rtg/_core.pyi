@@ -89,12 +89,9 @@ class Task:
     def atoms(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Which conditions of the goal hold, one per body, joint or mean that a term speaks of;
         it holds when all do. [N, bodies, 3] -> [N, atoms]"""
-    def goal_state(self, seed: int, index: int = 0) -> NDArray[np.float64]:
+    def goal_state(self, seed: int, index: int = 0) -> NDArray[np.float64] | None:
         """Sample number `index` of stream `seed` of the states where the goal holds, nearly at
-        rest. [bodies, 3]
-
-        Raises ValueError if none was found.
-        """
+        rest. [bodies, 3]; None if 1,000 attempts found none."""
     def succeeded(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Whether the goal holds. [N, bodies, 3] -> [N]"""
     def jittered_start(self, amplitude: float, seed: int, index: int = 0) -> NDArray[np.float64]:

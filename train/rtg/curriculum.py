@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.errors import UserError
 
 Floats = NDArray[np.float64]
 
@@ -32,6 +33,15 @@ OF_GOALS = 1 << 62  # seeds of goal states, beyond those of runs
 ELSEWHERE = -1  # number of a start that is not of the curriculum
 
 
+def goal_states(task: _core.Task, seed: int) -> Floats:
+    """GOALS draws of them, those in vain left out. [goals, bodies, 3]; UserError if none is left."""
+    draws = [task.goal_state(seed, k) for k in range(GOALS)]
+    found = [state for state in draws if state is not None]
+    if not found:
+        raise UserError(f"goal: none of {GOALS} draws found a state in which it holds")
+    return np.stack(found)
+
+
 class Curriculum:
     """Where a share of the training episodes begin; how they end decides where the next ones do."""
 
@@ -39,9 +49,7 @@ class Curriculum:
         self._task, self._simulator = config.task, _core.Simulator(config)
         self._share = share
         self._rng = np.random.default_rng([seed, 2])
-        # The loader has seen to it that there are some.
-        goals = [self._task.goal_state(OF_GOALS + seed, k) for k in range(GOALS)]
-        self._seeds: Floats = np.stack(goals)  # [seeds, bodies, 3], where walks begin
+        self._seeds: Floats = goal_states(self._task, OF_GOALS + seed)  # where walks begin
         self._good = self._seeds[:0]  # of all rounds
         self._first = 0  # number of the pool's first start
         self._drawn = 0  # starts of this pool

@@ -71,7 +71,7 @@ class DoubleDqn(DQN):
     a mean over few weights: steady, and yet its mistakes are soon seen and mended. What is
     evaluated and kept is a mean over many [Polyak and Juditsky 1992]: after gradient step t it
     moves by max(`policy_rate`, 5 / (5 + t)) towards the learner's weights, so it is over the last
-    fifth of the steps, or the last 1 / `policy_rate`.
+    fifth of the steps, or the last 1 / `policy_rate`; with a rate of 1 it is the learner's own.
     """
 
     replay_buffer: MixedReplayBuffer  # type: ignore[assignment]
@@ -127,8 +127,7 @@ class DoubleDqn(DQN):
 
     def _average(self) -> None:
         rate = max(self.settings.policy_rate, YOUTH / (YOUTH + self._n_updates))
-        if self.settings.policy_rate < 1.0:
-            polyak_update(self.q_net.parameters(), self.mean_net.parameters(), rate)
+        polyak_update(self.q_net.parameters(), self.mean_net.parameters(), rate)
 
     def _gradient_step(self, batch: Batch) -> None:
         with th.no_grad():
@@ -165,18 +164,13 @@ class DoubleDqn(DQN):
         action = self._values_of(net, observation).argmax(axis=1)
         return self.exploration.actions(action, observation, self.exploration_rate), state
 
-    @property
-    def policy_net(self) -> th.nn.Module:
-        """The network whose greedy policy is the result."""
-        return self.mean_net if self.settings.policy_rate < 1.0 else self.q_net
-
     def greedy(self, observation: Array) -> Array:
         """The policy's own choice. [N, observation] float32 -> [N] int"""
         return self.values(observation).argmax(axis=1)
 
     def values(self, observation: Array) -> Array:
         """The policy's Q of all actions. [N, observation] float32 -> [N, actions] float32"""
-        return self._values_of(self.policy_net, observation)
+        return self._values_of(self.mean_net, observation)
 
     def _values_of(self, net: th.nn.Module, observation: Array) -> Array:
         net.train(False)

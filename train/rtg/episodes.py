@@ -22,7 +22,7 @@ def episodes(transitions: Transitions, source: str) -> list[slice]:
 
 
 def best_episode(transitions: Transitions) -> Floats | None:
-    """States of the shortest successful roll-out or mended episode, else of a long chain.
+    """States of the shortest successful roll-out, else mended episode, else of the longest chain.
 
     Steps that were stored before their chain are not part of it.
     [T+1, bodies, 3]; None if there is neither.

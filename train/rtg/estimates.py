@@ -39,10 +39,14 @@ def probability_of_improvement(scores: Scores, others: Scores) -> float:
     return 0.5 + 0.5 * float(np.mean(wins))
 
 
+def _are_single(scores: Scores) -> bool:
+    return all(len(task) == 1 for task in scores)
+
+
 def interval(estimate: Callable[[Scores], float], scores: Scores) -> tuple[float, float] | None:
     """Percentile interval of `estimate` by stratified bootstrap: seeds are drawn within a task. Of
     single seeds None."""
-    if all(len(task) == 1 for task in scores):
+    if _are_single(scores):
         return None
     rng = np.random.default_rng(_SEED)
     drawn = [
@@ -54,7 +58,10 @@ def interval(estimate: Callable[[Scores], float], scores: Scores) -> tuple[float
 
 
 def improvement_interval(scores: Scores, others: Scores) -> tuple[float, float] | None:
-    """The same of the probability of improvement: seeds of both methods are drawn."""
+    """The same of the probability of improvement: seeds of both methods are drawn. None if either
+    has single seeds alone."""
+    if _are_single(scores) or _are_single(others):
+        return None
     count = len(scores)
     return interval(
         lambda drawn: probability_of_improvement(drawn[:count], drawn[count:]), [*scores, *others]

@@ -238,7 +238,7 @@ class Training:
         s = self.settings
         starts = held_out_starts(self.task, s.eval_episodes, FINAL, s.randomise)
         final = self._evaluate(starts)
-        weights = self.model.policy_net.state_dict()
+        weights = self.model.mean_net.state_dict()
         policy_file.write(self.folder / "model.pt", self.task, s, weights)
         best = final.best()
         np.savez(

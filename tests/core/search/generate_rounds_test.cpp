@@ -127,20 +127,6 @@ TEST(GenerateRounds, PatienceIsHowManyLayersWithoutABetterNodeEndARound) {
   }
 }
 
-/// Index of the first batch of pushes that begin in `starts`; -1: none does.
-long begun_in(const ScriptedWorld& world, std::span<const Poses> starts) {
-  const auto at = std::ranges::find_if(world.replays, [&](const std::vector<ReplayJob>& batch) {
-    return std::ranges::equal(batch, starts, {}, &ReplayJob::start);
-  });
-  return at == world.replays.end() ? -1 : at - world.replays.begin();
-}
-
-/// Keys of generate(): 1 the exploration, 3 a wave that shows what serves, 4 the judgement of the
-/// trees, 5 a wave of roll-outs; of the exploration: 2 the target of a round.
-Rng stream(std::uint64_t key, std::uint64_t number, std::uint64_t seed = ScriptedWorld::kSeed) {
-  return Rng(seed, key << 32 | number);
-}
-
 struct JitterTest : ::testing::TestWithParam<bool> {};
 
 TEST_P(JitterTest, EveryPhaseJittersItsStartsFromAStreamOfItsOwn) {
@@ -158,15 +144,17 @@ TEST_P(JitterTest, EveryPhaseJittersItsStartsFromAStreamOfItsOwn) {
   world.generation(config);
   const double rollouts = randomise ? 0.25 : 0.2, judgement = randomise ? 0.25 : 0.1;
   const auto jittered = [&](Rng rng, double amplitude) {
-    return begun_in(world, jittered_starts(world.task, 50, amplitude, rng));
+    return world.begun_in(jittered_starts(world.task, 50, amplitude, rng));
   };
-  Rng rng = stream(4, 0);
+  Rng rng = ScriptedWorld::stream(4, 0);
   std::vector<Poses> judged;
   while (judged.size() < 7) judged.push_back(jittered_start(world.task, judgement, rng));
   // the first round has no policy to follow
-  const std::vector<long> order{jittered(stream(2, 1, stream(1, 0).word()), 0.3),
-                                jittered(stream(3, 0), rollouts), begun_in(world, judged),
-                                jittered(stream(5, 0), rollouts), jittered(stream(5, 1), rollouts)};
+  const std::vector<long> order{
+      jittered(ScriptedWorld::stream(2, 1, ScriptedWorld::stream(1, 0).word()), 0.3),
+      jittered(ScriptedWorld::stream(3, 0), rollouts), world.begun_in(judged),
+      jittered(ScriptedWorld::stream(5, 0), rollouts),
+      jittered(ScriptedWorld::stream(5, 1), rollouts)};
   EXPECT_GE(order.front(), 0);
   EXPECT_EQ(std::ranges::adjacent_find(order, std::greater_equal{}), order.end());
 }
