@@ -264,10 +264,7 @@ def test_json_holds_the_values_with_their_types(file: Path) -> None:
     ]
 
 
-def test_the_learner_of_python_has_the_fields_and_defaults_of_the_loader(file: Path) -> None:
+def test_the_learner_of_python_has_the_fields_of_the_loader_and_their_types(file: Path) -> None:
     train = json.loads(rtg_config(file, "--json").stdout)["train"]
-    settings = dataclasses.asdict(TrainSettings())
-    assert train == settings
-    assert {key: type(value) for key, value in train.items()} == {
-        key: type(value) for key, value in settings.items()
-    }
+    types = {field.name: field.type for field in dataclasses.fields(TrainSettings)}
+    assert {key: type(value).__name__ for key, value in train.items()} == types

@@ -1,10 +1,21 @@
 """Shared data of the learner's tests."""
 
+import json
 from typing import Any
 
 import numpy as np
+from rtg import _core, paths
 from rtg.dataset import Transitions
 from rtg.replay import ReplayRules
+from rtg.settings import TrainSettings
+
+
+def train_settings(**train: Any) -> TrainSettings:
+    """What the loader makes of these values; its defaults for all others."""
+    overrides = [f"train.{key}={json.dumps(value)}" for key, value in train.items()]
+    text = f"task: {paths.CONFIG / 'gathering.yaml'}"
+    config = _core.Config.from_text(text, overrides=overrides)
+    return TrainSettings.from_config(json.loads(config.json)["train"])
 
 
 def replay_rules(**changes: Any) -> ReplayRules:

@@ -6,11 +6,11 @@ import torch as th
 from rtg import networks
 from rtg.ddqn import DoubleDqn, Statistics, bootstrap_targets, next_values, td_targets
 from rtg.replay import Batch
-from rtg.settings import TrainSettings
+from samples import train_settings
 from stable_baselines3.common.vec_env import DummyVecEnv
 from toy import Outcomes, line
 
-SETTINGS = TrainSettings(
+SETTINGS = train_settings(
     interactions=1000,
     batch=32,
     target_sync=10,

@@ -1,13 +1,12 @@
-import dataclasses
 from typing import Any
 
 import numpy as np
 from rtg.exploration import LOOP, Exploration
-from rtg.settings import TrainSettings
+from samples import train_settings
 
 
 def exploration(seed: int = 0, **changes: Any) -> Exploration:
-    settings = dataclasses.replace(TrainSettings(leave_loops=False), **changes)
+    settings = train_settings(**{"leave_loops": False, **changes})
     return Exploration(settings, headings=8, seed=seed)
 
 

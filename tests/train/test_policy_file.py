@@ -9,7 +9,7 @@ from rtg import _core, checkpoint, paths, policy_file
 from rtg.env import observation_space
 from rtg.errors import UserError
 from rtg.networks import ValuePolicy
-from rtg.settings import TrainSettings
+from samples import train_settings
 
 TASK = _core.Config.from_file(paths.CONFIG / "tests" / "tiny.yaml").task
 FITTING = {"observation_size": 20, "headings": 48, "dueling": True, "layer_norm": True}
@@ -34,7 +34,7 @@ def test_files_of_another_kind_are_no_policies(
 
 
 def test_observations_of_a_wrong_shape_are_named(tmp_path: Path) -> None:
-    file, settings = tmp_path / "model.pt", TrainSettings()
+    file, settings = tmp_path / "model.pt", train_settings()
     flags = {"dueling": settings.dueling, "layer_norm": settings.layer_norm}
     actions = spaces.Discrete(TASK.headings)
     network = ValuePolicy(observation_space(TASK), actions, lambda _: 1.0, network=flags)

@@ -102,7 +102,8 @@ def test_transitions_of_another_commit_are_told(tmp_path):
         write_json(tmp_path / cell.name / "versions.json", made_with)
     write_grid(tmp_path, cells)
     page = write_report(tmp_path, tmp_path).read_text()
-    assert "- commit: `abc` (1 run); `abc`, begun by `old`, transitions by `old` (1 run)\n" in page
+    assert "\n  - `abc`: gathering `ddqn_rtg` 1\n" in page
+    assert "\n  - `abc`, begun by `old`, transitions by `old`: gathering `ddqn_rtg` 2\n" in page
 
 
 def test_the_page_says_where_it_comes_from_and_shows_all_pictures(folder, page):
@@ -164,6 +165,16 @@ def test_made_again_all_files_are_the_same(folder, tmp_path):
     write_report(folder, tmp_path / "results")
     for path in (tmp_path / "results").iterdir():
         assert path.read_bytes() == (folder / path.name).read_bytes(), path.name
+
+
+def test_remarks_that_are_no_text_are_named_and_the_report_before_stays(folder, tmp_path):
+    runs = tmp_path / "runs"
+    shutil.copytree(folder, runs)
+    (runs / "remarks.md").write_bytes(b"\xff\xfe")
+    before = {p.name: p.read_bytes() for p in runs.iterdir() if p.is_file()}
+    with pytest.raises(UserError, match=re.escape(f"{runs / 'remarks.md'}: ") + ".*legal: text"):
+        write_report(runs, runs)
+    assert {p.name: p.read_bytes() for p in runs.iterdir() if p.is_file()} == before
 
 
 def test_a_picture_that_no_run_stands_behind_does_not_stay(folder, tmp_path):

@@ -34,7 +34,7 @@ ELSEWHERE = -1  # number of a start that is not of the curriculum
 
 
 def goal_states(task: _core.Task, seed: int) -> Floats:
-    """GOALS draws of them, those in vain left out. [goals, bodies, 3]; UserError if none is left."""
+    """GOALS draws but for those in vain. [goals, bodies, 3]; UserError if none is left."""
     draws = [task.goal_state(seed, k) for k in range(GOALS)]
     found = [state for state in draws if state is not None]
     if not found:

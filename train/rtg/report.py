@@ -9,6 +9,7 @@ from typing import Any
 
 from rtg import report_tables as tables
 from rtg.cells import Grid
+from rtg.errors import UserError
 from rtg.estimates import RESAMPLES
 from rtg.methods import REFERENCE, WIDER
 from rtg.run_results import Comparison, RunResult
@@ -61,6 +62,17 @@ def _listed(found: Iterable[str]) -> str:
     return "; ".join(words) or "unknown"
 
 
+def _commits(done: Sequence[RunResult]) -> str:
+    """Of the runs; where they differ, of which: rows of several are no clean comparison."""
+    found: dict[str, list[RunResult]] = {}
+    for run in done:
+        found.setdefault(run.commits, []).append(run)
+    if len(found) < 2:
+        return "- commit: " + (next(iter(found), "unknown"))
+    lines = [f"  - {words}: {tables.named(runs)}" for words, runs in found.items()]
+    return "\n".join(["- commits, whose runs may differ by more than the method:", *lines])
+
+
 def _machine(versions: dict[str, Any]) -> str:
     model, memory = versions.get("processor"), versions.get("memory_gib")
     parts = [model or "unknown processor", f"{versions.get('processors')} cores"]
@@ -71,8 +83,8 @@ def _machine(versions: dict[str, Any]) -> str:
 def _learner(summary: dict[str, Any]) -> str:
     runs = summary.get("runs_in_process") or 1
     shared = f"{runs} runs in one process" if runs > 1 else "one core"
-    parts = summary.get("device") or "unknown device", summary.get("precision"), shared
-    return ", ".join(filter(None, parts))
+    parts = [summary.get(name) or f"unknown {name}" for name in ("device", "precision")]
+    return ", ".join([*parts, shared])
 
 
 def _programs(versions: dict[str, Any]) -> str:
@@ -88,7 +100,7 @@ def _origin(grid: Grid, comparison: Comparison) -> str:
         [
             *lines,
             "",
-            f"- commit: {_listed(run.commits for run in done)}",
+            _commits(done),
             f"- machine: {_listed(_machine(run.versions) for run in done)}",
             f"- learner: {_listed(_learner(run.summary) for run in done)}",
             f"- with: {_listed(_programs(run.versions) for run in done)}",
@@ -129,14 +141,19 @@ def _of_task(folder: Path, comparison: Comparison, task: str) -> list[str]:
     ]
 
 
-def _remarks(runs: Path) -> list[str]:
-    """What people have to say, in their own words."""
+def read_remarks(runs: Path) -> str:
+    """What people have to say, in their own words; raises UserError if it cannot be read."""
     path = runs / REMARKS
-    return ["## Remarks", path.read_text().strip()] if path.is_file() else []
+    if not path.is_file():
+        return ""
+    try:
+        return path.read_text(encoding="utf-8").strip()
+    except (OSError, UnicodeDecodeError) as error:
+        raise UserError(f"{path}: {error}; legal: text in UTF-8, or no such file") from None
 
 
-def report(runs: Path, folder: Path, grid: Grid, comparison: Comparison) -> str:
-    """The page for `folder`, with the pictures that lie there and the remarks beside the runs."""
+def report(folder: Path, grid: Grid, comparison: Comparison, remarks: str) -> str:
+    """The page for `folder`, with the pictures that lie there."""
     missing = ", ".join(f"`{method}`" for method in tables.not_run(comparison))
     parts = [
         "# Results",
@@ -156,7 +173,7 @@ def report(runs: Path, folder: Path, grid: Grid, comparison: Comparison) -> str:
         tables.data(comparison),
         _DATA,
         *_picture(folder, "replay_gap.png", "Histogram of the replay gap"),
-        *_remarks(runs),
+        *(["## Remarks", remarks] if remarks else []),
         *_troubles(grid, comparison.results),
     ]
     return "\n\n".join(parts) + "\n"

@@ -17,7 +17,7 @@ from rtg import _core, episode_pictures, report_plots, run_folder
 from rtg.cells import read_grid
 from rtg.errors import UserError
 from rtg.methods import REFERENCE
-from rtg.report import report
+from rtg.report import read_remarks, report
 from rtg.results import episode_title
 from rtg.run_results import CURVES, Comparison, RunResult, read_comparison
 
@@ -29,13 +29,13 @@ def write_report(runs: Path, out: Path) -> Path:
     grid = read_grid(runs)
     if not grid.cells:
         raise UserError(f"{runs}: holds no comparison (no grid.json); legal: DIR of `reproduce`")
-    comparison = read_comparison(runs, grid)
+    comparison, remarks = read_comparison(runs, grid), read_remarks(runs)
     episodes = {task: _best_episode(comparison, task) for task in comparison.tasks}
     try:
         out.mkdir(parents=True, exist_ok=True)
         _draw(out, comparison, episodes)
         _write_numbers(out, comparison)
-        run_folder.write_text(out / "report.md", report(runs, out, grid, comparison))
+        run_folder.write_text(out / "report.md", report(out, grid, comparison, remarks))
     except OSError as error:
         raise UserError(f"--out: {out}: {error.strerror}; legal: a folder to write to") from None
     return out / "report.md"

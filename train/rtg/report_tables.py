@@ -56,6 +56,14 @@ def states(runs: Sequence[RunResult]) -> str:
     return "; ".join(found) or "not run"
 
 
+def named(runs: Sequence[RunResult]) -> str:
+    """Tasks, methods and seeds of runs that are in the order of a comparison, in words."""
+    rows: dict[tuple[str, str], list[int]] = {}
+    for run in runs:
+        rows.setdefault((run.cell.task, run.cell.label), []).append(run.cell.seed)
+    return "; ".join(f"{task} `{label}` {seeds(of_row)}" for (task, label), of_row in rows.items())
+
+
 def _thousands(value: float | None) -> float | None:
     return None if value is None else value / 1000.0
 

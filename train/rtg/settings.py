@@ -20,48 +20,48 @@ OF_CHECKPOINT = (
 
 @dataclasses.dataclass(frozen=True)
 class TrainSettings:
-    """Mirror of rtg::TrainConfig, which documents the fields and holds their legal ranges."""
+    """Mirror of rtg::TrainConfig, which documents the fields and has their defaults and ranges."""
 
-    preset: str = "default"
-    interactions: int = 350_000
-    offline: bool = True
-    start_at: int = 40_000
-    buffer: int = 1_500_000
-    batch: int = 256
-    learning_rate: float = 3.0e-4
-    train_frequency: int = 4
-    gradient_steps: int = 1
-    target_sync: int = 1
-    target_rate: float = 0.005
-    target_acts: bool = True
-    policy_rate: float = 1.5e-4
-    discount: float = 0.95
-    offline_share: float = 0.5
-    recent_share: float = 0.5
-    double_q: bool = True
-    cautious: bool = True
-    dueling: bool = True
-    layer_norm: bool = True
-    small_head: bool = True
-    clip_targets: bool = True
-    value_bounds: bool = True
-    epsilon_start: float = 0.3
-    epsilon_end: float = 0.02
-    epsilon_share: float = 0.2
-    nearby_share: float = 0.5
-    nearby_headings: int = 2
-    leave_loops: bool = True
-    start_jitter: float = 0.1
-    randomise: bool = False
-    hindsight: int = 0
-    curriculum: float = 0.0
-    eval_every: int = 5_000
-    eval_episodes: int = 100
-    checkpoint_every: int = 20_000
-    stop_at_success: float = 0.95
-    stop_evaluations: int = 3
-    reduced_precision: bool = True
-    device: str = "auto"
+    preset: str
+    interactions: int
+    offline: bool
+    start_at: int
+    buffer: int
+    batch: int
+    learning_rate: float
+    train_frequency: int
+    gradient_steps: int
+    target_sync: int
+    target_rate: float
+    target_acts: bool
+    policy_rate: float
+    discount: float
+    offline_share: float
+    recent_share: float
+    double_q: bool
+    cautious: bool
+    dueling: bool
+    layer_norm: bool
+    small_head: bool
+    clip_targets: bool
+    value_bounds: bool
+    epsilon_start: float
+    epsilon_end: float
+    epsilon_share: float
+    nearby_share: float
+    nearby_headings: int
+    leave_loops: bool
+    start_jitter: float
+    randomise: bool
+    hindsight: int
+    curriculum: float
+    eval_every: int
+    eval_episodes: int
+    checkpoint_every: int
+    stop_at_success: float
+    stop_evaluations: int
+    reduced_precision: bool
+    device: str
 
     @classmethod
     def from_config(cls, section: dict[str, Any]) -> TrainSettings:
