@@ -21,7 +21,8 @@ struct MethodSetting {
 ///
 ///   dqn          no offline data, targets of one network  [Mnih et al. 2015]
 ///   ddqn         the same with Double-Q targets  [van Hasselt et al. 2016]
-///   ddqn_random  as ddqn_rtg; the offline data are episodes of the uniform random policy
+///   ddqn_random  as ddqn_rtg; the offline data are episodes of the uniform random policy, mixed
+///                with the online ones uniformly
 ///   ddqn_naive   as ddqn_rtg; reverse steps by kinematics alone
 ///   ddqn_rtg     offline data of reverse trajectory generation
 ///   ddqn_rtg_dr  the same, all episodes start all over task.randomisation  [App. D]

@@ -3,7 +3,7 @@ import warnings
 import gymnasium
 import numpy as np
 import pytest
-import rtg  # noqa: F401  (registers the environments)
+import rtg
 from gymnasium.utils.env_checker import check_env as check_gymnasium
 from rtg.env import PushEnv
 from stable_baselines3.common.env_checker import check_env as check_sb3
@@ -28,6 +28,12 @@ def test_gymnasium_and_sb3_find_nothing_to_complain_about() -> None:
         env = gymnasium.make("RTG/Gathering-v0", render_mode="rgb_array").unwrapped
         check_gymnasium(env)
         check_sb3(env)
+
+
+@pytest.mark.parametrize("name", rtg.ENVIRONMENTS)
+def test_every_shipped_task_is_registered(name: str) -> None:
+    task = gymnasium.make(name).unwrapped.task
+    assert task.name == rtg.ENVIRONMENTS[name]
 
 
 def test_the_seed_decides_all() -> None:

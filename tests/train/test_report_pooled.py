@@ -6,7 +6,7 @@ from rtg.report_files import write_report
 
 POOLED = "## All tasks together"
 GOOD, BAD = [0.2, 0.8, 0.96], [0.0, 0.5, 0.6, 0.7]
-OF_RIVALS = "no more to go on from either.\n\n"
+OF_RIVALS = "the learner has as much to go on.\n\n"
 
 
 def report(folder, courses):

@@ -2,4 +2,15 @@
 
 from gymnasium.envs.registration import register
 
-register(id="RTG/Gathering-v0", entry_point="rtg.env:PushEnv")
+from rtg import paths
+
+ENVIRONMENTS = {
+    "RTG/Gathering-v0": "gathering",
+    "RTG/GatheringHard-v0": "gathering_hard",
+    "RTG/Sorting-v0": "sorting",
+    "RTG/SortingHard-v0": "sorting_hard",
+    "RTG/ArtManip-v0": "art_manip",
+}
+
+for _id, _task in ENVIRONMENTS.items():
+    register(_id, "rtg.env:PushEnv", kwargs={"config": paths.CONFIG / f"{_task}.yaml"})

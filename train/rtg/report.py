@@ -37,8 +37,8 @@ REMARKS = "remarks.md"  # beside grid.json
 _RIVALS = f"""\
 Methods that end no worse than `{REFERENCE}` on a task (`{WIDER}` aside), with their success, the
 thousands of interactions to their first evaluation at 0.95, and the success of the plans in their
-data, before anything is learned (tree policy): where that is alike, their data cover the task as
-well, and the learner has no more to go on from either."""
+data, before anything is learned (tree policy). Where that is alike their data cover the task
+alike, and the learner has as much to go on."""
 _RUNTIME = """\
 CPU time per reverse solve that was not pruned, and per push of the simulator; how many solves and
 pushes, the share of the solves that converged, iterations of those that moved an object;
@@ -50,7 +50,7 @@ of the plans in the data from jittered starts, those of trees and those found fo
 episodes), and in how many pushes; **reachable**: transitions from which stored ones lead to
 success; **start region**: transitions that begin there, of roll-outs and mended episodes above all;
 **of trees**: those of steps and chains found backwards; **depth**: pushes of the shortest plan of a
-tree from there."""
+tree from there, among the states that its beam kept."""
 
 
 def _listed(found: Iterable[str]) -> str:
