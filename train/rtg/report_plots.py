@@ -112,15 +112,17 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
             plt.Line2D([], [], color=styles[label][0], ls=styles[label][1], lw=2) for label in drawn
         ]
         shared, names = split_names(list(drawn))
-        seeds = [len(runs) for runs in drawn.values()]
-        words = [f"{name} ({count})" for name, count in zip(names, seeds, strict=True)]
+        words = [
+            f"{name}: {np.mean([run.summary['success_rate'] for run in runs]):.2f} ({len(runs)})"
+            for name, runs in zip(names, drawn.values(), strict=True)
+        ]
         figure.legend(
             handles,
             words,
             loc="outside lower left",
             ncols=4,
             frameon=False,
-            title=f"{shared or 'method'} (seeds)",
+            title=f"{shared or 'method'}: final success (seeds)",
         )
         title = f"{task}: mean ± standard deviation of the seeds, a dot where the last one stopped"
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
