@@ -31,7 +31,7 @@ def test_a_line_is_the_mean_of_the_seeds_of_which_one_may_have_ended_early(tmp_p
     assert np.allclose(lines[1].get_ydata(), [0.1, 0.7, 0.8])
     assert len(axis.collections) == 1, "a single seed has no spread"
     words = [text.get_text() for text in figures[0].legends[0].get_texts()]
-    assert words == ["dqn (1)", "ddqn_rtg (2)"]
+    assert words == ["dqn: 0.10 (1)", "ddqn_rtg: 0.80 (2)"]
     assert lines[0].get_color() != lines[1].get_color()
 
 
