@@ -12,6 +12,23 @@
 
 namespace rtg::testing {
 
+/// All from the nominal start, no roll-outs. Goal states lie at any angles.
+inline SearchConfig trees_only(int transitions, int depth) {
+  SearchConfig config;
+  config.transitions = transitions;
+  config.explored = 1.0;
+  config.rollout_share = 0.0;
+  config.breadth = 8;
+  config.depth = depth;
+  config.turn_tolerance = 10.0;
+  config.twins = 0;
+  config.mended = 0.0;
+  config.chain_share = 0.0;
+  config.target_jitter = 0.0;
+  config.evaluation_starts = 7;
+  return config;
+}
+
 /// Gathering with a script for what reverse solves find and what pushes do, and notes of all that
 /// was asked for. States are those of the start with the robot, or the first object, elsewhere.
 struct ScriptedWorld {

@@ -167,14 +167,18 @@ def test_made_again_all_files_are_the_same(folder, tmp_path):
         assert path.read_bytes() == (folder / path.name).read_bytes(), path.name
 
 
+def assert_named_and_report_stays(runs, path, words):
+    before = {p.name: p.read_bytes() for p in runs.iterdir() if p.is_file()}
+    with pytest.raises(UserError, match=re.escape(f"{path}:") + f".*{words}"):
+        write_report(runs, runs)
+    assert {p.name: p.read_bytes() for p in runs.iterdir() if p.is_file()} == before
+
+
 def test_remarks_that_are_no_text_are_named_and_the_report_before_stays(folder, tmp_path):
     runs = tmp_path / "runs"
     shutil.copytree(folder, runs)
     (runs / "remarks.md").write_bytes(b"\xff\xfe")
-    before = {p.name: p.read_bytes() for p in runs.iterdir() if p.is_file()}
-    with pytest.raises(UserError, match=re.escape(f"{runs / 'remarks.md'}: ") + ".*legal: text"):
-        write_report(runs, runs)
-    assert {p.name: p.read_bytes() for p in runs.iterdir() if p.is_file()} == before
+    assert_named_and_report_stays(runs, runs / "remarks.md", "legal: text")
 
 
 def test_a_picture_that_no_run_stands_behind_does_not_stay(folder, tmp_path):
@@ -219,10 +223,7 @@ def test_a_damaged_file_is_named_and_the_report_before_stays(folder, tmp_path, n
     text, words = DAMAGED[name]
     path = runs / CELLS[0].name / name
     path.write_text(text)
-    before = {p.name: p.read_bytes() for p in runs.iterdir() if p.is_file()}
-    with pytest.raises(UserError, match=re.escape(f"{path}:") + f".*{words}"):
-        write_report(runs, runs)
-    assert {p.name: p.read_bytes() for p in runs.iterdir() if p.is_file()} == before
+    assert_named_and_report_stays(runs, path, words)
 
 
 def test_replay_gaps_of_another_method_are_drawn_where_the_reference_has_none(tmp_path):

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from rtg import plots
 from rtg.estimates import carried_forward
 from rtg.methods import METHODS
+from rtg.report_tables import mean_success
 from rtg.run_results import Comparison, RunResult
 
 Floats = NDArray[np.float64]
@@ -113,7 +114,7 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
         ]
         shared, names = split_names(list(drawn))
         words = [
-            f"{name}: {np.mean([run.summary['success_rate'] for run in runs]):.2f} ({len(runs)})"
+            f"{name}: {mean_success(runs):.2f} ({len(runs)})"
             for name, runs in zip(names, drawn.values(), strict=True)
         ]
         figure.legend(

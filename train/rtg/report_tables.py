@@ -158,13 +158,14 @@ def rivals(comparison: Comparison) -> str:
             if label == REFERENCE or _is_wider(label) or not (done and reference):
                 continue
             compared = True
-            if _mean_success(done) >= _mean_success(reference):
+            if mean_success(done) >= mean_success(reference):
                 what = f"{_course(done)}; `{REFERENCE}`: {_course(reference)}"
                 lines.append(f"- {task}, `{label}`: {what}")
     return "\n".join(lines) or ("None." if compared else "Nothing to compare yet.")
 
 
-def _mean_success(runs: Sequence[RunResult]) -> float:
+def mean_success(runs: Sequence[RunResult]) -> float:
+    """Of the final greedy policies."""
     return estimates.mean_std([run.summary["success_rate"] for run in runs])[0]
 
 

@@ -11,6 +11,7 @@ namespace rtg {
 namespace {
 
 using testing::ScriptedWorld;
+using testing::trees_only;
 
 constexpr int kFirst = 34, kLast = 36;  // actions; the robot pushes away from all objects
 constexpr int kWave = 50;               // episodes
@@ -18,20 +19,10 @@ constexpr double kJitter = 0.1;         // of their starts [m]
 
 /// Enough roll-outs to fill what trees and one wave of mended episodes leave.
 SearchConfig one_wave() {
-  SearchConfig config;
-  config.transitions = 4 * kWave;
-  config.explored = 1.0;
+  SearchConfig config = trees_only(4 * kWave, 1);
   config.mended = 0.25;
-  config.rollout_share = 0.0;
   config.rollout_jitter = kJitter;
   config.rollout_noise = 0.0;
-  config.breadth = 8;
-  config.depth = 1;
-  config.turn_tolerance = 10.0;
-  config.twins = 0;
-  config.chain_share = 0.0;
-  config.target_jitter = 0.0;
-  config.evaluation_starts = 7;
   return config;
 }
 

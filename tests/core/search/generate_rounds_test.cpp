@@ -10,26 +10,10 @@ namespace rtg {
 namespace {
 
 using testing::ScriptedWorld;
+using testing::trees_only;
 
 // Actions; the robot pushes away from all objects.
 constexpr int kFirst = 34, kLast = 36, kOther = 38;
-
-/// All from the nominal start, no roll-outs. Goal states lie at any angles.
-SearchConfig trees_only(int transitions, int depth) {
-  SearchConfig config;
-  config.transitions = transitions;
-  config.explored = 1.0;
-  config.rollout_share = 0.0;
-  config.breadth = 8;
-  config.depth = depth;
-  config.turn_tolerance = 10.0;
-  config.twins = 0;
-  config.mended = 0.0;
-  config.chain_share = 0.0;
-  config.target_jitter = 0.0;
-  config.evaluation_starts = 7;
-  return config;
-}
 
 /// Two steps lead from the start to success; the first one ends `miss` beside what was solved for.
 /// Near that end there begins another step, which is of no use there.
