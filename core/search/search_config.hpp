@@ -39,11 +39,11 @@ struct SearchConfig {
   int patience = 4;                // layers without a better node that end a round
   double target_jitter = 0.25;     // trees aim at the start with objects moved by up to ± this [m]
   double chain_share = 0.1;        // of the steps found from chains replayed end to end
-  double mended = 2.0;           // steps found by mending failed episodes per one of theirs stored
-  double rollout_jitter = 0.25;  // roll-outs start with objects moved by up to ± this [m]
-  double rollout_noise = 0.1;    // share of their actions replaced by a neighbouring heading
-  bool randomise = false;        // targets, roll-outs, judgement: ± task.randomisation at least
-  int evaluation_starts = 100;   // episodes behind tree_policy_success
+  double mended = 2.0;             // steps of mended and solved episodes per one of theirs stored
+  double rollout_jitter = 0.25;    // roll-outs start with objects moved by up to ± this [m]
+  double rollout_noise = 0.1;      // share of their actions replaced by a neighbouring heading
+  bool randomise = false;          // targets, roll-outs, judgement: ± task.randomisation at least
+  int evaluation_starts = 100;     // episodes behind tree_policy_success
 
   template <class Visitor>
   void visit(Visitor& v) {
@@ -74,7 +74,8 @@ struct SearchConfig {
     v.integer("patience", patience, 1, 1000, "layers without a better node that end a round");
     v.number("target_jitter", target_jitter, 0.0, 10.0, "of the start layout a tree aims at [m]");
     v.number("chain_share", chain_share, 0.0, 0.95, "share of the steps found from whole chains");
-    v.number("mended", mended, 0.0, 1e6, "steps found by mending failed episodes per one stored");
+    v.number("mended", mended, 0.0, 1e6,
+             "steps of episodes, failed ones mended, found per one stored");
     v.number("rollout_jitter", rollout_jitter, 0.0, 10.0, "of the starts of roll-outs [m]");
     v.number("rollout_noise", rollout_noise, 0.0, 1.0, "share of roll-out actions disturbed");
     v.flag("randomise", randomise, "targets, roll-outs and judgement all over task.randomisation");

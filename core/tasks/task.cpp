@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -29,7 +30,10 @@ std::optional<Poses> draw_start(const Task& task, double amplitude, Rng& rng) {
   }
   poses = with_closed_joints(task.scene, std::move(poses));
   std::transform(poses.begin(), poses.end(), poses.begin(), to_single);
-  if (first_overlap(task.scene, poses, kStartClearance) || succeeded(task, poses))
+  const bool within = std::ranges::all_of(
+      std::views::iota(std::size_t{1}, poses.size()),
+      [&](std::size_t i) { return !movable_object(task, i) || in_arena(poses[i], task.push); });
+  if (!within || first_overlap(task.scene, poses, kStartClearance) || succeeded(task, poses))
     return std::nullopt;
   return poses;
 }
@@ -85,7 +89,7 @@ int observation_size(const Task& task) {
 Poses jittered_start(const Task& task, double amplitude, Rng& rng) {
   for (int attempt = 0; attempt < kAttempts; ++attempt)
     if (std::optional<Poses> poses = draw_start(task, amplitude, rng)) return *std::move(poses);
-  throw std::invalid_argument("no start without overlap among " + std::to_string(kAttempts) +
+  throw std::invalid_argument("no legal start among " + std::to_string(kAttempts) +
                               " draws with jitter " + std::to_string(amplitude));
 }
 

@@ -43,7 +43,7 @@ void check_jitters(const RtgConfig& config, const ConfigNode& root) {
       throw ConfigError(
           origin_of(root, section, key), std::string(section) + '.' + key,
           "with objects moved by +-" + number_text(amplitude) +
-              " m hardly a start is free of overlaps, or short of the goal",
+              " m hardly a start is free of overlaps, within the arena and short of the goal",
           "up to " + number_text(legal_amplitude(config.task, amplitude)) + " with these bodies");
 }
 

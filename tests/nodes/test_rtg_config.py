@@ -87,7 +87,9 @@ WALLS = """\
     - {name: above, kind: wall, fixed: true, shape: {box: [1, 0.2]}, start: [3, 0.63, 0]}
     - {name: below, kind: wall, fixed: true, shape: {box: [1, 0.2]}, start: [3, -0.63, 0]}
 """
-HARDLY = "m hardly a start is free of overlaps, or short of the goal; legal: up to"
+HARDLY = (
+    "m hardly a start is free of overlaps, within the arena and short of the goal; legal: up to"
+)
 
 
 def test_text_must_be_utf8(file: Path, tmp_path: Path) -> None:
@@ -125,6 +127,15 @@ def test_jitters_must_leave_room_for_starts(tmp_path: Path) -> None:
         assert says(*legal, "search.rollout_jitter=0.02", last)[1].startswith(
             f"--set {last}: key '{key}': with objects moved by +-0.4 m"
         )
+
+
+def test_jitters_must_keep_objects_in_the_arena() -> None:
+    """Of six boxes moved by up to 10 m, hardly ever all are within 7 m."""
+    task, wide = paths.CONFIG / "sorting_hard.yaml", "task.randomisation=10"
+    assert rtg_config(task, "--set", "task.push.arena=7", "--check").returncode == 0
+    done = rtg_config(task, "--set", "task.push.arena=7", "--set", wide, "--check")
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"--set {wide}: key 'task.randomisation': with objects moved by")
 
 
 def test_of_several_settings_the_one_that_made_it_wrong_is_named(file: Path) -> None:

@@ -34,8 +34,14 @@ def test_data_found_forwards_are_left_out_one_by_one_and_together():
     mended, roll_outs = "search.mended=0", "search.rollout_share=0"
     assert ablations(FILE, [])[:4] == [(), (mended,), (roll_outs,), (mended, roll_outs)]
     assert ablations(FILE, [Override("", mended)])[1] == (roll_outs,)
-    for words in ablations(FILE, [Override("", "run.method=her")]):
-        assert not {mended, roll_outs} & set(words)
+    for method in ("her", "ddqn_random"):  # without data, without trees
+        for words in ablations(FILE, [Override("", f"run.method={method}")]):
+            assert not {mended, roll_outs} & set(words)
+
+
+def test_of_the_paper_nothing_is_taken_back():
+    found = ablations(FILE, [Override("", PAPER)])
+    assert all(word.startswith("search.") for settings in found for word in settings)
 
 
 def test_what_is_set_for_all_is_no_departure():

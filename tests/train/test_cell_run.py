@@ -166,6 +166,17 @@ def test_methods_that_cannot_be_compared_are_refused(words, more, what):
     assert not rtg.begun
 
 
+@pytest.mark.parametrize(
+    "sweep", ["task.push.stride=1.5,2.0", "task.goal.0.disc.radius=2.0,2.5", "task.horizon=30,60"]
+)
+def test_a_sweep_of_the_task_goes_on(words, sweep):
+    alone = [word.replace("ddqn_naive,", "") for word in words]
+    for run in make_ready(parse([*alone, "--sweep", sweep])):
+        begin(run)
+    runs = make_ready(parse([*alone, "--sweep", sweep]))
+    assert len(runs) == 2 and all(run.begun for run in runs)
+
+
 def test_a_folder_of_another_kind_is_refused(words):
     run = make_ready(parse(words))[0]
     run.folder.mkdir(parents=True)

@@ -182,10 +182,12 @@ def test_remarks_that_are_no_text_are_named_and_the_report_before_stays(folder, 
 
 
 def test_a_picture_that_no_run_stands_behind_does_not_stay(folder, tmp_path):
-    (tmp_path / "curves_gone.png").write_bytes(b"old")
-    (tmp_path / "mine.png").write_bytes(b"mine")
+    for name in ("curves_gone.png", "curves_mine.png", "mine.png"):
+        (tmp_path / name).write_bytes(b"old")
+    (tmp_path / "report.md").write_text("![Learning curves](curves_gone.png) ![](mine.png)")
     write_report(folder, tmp_path)
-    assert not (tmp_path / "curves_gone.png").exists() and (tmp_path / "mine.png").exists()
+    assert not (tmp_path / "curves_gone.png").exists()
+    assert (tmp_path / "curves_mine.png").exists() and (tmp_path / "mine.png").exists()
 
 
 def test_a_comparison_without_a_result_has_a_report_too(tmp_path):

@@ -23,20 +23,36 @@ def test_the_pictures_of_an_episode_say_how_it_ended_and_whose_it_is(
     assert results.episode_title("gathering", actions, success, trained) == title
 
 
-def test_a_run_that_was_never_evaluated_ends_without_a_curve(tmp_path):
-    """Resumed with a budget below what it had used, before the first evaluation."""
+@pytest.fixture
+def values(tmp_path):
+    """Of a run in the folder that has learned, though it was never evaluated on the way."""
     args = run_args.parse(["gathering", "--method", "ddqn"])
     file = tmp_path / "config.yaml"
     file.write_text(effective_config.canonical(args.file, args.overrides))
     (tmp_path / "progress.csv").write_text("interactions,success_rate\n")
+    (tmp_path / "training.json").write_text("{}")
     config = _core.Config.from_file(file)
-    poses = config.task.start[None]
-    np.savez(tmp_path / "best_episode.npz", poses=poses, success=False)
-    values = json.loads(config.json)
+    np.savez(tmp_path / "best_episode.npz", poses=config.task.start[None], success=False)
+    return json.loads(config.json)
+
+
+def pictures(folder):
+    return {path.name for path in folder.iterdir() if path.suffix in {".png", ".gif"}}
+
+
+def test_a_run_that_was_never_evaluated_ends_without_a_curve(tmp_path, values):
+    """Resumed with a budget below what it had used, before the first evaluation."""
     plan = RunPlan(tmp_path, "x", values, train=True, resume=True, notes=())
     assert results.finish(plan, {})["method"] == "ddqn"
-    pictures = {path.name for path in tmp_path.iterdir() if path.suffix in {".png", ".gif"}}
-    assert pictures == {"episode.png", "episode.gif"}
+    assert pictures(tmp_path) == {"episode.png", "episode.gif"}
+
+
+def test_the_episode_of_a_learner_stays_when_only_data_are_made(tmp_path, values):
+    learned = (tmp_path / "best_episode.npz").read_bytes()
+    plan = RunPlan(tmp_path, "x", values, train=False, resume=True, notes=())
+    results.finish(plan, {})
+    assert (tmp_path / "best_episode.npz").read_bytes() == learned
+    assert pictures(tmp_path) == {"episode.png", "episode.gif"}
 
 
 @pytest.mark.parametrize(("success", "told"), [(0.0, True), (0.05, True), (0.6, False)])

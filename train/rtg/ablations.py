@@ -33,9 +33,11 @@ def ablations(file: Path, common: Sequence[Override]) -> list[Settings]:
     ours, search = values["train"], values["search"]
     paper = effective_config.values(file, [Override(f"--set {PAPER}", PAPER), *common])["train"]
     alike = _settings(_ALIKE, ours)
-    kept = [key for key in _FORWARDS if ours["offline"] and search[key]]
+    searched = ours["offline"] and search["reverse"] != "random"
+    kept = [key for key in _FORWARDS if searched and search[key]]
     data = [tuple(f"search.{key}=0" for key in keys) for keys in _subsets(kept)]
-    return [(), *data, *departures(ours, paper), (PAPER, *alike)]
+    as_paper = [] if ours["preset"] == "paper" else [(PAPER, *alike)]
+    return [(), *data, *departures(ours, paper), *as_paper]
 
 
 def departures(ours: dict[str, Any], paper: dict[str, Any]) -> list[Settings]:

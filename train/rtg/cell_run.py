@@ -185,8 +185,9 @@ def _check_methods(folder: Path, config: dict[str, Any]) -> None:
 
 
 def _swept(label: str) -> set[str]:
-    """The keys whose values a label names, or decides."""
-    found = {setting.partition("=")[0] for setting in label.split("@")[1:]}
+    """The keys `section.name` in which a label names values, or which it decides."""
+    paths = (setting.partition("=")[0] for setting in label.split("@")[1:])
+    found = {".".join(path.split(".")[:2]) for path in paths}
     of_preset = {f"train.{key}" for key in _ALIKE} if "train.preset" in found else set()
     return found | of_preset
 

@@ -16,7 +16,6 @@ PAPER: Colour = (252, 251, 248)
 INK: Colour = (43, 48, 58)
 FAINT: Colour = (222, 220, 213)
 ROBOT: Colour = (62, 70, 86)
-WALL: Colour = (178, 176, 170)
 GOAL: Colour = (92, 160, 112)
 TRAIL: Colour = (150, 156, 168)
 KINDS: tuple[Colour, ...] = (

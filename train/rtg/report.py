@@ -47,10 +47,10 @@ _DATA = """\
 **replay gap**: how far the replay of a reverse step ends from where it began, over all candidates
 replayed; **contact share**: of the transitions, those that move an object; **tree policy**: success
 of the plans in the data from jittered starts, those of trees and those found forwards (mended
-episodes), and in how many pushes; **reachable**: transitions from which stored ones lead to
-success; **start region**: transitions that begin there, of roll-outs and mended episodes above all;
-**of trees**: those of steps and chains found backwards; **depth**: pushes of the shortest plan of a
-tree from there, among the states that its beam kept."""
+episodes), and in how many pushes, failures included; **reachable**: transitions from which stored
+ones lead to success; **start region**: transitions that begin there, of roll-outs and mended
+episodes above all; **of trees**: those of steps and chains found backwards; **depth**: pushes of
+the shortest plan of a tree from there, among the states that its beam kept."""
 
 
 def _listed(found: Iterable[str]) -> str:

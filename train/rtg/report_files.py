@@ -42,9 +42,7 @@ def write_report(runs: Path, out: Path) -> Path:
 
 
 def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | None]) -> None:
-    for pattern in _PICTURES:  # also those of tasks and sweeps that are no longer there
-        for picture in out.glob(pattern):
-            picture.unlink()
+    _remove_pictures(out)
     gaps = {}
     for task in comparison.tasks:
         done = [run for run in comparison.all_done() if run.cell.task == task]
@@ -58,6 +56,15 @@ def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | No
             gaps[task] = replayed
     if gaps:
         report_plots.replay_gaps(out / "replay_gap.png", gaps)
+
+
+def _remove_pictures(out: Path) -> None:
+    """Those of the page that lies there, also of tasks and sweeps that are no more."""
+    page = out / "report.md"
+    text = page.read_text(errors="replace") if page.is_file() else ""
+    for picture in (path for pattern in _PICTURES for path in out.glob(pattern)):
+        if f"({picture.name})" in text:
+            picture.unlink()
 
 
 def _of_best_method(done: Sequence[RunResult]) -> list[RunResult]:

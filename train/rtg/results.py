@@ -41,11 +41,16 @@ def _draw_generation(plan: RunPlan, task: _core.Task) -> None:
     plots.coverage(picture, plan.title, task, poses, depth)
 
 
+def _trained(plan: RunPlan) -> bool:
+    """Now, or before a `--resume --no-train`."""
+    return plan.train or (plan.folder / "training.json").is_file()
+
+
 def _episode(plan: RunPlan, task: _core.Task) -> Floats | None:
     """States of the learner's best evaluation episode; without a learner, of the data's best, which
     it writes to the same file."""
     path = plan.folder / "best_episode.npz"
-    if plan.train:
+    if _trained(plan):
         with np.load(path) as file:
             poses: Floats = file["poses"]
             return poses
@@ -66,7 +71,7 @@ def _draw_episode(plan: RunPlan, task: _core.Task) -> None:
     poses = _episode(plan, task)
     if poses is not None:
         success = bool(task.succeeded(poses[-1:])[0])
-        title = episode_title(task.name, len(poses) - 1, success, plan.train)
+        title = episode_title(task.name, len(poses) - 1, success, _trained(plan))
         episode_pictures.strip(plan.folder / "episode.png", task, poses, success, title)
         episode_pictures.film(plan.folder / "episode.gif", task, poses, success, title)
 

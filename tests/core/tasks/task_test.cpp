@@ -87,6 +87,14 @@ TEST(Task, JitteredStartsStayWithinTheAmplitudeAndFreeOfOverlap) {
   EXPECT_GT(widest, 0.45);
 }
 
+// Moved by up to 6 m, a box leaves the arena of 8 m in most draws.
+TEST(Task, JitteredStartsKeepObjectsInTheArena) {
+  const Task task = gathering();
+  Rng rng(7);
+  for (int k = 0; k < 100; ++k)
+    for (const Pose& pose : jittered_start(task, 6.0, rng)) EXPECT_TRUE(in_arena(pose, task.push));
+}
+
 // The second box stands 3.461 m from the centre: a quarter of the states within 0.5 m of the start
 // are solved.
 TEST(Task, JitteredStartsAreNeverInTheGoal) {
