@@ -40,6 +40,7 @@ def finished(
     gaps = np.exp(rng.normal(-5.0, 1.0, size=500)).tolist()
     summary = {
         "success_rate": course[-1],
+        "episode_length_mean": 60.0 - 40.0 * course[-1],
         "rollout_success": 0.9 * course[-1],
         "interactions": 5000 * len(course),
         "transitions": 120_000,

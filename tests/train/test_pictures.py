@@ -13,6 +13,7 @@ from rtg.draw import (
     KINDS,
     PAPER,
     ROBOT,
+    WALL,
     Canvas,
     arena_window,
     draw_joints,
@@ -45,6 +46,16 @@ def test_every_body_stands_where_its_pose_says(window):
     assert pixel(picture, 4.5, 4.0, arena_window(TASK)) == PAPER
 
 
+def test_walls_have_a_colour_of_their_own():
+    """And take none of those of the objects."""
+    task = _core.Config.from_file(paths.CONFIG / "examples" / "door.yaml").task
+    assert task.names[1:] == ["wall", "door", "crate"] and task.fixed == [False, True, False, False]
+    picture, window = state_image(task, task.start[None]), arena_window(task)
+    for body, colour in zip((1, 2, 3), (WALL, KINDS[0], KINDS[1]), strict=True):
+        x, y, _ = task.start[body]
+        assert pixel(picture, x - 0.3, y, window) == colour
+
+
 def test_a_reached_goal_is_stronger():
     window = arena_window(TASK)
     plain, strong = (
@@ -58,7 +69,8 @@ def test_a_disc_on_a_half_plane_is_seen_in_any_order():
     every = {"subject": "every"}
     disc = SimpleNamespace(**every, kind="box", region="disc", centre=(4.0, 4.0), radius=1.0)
     plane = SimpleNamespace(**every, kind="*", region="half_plane", normal=(-1.0, 0.0), offset=0.0)
-    names = ("kinds", "names", "shapes", "joints", "start", "arena", "joints_reached", "centroids")
+    names = ("kinds", "names", "fixed", "shapes", "joints", "start", "arena")
+    names += ("joints_reached", "centroids")
     shown = {name: getattr(TASK, name) for name in names}
     pictures = [
         state_image(SimpleNamespace(**shown, goal=goal), SOLVED[None])

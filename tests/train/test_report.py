@@ -9,7 +9,7 @@ import pytest
 from comparison_samples import finished, table_row, write_grid
 from PIL import Image
 from rtg import cli
-from rtg.cells import Cell
+from rtg.cells import Cell, Grid
 from rtg.errors import UserError
 from rtg.report_files import write_report
 from rtg.report_tables import seeds, spread
@@ -51,11 +51,13 @@ def page(folder):
 
 
 def test_a_row_has_the_figures_of_its_seeds(page):
+    to_bars = ["10 ± 0", "15 ± 0", "15 ± 0"]
     figures = ["1200 ± 0", "120 ± 0", "50 ± 0", "100 ± 0"]
-    good = ["1-2", "0.96 ± 0.00", "0.86 ± 0.00", "0.20 ± 0.00", "10 ± 0", "15 ± 0", "15 ± 0"]
-    assert table_row(page, "ddqn_rtg") == [*good, *figures]
-    bad = ["1-2", "0.70 ± 0.00", "0.63 ± 0.00", "0.00 ± 0.00", "20 ± 0", "never", "20 ± 0"]
-    assert table_row(page, "ddqn_naive") == [*bad, *figures]
+    good = ["1-2", "0.96 ± 0.00", "21.6 ± 0.0", "0.86 ± 0.00", "0.20 ± 0.00", *to_bars, *figures]
+    assert table_row(page, "ddqn_rtg") == good
+    to_bars = ["20 ± 0", "never", "20 ± 0"]
+    bad = ["1-2", "0.70 ± 0.00", "32.0 ± 0.0", "0.63 ± 0.00", "0.00 ± 0.00", *to_bars, *figures]
+    assert table_row(page, "ddqn_naive") == bad
 
 
 def test_runs_without_a_result_say_why(page):
@@ -188,6 +190,14 @@ def test_a_picture_that_no_run_stands_behind_does_not_stay(folder, tmp_path):
     write_report(folder, tmp_path)
     assert not (tmp_path / "curves_gone.png").exists()
     assert (tmp_path / "curves_mine.png").exists() and (tmp_path / "mine.png").exists()
+
+
+def test_small_budgets_are_told(page, tmp_path):
+    grid = Grid({}, {})
+    grid.add("./run.sh reproduce --quick", CELLS)
+    grid.write(tmp_path)
+    told = "**Small budgets (`--quick`): "
+    assert told in write_report(tmp_path, tmp_path).read_text() and told not in page
 
 
 def test_a_comparison_without_a_result_has_a_report_too(tmp_path):

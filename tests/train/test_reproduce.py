@@ -1,12 +1,11 @@
 """Runs of a comparison side by side; shell scripts stand in for `rtg run`."""
 
-import fcntl
 import io
 import json
 import shlex
 
 import pytest
-from rtg import cli, effective_config, run_args
+from rtg import cli, effective_config, run_args, run_folder
 from rtg.cell_run import CellRun, make_ready
 from rtg.cells import read_grid
 from rtg.grid_display import PlainGrid
@@ -104,8 +103,7 @@ def test_a_run_that_is_stopped_has_not_failed(comparison, tmp_path):
 
 
 def test_two_commands_do_not_work_in_one_folder(tmp_path, capsys):
-    with (tmp_path / ".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+    with run_folder.alone(tmp_path, "nobody"):
         assert cli.main(["reproduce", str(TINY), "--out", str(tmp_path)]) == 2
     assert "another reproduce works there" in capsys.readouterr().err
 

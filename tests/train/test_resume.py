@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from rtg import cli, effective_config, multicast, paths, settings
+from rtg import cli, effective_config, multicast, paths, run_folder, settings
 from rtg.run_args import parse
 from rtg.run_plan import make_plan
 
@@ -37,6 +37,16 @@ def test_a_change_of_the_transitions_is_refused_and_leaves_the_run_alone(name, f
     assert cli.main([*words, "--resume", "--out", str(folder)]) == 2
     assert capsys.readouterr().err.startswith(f"rtg: {message}")
     assert [path.name for path in folder.iterdir()] == ["config.yaml"]
+    assert (folder / "config.yaml").read_bytes() == before
+
+
+def test_a_run_at_work_is_refused_and_left_alone(folder, capsys):
+    before = (folder / "config.yaml").read_bytes()
+    with run_folder.alone(folder, "nobody"):
+        assert cli.main(["--resume", "--out", str(folder), "--interactions", "9"]) == 2
+    assert (
+        capsys.readouterr().err == f"rtg: --out: {folder}: another run works there; wait for it\n"
+    )
     assert (folder / "config.yaml").read_bytes() == before
 
 

@@ -39,6 +39,8 @@ def test_a_path_is_a_task_file(tmp_path):
     ("words", "message"),
     [
         (["sortign"], "sortign: no task of that name; legal: art_manip, gathering, "),
+        (["reprodcue", "gathering"], "reprodcue: no task of that name; legal: art_manip, "),
+        ([""], "'': no such task file; legal: art_manip, gathering, "),
         (["nowhere/mine.yaml"], "nowhere/mine.yaml: no such task file; legal: art_manip, "),
         (["config"], "config: no such task file; legal: art_manip, gathering, "),
         (["--worker", "3"], "unrecognized arguments: --worker; legal: ./run.sh [-h] "),

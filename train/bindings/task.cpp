@@ -36,6 +36,12 @@ std::vector<std::string> kinds(const Task& task) {
   return out;
 }
 
+std::vector<bool> fixed(const Task& task) {
+  std::vector<bool> out;
+  for (const Body& body : task.scene.bodies) out.push_back(body.fixed);
+  return out;
+}
+
 nb::ndarray<nb::numpy, float> observations(const Task& task, const StateArray& states) {
   check_bodies(states, task.scene.size());
   const auto size = static_cast<std::size_t>(observation_size(task));
@@ -154,6 +160,7 @@ void bind_task(nb::module_& module) {
       .def_prop_ro("shapes", &shapes)
       .def_prop_ro("names", &names)
       .def_prop_ro("kinds", &kinds)
+      .def_prop_ro("fixed", &fixed)
       .def_prop_ro("joints", &joints)
       .def_ro("goal", &Task::goal)
       .def_prop_ro("arena", [](const Task& task) { return task.push.arena; })

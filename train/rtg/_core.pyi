@@ -48,6 +48,9 @@ class Task:
     def kinds(self) -> list[str]:
         """The class of each body."""
     @property
+    def fixed(self) -> list[bool]:
+        """Whether a body stays where it is."""
+    @property
     def joints(self) -> list[tuple[int, int, NDArray[np.float64]]]:
         """(parent, child, pin in the frame of the parent [2])."""
     @property

@@ -15,6 +15,7 @@ Colour = tuple[int, int, int]
 PAPER: Colour = (252, 251, 248)
 INK: Colour = (43, 48, 58)
 FAINT: Colour = (222, 220, 213)
+WALL: Colour = (178, 176, 170)
 ROBOT: Colour = (62, 70, 86)
 GOAL: Colour = (92, 160, 112)
 TRAIL: Colour = (150, 156, 168)
@@ -63,6 +64,8 @@ class TaskLike(Protocol):
     @property
     def kinds(self) -> Sequence[str]: ...
     @property
+    def fixed(self) -> Sequence[bool]: ...
+    @property
     def joints(self) -> Sequence[tuple[int, int, Floats]]:
         """(parent, child, pin in the frame of the parent)."""
 
@@ -78,10 +81,15 @@ class TaskLike(Protocol):
     def centroids(self, states: Floats) -> Sequence[Floats]: ...
 
 
+def objects(task: TaskLike) -> list[int]:
+    """The bodies that can be pushed; body 0 is the robot."""
+    return [body for body in range(1, len(task.kinds)) if not task.fixed[body]]
+
+
 def kind_colours(task: TaskLike) -> dict[str, Colour]:
-    """A colour per kind of body, in order of first appearance; body 0 is the robot."""
+    """A colour per kind of object, in order of first appearance."""
     colours: dict[str, Colour] = {}
-    for kind in task.kinds[1:]:
+    for kind in (task.kinds[body] for body in objects(task)):
         if kind not in colours:
             colours[kind] = KINDS[len(colours) % len(KINDS)]
     return colours
@@ -207,13 +215,13 @@ def draw_goal(canvas: Canvas, task: TaskLike, reached: bool = False) -> None:
 
 
 def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
-    """All bodies, the robot last and on top. poses [bodies, 3]."""
+    """All bodies, walls first, the robot last and on top. poses [bodies, 3]."""
     colours = kind_colours(task)
-    for body in [*range(1, len(task.kinds)), 0]:
-        colour = ROBOT if body == 0 else colours[task.kinds[body]]
-        xy = outline(task.shapes[body], poses[body])
-        canvas.polygon(xy, colour, edge=INK)
-        if body > 0:
+    walls = [body for body in range(1, len(task.kinds)) if task.fixed[body]]
+    for body in [*walls, *objects(task), 0]:
+        colour = WALL if body in walls else colours[task.kinds[body]] if body else ROBOT
+        canvas.polygon(outline(task.shapes[body], poses[body]), colour, edge=INK)
+        if body > 0 and body not in walls:
             canvas.dot(poses[body][:2], INK, 0.08)
 
 
@@ -234,7 +242,7 @@ def draw_joints(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
 def draw_ghosts(canvas: Canvas, task: TaskLike, before: Floats, poses: Floats) -> None:
     """Outlines of where the objects that moved since `before` came from. [bodies, 3] each"""
     colours = kind_colours(task)
-    for body in range(1, len(task.kinds)):
+    for body in objects(task):
         if np.abs(poses[body] - before[body]).max() > 0.02:
             xy = outline(task.shapes[body], before[body])
             canvas.line(np.vstack([xy, xy[:2]]), colours[task.kinds[body]], 0.06)

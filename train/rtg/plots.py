@@ -19,7 +19,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from rtg import replay_gaps
-from rtg.draw import GOAL, INK, PAPER, ROBOT, TaskLike, circle, kind_colours, outline
+from rtg.draw import GOAL, INK, PAPER, ROBOT, TaskLike, circle, kind_colours, objects, outline
 
 Floats = NDArray[np.float64]
 
@@ -165,18 +165,18 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
 
     poses [N, bodies, 3] and depth [N] are the stored nodes.
     """
-    objects = [body for body in range(1, len(task.kinds))]
-    columns = min(4, len(objects))
-    rows = -(-len(objects) // columns)
+    bodies = objects(task)
+    columns = min(4, len(bodies))
+    rows = -(-len(bodies) // columns)
     order = np.argsort(depth, kind="stable")  # the far ones on top
     with style():
         size = (3.1 * columns + 0.9, 3.1 * rows + 0.5)
         figure, axes = plt.subplots(
             rows, columns, figsize=size, layout="constrained", squeeze=False
         )
-        for axis in axes.flat[len(objects) :]:
+        for axis in axes.flat[len(bodies) :]:
             axis.set_visible(False)
-        for axis, body in zip(axes.flat, objects, strict=False):
+        for axis, body in zip(axes.flat, bodies, strict=False):
             _scene(axis, task, body)
             dots = axis.scatter(
                 poses[order, body, 0],

@@ -16,9 +16,10 @@ from rtg.run_results import Comparison, RunResult
 
 _LEGEND = """\
 Means ± standard deviations over the seeds. **success**: of the final greedy policy from held-out
-starts, objects jittered, that nothing was chosen by; **roll-outs**: of the last 100 training
-episodes from the starts of the task, exploration included; **at ⅓**: greedy success at a third of
-the budget, from other held-out starts, or the final one of a run that had ended by then;
+starts, objects jittered by `task.start_jitter`, that nothing was chosen by; **length**: pushes of
+its episodes, failures included; **roll-outs**: of the last 100 training episodes from the starts of
+the task, exploration included; **at ⅓**: greedy success at a third of the budget, from other
+held-out starts, or the final one of a run that had ended by then;
 **to 0.70**, **to 0.95**: thousand interactions until the first evaluation with that greedy success
 ("2 of 3": so many of the seeds ever); **interactions**, **pushes**, **transitions** in thousands:
 of the learner; of the simulator beside them, for data or starts; generated. Times are wall clock,
@@ -39,6 +40,9 @@ Methods that end no worse than `{REFERENCE}` on a task (`{WIDER}` aside), with t
 thousands of interactions to their first evaluation at 0.95, and the success of the plans in their
 data, before anything is learned (tree policy). Where that is alike their data cover the task
 alike, and the learner has as much to go on."""
+_QUICK = (
+    "**Small budgets (`--quick`): these figures show that everything works and are no results.**"
+)
 _RUNTIME = """\
 CPU time per reverse solve that was not pruned, and per push of the simulator; how many solves and
 pushes, the share of the solves that converged, iterations of those that moved an object;
@@ -158,6 +162,7 @@ def report(folder: Path, grid: Grid, comparison: Comparison, remarks: str) -> st
     parts = [
         "# Results",
         f"Written by `./run.sh plot` from the folders of these runs and `{REMARKS}`.",
+        *([_QUICK] if any("--quick" in command.split() for command in grid.commands) else []),
         _origin(grid, comparison),
         _LEGEND + (f" Not run: {missing}." if missing else ""),
         *(part for task in comparison.tasks for part in _of_task(folder, comparison, task)),

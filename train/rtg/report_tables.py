@@ -70,14 +70,15 @@ def _thousands(value: float | None) -> float | None:
 
 def of_task(comparison: Comparison, task: str) -> str:
     """What every method came to on one task."""
-    head = ["method", "seeds", "success", "roll-outs", "at ⅓", "to 0.70", "to 0.95"]
+    head = ["method", "seeds", "success", "length", "roll-outs", "at ⅓", "to 0.70", "to 0.95"]
     head += ["interactions", "pushes", "transitions", "generation [s]", "training [s]"]
     rows = []
     for label in comparison.labels:
         runs = comparison.row(task, label)
         done = [run.figures() for run in runs if run.done]
-        row = [f"`{label}`", states(runs)]
-        shares = ("success_rate", "rollout_success", "success_at_third")
+        row = [f"`{label}`", states(runs), spread([f["success_rate"] for f in done], ".2f")]
+        row.append(spread([f["episode_length_mean"] for f in done], ".1f"))
+        shares = ("rollout_success", "success_at_third")
         row += [spread([f[name] for f in done], ".2f") for name in shares]
         names = "interactions_to_70", "interactions_to_95", "interactions", "pushes", "transitions"
         for name in names:

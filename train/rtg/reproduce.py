@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
-import fcntl
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
 
-from rtg import together
+from rtg import run_folder, together
 from rtg.cell_run import make_ready
 from rtg.cells import Grid, read_grid
 from rtg.errors import RunError, StoppedError, UserError
@@ -27,7 +25,8 @@ _STAMP = re.compile(r"^\[ *[\d.]+ s\] ")
 def reproduce(args: ReproduceArgs) -> int:
     """Exit status. Raises UserError before anything starts, RunError if it was stopped."""
     runs = make_ready(args)
-    with _alone(args.out):
+    _make(args.out)
+    with run_folder.alone(args.out, "another reproduce"):
         grid = read_grid(args.out)
         grid.add(args.command, args.cells)
         grid.write(args.out)
@@ -41,22 +40,11 @@ def reproduce(args: ReproduceArgs) -> int:
     return 1 if any(row.phase == "failed" for row in rows) else 0
 
 
-@contextlib.contextmanager
-def _alone(folder: Path) -> Iterator[None]:
-    """Makes the folder; no two processes work in it."""
+def _make(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        lock = (folder / ".lock").open("w")
     except OSError as error:
         raise UserError(f"--out: {folder}: {error.strerror}; legal: a folder to write to") from None
-    with lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise UserError(
-                f"--out: {folder}: another reproduce works there; wait for it"
-            ) from None
-        yield
 
 
 def _run_all(args: ReproduceArgs, crew: Crew) -> list[Row]:

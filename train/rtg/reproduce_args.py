@@ -29,6 +29,13 @@ QUICK = (
     "train.checkpoint_every=5000",
 )
 MAX_SEEDS = 1000
+# What a cell decides, with the flag to use.
+DECIDED = {
+    "run.seed": "--seeds",
+    "run.method": "--methods",
+    "run.in_process": "true alone",
+    "run.workers": "1 alone, with --jobs runs at a time",
+}
 QUICK_METHODS = ("ddqn_naive", REFERENCE)
 
 EPILOG = f"""\
@@ -173,6 +180,10 @@ def _cells(args: argparse.Namespace, files: dict[str, Path]) -> tuple[Cell, ...]
 
 
 def _settings(args: argparse.Namespace) -> tuple[str, ...]:
+    """Raises UserError for what other flags decide."""
+    for setting in args.set:
+        if (key := setting.partition("=")[0]) in DECIDED:
+            raise UserError(f"--set {setting}: not of all runs alike; legal: {DECIDED[key]}")
     return (*(QUICK if args.quick else ()), *args.set)
 
 

@@ -6,7 +6,7 @@ import shlex
 import sys
 from typing import Any
 
-from rtg import effective_config
+from rtg import effective_config, run_folder
 from rtg.errors import RunError, StoppedError
 from rtg.progress import Display, display
 from rtg.run_args import RunArgs
@@ -18,7 +18,16 @@ def run(args: RunArgs) -> int:
     if args.print_config:
         print(effective_config.canonical(args.file, args.overrides), end="")
         return 0
+    if args.resume:
+        with run_folder.alone(args.file.parent, "another run"):
+            return _work(make_plan(args))
     plan = make_plan(args)
+    with run_folder.alone(plan.folder, "another run"):
+        return _work(plan)
+
+
+def _work(plan: RunPlan) -> int:
+    """Exit status."""
     from rtg import results  # heavy
 
     with display(sys.stdout) as shown:

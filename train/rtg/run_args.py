@@ -112,7 +112,11 @@ def task_file(task: str, also: str = "") -> Path:
     is_file_name = path.suffix in {".yaml", ".yml"} or path.is_dir()
     wrong = "no such task file" if is_file_name else "no task of that name"
     names = ", ".join(paths.task_names())
-    raise UserError(f"{task}: {wrong}; legal: {names}, the path of a FILE.yaml{also}")
+    raise UserError(f"{task or repr(task)}: {wrong}; legal: {names}, the path of a FILE.yaml{also}")
+
+
+def _task_file(task: str | None) -> Path:
+    return task_file("gathering" if task is None else task, also=", a tool (--help)")
 
 
 def _overrides(args: argparse.Namespace) -> tuple[Override, ...]:
@@ -128,6 +132,8 @@ def _overrides(args: argparse.Namespace) -> tuple[Override, ...]:
 
 def parse(argv: Sequence[str]) -> RunArgs:
     """Raises UserError, or SystemExit(0) after --help."""
+    if argv and not argv[0].startswith("-"):
+        _task_file(argv[0])  # a misspelt tool is named, and not the words behind it
     args = parser().parse_args(argv)
     if args.out == "":
         raise UserError("--out: '' is no folder; legal: the path of one")
@@ -141,7 +147,7 @@ def parse(argv: Sequence[str]) -> RunArgs:
         if not file.is_file():
             raise UserError(f"--resume: {out} holds no run (no config.yaml)")
     else:
-        file = task_file(args.task or "gathering", also=", a tool (--help)")
+        file = _task_file(args.task)
         if out is not None and out.exists() and not out.is_dir():
             raise UserError(f"--out: {out} is no folder; take another")
         if out is not None and out.is_dir() and any(out.iterdir()):

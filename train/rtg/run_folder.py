@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
 import json
 import os
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +48,20 @@ SUMMARY_KEYS = (
 )
 # Samples behind the pictures, too long for a summary.
 _SAMPLES = ("replay_gaps", "nodes")
+
+
+@contextlib.contextmanager
+def alone(folder: Path, other: str) -> Iterator[None]:
+    """No two processes work in the folder, which exists. Raises UserError if `other` does."""
+    directory = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(directory, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise UserError(f"--out: {folder}: {other} works there; wait for it") from None
+        yield
+    finally:
+        os.close(directory)
 
 
 def checkpoint_file(run: Path) -> Path:

@@ -56,7 +56,7 @@ class RunResult:
 
     def figures(self) -> dict[str, Any]:
         """The entry of report.json."""
-        names = ("success_rate", "rollout_success", "interactions")
+        names = ("success_rate", "episode_length_mean", "rollout_success", "interactions")
         more = ("transitions", "generate_wall_s", "train_wall_s")
         return {
             "seed": self.cell.seed,
