@@ -133,6 +133,7 @@ def test_the_numbers_are_there_for_programs(folder):
     assert report["gathering"]["ddqn_naive"][1] == {
         "seed": 2,
         "success_rate": 0.7,
+        "episode_length_mean": 32.0,
         "rollout_success": pytest.approx(0.63),
         "interactions": 20000,
         "success_at_third": 0.0,
