@@ -108,6 +108,7 @@ def test_two_commands_do_not_work_in_one_folder(tmp_path, capsys):
     assert "another reproduce works there" in capsys.readouterr().err
 
 
-def test_a_folder_that_cannot_be_written_is_named(capsys):
-    assert cli.main(["reproduce", str(TINY), "--out", "/proc/rtg"]) == 2
-    assert capsys.readouterr().err.startswith("rtg: --out: /proc/rtg: ")
+@pytest.mark.parametrize("folder", ["/proc/rtg", "/proc"])
+def test_a_folder_that_cannot_be_written_is_named(folder, capsys):
+    assert cli.main(["reproduce", str(TINY), "--out", folder]) == 2
+    assert capsys.readouterr().err.startswith(f"rtg: --out: {folder}: ")

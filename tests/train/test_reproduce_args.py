@@ -84,7 +84,7 @@ def test_the_values_of_a_sweep_may_be_negative():
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--set", "run.seed=3"], "--set run.seed=3: not of all runs alike; legal: --seeds"),
+        (["--set", "run.seed=3"], "--set run.seed=3: reproduce decides it; legal: --seeds"),
         (["gatherin"], "gatherin: no task of that name; legal: art_manip, gathering, "),
         (["gathering", "--methods", "magic"], "--methods magic: no method of that name; legal: "),
         (["--methods", ""], "--methods : no method of that name; legal: "),

@@ -217,12 +217,17 @@ def draw_goal(canvas: Canvas, task: TaskLike, reached: bool = False) -> None:
 def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
     """All bodies, walls first, the robot last and on top. poses [bodies, 3]."""
     colours = kind_colours(task)
-    walls = [body for body in range(1, len(task.kinds)) if task.fixed[body]]
-    for body in [*walls, *objects(task), 0]:
-        colour = WALL if body in walls else colours[task.kinds[body]] if body else ROBOT
+
+    def draw(body: int, colour: Colour) -> None:
         canvas.polygon(outline(task.shapes[body], poses[body]), colour, edge=INK)
-        if body > 0 and body not in walls:
-            canvas.dot(poses[body][:2], INK, 0.08)
+
+    for body in range(1, len(task.kinds)):
+        if task.fixed[body]:
+            draw(body, WALL)
+    for body in objects(task):
+        draw(body, colours[task.kinds[body]])
+        canvas.dot(poses[body][:2], INK, 0.08)
+    draw(0, ROBOT)
 
 
 def draw_joints(canvas: Canvas, task: TaskLike, poses: Floats) -> None:

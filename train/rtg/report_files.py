@@ -31,13 +31,11 @@ def write_report(runs: Path, out: Path) -> Path:
         raise UserError(f"{runs}: holds no comparison (no grid.json); legal: DIR of `reproduce`")
     comparison, remarks = read_comparison(runs, grid), read_remarks(runs)
     episodes = {task: _best_episode(comparison, task) for task in comparison.tasks}
-    try:
+    with run_folder.writing_to(out):
         out.mkdir(parents=True, exist_ok=True)
         _draw(out, comparison, episodes)
         _write_numbers(out, comparison)
         run_folder.write_text(out / "report.md", report(out, grid, comparison, remarks))
-    except OSError as error:
-        raise UserError(f"--out: {out}: {error.strerror}; legal: a folder to write to") from None
     return out / "report.md"
 
 

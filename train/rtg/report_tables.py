@@ -76,10 +76,10 @@ def of_task(comparison: Comparison, task: str) -> str:
     for label in comparison.labels:
         runs = comparison.row(task, label)
         done = [run.figures() for run in runs if run.done]
-        row = [f"`{label}`", states(runs), spread([f["success_rate"] for f in done], ".2f")]
-        row.append(spread([f["episode_length_mean"] for f in done], ".1f"))
-        shares = ("rollout_success", "success_at_third")
-        row += [spread([f[name] for f in done], ".2f") for name in shares]
+        row = [f"`{label}`", states(runs)]
+        for name in ("success_rate", "episode_length_mean", "rollout_success", "success_at_third"):
+            form = ".1f" if name == "episode_length_mean" else ".2f"
+            row.append(spread([f[name] for f in done], form))
         names = "interactions_to_70", "interactions_to_95", "interactions", "pushes", "transitions"
         for name in names:
             values = [_thousands(f[name]) for f in done]

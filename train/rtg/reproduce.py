@@ -25,11 +25,13 @@ _STAMP = re.compile(r"^\[ *[\d.]+ s\] ")
 def reproduce(args: ReproduceArgs) -> int:
     """Exit status. Raises UserError before anything starts, RunError if it was stopped."""
     runs = make_ready(args)
-    _make(args.out)
+    with run_folder.writing_to(args.out):
+        args.out.mkdir(parents=True, exist_ok=True)
     with run_folder.alone(args.out, "another reproduce"):
         grid = read_grid(args.out)
         grid.add(args.command, args.cells)
-        grid.write(args.out)
+        with run_folder.writing_to(args.out):
+            grid.write(args.out)
         for stage in together.stages(runs, args.together):  # what fails there, its run does again
             _run_all(args, Crew(stage, args.jobs))
         rows = _run_all(args, Crew(runs, args.jobs, Failures(grid, args.out)))
@@ -38,13 +40,6 @@ def reproduce(args: ReproduceArgs) -> int:
         report = write_report(args.out, args.out)
     print(f"{counts(rows)}\nreport: {report}")
     return 1 if any(row.phase == "failed" for row in rows) else 0
-
-
-def _make(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"--out: {folder}: {error.strerror}; legal: a folder to write to") from None
 
 
 def _run_all(args: ReproduceArgs, crew: Crew) -> list[Row]:

@@ -33,8 +33,8 @@ MAX_SEEDS = 1000
 DECIDED = {
     "run.seed": "--seeds",
     "run.method": "--methods",
-    "run.in_process": "true alone",
-    "run.workers": "1 alone, with --jobs runs at a time",
+    "run.in_process": "none, every run is in one process",
+    "run.workers": "none, --jobs says how many runs at a time",
 }
 QUICK_METHODS = ("ddqn_naive", REFERENCE)
 
@@ -183,7 +183,7 @@ def _settings(args: argparse.Namespace) -> tuple[str, ...]:
     """Raises UserError for what other flags decide."""
     for setting in args.set:
         if (key := setting.partition("=")[0]) in DECIDED:
-            raise UserError(f"--set {setting}: not of all runs alike; legal: {DECIDED[key]}")
+            raise UserError(f"--set {setting}: reproduce decides it; legal: {DECIDED[key]}")
     return (*(QUICK if args.quick else ()), *args.set)
 
 

@@ -51,9 +51,19 @@ _SAMPLES = ("replay_gaps", "nodes")
 
 
 @contextlib.contextmanager
+def writing_to(folder: Path) -> Iterator[None]:
+    """What the disk refuses is told as a mistake of --out. Raises UserError."""
+    try:
+        yield
+    except OSError as error:
+        raise UserError(f"--out: {folder}: {error.strerror}; legal: a folder to write to") from None
+
+
+@contextlib.contextmanager
 def alone(folder: Path, other: str) -> Iterator[None]:
     """No two processes work in the folder, which exists. Raises UserError if `other` does."""
-    directory = os.open(folder, os.O_RDONLY)
+    with writing_to(folder):
+        directory = os.open(folder, os.O_RDONLY)
     try:
         try:
             fcntl.flock(directory, fcntl.LOCK_EX | fcntl.LOCK_NB)

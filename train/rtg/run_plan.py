@@ -158,11 +158,9 @@ def make_plan(args: RunArgs) -> RunPlan:
         config = effective_config.values(args.file, overrides)
     canonical = effective_config.canonical(args.file, overrides)
     folder = args.out or run_folder.default_path(config["task"]["name"])
-    try:
+    with run_folder.writing_to(folder):
         folder.mkdir(parents=True, exist_ok=True)
         run_folder.write_text(folder / "config.yaml", canonical)
-    except OSError as error:
-        raise UserError(f"--out: {folder}: {error.strerror}; legal: a folder to write to") from None
     name = f"{folder.name}-{secrets.token_hex(4)}"
     plan = RunPlan(folder, name, config, args.train, args.resume, tuple(notes))
     versions.note(folder, versions.generator(folder) if plan.is_generated() else None)
