@@ -74,7 +74,7 @@ Score BeamSearch::layer_score() const {
 
 /// Leaves out, per node, all but the best `free_moves` of the steps that move no object and, per
 /// solve, all but the best `starts` of those that do.
-std::vector<Candidate> BeamSearch::worth_replaying(std::vector<Candidate> all,
+std::vector<Predecessor> BeamSearch::worth_replaying(std::vector<Predecessor> all,
                                                    const Score& score) const {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t k = 0; k < all.size(); ++k) order.emplace_back(score(all[k]), k);
@@ -82,12 +82,12 @@ std::vector<Candidate> BeamSearch::worth_replaying(std::vector<Candidate> all,
   std::unordered_map<int, int> idle, pushing;  // kept so far, per node and per solve
   std::vector<bool> dropped(all.size(), false);
   for (const auto& [value, k] : order) {
-    const Candidate& c = all[k];
+    const Predecessor& c = all[k];
     dropped[k] = c.moved == 0
                      ? ++idle[c.parent] > config_.free_moves
                      : ++pushing[c.parent * task_.push.headings + c.action] > config_.starts;
   }
-  std::vector<Candidate> out;
+  std::vector<Predecessor> out;
   for (std::size_t k = 0; k < all.size(); ++k)
     if (!dropped[k]) out.push_back(std::move(all[k]));
   return out;
@@ -101,15 +101,15 @@ std::vector<BeamSearch::Growth> BeamSearch::grow(const SolveBatch& solve, const 
     const std::vector<Poses>& starts = answers[k].starts;
     stats.count(answers[k], !starts.empty() && objects_moved(starts[0], asked[k].end) > 0);
   }
-  std::vector<Candidate> found = proposals(task_, asked, answers, stats);
-  for (Candidate& c : found)
+  std::vector<Predecessor> found = proposals(task_, asked, answers, stats);
+  for (Predecessor& c : found)
     c.parent = beam_[static_cast<std::size_t>(c.parent / task_.push.headings)];
   const Score score = layer_score();
-  std::vector<Candidate> replayed =
+  std::vector<Predecessor> replayed =
       replay_candidates(task_, worth_replaying(std::move(found), score), replay, stats);
   probe_.measure(replayed, replay, stats);
   std::vector<Growth> out;
-  for (Candidate& c : replayed) {
+  for (Predecessor& c : replayed) {
     stats.gaps.push_back(static_cast<float>(c.gap));
     int depth = nodes_[static_cast<std::size_t>(c.parent)].depth + 1;
     if (succeeded(task_, c.end)) depth = 1;  // by a miss, perhaps
@@ -125,7 +125,7 @@ void BeamSearch::advance(std::span<const Growth> growths, const Score& score) {
   std::vector<BeamEntry> entries;
   std::vector<const Growth*> eligible;
   for (const Growth& g : growths) {
-    const Candidate& c = g.candidate;
+    const Predecessor& c = g.candidate;
     if (c.miss > config_.gap_tolerance || !repeatable(c, config_)) continue;
     eligible.push_back(&g);
     entries.push_back(
@@ -133,7 +133,7 @@ void BeamSearch::advance(std::span<const Growth> growths, const Score& score) {
   }
   beam_.clear();
   for (const std::size_t k : select_beam(entries, config_, rng_, seen_)) {
-    const Candidate& c = eligible[k]->candidate;
+    const Predecessor& c = eligible[k]->candidate;
     beam_.push_back(static_cast<int>(nodes_.size()));
     nodes_.push_back({c.start, c.parent, c.action, eligible[k]->depth});
   }

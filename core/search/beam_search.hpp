@@ -39,7 +39,7 @@ class BeamSearch {
 
   /// A replayed candidate with the node that it came from.
   struct Growth {
-    Candidate candidate;  // parent: index into nodes()
+    Predecessor candidate;  // parent: index into nodes()
     int depth = 0;        // actions to success of its start, if it is expanded further
   };
 
@@ -63,7 +63,7 @@ class BeamSearch {
   void plant(const ReplayBatch& replay, SearchStats& stats);
   std::vector<ReverseJob> jobs() const;
   Score layer_score() const;
-  std::vector<Candidate> worth_replaying(std::vector<Candidate> all, const Score& score) const;
+  std::vector<Predecessor> worth_replaying(std::vector<Predecessor> all, const Score& score) const;
   void advance(std::span<const Growth> growths, const Score& score);
   double distance_left(const Poses& poses) const;
   void note_best();

@@ -121,7 +121,7 @@ void Exploration::note_nodes(std::size_t first) {
 void Exploration::add(std::span<const BeamSearch::Growth> growths) {
   for (const BeamSearch::Growth& g : growths) {
     if (g.depth == 0) continue;
-    const Candidate& c = g.candidate;
+    const Predecessor& c = g.candidate;
     const Node& behind = search_.nodes()[static_cast<std::size_t>(c.parent)];
     std::optional<StepPool::Index> next;
     if (g.depth > 1 && metric_.within(c.end, behind.poses, LinkGraph::kLink))
@@ -133,7 +133,7 @@ void Exploration::add(std::span<const BeamSearch::Growth> growths) {
 
 /// One that misses serves only if it reaches the goal all the same.
 void Exploration::learn(const BeamSearch::Growth& growth) {
-  const Candidate& c = growth.candidate;
+  const Predecessor& c = growth.candidate;
   if (!repeatable(c, config_)) return;
   if (c.miss <= config_.gap_tolerance || succeeded(task_, c.end))
     learn_step(policy_, growth, search_.nodes());

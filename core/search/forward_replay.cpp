@@ -39,9 +39,9 @@ bool legal_state(const Task& task, const Poses& poses) {
          !first_overlap(task.scene, poses).has_value();
 }
 
-std::vector<Candidate> proposals(const Task& task, std::span<const ReverseJob> jobs,
+std::vector<Predecessor> proposals(const Task& task, std::span<const ReverseJob> jobs,
                                  std::span<const ReverseResult> answers, SearchStats& stats) {
-  std::vector<Candidate> out;
+  std::vector<Predecessor> out;
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     for (const Poses& exact : answers[k].starts) {
       Poses start = float_rounded(exact);
@@ -56,15 +56,15 @@ std::vector<Candidate> proposals(const Task& task, std::span<const ReverseJob> j
   return out;
 }
 
-std::vector<Candidate> replay_candidates(const Task& task, std::vector<Candidate> candidates,
+std::vector<Predecessor> replay_candidates(const Task& task, std::vector<Predecessor> candidates,
                                          const ReplayBatch& replay, SearchStats& stats) {
   std::vector<ReplayJob> pushes;
-  for (const Candidate& c : candidates) pushes.push_back({c.start, c.action});
+  for (const Predecessor& c : candidates) pushes.push_back({c.start, c.action});
   const std::vector<ReplayResult> results = replay(pushes);
-  std::vector<Candidate> out;
+  std::vector<Predecessor> out;
   for (std::size_t k = 0; k < results.size(); ++k) {
     if (!stats.count(results[k])) continue;
-    Candidate& c = candidates[k];
+    Predecessor& c = candidates[k];
     c.gap = replay_gap(c.end, results[k].end);
     for (std::size_t body = 0; body < c.end.size(); ++body)
       c.miss = std::max(c.miss, (c.end[body].position() - results[k].end[body].position()).norm());

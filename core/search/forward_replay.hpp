@@ -12,7 +12,7 @@ namespace rtg {
 
 /// A reverse step: pushing `action` in `start` should lead, and once replayed truly leads, to
 /// `end`.
-struct Candidate {
+struct Predecessor {
   int parent = 0;  // index of the job that it answers
   int action = 0;
   Poses start;
@@ -45,12 +45,12 @@ bool legal_state(const Task& task, const Poses& poses);
 
 /// The starts of converged answers that, rounded to float, are legal states; others are counted.
 /// `end` is still the state that the job asked for. `jobs` and `answers` have equal length.
-std::vector<Candidate> proposals(const Task& task, std::span<const ReverseJob> jobs,
+std::vector<Predecessor> proposals(const Task& task, std::span<const ReverseJob> jobs,
                                  std::span<const ReverseResult> answers, SearchStats& stats);
 
 /// Replaces `end` by what the push truly leads to and fills in moved, gap, miss and turn; those
 /// whose push the simulator rejects are left out, and counted.
-std::vector<Candidate> replay_candidates(const Task& task, std::vector<Candidate> candidates,
+std::vector<Predecessor> replay_candidates(const Task& task, std::vector<Predecessor> candidates,
                                          const ReplayBatch& replay, SearchStats& stats);
 
 /// A reverse trajectory read forward: actions from its far end towards the goal.

@@ -10,7 +10,7 @@ constexpr std::array kPrices{0.0, 8.0, 32.0};  // actions
 }  // namespace
 
 void learn_step(TreePolicy& policy, const BeamSearch::Growth& step, std::span<const Node> nodes) {
-  const Candidate& c = step.candidate;
+  const Predecessor& c = step.candidate;
   if (!policy.add(c.start, c.action, step.depth)) return;
   for (int k = c.parent, left = step.depth - 1; left > 0; --left) {
     const Node& n = nodes[static_cast<std::size_t>(k)];

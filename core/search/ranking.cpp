@@ -65,7 +65,7 @@ double next_walk(const Task& task, const StateMetric& metric, const Poses& poses
   return (target[0].position() - poses[0].position()).norm() / task.push.stride;
 }
 
-double displacement(const Candidate& c) {
+double displacement(const Predecessor& c) {
   double sum = 0.0;
   for (std::size_t k = 1; k < c.start.size(); ++k)
     sum += (c.start[k].position() - c.end[k].position()).norm();
@@ -75,7 +75,7 @@ double displacement(const Candidate& c) {
 Score novelty(const StateMetric& metric, std::span<const Poses> known) {
   std::unordered_map<std::uint64_t, int> visits;
   for (const Poses& poses : known) ++visits[metric.cell(poses, {})];
-  return [metric, visits = std::move(visits)](const Candidate& c) {
+  return [metric, visits = std::move(visits)](const Predecessor& c) {
     const auto found = visits.find(metric.cell(c.start, {}));
     return found == visits.end() ? 0.0 : static_cast<double>(found->second);
   };
@@ -102,11 +102,11 @@ Score make_score(Ranking ranking, const Task& task, const Target& target,
     case Ranking::kNovelty:
       return novelty(metric, known);
     case Ranking::kDisplacement:
-      return [](const Candidate& c) { return -displacement(c); };
+      return [](const Predecessor& c) { return -displacement(c); };
     case Ranking::kStartDistance:
       break;
   }
-  return [task, metric, target](const Candidate& c) {
+  return [task, metric, target](const Predecessor& c) {
     return start_distance(task, metric, c.start, target);
   };
 }

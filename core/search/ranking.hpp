@@ -28,7 +28,7 @@ struct Target {
 /// but at least 2); with all objects in place, the way to the robot's own, in strides.
 ///   novelty:      how many of the tree's states share the coarse cell of the state
 ///   displacement: - how far the step moved the objects, in all [m]
-using Score = std::function<double(const Candidate&)>;
+using Score = std::function<double(const Predecessor&)>;
 
 /// `known`: the states that the trees have; only novelty looks at them. They and `target` are
 /// copied.

@@ -22,7 +22,7 @@ Poses within_limits(const Scene& scene, Poses poses) {
 
 }  // namespace
 
-bool repeatable(const Candidate& push, const SearchConfig& config) {
+bool repeatable(const Predecessor& push, const SearchConfig& config) {
   return push.turn <= config.turn_tolerance && push.stretch <= config.stretch_tolerance;
 }
 
@@ -48,10 +48,10 @@ Poses StretchProbe::disturbed(Poses poses) {
   return float_rounded(with_closed_joints(task_.scene, within_limits(task_.scene, poses)));
 }
 
-std::vector<StretchProbe::Twin> StretchProbe::draw(std::span<const Candidate> candidates) {
+std::vector<StretchProbe::Twin> StretchProbe::draw(std::span<const Predecessor> candidates) {
   std::vector<Twin> twins;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const Candidate& c = candidates[k];
+    const Predecessor& c = candidates[k];
     const bool missed = c.miss > config_.gap_tolerance && !succeeded(task_, c.end);
     if (missed || c.turn > config_.turn_tolerance) continue;
     int left = config_.twins;
@@ -65,7 +65,7 @@ std::vector<StretchProbe::Twin> StretchProbe::draw(std::span<const Candidate> ca
   return twins;
 }
 
-void StretchProbe::measure(std::span<Candidate> candidates, const ReplayBatch& replay,
+void StretchProbe::measure(std::span<Predecessor> candidates, const ReplayBatch& replay,
                            SearchStats& stats) {
   const std::vector<Twin> twins = draw(candidates);
   std::vector<ReplayJob> pushes;
@@ -74,7 +74,7 @@ void StretchProbe::measure(std::span<Candidate> candidates, const ReplayBatch& r
   std::vector<double> before(candidates.size(), 0.0), after(candidates.size(), 0.0);
   for (std::size_t k = 0; k < twins.size(); ++k) {
     if (!stats.count(results[k])) continue;
-    const Candidate& c = candidates[twins[k].of];
+    const Predecessor& c = candidates[twins[k].of];
     before[twins[k].of] += metric_.distance(twins[k].start, c.start);
     after[twins[k].of] += metric_.distance(results[k].end, c.end);
   }

@@ -13,7 +13,7 @@ namespace rtg {
 
 /// Whether a plan may go through the push: neither does it turn an object far, as a corner does,
 /// nor stretch errors, by more than the tolerances of the config.
-bool repeatable(const Candidate& push, const SearchConfig& config);
+bool repeatable(const Predecessor& push, const SearchConfig& config);
 
 /// Finds out how pushes pass errors on: a push is replayed from disturbed twins s_t of its start s,
 /// which end in e_t instead of e;
@@ -34,14 +34,14 @@ class StretchProbe {
   /// objects turned by up to 2/3 rad per metre of it; of bodies that joints connect the
   /// root is moved and each turned by its share of that, within limits; fixed bodies stay. Without
   /// a legal twin that the simulator finishes it stays 1.
-  void measure(std::span<Candidate> candidates, const ReplayBatch& replay, SearchStats& stats);
+  void measure(std::span<Predecessor> candidates, const ReplayBatch& replay, SearchStats& stats);
 
  private:
   struct Twin {
     std::size_t of;  // index of its candidate
     Poses start;
   };
-  std::vector<Twin> draw(std::span<const Candidate> candidates);
+  std::vector<Twin> draw(std::span<const Predecessor> candidates);
   Poses disturbed(Poses poses);
 
   const Task& task_;

@@ -187,7 +187,7 @@ struct WorthReplayingTest : BeamSearchTest {
     drags = {0.2, 0.6, 0.35, testing::kDrag};
   }
 
-  void note(Scores& scores, const Score& score, int node, const Candidate& c) const {
+  void note(Scores& scores, const Score& score, int node, const Predecessor& c) const {
     const bool idle = objects_moved(c.start, c.end) == 0;
     scores[{node, idle ? -1 : c.action}].push_back(score(c));
   }

@@ -88,7 +88,7 @@ TEST(Proposals, AreTheConvergedAnswersWithLegalStarts) {
                                            {SolveStatus::kLineSearchFailed, 50},
                                            {SolveStatus::kConverged, 9, {overlapping}}};
   SearchStats stats;
-  const std::vector<Candidate> found = proposals(task, jobs, answers, stats);
+  const std::vector<Predecessor> found = proposals(task, jobs, answers, stats);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[1].parent, 2);
   EXPECT_EQ(found[1].start, task.start);
@@ -123,7 +123,7 @@ std::vector<ReplayResult> fake_replay(std::span<const ReplayJob> jobs) {
   return results;
 }
 
-Candidate candidate(int parent, int action, const Poses& start, const Poses& end) {
+Predecessor candidate(int parent, int action, const Poses& start, const Poses& end) {
   return {parent, action, start, end, 99};
 }
 

@@ -63,7 +63,7 @@ TEST_F(StartDistanceTest, ATurnedObjectIsOutOfPlaceAsFarAsTheTargetSays) {
 TEST(Ranking, DisplacementPrefersWhatMovesMore) {
   const Task task = gathering();
   const Score score = make_score(Ranking::kDisplacement, task, {task.start}, {});
-  Candidate c{0, 0, task.start, task.start};
+  Predecessor c{0, 0, task.start, task.start};
   EXPECT_EQ(score(c), 0.0);
   c.start[2].x += 0.5;
   EXPECT_DOUBLE_EQ(score(c), -0.5);

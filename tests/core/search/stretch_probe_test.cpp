@@ -37,7 +37,7 @@ ReplayBatch replay_by(Push push, std::vector<ReplayJob>& asked) {
 
 Poses same(const Poses& poses) { return poses; }
 
-Candidate moving(const Poses& start, const Poses& end, int action = 7) {
+Predecessor moving(const Poses& start, const Poses& end, int action = 7) {
   return {0, action, start, end, 1};
 }
 
@@ -49,7 +49,7 @@ TEST(StretchProbe, IsTheRatioOfTheErrorsAfterAndBefore) {
   };
   std::vector<ReplayJob> asked;
   SearchStats stats;
-  std::vector<Candidate> candidates{moving(task.start, thrice(task.start))};
+  std::vector<Predecessor> candidates{moving(task.start, thrice(task.start))};
   StretchProbe(task, {}, 1).measure(candidates, replay_by(thrice, asked), stats);
   EXPECT_NEAR(candidates[0].stretch, 3.0, 1e-4);  // embeddings have single precision, 1e-6 of 15 m
 }
@@ -61,7 +61,7 @@ TEST(StretchProbe, TwinsOfAChainAreClosedAndWithinItsLimits) {
   config.twins = 20;
   std::vector<ReplayJob> asked;
   SearchStats stats;
-  std::vector<Candidate> candidates{moving(task.start, task.start)};
+  std::vector<Predecessor> candidates{moving(task.start, task.start)};
   StretchProbe(task, config, 1).measure(candidates, replay_by(same, asked), stats);
   ASSERT_EQ(asked.size(), 20U);
   double turn = 0.0;
@@ -83,7 +83,7 @@ TEST(StretchProbe, TwinsAreDisturbedByNoMoreThanTheJitter) {
   config.twin_jitter = 0.2;
   std::vector<ReplayJob> asked;
   SearchStats stats;
-  std::vector<Candidate> candidates{moving(task.start, task.start)};
+  std::vector<Predecessor> candidates{moving(task.start, task.start)};
   StretchProbe(task, config, 1).measure(candidates, replay_by(same, asked), stats);
   ASSERT_EQ(asked.size(), 20U);
   double way = 0.0, turn = 0.0;
@@ -108,7 +108,7 @@ TEST(StretchProbe, TwinsAreDisturbedByNoMoreThanTheJitter) {
 
 TEST(StretchProbe, LeavesPushesThatMissTheirEndOrTurnAnObject) {
   const Task task = gathering();
-  std::vector<Candidate> candidates(2, moving(task.start, task.start));
+  std::vector<Predecessor> candidates(2, moving(task.start, task.start));
   candidates[0].turn = SearchConfig{}.turn_tolerance + 0.01;
   candidates[1].miss = SearchConfig{}.gap_tolerance + 0.01;
   std::vector<ReplayJob> asked;
@@ -123,7 +123,7 @@ TEST(StretchProbe, LooksAtAMissThatReachesTheGoal) {
   const Task task = gathering();
   const Poses goal{{0, -3, 0}, {-1.3, 0, 0}, {0, 0, 0}, {1.3, 0, 0}};
   ASSERT_TRUE(succeeded(task, goal));
-  std::vector<Candidate> candidates{moving(task.start, goal)};
+  std::vector<Predecessor> candidates{moving(task.start, goal)};
   candidates[0].miss = SearchConfig{}.gap_tolerance + 0.01;
   std::vector<ReplayJob> asked;
   SearchStats stats;
@@ -136,7 +136,7 @@ TEST(StretchProbe, CountsTwinsThatTheSimulatorRejects) {
   const ReplayBatch rejecting = [](std::span<const ReplayJob> jobs) {
     return std::vector<ReplayResult>(jobs.size(), {{}, false, 0.0});
   };
-  std::vector<Candidate> candidates{moving(task.start, task.start)};
+  std::vector<Predecessor> candidates{moving(task.start, task.start)};
   SearchStats stats;
   StretchProbe(task, {}, 1).measure(candidates, rejecting, stats);
   EXPECT_EQ(stats.rejected_pushes, SearchConfig{}.twins);
@@ -174,7 +174,7 @@ double stretch_of_push(int action) {
   config.twin_jitter = 0.1;
   SearchStats stats;
   const std::vector<ReplayJob> push{{start, action}};
-  std::vector<Candidate> candidates{moving(start, replay(push)[0].end, action)};
+  std::vector<Predecessor> candidates{moving(start, replay(push)[0].end, action)};
   StretchProbe(task, config, 1).measure(candidates, replay, stats);
   return candidates[0].stretch;
 }
