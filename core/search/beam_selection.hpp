@@ -7,6 +7,7 @@
 
 #include "core/math/rng.hpp"
 #include "core/search/search_config.hpp"
+#include "core/search/state_metric.hpp"
 
 namespace rtg {
 
@@ -17,6 +18,9 @@ struct BeamEntry {
   std::uint64_t layout = 0;  // the same without the robot
   bool contact = false;      // its push moved an object
 };
+
+/// Names the cell of a state without its robot.
+std::uint64_t layout_cell(const StateMetric& metric, const Poses& poses);
 
 /// Indices of the next beam, at most config.breadth, in order of (score, index): first the best of
 /// the contact quota, then the best of all, last the random survivors. At most one per cell, none

@@ -1,16 +1,13 @@
 #include "core/search/coverage.hpp"
 
-#include "core/search/forward_replay.hpp"
+#include "core/reverse/reverse_job.hpp"
+#include "core/search/predecessor.hpp"
 
 namespace rtg {
 namespace {
 
 double share(long part, long whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
-}
-
-bool of_trees(Source source) {
-  return source == Source::kStepReplay || source == Source::kChainReplay;
 }
 
 }  // namespace
@@ -21,7 +18,7 @@ bool in_start_region(const Task& task, const StateMetric& metric, const Poses& p
 }
 
 Coverage::Coverage(const Task& task)
-    : task_(task), metric_(task.scene), movers_(movers_of(task.scene)), links_(task.scene) {}
+    : task_(task), metric_(task.scene), movers_(movers_of(task.scene)) {}
 
 /// Whether two objects moved that no joint connects.
 bool Coverage::moves_several(const Transition& t) const {
@@ -35,16 +32,20 @@ bool Coverage::moves_several(const Transition& t) const {
 }
 
 void Coverage::add(const Transition& t) {
+  ++transitions_;
+  ++by_source_[static_cast<std::size_t>(t.source)];
   contacts_ += objects_moved(t.poses, t.next) >= 1;
   multi_body_ += moves_several(t);
-  const bool in_region = in_start_region(task_, metric_, t.poses);
-  start_region_ += in_region;
-  start_region_trees_ += in_region && of_trees(t.source);
-  links_.add(t);
+  start_region_ += in_start_region(task_, metric_, t.poses);
+  states_.insert(key_of(t.poses, 0));
 }
 
-double Coverage::contact_share() const { return share(contacts_, transitions()); }
+double Coverage::contact_share() const { return share(contacts_, transitions_); }
 
-double Coverage::multi_body_share() const { return share(multi_body_, transitions()); }
+double Coverage::multi_body_share() const { return share(multi_body_, transitions_); }
+
+double Coverage::headings_per_state() const {
+  return share(transitions_, static_cast<long>(states_.size()));
+}
 
 }  // namespace rtg

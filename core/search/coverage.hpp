@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <unordered_set>
 #include <vector>
 
-#include "core/search/link_graph.hpp"
 #include "core/search/state_metric.hpp"
 #include "core/search/transition.hpp"
 #include "core/tasks/task.hpp"
@@ -25,14 +27,12 @@ class Coverage {
 
   void add(const Transition& transition);
 
-  long transitions() const { return links_.size(); }
-  double contact_share() const;     // moved an object by more than kMoved
-  double multi_body_share() const;  // moved two or more that no joint connects
+  long transitions() const { return transitions_; }
+  long of(Source source) const { return by_source_[static_cast<std::size_t>(source)]; }
+  double contact_share() const;       // moved an object by more than kMoved
+  double multi_body_share() const;    // moved two or more that no joint connects
+  double headings_per_state() const;  // mean over the distinct states, none stored twice
   long start_region() const { return start_region_; }
-  long start_region_trees() const { return start_region_trees_; }  // those found backwards
-
-  /// Share of the transitions from which a success is reachable, see LinkGraph.
-  double reachable_share() const { return links_.reachable_share(); }
 
  private:
   bool moves_several(const Transition& t) const;
@@ -40,8 +40,9 @@ class Coverage {
   const Task& task_;
   StateMetric metric_;
   std::vector<std::size_t> movers_;  // as movers_of()
-  LinkGraph links_;
-  long contacts_ = 0, multi_body_ = 0, start_region_ = 0, start_region_trees_ = 0;
+  long transitions_ = 0, contacts_ = 0, multi_body_ = 0, start_region_ = 0;
+  std::array<long, kSourceCount> by_source_{};
+  std::unordered_set<std::uint64_t> states_;  // keys
 };
 
 }  // namespace rtg

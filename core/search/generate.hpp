@@ -16,18 +16,15 @@ struct GenerationSeams {
   SolveBatch solve;
   ReplayBatch replay;
   TransitionSink store;  // receives every transition, in order
-  // Called and polled after each layer of trees and each wave of episodes; may be empty.
+  // Called and polled after each layer or wave; may be empty.
   std::function<void(const Progress&)> progress = {};
   std::function<bool()> cancelled = {};
 };
 
-/// The whole generation: trees of reverse steps from sampled goals (beam search), first towards the
-/// start, then to where the tree policy still gets lost (exploration.hpp); forward replay of the
-/// best predecessors found, end-to-end replay of chains; then, where episodes of the policy fail,
-/// plans searched forwards (plan_search.hpp). A search that covers a task finds far more
-/// steps than a learner can use: stored are those that episodes of the policy use, and others drawn
-/// at random, all with the plans behind them; the policy keeps to these. Last, roll-outs of the
-/// policy. A pure function of (task, config, seed) and the seams.
+/// The whole generation, Algorithm 1: trees of reverse steps grow from goal states to the start
+/// layout; every step that a beam keeps is stored as what the forward simulator makes of it, with
+/// its branches. With another config.generator the steps come from elsewhere (generators.hpp). A
+/// pure function of (task, config, seed) and the seams.
 GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams);
 

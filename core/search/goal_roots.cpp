@@ -4,7 +4,7 @@
 #include <unordered_set>
 #include <utility>
 
-#include "core/search/forward_replay.hpp"
+#include "core/search/predecessor.hpp"
 #include "core/search/state_metric.hpp"
 
 namespace rtg {
@@ -53,7 +53,7 @@ Poses relabelled(const Task& task, const Poses& poses, const Poses& target) {
   return best;
 }
 
-std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, const Target& target,
+std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, const Poses& target,
                               Rng& rng, SearchStats& stats) {
   const StateMetric metric(task.scene);
   std::unordered_set<std::uint64_t> seen;
@@ -64,7 +64,7 @@ std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, cons
     failures = goal ? 0 : failures + 1;
     if (failures == kMaxFailures) break;
     if (!goal) continue;
-    Poses root = turned_as(task, relabelled(task, *goal, target.poses), target.poses);
+    Poses root = turned_as(task, relabelled(task, *goal, target), target);
     if (!seen.insert(metric.cell(root, {})).second) continue;
     drawn.emplace_back(start_distance(task, metric, root, target), std::move(root));
   }

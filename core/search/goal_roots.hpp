@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "core/search/ranking.hpp"
 #include "core/search/search_config.hpp"
 #include "core/search/search_stats.hpp"
+#include "core/search/start_distance.hpp"
 #include "core/tasks/task.hpp"
 
 namespace rtg {
@@ -17,7 +17,7 @@ Poses relabelled(const Task& task, const Poses& poses, const Poses& target);
 /// Up to config.breadth distinct goal states of the task's sampler, relabelled: of
 /// config.root_draws times as many draws those of least start_distance to `target`. Not yet at
 /// rest.
-std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, const Target& target,
+std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, const Poses& target,
                               Rng& rng, SearchStats& stats);
 
 }  // namespace rtg

@@ -1,7 +1,9 @@
 #include "core/search/report.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <utility>
 
 #include "core/math/quantile.hpp"
 
@@ -9,11 +11,23 @@ namespace rtg {
 
 void fill(GenerationReport& report, const Coverage& coverage) {
   report.transitions = coverage.transitions();
+  report.tree_transitions = coverage.of(Source::kTree);
+  report.branch_transitions = coverage.of(Source::kBranch);
   report.contact_share = coverage.contact_share();
   report.multi_body_share = coverage.multi_body_share();
+  report.headings_per_state = coverage.headings_per_state();
   report.start_region_transitions = coverage.start_region();
-  report.start_region_tree_transitions = coverage.start_region_trees();
-  report.reachable_share = coverage.reachable_share();
+}
+
+void fill(GenerationReport& report, const Task& task, std::vector<ReportNode> nodes) {
+  const StateMetric metric(task.scene);
+  for (const ReportNode& n : nodes) {
+    report.trees = std::max(report.trees, n.tree + 1);
+    if (n.depth == 0 || !in_start_region(task, metric, n.poses)) continue;
+    int& least = report.start_region_depth;
+    least = least < 0 ? n.depth : std::min(least, n.depth);
+  }
+  report.nodes = std::move(nodes);
 }
 
 void fill(GenerationReport& report, const SearchStats& stats) {
@@ -51,20 +65,19 @@ nlohmann::ordered_json to_json(std::span<const ReportNode> nodes) {
 }  // namespace
 
 std::string to_json(const GenerationReport& r) {
-  // Random episodes have no reverse steps and no plans: null.
+  // Without reverse steps: null.
   const auto searched = [&r](double value) {
     return r.candidates > 0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
   };
   nlohmann::ordered_json out = {{"transitions", r.transitions},
-                                {"explored", r.explored},
+                                {"tree_transitions", r.tree_transitions},
+                                {"branch_transitions", r.branch_transitions},
                                 {"contact_share", r.contact_share},
                                 {"multi_body_share", r.multi_body_share},
+                                {"headings_per_state", r.headings_per_state},
                                 {"start_region_transitions", r.start_region_transitions},
-                                {"start_region_tree_transitions", r.start_region_tree_transitions},
-                                {"reachable_share", r.reachable_share},
-                                {"tree_policy_success", searched(r.tree_policy_success)},
-                                {"tree_policy_length_mean", searched(r.tree_policy_length_mean)},
                                 {"start_region_depth", r.start_region_depth},
+                                {"trees", r.trees},
                                 {"candidates", r.candidates}};
   for (std::size_t k = 0; k < r.statuses.size(); ++k)
     out[std::string(name(static_cast<SolveStatus>(k)))] = r.statuses[k];
@@ -84,6 +97,7 @@ std::string to_json(const GenerationReport& r) {
   out["reverse_cpu_s"] = r.reverse_cpu_s;
   out["replay_cpu_s"] = r.replay_cpu_s;
   out["generate_wall_s"] = r.generate_wall_s;
+  out["generate_cpu_s"] = r.generate_cpu_s;
   out["replay_gaps"] = r.replay_gaps;
   out["nodes"] = to_json(r.nodes);
   return out.dump();

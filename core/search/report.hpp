@@ -13,7 +13,7 @@ namespace rtg {
 
 /// One line of the progress display.
 struct Progress {
-  std::string phase;  // "round 1 (20 %)", "mending (5 %)", "choice", "roll-outs", "random episodes"
+  std::string phase;  // "tree 1", "plan 3", "random walks"
   int layer = 0;      // of `depth`
   int depth = 0;
   long transitions = 0;  // stored so far
@@ -26,24 +26,20 @@ struct Progress {
 struct ReportNode {
   Poses poses;
   int depth = 0;  // actions to success along its chain
-  int tree = 0;   // round of the search that found it
+  int tree = 0;   // number of the tree
 };
 
 /// What a generation did: the generation part of summary.json plus the samples behind its pictures.
 struct GenerationReport {
   long transitions = 0;
-  long explored = 0;  // steps that trees and mended episodes found, chosen from
-  double contact_share =
-      0.0;  // share of stored transitions that moved an object by more than 0.05 m
-  double multi_body_share = 0.0;           // ... two or more that no joint connects
-  long start_region_transitions = 0;       // that begin in the start region
-  long start_region_tree_transitions = 0;  // of them found backwards: episodes begin there anyway
-  double reachable_share =
-      0.0;  // share of transitions from which a success is reachable in the stored graph
-  double tree_policy_success = 0.0;  // of trees and mended episodes, before any roll-out
-  double tree_policy_length_mean = 0.0;
+  long tree_transitions = 0, branch_transitions = 0;  // of them by source, the two of reverse trees
+  double contact_share = 0.0;         // share of them that moved an object by more than 0.05 m
+  double multi_body_share = 0.0;      // ... two or more that no joint connects
+  double headings_per_state = 0.0;    // distinct headings stored from a state, mean over the states
+  long start_region_transitions = 0;  // that begin in the start region
   int start_region_depth = -1;  // least depth of a node in the start region; -1: never reached
-  long candidates = 0;          // reverse jobs asked for, pruned ones included
+  int trees = 0;
+  long candidates = 0;                             // reverse jobs asked for, pruned ones included
   std::array<long, kSolveStatusCount> statuses{};  // by SolveStatus
   // As in SearchStats.
   long illegal_starts = 0, undrawn_goals = 0, unsettled_goals = 0, replays = 0, rejected_pushes = 0;
@@ -53,12 +49,17 @@ struct GenerationReport {
   double pushing_iterations_median = 0.0, pushing_iterations_p90 = 0.0;
   double replay_gap_median = 0.0, replay_gap_p90 = 0.0;  // [m]
   double reverse_cpu_s = 0.0, replay_cpu_s = 0.0, generate_wall_s = 0.0;
+  double generate_cpu_s =
+      0.0;  // of this process, all threads; solves and replays elsewhere left out
   std::vector<float> replay_gaps;  // one per replayed candidate [m]
   std::vector<ReportNode> nodes;
 };
 
 /// Writes into `report` what the stored transitions cover.
 void fill(GenerationReport& report, const Coverage& coverage);
+
+/// Takes the nodes of the trees.
+void fill(GenerationReport& report, const Task& task, std::vector<ReportNode> nodes);
 
 /// Writes into `report` what `stats` has counted, with the medians and 90th percentiles.
 void fill(GenerationReport& report, const SearchStats& stats);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "core/search/batches.hpp"
@@ -17,7 +19,7 @@ struct SearchStats {
   long illegal_starts = 0;   // converged, yet the start overlaps or leaves the arena
   long undrawn_goals = 0;    // draws of a goal state in vain
   long unsettled_goals = 0;  // sampled goals that do not come to rest as legal goal states
-  long replays = 0;          // pushes that the simulator was asked for, probes included
+  long replays = 0;          // pushes that the simulator was asked for
   long rejected_pushes = 0;  // replays that the simulator could not finish
   std::vector<float> gaps;   // of replayed candidates [m]
   double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
@@ -32,13 +34,20 @@ struct SearchStats {
     reverse_cpu_s += answer.cpu_s;
   }
 
-  /// Whether the simulator finished the push.
-  bool count(const ReplayResult& answer) {
+  void count(const ReplayResult& answer) {
     ++replays;
     rejected_pushes += !answer.ok;
     replay_cpu_s += answer.cpu_s;
-    return answer.ok;
   }
 };
+
+/// The same as `replay`, which it copies; `stats`, which must outlive it, counts all pushes.
+inline ReplayBatch counted(ReplayBatch replay, SearchStats& stats) {
+  return [replay = std::move(replay), &stats](std::span<const ReplayJob> jobs) {
+    std::vector<ReplayResult> results = replay(jobs);
+    for (const ReplayResult& result : results) stats.count(result);
+    return results;
+  };
+}
 
 }  // namespace rtg

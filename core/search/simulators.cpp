@@ -11,8 +11,8 @@
 namespace rtg {
 
 SolveBatch reverse_solver(const Task& task, const PhysicsConfig& physics,
-                          const ReverseConfig& reverse, ReverseMode mode) {
-  if (mode == ReverseMode::kNaive)
+                          const ReverseConfig& reverse, Generator generator) {
+  if (generator == Generator::kNaive)
     return [naive = std::make_shared<const NaiveReverse>(task.scene, task.push)](
                std::span<const ReverseJob> jobs) {
       std::vector<ReverseResult> results;

@@ -14,9 +14,10 @@ namespace rtg {
 /// One replay job after the other; pure, and callable from several threads at once.
 using ReplayOne = std::function<ReplayResult(const ReplayJob&)>;
 
-/// The reverse simulator that `mode` names; pure, and callable from several threads at once.
+/// The reverse simulator behind `generator`: NaiveReverse for kNaive, else RRBS; pure, and callable
+/// from several threads at once.
 SolveBatch reverse_solver(const Task& task, const PhysicsConfig& physics,
-                          const ReverseConfig& reverse, ReverseMode mode);
+                          const ReverseConfig& reverse, Generator generator);
 
 /// The true dynamics, Box2D; kSettle is answered, too.
 ReplayOne forward_replay(const Task& task, const PhysicsConfig& physics);

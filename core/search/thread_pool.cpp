@@ -53,6 +53,12 @@ class FirstError {
   std::exception_ptr error_;
 };
 
+double seconds(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 }  // namespace
 
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
@@ -82,11 +88,9 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
   error.rethrow();
 }
 
-double thread_cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+double thread_cpu_s() { return seconds(CLOCK_THREAD_CPUTIME_ID); }
+
+double process_cpu_s() { return seconds(CLOCK_PROCESS_CPUTIME_ID); }
 
 SolveBatch solve_on_threads(SolveBatch solve, int threads) {
   return [solve = std::move(solve), threads](std::span<const ReverseJob> jobs) {

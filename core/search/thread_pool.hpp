@@ -15,6 +15,9 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
 /// CPU time the calling thread has used so far [s].
 double thread_cpu_s();
 
+/// The same of all threads of the process, those that have ended, too [s].
+double process_cpu_s();
+
 /// The in-process homes of the two seams: jobs are answered by `solve`, some at a time, and one by
 /// one by `replay`, which must be pure and callable from several threads at once. Results come in
 /// job order, with cpu_s filled in: of jobs answered together each has an equal share.

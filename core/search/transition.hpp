@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -10,13 +11,12 @@ namespace rtg {
 
 /// Where a stored transition comes from.
 enum class Source : std::int8_t {
-  kStepReplay,   // one reverse candidate replayed forward
-  kChainReplay,  // part of a whole chain replayed end to end from its far end, but for its first
-                 // step and any other that is stored already
-  kRollOut,      // part of an episode of the tree policy, or the random one, from a jittered start
-  kMended,  // part of a plan found forwards where an episode of the tree policy failed, or of an
-            // episode that succeeded meanwhile
+  kTree,    // a reverse step, as it replays
+  kBranch,  // another heading from the state in which a stored step begins
+  kWalk,    // a push of a random walk
+  kPlan,    // a step that a beam search forwards from a start kept
 };
+inline constexpr std::size_t kSourceCount = 4;
 
 /// One true transition of the true dynamics (Box2D). Success is the task's predicate on `next`.
 struct Transition {
@@ -24,7 +24,7 @@ struct Transition {
   int action = 0;
   Poses next;
   bool success = false;  // reward 1 and terminated
-  Source source = Source::kStepReplay;
+  Source source = Source::kTree;
 
   bool operator==(const Transition&) const = default;
 };

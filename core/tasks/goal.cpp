@@ -3,8 +3,9 @@
 namespace rtg {
 namespace {
 
-/// Calls `visit` with whether each atom holds, see atoms(). Nothing is allocated: a search asks
-/// whether goals hold all the time.
+/// Calls `visit` with whether each atom holds: one per body (kEvery) or joint (kJoint) that the
+/// term concerns, or one in all (kCentroid). Nothing is allocated: a search asks whether goals hold
+/// all the time.
 template <class Visit>
 void for_each_atom(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten,
                    Visit visit) {
@@ -55,12 +56,6 @@ Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& pose
     count += 1.0;
   }
   return sum / count;
-}
-
-std::vector<bool> atoms(const GoalTerm& term, const Scene& scene, const Poses& poses) {
-  std::vector<bool> held;
-  for_each_atom(term, scene, poses, 0.0, [&held](bool one) { held.push_back(one); });
-  return held;
 }
 
 bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten) {

@@ -40,12 +40,7 @@ bool contains(const GoalTerm& term, double angle, double tighten);
 /// The mean of the centres that `term` speaks of.
 Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& poses);
 
-/// The term taken apart: one atom per body (kEvery) or joint (kJoint) that it concerns, in the
-/// order of the scene, or one in all (kCentroid). Its atoms do not depend on the poses but in
-/// whether they hold.
-std::vector<bool> atoms(const GoalTerm& term, const Scene& scene, const Poses& poses);
-
-/// Whether `term` holds, its region shrunk by `tighten` [m], [rad]: all of its atoms do.
+/// Whether `term` holds, its region shrunk by `tighten` [m], [rad].
 bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten);
 
 }  // namespace rtg

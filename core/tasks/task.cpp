@@ -45,15 +45,6 @@ bool succeeded(const Task& task, const Poses& poses, double tighten) {
       task.goal, [&](const GoalTerm& term) { return holds(term, task.scene, poses, tighten); });
 }
 
-std::vector<bool> goal_atoms(const Task& task, const Poses& poses) {
-  std::vector<bool> held;
-  for (const GoalTerm& term : task.goal) {
-    const std::vector<bool> more = atoms(term, task.scene, poses);
-    held.insert(held.end(), more.begin(), more.end());
-  }
-  return held;
-}
-
 std::vector<float> observation(const Task& task, const Poses& poses) {
   std::vector<float> out;
   out.reserve(static_cast<std::size_t>(observation_size(task)));

@@ -41,9 +41,6 @@ inline constexpr double kStartClearance = 0.02;
 /// Whether the goal holds in `poses`, with every region shrunk by `tighten` [m], [rad].
 bool succeeded(const Task& task, const Poses& poses, double tighten = 0.0);
 
-/// The atoms of all terms of the goal, one after the other; the goal holds when all do.
-std::vector<bool> goal_atoms(const Task& task, const Poses& poses);
-
 /// The learner's view, float32, lengths / 8 m: robot x, y; per movable body x, y, cos θ, sin θ,
 /// x - x_robot, y - y_robot; per joint sin, cos of its angle. Fixed body order carries the class.
 std::vector<float> observation(const Task& task, const Poses& poses);

@@ -12,7 +12,8 @@ using Settings = std::vector<MethodSetting>;
 Settings unguided(Settings more) {
   const Settings exploration{{"train", "epsilon_start", "1.0"},
                              {"train", "epsilon_end", "0.05"},
-                             {"train", "nearby_share", "0.0"}};
+                             {"train", "nearby_share", "0.0"},
+                             {"train", "contact_share", "0.5"}};
   more.insert(more.end(), exploration.begin(), exploration.end());
   return more;
 }
@@ -29,14 +30,25 @@ const std::array<Settings, kMethods.size()>& table() {
       online({{"train", "double_q", "false"}}),
       online({{"train", "double_q", "true"}}),
       // Half of every batch would be of data without any success.
-      unguided({{"search", "reverse", "random"}, {"train", "offline_share", "-1.0"}}),
-      Settings{{"search", "reverse", "naive"}},
-      Settings{{"search", "reverse", "rrbs"}},
-      Settings{{"search", "reverse", "rrbs"},
+      unguided({{"search", "generator", "random"}, {"train", "offline_share", "-1.0"}}),
+      unguided({{"search", "generator", "scatter"}}),
+      Settings{{"search", "generator", "naive"}},
+      Settings{{"search", "generator", "forward"}},
+      Settings{{"search", "generator", "rrbs"}},
+      Settings{{"search", "generator", "rrbs"},
                {"search", "randomise", "true"},
                {"train", "randomise", "true"}},
       online({{"train", "double_q", "true"}, {"train", "hindsight", "4"}}),
       online({{"train", "double_q", "true"}, {"train", "curriculum", "0.9"}}),
+      Settings{{"search", "generator", "rrbs"},
+               {"train", "interact", "false"},
+               {"train", "conservatism", "1.0"}},
+      Settings{{"search", "generator", "rrbs"},
+               {"train", "interact", "false"},
+               {"train", "learner", "cloning"}},
+      Settings{{"train", "offline", "false"},
+               {"train", "interact", "false"},
+               {"train", "learner", "planning"}},
   };
   return kTable;
 }

@@ -7,9 +7,24 @@
 namespace rtg {
 
 /// What is compared: learners that differ in where their experience comes from and in little else.
-enum class Method { kDqn, kDdqn, kDdqnRandom, kDdqnNaive, kDdqnRtg, kDdqnRtgDr, kHer, kRcg };
-inline constexpr std::array<std::string_view, 8> kMethods{
-    "dqn", "ddqn", "ddqn_random", "ddqn_naive", "ddqn_rtg", "ddqn_rtg_dr", "her", "rcg"};
+enum class Method {
+  kDqn,
+  kDdqn,
+  kDdqnRandom,
+  kDdqnScatter,
+  kDdqnNaive,
+  kDdqnForward,
+  kDdqnRtg,
+  kDdqnRtgDr,
+  kHer,
+  kRcg,
+  kCqlRtg,
+  kBcRtg,
+  kPlanner
+};
+inline constexpr std::array<std::string_view, 13> kMethods{
+    "dqn",         "ddqn", "ddqn_random", "ddqn_scatter", "ddqn_naive", "ddqn_forward", "ddqn_rtg",
+    "ddqn_rtg_dr", "her",  "rcg",         "cql_rtg",      "bc_rtg",     "planner"};
 
 /// A value of another section of the configuration.
 struct MethodSetting {
@@ -19,18 +34,23 @@ struct MethodSetting {
 /// What `method` stands for, and nothing else tells methods apart: a loader takes these values for
 /// the keys that are not given.
 ///
-///   dqn          no offline data, targets of one network  [Mnih et al. 2015]
-///   ddqn         the same with Double-Q targets  [van Hasselt et al. 2016]
-///   ddqn_random  as ddqn_rtg; the offline data are episodes of the uniform random policy, mixed
-///                with the online ones uniformly
-///   ddqn_naive   as ddqn_rtg; reverse steps by kinematics alone
-///   ddqn_rtg     offline data of reverse trajectory generation
-///   ddqn_rtg_dr  the same, all episodes start all over task.randomisation  [App. D]
-///   her          as ddqn, with hindsight goals  [Andrychowicz et al. 2017]
-///   rcg          as ddqn, with starts grown back from goal states  [Florensa et al. 2017]
+///   dqn           no offline data, targets of one network  [Mnih et al. 2015]
+///   ddqn          the same with Double-Q targets  [van Hasselt et al. 2016]
+///   ddqn_random   as ddqn_rtg; the steps are those of random walks from starts  [App. D]
+///   ddqn_scatter  as ddqn_rtg; ... from goal states
+///   ddqn_naive    as ddqn_rtg; reverse steps by kinematics alone
+///   ddqn_forward  as ddqn_rtg; the steps are those of beam searches forwards from starts
+///   ddqn_rtg      offline data of reverse trajectory generation
+///   ddqn_rtg_dr   the same, all episodes start all over task.randomisation  [App. D]
+///   her           as ddqn, with hindsight goals  [Andrychowicz et al. 2017]
+///   rcg           as ddqn, with starts grown back from goal states  [Florensa et al. 2017]
+///   cql_rtg       the data of ddqn_rtg alone, no interaction; values of headings that are not in
+///                 them are held down  [Kumar et al. 2020]
+///   bc_rtg        the data of ddqn_rtg alone: what the kept steps do is imitated
+///   planner       no learning: a beam search forwards from each start that it is evaluated from
 ///
-/// Without offline data, and with random ones, exploration begins at 1 and is uniform over all
-/// headings: there is nothing yet to stay near to.
+/// Without offline data, and with those of random walks, exploration begins at 1, seeks contact
+/// half of the time and is uniform over all headings else: there is nothing yet to stay near to.
 std::span<const MethodSetting> settings_of(Method method);
 
 }  // namespace rtg

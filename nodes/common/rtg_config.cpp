@@ -15,6 +15,7 @@
 #include "nodes/common/method.hpp"
 #include "nodes/common/start_checks.hpp"
 #include "nodes/common/task_section.hpp"
+#include "nodes/common/train_preset.hpp"
 #include "nodes/common/yaml_parser.hpp"
 
 namespace rtg {

@@ -11,6 +11,10 @@ inline constexpr std::array<std::string_view, 2> kTrainPresets{"default", "paper
 enum class Device { kAuto, kCpu, kCuda };
 inline constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"};
 
+/// kCloning imitates stored steps; kPlanning searches forwards from each start, without learning.
+enum class Learner { kQLearning, kCloning, kPlanning };
+inline constexpr std::array<std::string_view, 3> kLearners{"q_learning", "cloning", "planning"};
+
 /// How the Python trainer learns. The values here are the preset `default`: what works best within
 /// Table 2's interaction budget. A loader begins with train_preset(preset) and reads the other
 /// fields over it. With a hard copy every 500 steps instead of target_rate success swings between
@@ -20,7 +24,9 @@ inline constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"}
 /// too: its mistakes are then seen too late.
 struct TrainConfig {
   TrainPreset preset = TrainPreset::kDefault;
+  Learner learner = Learner::kQLearning;
   int interactions = 350000;    // Table 2
+  bool interact = true;         // false: learn from generated transitions alone, as many rounds
   bool offline = true;          // learn from generated transitions, too
   int start_at = 40000;         // transitions in hand before learning starts
   int buffer = 1500000;         // Table 2; of each of the two buffers
@@ -35,6 +41,7 @@ struct TrainConfig {
   double discount = 0.95;       // γ; 0: the task's
   double offline_share = 0.5;   // of a batch; negative: uniform over all transitions
   double recent_share = 0.5;    // of the online part of a batch: among the 10,000 latest
+  double conservatism = 0.0;    // α: values of headings that are not in the data are held down
   bool double_q = true;         // van Hasselt et al. 2016
   bool cautious = true;         // ... with the lesser of both networks' values of that action
   bool dueling = true;          // Wang et al. 2016
@@ -45,14 +52,15 @@ struct TrainConfig {
   double epsilon_start = 0.3;   // exploration at the first interaction
   double epsilon_end = 0.02;    // ... and from epsilon_share of the interactions on
   double epsilon_share = 0.2;
-  double nearby_share = 0.5;  // of the exploring actions: near the greedy heading
-  int nearby_headings = 2;    // how near
-  bool leave_loops = true;    // explore where the episode came back to, too
-  double start_jitter = 0.1;  // training starts: object positions ± this [m]
-  bool randomise = false;     // all starts: object positions ± task.randomisation
-  int hindsight = 0;          // goals reached later on that each online transition is seen with
-  double curriculum = 0.0;    // share of the episodes that start where learning is at its edge
-  int eval_every = 5000;      // interactions
+  double nearby_share = 0.5;   // of the exploring actions: near the greedy heading
+  int nearby_headings = 2;     // how near
+  double contact_share = 0.0;  // of the exploring actions: towards an object
+  bool leave_loops = true;     // explore where the episode came back to, too
+  double start_jitter = 0.1;   // training starts: object positions ± this [m]
+  bool randomise = false;      // all starts: object positions ± task.randomisation
+  int hindsight = 0;           // goals reached later on that each online transition is seen with
+  double curriculum = 0.0;     // share of the episodes that start where learning is at its edge
+  int eval_every = 5000;       // interactions
   int eval_episodes = 100;
   int checkpoint_every = 20000;   // interactions
   double stop_at_success = 0.95;  // end early at this success rate; 0: use all interactions
@@ -69,6 +77,7 @@ struct TrainConfig {
     v.number("nearby_share", nearby_share, 0.0, 1.0,
              "share of exploration near the greedy heading");
     v.integer("nearby_headings", nearby_headings, 1, 180, "how many headings away, at most");
+    v.number("contact_share", contact_share, 0.0, 1.0, "share of exploration towards objects");
     v.flag("leave_loops", leave_loops, "explore where the episode comes back to, too");
     v.number("start_jitter", start_jitter, 0.0, 10.0,
              "training starts: object positions +- this [m]");
@@ -82,6 +91,8 @@ struct TrainConfig {
     constexpr int kMany = 1000000000;
     constexpr int kTogether = 4;  // environments stepped at once, whose transitions must fit
     v.choice("preset", preset, kTrainPresets, "values of all fields that are not given");
+    v.choice("learner", learner, kLearners, "what makes a policy of the data");
+    v.flag("interact", interact, "act in the environment, or learn from generated data alone");
     v.integer("interactions", interactions, 1, kMany, "environment steps of the learner");
     v.flag("offline", offline, "generate transitions and learn from them, too");
     v.integer("start_at", start_at, 0, kMany, "transitions that must be in before learning starts");
@@ -98,6 +109,7 @@ struct TrainConfig {
     v.number("discount", discount, 0.0, 0.9999, "of the learner; 0: the task's");
     v.number("offline_share", offline_share, -1.0, 1.0, "of a batch; negative: uniform over all");
     v.number("recent_share", recent_share, 0.0, 1.0, "of its online part: from the latest 10,000");
+    v.number("conservatism", conservatism, 0.0, 100.0, "weight of CQL's term; 0: none");
     v.flag("double_q", double_q, "Double-Q targets");
     v.flag("cautious", cautious, "... valued by the network that thinks less of it");
     v.flag("dueling", dueling, "dueling head");
@@ -116,35 +128,5 @@ struct TrainConfig {
     v.choice("device", device, kDevices, "where the networks are; auto: on a GPU if there is one");
   }
 };
-
-/// The values that `preset` stands for. `paper` is Table 2, with the defaults of
-/// Stable-Baselines3's DQN for what the table leaves open, and uniform mixing.
-inline TrainConfig train_preset(TrainPreset preset) {
-  TrainConfig config;
-  if (preset == TrainPreset::kDefault) return config;
-  config.preset = TrainPreset::kPaper;
-  config.batch = 512;
-  config.learning_rate = 5e-5;
-  config.target_sync = 2500;  // 10,000 interactions
-  config.target_rate = 1.0;
-  config.target_acts = false;
-  config.policy_rate = 1.0;
-  config.discount = 0.0;
-  config.offline_share = -1.0;
-  config.recent_share = 0.0;
-  config.cautious = false;
-  config.dueling = config.layer_norm = config.small_head = false;
-  config.clip_targets = config.value_bounds = false;
-  config.epsilon_start = 1.0;
-  config.epsilon_end = 0.05;
-  config.epsilon_share = 0.1;
-  config.nearby_share = 0.0;
-  config.leave_loops = false;
-  config.start_jitter = 0.0;
-  config.eval_every = 10000;
-  config.stop_at_success = 0.0;
-  config.reduced_precision = false;
-  return config;
-}
 
 }  // namespace rtg

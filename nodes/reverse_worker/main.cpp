@@ -16,7 +16,7 @@ int run(const Words& words) {
   const int number = words.size() > 2 ? number_word(words[2], "NUMBER") : 0;
   const RtgConfig config = load_config(words[0]);
   const SolveBatch solve =
-      reverse_solver(config.task, config.physics, config.reverse, config.search.reverse);
+      reverse_solver(config.task, config.physics, config.reverse, config.search.generator);
   Bus bus(config.run.bus, words[1]);
   WorkerNode<ReverseWork> node(bus, {shape_of(config.task), config_hash(config), number, 1},
                                solve_on_threads(solve, 1));

@@ -129,6 +129,7 @@ std::string task_in_words(const Task& task, const Amplitudes& starts) {
 
 std::string training_in_words(const RtgConfig& config) {
   const TrainConfig& train = config.train;
+  if (train.learner == Learner::kPlanning) return "  search forwards from each start\n";
   const std::string from =
       train.offline
           ? print("from %d transitions on", std::min(train.start_at, config.search.transitions))
@@ -150,14 +151,9 @@ std::string work_in_words(const RtgConfig& config) {
   const auto method = kMethods[static_cast<std::size_t>(run.method)];
   std::string out = print("work by method %s\n", method.data());
   if (!train.offline) return out + training_in_words(config) + processes_in_words(run);
-  if (search.reverse == ReverseMode::kRandom)
-    out += print("  generate %d transitions, episodes of the random policy\n", search.transitions);
-  else
-    out += print(
-        "  generate %d transitions, reverse steps by %s, beams of %d nodes, at most %d "
-        "layers a round\n",
-        search.transitions, kReverseModes[static_cast<std::size_t>(search.reverse)].data(),
-        search.breadth, search.depth);
+  out += print("  generate %d transitions by %s, %d other headings with each step\n",
+               search.transitions, kGenerators[static_cast<std::size_t>(search.generator)].data(),
+               search.branches);
   return out + training_in_words(config) + processes_in_words(run);
 }
 

@@ -41,7 +41,7 @@ void beam(benchmark::State& state, const Size& size) {
   const Task task = gathering();
   SearchConfig config;
   config.breadth = size.breadth;
-  GenerationSeams seams = in_process_seams(reverse_solver(task, {}, {}, ReverseMode::kRrbs),
+  GenerationSeams seams = in_process_seams(reverse_solver(task, {}, {}, Generator::kRrbs),
                                            forward_replay(task, {}), size.threads);
   double simulating = 0.0;
   seams.solve = [&simulating, solve = seams.solve](std::span<const ReverseJob> jobs) {
@@ -57,8 +57,8 @@ void beam(benchmark::State& state, const Size& size) {
   std::uint64_t seed = 0;
   for (auto _ : state) {  // trees differ in how soon they meet objects
     SearchStats stats;
-    BeamSearch search(task, config, ++seed);
-    search.aim({task.start}, config.breadth, seams.replay, stats);
+    BeamSearch search(task, config, task.start, ++seed);
+    search.plant(seams.replay, stats);
     for (int layer = 0; layer < size.depth; ++layer, ++layers) {
       nodes += static_cast<long>(search.beam().size());
       if (search.grow(seams.solve, seams.replay, stats).empty())

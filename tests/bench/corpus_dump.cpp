@@ -57,9 +57,8 @@ void dump(const std::filesystem::path& folder, int transitions) {
   for (const auto& [name, task] : read_tasks(folder)) {
     SearchConfig search;
     search.transitions = transitions;
-    search.rollout_share = 0.0;
     Sample sample(task);
-    const SolveBatch solve = reverse_solver(task, {}, {}, search.reverse);
+    const SolveBatch solve = reverse_solver(task, {}, {}, search.generator);
     const auto sampled = [&](std::span<const ReverseJob> jobs) {
       for (const ReverseJob& job : jobs) sample.add(job);
       return solve(jobs);

@@ -61,7 +61,7 @@ void print_progress(const Progress& p) {
 void run(const Options& options) {
   const RtgConfig config = load_config(options.file, options.overrides);
   GenerationSeams seams = in_process_seams(
-      reverse_solver(config.task, config.physics, config.reverse, config.search.reverse),
+      reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
       forward_replay(config.task, config.physics), options.threads);
   seams.store = [](std::span<const Transition>) {};
   seams.progress = print_progress;

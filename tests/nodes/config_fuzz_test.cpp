@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 30> kTokens{
 constexpr std::array<std::string_view, 19> kSettings{
     "search.breadth=32",
     "search.gap_tolerance=0.125",
-    "search.ranking=novelty",
+    "search.generator=naive",
     "reverse.preset=paper",
     "train.preset=paper",
     "run.bus=udpm://239.255.76.67:7667?ttl=0",

@@ -8,6 +8,7 @@
 
 #include "nodes/common/config_error.hpp"
 #include "nodes/common/field_writer.hpp"
+#include "nodes/common/train_preset.hpp"
 #include "tests/nodes/two_boxes.hpp"
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
@@ -80,13 +81,13 @@ TEST(RtgConfig, EveryFieldIsReadFromItsKey) {
   const RtgConfig config = parsed(
       "  horizon: 7\n  start_jitter: 1e-1\n"
       "physics: {skin: +0.01}\n"
-      "search: {ranking: 'novelty', breadth: 12}\n"
+      "search: {generator: 'naive', breadth: 12}\n"
       "train: {double_q: false}\n"
       "run: {seed: 5, workers: 3, in_process: true, bus: \"memq://\"}\n");
   EXPECT_EQ(config.task.horizon, 7);
   EXPECT_EQ(config.task.start_jitter, 0.1);
   EXPECT_EQ(config.physics.skin, 0.01);
-  EXPECT_EQ(config.search.ranking, Ranking::kNovelty);
+  EXPECT_EQ(config.search.generator, Generator::kNaive);
   EXPECT_EQ(config.search.breadth, 12);
   EXPECT_FALSE(config.train.double_q);
   EXPECT_EQ(config.run.seed, 5);
@@ -205,21 +206,24 @@ TEST(RtgConfig, AMethodGivesTheValuesThatAreNotGiven) {
   train.epsilon_start = 0.5;  // of the file
   train.epsilon_end = 0.05;
   train.nearby_share = 0.0;
+  train.contact_share = 0.5;
   train.hindsight = 4;
   EXPECT_EQ(config.run.method, Method::kHer);
   EXPECT_EQ(text_of(config.train), text_of(train));
 }
 
 TEST(RtgConfig, AMethodAmongTheOverridesStandsAboveTheFileButNotAboveTheOthers) {
-  const std::string file = "search: {reverse: naive}\ntrain: {hindsight: 9, epsilon_start: 0.5}\n";
+  const std::string file =
+      "search: {generator: naive}\ntrain: {hindsight: 9, epsilon_start: 0.5}\n";
   const std::vector<std::string> overrides{"train.epsilon_start=0.7", "run.method=dqn",
                                            "train.preset=paper"};
   TrainConfig train = train_preset(TrainPreset::kPaper);
   train.offline = train.double_q = false;
   train.epsilon_start = 0.7;
+  train.contact_share = 0.5;
   EXPECT_EQ(text_of(parsed(file, overrides).train), text_of(train));
-  EXPECT_EQ(parsed(file, overrides).search.reverse, ReverseMode::kRrbs);
-  EXPECT_EQ(parsed(file).search.reverse, ReverseMode::kNaive);
+  EXPECT_EQ(parsed(file, overrides).search.generator, Generator::kRrbs);
+  EXPECT_EQ(parsed(file).search.generator, Generator::kNaive);
 }
 
 TEST(RtgConfig, WhatAMethodStandsForReadsBackToItself) {

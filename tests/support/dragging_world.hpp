@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/search/batches.hpp"
-#include "core/search/forward_replay.hpp"
+#include "core/search/predecessor.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg::testing {

@@ -15,8 +15,8 @@ struct GenerationRun {
 
 /// The in-process seams over the naive reverse.
 inline GenerationSeams naive_seams(const Task& task, int threads) {
-  return in_process_seams(reverse_solver(task, {}, {}, ReverseMode::kNaive),
-                          forward_replay(task, {}), threads);
+  return in_process_seams(reverse_solver(task, {}, {}, Generator::kNaive), forward_replay(task, {}),
+                          threads);
 }
 
 inline GenerationRun run_naive(const Task& task, const SearchConfig& config, std::uint64_t seed,

@@ -10,18 +10,16 @@ import network
 import pytest
 from graph import PATIENCE, Graph, Process, first_rows, generated_in_process, rest
 
-# No roll-outs: to its last row the search needs reverse workers and the server.
-LONG = ("search.transitions=12000", "search.rollout_share=0", "run.seed=3")
+LONG = ("search.transitions=12000", "run.seed=3")
 
 RRBS = (
-    "search.reverse=rrbs",
+    "search.generator=rrbs",
     "search.transitions=300",
     "search.breadth=4",
-    "search.rollout_share=0.2",
-    "search.evaluation_starts=1",
 )
-# Most of them are found forwards, on the server alone.
-MENDED = ("search.mended=1", "search.transitions=800", "search.rollout_share=0")
+# On the server alone.
+FORWARD = ("search.generator=forward", "search.transitions=800")
+SCATTER = ("search.generator=scatter", "search.transitions=800")
 
 
 @pytest.fixture
@@ -58,7 +56,7 @@ def test_any_number_of_workers(
     assert graph.transitions() == tiny
 
 
-@pytest.mark.parametrize("words", [RRBS, MENDED], ids=["rrbs", "mended"])
+@pytest.mark.parametrize("words", [RRBS, FORWARD, SCATTER], ids=["rrbs", "forward", "scatter"])
 def test_other_searches(net: network.Network, tmp_path: Path, words: tuple[str, ...]) -> None:
     graph = Graph(net, tmp_path, *words)
     helpers = [graph.server(), graph.worker(1), graph.worker(2)]

@@ -16,7 +16,7 @@ from rtg import dataset, paths
 from rtg.run_folder import SUMMARY_KEYS
 
 TINY = "config/tests/tiny.yaml"
-WHOLE = (TINY, "--set", "search.chain_share=0.3")  # with chains to success among the data
+WHOLE = (TINY,)
 NETWORK = paths.ROOT / "tests" / "support" / "private_network.sh"
 ENDLESS = (TINY, "--transitions", "20000000", "--set", "train.buffer=20000000")
 PATIENCE = 300.0  # [s]; longer is a hang

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,8 @@ def row(interactions: int, success: float) -> dict[str, Any]:
     """An evaluation."""
     return {
         "interactions": interactions,
+        "pushes": interactions,
+        "cpu_s": interactions / 100.0,
         "success_rate": success,
         "rollout_success": 0.9 * success,
         "episode_length_mean": 60.0 - 40.0 * success,
@@ -26,26 +28,16 @@ def row(interactions: int, success: float) -> dict[str, Any]:
     }
 
 
-def finished(
-    folder: Path, cell: Cell, course: Sequence[float], *, budget: int = 0, **more: Any
-) -> None:
-    """The folder of a run that evaluated every 5,000 interactions, with these successes, and used
-    its budget up if none is given."""
-    run = folder / cell.name
-    run.mkdir(parents=True)
-    log = TrainingLog(run)
-    for at, success in enumerate(course, start=1):
-        log.add(row(5000 * at, success))
-    rng = np.random.default_rng(cell.seed)
+def summary_of(seed: int) -> dict[str, Any]:
+    """What a run came to, but for its success."""
+    rng = np.random.default_rng(seed)
     gaps = np.exp(rng.normal(-5.0, 1.0, size=500)).tolist()
-    summary = {
-        "success_rate": course[-1],
-        "episode_length_mean": 60.0 - 40.0 * course[-1],
-        "rollout_success": 0.9 * course[-1],
-        "interactions": 5000 * len(course),
+    return {
         "transitions": 120_000,
         "generate_wall_s": 50.0,
+        "generate_cpu_s": 60.0,
         "train_wall_s": 100.0,
+        "train_cpu_s": 90.0,
         "candidates": 2000,
         "pruned": 1000,
         "converged": 990,
@@ -53,19 +45,55 @@ def finished(
         "pushing_iterations_p90": 53,
         "reverse_cpu_s": 2.0,
         "replay_cpu_s": 60.0,
-        "replays": 1_200_000,
+        "replays": 300_000,
         "replay_gap_median": 0.006,
         "replay_gap_p90": 0.026,
         "contact_share": 0.5,
-        "tree_policy_success": 0.85,
+        "tree_transitions": 24_000,
+        "branch_transitions": 96_000,
+        "headings_per_state": 4.9,
+        "start_region_transitions": 300,
+        "start_region_depth": 14,
+        "trees": 12,
+        "q_rank_correlation": 0.75,
+        "q_error": 0.02,
+        "q_spread": 0.07,
         "defects": [],
         "replay_gap_counts": replay_gaps.counts(gaps),
+    }
+
+
+def finished(
+    folder: Path,
+    cell: Cell,
+    course: Sequence[float],
+    *,
+    budget: int = 0,
+    every: Mapping[str, float] | None = None,
+    **more: Any,
+) -> None:
+    """The folder of a run that evaluated every 5,000 interactions, with these successes, and used
+    its budget up if none is given. every: other costs of 5,000 interactions; more: other values of
+    summary.json."""
+    run = folder / cell.name
+    run.mkdir(parents=True)
+    log = TrainingLog(run)
+    for at, success in enumerate(course, start=1):
+        costs = {cost: at * value for cost, value in (every or {}).items()}
+        log.add({**row(5000 * at, success), **costs})
+    summary = {
+        **summary_of(cell.seed),
+        "success_rate": course[-1],
+        "episode_length_mean": 60.0 - 40.0 * course[-1],
+        "rollout_success": 0.9 * course[-1],
+        "interactions": 5000 * len(course),
         **more,
     }
     write_json(run / "summary.json", summary)
     write_json(run / "versions.json", {"git_revision": "abc", "git_modified": False})
     budget = budget or 5000 * len(course)
-    config = _core.Config.from_file(CONFIG, overrides=[f"train.interactions={budget}"])
+    settings = [f"run.method={cell.method}", f"train.interactions={budget}"]
+    config = _core.Config.from_file(CONFIG, overrides=settings)
     (run / "config.yaml").write_text(config.yaml)
     start = _core.Config.from_file(CONFIG).task.start
     np.savez(run / "best_episode.npz", poses=np.stack([start, start]), success=course[-1] > 0.5)

@@ -1,7 +1,16 @@
 """What is taken back of the preset `default`, one after the other."""
 
 from rtg import effective_config, paths
-from rtg.ablations import PAPER, ablations, departures
+from rtg.ablations import (
+    DECIDED,
+    OF_BRANCHES,
+    OF_TREES,
+    PAPER,
+    SIZES,
+    ablations,
+    departures,
+    parts_of_search,
+)
 from rtg.run_args import Override
 
 FILE = paths.CONFIG / "sorting.yaml"
@@ -21,7 +30,8 @@ def test_keys_that_belong_together_are_taken_back_together():
 
 def test_all_departures_together_are_the_paper_but_for_how_it_is_measured():
     *departures, as_paper = ablations(FILE, [])
-    taken_back = [Override("", word) for words in departures for word in words]
+    words = [word for words in departures for word in words if word.startswith("train.")]
+    taken_back = [Override("", word) for word in words]
     found = effective_config.values(FILE, taken_back)["train"]
     paper = effective_config.values(FILE, [Override("", word) for word in as_paper])["train"]
     assert {key for key in paper if found[key] != paper[key]} == {"preset"}
@@ -30,13 +40,33 @@ def test_all_departures_together_are_the_paper_but_for_how_it_is_measured():
     assert [paper[key] for key in watched] == [ours[key] for key in watched]
 
 
-def test_data_found_forwards_are_left_out_one_by_one_and_together():
-    mended, roll_outs = "search.mended=0", "search.rollout_share=0"
-    assert ablations(FILE, [])[:4] == [(), (mended,), (roll_outs,), (mended, roll_outs)]
-    assert ablations(FILE, [Override("", mended)])[1] == (roll_outs,)
-    for method in ("her", "ddqn_random"):  # without data, without trees
-        for words in ablations(FILE, [Override("", f"run.method={method}")]):
-            assert not {mended, roll_outs} & set(words)
+def test_every_setting_of_the_search_has_an_ablation_or_is_a_size():
+    search = effective_config.values(FILE)["search"]
+    assert set(search) <= {*OF_BRANCHES, *OF_TREES, *SIZES, *DECIDED}
+    tried = {words[0].partition("=")[0] for words in parts_of_search(search)}
+    assert "search.branches" in tried and not tried & {f"search.{key}" for key in SIZES}
+
+
+def test_the_loader_takes_every_part_of_the_search_away():
+    before = effective_config.values(FILE)["search"]
+    for (word,) in parts_of_search(before):
+        after = effective_config.values(FILE, [Override("", word)])["search"]
+        key = word.partition("=")[0].removeprefix("search.")
+        assert {name for name in before if before[name] != after[name]} == {key}, word
+
+
+def test_what_the_search_is_without_is_not_taken_away():
+    search = {"generator": "rrbs", "branches": 0, "near_branches": 1, "transitions": 9}
+    assert parts_of_search(search) == [("search.near_branches=0",)]
+    kept = parts_of_search({"generator": "naive", "others": 0})
+    assert kept == [("search.others=1000",)]
+
+
+def test_only_trees_lose_parts_of_trees_and_only_data_any():
+    for method, lost in (("ddqn_naive", True), ("ddqn_scatter", False), ("her", False)):
+        found = ablations(FILE, [Override("", f"run.method={method}")])
+        assert (("search.random_share=0",) in found) == lost
+        assert (("search.branches=0",) in found) == (method != "her")
 
 
 def test_of_the_paper_nothing_is_taken_back():

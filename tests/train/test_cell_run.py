@@ -59,10 +59,10 @@ def test_a_run_keeps_to_one_thread(words):
 
 def test_methods_stand_above_the_file_and_the_settings(words):
     """The file says naive."""
-    for run, reverse in zip(make_ready(parse(words)), ("naive", "rrbs"), strict=True):
+    for run, generator in zip(make_ready(parse(words)), ("naive", "rrbs"), strict=True):
         args = run_args.parse(run.words)
         config = effective_config.values(args.file, args.overrides)
-        assert config["search"]["reverse"] == reverse
+        assert config["search"]["generator"] == generator
         assert config["run"]["workers"] == 1 and config["run"]["in_process"]
         assert config["train"]["batch"] == 8
 

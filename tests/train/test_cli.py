@@ -17,7 +17,7 @@ MISTAKES = {
     "workers no number": (["--workers", "two"], "--workers two: "),
     "workers negative": (["--workers", "-1"], "--workers"),
     "too many workers": (["--workers", "5000"], "--workers 5000: "),
-    "reverse": (["--reverse", "magic"], "--reverse magic: "),
+    "generator": (["--generator", "magic"], "--generator magic: "),
     "seed": (["--seed", "1.5"], "--seed 1.5: "),
     "no transitions": (["--transitions", "0"], "--transitions 0: "),
     "no interactions": (["--interactions", "0"], "--interactions 0: "),
@@ -109,7 +109,7 @@ def test_text_that_is_no_utf8_is_a_mistake(tmp_path):
 def test_help_names_every_flag_of_the_contract():
     done = rtg("--help")
     assert done.returncode == 0
-    for flag in ("--in-process", "--workers", "--reverse", "--transitions", "--interactions"):
+    for flag in ("--in-process", "--workers", "--generator", "--transitions", "--interactions"):
         assert flag in done.stdout
     for flag in ("--no-train", "--seed", "--out", "--set", "--print-config", "--resume"):
         assert flag in done.stdout

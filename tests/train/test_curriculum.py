@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from rtg import _core, curriculum, paths
-from rtg.curriculum import ELSEWHERE, EPISODES, NEW, OLD, PUSHES, WALKS, Curriculum
+from rtg.curriculum import ELSEWHERE, EPISODES, FEWEST, NEW, OLD, PUSHES, WALKS, Curriculum
 from rtg.errors import UserError
 from rtg.offline_data import NoSource
 from rtg.vector_env import PushVecEnv
@@ -17,19 +17,22 @@ TASK = CONFIG.task
 
 
 def play_round(one: Curriculum, solved: dict[int, int]) -> np.ndarray:
-    """The pool of a round in which start k is solved `solved[k]` times of EPISODES, else never."""
+    """The pool of a round in which start k is solved `solved[k]` times of EPISODES, else never.
+
+    An episode from start k takes k pushes.
+    """
     pool = one.pool
     numbers = [one.draw()[0] for _ in range(EPISODES * len(pool))]
     for count, number in enumerate(numbers):
         k = number - numbers[0]
-        one.note(number, success=count // len(pool) < solved.get(k, 0))
+        one.note(number, success=count // len(pool) < solved.get(k, 0), length=k)
     return pool
 
 
 def near(states: np.ndarray, seeds: np.ndarray) -> np.ndarray:
-    """Of each state, whether most objects are where those of one of the seeds are. [states]"""
+    """Of each state, whether an object is where that of one of the seeds is. [states]"""
     moved = np.abs(states[:, None, 1:] - seeds[None, :, 1:]).max(axis=3) > 1e-9
-    return moved.sum(axis=2).min(axis=1) <= 1
+    return ~moved.all(axis=2).all(axis=1)
 
 
 def test_the_first_starts_are_near_goals_and_do_not_meet_them() -> None:
@@ -63,7 +66,7 @@ def test_pushes_of_the_walks_are_counted() -> None:
     one = Curriculum(CONFIG, 1.0, seed=1)
     assert one.pushes == PUSHES * WALKS
     for number in range(NEW * EPISODES):
-        one.note(number % NEW, success=False)
+        one.note(number % NEW, success=False, length=60)
     assert one.pushes == 2 * PUSHES * WALKS
 
 
@@ -79,11 +82,14 @@ def test_starts_are_drawn_in_turn_and_as_often_as_asked() -> None:
 
 def test_starts_that_are_solved_now_and_then_are_kept_and_seed_the_next() -> None:
     one = Curriculum(CONFIG, 1.0, seed=1)
-    pool = play_round(one, {3: 1, 7: 2, 11: EPISODES})
-    good = pool[[3, 7]]
+    kept = list(range(3, 3 + FEWEST))
+    pool = play_round(one, {**{k: 1 + k % 2 for k in kept}, 31: EPISODES})
+    good = pool[kept]
     np.testing.assert_array_equal(one.state()["good"], good)
     np.testing.assert_array_equal(one.state()["seeds"], good)
-    assert near(one.pool, good).mean() > 0.8 and near(pool, good).mean() < 0.2
+    assert near(one.pool, good).mean() > 0.8
+    far = pool[~near(pool, good)]
+    assert len(far) > 15 and not near(one.pool, far).any()
     assert len(one.pool) == NEW, "no good ones of earlier rounds yet"
 
 
@@ -97,44 +103,112 @@ def test_old_good_starts_are_played_again() -> None:
     assert len({start.tobytes() for start in replayed} & known) == OLD
 
 
-def test_without_a_good_start_the_mastered_ones_seed_else_the_last_seeds_again() -> None:
+def test_with_few_good_starts_those_mastered_with_most_pushes_seed_too() -> None:
+    one = Curriculum(CONFIG, 1.0, seed=1)
+    mastered = {k: EPISODES for k in (5, 9, 20, 30, 31)}
+    pool = play_round(one, {2: 1, **mastered})
+    np.testing.assert_array_equal(one.state()["seeds"], pool[[2, 31, 30, 20]])
+    np.testing.assert_array_equal(one.state()["good"], pool[[2]])
+
+
+def test_mastered_starts_that_are_played_again_seed_nothing() -> None:
+    one = Curriculum(CONFIG, 1.0, seed=1)
+    play_round(one, {k: 1 for k in range(OLD)})
+    assert len(play_round(one, {})) == NEW
+    assert len(one.pool) == NEW + OLD
+    pool = play_round(one, {4: EPISODES, 6: EPISODES, NEW + 1: EPISODES, NEW + 2: 1})
+    np.testing.assert_array_equal(one.state()["seeds"], pool[[NEW + 2, 6]])
+
+
+def test_without_a_solved_start_walks_begin_again_where_the_last_ones_did() -> None:
     one = Curriculum(CONFIG, 1.0, seed=1)
     first = one.state()["seeds"]
-    play_round(one, {})
+    pool = play_round(one, {})
     np.testing.assert_array_equal(one.state()["seeds"], first)
-    pool = play_round(one, {5: EPISODES, 6: EPISODES})
-    np.testing.assert_array_equal(one.state()["seeds"], pool[[5, 6]])
     assert len(one.state()["good"]) == 0
+    assert not np.array_equal(one.pool, pool), "the walks are others"
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_the_pool_moves_outwards_with_a_learner_that_masters_more_and_more(seed: int) -> None:
+    """It solves starts whose boxes are no further out in all than a reach that grows by 0.5 m a
+    round, half of those up to 1 m beyond, and needs a push for each metre."""
+    one, reach, ways = Curriculum(CONFIG, 1.0, seed), 1.0, []
+    rng = np.random.default_rng(seed)
+    for _ in range(25):
+        way = np.maximum(np.linalg.norm(one.pool[:, 1:, :2], axis=2) - 2.0, 0.0).sum(axis=1)
+        first = one.state()["first"]
+        while one.state()["first"] == first:
+            number, _ = one.draw()
+            beyond = way[number - first] - reach
+            success = beyond < rng.choice((0.0, 1.0))
+            one.note(number, success, length=int(way[number - first]) if success else 60)
+        ways.append(np.median(way))
+        reach += 0.5
+    nominal = np.maximum(np.linalg.norm(TASK.start[1:, :2], axis=1) - 2.0, 0.0).sum()
+    assert ways[0] < 1.5 and max(ways[15:]) > nominal > 3.5
+    assert np.mean(ways[20:]) > np.mean(ways[10:15]) > np.mean(ways[:5]) + 0.7
+
+
+def test_half_of_the_walks_pushes_seek_contact(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With all or none of them far more or fewer objects move."""
+    moved = {}
+    for share in (0.0, 0.5, 1.0):
+        monkeypatch.setattr(curriculum, "SEEKING", share)
+        one = Curriculum(CONFIG, 1.0, seed=1)
+        states = np.repeat(TASK.start[None], 4000, axis=0)
+        after, _ = _core.Simulator(CONFIG).push(states, one._headings(states))
+        headings = np.bincount(one._headings(states), minlength=48)
+        moved[share] = (headings[30:42].sum() / 4000, (after[:, 0] != states[:, 0]).any())
+    assert curriculum.SEEKING == 1.0 and moved[0.0][0] == pytest.approx(0.25, abs=0.03)
+    assert moved[1.0][0] == 0.0, "all boxes are on the other side"
+    assert moved[0.5][0] == pytest.approx(0.125, abs=0.03)
+
+
+def test_starts_have_all_objects_within_the_arena() -> None:
+    one = Curriculum(CONFIG, 1.0, seed=1)
+    seeds = np.repeat(one.pool[:1], 3, axis=0)
+    seeds[0, 1, 0], seeds[1, 2, 1] = 12.0, -12.0
+    seeds[2, 3, :2] = 5.0, -5.0  # within
+    one.restore({**one.state(), "seeds": seeds})
+    play_round(one, {})
+    assert len(one.pool) == NEW and (np.abs(one.pool[:, 1:, :2]) <= 8.0).all()
+    assert (one.pool[:, 3, 0] > 3.0).all()
 
 
 def test_episodes_of_an_earlier_round_no_longer_count() -> None:
     one = Curriculum(CONFIG, 1.0, seed=1)
     late, _ = one.draw()
     for number in [late, *(one.draw()[0] for _ in range(EPISODES * NEW - 1))]:
-        one.note(number, success=False)
+        one.note(number, success=False, length=60)
     before = one.state()["tries"].copy()
-    one.note(late, success=True)
-    one.note(ELSEWHERE, success=True)
+    one.note(late, success=True, length=1)
+    one.note(ELSEWHERE, success=True, length=1)
     np.testing.assert_array_equal(one.state()["tries"], before)
     assert not one.state()["wins"].any()
 
 
-def test_a_task_whose_goal_surrounds_the_seeds_begins_at_its_start(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(curriculum, "PUSHES", 0)  # the walks stay where the goal holds
-    np.testing.assert_array_equal(Curriculum(CONFIG, 1.0, seed=1).pool, TASK.start[None])
+def test_walks_that_meet_no_start_leave_the_start_of_the_task() -> None:
+    one = Curriculum(CONFIG, 1.0, seed=1)
+    beyond = one.pool[:1].copy()
+    beyond[:, 1, 0] = 30.0
+    one.restore({**one.state(), "seeds": beyond})
+    play_round(one, {})
+    np.testing.assert_array_equal(one.pool, TASK.start[None])
 
 
 def test_environments_begin_at_its_starts_and_tell_how_they_ended() -> None:
     one = Curriculum(CONFIG, 1.0, seed=1)
     env = PushVecEnv(CONFIG, 2, jitter=0.1, seed=9, curriculum=one)
     np.testing.assert_array_equal(env.reset(), TASK.observation(one.pool[:2]))
-    rng, episodes, wins = np.random.default_rng(0), 0, 0
-    while episodes < 20:
+    rng, episodes, wins, steps = np.random.default_rng(0), 0, 0, 0
+    while episodes < 50:
         _, reward, done, _ = env.step(rng.integers(48, size=2))
         episodes, wins = episodes + int(done.sum()), wins + int(reward.sum())
+        steps += 2
     assert one.state()["tries"].sum() == episodes and one.state()["wins"].sum() == wins
+    running = env.state()["steps"].sum()
+    assert one.state()["lengths"].sum() == steps - running and 0 < wins < episodes
 
 
 def test_a_restored_curriculum_goes_on_with_the_same_starts() -> None:
@@ -145,7 +219,7 @@ def test_a_restored_curriculum_goes_on_with_the_same_starts() -> None:
         for _ in range(2 * EPISODES * NEW):
             number, start = some.draw()
             seen.append(b"" if start is None else start.tobytes())
-            some.note(number, success=bool(number % 3 == 0))
+            some.note(number, success=bool(number % 3 == 0), length=number % 7)
         return seen
 
     starts(one)

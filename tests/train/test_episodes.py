@@ -1,72 +1,92 @@
-"""Whole episodes found in a transition set."""
-
-from itertools import pairwise
+"""The plan of a transition set that is shown where nothing was learned."""
 
 import numpy as np
+import pytest
+from rtg import _core, paths
 from rtg.dataset import SOURCES, Transitions
-from rtg.episodes import best_episode, episodes
+from rtg.episodes import replayed_plan
+
+CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
+TASK = CONFIG.task
 
 
-def chain(source, states, success):
-    """Transitions through states, numbers that stand for poses: (from, to, source, success)."""
-    steps = list(pairwise(states))
-    return [(a, b, source, success and k == len(steps) - 1) for k, (a, b) in enumerate(steps)]
+def push(state, action):
+    after, ok = _core.Simulator(CONFIG).push(state[None], np.array([action]))
+    assert ok[0]
+    return after[0]
 
 
-def transitions(*chains):
-    rows = [row for steps in chains for row in steps]
-    state = lambda k: np.full((2, 3), float(k))  # noqa: E731
-    success = np.array([row[3] for row in rows])
-    count = len(rows)
+def row(state, action, *, source="tree", shift=0.0, success=False):
+    """A true transition whose begin was then moved by `shift` [m], as the next step of a tree."""
+    begin = state.copy()
+    begin[0, 0] += shift
+    return begin, action, push(begin, action), success, SOURCES.index(source)
+
+
+def transitions(*rows):
+    poses, action, after, success, source = (np.array(column) for column in zip(*rows, strict=True))
+    nothing = np.zeros((len(rows), TASK.observation_size), np.float32)
+    success = success.astype(bool)
     return Transitions(
-        poses=np.stack([state(row[0]) for row in rows]),
-        action=np.zeros(count, np.int32),
-        next_poses=np.stack([state(row[1]) for row in rows]),
+        poses=poses,
+        action=action.astype(np.int32),
+        next_poses=after,
         reward=success.astype(np.float32),
         terminated=success,
-        observation=np.zeros((count, 8), np.float32),
-        next_observation=np.zeros((count, 8), np.float32),
-        source=np.array([SOURCES.index(row[2]) for row in rows], np.int8),
+        observation=nothing,
+        next_observation=nothing,
+        source=source.astype(np.int8),
     )
 
 
-def test_an_episode_ends_where_the_next_row_starts_elsewhere():
-    data = transitions(
-        chain("step_replay", [1, 2, 3], False),
-        chain("roll_out", [3, 4, 5, 6], True),
-        chain("roll_out", [6, 7], False),  # starts where a success ended: another episode
-        chain("roll_out", [9, 8, 7], False),
-    )
-    assert episodes(data, "roll_out") == [slice(2, 5), slice(5, 6), slice(6, 8)]
-    assert episodes(data, "step_replay") == [slice(0, 2)]
-    assert episodes(data, "chain_replay") == []
+FIRST = row(TASK.start, 24)
+SECOND = row(FIRST[2], 12, shift=0.1)
+LAST = row(SECOND[2], 24, shift=-0.2, success=True)  # said to succeed: it shows where plans end
 
 
-def test_the_best_episode_is_the_shortest_solved_roll_out():
-    data = transitions(
-        chain("roll_out", [1, 2, 3, 4], True),
-        chain("roll_out", [5, 6], False),
-        chain("roll_out", [7, 8, 9], True),
-        chain("chain_replay", [10, 11], True),
-    )
-    assert best_episode(data)[:, 0, 0].tolist() == [7, 8, 9]
+@pytest.mark.parametrize("order", [(0, 1, 2), (2, 0, 1)])
+def test_a_plan_is_replayed_from_its_first_step_end_to_end(order):
+    """Each step begins a little off where the one before it ends."""
+    rows = [(FIRST, SECOND, LAST)[k] for k in order]
+    states = replayed_plan(CONFIG, transitions(*rows))
+    expected = [TASK.start]
+    for action in (24, 12, 24):
+        expected.append(push(expected[-1], action))
+    assert np.array_equal(states, expected)
 
 
-def test_without_solved_roll_outs_it_is_the_shortest_mended_one():
-    data = transitions(
-        chain("roll_out", [1, 2], False),
-        chain("mended", [3, 4, 5], True),
-        chain("chain_replay", [10, 11], True),
-        chain("mended", [6, 7], True),
-    )
-    assert best_episode(data)[:, 0, 0].tolist() == [6, 7]
+def test_steps_that_lead_to_no_success_are_no_plan():
+    far = row(FIRST[2], 12, shift=0.3)  # begins too far from where the first one ends
+    last = row(far[2], 24, success=True)
+    states = replayed_plan(CONFIG, transitions(FIRST, far, last))
+    assert np.array_equal(states[0], far[0]) and len(states) == 3
+    assert replayed_plan(CONFIG, transitions(FIRST, SECOND)) is None
+    assert replayed_plan(CONFIG, transitions((*FIRST[:4], SOURCES.index("branch")))) is None
 
 
-def test_without_any_it_is_the_longest_chain():
-    data = transitions(
-        chain("roll_out", [1, 2, 3, 4], False),
-        chain("chain_replay", [10, 11], True),
-        chain("chain_replay", [12, 13, 14], True),
-    )
-    assert best_episode(data)[:, 0, 0].tolist() == [12, 13, 14]
-    assert best_episode(transitions(chain("roll_out", [1, 2], False))) is None
+def test_branches_are_no_steps_of_a_plan():
+    branch = row(FIRST[2], 12, source="branch")
+    states = replayed_plan(CONFIG, transitions(FIRST, branch, row(branch[2], 24, success=True)))
+    assert len(states) == 2 and np.array_equal(states[0], branch[2])
+
+
+def test_a_round_trip_of_steps_leads_nowhere():
+    """Their lengths are never known, and the search for them ends."""
+    back = row(FIRST[2], 0)
+    assert np.abs(back[2] - TASK.start).max() < 0.1
+    apart = row(np.roll(TASK.start, 1, axis=1) * [1.0, 1.0, 0.0], 3, success=True)
+    states = replayed_plan(CONFIG, transitions(FIRST, back, apart))
+    assert len(states) == 2 and np.array_equal(states[0], apart[0])
+
+
+def test_of_many_plans_the_nearest_to_the_start_that_succeeds_is_shown():
+    """And it ends with its success, though its plan would go on."""
+    solved = TASK.start.copy()
+    solved[1:, :2] = [[-1.0, 0.0], [1.0, 0.0], [0.0, 1.2]]
+    solved[0, :2] = (0.0, -5.0)
+    fails = row(TASK.start, 24, success=True)
+    succeeds = row(solved, 24)
+    beyond = row(succeeds[2], 24, success=True)
+    states = replayed_plan(CONFIG, transitions(fails, succeeds, beyond))
+    assert np.array_equal(states, [solved, succeeds[2]]) and TASK.succeeded(states[-1:])[0]
+    assert np.array_equal(replayed_plan(CONFIG, transitions(fails)), [TASK.start, fails[2]])

@@ -7,7 +7,7 @@ import pytest
 from rtg import cli, paths
 
 SMALL = ["--transitions", "600", "--interactions", "400", "--in-process", "--workers", "1"]
-SETTINGS = ("search.breadth=8", "search.depth=4", "search.explored=1", "search.mended=0.1")
+SETTINGS = ("search.breadth=8", "search.depth=4")
 FILES = sorted((paths.CONFIG / "examples").glob("*.yaml"))
 
 

@@ -10,6 +10,32 @@ def exploration(seed: int = 0, **changes: Any) -> Exploration:
     return Exploration(settings, headings=8, seed=seed)
 
 
+def test_a_share_of_what_explores_heads_towards_objects() -> None:
+    """The contact heading is 6, the greedy one 1, and 20,000 environments act."""
+    n, seeds = 20_000, []
+
+    def contact(seed: int) -> np.ndarray:
+        seeds.append(seed)
+        return np.full(n, 6)
+
+    settings = train_settings(leave_loops=False, nearby_share=1.0, contact_share=0.25)
+    one = Exploration(settings, headings=8, seed=0, contact=contact)
+    found = one.actions(np.full(n, 1), np.zeros((n, 5)), 0.4)
+    assert set(found) <= {0, 1, 2, 3, 6, 7}  # nearby_headings is 2
+    assert abs((found == 6).mean() - 0.1) < 4 * np.sqrt(0.1 * 0.9 / n)  # four sigma
+    assert abs((found == 1).mean() - 0.6) < 4 * np.sqrt(0.6 * 0.4 / n)
+    one.actions(np.full(n, 1), np.zeros((n, 5)), 0.4)
+    assert len(set(seeds)) == 2, "another seed in each step"
+
+
+def test_without_a_share_nobody_is_asked_for_contact_headings() -> None:
+    greedy, seen = np.full(100, 1), np.zeros((100, 5))
+    one = exploration()  # without anybody to ask
+    other = Exploration(one.settings, 8, 0, contact=lambda seed: np.full(100, seed))
+    np.testing.assert_array_equal(one.actions(greedy, seen, 0.5), other.actions(greedy, seen, 0.5))
+    assert one.state() == other.state()
+
+
 def explored(one: Exploration, states: list[float], epsilon: float = 0.0) -> list[bool]:
     """Whether one environment, whose greedy heading is 3, does something else in each state."""
     done = [one.actions(np.array([3]), np.full((1, 5), x), epsilon)[0] for x in states]
@@ -71,3 +97,21 @@ def test_goes_on_from_its_state() -> None:
     rest = explored(one, states[30:], 0.5)
     assert explored(other, states[30:], 0.5) == rest
     assert 0 < sum(rest) < 30
+
+
+def test_contact_headings_go_on_from_its_state() -> None:
+    def contact(seed: int) -> np.ndarray:
+        return np.array([seed % 8])
+
+    settings = train_settings(leave_loops=True, contact_share=0.5)
+    one, other = (Exploration(settings, 8, seed, contact) for seed in (0, 9))
+    states = [float(k % 5) for k in range(60)]
+
+    def actions(some: Exploration) -> list[int]:
+        seen = [np.full((1, 5), x) for x in states]
+        return [int(some.actions(np.array([3]), row, 0.5)[0]) for row in seen]
+
+    actions(one)
+    other.restore(one.state())
+    assert actions(one) == actions(other)
+    assert set(actions(one)) > {0, 7}

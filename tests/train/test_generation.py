@@ -25,7 +25,7 @@ def test_transitions_are_true_and_as_many_as_asked() -> None:
     assert ok.all()
     np.testing.assert_array_equal(replayed, after)
     np.testing.assert_array_equal(config.task.succeeded(after), success)
-    assert success.any() and set(source) <= {0, 1, 2}
+    assert success.any() and set(source) == {0, 1}
     assert lines[-1]["transitions"] == lines[-1]["target"] == 2000
 
 
@@ -36,7 +36,8 @@ def test_the_report_of_the_search_itself_has_every_figure_of_the_summary(tmp_pat
     config = json.loads(_core.Config.from_file(FILE).json)
     summary = run_folder.summary(tmp_path, config, "lcm", {"lost_transitions": 0})
     of_the_learner = {"train_wall_s", "interactions", "online_successes", "success_rate"}
-    of_the_learner |= {"episode_length_mean", "episode_return_mean"}
+    of_the_learner |= {"episode_length_mean", "episode_return_mean", "train_cpu_s"}
+    of_the_learner |= {"q_rank_correlation", "q_error", "q_spread"}
     assert {key for key in run_folder.SUMMARY_KEYS if summary[key] is None} == of_the_learner
     assert summary["generate_wall_s"] > 0
 

@@ -57,7 +57,7 @@ def test_a_resumed_run_still_tells_what_its_generation_gave_up(plan, monkeypatch
     measured = {}
     monkeypatch.setattr(results, "finish", lambda plan, found: measured.update(found))
     monkeypatch.setattr(results, "words", lambda plan, summary: "done")
-    config = {**plan.config, "task": {"name": "a"}, "search": {"reverse": "rrbs"}}
+    config = {**plan.config, "task": {"name": "a"}, "search": {"generator": "rrbs"}}
     config["run"] = {**config["run"], "method": "ddqn_rtg", "seed": 1, "in_process": False}
     config["train"] = {"offline": True}
     monkeypatch.setattr(run, "make_plan", lambda args: replace(plan, config=config, resume=True))

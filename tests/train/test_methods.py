@@ -8,15 +8,29 @@ import numpy as np
 import pytest
 from rtg import _core, checkpoint, cli, device, effective_config, policy_file, trainer
 from rtg.errors import UserError
-from rtg.hindsight import HindsightReplayBuffer
 from rtg.offline_data import NoSource
 from rtg.run_args import Override
 from rtg.transition_stream import Rows
 from test_training import flat
 from training_runs import TINY, after_polls, run_folder, training
 
-METHODS = ("dqn", "ddqn", "ddqn_random", "ddqn_naive", "ddqn_rtg", "ddqn_rtg_dr", "her", "rcg")
-ONLINE = ("dqn", "ddqn", "her", "rcg")
+METHODS = (
+    "dqn",
+    "ddqn",
+    "ddqn_random",
+    "ddqn_scatter",
+    "ddqn_naive",
+    "ddqn_forward",
+    "ddqn_rtg",
+    "ddqn_rtg_dr",
+    "her",
+    "rcg",
+    "cql_rtg",
+    "bc_rtg",
+    "planner",
+)
+WITHOUT_DATA = ("dqn", "ddqn", "her", "rcg", "planner")
+WITHOUT_INTERACTION = ("cql_rtg", "bc_rtg", "planner")
 
 
 def values(method: str, *more: str) -> dict:
@@ -26,25 +40,38 @@ def values(method: str, *more: str) -> dict:
 def test_methods_differ_in_these_values_alone() -> None:
     of = {name: values(name) for name in METHODS}
     train, rtg = {name: of[name]["train"] for name in METHODS}, of["ddqn_rtg"]["train"]
-    unguided = {**rtg, "epsilon_start": 1.0, "epsilon_end": 0.05, "nearby_share": 0.0}
+    explores = {"epsilon_start": 1.0, "epsilon_end": 0.05, "nearby_share": 0.0}
+    unguided = {**rtg, **explores, "contact_share": 0.5}
+    alone = {**rtg, "interact": False}
     vanilla = {**unguided, "offline": False}
     assert train == {
         "dqn": {**vanilla, "double_q": False},
         "ddqn": vanilla,
         "ddqn_random": {**unguided, "offline_share": -1.0},
+        "ddqn_scatter": unguided,
         "ddqn_naive": rtg,
+        "ddqn_forward": rtg,
         "ddqn_rtg": rtg,
         "ddqn_rtg_dr": {**rtg, "randomise": True},
         "her": {**vanilla, "hindsight": 4},
         "rcg": {**vanilla, "curriculum": 0.9},
+        "cql_rtg": {**alone, "conservatism": 1.0},
+        "bc_rtg": {**alone, "learner": "cloning"},
+        "planner": {**alone, "learner": "planning", "offline": False},
     }
     assert (rtg["epsilon_end"], rtg["epsilon_share"]) == (0.02, 0.2)
-    reverse = {name: of[name]["search"]["reverse"] for name in METHODS if name not in ONLINE}
-    assert reverse == {
+    generators = {
+        name: of[name]["search"]["generator"] for name in METHODS if name not in WITHOUT_DATA
+    }
+    assert generators == {
         "ddqn_random": "random",
+        "ddqn_scatter": "scatter",
         "ddqn_naive": "naive",
+        "ddqn_forward": "forward",
         "ddqn_rtg": "rrbs",
         "ddqn_rtg_dr": "rrbs",
+        "cql_rtg": "rrbs",
+        "bc_rtg": "rrbs",
     }
     randomised = [name for name in METHODS if of[name]["search"]["randomise"]]
     assert randomised == ["ddqn_rtg_dr"]
@@ -53,9 +80,9 @@ def test_methods_differ_in_these_values_alone() -> None:
 def test_settings_stand_above_the_method_and_it_above_presets_and_the_file() -> None:
     assert values("her", "train.hindsight=2")["train"]["hindsight"] == 2
     paper = values("ddqn_random", "train.preset=paper")
-    assert paper["search"]["reverse"] == "random" and not paper["train"]["dueling"]
+    assert paper["search"]["generator"] == "random" and not paper["train"]["dueling"]
     without = json.loads(_core.Config.from_file(TINY).json)
-    assert (without["run"]["method"], without["search"]["reverse"]) == ("ddqn_rtg", "naive")
+    assert (without["run"]["method"], without["search"]["generator"]) == ("ddqn_rtg", "naive")
 
 
 def test_another_id_is_refused_and_the_legal_ones_are_named(capsys) -> None:
@@ -79,6 +106,25 @@ REFUSED = {
         "rtg: --method ddqn_rtg_dr: run.method ddqn_rtg_dr: key 'task.randomisation': 0 with "
         "train.randomise; legal: more than 0",
     ),
+    "a planner with data": (
+        ["--method", "planner", "--set", "train.offline=true"],
+        "rtg: train.learner: planning learns from nothing; legal: with train.interact and "
+        "train.offline false",
+    ),
+    "nothing to learn from": (
+        ["--method", "cql_rtg", "--set", "train.offline=false"],
+        "rtg: train.interact: false without train.offline leaves nothing to learn from; legal: "
+        "either true, or train.learner planning",
+    ),
+    "steps that lead nowhere": (
+        ["--method", "bc_rtg", "--set", "search.generator=scatter"],
+        "rtg: train.learner: cloning imitates generated steps alone; legal: with train.interact "
+        "false and search.generator one of rrbs, naive, forward",
+    ),
+    "a clone that interacts": (
+        ["--method", "bc_rtg", "--set", "train.interact=true"],
+        "rtg: train.learner: cloning imitates generated steps alone; ",
+    ),
 }
 
 
@@ -96,11 +142,12 @@ def test_each_method_runs_from_the_flag_to_the_summary(method: str, tmp_path: Pa
     more = ["--set", "train.buffer=4000", "--set", "train.hindsight=2"] if method == "her" else []
     small = ["--transitions", "800", "--set", "search.breadth=4", "--set", "search.depth=3"]
     words = [str(TINY), "--method", method, "--in-process", "--out", str(out), *small, *more]
-    assert cli.main([*words, "--set", "search.twins=0"]) == 0
+    assert cli.main(words) == 0
     summary = json.loads((out / "summary.json").read_text())
-    assert summary["method"] == method and summary["interactions"] == 400
+    interactions = 0 if method in WITHOUT_INTERACTION else 400
+    assert (summary["method"], summary["interactions"]) == (method, interactions)
     assert 0.0 <= summary["success_rate"] <= 1.0
-    offline = method not in ONLINE
+    offline = method not in WITHOUT_DATA
     assert summary["offline_transitions"] == (800 if offline else 0)
     assert summary["transitions"] == (800 if offline else None)
     assert summary["mode"] == ("in_process" if offline else None)
@@ -115,6 +162,9 @@ def test_each_method_runs_from_the_flag_to_the_summary(method: str, tmp_path: Pa
             for key in ("offline", "double_q", "hindsight", "curriculum", "randomise")
         }.items()
     )
+    assert (out / "model.pt").exists() == (method != "planner")
+    if method == "planner":
+        return
     task = _core.Config.from_file(out / "config.yaml").task
     policy = policy_file.read(out / "model.pt", task)
     assert policy(task.observation(task.start[None])).shape == (1,)
@@ -153,17 +203,6 @@ def test_a_checkpoint_keeps_its_method(tmp_path: Path, capsys) -> None:
     training(folder).save()
     assert cli.main(["--resume", "--out", str(folder), "--method", "dqn"]) == 2
     assert capsys.readouterr().err.startswith("rtg: --resume: run.method must stay ddqn as in ")
-
-
-def test_hindsight_is_told_what_the_states_of_an_episode_hold(tmp_path: Path) -> None:
-    one = training(run_folder(tmp_path / "run", None, "run.method=her", "task.horizon=5"))
-    assert one.run(NoSource(), lambda: False, record=False)
-    buffer = one.model.replay_buffer
-    assert isinstance(buffer, HindsightReplayBuffer)
-    store, n = buffer.online, buffer.online.count
-    for held, seen in ((store.held, store.observation), (store.held_next, store.next_observation)):
-        centres = seen[:n, 2:].reshape(n, 3, 6)[:, :, :2] * 8.0
-        np.testing.assert_array_equal(held[:n], np.linalg.norm(centres, axis=2) <= 2.0)
 
 
 def test_domain_randomisation_is_judged_where_it_is_trained(tmp_path: Path, rows: Rows) -> None:

@@ -6,6 +6,8 @@ import torch as th
 from gymnasium import spaces
 from rtg.replay import MixedReplayBuffer, Store
 from samples import random_transitions, replay_rules
+from test_hindsight import BOXES, EPISODE, asked_for, names, observed, play
+from test_hindsight import buffer as asking_buffer
 
 SIZE = 20
 SPACE = spaces.Box(-1e4, 1e4, (SIZE,), np.float32)
@@ -201,3 +203,94 @@ def test_a_push_that_the_simulator_gave_up_is_not_stored() -> None:
     assert replay.online.count == 1 and replay.online.action[0] == 1
     replay.add(rows, rows, np.array([3, 4]), np.ones(2, np.float32), done | True, [{}, {}])
     np.testing.assert_array_equal(replay.online.bound[:3], [0.5, 1.0, 1.0])
+
+
+def test_offline_transitions_are_asked_for_the_nearest_layout() -> None:
+    replay, data = asking_buffer(capacity=3000), random_transitions(2300)
+    replay.add_offline(data)
+    expected = BOXES.nearest(data.observation)
+    np.testing.assert_array_equal(replay.offline.asked[:2300], expected)
+    batch = replay.sample(64)
+    assert batch.offline == 64
+    known = {row.tobytes(): k for k, row in enumerate(data.observation)}
+    for seen, goal, reward in zip(
+        batch.observations.numpy(),
+        asked_for(batch.observations.numpy()),
+        batch.rewards,
+        strict=True,
+    ):
+        k = known[seen[:SIZE].tobytes()]
+        np.testing.assert_allclose(goal, expected[k], atol=1e-6)
+        assert reward == data.reward[k]
+
+
+def test_an_episode_longer_than_the_ring_is_relabelled_as_far_as_it_is_left() -> None:
+    replay = asking_buffer(capacity=3)
+    play(replay)
+    steps = replay.online.action
+    assert sorted(steps) == [1, 2, 3] and replay.online.has_goals.all()
+    wanted = {1: {"rest", "all"}, 2: {"some", "all"}, 3: {"all"}}
+    for step, goals in zip(steps, replay.online.goals, strict=True):
+        assert names(goals) <= wanted[step]
+    play(replay, reward=0.0)
+    row = observed(EPISODE[0])[None]
+    replay.add(row, row, np.array([9]), np.zeros(1), np.array([False]), [{}])
+    new = replay.online.action == 9
+    np.testing.assert_array_equal(replay.online.has_goals, ~new)
+
+
+def test_episodes_side_by_side_are_relabelled_each_by_its_own() -> None:
+    """The first plays EPISODE; in the second nothing moves, and two pushes are given up."""
+    replay, asked = asking_buffer(n_envs=2), []
+    for t in range(4):
+        rows, after = (
+            np.stack((observed(EPISODE[k], k), observed(EPISODE[0], k))) for k in (t, t + 1)
+        )
+        last, rejected = t == 3, t in (0, 2)
+        infos = [
+            {"TimeLimit.truncated": last},
+            {"rejected": rejected, "TimeLimit.truncated": rejected or last},
+        ]
+        done = np.array([last, rejected or last])
+        asked.append(replay.asked_of(rows))
+        replay.add(rows, after, np.array([t, 10 + t]), np.zeros(2), done, infos)
+    store = replay.online
+    n = store.count
+    action = store.action[:n].tolist()
+    assert sorted(action) == [0, 1, 2, 3, 11, 13]
+    columns = zip(store.goals[:n], store.has_goals[:n], store.asked[:n], strict=True)
+    found = dict(zip(action, columns, strict=True))
+    wanted = {0: {"some", "all"}, 1: {"rest", "all"}, 2: {"some", "all"}, 3: {"all"}}
+    for t in range(4):
+        goals, has_goals, of_episode = found[t]
+        assert has_goals and names(goals) <= wanted[t]
+        np.testing.assert_array_equal(of_episode, asked[0][0])
+    for t in (1, 3):
+        assert not found[10 + t][1]
+        np.testing.assert_array_equal(found[10 + t][2], asked[t][1])
+    assert len({layout.tobytes() for _, layout in asked}) == 3, "another in each episode"
+
+
+@pytest.mark.parametrize("cut", [0, 2])
+def test_a_restored_hindsight_buffer_goes_on_with_the_same_samples(cut: int) -> None:
+    """After an episode, or within another one."""
+    replay, other = asking_buffer(), asking_buffer(seed=9)
+    play(replay)
+    for t in range(cut):
+        row = observed(EPISODE[t])[None]
+        replay.add(row, row, np.array([t]), np.zeros(1), np.array([False]), [{}])
+    replay.sample(16)
+    other.restore(replay.state())
+    for one in (replay, other):
+        play(one)
+        play(one)
+    for ours, theirs in zip(replay.sample(64), other.sample(64), strict=True):
+        assert ours == theirs if isinstance(ours, int) else th.equal(ours, theirs)
+    count = replay.online.count
+    np.testing.assert_array_equal(replay.online.asked[:count], other.online.asked[:count])
+
+
+def test_unused_bounds_of_hindsight_bound_nothing() -> None:
+    replay = asking_buffer(use_bounds=False)
+    play(replay)
+    assert (replay.sample(50).bounds == -th.inf).all()

@@ -12,7 +12,6 @@ from rtg import cli
 from rtg.cells import Cell, Grid
 from rtg.errors import UserError
 from rtg.report_files import write_report
-from rtg.report_tables import seeds, spread
 from rtg.run_folder import write_json
 
 GOOD, BAD = [0.2, 0.8, 0.96], [0.0, 0.5, 0.6, 0.7]
@@ -35,7 +34,7 @@ BY_METHOD = [CELLS[k] for k in (2, 3, 0, 1, 5, 4, 6, 7)]  # as tables show them
 def folder(tmp_path_factory):
     path = tmp_path_factory.mktemp("comparison")
     for cell in CELLS[:4]:
-        finished(path, cell, GOOD if cell.method == "ddqn_rtg" else BAD)
+        finished(path, cell, GOOD if cell.method == "ddqn_rtg" else BAD, offline_transitions=7)
     finished(path, CELLS[3 + 2], BAD, defects=["3 transitions lost"])
     (path / CELLS[4].name).mkdir(parents=True)  # failed
     (path / CELLS[6].name).mkdir(parents=True)  # unfinished
@@ -51,13 +50,36 @@ def page(folder):
 
 
 def test_a_row_has_the_figures_of_its_seeds(page):
-    to_bars = ["10 ± 0", "15 ± 0", "15 ± 0"]
-    figures = ["1200 ± 0", "120 ± 0", "50 ± 0", "100 ± 0"]
-    good = ["1-2", "0.96 ± 0.00", "21.6 ± 0.0", "0.86 ± 0.00", "0.20 ± 0.00", *to_bars, *figures]
+    to_95 = ["15 ± 0", "315 ± 0", "210 ± 0"]  # interactions, pushes and CPU seconds of all
+    good = ["1-2", "0.96 ± 0.00", "21.6 ± 0.0", "0.86 ± 0.00", "0.20 ± 0.00", "10 ± 0", *to_95]
     assert table_row(page, "ddqn_rtg") == good
-    to_bars = ["20 ± 0", "never", "20 ± 0"]
-    bad = ["1-2", "0.70 ± 0.00", "32.0 ± 0.0", "0.63 ± 0.00", "0.00 ± 0.00", *to_bars, *figures]
-    assert table_row(page, "ddqn_naive") == bad
+    bad = ["1-2", "0.70 ± 0.00", "32.0 ± 0.0", "0.63 ± 0.00", "0.00 ± 0.00", "20 ± 0"]
+    assert table_row(page, "ddqn_naive") == [*bad, "never", "never", "never"]
+
+
+def test_a_row_of_the_second_table_has_what_the_runs_cost(page):
+    generated = ["120 ± 0", "300 ± 0", "60 ± 0", "50 ± 0"]
+    learned, whole = ["15 ± 0", "90 ± 0", "100 ± 0"], ["315 ± 0", "210 ± 0"]
+    costs = table_row(page, "ddqn_rtg", "generation: pushes")
+    assert costs == ["1-2", *generated, *learned, *whole]
+
+
+def test_the_data_and_what_q_makes_of_them_have_a_row(page):
+    lines = page.split("## Data")[1].splitlines()
+    row = next(line for line in lines if line.startswith("| gathering | `ddqn_rtg` |"))
+    data = "120 ± 0 | 24 ± 0 | 96 ± 0 | 4.9 ± 0.0 | 0.50 ± 0.00 | 300 ± 0 | 12 ± 0 | 14 ± 0"
+    assert f"| {data} | 0.0060 ± 0.0000 |" in row
+    assert row.endswith("| 0.75 ± 0.00 | 0.020 ± 0.000 | 0.070 ± 0.000 |")
+
+
+def test_a_bar_that_some_seeds_never_reach_says_how_many_do(tmp_path):
+    cells = [Cell("gathering", "ddqn_rtg", (), seed) for seed in (1, 2, 3)]
+    for cell, course in zip(cells, (GOOD, BAD, [0.95]), strict=True):
+        finished(tmp_path, cell, course)
+    write_grid(tmp_path, cells)
+    page = write_report(tmp_path, tmp_path).read_text()
+    reached = ["10 ± 7", "310 ± 7", "160 ± 71"]
+    assert table_row(page, "ddqn_rtg")[-3:] == [f"{value} (2 of 3)" for value in reached]
 
 
 def test_runs_without_a_result_say_why(page):
@@ -65,7 +87,8 @@ def test_runs_without_a_result_say_why(page):
     assert table_row(page, "ddqn_rtg", "## sorting")[:2] == ["1 unfinished", "–"]
     assert table_row(page, "rcg", "## sorting")[:2] == ["1 not run", "–"]
     assert table_row(page, "rcg")[:2] == ["not run", "–"]
-    assert "Not run: `dqn`, `ddqn`, `ddqn_random`, `ddqn_rtg_dr`." in page
+    missing = "`dqn`, `ddqn`, `ddqn_random`, `ddqn_scatter`, `ddqn_forward`, `ddqn_rtg_dr`, "
+    assert f"Not run: {missing}`cql_rtg`, `bc_rtg`, `planner`." in page
     assert "- `gathering/her/seed-1` failed: ended with exit status 1: MemoryError" in page
     assert f"- `gathering/ddqn_rtg@{SWEPT}/seed-1`: 3 transitions lost" in page
 
@@ -112,7 +135,7 @@ def test_the_page_says_where_it_comes_from_and_shows_all_pictures(folder, page):
     assert "    ./run.sh reproduce gathering\n" in page and "- commit: `abc`\n" in page
     shown = set(re.findall(r"\]\((\w+\.(?:png|gif))\)", page))
     assert shown == {path.name for path in folder.iterdir() if path.suffix in {".png", ".gif"}}
-    expected = ("curves", "sweep", "strip")
+    expected = ("costs", "curves", "sweep", "strip")
     assert shown == {
         *(f"{name}_gathering.png" for name in expected),
         "film_gathering.gif",
@@ -139,10 +162,17 @@ def test_the_numbers_are_there_for_programs(folder):
         "success_at_third": 0.0,
         "interactions_to_70": 20000,
         "interactions_to_95": None,
+        "pushes_to_95": None,
+        "cpu_s_to_95": None,
         "transitions": 120000,
+        "replays": 300000,
+        "generate_cpu_s": 60.0,
         "generate_wall_s": 50.0,
+        "train_cpu_s": 90.0,
         "train_wall_s": 100.0,
-        "pushes": 1200000,
+        "q_rank_correlation": 0.75,
+        "whole_pushes": 320000,
+        "whole_cpu_s": 260.0,
         "commit": "abc",
     }
 
@@ -151,17 +181,19 @@ def test_the_tables_for_programs_have_a_row_per_run_and_per_evaluation(folder):
     with (folder / "runs.csv").open() as file:
         runs = list(csv.DictReader(file))
     assert [run["state"] for run in runs].count("done") == 5
-    assert {run["replays"] for run in runs} == {"1200000", ""}  # no key of every summary
+    assert {run["whole_pushes"] for run in runs} == {"315000", "320000", ""}
+    assert {run["offline_transitions"] for run in runs} == {"7", ""}  # no key of every summary
     assert [(run["task"], run["method"], int(run["seed"])) for run in runs] == [
         (cell.task, cell.label, cell.seed) for cell in BY_METHOD
     ]
     with (folder / "curves.csv").open() as file:
         curves = list(csv.DictReader(file))
     assert len(curves) == 2 * len(GOOD) + 3 * len(BAD)
-    assert [row["success_rate"] for row in curves[:2]] == [
-        "0",
-        "0.5",
-    ]  # ddqn_naive, as in the table
+    of_naive = curves[:2]  # the first ones, as in the table
+    assert [row["success_rate"] for row in of_naive] == ["0", "0.5"]
+    assert [row["interactions"] for row in of_naive] == ["5000", "10000"]
+    assert [row["pushes"] for row in of_naive] == ["305000", "310000"]  # with the generation's
+    assert [row["cpu_s"] for row in of_naive] == ["110", "160"]
 
 
 def test_made_again_all_files_are_the_same(folder, tmp_path):
@@ -229,6 +261,15 @@ DAMAGED = {
 }
 
 
+def test_curves_without_costs_are_named(folder, tmp_path):
+    """As an earlier version left them."""
+    runs = tmp_path / "runs"
+    shutil.copytree(folder, runs)
+    path = runs / CELLS[0].name / "progress.csv"
+    path.write_text(path.read_text().replace("cpu_s", "other"))
+    assert_named_and_report_stays(runs, path, "lacks columns; legal: ")
+
+
 @pytest.mark.parametrize("name", DAMAGED)
 def test_a_damaged_file_is_named_and_the_report_before_stays(folder, tmp_path, name):
     runs = tmp_path / "runs"
@@ -250,23 +291,3 @@ def test_replay_gaps_of_another_method_are_drawn_where_the_reference_has_none(tm
     write_grid(tmp_path, cells)
     write_report(tmp_path, tmp_path)
     assert (tmp_path / "replay_gap.png").is_file()
-
-
-@pytest.mark.parametrize(
-    ("values", "form", "words"),
-    [
-        ([1.0, 3.0], ".1f", "2.0 ± 1.4"),
-        ([2.0], ".1f", "2.0"),
-        ([2.0, None], ".1f", "2.0 (1 of 2)"),
-        ([None], ".1f", "–"),
-        ([9.0, 9.0], "count", "9.0 ± 0.0"),
-        ([350.0], "count", "350"),
-        ([0.0], "count", "0"),
-    ],
-)
-def test_seeds_are_put_together_in_words(values, form, words):
-    assert spread(values, form) == words
-
-
-def test_seeds_in_a_row_are_written_short():
-    assert seeds([3, 1, 2, 7]) == "1-3, 7"

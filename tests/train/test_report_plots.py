@@ -36,17 +36,44 @@ def test_a_line_is_the_mean_of_the_seeds_of_which_one_may_have_ended_early(tmp_p
 
 
 def test_of_many_labels_the_methods_alone_have_curves(tmp_path):
-    swept = [Cell("gathering", "dqn", (f"train.batch={k}",), 1) for k in range(1, 12)]
+    most = len(METHODS)
+    swept = [Cell("gathering", "dqn", (f"train.batch={k}",), 1) for k in range(1, most)]
     cells = [Cell("gathering", "dqn", (), 1), *swept, Cell("sorting", "her", (), 1)]
-    few = comparison(tmp_path / "few", {cell: [0.1] for cell in cells[:12]})
-    assert len(report_plots.curve_labels(few, "gathering")) == 12
+    few = comparison(tmp_path / "few", {cell: [0.1] for cell in cells[:most]})
+    assert len(report_plots.curve_labels(few, "gathering")) == most
     more = [*cells, Cell("gathering", "ddqn", (), 1)]
     many = comparison(tmp_path / "many", {cell: [0.1] for cell in more})
     assert report_plots.curve_labels(many, "gathering") == ["dqn", "ddqn"]
 
 
 def test_each_method_has_a_colour():
-    assert len(set(report_plots._PALETTE)) == len(METHODS)
+    assert tuple(report_plots._PALETTE) == METHODS
+    assert len({colour for colour, _ in report_plots._PALETTE.values()}) == len(METHODS)
+
+
+def test_success_is_drawn_over_each_mean_cost_of_the_whole_run(tmp_path, figures):
+    cells = [Cell("gathering", "ddqn_rtg", (), seed) for seed in (1, 2)]
+    planner = Cell("gathering", "planner", (), 1)
+    finished(tmp_path, cells[0], [0.2, 0.9], replays=300_000, generate_cpu_s=60.0)
+    finished(tmp_path, cells[1], [0.0, 0.5, 0.7], replays=100_000, generate_cpu_s=20.0)
+    at = {"interactions": 0, "pushes": 7e6, "cpu_s": 500.0}
+    of_none = {"replays": None, "generate_cpu_s": None, "interactions": 0}
+    finished(tmp_path, planner, [0.97], every=at, **of_none)
+    write_grid(tmp_path, [*cells, planner])
+    shown = read_comparison(tmp_path, read_grid(tmp_path))
+    report_plots.costs(tmp_path / "costs.png", shown, "gathering")
+    lines = [
+        {line.get_color(): line for line in axis.get_lines() if line.get_marker() != "o"}
+        for axis in figures[0].axes
+    ]
+    rtg, planned = (report_plots._PALETTE[method][0] for method in ("ddqn_rtg", "planner"))
+    over = [axis[rtg].get_xdata().tolist() for axis in lines]
+    # The first run ends at 10,000 interactions, where its costs stay.
+    assert over == [[5e3, 10e3, 12.5e3], [205e3, 210e3, 212.5e3], [90.0, 140.0, 165.0]]
+    assert all(np.allclose(axis[rtg].get_ydata(), [0.1, 0.7, 0.8]) for axis in lines)
+    at = [axis[planned].get_xdata().tolist() for axis in lines if planned in axis]
+    assert at == [[7e6], [500.0]], "without interactions nothing is drawn over them"
+    assert [axis.get_xscale() for axis in figures[0].axes] == ["log"] * 3
 
 
 def test_a_sweep_shows_every_run_and_who_never_got_there(tmp_path, figures):

@@ -10,17 +10,15 @@ from rtg.run_plan import RunPlan
 
 
 @pytest.mark.parametrize(
-    ("actions", "success", "trained", "title"),
+    ("actions", "success", "title"),
     [
-        (17, True, True, "gathering: success after 17 actions (learned policy)"),
-        (60, False, True, "gathering: not solved in 60 actions (learned policy)"),
-        (1, True, False, "gathering: success after 1 action (generated data, no training)"),
+        (17, True, "gathering: success after 17 actions (her)"),
+        (60, False, "gathering: not solved in 60 actions (her)"),
+        (1, True, "gathering: success after 1 action (her)"),
     ],
 )
-def test_the_pictures_of_an_episode_say_how_it_ended_and_whose_it_is(
-    actions, success, trained, title
-):
-    assert results.episode_title("gathering", actions, success, trained) == title
+def test_the_pictures_of_an_episode_say_how_it_ended_and_whose_it_is(actions, success, title):
+    assert results.episode_title("gathering", actions, success, "her") == title
 
 
 @pytest.fixture
@@ -55,16 +53,43 @@ def test_the_episode_of_a_learner_stays_when_only_data_are_made(tmp_path, values
     assert pictures(tmp_path) == {"episode.png", "episode.gif"}
 
 
-@pytest.mark.parametrize(("success", "told"), [(0.0, True), (0.05, True), (0.6, False)])
-def test_data_that_does_not_connect_start_and_goal_is_told(success, told):
-    plan = RunPlan(Path("runs/x"), "x", {}, train=False, resume=False, notes=())
-    summary = {
-        "transitions": 2000,
-        "generate_wall_s": 3.0,
-        "contact_share": 0.3,
-        "tree_policy_success": success,
-    }
-    assert ("--transitions" in results.words(plan, summary)) == told
+@pytest.mark.parametrize(
+    ("setting", "trained", "origin"),
+    [
+        (("train", "learner", "q_learning"), True, "learned policy"),
+        (("train", "learner", "planning"), True, "forward search"),
+        (("search", "generator", "naive"), False, "plan found backwards, replayed"),
+        (("search", "generator", "forward"), False, "plan of the data, replayed"),
+    ],
+)
+def test_an_episode_comes_from_the_learner_or_the_data(tmp_path, values, setting, trained, origin):
+    section, key, value = setting
+    values[section][key] = value
+    if not trained:
+        (tmp_path / "training.json").unlink()
+    plan = RunPlan(tmp_path, "x", values, train=trained, resume=False, notes=())
+    assert results._origin(plan) == origin
+
+
+SUMMARY = {
+    "transitions": 2000,
+    "generate_wall_s": 3.0,
+    "contact_share": 0.3,
+    "headings_per_state": 4.87,
+    "success_rate": 0.98,
+    "interactions": 20000,
+    "train_wall_s": 60.0,
+    "episode_length_mean": 15.0,
+    "q_rank_correlation": 0.756,
+}
+
+
+def test_of_the_data_and_of_q_the_words_say_what_predicts_learning():
+    plan = RunPlan(Path("runs/x"), "x", {"train": {"interact": False}}, True, False, ())
+    said = results.words(plan, SUMMARY).splitlines()
+    assert said[0] == "2,000 transitions in 3 s, contact share 0.30, 4.9 headings per state"
+    assert said[2] == "rank correlation of Q with the simulator, over all headings: 0.76"
+    assert len(results.words(plan, {**SUMMARY, "q_rank_correlation": None}).splitlines()) == 3
 
 
 @pytest.mark.parametrize(
@@ -77,17 +102,15 @@ def test_data_that_does_not_connect_start_and_goal_is_told(success, told):
 )
 def test_an_early_end_of_training_is_explained(interactions, count, bar, words):
     train = {"interactions": 350000, "stop_at_success": bar, "stop_evaluations": count}
-    plan = RunPlan(Path("runs/x"), "x", {"train": train}, train=True, resume=False, notes=())
-    summary = {
-        "transitions": 2000,
-        "generate_wall_s": 3.0,
-        "contact_share": 0.3,
-        "tree_policy_success": 0.5,
-        "success_rate": 0.98,
-        "interactions": interactions,
-        "train_wall_s": 60.0,
-        "episode_length_mean": 15.0,
-    }
-    said = results.words(plan, summary)
+    config = {"train": {**train, "interact": True}}
+    plan = RunPlan(Path("runs/x"), "x", config, train=True, resume=False, notes=())
+    said = results.words(plan, {**SUMMARY, "interactions": interactions})
     assert ("not needed" in said) == (words is not None)
     assert words is None or f"350,000 interactions were not needed: {words}" in said
+
+
+def test_learning_without_interactions_did_not_end_early_for_want_of_them():
+    train = {"interactions": 350000, "stop_at_success": 0.95, "stop_evaluations": 3}
+    config = {"train": {**train, "interact": False}}
+    plan = RunPlan(Path("runs/x"), "x", config, train=True, resume=False, notes=())
+    assert "not needed" not in results.words(plan, {**SUMMARY, "interactions": 0})

@@ -11,11 +11,11 @@ TINY = paths.CONFIG / "tests" / "tiny.yaml"
 CHANGES = {
     "seed": (["--seed", "9"], "--resume: run.seed must stay 1 as in "),
     "search": (["--set", "search.breadth=9"], "--resume: search.breadth must stay 16 as in "),
-    "reverse flag": (["--reverse", "rrbs"], "--resume: search.reverse must stay naive as in "),
+    "generator": (["--generator", "rrbs"], "--resume: search.generator must stay naive as in "),
     "transitions": (["--transitions", "9"], "--resume: search.transitions must stay 2000 as in "),
     "physics": (["--set", "physics.sub_steps=9"], "--resume: physics.sub_steps must stay 10 as "),
     "reverse": (["--set", "reverse.preset=paper"], "--resume: reverse."),
-    "method": (["--method", "ddqn_random"], "--resume: search.reverse must stay naive as in "),
+    "method": (["--method", "ddqn_random"], "--resume: search.generator must stay naive as in "),
     "task setting": (["--set", "task.horizon=9"], "--resume: task.horizon must stay 60 as in "),
     "task": (["--set", "task=gathering_hard"], "--set task=gathering_hard: key 'task': is "),
     "one of two": (["--workers", "1", "--seed", "9"], "--resume: run.seed must stay 1 as in "),
@@ -56,11 +56,13 @@ def test_a_run_of_another_version_is_refused_and_left_alone(folder, capsys):
     file.write_text(re.sub(r"\n  breadth: .*", "", file.read_text()))
     before = file.read_bytes()
     assert cli.main(["--resume", "--out", str(folder)]) == 2
-    assert capsys.readouterr().err.startswith(f"rtg: {file}: has no line 'breadth: 400'")
+    assert capsys.readouterr().err.startswith(f"rtg: {file}: has no line 'breadth: 33'")
     assert file.read_bytes() == before
 
 
 OF_CHECKPOINT = {
+    "learner": "cloning",
+    "interact": "False",
     "offline": "False",
     "hindsight": "4",
     "curriculum": "0.5",

@@ -14,13 +14,13 @@ def test_no_flag_means_the_whole_job_on_gathering():
 
 
 def test_flags_become_overrides_after_those_of_set():
-    words = "gathering --workers 3 --seed 7 --reverse naive --in-process --transitions 100"
+    words = "gathering --workers 3 --seed 7 --generator naive --in-process --transitions 100"
     more = "--interactions 200 --set search.breadth=8"
     args = parse([*words.split(), *more.split()])
     assert {override.typed: override.setting for override in args.overrides} == {
         "--set search.breadth=8": "search.breadth=8",
         "--workers 3": "run.workers=3",
-        "--reverse naive": "search.reverse=naive",
+        "--generator naive": "search.generator=naive",
         "--transitions 100": "search.transitions=100",
         "--interactions 200": "train.interactions=200",
         "--seed 7": "run.seed=7",

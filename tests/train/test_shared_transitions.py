@@ -36,7 +36,7 @@ def made(tmp_path):
         ("task", "horizon", 7),
         ("physics", "inertia", True),
         ("reverse", "shakes", 99),
-        ("search", "reverse", "rrbs"),
+        ("search", "generator", "rrbs"),
         ("search", "transitions", 7),
         ("run", "seed", 7),
     ],
@@ -69,7 +69,7 @@ def test_a_run_of_the_same_kind_is_found_and_taken_over(made, tmp_path):
 
 
 def test_another_kind_or_seed_is_not_found(made, tmp_path):
-    assert find(kind(changed("search", "reverse", "rrbs")), tmp_path, "seed-1") is None
+    assert find(kind(changed("search", "generator", "rrbs")), tmp_path, "seed-1") is None
     assert find(kind(CONFIG), tmp_path, "seed-2") is None
 
 

@@ -26,14 +26,14 @@ def test_learner_bounds_and_evaluation_have_one_discount(
         return evaluate(config, policy, starts, discount)
 
     monkeypatch.setattr("rtg.training.evaluate", watched)
-    trees = Stream(rows.after(0, 700), one.data, piece=300)  # at 700 complete, but hardly grown
+    trees = Stream(rows.after(0, 350), one.data, piece=300)  # at 350 complete, but hardly grown
     assert one.run(trees, lambda: False, record=False)
     assert one.task.discount == 0.8
     assert one.model.gamma == discount and used == {discount}
     seen, bound = one.data.record.transitions(), one.model.replay_buffer.offline.bound
     proven = value_bounds(seen.observation, seen.next_observation, seen.reward, discount)
     np.testing.assert_array_equal(bound[: len(proven)], proven)
-    assert (proven[600:] > 0).any()
+    assert (proven[300:] > 0).any()
 
 
 def test_bounds_are_proven_before_all_transitions_are_in(tmp_path: Path, rows: Rows) -> None:

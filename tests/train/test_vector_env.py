@@ -61,8 +61,8 @@ class Turns:
         self.drawn += 1
         return (0, TASK.start) if self.drawn % 2 else (ELSEWHERE, None)
 
-    def note(self, origin, success):
-        self.noted.append((origin, success))
+    def note(self, origin, success, length):
+        self.noted.append((origin, success, length))
 
 
 def test_only_episodes_from_the_starts_of_the_task_count() -> None:
@@ -71,7 +71,7 @@ def test_only_episodes_from_the_starts_of_the_task_count() -> None:
     env.reset()
     for _ in range(60):
         _, _, done, infos = env.step(np.array([36, 36]))
-    assert done.all() and curriculum.noted == [(0, False), (ELSEWHERE, False)]
+    assert done.all() and curriculum.noted == [(0, False, 60), (ELSEWHERE, False, 60)]
     assert ["is_success" in info for info in infos] == [False, True]
     assert ["episode" in info for info in infos] == [False, True]
 
@@ -85,6 +85,17 @@ def test_a_restored_environment_goes_on_with_the_same_bits() -> None:
     other = PushVecEnv(CONFIG, 4, jitter=0.1, seed=1)
     other.restore(state)
     np.testing.assert_array_equal(steps(other, 100, seed=7), expected)
+
+
+def test_contact_headings_are_those_of_the_present_states() -> None:
+    env = PushVecEnv(CONFIG, 3, jitter=0.1, seed=1)
+    env.reset()
+    for _ in range(3):
+        steps(env, 1)
+        poses = env.state()["poses"]
+        np.testing.assert_array_equal(env.contact_headings(7), TASK.contact_headings(poses, 7))
+    many = [env.contact_headings(seed).tolist() for seed in range(50)]
+    assert len({tuple(headings) for headings in many}) > 25
 
 
 class GivesUp:

@@ -1,9 +1,12 @@
 #include <nanobind/stl/function.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 
 #include <utility>
 
+#include "core/search/forward_search.hpp"
 #include "core/search/simulators.hpp"
+#include "core/search/thread_pool.hpp"
 #include "nodes/common/rtg_config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
@@ -48,7 +51,7 @@ std::string generate_in_process(const RtgConfig& config, const nb::object& store
                                 const nb::object& progress) {
   const nb::gil_scoped_release release;
   GenerationSeams seams = in_process_seams(
-      reverse_solver(config.task, config.physics, config.reverse, config.search.reverse),
+      reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
       forward_replay(config.task, config.physics), config.run.workers);
   seams.store = [&](std::span<const Transition> rows) { hand_over(store, rows); };
   seams.progress = [&](const Progress& p) { report_progress(progress, p); };
@@ -56,11 +59,36 @@ std::string generate_in_process(const RtgConfig& config, const nb::object& store
   return to_json(generate(config.task, config.search, seed, seams));
 }
 
+/// The states of the plan that a forward search finds from a start, [T + 1, bodies, 3], the start
+/// alone if it finds none; and how many pushes it took to the simulator.
+std::pair<nb::ndarray<nb::numpy, double>, long> plan(const RtgConfig& config,
+                                                     const StateArray& start, std::uint64_t seed) {
+  const Task& task = config.task;
+  check_bodies(start, task.scene.size());
+  if (start.shape(0) != 1) throw nb::value_error("one start is wanted, [1, bodies, 3]");
+  SearchStats stats;
+  const Poses from = state_at(start, 0);
+  std::vector<Transition> steps;
+  {
+    const nb::gil_scoped_release release;
+    const ReplayBatch replay =
+        counted(replay_on_threads(forward_replay(task, config.physics), config.run.workers), stats);
+    steps = plan_forward(task, config.search, from, seed, replay);
+  }
+  const std::size_t width = task.scene.size() * 3;
+  OwnedArray<double> states((steps.size() + 1) * width);
+  write_state(from, states.data.get());
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    write_state(steps[k].next, states.data.get() + (k + 1) * width);
+  return {states.release({steps.size() + 1, task.scene.size(), 3}), stats.replays};
+}
+
 }  // namespace
 
 void bind_generation(nb::module_& module) {
   module.def("generate", &generate_in_process, nb::arg("config"), nb::arg("store"),
              nb::arg("progress"));
+  module.def("plan", &plan, nb::arg("config"), nb::arg("start"), nb::arg("seed"));
 }
 
 }  // namespace rtg

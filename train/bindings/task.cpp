@@ -6,6 +6,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "core/tasks/contact_heading.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 
@@ -64,15 +65,16 @@ nb::ndarray<nb::numpy, bool> successes(const Task& task, const StateArray& state
   return out.release({states.shape(0)});
 }
 
-nb::ndarray<nb::numpy, bool> atoms_held(const Task& task, const StateArray& states) {
+/// One heading per state that seeks contact, row k from stream `index` + k of `seed`.
+nb::ndarray<nb::numpy, std::int64_t> contact_headings(const Task& task, const StateArray& states,
+                                                      std::uint64_t seed, std::uint64_t index) {
   check_bodies(states, task.scene.size());
-  const std::size_t width = goal_atoms(task, task.start).size();
-  OwnedArray<bool> out(states.shape(0) * width);
+  OwnedArray<std::int64_t> out(states.shape(0));
   for (std::size_t row = 0; row < states.shape(0); ++row) {
-    const std::vector<bool> held = goal_atoms(task, state_at(states, row));
-    std::copy(held.begin(), held.end(), out.data.get() + row * width);
+    Rng rng(seed, index + row);
+    out.data[row] = contact_heading(task, state_at(states, row), rng);
   }
-  return out.release({states.shape(0), width});
+  return out.release({states.shape(0)});
 }
 
 std::optional<nb::ndarray<nb::numpy, double>> goal_state(const Task& task, std::uint64_t seed,
@@ -176,9 +178,8 @@ void bind_task(nb::module_& module) {
       .def("observation", &observations, nb::arg("states"))
       .def("joints_reached", &joints_reached, nb::arg("states"))
       .def("centroids", &centroids, nb::arg("states"))
-      .def_prop_ro("atom_count",
-                   [](const Task& task) { return goal_atoms(task, task.start).size(); })
-      .def("atoms", &atoms_held, nb::arg("states"))
+      .def("contact_headings", &contact_headings, nb::arg("states"), nb::arg("seed"),
+           nb::arg("index") = 0)
       .def("goal_state", &goal_state, nb::arg("seed"), nb::arg("index") = 0)
       .def("succeeded", &successes, nb::arg("states"))
       .def("jittered_start", &start, nb::arg("amplitude"), nb::arg("seed"), nb::arg("index") = 0);

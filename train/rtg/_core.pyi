@@ -86,12 +86,11 @@ class Task:
         """Per joint, whether the goal speaks of its angle and it is as asked. [1, bodies, 3]"""
     def centroids(self, states: NDArray[np.float64]) -> list[NDArray[np.float64]]:
         """The mean centres that the goal speaks of. [1, bodies, 3] -> each [2]"""
-    @property
-    def atom_count(self) -> int:
-        """Of the goal: see atoms()."""
-    def atoms(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which conditions of the goal hold, one per body, joint or mean that a term speaks of;
-        it holds when all do. [N, bodies, 3] -> [N, atoms]"""
+    def contact_headings(
+        self, states: NDArray[np.float64], seed: int, index: int = 0
+    ) -> NDArray[np.int64]:
+        """Per state a heading towards a random movable object; that of row k is a function of the
+        state, `seed` and `index` + k. [N, bodies, 3] -> [N]"""
     def goal_state(self, seed: int, index: int = 0) -> NDArray[np.float64] | None:
         """Sample number `index` of stream `seed` of the states where the goal holds, nearly at
         rest. [bodies, 3]; None if 1,000 attempts found none."""
@@ -156,4 +155,11 @@ def generate(
     store(poses, action, next_poses, success, source) gets the transitions in sequence order,
     progress({"phase", "layer", "depth", "transitions", "target", "contact_share", "start_region"})
     is called after each layer. What they raise ends the generation.
+    """
+
+def plan(config: Config, start: NDArray[np.float64], seed: int) -> tuple[NDArray[np.float64], int]:
+    """A plan of the forward beam search from one start, [1, bodies, 3].
+
+    Its states, [T + 1, bodies, 3], the start alone if none was found; and the pushes that the
+    simulator was asked for. Raises ValueError for arrays that do not fit the task.
     """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,8 +13,29 @@ from rtg.run_args import Override
 PAPER = "train.preset=paper"
 # How learning is watched and ended: alike for all, so that their figures can be compared.
 _ALIKE = ("eval_every", "stop_at_success")
-# Data that are found forwards from starts, beside those of trees.
-_FORWARDS = ("mended", "rollout_share")
+# What each part of the search is worth: values that take it away, or stand at the other end of its
+# range. Keys that the configuration does not have are left out.
+OF_BRANCHES: dict[str, tuple[Any, ...]] = {
+    "branches": (0,),
+    "near_branches": (0,),
+    "near_headings": (24,),  # of 48, either way: near is anywhere
+}
+OF_TREES: dict[str, tuple[Any, ...]] = {
+    "others": (0, 1000),  # the kept steps alone, all that replay
+    "contact_quota": (0,),
+    "random_share": (0,),
+    "gap_tolerance": (0.05, 100),  # hardly any miss, any miss
+    "starts": (1,),
+    "free_moves": (0, 48),  # none, all
+    "per_layout": (100000,),  # no limit
+    "root_draws": (1,),
+    "patience": (1000,),  # no limit
+    "target_jitter": (0,),
+}
+# Of `search`, with no ablation of their own: sizes, and what a method decides.
+SIZES = ("transitions", "breadth", "depth")
+DECIDED = ("generator", "randomise")
+_TREES = ("rrbs", "naive")  # generators that grow trees
 # Keys that mean something only with each other.
 _TOGETHER = (
     ("target_sync", "target_rate"),
@@ -26,18 +46,27 @@ Settings = tuple[str, ...]
 
 
 def ablations(file: Path, common: Sequence[Override]) -> list[Settings]:
-    """Of the cells of a task: nothing changed; without mended episodes, roll-outs, both; each
-    departure of the preset `default` as `paper` has it; the whole preset `paper`. common: what else
-    all of them are set to. Raises UserError."""
+    """Of the cells of a task: nothing changed; without each part of the search; each departure of
+    the preset `default` as `paper` has it; the whole preset `paper`. common: what else all of them
+    are set to. Raises UserError."""
     values = effective_config.values(file, common)
-    ours, search = values["train"], values["search"]
+    ours = values["train"]
     paper = effective_config.values(file, [Override(f"--set {PAPER}", PAPER), *common])["train"]
     alike = _settings(_ALIKE, ours)
-    searched = ours["offline"] and search["reverse"] != "random"
-    kept = [key for key in _FORWARDS if searched and search[key]]
-    data = [tuple(f"search.{key}=0" for key in keys) for keys in _subsets(kept)]
+    data = parts_of_search(values["search"]) if ours["offline"] else []
     as_paper = [] if ours["preset"] == "paper" else [(PAPER, *alike)]
     return [(), *data, *departures(ours, paper), *as_paper]
+
+
+def parts_of_search(search: dict[str, Any]) -> list[Settings]:
+    """The settings that take each part of it away, one by one, but for those that it is without."""
+    tried = OF_BRANCHES | (OF_TREES if search["generator"] in _TREES else {})
+    return [
+        (f"search.{key}={value if isinstance(value, str) else json.dumps(value)}",)
+        for key, values in tried.items()
+        for value in values
+        if key in search and search[key] != value
+    ]
 
 
 def departures(ours: dict[str, Any], paper: dict[str, Any]) -> list[Settings]:
@@ -48,12 +77,6 @@ def departures(ours: dict[str, Any], paper: dict[str, Any]) -> list[Settings]:
             group = next((keys for keys in _TOGETHER if key in keys), (key,))
             found[group] = _settings(group, paper)
     return list(found.values())
-
-
-def _subsets(keys: Sequence[str]) -> list[tuple[str, ...]]:
-    """None of them empty, the small ones first."""
-    sizes = range(1, len(keys) + 1)
-    return [some for size in sizes for some in itertools.combinations(keys, size)]
 
 
 def _settings(keys: Sequence[str], values: dict[str, Any]) -> Settings:

@@ -14,7 +14,7 @@ from rtg.errors import UserError
 
 Array = npt.NDArray[Any]
 
-SOURCES = ("step_replay", "chain_replay", "roll_out", "mended")  # rtg::Source by value
+SOURCES = ("tree", "branch", "walk", "plan")  # rtg::Source by value
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip entry can carry
 
 

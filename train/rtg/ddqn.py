@@ -17,7 +17,7 @@ from torch.nn import functional
 
 from rtg import device
 from rtg.exploration import Exploration
-from rtg.hindsight import HindsightReplayBuffer
+from rtg.hindsight import HindsightReplayBuffer, Layouts
 from rtg.networks import ValuePolicy
 from rtg.replay import Batch, MixedReplayBuffer, ReplayRules
 from rtg.settings import TrainSettings
@@ -51,6 +51,12 @@ def td_targets(bootstrap: th.Tensor, bounds: th.Tensor, clip: bool) -> th.Tensor
     return y.clamp(0.0, 1.0) if clip else y
 
 
+def conservative_gap(q: th.Tensor, actions: th.Tensor) -> th.Tensor:
+    """log Σ_b exp Q(s, b) - Q(s, a): how far actions other than a could be thought better of, the
+    term of CQL(H) [Kumar et al. 2020, eq. 4]. q [B, actions], actions [B, 1] -> [B, 1]"""
+    return q.logsumexp(dim=1, keepdim=True) - q.gather(1, actions)
+
+
 def _rules(settings: TrainSettings, discount: float, seed: int) -> ReplayRules:
     return ReplayRules(
         offline_share=settings.offline_share,
@@ -80,10 +86,9 @@ class DoubleDqn(DQN):
         self.settings = settings
         self.statistics = Statistics()
         buffer: dict[str, Any] = {"rules": _rules(settings, discount, seed)}
-        atoms = 0
-        if settings.hindsight:
-            atoms = env.get_attr("task")[0].atom_count
-            buffer.update(atoms=atoms, goals=settings.hindsight)
+        self.layouts = Layouts(env.get_attr("task")[0]) if settings.hindsight else None
+        if self.layouts:
+            buffer.update(layouts=self.layouts, goals=settings.hindsight)
         super().__init__(
             ValuePolicy,
             env,
@@ -94,7 +99,7 @@ class DoubleDqn(DQN):
             gamma=discount,
             train_freq=max(1, settings.train_frequency // env.num_envs),
             gradient_steps=settings.gradient_steps,
-            replay_buffer_class=HindsightReplayBuffer if atoms else MixedReplayBuffer,  # type: ignore[arg-type]
+            replay_buffer_class=HindsightReplayBuffer if self.layouts else MixedReplayBuffer,  # type: ignore[arg-type]
             replay_buffer_kwargs=buffer,
             policy_kwargs={
                 "network": {
@@ -102,7 +107,7 @@ class DoubleDqn(DQN):
                     "layer_norm": settings.layer_norm,
                     "small_head": settings.small_head,
                     "reduced_precision": settings.reduced_precision,
-                    "atoms": atoms,
+                    "goal_size": self.layouts.size if self.layouts else 0,
                 }
             },
             seed=seed,
@@ -111,8 +116,15 @@ class DoubleDqn(DQN):
         self.mean_net = copy.deepcopy(self.q_net).requires_grad_(False)
         self.set_logger(Logger(folder=None, output_formats=[]))
         headings = int(self.action_space.n)  # type: ignore[attr-defined]
-        self.exploration = Exploration(settings, headings, seed)
+        contact = getattr(env, "contact_headings", None)  # not of every environment
+        self.exploration = Exploration(settings, headings, seed, contact)
         self.update_exploration()
+
+    def learn_offline(self) -> None:
+        """A round of learning that no interaction comes before; those that would have are counted,
+        so that schedules go on."""
+        self.num_timesteps += self.settings.train_frequency
+        self.train(self.settings.gradient_steps, self.settings.batch)
 
     def train(self, gradient_steps: int, batch_size: int = 100) -> None:
         self.policy.train(True)  # both networks
@@ -136,13 +148,20 @@ class DoubleDqn(DQN):
             value = next_values(online, target, self.settings.cautious)
             bootstrap = bootstrap_targets(batch, value, self.gamma)
             y = td_targets(bootstrap, batch.bounds, self.settings.clip_targets)
-        q = self.q_net(batch.observations).gather(1, batch.actions)
+        all_q = self.q_net(batch.observations)
+        q = all_q.gather(1, batch.actions)
         loss = functional.smooth_l1_loss(q, y)
+        if self.settings.conservatism and batch.offline:
+            gap = conservative_gap(all_q[: batch.offline], batch.actions[: batch.offline])
+            loss = loss + self.settings.conservatism * gap.mean()
+        self._descend(loss)
+        self.statistics.note(batch, q.detach(), y, bootstrap)
+
+    def _descend(self, loss: th.Tensor) -> None:
         self.policy.optimizer.zero_grad()
         loss.backward()
         th.nn.utils.clip_grad_norm_(self.q_net.parameters(), MAX_GRADIENT_NORM)
         self.policy.optimizer.step()
-        self.statistics.note(batch, q.detach(), y, bootstrap)
 
     def _on_step(self) -> None:
         self.update_exploration()
@@ -161,7 +180,10 @@ class DoubleDqn(DQN):
         if deterministic:
             return self.greedy(observation), state
         net = self.q_net_target if self.settings.target_acts else self.q_net
-        action = self._values_of(net, observation).argmax(axis=1)
+        seen, buffer = observation, self.replay_buffer
+        if isinstance(buffer, HindsightReplayBuffer):
+            seen = buffer.layouts.asked(observation, buffer.asked_of(observation))
+        action = self._values_of(net, seen).argmax(axis=1)
         return self.exploration.actions(action, observation, self.exploration_rate), state
 
     def greedy(self, observation: Array) -> Array:
@@ -170,7 +192,8 @@ class DoubleDqn(DQN):
 
     def values(self, observation: Array) -> Array:
         """The policy's Q of all actions. [N, observation] float32 -> [N, actions] float32"""
-        return self._values_of(self.mean_net, observation)
+        seen = self.layouts.asked_nearest(observation) if self.layouts else observation
+        return self._values_of(self.mean_net, seen)
 
     def _values_of(self, net: th.nn.Module, observation: Array) -> Array:
         net.train(False)

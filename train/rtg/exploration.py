@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,9 +15,15 @@ Array = npt.NDArray[Any]
 LOOP = 8  # a state is taken for one that came back if it was among so many last ones
 SAME = 0.02  # ... up to this in every number of the observation (0.16 m)
 
+# Of a seed: per environment a heading towards a random object of its present state, [N]
+ContactHeadings = Callable[[int], Array]
+
 
 class Exploration:
-    """ε-greedy, partly near the greedy heading, and a way out of loops.
+    """ε-greedy, partly near the greedy heading or towards an object, and a way out of loops.
+
+    The share `contact_share` of what explores heads towards an object: of uniform pushes one in ten
+    touches any. Of the rest `nearby_share` is near the greedy heading, and the others anywhere.
 
     A greedy policy in a deterministic simulator that comes back to a state stays in that loop to
     the end of the episode, and learns little from seeing it again. With `leave_loops` it explores
@@ -24,9 +31,17 @@ class Exploration:
     the next one do is of no weight.)
     """
 
-    def __init__(self, settings: TrainSettings, headings: int, seed: int) -> None:
+    def __init__(
+        self,
+        settings: TrainSettings,
+        headings: int,
+        seed: int,
+        contact: ContactHeadings | None = None,
+    ) -> None:
+        """`contact`: of the environments that act; needed where contact_share is above 0."""
         self.settings = settings
         self.headings = headings
+        self.contact = contact
         self.rng = np.random.default_rng([seed, 1])
         self.last: list[Array] = []  # of each environment, [N, observation], oldest first
 
@@ -46,7 +61,16 @@ class Exploration:
         offset = self.rng.integers(1, self.settings.nearby_headings + 1, n)
         beside = (greedy + offset * self.rng.choice((-1, 1), n)) % self.headings
         anywhere = self.rng.integers(self.headings, size=n)
-        return np.where(explores, np.where(nearby, beside, anywhere), greedy)
+        noise = self._towards_objects(np.where(nearby, beside, anywhere))
+        return np.where(explores, noise, greedy)
+
+    def _towards_objects(self, noise: Array) -> Array:
+        """The headings with the share `contact_share` of them towards an object. [N]"""
+        if self.settings.contact_share == 0.0:
+            return noise
+        assert self.contact is not None
+        seeks = self.rng.random(len(noise)) < self.settings.contact_share
+        return np.where(seeks, self.contact(int(self.rng.integers(1 << 62))), noise)
 
     def _came_back(self, observation: Array) -> Array:
         """Which environments are where they were a few steps ago. Notes where they are. [N] bool"""

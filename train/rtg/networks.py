@@ -12,7 +12,6 @@ from stable_baselines3.common.torch_layers import FlattenExtractor
 from stable_baselines3.common.type_aliases import PyTorchObs
 from stable_baselines3.dqn.policies import DQNPolicy, QNetwork
 from torch import nn
-from torch.nn import functional
 
 LAYERS = (512, 512, 128)  # Table 2
 
@@ -35,8 +34,8 @@ class ValueNetwork(QNetwork):
 
         Q(s, a) = V(s) + A(s, a) - mean_b A(s, b)  [Wang et al. 2016].
 
-    With `atoms` it is asked for a set of the goal's atoms, 1 or 0 each, which follow the
-    observation; where they are left out it is asked for all.
+    With `goal_size` as many numbers follow the observation that say what it is asked for: see
+    rtg.hindsight.
 
     `reduced_precision` multiplies the two inner layers in bfloat16 while training: 2.4 times faster
     where the processor can, unused where it cannot, and never for choosing actions. Weights and
@@ -51,7 +50,7 @@ class ValueNetwork(QNetwork):
         layer_norm: bool = True,
         small_head: bool = True,
         reduced_precision: bool = False,
-        atoms: int = 0,
+        goal_size: int = 0,
         **kwargs: Any,
     ) -> None:
         super().__init__(*args, **kwargs)
@@ -59,8 +58,7 @@ class ValueNetwork(QNetwork):
         widths = list(self.net_arch)
         self.dueling = dueling
         self.reduced_precision = reduced_precision
-        self.inputs = self.features_dim + atoms
-        self.first = _layer(self.inputs, widths[0], layer_norm)
+        self.first = _layer(self.features_dim + goal_size, widths[0], layer_norm)
         self.inner = nn.Sequential(*(_layer(a, b, layer_norm) for a, b in pairwise(widths)))
         self.head = nn.Linear(widths[-1], actions + 1 if dueling else actions)
         if small_head:  # Q starts within 0.01 of 0: default noise equals γ^(T-1) of a long plan
@@ -70,9 +68,8 @@ class ValueNetwork(QNetwork):
         del self.q_net  # the plain network of the base class
 
     def forward(self, obs: PyTorchObs) -> th.Tensor:
-        """Q of all actions. [B, observation (+ atoms)] -> [B, actions]"""
-        seen = self.extract_features(obs, self.features_extractor)
-        hidden = self.first(functional.pad(seen, (0, self.inputs - seen.shape[1]), value=1.0))
+        """Q of all actions. [B, observation + goal_size] -> [B, actions]"""
+        hidden = self.first(self.extract_features(obs, self.features_extractor))
         device = hidden.device.type
         reduced = precision(self.reduced_precision, device) == "bfloat16"
         with th.autocast(device, th.bfloat16, enabled=reduced and self.training):

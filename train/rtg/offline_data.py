@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import threading
+from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 
 from rtg import _core, dataset
+from rtg.dataset import Transitions
 from rtg.errors import RunError
 from rtg.recorder import Recorder
 from rtg.replay import MixedReplayBuffer
 from rtg.transition_stream import Rows
 
+# numpy parses the heads of arrays with `ast`, which Python 3.11 gets wrong in two threads at once.
+_READING = threading.Lock()
 REFRESH_GROWTH = 1.25  # bounds are proven anew when the data has grown by this factor
 
 
@@ -36,15 +41,21 @@ class Source(Protocol):
 
 def read_rows(path: Path, task: _core.Task) -> Rows:
     """The rows of a transition file. Raises dataset.DatasetError, FileNotFoundError."""
-    transitions = dataset.read(path, bodies=task.bodies, headings=task.headings)
+    with _READING:
+        transitions = dataset.read(path, bodies=task.bodies, headings=task.headings)
     return Rows(*(getattr(transitions, name) for name in Rows._fields))
 
 
 class OfflineData:
-    """Everything that came in so far, in sequence order."""
+    """Everything that came in so far, in sequence order; the buffer gets what is `chosen` of it."""
 
-    def __init__(self, task: _core.Task, buffer: MixedReplayBuffer) -> None:
-        self._buffer = buffer
+    def __init__(
+        self,
+        task: _core.Task,
+        buffer: MixedReplayBuffer,
+        chosen: Callable[[Transitions], Transitions] = lambda all_rows: all_rows,
+    ) -> None:
+        self._buffer, self._chosen = buffer, chosen
         self.record = Recorder(task)
         self._known: Rows | None = None  # restored; a source says them again from the first
         self._repeated = 0  # rows said again so far
@@ -59,7 +70,7 @@ class OfflineData:
         if self._known is not None:
             rows = rows.after(self._check_repeated(rows, self._known))
         if len(rows.action):
-            self._buffer.add_offline(self.record.add(rows))
+            self._buffer.add_offline(self._chosen(self.record.add(rows)))
 
     def _check_repeated(self, rows: Rows, known: Rows) -> int:
         begin = self._repeated

@@ -14,6 +14,7 @@ from rtg import _core, checkpoint
 from rtg.env import observation_space
 from rtg.errors import UserError
 from rtg.evaluation import Policy
+from rtg.hindsight import Layouts
 from rtg.networks import ValuePolicy
 from rtg.settings import TrainSettings
 
@@ -25,7 +26,7 @@ def identity(task: _core.Task, settings: TrainSettings) -> dict[str, Any]:
         "headings": task.headings,
         "dueling": settings.dueling,
         "layer_norm": settings.layer_norm,
-        "atoms": task.atom_count if settings.hindsight else 0,
+        "hindsight": settings.hindsight > 0,
     }
 
 
@@ -53,7 +54,8 @@ def read(path: Path, task: _core.Task) -> Policy:
     if not isinstance(weights, dict):
         raise UserError(f"{path}: holds no policy; legal: a model.pt")
     network: dict[str, Any] = {name: bool(found.get(name)) for name in ("dueling", "layer_norm")}
-    network["atoms"] = int(found.get("atoms") or 0)
+    layouts = Layouts(task) if found.get("hindsight") else None
+    network["goal_size"] = layouts.size if layouts else 0
     policy = ValuePolicy(
         observation_space(task),
         spaces.Discrete(task.headings),
@@ -70,7 +72,8 @@ def read(path: Path, task: _core.Task) -> Policy:
         if observation.ndim != 2 or observation.shape[1] != task.observation_size:
             shape = list(observation.shape)
             raise ValueError(f"observations {shape}; legal: [N, {task.observation_size}]")
+        seen = layouts.asked_nearest(observation) if layouts else observation
         with th.no_grad():
-            return policy.q_net(th.from_numpy(observation)).argmax(dim=1).numpy()
+            return policy.q_net(th.from_numpy(seen)).argmax(dim=1).numpy()
 
     return greedy

@@ -159,6 +159,7 @@ class MixedReplayBuffer(BaseBuffer):
             action=batch.action,
             reward=batch.reward,
             terminated=batch.terminated,
+            **self._more_offline(batch.observation),
         )
 
     def refresh_bounds(self) -> None:
@@ -178,6 +179,7 @@ class MixedReplayBuffer(BaseBuffer):
         """
         timeout = np.array([info.get("TimeLimit.truncated", False) for info in infos])
         kept = np.flatnonzero([not info.get("rejected", False) for info in infos])
+        more = self._more_online(obs)
         numbers = self.online.append(
             observation=obs[kept],
             next_observation=next_obs[kept],
@@ -185,16 +187,21 @@ class MixedReplayBuffer(BaseBuffer):
             reward=reward[kept],
             terminated=(np.asarray(done) & ~timeout)[kept],
             bound=reward[kept],
-            **self._more(infos, kept),
+            **{name: column[kept] for name, column in more.items()},
         )
         for env, number in zip(kept, numbers, strict=True):
             self._episodes[env].append(int(number))
         for env in np.flatnonzero(done):
             self._close_episode(int(env), success=bool(reward[env] > 0))
 
-    def _more(self, infos: Infos, kept: Array) -> dict[str, Array]:
-        """Further columns of the online store, of the environments `kept`."""
-        del infos, kept
+    def _more_online(self, observation: Array) -> dict[str, Array]:
+        """Further columns of the online store. observation [environments, observation]"""
+        del observation
+        return {}
+
+    def _more_offline(self, observation: Array) -> dict[str, Array]:
+        """Further columns of the offline store. observation [N, observation]"""
+        del observation
         return {}
 
     def _close_episode(self, env: int, success: bool) -> None:

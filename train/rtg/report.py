@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from rtg import report_sources as sources
 from rtg import report_tables as tables
 from rtg.cells import Grid
 from rtg.errors import UserError
@@ -19,14 +20,17 @@ Means ± standard deviations over the seeds. **success**: of the final greedy po
 starts, objects jittered by `task.start_jitter`, that nothing was chosen by; **length**: pushes of
 its episodes, failures included; **roll-outs**: of the last 100 training episodes from the starts of
 the task, exploration included; **at ⅓**: greedy success at a third of the budget, from other
-held-out starts, or the final one of a run that had ended by then;
-**to 0.70**, **to 0.95**: thousand interactions until the first evaluation with that greedy success
-("2 of 3": so many of the seeds ever); **interactions**, **pushes**, **transitions** in thousands:
-of the learner; of the simulator beside them, for data or starts; generated. Times are wall clock,
-of generation on one core, of training on what is named *learner* above. All figures are in
-[runs.csv](runs.csv), the learning curves in [curves.csv](curves.csv); in their pictures a run that
-ended early keeps its last value, and of more than twelve rows those with swept settings are left
-out."""
+held-out starts, or the final one of a run that had ended by then; **to 0.70**, **to 0.95**:
+thousand interactions until the first evaluation with that greedy success ("2 of 3": so many of the
+seeds ever), and **pushes** (in thousands) and **CPU s** of the whole run until then. Pushes are
+those of the simulator for data, starts, interactions and plans, those of evaluations left out; CPU
+seconds are those of all threads, evaluations included (of several runs in one process, those of the
+run's thread). Methods without interactions have the rounds of learning here that so many would have
+brought. In the second table of a task, which says what the whole run cost, **transitions**,
+**pushes** and **interactions** are in thousands, and wall clock is that of generation on one core,
+of learning on what is named *learner* above. All figures are in [runs.csv](runs.csv), the learning
+curves in [curves.csv](curves.csv); in their pictures a run that ended early keeps its last value,
+and of more rows than there are methods those with swept settings are left out."""
 _POOLED = f"""\
 IQM: mean of the middle half of all final successes, with a 95 % interval by stratified bootstrap
 (seeds drawn within a task, {RESAMPLES:,} resamples), over the tasks that more than one method was
@@ -35,11 +39,6 @@ on the same task, mean over the tasks, equal ones counted half. Single seeds hav
 of few it is too narrow. Methods with fewer tasks are not comparable with those with more, nor is
 `{WIDER}` with any: its starts, also those it is measured from, lie all over a wider region."""
 REMARKS = "remarks.md"  # beside grid.json
-_RIVALS = f"""\
-Methods that end no worse than `{REFERENCE}` on a task (`{WIDER}` aside), with their success, the
-thousands of interactions to their first evaluation at 0.95, and the success of the plans in their
-data, before anything is learned (tree policy). Where that is alike their data cover the task
-alike, and the learner has as much to go on."""
 _QUICK = (
     "**Small budgets (`--quick`): these figures show that everything works and are no results.**"
 )
@@ -48,13 +47,15 @@ CPU time per reverse solve that was not pruned, and per push of the simulator; h
 pushes, the share of the solves that converged, iterations of those that moved an object;
 environment steps of the learner per second, evaluations included."""
 _DATA = """\
-**replay gap**: how far the replay of a reverse step ends from where it began, over all candidates
-replayed; **contact share**: of the transitions, those that move an object; **tree policy**: success
-of the plans in the data from jittered starts, those of trees and those found forwards (mended
-episodes), and in how many pushes, failures included; **reachable**: transitions from which stored
-ones lead to success; **start region**: transitions that begin there, of roll-outs and mended
-episodes above all; **of trees**: those of steps and chains found backwards; **depth**: pushes of
-the shortest plan of a tree from there, among the states that its beam kept."""
+**transitions**: stored, in thousands; **tree rows**: of them steps found backwards and kept;
+**branches**: outcomes of other headings in the same states; **headings per state**: distinct ones
+stored from a state; **contact share**: of the transitions, those that move an object; **start
+region**: transitions that begin there; **trees**: how many were grown; **depth**: pushes of the
+shortest plan of a tree from the start region; **replay gap**: how far the replay of a reverse step
+ends from where it began, over all candidates replayed; **rank correlation of Q**: Spearman's, of
+the learner's final Q with the simulator over all headings of a stored state, mean over some hundred
+states; **error**: root mean square of the difference; **spread**: standard deviation of the
+simulator's values over the headings of a state, mean over the states."""
 
 
 def _listed(found: Iterable[str]) -> str:
@@ -137,7 +138,9 @@ def _picture(folder: Path, name: str, words: str) -> list[str]:
 def _of_task(folder: Path, comparison: Comparison, task: str) -> list[str]:
     return [
         f"## {task}",
-        tables.of_task(comparison, task),
+        tables.learned(comparison, task),
+        tables.spent(comparison, task),
+        *_picture(folder, f"costs_{task}.png", f"Success against cost on {task}"),
         *_picture(folder, f"curves_{task}.png", f"Learning curves on {task}"),
         *_picture(folder, f"sweep_{task}.png", f"What the swept values do on {task}"),
         *_picture(folder, f"strip_{task}.png", f"An episode of {task} in pictures"),
@@ -169,8 +172,9 @@ def report(folder: Path, grid: Grid, comparison: Comparison, remarks: str) -> st
         "## All tasks together",
         tables.pooled(comparison),
         _POOLED,
-        _RIVALS,
-        tables.rivals(comparison),
+        "## Where reverse simulation is the better source",
+        sources.better_source(comparison),
+        sources.NOTE,
         "## Run time",
         tables.runtime(comparison),
         _RUNTIME,

@@ -19,9 +19,10 @@ from rtg.errors import UserError
 from rtg.methods import REFERENCE
 from rtg.report import read_remarks, report
 from rtg.results import episode_title
-from rtg.run_results import CURVES, Comparison, RunResult, read_comparison
+from rtg.run_results import COSTS, CURVES, Comparison, RunResult, costs, read_comparison
 
-_PICTURES = ("curves_*.png", "sweep_*.png", "strip_*.png", "film_*.gif", "replay_gap.png")
+_OF_TASKS = ("costs_*.png", "curves_*.png", "sweep_*.png", "strip_*.png", "film_*.gif")
+_PICTURES = (*_OF_TASKS, "replay_gap.png")
 
 
 def write_report(runs: Path, out: Path) -> Path:
@@ -45,6 +46,7 @@ def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | No
     for task in comparison.tasks:
         done = [run for run in comparison.all_done() if run.cell.task == task]
         if report_plots.curve_labels(comparison, task):
+            report_plots.costs(out / f"costs_{task}.png", comparison, task)
             report_plots.curves(out / f"curves_{task}.png", comparison, task)
         if any(run.cell.settings for run in done):
             report_plots.sweep(out / f"sweep_{task}.png", comparison, task)
@@ -111,8 +113,8 @@ def _best_episode(comparison: Comparison, task: str) -> Episode | None:
 
 def _draw_episode(out: Path, task: str, one: Episode | None) -> None:
     if one is not None:
-        words = episode_title(task, len(one.poses) - 1, one.success, trained=True)
-        what = one.task, one.poses, one.success, words.replace("learned policy", one.label)
+        words = episode_title(task, len(one.poses) - 1, one.success, one.label)
+        what = one.task, one.poses, one.success, words
         episode_pictures.strip(out / f"strip_{task}.png", *what)
         episode_pictures.film(out / f"film_{task}.gif", *what)
 
@@ -154,11 +156,13 @@ def _rows(comparison: Comparison) -> list[dict[str, Any]]:
 
 def _curve_rows(run: RunResult) -> list[dict[str, Any]]:
     """A row per evaluation."""
-    names = ("interactions", *CURVES)
-    columns = [run.curve[name].tolist() for name in names if run.curve]
+    if not run.curve:
+        return []
+    columns = {name: costs(run.curve, name) for name in COSTS}
+    columns |= {name: run.curve[name].tolist() for name in CURVES}
     return [
-        {**_name(run), **dict(zip(names, values, strict=True))}
-        for values in zip(*columns, strict=True)
+        {**_name(run), **dict(zip(columns, values, strict=True))}
+        for values in zip(*columns.values(), strict=True)
     ]
 
 

@@ -11,6 +11,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
 from numpy.typing import NDArray
 
 from rtg import plots
@@ -21,9 +23,30 @@ from rtg.run_results import Comparison, RunResult
 
 Floats = NDArray[np.float64]
 
-# Okabe and Ito's colours, told apart by colour-blind people, too; one per method.
-_PALETTE = ("#999999", "#000000", "#e69f00", "#56b4e9", "#0072b2", "#cc79a7", "#009e73", "#d55e00")
+# A colour per method, most of them Okabe and Ito's, which colour-blind people tell apart, too; the
+# others are no nearer to any of the same dashes. Dashed: without generated data; dash-dotted:
+# without interactions.
+_PALETTE = {
+    "dqn": ("#b0b0b0", "--"),
+    "ddqn": ("#000000", "--"),
+    "ddqn_random": ("#8c564b", "-"),
+    "ddqn_scatter": ("#6c2273", "-"),
+    "ddqn_naive": ("#56b4e9", "-"),
+    "ddqn_forward": ("#d55e00", "-"),
+    "ddqn_rtg": ("#0072b2", "-"),
+    "ddqn_rtg_dr": ("#cc79a7", "-"),
+    "her": ("#009e73", "--"),
+    "rcg": ("#e69f00", "--"),
+    "cql_rtg": ("#5d3a9b", "-."),
+    "bc_rtg": ("#00707a", "-."),
+    "planner": ("#a50026", "-."),
+}
 _DASHES = ("-", "--", "-.", ":")
+_COSTS = {
+    "interactions": "interactions (dash-dotted: rounds of learning)",
+    "pushes": "simulator pushes, generation included",
+    "cpu_s": "CPU time of the whole run [s]",
+}
 _PANELS = (
     ("greedy success, held-out starts", "success_rate"),
     ("success of training roll-outs", "rollout_success"),
@@ -31,15 +54,15 @@ _PANELS = (
     ("return, greedy, discounted as in learning", "episode_return_mean"),
 )
 _SHARES = ("success_rate", "rollout_success")
-_MOST_CURVES = 12
+_MOST_CURVES = len(METHODS)
+_BAR, _BAR_COLOUR = 0.95, "#8a8d93"
 _RIGHT: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8}
 
 
 def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
     """Colour and dashes: a colour per method; of swept values a shade each."""
     if len({label.split("@")[0] for label in labels}) == len(labels):
-        known = dict(zip(METHODS, _PALETTE, strict=True))
-        return {label: (known.get(label.split("@")[0], "#000000"), "-") for label in labels}
+        return {label: _PALETTE.get(label.split("@")[0], ("#000000", "-")) for label in labels}
     shades = plt.get_cmap("viridis")(np.linspace(0.0, 0.9, len(labels)))
     colours = [to_hex(shade) for shade in shades]
     return {label: (colours[k], _DASHES[k % len(_DASHES)]) for k, label in enumerate(labels)}
@@ -60,24 +83,24 @@ def _course(runs: Sequence[RunResult], column: str) -> tuple[Floats, Floats]:
 
 
 def _draw_course(
-    axis: Axes, runs: Sequence[RunResult], column: str, style: tuple[str, str]
+    axis: Axes, course: tuple[Floats, Floats], is_share: bool, style: tuple[str, str]
 ) -> None:
     """Mean and standard deviation of the seeds, from where all of them have a value."""
-    grid, values = _course(runs, column)
+    grid, values = course
     known = np.isfinite(values).all(axis=0)
     if not known.any():
         return
-    thousand, values = grid[known] / 1000.0, values[:, known]
+    grid, values = grid[known], values[:, known]
     mean = values.mean(axis=0)
     colour, dashes = style
-    axis.plot(thousand, mean, color=colour, ls=dashes, lw=2.0)
-    axis.plot(thousand[-1:], mean[-1:], color=colour, marker="o", ms=4)
-    if len(runs) > 1:
+    axis.plot(grid, mean, color=colour, ls=dashes, lw=2.0)
+    axis.plot(grid[-1:], mean[-1:], color=colour, marker="o", ms=4)
+    if len(values) > 1:
         spread = values.std(axis=0, ddof=1)
         low, high = mean - spread, mean + spread
-        if column in _SHARES:
+        if is_share:
             low, high = np.clip(low, 0.0, 1.0), np.clip(high, 0.0, 1.0)
-        axis.fill_between(thousand, low, high, color=colour, alpha=0.18, lw=0)
+        axis.fill_between(grid, low, high, color=colour, alpha=0.18, lw=0)
 
 
 def curve_labels(comparison: Comparison, task: str) -> list[str]:
@@ -91,16 +114,47 @@ def curve_labels(comparison: Comparison, task: str) -> list[str]:
     return found if few else [label for label in found if "@" not in label]
 
 
+Drawn = Mapping[str, Sequence[RunResult]]  # by label
+
+
+def _drawn(comparison: Comparison, task: str) -> Drawn:
+    labels = curve_labels(comparison, task)
+    return {label: [r for r in comparison.done(task, label) if r.curve] for label in labels}
+
+
+def _name_lines(figure: Figure, drawn: Drawn, title: str, columns: int = 4) -> None:
+    """The legend, with the final success of each label, below the panels; the title above them."""
+    styles = _styles(list(drawn))
+    handles = [
+        plt.Line2D([], [], color=styles[label][0], ls=styles[label][1], lw=2) for label in drawn
+    ]
+    shared, names = split_names(list(drawn))
+    words = [
+        f"{name}: {mean_success(runs):.2f} ({len(runs)})"
+        for name, runs in zip(names, drawn.values(), strict=True)
+    ]
+    figure.legend(
+        handles,
+        words,
+        loc="outside lower left",
+        ncols=columns,
+        frameon=False,
+        handlelength=3.0,
+        title=f"{shared or 'method'}: final success (seeds)",
+    )
+    figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+
+
 def curves(path: Path, comparison: Comparison, task: str) -> None:
     """Success, episode length and return over interactions, a line per method."""
-    labels = curve_labels(comparison, task)
-    drawn = {label: [r for r in comparison.done(task, label) if r.curve] for label in labels}
+    drawn = _drawn(comparison, task)
     styles = _styles(list(drawn))
     with plots.style():
-        figure, axes = plt.subplots(2, 2, figsize=(9.6, 6.4), layout="constrained", sharex=True)
+        figure, axes = plt.subplots(2, 2, figsize=(9.6, 6.8), layout="constrained", sharex=True)
         for axis, (name, column) in zip(axes.flat, _PANELS, strict=True):
             for label, runs in drawn.items():
-                _draw_course(axis, runs, column, styles[label])
+                grid, values = _course(runs, column)
+                _draw_course(axis, (grid / 1000.0, values), column in _SHARES, styles[label])
             axis.set_title(name)
             if column in _SHARES:
                 axis.set_ylim(-0.03, 1.03)
@@ -109,24 +163,30 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
         for axis in axes[-1]:
             axis.set_xlabel("interactions / 1000")
             axis.set_xlim(left=0.0)
-        handles = [
-            plt.Line2D([], [], color=styles[label][0], ls=styles[label][1], lw=2) for label in drawn
-        ]
-        shared, names = split_names(list(drawn))
-        words = [
-            f"{name}: {mean_success(runs):.2f} ({len(runs)})"
-            for name, runs in zip(names, drawn.values(), strict=True)
-        ]
-        figure.legend(
-            handles,
-            words,
-            loc="outside lower left",
-            ncols=4,
-            frameon=False,
-            title=f"{shared or 'method'}: final success (seeds)",
-        )
         title = f"{task}: mean ± standard deviation of the seeds, a dot where the last one stopped"
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        _name_lines(figure, drawn, title)
+        plots.save(figure, path)
+
+
+def costs(path: Path, comparison: Comparison, task: str) -> None:
+    """Greedy success over what it cost, a line per method: means of both over the seeds after
+    equally many interactions, the costs on logarithmic axes."""
+    drawn = _drawn(comparison, task)
+    styles = _styles(list(drawn))
+    with plots.style():
+        figure, axes = plt.subplots(1, 3, figsize=(12.6, 5.0), layout="constrained", sharey=True)
+        for axis, (cost, name) in zip(axes, _COSTS.items(), strict=True):
+            for label, runs in drawn.items():
+                spent = _course(runs, cost)[1].mean(axis=0)
+                values = _course(runs, "success_rate")[1]
+                shown = spent > 0.0
+                _draw_course(axis, (spent[shown], values[:, shown]), True, styles[label])
+            axis.axhline(_BAR, color=_BAR_COLOUR, lw=0.8, zorder=0)
+            axis.set(xscale="log", xlabel=name, ylim=(-0.03, 1.03))
+            axis.xaxis.set_major_formatter(EngFormatter(sep=""))
+        axes[0].set_ylabel("greedy success, held-out starts")
+        title = f"{task}: success against the mean cost, mean ± standard deviation of the seeds"
+        _name_lines(figure, drawn, title, columns=5)
         plots.save(figure, path)
 
 

@@ -64,32 +64,64 @@ def named(runs: Sequence[RunResult]) -> str:
     return "; ".join(f"{task} `{label}` {seeds(of_row)}" for (task, label), of_row in rows.items())
 
 
-def _thousands(value: float | None) -> float | None:
+def thousands(value: float | None) -> float | None:
     return None if value is None else value / 1000.0
 
 
-def of_task(comparison: Comparison, task: str) -> str:
-    """What every method came to on one task."""
-    head = ["method", "seeds", "success", "length", "roll-outs", "at ⅓", "to 0.70", "to 0.95"]
-    head += ["interactions", "pushes", "transitions", "generation [s]", "training [s]"]
+def _same(value: float | None) -> float | None:
+    return value
+
+
+Column = tuple[str, str, str, Callable[[float | None], float | None]]
+# Head, key of RunResult.figures(), form of spread(), unit.
+_LEARNED: tuple[Column, ...] = (
+    ("success", "success_rate", ".2f", _same),
+    ("length", "episode_length_mean", ".1f", _same),
+    ("roll-outs", "rollout_success", ".2f", _same),
+    ("at ⅓", "success_at_third", ".2f", _same),
+    ("to 0.70", "interactions_to_70", "count", thousands),
+    ("to 0.95", "interactions_to_95", "count", thousands),
+    ("pushes to 0.95", "pushes_to_95", "count", thousands),
+    ("CPU s to 0.95", "cpu_s_to_95", "count", _same),
+)
+_SPENT: tuple[Column, ...] = (
+    ("transitions", "transitions", "count", thousands),
+    ("generation: pushes", "replays", "count", thousands),
+    ("... CPU [s]", "generate_cpu_s", "count", _same),
+    ("... wall [s]", "generate_wall_s", "count", _same),
+    ("learning: interactions", "interactions", "count", thousands),
+    ("... CPU [s]", "train_cpu_s", "count", _same),
+    ("... wall [s]", "train_wall_s", "count", _same),
+    ("all: pushes", "whole_pushes", "count", thousands),
+    ("... CPU [s]", "whole_cpu_s", "count", _same),
+)
+
+
+def _cell(done: Sequence[RunResult], column: Column) -> str:
+    _, name, form, unit = column
+    values = [unit(run.figures()[name]) for run in done]
+    never = "_to_" in name and done and not any(value is not None for value in values)
+    return "never" if never else spread(values, form)
+
+
+def _of_columns(comparison: Comparison, task: str, columns: Sequence[Column]) -> str:
+    """A row per method, also of those without a result."""
     rows = []
     for label in comparison.labels:
         runs = comparison.row(task, label)
-        done = [run.figures() for run in runs if run.done]
-        row = [f"`{label}`", states(runs)]
-        for name in ("success_rate", "episode_length_mean", "rollout_success", "success_at_third"):
-            form = ".1f" if name == "episode_length_mean" else ".2f"
-            row.append(spread([f[name] for f in done], form))
-        names = "interactions_to_70", "interactions_to_95", "interactions", "pushes", "transitions"
-        for name in names:
-            values = [_thousands(f[name]) for f in done]
-            never = name.startswith("interactions_to") and done and not any(values)
-            row.append("never" if never else spread(values, "count"))
-        row += [
-            spread([f[name] for f in done], "count") for name in ("generate_wall_s", "train_wall_s")
-        ]
-        rows.append(row)
-    return table(head, rows)
+        done = [run for run in runs if run.done]
+        rows.append([f"`{label}`", states(runs), *(_cell(done, column) for column in columns)])
+    return table(["method", "seeds", *(head for head, *_ in columns)], rows)
+
+
+def learned(comparison: Comparison, task: str) -> str:
+    """What every method came to on one task."""
+    return _of_columns(comparison, task, _LEARNED)
+
+
+def spent(comparison: Comparison, task: str) -> str:
+    """What the runs of every method cost on one task, generation and learning."""
+    return _of_columns(comparison, task, _SPENT)
 
 
 def _shared_tasks(comparison: Comparison) -> list[str]:
@@ -115,7 +147,7 @@ def _with_interval(value: float, interval: tuple[float, float] | None) -> str:
     return f"{value:.2f}" + (f" [{interval[0]:.2f}, {interval[1]:.2f}]" if interval else "")
 
 
-def _is_wider(label: str) -> bool:
+def is_wider(label: str) -> bool:
     return label.split("@")[0] == WIDER
 
 
@@ -136,7 +168,7 @@ def pooled(comparison: Comparison) -> str:
             continue
         values = list(scores.values())
         iqm = estimates.interquartile_mean
-        alike = label != REFERENCE and not _is_wider(label)
+        alike = label != REFERENCE and not is_wider(label)
         common = [task for task in scores if task in reference and alike]
         pair = [scores[task] for task in common], [reference[task] for task in common]
         better = NOTHING
@@ -149,34 +181,9 @@ def pooled(comparison: Comparison) -> str:
     return table(head, rows)
 
 
-def rivals(comparison: Comparison) -> str:
-    """Methods that end no worse than the reference on a task, line by line."""
-    lines, compared = [], False
-    for task in comparison.tasks:
-        reference = comparison.done(task, REFERENCE)
-        for label in comparison.labels:
-            done = comparison.done(task, label)
-            if label == REFERENCE or _is_wider(label) or not (done and reference):
-                continue
-            compared = True
-            if mean_success(done) >= mean_success(reference):
-                what = f"{_course(done)}; `{REFERENCE}`: {_course(reference)}"
-                lines.append(f"- {task}, `{label}`: {what}")
-    return "\n".join(lines) or ("None." if compared else "Nothing to compare yet.")
-
-
 def mean_success(runs: Sequence[RunResult]) -> float:
     """Of the final greedy policies."""
     return estimates.mean_std([run.summary["success_rate"] for run in runs])[0]
-
-
-def _course(runs: Sequence[RunResult]) -> str:
-    reached = [_thousands(run.reached(0.95)) for run in runs]
-    to_95 = f"0.95 after {spread(reached, 'count')}" if any(reached) else "never at 0.95"
-    plans = [run.summary.get("tree_policy_success") for run in runs]
-    has_data = any(value is not None for value in plans)
-    of_data = f", tree policy {spread(plans, '.2f')}" if has_data else ""
-    return f"{spread([run.summary['success_rate'] for run in runs], '.2f')}, {to_95}{of_data}"
 
 
 def _ratio(
@@ -204,7 +211,7 @@ def _key(name: str) -> Callable[[RunResult], float | None]:
 
 
 def _depth(run: RunResult) -> float | None:
-    depth = run.summary.get("start_region_depth", -1)
+    depth = run.summary.get("start_region_depth") or -1
     return None if depth < 0 else depth
 
 
@@ -212,22 +219,26 @@ _RUNTIME: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
     ("backward action [ms]", _ratio("reverse_cpu_s", _solves, 1e3), ".2f"),
     ("forward action [ms]", _ratio("replay_cpu_s", _count("replays"), 1e3), ".3f"),
     ("solves [1000]", lambda run: _solves(run) / 1000.0, "count"),
-    ("pushes [1000]", lambda run: _thousands(run.summary.get("replays")), "count"),
+    ("pushes [1000]", lambda run: thousands(run.summary.get("replays")), "count"),
     ("converged", _ratio("converged", _solves, 1.0), ".3f"),
     ("iterations, median", _key("pushing_iterations_median"), ".0f"),
     ("90th percentile", _key("pushing_iterations_p90"), ".0f"),
     ("interactions per s", _ratio("interactions", _count("train_wall_s"), 1.0), ".0f"),
 )
 _DATA: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
+    ("transitions [1000]", lambda run: thousands(run.summary.get("transitions")), "count"),
+    ("tree rows", lambda run: thousands(run.summary.get("tree_transitions")), "count"),
+    ("branches", lambda run: thousands(run.summary.get("branch_transitions")), "count"),
+    ("headings per state", _key("headings_per_state"), ".1f"),
+    ("contact share", _key("contact_share"), ".2f"),
+    ("start region", _key("start_region_transitions"), "count"),
+    ("trees", _key("trees"), "count"),
+    ("depth", _depth, ".0f"),
     ("replay gap, median [m]", _key("replay_gap_median"), ".4f"),
     ("90th percentile [m]", _key("replay_gap_p90"), ".4f"),
-    ("contact share", _key("contact_share"), ".2f"),
-    ("tree policy", _key("tree_policy_success"), ".2f"),
-    ("its pushes", _key("tree_policy_length_mean"), ".1f"),
-    ("reachable", _key("reachable_share"), ".2f"),
-    ("start region", _key("start_region_transitions"), "count"),
-    ("of trees", _key("start_region_tree_transitions"), "count"),
-    ("depth", _depth, ".0f"),
+    ("rank correlation of Q", _key("q_rank_correlation"), ".2f"),
+    ("error", _key("q_error"), ".3f"),
+    ("spread", _key("q_spread"), ".3f"),
 )
 
 

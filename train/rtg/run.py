@@ -50,7 +50,7 @@ def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
     from rtg import graph_run, in_process, train_run
 
     if not plan.offline:
-        shown.note("no offline data: the learner begins with nothing")
+        shown.note("no generated data: all that is learned or planned comes from the simulator")
     elif plan.is_generated():
         shown.note("the transitions are there already")
     elif plan.in_process:

@@ -32,7 +32,7 @@ exit status: 0 success, 2 bad input, 1 anything else"""
 _KEYS = {
     "workers": "run.workers",
     "method": "run.method",
-    "reverse": "search.reverse",
+    "generator": "search.generator",
     "transitions": "search.transitions",
     "interactions": "train.interactions",
     "seed": "run.seed",
@@ -83,9 +83,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--in-process", action="store_true", help="everything in one process, no LCM")
     p.add_argument("--workers", metavar="N", help="reverse workers; 0: one per core")
     p.add_argument("--method", metavar="ID", help="what is compared: dqn, ddqn, ... (ddqn_rtg)")
-    p.add_argument(
-        "--reverse", metavar="rrbs|naive|random", help="how reverse steps are found (rrbs)"
-    )
+    p.add_argument("--generator", metavar="ID", help="what finds the stored steps (rrbs)")
     p.add_argument("--transitions", metavar="N", help="transitions to generate")
     p.add_argument("--interactions", metavar="N", help="environment steps of the learner")
     p.add_argument("--no-train", action="store_true", help="stop after the generation")

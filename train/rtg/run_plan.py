@@ -13,6 +13,8 @@ from rtg.errors import UserError
 from rtg.run_args import Override, RunArgs
 from rtg.settings import OF_CHECKPOINT
 
+_IMITABLE = ("rrbs", "naive", "forward")  # generators of steps that were found to lead on
+
 
 @dataclass(frozen=True)
 class RunPlan:
@@ -49,8 +51,8 @@ class RunPlan:
     def title(self) -> str:
         """For pictures and first words."""
         run = self.config["run"]
-        reverse = f", {self.config['search']['reverse']}" if self.offline else ""
-        return f"{self.config['task']['name']}, {run['method']}{reverse}, seed {run['seed']}"
+        generator = f", {self.config['search']['generator']}" if self.offline else ""
+        return f"{self.config['task']['name']}, {run['method']}{generator}, seed {run['seed']}"
 
     @property
     def offline(self) -> bool:
@@ -81,6 +83,28 @@ def _check_offline(config: dict[str, Any], train: bool) -> None:
         raise UserError("run.record: without train.offline there are no messages; legal: false")
 
 
+def _check_learner(config: dict[str, Any]) -> None:
+    """Raises UserError for a learner without what it learns from, or with what it cannot use."""
+    train, generator = config["train"], config["search"]["generator"]
+    learner, interacts, offline = train["learner"], train["interact"], train["offline"]
+    if learner == "planning":
+        if interacts or offline:
+            raise UserError(
+                "train.learner: planning learns from nothing; legal: with train.interact and "
+                "train.offline false"
+            )
+    elif not interacts and not offline:
+        raise UserError(
+            "train.interact: false without train.offline leaves nothing to learn from; legal: "
+            "either true, or train.learner planning"
+        )
+    elif learner == "cloning" and (interacts or generator not in _IMITABLE):
+        raise UserError(
+            "train.learner: cloning imitates generated steps alone; legal: with train.interact "
+            f"false and search.generator one of {', '.join(_IMITABLE)}"
+        )
+
+
 def _check_device(config: dict[str, Any]) -> None:
     if config["train"]["device"] == "cuda":  # PyTorch takes seconds to answer
         from rtg import device
@@ -101,6 +125,7 @@ def check(config: dict[str, Any], train: bool) -> None:
     """Raises UserError for what the loader takes and no run can do."""
     _check_offline(config, train)
     if train:
+        _check_learner(config)
         _check_buffer(config)
         _check_device(config)
     if config["run"]["in_process"] and config["run"]["record"]:

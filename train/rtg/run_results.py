@@ -20,8 +20,13 @@ from rtg.run_folder import read_json, result
 
 Floats = NDArray[np.float64]
 
+COSTS = ("interactions", "pushes", "cpu_s")  # [1], [1], [s]; columns of a curve
 CURVES = ("success_rate", "rollout_success", "episode_length_mean", "episode_return_mean")
-_BARS = {"interactions_to_70": 0.70, "interactions_to_95": 0.95}
+
+
+def costs(curve: dict[str, Floats], cost: str) -> list[float]:
+    """That column, whole numbers but for seconds. [N]"""
+    return (curve[cost] if cost == "cpu_s" else curve[cost].astype(int)).tolist()
 
 
 @dataclass(frozen=True)
@@ -33,12 +38,18 @@ class RunResult:
     state: str  # done, failed, unfinished, not run
     summary: dict[str, Any]  # summary.json; of a run that is not done, empty like the next two
     versions: dict[str, Any]
-    curve: dict[str, Floats]  # columns of progress.csv [N]
-    budget: int  # of interactions; 0 of a run that is not done
+    # Columns of progress.csv [N]; `pushes` and `cpu_s` with those of the generation.
+    curve: dict[str, Floats]
+    train: dict[str, Any]  # the section of its configuration; of a run that is not done, empty
 
     @property
     def done(self) -> bool:
         return self.state == "done"
+
+    @property
+    def interacts(self) -> bool:
+        """Without, the interactions of its curve are rounds of learning worth as many."""
+        return bool(self.train["interact"])
 
     @property
     def commit(self) -> str | None:
@@ -57,37 +68,42 @@ class RunResult:
     def figures(self) -> dict[str, Any]:
         """The entry of report.json."""
         names = ("success_rate", "episode_length_mean", "rollout_success", "interactions")
-        more = ("transitions", "generate_wall_s", "train_wall_s")
+        of_generation = ("transitions", "replays", "generate_cpu_s", "generate_wall_s")
+        of_learner = ("train_cpu_s", "train_wall_s", "q_rank_correlation")
         return {
             "seed": self.cell.seed,
             **{name: self.summary.get(name) for name in names},
             "success_at_third": self.success_at_third(),
-            **{name: self.reached(bar) for name, bar in _BARS.items()},
-            **{name: self.summary.get(name) for name in more},
-            "pushes": self.pushes(),
+            "interactions_to_70": self.reached(0.70),
+            **{f"{cost}_to_95": self.reached(0.95, cost) for cost in COSTS},
+            **{name: self.summary.get(name) for name in (*of_generation, *of_learner)},
+            **{f"whole_{cost}": self.spent(cost) for cost in COSTS[1:]},
             "commit": self.commit,
         }
 
-    def pushes(self) -> int:
-        """Of the simulator, beside the learner's interactions."""
-        return sum(self.summary.get(name) or 0 for name in ("replays", "curriculum_pushes"))
+    def spent(self, cost: str) -> float | None:
+        """At the last evaluation, in all; None without any."""
+        return costs(self.curve, cost)[-1] if self.curve else None
 
     def success_at_third(self) -> float | None:
         """Of the last evaluation within a third of the budget; of a run that had ended by then the
         final one, as it may have ended because the others went well by chance."""
         if not self.curve:
             return None
-        third = self.budget / 3
-        if self.summary["interactions"] <= third:
+        third = self.train["interactions"] / 3
+        within = self.curve["interactions"] <= third
+        if within.all():
             return float(self.summary["success_rate"])
-        known = self.curve["success_rate"][self.curve["interactions"] <= third]
+        known = self.curve["success_rate"][within]
         return float(known[-1]) if len(known) else None
 
-    def reached(self, bar: float) -> int | None:
-        """Interactions at the first evaluation with that greedy success; None: never."""
+    def reached(self, bar: float, cost: str = COSTS[0]) -> float | None:
+        """The cost at the first evaluation with that greedy success; None: never."""
         if not self.curve:
             return None
-        return first_reach(self.curve["interactions"], self.curve["success_rate"], bar)
+        success = self.curve["success_rate"]
+        first = first_reach(np.arange(float(len(success))), success, bar)
+        return None if first is None else costs(self.curve, cost)[first]
 
 
 @dataclass(frozen=True)
@@ -122,22 +138,30 @@ def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
     run = folder / cell.name
     summary = result(run)
     if summary:
-        progress = run / "progress.csv"
-        curve = learning_curve(progress) if progress.is_file() else {}
-        if curve and not {"interactions", *CURVES} <= curve.keys():
-            raise UserError(f"{progress}: lacks columns; legal: as the run left it")
-        made_with, budget = read_json(run / versions.FILE), _budget(run / "config.yaml")
-        return RunResult(cell, run, "done", summary, made_with, curve, budget)
+        curve = _curve(run / "progress.csv", summary)
+        made_with, train = read_json(run / versions.FILE), _train(run / "config.yaml")
+        return RunResult(cell, run, "done", summary, made_with, curve, train)
     begun = "unfinished" if run.is_dir() else "not run"
-    return RunResult(cell, run, "failed" if cell.name in grid.failed else begun, {}, {}, {}, 0)
+    return RunResult(cell, run, "failed" if cell.name in grid.failed else begun, {}, {}, {}, {})
 
 
-def _budget(config: Path) -> int:
+def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
+    """The learner's costs and those of the generation before it added up. Raises UserError."""
+    curve = learning_curve(progress) if progress.is_file() else {}
+    if not curve:
+        return {}
+    if not {*COSTS, *CURVES} <= curve.keys():
+        raise UserError(f"{progress}: lacks columns; legal: as the run left it")
+    generated = {"pushes": summary.get("replays"), "cpu_s": summary.get("generate_cpu_s")}
+    return curve | {cost: curve[cost] + (spent or 0) for cost, spent in generated.items()}
+
+
+def _train(config: Path) -> dict[str, Any]:
     try:
-        train = json.loads(_core.Config.from_file(config).json)["train"]
+        train: dict[str, Any] = json.loads(_core.Config.from_file(config).json)["train"]
     except _core.ConfigError as error:
         raise UserError(str(error)) from None
-    return int(train["interactions"])
+    return train
 
 
 def _place(cell: Cell) -> int:

@@ -7,6 +7,8 @@ from typing import Any
 
 # What a checkpoint is bound to: the shape of its network and buffer, the returns it has counted.
 OF_CHECKPOINT = (
+    "learner",
+    "interact",
     "offline",
     "train_frequency",
     "buffer",
@@ -23,7 +25,9 @@ class TrainSettings:
     """Mirror of rtg::TrainConfig, which documents the fields and has their defaults and ranges."""
 
     preset: str
+    learner: str
     interactions: int
+    interact: bool
     offline: bool
     start_at: int
     buffer: int
@@ -38,6 +42,7 @@ class TrainSettings:
     discount: float
     offline_share: float
     recent_share: float
+    conservatism: float
     double_q: bool
     cautious: bool
     dueling: bool
@@ -50,6 +55,7 @@ class TrainSettings:
     epsilon_share: float
     nearby_share: float
     nearby_headings: int
+    contact_share: float
     leave_loops: bool
     start_jitter: float
     randomise: bool

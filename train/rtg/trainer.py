@@ -3,8 +3,9 @@
 `python -m rtg.trainer RUN_FOLDER... [--resume] [--no-stream] [--run-name NAME]` reads
 RUN_FOLDER/config.yaml, takes the transitions of the run in while it learns, and leaves
 transitions.npz, progress.csv, training_state.json (for displays), checkpoint/, model.pt,
-best_episode.npz and training.json there. Several runs learn side by side, a thread each, and come
-to the same bits as alone. SIGINT, SIGTERM or SIGHUP: checkpoint and exit with 128 + number; a
+best_episode.npz and training.json there; with `train.learner: planning` nothing is learned, and
+there is no model.pt. Several runs learn side by side, a thread each, and come to the same bits as
+alone. SIGINT, SIGTERM or SIGHUP: checkpoint and exit with 128 + number; a
 second one: exit at once.
 """
 
@@ -26,6 +27,8 @@ from rtg.errors import RunError, UserError
 from rtg.interrupts import Interrupts
 from rtg.node_status import ENDED, NodeStatus
 from rtg.offline_data import FileSource, NoSource, Source
+from rtg.planning import Planning
+from rtg.settings import TrainSettings
 from rtg.training import Training
 from rtg.transition_stream import TransitionStream
 
@@ -49,8 +52,8 @@ def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
     return args
 
 
-def _source(training: Training, args: argparse.Namespace) -> Source:
-    if not training.settings.offline:
+def _source(training: Training | Planning, args: argparse.Namespace) -> Source:
+    if isinstance(training, Planning) or not training.settings.offline:
         return NoSource()
     if args.no_stream:
         return FileSource(training.folder / "transitions.npz", training.task, training.data)
@@ -64,15 +67,17 @@ def _source(training: Training, args: argparse.Namespace) -> Source:
     return stream
 
 
-def _begin(folder: Path, args: argparse.Namespace) -> Training:
-    training = Training(_core.Config.from_file(folder / "config.yaml"), folder)
+def _begin(folder: Path, args: argparse.Namespace) -> Training | Planning:
+    config = _core.Config.from_file(folder / "config.yaml")
+    learner = TrainSettings.from_config(json.loads(config.json)["train"]).learner
+    training = (Planning if learner == "planning" else Training)(config, folder)
     training.runs = len(args.folders)
     if args.resume and training.has_checkpoint():
         training.restore()
     return training
 
 
-def _learn(training: Training, args: argparse.Namespace, interrupts: Interrupts) -> int:
+def _learn(training: Training | Planning, args: argparse.Namespace, interrupts: Interrupts) -> int:
     """The exit status. Raises UserError, RunError."""
     with contextlib.closing(_source(training, args)) as source:
         try:
@@ -80,7 +85,7 @@ def _learn(training: Training, args: argparse.Namespace, interrupts: Interrupts)
                 return 128 + interrupts.number
             training.finish(source.lost)
         finally:
-            training.tell(ENDED, training.interactions)
+            training.tell(ENDED, training.scheduled)
     return 0
 
 

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import json
 import math
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from rtg import _core, checkpoint, device, networks, policy_file, run_folder
+from rtg import _core, checkpoint, device, networks, policy_file, run_folder, training_result
+from rtg.clock import Clock
+from rtg.cloning import Cloning, imitated
 from rtg.curriculum import Curriculum
 from rtg.ddqn import DoubleDqn
-from rtg.errors import UserError
+from rtg.errors import RunError, UserError
 from rtg.evaluation import FINAL, Evaluation, Floats, evaluate, held_out_starts
 from rtg.offline_data import OfflineData, Source, read_rows
 from rtg.settings import OF_CHECKPOINT, TrainSettings
@@ -22,7 +21,7 @@ from rtg.training_log import TrainingLog
 from rtg.vector_env import PushVecEnv
 
 MAX_ENVIRONMENTS = 4  # stepped together; the least legal train.buffer
-_FORMAT = 5  # of the checkpoint; another one is not read
+_FORMAT = 6  # of the checkpoint; another one is not read
 WAIT = 0.1  # [s], for transitions when there is nothing else to do
 
 Stop = Callable[[], bool]
@@ -35,6 +34,10 @@ class Training:
     on its checkpoint, the transitions and at which step they come in: from a finished set, and from
     a stream that delivers alike, a resumed run goes on with the same bits. LCM does not deliver
     alike, so over it two runs of one seed may learn differently.
+
+    Without `train.interact` learning waits for all transitions, and does its rounds without the
+    interactions before them. Schedules and progress.csv count these all the same; the result has
+    those of the environment: none.
     """
 
     def __init__(self, config: _core.Config, folder: Path) -> None:
@@ -42,14 +45,15 @@ class Training:
         self.config, self.task, self.folder = config, config.task, folder
         self.settings = s = TrainSettings.from_config(values["train"])
         self.discount = s.discount or self.task.discount
-        seed = values["run"]["seed"]
+        self.seed = seed = values["run"]["seed"]
         count = math.gcd(s.train_frequency, MAX_ENVIRONMENTS)
         jitter = max(s.start_jitter, self.task.randomisation) if s.randomise else s.start_jitter
         curriculum = Curriculum(config, s.curriculum, seed) if s.curriculum else None
         self.env = PushVecEnv(config, count, jitter, seed, curriculum)
-        self.env.tells_atoms = s.hindsight > 0
-        self.model = DoubleDqn(self.env, s, self.discount, seed)
-        self.data = OfflineData(self.task, self.model.replay_buffer)
+        clones = s.learner == "cloning"
+        self.model = (Cloning if clones else DoubleDqn)(self.env, s, self.discount, seed)
+        chosen = {"chosen": imitated} if clones else {}
+        self.data = OfflineData(self.task, self.model.replay_buffer, **chosen)
         self.log = TrainingLog(folder)
         fixed = {name: getattr(s, name) for name in OF_CHECKPOINT}
         self._identity = {
@@ -59,22 +63,34 @@ class Training:
             **policy_file.identity(self.task, s),
         }
         self.starts = held_out_starts(self.task, s.eval_episodes, randomise=s.randomise)
-        self._clock = Clock()
+        self.clock = Clock()
         self.runs = 1  # that learn in this process
-        self._learner: dict[str, Any] = {}  # where it has last learned something
+        self.place: dict[str, Any] = {}  # where it has last learned something
         self.tell: Callable[[str, int], None] = lambda state, done: None  # as NodeStatus.tick
         self._checkpoint = run_folder.checkpoint_file(folder)
-        self._saved_at = 0  # interactions
+        self._saved_at = 0  # interactions of the schedule
         self._saved_rows = 0  # offline transitions
 
     @property
-    def interactions(self) -> int:
+    def scheduled(self) -> int:
+        """Interactions so far by the schedule."""
         return self.model.num_timesteps
+
+    @property
+    def interactions(self) -> int:
+        """Of the environment."""
+        return self.scheduled if self.settings.interact else 0
+
+    @property
+    def pushes(self) -> int:
+        """Of the simulator, for learning: evaluations are not counted."""
+        curriculum = self.env.curriculum
+        return self.interactions + (curriculum.pushes if curriculum else 0)
 
     @property
     def done(self) -> bool:
         """Whether the budget is used up or success has been high for long enough."""
-        return self.interactions >= self.settings.interactions or self._is_good()
+        return self.scheduled >= self.settings.interactions or self._is_good()
 
     def _is_good(self) -> bool:
         bar, count = self.settings.stop_at_success, self.settings.stop_evaluations
@@ -86,22 +102,35 @@ class Training:
 
         Leaves a checkpoint either way. `record`: write what comes in to transitions.npz.
         """
-        while not (stop() or source.complete or self.data.count >= self.settings.start_at):
+        while not (stop() or source.complete or self._may_begin()):
             self._take_in(source, record, WAIT)
         if not self.done:
-            self._learner = self._place()
-        self._clock.start()
+            self.place = self._here()
+        self.clock.start(alone=self.runs == 1)
         while not (stop() or self.done):
             self._take_in(source, record, 0.0)
-            self.model.learn(self.settings.train_frequency, reset_num_timesteps=False)
+            self._learn()
             self._write_down()
-        self._clock.stop()
+        self.clock.stop()
         while not (stop() or source.complete):
             self._take_in(source, record, WAIT)
         self.save()
         return self.done and source.complete
 
-    def _place(self) -> dict[str, Any]:
+    def _may_begin(self) -> bool:
+        """Whether learning can begin with some of the transitions."""
+        return self.settings.interact and self.data.count >= self.settings.start_at
+
+    def _learn(self) -> None:
+        """A round."""
+        if self.settings.interact:
+            self.model.learn(self.settings.train_frequency, reset_num_timesteps=False)
+        elif self.model.replay_buffer.size():
+            self.model.learn_offline()
+        else:
+            raise RunError(f"{self.folder}: none of {self.data.count} transitions to learn from")
+
+    def _here(self) -> dict[str, Any]:
         kind = self.model.device.type
         return {
             "device": device.name(kind),
@@ -117,11 +146,11 @@ class Training:
             if source.complete and record:
                 self.data.record.write(self._transition_files()[0])
         self.log.display(self._state())
-        self.tell(self._activity(), self.interactions)
+        self.tell(self._activity(), self.scheduled)
 
     def _activity(self) -> str:
         """What it does, and how well it did in the last evaluation."""
-        if not self._clock.running:
+        if not self.clock.running:
             return "waiting"
         rows = self.log.rows
         return f"learning, success {rows[-1]['success_rate']:.2f}" if rows else "learning"
@@ -129,14 +158,14 @@ class Training:
     def _write_down(self) -> None:
         """Evaluation and checkpoint, where they are due."""
         evaluated_at = self.log.rows[-1]["interactions"] if self.log.rows else 0
-        over = self.interactions >= self.settings.interactions > evaluated_at
+        over = self.scheduled >= self.settings.interactions > evaluated_at
         if over or self._is_due(self.settings.eval_every, evaluated_at):
             self._log_row(self.evaluate())
         if self._is_due(self.settings.checkpoint_every, self._saved_at):
             self.save()
 
     def _is_due(self, every: int, last: int) -> bool:
-        return self.interactions // every > last // every
+        return self.scheduled // every > last // every
 
     def evaluate(self) -> Evaluation:
         """The greedy policy on the held-out starts; changes nothing."""
@@ -146,28 +175,34 @@ class Training:
         return evaluate(self.config, self.model.greedy, starts, self.discount)
 
     def _log_row(self, evaluation: Evaluation) -> None:
-        nominal = self.task.observation(self.task.start[None])
         self.log.add(
             {
-                "interactions": self.interactions,
+                "interactions": self.scheduled,
                 "gradient_steps": self.model.gradient_steps_done,
                 **evaluation.summary(),
                 **self.model.recent_episodes(),
                 "online_successes": self.env.successes,
-                "epsilon": self.model.exploration_rate,
-                "q_start_max": float(self.model.values(nominal).max()),
+                **({"epsilon": self.model.exploration_rate} if self.settings.interact else {}),
+                **self._values_at_start(),
                 **self.model.statistics.take(),
                 "offline_transitions": self.data.count,
-                "wall_s": self._clock.seconds,
+                "pushes": self.pushes,
+                **self.clock.seconds(),
             }
         )
         self.log.display(self._state(), force=True)
 
+    def _values_at_start(self) -> dict[str, float]:
+        if self.settings.learner != "q_learning":
+            return {}
+        nominal = self.task.observation(self.task.start[None])
+        return {"q_start_max": float(self.model.values(nominal).max())}
+
     def _state(self) -> dict[str, Any]:
-        """What a display shows."""
+        """What a display shows; interactions of the schedule."""
         rows = self.log.rows
         return {
-            "interactions": self.interactions,
+            "interactions": self.scheduled,
             "budget": self.settings.interactions,
             "transitions": self.data.count,
             "online_successes": self.env.successes,
@@ -191,11 +226,11 @@ class Training:
             "env": self.env.state(),
             "data": self.data.state(),
             "rows": self.log.rows,
-            "wall_s": self._clock.seconds,
-            "learner": self._learner,
+            "seconds": self.clock.seconds(),
+            "learner": self.place,
         }
         checkpoint.write(self._checkpoint, state)
-        self._saved_at = self.interactions
+        self._saved_at = self.scheduled
 
     def has_checkpoint(self) -> bool:
         return self._checkpoint.exists()
@@ -212,9 +247,9 @@ class Training:
         self.env.restore(state["env"])
         self.log.rows = state["rows"]
         self.log.write()
-        self._clock.restore(state["wall_s"])
-        self._learner = state["learner"]
-        self._saved_at, self._saved_rows = self.interactions, self.data.count
+        self.clock.restore(state["seconds"])
+        self.place = state["learner"]
+        self._saved_at, self._saved_rows = self.scheduled, self.data.count
 
     def _transition_files(self) -> tuple[Path, Path]:
         """All of the run; those that were in at the checkpoint, while the former is not there."""
@@ -240,48 +275,5 @@ class Training:
         final = self._evaluate(starts)
         weights = self.model.mean_net.state_dict()
         policy_file.write(self.folder / "model.pt", self.task, s, weights)
-        best = final.best()
-        np.savez(
-            self.folder / "best_episode.npz", poses=final.paths[best], success=final.success[best]
-        )
-        curriculum = self.env.curriculum
-        training = {
-            "interactions": self.interactions,
-            "gradient_steps": self.model.gradient_steps_done,
-            "online_successes": self.env.successes,
-            **final.summary(),
-            **self.model.recent_episodes(),
-            "train_wall_s": round(self._clock.seconds, 3),
-            "offline_transitions": self.data.count,
-            "lost_transitions": lost,
-            **self._learner,
-            **({"curriculum_pushes": curriculum.pushes} if curriculum else {}),
-        }
-        run_folder.write_json(self.folder / "training.json", training)
+        self.log.write_result(final, training_result.figures(self, final, lost))
         self.log.display(self._state(), force=True)
-
-
-class Clock:
-    """Seconds of learning, over all processes that took part in it."""
-
-    def __init__(self) -> None:
-        self._before = 0.0
-        self._since: float | None = None
-
-    def start(self) -> None:
-        self._since = time.monotonic()
-
-    def stop(self) -> None:
-        self._before, self._since = self.seconds, None
-
-    @property
-    def running(self) -> bool:
-        return self._since is not None
-
-    @property
-    def seconds(self) -> float:
-        running = 0.0 if self._since is None else time.monotonic() - self._since
-        return self._before + running
-
-    def restore(self, seconds: float) -> None:
-        self._before = seconds

@@ -9,10 +9,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from rtg.evaluation import Evaluation
 from rtg.run_folder import write_json, write_text
 
 COLUMNS = (
-    "interactions",
+    "interactions",  # without train.interact: rounds of learning that so many would give
     "gradient_steps",
     "success_rate",  # greedy, held-out starts
     "episode_length_mean",
@@ -30,7 +33,9 @@ COLUMNS = (
     "clipped_share",  # of the targets, beyond [0, 1] before they are raised and clipped
     "bound_share",  # of the targets, raised to what stored trajectories prove
     "offline_transitions",
+    "pushes",  # of the simulator for learning: interactions, starts of a curriculum, plans
     "wall_s",
+    "cpu_s",  # of the learner's processes; evaluations included, as in wall_s
 )
 DISPLAY_INTERVAL = 0.5  # [s]
 
@@ -60,6 +65,14 @@ class TrainingLog:
             shown = {k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()}
             table.writerow(shown)
         write_text(self._folder / "progress.csv", text.getvalue())
+
+    def write_result(self, final: Evaluation, figures: Mapping[str, Any]) -> None:
+        """best_episode.npz and, in the end, training.json."""
+        best = final.best()
+        np.savez(
+            self._folder / "best_episode.npz", poses=final.paths[best], success=final.success[best]
+        )
+        write_json(self._folder / "training.json", dict(figures))
 
     def display(self, state: Mapping[str, Any], force: bool = False) -> None:
         """training_state.json, for whoever watches; twice a second at most."""

@@ -36,7 +36,6 @@ class PushVecEnv(VecEnv):
         self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
         self.curriculum = curriculum
-        self.tells_atoms = False  # whether infos say which atoms of the goal hold, before and after
         self._origins = [ELSEWHERE] * count  # of the running episodes, in the curriculum
         self._starts = 0  # drawn so far, the curriculum's left out
         self.successes = 0  # episodes that ended in one
@@ -55,7 +54,7 @@ class PushVecEnv(VecEnv):
     def step_wait(self) -> Any:
         after, ok = self._simulator.push(self._poses, self._actions)
         after[~ok] = self._poses[~ok]
-        before, self._poses, self._steps = self._poses, after, self._steps + 1
+        self._poses, self._steps = after, self._steps + 1
         success = self.task.succeeded(after) & ok
         self.successes += int(success.sum())
         timeout = ~success & ((self._steps >= self.task.horizon) | ~ok)
@@ -64,10 +63,6 @@ class PushVecEnv(VecEnv):
             {"TimeLimit.truncated": bool(timeout[env]), "rejected": not ok[env]}
             for env in range(self.num_envs)
         ]
-        if self.tells_atoms:
-            for name, poses in (("held", before), ("held_next", after)):
-                for info, held in zip(infos, self.task.atoms(poses), strict=True):
-                    info[name] = held
         done = success | timeout
         if done.any():
             for env in map(int, np.flatnonzero(done)):
@@ -76,10 +71,16 @@ class PushVecEnv(VecEnv):
                     infos[env]["is_success"] = bool(success[env])
                     infos[env]["episode"] = {"r": float(success[env]), "l": int(self._steps[env])}
                 if self.curriculum:
-                    self.curriculum.note(self._origins[env], bool(success[env]))
+                    self.curriculum.note(
+                        self._origins[env], bool(success[env]), int(self._steps[env])
+                    )
                 self._begin(env)
             observation = self.task.observation(self._poses)
         return observation, success.astype(np.float32), done, infos
+
+    def contact_headings(self, seed: int) -> NDArray[np.int64]:
+        """Per environment a heading towards a random object of its present state. [count]"""
+        return self.task.contact_headings(self._poses, seed)
 
     def _begin(self, env: int) -> None:
         self._origins[env], start = self.curriculum.draw() if self.curriculum else (ELSEWHERE, None)

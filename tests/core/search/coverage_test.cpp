@@ -47,7 +47,7 @@ TEST(StartRegion, TheRobotMayBeAnywhere) {
 /// A transition from the nominal start that moves the robot, and the first `objects` objects by
 /// `distance`.
 Transition moving(int objects, double distance) {
-  Transition t{gathering().start, 0, gathering().start, false, Source::kStepReplay};
+  Transition t{gathering().start, 0, gathering().start, false, Source::kTree};
   t.next[0].x += 2.0;
   for (int k = 1; k <= objects; ++k) t.next[static_cast<std::size_t>(k)].y -= distance;
   return t;
@@ -74,7 +74,7 @@ TEST(Coverage, CountsTransitionsThatMoveOneObjectOrMore) {
 
 /// Share of transitions that move several, of one that moves all movable bodies.
 double multi_body_share(const Task& task) {
-  Transition t{task.start, 0, task.start, false, Source::kStepReplay};
+  Transition t{task.start, 0, task.start, false, Source::kTree};
   for (std::size_t k = 1; k < task.scene.size(); ++k)
     if (!task.scene.bodies[k].fixed) t.next[k].y += 1.0;
   Coverage coverage(task);
@@ -90,19 +90,36 @@ TEST(Coverage, WhatJointsConnectCountsAsOneButForWhatHangsOnAFixedBody) {
   EXPECT_EQ(multi_body_share(task), 1.0);
 }
 
-TEST(Coverage, CountsWhatBeginsInTheStartRegionWithAndWithoutRollOuts) {
+TEST(Coverage, CountsWhatBeginsInTheStartRegionAndWhereItComesFrom) {
   const Task task = gathering();
   Coverage coverage(task);
   Transition t = moving(0, 0.0);
-  for (const Source source :
-       {Source::kRollOut, Source::kStepReplay, Source::kChainReplay, Source::kMended}) {
+  for (const Source source : {Source::kTree, Source::kBranch, Source::kBranch, Source::kWalk}) {
     t.source = source;
     coverage.add(t);
   }
   t.poses[1].x += 1.0;  // begins outside, ends inside
+  t.source = Source::kPlan;
   coverage.add(t);
   EXPECT_EQ(coverage.start_region(), 4);
-  EXPECT_EQ(coverage.start_region_trees(), 2);
+  EXPECT_EQ(coverage.of(Source::kTree), 1);
+  EXPECT_EQ(coverage.of(Source::kBranch), 2);
+  EXPECT_EQ(coverage.of(Source::kWalk), 1);
+  EXPECT_EQ(coverage.of(Source::kPlan), 1);
+}
+
+TEST(Coverage, HeadingsPerStateAreTransitionsOverDistinctStates) {
+  const Task task = gathering();
+  Coverage coverage(task);
+  EXPECT_EQ(coverage.headings_per_state(), 0.0);
+  Transition t = moving(0, 0.0);
+  for (const int action : {1, 2, 3}) {
+    t.action = action;
+    coverage.add(t);
+  }
+  t.poses[0].x += 1e-9;  // another state
+  coverage.add(t);
+  EXPECT_DOUBLE_EQ(coverage.headings_per_state(), 4.0 / 2.0);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core/forward/box2d_simulator.hpp"
-#include "core/search/coverage.hpp"
+#include "core/search/state_metric.hpp"
 #include "tests/support/gathering.hpp"
 #include "tests/support/generation_run.hpp"
 
@@ -20,14 +20,10 @@ using testing::run_naive;
 
 SearchConfig small() {
   SearchConfig config;
-  config.reverse = ReverseMode::kNaive;
+  config.generator = Generator::kNaive;
   config.transitions = 3000;
-  config.breadth = 8;
-  config.explored = 2.0;
+  config.breadth = 6;
   config.depth = 12;
-  config.mended = 0.1;
-  config.twins = 2;  // these tests are not about how good the policy is
-  config.evaluation_starts = 10;
   return config;
 }
 
@@ -41,6 +37,7 @@ bool same_reports(const GenerationReport& a, const GenerationReport& b) {
   x.reverse_cpu_s = y.reverse_cpu_s = 0.0;  // time is the one thing that may differ
   x.replay_cpu_s = y.replay_cpu_s = 0.0;
   x.generate_wall_s = y.generate_wall_s = 0.0;
+  x.generate_cpu_s = y.generate_cpu_s = 0.0;
   return to_json(x) == to_json(y);
 }
 
@@ -74,37 +71,85 @@ TEST(Generate, EveryTransitionSimulatesToItselfAndIsLabelledByThePredicate) {
   }
 }
 
-TEST(Generate, TreesStoreNoStepTwice) {
-  std::vector<Transition> steps;
-  for (Transition t : reference_run().stored) {
-    if (t.source == Source::kRollOut) continue;
-    // A chain's first step would be one of these but for its source.
-    t.source = Source::kStepReplay;
-    steps.push_back(t);
-  }
-  for (std::size_t k = 0; k < steps.size(); ++k)
-    for (std::size_t j = 0; j < k; ++j) ASSERT_NE(steps[j], steps[k]) << j << ", " << k;
-}
-
-TEST(Generate, EachSourceHasItsShare) {
-  const auto count = [](Source source) {
-    return std::ranges::count(reference_run().stored, source, &Transition::source);
-  };
-  EXPECT_EQ(count(Source::kRollOut), 1500);
-  EXPECT_GT(count(Source::kChainReplay), 0);
-  EXPECT_GT(count(Source::kMended), 0);
-  EXPECT_GT(count(Source::kStepReplay), 450);  // those drawn at random
-}
-
-TEST(Generate, StepsOfChainsAndEpisodesFollowEachOther) {
+TEST(Generate, StoresNothingTwice) {
   const std::vector<Transition>& all = reference_run().stored;
-  long links = 0, steps = 0;
-  for (std::size_t k = 1; k < all.size(); ++k) {
-    if (all[k].source == Source::kStepReplay || all[k].source != all[k - 1].source) continue;
-    ++steps;
-    links += all[k].poses == all[k - 1].next;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    for (std::size_t j = 0; j < k; ++j)
+      ASSERT_FALSE(all[j].poses == all[k].poses && all[j].action == all[k].action)
+          << j << ", " << k;
+}
+
+TEST(Generate, EveryTreeStepIsFollowedByItsBranches) {
+  const std::vector<Transition>& all = reference_run().stored;
+  long trees = 0, behind = 0;  // branches since the last step of a tree
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const bool is_step = all[k].source == Source::kTree;
+    trees += is_step;
+    behind = is_step ? 0 : behind + 1;
+    ASSERT_TRUE(is_step || all[k].source == Source::kBranch);
+    ASSERT_LE(behind, 4);
+    ASSERT_TRUE(is_step || all[k].poses == all[k - 1].poses);
   }
-  EXPECT_GT(links, steps * 3 / 4);  // the rest begin a chain or an episode
+  EXPECT_NEAR(trees, 600, 15) << "of a few nothing is new";
+  EXPECT_EQ(reference_run().report.tree_transitions, trees);
+  EXPECT_EQ(reference_run().report.branch_transitions, 3000 - trees);
+  EXPECT_GE(reference_run().report.headings_per_state, 4.9);
+}
+
+/// How far the nearest node of a tree is from its target.
+double nearest(const Task& task, const GenerationReport& report, int tree, const Poses& target) {
+  const StateMetric metric(task.scene);
+  double least = 1e9;
+  for (const ReportNode& n : report.nodes)
+    if (n.tree == tree) least = std::min(least, metric.layout_distance(n.poses, target));
+  return least;
+}
+
+TEST(Generate, EachTreeGrowsFromGoalStatesToAStartOfItsOwn) {
+  const Task task = gathering();
+  SearchConfig config = small();
+  config.transitions = 12000;
+  config.depth = 30;
+  config.target_jitter = 1.5;
+  const GenerationReport report = run_naive(task, config, 7, 1).report;
+  ASSERT_GE(report.trees, 2);
+  std::vector<Poses> targets;
+  for (int tree = 0; tree < 2; ++tree) {
+    Rng rng(7, static_cast<std::uint64_t>(tree));
+    targets.push_back(jittered_start(task, config.target_jitter, rng));
+  }
+  EXPECT_LT(nearest(task, report, 0, targets[0]), nearest(task, report, 0, targets[1]));
+  EXPECT_LT(nearest(task, report, 1, targets[1]), nearest(task, report, 1, targets[0]));
+  for (int tree = 0; tree < 2; ++tree) {
+    const auto root = std::ranges::find(report.nodes, tree, &ReportNode::tree);
+    ASSERT_NE(root, report.nodes.end());
+    EXPECT_TRUE(succeeded(task, root->poses));
+  }
+}
+
+TEST(Generate, ATreeEndsAtItsDepth) {
+  SearchConfig config = small();
+  config.depth = 3;
+  const GenerationReport report = run_naive(gathering(), config, 7, 1).report;
+  EXPECT_GT(report.trees, 1);
+  for (const ReportNode& n : report.nodes) EXPECT_LE(n.depth, 3);
+}
+
+TEST(Generate, ATreeThatComesNoNearerEndsWithItsPatience) {
+  const Task task = gathering();
+  for (const int patience : {1, 3}) {
+    SearchConfig config = small();
+    config.patience = patience;
+    GenerationSeams seams = testing::naive_seams(task, 1);
+    int layers = 0;
+    seams.store = [](std::span<const Transition>) {};
+    seams.progress = [&](const Progress& p) { layers = std::max(layers, p.layer); };
+    seams.solve = [&](std::span<const ReverseJob> jobs) {
+      return std::vector<ReverseResult>(jobs.size(), {SolveStatus::kPruned});
+    };
+    generate(task, config, 7, seams);
+    EXPECT_EQ(layers, patience);
+  }
 }
 
 TEST(Generate, ReportAgreesWithTheStoredTransitions) {
@@ -153,92 +198,18 @@ TEST(Generate, EndsEvenIfNoReverseSolveConverges) {
     return std::vector<ReverseResult>(jobs.size(), {SolveStatus::kIterationLimit, 50});
   };
   const GenerationReport report = generate(task, small(), 7, seams);
-  EXPECT_EQ(report.transitions, 3000);  // episodes of random actions
+  EXPECT_EQ(report.transitions, 0);
+  EXPECT_EQ(report.trees, 8) << "then it gives up";
   EXPECT_EQ(report.replay_gap_median, 0.0);
-  EXPECT_EQ(report.tree_policy_success, 0.0);
 }
 
-/// A world of two pushes: `kSure` solves the task from anywhere, `kLucky` from `lucky()` only.
-/// Reverse solves find the first in the first round and the second, nearer to the start, later.
-struct LuckyWorld {
-  static constexpr int kSure = 0, kLucky = 5;
-  Task task = gathering();
-  int rounds = 0;
-  double turn = 0.0;  // of the objects, by a push that solves the task [rad]
-
-  LuckyWorld() { task.horizon = 1; }
-
-  Poses beside_the_start(double x) const {
-    Poses out = task.start;
-    out[0].x += x;
-    return out;
-  }
-  Poses lucky() const { return beside_the_start(0.125); }
-
-  Poses pushed(const ReplayJob& job) const {
-    Poses end = job.start;
-    if (job.action == kSure || (job.action == kLucky && job.start == lucky()))
-      for (std::size_t k = 1; k < end.size(); ++k) end[k] = {0.0, 0.0, end[k].theta + turn};
-    return end;
-  }
-
-  GenerationSeams seams() {
-    GenerationSeams out;
-    out.solve = [this](std::span<const ReverseJob> jobs) {
-      ++rounds;
-      std::vector<ReverseResult> results(jobs.size(), {SolveStatus::kPruned});
-      for (std::size_t k = 0; k < jobs.size(); ++k)
-        if (jobs[k].action == (rounds == 1 ? kSure : kLucky))
-          results[k] = {
-              SolveStatus::kConverged, 1, {rounds == 1 ? beside_the_start(0.5) : lucky()}};
-      return results;
-    };
-    out.replay = [this](std::span<const ReplayJob> jobs) {
-      std::vector<ReplayResult> results;
-      for (const ReplayJob& job : jobs) results.push_back({pushed(job), true, 0.0});
-      return results;
-    };
-    out.store = [](std::span<const Transition>) {};
-    return out;
-  }
-};
-
-/// Two rounds of one transition each.
-SearchConfig two_steps() {
-  SearchConfig config = small();
-  config.transitions = 2;
-  config.explored = 1.0;
-  config.mended = 0.0;
-  config.depth = 1;
-  config.twins = 0;  // luck stretches errors without bound; here the policy has to find that out
-  config.rollout_share = 0.0;
-  return config;
-}
-
-TEST(Generate, ThePolicyLeavesOutPushesThatTurnAnObjectFar) {
-  for (const double turn : {0.2, 0.4}) {
-    LuckyWorld world;
-    world.turn = turn;
-    SearchConfig config = two_steps();
-    config.turn_tolerance = 0.3;
-    config.evaluation_starts = 100;
-    const GenerationReport report = generate(world.task, config, 1, world.seams());
-    EXPECT_EQ(report.transitions, 2);
-    if (turn < config.turn_tolerance) {
-      EXPECT_EQ(report.tree_policy_success, 1.0);
-    } else {
-      EXPECT_LT(report.tree_policy_success, 0.2);  // random actions, of which one in 48 succeeds
-    }
-  }
-}
-
-TEST(Generate, ARoundThatMakesThePolicyWorseDoesNotDecide) {
-  LuckyWorld world;
-  const SearchConfig config = two_steps();
-  const GenerationReport report = generate(world.task, config, 1, world.seams());
-  EXPECT_EQ(world.rounds, 2);
-  EXPECT_EQ(report.transitions, 2);
-  EXPECT_DOUBLE_EQ(report.tree_policy_success, 1.0);
+TEST(Generate, WithRandomiseTreesAimAtStartsAllOverTheTasksRandomisation) {
+  const Task task = gathering();
+  SearchConfig config = small(), wide = small();
+  config.randomise = true;
+  wide.target_jitter = task.randomisation;
+  ASSERT_GT(task.randomisation, config.target_jitter);
+  EXPECT_EQ(run_naive(task, config, 7, 1).stored, run_naive(task, wide, 7, 1).stored);
 }
 
 }  // namespace

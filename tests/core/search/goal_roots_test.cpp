@@ -6,7 +6,7 @@
 #include <limits>
 #include <set>
 
-#include "core/search/ranking.hpp"
+#include "core/search/start_distance.hpp"
 #include "core/search/state_metric.hpp"
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
@@ -140,7 +140,7 @@ SearchConfig of(int breadth, int root_draws) {
 std::vector<Poses> roots(const Task& task, const SearchConfig& config, std::uint64_t seed) {
   Rng rng(seed);
   SearchStats stats;
-  return goal_roots(task, config, {task.start}, rng, stats);
+  return goal_roots(task, config, task.start, rng, stats);
 }
 
 TEST(GoalRoots, DrawsInVainAreCountedAndEndNothingUntilThereAreTooMany) {
@@ -148,7 +148,7 @@ TEST(GoalRoots, DrawsInVainAreCountedAndEndNothingUntilThereAreTooMany) {
   task.goal[0].radius = 0.4;  // three boxes do not fit
   Rng rng(1);
   SearchStats stats;
-  EXPECT_TRUE(goal_roots(task, of(20, 4), {task.start}, rng, stats).empty());
+  EXPECT_TRUE(goal_roots(task, of(20, 4), task.start, rng, stats).empty());
   EXPECT_EQ(stats.undrawn_goals, 20);
 }
 
@@ -163,7 +163,7 @@ TEST(GoalRoots, AreDistinctGoalsNearestFirst) {
     EXPECT_TRUE(succeeded(task, root));
     EXPECT_EQ(relabelled(task, root, task.start), root);
     EXPECT_TRUE(cells.insert(metric.cell(root, {})).second);
-    const double left = start_distance(task, metric, root, {task.start});
+    const double left = start_distance(task, metric, root, task.start);
     EXPECT_GE(left, before);
     before = left;
   }

@@ -38,7 +38,7 @@ TEST(Simulators, ALayerOfReverseSolvesHasTheSameBitsOn1To16Threads) {
       job.end[1].y += 0.02 * node;
       jobs.push_back(std::move(job));
     }
-  const SolveBatch solve = reverse_solver(task, {}, {}, ReverseMode::kRrbs);
+  const SolveBatch solve = reverse_solver(task, {}, {}, Generator::kRrbs);
   const std::vector<ReverseResult> reference = solve_on_threads(solve, 1)(jobs);
   const auto iterations = std::ranges::max(reference, {}, &ReverseResult::iterations).iterations;
   ASSERT_GT(iterations, 10);  // solves in contact are among them
@@ -65,9 +65,9 @@ TEST(Simulators, ReplayIsBox2dsPushAndItsSettling) {
   EXPECT_FALSE(replay({{}, kSettle}).ok);
 }
 
-TEST(Simulators, NaiveModeIsTheNaiveReverse) {
+TEST(Simulators, NaiveGeneratorIsTheNaiveReverse) {
   const Task task = gathering();
-  const SolveBatch solve = reverse_solver(task, {}, {}, ReverseMode::kNaive);
+  const SolveBatch solve = reverse_solver(task, {}, {}, Generator::kNaive);
   const NaiveReverse naive(task.scene, task.push);
   const std::vector<ReverseJob> jobs = layer(task);
   const std::vector<ReverseResult> results = solve(jobs);

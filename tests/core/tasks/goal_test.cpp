@@ -134,36 +134,5 @@ TEST(Goal, AFixedBodyMayStandAtTheEdgeOfItsRegion) {
   EXPECT_TRUE(sample_goal(task, rng).has_value());
 }
 
-TEST(Goal, HasAnAtomPerBodyJointOrMeanItSpeaksOf) {
-  const Task chain = art_manip();  // three joints, then the centroid, at (0, 3) within 1
-  const std::vector<double> bend{1.57, 0.0, 1.57};
-  EXPECT_EQ(goal_atoms(chain, chain.start), (std::vector<bool>{false, false, false, false}));
-  EXPECT_EQ(goal_atoms(chain, bent(chain, bend, {9, 9})),
-            (std::vector<bool>{true, false, true, false}));
-  Task boxes = testing::gathering();
-  Poses poses = boxes.start;
-  poses[2] = {1.0, 1.0, 0.0};
-  EXPECT_EQ(goal_atoms(boxes, poses), (std::vector<bool>{false, true, false}));
-  boxes.scene.bodies[1].fixed = true;  // the goal does not speak of it
-  EXPECT_EQ(goal_atoms(boxes, poses), (std::vector<bool>{true, false}));
-}
-
-TEST(Goal, HoldsWhenAllAtomsDo) {
-  const Task task = testing::gathering();
-  Rng rng(3);
-  int held = 0;
-  for (int draw = 0; draw < 200; ++draw) {
-    Poses poses = task.start;
-    for (std::size_t i = 1; i < poses.size(); ++i)
-      poses[i] = {rng.uniform(-2.0, 2.0), rng.uniform(-2.0, 2.0), 0.0};
-    const std::vector<bool> atoms = goal_atoms(task, poses);
-    const bool all = std::ranges::all_of(atoms, [](bool one) { return one; });
-    EXPECT_EQ(succeeded(task, poses), all);
-    held += all;
-  }
-  EXPECT_GT(held, 20);
-  EXPECT_LT(held, 180);
-}
-
 }  // namespace
 }  // namespace rtg

@@ -1,0 +1,48 @@
+#include "core/search/branches.hpp"
+
+#include <algorithm>
+
+#include "core/math/draws.hpp"
+#include "core/reverse/reverse_job.hpp"
+
+namespace rtg {
+std::vector<int> other_headings(int action, int headings, const SearchConfig& config, Rng& rng) {
+  std::vector<int> near, others;
+  for (int away = 1; away < headings; ++away) {
+    const int heading = (action + away) % headings;
+    others.push_back(heading);
+    if (std::min(away, headings - away) <= config.near_headings) near.push_back(heading);
+  }
+  std::vector<int> out = drawn(near, std::min(config.near_branches, config.branches), rng);
+  std::erase_if(others, [&](int h) { return std::ranges::find(out, h) != out.end(); });
+  const int left = config.branches - static_cast<int>(out.size());
+  for (const int heading : drawn(others, left, rng)) out.push_back(heading);
+  return out;
+}
+
+std::vector<Transition> with_branches(const Task& task, std::span<const Transition> steps,
+                                      const SearchConfig& config, std::uint64_t seed,
+                                      const ReplayBatch& replay) {
+  std::vector<ReplayJob> pushes;
+  std::vector<std::size_t> ends;  // of each step's branches among the pushes
+  for (const Transition& step : steps) {
+    Rng rng(seed, key_of(step.poses, step.action));
+    for (const int heading : other_headings(step.action, task.push.headings, config, rng))
+      pushes.push_back({step.poses, heading});
+    ends.push_back(pushes.size());
+  }
+  const std::vector<ReplayResult> results = replay(pushes);
+  std::vector<Transition> out;
+  for (std::size_t k = 0, push = 0; k < steps.size(); ++k) {
+    out.push_back(steps[k]);
+    for (; push < ends[k]; ++push) {
+      if (!results[push].ok) continue;
+      const Poses& end = results[push].end;
+      out.push_back(
+          {steps[k].poses, pushes[push].action, end, succeeded(task, end), Source::kBranch});
+    }
+  }
+  return out;
+}
+
+}  // namespace rtg

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_set>
+
+#include "core/search/batches.hpp"
+#include "core/search/coverage.hpp"
+#include "core/search/search_config.hpp"
+#include "core/search/transition.hpp"
+#include "core/tasks/task.hpp"
+
+namespace rtg {
+
+/// The stored transitions as they come about: steps, each followed by its branches, until
+/// config.transitions are there.
+class DataSet {
+ public:
+  /// All arguments must outlive it. `sink` receives the transitions.
+  DataSet(const Task& task, const SearchConfig& config, std::uint64_t seed,
+          const ReplayBatch& replay, const TransitionSink& sink)
+      : task_(task), config_(config), seed_(seed), replay_(replay), sink_(sink), coverage_(task) {}
+
+  /// Stores the first of `steps` with their branches, as far as there is room; nothing twice.
+  void store(std::span<const Transition> steps);
+
+  bool full() const { return coverage_.transitions() >= config_.transitions; }
+  const Coverage& coverage() const { return coverage_; }
+
+ private:
+  const Task& task_;
+  const SearchConfig& config_;
+  std::uint64_t seed_;
+  const ReplayBatch& replay_;
+  const TransitionSink& sink_;
+  Coverage coverage_;
+  std::unordered_set<std::uint64_t> known_;  // key_of() state and action of all
+};
+
+}  // namespace rtg

@@ -1,0 +1,133 @@
+#include "core/search/forward_search.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "core/search/beam_selection.hpp"
+#include "core/search/predecessor.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kWay = 0.2;  // w
+
+double outside(const GoalTerm& term, const Vector2d& x) {
+  if (term.region == GoalTerm::Region::kDisc)
+    return std::max(0.0, (x - term.centre).norm() - term.radius);
+  return std::max(0.0, term.normal.dot(x) - term.offset);
+}
+
+double outside(const GoalTerm& term, double angle) {
+  return std::max({0.0, term.least - angle, angle - term.most});
+}
+
+/// Sums up goal_distance().
+struct Distance {
+  const Poses& poses;
+  double violation = 0.0;
+  double way = std::numeric_limits<double>::infinity();
+
+  /// An atom that is `off` and that `body` has to do with.
+  void reach(std::size_t body, double off) {
+    if (off > 0.0) way = std::min(way, (poses[body].position() - poses[0].position()).norm());
+  }
+};
+
+void add(Distance& d, const GoalTerm& term, const Scene& scene) {
+  if (term.subject == GoalTerm::Subject::kJoint) {
+    for (const Joint& joint : scene.joints) {
+      if (!concerns(term, scene, joint)) continue;
+      const double off = outside(term, joint_angle(joint, d.poses));
+      d.violation += off;
+      d.reach(static_cast<std::size_t>(joint.parent), off);
+      d.reach(static_cast<std::size_t>(joint.child), off);
+    }
+    return;
+  }
+  const bool together = term.subject == GoalTerm::Subject::kCentroid;
+  const double of_mean = together ? outside(term, centroid_of(term, scene, d.poses)) : 0.0;
+  d.violation += of_mean;
+  for (std::size_t k = 1; k < d.poses.size(); ++k) {
+    if (!concerns(term, scene, k)) continue;
+    const double off = together ? of_mean : outside(term, d.poses[k].position());
+    if (!together) d.violation += off;
+    d.reach(k, off);
+  }
+}
+
+}  // namespace
+
+double goal_distance(const Task& task, const Poses& poses) {
+  Distance d{poses};
+  for (const GoalTerm& term : task.goal) add(d, term, task.scene);
+  return d.violation > 0.0 ? d.violation + kWay * d.way : 0.0;
+}
+
+ForwardSearch::ForwardSearch(const Task& task, const SearchConfig& config, Poses start,
+                             std::uint64_t seed)
+    : task_(task), config_(config), metric_(task.scene), rng_(seed), beam_{0} {
+  seen_.insert(metric_.cell(start, {}));
+  nodes_.push_back({{{}, -1, std::move(start)}, 0});
+}
+
+std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
+  if (solved_ > 0) return {};
+  std::vector<ReplayJob> pushes;
+  for (const std::size_t k : beam_)
+    for (int action = 0; action < task_.push.headings; ++action)
+      pushes.push_back({nodes_[k].step.next, action});
+  const std::vector<ReplayResult> results = replay(pushes);
+  std::vector<Node> found;
+  std::vector<BeamEntry> entries;
+  for (std::size_t k = 0; k < pushes.size(); ++k) {
+    if (!results[k].ok) continue;
+    const Poses& end = results[k].end;
+    const bool moved = objects_moved(pushes[k].start, end) > 0;
+    entries.push_back(
+        {goal_distance(task_, end), metric_.cell(end, {}), layout_cell(metric_, end), moved});
+    const std::size_t parent = beam_[k / static_cast<std::size_t>(task_.push.headings)];
+    found.push_back(
+        {{pushes[k].start, pushes[k].action, end, succeeded(task_, end), Source::kPlan}, parent});
+  }
+  beam_.clear();
+  std::vector<Transition> kept;
+  for (const std::size_t k : select_beam(entries, config_, rng_, seen_)) {
+    if (found[k].step.success && solved_ == 0) solved_ = nodes_.size();
+    kept.push_back(found[k].step);
+    beam_.push_back(nodes_.size());
+    nodes_.push_back(std::move(found[k]));
+  }
+  return kept;
+}
+
+std::vector<Transition> ForwardSearch::plan() const {
+  std::vector<Transition> steps;
+  for (std::size_t k = solved_; k != 0; k = nodes_[k].parent) steps.push_back(nodes_[k].step);
+  std::ranges::reverse(steps);
+  return steps;
+}
+
+std::vector<Transition> plan_forward(const Task& task, const SearchConfig& config,
+                                     const Poses& start, std::uint64_t seed,
+                                     const ReplayBatch& replay) {
+  ForwardSearch search(task, config, start, seed);
+  for (int layer = 0; layer < std::min(config.depth, task.horizon); ++layer)
+    if (search.grow(replay).empty()) break;
+  return search.plan();
+}
+
+void search_forward(Generation& run, int number) {
+  Rng rng = run.stream(number);
+  Poses start = jittered_start(run.task, run.config.target_jitter, rng);
+  ForwardSearch search(run.task, run.config, std::move(start), rng.word());
+  for (int layer = 1; layer <= run.config.depth; ++layer) {
+    if (run.data.full() || run.cancelled()) break;
+    const std::vector<Transition> kept = search.grow(run.replay);
+    if (kept.empty()) break;
+    run.data.store(kept);
+    run.show("plan " + std::to_string(number + 1), layer, run.config.depth);
+  }
+}
+
+}  // namespace rtg

@@ -1,0 +1,79 @@
+#include "core/search/start_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/world/separation.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kWalk = 2.0;      // pushes to get from one object to the next, about
+constexpr double kInPlace = 0.4;   // an object this near to its place needs no pull [m]
+constexpr double kPullCone = 0.5;  // [rad]
+constexpr double kReach = 0.15;    // the robot can pull what is nearer than this [m]
+constexpr double kTouching = 0.8;  // distance of touching bodies, of their bounding radii, about
+
+/// Distance of their centres beyond which the robot cannot pull a body [m].
+double farthest_pull(const Task& task, std::size_t body) {
+  return bounding_radius(task.scene.bodies[0].shape) +
+         bounding_radius(task.scene.bodies[body].shape) + kReach;
+}
+
+/// Whether a robot at `robot` touches an object on the side that `way` points to.
+bool can_pull(const Task& task, const Pose& robot, const Pose& object, std::size_t body,
+              const Vector2d& way) {
+  const Polygon& hand = task.scene.bodies[0].shape;
+  const Polygon& shape = task.scene.bodies[body].shape;
+  const Vector2d arm = robot.position() - object.position();
+  if (arm.norm() > farthest_pull(task, body) ||
+      arm.dot(way) < std::cos(kPullCone) * arm.norm() * way.norm())
+    return false;
+  const double gap = separation(hand, robot, shape, object);
+  return gap >= 0.0 && gap <= kReach;
+}
+
+/// Pushes until the robot can pull an object along `way`: 0, 1 or, as any distance of up to two
+/// strides can be walked in two, at least 2.
+double walk(const Task& task, const Poses& poses, std::size_t body, const Vector2d& way) {
+  const Pose& robot = poses[0];
+  const Pose& object = poses[body];
+  if (can_pull(task, robot, object, body, way)) return 0.0;
+  const double left = (robot.position() - object.position()).norm() - task.push.stride;
+  const bool one_away = std::abs(left) <= farthest_pull(task, body);
+  for (int a = 0; one_away && a < task.push.headings; ++a) {
+    const Vector2d at = robot.position() - task.push.stride * direction(a, task.push);
+    if (can_pull(task, {at.x(), at.y(), robot.theta}, object, body, way)) return 1.0;
+  }
+  const double touching = kTouching * (bounding_radius(task.scene.bodies[0].shape) +
+                                       bounding_radius(task.scene.bodies[body].shape));
+  const Vector2d spot = object.position() + touching * way.normalized();
+  return std::max(2.0, (robot.position() - spot).norm() / task.push.stride);
+}
+
+/// The same to the next object that is out of place, or to the robot's own place.
+double next_walk(const Task& task, const StateMetric& metric, const Poses& poses,
+                 const Poses& target) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const auto& o : metric.objects()) {
+    const Vector2d way = target[o.body].position() - poses[o.body].position();
+    if (way.norm() > kInPlace) best = std::min(best, walk(task, poses, o.body, way));
+  }
+  if (std::isfinite(best)) return best;
+  return (target[0].position() - poses[0].position()).norm() / task.push.stride;
+}
+
+}  // namespace
+
+double start_distance(const Task& task, const StateMetric& metric, const Poses& poses,
+                      const Poses& target) {
+  double sum = metric.layout_distance(poses, target) / task.push.stride;
+  for (const auto& o : metric.objects()) {
+    const double off = (target[o.body].position() - poses[o.body].position()).norm();
+    sum += kWalk * std::min(1.0, off / kInPlace);
+  }
+  return sum + next_walk(task, metric, poses, target);
+}
+
+}  // namespace rtg

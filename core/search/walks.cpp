@@ -1,0 +1,52 @@
+#include "core/search/walks.hpp"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/tasks/contact_heading.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr int kWave = 50;         // walks that go on side by side
+constexpr double kSeeking = 0.5;  // share of the pushes that seek contact, the others are uniform
+
+/// A state in which a walk begins; nothing if none was found.
+std::optional<Poses> origin(const Generation& run, Rng& rng) {
+  if (run.config.generator == Generator::kScatter) return sample_goal(run.task, rng);
+  return jittered_start(run.task, run.config.target_jitter, rng);
+}
+
+int heading(const Generation& run, const Poses& state, Rng& rng) {
+  const bool seeks = rng.uniform(0.0, 1.0) < kSeeking;
+  return seeks ? contact_heading(run.task, state, rng) : rng.below(run.task.push.headings);
+}
+
+}  // namespace
+
+void walk(Generation& run, int number) {
+  Rng rng = run.stream(number);
+  std::vector<Poses> states;
+  for (int k = 0; k < kWave; ++k)
+    if (std::optional<Poses> state = origin(run, rng)) states.push_back(*std::move(state));
+  for (int step = 0; step < run.task.horizon && !states.empty() && !run.data.full(); ++step) {
+    std::vector<ReplayJob> pushes;
+    for (const Poses& state : states) pushes.push_back({state, heading(run, state, rng)});
+    const std::vector<ReplayResult> results = run.replay(pushes);
+    std::vector<Transition> steps;
+    states.clear();
+    for (std::size_t k = 0; k < pushes.size(); ++k) {
+      if (!results[k].ok) continue;
+      const Poses& end = results[k].end;
+      if (!succeeded(run.task, pushes[k].start))
+        steps.push_back(
+            {pushes[k].start, pushes[k].action, end, succeeded(run.task, end), Source::kWalk});
+      states.push_back(end);
+    }
+    run.data.store(steps);
+  }
+  run.show("random walks", number + 1, 0);
+}
+
+}  // namespace rtg

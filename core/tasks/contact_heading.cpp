@@ -1,0 +1,33 @@
+#include "core/tasks/contact_heading.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace rtg {
+namespace {
+
+/// A point within the bounding circle of a movable object.
+Vector2d aim(const Task& task, const Poses& state, Rng& rng) {
+  std::vector<std::size_t> objects;
+  for (std::size_t k = 1; k < state.size(); ++k)
+    if (!task.scene.bodies[k].fixed) objects.push_back(k);
+  const std::size_t k =
+      objects[static_cast<std::size_t>(rng.below(static_cast<int>(objects.size())))];
+  const double angle = rng.uniform(0.0, 2.0 * std::numbers::pi);
+  const double radius =
+      bounding_radius(task.scene.bodies[k].shape) * std::sqrt(rng.uniform(0.0, 1.0));
+  return state[k].position() + radius * Vector2d(std::cos(angle), std::sin(angle));
+}
+
+}  // namespace
+
+int contact_heading(const Task& task, const Poses& state, Rng& rng) {
+  const int headings = task.push.headings;
+  const Vector2d way = aim(task, state, rng) - state[0].position();
+  const double turns = std::atan2(way.y(), way.x()) / (2.0 * std::numbers::pi);
+  const int nearest = static_cast<int>(std::lround(turns * headings));
+  return (nearest + headings) % headings;
+}
+
+}  // namespace rtg

@@ -1,0 +1,129 @@
+#include "core/search/branches.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "core/search/search_stats.hpp"
+#include "tests/support/dragging_world.hpp"
+
+namespace rtg {
+namespace {
+
+int away(int a, int b, int headings) {
+  const int off = std::abs(a - b);
+  return std::min(off, headings - off);
+}
+
+SearchConfig with(int branches, int near, int reach) {
+  SearchConfig config;
+  config.branches = branches;
+  config.near_branches = near;
+  config.near_headings = reach;
+  return config;
+}
+
+TEST(OtherHeadings, AreSoManyDifferentOnesAndNeverTheStepsOwn) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Rng rng(seed);
+    const int action = static_cast<int>(seed % 48);
+    const std::vector<int> found = other_headings(action, 48, with(6, 2, 3), rng);
+    EXPECT_EQ(std::set<int>(found.begin(), found.end()).size(), 6U);
+    for (const int heading : found) {
+      EXPECT_NE(heading, action);
+      EXPECT_GE(heading, 0);
+      EXPECT_LT(heading, 48);
+    }
+    EXPECT_LE(away(found[0], action, 48), 3);
+    EXPECT_LE(away(found[1], action, 48), 3);
+  }
+}
+
+TEST(OtherHeadings, OfWhichNearOnesLieOnBothSidesAndTheOthersAnywhere) {
+  std::map<int, int> near, far;
+  for (std::uint64_t seed = 0; seed < 4700; ++seed) {
+    Rng rng(seed);
+    const std::vector<int> found = other_headings(10, 48, with(2, 1, 2), rng);
+    ++near[found[0]];
+    ++far[found[1]];
+  }
+  EXPECT_EQ(near.size(), 4U);  // 8, 9, 11, 12
+  for (const auto& [heading, count] : near) EXPECT_NEAR(count, 4700 / 4, 120) << heading;
+  EXPECT_EQ(far.size(), 47U);
+  for (const auto& [heading, count] : far) EXPECT_NEAR(count, 100, 50) << heading;
+}
+
+TEST(OtherHeadings, EndWhereThereAreNoMore) {
+  Rng rng(1);
+  EXPECT_EQ(other_headings(0, 4, with(9, 1, 1), rng).size(), 3U);
+  EXPECT_EQ(other_headings(0, 1, with(2, 1, 1), rng).size(), 0U);
+  EXPECT_EQ(other_headings(5, 48, with(0, 3, 1), rng).size(), 0U);
+  EXPECT_EQ(other_headings(5, 48, with(4, 9, 1), rng).size(), 4U) << "two near ones, two others";
+}
+
+struct BranchesTest : ::testing::Test, testing::DraggingWorld {
+  SearchConfig config = with(3, 1, 3);
+  SearchStats stats;
+  ReplayBatch counting = counted(replay, stats);
+
+  std::vector<Transition> steps(int count) const {
+    std::vector<Transition> out;
+    for (int k = 0; k < count; ++k) {
+      const Poses start = testing::moved(task.start, 0, {0.25 * k, 0.0});
+      out.push_back({start, k, pushed({start, k}), false, Source::kTree});
+    }
+    return out;
+  }
+};
+
+TEST_F(BranchesTest, FollowTheirStepAndAreTrueTransitionsFromItsState) {
+  const std::vector<Transition> given = steps(5);
+  const std::vector<Transition> rows = with_branches(task, given, config, 7, counting);
+  ASSERT_EQ(rows.size(), 20U);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Transition& step = given[k / 4];
+    if (k % 4 == 0) {
+      EXPECT_EQ(rows[k], step);
+      continue;
+    }
+    EXPECT_EQ(rows[k].poses, step.poses);
+    EXPECT_NE(rows[k].action, step.action);
+    EXPECT_EQ(rows[k].next, pushed({step.poses, rows[k].action}));
+    EXPECT_EQ(rows[k].success, succeeded(task, rows[k].next));
+    EXPECT_EQ(rows[k].source, Source::kBranch);
+  }
+  EXPECT_EQ(stats.replays, 15);
+}
+
+TEST_F(BranchesTest, WhichHeadingsIsAFunctionOfStepAndSeedWhateverComesBeside) {
+  const std::vector<Transition> given = steps(5);
+  const auto all = with_branches(task, given, config, 7, counting);
+  const auto one = with_branches(task, std::span(given).subspan(3, 1), config, 7, counting);
+  EXPECT_TRUE(std::ranges::equal(one, std::span(all).subspan(12, 4)));
+  EXPECT_NE(with_branches(task, given, config, 8, counting), all);
+}
+
+TEST_F(BranchesTest, ThatSucceedSayThatTheyDo) {
+  Poses goal = task.start;
+  for (std::size_t k = 1; k < goal.size(); ++k)
+    goal[k] = {1.4 * static_cast<double>(k) - 2.8, 1.0, 0.0};
+  const Transition step{goal, 0, pushed({goal, 0}), false, Source::kTree};
+  for (const Transition& t : with_branches(task, {&step, 1}, config, 1, counting))
+    EXPECT_EQ(t.success, t.source == Source::kBranch) << "all but the step lie";
+}
+
+TEST_F(BranchesTest, ThatTheSimulatorRejectsAreLeftOutAndCounted) {
+  const ReplayBatch rejecting = [this](std::span<const ReplayJob> jobs) {
+    std::vector<ReplayResult> results = replay(jobs);
+    for (std::size_t k = 0; k < results.size(); k += 3) results[k].ok = false;
+    return results;
+  };
+  const auto rows = with_branches(task, steps(5), config, 7, counted(rejecting, stats));
+  EXPECT_EQ(rows.size(), 15U);
+  EXPECT_EQ(stats.rejected_pushes, 5);
+}
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,81 @@
+#include "core/search/data_set.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "core/search/search_stats.hpp"
+#include "tests/support/dragging_world.hpp"
+
+namespace rtg {
+namespace {
+
+struct DataSetTest : ::testing::Test, testing::DraggingWorld {
+  SearchConfig config;
+  SearchStats stats;
+  ReplayBatch counting = counted(replay, stats);
+  std::vector<Transition> stored;
+  TransitionSink sink = [this](std::span<const Transition> rows) {
+    stored.insert(stored.end(), rows.begin(), rows.end());
+  };
+
+  std::vector<Transition> steps(int count) const {
+    std::vector<Transition> out;
+    for (int k = 0; k < count; ++k) {
+      const Poses start = testing::moved(task.start, 0, {0.125 * k, 0.0});
+      out.push_back({start, k, pushed({start, k}), false, Source::kTree});
+    }
+    return out;
+  }
+};
+
+TEST_F(DataSetTest, HasEachStepWithItsBranchesBehindIt) {
+  config.transitions = 1000;
+  config.branches = 2;
+  DataSet data(task, config, 1, counting, sink);
+  const std::vector<Transition> given = steps(4);
+  data.store(std::span(given).first(3));
+  data.store(std::span(given).last(1));
+  ASSERT_EQ(stored.size(), 12U);
+  for (std::size_t k = 0; k < stored.size(); ++k) {
+    EXPECT_EQ(stored[k].poses, given[k / 3].poses);
+    EXPECT_EQ(stored[k].source, k % 3 == 0 ? Source::kTree : Source::kBranch);
+  }
+  EXPECT_FALSE(data.full());
+  EXPECT_EQ(data.coverage().transitions(), 12);
+}
+
+TEST_F(DataSetTest, IsFullWithWhatWasAskedForAndSimulatesNoMore) {
+  config.transitions = 11;
+  config.branches = 4;
+  DataSet data(task, config, 1, counting, sink);
+  data.store(steps(40));
+  EXPECT_TRUE(data.full());
+  EXPECT_EQ(stored.size(), 11U);
+  EXPECT_EQ(stats.replays, 3 * 4) << "the branches of the third step, of which none fits";
+  data.store(steps(1));
+  EXPECT_EQ(stored.size(), 11U);
+}
+
+TEST_F(DataSetTest, HasNothingTwice) {
+  config.transitions = 1000;
+  config.branches = 2;
+  DataSet data(task, config, 1, counting, sink);
+  data.store(steps(4));
+  const std::vector<Transition> before = stored;
+  data.store(steps(4));
+  EXPECT_EQ(stored, before);
+}
+
+TEST_F(DataSetTest, WithoutBranchesIsTheStepsAlone) {
+  config.transitions = 1000;
+  config.branches = 0;
+  DataSet data(task, config, 1, counting, sink);
+  data.store(steps(5));
+  EXPECT_EQ(stored, steps(5));
+  EXPECT_EQ(stats.replays, 0);
+}
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,138 @@
+#include "core/search/forward_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/art_manip.hpp"
+#include "tests/support/dragging_world.hpp"
+#include "tests/support/generation_run.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::moved;
+
+constexpr double kWay = 0.2;
+
+TEST(GoalDistance, IsHowFarTheObjectsAreFromTheirDiscAndTheWayToTheNearestOfThese) {
+  const Task task = testing::gathering();  // centres within 2 m of the origin
+  const Poses poses{{0.0, -5.0, 0.0}, {3.0, 0.0, 0.0}, {0.0, 4.0, 0.0}, {0.0, -1.0, 0.0}};
+  const double way = std::hypot(3.0, 5.0);  // to the first: the third is in its place
+  EXPECT_NEAR(goal_distance(task, poses), 1.0 + 2.0 + kWay * way, 1e-12);
+}
+
+TEST(GoalDistance, IsZeroWhereTheGoalHolds) {
+  const Task task = testing::gathering();
+  EXPECT_EQ(goal_distance(task, {{5, 5, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 1.5, 0}}), 0.0);
+}
+
+TEST(GoalDistance, OfAHalfPlaneIsThatFromItsLine) {
+  Task task = testing::gathering();
+  task.goal[0].region = GoalTerm::Region::kHalfPlane;
+  task.goal[0].normal = {0.0, 1.0};
+  task.goal[0].offset = -1.0;
+  const Poses poses{{0, 0, 0}, {0, 1, 0}, {4, -1, 0}, {4, -2, 0}};
+  EXPECT_NEAR(goal_distance(task, poses), 2.0 + kWay * 1.0, 1e-12);
+}
+
+TEST(GoalDistance, OfJointsAndAMeanCentreIsOfAnglesAndOfTheMean) {
+  const Task task = testing::art_manip();  // 75 to 105 degrees, within 1 m of (0, 3)
+  const double least = 1.309, off = 3.0 - 1.0;
+  double way = 1e9;
+  for (std::size_t k = 1; k < task.start.size(); ++k)
+    way = std::min(way, (task.start[k].position() - task.start[0].position()).norm());
+  EXPECT_NEAR(goal_distance(task, task.start), 3.0 * least + off + kWay * way, 1e-9);
+}
+
+struct ForwardSearchTest : ::testing::Test, testing::DraggingWorld {
+  SearchConfig config;
+  SearchStats stats;
+  Poses start = task.start;
+
+  ForwardSearchTest() {
+    config.breadth = 12;
+    config.depth = 20;
+  }
+};
+
+TEST_F(ForwardSearchTest, ReplaysEveryHeadingOfEveryStateOfItsBeam) {
+  ForwardSearch search(task, config, start, 1);
+  std::vector<Poses> beam{start};
+  for (int layer = 0; layer < 3; ++layer) {
+    std::vector<ReplayJob> expected, seen;
+    for (const Poses& state : beam)
+      for (int action = 0; action < 48; ++action) expected.push_back({state, action});
+    const ReplayBatch noting = [&](std::span<const ReplayJob> jobs) {
+      seen.assign(jobs.begin(), jobs.end());
+      return replay(jobs);
+    };
+    beam.clear();
+    for (const Transition& t : search.grow(counted(noting, stats))) beam.push_back(t.next);
+    EXPECT_EQ(seen, expected);
+    EXPECT_EQ(beam.size(), 12U);
+  }
+  EXPECT_EQ(stats.replays, 48 + 2 * 12 * 48);
+}
+
+TEST_F(ForwardSearchTest, FindsAPlanOfTrueStepsToSuccess) {
+  const std::vector<Transition> plan = plan_forward(task, config, start, 1, replay);
+  ASSERT_FALSE(plan.empty());
+  Poses state = start;
+  for (const Transition& t : plan) {
+    EXPECT_EQ(t.poses, state);
+    EXPECT_EQ(t.next, pushed({t.poses, t.action}));
+    EXPECT_EQ(t.success, &t == &plan.back());
+    EXPECT_EQ(t.source, Source::kPlan);
+    state = t.next;
+  }
+  EXPECT_TRUE(succeeded(task, state));
+}
+
+TEST_F(ForwardSearchTest, EndsWithItsFirstSuccess) {
+  ForwardSearch search(task, config, start, 1);
+  std::vector<Transition> last;
+  for (int layer = 0; layer < config.depth; ++layer) {
+    std::vector<Transition> kept = search.grow(replay);
+    if (kept.empty()) break;
+    last = std::move(kept);
+  }
+  EXPECT_TRUE(std::ranges::any_of(last, &Transition::success));
+  EXPECT_TRUE(search.grow(replay).empty());
+}
+
+TEST_F(ForwardSearchTest, HasNoPlanWithinTooFewActions) {
+  config.depth = 2;
+  EXPECT_TRUE(plan_forward(task, config, start, 1, replay).empty());
+  config.depth = 20;
+  task.horizon = 2;
+  EXPECT_TRUE(plan_forward(task, config, start, 1, replay).empty());
+}
+
+TEST_F(ForwardSearchTest, APushThatTheSimulatorRejectsLeadsNowhere) {
+  const ReplayBatch none = [](std::span<const ReplayJob> jobs) {
+    return std::vector<ReplayResult>(jobs.size());
+  };
+  ForwardSearch search(task, config, start, 1);
+  EXPECT_TRUE(search.grow(counted(none, stats)).empty());
+  EXPECT_EQ(stats.rejected_pushes, 48);
+  EXPECT_TRUE(search.plan().empty());
+}
+
+TEST(GenerateForward, StoresWhatItsBeamsKeepWithBranches) {
+  SearchConfig config;
+  config.generator = Generator::kForward;
+  config.transitions = 1000;
+  config.breadth = 10;
+  const auto run = testing::run_naive(testing::gathering(), config, 3, 1);
+  ASSERT_EQ(run.stored.size(), 1000U);
+  const auto branches = std::ranges::count(run.stored, Source::kBranch, &Transition::source);
+  EXPECT_NEAR(branches, 800, 10);
+  EXPECT_EQ(run.stored.size() - branches,
+            std::ranges::count(run.stored, Source::kPlan, &Transition::source));
+  EXPECT_EQ(testing::run_naive(testing::gathering(), config, 3, 2).stored, run.stored);
+}
+
+}  // namespace
+}  // namespace rtg

@@ -1,0 +1,152 @@
+#include "core/search/predecessor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tests/support/gathering.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::gathering;
+
+constexpr double kStep = 1.0 / 64.0;  // [m]; sums of its multiples are exact
+
+/// The state with every body moved by (dx, 0).
+Poses shifted(Poses poses, double dx) {
+  for (Pose& p : poses) p.x += dx;
+  return poses;
+}
+
+Poses all_zero() { return Poses(4); }
+
+TEST(ReplayGap, IsTheMeanDistanceOfPositionsOverAllBodies) {
+  const Poses a{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}}, b{{3, 4, 1}, {1, 0, 2}, {1, 1, 3}};
+  EXPECT_NEAR(replay_gap(a, b), (5.0 + 0.0 + std::numbers::sqrt2) / 3.0, 1e-15);
+}
+
+TEST(ObjectsMoved, CountsObjectsBeyondTheThresholdWithoutTheRobot) {
+  Poses next = all_zero();
+  next[0].x = 2.0;
+  next[1].x = next[1].y = 0.04;  // 0.057 m
+  next[2].x = 0.049;
+  next[3].theta = 3.0;  // turns do not count
+  EXPECT_EQ(objects_moved(all_zero(), next), 1);
+  next[3].y = -0.051;
+  EXPECT_EQ(objects_moved(all_zero(), next), 2);
+}
+
+TEST(LegalState, IsFiniteInTheArenaAndWithoutOverlap) {
+  const Task task = gathering();
+  EXPECT_TRUE(legal_state(task, task.start));
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Poses poses = task.start;
+    poses[2].theta = bad;
+    EXPECT_FALSE(legal_state(task, poses));
+  }
+  Poses outside = task.start;
+  outside[0].y = -8.01;
+  EXPECT_FALSE(legal_state(task, outside));
+  Poses overlapping = task.start;
+  overlapping[1] = overlapping[2];
+  EXPECT_FALSE(legal_state(task, overlapping));
+}
+
+TEST(Proposals, AreTheConvergedAnswersWithLegalStarts) {
+  const Task task = gathering();
+  Poses outside = task.start, overlapping = task.start, moved = task.start;
+  outside[0].x = 8.5;
+  overlapping[2] = overlapping[3];
+  moved[0].x = 0.1;  // no single-precision number
+  moved[1].y += 0.5;
+  moved[3].y -= 0.5;
+  const std::vector<ReverseJob> jobs{
+      {task.start, 3}, {task.start, 4}, {task.start, 5}, {task.start, 6}, {task.start, 7}};
+  const std::vector<ReverseResult> answers{{SolveStatus::kConverged, 9, {outside}},
+                                           {SolveStatus::kPruned},
+                                           {SolveStatus::kConverged, 9, {moved, task.start}},
+                                           {SolveStatus::kLineSearchFailed, 50},
+                                           {SolveStatus::kConverged, 9, {overlapping}}};
+  SearchStats stats;
+  const std::vector<Predecessor> found = proposals(task, jobs, answers, stats);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[1].parent, 2);
+  EXPECT_EQ(found[1].start, task.start);
+  EXPECT_EQ(found[1].moved, 0);
+  EXPECT_EQ(found[0].parent, 2);
+  EXPECT_EQ(found[0].action, 5);
+  EXPECT_EQ(found[0].end, task.start);
+  EXPECT_EQ(found[0].moved, 2);
+  EXPECT_EQ(found[0].start[0].x, static_cast<double>(0.1F));
+  EXPECT_EQ(found[0].start, float_rounded(moved));
+  EXPECT_EQ(stats.illegal_starts, 2);
+}
+
+TEST(Proposals, AreJudgedAfterRounding) {
+  Task task = gathering();
+  task.push.arena = 0.1;  // below its single-precision neighbour
+  Poses edge = task.start;
+  edge[0] = {0.1, 0.0, 0.0};
+  ASSERT_TRUE(legal_state(task, edge));
+  SearchStats stats;
+  const std::vector<ReverseJob> jobs{{edge, 0}};
+  const std::vector<ReverseResult> answers{{SolveStatus::kConverged, 1, {edge}}};
+  EXPECT_TRUE(proposals(task, jobs, answers, stats).empty());
+  EXPECT_EQ(stats.illegal_starts, 1);
+}
+
+/// Moves every body by as many steps as the action says and rejects action 13.
+std::vector<ReplayResult> fake_replay(std::span<const ReplayJob> jobs) {
+  std::vector<ReplayResult> results;
+  for (const ReplayJob& job : jobs)
+    results.push_back({shifted(job.start, kStep * job.action), job.action != 13, 0.25});
+  return results;
+}
+
+Predecessor predecessor(int parent, int action, const Poses& start, const Poses& end) {
+  return {parent, action, start, end, 99};
+}
+
+TEST(ReplayPredecessors, FillInWhatThePushTrulyLedTo) {
+  Poses aim = shifted(all_zero(), 10 * kStep);
+  aim[2].y = 0.3;
+  SearchStats stats;
+  const auto out =
+      replay_predecessors({predecessor(4, 10, all_zero(), aim),
+                           predecessor(5, 3, all_zero(), shifted(all_zero(), 2 * kStep))},
+                          counted(fake_replay, stats));
+  ASSERT_EQ(out.size(), 2U);
+  EXPECT_EQ(out[0].parent, 4);
+  EXPECT_EQ(out[0].action, 10);
+  EXPECT_EQ(out[0].start, all_zero());
+  EXPECT_EQ(out[0].end, shifted(all_zero(), 10 * kStep));
+  EXPECT_NEAR(out[0].gap, 0.3 / 4.0, 1e-15);
+  EXPECT_NEAR(out[0].miss, 0.3, 1e-15);
+  EXPECT_EQ(out[0].moved, 3);
+  EXPECT_EQ(out[1].parent, 5);
+  EXPECT_EQ(out[1].gap, kStep);
+  EXPECT_EQ(out[1].miss, kStep);
+  EXPECT_EQ(out[1].moved, 0);
+  EXPECT_EQ(stats.rejected_pushes, 0);
+  EXPECT_EQ(stats.replay_cpu_s, 0.5);
+}
+
+TEST(ReplayPredecessors, LeaveOutAndCountWhatTheSimulatorRejects) {
+  const Poses zero = all_zero();
+  SearchStats stats;
+  const auto out =
+      replay_predecessors({predecessor(0, 13, zero, zero), predecessor(1, 1, zero, zero),
+                           predecessor(2, 13, zero, zero), predecessor(3, 2, zero, zero)},
+                          counted(fake_replay, stats));
+  ASSERT_EQ(out.size(), 2U);
+  EXPECT_EQ(out[0].parent, 1);
+  EXPECT_EQ(out[1].parent, 3);
+  EXPECT_EQ(out[1].end, shifted(zero, 2 * kStep));
+  EXPECT_EQ(stats.rejected_pushes, 2);
+}
+
+}  // namespace
+}  // namespace rtg

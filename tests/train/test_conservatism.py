@@ -1,0 +1,73 @@
+"""Learning from data alone: rounds without interactions, and CQL's term of the loss."""
+
+import numpy as np
+import pytest
+import torch as th
+from rtg.ddqn import conservative_gap
+from rtg.replay import Batch
+from test_ddqn import column, constant, model
+
+
+def test_the_conservative_gap_by_hand() -> None:
+    """log (1 + 2 + 5) less the logarithm of the action's share."""
+    q = th.tensor([[1.0, 2.0, 5.0], [1.0, 2.0, 5.0], [3.0, 3.0, 3.0]]).log() - 7.0
+    actions = th.tensor([[1], [2], [0]])
+    wanted = column(np.log(8 / 2), np.log(8 / 5), np.log(3.0))
+    th.testing.assert_close(conservative_gap(q, actions), wanted)
+
+
+@pytest.mark.parametrize("conservatism", [0.0, 0.5])
+@pytest.mark.parametrize("offline", [0, 2, 3])
+def test_the_loss_of_a_gradient_step_by_hand(
+    conservatism: float, offline: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Values are held down of offline rows alone. Q is 0.5, 0.2 and six times 0; targets are what
+    is given, as all rows are final; smooth L1 is half the square of so small an error."""
+    one, told = model(dueling=False, value_bounds=False, conservatism=conservatism), []
+    q = th.tensor([0.5, 0.2, *[0.0] * 6])
+    constant(one.q_net, *q.tolist())
+    monkeypatch.setattr(one, "_descend", told.append)
+    actions, y = th.tensor([[0], [1], [2]]), column(1, 0, 1)
+    seen = th.zeros(3, 3)
+    one._gradient_step(Batch(seen, actions, seen, y, column(1, 1, 1), column(0, 0, 0), offline))
+    td = (0.5**2 + 0.2**2 + 1.0**2) / 2 / 3
+    gaps = np.log(np.exp(0.5) + np.exp(0.2) + 6) - np.array([0.5, 0.2, 0.0])[:offline]
+    held_down = conservatism * gaps.mean() if offline else 0.0
+    assert told[0].item() == pytest.approx(td + held_down, rel=1e-5)
+
+
+def test_values_of_headings_that_are_not_in_the_data_are_held_down() -> None:
+    """All of the line's data go right. What else could be done is thought less of by far more than
+    values can differ: 1."""
+    gaps = []
+    for conservatism in (0.0, 1.0):
+        one = model(conservatism=conservatism, learning_rate=1e-3)
+        x = np.array([[k / 4, 1, 0] for k in range(5)], np.float32)
+        reward = np.array([0, 0, 0, 1], np.float32)
+        one.replay_buffer.offline.append(
+            observation=x[:4],
+            next_observation=x[1:],
+            action=np.ones(4, np.int64),
+            reward=reward,
+            terminated=reward,
+        )
+        for _ in range(100):
+            one.learn_offline()
+        q = one.values(x[:4])
+        gaps.append((q[:, 1] - np.delete(q, 1, axis=1).max(axis=1)).min())
+    assert gaps[0] < 1.0 < gaps[1]
+
+
+def test_learning_offline_counts_the_interactions_it_leaves_out() -> None:
+    one = model(train_frequency=4, gradient_steps=3)
+    one.replay_buffer.offline.append(
+        observation=np.zeros((1, 3), np.float32),
+        next_observation=np.zeros((1, 3), np.float32),
+        action=np.zeros(1, np.int64),
+        reward=np.zeros(1, np.float32),
+        terminated=np.zeros(1, np.float32),
+    )
+    for _ in range(5):
+        one.learn_offline()
+    assert (one.num_timesteps, one.gradient_steps_done) == (20, 15)
+    assert one.replay_buffer.online.count == 0

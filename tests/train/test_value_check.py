@@ -1,0 +1,73 @@
+"""Q against the simulator over all headings."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from rtg import _core
+from rtg.paths import CONFIG
+from rtg.value_check import check_values, stored_states
+
+CONFIGURATION = _core.Config.from_file(CONFIG / "gathering.yaml")
+TASK = CONFIGURATION.task
+DISCOUNT = 0.5
+
+
+def right(observation: np.ndarray) -> np.ndarray:
+    """What is wanted, by the first number that the learner sees: the robot to the right."""
+    return 0.5 + 0.5 * observation[:, 0]
+
+
+def states(count: int) -> np.ndarray:
+    return np.stack([TASK.jittered_start(0.1, 1, k) for k in range(count)])
+
+
+def one_step_ahead(observation: np.ndarray, sign: float) -> np.ndarray:
+    """The true worth of each heading where the robot pushes nothing: `right` of where it ends."""
+    angles = 2.0 * np.pi * np.arange(TASK.headings) / TASK.headings
+    ahead = right(observation)[:, None] + sign * 0.5 * 2.0 / 8.0 * np.cos(angles)
+    return ahead
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_correlation_is_1_where_q_orders_as_the_simulator_and_its_opposite_is_minus_1(
+    sign: float,
+) -> None:
+    check = check_values(
+        CONFIGURATION, lambda seen: one_step_ahead(seen, sign), DISCOUNT, states(5)
+    )
+    assert check is not None
+    assert check.rank_correlation == pytest.approx(sign, abs=0.02)
+    # γ max Q(s') = 0.5 (right(s') + 1/8): the spread is of half of what the heading moves.
+    assert check.spread == pytest.approx(0.5 * 0.125 / np.sqrt(2.0), rel=0.01)
+
+
+def test_the_error_is_that_of_q_against_the_discounted_best_value_behind_the_push() -> None:
+    constant = check_values(
+        CONFIGURATION,
+        lambda seen: right(seen)[:, None] + np.zeros(TASK.headings),
+        DISCOUNT,
+        np.stack([TASK.start]),
+    )
+    assert constant is not None
+    here = right(TASK.observation(TASK.start[None]))[0]
+    angles = 2.0 * np.pi * np.arange(TASK.headings) / TASK.headings
+    worth = DISCOUNT * (here + 0.125 * np.cos(angles))
+    assert constant.error == pytest.approx(np.sqrt(np.square(here - worth).mean()), rel=0.01)
+
+
+def test_where_all_headings_are_worth_the_same_nothing_is_said() -> None:
+    flat = check_values(
+        CONFIGURATION, lambda seen: np.zeros((len(seen), TASK.headings)), DISCOUNT, states(2)
+    )
+    assert flat is None
+
+
+def test_states_are_distinct_and_a_function_of_the_seed() -> None:
+    class Data:
+        poses = np.concatenate((states(6), states(6)))
+
+    few = stored_states(Data, 4, seed=3)
+    assert len(np.unique(few, axis=0)) == 4
+    assert np.array_equal(few, stored_states(Data, 4, seed=3))
+    assert len(stored_states(Data, 100, seed=3)) == 6
