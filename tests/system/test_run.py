@@ -176,7 +176,7 @@ def wait_for_line(process, words):
 def test_a_signal_ends_a_run_and_all_of_its_processes(tmp_path, mode, number):
     folder = tmp_path / "run"
     process = start(*ENDLESS, *mode, "--out", folder)
-    wait_for_line(process, "round ")
+    wait_for_line(process, "tree ")
     process.send_signal(number)
     _, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 1
@@ -188,7 +188,7 @@ def test_a_signal_ends_a_run_and_all_of_its_processes(tmp_path, mode, number):
 def test_killing_the_command_kills_all_of_its_processes(tmp_path):
     folder = tmp_path / "run"
     process = start(*ENDLESS, "--out", folder)
-    wait_for_line(process, "round ")
+    wait_for_line(process, "tree ")
     # the command, server, two workers, coordinator, trainer
     assert len(processes_of(folder)) == 6
     process.kill()
@@ -201,7 +201,7 @@ def test_a_killed_worker_is_replaced_and_changes_nothing(tmp_path):
     assert run(*words, "--in-process", "--out", tmp_path / "undisturbed").returncode == 0
     folder = tmp_path / "disturbed"
     process = start(*words, "--out", folder)
-    wait_for_line(process, "round ")
+    wait_for_line(process, "tree ")
     kill(folder, "rtg_reverse_worker")
     out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, err
@@ -215,7 +215,7 @@ def test_a_killed_worker_is_replaced_and_changes_nothing(tmp_path):
 def test_without_trainer_or_coordinator_the_run_ends(tmp_path, program):
     folder = tmp_path / "run"
     process = start(*ENDLESS, "--out", folder)
-    wait_for_line(process, "round ")
+    wait_for_line(process, "tree ")
     kill(folder, program)
     _, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 1
