@@ -28,7 +28,7 @@ class RunState:
     """Where a run stands."""
 
     generates: bool = True  # whether there is a generation
-    phase: str = ""  # of the generation: "round 1 (20 %)", "roll-outs", ...
+    phase: str = ""  # of the generation: "tree 1", "plan 3", "random walks"
     layer: int = 0  # of `depth`
     depth: int = 0
     transitions: int = 0
@@ -148,7 +148,7 @@ class LiveDisplay:
             TextColumn("{task.description:<8}"),
             BarColumn(bar_width=28),
             _Counts(),
-            TimeElapsedColumn(),  # roll-outs are fast, training ends early: no remainder is known
+            TimeElapsedColumn(),  # training ends early: no remainder is known
             console=self._console,
         )
         bar.add_task(name, total=None, start=False)

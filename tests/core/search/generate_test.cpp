@@ -108,8 +108,10 @@ double nearest(const Task& task, const GenerationReport& report, int tree, const
 TEST(Generate, EachTreeGrowsFromGoalStatesToAStartOfItsOwn) {
   const Task task = gathering();
   SearchConfig config = small();
-  config.transitions = 12000;
-  config.depth = 30;
+  config.transitions = 300;
+  config.branches = 0;
+  config.others = 0.0;
+  config.depth = 24;
   config.target_jitter = 1.5;
   const GenerationReport report = run_naive(task, config, 7, 1).report;
   ASSERT_GE(report.trees, 2);
@@ -130,6 +132,7 @@ TEST(Generate, EachTreeGrowsFromGoalStatesToAStartOfItsOwn) {
 TEST(Generate, ATreeEndsAtItsDepth) {
   SearchConfig config = small();
   config.depth = 3;
+  config.transitions = 400;
   const GenerationReport report = run_naive(gathering(), config, 7, 1).report;
   EXPECT_GT(report.trees, 1);
   for (const ReportNode& n : report.nodes) EXPECT_LE(n.depth, 3);
