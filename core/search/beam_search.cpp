@@ -65,7 +65,10 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
 /// solve, all but the best `starts` of those that do.
 std::vector<Predecessor> BeamSearch::worth_replaying(std::vector<Predecessor> all) const {
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t k = 0; k < all.size(); ++k) order.emplace_back(distance_left(all[k].start), k);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    all[k].left = distance_left(all[k].start);
+    order.emplace_back(all[k].left, k);
+  }
   std::sort(order.begin(), order.end());
   std::unordered_map<int, int> idle, pushing;  // kept so far, per node and per solve
   std::vector<bool> dropped(all.size(), false);
@@ -85,8 +88,8 @@ std::vector<Predecessor> BeamSearch::worth_replaying(std::vector<Predecessor> al
 std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed) {
   std::vector<BeamEntry> entries;
   for (const Predecessor& p : replayed)
-    entries.push_back({distance_left(p.start), metric_.cell(p.start, {}),
-                       layout_cell(metric_, p.start), p.moved > 0});
+    entries.push_back(
+        {p.left, metric_.cell(p.start, {}), layout_cell(metric_, p.start), p.moved > 0});
   const std::vector<std::size_t> chosen = select_beam(entries, config_, rng_, seen_);
   std::vector<int> beam;
   std::vector<Transition> steps;

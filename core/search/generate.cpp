@@ -14,8 +14,8 @@
 namespace rtg {
 namespace {
 
-/// Algorithm 1, once: a tree grows from goal states to a start of its own, until it has got there
-/// or has lost patience with layers that come no nearer.
+/// Algorithm 1, once: a tree grows from goal states to a start of its own, until layers that come
+/// no nearer have used up its patience.
 void grow_tree(Generation& run, int number) {
   Rng rng = run.stream(number);
   const Poses target = jittered_start(run.task, run.config.target_jitter, rng);
@@ -27,8 +27,9 @@ void grow_tree(Generation& run, int number) {
     if (run.data.full() || run.cancelled()) break;
     run.data.store(search.grow(run.seams.solve, run.replay, run.stats));
     run.show("tree " + std::to_string(number + 1), layer, run.config.depth);
-    patience = search.best() < best ? run.config.patience : patience - 1;
-    best = std::min(best, search.best());
+    const double nearest = search.best();
+    patience = nearest < best ? run.config.patience : patience - 1;
+    best = std::min(best, nearest);
   }
   for (const Node& n : search.nodes()) run.nodes.push_back({n.poses, n.depth, number});
 }

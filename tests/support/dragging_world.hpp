@@ -16,27 +16,14 @@ inline Poses moved(Poses poses, std::size_t body, const Vector2d& by) {
   return poses;
 }
 
-/// All positions times `factor`.
-inline Poses scaled(Poses poses, double factor) {
-  for (Pose& p : poses) p = {factor * p.x, factor * p.y, p.theta};
-  return poses;
-}
-
-inline Poses turned(Poses poses, std::size_t body, double by) {
-  poses[body].theta += by;
-  return poses;
-}
-
 /// Gathering in a world without contact: a push takes the robot one stride along and drags an
-/// object of its own and turns it, which can be reckoned backwards but for the rounding to float,
+/// object of its own, which can be reckoned backwards but for the rounding to float,
 /// 1e-7 of 8 m.
 struct DraggingWorld {
   Task task = gathering();
   std::vector<double> drags{kDrag};  // one predecessor each per solve of a push that drags
   double aside = 0.0;                // how far off every third push sets the robot down [m]
   double over = 0.0;                 // how much farther than reckoned a push drags [m]
-  double turn = 0.0;                 // of the object that a push drags [rad]
-  double stretch = 1.0;              // of all positions, and so of their errors, by a push
   std::vector<ReverseJob> asked;     // last
   std::vector<ReverseResult> answered;
 
@@ -66,12 +53,11 @@ struct DraggingWorld {
 
   ReverseResult predecessors(const ReverseJob& job) const {
     const Vector2d d = direction(job.action, task.push);
-    const Poses back = moved(scaled(job.end, 1.0 / stretch), 0, -task.push.stride * d);
+    const Poses back = moved(job.end, 0, -task.push.stride * d);
     const std::size_t object = dragged(job.action);
     if (object == 0) return {SolveStatus::kConverged, 1, {back}};
     ReverseResult out{SolveStatus::kConverged, 1};
-    for (const double drag : drags)
-      out.starts.push_back(turned(moved(back, object, -drag * d), object, -turn));
+    for (const double drag : drags) out.starts.push_back(moved(back, object, -drag * d));
     return out;
   }
 
@@ -80,8 +66,7 @@ struct DraggingWorld {
     const Vector2d d = direction(job.action, task.push);
     Poses end = moved(job.start, 0, task.push.stride * d);
     if (const std::size_t object = dragged(job.action); object != 0)
-      end = turned(moved(end, object, (kDrag + over) * d), object, turn);
-    end = scaled(end, stretch);
+      end = moved(end, object, (kDrag + over) * d);
     return float_rounded(misses(job.action) ? moved(end, 0, {0.0, aside}) : end);
   }
 };
