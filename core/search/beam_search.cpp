@@ -28,7 +28,7 @@ void BeamSearch::plant(const ReplayBatch& replay, SearchStats& stats) {
       ++stats.unsettled_goals;
       continue;
     }
-    if (!seen_.insert(metric_.cell(rest, {})).second) continue;
+    if (!seen_.insert(metric_.cell(rest)).second) continue;
     beam_.push_back(static_cast<int>(nodes_.size()));
     nodes_.push_back({std::move(rest)});
   }
@@ -88,8 +88,7 @@ std::vector<Predecessor> BeamSearch::worth_replaying(std::vector<Predecessor> al
 std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed) {
   std::vector<BeamEntry> entries;
   for (const Predecessor& p : replayed)
-    entries.push_back(
-        {p.left, metric_.cell(p.start, {}), layout_cell(metric_, p.start), p.moved > 0});
+    entries.push_back({p.left, metric_.cell(p.start), metric_.layout_cell(p.start), p.moved > 0});
   const std::vector<std::size_t> chosen = select_beam(entries, config_, rng_, seen_);
   std::vector<int> beam;
   std::vector<Transition> steps;

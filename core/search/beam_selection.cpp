@@ -45,10 +45,6 @@ void take(std::vector<std::size_t>& from, std::vector<std::size_t>& to, int coun
 
 }  // namespace
 
-std::uint64_t layout_cell(const StateMetric& metric, const Poses& poses) {
-  return metric.cell(poses, {1e9, StateMetric::Cells{}.object, 0.5});
-}
-
 std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
                                      Rng& rng, std::unordered_set<std::uint64_t>& seen) {
   std::vector<std::size_t> rest = distinct(entries, config.per_layout, seen), beam;

@@ -7,20 +7,16 @@
 
 #include "core/math/rng.hpp"
 #include "core/search/search_config.hpp"
-#include "core/search/state_metric.hpp"
 
 namespace rtg {
 
 /// What the choice of the next beam needs to know of a candidate.
 struct BeamEntry {
   double score = 0.0;        // the less the better
-  std::uint64_t cell = 0;    // candidates of one cell count as the same
-  std::uint64_t layout = 0;  // the same without the robot
+  std::uint64_t cell = 0;    // StateMetric::cell(); candidates of one cell count as the same
+  std::uint64_t layout = 0;  // StateMetric::layout_cell()
   bool contact = false;      // its push moved an object
 };
-
-/// Names the cell of a state without its robot.
-std::uint64_t layout_cell(const StateMetric& metric, const Poses& poses);
 
 /// Indices of the next beam, at most config.breadth, in order of (score, index): first the best of
 /// the contact quota, then the best of all, last the random survivors. At most one per cell, none

@@ -1,73 +1,17 @@
 #include "core/search/forward_search.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "core/search/beam_selection.hpp"
 #include "core/search/predecessor.hpp"
+#include "core/tasks/goal_distance.hpp"
 
 namespace rtg {
-namespace {
-
-constexpr double kWay = 0.2;  // w
-
-double outside(const GoalTerm& term, const Vector2d& x) {
-  if (term.region == GoalTerm::Region::kDisc)
-    return std::max(0.0, (x - term.centre).norm() - term.radius);
-  return std::max(0.0, term.normal.dot(x) - term.offset);
-}
-
-double outside(const GoalTerm& term, double angle) {
-  return std::max({0.0, term.least - angle, angle - term.most});
-}
-
-/// Sums up goal_distance().
-struct Distance {
-  const Poses& poses;
-  double violation = 0.0;
-  double way = std::numeric_limits<double>::infinity();
-
-  /// An atom that is `off` and that `body` has to do with.
-  void reach(std::size_t body, double off) {
-    if (off > 0.0) way = std::min(way, (poses[body].position() - poses[0].position()).norm());
-  }
-};
-
-void add(Distance& d, const GoalTerm& term, const Scene& scene) {
-  if (term.subject == GoalTerm::Subject::kJoint) {
-    for (const Joint& joint : scene.joints) {
-      if (!concerns(term, scene, joint)) continue;
-      const double off = outside(term, joint_angle(joint, d.poses));
-      d.violation += off;
-      d.reach(static_cast<std::size_t>(joint.parent), off);
-      d.reach(static_cast<std::size_t>(joint.child), off);
-    }
-    return;
-  }
-  const bool together = term.subject == GoalTerm::Subject::kCentroid;
-  const double of_mean = together ? outside(term, centroid_of(term, scene, d.poses)) : 0.0;
-  d.violation += of_mean;
-  for (std::size_t k = 1; k < d.poses.size(); ++k) {
-    if (!concerns(term, scene, k)) continue;
-    const double off = together ? of_mean : outside(term, d.poses[k].position());
-    if (!together) d.violation += off;
-    d.reach(k, off);
-  }
-}
-
-}  // namespace
-
-double goal_distance(const Task& task, const Poses& poses) {
-  Distance d{poses};
-  for (const GoalTerm& term : task.goal) add(d, term, task.scene);
-  return d.violation > 0.0 ? d.violation + kWay * d.way : 0.0;
-}
-
 ForwardSearch::ForwardSearch(const Task& task, const SearchConfig& config, Poses start,
                              std::uint64_t seed)
     : task_(task), config_(config), metric_(task.scene), rng_(seed), beam_{0} {
-  seen_.insert(metric_.cell(start, {}));
+  seen_.insert(metric_.cell(start));
   nodes_.push_back({{{}, -1, std::move(start)}, 0});
 }
 
@@ -85,7 +29,7 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
     const Poses& end = results[k].end;
     const bool moved = objects_moved(pushes[k].start, end) > 0;
     entries.push_back(
-        {goal_distance(task_, end), metric_.cell(end, {}), layout_cell(metric_, end), moved});
+        {goal_distance(task_, end), metric_.cell(end), metric_.layout_cell(end), moved});
     const std::size_t parent = beam_[k / static_cast<std::size_t>(task_.push.headings)];
     found.push_back(
         {{pushes[k].start, pushes[k].action, end, succeeded(task_, end), Source::kPlan}, parent});

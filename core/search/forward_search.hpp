@@ -11,14 +11,6 @@
 
 namespace rtg {
 
-/// About how far from success a state is [m], [rad]:
-///
-///   Σ_atoms v + w · min_b |x_robot - x_b|,
-///
-/// v how far the point or angle of an atom of the goal is from its region, b the bodies of atoms
-/// that do not hold (of a joint the two that it connects), w = 0.2.
-double goal_distance(const Task& task, const Poses& poses);
-
 /// Planning without reverse steps: a beam search forwards from one start, over all headings, in the
 /// simulator, ranked by goal_distance(); selection of the beam as in BeamSearch.
 class ForwardSearch {

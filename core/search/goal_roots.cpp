@@ -65,7 +65,7 @@ std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, cons
     if (failures == kMaxFailures) break;
     if (!goal) continue;
     Poses root = turned_as(task, relabelled(task, *goal, target), target);
-    if (!seen.insert(metric.cell(root, {})).second) continue;
+    if (!seen.insert(metric.cell(root)).second) continue;
     drawn.emplace_back(start_distance(task, metric, root, target), std::move(root));
   }
   std::stable_sort(drawn.begin(), drawn.end(),

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "core/forward/box2d_simulator.hpp"
+#include "core/reverse/naive_reverse.hpp"
 #include "core/reverse/reverse_simulator.hpp"
-#include "core/search/naive_reverse.hpp"
 #include "core/search/thread_pool.hpp"
 
 namespace rtg {

@@ -14,25 +14,12 @@ int symmetry_order(const Polygon& shape);
 /// a - b modulo the period 2π/order, in [-π/order, π/order] [rad].
 double angle_difference(double a, double b, int order);
 
-/// How far apart two states of a scene are: Euclidean distance of their embeddings
-///
-///   robot (x, y),  per movable object  w·(x, y, (r/k) cos kθ, (r/k) sin kθ),
-///
-/// k the symmetry order of the object (1 with a joint), so that poses which look the same are the
-/// same point. The robot's heading is held by every push and does not count; fixed bodies do not
-/// move.
+/// Compares states of a scene modulo the symmetry order of each object (1 with a joint), so that
+/// poses which look the same are the same. The robot's heading is held by every push and does not
+/// count; fixed bodies do not move.
 class StateMetric {
  public:
   explicit StateMetric(const Scene& scene);
-
-  /// Numbers per embedded state.
-  int size() const { return 2 + 4 * static_cast<int>(objects_.size()); }
-
-  /// Writes size() numbers.
-  void embed(const Poses& poses, std::span<float> out) const;
-
-  /// Weighted distance [m].
-  double distance(const Poses& a, const Poses& b) const;
 
   /// Sum over the objects of the distance of their positions plus r · angle difference [m].
   double layout_distance(const Poses& a, const Poses& b) const;
@@ -43,18 +30,14 @@ class StateMetric {
   };
   Spread spread(const Poses& a, const Poses& b) const;
 
-  /// Whether all are within `tolerance` of each other: x and y [m], the objects' angles [rad].
-  bool within(const Poses& a, const Poses& b, double tolerance) const;
+  /// Names the cell that a state lies in: cells of 0.8 m for the robot's x, y and of 0.4 m and
+  /// about 0.4 rad (a whole number per period) for the objects.
+  std::uint64_t cell(const Poses& poses) const;
 
-  /// Name of the cell that a state lies in, cells of side `robot` for the robot's x, y and of side
-  /// `object` for the objects' x, y [m] and angle [rad] (rounded to a whole number of cells per
-  /// period); `shift` in [0, 1) moves the grid by that share of a cell.
-  struct Cells {
-    double robot = 0.8, object = 0.4, shift = 0.0;
-  };
-  std::uint64_t cell(const Poses& poses, const Cells& cells) const;
+  /// Names the cell without the robot.
+  std::uint64_t layout_cell(const Poses& poses) const;
 
-  /// Bodies other than the robot that can move.
+  /// A body other than the robot that can move.
   struct Object {
     std::size_t body;
     int order;

@@ -1,5 +1,7 @@
 #include "core/tasks/goal.hpp"
 
+#include <algorithm>
+
 namespace rtg {
 namespace {
 
@@ -37,14 +39,13 @@ bool concerns(const GoalTerm& term, const Scene& scene, const Joint& joint) {
   return term.kind == "*" || term.kind == scene.bodies[static_cast<std::size_t>(joint.child)].name;
 }
 
-bool contains(const GoalTerm& term, const Vector2d& x, double tighten) {
-  if (term.region == GoalTerm::Region::kDisc)
-    return (x - term.centre).norm() <= term.radius - tighten;
-  return term.normal.dot(x) <= term.offset - tighten;
+double outside(const GoalTerm& term, const Vector2d& x) {
+  if (term.region == GoalTerm::Region::kDisc) return (x - term.centre).norm() - term.radius;
+  return term.normal.dot(x) - term.offset;
 }
 
-bool contains(const GoalTerm& term, double angle, double tighten) {
-  return angle >= term.least + tighten && angle <= term.most - tighten;
+double outside(const GoalTerm& term, double angle) {
+  return std::max(term.least - angle, angle - term.most);
 }
 
 Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& poses) {

@@ -33,9 +33,17 @@ bool concerns(const GoalTerm& term, const Scene& scene, std::size_t body);
 /// Whether it is the angle of `joint`.
 bool concerns(const GoalTerm& term, const Scene& scene, const Joint& joint);
 
-/// Whether a point [m] or an angle [rad] lies in the region of a term, shrunk by `tighten`.
-bool contains(const GoalTerm& term, const Vector2d& x, double tighten);
-bool contains(const GoalTerm& term, double angle, double tighten);
+/// How far a point [m] or an angle [rad] lies outside of the region of a term: ≤ 0 inside.
+double outside(const GoalTerm& term, const Vector2d& x);
+double outside(const GoalTerm& term, double angle);
+
+/// Whether it lies in the region, shrunk by `tighten`.
+inline bool contains(const GoalTerm& term, const Vector2d& x, double tighten) {
+  return outside(term, x) <= -tighten;
+}
+inline bool contains(const GoalTerm& term, double angle, double tighten) {
+  return outside(term, angle) <= -tighten;
+}
 
 /// The mean of the centres that `term` speaks of.
 Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& poses);

@@ -205,6 +205,16 @@ def test_a_checkpoint_keeps_its_method(tmp_path: Path, capsys) -> None:
     assert capsys.readouterr().err.startswith("rtg: --resume: run.method must stay ddqn as in ")
 
 
+def test_a_file_of_a_hindsight_policy_asks_for_the_nearest_layouts(tmp_path: Path) -> None:
+    folder = run_folder(tmp_path / "run", None, "run.method=her", "task.horizon=5")
+    one = training(folder)
+    assert one.run(NoSource(), lambda: False, record=False)
+    one.finish(lost=0)
+    policy = policy_file.read(folder / "model.pt", one.task)
+    seen = one.task.observation(np.stack([one.task.jittered_start(1.0, 5, k) for k in range(50)]))
+    np.testing.assert_array_equal(policy(seen), one.model.greedy(seen))
+
+
 def test_domain_randomisation_is_judged_where_it_is_trained(tmp_path: Path, rows: Rows) -> None:
     """The final evaluation, too."""
     wanted = ("run.method=ddqn_rtg_dr", "train.interactions=4", "train.eval_episodes=30")

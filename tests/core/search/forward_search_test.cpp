@@ -14,38 +14,6 @@ namespace {
 
 using testing::moved;
 
-constexpr double kWay = 0.2;
-
-TEST(GoalDistance, IsHowFarTheObjectsAreFromTheirDiscAndTheWayToTheNearestOfThese) {
-  const Task task = testing::gathering();  // centres within 2 m of the origin
-  const Poses poses{{0.0, -5.0, 0.0}, {3.0, 0.0, 0.0}, {0.0, 4.0, 0.0}, {0.0, -1.0, 0.0}};
-  const double way = std::hypot(3.0, 5.0);  // to the first: the third is in its place
-  EXPECT_NEAR(goal_distance(task, poses), 1.0 + 2.0 + kWay * way, 1e-12);
-}
-
-TEST(GoalDistance, IsZeroWhereTheGoalHolds) {
-  const Task task = testing::gathering();
-  EXPECT_EQ(goal_distance(task, {{5, 5, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 1.5, 0}}), 0.0);
-}
-
-TEST(GoalDistance, OfAHalfPlaneIsThatFromItsLine) {
-  Task task = testing::gathering();
-  task.goal[0].region = GoalTerm::Region::kHalfPlane;
-  task.goal[0].normal = {0.0, 1.0};
-  task.goal[0].offset = -1.0;
-  const Poses poses{{0, 0, 0}, {0, 1, 0}, {4, -1, 0}, {4, -2, 0}};
-  EXPECT_NEAR(goal_distance(task, poses), 2.0 + kWay * 1.0, 1e-12);
-}
-
-TEST(GoalDistance, OfJointsAndAMeanCentreIsOfAnglesAndOfTheMean) {
-  const Task task = testing::art_manip();  // 75 to 105 degrees, within 1 m of (0, 3)
-  const double least = 1.309, off = 3.0 - 1.0;
-  double way = 1e9;
-  for (std::size_t k = 1; k < task.start.size(); ++k)
-    way = std::min(way, (task.start[k].position() - task.start[0].position()).norm());
-  EXPECT_NEAR(goal_distance(task, task.start), 3.0 * least + off + kWay * way, 1e-9);
-}
-
 struct ForwardSearchTest : ::testing::Test, testing::DraggingWorld {
   SearchConfig config;
   SearchStats stats;
@@ -128,7 +96,7 @@ TEST(GenerateForward, StoresWhatItsBeamsKeepWithBranches) {
   const auto run = testing::run_naive(testing::gathering(), config, 3, 1);
   ASSERT_EQ(run.stored.size(), 1000U);
   const auto branches = std::ranges::count(run.stored, Source::kBranch, &Transition::source);
-  EXPECT_NEAR(branches, 800, 10);
+  EXPECT_NEAR(branches, 800, 30);  // a few steps were stored as branches of others before
   EXPECT_EQ(run.stored.size() - branches,
             std::ranges::count(run.stored, Source::kPlan, &Transition::source));
   EXPECT_EQ(testing::run_naive(testing::gathering(), config, 3, 2).stored, run.stored);

@@ -162,7 +162,7 @@ TEST(GoalRoots, AreDistinctGoalsNearestFirst) {
   for (const Poses& root : found) {
     EXPECT_TRUE(succeeded(task, root));
     EXPECT_EQ(relabelled(task, root, task.start), root);
-    EXPECT_TRUE(cells.insert(metric.cell(root, {})).second);
+    EXPECT_TRUE(cells.insert(metric.cell(root)).second);
     const double left = start_distance(task, metric, root, task.start);
     EXPECT_GE(left, before);
     before = left;
@@ -187,7 +187,7 @@ TEST(GoalRoots, StatesOfOneCellAreOneRoot) {
   const std::vector<Poses> found = roots(task, of(400, 4), 66);
   const StateMetric metric(task.scene);
   std::set<std::uint64_t> cells;
-  for (const Poses& root : found) EXPECT_TRUE(cells.insert(metric.cell(root, {})).second);
+  for (const Poses& root : found) EXPECT_TRUE(cells.insert(metric.cell(root)).second);
   EXPECT_LT(found.size(), 400U);
   EXPECT_GT(found.size(), 10U);
 }

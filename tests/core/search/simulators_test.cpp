@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/forward/box2d_simulator.hpp"
-#include "core/search/naive_reverse.hpp"
+#include "core/reverse/naive_reverse.hpp"
 #include "core/search/thread_pool.hpp"
 #include "tests/support/gathering.hpp"
 

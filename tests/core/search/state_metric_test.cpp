@@ -88,7 +88,6 @@ TEST(StateMetric, ObjectsAreTheMovableBodiesButTheRobot) {
     EXPECT_EQ(metric.objects()[k].body, kObjects[k]);
     EXPECT_EQ(metric.objects()[k].order, kOrders[k]);
   }
-  EXPECT_EQ(metric.size(), 2 + 4 * 3);
 }
 
 TEST(StateMetric, WhatHangsOnAJointLooksTheSameAfterWholeTurnsAlone) {
@@ -105,41 +104,11 @@ TEST(StateMetric, WhatHangsOnAJointLooksTheSameAfterWholeTurnsAlone) {
   }
 }
 
-TEST(StateMetric, DistanceIsTheNormOfTheNaiveEmbeddings) {
-  // Weight 1.5 of objects, angles at a radius of 0.5 m; a chord of an angle d is 2 sin(d/2).
-  const StateMetric metric(mixed_scene());
-  Rng rng(3);
-  for (int trial = 0; trial < 100; ++trial) {
-    const Poses a = random_poses(rng), b = random_poses(rng);
-    double sum = (a[0].position() - b[0].position()).squaredNorm();
-    for (std::size_t k = 0; k < kObjects.size(); ++k) {
-      const Pose &p = a[kObjects[k]], &q = b[kObjects[k]];
-      const double order = kOrders[k];
-      const double chord = 2.0 * 0.5 / order * std::sin(order * (p.theta - q.theta) / 2.0);
-      sum += 1.5 * 1.5 * ((p.position() - q.position()).squaredNorm() + chord * chord);
-    }
-    EXPECT_NEAR(metric.distance(a, b), std::sqrt(sum), 1e-5);  // single precision of up to 10 m
-  }
-}
-
-TEST(StateMetric, EmbeddingIsWhatTheDistanceMeasures) {
-  const StateMetric metric(mixed_scene());
-  Rng rng(4);
-  const Poses a = random_poses(rng), b = random_poses(rng);
-  std::vector<float> u(14), v(14);
-  metric.embed(a, u);
-  metric.embed(b, v);
-  double sum = 0.0;
-  for (std::size_t k = 0; k < u.size(); ++k) sum += std::pow(u[k] - v[k], 2);
-  EXPECT_NEAR(metric.distance(a, b), std::sqrt(sum), 1e-6);
-}
-
-TEST(StateMetric, StatesThatLookTheSameAreTheSamePoint) {
+TEST(StateMetric, StatesThatLookTheSameAreTheSame) {
   const StateMetric metric(mixed_scene());
   Rng rng(5);
   for (int trial = 0; trial < 50; ++trial) {
     const Poses a = random_poses(rng), b = look_alike(a, rng);
-    EXPECT_NEAR(metric.distance(a, b), 0.0, 2e-6);  // single precision
     EXPECT_NEAR(metric.layout_distance(a, b), 0.0, 1e-13);
     EXPECT_NEAR(metric.spread(a, b).position, 0.0, 0.0);
     EXPECT_NEAR(metric.spread(a, b).angle, 0.0, 1e-13);
@@ -165,74 +134,59 @@ TEST(StateMetric, LayoutDistanceAndSpreadMatchNaiveSumsAndMaxima) {
   }
 }
 
-/// The cell as a list of coordinates instead of a hash.
-std::vector<long> naive_cell(const Poses& poses, const StateMetric::Cells& cells) {
-  const auto along = [&](double x, double side) {
-    return std::lround(std::floor(x / side + cells.shift));
-  };
-  std::vector<long> cell{along(poses[0].x, cells.robot), along(poses[0].y, cells.robot)};
+/// The cell as a list of coordinates instead of a hash: 0.8 m for the robot, 0.4 m and about
+/// 0.4 rad for the objects.
+std::vector<long> naive_cell(const Poses& poses, bool with_robot) {
+  const auto along = [](double x, double side) { return static_cast<long>(std::floor(x / side)); };
+  std::vector<long> cell;
+  if (with_robot) cell = {along(poses[0].x, 0.8), along(poses[0].y, 0.8)};
   for (std::size_t k = 0; k < kObjects.size(); ++k) {
     const Pose& p = poses[kObjects[k]];
     const double period = 2.0 * kPi / kOrders[k];
-    const double slots = std::max(1.0, std::round(period / cells.object));
-    double share = std::fmod(p.theta / period, 1.0);
-    if (share < 0.0) share += 1.0;
-    cell.push_back(along(p.x, cells.object));
-    cell.push_back(along(p.y, cells.object));
-    cell.push_back(std::lround(std::floor(share * slots + cells.shift)) % std::lround(slots));
+    const double slots = std::max(1.0, std::round(period / 0.4));
+    const double share = p.theta / period - std::floor(p.theta / period);
+    cell.push_back(along(p.x, 0.4));
+    cell.push_back(along(p.y, 0.4));
+    cell.push_back(std::lround(std::floor(share * slots)) % std::lround(slots));
   }
   return cell;
 }
 
 TEST(StateMetricCell, NamesAreOneToOneWithNaiveCells) {
   const StateMetric metric(mixed_scene());
-  Rng rng(7);
-  for (const StateMetric::Cells& cells :
-       {StateMetric::Cells{}, StateMetric::Cells{1.3, 0.9, 0.4}, StateMetric::Cells{5, 20, 0.75}}) {
+  for (const bool with_robot : {true, false}) {
+    Rng rng(7);
     std::map<std::vector<long>, std::uint64_t> names;
     std::map<std::uint64_t, std::vector<long>> cells_of;
     for (int trial = 0; trial < 5000; ++trial) {
       const Poses poses = random_poses(rng);
-      const std::vector<long> naive = naive_cell(poses, cells);
-      const std::uint64_t name = metric.cell(poses, cells);
+      const std::vector<long> naive = naive_cell(poses, with_robot);
+      const std::uint64_t name = with_robot ? metric.cell(poses) : metric.layout_cell(poses);
       ASSERT_EQ(names.emplace(naive, name).first->second, name);
       ASSERT_EQ(cells_of.emplace(name, naive).first->second, naive);
     }
   }
 }
 
-TEST(StateMetricCell, ShiftMovesTheGridByAShareOfACell) {
-  const StateMetric metric(mixed_scene());
-  Poses left(5, {0.2, 0.2, 0.2}), right = left;
-  left[1].x = -0.1;  // a line of the grid lies between them at 0, and none of the shifted one
-  right[1].x = 0.1;
-  EXPECT_NE(metric.cell(left, {0.8, 0.4, 0.0}), metric.cell(right, {0.8, 0.4, 0.0}));
-  EXPECT_EQ(metric.cell(left, {0.8, 0.4, 0.5}), metric.cell(right, {0.8, 0.4, 0.5}));
-  right[1].x = 0.21;  // beyond the shifted line at 0.2
-  EXPECT_NE(metric.cell(left, {0.8, 0.4, 0.5}), metric.cell(right, {0.8, 0.4, 0.5}));
-}
-
 TEST(StateMetricCell, LinesOfTheRobotAreItsOwn) {
   const StateMetric metric(mixed_scene());
-  Poses a(5, {0.1, 0.1, 0.1}), b = a;
+  Poses a(5, {0.1, 0.1, 0.1}), b = a, c = a;
   b[0] = {0.7, 0.7, 3.0};
-  EXPECT_EQ(metric.cell(a, {0.8, 0.4, 0.0}), metric.cell(b, {0.8, 0.4, 0.0}));
-  EXPECT_NE(metric.cell(a, {0.6, 0.4, 0.0}), metric.cell(b, {0.6, 0.4, 0.0}));
+  c[0] = {0.9, 0.7, 3.0};
+  EXPECT_EQ(metric.cell(a), metric.cell(b));
+  EXPECT_NE(metric.cell(a), metric.cell(c));
+  EXPECT_EQ(metric.layout_cell(a), metric.layout_cell(c));
 }
 
 TEST(StateMetricCell, AnglesGoRoundWithThePeriodOfTheShape) {
   const StateMetric metric(mixed_scene());
   Rng rng(8);
   Poses a(5, {0.1, 0.1, 0.05});
-  for (const double shift : {0.0, 0.5}) {
-    const StateMetric::Cells cells{0.8, 0.4, shift};
-    for (int trial = 0; trial < 50; ++trial)
-      EXPECT_EQ(metric.cell(look_alike(a, rng), cells), metric.cell(a, cells));
-  }
+  for (int trial = 0; trial < 50; ++trial)
+    EXPECT_EQ(metric.cell(look_alike(a, rng)), metric.cell(a));
   Poses below = a;
-  below[1].theta = -0.05;  // across the line at 0, in one cell of the grid moved by half a cell
-  EXPECT_NE(metric.cell(below, {0.8, 0.4, 0.0}), metric.cell(a, {0.8, 0.4, 0.0}));
-  EXPECT_EQ(metric.cell(below, {0.8, 0.4, 0.5}), metric.cell(a, {0.8, 0.4, 0.5}));
+  below[1].theta = -0.05;  // across the line at 0
+  EXPECT_NE(metric.cell(below), metric.cell(a));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "core/search/naive_reverse.hpp"
+#include "core/reverse/naive_reverse.hpp"
 
 #include <utility>
 

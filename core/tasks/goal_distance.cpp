@@ -1,0 +1,56 @@
+#include "core/tasks/goal_distance.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace rtg {
+namespace {
+
+constexpr double kWay = 0.2;  // w
+
+/// Sums up goal_distance().
+struct Distance {
+  const Poses& poses;
+  double violation = 0.0;
+  double way = std::numeric_limits<double>::infinity();
+
+  /// Counts an atom that is `off` if that is positive.
+  void violate(double off) { violation += std::max(0.0, off); }
+
+  /// Notes the way to `body`, which an atom that is `off` is about.
+  void reach(std::size_t body, double off) {
+    if (off > 0.0) way = std::min(way, (poses[body].position() - poses[0].position()).norm());
+  }
+};
+
+void add(Distance& d, const GoalTerm& term, const Scene& scene) {
+  if (term.subject == GoalTerm::Subject::kJoint) {
+    for (const Joint& joint : scene.joints) {
+      if (!concerns(term, scene, joint)) continue;
+      const double off = outside(term, joint_angle(joint, d.poses));
+      d.violate(off);
+      d.reach(static_cast<std::size_t>(joint.parent), off);
+      d.reach(static_cast<std::size_t>(joint.child), off);
+    }
+    return;
+  }
+  const bool together = term.subject == GoalTerm::Subject::kCentroid;
+  const double of_mean = together ? outside(term, centroid_of(term, scene, d.poses)) : 0.0;
+  d.violate(of_mean);
+  for (std::size_t k = 1; k < d.poses.size(); ++k) {
+    if (!concerns(term, scene, k)) continue;
+    const double off = together ? of_mean : outside(term, d.poses[k].position());
+    if (!together) d.violate(off);
+    d.reach(k, off);
+  }
+}
+
+}  // namespace
+
+double goal_distance(const Task& task, const Poses& poses) {
+  Distance d{poses};
+  for (const GoalTerm& term : task.goal) add(d, term, task.scene);
+  return d.violation > 0.0 ? d.violation + kWay * d.way : 0.0;
+}
+
+}  // namespace rtg
