@@ -1,12 +1,10 @@
 #include "core/search/beam_search.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <unordered_map>
 #include <utility>
 
-#include "core/math/draws.hpp"
 #include "core/search/beam_selection.hpp"
 #include "core/search/goal_roots.hpp"
 #include "core/search/start_distance.hpp"
@@ -106,18 +104,8 @@ std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed) {
     nodes_.push_back({p.start, depth});
   }
   beam_ = std::move(beam);
-  for (const std::size_t k : others(replayed.size(), chosen)) store(replayed[k]);
+  for (const std::size_t k : others_of(chosen, replayed.size(), config_, rng_)) store(replayed[k]);
   return steps;
-}
-
-/// config.others indices per chosen one, drawn among the rest of the first `count`.
-std::vector<std::size_t> BeamSearch::others(std::size_t count,
-                                            std::span<const std::size_t> chosen) {
-  std::vector<std::size_t> rest;
-  for (std::size_t k = 0; k < count; ++k)
-    if (std::ranges::find(chosen, k) == chosen.end()) rest.push_back(k);
-  const double wanted = config_.others * static_cast<double>(chosen.size());
-  return drawn(std::move(rest), static_cast<int>(std::lround(wanted)), rng_);
 }
 
 double BeamSearch::distance_left(const Poses& poses) const {

@@ -46,7 +46,6 @@ class BeamSearch {
   std::vector<Predecessor> reverse_layer(const SolveBatch& solve, SearchStats& stats) const;
   std::vector<Predecessor> worth_replaying(std::vector<Predecessor> all) const;
   std::vector<Transition> keep(std::vector<Predecessor> replayed);
-  std::vector<std::size_t> others(std::size_t count, std::span<const std::size_t> chosen);
   double distance_left(const Poses& poses) const;
   const Node& node(int k) const { return nodes_[static_cast<std::size_t>(k)]; }
 

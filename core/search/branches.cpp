@@ -6,6 +6,7 @@
 #include "core/reverse/reverse_job.hpp"
 
 namespace rtg {
+
 std::vector<int> other_headings(int action, int headings, const SearchConfig& config, Rng& rng) {
   std::vector<int> near, others;
   for (int away = 1; away < headings; ++away) {

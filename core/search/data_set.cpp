@@ -8,14 +8,18 @@
 
 namespace rtg {
 
-void DataSet::store(std::span<const Transition> steps) {
+void DataSet::store(std::span<const Transition> steps, const ReplayBatch& replay) {
   const auto room = static_cast<std::size_t>(config_.transitions - coverage_.transitions());
   const auto per_step = static_cast<std::size_t>(1 + config_.branches);
-  const std::size_t fit = std::min((room + per_step - 1) / per_step, steps.size());
-  std::vector<Transition> rows = with_branches(task_, steps.first(fit), config_, seed_, replay_);
-  std::erase_if(rows, [this](const Transition& t) {
-    return !known_.insert(key_of(t.poses, t.action)).second;
-  });
+  const auto is_new = [this](const Transition& t) {
+    return known_.insert(key_of(t.poses, t.action)).second;
+  };
+  std::vector<Transition> fresh;
+  for (const Transition& step : steps)
+    if (fresh.size() * per_step < room && is_new(step)) fresh.push_back(step);
+  std::vector<Transition> rows = with_branches(task_, fresh, config_, seed_, replay);
+  std::erase_if(rows,
+                [&](const Transition& t) { return t.source == Source::kBranch && !is_new(t); });
   const std::span kept = std::span(rows).first(std::min(room, rows.size()));
   if (kept.empty()) return;
   for (const Transition& t : kept) coverage_.add(t);

@@ -18,11 +18,12 @@ class DataSet {
  public:
   /// All arguments must outlive it. `sink` receives the transitions.
   DataSet(const Task& task, const SearchConfig& config, std::uint64_t seed,
-          const ReplayBatch& replay, const TransitionSink& sink)
-      : task_(task), config_(config), seed_(seed), replay_(replay), sink_(sink), coverage_(task) {}
+          const TransitionSink& sink)
+      : task_(task), config_(config), seed_(seed), sink_(sink), coverage_(task) {}
 
   /// Stores the first of `steps` with their branches, as far as there is room; nothing twice.
-  void store(std::span<const Transition> steps);
+  /// `replay` says what the branches lead to.
+  void store(std::span<const Transition> steps, const ReplayBatch& replay);
 
   bool full() const { return coverage_.transitions() >= config_.transitions; }
   const Coverage& coverage() const { return coverage_; }
@@ -31,7 +32,6 @@ class DataSet {
   const Task& task_;
   const SearchConfig& config_;
   std::uint64_t seed_;
-  const ReplayBatch& replay_;
   const TransitionSink& sink_;
   Coverage coverage_;
   std::unordered_set<std::uint64_t> known_;  // key_of() state and action of all

@@ -8,6 +8,7 @@
 #include "core/tasks/goal_distance.hpp"
 
 namespace rtg {
+
 ForwardSearch::ForwardSearch(const Task& task, const SearchConfig& config, Poses start,
                              std::uint64_t seed)
     : task_(task), config_(config), metric_(task.scene), rng_(seed), beam_{0} {
@@ -22,27 +23,41 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
     for (int action = 0; action < task_.push.headings; ++action)
       pushes.push_back({nodes_[k].step.next, action});
   const std::vector<ReplayResult> results = replay(pushes);
+  outcomes_.clear();
   std::vector<Node> found;
   std::vector<BeamEntry> entries;
   for (std::size_t k = 0; k < pushes.size(); ++k) {
+    outcomes_.emplace(key_of(pushes[k].start, pushes[k].action), results[k]);
     if (!results[k].ok) continue;
     const Poses& end = results[k].end;
-    const bool moved = objects_moved(pushes[k].start, end) > 0;
-    entries.push_back(
-        {goal_distance(task_, end), metric_.cell(end), metric_.layout_cell(end), moved});
+    entries.push_back({goal_distance(task_, end), metric_.cell(end), metric_.layout_cell(end),
+                       objects_moved(pushes[k].start, end) > 0});
     const std::size_t parent = beam_[k / static_cast<std::size_t>(task_.push.headings)];
     found.push_back(
         {{pushes[k].start, pushes[k].action, end, succeeded(task_, end), Source::kPlan}, parent});
   }
+  return keep(std::move(found), entries);
+}
+
+/// Makes the best of the steps the next beam; these, and others drawn at random.
+std::vector<Transition> ForwardSearch::keep(std::vector<Node> found,
+                                            std::span<const BeamEntry> entries) {
+  const std::vector<std::size_t> chosen = select_beam(entries, config_, rng_, seen_);
+  std::vector<Transition> steps;
   beam_.clear();
-  std::vector<Transition> kept;
-  for (const std::size_t k : select_beam(entries, config_, rng_, seen_)) {
+  for (const std::size_t k : chosen) {
     if (found[k].step.success && solved_ == 0) solved_ = nodes_.size();
-    kept.push_back(found[k].step);
+    steps.push_back(found[k].step);
     beam_.push_back(nodes_.size());
-    nodes_.push_back(std::move(found[k]));
+    nodes_.push_back(found[k]);
   }
-  return kept;
+  for (const std::size_t k : others_of(chosen, found.size(), config_, rng_))
+    steps.push_back(std::move(found[k].step));
+  return steps;
+}
+
+const ReplayResult& ForwardSearch::outcome(const ReplayJob& push) const {
+  return outcomes_.at(key_of(push.start, push.action));
 }
 
 std::vector<Transition> ForwardSearch::plan() const {
@@ -65,11 +80,16 @@ void search_forward(Generation& run, int number) {
   Rng rng = run.stream(number);
   Poses start = jittered_start(run.task, run.config.target_jitter, rng);
   ForwardSearch search(run.task, run.config, std::move(start), rng.word());
+  const ReplayBatch known = [&search](std::span<const ReplayJob> pushes) {
+    std::vector<ReplayResult> results;
+    for (const ReplayJob& push : pushes) results.push_back(search.outcome(push));
+    return results;
+  };
   for (int layer = 1; layer <= run.config.depth; ++layer) {
     if (run.data.full() || run.cancelled()) break;
-    const std::vector<Transition> kept = search.grow(run.replay);
-    if (kept.empty()) break;
-    run.data.store(kept);
+    const std::vector<Transition> steps = search.grow(run.replay);
+    if (steps.empty()) break;
+    run.data.store(steps, known);
     run.show("plan " + std::to_string(number + 1), layer, run.config.depth);
   }
 }

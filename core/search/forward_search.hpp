@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
 #include "core/math/rng.hpp"
 #include "core/search/batches.hpp"
+#include "core/search/beam_selection.hpp"
 #include "core/search/generation.hpp"
 #include "core/search/state_metric.hpp"
 
@@ -18,9 +21,13 @@ class ForwardSearch {
   /// `task` and `config` must outlive the search.
   ForwardSearch(const Task& task, const SearchConfig& config, Poses start, std::uint64_t seed);
 
-  /// One action more: replays every heading of every state of the beam, keeps the best. The steps
-  /// that were kept; none if the search has come to its end.
+  /// One action more: replays every heading of every state of the beam and keeps the best. The
+  /// steps that were kept come back, and config.others times as many of the others, drawn at
+  /// random; none if the search has come to its end.
   std::vector<Transition> grow(const ReplayBatch& replay);
+
+  /// Answers a push that the last layer replayed.
+  const ReplayResult& outcome(const ReplayJob& push) const;
 
   /// The steps from the start to the first success found; none without one.
   std::vector<Transition> plan() const;
@@ -30,6 +37,7 @@ class ForwardSearch {
     Transition step;
     std::size_t parent;  // the node in whose state the step begins; the first has none
   };
+  std::vector<Transition> keep(std::vector<Node> found, std::span<const BeamEntry> entries);
 
   const Task& task_;
   const SearchConfig& config_;
@@ -39,6 +47,7 @@ class ForwardSearch {
   std::vector<std::size_t> beam_;
   std::size_t solved_ = 0;  // the node whose step succeeds; 0: there is none
   std::unordered_set<std::uint64_t> seen_;
+  std::unordered_map<std::uint64_t, ReplayResult> outcomes_;  // by key_of() of state and action
 };
 
 /// A whole search of config.depth actions at most: its plan. A function of the arguments.
@@ -47,7 +56,8 @@ std::vector<Transition> plan_forward(const Task& task, const SearchConfig& confi
                                      const ReplayBatch& replay);
 
 /// Stores what one search keeps, from a start with objects moved by up to ±
-/// config.target_jitter [m]. Number `number` of the searches.
+/// config.target_jitter [m], with branches that it has simulated anyway. Number `number` of the
+/// searches.
 void search_forward(Generation& run, int number);
 
 }  // namespace rtg

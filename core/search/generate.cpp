@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <utility>
 
 #include "core/search/beam_search.hpp"
@@ -21,11 +20,11 @@ void grow_tree(Generation& run, int number) {
   const Poses target = jittered_start(run.task, run.config.target_jitter, rng);
   BeamSearch search(run.task, run.config, target, rng.word());
   search.plant(run.replay, run.stats);
-  double best = std::numeric_limits<double>::infinity();
+  double best = search.best();
   int patience = run.config.patience;
   for (int layer = 1; layer <= run.config.depth && patience > 0; ++layer) {
-    if (run.data.full() || run.cancelled()) break;
-    run.data.store(search.grow(run.seams.solve, run.replay, run.stats));
+    if (search.beam().empty() || run.data.full() || run.cancelled()) break;
+    run.data.store(search.grow(run.seams.solve, run.replay, run.stats), run.replay);
     run.show("tree " + std::to_string(number + 1), layer, run.config.depth);
     const double nearest = search.best();
     patience = nearest < best ? run.config.patience : patience - 1;

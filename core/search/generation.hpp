@@ -19,10 +19,10 @@ struct Generation {
   SearchStats stats = {};
   std::vector<ReportNode> nodes = {};  // of trees
   ReplayBatch replay = counted(seams.replay, stats);
-  DataSet data{task, config, seed, replay, seams.store};
+  DataSet data{task, config, seed, seams.store};
 
-  /// Random numbers of attempt `number`.
-  Rng stream(int number) const { return Rng(seed, static_cast<std::uint64_t>(number)); }
+  /// Random numbers of attempt `number`, none of which a training start has.
+  Rng stream(int number) const { return Rng(Rng(seed).word(), static_cast<std::uint64_t>(number)); }
 
   bool cancelled() const { return seams.cancelled && seams.cancelled(); }
 

@@ -7,6 +7,7 @@
 #include "core/world/separation.hpp"
 
 namespace rtg {
+
 Poses float_rounded(const Poses& poses) {
   Poses out = poses;
   for (Pose& p : out) p = to_single(p);

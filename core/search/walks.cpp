@@ -44,7 +44,7 @@ void walk(Generation& run, int number) {
             {pushes[k].start, pushes[k].action, end, succeeded(run.task, end), Source::kWalk});
       states.push_back(end);
     }
-    run.data.store(steps);
+    run.data.store(steps, run.replay);
   }
   run.show("random walks", number + 1, 0);
 }

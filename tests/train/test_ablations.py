@@ -24,8 +24,8 @@ def test_what_differs_is_taken_back_key_by_key():
 
 def test_keys_that_belong_together_are_taken_back_together():
     ours = {"target_sync": 1, "target_rate": 0.005}
-    paper = {"target_sync": 2500, "target_rate": 1.0}
-    assert departures(ours, paper) == [("train.target_sync=2500", "train.target_rate=1.0")]
+    paper = {"target_sync": 250, "target_rate": 1.0}
+    assert departures(ours, paper) == [("train.target_sync=250", "train.target_rate=1.0")]
 
 
 def test_all_departures_together_are_the_paper_but_for_how_it_is_measured():

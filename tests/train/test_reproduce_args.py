@@ -46,7 +46,7 @@ def test_ablations_are_runs_as_they_are_with_each_departure_taken_back_and_as_th
     assert settings[0] == () and settings[-1][0] == "train.preset=paper"
     assert ("search.branches=0",) in settings
     assert ("train.batch=512",) in settings and ("train.dueling=false",) in settings
-    assert ("train.target_sync=2500", "train.target_rate=1.0") in settings
+    assert ("train.target_sync=250", "train.target_rate=1.0") in settings
     assert not any("eval_every" in word for words in settings[:-1] for word in words)
     assert args.command == (
         "./run.sh reproduce sorting --methods ddqn_rtg --seeds 1 --ablations "

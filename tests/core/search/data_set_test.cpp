@@ -33,10 +33,10 @@ struct DataSetTest : ::testing::Test, testing::DraggingWorld {
 TEST_F(DataSetTest, HasEachStepWithItsBranchesBehindIt) {
   config.transitions = 1000;
   config.branches = 2;
-  DataSet data(task, config, 1, counting, sink);
+  DataSet data(task, config, 1, sink);
   const std::vector<Transition> given = steps(4);
-  data.store(std::span(given).first(3));
-  data.store(std::span(given).last(1));
+  data.store(std::span(given).first(3), counting);
+  data.store(std::span(given).last(1), counting);
   ASSERT_EQ(stored.size(), 12U);
   for (std::size_t k = 0; k < stored.size(); ++k) {
     EXPECT_EQ(stored[k].poses, given[k / 3].poses);
@@ -49,30 +49,44 @@ TEST_F(DataSetTest, HasEachStepWithItsBranchesBehindIt) {
 TEST_F(DataSetTest, IsFullWithWhatWasAskedForAndSimulatesNoMore) {
   config.transitions = 11;
   config.branches = 4;
-  DataSet data(task, config, 1, counting, sink);
-  data.store(steps(40));
+  DataSet data(task, config, 1, sink);
+  data.store(steps(40), counting);
   EXPECT_TRUE(data.full());
   EXPECT_EQ(stored.size(), 11U);
   EXPECT_EQ(stats.replays, 3 * 4) << "the branches of the third step, of which none fits";
-  data.store(steps(1));
+  data.store(steps(1), counting);
   EXPECT_EQ(stored.size(), 11U);
 }
 
 TEST_F(DataSetTest, HasNothingTwice) {
   config.transitions = 1000;
   config.branches = 2;
-  DataSet data(task, config, 1, counting, sink);
-  data.store(steps(4));
+  DataSet data(task, config, 1, sink);
+  data.store(steps(4), counting);
   const std::vector<Transition> before = stored;
-  data.store(steps(4));
+  const long replays = stats.replays;
+  data.store(steps(4), counting);
   EXPECT_EQ(stored, before);
+  EXPECT_EQ(stats.replays, replays);
+}
+
+TEST_F(DataSetTest, AStepIsNoBranchOfAnother) {
+  config.transitions = 1000;
+  config.branches = 40;  // of 47 others
+  DataSet data(task, config, 1, sink);
+  std::vector<Transition> given;
+  for (int action = 0; action < 20; ++action)
+    given.push_back({task.start, action, pushed({task.start, action}), false, Source::kTree});
+  data.store(given, counting);
+  EXPECT_EQ(std::ranges::count(stored, Source::kTree, &Transition::source), 20);
+  EXPECT_EQ(stored.size(), 48U);
 }
 
 TEST_F(DataSetTest, WithoutBranchesIsTheStepsAlone) {
   config.transitions = 1000;
   config.branches = 0;
-  DataSet data(task, config, 1, counting, sink);
-  data.store(steps(5));
+  DataSet data(task, config, 1, sink);
+  data.store(steps(5), counting);
   EXPECT_EQ(stored, steps(5));
   EXPECT_EQ(stats.replays, 0);
 }

@@ -117,7 +117,7 @@ TEST(Generate, EachTreeGrowsFromGoalStatesToAStartOfItsOwn) {
   ASSERT_GE(report.trees, 2);
   std::vector<Poses> targets;
   for (int tree = 0; tree < 2; ++tree) {
-    Rng rng(7, static_cast<std::uint64_t>(tree));
+    Rng rng(Rng(7).word(), static_cast<std::uint64_t>(tree));
     targets.push_back(jittered_start(task, config.target_jitter, rng));
   }
   EXPECT_LT(nearest(task, report, 0, targets[0]), nearest(task, report, 0, targets[1]));
@@ -138,21 +138,38 @@ TEST(Generate, ATreeEndsAtItsDepth) {
   for (const ReportNode& n : report.nodes) EXPECT_LE(n.depth, 3);
 }
 
+/// Layers of the first tree.
+int layers(const SearchConfig& config, GenerationSeams seams) {
+  int found = 0;
+  bool ended = false;
+  seams.store = [](std::span<const Transition>) {};
+  seams.progress = [&](const Progress& p) {
+    if (p.phase == "tree 1") found = p.layer;
+    ended = p.phase != "tree 1";
+  };
+  seams.cancelled = [&] { return ended; };
+  generate(gathering(), config, 7, seams);
+  return found;
+}
+
 TEST(Generate, ATreeThatComesNoNearerEndsWithItsPatience) {
-  const Task task = gathering();
-  for (const int patience : {1, 3}) {
-    SearchConfig config = small();
-    config.patience = patience;
-    GenerationSeams seams = testing::naive_seams(task, 1);
-    int layers = 0;
-    seams.store = [](std::span<const Transition>) {};
-    seams.progress = [&](const Progress& p) { layers = std::max(layers, p.layer); };
-    seams.solve = [&](std::span<const ReverseJob> jobs) {
-      return std::vector<ReverseResult>(jobs.size(), {SolveStatus::kPruned});
-    };
-    generate(task, config, 7, seams);
-    EXPECT_EQ(layers, patience);
-  }
+  SearchConfig config = small();
+  config.transitions = 100000;
+  config.depth = 200;
+  const GenerationSeams seams = testing::naive_seams(gathering(), 1);
+  config.patience = 1;
+  const int first = layers(config, seams);  // the first that comes no nearer
+  config.patience = 3;
+  EXPECT_GE(layers(config, seams), first + 2);
+  EXPECT_LT(layers(config, seams), config.depth);
+}
+
+TEST(Generate, ATreeEndsWhereNothingLeadsToIt) {
+  GenerationSeams seams = testing::naive_seams(gathering(), 1);
+  seams.solve = [](std::span<const ReverseJob> jobs) {
+    return std::vector<ReverseResult>(jobs.size(), {SolveStatus::kPruned});
+  };
+  EXPECT_EQ(layers(small(), seams), 1);
 }
 
 TEST(Generate, ReportAgreesWithTheStoredTransitions) {
