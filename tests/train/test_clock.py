@@ -28,6 +28,20 @@ def test_wall_and_processor_time_count_while_it_runs(now, alone: bool, cpu: floa
     assert not clock.running and clock.seconds() == {"wall_s": 2.0, "cpu_s": cpu}
 
 
+def test_what_is_prepared_before_it_starts_takes_processor_time_but_no_wall_time(now) -> None:
+    clock = Clock()
+    now[:] = [130.0, 12.0, 5.0]
+    clock.start()
+    now[:] = [131.0, 12.5, 5.0]
+    clock.stop()
+    assert clock.seconds() == {"wall_s": 1.0, "cpu_s": 2.5}
+    now[:] = [140.0, 20.0, 5.0]
+    clock.start()
+    assert clock.seconds() == {"wall_s": 1.0, "cpu_s": 2.5}, (
+        "what happened in between is not its own"
+    )
+
+
 def test_the_next_process_adds_to_it(now) -> None:
     clock = Clock()
     clock.restore({"wall_s": 7.0, "cpu_s": 3.0, "interactions": 80})

@@ -166,7 +166,7 @@ def test_curves_with_gaps_and_empty_samples_can_be_drawn(tmp_path):
         "episode_return_mean": np.array([nan, 0.0, 0.1]),
         "rollout_success": np.array([nan, nan, nan]),
     }
-    plots.learning_curve(tmp_path / "curve.png", "a run", curve)
+    plots.learning_curve(tmp_path / "curve.png", "a run", curve, "interactions")
     report = {"replay_gaps": [0.0, 0.02], "replay_gap_median": 0.01, "replay_gap_p90": 0.02}
     plots.replay_gap(tmp_path / "gap.png", "a run", report)
     none = np.zeros((0, 4, 3))
@@ -185,7 +185,7 @@ def test_the_coverage_of_a_body_bears_its_name(figures):
 def test_the_legend_of_the_curves_covers_none_of_them(figures):
     columns = ["interactions", "success_rate", "episode_length_mean", "episode_return_mean"]
     curve = {name: np.linspace(0.0, 1.0, 5) for name in [*columns, "rollout_success"]}
-    plots.learning_curve(Path("curve.png"), "a run", curve)
+    plots.learning_curve(Path("curve.png"), "a run", curve, "interactions")
     (figure,) = figures
     figure.draw_without_rendering()
     legend = figure.legends[0].get_window_extent()

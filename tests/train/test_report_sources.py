@@ -30,24 +30,39 @@ def row(text, head):
 @pytest.mark.parametrize(
     ("reference", "forward", "words", "cell"),
     [
-        ([SOON, SOON], [LATER, NEVER], "the better source", "better"),
-        ([LATER, NEVER], [SOON, SOON], "not the better source", "not: `ddqn_forward`"),
-        ([SOON, LATER], [SOON, NEVER], "level with others", "level: `ddqn_forward`"),
-        ([NEVER, NEVER], [NEVER], "no more than the others enough for 0.95", "none"),
+        ([SOON, SOON], [LATER, NEVER], "better {} than {}", "better than {}"),
+        ([SOON, NEVER], [NEVER, NEVER], "better {} than {}", "better than {}"),
+        ([LATER, NEVER], [SOON, SOON], "not better {} than {}", "not better than {}"),
+        ([SOON, LATER], [SOON, NEVER], "level {} with {}", "level with {}"),
+        ([SOON, NEVER], [LATER, NEVER], "level {} with {}", "level with {}"),
     ],
 )
 def test_one_source_is_better_if_every_seed_of_it_is(tmp_path, reference, forward, words, cell):
     text = said(tmp_path, {"ddqn_rtg": reference, "ddqn_forward": forward})
-    named = " (`ddqn_forward`)" * (":" in cell)
-    assert text.startswith(f"{FIRST}{words} by interactions, pushes and CPU seconds{named}.\n\n")
-    assert all(row(text, head)[-1] == cell for head in ("interactions", "pushes", "CPU"))
+    costs = "by interactions, pushes and CPU seconds"
+    assert text.startswith(f"{FIRST}{words.format(costs, '`ddqn_forward`')}.\n\n")
+    expected = cell.format("`ddqn_forward`")
+    assert all(row(text, head)[-1] == expected for head in ("interactions", "pushes", "CPU"))
+
+
+def test_none_may_be_enough(tmp_path):
+    text = said(tmp_path, {"ddqn_rtg": [NEVER, NEVER], "ddqn_scatter": [NEVER]})
+    assert text.startswith(f"{FIRST}no more than `ddqn_scatter` enough for 0.95 by interactions, ")
+    assert row(text, "CPU")[-1] == "no more than `ddqn_scatter` enough for 0.95"
+
+
+def test_the_sources_compared_are_named(tmp_path):
+    courses = {"ddqn_rtg": [SOON], "ddqn_naive": [NEVER], "ddqn_forward": [LATER]}
+    text = said(tmp_path, courses)
+    assert " than `ddqn_naive`, `ddqn_forward`.\n" in text
 
 
 def test_one_better_source_is_enough_for_reverse_simulation_not_to_be(tmp_path):
     courses = {"ddqn_rtg": [LATER], "ddqn_naive": [SOON], "ddqn_forward": [NEVER]}
     text = said(tmp_path, courses)
-    assert text.startswith(f"{FIRST}not the better source by interactions, pushes and CPU")
-    assert row(text, "interactions")[-1] == "not: `ddqn_naive`"
+    expected = "not better by interactions, pushes and CPU seconds than `ddqn_naive`"
+    assert text.startswith(f"{FIRST}{expected}")
+    assert row(text, "interactions")[-1] == "not better than `ddqn_naive`"
 
 
 def test_costs_may_disagree(tmp_path):
@@ -56,8 +71,8 @@ def test_costs_may_disagree(tmp_path):
     finished(tmp_path, cells[1], LATER, replays=900_000, generate_cpu_s=10.0)
     write_grid(tmp_path, cells)
     text = better_source(read_comparison(tmp_path, read_grid(tmp_path)))
-    sentence = "the better source by interactions and pushes; not the better source by CPU seconds"
-    assert text.startswith(f"{FIRST}{sentence} (`ddqn_forward`).\n")
+    sentence = "better by interactions and pushes than `ddqn_forward`; not better by CPU seconds "
+    assert text.startswith(f"{FIRST}{sentence}than `ddqn_forward`.\n")
 
 
 def test_the_figures_behind_it_are_means_and_their_ratios(tmp_path):

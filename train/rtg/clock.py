@@ -7,13 +7,15 @@ from collections.abc import Callable, Mapping
 
 
 class Clock:
-    """Wall time and processor time while it runs.
+    """Wall time while it runs, and processor time from when it was made.
 
-    Processor time is that of the whole process, or where several runs share it, of the thread that
-    calls: what a run leaves to other threads (a GPU's share of its gradients) is then not seen.
+    Processor time is that of the whole process: what a run prepares before it learns counts as
+    well. Where several runs share the process it is that of the thread that calls, and while the
+    clock runs: what a run leaves to other threads (a GPU's share of its gradients) is not seen.
     """
 
     def __init__(self) -> None:
+        self._made: float | None = time.process_time()  # until it starts
         self._before = (0.0, 0.0)  # [s], of the runs so far: wall, processor
         self._since: tuple[float, float] | None = None
         self._cpu: Callable[[], float] = time.process_time
@@ -21,7 +23,9 @@ class Clock:
     def start(self, alone: bool = True) -> None:
         """`alone`: no other run shares the process."""
         self._cpu = time.process_time if alone else time.thread_time
-        self._since = self._now()
+        wall, cpu = self._now()
+        self._since = (wall, cpu if self._made is None or not alone else self._made)
+        self._made = None
 
     def stop(self) -> None:
         self._before, self._since = self._total(), None

@@ -49,8 +49,18 @@ class _Recording:
 
 def generation_defects(plan: RunPlan) -> list[str]:
     """What went wrong in a generation that has come to its end, in words."""
-    given_up = run_folder.read_json(plan.report_file).get("units_given_up", 0)
-    return [f"the coordinator gave up {given_up} units of work"] if given_up else []
+    report = run_folder.read_json(plan.report_file)
+    given_up, found = report.get("units_given_up", 0), report["transitions"]
+    wanted = plan.config["search"]["transitions"]
+    defects = [f"the coordinator gave up {given_up} units of work"] if given_up else []
+    if found < wanted:
+        what = plan.config["search"]["generator"]
+        defects.append(
+            f"the search ({what}) found {found:,} transitions of the {wanted:,} asked for and then "
+            "nothing more, see generation.json; a wider one may find more (search.breadth, "
+            "search.gap_tolerance)"
+        )
+    return defects
 
 
 class GraphRun:

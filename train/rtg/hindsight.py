@@ -10,7 +10,8 @@ reward of the task: its goal is reached whichever layout was asked for.
 
 Choices that give the method its best chance:
 - The layouts of the task are those of DRAWS goal states that stay goal states when their objects
-  are moved by TOLERANCE in any direction (all, where none is). So to reach one means success.
+  are moved by TOLERANCE in any direction and the two bodies of each joint are turned by TURN
+  against each other (all, where none is). So to reach one means success.
 - Objects of one kind may stand for each other, and any goal state will do. So an episode is asked
   for the layout that is nearest to its start, among a random tenth of them: in training many are
   asked for, which the paper finds to learn faster. The policy that is judged asks in each state for
@@ -37,7 +38,7 @@ from rtg.replay import MixedReplayBuffer, Part, Store
 Array = npt.NDArray[Any]
 
 TOLERANCE = 0.5  # of each object [m]
-TURN = 0.25  # of each body that a joint connects [rad]
+TURN = 0.05  # of each body that a joint connects [rad]
 DRAWS, LAYOUTS = 5000, 1000  # goal states drawn; the most layouts that are kept of them
 FEW = 10  # a training episode is asked for the nearest of 1 / FEW of the layouts
 OF_LAYOUTS = 3 << 61  # seed of the draws: no run's, so that a policy's file need not hold it
@@ -107,13 +108,24 @@ class Layouts:
         return places.reshape(*places.shape[:-1], self._places // 2, 2), turns
 
 
+def _sides(task: _core.Task) -> Array:
+    """1 or -1 for bodies that joints connect, different for the two of a joint; else 0. [bodies]"""
+    sides = np.zeros(task.bodies)
+    for parent, child, _ in task.joints:
+        sides[parent] = sides[parent] or 1.0
+        sides[child] = -sides[parent]
+    return sides
+
+
 def lasting(task: _core.Task, states: Array) -> Array:
     """Those in which the goal still holds with all objects moved by TOLERANCE in any of eight
-    directions; all of them where none is. [N, bodies, 3]"""
+    directions and the two bodies of each joint turned by TURN, one against the other; all of them
+    where none is. [N, bodies, 3]"""
     angles = np.arange(8) * np.pi / 4
-    moved = np.repeat(states[:, None], len(angles), axis=1)  # [N, 8, bodies, 3]
-    moved[:, :, 1:, 0] += TOLERANCE * np.cos(angles)[:, None]
-    moved[:, :, 1:, 1] += TOLERANCE * np.sin(angles)[:, None]
+    moved = np.repeat(states[:, None], 2 * len(angles), axis=1)  # [N, 16, bodies, 3]
+    moved[:, :, 1:, 0] += TOLERANCE * np.tile(np.cos(angles), 2)[:, None]
+    moved[:, :, 1:, 1] += TOLERANCE * np.tile(np.sin(angles), 2)[:, None]
+    moved[:, :, :, 2] += TURN * np.repeat((1, -1), len(angles))[:, None] * _sides(task)
     holds = task.succeeded(moved.reshape(-1, *states.shape[1:])).reshape(len(states), -1)
     stays = holds.all(axis=1)
     return states[stays] if stays.any() else states

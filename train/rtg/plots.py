@@ -59,8 +59,8 @@ def save(figure: Figure, path: Path) -> None:
     plt.close(figure)
 
 
-def learning_curve(path: Path, title: str, curve: Mapping[str, Floats]) -> None:
-    """Success, episode length and return over interactions.
+def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: str) -> None:
+    """Success, episode length and return over interactions, named `unit`.
 
     curve: columns `interactions`, `success_rate`, `episode_length_mean`, `episode_return_mean` of
     the evaluations and, where known, `rollout_success`; all [N], NaN where not measured.
@@ -87,7 +87,7 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats]) -> None:
                 label="greedy, held-out starts",
             )
             axis.set_title(name)
-            axis.set_xlabel("interactions / 1000")
+            axis.set_xlabel(f"{unit} / 1000")
             axis.set_xlim(left=0)
             if limits:
                 axis.set_ylim(*limits)
@@ -190,7 +190,7 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
             )
             axis.set_title(task.names[body])
         bar = figure.colorbar(ScalarMappable(dots.norm, dots.cmap), ax=axes, shrink=0.85, pad=0.02)
-        bar.set_label("actions to success, over all rounds")
+        bar.set_label("reverse steps from success, over all trees")
         bar.locator = MaxNLocator(integer=True)
         figure.supxlabel(
             "dots: centres of the object in the search's nodes; outlines: start layout; "

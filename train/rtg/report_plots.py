@@ -146,8 +146,8 @@ def _name_lines(figure: Figure, drawn: Drawn, title: str, columns: int = 4) -> N
 
 
 def curves(path: Path, comparison: Comparison, task: str) -> None:
-    """Success, episode length and return over interactions, a line per method."""
-    drawn = _drawn(comparison, task)
+    """Success, episode length and return over interactions, a line per method that makes any."""
+    drawn = {name: runs for name, runs in _drawn(comparison, task).items() if runs[0].interacts}
     styles = _styles(list(drawn))
     with plots.style():
         figure, axes = plt.subplots(2, 2, figsize=(9.6, 6.8), layout="constrained", sharex=True)

@@ -15,7 +15,7 @@ from rtg.run_results import COSTS, Comparison
 Floats = NDArray[np.float64]
 
 BAR = 0.95  # greedy success
-# Methods whose data come from elsewhere, the learner alike.
+# Methods that learn from data of another source.
 SOURCES = ("ddqn_random", "ddqn_scatter", "ddqn_naive", "ddqn_forward")
 RIVALS = ("ddqn_forward", "ddqn_naive", "planner")  # shown as ratios
 _WORDS = {"interactions": "interactions", "pushes": "pushes", "cpu_s": "CPU seconds"}
@@ -27,12 +27,13 @@ methods whose every seed gets there (`{WIDER}` aside, whose starts are others; i
 compared among those that make any). Other columns: multiples of what `{REFERENCE}` needs, or how
 many seeds get there. `planner` needs as much again for every further start: its costs are those of
 one evaluation. Reverse simulation is the source of `{REFERENCE}`, whose backward steps a solver
-finds; those of `ddqn_naive` are of kinematics alone. It is **better** if every seed of
-`{REFERENCE}` needs less than every seed of all other sources for the same learner
-({", ".join(f"`{method}`" for method in SOURCES)}), **not** if every seed of a source named needs
-less than every seed of `{REFERENCE}`, **level** if seeds of `{REFERENCE}` and of the sources named
-overlap; **none**: no seed of any source gets there. One that does not counts as more than any that
-does."""
+finds; those of `ddqn_naive` are of kinematics alone. Compared are the sources that were run of
+{", ".join(f"`{method}`" for method in SOURCES)}. Reverse simulation is the **better** one if every
+seed of `{REFERENCE}` needs less than every seed of the others named, **not** the better one if
+every seed of a source named needs less than every seed of `{REFERENCE}`, **level** if seeds of
+`{REFERENCE}` and of the sources named overlap; **none**: no seed of any source gets there. A seed
+that does not counts as more than any that does, a source none of whose seeds does as more than any
+seed of `{REFERENCE}`, too."""
 
 
 def _costs(comparison: Comparison, task: str, method: str, cost: str) -> Floats:
@@ -80,14 +81,15 @@ class _Verdict(NamedTuple):
     methods: Sequence[str] = ()  # that make it so
 
     def __str__(self) -> str:
-        return f"{self.kind}: {_named(self.methods)}" if self.methods else self.kind or NOTHING
+        of_methods = _SAID.get(self.kind, NOTHING).format(costs="", methods=_named(self.methods))
+        return " ".join(of_methods.split())
 
 
 _SAID = {
-    "better": "the better source",
-    "not": "not the better source",
-    "level": "level with others",
-    "none": f"no more than the others enough for {BAR}",
+    "better": "better {costs} than {methods}",
+    "not": "not better {costs} than {methods}",
+    "level": "level {costs} with {methods}",
+    "none": f"no more than {{methods}} enough for {BAR} {{costs}}",
 }
 
 
@@ -98,11 +100,15 @@ def _verdict(comparison: Comparison, task: str, cost: str) -> _Verdict:
     if len(own) == 0 or not others:
         return _Verdict("")
     if not np.isfinite([*own, *np.concatenate(list(others.values()))]).any():
-        return _Verdict("none")
+        return _Verdict("none", list(others))
     if less := [source for source, costs in others.items() if max(costs) < min(own)]:
         return _Verdict("not", less)
-    level = [source for source, costs in others.items() if max(own) >= min(costs)]
-    return _Verdict("level", level) if level else _Verdict("better")
+    level = [
+        source
+        for source, costs in others.items()
+        if np.isfinite(costs).any() and max(own) >= min(costs)
+    ]
+    return _Verdict("level", level) if level else _Verdict("better", list(others))
 
 
 def _named(methods: Sequence[str]) -> str:
@@ -120,7 +126,8 @@ def _sentence(task: str, verdicts: dict[str, _Verdict]) -> str:
         costs = [cost for cost, verdict in verdicts.items() if verdict.kind == kind]
         named = {method for cost in costs for method in verdicts[cost].methods}
         methods = _named([source for source in SOURCES if source in named])
-        parts += [f"{words} by {_listed(costs)}" + f" ({methods})" * bool(named)] if costs else []
+        if costs:
+            parts.append(words.format(costs=f"by {_listed(costs)}", methods=methods))
     if not parts:
         return f"- **{task}**: not known, as `{REFERENCE}` or any other source is missing."
     return f"- **{task}**: reverse simulation is {'; '.join(parts)}."

@@ -215,6 +215,13 @@ def _depth(run: RunResult) -> float | None:
     return None if depth < 0 else depth
 
 
+_per_second = _ratio("interactions", _count("train_wall_s"), 1.0)
+
+
+def _speed(run: RunResult) -> float | None:
+    return _per_second(run) if run.interacts else None
+
+
 _RUNTIME: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
     ("backward action [ms]", _ratio("reverse_cpu_s", _solves, 1e3), ".2f"),
     ("forward action [ms]", _ratio("replay_cpu_s", _count("replays"), 1e3), ".3f"),
@@ -223,7 +230,7 @@ _RUNTIME: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
     ("converged", _ratio("converged", _solves, 1.0), ".3f"),
     ("iterations, median", _key("pushing_iterations_median"), ".0f"),
     ("90th percentile", _key("pushing_iterations_p90"), ".0f"),
-    ("interactions per s", _ratio("interactions", _count("train_wall_s"), 1.0), ".0f"),
+    ("interactions per s", _speed, ".0f"),
 )
 _DATA: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
     ("transitions [1000]", lambda run: thousands(run.summary.get("transitions")), "count"),

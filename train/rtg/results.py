@@ -35,6 +35,8 @@ def _draw_generation(plan: RunPlan, task: _core.Task) -> None:
     if report["replay_gaps"]:
         plots.replay_gap(plan.folder / "replay_gap.png", plan.title, report)
     nodes = report["nodes"]
+    if not nodes:  # only trees have any
+        return
     poses = np.array([node["poses"] for node in nodes]).reshape(-1, task.bodies, 3)
     depth = np.array([node["depth"] for node in nodes], float)
     picture = plan.folder / "coverage.png"
@@ -92,7 +94,12 @@ def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
     if plan.train:
         curve = learning_curve(plan.folder / "progress.csv")
         if curve:  # none of a run resumed with a budget below its first evaluation
-            plots.learning_curve(plan.folder / "learning_curve.png", plan.title, curve)
+            unit = (
+                "interactions"
+                if plan.config["train"]["interact"]
+                else "rounds of learning, as interactions"
+            )
+            plots.learning_curve(plan.folder / "learning_curve.png", plan.title, curve, unit)
     _draw_episode(plan, config)
     mode = ("in_process" if plan.in_process else "lcm") if plan.offline else None
     summary = run_folder.summary(plan.folder, plan.config, mode, measured)

@@ -41,6 +41,7 @@ class Training:
     """
 
     def __init__(self, config: _core.Config, folder: Path) -> None:
+        self.clock = Clock()
         values = json.loads(config.json)
         self.config, self.task, self.folder = config, config.task, folder
         self.settings = s = TrainSettings.from_config(values["train"])
@@ -63,7 +64,6 @@ class Training:
             **policy_file.identity(self.task, s),
         }
         self.starts = held_out_starts(self.task, s.eval_episodes, randomise=s.randomise)
-        self.clock = Clock()
         self.runs = 1  # that learn in this process
         self.place: dict[str, Any] = {}  # where it has last learned something
         self.tell: Callable[[str, int], None] = lambda state, done: None  # as NodeStatus.tick
