@@ -13,7 +13,8 @@
 
 namespace rtg {
 
-/// A state from which `depth` known actions lead to success.
+/// A state `depth` reverse steps before success. Each may miss the state it was found for by
+/// config.gap_tolerance.
 struct Node {
   Poses poses;
   int depth = 0;  // 0: the goal holds

@@ -8,7 +8,7 @@ namespace {
 
 using Settings = std::vector<MethodSetting>;
 
-/// A learner that no data shows a success.
+/// A learner whose data, if any, are random: it explores until it has found its way by itself.
 Settings unguided(Settings more) {
   const Settings exploration{{"train", "epsilon_start", "1.0"},
                              {"train", "epsilon_end", "0.05"},

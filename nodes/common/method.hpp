@@ -36,8 +36,8 @@ struct MethodSetting {
 ///
 ///   dqn           no offline data, targets of one network  [Mnih et al. 2015]
 ///   ddqn          the same with Double-Q targets  [van Hasselt et al. 2016]
-///   ddqn_random   as ddqn_rtg; the steps are those of random walks from starts  [App. D]
-///   ddqn_scatter  as ddqn_rtg; ... from goal states
+///   ddqn_random   unguided; the steps are those of random walks from starts  [App. D]
+///   ddqn_scatter  unguided; ... from goal states
 ///   ddqn_naive    as ddqn_rtg; reverse steps by kinematics alone
 ///   ddqn_forward  as ddqn_rtg; the steps are those of beam searches forwards from starts
 ///   ddqn_rtg      offline data of reverse trajectory generation

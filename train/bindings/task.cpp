@@ -65,13 +65,13 @@ nb::ndarray<nb::numpy, bool> successes(const Task& task, const StateArray& state
   return out.release({states.shape(0)});
 }
 
-/// One heading per state that seeks contact, row k from stream `index` + k of `seed`.
+/// One heading per state that seeks contact, row k from stream k of `seed`.
 nb::ndarray<nb::numpy, std::int64_t> contact_headings(const Task& task, const StateArray& states,
-                                                      std::uint64_t seed, std::uint64_t index) {
+                                                      std::uint64_t seed) {
   check_bodies(states, task.scene.size());
   OwnedArray<std::int64_t> out(states.shape(0));
   for (std::size_t row = 0; row < states.shape(0); ++row) {
-    Rng rng(seed, index + row);
+    Rng rng(seed, row);
     out.data[row] = contact_heading(task, state_at(states, row), rng);
   }
   return out.release({states.shape(0)});
@@ -178,8 +178,7 @@ void bind_task(nb::module_& module) {
       .def("observation", &observations, nb::arg("states"))
       .def("joints_reached", &joints_reached, nb::arg("states"))
       .def("centroids", &centroids, nb::arg("states"))
-      .def("contact_headings", &contact_headings, nb::arg("states"), nb::arg("seed"),
-           nb::arg("index") = 0)
+      .def("contact_headings", &contact_headings, nb::arg("states"), nb::arg("seed"))
       .def("goal_state", &goal_state, nb::arg("seed"), nb::arg("index") = 0)
       .def("succeeded", &successes, nb::arg("states"))
       .def("jittered_start", &start, nb::arg("amplitude"), nb::arg("seed"), nb::arg("index") = 0);

@@ -86,11 +86,9 @@ class Task:
         """Per joint, whether the goal speaks of its angle and it is as asked. [1, bodies, 3]"""
     def centroids(self, states: NDArray[np.float64]) -> list[NDArray[np.float64]]:
         """The mean centres that the goal speaks of. [1, bodies, 3] -> each [2]"""
-    def contact_headings(
-        self, states: NDArray[np.float64], seed: int, index: int = 0
-    ) -> NDArray[np.int64]:
+    def contact_headings(self, states: NDArray[np.float64], seed: int) -> NDArray[np.int64]:
         """Per state a heading towards a random movable object; that of row k is a function of the
-        state, `seed` and `index` + k. [N, bodies, 3] -> [N]"""
+        state, `seed` and k. [N, bodies, 3] -> [N]"""
     def goal_state(self, seed: int, index: int = 0) -> NDArray[np.float64] | None:
         """Sample number `index` of stream `seed` of the states where the goal holds, nearly at
         rest. [bodies, 3]; None if 1,000 attempts found none."""

@@ -14,7 +14,7 @@ PAPER = "train.preset=paper"
 # How learning is watched and ended: alike for all, so that their figures can be compared.
 _ALIKE = ("eval_every", "stop_at_success")
 # What each part of the search is worth: values that take it away, or stand at the other end of its
-# range. Keys that the configuration does not have are left out.
+# range.
 OF_BRANCHES: dict[str, tuple[Any, ...]] = {
     "branches": (0,),
     "near_branches": (0,),
@@ -62,10 +62,10 @@ def parts_of_search(search: dict[str, Any]) -> list[Settings]:
     """The settings that take each part of it away, one by one, but for those that it is without."""
     tried = OF_BRANCHES | (OF_TREES if search["generator"] in _TREES else {})
     return [
-        (f"search.{key}={value if isinstance(value, str) else json.dumps(value)}",)
+        (f"search.{key}={json.dumps(value)}",)
         for key, values in tried.items()
         for value in values
-        if key in search and search[key] != value
+        if search[key] != value
     ]
 
 
