@@ -34,7 +34,7 @@ struct SearchConfig {
   int per_layout = 6;           // nodes of a beam that differ in the robot only, at most
   int root_draws = 4;           // goal states drawn per root kept
   int patience = 4;             // layers without a better node that end a tree
-  double target_jitter = 0.25;  // a tree aims at the start with objects moved by up to ± this [m]
+  double target_jitter = 0.25;  // starts that trees aim at, and others begin at: objects ± this [m]
   bool randomise = false;       // ... by up to ± task.randomisation at least
 
   template <class Visitor>
@@ -55,7 +55,8 @@ struct SearchConfig {
     v.integer("per_layout", per_layout, 1, 100000, "nodes of a beam with objects alike");
     v.integer("root_draws", root_draws, 1, 1000, "goal states drawn per root kept");
     v.integer("patience", patience, 1, 1000, "layers without a better node that end a tree");
-    v.number("target_jitter", target_jitter, 0.0, 10.0, "of the start layout a tree aims at [m]");
+    v.number("target_jitter", target_jitter, 0.0, 10.0,
+             "of the starts that trees aim at, searches begin at [m]");
     v.flag("randomise", randomise, "starts lie all over task.randomisation");
   }
 };

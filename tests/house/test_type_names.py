@@ -12,7 +12,8 @@ from layering import ROOT, sources
 # Our formatter begins nothing but a namespace and what is directly in one at the first column.
 SCOPE = re.compile(r"^(?:namespace (?P<opened>[\w:]*) ?\{|\}  // namespace ?(?P<closed>[\w:]*))$")
 TYPE = re.compile(
-    r"^(?:struct|class|enum(?: class)?|union) (?P<name>\w+)(?: final)?(?: : [^;]*)? \{"
+    r"^(?:struct|class|enum(?: class)?|union) (?:alignas\([^)]*\) |\[\[.*?\]\] )*"
+    r"(?P<name>\w+)(?: final)?(?: : [^;]*)? \{"
 )
 ALIAS = re.compile(r"^using (?P<name>\w+) =")
 
@@ -51,7 +52,9 @@ def test_no_two_types_share_a_name() -> None:
     assert doubles(files) == []
 
 
-@pytest.mark.parametrize("kind", ["struct Twin {", "class Twin {", "enum class Twin { kOne };"])
+@pytest.mark.parametrize(
+    "kind", ["struct Twin {", "class [[nodiscard]] alignas(64) Twin {", "enum class Twin { kOne };"]
+)
 def test_a_second_type_of_one_name_is_found(kind: str) -> None:
     body = f"namespace rtg {{\n\n{kind}\n\n}}  // namespace rtg\n"
     assert doubles({"a.hpp": body, "b.cpp": body}) == ["rtg::Twin: a.hpp, b.cpp"]

@@ -55,7 +55,9 @@ shortest plan of a tree from the start region; **replay gap**: how far the repla
 ends from where it began, over all candidates replayed; **rank correlation of Q**: Spearman's, of
 the learner's final Q with the simulator over all headings of a stored state, mean over some hundred
 states; **error**: root mean square of the difference; **spread**: standard deviation of the
-simulator's values over the headings of a state, mean over the states."""
+simulator's values over the headings of a state, mean over the states. States are those of a run's
+own data and values beyond a success what its own Q says, so that these three judge data of one
+method, not methods against each other."""
 
 
 def _listed(found: Iterable[str]) -> str:
