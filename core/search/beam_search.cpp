@@ -7,6 +7,7 @@
 
 #include "core/search/beam_selection.hpp"
 #include "core/search/goal_roots.hpp"
+#include "core/search/plan.hpp"
 #include "core/search/start_distance.hpp"
 
 namespace rtg {
@@ -28,7 +29,7 @@ void BeamSearch::plant(const ReplayBatch& replay, SearchStats& stats) {
     }
     if (!seen_.insert(metric_.cell(rest)).second) continue;
     beam_.push_back(static_cast<int>(nodes_.size()));
-    nodes_.push_back({std::move(rest)});
+    nodes_.push_back({.poses = std::move(rest)});
   }
 }
 
@@ -38,7 +39,7 @@ std::vector<Transition> BeamSearch::grow(const SolveBatch& solve, const ReplayBa
   found = replay_predecessors(std::move(found), replay);
   for (const Predecessor& p : found) stats.gaps.push_back(static_cast<float>(p.gap));
   std::erase_if(found, [this](const Predecessor& p) { return p.miss > config_.gap_tolerance; });
-  return keep(std::move(found));
+  return keep(std::move(found), replay);
 }
 
 /// Predecessors of every node of the beam by every action; their parents are nodes.
@@ -82,29 +83,55 @@ std::vector<Predecessor> BeamSearch::worth_replaying(std::vector<Predecessor> al
   return out;
 }
 
-/// Makes the best of the steps the next beam; these, and others drawn at random, as transitions.
-std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed) {
+/// The best steps, `places` times the beam's breadth at most, in order.
+std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int places,
+                                             std::unordered_set<std::uint64_t>& seen) {
   std::vector<BeamEntry> entries;
-  for (const Predecessor& p : replayed)
+  for (const Predecessor& p : steps)
     entries.push_back({p.left, metric_.cell(p.start), metric_.layout_cell(p.start), p.moved > 0});
-  const std::vector<std::size_t> chosen = select_beam(entries, config_, rng_, seen_);
-  std::vector<int> beam;
+  SearchConfig wide = config_;
+  wide.breadth *= places;
+  wide.per_layout *= places;
+  std::vector<Predecessor> best;
+  for (const std::size_t k : select_beam(entries, wide, rng_, seen))
+    best.push_back(std::move(steps[k]));
+  return best;
+}
+
+/// The actions that lead from a node to success.
+std::vector<int> BeamSearch::plan(int k) const {
+  std::vector<int> actions;
+  for (; node(k).action >= 0; k = node(k).parent) actions.push_back(node(k).action);
+  return actions;
+}
+
+std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed,
+                                         const ReplayBatch& replay) {
+  std::unordered_set<std::uint64_t> seen = seen_;
+  const std::vector<Predecessor> tried = best_of(std::move(replayed), config_.followed, seen);
+  std::vector<Plan> plans;
+  for (const Predecessor& p : tried) plans.push_back({p.end, plan(p.parent)});
+  const auto outcomes = carry_out(task_, plans, replay);
+  std::vector<Predecessor> good;
   std::vector<Transition> steps;
-  const auto store = [&](const Predecessor& p) {
-    if (!succeeded(task_, p.start))
-      steps.push_back({p.start, p.action, p.end, succeeded(task_, p.end), Source::kTree});
-  };
-  for (const std::size_t k : chosen) {
-    const Predecessor& p = replayed[k];
-    store(p);
-    const int depth = succeeded(task_, p.start) ? 0
-                      : succeeded(task_, p.end) ? 1
-                                                : node(p.parent).depth + 1;
-    beam.push_back(static_cast<int>(nodes_.size()));
-    nodes_.push_back({p.start, depth});
+  for (std::size_t k = 0; k < tried.size(); ++k) {
+    const Predecessor& p = tried[k];
+    if (!outcomes[k]) continue;
+    good.push_back(p);
+    good.back().depth = 1 + static_cast<int>(outcomes[k]->size());
+    if (succeeded(task_, p.start)) continue;
+    steps.push_back({p.start, p.action, p.end, outcomes[k]->empty(), Source::kTree});
+    if (rng_.uniform(0.0, 1.0) < config_.plans)
+      steps.insert(steps.end(), outcomes[k]->begin(), outcomes[k]->end());
   }
-  beam_ = std::move(beam);
-  for (const std::size_t k : others_of(chosen, replayed.size(), config_, rng_)) store(replayed[k]);
+  beam_.clear();
+  for (Predecessor& p : best_of(std::move(good), 1, seen_)) {
+    beam_.push_back(static_cast<int>(nodes_.size()));
+    if (succeeded(task_, p.start))
+      nodes_.push_back({.poses = std::move(p.start)});
+    else
+      nodes_.push_back({std::move(p.start), p.action, p.parent, p.depth});
+  }
   return steps;
 }
 

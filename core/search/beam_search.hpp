@@ -13,11 +13,12 @@
 
 namespace rtg {
 
-/// A state `depth` reverse steps before success. Each may miss the state it was found for by
-/// config.gap_tolerance.
+/// A state from which `action` and then the actions of the node `parent` lead to success.
 struct Node {
   Poses poses;
-  int depth = 0;  // 0: the goal holds
+  int action = -1;  // -1: the goal holds
+  int parent = -1;  // index of a node
+  int depth = 0;    // actions until success
 };
 
 /// One tree of reverse steps, grown layer by layer from goal states towards a layout (Algorithm 1).
@@ -30,10 +31,10 @@ class BeamSearch {
   void plant(const ReplayBatch& replay, SearchStats& stats);
 
   /// One layer: solves for every action of every node of the beam, replays the best of what
-  /// converged, ranks what replays within the gap tolerance and keeps the best of it as the next
-  /// beam. The steps into it come back, and config.others times as many of the others, drawn at
-  /// random: these lead to about a node as well, from which known steps lead on. None begins where
-  /// the goal holds, as that ends an episode.
+  /// converged and ranks what replays within the gap tolerance. The best config.followed steps per
+  /// place in the beam go on with the plan of the node that they were found for; those that come to
+  /// success by it come back, of the share config.plans with all that follows them, and the best of
+  /// them are the next beam. None begins where the goal holds, as that ends an episode.
   std::vector<Transition> grow(const SolveBatch& solve, const ReplayBatch& replay,
                                SearchStats& stats);
 
@@ -46,7 +47,10 @@ class BeamSearch {
  private:
   std::vector<Predecessor> reverse_layer(const SolveBatch& solve, SearchStats& stats) const;
   std::vector<Predecessor> worth_replaying(std::vector<Predecessor> all) const;
-  std::vector<Transition> keep(std::vector<Predecessor> replayed);
+  std::vector<Transition> keep(std::vector<Predecessor> replayed, const ReplayBatch& replay);
+  std::vector<Predecessor> best_of(std::vector<Predecessor> steps, int places,
+                                   std::unordered_set<std::uint64_t>& seen);
+  std::vector<int> plan(int k) const;
   double distance_left(const Poses& poses) const;
   const Node& node(int k) const { return nodes_[static_cast<std::size_t>(k)]; }
 

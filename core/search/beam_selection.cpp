@@ -6,8 +6,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include "core/math/draws.hpp"
-
 namespace rtg {
 namespace {
 
@@ -66,17 +64,6 @@ std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const S
   });
   for (const std::size_t k : beam) seen.insert(entries[k].cell);
   return beam;
-}
-
-std::vector<std::size_t> others_of(std::span<const std::size_t> chosen, std::size_t count,
-                                   const SearchConfig& config, Rng& rng) {
-  std::vector<bool> is_chosen(count, false);
-  for (const std::size_t k : chosen) is_chosen[k] = true;
-  std::vector<std::size_t> rest;
-  for (std::size_t k = 0; k < count; ++k)
-    if (!is_chosen[k]) rest.push_back(k);
-  const double wanted = config.others * static_cast<double>(chosen.size());
-  return drawn(std::move(rest), static_cast<int>(std::lround(wanted)), rng);
 }
 
 }  // namespace rtg

@@ -25,8 +25,4 @@ struct BeamEntry {
 std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
                                      Rng& rng, std::unordered_set<std::uint64_t>& seen);
 
-/// Draws config.others indices per chosen one among the others of the first `count`.
-std::vector<std::size_t> others_of(std::span<const std::size_t> chosen, std::size_t count,
-                                   const SearchConfig& config, Rng& rng);
-
 }  // namespace rtg

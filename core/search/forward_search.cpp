@@ -39,20 +39,17 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
   return keep(std::move(found), entries);
 }
 
-/// Makes the best of the steps the next beam; these, and others drawn at random.
+/// Makes the best of the steps the next beam.
 std::vector<Transition> ForwardSearch::keep(std::vector<Node> found,
                                             std::span<const BeamEntry> entries) {
-  const std::vector<std::size_t> chosen = select_beam(entries, config_, rng_, seen_);
   std::vector<Transition> steps;
   beam_.clear();
-  for (const std::size_t k : chosen) {
+  for (const std::size_t k : select_beam(entries, config_, rng_, seen_)) {
     if (found[k].step.success && solved_ == 0) solved_ = nodes_.size();
     steps.push_back(found[k].step);
     beam_.push_back(nodes_.size());
-    nodes_.push_back(found[k]);
+    nodes_.push_back(std::move(found[k]));
   }
-  for (const std::size_t k : others_of(chosen, found.size(), config_, rng_))
-    steps.push_back(std::move(found[k].step));
   return steps;
 }
 

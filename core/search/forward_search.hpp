@@ -22,8 +22,7 @@ class ForwardSearch {
   ForwardSearch(const Task& task, const SearchConfig& config, Poses start, std::uint64_t seed);
 
   /// One action more: replays every heading of every state of the beam and keeps the best. The
-  /// steps that were kept come back, and config.others times as many of the others, drawn at
-  /// random; none if the search has come to its end.
+  /// steps that were kept come back; none if the search has come to its end.
   std::vector<Transition> grow(const ReplayBatch& replay);
 
   /// Answers a push that the last layer replayed.

@@ -22,9 +22,9 @@ struct GenerationSeams {
 };
 
 /// The whole generation, Algorithm 1: trees of reverse steps grow from goal states to the start
-/// layout; every step that a beam keeps is stored as what the forward simulator makes of it, with
-/// its branches. With another config.generator the steps come from elsewhere (forward_search.hpp,
-/// walks.hpp). A pure function of (task, config, seed) and the seams.
+/// layout; every step whose plan the forward simulator carries out to success is stored as what it
+/// makes of it, with its branches. With another config.generator the steps come from elsewhere
+/// (forward_search.hpp, walks.hpp). A pure function of (task, config, seed) and the seams.
 GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams);
 

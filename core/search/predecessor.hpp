@@ -21,6 +21,7 @@ struct Predecessor {
   double gap = 0.0;   // replay gap [m]; 0 before the replay
   double miss = 0.0;  // the same of the body that is off most [m]
   double left = 0.0;  // start_distance() of `start`, filled in by the search
+  int depth = 0;      // actions until success, filled in by the search
 };
 
 /// Displacement from which on an object counts as moved [m].

@@ -24,7 +24,8 @@ struct SearchConfig {
   int near_branches = 1;        // of them up to near_headings away from the step's own
   int near_headings = 3;        // ... either way
   int breadth = 33;             // B, nodes kept per layer
-  double others = 2.0;          // steps stored per kept one beside it, of those that replay
+  int followed = 3;             // steps per place in the beam whose plans are carried out
+  double plans = 0.15;          // share of the stored steps with all that follows them
   int depth = 40;               // D, layers per tree at most
   double contact_quota = 0.4;   // share of the beam reserved for nodes whose step moved an object
   double random_share = 0.15;   // share of the beam drawn at random among the rest
@@ -45,7 +46,8 @@ struct SearchConfig {
     v.integer("near_branches", near_branches, 0, 359, "of them near the step's own");
     v.integer("near_headings", near_headings, 1, 180, "how many headings away, at most");
     v.integer("breadth", breadth, 1, 100000, "nodes kept per layer");
-    v.number("others", others, 0.0, 1e6, "other steps stored per kept one");
+    v.integer("followed", followed, 1, 1000, "steps tried to the end per place in the beam");
+    v.number("plans", plans, 0.0, 1.0, "share of steps stored with all that follows them");
     v.integer("depth", depth, 1, 1000, "layers per tree at most");
     v.number("contact_quota", contact_quota, 0.0, 1.0, "share of the beam that moved an object");
     v.number("random_share", random_share, 0.0, 1.0, "share of the beam drawn at random");

@@ -56,9 +56,9 @@ def test_the_loader_takes_every_part_of_the_search_away():
 
 
 def test_what_the_search_is_without_is_not_taken_away():
-    search = effective_config.values(FILE, [Override("", "search.others=0")])["search"]
+    search = effective_config.values(FILE, [Override("", "search.plans=0")])["search"]
     tried = {words[0] for words in parts_of_search(search)}
-    assert "search.others=1000" in tried and "search.others=0" not in tried
+    assert "search.plans=1" in tried and "search.plans=0" not in tried
 
 
 def test_only_trees_lose_parts_of_trees_and_only_data_any():

@@ -21,7 +21,8 @@ OF_BRANCHES: dict[str, tuple[Any, ...]] = {
     "near_headings": (24,),  # of 48, either way: near is anywhere
 }
 OF_TREES: dict[str, tuple[Any, ...]] = {
-    "others": (0, 1000),  # the kept steps alone, all that replay
+    "followed": (1,),
+    "plans": (0, 1),
     "contact_quota": (0,),
     "random_share": (0,),
     "gap_tolerance": (0.05, 100),  # hardly any miss, any miss

@@ -21,7 +21,10 @@ struct BeamSearchTest : ::testing::Test, testing::DraggingWorld {
   SearchStats stats;
   StateMetric metric{task.scene};
 
-  BeamSearchTest() { config.breadth = 6; }
+  BeamSearchTest() {
+    config.breadth = 6;
+    config.plans = 0.0;
+  }
 
   BeamSearch planted(std::uint64_t seed = 1) {
     BeamSearch search(task, config, task.start, seed);
@@ -91,7 +94,7 @@ TEST_F(BeamSearchTest, ReturnsTrueStepsThatLeadToAboutANodeOfTheBeam) {
   for (int layer = 0; layer < 3; ++layer) {
     const std::vector<int> parents(search.beam().begin(), search.beam().end());
     const std::vector<Transition> steps = search.grow(solve, replay, stats);
-    EXPECT_LE(steps.size(), 18U) << "six that are kept and twice as many others";
+    EXPECT_LE(steps.size(), 18U) << "three per place in the beam";
     returned += steps.size();
     for (const Transition& t : steps) {
       EXPECT_EQ(t.next, pushed({t.poses, t.action}));
@@ -112,6 +115,58 @@ TEST_F(BeamSearchTest, ReturnsTrueStepsThatLeadToAboutANodeOfTheBeam) {
     }
   }
   EXPECT_GT(returned, 20U);
+}
+
+/// Lengths of the plans that the steps are cut into by success; each goes on where it stands.
+std::vector<int> plans_of(const Task& task, const std::vector<Transition>& steps) {
+  std::vector<int> lengths;
+  for (std::size_t k = 0, first = 0; k < steps.size(); ++k) {
+    if (k > first) {
+      EXPECT_EQ(steps[k].poses, steps[k - 1].next);
+    }
+    EXPECT_EQ(steps[k].success, succeeded(task, steps[k].next));
+    if (!steps[k].success) continue;
+    lengths.push_back(static_cast<int>(k - first) + 1);
+    first = k + 1;
+  }
+  EXPECT_TRUE(steps.empty() || steps.back().success);
+  return lengths;
+}
+
+TEST_F(BeamSearchTest, StoresStepsWithWhatFollowsThemToSuccess) {
+  over = 0.05;  // so that no plan goes as it was found
+  config.plans = 1.0;
+  BeamSearch search = planted();
+  int longest = 0;
+  for (int layer = 1; layer <= 5; ++layer) {
+    const std::vector<int> lengths =
+        plans_of(task, search.grow(solve, counted(replay, stats), stats));
+    ASSERT_FALSE(lengths.empty());
+    EXPECT_LE(std::ranges::max(lengths), layer);
+    longest = std::max(longest, std::ranges::max(lengths));
+    for (const int k : search.beam()) {
+      const int depth = search.nodes()[static_cast<std::size_t>(k)].depth;
+      EXPECT_TRUE(depth == 0 || std::ranges::count(lengths, depth) > 0);
+    }
+  }
+  EXPECT_GE(longest, 4);
+}
+
+TEST_F(BeamSearchTest, AStepWhosePlanDoesNotSucceedIsNeitherKeptNorStored) {
+  BeamSearch search = planted();
+  search.grow(solve, replay, stats);
+  // From now on no push brings about what a plan needs.
+  bool first = true;
+  const ReplayBatch failing = [&](std::span<const ReplayJob> jobs) {
+    std::vector<ReplayResult> results = replay(jobs);
+    if (!first)
+      for (ReplayResult& r : results) r.end = moved(r.end, 1, {5.0, 0.0});
+    first = false;
+    return results;
+  };
+  const std::vector<Transition> steps = search.grow(solve, failing, stats);
+  for (const Transition& t : steps) EXPECT_TRUE(t.success) << "nothing had to follow";
+  for (const int k : search.beam()) EXPECT_LE(search.nodes()[static_cast<std::size_t>(k)].depth, 1);
 }
 
 TEST_F(BeamSearchTest, DepthIsThatOfTheLayerUnlessTheGoalHoldsBeforeOrAfterTheStep) {
@@ -184,7 +239,7 @@ TEST_F(WorthReplayingTest, OfAllStartsTheBestPerNodeAndPerSolveAreReplayed) {
     const std::vector<int> parents(search.beam().begin(), search.beam().end());
     std::vector<ReplayJob> pushes;
     const ReplayBatch noting = [&](std::span<const ReplayJob> jobs) {
-      pushes.assign(jobs.begin(), jobs.end());
+      if (pushes.empty()) pushes.assign(jobs.begin(), jobs.end());  // later ones are of plans
       return replay(jobs);
     };
     search.grow(solve, noting, stats);

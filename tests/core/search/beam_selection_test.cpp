@@ -185,25 +185,5 @@ TEST(BeamSelection, DoesNotDependOnTheOrderInWhichResultsArrived) {
   }
 }
 
-TEST(OthersOf, AreSoManyPerChosenOneAndAnyOfTheRest) {
-  SearchConfig c;
-  c.others = 1.5;
-  Rng rng(5);
-  std::map<std::size_t, int> drawn;
-  for (int trial = 0; trial < 600; ++trial) {
-    const Indices found = others_of(Indices{7, 2}, 9, c, rng);
-    ASSERT_EQ(found.size(), 3U);
-    ASSERT_EQ(std::set(found.begin(), found.end()).size(), 3U);
-    for (const std::size_t k : found) ++drawn[k];
-  }
-  EXPECT_EQ(drawn.size(), 7U);
-  for (const auto& [k, count] : drawn) {
-    EXPECT_TRUE(k < 9 && k != 2 && k != 7) << k;
-    EXPECT_NEAR(count, 600 * 3 / 7, 60) << k;  // four standard deviations
-  }
-  EXPECT_EQ(others_of(Indices{0, 1}, 4, c, rng).size(), 2U) << "as many as there are";
-  EXPECT_EQ(others_of(Indices{}, 4, c, rng), Indices{});
-}
-
 }  // namespace
 }  // namespace rtg

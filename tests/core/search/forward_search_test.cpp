@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <set>
-#include <span>
 #include <stdexcept>
 
 #include "tests/support/art_manip.hpp"
@@ -24,7 +22,6 @@ struct ForwardSearchTest : ::testing::Test, testing::DraggingWorld {
   ForwardSearchTest() {
     config.breadth = 12;
     config.depth = 20;
-    config.others = 0;
   }
 };
 
@@ -45,23 +42,6 @@ TEST_F(ForwardSearchTest, ReplaysEveryHeadingOfEveryStateOfItsBeam) {
     EXPECT_EQ(beam.size(), 12U);
   }
   EXPECT_EQ(stats.replays, 48 + 2 * 12 * 48);
-}
-
-TEST_F(ForwardSearchTest, GivesOtherStepsOfTheLayerAsWell) {
-  ForwardSearch alone(task, config, start, 1);
-  const std::vector<Transition> kept = alone.grow(replay);
-  config.others = 1.5;
-  ForwardSearch search(task, config, start, 1);
-  const std::vector<Transition> steps = search.grow(replay);
-  ASSERT_EQ(steps.size(), 12U + 18U);
-  EXPECT_TRUE(std::ranges::equal(kept, std::span(steps).first(12)));
-  std::set<int> headings;
-  for (const Transition& t : steps) {
-    headings.insert(t.action);
-    EXPECT_EQ(t.poses, start);
-    EXPECT_EQ(t.next, pushed({t.poses, t.action}));
-  }
-  EXPECT_EQ(headings.size(), steps.size());
 }
 
 TEST_F(ForwardSearchTest, KnowsTheOutcomesOfItsLastLayer) {
@@ -124,7 +104,6 @@ TEST(GenerateForward, StoresWhatItsBeamsKeepWithBranches) {
   config.generator = Generator::kForward;
   config.transitions = 1000;
   config.breadth = 10;
-  config.others = 0;
   const auto run = testing::run_naive(testing::gathering(), config, 3, 1);
   ASSERT_EQ(run.stored.size(), 1000U);
   const auto branches = std::ranges::count(run.stored, Source::kBranch, &Transition::source);

@@ -110,7 +110,8 @@ TEST(Generate, EachTreeGrowsFromGoalStatesToAStartOfItsOwn) {
   SearchConfig config = small();
   config.transitions = 300;
   config.branches = 0;
-  config.others = 0.0;
+  config.followed = 1;
+  config.plans = 0.0;
   config.depth = 24;
   config.target_jitter = 1.5;
   const GenerationReport report = run_naive(task, config, 7, 1).report;

@@ -1,0 +1,44 @@
+#include "core/search/plan.hpp"
+
+#include <utility>
+
+namespace rtg {
+
+std::vector<std::optional<std::vector<Transition>>> carry_out(const Task& task,
+                                                              std::span<const Plan> plans,
+                                                              const ReplayBatch& replay) {
+  std::vector<std::optional<std::vector<Transition>>> done(plans.size());
+  std::vector<std::vector<Transition>> steps(plans.size());
+  std::vector<std::size_t> going;  // plans that have neither succeeded nor failed
+  for (std::size_t k = 0; k < plans.size(); ++k) {
+    if (succeeded(task, plans[k].start))
+      done[k].emplace();
+    else
+      going.push_back(k);
+  }
+  for (std::size_t step = 0; !going.empty(); ++step) {
+    std::erase_if(going, [&](std::size_t k) { return plans[k].actions.size() == step; });
+    std::vector<ReplayJob> pushes;
+    for (const std::size_t k : going) {
+      const Poses& state = steps[k].empty() ? plans[k].start : steps[k].back().next;
+      pushes.push_back({state, plans[k].actions[step]});
+    }
+    const std::vector<ReplayResult> results = replay(pushes);
+    std::vector<std::size_t> left;
+    for (std::size_t j = 0; j < going.size(); ++j) {
+      const std::size_t k = going[j];
+      if (!results[j].ok) continue;
+      const bool success = succeeded(task, results[j].end);
+      steps[k].push_back(
+          {pushes[j].start, pushes[j].action, results[j].end, success, Source::kTree});
+      if (success)
+        done[k] = std::move(steps[k]);
+      else
+        left.push_back(k);
+    }
+    going = std::move(left);
+  }
+  return done;
+}
+
+}  // namespace rtg
