@@ -48,10 +48,10 @@ class _Recording:
 
 
 def generation_defects(plan: RunPlan) -> list[str]:
-    """What went wrong in a generation that has come to its end, in words."""
+    """What went wrong in a generation that has come to its end, in words. None without one."""
     report = run_folder.read_json(plan.report_file)
-    given_up, found = report.get("units_given_up", 0), report["transitions"]
     wanted = plan.config["search"]["transitions"]
+    given_up, found = report.get("units_given_up", 0), report.get("transitions", wanted)
     defects = [f"the coordinator gave up {given_up} units of work"] if given_up else []
     if found < wanted:
         what = plan.config["search"]["generator"]
