@@ -25,7 +25,7 @@ struct Progress {
 /// A node of the stored search graph, for coverage pictures.
 struct ReportNode {
   Poses poses;
-  int depth = 0;  // reverse steps to success
+  int depth = 0;  // actions until success
   int tree = 0;   // number of the tree
 };
 

@@ -1,7 +1,7 @@
 from samples import train_settings
 
 
-def test_the_preset_paper_is_table_2_with_the_defaults_of_sb3() -> None:
+def test_the_preset_paper_is_table_2_and_copies_its_target_each_1000_interactions() -> None:
     paper = train_settings(preset="paper")
     table_2 = (paper.interactions, paper.buffer, paper.batch, paper.learning_rate)
     assert table_2 == (350_000, 1_500_000, 512, 5e-5)

@@ -190,7 +190,7 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
             )
             axis.set_title(task.names[body])
         bar = figure.colorbar(ScalarMappable(dots.norm, dots.cmap), ax=axes, shrink=0.85, pad=0.02)
-        bar.set_label("reverse steps from success, over all trees")
+        bar.set_label("actions until success, over all trees")
         bar.locator = MaxNLocator(integer=True)
         figure.supxlabel(
             "dots: centres of the object in the search's nodes; outlines: start layout; "
