@@ -7,8 +7,8 @@
 #include "core/search/beam_search.hpp"
 #include "core/search/forward_search.hpp"
 #include "core/search/generation.hpp"
-#include "core/search/thread_pool.hpp"
 #include "core/search/walks.hpp"
+#include "core/threads/cpu_clock.hpp"
 
 namespace rtg {
 namespace {

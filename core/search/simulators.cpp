@@ -6,7 +6,7 @@
 #include "core/forward/box2d_simulator.hpp"
 #include "core/reverse/naive_reverse.hpp"
 #include "core/reverse/reverse_simulator.hpp"
-#include "core/search/thread_pool.hpp"
+#include "core/search/batches_on_threads.hpp"
 
 namespace rtg {
 

@@ -1,20 +1,11 @@
 #include "nodes/common/node_status.hpp"
 
-#include <time.h>
-
 #include <rtg_msgs/node_status_t.hpp>
 #include <rtg_msgs/search_progress_t.hpp>
 
+#include "core/threads/cpu_clock.hpp"
+
 namespace rtg {
-namespace {
-
-double process_cpu_s() {
-  timespec used{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
-  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
-}
-
-}  // namespace
 
 void NodeStatus::publish(const std::string& state, std::int64_t done,
                          const std::map<std::string, long>& counts) {

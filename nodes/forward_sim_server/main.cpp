@@ -4,8 +4,8 @@
 // it leaves. CONFIG.yaml is the resolved configuration of the run; as many units are answered at
 // once as the run has workers, which wait for the replays meanwhile.
 
+#include "core/search/batches_on_threads.hpp"
 #include "core/search/simulators.hpp"
-#include "core/search/thread_pool.hpp"
 #include "nodes/common/program.hpp"
 #include "nodes/common/rtg_config.hpp"
 #include "nodes/common/serve.hpp"

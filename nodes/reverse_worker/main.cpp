@@ -3,8 +3,8 @@
 // Solves reverse jobs for the coordinator of the run named RUN until it leaves. CONFIG.yaml is the
 // resolved configuration of the run; NUMBER tells workers apart for people.
 
+#include "core/search/batches_on_threads.hpp"
 #include "core/search/simulators.hpp"
-#include "core/search/thread_pool.hpp"
 #include "nodes/common/program.hpp"
 #include "nodes/common/rtg_config.hpp"
 #include "nodes/common/serve.hpp"

@@ -5,9 +5,9 @@
 
 #include <chrono>
 
+#include "core/search/batches_on_threads.hpp"
 #include "core/search/beam_search.hpp"
 #include "core/search/simulators.hpp"
-#include "core/search/thread_pool.hpp"
 #include "tests/bench/gathering_states.hpp"
 
 namespace rtg {

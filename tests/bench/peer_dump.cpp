@@ -18,7 +18,7 @@
 
 #include "core/reverse/candidate.hpp"
 #include "core/reverse/warm_start.hpp"
-#include "core/search/thread_pool.hpp"
+#include "core/threads/cpu_clock.hpp"
 #include "tests/bench/arguments.hpp"
 #include "tests/bench/corpus.hpp"
 

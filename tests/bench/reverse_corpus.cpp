@@ -16,7 +16,7 @@
 
 #include "core/math/quantile.hpp"
 #include "core/reverse/reverse_simulator.hpp"
-#include "core/search/thread_pool.hpp"
+#include "core/threads/cpu_clock.hpp"
 #include "tests/bench/arguments.hpp"
 #include "tests/bench/corpus.hpp"
 

@@ -16,6 +16,7 @@ MAY_INCLUDE = {
     "core/reverse": {"core/math", "core/world", "core/energy", "core/reverse"},
     "core/tasks": {"core/math", "core/world", "core/tasks"},
     "core/search": {"core"},
+    "core/threads": {"core/threads"},
     "nodes": {"core", "nodes", "rtg_msgs"},
     "msgs": {"rtg_msgs"},
     # The bindings take the resolved config, so that C++ and Python never read YAML apart.
@@ -35,7 +36,7 @@ ONLY_IN = {
     r"benchmark/.*": r"tests/bench/.*\.(cpp|hpp)",
     r"Eigen/.*|unsupported/Eigen/.*": r"(core|nodes|train|tests)/.*",
     # POSIX belongs to the processes.
-    r"(sys|netinet|arpa|net)/.*|unistd\.h|pthread\.h": r"(nodes|tests|train)/.*|core/search/.*",
+    r"(sys|netinet|arpa|net)/.*|unistd\.h|pthread\.h": r"(nodes|tests|train)/.*",
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)

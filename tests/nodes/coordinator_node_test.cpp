@@ -8,7 +8,7 @@
 #include <rtg_msgs/transition_batch_t.hpp>
 #include <thread>
 
-#include "core/search/thread_pool.hpp"
+#include "core/search/batches_on_threads.hpp"
 #include "nodes/common/worker_node.hpp"
 #include "tests/support/gathering.hpp"
 #include "tests/support/generation_run.hpp"

@@ -4,9 +4,9 @@
 
 #include <utility>
 
+#include "core/search/batches_on_threads.hpp"
 #include "core/search/forward_search.hpp"
 #include "core/search/simulators.hpp"
-#include "core/search/thread_pool.hpp"
 #include "nodes/common/rtg_config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"

@@ -1,16 +1,12 @@
-#include "core/search/thread_pool.hpp"
-
-#include <time.h>
+#include "core/search/batches_on_threads.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
-#include <mutex>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "core/math/lanes.hpp"
+#include "core/threads/cpu_clock.hpp"
+#include "core/threads/parallel_for.hpp"
 
 namespace rtg {
 namespace {
@@ -34,63 +30,7 @@ std::vector<std::size_t> slice_ends(std::size_t jobs, int threads) {
   return ends;
 }
 
-/// The exception of the least index among those thrown.
-class FirstError {
- public:
-  void record(std::size_t index, std::exception_ptr error) {
-    const std::lock_guard lock(mutex_);
-    if (error_ && index_ <= index) return;
-    index_ = index;
-    error_ = std::move(error);
-  }
-  void rethrow() const {
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  std::mutex mutex_;
-  std::size_t index_ = 0;
-  std::exception_ptr error_;
-};
-
-double seconds(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 }  // namespace
-
-void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next{0};
-  std::atomic<bool> stop{false};
-  FirstError error;
-  const auto run = [&] {
-    // Indices are handed out in order and none is dropped once handed out, so the least failing one
-    // has been begun.
-    while (!stop) {
-      const std::size_t k = next++;
-      if (k >= count) return;
-      try {
-        work(k);
-      } catch (...) {
-        error.record(k, std::current_exception());
-        stop = true;
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> helpers;
-    const std::size_t wanted = std::min<std::size_t>(count, std::max(threads, 1));
-    for (std::size_t k = 1; k < wanted; ++k) helpers.emplace_back(run);
-    run();
-  }
-  error.rethrow();
-}
-
-double thread_cpu_s() { return seconds(CLOCK_THREAD_CPUTIME_ID); }
-
-double process_cpu_s() { return seconds(CLOCK_PROCESS_CPUTIME_ID); }
 
 SolveBatch solve_on_threads(SolveBatch solve, int threads) {
   return [solve = std::move(solve), threads](std::span<const ReverseJob> jobs) {

@@ -1,68 +1,17 @@
-#include "core/search/thread_pool.hpp"
+#include "core/search/batches_on_threads.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <mutex>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "core/math/lanes.hpp"
 
 namespace rtg {
 namespace {
-
-TEST(ParallelFor, CallsEveryIndexOnce) {
-  for (int threads = 1; threads <= 8; ++threads)
-    for (const std::size_t count : {0U, 1U, 3U, 8U, 1000U}) {
-      std::vector<std::atomic<int>> calls(count);
-      parallel_for(count, threads, [&](std::size_t k) { ++calls.at(k); });
-      for (const std::atomic<int>& c : calls) ASSERT_EQ(c, 1);
-    }
-}
-
-TEST(ParallelFor, OneThreadIsTheCaller) {
-  std::vector<std::size_t> order;  // not guarded
-  parallel_for(100, 1, [&](std::size_t k) { order.push_back(k); });
-  ASSERT_EQ(order.size(), 100U);
-  for (std::size_t k = 0; k < order.size(); ++k) EXPECT_EQ(order[k], k);
-}
-
-/// What parallel_for throws if the calls from `first` on throw their index.
-std::string thrown(std::size_t count, int threads, std::size_t first) {
-  try {
-    parallel_for(count, threads, [first](std::size_t k) {
-      if (k >= first) throw std::runtime_error(std::to_string(k));
-    });
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "nothing";
-}
-
-TEST(ParallelFor, RethrowsTheExceptionOfTheLeastIndex) {
-  for (int threads = 1; threads <= 8; ++threads) {
-    EXPECT_EQ(thrown(20, threads, 20), "nothing");
-    for (int run = 0; run < 500; ++run) ASSERT_EQ(thrown(20, threads, 3), "3") << threads;
-  }
-}
-
-TEST(ParallelFor, AllCallsHaveReturnedWhenItThrows) {
-  std::atomic<int> running{0};
-  const auto work = [&](std::size_t k) {
-    ++running;
-    for (std::atomic<int> busy{0}; busy < 1000;) ++busy;
-    --running;
-    if (k == 5) throw std::runtime_error("");
-  };
-  for (int run = 0; run < 50; ++run) {
-    EXPECT_THROW(parallel_for(10000, 4, work), std::runtime_error);
-    ASSERT_EQ(running, 0);
-  }
-}
 
 /// As many jobs as `count`, told apart by their action.
 template <class Job>
@@ -72,7 +21,7 @@ std::vector<Job> numbered(int count) {
   return jobs;
 }
 
-TEST(ThreadPool, SolvesInJobOrderForAnyNumberOfThreads) {
+TEST(BatchesOnThreads, SolvesInJobOrderForAnyNumberOfThreads) {
   const std::vector<ReverseJob> jobs = numbered<ReverseJob>(100);
   for (int threads = 1; threads <= 8; ++threads) {
     const SolveBatch solve = solve_on_threads(
@@ -95,7 +44,7 @@ TEST(ThreadPool, SolvesInJobOrderForAnyNumberOfThreads) {
   }
 }
 
-TEST(ThreadPool, ReplaysInJobOrderForAnyNumberOfThreads) {
+TEST(BatchesOnThreads, ReplaysInJobOrderForAnyNumberOfThreads) {
   const std::vector<ReplayJob> jobs = numbered<ReplayJob>(100);
   for (int threads = 1; threads <= 8; ++threads) {
     const ReplayBatch replay = replay_on_threads(
@@ -114,7 +63,7 @@ TEST(ThreadPool, ReplaysInJobOrderForAnyNumberOfThreads) {
   }
 }
 
-TEST(ThreadPool, PassesExceptionsOnToTheCaller) {
+TEST(BatchesOnThreads, PassesExceptionsOnToTheCaller) {
   const SolveBatch solve = solve_on_threads(
       [](std::span<const ReverseJob> some) {
         for (const ReverseJob& job : some)
@@ -129,24 +78,6 @@ TEST(ThreadPool, PassesExceptionsOnToTheCaller) {
     EXPECT_STREQ(error.what(), "job 7");
   }
   EXPECT_EQ(solve(numbered<ReverseJob>(7)).size(), 7U);  // and goes on working
-}
-
-constexpr double kWork = 0.05;  // CPU time [s]
-
-/// Keeps the calling thread busy until it has used kWork; false if the clock stands.
-bool work() {
-  const double begin = thread_cpu_s();
-  for (long k = 0; k < 100'000'000; ++k)
-    if (thread_cpu_s() - begin >= kWork) return true;
-  return false;
-}
-
-TEST(ThreadPool, CpuTimeIsThatOfTheCallingThread) {
-  const double before = thread_cpu_s();
-  bool worked = false;
-  std::jthread([&worked] { worked = work(); }).join();
-  EXPECT_TRUE(worked);
-  EXPECT_LT(thread_cpu_s() - before, kWork);
 }
 
 /// Sizes of the slices that `count` jobs are solved in.
@@ -164,7 +95,7 @@ std::vector<std::size_t> slices(std::size_t count, int threads) {
   return sizes;
 }
 
-TEST(ThreadPool, NoThreadWaitsForWorkAndNoSliceLeavesLanesIdle) {
+TEST(BatchesOnThreads, NoThreadWaitsForWorkAndNoSliceLeavesLanesIdle) {
   constexpr std::size_t kLanes = kWidth<Lanes>;
   for (const int threads : {2, 3, 8, 16})
     for (const std::size_t count : {1U, 7U, 48U, 192U, 576U, 3072U}) {
