@@ -23,7 +23,7 @@ struct SearchConfig {
   int branches = 4;             // other headings simulated from the start of each stored step
   int near_branches = 1;        // of them up to near_headings away from the step's own
   int near_headings = 3;        // ... either way
-  int breadth = 33;             // B, nodes kept per layer
+  int breadth = 100;            // B, nodes kept per layer
   int followed = 3;             // steps per place in the beam whose plans are carried out
   double plans = 0.15;          // share of the stored steps with all that follows them
   int depth = 40;               // D, layers per tree at most
@@ -32,7 +32,7 @@ struct SearchConfig {
   double gap_tolerance = 0.25;  // a step that misses by more is not kept [m]
   int starts = 2;               // predecessors of one solve that are replayed, the best ones
   int free_moves = 6;           // steps that move no object replayed per node, the best ones
-  int per_layout = 6;           // nodes of a beam that differ in the robot only, at most
+  int per_layout = 18;          // nodes of a beam that differ in the robot only, at most
   int root_draws = 4;           // goal states drawn per root kept
   int patience = 4;             // layers without a better node that end a tree
   double target_jitter = 0.25;  // starts that trees aim at, and others begin at: objects ± this [m]
