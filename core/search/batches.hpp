@@ -30,4 +30,7 @@ struct ReplayResult {
 using SolveBatch = std::function<std::vector<ReverseResult>(std::span<const ReverseJob>)>;
 using ReplayBatch = std::function<std::vector<ReplayResult>(std::span<const ReplayJob>)>;
 
+/// One replay job after the other; pure, and callable from several threads at once.
+using ReplayOne = std::function<ReplayResult(const ReplayJob&)>;
+
 }  // namespace rtg

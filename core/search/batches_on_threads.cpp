@@ -51,7 +51,7 @@ SolveBatch solve_on_threads(SolveBatch solve, int threads) {
   };
 }
 
-ReplayBatch replay_on_threads(std::function<ReplayResult(const ReplayJob&)> replay, int threads) {
+ReplayBatch replay_on_threads(ReplayOne replay, int threads) {
   return [replay = std::move(replay), threads](std::span<const ReplayJob> jobs) {
     std::vector<ReplayResult> results(jobs.size());
     parallel_for(jobs.size(), threads, [&](std::size_t k) {

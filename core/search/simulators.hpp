@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "core/reverse/reverse_config.hpp"
 #include "core/search/batches.hpp"
 #include "core/search/generate.hpp"
@@ -10,9 +8,6 @@
 #include "core/world/physics_config.hpp"
 
 namespace rtg {
-
-/// One replay job after the other; pure, and callable from several threads at once.
-using ReplayOne = std::function<ReplayResult(const ReplayJob&)>;
 
 /// The reverse simulator behind `generator`: NaiveReverse for kNaive, else RRBS; pure, and callable
 /// from several threads at once.

@@ -137,11 +137,13 @@ TEST_F(BeamSearchTest, StoresStepsWithWhatFollowsThemToSuccess) {
   BeamSearch search = planted();
   int longest = 0;
   for (int layer = 1; layer <= 5; ++layer) {
-    const std::vector<int> lengths =
-        plans_of(task, search.grow(solve, counted(replay, stats), stats));
+    const std::vector<int> lengths = plans_of(task, search.grow(solve, replay, stats));
     ASSERT_FALSE(lengths.empty());
     EXPECT_LE(std::ranges::max(lengths), layer);
     longest = std::max(longest, std::ranges::max(lengths));
+    for (const int k : search.beam())
+      EXPECT_TRUE(search.nodes()[k].depth == 0 ||
+                  std::ranges::count(lengths, search.nodes()[k].depth) > 0);
   }
   EXPECT_GE(longest, 4);
 }
@@ -171,10 +173,8 @@ TEST_F(BeamSearchTest, DepthIsThatOfTheLayerUnlessTheGoalHoldsBeforeOrAfterTheSt
     for (const int k : search.beam()) {
       const Node& n = search.nodes()[static_cast<std::size_t>(k)];
       EXPECT_LE(n.depth, layer);
-      if (succeeded(task, n.poses)) {
-        EXPECT_EQ(n.depth, 0);
-        continue;
-      }
+      EXPECT_EQ(n.depth == 0, succeeded(task, n.poses));
+      if (n.depth == 0) continue;
       const auto step = std::ranges::find(steps, n.poses, &Transition::poses);
       ASSERT_NE(step, steps.end());
       EXPECT_EQ(n.depth == 1, step->success);
