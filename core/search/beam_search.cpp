@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -98,36 +99,46 @@ std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int
   return best;
 }
 
-/// The actions that lead from a node to success.
-std::vector<int> BeamSearch::plan(int k) const {
-  std::vector<int> actions;
-  for (; node(k).action >= 0; k = node(k).parent) actions.push_back(node(k).action);
+/// The actions that lead from the start of a step to success.
+std::vector<int> BeamSearch::plan(const Predecessor& step) const {
+  std::vector<int> actions{step.action};
+  for (int k = step.parent; node(k).action >= 0; k = node(k).parent)
+    actions.push_back(node(k).action);
   return actions;
+}
+
+/// The state with what is in place put where one of the starts has it, if that is legal.
+Poses BeamSearch::as_at_a_start(const Poses& poses) {
+  const std::optional<Poses> start = jittered(task_, target_, task_.start_jitter, rng_);
+  const Poses at_start = placed(task_.scene, metric_, poses, start.value_or(target_));
+  return legal_state(task_, at_start) ? at_start : poses;
 }
 
 std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed,
                                          const ReplayBatch& replay) {
   std::unordered_set<std::uint64_t> seen = seen_;
-  const std::vector<Predecessor> tried = best_of(std::move(replayed), config_.followed, seen);
+  std::vector<Predecessor> tried = best_of(std::move(replayed), config_.followed, seen);
   std::vector<Plan> plans;
-  for (const Predecessor& p : tried) plans.push_back({p.end, plan(p.parent)});
-  const auto outcomes = carry_out(task_, plans, replay);
+  for (Predecessor& p : tried) {
+    p.start = as_at_a_start(p.start);
+    p.left = distance_left(p.start);
+    plans.push_back({p.start, plan(p)});
+  }
+  auto outcomes = carry_out(task_, plans, replay);
   std::vector<Predecessor> good;
   std::vector<Transition> steps;
   for (std::size_t k = 0; k < tried.size(); ++k) {
-    const Predecessor& p = tried[k];
     if (!outcomes[k]) continue;
-    good.push_back(p);
-    good.back().depth = 1 + static_cast<int>(outcomes[k]->size());
-    if (succeeded(task_, p.start)) continue;
-    steps.push_back({p.start, p.action, p.end, outcomes[k]->empty(), Source::kTree});
-    if (rng_.uniform(0.0, 1.0) < config_.plans)
-      steps.insert(steps.end(), outcomes[k]->begin(), outcomes[k]->end());
+    std::vector<Transition>& followed = *outcomes[k];
+    tried[k].depth = static_cast<int>(followed.size());
+    good.push_back(std::move(tried[k]));
+    if (!followed.empty() && rng_.uniform(0.0, 1.0) >= config_.plans) followed.resize(1);
+    steps.insert(steps.end(), followed.begin(), followed.end());
   }
   beam_.clear();
   for (Predecessor& p : best_of(std::move(good), 1, seen_)) {
     beam_.push_back(static_cast<int>(nodes_.size()));
-    if (succeeded(task_, p.start))
+    if (p.depth == 0)
       nodes_.push_back({.poses = std::move(p.start)});
     else
       nodes_.push_back({std::move(p.start), p.action, p.parent, p.depth});

@@ -50,7 +50,8 @@ class BeamSearch {
   std::vector<Transition> keep(std::vector<Predecessor> replayed, const ReplayBatch& replay);
   std::vector<Predecessor> best_of(std::vector<Predecessor> steps, int places,
                                    std::unordered_set<std::uint64_t>& seen);
-  std::vector<int> plan(int k) const;
+  std::vector<int> plan(const Predecessor& step) const;
+  Poses as_at_a_start(const Poses& poses);
   double distance_left(const Poses& poses) const;
   const Node& node(int k) const { return nodes_[static_cast<std::size_t>(k)]; }
 

@@ -75,7 +75,7 @@ std::vector<Transition> plan_forward(const Task& task, const SearchConfig& confi
 
 void search_forward(Generation& run, int number) {
   Rng rng = run.stream(number);
-  Poses start = jittered_start(run.task, run.config.target_jitter, rng);
+  Poses start = jittered_start(run.task, run.start_jitter(), rng);
   ForwardSearch search(run.task, run.config, std::move(start), rng.word());
   const ReplayBatch known = [&search](std::span<const ReplayJob> pushes) {
     std::vector<ReplayResult> results;

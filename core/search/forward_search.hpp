@@ -54,9 +54,8 @@ std::vector<Transition> plan_forward(const Task& task, const SearchConfig& confi
                                      const Poses& start, std::uint64_t seed,
                                      const ReplayBatch& replay);
 
-/// Stores what one search keeps, from a start with objects moved by up to ±
-/// config.target_jitter [m], with branches that it has simulated anyway. Number `number` of the
-/// searches.
+/// Stores what one search keeps, from a start with objects moved by up to ± run.start_jitter(), with
+/// branches that it has simulated anyway. Number `number` of the searches.
 void search_forward(Generation& run, int number);
 
 }  // namespace rtg

@@ -17,7 +17,7 @@ namespace {
 /// no nearer have used up its patience.
 void grow_tree(Generation& run, int number) {
   Rng rng = run.stream(number);
-  const Poses target = jittered_start(run.task, run.config.target_jitter, rng);
+  const Poses target = jittered_start(run.task, run.start_jitter(), rng);
   BeamSearch search(run.task, run.config, target, rng.word());
   search.plant(run.replay, run.stats);
   double best = search.best();
@@ -41,12 +41,6 @@ GenerationReport report_of(Generation& run) {
   return report;
 }
 
-/// With `randomise`, starts lie all over the task's randomisation.
-SearchConfig randomised(SearchConfig config, const Task& task) {
-  if (config.randomise) config.target_jitter = std::max(config.target_jitter, task.randomisation);
-  return config;
-}
-
 }  // namespace
 
 void Generation::repeat(const std::function<void(int)>& attempt) {
@@ -65,11 +59,10 @@ void Generation::show(std::string phase, int layer, int depth) const {
                   c.contact_share(), c.start_region()});
 }
 
-GenerationReport generate(const Task& task, const SearchConfig& given, std::uint64_t seed,
+GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams) {
   const auto begin = std::chrono::steady_clock::now();
   const double cpu_before = process_cpu_s();
-  const SearchConfig config = randomised(given, task);
   Generation run{task, config, seed, seams};
   run.repeat([&](int number) {
     switch (config.generator) {

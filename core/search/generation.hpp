@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -23,6 +24,11 @@ struct Generation {
 
   /// Random numbers of attempt `number`, none of which a training start has.
   Rng stream(int number) const { return Rng(Rng(seed).word(), static_cast<std::uint64_t>(number)); }
+
+  /// How far objects are moved where a search begins at a start [m].
+  double start_jitter() const {
+    return config.randomise ? std::max(task.randomisation, task.start_jitter) : task.start_jitter;
+  }
 
   bool cancelled() const { return seams.cancelled && seams.cancelled(); }
 

@@ -24,8 +24,8 @@ struct SearchConfig {
   int near_branches = 1;        // of them up to near_headings away from the step's own
   int near_headings = 3;        // ... either way
   int breadth = 100;            // B, nodes kept per layer
-  int followed = 3;             // steps per place in the beam whose plans are carried out
-  double plans = 0.15;          // share of the stored steps with all that follows them
+  int followed = 2;             // steps per place in the beam whose plans are carried out
+  double plans = 0.05;          // share of the stored steps with all that follows them
   int depth = 40;               // D, layers per tree at most
   double contact_quota = 0.4;   // share of the beam reserved for nodes whose step moved an object
   double random_share = 0.15;   // share of the beam drawn at random among the rest
@@ -35,8 +35,7 @@ struct SearchConfig {
   int per_layout = 18;          // nodes of a beam that differ in the robot only, at most
   int root_draws = 4;           // goal states drawn per root kept
   int patience = 4;             // layers without a better node that end a tree
-  double target_jitter = 0.25;  // starts that trees aim at, and others begin at: objects ± this [m]
-  bool randomise = false;       // ... by up to ± task.randomisation at least
+  bool randomise = false;       // starts lie all over task.randomisation
 
   template <class Visitor>
   void visit(Visitor& v) {
@@ -57,8 +56,6 @@ struct SearchConfig {
     v.integer("per_layout", per_layout, 1, 100000, "nodes of a beam with objects alike");
     v.integer("root_draws", root_draws, 1, 1000, "goal states drawn per root kept");
     v.integer("patience", patience, 1, 1000, "layers without a better node that end a tree");
-    v.number("target_jitter", target_jitter, 0.0, 10.0,
-             "of the starts that trees aim at, searches begin at [m]");
     v.flag("randomise", randomise, "starts lie all over task.randomisation");
   }
 };

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <vector>
 
 #include "core/world/separation.hpp"
 
@@ -52,28 +54,46 @@ double walk(const Task& task, const Poses& poses, std::size_t body, const Vector
   return std::max(2.0, (robot.position() - spot).norm() / task.push.stride);
 }
 
+bool in_place(const StateMetric::Object& o, const Poses& poses, const Poses& target) {
+  return (poses[o.body].position() - target[o.body].position()).norm() <= kInPlace;
+}
+
 /// The same to the next object that is out of place, or to the robot's own place.
 double next_walk(const Task& task, const StateMetric& metric, const Poses& poses,
                  const Poses& target) {
   double best = std::numeric_limits<double>::infinity();
   for (const auto& o : metric.objects()) {
     const Vector2d way = target[o.body].position() - poses[o.body].position();
-    if (way.norm() > kInPlace) best = std::min(best, walk(task, poses, o.body, way));
+    if (!in_place(o, poses, target)) best = std::min(best, walk(task, poses, o.body, way));
   }
   if (std::isfinite(best)) return best;
-  return (target[0].position() - poses[0].position()).norm() / task.push.stride;
+  const double home = (target[0].position() - poses[0].position()).norm();
+  if (home <= kInPlace) return 0.0;
+  if (std::abs(home - task.push.stride) <= kInPlace) return 1.0;
+  return std::max(2.0, home / task.push.stride);
 }
 
 }  // namespace
 
 double start_distance(const Task& task, const StateMetric& metric, const Poses& poses,
                       const Poses& target) {
-  double sum = metric.layout_distance(poses, target) / task.push.stride;
-  for (const auto& o : metric.objects()) {
-    const double off = (target[o.body].position() - poses[o.body].position()).norm();
-    sum += kWalk * std::min(1.0, off / kInPlace);
-  }
-  return sum + next_walk(task, metric, poses, target);
+  double sum = next_walk(task, metric, poses, target);
+  for (const auto& o : metric.objects())
+    if (!in_place(o, poses, target))
+      sum += kWalk + metric.distance(o, poses, target) / task.push.stride;
+  return sum;
+}
+
+Poses placed(const Scene& scene, const StateMetric& metric, Poses poses, const Poses& start) {
+  const std::vector<std::size_t> movers = movers_of(scene);
+  std::vector<bool> stays(scene.size(), false);  // by mover
+  for (const auto& o : metric.objects())
+    if (!in_place(o, poses, start)) stays[movers[o.body]] = true;
+  for (const auto& o : metric.objects())
+    if (!stays[movers[o.body]]) poses[o.body] = start[o.body];
+  const bool home = (poses[0].position() - start[0].position()).norm() <= kInPlace;
+  if (home && std::ranges::none_of(stays, std::identity{})) poses[0] = start[0];
+  return poses;
 }
 
 }  // namespace rtg

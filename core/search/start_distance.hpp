@@ -7,13 +7,18 @@ namespace rtg {
 
 /// About how many pushes a state is from `target`, which a tree grows to:
 ///
-///   Σ_objects [(|x - x*| + r|θ - θ*|) / stride + 2·min(1, |x - x*| / 0.4 m)] + walk,
+///   Σ_objects out of place [(|x - x*| + r|θ - θ*|) / stride + 2] + walk,
 ///
-/// x*, θ* of the target, r as in StateMetric; 2 is the price of getting from one object to the
-/// next. `walk`: pushes until the robot touches an object that is out of place, whatever its angle,
-/// on the side towards its place, ready to pull it there (0, 1, or the strides of the way, but at
-/// least 2); with all objects in place, the way to the robot's own, in strides.
+/// x*, θ* of the target, r as in StateMetric; an object is in place within 0.4 m of x*; 2 is the
+/// price of getting from one object to the next. `walk`: pushes until the robot touches an object
+/// that is out of place, whatever its angle, on the side towards its place, ready to pull it there
+/// (0, 1, or the strides of the way, but at least 2); with all objects in place, until it is within
+/// 0.4 m of its own, as well. 0: see placed().
 double start_distance(const Task& task, const StateMetric& metric, const Poses& poses,
                       const Poses& target);
+
+/// `poses` with every object that is in place, and all that joints connect it with, put exactly
+/// where `start` has it; the robot as well, once all are.
+Poses placed(const Scene& scene, const StateMetric& metric, Poses poses, const Poses& start);
 
 }  // namespace rtg

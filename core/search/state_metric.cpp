@@ -51,11 +51,14 @@ StateMetric::StateMetric(const Scene& scene) {
       objects_.push_back({k, has_joint(scene, k) ? 1 : symmetry_order(scene.bodies[k].shape)});
 }
 
+double StateMetric::distance(const Object& o, const Poses& a, const Poses& b) const {
+  return (a[o.body].position() - b[o.body].position()).norm() +
+         kAngleRadius * std::abs(angle_difference(a[o.body].theta, b[o.body].theta, o.order));
+}
+
 double StateMetric::layout_distance(const Poses& a, const Poses& b) const {
   double sum = 0.0;
-  for (const Object& o : objects_)
-    sum += (a[o.body].position() - b[o.body].position()).norm() +
-           kAngleRadius * std::abs(angle_difference(a[o.body].theta, b[o.body].theta, o.order));
+  for (const Object& o : objects_) sum += distance(o, a, b);
   return sum;
 }
 

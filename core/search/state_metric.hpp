@@ -21,7 +21,17 @@ class StateMetric {
  public:
   explicit StateMetric(const Scene& scene);
 
-  /// Sum over the objects of the distance of their positions plus r · angle difference [m].
+  /// A body other than the robot that can move.
+  struct Object {
+    std::size_t body;
+    int order;
+  };
+  std::span<const Object> objects() const { return objects_; }
+
+  /// Distance of an object's positions plus r · angle difference [m].
+  double distance(const Object& object, const Poses& a, const Poses& b) const;
+
+  /// The same, summed over the objects.
   double layout_distance(const Poses& a, const Poses& b) const;
 
   /// Largest |Δx|, |Δy| of an object [m] and largest angle difference [rad].
@@ -36,13 +46,6 @@ class StateMetric {
 
   /// Names the cell without the robot.
   std::uint64_t layout_cell(const Poses& poses) const;
-
-  /// A body other than the robot that can move.
-  struct Object {
-    std::size_t body;
-    int order;
-  };
-  std::span<const Object> objects() const { return objects_; }
 
  private:
   std::vector<Object> objects_;

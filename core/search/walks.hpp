@@ -5,7 +5,7 @@
 namespace rtg {
 
 /// Data without any search: a wave of random walks, half of whose pushes seek contact
-/// (contact_heading()), from starts with objects moved by up to ± config.target_jitter [m]
+/// (contact_heading()), from starts with objects moved by up to ± run.start_jitter()
 /// (Generator::kRandom: the baseline of App. D), or from goal states (kScatter). A walk ends at the
 /// horizon or with a push that the simulator rejects; what it does in states in which the goal
 /// holds is not stored. Number `number` of the waves.

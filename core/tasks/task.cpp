@@ -18,10 +18,11 @@ bool movable_object(const Task& task, std::size_t body) {
   return body > 0 && !task.scene.bodies[body].fixed;
 }
 
-/// Nothing if it is not legal.
-std::optional<Poses> draw_start(const Task& task, double amplitude, Rng& rng) {
-  if (amplitude <= 0.0) return task.start;
-  Poses poses = task.start;
+}  // namespace
+
+std::optional<Poses> jittered(const Task& task, const Poses& start, double amplitude, Rng& rng) {
+  if (amplitude <= 0.0) return start;
+  Poses poses = start;
   const std::vector<std::size_t> roots = roots_of(task.scene);
   for (std::size_t i = 1; i < poses.size(); ++i) {
     if (!movable_object(task, i) || roots[i] != i) continue;
@@ -37,8 +38,6 @@ std::optional<Poses> draw_start(const Task& task, double amplitude, Rng& rng) {
     return std::nullopt;
   return poses;
 }
-
-}  // namespace
 
 bool succeeded(const Task& task, const Poses& poses, double tighten) {
   return std::ranges::all_of(
@@ -79,7 +78,8 @@ int observation_size(const Task& task) {
 
 Poses jittered_start(const Task& task, double amplitude, Rng& rng) {
   for (int attempt = 0; attempt < kAttempts; ++attempt)
-    if (std::optional<Poses> poses = draw_start(task, amplitude, rng)) return *std::move(poses);
+    if (std::optional<Poses> poses = jittered(task, task.start, amplitude, rng))
+      return *std::move(poses);
   throw std::invalid_argument("no legal start among " + std::to_string(kAttempts) +
                               " draws with jitter " + std::to_string(amplitude));
 }
@@ -87,7 +87,7 @@ Poses jittered_start(const Task& task, double amplitude, Rng& rng) {
 bool allows_jitter(const Task& task, double amplitude) {
   Rng rng(1);
   for (int draw = 0, legal = 0; draw < 250; ++draw)
-    if (draw_start(task, amplitude, rng) && ++legal == 5) return true;
+    if (jittered(task, task.start, amplitude, rng) && ++legal == 5) return true;
   return false;
 }
 

@@ -46,10 +46,13 @@ bool succeeded(const Task& task, const Poses& poses, double tighten = 0.0);
 std::vector<float> observation(const Task& task, const Poses& poses);
 int observation_size(const Task& task);
 
-/// Start state with every movable object's position moved by ± amplitude in x and y (uniform),
-/// bodies that joints connect as one (those on a fixed body stay); overlaps, objects outside the
-/// arena and states in which the goal holds are drawn again. Poses are to_single(). Throws
-/// std::invalid_argument if no draw of 1000 was legal: see allows_jitter().
+/// `start` with every movable object's position moved by ± amplitude in x and y (uniform), bodies
+/// that joints connect as one (those on a fixed body stay). Nothing if objects then overlap or lie
+/// outside the arena, or the goal holds. Poses are to_single().
+std::optional<Poses> jittered(const Task& task, const Poses& start, double amplitude, Rng& rng);
+
+/// The task's start, jittered(). Throws std::invalid_argument if no draw of 1000 was legal: see
+/// allows_jitter().
 Poses jittered_start(const Task& task, double amplitude, Rng& rng);
 
 /// Whether at least 5 of 250 draws of jittered_start() are legal. Where one in 50 is, a thousand in

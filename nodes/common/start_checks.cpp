@@ -35,7 +35,6 @@ void check_jitters(const RtgConfig& config, const ConfigNode& root) {
     double amplitude;
   } jitters[] = {{"task", "start_jitter", config.task.start_jitter},
                  {"task", "randomisation", config.task.randomisation},
-                 {"search", "target_jitter", config.search.target_jitter},
                  {"train", "start_jitter", config.train.start_jitter}};
   for (const auto& [section, key, amplitude] : jitters)
     if (!allows_jitter(config.task, amplitude))

@@ -120,13 +120,12 @@ def test_jitters_must_leave_room_for_starts(tmp_path: Path) -> None:
     assert says() == (2, f"{path}:4: {task}0.1 {HARDLY} 0.05 with these bodies\n")
     wide = "task.start_jitter=0.2"
     assert says(wide) == (2, f"--set {wide}: {task}0.2 {HARDLY} 0.05 with these bodies\n")
-    legal = ["task.start_jitter=0.01", "train.start_jitter=0.01", "search.target_jitter=0.01"]
+    legal = ["task.start_jitter=0.01", "train.start_jitter=0.01"]
     assert says(*legal) == (0, "")
-    for key in ["search.target_jitter", "train.start_jitter"]:
-        last = f"{key}=0.4"
-        assert says(*legal, last)[1].startswith(
-            f"--set {last}: key '{key}': with objects moved by +-0.4 m"
-        )
+    last = "train.start_jitter=0.4"
+    assert says(*legal, last)[1].startswith(
+        f"--set {last}: key 'train.start_jitter': with objects moved by +-0.4 m"
+    )
 
 
 def test_jitters_must_keep_objects_in_the_arena() -> None:

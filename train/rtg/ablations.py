@@ -31,7 +31,6 @@ OF_TREES: dict[str, tuple[Any, ...]] = {
     "per_layout": (100000,),  # no limit
     "root_draws": (1,),
     "patience": (1000,),  # no limit
-    "target_jitter": (0,),
 }
 # Of `search`, with no ablation of their own: sizes, and what a method decides.
 SIZES = ("transitions", "breadth", "depth")

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -23,6 +24,7 @@ struct BeamSearchTest : ::testing::Test, testing::DraggingWorld {
 
   BeamSearchTest() {
     config.breadth = 6;
+    config.followed = 3;
     config.plans = 0.0;
   }
 
@@ -60,8 +62,7 @@ TEST_F(BeamSearchTest, GoalsThatComeToRestElsewhereAreCountedNotPlanted) {
   };
   BeamSearch search(task, config, task.start, 1);
   search.plant(scattering, stats);
-  EXPECT_TRUE(search.nodes().empty());
-  EXPECT_TRUE(search.beam().empty());
+  EXPECT_TRUE(search.nodes().empty() && search.beam().empty());
   EXPECT_EQ(stats.unsettled_goals, 6);
   EXPECT_EQ(search.best(), std::numeric_limits<double>::infinity());
   EXPECT_TRUE(search.grow(solve, replay, stats).empty());
@@ -286,10 +287,10 @@ TEST_F(BeamSearchTest, BestIsTheLeastDistanceOfTheBeamAndFallsOnTheWay) {
 
 TEST_F(BeamSearchTest, NodesAreAFunctionOfTheSeed) {
   const auto nodes = [&](std::uint64_t seed) {
+    std::vector<Poses> out;
     BeamSearch search = planted(seed);
     for (int layer = 0; layer < 3; ++layer) search.grow(solve, replay, stats);
-    std::vector<Poses> out;
-    for (const Node& n : search.nodes()) out.push_back(n.poses);
+    std::ranges::transform(search.nodes(), std::back_inserter(out), &Node::poses);
     return out;
   };
   EXPECT_EQ(nodes(1), nodes(1));

@@ -106,20 +106,20 @@ double nearest(const Task& task, const GenerationReport& report, int tree, const
 }
 
 TEST(Generate, EachTreeGrowsFromGoalStatesToAStartOfItsOwn) {
-  const Task task = gathering();
+  Task task = gathering();
+  task.start_jitter = 1.5;
   SearchConfig config = small();
   config.transitions = 300;
   config.branches = 0;
   config.followed = 1;
   config.plans = 0.0;
   config.depth = 24;
-  config.target_jitter = 1.5;
   const GenerationReport report = run_naive(task, config, 7, 1).report;
   ASSERT_GE(report.trees, 2);
   std::vector<Poses> targets;
   for (int tree = 0; tree < 2; ++tree) {
     Rng rng(Rng(7).word(), static_cast<std::uint64_t>(tree));
-    targets.push_back(jittered_start(task, config.target_jitter, rng));
+    targets.push_back(jittered_start(task, task.start_jitter, rng));
   }
   EXPECT_LT(nearest(task, report, 0, targets[0]), nearest(task, report, 0, targets[1]));
   EXPECT_LT(nearest(task, report, 1, targets[1]), nearest(task, report, 1, targets[0]));
@@ -226,11 +226,16 @@ TEST(Generate, EndsEvenIfNoReverseSolveConverges) {
 
 TEST(Generate, WithRandomiseTreesAimAtStartsAllOverTheTasksRandomisation) {
   const Task task = gathering();
-  SearchConfig config = small(), wide = small();
+  SearchConfig config = small();
   config.randomise = true;
-  wide.target_jitter = task.randomisation;
-  ASSERT_GT(task.randomisation, config.target_jitter);
-  EXPECT_EQ(run_naive(task, config, 7, 1).stored, run_naive(task, wide, 7, 1).stored);
+  Task wide = task;
+  wide.start_jitter = task.randomisation;
+  ASSERT_GT(task.randomisation, task.start_jitter);
+  EXPECT_NE(run_naive(task, config, 7, 1).stored, run_naive(task, small(), 7, 1).stored);
+  config.generator = Generator::kRandom;
+  SearchConfig random = small();
+  random.generator = Generator::kRandom;
+  EXPECT_EQ(run_naive(task, config, 7, 1).stored, run_naive(wide, random, 7, 1).stored);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg {
@@ -42,23 +43,57 @@ TEST_F(StartDistanceTest, OneStrideFromThereIsOnePushAndLessThanThatIsTwo) {
 
 TEST_F(StartDistanceTest, WithAllInPlaceTheRobotGoesHome) {
   poses = task.start;
-  EXPECT_NEAR(with_robot_at(0.0, -5.0), 0.0, 1e-12);
-  EXPECT_NEAR(with_robot_at(0.0, -2.0), 1.5, 1e-12);
+  EXPECT_EQ(with_robot_at(0.0, -5.0), 0.0);
+  EXPECT_EQ(with_robot_at(0.2, -5.3), 0.0);  // near enough
+  EXPECT_EQ(with_robot_at(0.0, -6.9), 1.0);  // one stride, about
+  EXPECT_EQ(with_robot_at(0.0, -4.0), 2.0);  // half a stride takes two
+  EXPECT_NEAR(with_robot_at(0.0, 0.0), 2.5, 1e-12);
 }
 
-// Turned by 0.2 rad a box is 0.1 m from its place in the metric, for a stride of 2 m.
-TEST_F(StartDistanceTest, ATurnedObjectIsFartherButInPlace) {
+// Turned by 0.2 rad a box is 0.1 m farther from its place in the metric, for a stride of 2 m.
+TEST_F(StartDistanceTest, ATurnedObjectIsFartherUnlessItIsInPlace) {
+  poses[1].theta += 0.2;
+  EXPECT_NEAR(with_robot_at(poses[1].x + 1.55, poses[1].y), 1.5 + 0.05 + 2.0 + 2.0, 1e-12);
+  poses[1].theta = task.start[1].theta + std::acos(-1.0) / 2.0;  // a square
+  EXPECT_NEAR(with_robot_at(poses[1].x + 1.55, poses[1].y), 1.5 + 2.0 + 2.0, 1e-12);
   poses = task.start;
   poses[1].theta += 0.2;
-  EXPECT_NEAR(with_robot_at(0.0, -5.0), 0.05, 1e-12);
-  poses[1].theta = task.start[1].theta + std::acos(-1.0) / 2.0;  // a square
-  EXPECT_NEAR(with_robot_at(0.0, -5.0), 0.0, 1e-12);
+  EXPECT_EQ(with_robot_at(0.0, -5.0), 0.0);
 }
 
-TEST_F(StartDistanceTest, AnObjectLittleOutOfPlaceCountsInPart) {
+TEST_F(StartDistanceTest, AnObjectWithinFortyCentimetresIsInPlace) {
   poses = task.start;
-  poses[1].x += 0.1;
-  EXPECT_NEAR(with_robot_at(0.0, -5.0), 0.05 + 2.0 * 0.25, 1e-12);
+  poses[1].x += 0.39;
+  EXPECT_EQ(with_robot_at(0.0, -5.0), 0.0);
+  poses[1].x += 0.02;
+  EXPECT_GT(with_robot_at(0.0, -5.0), 0.2 + 2.0 + 2.0);
+}
+
+TEST_F(StartDistanceTest, WhatIsInPlaceIsPutWhereAStartHasIt) {
+  Poses start = task.start;
+  start[2].x += 0.1;
+  poses[2].x -= 0.2;
+  poses[2].theta += 1.0;
+  poses[0] = {0.1, -4.8, 0.0};  // of no account as long as an object is out of place
+  Poses expected = poses;
+  expected[2] = start[2];
+  EXPECT_EQ(placed(task.scene, metric, poses, start), expected);
+  poses[1] = start[1];
+  EXPECT_EQ(placed(task.scene, metric, poses, start), start);
+  poses[0].y += 0.3;
+  expected = start;
+  expected[0] = poses[0];
+  EXPECT_EQ(placed(task.scene, metric, poses, start), expected);
+}
+
+TEST(Placed, WhatJointsConnectIsPutThereTogether) {
+  const Task task = testing::art_manip();
+  const StateMetric metric(task.scene);
+  Poses poses = task.start;
+  for (std::size_t i = 1; i < poses.size(); ++i) poses[i].y += 0.3;
+  EXPECT_EQ(placed(task.scene, metric, poses, task.start), task.start);
+  poses.back().y += 0.3;
+  EXPECT_EQ(placed(task.scene, metric, poses, task.start), poses);
 }
 
 }  // namespace

@@ -76,13 +76,12 @@ TEST(Walks, AreTrueTransitionsThatEndWithinTheHorizonAndStartWhereTheGoalDoesNot
 
 TEST(Walks, BeginAtJitteredStarts) {
   const Task task = gathering();
-  const SearchConfig config = walks(Generator::kRandom);
   const std::vector<Poses> begun = origins(random_run());
   EXPECT_GE(begun.size(), 100U);  // two waves
   for (const Poses& start : begun)
     for (std::size_t i = 1; i < start.size(); ++i)
       EXPECT_LE((start[i].position() - task.start[i].position()).lpNorm<Eigen::Infinity>(),
-                config.target_jitter + 1e-6);
+                task.start_jitter + 1e-6);
 }
 
 TEST(Walks, OrScatterFromGoalStates) {
