@@ -12,6 +12,11 @@
 #include "core/search/start_distance.hpp"
 
 namespace rtg {
+namespace {
+
+constexpr double kAround = 0.25;  // starts like the target: objects moved by up to ± this [m]
+
+}  // namespace
 
 BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, Poses target,
                        std::uint64_t seed)
@@ -94,8 +99,7 @@ std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int
   wide.breadth *= places;
   wide.per_layout *= places;
   std::vector<Predecessor> best;
-  for (const std::size_t k : select_beam(entries, wide, rng_, seen))
-    best.push_back(std::move(steps[k]));
+  for (const std::size_t k : select_beam(entries, wide, seen)) best.push_back(std::move(steps[k]));
   return best;
 }
 
@@ -107,10 +111,11 @@ std::vector<int> BeamSearch::plan(const Predecessor& step) const {
   return actions;
 }
 
-/// The state with what is in place put where one of the starts has it, if that is legal.
+/// The state with what is in place put where a start like the target has it, if that is legal.
 Poses BeamSearch::as_at_a_start(const Poses& poses) {
-  const std::optional<Poses> start = jittered(task_, target_, task_.start_jitter, rng_);
-  const Poses at_start = placed(task_.scene, metric_, poses, start.value_or(target_));
+  const double amplitude = std::min(task_.start_jitter, kAround);
+  const std::optional<Poses> start = jittered(task_, target_, amplitude, rng_);
+  const Poses at_start = placed(task_, metric_, poses, target_, start.value_or(target_));
   return legal_state(task_, at_start) ? at_start : poses;
 }
 

@@ -9,10 +9,6 @@
 namespace rtg {
 namespace {
 
-int share_of(int breadth, double share) {
-  return static_cast<int>(std::lround(share * static_cast<double>(breadth)));
-}
-
 /// The best entry of each new cell and the best `per_layout` of each layout, in order of (score,
 /// index).
 std::vector<std::size_t> distinct(std::span<const BeamEntry> entries, int per_layout,
@@ -46,19 +42,12 @@ void take(std::vector<std::size_t>& from, std::vector<std::size_t>& to, int coun
 }  // namespace
 
 std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
-                                     Rng& rng, std::unordered_set<std::uint64_t>& seen) {
+                                     std::unordered_set<std::uint64_t>& seen) {
   std::vector<std::size_t> rest = distinct(entries, config.per_layout, seen), beam;
-  const int random = share_of(config.breadth, config.random_share);
-  const int quota =
-      std::min(share_of(config.breadth, config.contact_quota), config.breadth - random);
+  const auto quota = static_cast<int>(std::lround(config.contact_quota * config.breadth));
   take(rest, beam, quota, [&](std::size_t k) { return entries[k].contact; });
-  take(rest, beam, config.breadth - random - static_cast<int>(beam.size()),
+  take(rest, beam, config.breadth - static_cast<int>(beam.size()),
        [](std::size_t) { return true; });
-  while (!rest.empty() && static_cast<int>(beam.size()) < config.breadth) {
-    const auto pick = rest.begin() + rng.below(static_cast<int>(rest.size()));
-    beam.push_back(*pick);
-    rest.erase(pick);
-  }
   std::sort(beam.begin(), beam.end(), [&](std::size_t a, std::size_t b) {
     return std::pair(entries[a].score, a) < std::pair(entries[b].score, b);
   });

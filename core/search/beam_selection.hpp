@@ -5,7 +5,6 @@
 #include <unordered_set>
 #include <vector>
 
-#include "core/math/rng.hpp"
 #include "core/search/search_config.hpp"
 
 namespace rtg {
@@ -19,10 +18,10 @@ struct BeamEntry {
 };
 
 /// Indices of the next beam, at most config.breadth, in order of (score, index): first the best of
-/// the contact quota, then the best of all, last the random survivors. At most one per cell, none
-/// of a cell in `seen`, at most config.per_layout per layout; the chosen cells are added to `seen`.
-/// A pure function of the complete set, so the order in which results arrived cannot matter.
+/// the contact quota, then the best of all. At most one per cell, none of a cell in `seen`, at most
+/// config.per_layout per layout; the chosen cells are added to `seen`. A pure function of the
+/// complete set, so the order in which results arrived cannot matter.
 std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
-                                     Rng& rng, std::unordered_set<std::uint64_t>& seen);
+                                     std::unordered_set<std::uint64_t>& seen);
 
 }  // namespace rtg

@@ -2,6 +2,7 @@
 
 #include "core/reverse/reverse_job.hpp"
 #include "core/search/predecessor.hpp"
+#include "core/search/start_distance.hpp"
 
 namespace rtg {
 namespace {
@@ -11,11 +12,6 @@ double share(long part, long whole) {
 }
 
 }  // namespace
-
-bool in_start_region(const Task& task, const StateMetric& metric, const Poses& poses) {
-  const StateMetric::Spread off = metric.spread(poses, task.start);
-  return off.position <= kStartRegion && off.angle <= kStartAngle;
-}
 
 Coverage::Coverage(const Task& task)
     : task_(task), metric_(task.scene), movers_(movers_of(task.scene)) {}
@@ -36,7 +32,7 @@ void Coverage::add(const Transition& t) {
   ++by_source_[static_cast<std::size_t>(t.source)];
   contacts_ += objects_moved(t.poses, t.next) >= 1;
   multi_body_ += moves_several(t);
-  start_region_ += in_start_region(task_, metric_, t.poses);
+  start_region_ += in_place(metric_, t.poses, task_.start);
   states_.insert(key_of(t.poses, 0));
 }
 

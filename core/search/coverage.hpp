@@ -11,15 +11,6 @@
 
 namespace rtg {
 
-/// Half width of the start region: every object's x and y within this of its nominal start [m], the
-/// domain randomisation of the paper's Gathering (App. D), and its angle within kStartAngle modulo
-/// the symmetry of its shape [rad]. The robot may be anywhere: it gets about freely.
-inline constexpr double kStartRegion = 0.5;
-inline constexpr double kStartAngle = 0.35;
-
-/// Whether a state lies in the start region of the task.
-bool in_start_region(const Task& task, const StateMetric& metric, const Poses& poses);
-
 /// Counts what a stream of transitions covers.
 class Coverage {
  public:
@@ -32,7 +23,7 @@ class Coverage {
   double contact_share() const;       // moved an object by more than kMoved
   double multi_body_share() const;    // moved two or more that no joint connects
   double headings_per_state() const;  // mean over the distinct states, none stored twice
-  long start_region() const { return start_region_; }
+  long start_region() const { return start_region_; }  // begin with all objects in_place()
 
  private:
   bool moves_several(const Transition& t) const;

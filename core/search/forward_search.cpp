@@ -9,9 +9,8 @@
 
 namespace rtg {
 
-ForwardSearch::ForwardSearch(const Task& task, const SearchConfig& config, Poses start,
-                             std::uint64_t seed)
-    : task_(task), config_(config), metric_(task.scene), rng_(seed), beam_{0} {
+ForwardSearch::ForwardSearch(const Task& task, const SearchConfig& config, Poses start)
+    : task_(task), config_(config), metric_(task.scene), beam_{0} {
   seen_.insert(metric_.cell(start));
   nodes_.push_back({{{}, -1, std::move(start)}, 0});
 }
@@ -44,7 +43,7 @@ std::vector<Transition> ForwardSearch::keep(std::vector<Node> found,
                                             std::span<const BeamEntry> entries) {
   std::vector<Transition> steps;
   beam_.clear();
-  for (const std::size_t k : select_beam(entries, config_, rng_, seen_)) {
+  for (const std::size_t k : select_beam(entries, config_, seen_)) {
     if (found[k].step.success && solved_ == 0) solved_ = nodes_.size();
     steps.push_back(found[k].step);
     beam_.push_back(nodes_.size());
@@ -65,9 +64,8 @@ std::vector<Transition> ForwardSearch::plan() const {
 }
 
 std::vector<Transition> plan_forward(const Task& task, const SearchConfig& config,
-                                     const Poses& start, std::uint64_t seed,
-                                     const ReplayBatch& replay) {
-  ForwardSearch search(task, config, start, seed);
+                                     const Poses& start, const ReplayBatch& replay) {
+  ForwardSearch search(task, config, start);
   for (int layer = 0; layer < std::min(config.depth, task.horizon); ++layer)
     if (search.grow(replay).empty()) break;
   return search.plan();
@@ -75,8 +73,7 @@ std::vector<Transition> plan_forward(const Task& task, const SearchConfig& confi
 
 void search_forward(Generation& run, int number) {
   Rng rng = run.stream(number);
-  Poses start = jittered_start(run.task, run.start_jitter(), rng);
-  ForwardSearch search(run.task, run.config, std::move(start), rng.word());
+  ForwardSearch search(run.task, run.config, jittered_start(run.task, run.start_jitter(), rng));
   const ReplayBatch known = [&search](std::span<const ReplayJob> pushes) {
     std::vector<ReplayResult> results;
     for (const ReplayJob& push : pushes) results.push_back(search.outcome(push));

@@ -6,7 +6,6 @@
 #include <unordered_set>
 #include <vector>
 
-#include "core/math/rng.hpp"
 #include "core/search/batches.hpp"
 #include "core/search/beam_selection.hpp"
 #include "core/search/generation.hpp"
@@ -19,7 +18,7 @@ namespace rtg {
 class ForwardSearch {
  public:
   /// `task` and `config` must outlive the search.
-  ForwardSearch(const Task& task, const SearchConfig& config, Poses start, std::uint64_t seed);
+  ForwardSearch(const Task& task, const SearchConfig& config, Poses start);
 
   /// One action more: replays every heading of every state of the beam and keeps the best. The
   /// steps that were kept come back; none if the search has come to its end.
@@ -41,7 +40,6 @@ class ForwardSearch {
   const Task& task_;
   const SearchConfig& config_;
   StateMetric metric_;
-  Rng rng_;
   std::vector<Node> nodes_;
   std::vector<std::size_t> beam_;
   std::size_t solved_ = 0;  // the node whose step succeeds; 0: there is none
@@ -51,11 +49,10 @@ class ForwardSearch {
 
 /// A whole search of config.depth actions at most: its plan. A function of the arguments.
 std::vector<Transition> plan_forward(const Task& task, const SearchConfig& config,
-                                     const Poses& start, std::uint64_t seed,
-                                     const ReplayBatch& replay);
+                                     const Poses& start, const ReplayBatch& replay);
 
-/// Stores what one search keeps, from a start with objects moved by up to ± run.start_jitter(), with
-/// branches that it has simulated anyway. Number `number` of the searches.
+/// Stores what one search keeps, from a start with objects moved by up to ± run.start_jitter(),
+/// with branches that it has simulated anyway. Number `number` of the searches.
 void search_forward(Generation& run, int number);
 
 }  // namespace rtg

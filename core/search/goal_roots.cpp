@@ -19,17 +19,6 @@ bool look_the_same(const Scene& scene, std::size_t i, std::size_t j) {
          a.friction == b.friction && !a.fixed && !b.fixed;
 }
 
-/// The goal state with the angles of the target where it stays one: pulls seldom turn an object.
-Poses turned_as(const Task& task, Poses goal, const Poses& target) {
-  for (std::size_t k = 1; k < goal.size(); ++k) {
-    if (has_joint(task.scene, k) || task.scene.bodies[k].fixed) continue;
-    Poses trial = goal;
-    trial[k].theta = target[k].theta;
-    if (legal_state(task, trial) && succeeded(task, trial)) goal = std::move(trial);
-  }
-  return goal;
-}
-
 }  // namespace
 
 Poses relabelled(const Task& task, const Poses& poses, const Poses& target) {
@@ -64,7 +53,7 @@ std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, cons
     failures = goal ? 0 : failures + 1;
     if (failures == kMaxFailures) break;
     if (!goal) continue;
-    Poses root = turned_as(task, relabelled(task, *goal, target), target);
+    Poses root = relabelled(task, *goal, target);
     if (!seen.insert(metric.cell(root)).second) continue;
     drawn.emplace_back(start_distance(task, metric, root, target), std::move(root));
   }

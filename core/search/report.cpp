@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/math/quantile.hpp"
+#include "core/search/start_distance.hpp"
 
 namespace rtg {
 
@@ -23,7 +24,7 @@ void fill(GenerationReport& report, const Task& task, std::vector<ReportNode> no
   const StateMetric metric(task.scene);
   for (const ReportNode& n : nodes) {
     report.trees = std::max(report.trees, n.tree + 1);
-    if (n.depth == 0 || !in_start_region(task, metric, n.poses)) continue;
+    if (n.depth == 0 || !in_place(metric, n.poses, task.start)) continue;
     int& least = report.start_region_depth;
     least = least < 0 ? n.depth : std::min(least, n.depth);
   }

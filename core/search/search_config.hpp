@@ -28,7 +28,6 @@ struct SearchConfig {
   double plans = 0.05;          // share of the stored steps with all that follows them
   int depth = 40;               // D, layers per tree at most
   double contact_quota = 0.4;   // share of the beam reserved for nodes whose step moved an object
-  double random_share = 0.15;   // share of the beam drawn at random among the rest
   double gap_tolerance = 0.25;  // a step that misses by more is not kept [m]
   int starts = 2;               // predecessors of one solve that are replayed, the best ones
   int free_moves = 6;           // steps that move no object replayed per node, the best ones
@@ -49,7 +48,6 @@ struct SearchConfig {
     v.number("plans", plans, 0.0, 1.0, "share of steps stored with all that follows them");
     v.integer("depth", depth, 1, 1000, "layers per tree at most");
     v.number("contact_quota", contact_quota, 0.0, 1.0, "share of the beam that moved an object");
-    v.number("random_share", random_share, 0.0, 1.0, "share of the beam drawn at random");
     v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest miss of a body kept [m]");
     v.integer("starts", starts, 1, 100, "predecessors replayed per solve");
     v.integer("free_moves", free_moves, 0, 360, "steps without contact replayed per node");

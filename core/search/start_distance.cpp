@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <vector>
 
@@ -84,15 +83,21 @@ double start_distance(const Task& task, const StateMetric& metric, const Poses& 
   return sum;
 }
 
-Poses placed(const Scene& scene, const StateMetric& metric, Poses poses, const Poses& start) {
-  const std::vector<std::size_t> movers = movers_of(scene);
-  std::vector<bool> stays(scene.size(), false);  // by mover
+bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target) {
+  return std::ranges::all_of(metric.objects(),
+                             [&](const auto& o) { return in_place(o, poses, target); });
+}
+
+Poses placed(const Task& task, const StateMetric& metric, Poses poses, const Poses& target,
+             const Poses& start) {
+  const double from_home = (poses[0].position() - target[0].position()).norm();
+  if (from_home <= kInPlace && in_place(metric, poses, target)) poses[0] = start[0];
+  const std::vector<std::size_t> movers = movers_of(task.scene);
+  std::vector<bool> stays(poses.size(), false);  // by mover
   for (const auto& o : metric.objects())
-    if (!in_place(o, poses, start)) stays[movers[o.body]] = true;
+    if (!in_place(o, poses, target)) stays[movers[o.body]] = true;
   for (const auto& o : metric.objects())
     if (!stays[movers[o.body]]) poses[o.body] = start[o.body];
-  const bool home = (poses[0].position() - start[0].position()).norm() <= kInPlace;
-  if (home && std::ranges::none_of(stays, std::identity{})) poses[0] = start[0];
   return poses;
 }
 

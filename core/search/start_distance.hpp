@@ -17,8 +17,12 @@ namespace rtg {
 double start_distance(const Task& task, const StateMetric& metric, const Poses& poses,
                       const Poses& target);
 
-/// `poses` with every object that is in place, and all that joints connect it with, put exactly
-/// where `start` has it; the robot as well, once all are.
-Poses placed(const Scene& scene, const StateMetric& metric, Poses poses, const Poses& start);
+/// Whether all objects are in place; the robot may be anywhere.
+bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target);
+
+/// `poses` with every object that is in place, with all that joints connect it with, put where
+/// `start` has it, which is like `target`; the robot as well, once all are.
+Poses placed(const Task& task, const StateMetric& metric, Poses poses, const Poses& target,
+             const Poses& start);
 
 }  // namespace rtg

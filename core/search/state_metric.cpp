@@ -62,17 +62,6 @@ double StateMetric::layout_distance(const Poses& a, const Poses& b) const {
   return sum;
 }
 
-StateMetric::Spread StateMetric::spread(const Poses& a, const Poses& b) const {
-  Spread out;
-  for (const Object& o : objects_) {
-    const Vector2d d = a[o.body].position() - b[o.body].position();
-    out.position = std::max(out.position, d.cwiseAbs().maxCoeff());
-    out.angle =
-        std::max(out.angle, std::abs(angle_difference(a[o.body].theta, b[o.body].theta, o.order)));
-  }
-  return out;
-}
-
 std::uint64_t StateMetric::layout_cell(const Poses& poses) const {
   std::uint64_t hash = 0;
   for (const Object& o : objects_) {

@@ -34,12 +34,6 @@ class StateMetric {
   /// The same, summed over the objects.
   double layout_distance(const Poses& a, const Poses& b) const;
 
-  /// Largest |Δx|, |Δy| of an object [m] and largest angle difference [rad].
-  struct Spread {
-    double position = 0.0, angle = 0.0;
-  };
-  Spread spread(const Poses& a, const Poses& b) const;
-
   /// Names the cell that a state lies in: cells of 0.8 m for the robot's x, y and of 0.4 m and
   /// about 0.4 rad (a whole number per period) for the objects.
   std::uint64_t cell(const Poses& poses) const;

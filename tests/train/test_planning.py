@@ -66,7 +66,7 @@ def test_the_result_is_that_of_a_search_from_each_final_start(tmp_path: Path) ->
     assert trainer.main([str(folder), "--no-stream"]) == 0
     config = _core.Config.from_file(folder / "config.yaml")
     starts = held_out_starts(config.task, 8, FINAL)
-    states, pushes = zip(*(_core.plan(config, one[None], 7) for one in starts), strict=True)
+    states, pushes = zip(*(_core.plan(config, one[None]) for one in starts), strict=True)
     success = np.array([len(one) == 2 for one in states])  # a layer finds one action, or none
     assert 0 < success.sum() < 8
     assert result(folder) == {
@@ -108,7 +108,7 @@ def test_what_it_took_is_written_down(tmp_path: Path, monkeypatch: pytest.Monkey
 def test_the_time_of_all_workers_counts() -> None:
     def plan(workers: int) -> planning.Plan:
         config = _core.Config.from_file(TINY, [f"run.workers={workers}", "search.depth=4"])
-        return planning.plan(config, config.task.start, seed=1)
+        return planning.plan(config, config.task.start)
 
     one, two = plan(1), plan(2)
     assert two.pushes == one.pushes > 0 and two.wall_s > 0
@@ -130,12 +130,12 @@ def test_a_signal_stops_it_between_starts_and_it_goes_on(
             super()._handle(*words)
             heard.set()
 
-    def noted(config: _core.Config, start: np.ndarray, seed: int) -> Plan:
+    def noted(config: _core.Config, start: np.ndarray) -> Plan:
         asked.append(start)
         if len(asked) == 3:
             os.kill(os.getpid(), number)
             assert heard.wait(60.0)  # the main thread hears it
-        return search(config, start, seed)
+        return search(config, start)
 
     monkeypatch.setattr(planning, "plan", noted)
     monkeypatch.setattr(trainer, "Interrupts", Hearing)

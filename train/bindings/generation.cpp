@@ -62,7 +62,7 @@ std::string generate_in_process(const RtgConfig& config, const nb::object& store
 /// The states of the plan that a forward search finds from a start, [T + 1, bodies, 3], the start
 /// alone if it finds none; and how many pushes it took to the simulator.
 std::pair<nb::ndarray<nb::numpy, double>, long> plan(const RtgConfig& config,
-                                                     const StateArray& start, std::uint64_t seed) {
+                                                     const StateArray& start) {
   const Task& task = config.task;
   check_bodies(start, task.scene.size());
   if (start.shape(0) != 1) throw nb::value_error("one start is wanted, [1, bodies, 3]");
@@ -73,7 +73,7 @@ std::pair<nb::ndarray<nb::numpy, double>, long> plan(const RtgConfig& config,
     const nb::gil_scoped_release release;
     const ReplayBatch replay =
         counted(replay_on_threads(forward_replay(task, config.physics), config.run.workers), stats);
-    steps = plan_forward(task, config.search, from, seed, replay);
+    steps = plan_forward(task, config.search, from, replay);
   }
   const std::size_t width = task.scene.size() * 3;
   OwnedArray<double> states((steps.size() + 1) * width);
@@ -88,7 +88,7 @@ std::pair<nb::ndarray<nb::numpy, double>, long> plan(const RtgConfig& config,
 void bind_generation(nb::module_& module) {
   module.def("generate", &generate_in_process, nb::arg("config"), nb::arg("store"),
              nb::arg("progress"));
-  module.def("plan", &plan, nb::arg("config"), nb::arg("start"), nb::arg("seed"));
+  module.def("plan", &plan, nb::arg("config"), nb::arg("start"));
 }
 
 }  // namespace rtg

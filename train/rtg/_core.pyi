@@ -155,7 +155,7 @@ def generate(
     is called after each layer. What they raise ends the generation.
     """
 
-def plan(config: Config, start: NDArray[np.float64], seed: int) -> tuple[NDArray[np.float64], int]:
+def plan(config: Config, start: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
     """A plan of the forward beam search from one start, [1, bodies, 3].
 
     Its states, [T + 1, bodies, 3], the start alone if none was found; and the pushes that the

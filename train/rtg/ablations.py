@@ -24,7 +24,6 @@ OF_TREES: dict[str, tuple[Any, ...]] = {
     "followed": (1,),
     "plans": (0, 1),
     "contact_quota": (0,),
-    "random_share": (0,),
     "gap_tolerance": (0.05, 100),  # hardly any miss, any miss
     "starts": (1,),
     "free_moves": (0, 48),  # none, all

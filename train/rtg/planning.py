@@ -31,11 +31,11 @@ class Plan(NamedTuple):
     cpu_s: float  # of all workers
 
 
-def plan(config: _core.Config, start: Floats, seed: int) -> Plan:
+def plan(config: _core.Config, start: Floats) -> Plan:
     """A function of the arguments, its seconds aside. start [bodies, 3]"""
     with _TURN:
         began, cpu = time.monotonic(), time.process_time()
-        states, pushes = _core.plan(config, start[None], seed)
+        states, pushes = _core.plan(config, start[None])
         return Plan(states, pushes, time.monotonic() - began, time.process_time() - cpu)
 
 
@@ -61,7 +61,6 @@ class Planning:
         self.config, self.task = config, config.task
         self.settings = s = TrainSettings.from_config(values["train"])
         self.discount = s.discount or self.task.discount
-        self.seed = values["run"]["seed"]
         self.starts = held_out_starts(self.task, s.eval_episodes, FINAL, s.randomise)
         self.plans: list[Plan] = []  # of the first starts
         self.log = TrainingLog(folder)
@@ -69,7 +68,7 @@ class Planning:
         self.scheduled = 0  # interactions
         self.tell: Callable[[str, int], None] = lambda state, done: None  # as NodeStatus.tick
         self._checkpoint = run_folder.checkpoint_file(folder)
-        self._identity = {"learner": "planning", "format": _FORMAT, "seed": self.seed}
+        self._identity = {"learner": "planning", "format": _FORMAT}
 
     def run(self, source: Source, stop: Callable[[], bool], record: bool) -> bool:
         """Until all starts are planned from; False if `stop` said so before. A checkpoint follows
@@ -77,7 +76,7 @@ class Planning:
         del source, record
         self._display()
         while not self.done and not stop():
-            self.plans.append(plan(self.config, self.starts[len(self.plans)], self.seed))
+            self.plans.append(plan(self.config, self.starts[len(self.plans)]))
             self._save()
             self._display()
         return self.done

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/search/beam_search.hpp"
+#include "core/search/start_distance.hpp"
 #include "tests/support/dragging_world.hpp"
 
 namespace rtg {
@@ -19,6 +20,13 @@ struct BeamSearchStartTest : ::testing::Test, testing::DraggingWorld {
     config.plans = 0.0;
   }
 
+  /// Whether nothing is in the way of what is in place.
+  bool has_room(const Poses& poses) const {
+    for (const std::size_t k : {0U, 1U, 2U})
+      if ((poses[k].position() - task.start[3].position()).norm() < 2.0) return false;
+    return legal_state(task, placed(task, StateMetric(task.scene), poses, task.start, task.start));
+  }
+
   /// Poses of box 3 in the nodes in which it is within 0.4 m of its place.
   std::vector<Pose> in_place() {
     BeamSearch search(task, config, task.start, 1);
@@ -26,7 +34,8 @@ struct BeamSearchStartTest : ::testing::Test, testing::DraggingWorld {
     for (int layer = 0; layer < 12; ++layer) search.grow(solve, replay, stats);
     std::vector<Pose> found;
     for (const Node& n : search.nodes())
-      if (n.depth > 0 && (n.poses[3].position() - task.start[3].position()).norm() <= 0.4)
+      if (n.depth > 0 && has_room(n.poses) &&
+          (n.poses[3].position() - task.start[3].position()).norm() <= 0.4)
         found.push_back(n.poses[3]);
     return found;
   }

@@ -270,8 +270,7 @@ TEST_F(BeamSearchTest, ATreeWithoutPredecessorsHasNoBeam) {
   const SolveBatch none = [](std::span<const ReverseJob> jobs) {
     return std::vector<ReverseResult>(jobs.size(), {SolveStatus::kPruned, 0});
   };
-  EXPECT_TRUE(search.grow(none, replay, stats).empty());
-  EXPECT_TRUE(search.beam().empty());
+  EXPECT_TRUE(search.grow(none, replay, stats).empty() && search.beam().empty());
   EXPECT_EQ(search.best(), std::numeric_limits<double>::infinity());
 }
 

@@ -6,17 +6,18 @@
 #include <map>
 #include <set>
 
+#include "core/math/rng.hpp"
+
 namespace rtg {
 namespace {
 
 using Cells = std::unordered_set<std::uint64_t>;
 using Indices = std::vector<std::size_t>;
 
-SearchConfig config(int breadth, double quota, double random) {
+SearchConfig config(int breadth, double quota) {
   SearchConfig c;
   c.breadth = breadth;
   c.contact_quota = quota;
-  c.random_share = random;
   return c;
 }
 
@@ -30,10 +31,8 @@ std::vector<BeamEntry> ranked(int count) {
   return entries;
 }
 
-Indices select(const std::vector<BeamEntry>& entries, const SearchConfig& c, Cells seen = {},
-               std::uint64_t seed = 1) {
-  Rng rng(seed);
-  return select_beam(entries, c, rng, seen);
+Indices select(const std::vector<BeamEntry>& entries, const SearchConfig& c, Cells seen = {}) {
+  return select_beam(entries, c, seen);
 }
 
 /// Entries as a search meets them: few scores, cells and layouts; a cell spans two layouts.
@@ -50,57 +49,30 @@ std::vector<BeamEntry> random_entries(Rng& rng, int count) {
 TEST(BeamSelection, TakesTheBestWithoutQuotas) {
   std::vector<BeamEntry> entries = ranked(9);
   std::ranges::reverse(entries);
-  EXPECT_EQ(select(entries, config(4, 0.0, 0.0)), (Indices{8, 7, 6, 5}));
+  EXPECT_EQ(select(entries, config(4, 0.0)), (Indices{8, 7, 6, 5}));
 }
 
 TEST(BeamSelection, TakesAllIfThereAreFewer) {
-  EXPECT_EQ(select(ranked(3), config(10, 0.6, 0.15)), (Indices{0, 1, 2}));
-  EXPECT_EQ(select({}, config(10, 0.6, 0.15)), Indices{});
+  EXPECT_EQ(select(ranked(3), config(10, 0.6)), (Indices{0, 1, 2}));
+  EXPECT_EQ(select({}, config(10, 0.6)), Indices{});
 }
 
 TEST(BeamSelection, GivesTheQuotaToTheBestContacts) {
   std::vector<BeamEntry> entries = ranked(30);
   for (std::size_t k = 20; k < 30; ++k) entries[k].contact = true;
-  EXPECT_EQ(select(entries, config(10, 0.6, 0.0)), (Indices{0, 1, 2, 3, 20, 21, 22, 23, 24, 25}));
+  EXPECT_EQ(select(entries, config(10, 0.6)), (Indices{0, 1, 2, 3, 20, 21, 22, 23, 24, 25}));
 }
 
 TEST(BeamSelection, LeavesAQuotaThatContactsDoNotFillToTheOthers) {
   std::vector<BeamEntry> entries = ranked(30);
   entries[25].contact = true;
-  EXPECT_EQ(select(entries, config(5, 0.6, 0.0)), (Indices{0, 1, 2, 3, 25}));
+  EXPECT_EQ(select(entries, config(5, 0.6)), (Indices{0, 1, 2, 3, 25}));
 }
 
 TEST(BeamSelection, ContactsBeyondTheQuotaCompeteWithTheOthers) {
   std::vector<BeamEntry> entries = ranked(12);
   for (std::size_t k = 0; k < 8; ++k) entries[k].contact = true;
-  EXPECT_EQ(select(entries, config(6, 0.5, 0.0)), (Indices{0, 1, 2, 3, 4, 5}));
-}
-
-TEST(BeamSelection, DrawsTheRandomShareEvenlyFromTheRest) {
-  constexpr int kDraws = 4000;
-  std::map<std::size_t, int> drawn;
-  for (int seed = 0; seed < kDraws; ++seed) {
-    const Indices beam = select(ranked(20), config(10, 0.0, 0.2), {}, seed);
-    ASSERT_EQ(beam.size(), 10U);
-    for (std::size_t k = 0; k < 8; ++k) ASSERT_EQ(beam[k], k);
-    for (std::size_t k = 8; k < 10; ++k) ++drawn[beam[k]];
-  }
-  // 2 of 12 each time: mean 667, standard deviation √(4000 · 1/6 · 5/6) = 24.
-  ASSERT_EQ(drawn.size(), 12U);
-  for (const auto& [index, count] : drawn) EXPECT_NEAR(count, kDraws / 6, 5 * 24);
-}
-
-TEST(BeamSelection, LeavesTheRandomShareRoomBesideALargeQuota) {
-  std::vector<BeamEntry> entries = ranked(30);
-  for (std::size_t k = 10; k < 30; ++k) entries[k].contact = true;
-  std::set<std::size_t> drawn;
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    const Indices beam = select(entries, config(10, 1.0, 0.3), {}, seed);
-    ASSERT_EQ(beam.size(), 10U);
-    for (std::size_t k = 10; k < 17; ++k) ASSERT_EQ(std::ranges::count(beam, k), 1) << k;
-    drawn.insert(beam.begin(), beam.end());
-  }
-  EXPECT_EQ(drawn.size(), 30U);  // each of the other 23 in 600 draws
+  EXPECT_EQ(select(entries, config(6, 0.5)), (Indices{0, 1, 2, 3, 4, 5}));
 }
 
 TEST(BeamSelection, KeepsTheBestOfEachCell) {
@@ -108,31 +80,30 @@ TEST(BeamSelection, KeepsTheBestOfEachCell) {
   entries[1].cell = entries[0].cell;
   entries[4].cell = entries[0].cell;
   entries[5].cell = entries[3].cell;
-  EXPECT_EQ(select(entries, config(10, 0.6, 0.15)), (Indices{0, 2, 3}));
+  EXPECT_EQ(select(entries, config(10, 0.6)), (Indices{0, 2, 3}));
 }
 
 TEST(BeamSelection, OfEqualScoresInACellTheFirstStays) {
   std::vector<BeamEntry> entries = ranked(3);
   for (BeamEntry& e : entries) e = {1.0, 7, 7, false};
-  EXPECT_EQ(select(entries, config(10, 0.0, 0.0)), Indices{0});
+  EXPECT_EQ(select(entries, config(10, 0.0)), Indices{0});
 }
 
 TEST(BeamSelection, NeverEntersACellTwiceAndNotesOnlyWhatItChose) {
   const std::vector<BeamEntry> entries = ranked(9);
-  const SearchConfig c = config(3, 0.0, 0.0);
-  Rng rng(1);
+  const SearchConfig c = config(3, 0.0);
   Cells seen{entries[1].cell};
-  EXPECT_EQ(select_beam(entries, c, rng, seen), (Indices{0, 2, 3}));
+  EXPECT_EQ(select_beam(entries, c, seen), (Indices{0, 2, 3}));
   EXPECT_EQ(seen, (Cells{entries[0].cell, entries[1].cell, entries[2].cell, entries[3].cell}));
-  EXPECT_EQ(select_beam(entries, c, rng, seen), (Indices{4, 5, 6}));
-  EXPECT_EQ(select_beam(entries, c, rng, seen), (Indices{7, 8}));
-  EXPECT_EQ(select_beam(entries, c, rng, seen), Indices{});
+  EXPECT_EQ(select_beam(entries, c, seen), (Indices{4, 5, 6}));
+  EXPECT_EQ(select_beam(entries, c, seen), (Indices{7, 8}));
+  EXPECT_EQ(select_beam(entries, c, seen), Indices{});
 }
 
 TEST(BeamSelection, KeepsTheBestOfEachLayout) {
   std::vector<BeamEntry> entries = ranked(10);
   for (std::size_t k = 0; k < 7; ++k) entries[k].layout = 5;
-  SearchConfig c = config(10, 0.0, 0.5);
+  SearchConfig c = config(10, 0.0);
   c.per_layout = 2;
   EXPECT_EQ(select(entries, c), (Indices{0, 1, 7, 8, 9}));
 }
@@ -141,7 +112,7 @@ TEST(BeamSelection, WhatItsLayoutHasNoRoomForLeavesItsCellToOthers) {
   std::vector<BeamEntry> entries = ranked(4);
   entries[1].layout = entries[0].layout;
   entries[2].cell = entries[1].cell;
-  SearchConfig c = config(10, 0.0, 0.0);
+  SearchConfig c = config(10, 0.0);
   c.per_layout = 1;
   EXPECT_EQ(select(entries, c), (Indices{0, 2, 3}));
 }
@@ -151,9 +122,9 @@ TEST(BeamSelection, HoldsAllItsPromisesOnRandomLayers) {
   for (int trial = 0; trial < 200; ++trial) {
     const std::vector<BeamEntry> entries = random_entries(rng, 300);
     Cells seen{3, 17, 80}, before = seen;
-    SearchConfig c = config(20, 0.6, 0.15);
+    SearchConfig c = config(20, 0.6);
     c.per_layout = 3;
-    const Indices beam = select_beam(entries, c, rng, seen);
+    const Indices beam = select_beam(entries, c, seen);
     ASSERT_EQ(beam.size(), 20U);
     std::set<std::uint64_t> cells;
     std::map<std::uint64_t, int> layouts;
@@ -174,7 +145,7 @@ TEST(BeamSelection, DoesNotDependOnTheOrderInWhichResultsArrived) {
     std::vector<BeamEntry> entries = random_entries(rng, 200);
     const auto cells = [&entries] {
       std::vector<std::uint64_t> out;
-      for (const std::size_t k : select(entries, config(20, 0.6, 0.3), {5, 6}, 9))
+      for (const std::size_t k : select(entries, config(20, 0.6), {5, 6}))
         out.push_back(entries[k].cell);
       return out;
     };

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
@@ -12,37 +11,6 @@ namespace rtg {
 namespace {
 
 using testing::gathering;
-
-bool in_region(const Poses& poses) {
-  const Task task = gathering();
-  return in_start_region(task, StateMetric(task.scene), poses);
-}
-
-TEST(StartRegion, EndsAtHalfAMetreFromEveryObjectsPlace) {
-  EXPECT_TRUE(in_region(gathering().start));
-  for (double Pose::*axis : {&Pose::x, &Pose::y})
-    for (const double side : {-1.0, 1.0}) {
-      Poses poses = gathering().start;
-      for (std::size_t k = 1; k < poses.size(); ++k) poses[k].*axis += 0.499 * side;
-      EXPECT_TRUE(in_region(poses));
-      poses[2].*axis += 0.002 * side;
-      EXPECT_FALSE(in_region(poses));
-    }
-}
-
-TEST(StartRegion, AllowsForAnglesUpToTheSymmetryOfTheShape) {
-  Poses poses = gathering().start;
-  poses[1].theta += 0.349 + std::numbers::pi / 2.0;
-  EXPECT_TRUE(in_region(poses));
-  poses[1].theta += 0.002;
-  EXPECT_FALSE(in_region(poses));
-}
-
-TEST(StartRegion, TheRobotMayBeAnywhere) {
-  Poses poses = gathering().start;
-  poses[0] = {7.0, 7.0, 2.0};
-  EXPECT_TRUE(in_region(poses));
-}
 
 /// A transition from the nominal start that moves the robot, and the first `objects` objects by
 /// `distance`.

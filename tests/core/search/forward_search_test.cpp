@@ -29,7 +29,7 @@ struct ForwardSearchTest : ::testing::Test, testing::DraggingWorld {
 };
 
 TEST_F(ForwardSearchTest, ReplaysEveryHeadingOfEveryStateOfItsBeam) {
-  ForwardSearch search(task, config, start, 1);
+  ForwardSearch search(task, config, start);
   std::vector<Poses> beam{start};
   for (int layer = 0; layer < 3; ++layer) {
     std::vector<ReplayJob> expected, seen;
@@ -48,7 +48,7 @@ TEST_F(ForwardSearchTest, ReplaysEveryHeadingOfEveryStateOfItsBeam) {
 }
 
 TEST_F(ForwardSearchTest, KnowsTheOutcomesOfItsLastLayer) {
-  ForwardSearch search(task, config, start, 1);
+  ForwardSearch search(task, config, start);
   const std::vector<Transition> first = search.grow(replay);
   for (int action = 0; action < 48; ++action)
     EXPECT_EQ(search.outcome({start, action}).end, pushed({start, action}));
@@ -59,7 +59,7 @@ TEST_F(ForwardSearchTest, KnowsTheOutcomesOfItsLastLayer) {
 }
 
 TEST_F(ForwardSearchTest, FindsAPlanOfTrueStepsToSuccess) {
-  const std::vector<Transition> plan = plan_forward(task, config, start, 1, replay);
+  const std::vector<Transition> plan = plan_forward(task, config, start, replay);
   ASSERT_FALSE(plan.empty());
   Poses state = start;
   for (const Transition& t : plan) {
@@ -73,7 +73,7 @@ TEST_F(ForwardSearchTest, FindsAPlanOfTrueStepsToSuccess) {
 }
 
 TEST_F(ForwardSearchTest, EndsWithItsFirstSuccess) {
-  ForwardSearch search(task, config, start, 1);
+  ForwardSearch search(task, config, start);
   std::vector<Transition> last;
   for (int layer = 0; layer < config.depth; ++layer) {
     std::vector<Transition> kept = search.grow(replay);
@@ -86,17 +86,17 @@ TEST_F(ForwardSearchTest, EndsWithItsFirstSuccess) {
 
 TEST_F(ForwardSearchTest, HasNoPlanWithinTooFewActions) {
   config.depth = 2;
-  EXPECT_TRUE(plan_forward(task, config, start, 1, replay).empty());
+  EXPECT_TRUE(plan_forward(task, config, start, replay).empty());
   config.depth = 20;
   task.horizon = 2;
-  EXPECT_TRUE(plan_forward(task, config, start, 1, replay).empty());
+  EXPECT_TRUE(plan_forward(task, config, start, replay).empty());
 }
 
 TEST_F(ForwardSearchTest, APushThatTheSimulatorRejectsLeadsNowhere) {
   const ReplayBatch none = [](std::span<const ReplayJob> jobs) {
     return std::vector<ReplayResult>(jobs.size());
   };
-  ForwardSearch search(task, config, start, 1);
+  ForwardSearch search(task, config, start);
   EXPECT_TRUE(search.grow(counted(none, stats)).empty());
   EXPECT_EQ(stats.rejected_pushes, 48);
   EXPECT_TRUE(search.plan().empty());

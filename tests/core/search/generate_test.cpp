@@ -109,7 +109,8 @@ TEST(Generate, EachTreeGrowsFromGoalStatesToAStartOfItsOwn) {
   Task task = gathering();
   task.start_jitter = 1.5;
   SearchConfig config = small();
-  config.transitions = 300;
+  config.transitions = 800;
+  config.breadth = 20;
   config.branches = 0;
   config.followed = 1;
   config.plans = 0.0;

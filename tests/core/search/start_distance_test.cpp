@@ -69,21 +69,34 @@ TEST_F(StartDistanceTest, AnObjectWithinFortyCentimetresIsInPlace) {
   EXPECT_GT(with_robot_at(0.0, -5.0), 0.2 + 2.0 + 2.0);
 }
 
+TEST_F(StartDistanceTest, AllObjectsAreInPlaceWhereverTheRobotIs) {
+  EXPECT_FALSE(in_place(metric, poses, task.start));
+  for (std::size_t k = 1; k < poses.size(); ++k) {
+    poses[k] = task.start[k];
+    poses[k].y -= 0.39;
+    poses[k].theta += 1.0;
+  }
+  poses[0] = {7.0, 7.0, 2.0};
+  EXPECT_TRUE(in_place(metric, poses, task.start));
+  poses[2].y -= 0.02;
+  EXPECT_FALSE(in_place(metric, poses, task.start));
+}
+
 TEST_F(StartDistanceTest, WhatIsInPlaceIsPutWhereAStartHasIt) {
   Poses start = task.start;
   start[2].x += 0.1;
-  poses[2].x -= 0.2;
+  poses[2].x -= 0.39;  // 0.49 from there
   poses[2].theta += 1.0;
   poses[0] = {0.1, -4.8, 0.0};  // of no account as long as an object is out of place
   Poses expected = poses;
   expected[2] = start[2];
-  EXPECT_EQ(placed(task.scene, metric, poses, start), expected);
+  EXPECT_EQ(placed(task, metric, poses, task.start, start), expected);
   poses[1] = start[1];
-  EXPECT_EQ(placed(task.scene, metric, poses, start), start);
+  EXPECT_EQ(placed(task, metric, poses, task.start, start), start);
   poses[0].y += 0.3;
   expected = start;
   expected[0] = poses[0];
-  EXPECT_EQ(placed(task.scene, metric, poses, start), expected);
+  EXPECT_EQ(placed(task, metric, poses, task.start, start), expected);
 }
 
 TEST(Placed, WhatJointsConnectIsPutThereTogether) {
@@ -91,9 +104,9 @@ TEST(Placed, WhatJointsConnectIsPutThereTogether) {
   const StateMetric metric(task.scene);
   Poses poses = task.start;
   for (std::size_t i = 1; i < poses.size(); ++i) poses[i].y += 0.3;
-  EXPECT_EQ(placed(task.scene, metric, poses, task.start), task.start);
+  EXPECT_EQ(placed(task, metric, poses, task.start, task.start), task.start);
   poses.back().y += 0.3;
-  EXPECT_EQ(placed(task.scene, metric, poses, task.start), poses);
+  EXPECT_EQ(placed(task, metric, poses, task.start, task.start), poses);
 }
 
 }  // namespace
