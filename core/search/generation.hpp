@@ -25,7 +25,7 @@ struct Generation {
   /// Random numbers of attempt `number`, none of which a training start has.
   Rng stream(int number) const { return Rng(Rng(seed).word(), static_cast<std::uint64_t>(number)); }
 
-  /// How far objects are moved where a search begins at a start [m].
+  /// How far objects are moved in the starts that trees grow to and others begin at [m].
   double start_jitter() const {
     return config.randomise ? std::max(task.randomisation, task.start_jitter) : task.start_jitter;
   }

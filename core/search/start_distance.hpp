@@ -12,16 +12,16 @@ namespace rtg {
 /// x*, θ* of the target, r as in StateMetric; an object is in place within 0.4 m of x*; 2 is the
 /// price of getting from one object to the next. `walk`: pushes until the robot touches an object
 /// that is out of place, whatever its angle, on the side towards its place, ready to pull it there
-/// (0, 1, or the strides of the way, but at least 2); with all objects in place, until it is within
-/// 0.4 m of its own, as well. 0: see placed().
+/// (0, 1, or the strides of the way, but at least 2); with all objects in place, likewise until it
+/// is within 0.4 m of its own place. At 0, placed() gives a whole start.
 double start_distance(const Task& task, const StateMetric& metric, const Poses& poses,
                       const Poses& target);
 
 /// Whether all objects are in place; the robot may be anywhere.
 bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target);
 
-/// `poses` with every object that is in place, with all that joints connect it with, put where
-/// `start` has it, which is like `target`; the robot as well, once all are.
+/// `poses` with every object that is in place put where `start` has it, which is like `target`;
+/// what joints connect once all of it is in place, the robot once all objects and it are.
 Poses placed(const Task& task, const StateMetric& metric, Poses poses, const Poses& target,
              const Poses& start);
 

@@ -48,7 +48,7 @@ int observation_size(const Task& task);
 
 /// `start` with every movable object's position moved by ± amplitude in x and y (uniform), bodies
 /// that joints connect as one (those on a fixed body stay). Nothing if objects then overlap or lie
-/// outside the arena, or the goal holds. Poses are to_single().
+/// outside the arena, or the goal holds. Poses are to_single(). With amplitude 0 `start` as it is.
 std::optional<Poses> jittered(const Task& task, const Poses& start, double amplitude, Rng& rng);
 
 /// The task's start, jittered(). Throws std::invalid_argument if no draw of 1000 was legal: see

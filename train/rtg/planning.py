@@ -18,7 +18,7 @@ from rtg.offline_data import Source
 from rtg.settings import TrainSettings
 from rtg.training_log import TrainingLog
 
-_FORMAT = 1  # of the checkpoint
+_FORMAT = 2  # of the checkpoint
 _TURN = threading.Lock()  # a search takes all workers, and the process's time is counted as its own
 
 

@@ -162,8 +162,8 @@ TEST_F(BeamSearchTest, AStepWhosePlanDoesNotSucceedIsNeitherKeptNorStored) {
     return results;
   };
   const std::vector<Transition> steps = search.grow(solve, failing, stats);
-  EXPECT_TRUE(std::ranges::all_of(steps, &Transition::success)) << "nothing had to follow";
-  for (const int k : search.beam()) EXPECT_LE(search.nodes()[static_cast<std::size_t>(k)].depth, 1);
+  EXPECT_TRUE(steps.empty());
+  for (const int k : search.beam()) EXPECT_EQ(search.nodes()[static_cast<std::size_t>(k)].depth, 0);
 }
 
 TEST_F(BeamSearchTest, DepthIsThatOfTheLayerUnlessTheGoalHoldsBeforeOrAfterTheStep) {
