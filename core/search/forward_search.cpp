@@ -73,7 +73,7 @@ std::vector<Transition> plan_forward(const Task& task, const SearchConfig& confi
 
 void search_forward(Generation& run, int number) {
   Rng rng = run.stream(number);
-  ForwardSearch search(run.task, run.config, jittered_start(run.task, run.start_jitter(), rng));
+  ForwardSearch search(run.task, run.config, run.draw_start(rng));
   const ReplayBatch known = [&search](std::span<const ReplayJob> pushes) {
     std::vector<ReplayResult> results;
     for (const ReplayJob& push : pushes) results.push_back(search.outcome(push));

@@ -51,8 +51,8 @@ class ForwardSearch {
 std::vector<Transition> plan_forward(const Task& task, const SearchConfig& config,
                                      const Poses& start, const ReplayBatch& replay);
 
-/// Stores what one search keeps, from a start with objects moved by up to ± run.start_jitter(),
-/// with branches that it has simulated anyway. Number `number` of the searches.
+/// Stores what one search keeps, from a start (run.draw_start()), with branches that it has
+/// simulated anyway. Number `number` of the searches.
 void search_forward(Generation& run, int number);
 
 }  // namespace rtg

@@ -17,7 +17,7 @@ namespace {
 /// no nearer have used up its patience.
 void grow_tree(Generation& run, int number) {
   Rng rng = run.stream(number);
-  const Poses target = jittered_start(run.task, run.start_jitter(), rng);
+  const Poses target = run.draw_start(rng);
   BeamSearch search(run.task, run.config, target, rng.word());
   search.plant(run.replay, run.stats);
   double best = search.best();

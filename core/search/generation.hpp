@@ -25,9 +25,11 @@ struct Generation {
   /// Random numbers of attempt `number`, none of which a training start has.
   Rng stream(int number) const { return Rng(Rng(seed).word(), static_cast<std::uint64_t>(number)); }
 
-  /// How far objects are moved in the starts that trees grow to and others begin at [m].
-  double start_jitter() const {
-    return config.randomise ? std::max(task.randomisation, task.start_jitter) : task.start_jitter;
+  /// A start that a tree grows to, or that another search or walk begins at: objects are moved by
+  /// up to ± task.start_jitter, with config.randomise ± task.randomisation at least.
+  Poses draw_start(Rng& rng) const {
+    const double least = config.randomise ? task.randomisation : 0.0;
+    return jittered_start(task, std::max(least, task.start_jitter), rng);
   }
 
   bool cancelled() const { return seams.cancelled && seams.cancelled(); }

@@ -15,7 +15,7 @@ constexpr double kSeeking = 0.5;  // share of the pushes that seek contact, the 
 /// A state in which a walk begins; nothing if none was found.
 std::optional<Poses> origin(const Generation& run, Rng& rng) {
   if (run.config.generator == Generator::kScatter) return sample_goal(run.task, rng);
-  return jittered_start(run.task, run.start_jitter(), rng);
+  return run.draw_start(rng);
 }
 
 int heading(const Generation& run, const Poses& state, Rng& rng) {
