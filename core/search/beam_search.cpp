@@ -12,11 +12,6 @@
 #include "core/search/start_distance.hpp"
 
 namespace rtg {
-namespace {
-
-constexpr double kAround = 0.25;  // starts like the target: objects moved by up to ± this [m]
-
-}  // namespace
 
 BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, Poses target,
                        std::uint64_t seed)
@@ -89,17 +84,15 @@ std::vector<Predecessor> BeamSearch::worth_replaying(std::vector<Predecessor> al
   return out;
 }
 
-/// The best steps, `places` times the beam's breadth at most, in order.
-std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int places,
+/// The best steps, `times` as many as a beam has at most, in order.
+std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int times,
                                              std::unordered_set<std::uint64_t>& seen) {
   std::vector<BeamEntry> entries;
   for (const Predecessor& p : steps)
     entries.push_back({p.left, metric_.cell(p.start), metric_.layout_cell(p.start), p.moved > 0});
-  SearchConfig wide = config_;
-  wide.breadth *= places;
-  wide.per_layout *= places;
   std::vector<Predecessor> best;
-  for (const std::size_t k : select_beam(entries, wide, seen)) best.push_back(std::move(steps[k]));
+  for (const std::size_t k : select_beam(entries, config_, seen, times))
+    best.push_back(std::move(steps[k]));
   return best;
 }
 
@@ -113,40 +106,52 @@ std::vector<int> BeamSearch::plan(const Predecessor& step) const {
 
 /// The state with what is in place put where a start like the target has it, if that is legal.
 Poses BeamSearch::as_at_a_start(const Poses& poses) {
-  const double amplitude = std::min(task_.start_jitter, kAround);
-  const std::optional<Poses> start = jittered(task_, target_, amplitude, rng_);
+  constexpr double kAround = 0.25;  // objects are moved by up to ± this [m]
+  const double around = std::min(task_.start_jitter, kAround);
+  const std::optional<Poses> start = jittered(task_, target_, around, rng_);
   const Poses at_start = placed(task_, metric_, poses, target_, start.value_or(target_));
   return legal_state(task_, at_start) ? at_start : poses;
+}
+
+/// Carries out the plans of the steps, from their starts put as_at_a_start() or, if none succeeds
+/// so, as where a goal is in an object's own place, from their own.
+std::vector<std::optional<std::vector<Transition>>> BeamSearch::follow(
+    std::vector<Predecessor>& steps, const ReplayBatch& replay) {
+  std::vector<Plan> own, at_start;
+  for (Predecessor& p : steps) {
+    own.push_back({p.start, plan(p)});
+    p.start = as_at_a_start(p.start);
+    at_start.push_back({p.start, own.back().actions});
+  }
+  auto outcomes = carry_out(task_, at_start, replay);
+  if (std::ranges::any_of(outcomes, [](const auto& o) { return o.has_value(); })) return outcomes;
+  for (std::size_t k = 0; k < steps.size(); ++k) steps[k].start = own[k].start;
+  return carry_out(task_, own, replay);
 }
 
 std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed,
                                          const ReplayBatch& replay) {
   std::unordered_set<std::uint64_t> seen = seen_;
   std::vector<Predecessor> tried = best_of(std::move(replayed), config_.followed, seen);
-  std::vector<Plan> plans;
-  for (Predecessor& p : tried) {
-    p.start = as_at_a_start(p.start);
-    p.left = distance_left(p.start);
-    plans.push_back({p.start, plan(p)});
-  }
-  auto outcomes = carry_out(task_, plans, replay);
+  auto outcomes = follow(tried, replay);
   std::vector<Predecessor> good;
   std::vector<Transition> steps;
   for (std::size_t k = 0; k < tried.size(); ++k) {
     if (!outcomes[k]) continue;
     std::vector<Transition>& followed = *outcomes[k];
-    tried[k].depth = static_cast<int>(followed.size());
-    good.push_back(std::move(tried[k]));
+    Predecessor& p = tried[k];
+    p.depth = static_cast<int>(followed.size());
+    p.left = distance_left(p.start);
+    if (!followed.empty()) p.moved = objects_moved(p.start, followed.front().next);
+    good.push_back(std::move(p));
     if (!followed.empty() && rng_.uniform(0.0, 1.0) >= config_.plans) followed.resize(1);
     steps.insert(steps.end(), followed.begin(), followed.end());
   }
   beam_.clear();
   for (Predecessor& p : best_of(std::move(good), 1, seen_)) {
     beam_.push_back(static_cast<int>(nodes_.size()));
-    if (p.depth == 0)
-      nodes_.push_back({.poses = std::move(p.start)});
-    else
-      nodes_.push_back({std::move(p.start), p.action, p.parent, p.depth});
+    const bool success = p.depth == 0;
+    nodes_.push_back({std::move(p.start), success ? -1 : p.action, p.parent, p.depth});
   }
   return steps;
 }

@@ -42,12 +42,12 @@ void take(std::vector<std::size_t>& from, std::vector<std::size_t>& to, int coun
 }  // namespace
 
 std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
-                                     std::unordered_set<std::uint64_t>& seen) {
-  std::vector<std::size_t> rest = distinct(entries, config.per_layout, seen), beam;
-  const auto quota = static_cast<int>(std::lround(config.contact_quota * config.breadth));
+                                     std::unordered_set<std::uint64_t>& seen, int times) {
+  std::vector<std::size_t> rest = distinct(entries, times * config.per_layout, seen), beam;
+  const int breadth = times * config.breadth;
+  const auto quota = static_cast<int>(std::lround(config.contact_quota * breadth));
   take(rest, beam, quota, [&](std::size_t k) { return entries[k].contact; });
-  take(rest, beam, config.breadth - static_cast<int>(beam.size()),
-       [](std::size_t) { return true; });
+  take(rest, beam, breadth - static_cast<int>(beam.size()), [](std::size_t) { return true; });
   std::sort(beam.begin(), beam.end(), [&](std::size_t a, std::size_t b) {
     return std::pair(entries[a].score, a) < std::pair(entries[b].score, b);
   });

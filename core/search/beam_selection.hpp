@@ -17,11 +17,11 @@ struct BeamEntry {
   bool contact = false;      // its push moved an object
 };
 
-/// Indices of the next beam, at most config.breadth, in order of (score, index): first the best of
-/// the contact quota, then the best of all. At most one per cell, none of a cell in `seen`, at most
-/// config.per_layout per layout; the chosen cells are added to `seen`. A pure function of the
-/// complete set, so the order in which results arrived cannot matter.
+/// Indices of the next beam, at most `times` config.breadth, in order of (score, index): first the
+/// best of the contact quota, then the best of all. At most one per cell, none of a cell in `seen`,
+/// at most `times` config.per_layout per layout; the chosen cells are added to `seen`. A pure
+/// function of the complete set, so the order in which results arrived cannot matter.
 std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
-                                     std::unordered_set<std::uint64_t>& seen);
+                                     std::unordered_set<std::uint64_t>& seen, int times = 1);
 
 }  // namespace rtg

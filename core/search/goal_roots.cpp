@@ -59,11 +59,9 @@ std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, cons
   }
   std::stable_sort(drawn.begin(), drawn.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
+  drawn.resize(std::min(drawn.size(), static_cast<std::size_t>(config.breadth)));
   std::vector<Poses> roots;
-  for (auto& [score, root] : drawn) {
-    if (static_cast<int>(roots.size()) == config.breadth) break;
-    roots.push_back(std::move(root));
-  }
+  for (auto& [score, root] : drawn) roots.push_back(std::move(root));
   return roots;
 }
 

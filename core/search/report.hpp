@@ -49,8 +49,7 @@ struct GenerationReport {
   double pushing_iterations_median = 0.0, pushing_iterations_p90 = 0.0;
   double replay_gap_median = 0.0, replay_gap_p90 = 0.0;  // [m]
   double reverse_cpu_s = 0.0, replay_cpu_s = 0.0, generate_wall_s = 0.0;
-  double generate_cpu_s =
-      0.0;  // of this process, all threads; solves and replays elsewhere left out
+  double generate_cpu_s = 0.0;     // of this process; solves and replays elsewhere left out
   std::vector<float> replay_gaps;  // one per replayed candidate [m]
   std::vector<ReportNode> nodes;
 };

@@ -53,8 +53,11 @@ double walk(const Task& task, const Poses& poses, std::size_t body, const Vector
   return std::max(2.0, (robot.position() - spot).norm() / task.push.stride);
 }
 
-bool in_place(const StateMetric::Object& o, const Poses& poses, const Poses& target) {
-  return (poses[o.body].position() - target[o.body].position()).norm() <= kInPlace;
+/// A body with a joint must be turned right as well: a pin can hold its centre where it is.
+bool in_place(const StateMetric& metric, const StateMetric::Object& o, const Poses& poses,
+              const Poses& target) {
+  return (o.jointed ? metric.distance(o, poses, target)
+                    : (poses[o.body].position() - target[o.body].position()).norm()) <= kInPlace;
 }
 
 /// The same to the next object that is out of place, or to the robot's own place.
@@ -63,7 +66,7 @@ double next_walk(const Task& task, const StateMetric& metric, const Poses& poses
   double best = std::numeric_limits<double>::infinity();
   for (const auto& o : metric.objects()) {
     const Vector2d way = target[o.body].position() - poses[o.body].position();
-    if (!in_place(o, poses, target)) best = std::min(best, walk(task, poses, o.body, way));
+    if (!in_place(metric, o, poses, target)) best = std::min(best, walk(task, poses, o.body, way));
   }
   if (std::isfinite(best)) return best;
   const double home = (target[0].position() - poses[0].position()).norm();
@@ -78,14 +81,14 @@ double start_distance(const Task& task, const StateMetric& metric, const Poses& 
                       const Poses& target) {
   double sum = next_walk(task, metric, poses, target);
   for (const auto& o : metric.objects())
-    if (!in_place(o, poses, target))
+    if (!in_place(metric, o, poses, target))
       sum += kWalk + metric.distance(o, poses, target) / task.push.stride;
   return sum;
 }
 
 bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target) {
   return std::ranges::all_of(metric.objects(),
-                             [&](const auto& o) { return in_place(o, poses, target); });
+                             [&](const auto& o) { return in_place(metric, o, poses, target); });
 }
 
 Poses placed(const Task& task, const StateMetric& metric, Poses poses, const Poses& target,
@@ -95,7 +98,7 @@ Poses placed(const Task& task, const StateMetric& metric, Poses poses, const Pos
   const std::vector<std::size_t> movers = movers_of(task.scene);
   std::vector<bool> stays(poses.size(), false);  // by mover
   for (const auto& o : metric.objects())
-    if (!in_place(o, poses, target)) stays[movers[o.body]] = true;
+    if (!in_place(metric, o, poses, target)) stays[movers[o.body]] = true;
   for (const auto& o : metric.objects())
     if (!stays[movers[o.body]]) poses[o.body] = start[o.body];
   return poses;

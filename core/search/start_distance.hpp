@@ -9,8 +9,9 @@ namespace rtg {
 ///
 ///   Σ_objects out of place [(|x - x*| + r|θ - θ*|) / stride + 2] + walk,
 ///
-/// x*, θ* of the target, r as in StateMetric; an object is in place within 0.4 m of x*; 2 is the
-/// price of getting from one object to the next. `walk`: pushes until the robot touches an object
+/// x*, θ* of the target, r as in StateMetric; an object is in place within 0.4 m of x*, one with
+/// a joint where |x - x*| + r|θ - θ*| is at most that; 2 is the price of getting from one object to
+/// the next. `walk`: pushes until the robot touches an object
 /// that is out of place, whatever its angle, on the side towards its place, ready to pull it there
 /// (0, 1, or the strides of the way, but at least 2); with all objects in place, likewise until it
 /// is within 0.4 m of its own place. At 0, placed() gives a whole start.

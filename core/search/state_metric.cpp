@@ -46,9 +46,11 @@ double angle_difference(double a, double b, int order) {
 }
 
 StateMetric::StateMetric(const Scene& scene) {
-  for (std::size_t k = 1; k < scene.size(); ++k)
+  for (std::size_t k = 1; k < scene.size(); ++k) {
+    const bool jointed = has_joint(scene, k);
     if (!scene.bodies[k].fixed)
-      objects_.push_back({k, has_joint(scene, k) ? 1 : symmetry_order(scene.bodies[k].shape)});
+      objects_.push_back({k, jointed, jointed ? 1 : symmetry_order(scene.bodies[k].shape)});
+  }
 }
 
 double StateMetric::distance(const Object& o, const Poses& a, const Poses& b) const {

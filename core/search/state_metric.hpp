@@ -24,6 +24,7 @@ class StateMetric {
   /// A body other than the robot that can move.
   struct Object {
     std::size_t body;
+    bool jointed;
     int order;
   };
   std::span<const Object> objects() const { return objects_; }

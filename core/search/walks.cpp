@@ -12,12 +12,6 @@ namespace {
 constexpr int kWave = 50;         // walks that go on side by side
 constexpr double kSeeking = 0.5;  // share of the pushes that seek contact, the others are uniform
 
-/// A state in which a walk begins; nothing if none was found.
-std::optional<Poses> origin(const Generation& run, Rng& rng) {
-  if (run.config.generator == Generator::kScatter) return sample_goal(run.task, rng);
-  return run.draw_start(rng);
-}
-
 int heading(const Generation& run, const Poses& state, Rng& rng) {
   const bool seeks = rng.uniform(0.0, 1.0) < kSeeking;
   return seeks ? contact_heading(run.task, state, rng) : rng.below(run.task.push.headings);
@@ -27,9 +21,11 @@ int heading(const Generation& run, const Poses& state, Rng& rng) {
 
 void walk(Generation& run, int number) {
   Rng rng = run.stream(number);
+  const bool from_goals = run.config.generator == Generator::kScatter;
   std::vector<Poses> states;
   for (int k = 0; k < kWave; ++k)
-    if (std::optional<Poses> state = origin(run, rng)) states.push_back(*std::move(state));
+    if (auto state = from_goals ? sample_goal(run.task, rng) : run.draw_start(rng))
+      states.push_back(*std::move(state));
   for (int step = 0; step < run.task.horizon && !states.empty() && !run.data.full(); ++step) {
     std::vector<ReplayJob> pushes;
     for (const Poses& state : states) pushes.push_back({state, heading(run, state, rng)});

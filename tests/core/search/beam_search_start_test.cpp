@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 #include "core/search/beam_search.hpp"
 #include "core/search/start_distance.hpp"
@@ -27,16 +29,23 @@ struct BeamSearchStartTest : ::testing::Test, testing::DraggingWorld {
     return legal_state(task, placed(task, StateMetric(task.scene), poses, task.start, task.start));
   }
 
-  /// Poses of box 3 in the nodes in which it is within 0.4 m of its place.
-  std::vector<Pose> in_place() {
+  /// The nodes in which box 3 is within 0.4 m of its place.
+  std::vector<Poses> nodes_in_place() {
     BeamSearch search(task, config, task.start, 1);
     search.plant(replay, stats);
     for (int layer = 0; layer < 12; ++layer) search.grow(solve, replay, stats);
-    std::vector<Pose> found;
+    std::vector<Poses> found;
     for (const Node& n : search.nodes())
-      if (n.depth > 0 && has_room(n.poses) &&
-          (n.poses[3].position() - task.start[3].position()).norm() <= 0.4)
-        found.push_back(n.poses[3]);
+      if (n.depth > 0 && (n.poses[3].position() - task.start[3].position()).norm() <= 0.4)
+        found.push_back(n.poses);
+    return found;
+  }
+
+  /// Poses of box 3 in those of them that have room.
+  std::vector<Pose> in_place() {
+    std::vector<Pose> found;
+    for (const Poses& poses : nodes_in_place())
+      if (has_room(poses)) found.push_back(poses[3]);
     return found;
   }
 };
@@ -60,6 +69,41 @@ TEST_F(BeamSearchStartTest, WithoutJitterItIsWhereTheTargetHasIt) {
   const std::vector<Pose> found = in_place();
   ASSERT_GT(found.size(), 10U);
   for (const Pose& pose : found) EXPECT_EQ(pose, task.start[3]);
+}
+
+TEST_F(BeamSearchStartTest, AWideJitterIsCutToAQuarterOfAMetre) {
+  task.start_jitter = 1.0;
+  double farthest = 0.0;
+  for (const Pose& pose : in_place())
+    farthest = std::max(
+        {farthest, std::abs(pose.x - task.start[3].x), std::abs(pose.y - task.start[3].y)});
+  EXPECT_GT(farthest, 0.2);
+  EXPECT_LE(farthest, 0.25 + 1e-6);
+}
+
+TEST_F(BeamSearchStartTest, WithSomethingInTheWayTheStateStaysAsItIs) {
+  task.start_jitter = 0.0;
+  testing::add_box(task, task.start[3]);
+  task.start.back().x += 1.3;  // where box 3 has no room in its place, but to the left of it
+  task.scene.bodies.back().fixed = true;
+  config.breadth = 60;
+  int stay = 0;
+  for (const Poses& poses : nodes_in_place()) {
+    EXPECT_TRUE(legal_state(task, poses));
+    stay += poses[3] != task.start[3];
+  }
+  EXPECT_GT(stay, 0);
+}
+
+TEST_F(BeamSearchStartTest, WhereNoPlanSucceedsFromThereTheStatesStayAsTheyAre) {
+  GoalTerm beside_its_place;  // box 3 has its goal within 0.4 m of its start
+  beside_its_place.kind = task.scene.bodies[3].kind = "near";
+  beside_its_place.centre = task.start[3].position() + Vector2d(0.0, 0.3);
+  beside_its_place.radius = 0.1;
+  task.goal[0].kind = "box";
+  task.goal.push_back(beside_its_place);
+  const std::vector<Poses> found = nodes_in_place();
+  EXPECT_GT(found.size(), 50U);
 }
 
 }  // namespace

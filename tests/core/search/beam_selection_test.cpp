@@ -117,6 +117,17 @@ TEST(BeamSelection, WhatItsLayoutHasNoRoomForLeavesItsCellToOthers) {
   EXPECT_EQ(select(entries, c), (Indices{0, 2, 3}));
 }
 
+TEST(BeamSelection, AWiderChoiceIsThatOfAsManyTimesTheLimits) {
+  Rng rng(22);
+  const std::vector<BeamEntry> entries = random_entries(rng, 300);
+  SearchConfig narrow = config(10, 0.4), wide = config(30, 0.4);
+  narrow.per_layout = 2;
+  wide.per_layout = 6;
+  Cells seen, as_wide;
+  EXPECT_EQ(select_beam(entries, narrow, seen, 3), select_beam(entries, wide, as_wide));
+  EXPECT_EQ(seen, as_wide);
+}
+
 TEST(BeamSelection, HoldsAllItsPromisesOnRandomLayers) {
   Rng rng(21);
   for (int trial = 0; trial < 200; ++trial) {

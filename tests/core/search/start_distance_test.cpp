@@ -99,6 +99,22 @@ TEST_F(StartDistanceTest, WhatIsInPlaceIsPutWhereAStartHasIt) {
   EXPECT_EQ(placed(task, metric, poses, task.start, start), expected);
 }
 
+TEST(Placed, WhatTurnsOnAPinIsInPlaceOnlyIfItIsTurnedRight) {
+  Task task = gathering();
+  task.scene.bodies[1].fixed = true;
+  task.start[2] = task.start[1];
+  task.scene.joints.push_back({1, 2});
+  const StateMetric metric(task.scene);
+  Poses turned = task.start, nearly = task.start;
+  turned[2].theta += 0.9;
+  nearly[2].theta += 0.7;  // 0.5 m times that is 0.35 m
+  EXPECT_FALSE(in_place(metric, turned, task.start));
+  EXPECT_TRUE(in_place(metric, nearly, task.start));
+  EXPECT_GT(start_distance(task, metric, turned, task.start), 2.0);
+  EXPECT_EQ(placed(task, metric, turned, task.start, task.start), turned);
+  EXPECT_EQ(placed(task, metric, nearly, task.start, task.start), task.start);
+}
+
 TEST(Placed, WhatJointsConnectIsPutThereTogether) {
   const Task task = testing::art_manip();
   const StateMetric metric(task.scene);
