@@ -1,11 +1,9 @@
 """Learning from data alone: rounds without interactions, and CQL's term of the loss."""
 
 import numpy as np
-import pytest
 import torch as th
 from rtg.ddqn import conservative_gap
-from rtg.replay import Batch
-from test_ddqn import column, constant, model
+from test_ddqn import column, model
 
 
 def test_the_conservative_gap_by_hand() -> None:
@@ -14,26 +12,6 @@ def test_the_conservative_gap_by_hand() -> None:
     actions = th.tensor([[1], [2], [0]])
     wanted = column(np.log(8 / 2), np.log(8 / 5), np.log(3.0))
     th.testing.assert_close(conservative_gap(q, actions), wanted)
-
-
-@pytest.mark.parametrize("conservatism", [0.0, 0.5])
-@pytest.mark.parametrize("offline", [0, 2, 3])
-def test_the_loss_of_a_gradient_step_by_hand(
-    conservatism: float, offline: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Values are held down of offline rows alone. Q is 0.5, 0.2 and six times 0; targets are what
-    is given, as all rows are final; smooth L1 is half the square of so small an error."""
-    one, told = model(dueling=False, value_bounds=False, conservatism=conservatism), []
-    q = th.tensor([0.5, 0.2, *[0.0] * 6])
-    constant(one.q_net, *q.tolist())
-    monkeypatch.setattr(one, "_descend", told.append)
-    actions, y = th.tensor([[0], [1], [2]]), column(1, 0, 1)
-    seen = th.zeros(3, 3)
-    one._gradient_step(Batch(seen, actions, seen, y, column(1, 1, 1), column(0, 0, 0), offline))
-    td = (0.5**2 + 0.2**2 + 1.0**2) / 2 / 3
-    gaps = np.log(np.exp(0.5) + np.exp(0.2) + 6) - np.array([0.5, 0.2, 0.0])[:offline]
-    held_down = conservatism * gaps.mean() if offline else 0.0
-    assert told[0].item() == pytest.approx(td + held_down, rel=1e-5)
 
 
 def test_values_of_headings_that_are_not_in_the_data_are_held_down() -> None:

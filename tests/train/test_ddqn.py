@@ -30,6 +30,14 @@ def column(*values: float) -> th.Tensor:
     return th.tensor(values, dtype=th.float32)[:, None]
 
 
+def constant(net: th.nn.Module, *q: float) -> None:
+    """The network says these values of the first actions, -9 of the others, in every state."""
+    with th.no_grad():
+        net.head.weight.zero_()
+        net.head.bias.fill_(-9.0)
+        net.head.bias[: len(q)] = th.tensor(q)
+
+
 def batch(rewards: th.Tensor, terminated: th.Tensor, bounds: th.Tensor) -> Batch:
     nothing = th.zeros(len(rewards), 1)
     return Batch(nothing, nothing, nothing, rewards, terminated, bounds, offline=0)
@@ -206,63 +214,6 @@ def test_only_targets_that_a_proof_raises_count_as_bound() -> None:
         shares = statistics.take()
         assert shares["bound_share"] == pytest.approx(2 / 7)
         assert shares["clipped_share"] == pytest.approx(3 / 7)
-
-
-@pytest.mark.parametrize("value_bounds", [False, True])
-def test_targets_of_a_network_that_says_less_than_0_count_as_clipped(value_bounds: bool) -> None:
-    random = {"epsilon_start": 1.0, "epsilon_end": 1.0, "nearby_share": 0.0}
-    one = model(value_bounds=value_bounds, **random)
-    one.learn(400)
-    with th.no_grad():
-        for net in (one.q_net, one.q_net_target):
-            net.head.weight.zero_()
-            net.head.bias.fill_(-1.0)
-    one.statistics.take()
-    data = one.replay_buffer.sample(256)
-    one._gradient_step(data)
-    shares, goes_on = one.statistics.take(), data.terminated == 0
-    assert shares["clipped_share"] == float(goes_on.float().mean()) > 0.5
-    assert shares["bound_share"] == float((goes_on & (data.bounds > 0)).float().mean())
-    assert (shares["bound_share"] > 0) == value_bounds
-
-
-def constant(net: th.nn.Module, *q: float) -> None:
-    """The network says these values of the first actions, -9 of the others, in every state."""
-    with th.no_grad():
-        net.head.weight.zero_()
-        net.head.bias.fill_(-9.0)
-        net.head.bias[: len(q)] = th.tensor(q)
-
-
-@pytest.mark.parametrize(
-    ("changes", "online", "target", "value"),
-    [
-        ({"double_q": False}, (0.5, 0.2), (0.7, 0.9), 0.9),
-        ({"double_q": False, "cautious": False}, (0.5, 0.2), (0.7, 0.9), 0.9),
-        ({"cautious": False}, (0.5, 0.2), (0.7, 0.9), 0.7),
-        ({}, (0.5, 0.2), (0.7, 0.9), 0.5),
-        ({}, (-0.5, -0.6), (-0.3, -0.1), 0.0),
-        ({"clip_targets": False}, (-0.5, -0.6), (-0.3, -0.1), -0.5),
-    ],
-)
-def test_a_gradient_step_learns_what_the_settings_say_of_the_next_state(
-    changes: dict[str, bool],
-    online: tuple[float, ...],
-    target: tuple[float, ...],
-    value: float,
-) -> None:
-    one = model(dueling=False, value_bounds=False, **changes)
-    one.learn(400)
-    constant(one.q_net, *online)
-    constant(one.q_net_target, *target)
-    one.statistics.take()
-    data = one.replay_buffer.sample(256)
-    q = th.full((8,), -9.0)
-    q[:2] = th.tensor(online)
-    y = data.rewards + 0.9 * (1 - data.terminated) * value
-    one._gradient_step(data)
-    error = (q[data.actions] - y).square().mean().sqrt()
-    assert one.statistics.take()["td_error"] == pytest.approx(float(error), rel=1e-5)
 
 
 def test_a_batch_is_made_of_what_the_settings_say() -> None:

@@ -27,7 +27,6 @@ NEAR = (
     "search.depth=1",
     "train.eval_episodes=8",
     "train.discount=0.5",
-    "run.seed=7",
 )
 SECONDS = {"train_wall_s", "train_cpu_s"}
 

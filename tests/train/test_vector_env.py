@@ -1,3 +1,5 @@
+from collections import Counter
+
 import numpy as np
 from rtg import _core, paths
 from rtg.curriculum import ELSEWHERE
@@ -17,21 +19,66 @@ def steps(env: PushVecEnv, count: int, seed: int = 0) -> list[np.ndarray]:
     return out
 
 
-def test_every_copy_does_what_the_single_environment_does() -> None:
-    many = PushVecEnv(CONFIG, 3, jitter=0.1, seed=9)
+# A push from success, out of four.
+NEAR = _core.Config.from_file(
+    paths.CONFIG / "gathering.yaml",
+    [
+        "task.horizon=4",
+        "task.bodies.0.start=[-4.5, 0.0, 0.0]",
+        "task.bodies.1.start=[-3.05, 0.0, 0.0]",
+        "task.bodies.2.start=[1.2, 0.7, 0.0]",
+        "task.bodies.3.start=[1.2, -0.7, 0.0]",
+    ],
+)
+
+
+class Singles:
+    """Single environments, each of which begins anew at the next start of the stream `seed`."""
+
+    def __init__(self, config: _core.Config, count: int, jitter: float, seed: int) -> None:
+        self.envs = [PushEnv(config) for _ in range(count)]
+        self.jitter, self.seed, self.starts, self.successes = jitter, seed, 0, 0
+        self.lengths = [0] * count
+        self.ends: list[tuple[bool, int]] = []  # success and length of all episodes
+
+    def begin(self, k: int) -> np.ndarray:
+        start = self.envs[k].task.jittered_start(self.jitter, self.seed, self.starts)
+        self.starts += 1
+        self.lengths[k] = 0
+        return self.envs[k].reset(options={"poses": start})[0]
+
+    def step(self, k: int, action: int) -> tuple[np.ndarray, float, bool, dict]:
+        """As one copy of PushVecEnv."""
+        seen, reward, terminated, truncated, _ = self.envs[k].step(action)
+        self.lengths[k] += 1
+        self.successes += terminated
+        info = {"TimeLimit.truncated": truncated, "rejected": False}
+        if not (terminated or truncated):
+            return seen, reward, False, info
+        self.ends.append((terminated, self.lengths[k]))
+        info |= {"terminal_observation": seen, "is_success": terminated}
+        info["episode"] = {"r": reward, "l": self.lengths[k]}
+        return self.begin(k), reward, True, info
+
+
+def test_every_copy_does_what_the_single_environment_does_over_many_episodes() -> None:
+    count, horizon = 3, NEAR.task.horizon
+    many, singles = PushVecEnv(NEAR, count, 0.1, seed=9), Singles(NEAR, count, 0.1, seed=9)
     first = many.reset()
-    singles = [PushEnv(CONFIG) for _ in range(3)]
-    for k, single in enumerate(singles):
-        seen, _ = single.reset(options={"poses": TASK.jittered_start(0.1, 9, k)})
-        np.testing.assert_array_equal(first[k], seen)
+    np.testing.assert_array_equal(first, [singles.begin(k) for k in range(count)])
     rng = np.random.default_rng(0)
-    for _ in range(59):
-        actions = rng.integers(48, size=3)
-        observation, reward, done, _ = many.step(actions)
-        for k, single in enumerate(singles):
-            seen, one, terminated, truncated, _ = single.step(actions[k])
-            np.testing.assert_array_equal(observation[k], seen)
-            assert (reward[k], done[k]) == (one, terminated or truncated)
+    for _ in range(400):
+        actions = np.where(rng.random(count) < 0.3, 0, rng.integers(48, size=count))
+        observation, reward, done, infos = many.step(actions)
+        for k in range(count):
+            expected = singles.step(k, int(actions[k]))
+            np.testing.assert_array_equal(observation[k], expected[0])
+            assert (reward[k], done[k]) == expected[1:3]
+            np.testing.assert_equal(infos[k], expected[3])
+        assert many.successes == singles.successes
+    kinds = Counter(singles.ends)
+    assert kinds[True, 1] > 10 and kinds[False, horizon] > 10
+    assert kinds[True, horizon] >= 3, "an action that both solves the task and is the last"
 
 
 def test_a_finished_episode_reports_its_end_and_starts_again() -> None:

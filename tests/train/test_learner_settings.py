@@ -1,0 +1,196 @@
+"""Each field of TrainSettings that is about the learner does what it says: measured with one value
+of it and with another. test_run_settings.py has those of a run."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import torch as th
+from rtg import networks
+from rtg.ddqn import DoubleDqn
+from test_ddqn import constant, model, weights
+
+Measure = Callable[..., Any]
+
+
+def played(**changes: Any) -> DoubleDqn:
+    """A learner that has made 400 interactions, a tenth of them explored, and learned nothing."""
+    one = model(**{"epsilon_start": 0.1, "epsilon_end": 0.1, "gradient_steps": 0, **changes})
+    one.learn(400)
+    return one
+
+
+def first_step(**changes: Any) -> float:
+    """How far the first gradient step moves the weight that it moves most: Adam's first step is
+    its rate in each weight that has a gradient."""
+    one = played(**changes)
+    before = weights(one.q_net)
+    one.train(1, 32)
+    return float((weights(one.q_net) - before).abs().max())
+
+
+def rows_of_a_batch(**changes: Any) -> int:
+    one, sizes = model(**changes), []
+    sample = one.replay_buffer.sample
+    one.replay_buffer.sample = lambda size: sizes.append(size) or sample(size)
+    one.learn(4)
+    return sizes[0]
+
+
+def steps_of_40_interactions(**changes: Any) -> int:
+    one = model(**changes)
+    one.learn(40)
+    return one.gradient_steps_done
+
+
+def target_after(steps: int) -> Measure:
+    """How far along from its first weights to the learner's the target network is."""
+
+    def measure(**changes: Any) -> float:
+        one = played(dueling=False, **changes)
+        constant(one.q_net, 1.0)
+        constant(one.q_net_target, 0.0)
+        for group in one.policy.optimizer.param_groups:
+            group["lr"] = 0.0
+        one.lr_schedule = lambda _: 0.0
+        one.train(steps, 32)
+        return round(one.q_net_target.head.bias[0].item(), 4)
+
+    return measure
+
+
+def acting(**changes: Any) -> int:
+    """The action in training where the learner's own network says 0 and the target network 1."""
+    one = model(dueling=False, epsilon_start=0.0, epsilon_end=0.0, **changes)
+    constant(one.q_net, 1.0, 0.0)
+    constant(one.q_net_target, 0.0, 1.0)
+    return int(one.predict(np.zeros((1, 3), np.float32))[0][0])
+
+
+def mean_weights_lag(**changes: Any) -> bool:
+    one = model(**changes)
+    one.learn(400)
+    return not th.equal(weights(one.q_net), weights(one.mean_net))
+
+
+def of_rules(name: str) -> Measure:
+    return lambda **changes: getattr(model(**changes).replay_buffer, name)
+
+
+def next_value(**changes: Any) -> float:
+    """What the next state is taken to be worth, of which the learner says (0.5, 0.2) and the target
+    network (0.7, 0.9): from the error where the state itself is said to be worth 0."""
+    one = played(dueling=False, value_bounds=False, **changes)
+    constant(one.q_net, 0.5, 0.2)
+    constant(one.q_net_target, 0.7, 0.9)
+    batch = one.replay_buffer.sample(256)
+    kept = batch.rewards[:, 0] == 0
+    batch = batch._replace(**{f: getattr(batch, f)[kept] for f in batch._fields[:-1]})
+    one.statistics.take()
+    y = []
+    one.statistics.note = lambda batch, q, target, bootstrap: y.append(target)
+    one._gradient_step(batch)
+    return round(float(y[0].mean()) / one.gamma, 4)
+
+
+def least_target(**changes: Any) -> float:
+    """Where all values are said to be -1."""
+    one = played(dueling=False, value_bounds=False, **changes)
+    constant(one.q_net, *[-1.0] * 8)
+    constant(one.q_net_target, *[-1.0] * 8)
+    y = []
+    one.statistics.note = lambda batch, q, target, bootstrap: y.append(target)
+    one._gradient_step(one.replay_buffer.sample(256))
+    return round(float(y[0].min()) / one.gamma, 4)
+
+
+def names_of_parameters(word: str) -> Measure:
+    return lambda **changes: any(word in name for name, _ in model(**changes).q_net.named_modules())
+
+
+def largest_first_value(**changes: Any) -> bool:
+    """Whether a network that nothing was learned by says more than 0.02 of anything."""
+    seen = np.random.default_rng(0).normal(size=(100, 3)).astype(np.float32)
+    return bool(np.abs(model(**changes).values(seen)).max() > 0.02)
+
+
+def pull_on_other_actions(**changes: Any) -> bool:
+    """Whether a step that sees offline rows of action 1 lowers what is said of action 0."""
+    one = model(dueling=False, **changes)
+    x = np.zeros((4, 3), np.float32)
+    ones = np.ones(4, np.float32)
+    one.replay_buffer.offline.append(
+        observation=x, next_observation=x, action=ones.astype(int), reward=ones, terminated=ones
+    )
+    before = one.q_net.head.bias[0].item()
+    one.train(1, 4)
+    return one.q_net.head.bias[0].item() < before
+
+
+def epsilon_at(interactions: int) -> Measure:
+    return lambda **changes: round(model(**changes).exploration.epsilon(interactions), 4)
+
+
+def headings(**changes: Any) -> set[int]:
+    """What is done where the greedy heading is 0 and that towards an object 4, of 8."""
+    always = {"epsilon_start": 1.0, "nearby_share": 1.0, "nearby_headings": 1, "contact_share": 0.0}
+    one = model(**{"leave_loops": False, **always, **changes}).exploration
+    one.contact = lambda seed: np.full(2000, 4)
+    return set(one.actions(np.zeros(2000, int), np.zeros((2000, 3)), 1.0).tolist())
+
+
+def leaves_loops(**changes: Any) -> bool:
+    one = model(nearby_share=1.0, **changes).exploration
+    seen = np.zeros((1, 3))
+    return any(one.actions(np.array([0]), seen, 0.0) != 0 for _ in range(2))
+
+
+LESS = th.bfloat16 if networks.has_fast_bfloat16() else th.float32
+
+
+def width(**changes: Any) -> th.dtype:
+    """Of the numbers that the inner layers compute with."""
+    one, found = model(**changes), []
+    one.q_net.inner.register_forward_hook(lambda net, seen, out: found.append(out.dtype))
+    one.q_net.train(True)(th.zeros(1, 3))
+    return found[0]
+
+
+OF_THE_LEARNER: dict[str, tuple[Any, Any, Measure, Any, Any]] = {
+    # field: a value, another, what is measured, what it is with the one, with the other
+    "batch": (16, 48, rows_of_a_batch, 16, 48),
+    "learning_rate": (1e-3, 5e-3, first_step, pytest.approx(1e-3), pytest.approx(5e-3)),
+    "train_frequency": (4, 8, steps_of_40_interactions, 10, 5),
+    "gradient_steps": (1, 3, steps_of_40_interactions, 10, 30),
+    "target_sync": (10, 4, target_after(4), 0.0, 1.0),
+    "target_rate": (1.0, 0.25, target_after(10), 1.0, 0.25),
+    "target_acts": (False, True, acting, 0, 1),
+    "policy_rate": (1.0, 0.01, mean_weights_lag, False, True),
+    "offline_share": (0.5, 0.25, of_rules("offline_share"), 0.5, 0.25),
+    "recent_share": (0.5, 0.25, of_rules("recent_share"), 0.5, 0.25),
+    "value_bounds": (True, False, of_rules("use_bounds"), True, False),
+    "buffer": (10_000, 8, of_rules("buffer_size"), 10_000, 8),
+    "double_q": (True, False, next_value, 0.5, 0.9),
+    "cautious": (True, False, next_value, 0.5, 0.7),
+    "clip_targets": (True, False, least_target, 0.0, -1.0),
+    "dueling": (True, False, lambda **c: model(**c).q_net.head.out_features, 9, 8),
+    "layer_norm": (True, False, names_of_parameters("first.2"), True, False),
+    "small_head": (True, False, largest_first_value, False, True),
+    "conservatism": (0.0, 5.0, pull_on_other_actions, False, True),
+    "epsilon_start": (0.3, 0.5, epsilon_at(0), 0.3, 0.5),
+    "epsilon_end": (0.02, 0.05, epsilon_at(1000), 0.02, 0.05),
+    "epsilon_share": (0.2, 0.1, epsilon_at(100), pytest.approx(0.16, abs=1e-3), 0.02),
+    "nearby_share": (1.0, 0.0, headings, {1, 7}, set(range(8))),
+    "nearby_headings": (1, 2, headings, {1, 7}, {1, 2, 6, 7}),
+    "contact_share": (0.0, 1.0, headings, {1, 7}, {4}),
+    "leave_loops": (False, True, leaves_loops, False, True),
+    "reduced_precision": (False, True, width, th.float32, LESS),
+}
+
+
+@pytest.mark.parametrize("field", OF_THE_LEARNER)
+def test_a_setting_of_the_learner(field: str) -> None:
+    one, other, measure, expected, changed = OF_THE_LEARNER[field]
+    assert measure(**{field: one}) == expected
+    assert measure(**{field: other}) == changed

@@ -1,0 +1,118 @@
+"""Each field of TrainSettings that is about a run and its parts does what it says."""
+
+import dataclasses
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from rtg import trainer
+from rtg.evaluation import Evaluation
+from rtg.hindsight import HindsightReplayBuffer
+from rtg.settings import TrainSettings
+from rtg.training import Training
+from rtg.transition_stream import Rows
+from test_learner_settings import OF_THE_LEARNER
+from training_runs import Stream, run_folder, training
+
+
+def course(one: Training, rows: Rows, success: list[bool]) -> dict[str, Any]:
+    """What a run does whose learner learns nothing, and whose evaluations end as told."""
+    saved, seen, ends = [], [], iter(success)
+
+    def learn(interactions: int, **_: Any) -> None:
+        seen.append(one.data.count)
+        one.model.num_timesteps += interactions
+
+    def evaluate() -> Evaluation:
+        found = np.full(one.settings.eval_episodes, next(ends))
+        return Evaluation(found, np.ones(len(found), int), found * 1.0, [])
+
+    one.model.learn, one.evaluate = learn, evaluate
+    one.save = lambda: saved.append(one.scheduled) or setattr(one, "_saved_at", one.scheduled)
+    assert one.run(Stream(rows, one.data, piece=100), lambda: False, record=False)
+    evaluated = [row["interactions"] for row in one.log.rows]
+    return {"end": one.scheduled, "first": seen[0], "evaluated": evaluated, "saved": saved[:-1]}
+
+
+USUAL = {
+    "interactions": 240,
+    "start_at": 0,
+    "eval_every": 80,
+    "checkpoint_every": 100,
+    "stop_at_success": 0.0,
+    "stop_evaluations": 2,
+}
+OF_THE_COURSE: dict[str, tuple[Any, str, Any]] = {
+    # field: its value, what it changes of the course, to what
+    "interactions": (400, "end", 400),
+    "start_at": (250, "first", 400),  # 300 are in when learning may begin; another 100 come first
+    "eval_every": (120, "evaluated", [120, 240]),
+    "checkpoint_every": (60, "saved", [60, 120, 180, 240]),
+    "stop_at_success": (0.5, "end", 160),
+    "stop_evaluations": (2, "end", 240),
+}
+
+
+def test_the_usual_course(tmp_path: Path, rows: Rows) -> None:
+    found = of_course(tmp_path, rows, USUAL)
+    assert found == {"end": 240, "first": 100, "evaluated": [80, 160, 240], "saved": [100, 200]}
+
+
+def of_course(folder: Path, rows: Rows, settings: dict[str, Any]) -> dict[str, Any]:
+    texts = [f"train.{name}={json.dumps(value)}" for name, value in settings.items()]
+    return course(training(run_folder(folder / "run", None, *texts)), rows, [True] * 10)
+
+
+@pytest.mark.parametrize("field", OF_THE_COURSE)
+def test_a_setting_of_the_course(field: str, tmp_path: Path, rows: Rows) -> None:
+    value, what, expected = OF_THE_COURSE[field]
+    assert of_course(tmp_path, rows, {**USUAL, field: value})[what] == expected
+
+
+def spread(one: Training) -> float:
+    """How far from where the task has it a start puts an object at most. [m]"""
+    starts = []
+    for _ in range(50):
+        one.env.reset()
+        starts.append(one.env.state()["poses"] - one.task.start)
+    return round(float(np.abs(np.concatenate(starts)[:, 1:, :2]).max()), 1)
+
+
+def interactions_of_a_round(one: Training) -> int:
+    one.model.num_timesteps += 4
+    return one.interactions
+
+
+def source(one: Training) -> str:
+    return type(trainer._source(one, trainer._parse([str(one.folder), "--no-stream"]))).__name__
+
+
+OF_THE_PARTS: dict[str, tuple[Any, Any, Callable[[Training], Any], Any, Any]] = {
+    "learner": ("q_learning", "cloning", lambda t: type(t.model).__name__, "DoubleDqn", "Cloning"),
+    "interact": (True, False, interactions_of_a_round, 4, 0),
+    "offline": (True, False, source, "FileSource", "NoSource"),
+    "discount": (0.7, 0.9, lambda t: t.model.gamma, 0.7, 0.9),
+    "start_jitter": (0.1, 0.2, spread, 0.1, 0.2),
+    "randomise": (False, True, spread, 0.1, 0.5),
+    "hindsight": (0, 2, lambda t: isinstance(t.model.replay_buffer, HindsightReplayBuffer), 0, 1),
+    "curriculum": (0.0, 0.5, lambda t: t.env.curriculum is not None, False, True),
+    "eval_episodes": (2, 3, lambda t: len(t.starts), 2, 3),
+    "device": ("auto", "cpu", lambda t: t.model.device.type, "cpu", "cpu"),  # no GPU in tests
+}
+
+
+@pytest.mark.parametrize("field", OF_THE_PARTS)
+def test_a_setting_of_the_parts(field: str, tmp_path: Path, rows: Rows) -> None:
+    one, other, measure, expected, changed = OF_THE_PARTS[field]
+    for name, value, wanted in (("one", one, expected), ("other", other, changed)):
+        text = f"train.{field}={json.dumps(value)}"
+        assert measure(training(run_folder(tmp_path / name, rows, text))) == wanted
+
+
+def test_each_setting_has_its_test() -> None:
+    fields = {field.name for field in dataclasses.fields(TrainSettings)}
+    presets = {"preset"}  # of all others: test_settings.py
+    assert {*OF_THE_LEARNER, *OF_THE_COURSE, *OF_THE_PARTS} == fields - presets
