@@ -1,5 +1,7 @@
 """What the pictures of a comparison show."""
 
+import statistics
+
 import numpy as np
 from comparison_samples import finished, write_grid
 from rtg import report_plots
@@ -33,6 +35,33 @@ def test_a_line_is_the_mean_of_the_seeds_of_which_one_may_have_ended_early(tmp_p
     words = [text.get_text() for text in figures[0].legends[0].get_texts()]
     assert words == ["dqn: 0.10 (1)", "ddqn_rtg: 0.80 (2)"]
     assert lines[0].get_color() != lines[1].get_color()
+
+
+def test_the_band_is_the_sample_deviation_from_where_all_seeds_have_a_value(tmp_path, figures):
+    cells = [Cell("gathering", "ddqn_rtg", (), seed) for seed in (1, 2, 3)]
+    for cell, course in zip(
+        cells, ([0.1, 0.4, 0.2], [0.3, 0.4, 0.5], [0.2, 0.7, 0.2]), strict=True
+    ):
+        finished(tmp_path, cell, course)
+    log = tmp_path / cells[1].name / "progress.csv"  # no training episode had ended by then
+    rows = log.read_text().splitlines()
+    at = rows[0].split(",").index("rollout_success")
+    first = rows[1].split(",")
+    first[at] = ""
+    log.write_text("\n".join([rows[0], ",".join(first), *rows[2:]]) + "\n")
+    write_grid(tmp_path, cells)
+    shown = read_comparison(tmp_path, read_grid(tmp_path))
+    report_plots.curves(tmp_path / "curves.png", shown, "gathering")
+    greedy, rollouts = figures[0].axes[:2]
+    assert [line.get_xdata().tolist()[0] for line in (greedy.lines[0], rollouts.lines[0])] == [
+        5,
+        10,
+    ]
+    band = greedy.collections[0].get_paths()[0].vertices
+    for x, values in ((5.0, [0.1, 0.3, 0.2]), (10.0, [0.4, 0.4, 0.7]), (15.0, [0.2, 0.5, 0.2])):
+        mean, deviation = statistics.fmean(values), statistics.stdev(values)
+        edges = sorted({round(y, 6) for at, y in band if at == x})
+        assert np.allclose([edges[0], edges[-1]], [mean - deviation, mean + deviation])
 
 
 def test_of_many_labels_the_methods_alone_have_curves(tmp_path):

@@ -75,3 +75,12 @@ def test_the_least_legal_buffer_takes_a_step_of_all_environments(
     assert one.env.num_envs == MAX_ENVIRONMENTS
     assert one.run(Stream(rows.after(0, 4), one.data, piece=4), lambda: False, record=False)
     assert one.interactions == 240
+
+
+def test_the_seconds_of_a_run_go_on_where_it_is_resumed(tmp_path: Path) -> None:
+    one = training(run_folder(tmp_path / "run", None))
+    one.clock.restore({"wall_s": 1e6, "cpu_s": 2e6})
+    one.save()
+    other = training(one.folder)
+    other.restore()
+    assert other.clock.seconds() == {"wall_s": 1e6, "cpu_s": 2e6}
