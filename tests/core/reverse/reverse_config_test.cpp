@@ -4,8 +4,11 @@
 
 #include <set>
 #include <string>
+#include <tuple>
+#include <vector>
 
-#include "core/reverse/solve_status.hpp"
+#include "core/reverse/reverse_simulator.hpp"
+#include "tests/support/each_field.hpp"
 
 namespace rtg {
 namespace {
@@ -48,6 +51,46 @@ TEST(ReverseConfig, ThePaperHasItsOwnObjectiveAndIterations) {
   EXPECT_EQ(paper.terminal_weight, 0.0) << "the final state is fixed";
   EXPECT_GT(paper.plain_barrier, 0.0);
   EXPECT_EQ(paper.releases, 0);
+}
+
+/// What the solver makes of pushes that end with a box against the robot, turned a little, and
+/// another one behind it.
+std::vector<std::tuple<SolveStatus, int, std::vector<Poses>>> solutions(
+    const ReverseConfig& config) {
+  Scene scene{{{"robot", "robot", regular_polygon(6, 0.8), 1.0, 0.5, false}}};
+  for (int k = 0; k < 2; ++k)
+    scene.bodies.push_back({"box", "box", box(1.2, 1.2), 1.0, 0.5, false});
+  const PushConfig push;
+  std::vector<ReverseJob> jobs;
+  for (int action = 0; action < push.headings; action += 4)
+    jobs.push_back({{{0, 0, 0}, {1.45, 0.2, 0.05}, {2.9, 0.5, 0.3}}, action});
+  std::vector<std::tuple<SolveStatus, int, std::vector<Poses>>> found;
+  for (const ReverseResult& r : ReverseSimulator(scene, {}, push, config).solve(jobs))
+    found.emplace_back(r.status, r.iterations, r.starts);
+  return found;
+}
+
+TEST(ReverseConfig, EachFieldChangesTheSolutions) {
+  const testing::OtherValues others{
+      {"preset", 1},
+      {"kkt", 1},
+      {"max_iterations", 5},
+      {"feasibility_tol", 1e-2},
+      {"stationarity_tol", 1e-2},
+      {"robot_weight", 0.4},
+      {"object_weight", 0.5},
+      {"control_weight", 1e-2},
+      {"path_weight", 50},
+      {"heading_weight", 50},
+      {"speed_weight", 0.4},
+      {"terminal_weight", 100},
+      {"terminal_tolerance", 1e-6},
+      {"plain_barrier", 0.02},
+      {"proximal_start", 10},
+      {"shakes", 0},
+      {"releases", 2},
+  };
+  testing::expect_each_field_matters(ReverseConfig{}, others, {}, solutions);
 }
 
 TEST(ReverseJob, KeysTellStatesAndActionsApart) {

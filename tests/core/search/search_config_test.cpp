@@ -1,0 +1,43 @@
+#include "core/search/search_config.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/search/generate.hpp"
+#include "tests/support/dragging_world.hpp"
+#include "tests/support/each_field.hpp"
+
+namespace rtg {
+namespace {
+
+/// What a generation in the world without contact stores.
+std::vector<Transition> stored(const SearchConfig& config) {
+  testing::DraggingWorld world;
+  world.drags = {0.2, 0.6, 0.35, testing::kDrag};
+  world.aside = 0.2;
+  std::vector<Transition> all;
+  const GenerationSeams seams{world.solve, world.replay, [&](auto batch) {
+                                all.insert(all.end(), batch.begin(), batch.end());
+                              }};
+  generate(world.task, config, 3, seams);
+  return all;
+}
+
+TEST(SearchConfig, EachFieldChangesTheStoredTransitions) {
+  SearchConfig config;
+  config.transitions = 1200;
+  config.breadth = 6;
+  config.per_layout = 4;
+  config.patience = 2;
+  config.depth = 12;
+  const testing::OtherValues others{
+      {"generator", 4},       {"transitions", 1100}, {"branches", 3},   {"near_branches", 2},
+      {"near_headings", 1},   {"breadth", 7},        {"followed", 3},   {"plans", 0.5},
+      {"depth", 3},           {"contact_quota", 1},  {"starts", 1},     {"free_moves", 3},
+      {"gap_tolerance", 0.1}, {"per_layout", 2},     {"root_draws", 1}, {"patience", 1},
+      {"randomise", 1},
+  };
+  testing::expect_each_field_matters(config, others, {}, stored);
+}
+
+}  // namespace
+}  // namespace rtg
