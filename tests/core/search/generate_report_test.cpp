@@ -79,16 +79,26 @@ struct NotingWorld : testing::DraggingWorld {
   bool to_come_ = false;
 };
 
-struct GenerationReportTest : ::testing::Test {
+/// A generation in that world.
+struct Noted {
   NotingWorld world;
   GenerationReport report;
 
-  GenerationReportTest() {
+  Noted() {
     SearchConfig config;
     config.transitions = 1500;
     config.breadth = 8;
     report = generate(world.task, config, 8, world.seams());
   }
+};
+
+struct GenerationReportTest : ::testing::Test {
+  static const Noted& noted() {
+    static const Noted once;
+    return once;
+  }
+  const NotingWorld& world = noted().world;
+  const GenerationReport& report = noted().report;
 
   bool in_the_start_region(const Poses& poses) const {
     for (std::size_t k = 1; k < poses.size(); ++k) {
