@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
@@ -39,6 +40,19 @@ ONLY_IN = {
     r"(sys|netinet|arpa|net)/.*|unistd\.h|pthread\.h": r"(nodes|tests|train)/.*",
 }
 
+# Rooms of the Python package -> the rooms below, from which they may import; all may import `ROOF`.
+ROOMS = {
+    "files": set(),
+    "processes": set(),
+    "bus": {"files"},
+    "pictures": {"files"},
+    "envs": {"pictures"},
+    "learn": {"files", "processes", "bus", "envs"},
+    "run": {"files", "processes", "bus", "pictures", "learn"},
+    "compare": {"files", "processes", "pictures", "learn", "run"},
+}
+ROOF = {"errors", "paths", "_core"}  # modules of rtg itself
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 IMPORT_LCM = re.compile(r"^\s*(?:import\s+lcm\b|from\s+lcm\b)", re.MULTILINE)
 
@@ -75,13 +89,39 @@ def fault(path: str, header: str) -> str:
     return f"{path}: {header} is of no library that this project uses"
 
 
+def imports(text: str) -> Iterator[str]:
+    """Modules of ours that a Python source imports, dotted."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name.startswith("rtg."))
+        elif isinstance(node, ast.ImportFrom) and node.module == "rtg":
+            yield from (f"rtg.{alias.name}" for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("rtg."):
+            yield node.module
+
+
+def python_faults(path: str, text: str) -> list[str]:
+    """What is wrong with what the module at `path` imports."""
+    found = []
+    if IMPORT_LCM.search(text) and path != "train/rtg/bus/bus.py":
+        found.append(f"{path}: import lcm belongs in train/rtg/bus/bus.py alone")
+    parts = PurePosixPath(path).parts
+    if parts[:2] != ("train", "rtg") or len(parts) == 3:  # tests, and what is above all rooms
+        return found
+    room = parts[2]
+    if room not in ROOMS:
+        return [*found, f"{path}: {room} is no room of the package"]
+    allowed = {room, *ROOMS[room], *ROOF}
+    wrong = [module for module in imports(text) if module.split(".")[1] not in allowed]
+    return found + [f"{path}: may not import {module}" for module in wrong]
+
+
 def violations(files: dict[str, str]) -> list[str]:
     """All faults of `files`, a map of repository path to text."""
     found = []
     for path, text in sorted(files.items()):
         if path.endswith(".py"):
-            if IMPORT_LCM.search(text) and path not in {"train/rtg/bus.py"}:
-                found.append(f"{path}: import lcm belongs in train/rtg/bus.py alone")
+            found += python_faults(path, text)
             continue
         found += [message for header in INCLUDE.findall(text) if (message := fault(path, header))]
     return found

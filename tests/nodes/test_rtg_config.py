@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from rtg import paths
-from rtg.settings import TrainSettings
+from rtg.learn.settings import TrainSettings
 
 TASK = """\
 task:

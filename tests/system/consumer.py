@@ -7,9 +7,10 @@ import json
 import sys
 from pathlib import Path
 
-from rtg import _core, bus
-from rtg.recorder import Recorder
-from rtg.transition_stream import TransitionStream
+from rtg import _core
+from rtg.bus import bus
+from rtg.bus.transition_stream import TransitionStream
+from rtg.files.recorder import Recorder
 
 
 def main(config_file: str, run: str, target: str, *receive_buffer: str) -> None:

@@ -7,10 +7,11 @@ import sys
 from pathlib import Path
 
 from network import Network
-from rtg import _core, effective_config, paths
-from rtg.recorder import Recorder
-from rtg.run_args import Override
-from rtg.transition_stream import Rows
+from rtg import _core, paths
+from rtg.files.dataset import Rows
+from rtg.files.recorder import Recorder
+from rtg.run import effective_config
+from rtg.run.run_args import Override
 
 _TINY = paths.CONFIG / "tests" / "tiny.yaml"
 _RUN = "system-test"

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 from living import processes_of, wait_until_all_are_gone
 from PIL import Image
-from rtg import dataset, paths
-from rtg.run_folder import SUMMARY_KEYS
+from rtg import paths
+from rtg.files import dataset
+from rtg.files.run_folder import SUMMARY_KEYS
 
 TINY = "config/tests/tiny.yaml"
 WHOLE = (TINY,)
@@ -211,7 +212,7 @@ def test_a_killed_worker_is_replaced_and_changes_nothing(tmp_path):
     assert (folder / "transitions.npz").read_bytes() == undisturbed.read_bytes()
 
 
-@pytest.mark.parametrize("program", ["rtg.trainer", "rtg_beam_coordinator"])
+@pytest.mark.parametrize("program", ["rtg.learn.trainer", "rtg_beam_coordinator"])
 def test_without_trainer_or_coordinator_the_run_ends(tmp_path, program):
     folder = tmp_path / "run"
     process = start(*ENDLESS, "--out", folder)

@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rtg import _core, paths, replay_gaps
-from rtg.cells import Cell, Grid
-from rtg.run_folder import write_json
-from rtg.training_log import TrainingLog
+from rtg import _core, paths
+from rtg.compare.cells import Cell, Grid
+from rtg.files import replay_gaps
+from rtg.files.run_folder import write_json
+from rtg.learn.training_log import TrainingLog
 
 CONFIG = paths.CONFIG / "gathering.yaml"
 

@@ -3,8 +3,9 @@ import os
 import numpy as np
 import pytest
 import torch as th
-from rtg import _core, plots
-from rtg.transition_stream import Rows
+from rtg import _core
+from rtg.files.dataset import Rows
+from rtg.pictures import plots
 from training_runs import TINY
 
 os.environ["CUDA_VISIBLE_DEVICES"] = ""  # what is compared bit by bit is computed on the processor

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 from rtg import _core, paths
-from rtg.dataset import Transitions
-from rtg.replay import ReplayRules
-from rtg.settings import TrainSettings
+from rtg.files.dataset import Transitions
+from rtg.learn.replay import ReplayRules
+from rtg.learn.settings import TrainSettings
 
 
 def train_settings(**train: Any) -> TrainSettings:

@@ -1,7 +1,7 @@
 """What is taken back of the preset `default`, one after the other."""
 
-from rtg import effective_config, paths
-from rtg.ablations import (
+from rtg import paths
+from rtg.compare.ablations import (
     DECIDED,
     OF_BRANCHES,
     OF_TREES,
@@ -11,7 +11,8 @@ from rtg.ablations import (
     departures,
     parts_of_search,
 )
-from rtg.run_args import Override
+from rtg.run import effective_config
+from rtg.run.run_args import Override
 
 FILE = paths.CONFIG / "sorting.yaml"
 

@@ -7,9 +7,10 @@ import subprocess
 import sys
 
 import pytest
-from rtg import bus, paths
-from rtg.bus import MAX_MESSAGE_BYTES, Bus, run_key
-from rtg.messages import message_type
+from rtg import paths
+from rtg.bus import bus
+from rtg.bus.bus import MAX_MESSAGE_BYTES, Bus, run_key
+from rtg.bus.messages import message_type
 
 NETWORK = paths.ROOT / "tests" / "support" / "private_network.sh"
 

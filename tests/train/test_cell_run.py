@@ -3,11 +3,11 @@
 import re
 
 import pytest
-from rtg import effective_config, run_args
-from rtg.cell_run import make_ready
+from rtg.compare.cell_run import make_ready
+from rtg.compare.reproduce_args import parse
 from rtg.errors import UserError
-from rtg.reproduce_args import parse
-from rtg.run_folder import write_json
+from rtg.files.run_folder import write_json
+from rtg.run import effective_config, run_args
 from training_runs import TINY
 
 
@@ -127,7 +127,7 @@ def test_a_run_killed_as_it_began_begins_again(words):
 def test_a_run_that_has_begun_takes_transitions_over_too(words, monkeypatch):
     """Killed between the one and the other."""
     found = []
-    monkeypatch.setattr("rtg.shared_transitions.find", lambda *place: found.append(place))
+    monkeypatch.setattr("rtg.run.shared_transitions.find", lambda *place: found.append(place))
     run = make_ready(parse(words))[0]
     begin(run)
     assert "--resume" in run.command()

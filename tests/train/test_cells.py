@@ -1,7 +1,7 @@
 """The list of the runs of a comparison."""
 
 import pytest
-from rtg.cells import Cell, Grid, read_grid
+from rtg.compare.cells import Cell, Grid, read_grid
 from rtg.errors import UserError
 
 ONE = Cell("gathering", "ddqn_rtg", (), 1)

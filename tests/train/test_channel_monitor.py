@@ -1,7 +1,7 @@
 """Counts, rates and node states of the channel monitor, with a clock of our own."""
 
-from rtg.channel_monitor import ChannelMonitor, ChannelRow, NodeRow
-from rtg.messages import message_type
+from rtg.bus.channel_monitor import ChannelMonitor, ChannelRow, NodeRow
+from rtg.bus.messages import message_type
 
 
 def status(number=0, done=0, cpu_s=0.0, pid=7, counters=()):

@@ -1,7 +1,7 @@
 """Seconds of learning over several processes."""
 
 import pytest
-from rtg.clock import Clock
+from rtg.learn.clock import Clock
 
 NAMES = {"monotonic": 0, "process_time": 1, "thread_time": 2}
 

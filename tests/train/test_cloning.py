@@ -7,12 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch as th
-from rtg import trainer
-from rtg.cloning import IMITATED, Cloning, imitated
-from rtg.dataset import SOURCES, Transitions
-from rtg.offline_data import FileSource
-from rtg.replay import Batch
-from rtg.transition_stream import Rows
+from rtg.files.dataset import SOURCES, Rows, Transitions
+from rtg.learn import trainer
+from rtg.learn.cloning import IMITATED, Cloning, imitated
+from rtg.learn.offline_data import FileSource
+from rtg.learn.replay import Batch
 from samples import random_transitions
 from test_ddqn import SETTINGS
 from toy import line

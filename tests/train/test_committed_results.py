@@ -4,7 +4,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from rtg import paths, report_files
+from rtg import paths
+from rtg.compare import report_files
 
 COMPARISONS = sorted(grid.parent for grid in (paths.ROOT / "results").glob("*/grid.json"))
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import torch as th
-from rtg.ddqn import conservative_gap
+from rtg.learn.ddqn import conservative_gap
 from test_ddqn import column, model
 
 

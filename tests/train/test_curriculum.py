@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rtg import _core, curriculum, paths
-from rtg.curriculum import ELSEWHERE, EPISODES, FEWEST, NEW, OLD, PUSHES, WALKS, Curriculum
+from rtg import _core, paths
+from rtg.envs import curriculum
+from rtg.envs.curriculum import ELSEWHERE, EPISODES, FEWEST, NEW, OLD, PUSHES, WALKS, Curriculum
+from rtg.envs.vector_env import PushVecEnv
 from rtg.errors import UserError
-from rtg.offline_data import NoSource
-from rtg.vector_env import PushVecEnv
+from rtg.learn.offline_data import NoSource
 from training_runs import run_folder, training
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rtg import dataset
-from rtg.dataset import DatasetError, Transitions
 from rtg.errors import UserError
+from rtg.files import dataset
+from rtg.files.dataset import DatasetError, Transitions
 from samples import random_transitions
 
 

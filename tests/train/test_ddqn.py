@@ -3,9 +3,9 @@ import dataclasses
 import numpy as np
 import pytest
 import torch as th
-from rtg import networks
-from rtg.ddqn import DoubleDqn, Statistics, bootstrap_targets, next_values, td_targets
-from rtg.replay import Batch
+from rtg.learn import networks
+from rtg.learn.ddqn import DoubleDqn, Statistics, bootstrap_targets, next_values, td_targets
+from rtg.learn.replay import Batch
 from samples import train_settings
 from stable_baselines3.common.vec_env import DummyVecEnv
 from toy import Outcomes, line

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import rtg
 from gymnasium.utils.env_checker import check_env as check_gymnasium
-from rtg.env import PushEnv
+from rtg.envs.push_env import PushEnv
 from stable_baselines3.common.env_checker import check_env as check_sb3
 
 

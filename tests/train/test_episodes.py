@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from rtg import _core, paths
-from rtg.dataset import SOURCES, Transitions
-from rtg.episodes import replayed_plan
+from rtg.files.dataset import SOURCES, Transitions
+from rtg.files.episodes import replayed_plan
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
 TASK = CONFIG.task

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from rtg.estimates import (
+from rtg.compare.estimates import (
     carried_forward,
     first_reach,
     improvement_interval,

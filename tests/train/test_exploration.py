@@ -1,7 +1,7 @@
 from typing import Any
 
 import numpy as np
-from rtg.exploration import LOOP, Exploration
+from rtg.learn.exploration import LOOP, Exploration
 from samples import train_settings
 
 

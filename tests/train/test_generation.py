@@ -4,7 +4,8 @@ import json
 
 import numpy as np
 import pytest
-from rtg import _core, paths, run_folder
+from rtg import _core, paths
+from rtg.files import run_folder
 
 FILE = paths.CONFIG / "tests" / "tiny.yaml"
 

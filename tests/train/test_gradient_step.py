@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import torch as th
-from rtg.replay import Batch
+from rtg.learn.replay import Batch
 from test_ddqn import column, constant, model
 
 

@@ -5,10 +5,11 @@ import json
 from dataclasses import replace
 
 import pytest
-from rtg import effective_config, graph_run, paths, results, run
-from rtg.progress import display
-from rtg.run_args import parse
-from rtg.run_plan import RunPlan
+from rtg import paths
+from rtg.run import effective_config, graph_run, results, run
+from rtg.run.plan import RunPlan
+from rtg.run.progress import display
+from rtg.run.run_args import parse
 
 TINY = paths.CONFIG / "tests" / "tiny.yaml"
 REPORT = {"transitions": 0, "generate_wall_s": 1.5, "replay_gaps": []}
@@ -38,7 +39,7 @@ def plan(tmp_path, monkeypatch):
 
 
 def test_what_the_network_lacks_is_told(plan, monkeypatch):
-    monkeypatch.setattr("rtg.bus._small_buffer", lambda url: f"a small buffer on {url}")
+    monkeypatch.setattr("rtg.bus.bus._small_buffer", lambda url: f"a small buffer on {url}")
     out = io.StringIO()
     with display(out) as shown:
         graph_run.run(plan, shown)

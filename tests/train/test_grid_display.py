@@ -4,7 +4,7 @@ import io
 
 import pytest
 from rich.console import Console
-from rtg.grid_display import LiveGrid, PlainGrid, Row, counts, display, visible
+from rtg.compare.grid_display import LiveGrid, PlainGrid, Row, counts, display, visible
 
 ROWS = [Row("a", "done", "success 1.00"), Row("b", "running", "round 1"), Row("c")]
 

@@ -6,10 +6,18 @@ import numpy as np
 import pytest
 import torch as th
 from gymnasium import spaces
-from rtg import _core, hindsight, paths
-from rtg.ddqn import DoubleDqn
-from rtg.hindsight import FEW, LAYOUTS, TOLERANCE, HindsightReplayBuffer, Layouts, future_goals
-from rtg.vector_env import PushVecEnv
+from rtg import _core, paths
+from rtg.envs.vector_env import PushVecEnv
+from rtg.learn import hindsight
+from rtg.learn.ddqn import DoubleDqn
+from rtg.learn.hindsight import (
+    FEW,
+    LAYOUTS,
+    TOLERANCE,
+    HindsightReplayBuffer,
+    Layouts,
+    future_goals,
+)
 from samples import random_transitions, replay_rules, train_settings
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")

@@ -8,7 +8,7 @@ import sys
 import pytest
 from rtg import paths
 from rtg.errors import StoppedError
-from rtg.interrupts import Interrupts
+from rtg.processes.interrupts import Interrupts
 
 TWO_SIGNALS = """
 import os, signal

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 import torch as th
-from rtg import networks
-from rtg.ddqn import DoubleDqn
+from rtg.learn import networks
+from rtg.learn.ddqn import DoubleDqn
 from test_ddqn import constant, model, weights
 
 Measure = Callable[..., Any]

@@ -3,7 +3,8 @@
 import re
 
 import pytest
-from rtg import messages, paths
+from rtg import paths
+from rtg.bus import messages
 
 PINNED = dict(
     re.findall(

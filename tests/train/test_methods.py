@@ -6,11 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rtg import _core, checkpoint, cli, device, effective_config, policy_file, trainer
+from rtg import _core, cli
 from rtg.errors import UserError
-from rtg.offline_data import NoSource
-from rtg.run_args import Override
-from rtg.transition_stream import Rows
+from rtg.files import checkpoint
+from rtg.files.dataset import Rows
+from rtg.learn import device, policy_file, trainer
+from rtg.learn.offline_data import NoSource
+from rtg.run import effective_config
+from rtg.run.run_args import Override
 from test_training import flat
 from training_runs import TINY, after_polls, run_folder, training
 

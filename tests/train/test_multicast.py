@@ -6,10 +6,10 @@ import sys
 
 import pytest
 from rtg import paths
-from rtg.multicast import defect
+from rtg.bus.multicast import defect
 
 URL = "udpm://239.255.76.67:7667?ttl=0"
-SAY = ["-c", f"from rtg.multicast import defect; print(defect({URL!r}))"]
+SAY = ["-c", f"from rtg.bus.multicast import defect; print(defect({URL!r}))"]
 
 
 def said(*wrapper):

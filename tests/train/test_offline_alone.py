@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from rtg import checkpoint
-from rtg.offline_data import FileSource
-from rtg.training import Training
-from rtg.transition_stream import Rows
-from rtg.vector_env import PushVecEnv
+from rtg.envs.vector_env import PushVecEnv
+from rtg.files import checkpoint
+from rtg.files.dataset import Rows
+from rtg.learn.offline_data import FileSource
+from rtg.learn.training import Training
 from test_training import flat
 from training_runs import Stream, after_polls, run_folder, training
 

@@ -6,8 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from PIL import Image
-from rtg import _core, paths, plots
-from rtg.draw import (
+from rtg import _core, paths
+from rtg.pictures import plots
+from rtg.pictures.draw import (
     FAINT,
     GOAL,
     KINDS,
@@ -21,7 +22,7 @@ from rtg.draw import (
     outline,
     state_image,
 )
-from rtg.episode_pictures import between, film, strip
+from rtg.pictures.episode_pictures import between, film, strip
 
 TASK = _core.Config.from_file(paths.CONFIG / "gathering.yaml").task
 START = TASK.start[None]

@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rtg import _core, planning, trainer
-from rtg.evaluation import FINAL, held_out_starts
-from rtg.interrupts import Interrupts
-from rtg.offline_data import NoSource
-from rtg.planning import Plan, Planning, judged
+from rtg import _core
+from rtg.learn import planning, trainer
+from rtg.learn.evaluation import FINAL, held_out_starts
+from rtg.learn.offline_data import NoSource
+from rtg.learn.planning import Plan, Planning, judged
+from rtg.processes.interrupts import Interrupts
 from training_runs import TINY, run_folder, training
 
 # A push from success, but from those starts in which another box is outside the goal, too.

@@ -5,10 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gymnasium import spaces
-from rtg import _core, checkpoint, paths, policy_file
-from rtg.env import observation_space
+from rtg import _core, paths
+from rtg.envs.push_env import observation_space
 from rtg.errors import UserError
-from rtg.networks import ValuePolicy
+from rtg.files import checkpoint
+from rtg.learn import policy_file
+from rtg.learn.networks import ValuePolicy
 from samples import train_settings
 
 TASK = _core.Config.from_file(paths.CONFIG / "tests" / "tiny.yaml").task

@@ -10,8 +10,8 @@ import time
 import pytest
 from rtg import paths
 from rtg.errors import RunError, UserError
-from rtg.process_graph import ProcessGraph
-from rtg.processes import Node
+from rtg.processes.children import Node
+from rtg.processes.graph import ProcessGraph
 
 SLEEP = [sys.executable, "-c", "import signal; signal.pause()"]
 # Two generations, deaf to SIGTERM; says when both are there.

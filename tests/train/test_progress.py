@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 from rich.console import Console
-from rtg.progress import LiveDisplay, PlainDisplay, RateMeter, RunState, display
+from rtg.run.progress import LiveDisplay, PlainDisplay, RateMeter, RunState, display
 
 GENERATING = RunState(
     phase="round 1", layer=2, depth=24, transitions=1234, target=60000, contact_share=0.417

@@ -3,9 +3,10 @@
 from itertools import pairwise
 
 import numpy as np
-from rtg import _core, dataset, paths
-from rtg.recorder import Recorder
-from rtg.transition_stream import Rows
+from rtg import _core, paths
+from rtg.files import dataset
+from rtg.files.dataset import Rows
+from rtg.files.recorder import Recorder
 from samples import random_transitions
 
 TASK = _core.Config.from_file(paths.CONFIG / "gathering.yaml").task

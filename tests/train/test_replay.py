@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch as th
 from gymnasium import spaces
-from rtg.replay import MixedReplayBuffer, Store
+from rtg.learn.replay import MixedReplayBuffer, Store
 from samples import random_transitions, replay_rules
 from test_hindsight import BOXES, EPISODE, asked_for, names, observed, play
 from test_hindsight import buffer as asking_buffer
@@ -95,7 +95,7 @@ def test_batches_are_offline_until_a_batch_of_online_data_exists() -> None:
 
 @pytest.mark.parametrize("capacity", [3000, 1200])  # the ring not yet full, and full
 def test_a_share_of_the_online_rows_is_recent(capacity: int, monkeypatch) -> None:
-    monkeypatch.setattr("rtg.replay.RECENT", 100)
+    monkeypatch.setattr("rtg.learn.replay.RECENT", 100)
     replay = buffer(capacity=capacity, recent_share=0.25)
     for tag in range(2000):
         add_online(replay, float(tag))

@@ -9,10 +9,10 @@ import pytest
 from comparison_samples import finished, table_row, write_grid
 from PIL import Image
 from rtg import cli
-from rtg.cells import Cell, Grid
+from rtg.compare.cells import Cell, Grid
+from rtg.compare.report_files import write_report
 from rtg.errors import UserError
-from rtg.report_files import write_report
-from rtg.run_folder import write_json
+from rtg.files.run_folder import write_json
 
 GOOD, BAD = [0.2, 0.8, 0.96], [0.0, 0.5, 0.6, 0.7]
 SWEPT = "train.offline_share=-1"

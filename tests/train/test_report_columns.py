@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from comparison_samples import finished, summary_of, write_grid
-from rtg.cells import Cell, read_grid
-from rtg.report_tables import data, learned, runtime, spent
-from rtg.run_results import Comparison, read_comparison
+from rtg.compare.cells import Cell, read_grid
+from rtg.compare.report_tables import data, learned, runtime, spent
+from rtg.compare.run_results import Comparison, read_comparison
 
 COURSES = ([0.1, 0.72, 0.96, 0.93], [0.0, 0.3, 0.75, 0.95], [0.5, 0.97, 0.99, 1.0])
 EVERY = {"pushes": 6000.0, "cpu_s": 70.0}

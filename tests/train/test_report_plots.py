@@ -4,11 +4,11 @@ import statistics
 
 import numpy as np
 from comparison_samples import finished, write_grid
-from rtg import report_plots
-from rtg.cells import Cell, read_grid
-from rtg.methods import METHODS
-from rtg.report_plots import split_names
-from rtg.run_results import read_comparison
+from rtg.compare import report_plots
+from rtg.compare.cells import Cell, read_grid
+from rtg.compare.methods import METHODS
+from rtg.compare.report_plots import split_names
+from rtg.compare.run_results import read_comparison
 
 
 def comparison(folder, courses):

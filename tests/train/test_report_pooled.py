@@ -1,8 +1,8 @@
 """What a report says of methods over all tasks."""
 
 from comparison_samples import finished, table_row, write_grid
-from rtg.cells import Cell
-from rtg.report_files import write_report
+from rtg.compare.cells import Cell
+from rtg.compare.report_files import write_report
 
 POOLED = "## All tasks together"
 GOOD = [0.2, 0.8, 0.96]

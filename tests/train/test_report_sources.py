@@ -2,9 +2,9 @@
 
 import pytest
 from comparison_samples import finished, write_grid
-from rtg.cells import Cell, read_grid
-from rtg.report_sources import NOTE, better_source
-from rtg.run_results import read_comparison
+from rtg.compare.cells import Cell, read_grid
+from rtg.compare.report_sources import NOTE, better_source
+from rtg.compare.run_results import read_comparison
 
 SOON, LATER, NEVER = [0.2, 0.96], [0.2, 0.8, 0.8, 0.96], [0.1, 0.9]
 FIRST = "- **gathering**: reverse simulation is "

@@ -1,7 +1,7 @@
 """How the tables of a report put the figures of seeds."""
 
 import pytest
-from rtg.report_tables import seeds, spread
+from rtg.compare.report_tables import seeds, spread
 
 
 @pytest.mark.parametrize(

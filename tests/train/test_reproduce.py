@@ -5,12 +5,14 @@ import json
 import shlex
 
 import pytest
-from rtg import cli, effective_config, run_args, run_folder
-from rtg.cell_run import CellRun, make_ready
-from rtg.cells import read_grid
-from rtg.grid_display import PlainGrid
-from rtg.reproduce import Crew, Failures
-from rtg.reproduce_args import parse
+from rtg import cli
+from rtg.compare.cell_run import CellRun, make_ready
+from rtg.compare.cells import read_grid
+from rtg.compare.grid_display import PlainGrid
+from rtg.compare.reproduce import Crew, Failures
+from rtg.compare.reproduce_args import parse
+from rtg.files import run_folder
+from rtg.run import effective_config, run_args
 from training_runs import TINY
 
 SUMMARY = {"success_rate": 0.5, "interactions": 400}

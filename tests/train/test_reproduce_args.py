@@ -1,11 +1,12 @@
 """The flags of `reproduce`: which runs they stand for, and what is said about mistakes."""
 
 import pytest
-from rtg import _core, paths, reproduce_args
-from rtg.cells import Cell
+from rtg import _core, paths
+from rtg.compare import reproduce_args
+from rtg.compare.cells import Cell
+from rtg.compare.methods import METHODS, REFERENCE, run_words
+from rtg.compare.reproduce_args import parse, parse_seeds, parse_sweep
 from rtg.errors import UserError
-from rtg.methods import METHODS, REFERENCE, run_words
-from rtg.reproduce_args import parse, parse_seeds, parse_sweep
 
 
 def test_without_flags_all_methods_run_on_all_tasks_with_five_seeds():

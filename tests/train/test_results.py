@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rtg import _core, effective_config, results, run_args
-from rtg.run_plan import RunPlan
+from rtg import _core
+from rtg.run import effective_config, results, run_args
+from rtg.run.plan import RunPlan
 
 
 @pytest.mark.parametrize(

@@ -3,9 +3,13 @@
 import re
 
 import pytest
-from rtg import cli, effective_config, multicast, paths, run_folder, settings
-from rtg.run_args import parse
-from rtg.run_plan import make_plan
+from rtg import cli, paths
+from rtg.bus import multicast
+from rtg.files import run_folder
+from rtg.learn import settings
+from rtg.run import effective_config
+from rtg.run.plan import make_plan
+from rtg.run.run_args import parse
 
 TINY = paths.CONFIG / "tests" / "tiny.yaml"
 CHANGES = {

@@ -3,7 +3,7 @@
 import pytest
 from rtg import paths
 from rtg.errors import UserError
-from rtg.run_args import parse
+from rtg.run.run_args import parse
 
 
 def test_no_flag_means_the_whole_job_on_gathering():

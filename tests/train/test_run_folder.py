@@ -4,8 +4,9 @@ import json
 import re
 
 import pytest
-from rtg import paths, replay_gaps, run_folder
+from rtg import paths
 from rtg.errors import UserError
+from rtg.files import replay_gaps, run_folder
 
 CONFIG = {
     "task": {"name": "gathering"},

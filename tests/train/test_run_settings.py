@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rtg import trainer
-from rtg.evaluation import Evaluation
-from rtg.hindsight import HindsightReplayBuffer
-from rtg.settings import TrainSettings
-from rtg.training import Training
-from rtg.transition_stream import Rows
+from rtg.files.dataset import Rows
+from rtg.learn import trainer
+from rtg.learn.evaluation import Evaluation
+from rtg.learn.hindsight import HindsightReplayBuffer
+from rtg.learn.settings import TrainSettings
+from rtg.learn.training import Training
 from test_learner_settings import OF_THE_LEARNER
 from training_runs import Stream, run_folder, training
 

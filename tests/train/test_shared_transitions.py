@@ -3,9 +3,10 @@
 import copy
 
 import pytest
-from rtg import effective_config, run_args, versions
-from rtg.run_plan import make_plan
-from rtg.shared_transitions import are_there, find, kind, take_over
+from rtg.files import versions
+from rtg.run import effective_config, run_args
+from rtg.run.plan import make_plan
+from rtg.run.shared_transitions import are_there, find, kind, take_over
 from training_runs import TINY
 
 CONFIG = effective_config.values(TINY)

@@ -5,11 +5,11 @@ import io
 import time
 
 import pytest
-from rtg.bus import Bus
-from rtg.channel_monitor import ChannelMonitor
-from rtg.messages import message_type
-from rtg.node_status import ENDED, NodeStatus
-from rtg.spy import SpyApp, bandwidth, watch_plainly
+from rtg.bus.bus import Bus
+from rtg.bus.channel_monitor import ChannelMonitor
+from rtg.bus.messages import message_type
+from rtg.bus.node_status import ENDED, NodeStatus
+from rtg.bus.spy import SpyApp, bandwidth, watch_plainly
 
 
 @pytest.fixture

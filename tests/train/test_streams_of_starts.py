@@ -4,8 +4,8 @@ import itertools
 
 import numpy as np
 from rtg import _core
-from rtg.evaluation import FINAL, held_out_starts
-from rtg.vector_env import PushVecEnv
+from rtg.envs.vector_env import PushVecEnv
+from rtg.learn.evaluation import FINAL, held_out_starts
 from training_runs import TINY
 
 COUNT = 300

@@ -1,10 +1,11 @@
 """Which runs generate first and then learn side by side."""
 
 import pytest
-from rtg import device, together
-from rtg.cell_run import make_ready
-from rtg.reproduce_args import parse
-from rtg.run_folder import write_json
+from rtg.compare import together
+from rtg.compare.cell_run import make_ready
+from rtg.compare.reproduce_args import parse
+from rtg.files.run_folder import write_json
+from rtg.learn import device
 from training_runs import TINY
 
 

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
-from rtg import trainer
-from rtg.transition_stream import Rows
+from rtg.files.dataset import Rows
+from rtg.learn import trainer
 from training_runs import run_folder
 
 

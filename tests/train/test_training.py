@@ -9,13 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch as th
-from rtg import _core, checkpoint, dataset, policy_file, trainer
+from rtg import _core
 from rtg.errors import RunError, UserError
-from rtg.evaluation import FINAL, HELD_OUT, evaluate, held_out_starts
-from rtg.offline_data import FileSource
-from rtg.recorder import Recorder
-from rtg.training_log import COLUMNS, TrainingLog
-from rtg.transition_stream import Rows
+from rtg.files import checkpoint, dataset
+from rtg.files.dataset import Rows
+from rtg.files.recorder import Recorder
+from rtg.learn import policy_file, trainer
+from rtg.learn.evaluation import FINAL, HELD_OUT, evaluate, held_out_starts
+from rtg.learn.offline_data import FileSource
+from rtg.learn.training_log import COLUMNS, TrainingLog
 from training_runs import TINY, Stream, after_polls, run_folder, training
 
 
@@ -231,7 +233,7 @@ def test_the_result_is_measured_on_starts_that_did_not_stop_training(
         found = evaluate(config, policy, starts, discount)
         return found._replace(success=np.isin(starts[:, 1, 0], watched[:, 1, 0]))
 
-    monkeypatch.setattr("rtg.training.evaluate", lucky)
+    monkeypatch.setattr("rtg.learn.training.evaluate", lucky)
     source = FileSource(one.folder / "transitions.npz", one.task, one.data)
     assert one.run(source, lambda: False, record=False)
     assert one.interactions == 20 and one.log.rows[-1]["success_rate"] == 1.0
@@ -273,7 +275,7 @@ def test_an_episode_ends_in_failure_where_the_simulator_gives_up(
         def push(self, states: np.ndarray, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             return np.full_like(states, np.nan), np.zeros(len(states), np.bool_)
 
-    monkeypatch.setattr("rtg.evaluation._core.Simulator", GivesUp)
+    monkeypatch.setattr("rtg.learn.evaluation._core.Simulator", GivesUp)
     found = evaluate(config, lambda seen: np.zeros(len(seen), int), starts, discount=0.9)
     assert not found.success.any() and not found.discounted.any()
     np.testing.assert_array_equal(np.stack(found.paths), np.stack([starts, starts], axis=1))

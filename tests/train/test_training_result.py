@@ -4,10 +4,11 @@ import json
 from pathlib import Path
 
 import pytest
-from rtg import dataset, networks
-from rtg.offline_data import FileSource, NoSource
-from rtg.transition_stream import Rows
-from rtg.value_check import STATES, check_values, stored_states
+from rtg.files import dataset
+from rtg.files.dataset import Rows
+from rtg.learn import networks
+from rtg.learn.offline_data import FileSource, NoSource
+from rtg.learn.value_check import STATES, check_values, stored_states
 from training_runs import run_folder, training
 
 
@@ -44,7 +45,7 @@ def test_the_result_says_how_well_q_ranks_the_headings_of_stored_states(
     assert len(states) == 300
     found = check_values(one.config, one.model.values, 0.95, states).summary()
     assert {name: written[name] for name in found} == pytest.approx(found)
-    monkeypatch.setattr("rtg.training_result.check_values", lambda *_: None)
+    monkeypatch.setattr("rtg.learn.training_result.check_values", lambda *_: None)
     one.finish(lost=0)
     written = json.loads((folder / "training.json").read_text())
     assert {written[name] for name in found} == {None}

@@ -2,8 +2,8 @@
 
 import json
 
-from rtg.progress import RunState
-from rtg.training_watch import TrainingWatch
+from rtg.run.progress import RunState
+from rtg.run.training_watch import TrainingWatch
 
 
 def test_the_learner_is_shown_as_it_writes(tmp_path):

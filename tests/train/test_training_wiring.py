@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from rtg import _core
-from rtg.evaluation import evaluate
-from rtg.training import MAX_ENVIRONMENTS
-from rtg.transition_stream import Rows
-from rtg.value_bounds import value_bounds
+from rtg.files.dataset import Rows
+from rtg.learn.evaluation import evaluate
+from rtg.learn.training import MAX_ENVIRONMENTS
+from rtg.learn.value_bounds import value_bounds
 from training_runs import TINY, Stream, after_polls, run_folder, training
 
 
@@ -25,7 +25,7 @@ def test_learner_bounds_and_evaluation_have_one_discount(
         used.add(discount)
         return evaluate(config, policy, starts, discount)
 
-    monkeypatch.setattr("rtg.training.evaluate", watched)
+    monkeypatch.setattr("rtg.learn.training.evaluate", watched)
     trees = Stream(rows.after(0, 350), one.data, piece=300)  # at 350 complete, but hardly grown
     assert one.run(trees, lambda: False, record=False)
     assert one.task.discount == 0.8

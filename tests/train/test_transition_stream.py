@@ -5,10 +5,11 @@ import random
 
 import numpy as np
 import pytest
-from rtg.bus import Bus
+from rtg.bus.bus import Bus
+from rtg.bus.messages import message_type
+from rtg.bus.transition_stream import FAREWELLS, StreamCursor, TransitionStream, to_rows
 from rtg.errors import RunError
-from rtg.messages import message_type
-from rtg.transition_stream import FAREWELLS, Rows, StreamCursor, TransitionStream, to_rows
+from rtg.files.dataset import Rows
 
 
 class Server:

@@ -1,5 +1,5 @@
 import numpy as np
-from rtg.value_bounds import value_bounds
+from rtg.learn.value_bounds import value_bounds
 
 
 def observations(*names: float) -> np.ndarray:

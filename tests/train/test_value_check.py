@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from rtg import _core
+from rtg.learn.value_check import check_values, stored_states
 from rtg.paths import CONFIG
-from rtg.value_check import check_values, stored_states
 
 CONFIGURATION = _core.Config.from_file(CONFIG / "gathering.yaml")
 TASK = CONFIGURATION.task

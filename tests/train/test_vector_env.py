@@ -2,9 +2,9 @@ from collections import Counter
 
 import numpy as np
 from rtg import _core, paths
-from rtg.curriculum import ELSEWHERE
-from rtg.env import PushEnv
-from rtg.vector_env import PushVecEnv
+from rtg.envs.curriculum import ELSEWHERE
+from rtg.envs.push_env import PushEnv
+from rtg.envs.vector_env import PushVecEnv
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
 TASK = CONFIG.task

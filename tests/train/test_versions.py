@@ -3,7 +3,7 @@
 import json
 import re
 
-from rtg import versions
+from rtg.files import versions
 
 
 def test_versions_name_what_a_run_was_made_with():

@@ -4,10 +4,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from rtg import _core, paths
-from rtg.offline_data import OfflineData
-from rtg.recorder import Recorder
-from rtg.training import Training
-from rtg.transition_stream import Rows
+from rtg.files.dataset import Rows
+from rtg.files.recorder import Recorder
+from rtg.learn.offline_data import OfflineData
+from rtg.learn.training import Training
 
 TINY = paths.CONFIG / "tests" / "tiny.yaml"
 WORK = ("train.interactions=240", "train.eval_every=80", "train.checkpoint_every=100")

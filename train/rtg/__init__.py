@@ -13,4 +13,4 @@ ENVIRONMENTS = {
 }
 
 for _id, _task in ENVIRONMENTS.items():
-    register(_id, "rtg.env:PushEnv", kwargs={"config": paths.CONFIG / f"{_task}.yaml"})
+    register(_id, "rtg.envs.push_env:PushEnv", kwargs={"config": paths.CONFIG / f"{_task}.yaml"})

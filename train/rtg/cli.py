@@ -8,20 +8,20 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from rtg import run_args
 from rtg.errors import RunError, UserError
+from rtg.run import run_args
 
 # Nothing heavy is imported before it is needed: --help and mistakes answer at once.
 
 
 def _run(words: Sequence[str]) -> int:
-    from rtg.run import run
+    from rtg.run.run import run
 
     return run(run_args.parse(words))
 
 
 def _check(words: Sequence[str]) -> int:
-    from rtg import effective_config
+    from rtg.run import effective_config
 
     parser = run_args.Parser(
         prog="./run.sh check", description="Validate a task file; print what it says."
@@ -33,7 +33,7 @@ def _check(words: Sequence[str]) -> int:
 
 
 def _bus_url(target: str) -> str:
-    from rtg import effective_config
+    from rtg.run import effective_config
 
     run_config = Path(target) / "config.yaml"
     file = run_config if run_config.is_file() else run_args.task_file(target, also=", a run folder")
@@ -68,7 +68,7 @@ def _spy(words: Sequence[str]) -> int:
     args = parser.parse_args(words)
     seconds = None if args.seconds is None else _seconds(args.seconds)
     url = _bus_url(args.target)
-    from rtg.spy import spy
+    from rtg.bus.spy import spy
 
     spy(url, seconds)
     return 0
@@ -76,17 +76,17 @@ def _spy(words: Sequence[str]) -> int:
 
 def _lcm_spy(words: Sequence[str]) -> int:
     args = _watcher("lcm-spy", "LCM's own viewer, with our message types.").parse_args(words)
-    from rtg.lcm_tools import lcm_spy
+    from rtg.bus.lcm_tools import lcm_spy
 
     lcm_spy(_bus_url(args.target))
     return 0
 
 
 def _reproduce(words: Sequence[str]) -> int:
-    from rtg import reproduce_args
+    from rtg.compare import reproduce_args
 
     args = reproduce_args.parse(words)
-    from rtg.reproduce import reproduce
+    from rtg.compare.reproduce import reproduce
 
     return reproduce(args)
 
@@ -101,7 +101,7 @@ def _plot(words: Sequence[str]) -> int:
     args = parser.parse_args(words)
     if args.out == "":
         raise UserError("--out: '' is no folder; legal: the path of one")
-    from rtg.report_files import write_report
+    from rtg.compare.report_files import write_report
 
     print(f"report: {write_report(args.folder, Path(args.out or args.folder))}")
     return 0

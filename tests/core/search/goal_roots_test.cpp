@@ -145,7 +145,7 @@ std::vector<Poses> roots(const Task& task, const SearchConfig& config, std::uint
 
 TEST(GoalRoots, DrawsInVainAreCountedAndEndNothingUntilThereAreTooMany) {
   Task task = gathering();
-  task.goal[0].radius = 0.4;  // three boxes do not fit
+  task.goal[0].radius = 0.04;  // less than what a goal is met with to spare
   Rng rng(1);
   SearchStats stats;
   EXPECT_TRUE(goal_roots(task, of(20, 4), task.start, rng, stats).empty());
@@ -200,7 +200,7 @@ TEST(GoalRoots, AreAFunctionOfTheRandomStream) {
 
 TEST(GoalRoots, OfAnImpossibleGoalAreNone) {
   Task task = gathering();
-  task.goal[0].radius = 0.4;  // three boxes do not fit
+  task.goal[0].radius = 0.04;  // less than what a goal is met with to spare
   EXPECT_TRUE(roots(task, of(2, 1), 69).empty());
 }
 

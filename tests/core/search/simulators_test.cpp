@@ -31,7 +31,7 @@ std::vector<ReverseJob> layer(const Task& task) {
 // Enough of them that threads solve different slices of it together.
 TEST(Simulators, ALayerOfReverseSolvesHasTheSameBitsOn1To16Threads) {
   Task task = gathering();
-  task.push.headings = 20;
+  task.push.headings = 12;
   std::vector<ReverseJob> jobs;
   for (int node = 0; node < 2; ++node)
     for (ReverseJob job : layer(task)) {
@@ -42,7 +42,7 @@ TEST(Simulators, ALayerOfReverseSolvesHasTheSameBitsOn1To16Threads) {
   const std::vector<ReverseResult> reference = solve_on_threads(solve, 1)(jobs);
   const auto iterations = std::ranges::max(reference, {}, &ReverseResult::iterations).iterations;
   ASSERT_GT(iterations, 10);  // solves in contact are among them
-  for (const int threads : {2, 3, 5, 16}) {
+  for (const int threads : {2, 16}) {
     const std::vector<ReverseResult> results = solve_on_threads(solve, threads)(jobs);
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       ASSERT_EQ(results[k].status, reference[k].status);

@@ -1,0 +1,235 @@
+"""The receiving end of the transition stream: every row once and in order, whatever is lost."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rtg.bus.bus import Bus
+from rtg.bus.messages import message_type
+from rtg.errors import RunError
+from rtg.files.dataset import SOURCES, Rows
+
+ACK_INTERVAL = 0.5  # [s], without progress
+RETRY_INTERVAL = 0.1  # [s], between two questions for the same rows
+MIN_INTERVAL = 0.01  # [s], between any two acknowledgements
+MAX_RANGES = 32  # of one acknowledgement
+FAREWELLS = 10  # acknowledgements of the complete stream at once: who has it all may stop talking
+
+
+class Ack(NamedTuple):
+    """What a consumer tells the server."""
+
+    cursor: int  # rows below have been consumed
+    credit: int  # rows it takes beyond the cursor; 0: it has all of a sealed stream
+    missing: list[tuple[int, int]]  # ranges asked for, first and last row
+
+
+class StreamCursor:
+    """Protocol core of a consumer, free of I/O: messages in, ordered rows and acknowledgements out.
+
+    Holds at most `credit` rows beyond the cursor. `now` is any monotonic clock [s].
+    """
+
+    def __init__(self, credit: int) -> None:
+        self.credit = credit
+        self.cursor = 0  # rows below have been handed out
+        self.count = 0  # rows known to exist
+        self.sealed = False  # whether `count` is final
+        self._held: dict[int, tuple[int, Any]] = {}  # first row -> (end, rows), may overlap
+        self._acked_at = -1e9
+        self._acked_cursor = 0
+        self._asked_at = -1e9
+        self._asked_end = 0
+        self._arrived_at = -1e9
+        self._farewells = FAREWELLS
+
+    def on_rows(self, first: int, rows: Any, size: int, now: float) -> list[tuple[Any, int]]:
+        """Takes rows first ... first + size - 1.
+
+        Returns the pieces that are next in order, each with how many of its rows to skip.
+        """
+        self._arrived_at = now
+        end = first + size
+        self.count = max(self.count, end)
+        if end <= self.cursor or end > self.cursor + self.credit:
+            return []
+        if end > self._held.get(first, (0, None))[0]:
+            self._held[first] = (end, rows)
+        return self._in_order()
+
+    def on_tail(self, count: int, sealed: bool) -> None:
+        self.count = max(self.count, count)
+        self.sealed = self.sealed or sealed
+
+    def ack_due(self, now: float) -> Ack | None:
+        """What to tell the server now, if anything; to be asked until there is nothing."""
+        if self.complete:
+            return self._farewell(now)
+        missing = self._missing()
+        ask = bool(missing) and (
+            self.cursor >= self._asked_end  # all that was asked for has come
+            or now - self._asked_at >= RETRY_INTERVAL
+        )
+        # Rows that nobody has seen yet are most likely on their way.
+        if ask and not self._held and now - self._arrived_at < RETRY_INTERVAL / 2:
+            ask = False
+        moved = self.cursor - self._acked_cursor >= self.credit // 4
+        idle = now - self._acked_at >= ACK_INTERVAL
+        if not (ask or moved or idle) or now - self._acked_at < MIN_INTERVAL:
+            return None
+        self._acked_at, self._acked_cursor = now, self.cursor
+        if not ask:
+            return Ack(self.cursor, self.credit, [])
+        self._asked_at, self._asked_end = now, missing[-1][1] + 1
+        return Ack(self.cursor, self.credit, missing)
+
+    def _farewell(self, now: float) -> Ack | None:
+        if self._farewells > 0:
+            self._farewells -= 1
+        elif now - self._acked_at < ACK_INTERVAL:
+            return None
+        self._acked_at = now
+        return Ack(self.cursor, 0, [])
+
+    @property
+    def complete(self) -> bool:
+        """Whether every row of a sealed stream has been handed out."""
+        return self.sealed and self.cursor == self.count
+
+    def _in_order(self) -> list[tuple[Any, int]]:
+        pieces = []
+        for first in sorted(self._held):
+            if first > self.cursor:
+                break
+            end, rows = self._held.pop(first)
+            if end > self.cursor:
+                pieces.append((rows, self.cursor - first))
+                self.cursor = end
+        return pieces
+
+    def _missing(self) -> list[tuple[int, int]]:
+        """Gaps below the end of the window, first and last row of each."""
+        gaps, at = [], self.cursor
+        for first in sorted(self._held):
+            if first > at:
+                gaps.append((at, first - 1))
+            at = max(at, self._held[first][0])
+        end = min(self.count, self.cursor + self.credit)
+        if at < end:
+            gaps.append((at, end - 1))
+        return gaps[:MAX_RANGES]
+
+
+def to_rows(message: Any, bodies: int, headings: int) -> Rows | None:
+    """The rows of a transition_batch_t, or None if it makes no sense for this task."""
+    n = message.n
+    if n < 1 or message.first < 0 or message.n_poses != n * bodies * 3:
+        return None
+    success = np.asarray(message.success, np.int8)
+    rows = Rows(
+        poses=np.asarray(message.poses, np.float64).reshape(n, bodies, 3),
+        action=np.asarray(message.action, np.int32),
+        next_poses=np.asarray(message.next_poses, np.float64).reshape(n, bodies, 3),
+        reward=success.astype(np.float32),
+        terminated=success.astype(np.bool_),
+        source=np.asarray(message.source, np.int8),
+    )
+    legal = (
+        ((rows.action >= 0) & (rows.action < headings)).all()
+        and ((success == 0) | (success == 1)).all()
+        and ((rows.source >= 0) & (rows.source < len(SOURCES))).all()
+    )
+    return rows if legal else None
+
+
+class TransitionStream:
+    """Hands every transition of the run to `sink`, once and in sequence order.
+
+    stream = TransitionStream(bus, bodies=7, headings=48, sink=buffer.add)
+    while not stream.complete:
+        stream.poll(0.1)
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        bodies: int,
+        headings: int,
+        sink: Callable[[Rows], object],
+        credit: int = 8192,
+    ) -> None:
+        self._bus = bus
+        self._bodies, self._headings = bodies, headings
+        self._sink = sink
+        self._cursor = StreamCursor(credit)
+        self._consumer = secrets.randbits(62)
+        self._stream: int | None = None
+        bus.subscribe("RTG_TRANSITION", message_type("transition_batch_t"), self._on_batch)
+        bus.subscribe("RTG_TAIL", message_type("stream_tail_t"), self._on_tail)
+
+    def poll(self, timeout: float) -> int:
+        """Receives for `timeout` s at most; returns how many rows went to the sink."""
+        before = self._cursor.cursor
+        self._bus.spin(timeout)
+        self._acknowledge()
+        return self._cursor.cursor - before
+
+    def close(self) -> None:
+        """Takes nothing more; closes the bus."""
+        self._bus.close()
+
+    @property
+    def received(self) -> int:
+        """Rows handed to the sink."""
+        return self._cursor.cursor
+
+    @property
+    def lost(self) -> int:
+        """Rows known to exist and not received yet; 0 when the stream is complete."""
+        return self._cursor.count - self._cursor.cursor
+
+    @property
+    def complete(self) -> bool:
+        """Whether the stream has ended and every row went to the sink."""
+        return self._cursor.complete
+
+    def _on_batch(self, message: Any) -> None:
+        rows = to_rows(message, self._bodies, self._headings)
+        if rows is None:
+            self._bus.counters["stream.illegal"] += 1
+            return
+        self._check_stream(message.stream)
+        now = time.monotonic()
+        for piece, skip in self._cursor.on_rows(message.first, rows, message.n, now):
+            self._sink(piece.after(skip))
+        self._acknowledge()
+
+    def _on_tail(self, message: Any) -> None:
+        if message.count < 0:
+            self._bus.counters["stream.illegal"] += 1
+            return
+        self._check_stream(message.stream)
+        self._cursor.on_tail(message.count, bool(message.sealed))
+
+    def _check_stream(self, stream: int) -> None:
+        if self._stream is None:
+            self._stream = stream
+        if stream != self._stream:
+            raise RunError("the coordinator was restarted: two streams must not be mixed")
+
+    def _acknowledge(self) -> None:
+        if self._stream is None:
+            return
+        while ack := self._cursor.ack_due(time.monotonic()):
+            message = message_type("stream_ack_t")()
+            message.stream, message.consumer = self._stream, self._consumer
+            message.cursor, message.credit = ack.cursor, ack.credit
+            message.n = len(ack.missing)
+            message.first = [first for first, _ in ack.missing]
+            message.last = [last for _, last in ack.missing]
+            self._bus.publish("RTG_ACK", message)

@@ -1,0 +1,216 @@
+"""One cell of a comparison: its command, and what of it is done."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rtg.compare.cells import Cell
+from rtg.compare.methods import run_words
+from rtg.compare.reproduce_args import ReproduceArgs
+from rtg.errors import UserError
+from rtg.files import run_folder
+from rtg.run import effective_config, run_args, shared_transitions
+from rtg.run import plan as run_plan
+from rtg.run.run_args import Override
+
+# Of `train`: what runs of different methods must have in common.
+_ALIKE = ("interactions", "eval_every", "eval_episodes", "stop_at_success", "stop_evaluations")
+# One core each: libraries that would start a thread per core.
+_ONE_THREAD = [f"{name}_NUM_THREADS=1" for name in ("OMP", "OPENBLAS", "MKL")]
+
+
+@dataclass(frozen=True)
+class CellRun:
+    """A cell with its place on the disk."""
+
+    cell: Cell
+    folder: Path
+    words: tuple[str, ...]  # of `rtg run`, but for the folder
+    kind: str | None = None  # of its transitions, as shared_transitions.kind()
+    device: str = "auto"  # train.device
+
+    @property
+    def name(self) -> str:
+        return self.cell.name
+
+    @property
+    def log(self) -> Path:
+        """What the run says; beside the folder, which the run itself makes."""
+        return self.folder.with_name(f"{self.folder.name}.log")
+
+    @property
+    def done(self) -> bool:
+        """Whether there is nothing left to do."""
+        return bool(run_folder.result(self.folder))
+
+    @property
+    def begun(self) -> bool:
+        """Whether its folder holds the run, perhaps an unfinished one."""
+        return (self.folder / "config.yaml").is_file()
+
+    @property
+    def generates(self) -> str | None:
+        """The kind of its transitions while they are not there."""
+        return None if shared_transitions.are_there(self.folder) else self.kind
+
+    def begin(self) -> None:
+        """Makes the folder, without `rtg run`."""
+        _remove_drafts(self.folder)
+        run_plan.make_plan(run_args.parse([*self.words, "--out", str(self.folder)]))
+
+    def command(self) -> list[str]:
+        """Begins the run, or goes on with it; takes over the transitions of another run that has
+        the same. Raises UserError."""
+        if self.generates:
+            place = self.folder.parents[1], self.folder.name
+            if source := shared_transitions.find(self.generates, *place):
+                if not self.begun:
+                    self.begin()
+                shared_transitions.take_over(source, self.folder)
+        if not self.begun:
+            _remove_drafts(self.folder)
+        words = ["--resume"] if self.begun else self.words
+        return program("rtg", "run", *words, "--out", str(self.folder))
+
+    def outcome(self) -> str:
+        """Of a run that is done."""
+        found = run_folder.result(self.folder)
+        return f"success {found['success_rate']:.2f} after {found['interactions']:,} interactions"
+
+
+def program(module: str, *words: str) -> list[str]:
+    """A Python program of ours that keeps to one core."""
+    return ["env", *_ONE_THREAD, sys.executable, "-m", module, *words]
+
+
+def make_ready(args: ReproduceArgs) -> list[CellRun]:
+    """All cells, checked against the loader, each other and what is there already.
+
+    Raises UserError before anything has started.
+    """
+    runs, seen, checked = [], dict[str, str](), set[Path]()
+    for cell in args.cells:
+        config = effective_config.values(args.files[cell.task], _overrides(args, cell))
+        twin = seen.setdefault(json.dumps(config), cell.name)
+        if twin != cell.name:
+            raise UserError(f"{cell.name}: is the same run as {twin}; legal: values that differ")
+        run_plan.check(config, train=True)
+        folder = args.out / cell.name
+        _check_folder(folder)
+        if folder.parent not in checked:
+            _check_seeds(folder.parent, config)
+            _check_methods(folder, config)
+            checked.add(folder.parent)
+        kind, device = shared_transitions.kind(config), config["train"]["device"]
+        runs.append(CellRun(cell, folder, _words(args, cell), kind, device))
+    return runs
+
+
+def _flags(cell: Cell) -> list[str]:
+    flags = ["--in-process", "--workers", "1", "--seed", str(cell.seed)]
+    return [*flags, *run_words(cell.method)]
+
+
+def _words(args: ReproduceArgs, cell: Cell) -> tuple[str, ...]:
+    settings = [word for s in (*args.settings, *cell.settings) for word in ("--set", s)]
+    return (str(args.files[cell.task]), *_flags(cell), *settings)
+
+
+def _overrides(args: ReproduceArgs, cell: Cell) -> list[Override]:
+    """Those of the words, named by the flags that the user typed."""
+    overrides = [Override(f"--set {setting}", setting) for setting in args.settings]
+    overrides += [Override(f"--sweep {setting}", setting) for setting in cell.settings]
+    return [*overrides, *run_args.parse(_flags(cell)).overrides]
+
+
+def _check_folder(folder: Path) -> None:
+    """Raises UserError unless the folder holds a run, or nothing."""
+    if (folder / "config.yaml").is_file():
+        return
+    if folder.exists() and not (folder.is_dir() and all(map(_is_draft, folder.iterdir()))):
+        raise UserError(f"{folder}: holds no run; legal: an empty --out, or none")
+
+
+def _is_draft(file: Path) -> bool:
+    """Left by a run that was killed as it began."""
+    return file.name.startswith(".config.yaml.")
+
+
+def _remove_drafts(folder: Path) -> None:
+    if folder.is_dir():
+        for file in filter(_is_draft, folder.iterdir()):
+            file.unlink()
+
+
+def _check_seeds(label: Path, config: dict[str, Any]) -> None:
+    """Raises UserError unless all runs in the folder, also of seeds not asked for now, have this
+    configuration but for the seed: tables show means over them."""
+    for found in sorted(label.glob("seed-*/config.yaml")):
+        seed = found.parent.name.removeprefix("seed-")
+        if seed.isdigit():
+            _check_same(found.parent, {**config, "run": {**config["run"], "seed": int(seed)}})
+
+
+def _check_same(folder: Path, config: dict[str, Any]) -> None:
+    """Raises UserError unless the run was made with this configuration, by this version."""
+    found = folder / "config.yaml"
+    before = effective_config.values(found)
+    for section in sorted({*before, *config}):
+        old, new = before.get(section), config.get(section)
+        if old != new:
+            what = _difference(section, old, new)
+            remedy = f"another --out, or rm -r {shlex.quote(str(folder))}"
+            raise UserError(f"{folder}: was made with {what}; legal: the same, {remedy}")
+    effective_config.check_version(found)
+
+
+def _check_methods(folder: Path, config: dict[str, Any]) -> None:
+    """Raises UserError unless all runs in the folder of the task have that task, its physics, that
+    budget and evaluation, but for what is swept: tables compare them. folder: of the run."""
+    for found in sorted(folder.parents[1].glob("*/seed-*/config.yaml")):
+        swept = _swept(found.parts[-3]) | _swept(folder.parts[-2])
+        before = effective_config.values(found)
+        old, new = _compared(before, swept), _compared(config, swept)
+        if not (before["train"]["offline"] and config["train"]["offline"]):
+            del old["search"], new["search"]
+        for section in old:
+            if old[section] != new[section]:
+                what = _difference(section, old[section], new[section])
+                raise UserError(
+                    f"{found.parent}: was made with {what}; legal: the same, or another --out"
+                )
+
+
+def _swept(label: str) -> set[str]:
+    """The keys `section.name` in which a label names values, or which it decides."""
+    paths = (setting.partition("=")[0] for setting in label.split("@")[1:])
+    found = {".".join(path.split(".")[:2]) for path in paths}
+    of_preset = {f"train.{key}" for key in _ALIKE} if "train.preset" in found else set()
+    return found | of_preset
+
+
+def _compared(config: dict[str, Any], swept: set[str]) -> dict[str, dict[str, Any]]:
+    """What runs in one table have in common, by section."""
+    keys = {
+        "task": tuple(config["task"]),
+        "physics": tuple(config["physics"]),
+        "search": ("transitions",),
+        "train": _ALIKE,
+    }
+    return {
+        section: {name: config[section][name] for name in names if f"{section}.{name}" not in swept}
+        for section, names in keys.items()
+    }
+
+
+def _difference(section: str, old: Any, new: Any) -> str:
+    if not (isinstance(old, dict) and isinstance(new, dict)):
+        return f"another {section}"
+    key = next(key for key in (*old, *new) if old.get(key) != new.get(key))
+    words = f"{section}.{key} = {old.get(key)}, asked for is {new.get(key)}"
+    return words if len(words) < 160 else f"another {section}.{key}"

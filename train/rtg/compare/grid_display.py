@@ -1,0 +1,112 @@
+"""How a comparison shows itself: a row per run on a terminal, a line per change anywhere else."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol, Self, TextIO
+
+from rich.console import Console
+from rich.live import Live
+from rich.table import Table
+from rich.text import Text
+
+from rtg.run.progress import Shown, TimedLines
+
+_REDRAW = 0.5  # [s]
+_MARKS = {"waiting": " ", "running": "▸", "done": "✓", "failed": "✗"}
+_STYLES = {"waiting": "dim", "running": "", "done": "green", "failed": "red"}
+_URGENT = ("running", "failed", "waiting", "done")  # what a small terminal shows first
+
+
+@dataclass(frozen=True)
+class Row:
+    """Where a run stands."""
+
+    name: str
+    phase: str = "waiting"  # or running, done, failed
+    words: str = ""
+
+
+def counts(rows: Sequence[Row]) -> str:
+    """All runs in one line."""
+    total = {phase: sum(row.phase == phase for row in rows) for phase in _MARKS}
+    failed = f", {total['failed']} failed" if total["failed"] else ""
+    return f"{total['done']} of {len(rows)} runs done{failed}, {total['running']} running"
+
+
+class GridDisplay(Shown, Protocol):
+    """Shows rows."""
+
+    def show(self, rows: Sequence[Row]) -> None:
+        """The newest state of all runs; may be called as often as one likes."""
+
+
+class PlainGrid(TimedLines):
+    """A line per run that begins or ends."""
+
+    def __init__(self, out: TextIO) -> None:
+        super().__init__(out)
+        self._phases: dict[str, str] = {}
+
+    def show(self, rows: Sequence[Row]) -> None:
+        for row in rows:
+            if self._phases.get(row.name, "waiting") != row.phase:
+                words = f" ({row.words})" if row.words else ""
+                self.note(f"{row.name}: {row.phase}{words}")
+            self._phases[row.name] = row.phase
+
+
+class LiveGrid:
+    """Rows that change in place; those that matter most where they do not all fit."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        # No thread of its own: this process starts others with fork.
+        self._live = Live(console=console, auto_refresh=False)
+        self._start = time.monotonic()
+        self._drawn = 0.0
+        self._rows: Sequence[Row] = ()
+
+    def __enter__(self) -> Self:
+        self._live.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._live.update(self._table(), refresh=True)
+        self._live.stop()
+
+    def show(self, rows: Sequence[Row]) -> None:
+        self._rows = rows
+        now = time.monotonic()
+        if now - self._drawn >= _REDRAW:
+            self._drawn = now
+            self._live.update(self._table(), refresh=True)
+
+    def _table(self) -> Table:
+        rows = visible(self._rows, self._console.height - 3)
+        table = Table.grid(padding=(0, 1))
+        table.add_column(no_wrap=True)
+        table.add_column(no_wrap=True)
+        table.add_column(no_wrap=True, overflow="ellipsis")
+        for row in rows:
+            style = _STYLES[row.phase]
+            last = (row.words.splitlines() or [row.phase])[-1]
+            cells = (_MARKS[row.phase], row.name, last)
+            table.add_row(*(Text(cell, style=style) for cell in cells))
+        minutes, seconds = divmod(int(time.monotonic() - self._start), 60)
+        table.add_row("", f"{minutes}:{seconds:02d}", counts(self._rows))
+        return table
+
+
+def visible(rows: Sequence[Row], room: int) -> list[Row]:
+    """As many rows as there is room for, in their order, the urgent ones first to be chosen."""
+    ranked = sorted(range(len(rows)), key=lambda k: _URGENT.index(rows[k].phase))
+    return [rows[k] for k in sorted(ranked[: max(room, 1)])]
+
+
+def display(out: TextIO) -> GridDisplay:
+    """The display that suits where the output goes."""
+    console = Console(file=out)
+    return LiveGrid(console) if console.is_terminal else PlainGrid(out)

@@ -1,0 +1,190 @@
+"""The report of a comparison: one Markdown page."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from rtg.compare import report_sources as sources
+from rtg.compare import report_tables as tables
+from rtg.compare.cells import Grid
+from rtg.compare.estimates import RESAMPLES
+from rtg.compare.methods import REFERENCE, WIDER
+from rtg.compare.run_results import Comparison, RunResult
+from rtg.errors import UserError
+
+_LEGEND = """\
+Means ± standard deviations over the seeds. **success**: of the final greedy policy from held-out
+starts, objects jittered by `task.start_jitter`, that nothing was chosen by; **length**: pushes of
+its episodes, failures included; **roll-outs**: of the last 100 training episodes from the starts of
+the task, exploration included; **at ⅓**: greedy success at a third of the budget, from other
+held-out starts, or the final one of a run that had ended by then; **to 0.70**, **to 0.95**:
+thousand interactions until the first evaluation with that greedy success ("2 of 3": so many of the
+seeds ever), and **pushes** (in thousands) and **CPU s** of the whole run until then. Pushes are
+those of the simulator for data, starts, interactions and plans, those of evaluations left out; CPU
+seconds are those of all threads, evaluations included (of several runs in one process, those of the
+run's thread). Methods without interactions have the rounds of learning here that so many would have
+brought. In the second table of a task, which says what the whole run cost, **transitions**,
+**pushes** and **interactions** are in thousands, and wall clock is that of generation on one core,
+of learning on what is named *learner* above. All figures are in [runs.csv](runs.csv), the learning
+curves in [curves.csv](curves.csv); in their pictures a run that ended early keeps its last value,
+and of more rows than there are methods those with swept settings are left out."""
+_POOLED = f"""\
+IQM: mean of the middle half of all final successes, with a 95 % interval by stratified bootstrap
+(seeds drawn within a task, {RESAMPLES:,} resamples), over the tasks that more than one method was
+run on. Last column: the probability that a run of the method does better than one of `{REFERENCE}`
+on the same task, mean over the tasks, equal ones counted half. Single seeds have no interval, and
+of few it is too narrow. Methods with fewer tasks are not comparable with those with more, nor is
+`{WIDER}` with any: its starts, also those it is measured from, lie all over a wider region."""
+REMARKS = "remarks.md"  # beside grid.json
+_QUICK = (
+    "**Small budgets (`--quick`): these figures show that everything works and are no results.**"
+)
+_RUNTIME = """\
+CPU time per reverse solve that was not pruned, and per push of the simulator; how many solves and
+pushes, the share of the solves that converged, iterations of those that moved an object;
+environment steps of the learner per second, evaluations included."""
+_DATA = """\
+**transitions**: stored, in thousands; **tree rows**: of them steps found backwards and kept;
+**branches**: outcomes of other headings in the same states; **headings per state**: distinct ones
+stored from a state; **contact share**: of the transitions, those that move an object; **start
+region**: transitions that begin there; **trees**: how many were grown; **depth**: pushes of the
+shortest plan of a tree from the start region; **replay gap**: how far the replay of a reverse step
+ends from where it began, over all candidates replayed; **rank correlation of Q**: Spearman's, of
+the learner's final Q with the simulator over all headings of a stored state, mean over some hundred
+states; **error**: root mean square of the difference; **spread**: standard deviation of the
+simulator's values over the headings of a state, mean over the states. States are those of a run's
+own data and values beyond a success what its own Q says, so that these three judge data of one
+method, not methods against each other."""
+
+
+def _listed(found: Iterable[str]) -> str:
+    """What differs between runs, with how many; most often: one thing."""
+    counts = Counter(found).most_common()
+    if len(counts) == 1:
+        return counts[0][0]
+    words = [f"{what} ({count} run{'' if count == 1 else 's'})" for what, count in counts]
+    return "; ".join(words) or "unknown"
+
+
+def _commits(done: Sequence[RunResult]) -> str:
+    """Of the runs; where they differ, of which: rows of several are no clean comparison."""
+    found: dict[str, list[RunResult]] = {}
+    for run in done:
+        found.setdefault(run.commits, []).append(run)
+    if len(found) < 2:
+        return "- commit: " + (next(iter(found), "unknown"))
+    lines = [f"  - {words}: {tables.named(runs)}" for words, runs in found.items()]
+    return "\n".join(["- commits, whose runs may differ by more than the method:", *lines])
+
+
+def _machine(versions: dict[str, Any]) -> str:
+    model, memory = versions.get("processor"), versions.get("memory_gib")
+    parts = [model or "unknown processor", f"{versions.get('processors')} cores"]
+    parts += [f"{memory} GiB"] if memory else []
+    return ", ".join([*parts, versions.get("system", "unknown system")])
+
+
+def _learner(summary: dict[str, Any]) -> str:
+    runs = summary.get("runs_in_process") or 1
+    shared = f"{runs} runs in one process" if runs > 1 else "one core"
+    parts = [summary.get(name) or f"unknown {name}" for name in ("device", "precision")]
+    return ", ".join([*parts, shared])
+
+
+def _programs(versions: dict[str, Any]) -> str:
+    packages = {**versions.get("packages", {}), **versions.get("debian", {})}
+    named = [f"{name} {version}" for name, version in packages.items()]
+    return ", ".join([f"Python {versions.get('python')}", *named])
+
+
+def _origin(grid: Grid, comparison: Comparison) -> str:
+    done = comparison.all_done()
+    lines = [f"    {command}" for command in grid.commands]
+    return "\n".join(
+        [
+            *lines,
+            "",
+            _commits(done),
+            f"- machine: {_listed(_machine(run.versions) for run in done)}",
+            f"- learner: {_listed(_learner(run.summary) for run in done)}",
+            f"- with: {_listed(_programs(run.versions) for run in done)}",
+        ]
+    )
+
+
+def _brief(name: str, words: str) -> str:
+    """The first of the words of a failure, and the last of its log."""
+    how, *log = words.splitlines()
+    how = how.removeprefix(f"{name} ").removesuffix("; the end of its log:")
+    return f"{how}: {log[-1]}" if log else how
+
+
+def _troubles(grid: Grid, runs: Sequence[RunResult]) -> list[str]:
+    """What went wrong, run by run."""
+    lines = []
+    for run in runs:
+        name = f"`{run.cell.name}`"
+        if run.state == "failed":
+            lines.append(f"- {name} failed: {_brief(run.cell.name, grid.failed[run.cell.name])}")
+        lines += [f"- {name}: {defect}" for defect in run.summary.get("defects", [])]
+    return ["## Trouble", "\n".join(lines)] if lines else []
+
+
+def _picture(folder: Path, name: str, words: str) -> list[str]:
+    return [f"![{words}]({name})"] if (folder / name).is_file() else []
+
+
+def _of_task(folder: Path, comparison: Comparison, task: str) -> list[str]:
+    return [
+        f"## {task}",
+        tables.learned(comparison, task),
+        tables.spent(comparison, task),
+        *_picture(folder, f"costs_{task}.png", f"Success against cost on {task}"),
+        *_picture(folder, f"curves_{task}.png", f"Learning curves on {task}"),
+        *_picture(folder, f"sweep_{task}.png", f"What the swept values do on {task}"),
+        *_picture(folder, f"strip_{task}.png", f"An episode of {task} in pictures"),
+        *_picture(folder, f"film_{task}.gif", f"The same episode of {task} as a film"),
+    ]
+
+
+def read_remarks(runs: Path) -> str:
+    """What people have to say, in their own words; raises UserError if it cannot be read."""
+    path = runs / REMARKS
+    if not path.is_file():
+        return ""
+    try:
+        return path.read_text(encoding="utf-8").strip()
+    except (OSError, UnicodeDecodeError) as error:
+        raise UserError(f"{path}: {error}; legal: text in UTF-8, or no such file") from None
+
+
+def report(folder: Path, grid: Grid, comparison: Comparison, remarks: str) -> str:
+    """The page for `folder`, with the pictures that lie there."""
+    missing = ", ".join(f"`{method}`" for method in tables.not_run(comparison))
+    parts = [
+        "# Results",
+        f"Written by `./run.sh plot` from the folders of these runs and `{REMARKS}`.",
+        *([_QUICK] if any("--quick" in command.split() for command in grid.commands) else []),
+        _origin(grid, comparison),
+        _LEGEND + (f" Not run: {missing}." if missing else ""),
+        *(part for task in comparison.tasks for part in _of_task(folder, comparison, task)),
+        "## All tasks together",
+        tables.pooled(comparison),
+        _POOLED,
+        "## Where reverse simulation is the better source",
+        sources.better_source(comparison),
+        sources.NOTE,
+        "## Run time",
+        tables.runtime(comparison),
+        _RUNTIME,
+        "## Data",
+        tables.data(comparison),
+        _DATA,
+        *_picture(folder, "replay_gap.png", "Histogram of the replay gap"),
+        *(["## Remarks", remarks] if remarks else []),
+        *_troubles(grid, comparison.results),
+    ]
+    return "\n\n".join(parts) + "\n"

@@ -1,0 +1,185 @@
+"""`./run.sh plot`: report, tables and pictures of a comparison, made anew from its run folders."""
+
+from __future__ import annotations
+
+import csv
+import io
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg import _core
+from rtg.compare import report_plots
+from rtg.compare.cells import read_grid
+from rtg.compare.methods import REFERENCE
+from rtg.compare.report import read_remarks, report
+from rtg.compare.run_results import COSTS, CURVES, Comparison, RunResult, costs, read_comparison
+from rtg.errors import UserError
+from rtg.files import run_folder
+from rtg.pictures import episode_pictures
+from rtg.run.results import episode_title
+
+_OF_TASKS = ("costs_*.png", "curves_*.png", "sweep_*.png", "strip_*.png", "film_*.gif")
+_PICTURES = (*_OF_TASKS, "replay_gap.png")
+
+
+def write_report(runs: Path, out: Path) -> Path:
+    """Replaces the files of the report in `out`; the page's path. Raises UserError."""
+    grid = read_grid(runs)
+    if not grid.cells:
+        raise UserError(f"{runs}: holds no comparison (no grid.json); legal: DIR of `reproduce`")
+    comparison, remarks = read_comparison(runs, grid), read_remarks(runs)
+    episodes = {task: _best_episode(comparison, task) for task in comparison.tasks}
+    with run_folder.writing_to(out):
+        out.mkdir(parents=True, exist_ok=True)
+        _draw(out, comparison, episodes)
+        _write_numbers(out, comparison)
+        run_folder.write_text(out / "report.md", report(out, grid, comparison, remarks))
+    return out / "report.md"
+
+
+def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | None]) -> None:
+    _remove_pictures(out)
+    gaps = {}
+    for task in comparison.tasks:
+        done = [run for run in comparison.all_done() if run.cell.task == task]
+        if report_plots.curve_labels(comparison, task):
+            report_plots.costs(out / f"costs_{task}.png", comparison, task)
+            report_plots.curves(out / f"curves_{task}.png", comparison, task)
+        if any(run.cell.settings for run in done):
+            report_plots.sweep(out / f"sweep_{task}.png", comparison, task)
+        _draw_episode(out, task, episodes[task])
+        replayed = _of_best_method([run for run in done if "replay_gap_counts" in run.summary])
+        if replayed:
+            gaps[task] = replayed
+    if gaps:
+        report_plots.replay_gaps(out / "replay_gap.png", gaps)
+
+
+def _remove_pictures(out: Path) -> None:
+    """Those of the page that lies there, also of tasks and sweeps that are no more."""
+    page = out / "report.md"
+    text = page.read_text(errors="replace") if page.is_file() else ""
+    for picture in (path for pattern in _PICTURES for path in out.glob(pattern)):
+        if f"({picture.name})" in text:
+            picture.unlink()
+
+
+def _of_best_method(done: Sequence[RunResult]) -> list[RunResult]:
+    """Those of the reference method; without any, those of the first label."""
+    labels = {run.cell.label for run in done}
+    label = REFERENCE if REFERENCE in labels else next((run.cell.label for run in done), "")
+    return [run for run in done if run.cell.label == label]
+
+
+@dataclass(frozen=True)
+class Episode:
+    """One to show."""
+
+    task: _core.Task
+    label: str  # what was learned with
+    poses: NDArray[np.float64]  # [states, bodies, 3]
+    success: bool
+
+
+def _read_episode(run: RunResult) -> Episode | None:
+    """The best one of the run's final evaluation. Raises UserError."""
+    path, config = run.folder / "best_episode.npz", run.folder / "config.yaml"
+    if not path.is_file():
+        return None
+    task = _core.Config.from_file(config).task
+    try:
+        with np.load(path) as file:
+            poses, success = file["poses"].astype(float), bool(file["success"])
+        if poses.ndim != 3 or poses.shape[1:] != (task.bodies, 3) or not len(poses):
+            raise ValueError(poses.shape)
+    except (OSError, ValueError, TypeError, KeyError, zipfile.BadZipFile):
+        raise UserError(f"{path}: damaged; legal: as the run left it, or none") from None
+    return Episode(task, run.cell.label, poses, success)
+
+
+def _best_episode(comparison: Comparison, task: str) -> Episode | None:
+    """The shortest success of the final evaluations, of the reference method if it has one."""
+    runs = [run for run in comparison.all_done() if run.cell.task == task]
+    found = [episode for run in runs if (episode := _read_episode(run))]
+    return min(
+        found,
+        key=lambda one: (not one.success, one.label.split("@")[0] != REFERENCE, len(one.poses)),
+        default=None,
+    )
+
+
+def _draw_episode(out: Path, task: str, one: Episode | None) -> None:
+    if one is not None:
+        words = episode_title(task, len(one.poses) - 1, one.success, one.label)
+        what = one.task, one.poses, one.success, words
+        episode_pictures.strip(out / f"strip_{task}.png", *what)
+        episode_pictures.film(out / f"film_{task}.gif", *what)
+
+
+def _write_numbers(out: Path, comparison: Comparison) -> None:
+    tasks: dict[str, dict[str, list[Any]]] = {task: {} for task in comparison.tasks}
+    for run in comparison.all_done():
+        tasks[run.cell.task].setdefault(run.cell.label, []).append(run.figures())
+    run_folder.write_json(out / "report.json", tasks)
+    _write_csv(out / "runs.csv", _rows(comparison))
+    _write_csv(
+        out / "curves.csv", [row for run in comparison.all_done() for row in _curve_rows(run)]
+    )
+
+
+def _name(run: RunResult) -> dict[str, Any]:
+    return {"task": run.cell.task, "method": run.cell.label, "seed": run.cell.seed}
+
+
+def _rows(comparison: Comparison) -> list[dict[str, Any]]:
+    """All of each run's figures that are single numbers or words."""
+    more = [
+        name
+        for run in comparison.all_done()
+        for name, value in run.summary.items()
+        if not isinstance(value, (dict, list))
+    ]
+    names = list(dict.fromkeys((*run_folder.SUMMARY_KEYS, *more)))
+    return [
+        {
+            **{name: run.summary.get(name) for name in names},
+            **_name(run),
+            "state": run.state,
+            **run.figures(),
+        }
+        for run in comparison.results
+    ]
+
+
+def _curve_rows(run: RunResult) -> list[dict[str, Any]]:
+    """A row per evaluation."""
+    if not run.curve:
+        return []
+    columns = {name: costs(run.curve, name) for name in COSTS}
+    columns |= {name: run.curve[name].tolist() for name in CURVES}
+    return [
+        {**_name(run), **dict(zip(columns, values, strict=True))}
+        for values in zip(*columns.values(), strict=True)
+    ]
+
+
+def _write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Numbers to six digits; empty where nothing was measured."""
+    text = io.StringIO()
+    table = csv.DictWriter(text, list(rows[0]) if rows else [], lineterminator="\n")
+    table.writeheader()
+    for row in rows:
+        table.writerow({name: _short(value) for name, value in row.items()})
+    run_folder.write_text(path, text.getvalue())
+
+
+def _short(value: Any) -> Any:
+    if isinstance(value, float):
+        return "" if np.isnan(value) else f"{value:.6g}"
+    return value

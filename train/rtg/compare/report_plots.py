@@ -1,0 +1,247 @@
+"""Pictures of a comparison: learning curves, replay gaps, what a sweep changes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
+from numpy.typing import NDArray
+
+from rtg.compare.estimates import carried_forward
+from rtg.compare.methods import METHODS
+from rtg.compare.report_tables import mean_success
+from rtg.compare.run_results import Comparison, RunResult
+from rtg.pictures import plots
+
+Floats = NDArray[np.float64]
+
+# A colour per method, most of them Okabe and Ito's, which colour-blind people tell apart, too; the
+# others are no nearer to any of the same dashes. Dashed: without generated data; dash-dotted:
+# without interactions.
+_PALETTE = {
+    "dqn": ("#b0b0b0", "--"),
+    "ddqn": ("#000000", "--"),
+    "ddqn_random": ("#8c564b", "-"),
+    "ddqn_scatter": ("#6c2273", "-"),
+    "ddqn_naive": ("#56b4e9", "-"),
+    "ddqn_forward": ("#d55e00", "-"),
+    "ddqn_rtg": ("#0072b2", "-"),
+    "ddqn_rtg_dr": ("#cc79a7", "-"),
+    "her": ("#009e73", "--"),
+    "rcg": ("#e69f00", "--"),
+    "cql_rtg": ("#5d3a9b", "-."),
+    "bc_rtg": ("#00707a", "-."),
+    "planner": ("#a50026", "-."),
+}
+_DASHES = ("-", "--", "-.", ":")
+_COSTS = {
+    "interactions": "interactions (dash-dotted: rounds of learning)",
+    "pushes": "simulator pushes, generation included",
+    "cpu_s": "CPU time of the whole run [s]",
+}
+_PANELS = (
+    ("greedy success, held-out starts", "success_rate"),
+    ("success of training roll-outs", "rollout_success"),
+    ("episode length, greedy [actions]", "episode_length_mean"),
+    ("return, greedy, discounted as in learning", "episode_return_mean"),
+)
+_SHARES = ("success_rate", "rollout_success")
+_MOST_CURVES = len(METHODS)
+_BAR, _BAR_COLOUR = 0.95, "#8a8d93"
+_RIGHT: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8}
+
+
+def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Colour and dashes: a colour per method; of swept values a shade each."""
+    if len({label.split("@")[0] for label in labels}) == len(labels):
+        return {label: _PALETTE.get(label.split("@")[0], ("#000000", "-")) for label in labels}
+    shades = plt.get_cmap("viridis")(np.linspace(0.0, 0.9, len(labels)))
+    colours = [to_hex(shade) for shade in shades]
+    return {label: (colours[k], _DASHES[k % len(_DASHES)]) for k, label in enumerate(labels)}
+
+
+def split_names(labels: Sequence[str]) -> tuple[str, list[str]]:
+    """What all labels begin with, up to a method or key, and what is left of each."""
+    shared = os.path.commonprefix(labels)
+    end = max(shared.rfind("@"), shared.rfind("=")) + 1
+    return shared[:end].rstrip("@=").replace("@", ", "), [label[end:] for label in labels]
+
+
+def _course(runs: Sequence[RunResult], column: str) -> tuple[Floats, Floats]:
+    """Interactions [N] and values [runs, N]; a run that ended early keeps its last value."""
+    grid = np.unique(np.concatenate([run.curve["interactions"] for run in runs]))
+    values = [carried_forward(run.curve["interactions"], run.curve[column], grid) for run in runs]
+    return grid, np.array(values)
+
+
+def _draw_course(
+    axis: Axes, course: tuple[Floats, Floats], is_share: bool, style: tuple[str, str]
+) -> None:
+    """Mean and standard deviation of the seeds, from where all of them have a value."""
+    grid, values = course
+    known = np.isfinite(values).all(axis=0)
+    if not known.any():
+        return
+    grid, values = grid[known], values[:, known]
+    mean = values.mean(axis=0)
+    colour, dashes = style
+    axis.plot(grid, mean, color=colour, ls=dashes, lw=2.0)
+    axis.plot(grid[-1:], mean[-1:], color=colour, marker="o", ms=4)
+    if len(values) > 1:
+        spread = values.std(axis=0, ddof=1)
+        low, high = mean - spread, mean + spread
+        if is_share:
+            low, high = np.clip(low, 0.0, 1.0), np.clip(high, 0.0, 1.0)
+        axis.fill_between(grid, low, high, color=colour, alpha=0.18, lw=0)
+
+
+def curve_labels(comparison: Comparison, task: str) -> list[str]:
+    """Those with learning curves; of more than one can tell apart, those without swept settings."""
+    found = [
+        label
+        for label in comparison.labels
+        if any(run.curve for run in comparison.done(task, label))
+    ]
+    few = len(found) <= _MOST_CURVES
+    return found if few else [label for label in found if "@" not in label]
+
+
+Drawn = Mapping[str, Sequence[RunResult]]  # by label
+
+
+def _drawn(comparison: Comparison, task: str) -> Drawn:
+    labels = curve_labels(comparison, task)
+    return {label: [r for r in comparison.done(task, label) if r.curve] for label in labels}
+
+
+def _name_lines(figure: Figure, drawn: Drawn, title: str, columns: int = 4) -> None:
+    """The legend, with the final success of each label, below the panels; the title above them."""
+    styles = _styles(list(drawn))
+    handles = [
+        plt.Line2D([], [], color=styles[label][0], ls=styles[label][1], lw=2) for label in drawn
+    ]
+    shared, names = split_names(list(drawn))
+    words = [
+        f"{name}: {mean_success(runs):.2f} ({len(runs)})"
+        for name, runs in zip(names, drawn.values(), strict=True)
+    ]
+    figure.legend(
+        handles,
+        words,
+        loc="outside lower left",
+        ncols=columns,
+        frameon=False,
+        handlelength=3.0,
+        title=f"{shared or 'method'}: final success (seeds)",
+    )
+    figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+
+
+def curves(path: Path, comparison: Comparison, task: str) -> None:
+    """Success, episode length and return over interactions, a line per method that makes any."""
+    drawn = {name: runs for name, runs in _drawn(comparison, task).items() if runs[0].interacts}
+    styles = _styles(list(drawn))
+    with plots.style():
+        figure, axes = plt.subplots(2, 2, figsize=(9.6, 6.8), layout="constrained", sharex=True)
+        for axis, (name, column) in zip(axes.flat, _PANELS, strict=True):
+            for label, runs in drawn.items():
+                grid, values = _course(runs, column)
+                _draw_course(axis, (grid / 1000.0, values), column in _SHARES, styles[label])
+            axis.set_title(name)
+            if column in _SHARES:
+                axis.set_ylim(-0.03, 1.03)
+            else:
+                axis.set_ylim(bottom=0.0)
+        for axis in axes[-1]:
+            axis.set_xlabel("interactions / 1000")
+            axis.set_xlim(left=0.0)
+        title = f"{task}: mean ± standard deviation of the seeds, a dot where the last one stopped"
+        _name_lines(figure, drawn, title)
+        plots.save(figure, path)
+
+
+def costs(path: Path, comparison: Comparison, task: str) -> None:
+    """Greedy success over what it cost, a line per method: means of both over the seeds after
+    equally many interactions, the costs on logarithmic axes."""
+    drawn = _drawn(comparison, task)
+    styles = _styles(list(drawn))
+    with plots.style():
+        figure, axes = plt.subplots(1, 3, figsize=(12.6, 5.0), layout="constrained", sharey=True)
+        for axis, (cost, name) in zip(axes, _COSTS.items(), strict=True):
+            for label, runs in drawn.items():
+                spent = _course(runs, cost)[1].mean(axis=0)
+                values = _course(runs, "success_rate")[1]
+                shown = spent > 0.0
+                _draw_course(axis, (spent[shown], values[:, shown]), True, styles[label])
+            axis.axhline(_BAR, color=_BAR_COLOUR, lw=0.8, zorder=0)
+            axis.set(xscale="log", xlabel=name, ylim=(-0.03, 1.03))
+            axis.xaxis.set_major_formatter(EngFormatter(sep=""))
+        axes[0].set_ylabel("greedy success, held-out starts")
+        title = f"{task}: success against the mean cost, mean ± standard deviation of the seeds"
+        _name_lines(figure, drawn, title, columns=5)
+        plots.save(figure, path)
+
+
+def replay_gaps(path: Path, of_tasks: Mapping[str, Sequence[RunResult]]) -> None:
+    """A histogram of the replay gap per task, over its runs; median and 90th percentile are means
+    over them, as in the table."""
+    with plots.style():
+        size = (6.4, 3.0 * len(of_tasks) + 0.3)
+        figure, axes = plt.subplots(
+            len(of_tasks), 1, figsize=size, layout="constrained", sharex=True, squeeze=False
+        )
+        for axis, (task, runs) in zip(axes.flat, of_tasks.items(), strict=True):
+            counts = np.sum([run.summary["replay_gap_counts"] for run in runs], axis=0)
+            names = ("replay_gap_median", "replay_gap_p90")
+            marks = [float(np.mean([run.summary[name] for run in runs])) for name in names]
+            plots.gap_histogram(axis, counts, *marks)
+            axis.set_title(f"{task}: {counts.sum():,} replayed candidates")
+        axes[-1, 0].set_xlabel(plots.GAP_AXIS)
+        plots.save(figure, path)
+
+
+def _swept(comparison: Comparison, task: str) -> dict[str, Sequence[RunResult]]:
+    """The runs of each swept value, and of their methods as they are, under short names."""
+    labels = [label for label in comparison.labels if comparison.row(task, label)]
+    methods = {label.split("@")[0] for label in labels if "@" in label}
+    shown = [label for label in labels if label.split("@")[0] in methods]
+    names = [label.replace("@", "\n") for label in shown]
+    if len(methods) == 1:
+        names = [name.partition("\n")[2] or f"{name} as it is" for name in names]
+    return {name: comparison.done(task, label) for name, label in zip(names, shown, strict=True)}
+
+
+def sweep(path: Path, comparison: Comparison, task: str) -> None:
+    """The final greedy success and the interactions to 0.95 of each swept value, a dot per run."""
+    rows = _swept(comparison, task)
+    with plots.style():
+        size = (9.6, 1.2 + 0.16 * sum(2 + name.count("\n") for name in rows))
+        figure, axes = plt.subplots(1, 2, figsize=size, layout="constrained", sharey=True)
+        for axis, column in zip(axes, ("success_rate", "interactions_to_95"), strict=True):
+            for at, runs in enumerate(rows.values()):
+                found = [run.figures()[column] for run in runs]
+                values = np.array([value for value in found if value is not None], float)
+                values = values if column == "success_rate" else values / 1000.0
+                axis.plot(values, np.full(len(values), at), "o", color="#56b4e9", ms=5)
+                if len(values):
+                    axis.plot(values.mean(), at, "|", color="#0072b2", ms=14, mew=2.5)
+                if len(values) < len(found):
+                    words = f"{len(found) - len(values)} never"
+                    axis.annotate(words, (0.99, at), xycoords=axis.get_yaxis_transform(), **_RIGHT)
+            axis.grid(axis="y", alpha=0.3)
+        axes[0].set_yticks(range(len(rows)), list(rows), fontsize=8)
+        axes[0].set(title="greedy success at the end", xlim=(-0.03, 1.03))
+        axes[0].set_ylim(len(rows) - 0.5, -0.5)
+        axes[1].set_title("interactions / 1000 to 0.95")
+        axes[1].set_xlim(left=0.0)
+        title = f"{task}: a dot per seed, a bar for their mean"
+        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        plots.save(figure, path)

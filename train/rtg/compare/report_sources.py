@@ -1,0 +1,149 @@
+"""On which tasks reverse simulation is the better source of data, said by the figures alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg.compare.methods import METHODS, REFERENCE, WIDER
+from rtg.compare.report_tables import NOTHING, spread, table, thousands
+from rtg.compare.run_results import COSTS, Comparison
+
+Floats = NDArray[np.float64]
+
+BAR = 0.95  # greedy success
+# Methods that learn from data of another source.
+SOURCES = ("ddqn_random", "ddqn_scatter", "ddqn_naive", "ddqn_forward")
+RIVALS = ("ddqn_forward", "ddqn_naive", "planner")  # shown as ratios
+_WORDS = {"interactions": "interactions", "pushes": "pushes", "cpu_s": "CPU seconds"}
+_HEADS = {"interactions": "interactions [1000]", "pushes": "pushes [1000]", "cpu_s": "CPU [s]"}
+NOTE = f"""\
+Costs up to the first evaluation with a greedy success of {BAR} or more: interactions of the
+learner; pushes and CPU seconds of the whole run, generation included. **fewest**: of all
+methods whose every seed gets there (`{WIDER}` aside, whose starts are others; interactions are
+compared among those that make any). Other columns: multiples of what `{REFERENCE}` needs, or how
+many seeds get there. `planner` needs as much again for every further start: its costs are those of
+one evaluation. Reverse simulation is the source of `{REFERENCE}`, whose backward steps a solver
+finds; those of `ddqn_naive` are of kinematics alone. Compared are the sources that were run of
+{", ".join(f"`{method}`" for method in SOURCES)}. Reverse simulation is the **better** one if every
+seed of `{REFERENCE}` needs less than every seed of the others named, **not** the better one if
+every seed of a source named needs less than every seed of `{REFERENCE}`, **level** if seeds of
+`{REFERENCE}` and of the sources named overlap; **none**: no seed of any source gets there. A seed
+that does not counts as more than any that does, a source none of whose seeds does as more than any
+seed of `{REFERENCE}`, too."""
+
+
+def _costs(comparison: Comparison, task: str, method: str, cost: str) -> Floats:
+    """What each seed needs, infinite if it never gets there; empty without runs. [seeds]"""
+    runs = comparison.done(task, method)
+    needed = [run.reached(BAR, cost) for run in runs if run.interacts or cost != "interactions"]
+    return np.array([np.inf if value is None else value for value in needed])
+
+
+def _all_get_there(costs: Floats) -> bool:
+    return len(costs) > 0 and bool(np.isfinite(costs).all())
+
+
+def _mean_cost(costs: Floats, cost: str) -> str:
+    known = [float(value) if np.isfinite(value) else None for value in costs]
+    shown = known if cost == "cpu_s" else [thousands(value) for value in known]
+    return "never" if known and not np.isfinite(costs).any() else spread(shown, "count")
+
+
+def _fewest(comparison: Comparison, task: str, cost: str) -> str:
+    found = {
+        method: costs
+        for method in METHODS
+        if method != WIDER and _all_get_there(costs := _costs(comparison, task, method, cost))
+    }
+    if not found:
+        return NOTHING
+    best = min(found, key=lambda method: float(found[method].mean()))
+    return f"`{best}`: {_mean_cost(found[best], cost)}"
+
+
+def _multiple(reference: Floats, costs: Floats) -> str:
+    """Of the means; where seeds never get there, how many do."""
+    if len(costs) == 0:
+        return NOTHING
+    if _all_get_there(costs) and _all_get_there(reference):
+        return f"{costs.mean() / reference.mean():.2f} ×"
+    return f"{np.isfinite(costs).sum()} of {len(costs)}"
+
+
+class _Verdict(NamedTuple):
+    """How the reference compares with the other sources on one task, by one cost."""
+
+    kind: str  # of _SAID; empty where there is nothing to compare
+    methods: Sequence[str] = ()  # that make it so
+
+    def __str__(self) -> str:
+        of_methods = _SAID.get(self.kind, NOTHING).format(costs="", methods=_named(self.methods))
+        return " ".join(of_methods.split())
+
+
+_SAID = {
+    "better": "better {costs} than {methods}",
+    "not": "not better {costs} than {methods}",
+    "level": "level {costs} with {methods}",
+    "none": f"no more than {{methods}} enough for {BAR} {{costs}}",
+}
+
+
+def _verdict(comparison: Comparison, task: str, cost: str) -> _Verdict:
+    own = _costs(comparison, task, REFERENCE, cost)
+    found = {source: _costs(comparison, task, source, cost) for source in SOURCES}
+    others = {source: costs for source, costs in found.items() if len(costs)}
+    if len(own) == 0 or not others:
+        return _Verdict("")
+    if not np.isfinite([*own, *np.concatenate(list(others.values()))]).any():
+        return _Verdict("none", list(others))
+    if less := [source for source, costs in others.items() if max(costs) < min(own)]:
+        return _Verdict("not", less)
+    level = [
+        source
+        for source, costs in others.items()
+        if np.isfinite(costs).any() and max(own) >= min(costs)
+    ]
+    return _Verdict("level", level) if level else _Verdict("better", list(others))
+
+
+def _named(methods: Sequence[str]) -> str:
+    return ", ".join(f"`{method}`" for method in methods)
+
+
+def _listed(costs: Sequence[str]) -> str:
+    words = [_WORDS[cost] for cost in costs]
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+
+
+def _sentence(task: str, verdicts: dict[str, _Verdict]) -> str:
+    parts = []
+    for kind, words in _SAID.items():
+        costs = [cost for cost, verdict in verdicts.items() if verdict.kind == kind]
+        named = {method for cost in costs for method in verdicts[cost].methods}
+        methods = _named([source for source in SOURCES if source in named])
+        if costs:
+            parts.append(words.format(costs=f"by {_listed(costs)}", methods=methods))
+    if not parts:
+        return f"- **{task}**: not known, as `{REFERENCE}` or any other source is missing."
+    return f"- **{task}**: reverse simulation is {'; '.join(parts)}."
+
+
+def better_source(comparison: Comparison) -> str:
+    """A sentence per task and, below, the figures behind it."""
+    sentences, rows = [], []
+    for task in comparison.tasks:
+        verdicts = {cost: _verdict(comparison, task, cost) for cost in COSTS}
+        sentences.append(_sentence(task, verdicts))
+        for cost, verdict in verdicts.items():
+            own = _costs(comparison, task, REFERENCE, cost)
+            ratios = [_multiple(own, _costs(comparison, task, rival, cost)) for rival in RIVALS]
+            least = _fewest(comparison, task, cost)
+            rows.append([task, _HEADS[cost], least, _mean_cost(own, cost), *ratios, str(verdict)])
+    head = ["task", f"to {BAR}", "fewest", *(f"`{method}`" for method in (REFERENCE, *RIVALS))]
+    shown = table([*head, "reverse simulation"], rows, left=3)
+    return "\n".join(sentences) + "\n\n" + shown

@@ -1,0 +1,280 @@
+"""The tables of a comparison's report, in Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg.compare import estimates
+from rtg.compare.methods import METHODS, REFERENCE, WIDER
+from rtg.compare.run_results import Comparison, RunResult
+
+Floats = NDArray[np.float64]
+NOTHING = "–"
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> str:
+    """A Markdown table, its first columns to the left."""
+    lines = [head, ["---"] * left + ["---:"] * (len(head) - left), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def spread(values: Sequence[float | None], form: str) -> str:
+    """Mean ± standard deviation of what there is; how many of how many, if not all.
+
+    form: of the format function; between 0 and 10, "count" has a digit behind the point.
+    """
+    known = [value for value in values if value is not None]
+    if not known:
+        return NOTHING
+    mean, std = estimates.mean_std(known)
+    if form == "count":
+        form = ".1f" if 0.0 < mean < 10.0 else ".0f"
+    words = format(mean, form) + ("" if std is None else f" ± {format(std, form)}")
+    return words if len(known) == len(values) else f"{words} ({len(known)} of {len(values)})"
+
+
+def seeds(numbers: Sequence[int]) -> str:
+    """1, 2, 3, 5 -> 1-3, 5."""
+    parts: list[list[int]] = []
+    for number in sorted(numbers):
+        if parts and number == parts[-1][-1] + 1:
+            parts[-1].append(number)
+        else:
+            parts.append([number])
+    return ", ".join(f"{p[0]}-{p[-1]}" if len(p) > 1 else f"{p[0]}" for p in parts)
+
+
+def states(runs: Sequence[RunResult]) -> str:
+    """Seeds by how far they have come."""
+    found = []
+    for state in dict.fromkeys(run.state for run in runs):
+        numbers = seeds([run.cell.seed for run in runs if run.state == state])
+        found.append(numbers if state == "done" else f"{numbers} {state}")
+    return "; ".join(found) or "not run"
+
+
+def named(runs: Sequence[RunResult]) -> str:
+    """Tasks, methods and seeds of runs that are in the order of a comparison, in words."""
+    rows: dict[tuple[str, str], list[int]] = {}
+    for run in runs:
+        rows.setdefault((run.cell.task, run.cell.label), []).append(run.cell.seed)
+    return "; ".join(f"{task} `{label}` {seeds(of_row)}" for (task, label), of_row in rows.items())
+
+
+def thousands(value: float | None) -> float | None:
+    return None if value is None else value / 1000.0
+
+
+def _same(value: float | None) -> float | None:
+    return value
+
+
+Column = tuple[str, str, str, Callable[[float | None], float | None]]
+# Head, key of RunResult.figures(), form of spread(), unit.
+_LEARNED: tuple[Column, ...] = (
+    ("success", "success_rate", ".2f", _same),
+    ("length", "episode_length_mean", ".1f", _same),
+    ("roll-outs", "rollout_success", ".2f", _same),
+    ("at ⅓", "success_at_third", ".2f", _same),
+    ("to 0.70", "interactions_to_70", "count", thousands),
+    ("to 0.95", "interactions_to_95", "count", thousands),
+    ("pushes to 0.95", "pushes_to_95", "count", thousands),
+    ("CPU s to 0.95", "cpu_s_to_95", "count", _same),
+)
+_SPENT: tuple[Column, ...] = (
+    ("transitions", "transitions", "count", thousands),
+    ("generation: pushes", "replays", "count", thousands),
+    ("... CPU [s]", "generate_cpu_s", "count", _same),
+    ("... wall [s]", "generate_wall_s", "count", _same),
+    ("learning: interactions", "interactions", "count", thousands),
+    ("... CPU [s]", "train_cpu_s", "count", _same),
+    ("... wall [s]", "train_wall_s", "count", _same),
+    ("all: pushes", "whole_pushes", "count", thousands),
+    ("... CPU [s]", "whole_cpu_s", "count", _same),
+)
+
+
+def _cell(done: Sequence[RunResult], column: Column) -> str:
+    _, name, form, unit = column
+    values = [unit(run.figures()[name]) for run in done]
+    never = "_to_" in name and done and not any(value is not None for value in values)
+    return "never" if never else spread(values, form)
+
+
+def _of_columns(comparison: Comparison, task: str, columns: Sequence[Column]) -> str:
+    """A row per method, also of those without a result."""
+    rows = []
+    for label in comparison.labels:
+        runs = comparison.row(task, label)
+        done = [run for run in runs if run.done]
+        rows.append([f"`{label}`", states(runs), *(_cell(done, column) for column in columns)])
+    return table(["method", "seeds", *(head for head, *_ in columns)], rows)
+
+
+def learned(comparison: Comparison, task: str) -> str:
+    """What every method came to on one task."""
+    return _of_columns(comparison, task, _LEARNED)
+
+
+def spent(comparison: Comparison, task: str) -> str:
+    """What the runs of every method cost on one task, generation and learning."""
+    return _of_columns(comparison, task, _SPENT)
+
+
+def _shared_tasks(comparison: Comparison) -> list[str]:
+    """Those that more than one method was run on; all if there are none."""
+    rows = {
+        task: [bool(comparison.done(task, label)) for label in comparison.labels]
+        for task in comparison.tasks
+    }
+    return [task for task in rows if sum(rows[task]) > 1] or comparison.tasks
+
+
+def _scores(comparison: Comparison, tasks: Sequence[str], label: str) -> dict[str, Floats]:
+    """Final success of the seeds, per task that has any."""
+    found = {task: comparison.done(task, label) for task in tasks}
+    return {
+        task: np.array([run.summary["success_rate"] for run in runs])
+        for task, runs in found.items()
+        if runs
+    }
+
+
+def _with_interval(value: float, interval: tuple[float, float] | None) -> str:
+    return f"{value:.2f}" + (f" [{interval[0]:.2f}, {interval[1]:.2f}]" if interval else "")
+
+
+def is_wider(label: str) -> bool:
+    return label.split("@")[0] == WIDER
+
+
+def pooled(comparison: Comparison) -> str:
+    """All tasks and seeds together."""
+    head = [
+        "method",
+        "tasks",
+        "runs",
+        "IQM of the success",
+        f"probability of a better run than `{REFERENCE}`",
+    ]
+    tasks = _shared_tasks(comparison)
+    reference, rows = _scores(comparison, tasks, REFERENCE), []
+    for label in comparison.labels:
+        scores = _scores(comparison, tasks, label)
+        if not scores:
+            continue
+        values = list(scores.values())
+        iqm = estimates.interquartile_mean
+        alike = label != REFERENCE and not is_wider(label)
+        common = [task for task in scores if task in reference and alike]
+        pair = [scores[task] for task in common], [reference[task] for task in common]
+        better = NOTHING
+        if common:
+            chance = estimates.probability_of_improvement(*pair)
+            better = _with_interval(chance, estimates.improvement_interval(*pair))
+        runs = str(sum(map(len, values)))
+        cell = _with_interval(iqm(values), estimates.interval(iqm, values))
+        rows.append([f"`{label}`", str(len(scores)), runs, cell, better])
+    return table(head, rows)
+
+
+def mean_success(runs: Sequence[RunResult]) -> float:
+    """Of the final greedy policies."""
+    return estimates.mean_std([run.summary["success_rate"] for run in runs])[0]
+
+
+def _ratio(
+    above: str, below: Callable[[RunResult], float], scale: float
+) -> Callable[[RunResult], float | None]:
+    """A key of the summary for each of what `below` counts; None where it was not counted."""
+
+    def of(run: RunResult) -> float | None:
+        value, count = run.summary.get(above), below(run)
+        return None if value is None or not count else scale * value / count
+
+    return of
+
+
+def _count(name: str) -> Callable[[RunResult], float]:
+    return lambda run: float(run.summary.get(name) or 0)
+
+
+def _solves(run: RunResult) -> float:
+    return _count("candidates")(run) - _count("pruned")(run)
+
+
+def _key(name: str) -> Callable[[RunResult], float | None]:
+    return lambda run: run.summary.get(name)
+
+
+def _depth(run: RunResult) -> float | None:
+    depth = run.summary.get("start_region_depth") or -1
+    return None if depth < 0 else depth
+
+
+_per_second = _ratio("interactions", _count("train_wall_s"), 1.0)
+
+
+def _speed(run: RunResult) -> float | None:
+    return _per_second(run) if run.interacts else None
+
+
+_RUNTIME: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
+    ("backward action [ms]", _ratio("reverse_cpu_s", _solves, 1e3), ".2f"),
+    ("forward action [ms]", _ratio("replay_cpu_s", _count("replays"), 1e3), ".3f"),
+    ("solves [1000]", lambda run: _solves(run) / 1000.0, "count"),
+    ("pushes [1000]", lambda run: thousands(run.summary.get("replays")), "count"),
+    ("converged", _ratio("converged", _solves, 1.0), ".3f"),
+    ("iterations, median", _key("pushing_iterations_median"), ".0f"),
+    ("90th percentile", _key("pushing_iterations_p90"), ".0f"),
+    ("interactions per s", _speed, ".0f"),
+)
+_DATA: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
+    ("transitions [1000]", lambda run: thousands(run.summary.get("transitions")), "count"),
+    ("tree rows", lambda run: thousands(run.summary.get("tree_transitions")), "count"),
+    ("branches", lambda run: thousands(run.summary.get("branch_transitions")), "count"),
+    ("headings per state", _key("headings_per_state"), ".1f"),
+    ("contact share", _key("contact_share"), ".2f"),
+    ("start region", _key("start_region_transitions"), "count"),
+    ("trees", _key("trees"), "count"),
+    ("depth", _depth, ".0f"),
+    ("replay gap, median [m]", _key("replay_gap_median"), ".4f"),
+    ("90th percentile [m]", _key("replay_gap_p90"), ".4f"),
+    ("rank correlation of Q", _key("q_rank_correlation"), ".2f"),
+    ("error", _key("q_error"), ".3f"),
+    ("spread", _key("q_spread"), ".3f"),
+)
+
+
+def _per_method(
+    comparison: Comparison,
+    made: str,
+    columns: Sequence[tuple[str, Callable[[RunResult], float | None], str]],
+) -> str:
+    """A row per task and method whose runs have `made` any, a count of their summaries."""
+    rows = []
+    for task in comparison.tasks:
+        for label in comparison.labels:
+            done = [run for run in comparison.done(task, label) if run.summary.get(made)]
+            cells = [spread([of(run) for run in done], form) for _, of, form in columns]
+            rows += [[task, f"`{label}`", *cells]] if done else []
+    return table(["task", "method", *(name for name, _, _ in columns)], rows, left=2)
+
+
+def runtime(comparison: Comparison) -> str:
+    """Appendix E: what the actions cost, backward and forward."""
+    return _per_method(comparison, "candidates", _RUNTIME)
+
+
+def data(comparison: Comparison) -> str:
+    """How well reverse steps replay (Appendix F), and what the data cover."""
+    return _per_method(comparison, "transitions", _DATA)
+
+
+def not_run(comparison: Comparison) -> list[str]:
+    """Methods that were not asked for."""
+    asked = {run.cell.method for run in comparison.results}
+    return [method for method in METHODS if method not in asked]

@@ -1,0 +1,176 @@
+"""Methods x seeds x tasks: runs what is not done yet, side by side, and reports on all."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Protocol
+
+from rtg.compare import together
+from rtg.compare.cell_run import make_ready
+from rtg.compare.cells import Grid, read_grid
+from rtg.compare.grid_display import GridDisplay, Row, counts, display
+from rtg.compare.reproduce_args import ReproduceArgs
+from rtg.errors import RunError, StoppedError, UserError
+from rtg.files import run_folder
+from rtg.processes.children import Node, kill_all, stop_all
+from rtg.processes.interrupts import Interrupts
+
+_POLL = 0.2  # [s]
+_GRACE = 10.0  # [s]; a run gives its own processes less
+_STAMP = re.compile(r"^\[ *[\d.]+ s\] ")
+
+
+def reproduce(args: ReproduceArgs) -> int:
+    """Exit status. Raises UserError before anything starts, RunError if it was stopped."""
+    runs = make_ready(args)
+    with run_folder.writing_to(args.out):
+        args.out.mkdir(parents=True, exist_ok=True)
+    with run_folder.alone(args.out, "another reproduce"):
+        grid = read_grid(args.out)
+        grid.add(args.command, args.cells)
+        with run_folder.writing_to(args.out):
+            grid.write(args.out)
+        for stage in together.stages(runs, args.together):  # what fails there, its run does again
+            _run_all(args, Crew(stage, args.jobs))
+        rows = _run_all(args, Crew(runs, args.jobs, Failures(grid, args.out)))
+        from rtg.compare.report_files import write_report  # heavy
+
+        report = write_report(args.out, args.out)
+    print(f"{counts(rows)}\nreport: {report}")
+    return 1 if any(row.phase == "failed" for row in rows) else 0
+
+
+def _run_all(args: ReproduceArgs, crew: Crew) -> list[Row]:
+    """How each job ended."""
+    with display(sys.stdout) as shown, Interrupts(on_demand=crew.kill) as interrupts:
+        try:
+            while crew.tend(shown):
+                crew.wait(_POLL)
+                interrupts.raise_if_requested()
+        except StoppedError:
+            raise RunError(f"stopped; to go on: {args.typed}") from None
+        finally:
+            crew.stop()
+    return crew.rows()
+
+
+class Job(Protocol):
+    """What a crew does in a process, as CellRun."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def log(self) -> Path:
+        """What it says."""
+
+    @property
+    def done(self) -> bool:
+        """Whether there is nothing left to do."""
+
+    @property
+    def generates(self) -> str | None:
+        """The kind of transitions that it makes and others may wait for; None if there are none,
+        or they are there."""
+
+    def command(self) -> list[str]:
+        """Begins the job, or goes on with it."""
+
+    def outcome(self) -> str:
+        """Of a job that is done, in words."""
+
+
+class Failures:
+    """How jobs failed, with their last words, kept in the list of cells."""
+
+    def __init__(self, grid: Grid, folder: Path) -> None:
+        self._grid, self._folder = grid, folder
+
+    def add(self, name: str, words: str) -> None:
+        self._grid.failed[name] = words
+        self._grid.write(self._folder)
+
+    def drop(self, name: str) -> None:
+        """It gets another chance."""
+        if self._grid.failed.pop(name, None) is not None:
+            self._grid.write(self._folder)
+
+
+class Crew:
+    """Jobs, so many of them at work at a time."""
+
+    def __init__(self, jobs: Sequence[Job], places: int, failures: Failures | None = None) -> None:
+        self._jobs, self._places, self._failures = list(jobs), places, failures
+        self._nodes: dict[str, Node] = {}  # at work
+        self._rows = {job.name: _first_row(job) for job in jobs}
+
+    def tend(self, shown: GridDisplay) -> bool:
+        """Takes note of what has ended, starts what there is room for; whether any is at work."""
+        for job in self._jobs:
+            node = self._nodes.get(job.name)
+            if node is not None:
+                self._look_at(job, node)
+        for job in self._jobs:
+            idle = len(self._nodes) < self._places
+            if idle and self._rows[job.name].phase == "waiting" and not self._is_made(job):
+                self._start(job)
+        shown.show(self.rows())
+        return bool(self._nodes)
+
+    def rows(self) -> list[Row]:
+        """In the order of the jobs."""
+        return list(self._rows.values())
+
+    def wait(self, seconds: float) -> None:
+        """Until one of those at work has ended, perhaps, or so much time has passed."""
+        next(iter(self._nodes.values())).wait(seconds)
+
+    def stop(self) -> None:
+        """Ends all jobs, so that they can go on."""
+        stop_all(self._nodes.values(), _GRACE)
+
+    def kill(self) -> None:
+        """Ends all jobs at once."""
+        kill_all(self._nodes.values())
+
+    def _is_made(self, job: Job) -> bool:
+        """Whether one at work makes the transitions that the job would make."""
+        kinds = {other.generates for other in self._jobs if other.name in self._nodes}
+        return job.generates is not None and job.generates in kinds
+
+    def _start(self, job: Job) -> None:
+        if self._failures:
+            self._failures.drop(job.name)
+        try:
+            job.log.parent.mkdir(parents=True, exist_ok=True)
+            self._nodes[job.name] = Node(job.name, job.command(), job.log)
+            self._rows[job.name] = Row(job.name, "running")
+        except (UserError, OSError) as error:
+            self._fail(job, str(error))
+
+    def _look_at(self, job: Job, node: Node) -> None:
+        if node.exit_status() is None:
+            words = _STAMP.sub("", node.last_words(lines=1))
+            self._rows[job.name] = Row(job.name, "running", words)
+            return
+        del self._nodes[job.name]
+        if job.done:
+            self._rows[job.name] = _first_row(job)
+            return
+        words = node.last_words()
+        self._fail(
+            job, f"{node.epitaph()}; the end of its log:\n{words}" if words else node.epitaph()
+        )
+
+    def _fail(self, job: Job, words: str) -> None:
+        if self._failures:
+            self._failures.add(job.name, words)
+        self._rows[job.name] = Row(job.name, "failed", words)
+
+
+def _first_row(job: Job) -> Row:
+    """Of a job that is not at work."""
+    return Row(job.name, "done", job.outcome()) if job.done else Row(job.name)

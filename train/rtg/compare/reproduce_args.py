@@ -1,0 +1,219 @@
+"""The flags of `./run.sh reproduce` and the cells that they stand for."""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import os
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rtg import paths
+from rtg.compare.ablations import ablations
+from rtg.compare.cells import Cell
+from rtg.compare.methods import METHODS, REFERENCE, TASKS, run_words
+from rtg.errors import UserError
+from rtg.run.run_args import Override, Parser, task_file
+from rtg.run.run_args import parse as parse_run
+
+SEEDS = "5"
+# Enough to see every part at work; no figure of such a run is a result.
+QUICK = (
+    "search.transitions=30000",
+    "train.interactions=30000",
+    "train.start_at=10000",
+    "train.eval_every=2500",
+    "train.eval_episodes=20",
+    "train.checkpoint_every=5000",
+)
+MAX_SEEDS = 1000
+# What a cell decides, with the flag to use.
+DECIDED = {
+    "run.seed": "--seeds",
+    "run.method": "--methods",
+    "run.in_process": "none, every run is in one process",
+    "run.workers": "none, --jobs says how many runs at a time",
+}
+QUICK_METHODS = ("ddqn_naive", REFERENCE)
+
+EPILOG = f"""\
+methods: {", ".join(METHODS)}
+
+examples:
+  ./run.sh reproduce --quick
+  ./run.sh reproduce gathering sorting --methods ddqn_naive,ddqn_rtg --seeds 5
+  ./run.sh reproduce gathering --sweep train.offline_share=0.1,0.25,0.5,0.75,-1
+  ./run.sh reproduce sorting --ablations --seeds 1
+
+The same command again goes on where it was stopped. Report and pictures: DIR/report.md."""
+
+
+@dataclass(frozen=True)
+class ReproduceArgs:
+    """One call of `rtg reproduce`."""
+
+    files: dict[str, Path]  # by name of the task
+    cells: tuple[Cell, ...]
+    settings: tuple[str, ...]  # KEY=VALUE, of all cells
+    jobs: int
+    together: bool  # seeds of a method learn in one process even without a GPU
+    out: Path
+    command: str  # with all that decides the results, for the report
+    typed: str  # as the user typed it
+
+
+def parser() -> Parser:
+    """The flags."""
+    p = Parser(
+        prog="./run.sh reproduce",
+        description="Run methods x seeds on tasks, one process per core, and write a report.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    p.add_argument("tasks", metavar="TASK", nargs="*", help=f"tasks or files ({' '.join(TASKS)})")
+    what = "what to compare (all; of a sweep and ablations: ddqn_rtg)"
+    p.add_argument("--methods", metavar="a,b", help=what)
+    p.add_argument("--seeds", metavar="N|1,2,3", help=f"how many, or which ({SEEDS})")
+    p.add_argument("--jobs", metavar="N", help="runs at a time (one per core)")
+    p.add_argument("--out", metavar="DIR", help="folder of the comparison (runs/reproduce)")
+    p.add_argument("--quick", action="store_true", help="small budgets, one seed: minutes")
+    p.add_argument(
+        "--sweep", metavar="KEY=V1,V2", action="append", default=[], help="one more axis"
+    )
+    p.add_argument(
+        "--ablations",
+        action="store_true",
+        help="also without each part of the search, with each departure from the preset paper "
+        "taken back, and with that preset",
+    )
+    p.add_argument(
+        "--together", action="store_true", help="a method's seeds learn in one process, as on a GPU"
+    )
+    p.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="of all runs")
+    return p
+
+
+def _number(flag: str, word: str, least: int, most: int, legal: str = "") -> int:
+    if not (word.isascii() and word.isdigit() and least <= int(word) <= most):
+        legal = legal or f"a number from {least} to {most}"
+        raise UserError(f"{flag} {word or repr(word)}: legal: {legal}")
+    return int(word)
+
+
+def parse_seeds(words: str) -> tuple[int, ...]:
+    """Raises UserError."""
+    if "," not in words:
+        legal = f"a number from 1 to {MAX_SEEDS}, or a list 1,2,3"
+        return tuple(range(1, 1 + _number("--seeds", words, 1, MAX_SEEDS, legal)))
+    seeds = [
+        _number("--seeds", word, 0, 2**31 - 1, "a list 1,2,3")
+        for word in words.strip(",").split(",")
+    ]
+    return tuple(dict.fromkeys(seeds))
+
+
+def _methods(args: argparse.Namespace) -> tuple[str, ...]:
+    """Raises UserError."""
+    if args.methods is None:
+        is_of_reference = args.sweep or args.ablations
+        return QUICK_METHODS if args.quick else (REFERENCE,) if is_of_reference else METHODS
+    found = tuple(dict.fromkeys(args.methods.split(",")))
+    for method in found:
+        if method not in METHODS:
+            raise UserError(
+                f"--methods {method}: no method of that name; legal: {','.join(METHODS)}"
+            )
+    return found
+
+
+def _seeds(args: argparse.Namespace) -> str:
+    """As the user types them."""
+    default = "1" if args.quick else SEEDS
+    return default if args.seeds is None else str(args.seeds)
+
+
+def _files(words: Sequence[str]) -> dict[str, Path]:
+    files: dict[str, Path] = {}
+    for word in dict.fromkeys(words):
+        path = task_file(word).absolute()
+        if path.stem in files:
+            raise UserError(f"{word}: {path.stem} is named twice; legal: each name of a file once")
+        files[path.stem] = path
+    return files
+
+
+def parse_sweep(words: str) -> tuple[str, ...]:
+    """KEY=V1,V2 -> (KEY=V1, KEY=V2). Raises UserError."""
+    key, sign, values = words.partition("=")
+    found = [f"{key}={value}" for value in values.split(",")]
+    if not (key and sign) or any(bad in words for bad in "/@ ") or "" in values.split(","):
+        raise UserError(f"--sweep {words}: legal: KEY=V1,V2 with values without blank, / or @")
+    if key.startswith("run.") or key == "task":
+        raise UserError(f"--sweep {words}: {key} is no axis; legal: keys of the other sections")
+    return tuple(dict.fromkeys(found))
+
+
+def _check_keys(sweeps: Sequence[tuple[str, ...]]) -> None:
+    """Raises UserError if a key has two axes."""
+    seen = set[str]()
+    for key in (sweep[0].partition("=")[0] for sweep in sweeps):
+        if key in seen:
+            raise UserError(f"--sweep {key}: stands twice; legal: once, {key}=V1,V2")
+        seen.add(key)
+
+
+def _cells(args: argparse.Namespace, files: dict[str, Path]) -> tuple[Cell, ...]:
+    """Tasks x methods x settings x seeds. Raises UserError."""
+    sweeps = [parse_sweep(sweep) for sweep in args.sweep]
+    _check_keys(sweeps)
+    if args.ablations and sweeps:
+        raise UserError("--ablations: not with --sweep, which changes settings, too; legal: one")
+    found = []
+    for task, method in itertools.product(files, _methods(args)):
+        changes = list(itertools.product(*sweeps))
+        if args.ablations:
+            changes = ablations(files[task], _common(args, method))
+        axes = changes, parse_seeds(_seeds(args))
+        found += [Cell(task, method, changed, seed) for changed, seed in itertools.product(*axes)]
+    return tuple(found)
+
+
+def _settings(args: argparse.Namespace) -> tuple[str, ...]:
+    """Raises UserError for what other flags decide."""
+    for setting in args.set:
+        if (key := setting.partition("=")[0]) in DECIDED:
+            raise UserError(f"--set {setting}: reproduce decides it; legal: {DECIDED[key]}")
+    return (*(QUICK if args.quick else ()), *args.set)
+
+
+def _common(args: argparse.Namespace, method: str) -> list[Override]:
+    """What all cells of a method are set to."""
+    of_method = parse_run(run_words(method)).overrides
+    return [*of_method, *(Override(f"--set {setting}", setting) for setting in _settings(args))]
+
+
+def parse(words: Sequence[str]) -> ReproduceArgs:
+    """Raises UserError, or SystemExit(0) after --help."""
+    args = parser().parse_args(words)
+    tasks = args.tasks or TASKS
+    files = _files(tasks)
+    cells = _cells(args, files)
+    jobs = str(len(os.sched_getaffinity(0))) if args.jobs is None else args.jobs
+    if args.out == "":
+        raise UserError("--out: '' is no folder; legal: the path of one")
+    flags = ["--methods", ",".join(_methods(args)), "--seeds", _seeds(args)]
+    flags += [*["--quick"] * args.quick, *["--ablations"] * args.ablations]
+    flags += [word for sweep in args.sweep for word in ("--sweep", sweep)]
+    flags += [word for setting in args.set for word in ("--set", setting)]
+    return ReproduceArgs(
+        files=files,
+        cells=cells,
+        settings=_settings(args),
+        jobs=_number("--jobs", jobs, 1, 1000),
+        together=args.together,
+        out=Path(args.out or paths.RUNS / f"reproduce{'-quick' * args.quick}").absolute(),
+        command=shlex.join(["./run.sh", "reproduce", *tasks, *flags]),
+        typed=shlex.join(["./run.sh", "reproduce", *words]),
+    )

@@ -1,0 +1,181 @@
+"""What the runs of a comparison came to, read from their folders."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg import _core
+from rtg.compare.cells import Cell, Grid
+from rtg.compare.estimates import first_reach
+from rtg.compare.methods import METHODS, TASKS
+from rtg.errors import UserError
+from rtg.files import versions
+from rtg.files.run_folder import read_json, result
+from rtg.run.results import learning_curve
+
+Floats = NDArray[np.float64]
+
+COSTS = ("interactions", "pushes", "cpu_s")  # [1], [1], [s]; columns of a curve
+CURVES = ("success_rate", "rollout_success", "episode_length_mean", "episode_return_mean")
+
+
+def costs(curve: dict[str, Floats], cost: str) -> list[float]:
+    """That column, whole numbers but for seconds. [N]"""
+    return (curve[cost] if cost == "cpu_s" else curve[cost].astype(int)).tolist()
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """One cell and how far it has come."""
+
+    cell: Cell
+    folder: Path
+    state: str  # done, failed, unfinished, not run
+    summary: dict[str, Any]  # summary.json; of a run that is not done, empty like the next two
+    versions: dict[str, Any]
+    # Columns of progress.csv [N]; `pushes` and `cpu_s` with those of the generation.
+    curve: dict[str, Floats]
+    train: dict[str, Any]  # the section of its configuration; of a run that is not done, empty
+
+    @property
+    def done(self) -> bool:
+        return self.state == "done"
+
+    @property
+    def interacts(self) -> bool:
+        """Without, the interactions of its curve are rounds of learning worth as many."""
+        return bool(self.train["interact"])
+
+    @property
+    def commit(self) -> str | None:
+        """Of the program that ended the run."""
+        return versions.commit(self.versions)
+
+    @property
+    def commits(self) -> str:
+        """In words, with others that learned before it was resumed or made the transitions."""
+        generator = versions.commit(self.versions.get("generator", {}))
+        is_other = generator not in (None, self.commit) and self.summary.get("transitions")
+        words = [f"`{self.commit}`"]
+        words += [f"begun by `{other}`" for other in self.versions.get("begun_by", [])]
+        return ", ".join([*words, f"transitions by `{generator}`"] if is_other else words)
+
+    def figures(self) -> dict[str, Any]:
+        """The entry of report.json."""
+        names = ("success_rate", "episode_length_mean", "rollout_success", "interactions")
+        of_generation = ("transitions", "replays", "generate_cpu_s", "generate_wall_s")
+        of_learner = ("train_cpu_s", "train_wall_s", "q_rank_correlation")
+        return {
+            "seed": self.cell.seed,
+            **{name: self.summary.get(name) for name in names},
+            "success_at_third": self.success_at_third(),
+            "interactions_to_70": self.reached(0.70),
+            **{f"{cost}_to_95": self.reached(0.95, cost) for cost in COSTS},
+            **{name: self.summary.get(name) for name in (*of_generation, *of_learner)},
+            **{f"whole_{cost}": self.spent(cost) for cost in COSTS[1:]},
+            "commit": self.commit,
+        }
+
+    def spent(self, cost: str) -> float | None:
+        """At the last evaluation, in all; None without any."""
+        return costs(self.curve, cost)[-1] if self.curve else None
+
+    def success_at_third(self) -> float | None:
+        """Of the last evaluation within a third of the budget; of a run that had ended by then the
+        final one, as it may have ended because the others went well by chance."""
+        if not self.curve:
+            return None
+        third = self.train["interactions"] / 3
+        within = self.curve["interactions"] <= third
+        if within.all():
+            return float(self.summary["success_rate"])
+        known = self.curve["success_rate"][within]
+        return float(known[-1]) if len(known) else None
+
+    def reached(self, bar: float, cost: str = COSTS[0]) -> float | None:
+        """The cost at the first evaluation with that greedy success; None: never."""
+        if not self.curve:
+            return None
+        success = self.curve["success_rate"]
+        first = first_reach(np.arange(float(len(success))), success, bar)
+        return None if first is None else costs(self.curve, cost)[first]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All runs, in the order in which tables show them."""
+
+    results: tuple[RunResult, ...]
+
+    @property
+    def tasks(self) -> list[str]:
+        return list(dict.fromkeys(r.cell.task for r in self.results))
+
+    @property
+    def labels(self) -> list[str]:
+        """Methods, and what was swept of them."""
+        cells = sorted((r.cell for r in self.results), key=_place)
+        return list(dict.fromkeys(cell.label for cell in cells))
+
+    def row(self, task: str, label: str) -> list[RunResult]:
+        """The runs of all seeds."""
+        return [r for r in self.results if (r.cell.task, r.cell.label) == (task, label)]
+
+    def done(self, task: str, label: str) -> list[RunResult]:
+        """Those of them that have a result."""
+        return [r for r in self.row(task, label) if r.done]
+
+    def all_done(self) -> list[RunResult]:
+        return [r for r in self.results if r.done]
+
+
+def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
+    run = folder / cell.name
+    summary = result(run)
+    if summary:
+        curve = _curve(run / "progress.csv", summary)
+        made_with, train = read_json(run / versions.FILE), _train(run / "config.yaml")
+        return RunResult(cell, run, "done", summary, made_with, curve, train)
+    begun = "unfinished" if run.is_dir() else "not run"
+    return RunResult(cell, run, "failed" if cell.name in grid.failed else begun, {}, {}, {}, {})
+
+
+def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
+    """The learner's costs and those of the generation before it added up. Raises UserError."""
+    curve = learning_curve(progress) if progress.is_file() else {}
+    if not curve:
+        return {}
+    if not {*COSTS, *CURVES} <= curve.keys():
+        raise UserError(f"{progress}: lacks columns; legal: as the run left it")
+    generated = {"pushes": summary.get("replays"), "cpu_s": summary.get("generate_cpu_s")}
+    return curve | {cost: curve[cost] + (spent or 0) for cost, spent in generated.items()}
+
+
+def _train(config: Path) -> dict[str, Any]:
+    try:
+        train: dict[str, Any] = json.loads(_core.Config.from_file(config).json)["train"]
+    except _core.ConfigError as error:
+        raise UserError(str(error)) from None
+    return train
+
+
+def _place(cell: Cell) -> int:
+    return METHODS.index(cell.method) if cell.method in METHODS else len(METHODS)
+
+
+def read_comparison(folder: Path, grid: Grid) -> Comparison:
+    """Tasks in the order of TASKS, methods in that of METHODS, what is not among them after them,
+    like swept values in the order of the grid; then seeds."""
+    tasks = list(dict.fromkeys((*TASKS, *(cell.task for cell in grid.cells))))
+    settings = list(dict.fromkeys(cell.settings for cell in grid.cells))
+    cells = sorted(
+        grid.cells,
+        key=lambda c: (tasks.index(c.task), _place(c), settings.index(c.settings), c.seed),
+    )
+    return Comparison(tuple(_result(folder, cell, grid) for cell in cells))

@@ -1,0 +1,134 @@
+"""Many copies of a task at once, as the learner takes them: one call of the core per step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+from stable_baselines3.common.vec_env import VecEnv
+
+from rtg import _core
+from rtg.envs.curriculum import ELSEWHERE, Curriculum
+from rtg.envs.push_env import observation_space
+
+
+class PushVecEnv(VecEnv):
+    """PushEnv's environments in SB3's manner: a finished one starts again at once.
+
+    Start number k of the whole run is start k of the stream `seed`, whichever environment is next;
+    with a curriculum some episodes begin at its starts instead.
+    """
+
+    def __init__(
+        self,
+        config: _core.Config,
+        count: int,
+        jitter: float,
+        seed: int,
+        curriculum: Curriculum | None = None,
+    ) -> None:
+        self.render_mode = None
+        self.task = task = config.task
+        super().__init__(count, observation_space(task), spaces.Discrete(task.headings))
+        self._simulator = _core.Simulator(config)
+        self._jitter, self._seed = jitter, seed
+        self.curriculum = curriculum
+        self._origins = [ELSEWHERE] * count  # of the running episodes, in the curriculum
+        self._starts = 0  # drawn so far, the curriculum's left out
+        self.successes = 0  # episodes that ended in one
+        self._poses = np.zeros((count, task.bodies, 3))  # [count, bodies, 3]
+        self._steps = np.zeros(count, np.int64)  # actions in the running episodes
+        self._actions = np.zeros(count, np.int64)
+
+    def reset(self) -> NDArray[np.float32]:
+        for env in range(self.num_envs):
+            self._begin(env)
+        return self.task.observation(self._poses)
+
+    def step_async(self, actions: NDArray[Any]) -> None:
+        self._actions = np.asarray(actions, np.int64)
+
+    def step_wait(self) -> Any:
+        after, ok = self._simulator.push(self._poses, self._actions)
+        after[~ok] = self._poses[~ok]
+        self._poses, self._steps = after, self._steps + 1
+        success = self.task.succeeded(after) & ok
+        self.successes += int(success.sum())
+        timeout = ~success & ((self._steps >= self.task.horizon) | ~ok)
+        observation = self.task.observation(after)
+        infos: list[dict[str, Any]] = [
+            {"TimeLimit.truncated": bool(timeout[env]), "rejected": not ok[env]}
+            for env in range(self.num_envs)
+        ]
+        done = success | timeout
+        if done.any():
+            for env in map(int, np.flatnonzero(done)):
+                infos[env]["terminal_observation"] = observation[env]
+                if self._origins[env] == ELSEWHERE:  # what the learner is judged by
+                    infos[env]["is_success"] = bool(success[env])
+                    infos[env]["episode"] = {"r": float(success[env]), "l": int(self._steps[env])}
+                if self.curriculum:
+                    self.curriculum.note(
+                        self._origins[env], bool(success[env]), int(self._steps[env])
+                    )
+                self._begin(env)
+            observation = self.task.observation(self._poses)
+        return observation, success.astype(np.float32), done, infos
+
+    def contact_headings(self, seed: int) -> NDArray[np.int64]:
+        """Per environment a heading towards a random object of its present state. [count]"""
+        return self.task.contact_headings(self._poses, seed)
+
+    def _begin(self, env: int) -> None:
+        self._origins[env], start = self.curriculum.draw() if self.curriculum else (ELSEWHERE, None)
+        if start is None:
+            start = self.task.jittered_start(self._jitter, self._seed, self._starts)
+            self._starts += 1
+        self._poses[env] = start
+        self._steps[env] = 0
+
+    def state(self) -> dict[str, Any]:
+        """Everything that the next steps depend on."""
+        return {
+            "poses": self._poses.copy(),
+            "steps": self._steps.copy(),
+            "starts": self._starts,
+            "successes": self.successes,
+            "origins": list(self._origins),
+            "curriculum": self.curriculum.state() if self.curriculum else None,
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        self._poses = np.asarray(state["poses"]).copy()
+        self._steps = np.asarray(state["steps"]).copy()
+        self._starts = state["starts"]
+        self.successes = state["successes"]
+        self._origins = list(state["origins"])
+        if self.curriculum:
+            self.curriculum.restore(state["curriculum"])
+
+    # What SB3 asks of a VecEnv beyond that.
+
+    def close(self) -> None:
+        pass
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        return [getattr(self, attr_name)] * len(list(self._get_indices(indices)))
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        raise NotImplementedError("the environments share their attributes")
+
+    def env_method(
+        self, method_name: str, *args: Any, indices: Any = None, **kwargs: Any
+    ) -> list[Any]:
+        raise NotImplementedError("the environments are no objects of their own")
+
+    def env_is_wrapped(self, wrapper_class: type, indices: Any = None) -> list[bool]:
+        return [False] * len(list(self._get_indices(indices)))
+
+    def seed(self, seed: int | None = None) -> Sequence[int | None]:
+        """The seed is given at construction; starting the stream anew is not supported."""
+        return [None] * self.num_envs

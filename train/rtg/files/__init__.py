@@ -1,0 +1,1 @@
+"""What a run leaves in its folder: data set, checkpoint, versions, and how they are read back."""

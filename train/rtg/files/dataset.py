@@ -1,0 +1,158 @@
+"""Transition sets: the arrays, the file `transitions.npz`, the check of files from outside."""
+
+from __future__ import annotations
+
+import os
+import zipfile
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from rtg.errors import UserError
+
+Array = npt.NDArray[Any]
+
+SOURCES = ("tree", "branch", "walk", "plan")  # rtg::Source by value
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip entry can carry
+
+
+class Rows(NamedTuple):
+    """Consecutive transitions as a search gives them out, without what a learner sees of them."""
+
+    poses: npt.NDArray[np.float64]  # [n, bodies, 3]: x [m], y [m], theta [rad]
+    action: npt.NDArray[np.int32]  # [n]
+    next_poses: npt.NDArray[np.float64]  # [n, bodies, 3]
+    reward: npt.NDArray[np.float32]  # [n], 1 on success
+    terminated: npt.NDArray[np.bool_]  # [n], on success
+    source: npt.NDArray[np.int8]  # [n]
+
+    def after(self, skip: int, end: int | None = None) -> Rows:
+        """Without the first `skip` rows, and without those from `end` on."""
+        return Rows._make(column[skip:end] for column in self)
+
+
+class Transitions(NamedTuple):
+    """N true transitions of the true dynamics, in sequence order."""
+
+    poses: Array  # [N, bodies, 3] float64, x [m], y [m], θ [rad]; body 0 is the robot
+    action: Array  # [N] int32
+    next_poses: Array  # [N, bodies, 3] float64
+    reward: Array  # [N] float32, 1 where the goal holds afterwards, else 0
+    terminated: Array  # [N] bool, reward == 1
+    observation: Array  # [N, observation] float32
+    next_observation: Array  # [N, observation] float32
+    source: Array  # [N] int8, index into SOURCES
+
+
+_DTYPES = {
+    "poses": np.float64,
+    "action": np.int32,
+    "next_poses": np.float64,
+    "reward": np.float32,
+    "terminated": np.bool_,
+    "observation": np.float32,
+    "next_observation": np.float32,
+    "source": np.int8,
+}
+_SHAPES = {
+    "poses": "[N, bodies, 3]",
+    "next_poses": "[N, bodies, 3]",
+    "observation": "[N, observation]",
+    "next_observation": "[N, observation]",
+}
+_RANK = {"poses": 3, "next_poses": 3, "observation": 2, "next_observation": 2}
+
+
+# What numpy and zipfile answer damaged files with.
+_NOT_NUMPYS = (ValueError, EOFError, KeyError, RuntimeError, MemoryError, zipfile.BadZipFile)
+
+
+class DatasetError(UserError, ValueError):
+    """A file that is no transition set; the text names the file, the array and what is legal."""
+
+
+def concatenate(parts: list[Transitions]) -> Transitions:
+    """The parts one after the other; at least one part."""
+    return Transitions(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+
+
+def write(path: Path, transitions: Transitions) -> None:
+    """Writes `path` at once or not at all, also if the machine goes down; equal transitions give
+    equal bytes."""
+    partial = path.with_name(path.name + ".part")
+    with partial.open("wb") as file:
+        with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+            for name, dtype in _DTYPES.items():
+                entry = zipfile.ZipInfo(f"{name}.npy", _EPOCH)
+                with archive.open(entry, "w", force_zip64=True) as member:
+                    array: Array = np.ascontiguousarray(getattr(transitions, name), dtype=dtype)
+                    np.lib.format.write_array(member, array, allow_pickle=False)
+        file.flush()
+        os.fsync(file.fileno())
+    os.replace(partial, path)
+
+
+def read(path: Path, bodies: int | None = None, headings: int | None = None) -> Transitions:
+    """Reads and checks a transition set; `bodies` and `headings` of the task are checked if given.
+
+    Raises DatasetError for anything that is no legal transition set, FileNotFoundError.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            arrays = {name: _member(path, archive, name) for name in _DTYPES}
+    except (DatasetError, FileNotFoundError):
+        raise
+    except (*_NOT_NUMPYS, OSError) as error:
+        raise DatasetError(f"{path}: not a transition file ({error})") from error
+    transitions = Transitions(**arrays)
+    _check_shapes(path, transitions)
+    _check_values(path, transitions)
+    _check_task(path, transitions, bodies, headings)
+    return transitions
+
+
+def _member(path: Path, archive: Any, name: str) -> Array:
+    if name not in archive:
+        raise DatasetError(f"{path}: array '{name}' is missing; legal: {', '.join(_DTYPES)}")
+    array: Array = archive[name]
+    if array.dtype != _DTYPES[name]:
+        expected = np.dtype(_DTYPES[name]).name
+        raise DatasetError(f"{path}: '{name}' is {array.dtype}; legal: {expected}")
+    return array
+
+
+def _check_shapes(path: Path, transitions: Transitions) -> None:
+    count = len(transitions.action) if transitions.action.ndim == 1 else -1
+    for name, array in transitions._asdict().items():
+        legal = _SHAPES.get(name, "[N]")
+        wrong = array.ndim != _RANK.get(name, 1) or array.shape[0] != count
+        if wrong or (legal.endswith("3]") and array.shape[2] != 3):
+            shape = list(array.shape)
+            raise DatasetError(f"{path}: '{name}' has shape {shape}; legal: {legal}, one N for all")
+    for name in ("poses", "observation"):
+        if getattr(transitions, name).shape != getattr(transitions, f"next_{name}").shape:
+            raise DatasetError(f"{path}: '{name}' and 'next_{name}' differ in shape")
+
+
+def _check_values(path: Path, transitions: Transitions) -> None:
+    for name in ("poses", "next_poses", "observation", "next_observation"):
+        if not np.isfinite(getattr(transitions, name)).all():
+            raise DatasetError(f"{path}: '{name}' has values that are not finite")
+    if not np.isin(transitions.reward, (0.0, 1.0)).all():
+        raise DatasetError(f"{path}: 'reward' has other values than 0 and 1")
+    if not np.array_equal(transitions.terminated, transitions.reward == 1.0):
+        raise DatasetError(f"{path}: 'terminated' is not reward == 1")
+    if (transitions.action < 0).any():
+        raise DatasetError(f"{path}: 'action' has negative values")
+    if not np.isin(transitions.source, range(len(SOURCES))).all():
+        raise DatasetError(f"{path}: 'source' has other values than 0 to {len(SOURCES) - 1}")
+
+
+def _check_task(path: Path, data: Transitions, bodies: int | None, headings: int | None) -> None:
+    if bodies is not None and data.poses.shape[1] != bodies:
+        raise DatasetError(f"{path}: {data.poses.shape[1]} bodies; the task has {bodies}")
+    if headings is not None and len(data.action) and data.action.max() >= headings:
+        largest = data.action.max()
+        raise DatasetError(f"{path}: action {largest}; the task's are 0 to {headings - 1}")

@@ -1,0 +1,54 @@
+"""Collects the transitions of a run, in sequence order, for transitions.npz."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from rtg import _core
+from rtg.files import dataset
+from rtg.files.dataset import Rows, Transitions
+
+
+class Recorder:
+    """A sink of rows; the file is a function of the rows alone."""
+
+    def __init__(self, task: _core.Task) -> None:
+        self._task = task
+        self._parts = [self._seen(_no_rows(task.bodies))]
+        self.count = 0
+
+    def add(self, rows: Rows) -> Transitions:
+        """Takes the next rows of the sequence; returns them with what the learner sees."""
+        self._parts.append(self._seen(rows))
+        self.count += len(rows.action)
+        return self._parts[-1]
+
+    def _seen(self, rows: Rows) -> Transitions:
+        task = self._task
+        return Transitions(
+            **rows._asdict(),
+            observation=task.observation(rows.poses),
+            next_observation=task.observation(rows.next_poses),
+        )
+
+    def transitions(self) -> Transitions:
+        """Everything so far."""
+        self._parts = [dataset.concatenate(self._parts)]
+        return self._parts[0]
+
+    def write(self, path: Path) -> None:
+        """Writes the file, at once or not at all."""
+        dataset.write(path, self.transitions())
+
+
+def _no_rows(bodies: int) -> Rows:
+    return Rows(
+        poses=np.zeros((0, bodies, 3)),
+        action=np.zeros(0, np.int32),
+        next_poses=np.zeros((0, bodies, 3)),
+        reward=np.zeros(0, np.float32),
+        terminated=np.zeros(0, np.bool_),
+        source=np.zeros(0, np.int8),
+    )

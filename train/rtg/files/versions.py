@@ -1,0 +1,91 @@
+"""What a run was made with: versions.json of its folder."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.metadata
+import os
+import platform
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+from rtg import _core, paths
+from rtg.files import run_folder
+
+FILE = "versions.json"
+_REVISION = ("git_revision", "git_modified")
+_PACKAGES = ("torch", "stable-baselines3", "gymnasium", "numpy", "lcm")
+_DEBIAN = ("g++", "libeigen3-dev", "libsuitesparse-dev", "libbox2d-dev", "libyaml-cpp-dev")
+
+
+def _output(*command: str) -> str | None:
+    if shutil.which(command[0]) is None:
+        return None
+    done = subprocess.run(command, cwd=paths.ROOT, capture_output=True, text=True, check=False)
+    return done.stdout.strip() if done.returncode == 0 else None
+
+
+def _debian_version(package: str) -> str | None:
+    return _output("dpkg-query", "-W", "-f=${Version}", package)
+
+
+def _processor() -> str | None:
+    """Model name of the processor, as Linux tells it."""
+    lines = Path("/proc/cpuinfo").read_text().splitlines()
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else None
+
+
+def _revision() -> tuple[str | None, bool | None]:
+    """The commit that is checked out, and whether files differ from it; None without git."""
+    # But for results/, where the runs of the committed report are made.
+    changes = _output(
+        "git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!results"
+    )
+    return _output("git", "rev-parse", "HEAD"), None if changes is None else bool(changes)
+
+
+def core_digest() -> str:
+    """SHA-256 of the compiled core: equal ones make equal transitions."""
+    with Path(_core.__file__).open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def generator(run: Path) -> dict[str, Any]:
+    """What the transitions of the run were made with, as far as it says. Raises UserError."""
+    found = run_folder.read_json(run / FILE).get("generator")
+    return found if isinstance(found, dict) else {}
+
+
+def versions() -> dict[str, Any]:
+    """Null where it cannot be told."""
+    return {
+        **dict(zip(_REVISION, _revision(), strict=True)),
+        "python": platform.python_version(),
+        "system": platform.platform(),
+        "processors": os.cpu_count(),
+        "processor": _processor(),
+        "memory_gib": round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30),
+        "packages": {name: importlib.metadata.version(name) for name in _PACKAGES},
+        "debian": {name: _debian_version(name) for name in _DEBIAN},
+    }
+
+
+def note(run: Path, made_by: dict[str, Any] | None = None) -> None:
+    """Writes what the run goes on with, which other commits it was begun by, and what makes its
+    transitions: `made_by`, or if that is not given, this program."""
+    found, before = versions(), run_folder.read_json(run / FILE)
+    if made_by is None:
+        made_by = {key: found[key] for key in _REVISION} | {"core_sha256": core_digest()}
+    begun_by, last = before.get("begun_by", []), commit(before)
+    if last not in (None, commit(found)):
+        begun_by = [*begun_by, last]
+    run_folder.write_json(run / FILE, {**found, "begun_by": begun_by, "generator": made_by})
+
+
+def commit(made_with: dict[str, Any]) -> str | None:
+    """In words."""
+    revision = made_with.get("git_revision")
+    return f"{revision}-modified" if made_with.get("git_modified") else revision

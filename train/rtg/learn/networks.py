@@ -1,0 +1,111 @@
+"""Value networks as Stable-Baselines3 policy classes."""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import pairwise
+from typing import Any
+
+import torch as th
+from gymnasium import spaces
+from stable_baselines3.common.torch_layers import FlattenExtractor
+from stable_baselines3.common.type_aliases import PyTorchObs
+from stable_baselines3.dqn.policies import DQNPolicy, QNetwork
+from torch import nn
+
+LAYERS = (512, 512, 128)  # Table 2
+
+
+@cache
+def has_fast_bfloat16(device: str = "cpu") -> bool:
+    """Whether this processor, or the GPU, multiplies bfloat16 matrices in hardware."""
+    if device == "cuda":
+        return bool(th.cuda.is_bf16_supported())
+    return bool(getattr(th.cpu, "_is_avx512_bf16_supported", lambda: False)())
+
+
+def precision(reduced: bool, device: str) -> str:
+    """What the inner layers learn in."""
+    return "bfloat16" if reduced and has_fast_bfloat16(device) else "float32"
+
+
+class ValueNetwork(QNetwork):
+    """Q(s, ·): three hidden layers, optionally LayerNorm and the dueling head
+
+        Q(s, a) = V(s) + A(s, a) - mean_b A(s, b)  [Wang et al. 2016].
+
+    With `goal_size` as many numbers follow the observation that say what it is asked for: see
+    rtg.learn.hindsight.
+
+    `reduced_precision` multiplies the two inner layers in bfloat16 while training: 2.4 times faster
+    where the processor can, unused where it cannot, and never for choosing actions. Weights and
+    sums stay float32, and so do the first layer (it sees positions, of which 8 bits resolve 2 cm)
+    and the last.
+    """
+
+    def __init__(
+        self,
+        *args: Any,
+        dueling: bool = True,
+        layer_norm: bool = True,
+        small_head: bool = True,
+        reduced_precision: bool = False,
+        goal_size: int = 0,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(*args, **kwargs)
+        actions = int(self.action_space.n)
+        widths = list(self.net_arch)
+        self.dueling = dueling
+        self.reduced_precision = reduced_precision
+        self.first = _layer(self.features_dim + goal_size, widths[0], layer_norm)
+        self.inner = nn.Sequential(*(_layer(a, b, layer_norm) for a, b in pairwise(widths)))
+        self.head = nn.Linear(widths[-1], actions + 1 if dueling else actions)
+        if small_head:  # Q starts within 0.01 of 0: default noise equals γ^(T-1) of a long plan
+            with th.no_grad():
+                self.head.weight.mul_(0.01)
+                self.head.bias.zero_()
+        del self.q_net  # the plain network of the base class
+
+    def forward(self, obs: PyTorchObs) -> th.Tensor:
+        """Q of all actions. [B, observation + goal_size] -> [B, actions]"""
+        hidden = self.first(self.extract_features(obs, self.features_extractor))
+        device = hidden.device.type
+        reduced = precision(self.reduced_precision, device) == "bfloat16"
+        with th.autocast(device, th.bfloat16, enabled=reduced and self.training):
+            hidden = self.inner(hidden)
+        out: th.Tensor = self.head(hidden.float())
+        if not self.dueling:
+            return out
+        value, advantage = out[:, :1], out[:, 1:]
+        return value + advantage - advantage.mean(dim=1, keepdim=True)
+
+
+def _layer(inputs: int, outputs: int, layer_norm: bool) -> nn.Sequential:
+    norm = [nn.LayerNorm(outputs)] if layer_norm else []
+    return nn.Sequential(nn.Linear(inputs, outputs), *norm, nn.ReLU())
+
+
+class ValuePolicy(DQNPolicy):
+    """SB3's DQN policy around ValueNetwork; `network` holds the flags of ValueNetwork."""
+
+    def __init__(
+        self,
+        observation_space: spaces.Space[Any],
+        action_space: spaces.Discrete,
+        lr_schedule: Any,
+        network: dict[str, Any] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        self.network = network or {}
+        kwargs.setdefault("net_arch", list(LAYERS))
+        kwargs.setdefault("optimizer_kwargs", {"fused": True})
+        kwargs.setdefault("features_extractor_class", FlattenExtractor)
+        super().__init__(observation_space, action_space, lr_schedule, **kwargs)
+
+    def make_q_net(self) -> QNetwork:
+        arguments = self._update_features_extractor(self.net_args, features_extractor=None)
+        return ValueNetwork(**arguments, **self.network).to(self.device)
+
+    def _get_constructor_parameters(self) -> dict[str, Any]:
+        return {**super()._get_constructor_parameters(), "network": self.network}

@@ -1,0 +1,150 @@
+"""The transitions of the run: into the replay buffer as they come in, and kept for their file."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from rtg import _core
+from rtg.errors import RunError
+from rtg.files import dataset
+from rtg.files.dataset import Rows, Transitions
+from rtg.files.recorder import Recorder
+from rtg.learn.replay import MixedReplayBuffer
+
+# numpy parses the heads of arrays with `ast`, which Python 3.11 gets wrong in two threads at once.
+_READING = threading.Lock()
+REFRESH_GROWTH = 1.25  # bounds are proven anew when the data has grown by this factor
+
+
+class Source(Protocol):
+    """Where transitions come from, as rtg.bus.transition_stream.TransitionStream."""
+
+    def poll(self, timeout: float) -> int:
+        """Hands over what comes within `timeout` s; returns how many rows."""
+
+    def close(self) -> None:
+        """Takes nothing more."""
+
+    @property
+    def complete(self) -> bool:
+        """Whether all rows have been handed over."""
+
+    @property
+    def lost(self) -> int:
+        """Rows known to exist that have not been handed over."""
+
+
+def read_rows(path: Path, task: _core.Task) -> Rows:
+    """The rows of a transition file. Raises dataset.DatasetError, FileNotFoundError."""
+    with _READING:
+        transitions = dataset.read(path, bodies=task.bodies, headings=task.headings)
+    return Rows(*(getattr(transitions, name) for name in Rows._fields))
+
+
+class OfflineData:
+    """Everything that came in so far, in sequence order; the buffer gets what is `chosen` of it."""
+
+    def __init__(
+        self,
+        task: _core.Task,
+        buffer: MixedReplayBuffer,
+        chosen: Callable[[Transitions], Transitions] = lambda all_rows: all_rows,
+    ) -> None:
+        self._buffer, self._chosen = buffer, chosen
+        self.record = Recorder(task)
+        self._known: Rows | None = None  # restored; a source says them again from the first
+        self._repeated = 0  # rows said again so far
+        self._refreshed = 0  # rows when the bounds were last proven
+
+    @property
+    def count(self) -> int:
+        return self.record.count
+
+    def take(self, rows: Rows) -> None:
+        """The next rows of the source."""
+        if self._known is not None:
+            rows = rows.after(self._check_repeated(rows, self._known))
+        if len(rows.action):
+            self._buffer.add_offline(self._chosen(self.record.add(rows)))
+
+    def _check_repeated(self, rows: Rows, known: Rows) -> int:
+        begin = self._repeated
+        again = min(len(rows.action), len(known.action) - begin)
+        same = (
+            np.array_equal(getattr(rows, name)[:again], getattr(known, name)[begin : begin + again])
+            for name in ("poses", "action", "next_poses", "source")
+        )
+        if not all(same):
+            raise RunError("the transitions are not those that the checkpoint was made with")
+        self._repeated += again
+        if self._repeated == len(known.action):
+            self._known = None
+        return again
+
+    def prove_bounds(self, complete: bool) -> None:
+        """Brings the value bounds up to date when enough came in since, or all."""
+        grown = self.count >= REFRESH_GROWTH * self._refreshed
+        if self.count > self._refreshed and (grown or complete):
+            self._refreshed = self.count
+            self._buffer.refresh_bounds()
+
+    def state(self) -> dict[str, int]:
+        """The rows themselves go to a transition file."""
+        return {"count": self.count, "refreshed": self._refreshed}
+
+    def restore(self, state: dict[str, int], rows: Rows) -> None:
+        """`rows`: of the transition file, those that came in after the checkpoint too."""
+        count, refreshed = state["count"], state["refreshed"]
+        if len(rows.action) < count:
+            found = len(rows.action)
+            raise RunError(f"the transition file has {found} rows, the checkpoint saw {count}")
+        if refreshed:
+            self.take(rows.after(0, refreshed))
+            self.prove_bounds(complete=True)
+        if count > refreshed:
+            self.take(rows.after(refreshed, count))
+        self._known = rows.after(0, count)
+
+
+class NoSource:
+    """For a learner without offline data."""
+
+    lost = 0
+    complete = True
+
+    def poll(self, timeout: float) -> int:
+        del timeout
+        return 0
+
+    def close(self) -> None:
+        pass
+
+
+class FileSource:
+    """The transitions of a file, all at the first poll."""
+
+    lost = 0
+
+    def __init__(self, path: Path, task: _core.Task, data: OfflineData) -> None:
+        self._rows: Rows | None = read_rows(path, task)
+        self._data = data
+
+    @property
+    def complete(self) -> bool:
+        return self._rows is None
+
+    def poll(self, timeout: float) -> int:
+        del timeout
+        rows, self._rows = self._rows, None
+        if rows is None:
+            return 0
+        self._data.take(rows)
+        return len(rows.action)
+
+    def close(self) -> None:
+        pass

@@ -1,0 +1,80 @@
+"""A trained policy in a file: the weights of the value network and what they fit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch as th
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from rtg import _core
+from rtg.envs.push_env import observation_space
+from rtg.errors import UserError
+from rtg.files import checkpoint
+from rtg.learn.evaluation import Policy
+from rtg.learn.hindsight import Layouts
+from rtg.learn.networks import ValuePolicy
+from rtg.learn.settings import TrainSettings
+
+
+def identity(task: _core.Task, settings: TrainSettings) -> dict[str, Any]:
+    """What weights fit."""
+    return {
+        "observation_size": task.observation_size,
+        "headings": task.headings,
+        "dueling": settings.dueling,
+        "layer_norm": settings.layer_norm,
+        "hindsight": settings.hindsight > 0,
+    }
+
+
+def check_identity(path: Path, found: Any, wanted: dict[str, Any]) -> None:
+    """Raises UserError, naming what differs."""
+    if not isinstance(found, dict):
+        raise UserError(f"{path}: of another kind: it does not say what made it")
+    for name, value in wanted.items():
+        if found.get(name) != value:
+            raise UserError(f"{path}: made with {name} = {found.get(name)}; this run has {value}")
+
+
+def write(path: Path, task: _core.Task, settings: TrainSettings, weights: dict[str, Any]) -> None:
+    """`weights`: state_dict of the value network."""
+    checkpoint.write(path, {"identity": identity(task, settings), "weights": weights})
+
+
+def read(path: Path, task: _core.Task) -> Policy:
+    """The greedy policy, [N, observation] -> [N] actions. Raises UserError if it does not fit."""
+    state = checkpoint.read(path)
+    found: Any = state.get("identity")
+    weights = state.get("weights")
+    wanted = {"observation_size": task.observation_size, "headings": task.headings}
+    check_identity(path, found, wanted)
+    if not isinstance(weights, dict):
+        raise UserError(f"{path}: holds no policy; legal: a model.pt")
+    network: dict[str, Any] = {name: bool(found.get(name)) for name in ("dueling", "layer_norm")}
+    layouts = Layouts(task) if found.get("hindsight") else None
+    network["goal_size"] = layouts.size if layouts else 0
+    policy = ValuePolicy(
+        observation_space(task),
+        spaces.Discrete(task.headings),
+        lambda _: 1.0,
+        network=network,
+    )
+    try:
+        policy.q_net.load_state_dict(weights)
+    except RuntimeError as error:
+        raise UserError(f"{path}: the weights do not fit ({error})") from error
+    policy.set_training_mode(False)
+
+    def greedy(observation: NDArray[np.float32]) -> NDArray[Any]:
+        if observation.ndim != 2 or observation.shape[1] != task.observation_size:
+            shape = list(observation.shape)
+            raise ValueError(f"observations {shape}; legal: [N, {task.observation_size}]")
+        seen = layouts.asked_nearest(observation) if layouts else observation
+        with th.no_grad():
+            return policy.q_net(th.from_numpy(seen)).argmax(dim=1).numpy()
+
+    return greedy

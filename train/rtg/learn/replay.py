@@ -1,0 +1,281 @@
+"""Two replay buffers as one: offline transitions, never evicted, and a ring of online ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import torch as th
+from gymnasium import spaces
+from stable_baselines3.common.buffers import BaseBuffer
+from stable_baselines3.common.vec_env import VecNormalize
+
+from rtg.files.dataset import Transitions
+from rtg.learn.value_bounds import value_bounds
+
+Array = npt.NDArray[Any]
+Infos = list[dict[str, Any]]
+Part = tuple["Store", Array]  # rows of one of the stores
+
+RECENT = 10_000  # online transitions that count as recent
+
+
+class Batch(NamedTuple):
+    """A sample for one gradient step; its first `offline` rows are offline transitions."""
+
+    observations: th.Tensor  # [B, observation] float32
+    actions: th.Tensor  # [B, 1] int64
+    next_observations: th.Tensor  # [B, observation] float32
+    rewards: th.Tensor  # [B, 1] float32
+    terminated: th.Tensor  # [B, 1] float32, 1 ends the bootstrap; a time-out is 0
+    bounds: th.Tensor  # [B, 1] float32, a proven lower bound of Q*(s, a); -inf if unused
+    offline: int
+
+
+class Store:
+    """Columns of transitions. Grows up to `capacity` rows, then overwrites the oldest.
+
+    The k-th transition written stands in row k modulo `capacity`.
+    """
+
+    columns: tuple[str, ...] = (
+        "observation",
+        "next_observation",
+        "action",
+        "reward",
+        "terminated",
+        "bound",
+    )
+
+    def __init__(self, capacity: int, observation_size: int) -> None:
+        self.capacity = capacity
+        self.written = 0  # transitions, those overwritten since too
+        wide, one = (0, observation_size), (0,)
+        self.observation = np.zeros(wide, np.float32)  # [rows, observation]
+        self.next_observation = np.zeros(wide, np.float32)  # [rows, observation]
+        self.action = np.zeros(one, np.int64)  # [rows]
+        self.reward = np.zeros(one, np.float32)  # [rows]
+        self.terminated = np.zeros(one, np.float32)  # [rows]
+        self.bound = np.zeros(one, np.float32)  # [rows]
+
+    @property
+    def count(self) -> int:
+        """Rows filled."""
+        return min(self.written, self.capacity)
+
+    def append(self, **columns: Array) -> Array:
+        """Adds transitions (at most `capacity`); returns their numbers, [added] int64."""
+        added = len(columns["action"])
+        if added > self.capacity:
+            raise ValueError(f"{added} transitions do not fit into a buffer of {self.capacity}")
+        self._reserve(min(self.written + added, self.capacity))
+        numbers = self.written + np.arange(added)
+        for name in self.columns:
+            getattr(self, name)[numbers % self.capacity] = columns.get(name, 0.0)
+        self.written += added
+        return numbers
+
+    def set_bounds(self, numbers: Array, bounds: Array) -> None:
+        """Of the transitions with these numbers, as far as they have not been overwritten."""
+        kept = numbers >= self.written - self.capacity
+        self.bound[numbers[kept] % self.capacity] = bounds[kept]
+
+    def _reserve(self, rows: int) -> None:
+        if rows <= len(self.action):
+            return
+        size = min(max(rows, 2 * len(self.action)), self.capacity)
+        for name in self.columns:
+            old = getattr(self, name)
+            new = np.zeros((size, *old.shape[1:]), old.dtype)
+            new[: len(old)] = old
+            setattr(self, name, new)
+
+    def state(self) -> dict[str, Any]:
+        """The filled rows and nothing else."""
+        rows = {name: getattr(self, name)[: self.count].copy() for name in self.columns}
+        return {"written": self.written, **rows}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        self.written = state["written"]
+        for name in self.columns:
+            setattr(self, name, np.asarray(state[name]).copy())
+
+
+@dataclass(frozen=True)
+class ReplayRules:
+    """What a batch is made of."""
+
+    offline_share: float  # of a batch, once as many online ones exist; negative: no shares
+    recent_share: float  # of its online rows: from the RECENT latest
+    discount: float  # of the value bounds
+    use_bounds: bool
+    seed: int
+
+
+class MixedReplayBuffer(BaseBuffer):
+    """What SB3's DQN samples from.
+
+    `offline_share` of every batch is drawn from the offline transitions once a batch of online ones
+    exists (before that, all of it); a negative share draws uniformly over both. `recent_share` of
+    the online rows are drawn from the latest: what a policy does wrong it does now, and among all
+    that was ever stored its mistakes would come up too rarely to be mended soon.
+    """
+
+    def __init__(
+        self,
+        buffer_size: int,
+        observation_space: spaces.Space[Any],
+        action_space: spaces.Space[Any],
+        rules: ReplayRules,
+        **of_sb3: Any,
+    ) -> None:
+        """`of_sb3`: `device`, `n_envs` and `optimize_memory_usage`, which SB3 passes by name."""
+        # s and s' are both kept: offline transitions are not consecutive.
+        of_sb3.pop("optimize_memory_usage", None)
+        arguments = {"device": "cpu", **of_sb3}
+        super().__init__(buffer_size, observation_space, action_space, **arguments)
+        size = self.obs_shape[0]
+        self.offline = Store(buffer_size, size)
+        self.online = Store(buffer_size, size)
+        self.offline_share = rules.offline_share
+        self.recent_share = rules.recent_share
+        self.discount = rules.discount
+        self.use_bounds = rules.use_bounds
+        self.rng = np.random.default_rng(rules.seed)
+        self._episodes: list[list[int]] = [[] for _ in range(self.n_envs)]  # numbers in `online`
+
+    def size(self) -> int:
+        return self.offline.count + self.online.count
+
+    def add_offline(self, batch: Transitions) -> None:
+        """Takes transitions of the stream, while training or before. Raises if they do not fit."""
+        if self.offline.count + len(batch.action) > self.offline.capacity:
+            raise ValueError(f"more offline transitions than train.buffer = {self.buffer_size}")
+        self.offline.append(
+            observation=batch.observation,
+            next_observation=batch.next_observation,
+            action=batch.action,
+            reward=batch.reward,
+            terminated=batch.terminated,
+            **self._more_offline(batch.observation),
+        )
+
+    def refresh_bounds(self) -> None:
+        """Recomputes the lower bounds of all offline transitions; call it when data came in."""
+        store, n = self.offline, self.offline.count
+        if self.use_bounds and n:
+            store.bound[:n] = value_bounds(
+                store.observation[:n], store.next_observation[:n], store.reward[:n], self.discount
+            )
+
+    def add(
+        self, obs: Array, next_obs: Array, action: Array, reward: Array, done: Array, infos: Infos
+    ) -> None:
+        """SB3's call: one row per environment; `done` with a time-out keeps the bootstrap.
+
+        A push that the simulator gave up is no transition; its row is left out.
+        """
+        timeout = np.array([info.get("TimeLimit.truncated", False) for info in infos])
+        kept = np.flatnonzero([not info.get("rejected", False) for info in infos])
+        more = self._more_online(obs)
+        numbers = self.online.append(
+            observation=obs[kept],
+            next_observation=next_obs[kept],
+            action=action.reshape(-1)[kept],
+            reward=reward[kept],
+            terminated=(np.asarray(done) & ~timeout)[kept],
+            bound=reward[kept],
+            **{name: column[kept] for name, column in more.items()},
+        )
+        for env, number in zip(kept, numbers, strict=True):
+            self._episodes[env].append(int(number))
+        for env in np.flatnonzero(done):
+            self._close_episode(int(env), success=bool(reward[env] > 0))
+
+    def _more_online(self, observation: Array) -> dict[str, Array]:
+        """Further columns of the online store. observation [environments, observation]"""
+        del observation
+        return {}
+
+    def _more_offline(self, observation: Array) -> dict[str, Array]:
+        """Further columns of the offline store. observation [N, observation]"""
+        del observation
+        return {}
+
+    def _close_episode(self, env: int, success: bool) -> None:
+        numbers = np.array(self._episodes[env])
+        self._episodes[env] = []
+        if success and self.use_bounds:
+            self.online.set_bounds(numbers, self.discount ** np.arange(len(numbers) - 1, -1, -1))
+
+    def sample(self, batch_size: int, env: VecNormalize | None = None) -> Batch:
+        offline = self._offline_rows(batch_size)
+        parts: list[Part] = []
+        if offline:
+            parts.append((self.offline, self.rng.integers(self.offline.count, size=offline)))
+        if offline < batch_size:
+            parts.append((self.online, self._online_rows(batch_size - offline)))
+        columns = self._columns(parts)
+
+        def column(name: str) -> th.Tensor:
+            tensor = th.from_numpy(columns[name]).to(self.device)
+            return tensor if tensor.ndim == 2 else tensor[:, None]
+
+        return Batch(
+            observations=column("observation"),
+            actions=column("action"),
+            next_observations=column("next_observation"),
+            rewards=column("reward"),
+            terminated=column("terminated"),
+            bounds=column("bound"),
+            offline=offline,
+        )
+
+    def _columns(self, parts: list[Part]) -> dict[str, Array]:
+        """The rows of a batch by column, as its tensors will hold them."""
+        columns = {
+            name: np.concatenate([getattr(store, name)[rows] for store, rows in parts])
+            for name in Store.columns
+        }
+        if not self.use_bounds:
+            columns["bound"].fill(-np.inf)
+        return columns
+
+    def _online_rows(self, count: int) -> Array:
+        """Rows of the online store; the first are recent ones."""
+        store = self.online
+        rows = self.rng.integers(store.count, size=count)
+        back = self.rng.integers(min(store.count, RECENT), size=round(self.recent_share * count))
+        rows[: len(back)] = (store.written - 1 - back) % store.capacity
+        return rows
+
+    def _offline_rows(self, batch_size: int) -> int:
+        offline, online = self.offline.count, self.online.count
+        if offline + online == 0:
+            raise ValueError("nothing to sample from: the replay buffer is empty")
+        if self.offline_share < 0.0:
+            return int(self.rng.binomial(batch_size, offline / (offline + online)))
+        if offline == 0:
+            return 0
+        return batch_size if online < batch_size else round(self.offline_share * batch_size)
+
+    def _get_samples(self, batch_inds: Array, env: VecNormalize | None = None) -> Any:
+        raise NotImplementedError("rows belong to two stores; use sample()")
+
+    def state(self) -> dict[str, Any]:
+        """What sampling depends on besides the offline transitions, which have a file of their own.
+
+        restore() continues with the same bits once those are back, their bounds refreshed alike.
+        """
+        return {
+            "online": self.online.state(),
+            "rng": self.rng.bit_generator.state,
+            "episodes": [list(numbers) for numbers in self._episodes],
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        self.online.restore(state["online"])
+        self.rng.bit_generator.state = state["rng"]
+        self._episodes = [list(numbers) for numbers in state["episodes"]]

@@ -1,0 +1,122 @@
+"""The learner's process, which ./run.sh starts.
+
+`python -m rtg.learn.trainer RUN_FOLDER... [--resume] [--no-stream] [--run-name NAME]` reads
+RUN_FOLDER/config.yaml, takes the transitions of the run in while it learns, and leaves
+transitions.npz, progress.csv, training_state.json (for displays), checkpoint/, model.pt,
+best_episode.npz and training.json there; with `train.learner: planning` nothing is learned, and
+there is no model.pt. Several runs learn side by side, a thread each, and come to the same bits as
+alone. SIGINT, SIGTERM or SIGHUP: checkpoint and exit with 128 + number; a
+second one: exit at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import torch as th
+
+from rtg import _core
+from rtg.bus.bus import Bus
+from rtg.bus.node_status import ENDED, NodeStatus
+from rtg.bus.transition_stream import TransitionStream
+from rtg.errors import RunError, UserError
+from rtg.learn.offline_data import FileSource, NoSource, Source
+from rtg.learn.planning import Planning
+from rtg.learn.settings import TrainSettings
+from rtg.learn.training import Training
+from rtg.processes.interrupts import Interrupts
+
+
+def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
+    summary = __doc__.split("\n")[0]
+    parser = argparse.ArgumentParser("rtg.learn.trainer", description=summary, allow_abbrev=False)
+    parser.add_argument("folders", type=Path, metavar="RUN_FOLDER", nargs="+")
+    parser.add_argument("--resume", action="store_true", help="go on from the checkpoint, if any")
+    parser.add_argument(
+        "--no-stream", action="store_true", help="learn from RUN_FOLDER/transitions.npz"
+    )
+    parser.add_argument(
+        "--run-name",
+        metavar="NAME",
+        help="the run on the bus whose stream to take (the folder's name)",
+    )
+    args = parser.parse_args(argv)
+    if len(args.folders) > 1 and not args.no_stream:
+        parser.error("several RUN_FOLDERs have no stream of their own; legal: with --no-stream")
+    return args
+
+
+def _source(training: Training | Planning, args: argparse.Namespace) -> Source:
+    if isinstance(training, Planning) or not training.settings.offline:
+        return NoSource()
+    if args.no_stream:
+        return FileSource(training.folder / "transitions.npz", training.task, training.data)
+    url = json.loads(training.config.json)["run"]["bus"]
+    bus = Bus(url, args.run_name or training.folder.resolve().name)
+    training.tell = NodeStatus(bus, "trainer").tick
+    task = training.task
+    stream = TransitionStream(bus, task.bodies, task.headings, training.data.take)
+    if bus.warning:
+        print(bus.warning, file=sys.stderr)
+    return stream
+
+
+def _begin(folder: Path, args: argparse.Namespace) -> Training | Planning:
+    config = _core.Config.from_file(folder / "config.yaml")
+    learner = TrainSettings.from_config(json.loads(config.json)["train"]).learner
+    training = (Planning if learner == "planning" else Training)(config, folder)
+    training.runs = len(args.folders)
+    if args.resume and training.has_checkpoint():
+        training.restore()
+    return training
+
+
+def _learn(training: Training | Planning, args: argparse.Namespace, interrupts: Interrupts) -> int:
+    """The exit status. Raises UserError, RunError."""
+    with contextlib.closing(_source(training, args)) as source:
+        try:
+            if not training.run(source, interrupts.requested, record=not args.no_stream):
+                return 128 + interrupts.number
+            training.finish(source.lost)
+        finally:
+            training.tell(ENDED, training.scheduled)
+    return 0
+
+
+def train(args: argparse.Namespace, interrupts: Interrupts) -> int:
+    """The exit status, of several runs the highest. Raises UserError, RunError; of several runs
+    what the first one raised, at the end of the others."""
+    # One after the other: the first weights come from the generator of the process.
+    trainings = [_begin(folder, args) for folder in args.folders]
+    with ThreadPoolExecutor(len(trainings), initializer=_keep_to_one_thread) as pool:
+        ends = [pool.submit(_learn, training, args, interrupts) for training in trainings]
+    return max(end.result() for end in ends)
+
+
+def _keep_to_one_thread() -> None:
+    """Of PyTorch, in this thread: more are slower for networks this small, a hundred times on a
+    busy core."""
+    th.set_num_threads(1)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    _keep_to_one_thread()
+    try:
+        with Interrupts() as interrupts:
+            return train(_parse(argv), interrupts)
+    except (UserError, _core.ConfigError, FileNotFoundError) as error:
+        print(f"rtg.learn.trainer: {error}", file=sys.stderr)
+        return 2
+    except RunError as error:
+        print(f"rtg.learn.trainer: {error}", file=sys.stderr)
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

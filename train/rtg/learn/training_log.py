@@ -1,0 +1,82 @@
+"""What a training run writes down: progress.csv for people, a small file for the display."""
+
+from __future__ import annotations
+
+import csv
+import io
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rtg.files.run_folder import write_json, write_text
+from rtg.learn.evaluation import Evaluation
+
+COLUMNS = (
+    "interactions",  # without train.interact: rounds of learning that so many would give
+    "gradient_steps",
+    "success_rate",  # greedy, held-out starts
+    "episode_length_mean",
+    "episode_return_mean",  # discounted
+    "rollout_success",  # of the last 100 training episodes
+    "rollout_length_mean",
+    "online_successes",
+    "epsilon",
+    "q_start_max",  # at the nominal start
+    "q_offline_mean",
+    "q_offline_max",
+    "q_online_mean",
+    "q_online_max",
+    "td_error",
+    "clipped_share",  # of the targets, beyond [0, 1] before they are raised and clipped
+    "bound_share",  # of the targets, raised to what stored trajectories prove
+    "offline_transitions",
+    "pushes",  # of the simulator for learning: interactions, starts of a curriculum, plans
+    "wall_s",
+    "cpu_s",  # of the learner's processes; evaluations included, as in wall_s
+)
+DISPLAY_INTERVAL = 0.5  # [s]
+
+
+class TrainingLog:
+    """One row per evaluation."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self.rows: list[dict[str, Any]] = []
+        self._shown_at = -1e9
+
+    def add(self, row: Mapping[str, Any]) -> None:
+        """Appends a row; columns that were not measured stay empty."""
+        unknown = set(row) - set(COLUMNS)
+        if unknown:
+            raise KeyError(f"no columns of progress.csv: {sorted(unknown)}")
+        self.rows.append(dict(row))
+        self.write()
+
+    def write(self) -> None:
+        """Replaces progress.csv."""
+        text = io.StringIO()
+        table = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+        table.writeheader()
+        for row in self.rows:
+            shown = {k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()}
+            table.writerow(shown)
+        write_text(self._folder / "progress.csv", text.getvalue())
+
+    def write_result(self, final: Evaluation, figures: Mapping[str, Any]) -> None:
+        """best_episode.npz and, in the end, training.json."""
+        best = final.best()
+        np.savez(
+            self._folder / "best_episode.npz", poses=final.paths[best], success=final.success[best]
+        )
+        write_json(self._folder / "training.json", dict(figures))
+
+    def display(self, state: Mapping[str, Any], force: bool = False) -> None:
+        """training_state.json, for whoever watches; twice a second at most."""
+        now = time.monotonic()
+        if force or now - self._shown_at >= DISPLAY_INTERVAL:
+            self._shown_at = now
+            write_json(self._folder / "training_state.json", dict(state))

@@ -1,0 +1,50 @@
+"""The figures of a training run that has come to its end."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rtg.learn.evaluation import Evaluation
+from rtg.learn.value_check import STATES, check_values, stored_states
+
+if TYPE_CHECKING:
+    from rtg.learn.training import Training
+
+_VALUES = ("q_rank_correlation", "q_error", "q_spread")  # of ValueCheck.summary()
+
+
+def figures(run: Training, final: Evaluation, lost: int) -> dict[str, Any]:
+    """What training.json holds. lost: transitions that have not come in."""
+    return {
+        "interactions": run.interactions,
+        "gradient_steps": run.model.gradient_steps_done,
+        "online_successes": run.env.successes,
+        **final.summary(),
+        **run.model.recent_episodes(),
+        **{f"train_{name}": round(spent, 3) for name, spent in run.clock.seconds().items()},
+        "offline_transitions": run.data.count,
+        "lost_transitions": lost,
+        "learning_pushes": run.pushes,
+        **run.place,
+        **_counts(run),
+        **_value_check(run),
+    }
+
+
+def _counts(run: Training) -> dict[str, int]:
+    """Of some methods alone."""
+    found = {}
+    if run.env.curriculum:
+        found["curriculum_pushes"] = run.env.curriculum.pushes
+    if run.settings.learner == "cloning":
+        found["imitated_transitions"] = run.model.replay_buffer.size()
+    return found
+
+
+def _value_check(run: Training) -> dict[str, float | None]:
+    """How well Q ranks the headings of stored states; empty without a Q or such states."""
+    if run.settings.learner != "q_learning" or not run.data.count:
+        return {}
+    states = stored_states(run.data.record.transitions(), STATES, run.seed)
+    found = check_values(run.config, run.model.values, run.discount, states)
+    return {**dict.fromkeys(_VALUES), **(found.summary() if found else {})}

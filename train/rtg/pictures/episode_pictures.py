@@ -1,0 +1,127 @@
+"""Pictures of one episode: a strip of its states and a film."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+from rtg.pictures.draw import (
+    FAINT,
+    INK,
+    PAPER,
+    SMOOTH,
+    Canvas,
+    TaskLike,
+    episode_window,
+    state_image,
+)
+
+Floats = NDArray[np.float64]
+Picture = NDArray[np.uint8]  # [height, width, 3]
+
+_COLUMNS = 5  # of a strip
+_FRAMES_PER_PUSH = 8  # of a short episode
+_FRAMES = 160  # in all, about
+_FILM_SIDE = 360  # [pixel]
+_FRAME_MS = 45
+_HOLD_MS = 1200  # at the start and at the end
+
+
+def between(task: TaskLike, before: Floats, after: Floats, share: float) -> Floats:
+    """The state when `share` of a push is done. [bodies, 3]
+
+    The robot moves evenly; an object stands still until the rest of the push covers its way, then
+    moves along, with all that joints connect to it. Exact for straight drags, good enough to watch.
+    """
+    way = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)  # [bodies]
+    for _ in task.joints:  # the longest way spreads along every chain
+        for parent, child, _ in task.joints:
+            way[[parent, child]] = max(way[parent], way[child])
+    stride = max(float(way[0]), 1e-9)
+    rest = np.clip(way / stride, 1e-9, 1.0)  # share of the push in which a body moves
+    moved = np.clip((share - (1.0 - rest)) / rest, 0.0, 1.0)
+    moved[0] = share
+    return before + (after - before) * moved[:, None]
+
+
+def _heading(title: str, width: int) -> Picture:
+    """A line of words across a picture of that width, as large as fits. [height, width, 3]"""
+    largest = 18.0 * SMOOTH  # [pixel]
+    length = ImageFont.load_default(size=largest).getlength(title)
+    size = min(largest, largest * 0.95 * width * SMOOTH / length)
+    band = Image.new("RGB", (width * SMOOTH, round(1.5 * largest)), PAPER)
+    font = ImageFont.load_default(size=size)
+    place = (0.4 * size, 0.75 * largest)
+    ImageDraw.Draw(band).text(place, title, fill=INK, font=font, anchor="lm")
+    return np.asarray(band.reduce(SMOOTH))
+
+
+def strip(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -> None:
+    """Two rows at most of states from the first to the last. poses [T+1, bodies, 3]."""
+    last = len(poses) - 1
+    shown = np.unique(np.linspace(0, last, min(last + 1, 2 * _COLUMNS)).round().astype(int))
+    window = episode_window(task, poses)
+    tiles = []
+    for k, step in enumerate(shown):
+        earlier = shown[k - 1] if k else 0
+        tiles.append(
+            state_image(
+                task,
+                poses[earlier : step + 1],
+                canvas=Canvas(window, 300),
+                caption="start" if step == 0 else f"{step}",
+                reached=success and step == last,
+            )
+        )
+    sheet = _sheet(tiles, min(_COLUMNS, len(tiles)))
+    Image.fromarray(np.concatenate([_heading(title, sheet.shape[1]), sheet])).save(path)
+
+
+def _sheet(tiles: list[Picture], columns: int) -> Picture:
+    """The tiles row by row with thin lines between them."""
+    line, side = 2, tiles[0].shape[0]
+    rows = -(-len(tiles) // columns)
+    size = ((side + line) * rows - line, (side + line) * columns - line)
+    sheet = np.empty((*size, 3), np.uint8)
+    sheet[:] = FAINT
+    for k in range(rows * columns):
+        y, x = (side + line) * (k // columns), (side + line) * (k % columns)
+        sheet[y : y + side, x : x + side] = tiles[k] if k < len(tiles) else PAPER
+    return sheet
+
+
+def film(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -> None:
+    """An animated GIF of the pushes. poses [T+1, bodies, 3]."""
+    last = len(poses) - 1
+    window = episode_window(task, poses)
+    heading = _heading(title, _FILM_SIDE)
+    frames, durations = [], []
+    per_push = min(_FRAMES_PER_PUSH, max(2, _FRAMES // max(1, last)))
+
+    def add(state: Floats, step: int, milliseconds: int, reached: bool = False) -> None:
+        way = np.concatenate([poses[max(0, step - 3) : step + 1], state[None]])
+        way[:-1, 1:] = state[1:]  # the film itself shows where the objects came from
+        canvas = Canvas(window, _FILM_SIDE)
+        picture = state_image(task, way, canvas=canvas, caption=f"{step}", reached=reached)
+        frames.append(Image.fromarray(np.concatenate([heading, picture])))
+        durations.append(milliseconds)
+
+    add(poses[0], 0, _HOLD_MS)
+    for step in range(last):
+        for frame in range(1, per_push + 1):
+            state = between(task, poses[step], poses[step + 1], frame / per_push)
+            add(state, step, _FRAME_MS)
+    add(poses[last], last, 2 * _HOLD_MS, reached=success)
+    pair = _side_by_side(frames[len(frames) // 2], frames[-1])  # has all colours
+    palette = pair.quantize(64, Image.Quantize.MAXCOVERAGE)  # keeps the faint ones apart
+    reduced = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    reduced[0].save(
+        path, save_all=True, append_images=reduced[1:], duration=durations, loop=0, optimize=True
+    )
+
+
+def _side_by_side(left: Image.Image, right: Image.Image) -> Image.Image:
+    return Image.fromarray(np.concatenate([np.asarray(left), np.asarray(right)], axis=1))

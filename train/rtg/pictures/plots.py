@@ -1,0 +1,212 @@
+"""Pictures of numbers: learning curve, replay gap, coverage."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from rtg.files import replay_gaps
+from rtg.pictures.draw import (
+    GOAL,
+    INK,
+    PAPER,
+    ROBOT,
+    TaskLike,
+    circle,
+    kind_colours,
+    objects,
+    outline,
+)
+
+Floats = NDArray[np.float64]
+
+_STYLE: Any = {
+    "font.size": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "#8a8d93",
+    "axes.labelcolor": "#2b303a",
+    "text.color": "#2b303a",
+    "xtick.color": "#5a5e66",
+    "ytick.color": "#5a5e66",
+    "axes.grid": True,
+    "grid.color": "#e7e5df",
+    "axes.axisbelow": True,
+    "figure.facecolor": tuple(c / 255 for c in PAPER),
+    "axes.facecolor": tuple(c / 255 for c in PAPER),
+    "axes.titlelocation": "left",
+    "axes.titlesize": 11,
+}
+GAP_AXIS = "replay gap: mean distance between reverse-generated and replayed end [m]"
+_BLUE, _ORANGE = "#4a7ebb", "#d9822b"
+
+
+def _rgb(colour: Sequence[int]) -> tuple[float, ...]:
+    return tuple(c / 255 for c in colour)
+
+
+def style() -> AbstractContextManager[None]:
+    """The look of all our plots, within its `with`."""
+    return plt.rc_context(_STYLE)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Writes the picture and closes the figure."""
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+
+
+def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: str) -> None:
+    """Success, episode length and return over interactions, named `unit`.
+
+    curve: columns `interactions`, `success_rate`, `episode_length_mean`, `episode_return_mean` of
+    the evaluations and, where known, `rollout_success`; all [N], NaN where not measured.
+    """
+    panels = [
+        ("success rate", "success_rate", "rollout_success", (-0.03, 1.03)),
+        ("episode length [actions]", "episode_length_mean", "", None),
+        ("discounted return", "episode_return_mean", "", None),
+    ]
+    with style():
+        figure, axes = plt.subplots(1, 3, figsize=(10.5, 3.2), layout="constrained")
+        thousand = np.asarray(curve["interactions"]) / 1000.0
+        for axis, (name, column, extra, limits) in zip(axes, panels, strict=True):
+            if extra in curve:
+                axis.plot(thousand, curve[extra], color=_ORANGE, lw=1.3, label="training roll-outs")
+            known = np.isfinite(curve[column])
+            axis.plot(
+                thousand[known],
+                np.asarray(curve[column])[known],
+                color=_BLUE,
+                lw=1.8,
+                marker="o",
+                ms=3,
+                label="greedy, held-out starts",
+            )
+            axis.set_title(name)
+            axis.set_xlabel(f"{unit} / 1000")
+            axis.set_xlim(left=0)
+            if limits:
+                axis.set_ylim(*limits)
+        lines = axes[0].get_lines()
+        figure.legend(handles=lines, loc="outside upper right", ncols=len(lines), frameon=False)
+        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        save(figure, path)
+
+
+def _metres(value: float) -> str:
+    floor = replay_gaps.EDGES[0]
+    return f"≤ {floor:g} m" if value <= floor else f"{value:.2g} m"
+
+
+def gap_histogram(axis: Axes, counts: Sequence[int], median: float, p90: float) -> None:
+    """The bins of replay_gaps as bars, with median and 90th percentile [m]. counts [bins]."""
+    bounds, top = replay_gaps.EDGES, int(np.flatnonzero(counts).max(initial=0)) + 1
+    axis.bar(bounds[:-1], counts, np.diff(bounds), align="edge", color=_BLUE, alpha=0.85)
+    axis.set_xscale("log")
+    axis.set_xlim(bounds[0] / 1.1, bounds[top] * 1.1)
+    axis.set_ylabel("replayed candidates")
+    marks = (("median", median, "-", 0.99), ("90th percentile", p90, "--", 0.9))
+    for words, gap, dashes, height in marks:
+        at = max(gap, float(bounds[0]))
+        axis.axvline(at, color=_ORANGE, lw=1.5, ls=dashes)
+        axis.annotate(
+            f" {words} {_metres(gap)}",
+            (at, height),
+            xycoords=("data", "axes fraction"),
+            va="top",
+            color="#a35d14",
+            bbox={"facecolor": _rgb(PAPER), "edgecolor": "none", "pad": 1.0},
+            zorder=5,  # above the other line
+        )
+
+
+def replay_gap(path: Path, title: str, report: Mapping[str, Any]) -> None:
+    """Histogram of the replay gap of one run. report: generation.json."""
+    with style():
+        figure, axis = plt.subplots(figsize=(6.4, 3.4), layout="constrained")
+        counts = replay_gaps.counts(report["replay_gaps"])
+        gap_histogram(axis, counts, report["replay_gap_median"], report["replay_gap_p90"])
+        axis.set_xlabel(GAP_AXIS)
+        axis.set_title(title)
+        save(figure, path)
+
+
+def _scene(axis: Axes, task: TaskLike, body: int) -> None:
+    """Goal, also of means that the body is part of, arena, start layout in outline, the body's
+    own in bold."""
+    colours = kind_colours(task)
+    a = task.arena
+    for term in task.goal:
+        colour = _rgb(colours.get(term.kind, GOAL))
+        if term.region == "angles" or term.kind not in ("*", task.kinds[body]):
+            continue
+        if term.region == "disc":
+            axis.fill(*circle(term.centre, term.radius).T, color=colour, alpha=0.18, lw=0)
+        else:
+            normal = np.asarray(term.normal).reshape(2)
+            edge = normal * term.offset + np.outer([-3 * a, 3 * a], [-normal[1], normal[0]])
+            axis.fill(*np.vstack([edge, edge[::-1] - 4 * a * normal]).T, color=colour, alpha=0.15)
+    for other, shape in enumerate(task.shapes):
+        xy = outline(shape, task.start[other])
+        closed = np.vstack([xy, xy[:1]])
+        colour = _rgb(ROBOT) if other == 0 else _rgb(INK)
+        axis.plot(*closed.T, color=colour, lw=1.8 if other == body else 0.7)
+    axis.plot([-a, a, a, -a, -a], [-a, -a, a, a, -a], color="#c9c6bc", lw=1)
+    axis.set(xlim=(-1.05 * a, 1.05 * a), ylim=(-1.05 * a, 1.05 * a), aspect="equal")
+    axis.axis("off")
+
+
+def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Floats) -> None:
+    """Where the search brought each object, coloured by the number of actions to success.
+
+    poses [N, bodies, 3] and depth [N] are the stored nodes.
+    """
+    bodies = objects(task)
+    columns = min(4, len(bodies))
+    rows = -(-len(bodies) // columns)
+    order = np.argsort(depth, kind="stable")  # the far ones on top
+    with style():
+        size = (3.1 * columns + 0.9, 3.1 * rows + 0.5)
+        figure, axes = plt.subplots(
+            rows, columns, figsize=size, layout="constrained", squeeze=False
+        )
+        for axis in axes.flat[len(bodies) :]:
+            axis.set_visible(False)
+        for axis, body in zip(axes.flat, bodies, strict=False):
+            _scene(axis, task, body)
+            dots = axis.scatter(
+                poses[order, body, 0],
+                poses[order, body, 1],
+                c=np.asarray(depth)[order],
+                s=4,
+                alpha=0.55,
+                cmap="viridis",
+                lw=0,
+                rasterized=True,
+            )
+            axis.set_title(task.names[body])
+        bar = figure.colorbar(ScalarMappable(dots.norm, dots.cmap), ax=axes, shrink=0.85, pad=0.02)
+        bar.set_label("actions until success, over all trees")
+        bar.locator = MaxNLocator(integer=True)
+        figure.supxlabel(
+            "dots: centres of the object in the search's nodes; outlines: start layout; "
+            "shaded: goal, of the centre or a mean it is part of; "
+            f"frame: arena, {2 * task.arena:g} m wide",
+            fontsize=8,
+        )
+        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        save(figure, path)

@@ -1,0 +1,1 @@
+"""Child processes: one, the graph of them, and signals that end them."""

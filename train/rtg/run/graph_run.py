@@ -1,0 +1,156 @@
+"""A run as a graph of processes over LCM."""
+
+from __future__ import annotations
+
+import math
+import time
+from pathlib import Path
+from typing import Any
+
+from rtg import _core, paths
+from rtg.bus import lcm_tools
+from rtg.bus.bus import Bus
+from rtg.bus.transition_stream import TransitionStream
+from rtg.errors import RunError
+from rtg.files import run_folder
+from rtg.files.recorder import Recorder
+from rtg.processes.graph import ProcessGraph
+from rtg.processes.interrupts import Interrupts
+from rtg.run.plan import RunPlan
+from rtg.run.progress import Display, RunState
+from rtg.run.train_run import trainer_command
+from rtg.run.training_watch import TrainingWatch
+from rtg.run.watch import RunWatch
+
+_POLL = 0.1  # [s]
+_GOOD_BYE = 5.0  # [s] for the coordinator to leave by itself
+
+
+class _Recording:
+    """This process as the consumer of the stream, in a run without a trainer."""
+
+    def __init__(self, plan: RunPlan, bus: Bus) -> None:
+        task = _core.Config.from_file(plan.config_file).task
+        self._recorder = Recorder(task)
+        self._stream = TransitionStream(bus, task.bodies, task.headings, self._recorder.add)
+
+    def poll(self, timeout: float) -> None:
+        self._stream.poll(timeout)
+
+    @property
+    def complete(self) -> bool:
+        return self._stream.complete
+
+    def write(self, plan: RunPlan) -> int:
+        """Writes transitions.npz if nothing is missing; returns how many rows are."""
+        missing = int(run_folder.read_json(plan.report_file)["transitions"]) - self._recorder.count
+        if missing == 0:
+            self._recorder.write(plan.transitions_file)
+        return missing
+
+
+def generation_defects(plan: RunPlan) -> list[str]:
+    """What went wrong in a generation that has come to its end, in words. None without one."""
+    report = run_folder.read_json(plan.report_file)
+    wanted = plan.config["search"]["transitions"]
+    given_up, found = report.get("units_given_up", 0), report.get("transitions", wanted)
+    defects = [f"the coordinator gave up {given_up} units of work"] if given_up else []
+    if found < wanted:
+        what = plan.config["search"]["generator"]
+        defects.append(
+            f"the search ({what}) found {found:,} transitions of the {wanted:,} asked for and then "
+            "nothing more, see generation.json; a wider one may find more (search.breadth, "
+            "search.gap_tolerance)"
+        )
+    return defects
+
+
+class GraphRun:
+    """The programs, and what this process does meanwhile: watch them and replace dead workers."""
+
+    def __init__(self, plan: RunPlan, display: Display) -> None:
+        self._plan, self._display = plan, display
+        self._bus = Bus(plan.config["run"]["bus"], plan.name)
+        self._watch = RunWatch(self._bus, RunState(budget=plan.interactions))
+        self._training = TrainingWatch(plan.folder)
+        self._recording = None if plan.train else _Recording(plan, self._bus)
+        self._graph = ProcessGraph(plan.folder / "logs")
+        self._sealed = False
+        self._consumed = math.inf  # when the consumer had all
+        if self._bus.warning:
+            display.note(self._bus.warning)
+
+    def run(self) -> dict[str, Any]:
+        """Starts everything, waits for its end; returns what was measured."""
+        with Interrupts(on_demand=self._graph.kill) as interrupts:
+            try:
+                self._start_programs()
+                while self._graph.working() and not self._is_over():
+                    self._step()
+                    interrupts.raise_if_requested()
+                self._graph.tend(leaving=True)
+                self._listen(0.0)  # what came after the last look
+                defects = self._graph.failures()
+            finally:
+                self._graph.stop()
+                self._bus.close()
+        missing = self._recording.write(self._plan) if self._recording else 0
+        if missing:
+            raise RunError(f"the coordinator ended, {missing} transitions have not arrived")
+        return {
+            "lost_transitions": missing,
+            "worker_restarts": self._graph.restarts,
+            "counters": self._watch.counters(),
+            "defects": defects or generation_defects(self._plan),
+        }
+
+    def _start_programs(self) -> None:
+        plan, graph = self._plan, self._graph
+        arguments: list[str | Path] = [plan.config_file, plan.name]
+        if plan.config["run"]["record"]:
+            url, log = plan.config["run"]["bus"], plan.folder / "lcm.log"
+            graph.add("lcm_logger", lcm_tools.logger_command(url, log), helper=True)
+        server = paths.program("rtg_forward_sim_server")
+        graph.add("forward_sim_server", [server, *arguments], helper=True)
+        worker = paths.program("rtg_reverse_worker")
+        for number in range(plan.config["run"]["workers"]):
+            name = f"reverse_worker_{number}"
+            graph.add(name, [worker, *arguments, str(number)], helper=True)
+        coordinator = paths.program("rtg_beam_coordinator")
+        graph.add("beam_coordinator", [coordinator, *arguments, plan.folder])
+        if plan.train:
+            graph.add("trainer", trainer_command(plan, "--run-name", plan.name))
+
+    def _listen(self, seconds: float) -> None:
+        if self._recording:
+            self._recording.poll(seconds)
+        else:
+            self._bus.spin(seconds)
+
+    def _step(self) -> None:
+        self._listen(_POLL)
+        if self._watch.state.phase == "sealed" and not self._sealed:
+            self._on_sealed()
+        for note in self._graph.tend(leaving=self._watch.leaving):
+            self._display.note(note)
+        self._display.show(self._training.update(self._watch.state))
+
+    def _is_over(self) -> bool:
+        """Whether the coordinator waits for good-byes that were lost."""
+        if not self._sealed or (self._plan.train and self._graph.working("trainer")):
+            return False
+        if self._recording and not self._recording.complete:
+            return False
+        now = time.monotonic()
+        self._consumed = min(self._consumed, now)
+        return now - self._consumed > _GOOD_BYE
+
+    def _on_sealed(self) -> None:
+        """All transitions are stored: whatever the coordinator says in the end, they count."""
+        self._sealed = True
+        self._graph.spare("beam_coordinator")
+
+
+def run(plan: RunPlan, display: Display) -> dict[str, Any]:
+    """Generation and training at the same time; returns what was measured, for summary.json."""
+    return GraphRun(plan, display).run()

@@ -1,0 +1,93 @@
+"""The generation without LCM: on threads of this process."""
+
+from __future__ import annotations
+
+import atexit
+import json
+import os
+import threading
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from rtg import _core
+from rtg.errors import StoppedError
+from rtg.files import run_folder
+from rtg.files.dataset import Rows
+from rtg.files.recorder import Recorder
+from rtg.processes.interrupts import Interrupts
+from rtg.run.plan import RunPlan
+from rtg.run.progress import Display, RunState
+
+_POLL = 0.1  # [s]
+_PATIENCE = 4.0  # [s] for the search to notice that it shall stop
+
+
+class Generation:
+    """`_core.generate` on a thread, so that this one can show and stop it."""
+
+    def __init__(self, config: _core.Config, recorder: Recorder) -> None:
+        self._config, self._recorder = config, recorder
+        self._workers: int = json.loads(config.json)["run"]["workers"]
+        self._progress: dict[str, Any] = {}
+        self._stop = False
+        self._report: str | None = None
+        self._failure: BaseException | None = None
+        self._thread = threading.Thread(target=self._generate, daemon=True)
+        self._thread.start()
+
+    def wait(self, seconds: float) -> bool:
+        """Whether it has ended within that time. Raises what ended it early."""
+        self._thread.join(seconds)
+        if self._failure is not None:
+            raise self._failure
+        return not self._thread.is_alive()
+
+    def stop(self) -> None:
+        """Waits for the end of a layer, but not for long."""
+        self._stop = True
+        self._thread.join(_PATIENCE)
+        if self._thread.is_alive():
+            # Its threads still compute: leave before the interpreter takes itself apart under them.
+            atexit.register(os._exit, 1)
+
+    def state(self) -> RunState:
+        """Where it stands."""
+        return replace(RunState(), **self._progress, workers=self._workers)
+
+    def report(self) -> str:
+        """What generation.json holds. Only after the end."""
+        assert self._report is not None
+        return self._report
+
+    def _generate(self) -> None:
+        try:
+            self._report = _core.generate(self._config, self._store, self._note)
+        except BaseException as error:
+            self._failure = error
+
+    def _store(self, poses: Any, action: Any, next_poses: Any, success: Any, source: Any) -> None:
+        reward = success.astype(np.float32)
+        self._recorder.add(Rows(poses, action, next_poses, reward, success, source))
+
+    def _note(self, progress: dict[str, Any]) -> None:
+        self._progress = progress
+        if self._stop:
+            raise StoppedError
+
+
+def generate(plan: RunPlan, display: Display) -> None:
+    """Writes generation.json and transitions.npz."""
+    config = _core.Config.from_file(plan.config_file)
+    recorder = Recorder(config.task)
+    with Interrupts() as interrupts:
+        generation = Generation(config, recorder)
+        while not generation.wait(_POLL):
+            display.show(replace(generation.state(), budget=plan.interactions))
+            if interrupts.requested():
+                generation.stop()
+                raise StoppedError
+    recorder.write(plan.transitions_file)
+    run_folder.write_text(plan.report_file, generation.report())
+    display.show(replace(generation.state(), budget=plan.interactions))

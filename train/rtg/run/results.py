@@ -1,0 +1,143 @@
+"""The end of a run: pictures, summary.json, the last words."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg import _core
+from rtg.errors import UserError
+from rtg.files import dataset, run_folder
+from rtg.files.episodes import replayed_plan
+from rtg.pictures import episode_pictures, plots
+from rtg.run.plan import RunPlan
+
+Floats = NDArray[np.float64]
+
+_REVERSE = ("rrbs", "naive")  # generators that search backwards
+
+
+def learning_curve(path: Path) -> dict[str, Floats]:
+    """Columns of progress.csv, NaN where a cell is empty, [N] each. Raises UserError."""
+    try:
+        with path.open(newline="") as file:
+            rows = list(csv.DictReader(file, strict=True))
+        names = rows[0].keys() if rows else ()
+        return {name: np.array([float(row[name] or "nan") for row in rows]) for name in names}
+    except (ValueError, TypeError, csv.Error):
+        raise UserError(f"{path}: damaged; legal: as the run left it") from None
+
+
+def _draw_generation(plan: RunPlan, task: _core.Task) -> None:
+    report = run_folder.read_json(plan.report_file)
+    if report["replay_gaps"]:
+        plots.replay_gap(plan.folder / "replay_gap.png", plan.title, report)
+    nodes = report["nodes"]
+    if not nodes:  # only trees have any
+        return
+    poses = np.array([node["poses"] for node in nodes]).reshape(-1, task.bodies, 3)
+    depth = np.array([node["depth"] for node in nodes], float)
+    picture = plan.folder / "coverage.png"
+    plots.coverage(picture, plan.title, task, poses, depth)
+
+
+def _trained(plan: RunPlan) -> bool:
+    """Now, or before a `--resume --no-train`."""
+    return plan.train or (plan.folder / "training.json").is_file()
+
+
+def _episode(plan: RunPlan, config: _core.Config) -> Floats | None:
+    """States of the learner's best evaluation episode; without a learner, of a plan of the data,
+    which it writes to the same file."""
+    path, task = plan.folder / "best_episode.npz", config.task
+    if _trained(plan):
+        with np.load(path) as file:
+            poses: Floats = file["poses"]
+            return poses
+    found = replayed_plan(config, dataset.read(plan.transitions_file, task.bodies, task.headings))
+    if found is not None:
+        np.savez(path, poses=found, success=task.succeeded(found[-1:])[0])
+    return found
+
+
+def _origin(plan: RunPlan) -> str:
+    """Where the episode comes from."""
+    if _trained(plan):
+        plans = plan.config["train"]["learner"] == "planning"
+        return "forward search" if plans else "learned policy"
+    is_reverse = plan.config["search"]["generator"] in _REVERSE
+    return "plan found backwards, replayed" if is_reverse else "plan of the data, replayed"
+
+
+def episode_title(task: str, actions: int, success: bool, origin: str) -> str:
+    """What the pictures of the episode show, and where it comes from."""
+    end = "success after" if success else "not solved in"
+    return f"{task}: {end} {actions} action{'s' if actions != 1 else ''} ({origin})"
+
+
+def _draw_episode(plan: RunPlan, config: _core.Config) -> None:
+    poses, task = _episode(plan, config), config.task
+    if poses is not None:
+        success = bool(task.succeeded(poses[-1:])[0])
+        title = episode_title(task.name, len(poses) - 1, success, _origin(plan))
+        episode_pictures.strip(plan.folder / "episode.png", task, poses, success, title)
+        episode_pictures.film(plan.folder / "episode.gif", task, poses, success, title)
+
+
+def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
+    """Draws all pictures and writes summary.json; returns the summary."""
+    config = _core.Config.from_file(plan.config_file)
+    if plan.offline:
+        _draw_generation(plan, config.task)
+    if plan.train:
+        curve = learning_curve(plan.folder / "progress.csv")
+        if curve:  # none of a run resumed with a budget below its first evaluation
+            unit = (
+                "interactions"
+                if plan.config["train"]["interact"]
+                else "rounds of learning, as interactions"
+            )
+            plots.learning_curve(plan.folder / "learning_curve.png", plan.title, curve, unit)
+    _draw_episode(plan, config)
+    mode = ("in_process" if plan.in_process else "lcm") if plan.offline else None
+    summary = run_folder.summary(plan.folder, plan.config, mode, measured)
+    run_folder.write_json(plan.folder / "summary.json", summary)
+    return summary
+
+
+def _words_of_generation(s: dict[str, Any]) -> str:
+    return (
+        f"{s['transitions']:,} transitions in {s['generate_wall_s']:.0f} s, contact share "
+        f"{s['contact_share']:.2f}, {s['headings_per_state']:.1f} headings per state"
+    )
+
+
+def _words_of_learning(plan: RunPlan, s: dict[str, Any]) -> list[str]:
+    lines = [
+        f"success rate {s['success_rate']:.2f} after {s['interactions']:,} interactions in "
+        f"{s['train_wall_s']:.0f} s, {s['episode_length_mean']:.1f} actions per episode"
+    ]
+    if s["q_rank_correlation"] is not None:
+        ranked = f"{s['q_rank_correlation']:.2f}"
+        lines.append(f"rank correlation of Q with the simulator, over all headings: {ranked}")
+    train = plan.config["train"]
+    if train["interact"] and s["interactions"] < plan.interactions:
+        bar, count = 100 * train["stop_at_success"], train["stop_evaluations"]
+        evaluations = f"{count} evaluations in a row" if count > 1 else "an evaluation"
+        lines.append(
+            f"{plan.interactions:,} interactions were not needed: {evaluations} had solved "
+            f"{bar:g}% or more (train.stop_at_success)"
+        )
+    return lines
+
+
+def words(plan: RunPlan, summary: dict[str, Any]) -> str:
+    """What the run came to, for people."""
+    generated = summary["transitions"] is not None
+    lines = [_words_of_generation(summary)] if generated else []
+    learned = _words_of_learning(plan, summary) if plan.train else []
+    return "\n".join([*lines, *learned, f"results: {plan.folder}"])

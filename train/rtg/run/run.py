@@ -1,0 +1,63 @@
+"""One run from the configuration to the results."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from typing import Any
+
+from rtg.errors import RunError, StoppedError
+from rtg.files import run_folder
+from rtg.run import effective_config
+from rtg.run.plan import RunPlan, make_plan
+from rtg.run.progress import Display, display
+from rtg.run.run_args import RunArgs
+
+
+def run(args: RunArgs) -> int:
+    """Exit status. Raises UserError for bad input, RunError if a part of the run failed."""
+    if args.print_config:
+        print(effective_config.canonical(args.file, args.overrides), end="")
+        return 0
+    if args.resume:
+        with run_folder.alone(args.file.parent, "another run"):
+            return _work(make_plan(args))
+    plan = make_plan(args)
+    with run_folder.alone(plan.folder, "another run"):
+        return _work(plan)
+
+
+def _work(plan: RunPlan) -> int:
+    """Exit status."""
+    from rtg.run import results  # heavy
+
+    with display(sys.stdout) as shown:
+        for note in (f"{plan.title}: {plan.folder}", *plan.notes):
+            shown.note(note)
+        try:
+            measured = _generate_and_train(plan, shown)
+        except StoppedError:
+            flags = "--resume" if plan.train else "--resume --no-train"
+            command = f"./run.sh {flags} --out {shlex.quote(str(plan.folder))}"
+            raise RunError(f"stopped; to go on: {command}") from None
+        summary = results.finish(plan, measured)
+    print(results.words(plan, summary))
+    for defect in measured["defects"]:
+        print(f"rtg: {defect}", file=sys.stderr)
+    return 1 if measured["defects"] else 0
+
+
+def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
+    from rtg.run import graph_run, in_process, train_run
+
+    if not plan.offline:
+        shown.note("no generated data: all that is learned or planned comes from the simulator")
+    elif plan.is_generated():
+        shown.note("the transitions are there already")
+    elif plan.in_process:
+        in_process.generate(plan, shown)
+    else:
+        return graph_run.run(plan, shown)
+    if plan.train:
+        train_run.run(plan, shown)
+    return {"lost_transitions": 0, "defects": graph_run.generation_defects(plan)}

@@ -1,0 +1,54 @@
+"""The learner on a finished transition set."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from rtg.files.run_folder import read_json
+from rtg.processes.graph import ProcessGraph
+from rtg.processes.interrupts import Interrupts
+from rtg.run.plan import RunPlan
+from rtg.run.progress import Display, RunState
+from rtg.run.training_watch import TrainingWatch
+
+_POLL = 0.1  # [s]
+
+
+def trainer_command(plan: RunPlan, *flags: str) -> Sequence[str | Path]:
+    """The learner's program."""
+    resume = ["--resume"] if plan.resume else []
+    return [sys.executable, "-m", "rtg.learn.trainer", plan.folder, *resume, *flags]
+
+
+def _begun(plan: RunPlan) -> RunState:
+    """What a display shows of the generation, which is over."""
+    if not plan.offline:
+        return RunState(generates=False, budget=plan.interactions)
+    report = read_json(plan.report_file)
+    return RunState(
+        phase="done",
+        transitions=report["transitions"],
+        target=report["transitions"],
+        contact_share=report["contact_share"],
+        start_region=report["start_region_transitions"],
+        budget=plan.interactions,
+    )
+
+
+def run(plan: RunPlan, display: Display) -> None:
+    """Learns in a process of its own, so that it can be stopped at any time."""
+    graph = ProcessGraph(plan.folder / "logs")
+    watch = TrainingWatch(plan.folder)
+    state = _begun(plan)
+    with Interrupts(on_demand=graph.kill) as interrupts:
+        try:
+            graph.add("trainer", trainer_command(plan, "--no-stream"))
+            while graph.wait(_POLL):
+                graph.tend()
+                display.show(watch.update(state))
+                interrupts.raise_if_requested()
+        finally:
+            graph.stop()
+    graph.tend()

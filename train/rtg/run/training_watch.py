@@ -1,0 +1,43 @@
+"""Where the learner stands, from the file that it writes for displays."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from rtg.files.run_folder import read_json
+from rtg.run.progress import RateMeter, RunState
+
+
+class TrainingWatch:
+    """Reads RUN/training_state.json whenever it changes."""
+
+    def __init__(self, folder: Path) -> None:
+        self._path = folder / "training_state.json"
+        self._changed = 0
+        self._meter = RateMeter()
+        self._state = RunState()
+
+    def update(self, state: RunState) -> RunState:
+        """`state` with the learner's part as of now."""
+        changed = self._path.stat().st_mtime_ns if self._path.is_file() else 0
+        if changed != self._changed:
+            self._changed = changed
+            self._read()
+        learner = self._state
+        return replace(
+            state,
+            interactions=learner.interactions,
+            rate=learner.rate,
+            success_rate=learner.success_rate,
+        )
+
+    def _read(self) -> None:
+        learner = read_json(self._path)
+        interactions = int(learner["interactions"])
+        self._state = RunState(
+            interactions=interactions,
+            rate=self._meter.rate(interactions, time.monotonic()),
+            success_rate=learner["success_rate"],
+        )

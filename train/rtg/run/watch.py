@@ -1,0 +1,47 @@
+"""What the processes of a run say about where it stands."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from rtg.bus.bus import Bus
+from rtg.bus.messages import message_type
+from rtg.run.progress import RunState
+
+
+class RunWatch:
+    """Keeps the newest state of the run, and every node's counters."""
+
+    def __init__(self, bus: Bus, state: RunState) -> None:
+        self.state = state
+        self.leaving = False  # the coordinator has said good-bye
+        self._counters: dict[tuple[str, int, int], dict[str, int]] = {}
+        bus.subscribe("RTG_PROGRESS", message_type("search_progress_t"), self._on_progress)
+        bus.subscribe("RTG_STATUS", message_type("node_status_t"), self._on_status)
+
+    def counters(self) -> dict[str, int]:
+        """What all processes counted, added up by name."""
+        total: dict[str, int] = {}
+        for counted in self._counters.values():
+            for name, value in counted.items():
+                total[name] = total.get(name, 0) + value
+        return dict(sorted(total.items()))
+
+    def _on_progress(self, message: Any) -> None:
+        self.leaving = self.leaving or bool(message.leaving)
+        self.state = replace(
+            self.state,
+            phase=message.phase,
+            layer=message.layer,
+            depth=message.depth,
+            transitions=message.transitions,
+            target=message.target,
+            contact_share=message.contact_share,
+            start_region=message.start_region,
+            workers=message.workers,
+        )
+
+    def _on_status(self, message: Any) -> None:
+        key = (message.node, message.number, message.header.sender)
+        self._counters[key] = dict(zip(message.counter_name, message.counter_value, strict=True))
