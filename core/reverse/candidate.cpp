@@ -9,9 +9,9 @@
 #include "core/energy/open_gaps.hpp"
 #include "core/math/assembled_solver.hpp"
 #include "core/math/riccati.hpp"
-#include "core/reverse/filter_sqp.hpp"
-#include "core/reverse/merit_sqp.hpp"
 #include "core/reverse/pruning.hpp"
+#include "core/reverse/sqp/filter_sqp.hpp"
+#include "core/reverse/sqp/merit_sqp.hpp"
 
 namespace rtg {
 namespace {

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "core/reverse/reverse_job.hpp"
-#include "core/reverse/sqp_result.hpp"
+#include "core/reverse/problem/reverse_job.hpp"
+#include "core/reverse/sqp/sqp_result.hpp"
 #include "core/world/selection.hpp"
 
 namespace rtg {

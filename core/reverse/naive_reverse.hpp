@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/reverse/reverse_job.hpp"
+#include "core/reverse/problem/reverse_job.hpp"
 #include "core/world/push.hpp"
 #include "core/world/scene.hpp"
 

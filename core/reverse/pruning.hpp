@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/reverse/reverse_job.hpp"
+#include "core/reverse/problem/reverse_job.hpp"
 #include "core/world/push.hpp"
 #include "core/world/scene.hpp"
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/reverse/candidate.hpp"
-#include "core/reverse/reverse_config.hpp"
-#include "core/reverse/reverse_job.hpp"
+#include "core/reverse/problem/reverse_config.hpp"
+#include "core/reverse/problem/reverse_job.hpp"
 #include "core/world/physics_config.hpp"
 #include "core/world/push.hpp"
 #include "core/world/scene.hpp"

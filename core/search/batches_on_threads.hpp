@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/search/batches.hpp"
+#include "core/search/seams.hpp"
 
 namespace rtg {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/math/draws.hpp"
-#include "core/reverse/reverse_job.hpp"
+#include "core/reverse/problem/reverse_job.hpp"
 
 namespace rtg {
 

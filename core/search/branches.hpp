@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/math/rng.hpp"
-#include "core/search/batches.hpp"
+#include "core/search/seams.hpp"
 #include "core/search/search_config.hpp"
 #include "core/search/transition.hpp"
 #include "core/tasks/task.hpp"

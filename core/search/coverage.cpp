@@ -1,6 +1,6 @@
 #include "core/search/coverage.hpp"
 
-#include "core/reverse/reverse_job.hpp"
+#include "core/reverse/problem/reverse_job.hpp"
 #include "core/search/predecessor.hpp"
 #include "core/search/start_distance.hpp"
 

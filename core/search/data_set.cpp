@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/reverse/reverse_job.hpp"
+#include "core/reverse/problem/reverse_job.hpp"
 #include "core/search/branches.hpp"
 
 namespace rtg {

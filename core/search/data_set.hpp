@@ -4,8 +4,8 @@
 #include <span>
 #include <unordered_set>
 
-#include "core/search/batches.hpp"
 #include "core/search/coverage.hpp"
+#include "core/search/seams.hpp"
 #include "core/search/search_config.hpp"
 #include "core/search/transition.hpp"
 #include "core/tasks/task.hpp"

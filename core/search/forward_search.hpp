@@ -6,9 +6,9 @@
 #include <unordered_set>
 #include <vector>
 
-#include "core/search/batches.hpp"
 #include "core/search/beam_selection.hpp"
 #include "core/search/generation.hpp"
+#include "core/search/seams.hpp"
 #include "core/search/state_metric.hpp"
 
 namespace rtg {

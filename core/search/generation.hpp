@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "core/search/data_set.hpp"
-#include "core/search/generate.hpp"
+#include "core/search/report.hpp"
+#include "core/search/seams.hpp"
+#include "core/search/search_config.hpp"
 
 namespace rtg {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/search/batches.hpp"
+#include "core/search/seams.hpp"
 #include "core/search/search_stats.hpp"
 #include "core/search/transition.hpp"
 #include "core/tasks/task.hpp"

@@ -4,23 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "core/reverse/solve_status.hpp"
+#include "core/reverse/problem/solve_status.hpp"
 #include "core/search/coverage.hpp"
 #include "core/search/search_stats.hpp"
 #include "core/world/pose.hpp"
 
 namespace rtg {
-
-/// One line of the progress display.
-struct Progress {
-  std::string phase;  // "tree 1", "plan 3", "random walks"
-  int layer = 0;      // of `depth`
-  int depth = 0;
-  long transitions = 0;  // stored so far
-  long target = 0;       // to be stored in all
-  double contact_share = 0.0;
-  long start_region = 0;  // transitions whose state lies in the start region so far
-};
 
 /// A node of the stored search graph, for coverage pictures.
 struct ReportNode {

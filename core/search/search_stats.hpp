@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/search/batches.hpp"
+#include "core/search/seams.hpp"
 
 namespace rtg {
 

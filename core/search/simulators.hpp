@@ -1,8 +1,7 @@
 #pragma once
 
-#include "core/reverse/reverse_config.hpp"
-#include "core/search/batches.hpp"
-#include "core/search/generate.hpp"
+#include "core/reverse/problem/reverse_config.hpp"
+#include "core/search/seams.hpp"
 #include "core/search/search_config.hpp"
 #include "core/tasks/task.hpp"
 #include "core/world/physics_config.hpp"

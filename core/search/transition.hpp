@@ -2,8 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <span>
 
 #include "core/world/pose.hpp"
 
@@ -28,8 +26,5 @@ struct Transition {
 
   bool operator==(const Transition&) const = default;
 };
-
-/// Receives transitions in sequence order; the k-th transition of a run has sequence number k.
-using TransitionSink = std::function<void(std::span<const Transition>)>;
 
 }  // namespace rtg

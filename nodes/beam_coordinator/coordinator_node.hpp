@@ -8,7 +8,7 @@
 #include "core/search/generate.hpp"
 #include "nodes/beam_coordinator/job_pool.hpp"
 #include "nodes/beam_coordinator/transition_publisher.hpp"
-#include "nodes/common/node_status.hpp"
+#include "nodes/bus/node_status.hpp"
 
 namespace rtg {
 

@@ -9,10 +9,10 @@
 
 #include "nodes/beam_coordinator/interrupted.hpp"
 #include "nodes/beam_coordinator/unit_table.hpp"
-#include "nodes/common/bus.hpp"
-#include "nodes/common/clock.hpp"
-#include "nodes/common/job_dispatcher.hpp"
-#include "nodes/common/work.hpp"
+#include "nodes/bus/bus.hpp"
+#include "nodes/bus/clock.hpp"
+#include "nodes/work/job_dispatcher.hpp"
+#include "nodes/work/work.hpp"
 
 namespace rtg {
 

@@ -7,10 +7,10 @@
 #include <cstdio>
 
 #include "nodes/beam_coordinator/coordinator_node.hpp"
-#include "nodes/common/program.hpp"
-#include "nodes/common/rtg_config.hpp"
-#include "nodes/common/shutdown.hpp"
-#include "nodes/common/whole_file.hpp"
+#include "nodes/beam_coordinator/whole_file.hpp"
+#include "nodes/config/rtg_config.hpp"
+#include "nodes/program/program.hpp"
+#include "nodes/program/shutdown.hpp"
 
 namespace rtg {
 namespace {

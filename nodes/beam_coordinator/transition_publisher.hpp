@@ -6,10 +6,10 @@
 #include <rtg_msgs/transition_batch_t.hpp>
 #include <span>
 
-#include "nodes/common/bus.hpp"
-#include "nodes/common/clock.hpp"
-#include "nodes/common/stream_server.hpp"
-#include "nodes/common/work.hpp"
+#include "nodes/beam_coordinator/stream_server.hpp"
+#include "nodes/bus/bus.hpp"
+#include "nodes/bus/clock.hpp"
+#include "nodes/work/work.hpp"
 
 namespace rtg {
 

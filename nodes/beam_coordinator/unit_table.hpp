@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "nodes/common/job_dispatcher.hpp"
-#include "nodes/common/work.hpp"
+#include "nodes/work/job_dispatcher.hpp"
+#include "nodes/work/work.hpp"
 
 namespace rtg {
 

@@ -5,9 +5,9 @@
 
 #include "core/search/batches_on_threads.hpp"
 #include "core/search/simulators.hpp"
-#include "nodes/common/program.hpp"
-#include "nodes/common/rtg_config.hpp"
-#include "nodes/common/serve.hpp"
+#include "nodes/config/rtg_config.hpp"
+#include "nodes/program/program.hpp"
+#include "nodes/program/serve.hpp"
 
 namespace rtg {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "nodes/common/rtg_config.hpp"
+#include "nodes/config/rtg_config.hpp"
 
 namespace rtg {
 

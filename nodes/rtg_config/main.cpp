@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "nodes/common/rtg_config.hpp"
+#include "nodes/config/rtg_config.hpp"
 #include "nodes/rtg_config/description.hpp"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/reverse/reverse_job.hpp"
+#include "core/reverse/problem/reverse_job.hpp"
 #include "core/tasks/task.hpp"
 #include "core/world/physics_config.hpp"
 

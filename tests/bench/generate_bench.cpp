@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/search/simulators.hpp"
-#include "nodes/common/rtg_config.hpp"
+#include "nodes/config/rtg_config.hpp"
 #include "tests/bench/arguments.hpp"
 
 namespace rtg {

@@ -10,9 +10,9 @@
 
 #include "core/math/assembled_solver.hpp"
 #include "core/math/riccati.hpp"
-#include "core/reverse/merits.hpp"
-#include "core/reverse/newton_system.hpp"
-#include "core/reverse/trial.hpp"
+#include "core/reverse/problem/evaluator.hpp"
+#include "core/reverse/problem/newton_system.hpp"
+#include "core/reverse/problem/trial_point.hpp"
 #include "tests/support/gathering.hpp"
 #include "tests/support/random_stages.hpp"
 

@@ -17,7 +17,7 @@
 #include <tuple>
 
 #include "core/reverse/candidate.hpp"
-#include "core/reverse/warm_start.hpp"
+#include "core/reverse/problem/warm_start.hpp"
 #include "core/threads/cpu_clock.hpp"
 #include "tests/bench/arguments.hpp"
 #include "tests/bench/corpus.hpp"

@@ -1,4 +1,4 @@
-"""The reverse problem with CasADi, written from its formulas (core/reverse/reverse_problem.hpp,
+"""The reverse problem with CasADi, written from its formulas (core/reverse/problem/reverse_problem.hpp,
 core/energy) and sharing no code with the solver."""
 
 from __future__ import annotations

@@ -9,19 +9,35 @@ from pathlib import Path, PurePosixPath
 
 ROOT = Path(__file__).resolve().parents[2]
 
+_OF_PROGRAMS = {"core", "nodes/bus", "nodes/config", "nodes/work", "nodes/program"}
 MAY_INCLUDE = {
     "core/math": {"core/math"},
     "core/world": {"core/math", "core/world"},
     "core/energy": {"core/math", "core/world", "core/energy"},
     "core/forward": {"core/math", "core/world", "core/energy", "core/forward"},
+    "core/reverse/problem": {"core/math", "core/world", "core/energy", "core/reverse/problem"},
+    "core/reverse/sqp": {
+        "core/math",
+        "core/world",
+        "core/energy",
+        "core/reverse/problem",
+        "core/reverse/sqp",
+    },
     "core/reverse": {"core/math", "core/world", "core/energy", "core/reverse"},
     "core/tasks": {"core/math", "core/world", "core/tasks"},
     "core/search": {"core"},
     "core/threads": {"core/threads"},
-    "nodes": {"core", "nodes", "rtg_msgs"},
+    "nodes/bus": {"core/threads", "nodes/bus", "rtg_msgs"},
+    "nodes/config": {"core", "nodes/bus", "nodes/config"},
+    "nodes/work": {"core", "nodes/bus", "nodes/work", "rtg_msgs"},
+    "nodes/program": {"core", "nodes/bus", "nodes/config", "nodes/work", "nodes/program"},
+    "nodes/rtg_config": {"core", "nodes/config", "nodes/rtg_config"},
+    "nodes/beam_coordinator": {*_OF_PROGRAMS, "rtg_msgs", "nodes/beam_coordinator"},
+    "nodes/forward_sim_server": _OF_PROGRAMS,
+    "nodes/reverse_worker": _OF_PROGRAMS,
     "msgs": {"rtg_msgs"},
     # The bindings take the resolved config, so that C++ and Python never read YAML apart.
-    "train": {"core", "nodes/common", "train/bindings"},
+    "train": {"core", "nodes/config", "train/bindings"},
     "tests": {"core", "nodes", "tests", "rtg_msgs"},
 }
 
@@ -29,8 +45,8 @@ MAY_INCLUDE = {
 ONLY_IN = {
     r"(umfpack|cholmod|klu|SuiteSparse|amd|colamd)\w*\.h|suitesparse/.*": r"core/math/\w+\.cpp",
     r"box2d/.*": r"(tests/)?core/forward/box2d_\w+\.cpp",
-    r"(yaml-cpp|utf8cpp)/.*": r"nodes/common/\w+\.cpp",
-    r"lcm/.*": r"nodes/common/bus\w*\.cpp",
+    r"(yaml-cpp|utf8cpp)/.*": r"nodes/config/\w+\.cpp",
+    r"lcm/.*": r"nodes/bus/bus\w*\.cpp",
     r"nlohmann/.*": r"(core/search|nodes|train|tests/bench)/.*\.cpp",
     r"nanobind/.*": r"train/.*\.(cpp|hpp)",
     r"gtest/.*|gmock/.*": r"tests/.*\.(cpp|hpp)",

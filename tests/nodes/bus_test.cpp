@@ -1,4 +1,4 @@
-#include "nodes/common/bus.hpp"
+#include "nodes/bus/bus.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "nodes/common/bus_url.hpp"
+#include "nodes/bus/bus_url.hpp"
 
 #include <gtest/gtest.h>
 

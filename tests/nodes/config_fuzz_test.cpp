@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/math/rng.hpp"
-#include "nodes/common/rtg_config.hpp"
+#include "nodes/config/rtg_config.hpp"
 #include "tests/nodes/two_boxes.hpp"
 
 namespace rtg {

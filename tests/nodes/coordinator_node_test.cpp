@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/search/batches_on_threads.hpp"
-#include "nodes/common/worker_node.hpp"
+#include "nodes/work/worker_node.hpp"
 #include "tests/support/gathering.hpp"
 #include "tests/support/generation_run.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "nodes/common/wire_fields.hpp"
+#include "nodes/bus/wire_fields.hpp"
 
 namespace rtg::test {
 

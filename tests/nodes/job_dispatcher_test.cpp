@@ -1,4 +1,4 @@
-#include "nodes/common/job_dispatcher.hpp"
+#include "nodes/work/job_dispatcher.hpp"
 
 #include <gtest/gtest.h>
 

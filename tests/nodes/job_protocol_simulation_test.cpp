@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "nodes/common/job_dispatcher.hpp"
-#include "nodes/common/job_inbox.hpp"
+#include "nodes/work/job_dispatcher.hpp"
+#include "nodes/work/job_inbox.hpp"
 #include "tests/nodes/faulty_network.hpp"
 
 // The two ends of the job protocol in virtual time, over a network that loses, doubles and

@@ -1,4 +1,4 @@
-#include "nodes/common/rtg_config.hpp"
+#include "nodes/config/rtg_config.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "nodes/common/config_error.hpp"
-#include "nodes/common/field_writer.hpp"
-#include "nodes/common/train_preset.hpp"
+#include "nodes/config/config_error.hpp"
+#include "nodes/config/field_writer.hpp"
+#include "nodes/config/train_preset.hpp"
 #include "tests/nodes/two_boxes.hpp"
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"

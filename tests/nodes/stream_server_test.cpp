@@ -1,4 +1,4 @@
-#include "nodes/common/stream_server.hpp"
+#include "nodes/beam_coordinator/stream_server.hpp"
 
 #include <gtest/gtest.h>
 

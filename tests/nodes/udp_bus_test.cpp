@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "nodes/common/bus.hpp"
+#include "nodes/bus/bus.hpp"
 
 namespace rtg {
 namespace {

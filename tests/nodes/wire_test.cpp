@@ -1,4 +1,4 @@
-#include "nodes/common/wire.hpp"
+#include "nodes/bus/wire.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "nodes/common/work.hpp"
+#include "nodes/work/work.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 
-#include "nodes/common/wire.hpp"
+#include "nodes/bus/wire.hpp"
 
 namespace rtg {
 namespace {

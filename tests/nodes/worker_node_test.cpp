@@ -1,4 +1,4 @@
-#include "nodes/common/worker_node.hpp"
+#include "nodes/work/worker_node.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <future>
 #include <stdexcept>
 
-#include "nodes/common/serve.hpp"
+#include "nodes/program/serve.hpp"
 
 namespace rtg {
 namespace {

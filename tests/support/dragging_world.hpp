@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/search/batches.hpp"
 #include "core/search/predecessor.hpp"
+#include "core/search/seams.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg::testing {

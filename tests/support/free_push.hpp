@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/reverse/reverse_problem.hpp"
+#include "core/reverse/problem/reverse_problem.hpp"
 
 namespace rtg::testing {
 

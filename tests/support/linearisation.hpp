@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/math/assembled_solver.hpp"
-#include "core/reverse/newton_system.hpp"
+#include "core/reverse/problem/newton_system.hpp"
 
 namespace rtg::testing {
 

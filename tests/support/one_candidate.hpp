@@ -8,7 +8,7 @@
 #include "core/energy/implicit_step.hpp"
 #include "core/math/assembled_solver.hpp"
 #include "core/math/riccati.hpp"
-#include "core/reverse/filter_sqp.hpp"
+#include "core/reverse/sqp/filter_sqp.hpp"
 
 namespace rtg::testing {
 

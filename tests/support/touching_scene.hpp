@@ -2,7 +2,7 @@
 
 #include "core/energy/step_energy.hpp"
 #include "core/math/rng.hpp"
-#include "core/reverse/warm_start.hpp"
+#include "core/reverse/problem/warm_start.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg::testing {

@@ -7,7 +7,7 @@
 #include "core/search/batches_on_threads.hpp"
 #include "core/search/forward_search.hpp"
 #include "core/search/simulators.hpp"
-#include "nodes/common/rtg_config.hpp"
+#include "nodes/config/rtg_config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 

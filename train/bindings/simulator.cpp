@@ -1,7 +1,7 @@
 #include <nanobind/stl/pair.h>
 
 #include "core/forward/box2d_simulator.hpp"
-#include "nodes/common/rtg_config.hpp"
+#include "nodes/config/rtg_config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 

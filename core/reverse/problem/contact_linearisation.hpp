@@ -1,0 +1,86 @@
+#pragma once
+
+#include "core/energy/gap_terms.hpp"
+#include "core/energy/scatter.hpp"
+#include "core/energy/slip_terms.hpp"
+#include "core/energy/touch.hpp"
+#include "core/reverse/problem/problem_lanes.hpp"
+
+namespace rtg {
+
+inline constexpr double kForceProximal = 0.01;  // share of δ on the forces
+
+/// How second derivatives are formed, by lane.
+template <class T>
+struct Curvature {
+  T exact;     // 1: of the Lagrangian; 0: of the objective alone
+  T proximal;  // δ, on poses and controls, and kForceProximal δ on forces
+};
+
+/// A force eliminated from the system: Δλ = a + b·V Δp.
+template <class T>
+struct Eliminated {
+  T a = T(0.0);
+  Vec4<T> b = Vec4<T>::Constant(T(0.0));
+};
+
+/// What a pair's contacts at one level add to one sub-step's part of the Newton system, in the
+/// pair's coordinates there.
+template <class T>
+struct PairTerms {
+  Mat4<T> Q = Mat4<T>::Constant(T(0.0)), E = Q;  // Hessian of the Lagrangian, ∂Φ/∂p
+  Vec4<T> gradient = Vec4<T>::Constant(T(0.0));  // of the Lagrangian
+  Vec4<T> residual = gradient;                   // Φ
+  Vec4<T> q = gradient, e = gradient;            // the rest of the two right-hand sides
+};
+
+/// The contacts of a pair of bodies at a level k: normal forces in Φ_k, friction in Φ_{k+1}, their
+/// complementarity, and at the start the barrier of the objective.
+template <class T>
+class ContactLinearisation {
+ public:
+  ContactLinearisation(const ProblemLanes<T>& problem, const Trajectory<T>& x,
+                       const Curvature<T>& curvature, int level, int pair);
+
+  /// Whether any of the contacts may act. If not, there is nothing to add.
+  bool relevant() const { return relevant_; }
+
+  /// Adds contact `vertex`, with its force as eliminated; whether it acts.
+  bool add(int vertex, Eliminated<T>& eliminated);
+
+  const PairFrame<T>& frame() const { return here_; }
+  const PairFrame<T>& frame_ahead() const { return ahead_; }
+
+  PairTerms<T> own, next;                        // of levels k and k + 1
+  Mat4<T> F = Mat4<T>::Constant(T(0.0)), N = F;  // ∂Φ_{k+1}/∂p_k, ∂²L/∂p_{k+1}∂p_k
+
+ private:
+  /// The contact at hand.
+  struct Contact {
+    const Touch<T>& touch;
+    const SignedDistance<T>& d;
+    const Mat2<T>& D;
+    const GapTerms<T>& gap;
+    T g, force;
+    Vec4<T> b;
+    T a;
+    T force_gradient = T(0.0);                // ∂L/∂λ, complementarity aside
+    Vec4<T> now = Vec4<T>::Constant(T(0.0));  // ∂²L/∂λ∂p_k
+  };
+  void add_start_barrier(const Contact& c);
+  void add_normal_force(Contact& c);
+  void add_friction(Contact& c, const ContactPoint<T>& after);
+  void add_complementarity(const Contact& c, const T& s, const T& bend);
+
+  const SceneModel<T>& scene_;
+  const Curvature<T>& curvature_;
+  int pair_;
+  bool first_, last_, held_;  // held: the poses of the level are no unknowns
+  const T* forces_;
+  Mask<T> close_;
+  bool relevant_;
+  PairFrame<T> here_, ahead_;
+  Vec4<T> y_, y_next_;  // V y_k, V y_{k+1}
+};
+
+}  // namespace rtg

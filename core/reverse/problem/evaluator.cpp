@@ -1,0 +1,177 @@
+#include "core/reverse/problem/evaluator.hpp"
+
+#include <algorithm>
+
+#include "core/energy/joint_limit.hpp"
+#include "core/energy/scatter.hpp"
+#include "core/energy/slip_terms.hpp"
+#include "core/energy/touch.hpp"
+
+namespace rtg {
+namespace {
+
+/// Φ_k without contacts.
+template <class T>
+void set_free_residual(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k, T* e) {
+  const SceneModel<T>& energy = problem.energy;
+  for (int i = 0; i < energy.movable(); ++i) {
+    const Vec3<T> force = energy.motion_force(i, way(x.p[k - 1], x.p[k], i),
+                                              way(x.p[std::max(k - 2, 0)], x.p[k - 1], i));
+    for (int m = 0; m < 3; ++m) e[3 * i + m] = force[m];
+  }
+  for (int m = 0; m < 3; ++m)
+    e[m] = e[m] - energy.control_bound()[m] * hyperbolic_tangent(x.controls[k][m]);
+}
+
+template <class T>
+T free_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x) {
+  const ReverseConfig& config = problem.config;
+  const SceneModel<T>& energy = problem.energy;
+  T sum(0.0);
+  for (int i = 0; i < energy.movable(); ++i) {
+    const T dx = x.p[0].body(i)[0] - problem.end[3 * i];
+    const T dy = x.p[0].body(i)[1] - problem.end[3 * i + 1];
+    const T along = problem.direction.x() * dx + problem.direction.y() * dy;
+    sum = sum + T(i == 0 ? config.robot_weight : config.object_weight) * along;
+  }
+  for (int k = 0; k <= problem.sub_steps; ++k) {
+    if (k > 0) sum = sum + T(config.control_weight) * x.controls[k].squaredNorm();
+    const Vec3<T> path = problem.robot_path(k);
+    const T *robot = x.p[k].body(0), dx = robot[0] - path[0], dy = robot[1] - path[1],
+            turn = robot[2] - path[2];
+    sum =
+        sum + T(config.path_weight) * (dx * dx + dy * dy) + T(config.heading_weight) * turn * turn;
+  }
+  for (int k = 1; k <= problem.sub_steps; ++k)
+    for (int i = 1; i < energy.movable(); ++i) sum = sum + problem.speed(x, k, i).value;
+  T miss(0.0);
+  for (int k = problem.sub_steps; k > 0 && problem.ends(k); --k)
+    for (int m = 0; m < 3 * energy.movable(); ++m) {
+      const T off = x.p[k].p[m] - problem.end[m];
+      miss = miss + off * off;
+    }
+  return sum + T(0.5) * problem.terminal_weight * miss;
+}
+
+}  // namespace
+
+/// One evaluation, level by level: a contact takes part in the residual of its own sub-step and of
+/// the next.
+template <class T>
+struct Evaluator<T>::Pass {
+  Evaluator& into;
+  const ProblemLanes<T>& problem;
+  const Trajectory<T>& x;
+  const PerContact<T>& were;
+  PerContact<T>& gaps;
+  Mask<T>& legal;
+  Merits<T> sum = {};
+  const SceneModel<T>& scene = problem.energy;
+
+  void add_level(int k) {
+    Mask<T> apart(true);
+    for (int n = 0; n < scene.pair_count(); ++n) {
+      const Mask<T> close = scene.near(n, x.p[k]);
+      if (n % 2 == 0) apart = !close;
+      for (int v = 0; v < scene.corners(n); ++v) {
+        gaps[k][contact_of(n, v)] = Touch<T>::far(scene);
+        into.complementarity_[k][contact_of(n, v)] = T(0.0);
+      }
+      if (any(close) || has_force(k, n)) apart = add_pair(k, n, close) || apart;
+      if (n % 2 == 1) legal = legal && apart;  // an edge of either body will do
+    }
+    add_limits(k);
+  }
+
+  void add_limits(int k) {
+    for_each_limit(scene.articulation(), x.p[k], [&](int l, const JointLimit<T>& limit) {
+      const int contact = scene.limit_contact(l);
+      const T force = x.forces[k][contact];
+      if (k > 0) limit.add_gradient(-force, scene.movable(), into.residuals_[k].data());
+      note_gap(k, contact, limit.gap, scene.barrier().window(limit.gap).w);
+      if (k == 0) sum.objective = sum.objective + scene.barrier().value(limit.gap);
+    });
+  }
+
+  bool has_force(int k, int n) const {
+    Mask<T> found(false);
+    for (int v = 0; v < scene.corners(n); ++v)
+      found = found || x.forces[k][contact_of(n, v)] != T(0.0);
+    return any(found);
+  }
+
+  /// Returns where an edge of the pair's second body separates the two.
+  Mask<T> add_pair(int k, int n, const Mask<T>& close) {
+    const bool last = k == problem.sub_steps;
+    const PairFrame<T> here = scene.frame(n, x.p[k]);
+    const PairFrame<T> ahead = scene.frame(n, x.p[last ? k : k + 1]);
+    Vec4<T> own = Vec4<T>::Constant(T(0.0)), next = own;
+    SeparatingEdges<T> edges = scene.edges(n);
+    for (int v = 0; v < scene.corners(n); ++v) {
+      const T force = x.forces[k][contact_of(n, v)];
+      const Touch<T> touch(scene, n, v, here, close);
+      edges.note(touch.distances, scene.real(n, v));
+      if (!any(touch.within || force != T(0.0))) continue;
+      const SignedDistance<T> d = touch.distance();
+      add_contact(k, contact_of(n, v), touch, d);
+      own -= touch.point.pulled(d.gradient) * force;
+      if (last || !any(force != T(0.0))) continue;
+      const SlipTerms<T> s(d.gradient, scene.point(n, v, ahead), touch.point.x, scene.slip());
+      next += s.gradient() * (scene.friction(n) * force);
+    }
+    if (k > 0) pull(scene, n, here, own, into.residuals_[k].data());
+    if (!last) pull(scene, n, ahead, next, into.residuals_[k + 1].data());
+    return edges.separate(scene.sharpness());
+  }
+
+  /// Legality, and λ g - μ̃ w.
+  void note_gap(int k, int contact, const T& g, const T& window) {
+    gaps[k][contact] = g;
+    legal = legal && keeps_gap(g, were[k][contact], scene.barrier());
+    const T off = x.forces[k][contact] * g - T(scene.barrier().weight) * window;
+    into.complementarity_[k][contact] = off;
+    sum.violation = sum.violation + magnitude(off);
+    sum.infeasibility = greater(sum.infeasibility, magnitude(off));
+  }
+
+  /// Its gap, and at the start the barrier of the objective.
+  void add_contact(int k, int contact, const Touch<T>& touch, const SignedDistance<T>& d) {
+    const Barrier& barrier = scene.barrier();
+    const Mask<T> acts = touch.within || x.forces[k][contact] != T(0.0);
+    const T g = touch.gap(d, acts);
+    note_gap(k, contact, g, select(acts, barrier.window(g).w, T(0.0)));
+    if (k == 0) sum.objective = sum.objective + select(touch.within, barrier.value(g), T(0.0));
+  }
+};
+
+template <class T>
+Evaluator<T>::Evaluator(const ProblemLanes<T>& problem, bool to_the_end)
+    : to_the_end_(to_the_end),
+      residuals_(static_cast<std::size_t>(problem.sub_steps) + 1,
+                 std::vector<T>(3 * static_cast<std::size_t>(problem.energy.movable()), T(0.0))),
+      complementarity_(
+          residuals_.size(),
+          std::vector<T>(static_cast<std::size_t>(problem.energy.contacts()), T(0.0))) {}
+
+template <class T>
+Merits<T> Evaluator<T>::evaluate(const ProblemLanes<T>& problem, const Trajectory<T>& x,
+                                 const PerContact<T>& were, PerContact<T>& gaps, Mask<T>& legal) {
+  Pass pass{*this, problem, x, were, gaps, legal};
+  pass.sum.objective = free_objective(problem, x);
+  for (int k = 0; k <= problem.sub_steps && (to_the_end_ || any(legal)); ++k) {
+    if (k < problem.sub_steps) set_free_residual(problem, x, k + 1, residuals_[k + 1].data());
+    pass.add_level(k);
+    if (k == 0) continue;
+    problem.energy.articulation().gather(x.p[k], residuals_[k].data());
+    for (const T& r : residuals_[k]) {
+      pass.sum.violation = pass.sum.violation + magnitude(r);
+      pass.sum.infeasibility = greater(pass.sum.infeasibility, magnitude(r));
+    }
+  }
+  return pass.sum;
+}
+
+template class Evaluator<double>;
+template class Evaluator<Lanes>;
+
+}  // namespace rtg

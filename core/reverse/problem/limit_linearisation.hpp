@@ -1,0 +1,49 @@
+#pragma once
+
+#include "core/energy/joint_limit.hpp"
+#include "core/reverse/problem/contact_linearisation.hpp"
+
+namespace rtg {
+
+/// What a limit of a joint adds to the Newton system at one level: vectors are multiples of its ∇g,
+/// matrices of ∇g ∇gᵀ. As ContactLinearisation without friction, for a gap whose Hessian vanishes.
+template <class T>
+struct LimitLinearisation {
+  T a = T(0.0), b = T(0.0);  // Δλ = a + b ∇g·Δp
+  T Q = a, E = a;
+  T gradient = a;
+  T q = a, e = a, residual = a;
+
+  /// Of the level at the start, in between, or at a fixed end.
+  enum class Level { kStart, kWithin, kHeld };
+  /// Its gap, force, and ∇g·y.
+  struct State {
+    T gap, force, along;
+  };
+
+  LimitLinearisation(const State& at, const Barrier& barrier, const Curvature<T>& curvature,
+                     Level level) {
+    const T inverse = T(1.0) / at.gap, mu(barrier.weight);
+    const Barrier::Window<T> window = barrier.window(at.gap);
+    const T slope = at.force - mu * window.d1;
+    a = (mu * window.w - at.force * at.gap) * inverse;
+    if (level != Level::kHeld) b = -slope * inverse;
+    T by_force(0.0);  // ∂L/∂λ, complementarity aside
+    if (level == Level::kStart) {
+      gradient = -barrier.force(at.gap);
+      Q = -barrier.force_slope(at.gap);
+    } else {
+      E = -b;
+      residual = -at.force;
+      e = -a;
+      by_force = -at.along;
+    }
+    gradient = gradient + b * by_force;
+    const T z = -by_force * inverse * curvature.exact;
+    const T proximal = T(kForceProximal) * curvature.proximal;
+    Q = Q - z * mu * window.d2 + T(2.0) * z * b + proximal * b * b;
+    q = (z + b * proximal) * a;
+  }
+};
+
+}  // namespace rtg

@@ -1,0 +1,197 @@
+#include "core/reverse/problem/newton_system.hpp"
+
+#include "core/reverse/problem/joint_reduction.hpp"
+#include "core/reverse/problem/limit_linearisation.hpp"
+
+namespace rtg {
+namespace {
+
+/// Pairs of level k are added once stage k + kReach has begun: what motion and inertia add to
+/// stages k and k + 1 is there by then, and both are still in the cache.
+constexpr int kReach = 3;
+
+}  // namespace
+
+template <class T>
+NewtonSystem<T>::NewtonSystem(const ProblemLanes<T>& problem)
+    : fixed_end_(problem.fixed_end()),
+      system_(problem.energy.movable(), problem.sub_steps),
+      gradient_(system_.stages.size(), system_.stages[0].q),
+      residual_(gradient_),
+      control_gradient_(gradient_.size()),
+      eliminated_(gradient_.size(),
+                  std::vector<Eliminated<T>>(static_cast<std::size_t>(problem.energy.contacts()))),
+      active_(gradient_.size(), std::vector<char>(problem.energy.pairs().size())),
+      moved_(gradient_[0]) {}
+
+template <class T>
+void NewtonSystem<T>::linearise(const ProblemLanes<T>& problem, const Trajectory<T>& x,
+                                const Curvature<T>& curvature) {
+  curvature_ = curvature;
+  const int h = problem.sub_steps;
+  for (int k = 0; k <= h + kReach; ++k) {
+    if (k <= h) set_objective(problem, x, k);
+    if (k > 0 && k <= h) {
+      add_motion(problem, x, k);
+      if (problem.energy.inertial()) add_inertia(problem, x, k);
+      add_control(problem, x, k);
+    }
+    const int behind = k - kReach;
+    for (int n = 0; n < problem.energy.pair_count() && behind >= 0; ++n)
+      add_pair(problem, x, behind, n);
+  }
+  if (!problem.energy.articulation().empty()) {
+    for (int k = 0; k <= h; ++k) add_limits(problem, x, k);
+    reduce_joints(problem, x, {system_, gradient_, residual_, curvature_.exact});
+  }
+  for (int k = 0; k <= h; ++k)
+    for (int i = 0; i < system_.M; ++i) {
+      system_.stages[k].q[i] += gradient_[k][i];
+      system_.stages[k].e[i] += residual_[k][i];
+    }
+}
+
+template <class T>
+void NewtonSystem<T>::add_pair(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k,
+                               int n) {
+  const SceneModel<T>& scene = problem.energy;
+  ContactLinearisation<T> contacts(problem, x, curvature_, k, n);
+  active_[k][n] = 0;
+  if (!contacts.relevant()) return;
+  for (int v = 0; v < scene.corners(n); ++v)
+    if (contacts.add(v, eliminated_[k][contact_of(n, v)])) active_[k][n] = 1;
+  if (!active_[k][n]) return;
+  add_own(scene, n, contacts.frame(), contacts.own, k);
+  if (k == problem.sub_steps) return;
+  add_own(scene, n, contacts.frame_ahead(), contacts.next, k + 1);
+  Stage& next = system_.stages[k + 1];
+  const PairFrame<T>&ahead = contacts.frame_ahead(), &here = contacts.frame();
+  scatter(scene, n, PulledBlocks<T>(ahead, contacts.F, here), next.F);
+  scatter(scene, n, PulledBlocks<T>(ahead, contacts.N, here), next.N);
+}
+
+/// What a pair adds to one stage.
+template <class T>
+void NewtonSystem<T>::add_own(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame,
+                              const PairTerms<T>& terms, int k) {
+  Stage& stage = system_.stages[k];
+  pull(scene, pair, frame, terms.gradient, gradient_[k][0].data());
+  pull(scene, pair, frame, terms.q, stage.q[0].data());
+  scatter_lower(scene, pair, frame, terms.Q, stage.Q);
+  if (k == 0) return;
+  pull(scene, pair, frame, terms.e, stage.e[0].data());
+  pull(scene, pair, frame, terms.residual, residual_[k][0].data());
+  scatter_lower(scene, pair, frame, terms.E, stage.E);
+}
+
+/// The limits of joints at level k, over the poses of all bodies.
+template <class T>
+void NewtonSystem<T>::add_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
+  using Terms = LimitLinearisation<T>;
+  const SceneModel<T>& scene = problem.energy;
+  Stage& stage = system_.stages[k];
+  const typename Terms::Level level = k == 0 ? Terms::Level::kStart
+                                      : k == problem.sub_steps && fixed_end_
+                                          ? Terms::Level::kHeld
+                                          : Terms::Level::kWithin;
+  for_each_limit(scene.articulation(), x.p[k], [&](int l, const JointLimit<T>& limit) {
+    const T along = limit.along(x.multipliers[k].data(), system_.M);
+    const Terms terms({limit.gap, x.forces[k][scene.limit_contact(l)], along}, scene.barrier(),
+                      curvature_, level);
+    eliminated_[k][scene.limit_contact(l)].a = terms.a;
+    eliminated_[k][scene.limit_contact(l)].b[0] = terms.b;
+    limit.add_gradient(terms.gradient, system_.M, gradient_[k][0].data());
+    limit.add_gradient(terms.residual, system_.M, residual_[k][0].data());
+    limit.add_gradient(terms.q, system_.M, stage.q[0].data());
+    limit.add_gradient(terms.e, system_.M, stage.e[0].data());
+    limit.add_hessian(terms.Q, system_.M, stage.Q);
+    if (k > 0) limit.add_hessian(terms.E, system_.M, stage.E);
+  });
+}
+
+template <class T>
+T NewtonSystem<T>::stationarity() const {
+  T top(0.0), sum(0.0);
+  for (int k = 0; k <= system_.h; ++k) {
+    for (const Vec3<T>& g : gradient_[k])
+      for (int m = 0; m < 3 && !(k == system_.h && fixed_end_); ++m) {
+        top = greater(top, magnitude(g[m]));
+        sum = sum + g[m];
+      }
+    if (k == 0) continue;
+    for (int m = 0; m < 3; ++m) {
+      top = greater(top, magnitude(control_gradient_[k][m]));
+      sum = sum + control_gradient_[k][m];
+    }
+  }
+  return top + (sum - sum);
+}
+
+template <class T>
+void NewtonSystem<T>::force_steps(const ProblemLanes<T>& problem, const Trajectory<T>& x,
+                                  const StageStep<T>& step, PerContact<T>& out) const {
+  for (int k = 0; k <= problem.sub_steps; ++k) {
+    const T* moved = step.poses[k][0].data();
+    if (!problem.energy.articulation().empty()) {
+      moved_ = step.poses[k];
+      problem.energy.articulation().spread(x.p[k], moved_[0].data());
+      moved = moved_[0].data();
+    }
+    find_force_steps(problem.energy, x.p[k], k, moved, out[k].data());
+  }
+}
+
+/// Of one level, by how far all bodies move [3·movable].
+template <class T>
+void NewtonSystem<T>::find_force_steps(const SceneModel<T>& scene, const Placement<T>& at, int k,
+                                       const T* moved, T* out) const {
+  for (int n = 0; n < scene.pair_count(); ++n) {
+    T* forces = out + contact_of(n, 0);
+    if (!active_[k][n]) {
+      for (int v = 0; v < scene.corners(n); ++v) forces[v] = T(0.0);
+      continue;
+    }
+    const Vec4<T> along = pushed(scene, n, scene.frame(n, at), moved);
+    for (int v = 0; v < scene.corners(n); ++v) {
+      const Eliminated<T>& e = eliminated_[k][contact_of(n, v)];
+      forces[v] = e.a + e.b.dot(along);
+    }
+  }
+  for_each_limit(scene.articulation(), at, [&](int l, const JointLimit<T>& limit) {
+    const Eliminated<T>& e = eliminated_[k][scene.limit_contact(l)];
+    out[scene.limit_contact(l)] = e.a + e.b[0] * limit.along(moved, scene.movable());
+  });
+}
+
+/// sᵀ H s = -g·s - y·A s, and A s = -e.
+template <class T>
+T NewtonSystem<T>::model_curvature(const StageStep<T>& step) const {
+  T sum(0.0);
+  for (int k = 0; k <= system_.h; ++k) {
+    const auto& stage = system_.stages[k];
+    for (int i = 0; i < system_.M; ++i) sum = sum - stage.q[i].dot(step.poses[k][i]);
+    if (k == 0) continue;
+    for (int i = 0; i < system_.M; ++i) sum = sum + stage.e[i].dot(step.multipliers[k][i]);
+    sum = sum - stage.r.dot(step.controls[k]);
+  }
+  return sum;
+}
+
+/// ∇J·s = ∇L·s - y·A s.
+template <class T>
+T NewtonSystem<T>::objective_slope(const Trajectory<T>& x, const StageStep<T>& step) const {
+  T sum(0.0);
+  for (int k = 0; k <= system_.h; ++k) {
+    for (int i = 0; i < system_.M; ++i) sum = sum + gradient_[k][i].dot(step.poses[k][i]);
+    if (k == 0) continue;
+    sum = sum + control_gradient_[k].dot(step.controls[k]);
+    for (std::size_t m = 0; m < x.multipliers[k].size(); ++m)
+      sum = sum + x.multipliers[k][m] * system_.stages[k].e[m / 3][m % 3];
+  }
+  return sum;
+}
+
+template class NewtonSystem<double>;
+template class NewtonSystem<Lanes>;
+
+}  // namespace rtg

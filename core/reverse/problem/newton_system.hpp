@@ -1,0 +1,63 @@
+#pragma once
+
+#include "core/math/stage_system.hpp"
+#include "core/reverse/problem/contact_linearisation.hpp"
+
+namespace rtg {
+
+/// The Newton system of the first-order conditions, eq. (9) and (10), by sub-steps. Each force is
+/// eliminated by its own complementarity row,
+///
+///   g Δλ + s ∇g·Δp = -(λ g - μ̃ w),  s = λ - μ̃ w'   =>   Δλ = a + b·Δp,
+///
+/// and the multiplier z of that row by stationarity in λ, z = -L_λ/g. Contacts are summed up in the
+/// coordinates of their pair (PairFrame).
+template <class T>
+class NewtonSystem {
+ public:
+  explicit NewtonSystem(const ProblemLanes<T>& problem);
+
+  void linearise(const ProblemLanes<T>& problem, const Trajectory<T>& x,
+                 const Curvature<T>& curvature);
+
+  const StageSystem<T>& system() const { return system_; }
+  /// Gradient of the Lagrangian over poses (coordinates of jointed bodies), forces eliminated
+  /// [h + 1][bodies].
+  const std::vector<BlockColumn<T>>& gradient() const { return gradient_; }
+  /// ‖∇L‖∞ over poses and controls; NaN where it is not finite.
+  T stationarity() const;
+
+  /// Changes of the forces along a step [h + 1][contacts].
+  void force_steps(const ProblemLanes<T>& problem, const Trajectory<T>& x, const StageStep<T>& step,
+                   PerContact<T>& out) const;
+
+  /// Curvature of the model, and slope of the objective, along the solution of the system.
+  T model_curvature(const StageStep<T>& step) const;
+  T objective_slope(const Trajectory<T>& x, const StageStep<T>& step) const;
+
+ private:
+  using Stage = typename StageSystem<T>::Stage;
+  void set_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
+  void add_motion(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
+  void add_inertia(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
+  void add_turn_curvature(const typename Inertia<T>::Slope& s, const T& y, int k, int i);
+  void add_control(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
+  void add_pair(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k, int n);
+  void add_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
+  void find_force_steps(const SceneModel<T>& scene, const Placement<T>& at, int k, const T* moved,
+                        T* out) const;
+  void add_own(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame,
+               const PairTerms<T>& terms, int k);
+
+  bool fixed_end_;
+  Curvature<T> curvature_;
+  StageSystem<T> system_;
+  std::vector<BlockColumn<T>> gradient_;  // of the Lagrangian, forces eliminated
+  std::vector<BlockColumn<T>> residual_;  // Φ_k
+  std::vector<Vec3<T>> control_gradient_;
+  std::vector<std::vector<Eliminated<T>>> eliminated_;  // [h + 1][contacts]
+  std::vector<std::vector<char>> active_;               // [h + 1][pairs]
+  mutable BlockColumn<T> moved_;                        // of all bodies, at work
+};
+
+}  // namespace rtg

@@ -1,0 +1,162 @@
+// What the Newton system has of the objective, motion and controls: all but contacts and joints.
+
+#include "core/reverse/problem/newton_system.hpp"
+
+namespace rtg {
+namespace {
+
+template <class T>
+Vec3<T> nothing() {
+  return Vec3<T>::Constant(T(0.0));
+}
+
+template <class T>
+Vec3<T> multipliers_of(const Trajectory<T>& x, int k, int body) {
+  const T* y = x.multipliers[k].data() + 3 * body;
+  return {y[0], y[1], y[2]};
+}
+
+/// How far a body moved in the sub-step before; everything is at rest before the first.
+template <class T>
+Vec3<T> way_before(const Trajectory<T>& x, int k, int body) {
+  return k == 1 ? nothing<T>() : way(x.p[k - 2], x.p[k - 1], body);
+}
+
+}  // namespace
+
+/// Begins stage k with the terms of one level in the objective, barrier aside, and the proximal
+/// one.
+template <class T>
+void NewtonSystem<T>::set_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
+  const ReverseConfig& config = problem.config;
+  Stage& stage = system_.stages[k];
+  for (BlockMatrix<T>* block : {&stage.Q, &stage.E, &stage.F, &stage.G, &stage.N, &stage.U})
+    block->clear();
+  const bool end = k > 0 && problem.ends(k);
+  const T spring = end ? problem.terminal_weight : T(0.0);
+  for (int i = 0; i < system_.M; ++i) {
+    stage.q[i].setConstant(T(0.0));
+    stage.e[i].setConstant(T(0.0));
+    residual_[k][i].setConstant(T(0.0));
+    Vec3<T>& g = gradient_[k][i];
+    Block<T> own = Block<T>::Constant(T(0.0));
+    for (int m = 0; m < 3; ++m) {
+      g[m] = spring * (x.p[k].body(i)[m] - problem.end[3 * i + m]);
+      own(m, m) = curvature_.proximal + spring;
+    }
+    if (k == 0) {
+      const T pull(i == 0 ? config.robot_weight : config.object_weight);
+      g[0] += pull * problem.direction.x();
+      g[1] += pull * problem.direction.y();
+    }
+    stage.Q.add(i, i, own);
+  }
+  const Vec3<T> path = problem.robot_path(k);
+  for (int m = 0; m < 3; ++m) {
+    const T weight(2.0 * (m < 2 ? config.path_weight : config.heading_weight));
+    stage.Q.at(0, 0)(m, m) += weight;
+    gradient_[k][0][m] += weight * (x.p[k].body(0)[m] - path[m]);
+  }
+}
+
+/// Damping and the price of speed of sub-step k.
+template <class T>
+void NewtonSystem<T>::add_motion(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
+  Stage &stage = system_.stages[k], &before = system_.stages[k - 1];
+  for (int i = 0; i < system_.M; ++i) {
+    const Vec3<T> moved = way(x.p[k - 1], x.p[k], i), y = multipliers_of(x, k, i);
+    const Damping<T>& body = problem.energy.damping(i);
+    const Vec3<T> slope(body.mass, body.mass, body.turn_curvature(moved[2]));
+    residual_[k][i] += problem.energy.motion_force(i, moved, way_before(x, k, i));
+    gradient_[k][i] += slope.cwiseProduct(y);
+    gradient_[k - 1][i] -= slope.cwiseProduct(y);
+    Block<T> H =
+        diagonal<T>(Vec3<T>(T(0.0), T(0.0), curvature_.exact * body.turn_third(moved[2]) * y[2]));
+    if (i > 0) {
+      const SpeedPenalty<T> speed = problem.speed(x, k, i);
+      H += speed.hessian;
+      gradient_[k][i] += speed.gradient;
+      gradient_[k - 1][i] -= speed.gradient;
+    }
+    stage.E.add(i, i, diagonal<T>(slope));
+    stage.F.add(i, i, diagonal<T>(-slope));
+    stage.Q.add(i, i, H);
+    before.Q.add(i, i, H);
+    stage.N.add(i, i, -H);
+  }
+}
+
+/// Derivatives of inertia over the sub-steps k - 1 and k; before the first everything is at rest.
+template <class T>
+void NewtonSystem<T>::add_inertia(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
+  const bool first = k == 1;
+  for (int i = 0; i < system_.M; ++i) {
+    const Inertia<T> body = problem.energy.inertia(i);
+    const Vec3<T> a = way(x.p[k - 1], x.p[k], i);
+    const Vec3<T> b = way_before(x, k, i);
+    const Vec3<T> y = multipliers_of(x, k, i);
+    auto turn = body.turn_slope(a[2], b[2]);
+    if (first) turn.b = turn.ab = turn.bb = T(0.0);
+    const Vec3<T> by_a(body.mass, body.mass, turn.a);
+    const Vec3<T> by_b = first ? nothing<T>() : Vec3<T>(-body.mass, -body.mass, turn.b);
+    Stage& stage = system_.stages[k];
+    stage.E.add(i, i, diagonal<T>(by_a));
+    stage.F.add(i, i, diagonal<T>(by_b - by_a));
+    gradient_[k][i] += by_a.cwiseProduct(y);
+    gradient_[k - 1][i] += (by_b - by_a).cwiseProduct(y);
+    if (!first) {
+      stage.G.add(i, i, diagonal<T>(-by_b));
+      gradient_[k - 2][i] -= by_b.cwiseProduct(y);
+    }
+    if (body.periodic) add_turn_curvature(turn, curvature_.exact * y[2], k, i);
+  }
+}
+
+/// Second derivatives of y·Φ_k in the angles of body i.
+template <class T>
+void NewtonSystem<T>::add_turn_curvature(const typename Inertia<T>::Slope& s, const T& y, int k,
+                                         int i) {
+  const auto entry = [](const T& x) { return diagonal<T>(Vec3<T>(T(0.0), T(0.0), x)); };
+  Stage &stage = system_.stages[k], &before = system_.stages[k - 1];
+  stage.Q.add(i, i, entry(y * s.aa));
+  stage.N.add(i, i, entry(y * (s.ab - s.aa)));
+  before.Q.add(i, i, entry(y * (s.aa - T(2.0) * s.ab + s.bb)));
+  if (k == 1) return;
+  stage.U.add(i, i, entry(-y * s.ab));
+  before.N.add(i, i, entry(y * (s.ab - s.bb)));
+  system_.stages[k - 2].Q.add(i, i, entry(y * s.bb));
+}
+
+template <class T>
+void NewtonSystem<T>::add_control(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
+  Stage& stage = system_.stages[k];
+  const T price(2.0 * problem.config.control_weight);
+  for (int m = 0; m < 3; ++m) {
+    const T push = hyperbolic_tangent(x.controls[k][m]);
+    const T bound = problem.energy.control_bound()[m], y = x.multipliers[k][m];
+    const T slope = -bound * (T(1.0) - push * push);
+    residual_[k][0][m] -= bound * push;
+    stage.B[m] = slope;
+    stage.R[m] = price + curvature_.proximal - curvature_.exact * T(2.0) * push * slope * y;
+    stage.r[m] = control_gradient_[k][m] = price * x.controls[k][m] + slope * y;
+  }
+}
+
+template void NewtonSystem<double>::set_objective(const ProblemLanes<double>&,
+                                                  const Trajectory<double>&, int);
+template void NewtonSystem<double>::add_motion(const ProblemLanes<double>&,
+                                               const Trajectory<double>&, int);
+template void NewtonSystem<double>::add_inertia(const ProblemLanes<double>&,
+                                                const Trajectory<double>&, int);
+template void NewtonSystem<double>::add_control(const ProblemLanes<double>&,
+                                                const Trajectory<double>&, int);
+template void NewtonSystem<Lanes>::set_objective(const ProblemLanes<Lanes>&,
+                                                 const Trajectory<Lanes>&, int);
+template void NewtonSystem<Lanes>::add_motion(const ProblemLanes<Lanes>&, const Trajectory<Lanes>&,
+                                              int);
+template void NewtonSystem<Lanes>::add_inertia(const ProblemLanes<Lanes>&, const Trajectory<Lanes>&,
+                                               int);
+template void NewtonSystem<Lanes>::add_control(const ProblemLanes<Lanes>&, const Trajectory<Lanes>&,
+                                               int);
+
+}  // namespace rtg

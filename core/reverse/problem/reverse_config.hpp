@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "core/math/kkt_solver.hpp"
+#include "core/reverse/problem/reverse_job.hpp"
+
+namespace rtg {
+
+enum class ReversePreset { kDefault, kPaper };
+inline constexpr std::array<std::string_view, 2> kReversePresets{"default", "paper"};
+
+/// The reverse problem (eq. 6, 7) and its SQP (A.2). The values here are the preset `default`. A
+/// loader begins with reverse_preset(preset) and reads the other fields over it. Energies are in
+/// units of k_D/Δt², see core/NOTATION.md.
+struct ReverseConfig {
+  ReversePreset preset = ReversePreset::kDefault;
+  KktMethod kkt = KktMethod::kBlockElimination;
+  int max_iterations = 200;
+  double feasibility_tol = 1e-6;     // ‖C‖∞
+  double stationarity_tol = 1e-4;    // ‖∇L‖∞
+  double robot_weight = 0.2;         // w₀ of eq. (6)
+  double object_weight = 1.0;        // w_i, i > 0
+  double control_weight = 1e-3;      // ε of eq. (6)
+  double path_weight = 100.0;        // κ_x, action consistency; 0: the paper's objective
+  double heading_weight = 100.0;     // κ_θ
+  double speed_weight = 0.2;         // χ, holds objects to about the robot's speed
+  double terminal_weight = 300.0;    // spring to the given final state; 0: that state is fixed,
+                                     // and few at which Box2D comes to rest have a predecessor
+  double terminal_tolerance = 0.05;  // a solution that misses the final state by more fails [m]
+  double plain_barrier = 0.0;        // μ of the paper's -μ log g [J]; 0: physics has the barrier
+  double proximal_start = 1.0;       // δ of the first iteration
+  int shakes = 2;                    // times that the spring is softened, against poor minima
+  int releases = 7;                  // predecessors besides the one of the whole push
+
+  template <class Visitor>
+  void visit(Visitor& v) {
+    v.choice("preset", preset, kReversePresets, "values of all fields that are not given");
+    v.choice("kkt", kkt, kKktMethods, "how the Newton systems are solved");
+    v.integer("max_iterations", max_iterations, 1, 100000, "SQP iterations per candidate");
+    v.number("feasibility_tol", feasibility_tol, 1e-14, 1.0, "largest constraint violation");
+    v.number("stationarity_tol", stationarity_tol, 1e-14, 1.0, "largest Lagrangian gradient");
+    v.number("robot_weight", robot_weight, 0.0, 1e6, "pull of the robot against the push");
+    v.number("object_weight", object_weight, 0.0, 1e6, "pull of the objects against the push");
+    v.number("control_weight", control_weight, 1e-9, 1e6, "price of control");
+    v.number("path_weight", path_weight, 0.0, 1e9, "holds the robot on the push's straight line");
+    v.number("heading_weight", heading_weight, 0.0, 1e9, "holds the robot's heading");
+    v.number("speed_weight", speed_weight, 0.0, 1e9, "price of objects that outrun the push");
+    v.number("terminal_weight", terminal_weight, 0.0, 1e9, "holds the final state; 0: fixes it");
+    v.number("terminal_tolerance", terminal_tolerance, 0.0, 100.0, "largest miss of it [m]");
+    v.number("plain_barrier", plain_barrier, 0.0, 1e6, "weight of -mu log g; 0: physics' barrier");
+    v.number("proximal_start", proximal_start, 1e-4, 1e9, "regularisation of the first step");
+    v.integer("shakes", shakes, 0, 1000, "times the hold on the final state is softened");
+    v.integer("releases", releases, 0, kMaxStarts - 1, "starts whose objects are met on the way");
+  }
+};
+
+/// The values that `preset` stands for. `paper` is App. E: the printed objective, l1 merit,
+/// Hessian of the objective only, static start, 1000 iterations, final state fixed, plain barrier.
+/// Its weight is one at which it converges at all: for 78 % of the candidates of Gathering's goal
+/// states that survive pruning, in 147 iterations in the median (`action48/paper` of the
+/// benchmarks).
+inline ReverseConfig reverse_preset(ReversePreset preset) {
+  ReverseConfig config;
+  if (preset == ReversePreset::kDefault) return config;
+  config.preset = ReversePreset::kPaper;
+  config.max_iterations = 1000;
+  config.releases = 0;
+  config.plain_barrier = 0.02;
+  config.path_weight = config.heading_weight = 0.0;
+  config.speed_weight = config.terminal_weight = 0.0;
+  return config;
+}
+
+}  // namespace rtg

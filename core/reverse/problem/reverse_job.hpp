@@ -1,0 +1,42 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "core/math/hash.hpp"
+#include "core/reverse/problem/solve_status.hpp"
+#include "core/world/pose.hpp"
+
+namespace rtg {
+
+/// Which state, pushed with `action`, ends in `end`?
+struct ReverseJob {
+  Poses end;
+  int action = 0;
+
+  bool operator==(const ReverseJob&) const = default;
+};
+
+/// A number that differs between pairs of a state and an action, but for one in 2⁶⁴.
+inline std::uint64_t key_of(const Poses& state, int action) {
+  std::uint64_t key = hashed(0, static_cast<std::uint64_t>(action));
+  for (const Pose& p : state)
+    for (const double x : {p.x, p.y, p.theta}) key = hashed(key, std::bit_cast<std::uint64_t>(x));
+  return key;
+}
+inline std::uint64_t key_of(const ReverseJob& job) { return key_of(job.end, job.action); }
+
+/// Most predecessors in the answer to one job.
+inline constexpr int kMaxStarts = 8;
+
+/// Answer to a ReverseJob. `starts`: predecessors, finite, the one of the whole push first; 1 to
+/// kMaxStarts if status is kConverged, else none.
+struct ReverseResult {
+  SolveStatus status = SolveStatus::kNonFinite;
+  int iterations = 0;
+  std::vector<Poses> starts = {};
+  double cpu_s = 0.0;  // thread CPU time; the one field that is not a function of the job
+};
+
+}  // namespace rtg

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <vector>
+
+#include "core/energy/step_energy.hpp"
+#include "core/reverse/problem/reverse_config.hpp"
+#include "core/reverse/problem/solve_status.hpp"
+
+namespace rtg {
+
+/// The reverse problem of one candidate, eq. (6) and (7), over the sub-steps k = 1 ... h of a push:
+///
+///   min  Σ_i w_i (x_i, y_i)_0·d + ε Σ_k |c_k|² + Σ b(g(p_0)) + κ_x Σ_k |t₀ - t̄₀|²_k
+///        + κ_θ Σ_k (θ₀ - θ̄₀)²_k + χ Σ_k Σ_{i>0} q³_{k,i} + K/2 |p_h - p̄|² [+ K/2 |p_{h-1} - p̄|²]
+///   s.t. Φ_k = ∂Ψ/∂p₊(p_k, p_{k-1}, p_{k-2}, c_k) = 0,   λ_k g(p_k) = μ̃ w(g(p_k)),   g > 0.
+///
+/// p̄ is the given final state, (t̄₀, θ̄₀)_k the straight path of the robot that ends in it, q half
+/// the squared speed of an object (SpeedPenalty). In dynamic mode the push begins at rest, p_{-1} =
+/// p_0, and the states s_h = (p_h, p_{h-1}) end there, after sub-steps in which the robot is held.
+///
+/// Departs from the paper: action consistency κ makes the controls those of the discrete action; no
+/// object outruns the push by much (χ);
+/// the normal forces λ are unknowns (relaxed complementarity), bilinear instead of 1/g; a stiff
+/// spring K holds the final state, so that every forward simulation is feasible. With the preset
+/// `paper` κ = χ = 0, λ = μ̃ w/g throughout, w = 1 at any gap, and the final state is fixed.
+struct ReverseProblem {
+  const StepEnergy& energy;
+  const ReverseConfig& config;
+  VectorXd end;        // p̄ [3·bodies]
+  Vector2d direction;  // d(a)
+  int sub_steps = 1;   // h
+  int settling = 0;    // the last of them, in which the robot is held
+};
+
+/// A trajectory with its forces and multipliers; entry k belongs to the end of sub-step k, entry 0
+/// to the start. controls[0] and multipliers[0] are unused.
+struct Iterate {
+  std::vector<VectorXd> p;            // p_k [3·bodies]
+  std::vector<VectorXd> forces;       // λ_k [contacts]
+  std::vector<Vector3d> controls;     // c_k
+  std::vector<VectorXd> multipliers;  // of Φ_k = 0 [dofs]; of jointed bodies J y, see Articulation
+};
+
+/// At rest in the final state: λ = λ(g), c = 0.
+Iterate static_iterate(const ReverseProblem& problem);
+
+double objective(const ReverseProblem& problem, const Iterate& x);
+
+/// How far the constraints are from holding.
+struct Violation {
+  std::vector<VectorXd> residuals;        // Φ_k [dofs], entry 0 unused
+  std::vector<VectorXd> complementarity;  // λ g - μ̃ w [contacts]
+  double l1() const;
+  double max() const;
+};
+Violation violation(const ReverseProblem& problem, const Iterate& x);
+
+/// Of a converged iterate: kInfeasible if it misses the final state by more than the tolerance.
+SolveStatus judged(const ReverseProblem& problem, const Iterate& x);
+
+/// Largest distance of a movable body from where it should end [m].
+double terminal_miss(const ReverseProblem& problem, const Iterate& x);
+
+}  // namespace rtg

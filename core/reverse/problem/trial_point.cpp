@@ -1,0 +1,52 @@
+#include "core/reverse/problem/trial_point.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kLongestMove = 1.0;  // [m]
+constexpr double kLargestTurn = 0.5;  // [rad]
+constexpr double kNoForce = 1e-14;    // [kg m], the rest of a contact that has opened
+
+}  // namespace
+
+template <class T>
+Mask<T> bounded(const StageStep<T>& step, const T& alpha) {
+  Mask<T> near(true);
+  for (const BlockColumn<T>& poses : step.poses)
+    for (const Vec3<T>& d : poses)
+      near = near &&
+             alpha * alpha * (d[0] * d[0] + d[1] * d[1]) <= T(kLongestMove * kLongestMove) &&
+             alpha * magnitude(d[2]) <= T(kLargestTurn);
+  return near;
+}
+
+template <class T>
+void make_trial(const SceneModel<T>& scene, const Trajectory<T>& x, const Move<T>& move,
+                Trajectory<T>& trial) {
+  const T& alpha = move.alpha;
+  for (std::size_t k = 0; k < x.p.size(); ++k) {
+    for (std::size_t m = 0; m < x.multipliers[k].size(); ++m) {
+      const auto body = m / 3;
+      const auto row = static_cast<Eigen::Index>(m % 3);
+      trial.p[k].p[m] = x.p[k].p[m] + alpha * move.step.poses[k][body][row];
+      if (k > 0)
+        trial.multipliers[k][m] = x.multipliers[k][m] + alpha * move.step.multipliers[k][body][row];
+    }
+    scene.place(trial.p[k]);
+    scene.articulation().spread(trial.p[k], trial.multipliers[k].data());
+    if (k > 0) trial.controls[k] = x.controls[k] + move.step.controls[k] * alpha;
+    for (std::size_t c = 0; c < trial.forces[k].size(); ++c) {
+      const T force = x.forces[k][c] + alpha * move.forces[k][c];
+      trial.forces[k][c] = select(magnitude(force) < T(kNoForce), T(0.0), force);
+    }
+  }
+}
+
+template Mask<double> bounded(const StageStep<double>&, const double&);
+template Mask<Lanes> bounded(const StageStep<Lanes>&, const Lanes&);
+template void make_trial(const SceneModel<double>&, const Trajectory<double>&, const Move<double>&,
+                         Trajectory<double>&);
+template void make_trial(const SceneModel<Lanes>&, const Trajectory<Lanes>&, const Move<Lanes>&,
+                         Trajectory<Lanes>&);
+
+}  // namespace rtg

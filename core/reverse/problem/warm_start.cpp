@@ -1,0 +1,161 @@
+#include "core/reverse/problem/warm_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/energy/open_gaps.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kLeastShare = 0.05;  // of a mirrored step
+constexpr double kTolerance = 1e-6;   // of a forward step [kg m]
+
+template <class T>
+void put_robot(const Vec3<T>& pose, Placement<T>& at) {
+  for (int m = 0; m < 3; ++m) at.p[m] = pose[m];
+  at.update();
+}
+
+}  // namespace
+
+template <class T>
+WarmStart<T>::WarmStart(const ProblemLanes<T>& problem)
+    : problem_(problem),
+      scene_(problem.energy),
+      step_(scene_, kTolerance),
+      start_(scene_.bodies()),
+      pushed_(start_),
+      still_(start_),
+      robot_back_(start_),
+      trial_(start_),
+      by_(start_.p),
+      lag_(static_cast<std::size_t>(scene_.contacts()), T(0.0)),
+      moved_(start_.p) {}
+
+/// The straight path's pose after sub-step k, led by what the servo lags behind in steady motion.
+template <class T>
+Vec3<T> WarmStart<T>::straight_target(int k) const {
+  const T share = scene_.damping(0).mass * T(scene_.stride()) / scene_.control_bound()[0];
+  const T bounded = lesser(share, T(1.0 - 1e-12));
+  const T artanh = T(0.5) * logarithm((T(1.0) + bounded) / (T(1.0) - bounded));
+  const T lead = select(share < T(1.0), artanh * T(servo_scale(scene_.stride())), T(0.0));
+  Vec3<T> pose = problem_.robot_path(k);
+  if (k > problem_.sub_steps - problem_.settling) return pose;
+  for (int m = 0; m < 2; ++m) pose[m] += lead * problem_.direction[m];
+  return pose;
+}
+
+/// F(from); notes how far it went.
+template <class T>
+Mask<T> WarmStart<T>::push(const StepStart<T>& from, const Vec3<T>& target, const Mask<T>& wanted,
+                           Placement<T>& to) {
+  const Mask<T> found = step_.solve(from, Drive<T>::towards(target), wanted, to);
+  for (std::size_t m = 0; m < moved_.size(); ++m)
+    moved_[m] = select(found, to.p[m] - from.now.p[m], moved_[m]);
+  return found;
+}
+
+/// out ← `p` with its objects moved by -share·by_ for the largest share in 1, ½, ... that leaves
+/// the gaps open, where there is one. The robot's part of by_ is ignored.
+template <class T>
+void WarmStart<T>::move_back(const Placement<T>& p, const Mask<T>& wanted, Placement<T>& out) {
+  const T floor = lesser(T(kGapFloor * scene_.barrier().range), scene_.least_gap(p));
+  Mask<T> searching = wanted;
+  for (double share = 1.0; share > kLeastShare && any(searching); share *= 0.5) {
+    trial_ = p;
+    for (int m = 3; m < 3 * scene_.movable(); ++m) trial_.p[m] = p.p[m] - T(share) * by_[m];
+    scene_.place(trial_);
+    const Mask<T> open = searching && scene_.least_gap(trial_) >= floor && scene_.separated(trial_);
+    out.assign(open, trial_);
+    searching = searching && !open;
+  }
+}
+
+/// start_ ← the state before by a mirrored forward step, the robot on its straight path, at
+/// mirrored_path(k - 1).
+template <class T>
+Mask<T> WarmStart<T>::mirror(int k, const Mask<T>& wanted) {
+  const T stride(scene_.stride());
+  const Vec3<T> ahead(start_.p[0] + stride * problem_.direction.x(),
+                      start_.p[1] + stride * problem_.direction.y(), start_.p[2]);
+  const Vec3<T> here(start_.p[0], start_.p[1], start_.p[2]);
+  scene_.forces(start_, lag_.data());
+  Mask<T> going = push({start_, lag_.data(), moved_.data()}, ahead, wanted, pushed_);
+  going = step_.solve({start_, lag_.data()}, Drive<T>::towards(here), going, still_);
+  for (std::size_t m = 0; m < by_.size(); ++m) by_[m] = pushed_.p[m] - still_.p[m];
+  robot_back_ = start_;
+  put_robot(mirrored_path(k - 1), robot_back_);
+  start_.assign(going, robot_back_);
+  move_back(robot_back_, going, start_);
+  return going;
+}
+
+template <class T>
+Mask<T> WarmStart<T>::roll_out(const Mask<T>& wanted, Trajectory<T>& x) {
+  scene_.forces(x.p[0], x.forces[0].data());
+  Mask<T> going = wanted;
+  for (int k = 1; k <= problem_.sub_steps; ++k) {
+    const Vec3<T> target = straight_target(k);
+    const StepStart<T> from{x.p[k - 1], x.forces[k - 1].data(), moved_.data(),
+                            &x.p[std::max(k - 2, 0)]};
+    going = push(from, target, going, x.p[k]);
+    x.controls[k] = Drive<T>::towards(target).control_at(x.p[k], servo_scale(scene_.stride()));
+    scene_.forces(x.p[k], x.forces[k].data());
+  }
+  return going;
+}
+
+/// The robot's straight path, and on beyond its end as far as objects coast.
+template <class T>
+Vec3<T> WarmStart<T>::mirrored_path(int k) const {
+  const int beyond = k - (problem_.sub_steps - problem_.settling);
+  Vec3<T> pose = problem_.robot_path(k);
+  const double steps = std::min(static_cast<double>(beyond), scene_.coasting());
+  for (int m = 0; m < 2 && beyond > 0; ++m)
+    pose[m] += T(steps * scene_.stride()) * problem_.direction[m];
+  return pose;
+}
+
+/// start_ ← start_ with the robot where mirrored_path(k) is, in those of the lanes where that is
+/// legal; returns them.
+template <class T>
+Mask<T> WarmStart<T>::begin_at(int k, const Mask<T>& wanted) {
+  robot_back_ = start_;
+  put_robot(mirrored_path(k), robot_back_);
+  const Mask<T> open =
+      wanted && scene_.least_gap(robot_back_) > T(0.0) && scene_.separated(robot_back_);
+  start_.assign(open, robot_back_);
+  return open;
+}
+
+template <class T>
+Mask<T> WarmStart<T>::find(const Mask<T>& wanted, Trajectory<T>& x) {
+  std::ranges::fill(moved_, T(0.0));
+  start_.p = problem_.end;
+  start_.update();
+  // What has coasted was pushed by a robot that went on: mirroring begins there.
+  const int stop = problem_.sub_steps - problem_.settling;
+  Mask<T> going = wanted, begun(false);
+  for (int k = stop + static_cast<int>(std::ceil(scene_.coasting())); k > 0 && any(going); --k) {
+    begun = begun || (k <= stop ? going : begin_at(k, going && !begun));
+    going = going && (mirror(k, going && begun) || !begun);
+  }
+  x.p[0] = start_;
+  for (std::vector<T>& y : x.multipliers) std::ranges::fill(y, T(0.0));
+  return roll_out(going, x);
+}
+
+std::optional<Iterate> warm_start(const ReverseProblem& problem) {
+  ProblemLanes<double> one(problem);
+  one.load(0, problem);
+  Trajectory<double> x(one.energy, one.sub_steps);
+  x.load(0, problem, static_iterate(problem));
+  if (!WarmStart<double>(one).find(true, x)) return std::nullopt;
+  return x.unload(0, problem);
+}
+
+template class WarmStart<double>;
+template class WarmStart<Lanes>;
+
+}  // namespace rtg

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/reverse/problem/evaluator.hpp"
+#include "core/reverse/problem/newton_system.hpp"
+#include "core/reverse/sqp/filter.hpp"
+#include "core/reverse/sqp/sqp_result.hpp"
+#include "core/reverse/sqp/start_queue.hpp"
+
+namespace rtg {
+
+/// The SQP of the preset `default`: exact Hessian with the objective's in its place where the model
+/// is not convex along the step, proximal term δ, filter line search. Each lane of T works on a
+/// candidate and takes the next one when that has ended.
+///
+/// The first attempt shakes iterates that come near a solution soon: ReverseConfig::shakes times it
+/// softens the spring K to the final state for a few iterations. That mostly leads out of poor
+/// minima, in which an object is let go of that could be dragged along, now and then into one. An
+/// attempt that fails, or misses the final state, is followed by others, up to three in all,
+/// without shaking and mostly with a larger first δ. Of two solutions that miss the final state the
+/// first is kept, and that is the end.
+template <class T>
+class FilterSqp {
+ public:
+  /// For problems with the numbers of bodies, the joints and the configurations of `like`.
+  FilterSqp(const ReverseProblem& like, std::unique_ptr<StageSolver<T>> kkt);
+
+  /// From the given starts, one per problem (kNonFinite where one is not legal, its barrier being
+  /// infinite); from warm starts if there are none (kInfeasible where bodies overlap in the final
+  /// state).
+  std::vector<SqpResult> solve(std::span<const ReverseProblem* const> problems,
+                               std::span<const Iterate> starts = {});
+
+  /// Share of the lanes at work, over all iterations so far.
+  double occupancy() const { return static_cast<double>(busy_) / static_cast<double>(lanes_); }
+
+ private:
+  struct Lane {
+    int job = -1;  // none
+    int attempt = 0, iterations = 0;
+    double proximal = 1.0, first_proximal = 1.0;  // δ; of a phase's first iteration
+    bool exact = true;
+    int shaking = 0;  // phases that are to follow this one; odd: the spring is soft
+    int left = 0;     // iterations of this phase, where others are to follow
+    bool shaken = false;
+    double stationarity = 0.0;
+    Filter filter;
+  };
+
+  bool refill();
+  void begin_attempt(int l);
+  void begin_phase(int l, int shaking);
+  void end_attempt(int l, SolveStatus status);
+  void evaluate_begun();
+  void adopt(const Mask<T>& where, const Merits<T>& found);
+  void iterate();
+  void end_or_step(int l, double stationarity);
+  void reject_ascent(const Mask<T>& descends);
+  void regularise(int l, SolveStatus if_hopeless);
+  void line_search();
+  Mask<T> accept(const Mask<T>& legal, const Merits<T>& then, double alpha);
+
+  const ReverseConfig& config_;
+  std::span<const ReverseProblem* const> problems_;
+  std::vector<SqpResult> results_;
+  StartQueue<T> queue_;
+  ProblemLanes<T> problem_;
+  NewtonSystem<T> newton_;
+  std::unique_ptr<StageSolver<T>> kkt_;
+  Evaluator<T> evaluator_;
+  Trajectory<T> x_, trial_, start_;
+  StageStep<T> step_;
+  PerContact<T> force_step_, gaps_, trial_gaps_;
+  Merits<T> now_;  // of x
+  std::vector<Lane> lane_;
+  Mask<T> begun_, stepping_;  // at the start of a phase; with a step to take
+  long busy_ = 0, lanes_ = 0;
+};
+
+}  // namespace rtg

@@ -1,0 +1,115 @@
+#include "core/reverse/sqp/merit_sqp.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/math/assembled_solver.hpp"
+#include "core/reverse/problem/evaluator.hpp"
+#include "core/reverse/problem/newton_system.hpp"
+#include "core/reverse/problem/trial_point.hpp"
+#include "core/reverse/sqp/l1_merit.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kArmijo = 1e-4;
+constexpr double kLeastStep = 1e-12;
+constexpr double kProximal = 1e-6;  // keeps the poses' Hessian from being singular
+constexpr double kSafeguard = 1.0;  // ε_c [kg m]; far less lets even free pushes creep
+
+class MeritSqp {
+ public:
+  MeritSqp(const ReverseProblem& one, const Iterate& start)
+      : one_(one),
+        problem_(one),
+        newton_(problem_),
+        kkt_(one.config.kkt, problem_.fixed_end()),
+        evaluator_(problem_),
+        x_(problem_.energy, one.sub_steps),
+        trial_(x_),
+        step_(problem_.energy.movable(), one.sub_steps),
+        no_force_step_(x_.forces),
+        gaps_(x_.forces),
+        trial_gaps_(x_.forces) {
+    problem_.load(0, one);
+    x_.load(0, one, start);
+    trial_ = x_;
+    for (std::vector<double>& level : gaps_) std::ranges::fill(level, 0.0);
+    bool legal = true;
+    now_ = evaluator_.evaluate(problem_, x_, gaps_, gaps_, legal);
+    if (!legal) now_.objective = INFINITY;
+  }
+
+  SqpResult run() {
+    const ReverseConfig& config = problem_.config;
+    for (int iterations = 0;;) {
+      newton_.linearise(problem_, x_, {0.0, kProximal});
+      const double stationarity = newton_.stationarity();
+      const auto ended = [&](SolveStatus status) {
+        Iterate x = x_.unload(0, one_);
+        if (status == SolveStatus::kConverged) status = judged(one_, x);
+        return SqpResult{status, std::move(x), iterations, 1, now_.infeasibility, stationarity};
+      };
+      if (!std::isfinite(stationarity + now_.violation + now_.objective))
+        return ended(SolveStatus::kNonFinite);
+      if (now_.infeasibility < config.feasibility_tol && stationarity < config.stationarity_tol)
+        return ended(SolveStatus::kConverged);
+      if (iterations == config.max_iterations) return ended(SolveStatus::kIterationLimit);
+      ++iterations;
+      if (!kkt_.solve(newton_.system(), step_)) return ended(SolveStatus::kSingular);
+      merit_.raise_weight_above(largest_multiplier());
+      if (!line_search()) return ended(SolveStatus::kLineSearchFailed);
+    }
+  }
+
+ private:
+  double largest_multiplier() const {
+    double top = 0.0;
+    for (std::size_t k = 1; k < x_.p.size(); ++k)
+      for (std::size_t m = 0; m < x_.multipliers[k].size(); ++m)
+        top = std::max(top, std::abs(x_.multipliers[k][m] + step_.multipliers[k][m / 3][m % 3]));
+    return top;
+  }
+
+  /// Backtracking on the merit function, eq. (11), and the safeguard.
+  bool line_search() {
+    const double before = merit_.value(now_.objective, now_.violation);
+    const double slope = merit_.slope(newton_.objective_slope(x_, step_), now_.violation);
+    for (double alpha = 1.0; alpha >= kLeastStep; alpha *= 0.5) {
+      bool legal = bounded(step_, alpha);
+      if (!legal) continue;
+      make_trial(problem_.energy, x_, {step_, no_force_step_, alpha}, trial_);
+      for (std::size_t k = 0; k < trial_.p.size(); ++k)
+        problem_.energy.forces(trial_.p[k], trial_.forces[k].data());
+      const Merits<double> then = evaluator_.evaluate(problem_, trial_, gaps_, trial_gaps_, legal);
+      if (!legal || then.violation > std::max(kSafeguard, now_.violation)) continue;
+      if (!(merit_.value(then.objective, then.violation) <= before + kArmijo * alpha * slope))
+        continue;
+      std::swap(x_, trial_);
+      std::swap(gaps_, trial_gaps_);
+      now_ = then;
+      return true;
+    }
+    return false;
+  }
+
+  const ReverseProblem& one_;
+  ProblemLanes<double> problem_;
+  NewtonSystem<double> newton_;
+  AssembledSolver kkt_;
+  Evaluator<double> evaluator_;
+  Trajectory<double> x_, trial_;
+  StageStep<double> step_;
+  PerContact<double> no_force_step_, gaps_, trial_gaps_;
+  Merits<double> now_;
+  Merit merit_;
+};
+
+}  // namespace
+
+SqpResult merit_sqp(const ReverseProblem& problem, const Iterate& start) {
+  return MeritSqp(problem, start).run();
+}
+
+}  // namespace rtg

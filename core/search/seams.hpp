@@ -1,0 +1,62 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/reverse/problem/reverse_job.hpp"
+#include "core/search/transition.hpp"
+
+namespace rtg {
+
+/// Stands for no push: the scene comes to rest with the robot held.
+inline constexpr int kSettle = -1;
+
+/// What does `action` do in `start`?
+struct ReplayJob {
+  Poses start;
+  int action = 0;  // or kSettle
+
+  bool operator==(const ReplayJob&) const = default;
+};
+
+struct ReplayResult {
+  Poses end;
+  bool ok = false;     // as PushOutcome::ok
+  double cpu_s = 0.0;  // thread CPU time; the one field that is not a function of the job
+};
+
+/// The seams of the search. Results come back in job order, whoever computes them: a loop, a thread
+/// pool, processes behind a bus, a lambda in a test. All homes give the same bits.
+using SolveBatch = std::function<std::vector<ReverseResult>(std::span<const ReverseJob>)>;
+using ReplayBatch = std::function<std::vector<ReplayResult>(std::span<const ReplayJob>)>;
+
+/// One replay job after the other; pure, and callable from several threads at once.
+using ReplayOne = std::function<ReplayResult(const ReplayJob&)>;
+
+/// Receives transitions in sequence order; the k-th transition of a run has sequence number k.
+using TransitionSink = std::function<void(std::span<const Transition>)>;
+
+/// One line of the progress display.
+struct Progress {
+  std::string phase;  // "tree 1", "plan 3", "random walks"
+  int layer = 0;      // of `depth`
+  int depth = 0;
+  long transitions = 0;  // stored so far
+  long target = 0;       // to be stored in all
+  double contact_share = 0.0;
+  long start_region = 0;  // transitions whose state lies in the start region so far
+};
+
+/// Everything the search needs from outside of itself.
+struct GenerationSeams {
+  SolveBatch solve;
+  ReplayBatch replay;
+  TransitionSink store;  // receives every transition, in order
+  // Called and polled after each layer or wave; may be empty.
+  std::function<void(const Progress&)> progress = {};
+  std::function<bool()> cancelled = {};
+};
+
+}  // namespace rtg

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "core/search/transition.hpp"
+#include "nodes/work/job_dispatcher.hpp"
+
+namespace rtg {
+
+/// Half-open range of sequence numbers.
+struct RowRange {
+  std::int64_t begin = 0, end = 0;
+
+  bool operator==(const RowRange&) const = default;
+};
+
+/// The sending end of the transition stream: a dense sequence kept in memory, of which every
+/// consumer gets every row however much the network loses. Free of I/O: events in, row ranges to
+/// send out, the clock passed in.
+///
+/// New rows go out once, at a pace that receive buffers can stand and no further than the slowest
+/// living consumer has credit; after that a row is sent only to one that asks.
+class StreamServer {
+ public:
+  struct Limits {
+    double rate = 10e6;                // [bytes/s]
+    double burst = 64e3;               // [bytes] at once; a stock receive buffer holds 208 kB
+    std::int64_t chunk_bytes = 16000;  // of one message
+    Seconds silence = 2.0;             // a consumer unheard for so long has no say in the pace
+    std::int64_t max_nacked = 65536;   // rows one acknowledgement may ask for
+  };
+  struct Ack {
+    std::int64_t consumer = 0;
+    std::int64_t cursor = 0;
+    std::int64_t credit = 0;  // rows beyond the cursor; 0: it knows that it has the whole stream
+    std::span<const RowRange> missing;
+  };
+
+  /// `row_bytes`: size of one transition on the wire.
+  StreamServer(const Limits& limits, std::int64_t row_bytes);
+
+  void append(std::span<const Transition> rows);
+  void seal() { sealed_ = true; }
+
+  /// False if the acknowledgement contradicts the stream (a cursor beyond its end); it is then
+  /// ignored.
+  bool on_ack(const Ack& ack, Seconds now);
+
+  /// The messages to send now, each a range of at most rows_per_message() rows.
+  std::vector<RowRange> due(Seconds now);
+
+  std::span<const Transition> rows(RowRange range) const;
+  std::int64_t count() const { return static_cast<std::int64_t>(rows_.size()); }
+  std::int64_t rows_per_message() const { return rows_per_message_; }
+  bool sealed() const { return sealed_; }
+  int consumers() const { return static_cast<int>(consumers_.size()); }
+  std::int64_t slowest_cursor() const;
+  long resent() const { return resent_; }  // rows sent again on request
+
+  /// Whether due() will have more to send although nothing new comes in.
+  bool backlog(Seconds now) const { return !asked_.empty() || live_ < live_limit(now); }
+
+  /// Whether all of the sealed stream has been sent, at least `consumers` know that they have it,
+  /// and no living one does not.
+  bool drained(int consumers, Seconds now) const;
+
+ private:
+  struct Consumer {
+    std::int64_t cursor = 0, credit = 0;
+    Seconds heard = 0.0;
+    bool complete = false;
+  };
+
+  void ask(RowRange range);
+  RowRange next(Seconds now);
+  std::int64_t live_limit(Seconds now) const;
+
+  Limits limits_;
+  std::int64_t rows_per_message_;
+  double row_bytes_;
+  std::vector<Transition> rows_;
+  bool sealed_ = false;
+  std::int64_t live_ = 0;                       // rows below have been sent once
+  std::map<std::int64_t, std::int64_t> asked_;  // begin -> end, disjoint
+  std::map<std::int64_t, Consumer> consumers_;
+  double tokens_ = 0.0;  // [bytes]
+  Seconds refilled_ = 0.0;
+  long resent_ = 0;
+};
+
+}  // namespace rtg

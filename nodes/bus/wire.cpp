@@ -1,0 +1,48 @@
+#include "nodes/bus/wire.hpp"
+
+namespace rtg {
+namespace {
+
+std::uint64_t big_endian(std::span<const std::uint8_t> bytes) {
+  std::uint64_t word = 0;
+  for (const std::uint8_t b : bytes) word = word << 8 | b;
+  return word;
+}
+
+}  // namespace
+
+std::string_view counter_name(WireDefect defect) {
+  constexpr std::string_view names[] = {"bus.too_long", "bus.wrong_type", "bus.malformed",
+                                        "bus.not_finite"};
+  return names[static_cast<int>(defect)];
+}
+
+namespace wire {
+
+std::int32_t Layout::length() {
+  if (!ok_ || rest_.size() < 4) return ok_ = false, 0;
+  const std::uint64_t n = big_endian(rest_.first(4));
+  rest_ = rest_.subspan(4);
+  ok_ = n <= kMaxMessageBytes;
+  return ok_ ? static_cast<std::int32_t>(n) : 0;
+}
+
+void Layout::skip(std::int32_t n, std::size_t size) {
+  const std::size_t bytes = static_cast<std::size_t>(n) * size;
+  ok_ = ok_ && bytes <= rest_.size();
+  if (ok_) rest_ = rest_.subspan(bytes);
+}
+
+void Layout::skip_text() {
+  const std::int32_t n = length();
+  ok_ = ok_ && n >= 1 && static_cast<std::size_t>(n) <= rest_.size() &&
+        rest_[static_cast<std::size_t>(n) - 1] == 0;
+  if (ok_) rest_ = rest_.subspan(static_cast<std::size_t>(n));
+}
+
+bool has_fingerprint(std::span<const std::uint8_t> bytes, std::int64_t fingerprint) {
+  return bytes.size() >= 8 && big_endian(bytes.first(8)) == static_cast<std::uint64_t>(fingerprint);
+}
+
+}  // namespace wire
+}  // namespace rtg

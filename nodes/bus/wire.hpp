@@ -1,0 +1,130 @@
+#pragma once
+
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nodes/bus/wire_fields.hpp"
+
+namespace rtg {
+
+/// Largest message, payload only. LCM splits beyond 65,499 bytes, and its reassembly loses and
+/// corrupts.
+inline constexpr std::size_t kMaxMessageBytes = 60000;
+
+/// Why received bytes are not a message of the type expected.
+enum class WireDefect { kTooLong, kWrongType, kMalformed, kNotFinite };
+
+/// Name of the defect's counter.
+std::string_view counter_name(WireDefect defect);
+
+namespace wire {
+
+/// Walks the bytes of a message without allocating: the generated decoder trusts every count it
+/// reads, so a payload of 31 bytes could make it allocate gigabytes or abort.
+class Layout {
+ public:
+  explicit Layout(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
+
+  template <class T>
+  void scalar(T&) {
+    skip(1, sizeof(T));
+  }
+  void count(std::int32_t& n) { n = length(); }
+  template <class T>
+  void array(std::vector<T>&, std::int32_t n) {
+    skip(n, sizeof(T));
+  }
+  void text(std::string&) { skip_text(); }
+  void texts(std::vector<std::string>&, std::int32_t n) {
+    for (std::int32_t i = 0; i < n && ok_; ++i) skip_text();
+  }
+
+  /// Whether the bytes were those of the fields seen, no more and no fewer.
+  bool complete() const { return ok_ && rest_.empty(); }
+
+ private:
+  std::int32_t length();  // big-endian, 0 ... kMaxMessageBytes
+  void skip(std::int32_t n, std::size_t size);
+  void skip_text();  // length including the final NUL, then the bytes
+
+  std::span<const std::uint8_t> rest_;
+  bool ok_ = true;
+};
+
+/// Looks for NaN and infinity in a decoded message.
+struct Finite {
+  bool ok = true;
+
+  template <class T>
+  void scalar(T& x) {
+    if constexpr (std::is_floating_point_v<T>) ok = ok && std::isfinite(x);
+  }
+  void count(std::int32_t&) {}
+  template <class T>
+  void array(std::vector<T>& values, std::int32_t) {
+    for (T& x : values) scalar(x);
+  }
+  void text(std::string&) {}
+  void texts(std::vector<std::string>&, std::int32_t) {}
+};
+
+/// Whether the vectors of an outgoing message are as long as its counts say: the generated encoder
+/// reads past their end otherwise.
+struct Consistent {
+  bool ok = true;
+
+  template <class T>
+  void scalar(T&) {}
+  void count(std::int32_t& n) { ok = ok && n >= 0; }
+  template <class T>
+  void array(std::vector<T>& values, std::int32_t n) {
+    ok = ok && values.size() == static_cast<std::size_t>(n);
+  }
+  void text(std::string&) {}
+  void texts(std::vector<std::string>& values, std::int32_t n) { array(values, n); }
+};
+
+bool has_fingerprint(std::span<const std::uint8_t> bytes, std::int64_t fingerprint);
+
+}  // namespace wire
+
+/// The bytes of a message; our own mistakes (inconsistent counts, over kMaxMessageBytes) throw
+/// std::logic_error.
+template <class Msg>
+std::vector<std::uint8_t> encode(Msg& msg) {
+  wire::Consistent consistent;
+  fields(consistent, msg);
+  if (!consistent.ok)
+    throw std::logic_error(std::string(Msg::getTypeName()) + ": counts do not match the arrays");
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(msg.getEncodedSize()));
+  if (bytes.size() > kMaxMessageBytes)
+    throw std::logic_error(std::string(Msg::getTypeName()) + ": longer than one datagram");
+  msg.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+/// Fills `msg`, or says why the bytes are no such message. Safe for any bytes.
+template <class Msg>
+[[nodiscard]] std::optional<WireDefect> decode(std::span<const std::uint8_t> bytes, Msg& msg) {
+  if (bytes.size() > kMaxMessageBytes) return WireDefect::kTooLong;
+  if (!wire::has_fingerprint(bytes, Msg::getHash())) return WireDefect::kWrongType;
+  wire::Layout layout(bytes.subspan(8));
+  Msg counts{};
+  fields(layout, counts);
+  const int size = static_cast<int>(bytes.size());
+  if (!layout.complete() || msg.decode(bytes.data(), 0, size) != size)
+    return WireDefect::kMalformed;
+  wire::Finite finite;
+  fields(finite, msg);
+  if (!finite.ok) return WireDefect::kNotFinite;
+  return std::nullopt;
+}
+
+}  // namespace rtg

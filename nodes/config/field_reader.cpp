@@ -1,0 +1,177 @@
+#include "nodes/config/field_reader.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+namespace rtg {
+namespace {
+
+using Kind = ConfigNode::Kind;
+
+constexpr std::size_t kMaxText = 200;  // characters of a text
+
+/// Levenshtein distance.
+std::size_t edits(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0u);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
+    }
+  }
+  return row.back();
+}
+
+/// " (did you mean 'x'?)" for the nearest of `keys`, if one is near.
+std::string suggestion(const std::string& key, std::span<const std::string> keys) {
+  constexpr std::size_t kLongestKey = 40;
+  if (keys.empty() || key.size() > kLongestKey) return "";
+  const auto nearest =
+      std::min_element(keys.begin(), keys.end(),
+                       [&](const auto& a, const auto& b) { return edits(key, a) < edits(key, b); });
+  const std::size_t near = std::max<std::size_t>(2, key.size() / 3);
+  return edits(key, *nearest) <= near ? " (did you mean '" + *nearest + "'?)" : "";
+}
+
+std::string range_text(const char* what, const std::string& least, const std::string& most) {
+  return std::string(what) + " from " + least + " to " + most;
+}
+
+/// The value that a plain scalar spells from its first to its last character.
+template <class Number>
+std::optional<Number> spelled(const ConfigNode& node, std::errc& error) {
+  if (node.kind != Kind::kScalar || node.quoted) return std::nullopt;
+  const char* begin = node.scalar.data();
+  const char* end = begin + node.scalar.size();
+  if (end - begin > 1 && *begin == '+' && begin[1] != '-') ++begin;
+  Number value{};
+  const auto [stop, code] = std::from_chars(begin, end, value);
+  error = code;
+  if (stop != end || begin == end) return std::nullopt;
+  return value;
+}
+
+template <class Number>
+std::string shortest(Number number) {
+  char buffer[32];
+  const auto [end, code] = std::to_chars(buffer, buffer + sizeof buffer, number);
+  std::string text(buffer, end);
+  if (text.find('.') != std::string::npos) return text;
+  return text.insert(std::min(text.find('e'), text.size()), ".0");
+}
+
+}  // namespace
+
+FieldReader::FieldReader(const ConfigNode& section, std::string path,
+                         std::span<const std::string> keys)
+    : section_(section), path_(std::move(path)) {
+  if (section.kind != Kind::kMap)
+    throw ConfigError(section.origin, path_, "is " + in_words(section),
+                      "a mapping with keys of " + listed(keys));
+  for (const ConfigEntry& entry : section.entries)
+    if (std::find(keys.begin(), keys.end(), entry.key) == keys.end())
+      throw ConfigError(entry.origin, this->path(entry.key),
+                        "no such key" + suggestion(entry.key, keys), listed(keys));
+}
+
+void FieldReader::number(const char* key, double& value, double least, double most, const char*) {
+  if (const ConfigEntry* entry = find(section_, key))
+    value = read_number(entry->value, path(key), least, most);
+}
+
+void FieldReader::integer(const char* key, int& value, int least, int most, const char*) {
+  const ConfigEntry* entry = find(section_, key);
+  if (!entry) return;
+  const std::string legal = range_text("an integer", std::to_string(least), std::to_string(most));
+  std::errc error{};
+  const std::optional<int> read = spelled<int>(entry->value, error);
+  if (!read)
+    throw ConfigError(entry->value.origin, path(key), in_words(entry->value) + " is no integer",
+                      legal);
+  if (error == std::errc::result_out_of_range || *read < least || *read > most)
+    throw ConfigError(entry->value.origin, path(key), entry->value.scalar + " is out of range",
+                      legal);
+  value = *read;
+}
+
+void FieldReader::flag(const char* key, bool& value, const char*) {
+  const ConfigEntry* entry = find(section_, key);
+  if (!entry) return;
+  const ConfigNode& node = entry->value;
+  if (node.kind != Kind::kScalar || node.quoted ||
+      (node.scalar != "true" && node.scalar != "false"))
+    throw ConfigError(node.origin, path(key), in_words(node) + " is neither", "true, false");
+  value = node.scalar == "true";
+}
+
+void FieldReader::text(const char* key, std::string& value, const char*) {
+  const ConfigEntry* entry = find(section_, key);
+  if (!entry) return;
+  const ConfigNode& node = entry->value;
+  const auto is_legal = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
+  if (node.kind != Kind::kScalar || node.scalar.empty() || node.scalar.size() > kMaxText ||
+      !std::all_of(node.scalar.begin(), node.scalar.end(), is_legal))
+    throw ConfigError(
+        node.origin, path(key), in_words(node) + " is no such text",
+        "1 to " + std::to_string(kMaxText) + " ASCII characters other than \" and \\");
+  value = node.scalar;
+}
+
+int FieldReader::index_of(const ConfigEntry& entry, std::span<const std::string_view> names) const {
+  const ConfigNode& node = entry.value;
+  if (node.kind == Kind::kScalar)
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (names[k] == node.scalar) return static_cast<int>(k);
+  const std::vector<std::string> legal(names.begin(), names.end());
+  throw ConfigError(node.origin, path(entry.key), in_words(node) + " is none of them",
+                    listed(legal));
+}
+
+const ConfigEntry& FieldReader::required(const char* key, const std::string& legal) const {
+  if (const ConfigEntry* entry = find(section_, key)) return *entry;
+  throw ConfigError(section_.origin, path(key), "is missing", legal);
+}
+
+std::vector<double> FieldReader::numbers(const char* key, std::size_t count, double least,
+                                         double most, const std::string& legal) const {
+  const ConfigNode& node = required(key, legal).value;
+  if (node.kind != Kind::kList || node.items.size() != count)
+    throw ConfigError(node.origin, path(key),
+                      node.kind == Kind::kList
+                          ? "has " + std::to_string(node.items.size()) + " entries"
+                          : "is " + in_words(node),
+                      legal);
+  std::vector<double> out;
+  for (const ConfigNode& item : node.items)
+    out.push_back(read_number(item, path(key), least, most));
+  return out;
+}
+
+double read_number(const ConfigNode& node, const std::string& path, double least, double most) {
+  const std::string legal = range_text("a number", number_text(least), number_text(most));
+  std::errc error{};
+  const std::optional<double> read = spelled<double>(node, error);
+  if (!read || std::isnan(*read))
+    throw ConfigError(node.origin, path, in_words(node) + " is no number", legal);
+  if (error == std::errc::result_out_of_range || *read < least || *read > most)
+    throw ConfigError(node.origin, path, node.scalar + " is out of range", legal);
+  return *read;
+}
+
+std::string number_text(double number) { return shortest(number); }
+
+std::string single_text(float number) { return shortest(number); }
+
+std::string listed(std::span<const std::string> words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+}  // namespace rtg

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nodes/config/config_tree.hpp"
+#include "nodes/config/field_reader.hpp"
+
+namespace rtg {
+
+/// Visitor that lists the fields of a struct as a mapping: values, comments with what is legal.
+class FieldWriter {
+ public:
+  ConfigNode section = map_node();
+
+  void number(const char* key, double value, double least, double most, const char* doc);
+  void integer(const char* key, int value, int least, int most, const char* doc);
+  void flag(const char* key, bool value, const char* doc);
+  void text(const char* key, const std::string& value, const char* doc);
+
+  template <class Enum, std::size_t N>
+  void choice(const char* key, Enum value, const std::array<std::string_view, N>& names,
+              const char* doc) {
+    add(key, std::string(names[static_cast<std::size_t>(value)]), true,
+        std::string(doc) + "; " + joined(names));
+  }
+
+ private:
+  static std::string joined(std::span<const std::string_view> names);
+  void add(const char* key, std::string value, bool quoted, std::string comment);
+};
+
+/// The fields that config.visit() lists.
+template <class Config>
+ConfigNode fields_of(Config config) {
+  FieldWriter writer;
+  config.visit(writer);
+  return std::move(writer.section);
+}
+
+/// Reads the fields that config.visit() lists over the values that are there.
+template <class Config>
+void read_fields(const ConfigNode& section, const std::string& path, Config& config) {
+  std::vector<std::string> keys;
+  for (const ConfigEntry& field : fields_of(config).entries) keys.push_back(field.key);
+  FieldReader reader(section, path, keys);
+  config.visit(reader);
+}
+
+}  // namespace rtg

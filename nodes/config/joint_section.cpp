@@ -1,0 +1,121 @@
+#include "nodes/config/joint_section.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "nodes/config/config_error.hpp"
+#include "nodes/config/field_reader.hpp"
+#include "nodes/config/task_words.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr double kOffPin = 1e-3;    // of a start state [m]
+constexpr double kRounding = 1e-5;  // of angles to single precision [rad]
+
+const std::vector<std::string> kJointKeys{"parent", "child", "on_parent", "on_child", "limits"};
+
+int read_body_name(const FieldReader& reader, const char* key, const Scene& scene) {
+  const std::string name = name_at(reader, key, "the name of a body");
+  std::vector<std::string> names;
+  for (std::size_t i = 1; i < scene.size(); ++i) {
+    if (scene.bodies[i].name == name) return static_cast<int>(i);
+    names.push_back(scene.bodies[i].name);
+  }
+  throw ConfigError(reader.required(key, "").value.origin, reader.path(key), "names no object",
+                    listed(names));
+}
+
+[[noreturn]] void fail_at(const ConfigNode& section, std::size_t k, const char* key,
+                          const std::string& wrong, const std::string& legal) {
+  fail_at(find(section, "joints")->value.items[k], "task.joints." + std::to_string(k), key, wrong,
+          legal);
+}
+
+/// No body is the child of two joints, fixed, or its own ancestor.
+void check_tree(const Scene& scene, const ConfigNode& section) {
+  for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+    const int child = scene.joints[k].child;
+    const std::string name = '\'' + scene.bodies[static_cast<std::size_t>(child)].name + '\'';
+    if (scene.bodies[static_cast<std::size_t>(child)].fixed)
+      fail_at(section, k, "child", name + " is fixed", "a body that moves");
+    int ancestor = scene.joints[k].parent;
+    for (std::size_t n = 0; n <= scene.joints.size() && ancestor != child; ++n) {
+      const auto up = std::ranges::find(scene.joints, ancestor, &Joint::child);
+      if (up == scene.joints.end()) break;
+      ancestor = up->parent;
+    }
+    if (ancestor == child)
+      fail_at(section, k, "child", name + " hangs on itself", "joints that make trees");
+    for (std::size_t n = 0; n < k; ++n)
+      if (scene.joints[n].child == child)
+        fail_at(section, k, "child", name + " is the child of joint " + std::to_string(n) + " too",
+                "joints that make trees");
+  }
+}
+
+/// Every joint of the start state is closed, its angle within the limits.
+void check_start(const Task& task, const ConfigNode& section) {
+  for (std::size_t k = 0; k < task.scene.joints.size(); ++k) {
+    const Joint& joint = task.scene.joints[k];
+    const auto child = static_cast<std::size_t>(joint.child);
+    if (const double gap = joint_gap(joint, task.start); !(gap <= kOffPin)) {
+      const Vector2d pin =
+          to_world(task.start[static_cast<std::size_t>(joint.parent)], joint.on_parent);
+      const Vector2d at = pin - rotate(task.start[child].theta, joint.on_child);
+      fail_at(
+          section, k, "on_child",
+          "is " + number_text(std::round(1e4 * gap) / 1e4) + " m off on_parent in the start state",
+          "'" + task.scene.bodies[child].name + "' at [" + single_text(static_cast<float>(at.x())) +
+              ", " + single_text(static_cast<float>(at.y())) + "], to 0.001 m");
+    }
+    const double angle = joint_angle(joint, task.start);
+    if (angle < joint.lower - kRounding || angle > joint.upper + kRounding)
+      fail_at(section, k, "limits",
+              "exclude the angle of the start state, " + single_text(static_cast<float>(angle)) +
+                  " rad",
+              "[least, most] around it");
+  }
+}
+
+}  // namespace
+
+Joint read_joint(const ConfigNode& section, const std::string& path, const Scene& scene) {
+  const FieldReader reader(section, path, kJointKeys);
+  Joint joint;
+  joint.parent = read_body_name(reader, "parent", scene);
+  joint.child = read_body_name(reader, "child", scene);
+  joint.on_parent = point_at(reader, "on_parent");
+  joint.on_child = point_at(reader, "on_child");
+  if (find(section, "limits")) {
+    const Vector2d limits = angles_at(reader, "limits");
+    joint.lower = limits[0];
+    joint.upper = limits[1];
+  }
+  return joint;
+}
+
+ConfigNode joint_node(const Joint& joint, const Scene& scene) {
+  const auto name = [&scene](int body) {
+    return text_node(scene.bodies[static_cast<std::size_t>(body)].name);
+  };
+  ConfigNode node = map_node();
+  node.entries.push_back({"parent", "", name(joint.parent)});
+  node.entries.push_back({"child", "", name(joint.child)});
+  node.entries.push_back({"on_parent", "", point_node(joint.on_parent)});
+  node.entries.push_back({"on_child", "", point_node(joint.on_child)});
+  if (std::isfinite(joint.lower))
+    node.entries.push_back({"limits", "", point_node({joint.lower, joint.upper})});
+  return node;
+}
+
+void close_joints(Task& task, const ConfigNode& section) {
+  if (task.scene.joints.empty()) return;
+  check_tree(task.scene, section);
+  check_start(task, section);
+  task.start = with_closed_joints(task.scene, std::move(task.start));
+  std::ranges::transform(task.start, task.start.begin(), to_single);
+}
+
+}  // namespace rtg

@@ -1,0 +1,62 @@
+#include "nodes/config/method.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace rtg {
+namespace {
+
+using Settings = std::vector<MethodSetting>;
+
+/// A learner whose data, if any, are random: it explores until it has found its way by itself.
+Settings unguided(Settings more) {
+  const Settings exploration{{"train", "epsilon_start", "1.0"},
+                             {"train", "epsilon_end", "0.05"},
+                             {"train", "nearby_share", "0.0"},
+                             {"train", "contact_share", "0.5"}};
+  more.insert(more.end(), exploration.begin(), exploration.end());
+  return more;
+}
+
+/// A learner of its own experience alone.
+Settings online(Settings more) {
+  more.push_back({"train", "offline", "false"});
+  return unguided(std::move(more));
+}
+
+/// In the order of Method.
+const std::array<Settings, kMethods.size()>& table() {
+  static const std::array<Settings, kMethods.size()> kTable{
+      online({{"train", "double_q", "false"}}),
+      online({{"train", "double_q", "true"}}),
+      // Half of every batch would be of data without any success.
+      unguided({{"search", "generator", "random"}, {"train", "offline_share", "-1.0"}}),
+      unguided({{"search", "generator", "scatter"}}),
+      Settings{{"search", "generator", "naive"}},
+      Settings{{"search", "generator", "forward"}},
+      Settings{{"search", "generator", "rrbs"}},
+      Settings{{"search", "generator", "rrbs"},
+               {"search", "randomise", "true"},
+               {"train", "randomise", "true"}},
+      online({{"train", "double_q", "true"}, {"train", "hindsight", "4"}}),
+      online({{"train", "double_q", "true"}, {"train", "curriculum", "0.9"}}),
+      Settings{{"search", "generator", "rrbs"},
+               {"train", "interact", "false"},
+               {"train", "conservatism", "1.0"}},
+      Settings{{"search", "generator", "rrbs"},
+               {"train", "interact", "false"},
+               {"train", "learner", "cloning"}},
+      Settings{{"train", "offline", "false"},
+               {"train", "interact", "false"},
+               {"train", "learner", "planning"}},
+  };
+  return kTable;
+}
+
+}  // namespace
+
+std::span<const MethodSetting> settings_of(Method method) {
+  return table()[static_cast<std::size_t>(method)];
+}
+
+}  // namespace rtg

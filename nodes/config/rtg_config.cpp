@@ -1,0 +1,265 @@
+#include "nodes/config/rtg_config.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "nodes/bus/bus_url.hpp"
+#include "nodes/bus/content_hash.hpp"
+#include "nodes/config/config_overrides.hpp"
+#include "nodes/config/field_writer.hpp"
+#include "nodes/config/method.hpp"
+#include "nodes/config/start_checks.hpp"
+#include "nodes/config/task_section.hpp"
+#include "nodes/config/train_preset.hpp"
+#include "nodes/config/yaml_parser.hpp"
+
+namespace rtg {
+namespace {
+
+using Kind = ConfigNode::Kind;
+
+const std::vector<std::string> kSections{"task", "physics", "reverse", "search", "train", "run"};
+const std::string kTaskLegal = "a mapping, or the path of a YAML file with one";
+
+std::string read_text(const std::filesystem::path& file, const std::string& origin) {
+  std::error_code error;
+  const char* wrong = "no such file";
+  if (std::filesystem::is_directory(file, error)) {
+    wrong = "is a folder";
+  } else if (std::ifstream stream(file, std::ios::binary); stream) {
+    return {std::istreambuf_iterator<char>(stream), {}};
+  } else if (std::filesystem::exists(file, error)) {
+    wrong = "cannot be read";
+  }
+  throw ConfigError(origin + ": " + wrong + "; legal: a YAML file with a section 'task'");
+}
+
+ConfigNode parse_root(const std::string& text, const std::string& name) {
+  ConfigNode root = parse_yaml(text, name);
+  if (root.kind != Kind::kMap)
+    throw ConfigError((root.origin.empty() ? name + ":1" : root.origin) + ": holds " +
+                      in_words(root) + "; legal: a mapping with keys of " + listed(kSections));
+  root.origin = name + ":1";
+  return root;
+}
+
+/// Puts the section of another file in the place of its path.
+void fetch_task(ConfigNode& root, const std::filesystem::path& folder) {
+  for (ConfigEntry& entry : root.entries) {
+    if (entry.key != "task" || entry.value.kind != Kind::kScalar) continue;
+    const std::filesystem::path file = folder / entry.value.scalar;
+    const std::string where = entry.value.origin + ": key 'task': " + file.string();
+    const ConfigNode other = parse_root(read_text(file, where), file.string());
+    const ConfigEntry* task = find(other, "task");
+    if (!task || task->value.kind != Kind::kMap)
+      throw ConfigError(where + ": describes no task; legal: " + kTaskLegal);
+    entry.value = task->value;
+  }
+}
+
+/// Takes the keys that presets of `section` decide out of the file's values: a preset on the
+/// command line stands above them.
+template <class Config, class Preset>
+void clear_for_preset(ConfigNode& root, const std::string& section, Config (*values)(Preset)) {
+  const ConfigNode a = fields_of(values(Preset::kDefault)), b = fields_of(values(Preset::kPaper));
+  for (ConfigEntry& entry : root.entries) {
+    if (entry.key != section) continue;
+    std::erase_if(entry.value.entries, [&](const ConfigEntry& field) {
+      const ConfigEntry* value = find(a, field.key);
+      return value && value->value.scalar != find(b, field.key)->value.scalar;
+    });
+  }
+}
+
+/// The same with the keys that methods decide.
+void clear_for_method(ConfigNode& root) {
+  for (std::size_t k = 0; k < kMethods.size(); ++k)
+    for (const MethodSetting& setting : settings_of(static_cast<Method>(k)))
+      for (ConfigEntry& entry : root.entries)
+        if (entry.key == setting.section)
+          std::erase_if(entry.value.entries,
+                        [&](const ConfigEntry& field) { return field.key == setting.key; });
+}
+
+void apply_overrides(ConfigNode& root, std::span<const std::string> overrides) {
+  for (const std::string& setting : overrides) {
+    if (setting.starts_with("reverse.preset=")) clear_for_preset(root, "reverse", reverse_preset);
+    if (setting.starts_with("train.preset=")) clear_for_preset(root, "train", train_preset);
+    if (setting.starts_with("run.method=")) clear_for_method(root);
+  }
+  for (const std::string& setting : overrides) apply_override(root, setting);
+}
+
+/// The mapping of that section, made if it is not there.
+ConfigNode& section_of(ConfigNode& root, std::string_view name, const std::string& origin) {
+  for (ConfigEntry& entry : root.entries)
+    if (entry.key == name) return entry.value;
+  root.entries.push_back({std::string(name), origin, map_node(origin)});
+  return root.entries.back().value;
+}
+
+template <class Config>
+void read_section(const ConfigNode& root, const std::string& name, Config& config) {
+  if (const ConfigEntry* section = find(root, name)) read_fields(section->value, name, config);
+}
+
+/// Gives the fields that the method decides its values where nothing else does.
+void apply_method(ConfigNode& root) {
+  RunConfig run;
+  read_section(root, "run", run);
+  for (const auto& [name, key, value] : settings_of(run.method)) {
+    const std::string origin =
+        "run.method " + std::string(kMethods[static_cast<std::size_t>(run.method)]);
+    ConfigNode& section = section_of(root, name, origin);
+    if (section.kind != Kind::kMap || find(section, key)) continue;
+    section.entries.push_back(
+        {std::string(key), origin, parse_yaml_value(std::string(value), origin)});
+  }
+}
+
+/// A section whose field `preset` chooses the values of the fields that are not given.
+template <class Config, class Preset>
+void read_preset_section(const ConfigNode& root, const std::string& name, Config (*values)(Preset),
+                         Config& config) {
+  read_section(root, name, config);
+  config = values(config.preset);
+  read_section(root, name, config);
+}
+
+void check_physics(const ConfigNode& root, const PhysicsConfig& physics) {
+  if (physics.skin < physics.range) return;
+  const ConfigEntry* section = find(root, "physics");
+  const ConfigEntry* given = find(section->value, "skin");
+  if (!given) given = find(section->value, "range");
+  throw ConfigError(given->value.origin, "physics.skin",
+                    number_text(physics.skin) + " is not below physics.range",
+                    "less than " + number_text(physics.range));
+}
+
+/// What dynamic mode asks of the other fields.
+void check_inertia(const ConfigNode& root, const RtgConfig& config) {
+  if (!config.physics.inertia) return;
+  const ConfigEntry* physics = find(root, "physics");
+  const ConfigEntry *flag = find(physics->value, "inertia"),
+                    *damping = find(physics->value, "damping");
+  if (config.physics.damping < kLeastInertialDamping)
+    throw ConfigError((damping ? damping : flag)->value.origin, "physics.damping",
+                      number_text(config.physics.damping) + " with physics.inertia",
+                      number_text(kLeastInertialDamping) + " or more");
+  if (config.reverse.terminal_weight == 0.0)
+    throw ConfigError(
+        flag->value.origin, "physics.inertia",
+        "true with a fixed final state (reverse.terminal_weight is 0)",
+        "false, or reverse.terminal_weight above 0 (reverse.preset paper sets it to 0)");
+}
+
+/// What `randomise` asks of the task.
+void check_randomisation(const ConfigNode& root, const RtgConfig& config) {
+  if (config.task.randomisation > 0.0) return;
+  for (const auto& [section, asked] :
+       {std::pair{"train", config.train.randomise}, std::pair{"search", config.search.randomise}})
+    if (asked)
+      throw ConfigError(find(find(root, section)->value, "randomise")->value.origin,
+                        "task.randomisation", std::string("0 with ") + section + ".randomise",
+                        "more than 0");
+}
+
+void check_bus(const ConfigNode& root, const std::string& url) {
+  try {
+    checked_bus_url(url);
+  } catch (const std::invalid_argument& error) {
+    throw ConfigError(find(find(root, "run")->value, "bus")->value.origin +
+                      ": key 'run.bus': " + error.what());
+  }
+}
+
+ConfigNode tree_of(const RtgConfig& config) {
+  ConfigNode root = map_node();
+  root.entries.push_back({"task", "", task_node(config.task)});
+  root.entries.push_back({"physics", "", fields_of(config.physics)});
+  root.entries.push_back({"reverse", "", fields_of(config.reverse)});
+  root.entries.push_back({"search", "", fields_of(config.search)});
+  root.entries.push_back({"train", "", fields_of(config.train)});
+  root.entries.push_back({"run", "", fields_of(config.run)});
+  return root;
+}
+
+/// A key at the root that belongs in a section: `breadth` for `search.breadth`.
+void check_sections(const ConfigNode& root) {
+  const ConfigNode known = tree_of({});
+  for (const ConfigEntry& entry : root.entries)
+    for (const ConfigEntry& section : known.entries)
+      if (!find(known, entry.key) && find(section.value, entry.key))
+        throw ConfigError(entry.origin, entry.key,
+                          "no such section (did you mean '" + section.key + '.' + entry.key + "'?)",
+                          listed(kSections));
+}
+
+RtgConfig read_config(const ConfigNode& root) {
+  check_sections(root);
+  const FieldReader reader(root, "", kSections);
+  RtgConfig config;
+  config.task = read_task(reader.required("task", kTaskLegal).value);
+  read_section(root, "physics", config.physics);
+  read_preset_section(root, "reverse", reverse_preset, config.reverse);
+  read_section(root, "search", config.search);
+  read_preset_section(root, "train", train_preset, config.train);
+  read_section(root, "run", config.run);
+  check_physics(root, config.physics);
+  check_inertia(root, config);
+  check_randomisation(root, config);
+  check_jitters(config, root);
+  check_bus(root, config.run.bus);
+  if (config.run.workers == 0)
+    config.run.workers = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 1024);
+  return config;
+}
+
+/// What is wrong with the task as a whole is told of a line of the file. If it was right without
+/// the last settings, the one that made it wrong is told, too.
+RtgConfig read_config(const ConfigNode& file, std::span<const std::string> overrides) {
+  try {
+    ConfigNode root = file;
+    apply_overrides(root, overrides);
+    apply_method(root);
+    return read_config(root);
+  } catch (const ConfigError& error) {
+    const std::string message = error.what();
+    if (overrides.empty() || message.starts_with("--set ")) throw;
+    try {
+      (void)read_config(file, overrides.first(overrides.size() - 1));
+    } catch (const ConfigError& earlier) {
+      if (std::string(earlier.what()).ends_with(message)) throw;
+      throw error;  // another mistake, which the last settings mend
+    }
+    throw ConfigError("--set " + overrides.back() + ": " + message);
+  }
+}
+
+}  // namespace
+
+RtgConfig load_config(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  return parse_config(read_text(file, file.string()), file, overrides);
+}
+
+RtgConfig parse_config(const std::string& text, const std::filesystem::path& name,
+                       std::span<const std::string> overrides) {
+  ConfigNode root = parse_root(text, name.string());
+  fetch_task(root, name.parent_path());
+  return read_config(root, overrides);
+}
+
+std::string canonical_yaml(const RtgConfig& config) { return yaml_text(tree_of(config)); }
+
+std::string config_json(const RtgConfig& config) { return json_text(tree_of(config)); }
+
+std::int64_t config_hash(const RtgConfig& config) {
+  return ContentHash().add(canonical_yaml(config)).value();
+}
+
+}  // namespace rtg

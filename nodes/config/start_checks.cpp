@@ -1,0 +1,48 @@
+#include "nodes/config/start_checks.hpp"
+
+#include <string>
+
+#include "core/tasks/task.hpp"
+#include "nodes/config/config_error.hpp"
+#include "nodes/config/field_reader.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr int kHalvings = 10;
+
+/// An amplitude below `amplitude` that is legal, 0 if there is none of 0.1 % of it and more.
+double legal_amplitude(const Task& task, double amplitude) {
+  for (int k = 0; k < kHalvings; ++k) {
+    amplitude /= 2.0;
+    if (allows_jitter(task, amplitude)) return amplitude;
+  }
+  return 0.0;
+}
+
+/// Where the value stands; a default is the bodies' fault.
+const std::string& origin_of(const ConfigNode& root, const char* section, const char* key) {
+  if (const ConfigEntry* given = find(root, section))
+    if (const ConfigEntry* value = find(given->value, key)) return value->value.origin;
+  return find(find(root, "task")->value, "bodies")->value.origin;
+}
+
+}  // namespace
+
+void check_jitters(const RtgConfig& config, const ConfigNode& root) {
+  const struct {
+    const char *section, *key;
+    double amplitude;
+  } jitters[] = {{"task", "start_jitter", config.task.start_jitter},
+                 {"task", "randomisation", config.task.randomisation},
+                 {"train", "start_jitter", config.train.start_jitter}};
+  for (const auto& [section, key, amplitude] : jitters)
+    if (!allows_jitter(config.task, amplitude))
+      throw ConfigError(
+          origin_of(root, section, key), std::string(section) + '.' + key,
+          "with objects moved by +-" + number_text(amplitude) +
+              " m hardly a start is free of overlaps, within the arena and short of the goal",
+          "up to " + number_text(legal_amplitude(config.task, amplitude)) + " with these bodies");
+}
+
+}  // namespace rtg

@@ -1,0 +1,173 @@
+#include "nodes/config/task_checks.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <string>
+
+#include "core/world/separation.hpp"
+#include "nodes/config/config_error.hpp"
+#include "nodes/config/field_reader.hpp"
+#include "nodes/config/task_words.hpp"
+
+namespace rtg {
+namespace {
+
+std::string body_path(std::size_t i) { return "task.bodies." + std::to_string(i); }
+
+const ConfigNode& body_section(const ConfigNode& section, std::size_t i) {
+  return find(section, "bodies")->value.items[i];
+}
+
+[[noreturn]] void fail_at(const ConfigNode& section, std::size_t body, const char* key,
+                          const std::string& wrong, const std::string& legal) {
+  fail_at(body_section(section, body), body_path(body), key, wrong, legal);
+}
+
+void check_movable(const Task& task, const ConfigNode& section) {
+  const auto& bodies = task.scene.bodies;
+  if (bodies[0].fixed)
+    fail_at(section, 0, "fixed", "the first body is the robot, which moves", "false");
+  if (std::all_of(bodies.begin() + 1, bodies.end(), [](const Body& body) { return body.fixed; }))
+    fail_at(section, 1, "fixed", "no object can move", "false for one body besides the robot");
+}
+
+void check_start(const Task& task, const ConfigNode& section) {
+  const std::string arena = number_text(task.push.arena);
+  for (std::size_t i = 0; i < task.scene.size(); ++i) {
+    const Body& body = task.scene.bodies[i];
+    if (body.fixed) continue;
+    if (!in_arena(task.start[i], task.push))
+      fail_at(section, i, "start", "lies outside the arena",
+              "x and y from -" + arena + " to " + arena + " (task.push.arena)");
+    if (bounding_radius(body.shape) > task.push.arena)
+      fail_at(section, i, "shape", "is larger than the arena",
+              "a reach of at most " + arena + " m (task.push.arena)");
+  }
+  if (const auto pair = first_overlap(task.scene, task.start, kStartClearance)) {
+    const auto [a, b] = std::minmax(pair->first, pair->second);
+    const double gap = separation(task.scene.bodies[a].shape, task.start[a],
+                                  task.scene.bodies[b].shape, task.start[b]);
+    fail_at(section, b, "start",
+            (gap < 0.0 ? "overlaps '" : "touches '") + task.scene.bodies[a].name + "'",
+            "bodies at least 0.02 m apart");
+  }
+}
+
+/// The kinds of the objects that can move, and "*".
+std::string legal_kinds(const Task& task) {
+  std::vector<std::string> kinds{"\"*\""};
+  for (std::size_t i = 1; i < task.scene.size(); ++i) {
+    const Body& body = task.scene.bodies[i];
+    if (!body.fixed && std::find(kinds.begin(), kinds.end(), body.kind) == kinds.end())
+      kinds.push_back(body.kind);
+  }
+  return listed(kinds);
+}
+
+/// Whether some point of the arena, |x|, |y| ≤ a, lies in the region.
+bool meets_arena(const GoalTerm& term, double a) {
+  if (term.region == GoalTerm::Region::kAngles) return true;
+  if (term.region == GoalTerm::Region::kHalfPlane)
+    return -a * term.normal.lpNorm<1>() <= term.offset;
+  const Vector2d nearest = term.centre.cwiseMax(-a).cwiseMin(a);
+  return (term.centre - nearest).norm() <= term.radius;
+}
+
+/// The children of joints, and "*".
+std::string legal_joints(const Task& task) {
+  std::vector<std::string> names{"\"*\""};
+  for (const Joint& joint : task.scene.joints)
+    names.push_back(task.scene.bodies[static_cast<std::size_t>(joint.child)].name);
+  return task.scene.joints.empty() ? "task.joints, of which there are none" : listed(names);
+}
+
+bool concerns_something(const GoalTerm& term, const Scene& scene) {
+  for (std::size_t i = 1; i < scene.size(); ++i)
+    if (concerns(term, scene, i) && !scene.bodies[i].fixed) return true;
+  return std::ranges::any_of(scene.joints,
+                             [&](const Joint& joint) { return concerns(term, scene, joint); });
+}
+
+/// Throws unless the joint can have the angles that the term asks for, with room to spare.
+void check_angles(const GoalTerm& term, const Joint& joint, const Task& task,
+                  const ConfigEntry& angles, const std::string& path) {
+  if (!concerns(term, task.scene, joint)) return;
+  if (!(joint.upper - joint.lower < 2.0 * std::numbers::pi))
+    throw ConfigError(angles.value.origin, path + ".joint", "can turn round and round",
+                      "joints with limits less than 6.28 rad apart");
+  if (std::max(joint.lower, term.least + kGoalSpare) >
+      std::min(joint.upper, term.most - kGoalSpare))
+    throw ConfigError(angles.value.origin, path + ".angles",
+                      "are none that the joint of '" +
+                          task.scene.bodies[static_cast<std::size_t>(joint.child)].name +
+                          "' can have",
+                      "angles from " + number_text(joint.lower) + " to " +
+                          number_text(joint.upper) + " (its limits), with 0.05 rad to spare");
+}
+
+void check_term(const Task& task, std::size_t k, const ConfigNode& section) {
+  const GoalTerm& term = task.goal[k];
+  const ConfigNode& node = find(section, "goal")->value.items[k];
+  const std::string path = "task.goal." + std::to_string(k);
+  if (!concerns_something(term, task.scene)) {
+    const bool of_joint = term.subject == GoalTerm::Subject::kJoint;
+    const char* key = of_joint ? "joint" : find(node, "centroid") ? "centroid" : "kind";
+    const ConfigEntry* subject = find(node, key);
+    throw ConfigError(subject ? subject->value.origin : node.origin, path + '.' + key,
+                      of_joint ? "no joint has a child '" + term.kind + "'"
+                               : "no object that can move is of kind '" + term.kind + "'",
+                      of_joint ? legal_joints(task) : legal_kinds(task));
+  }
+  if (const ConfigEntry* angles = find(node, "angles"))
+    for (const Joint& joint : task.scene.joints) check_angles(term, joint, task, *angles, path);
+  const std::string arena = number_text(task.push.arena);
+  if (!meets_arena(term, task.push.arena))
+    throw ConfigError(
+        node.origin, path, "lies outside the arena",
+        "regions with points of x and y from -" + arena + " to " + arena + " (task.push.arena)");
+}
+
+/// Whether a fixed body is where the terms that speak of it want it.
+bool stands_right(const Task& task, std::size_t body) {
+  return std::ranges::all_of(task.goal, [&](const GoalTerm& term) {
+    return term.subject != GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||
+           contains(term, task.start[body].position(), 0.0);
+  });
+}
+
+void check_goal(const Task& task, const ConfigNode& section) {
+  for (std::size_t k = 0; k < task.goal.size(); ++k) check_term(task, k, section);
+  const std::string& origin = find(section, "goal")->value.origin;
+  for (std::size_t i = 1; i < task.scene.size(); ++i)
+    if (task.scene.bodies[i].fixed && !stands_right(task, i))
+      throw ConfigError(origin, "task.goal",
+                        "asks fixed body '" + task.scene.bodies[i].name + "' to be elsewhere",
+                        "terms that the fixed bodies of that kind meet");
+  if (succeeded(task, task.start))
+    throw ConfigError(origin, "task.goal", "holds in the start state",
+                      "a goal that the start state does not meet");
+  Rng rng(1);
+  if (!sample_goal(task, rng))
+    throw ConfigError(origin, "task.goal", "no layout of the bodies that meets it was found",
+                      "terms that all objects can meet at once, with 0.05 m and rad to spare");
+}
+
+}  // namespace
+
+void check_names(const Task& task, const ConfigNode& section) {
+  const auto& bodies = task.scene.bodies;
+  for (std::size_t i = 1; i < bodies.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (bodies[i].name == bodies[j].name)
+        fail_at(section, i, "name",
+                "'" + bodies[i].name + "' is the name of body " + std::to_string(j) + " too",
+                "names that differ");
+}
+
+void check_task(const Task& task, const ConfigNode& section) {
+  check_movable(task, section);
+  check_start(task, section);
+  check_goal(task, section);
+}
+
+}  // namespace rtg

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "core/tasks/task.hpp"
+#include "nodes/config/config_tree.hpp"
+
+namespace rtg {
+
+/// Throws ConfigError with the place in `section`, which the bodies of `task` were read from, for
+/// two of the same name.
+void check_names(const Task& task, const ConfigNode& section);
+
+/// What concerns several values at once. Throws ConfigError with the place in `section`, which
+/// `task` was read from, for: nothing that can move, a start state that overlaps or lies outside, a
+/// goal that concerns nobody, holds from the start or that no layout meets.
+void check_task(const Task& task, const ConfigNode& section);
+
+}  // namespace rtg

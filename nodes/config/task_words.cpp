@@ -1,0 +1,53 @@
+#include "nodes/config/task_words.hpp"
+
+#include <algorithm>
+
+#include "nodes/config/config_error.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr std::size_t kMaxName = 40;   // characters
+constexpr double kLeastAngles = 0.15;  // between the ends of a range, more than goals keep clear
+constexpr double kRounding = 1e-9;     // [rad]
+
+}  // namespace
+
+std::string name_at(const FieldReader& reader, const char* key, const std::string& legal) {
+  const ConfigNode& node = reader.required(key, legal).value;
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto is_legal = [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  const std::string& name = node.scalar;
+  if (node.kind != ConfigNode::Kind::kScalar || name.empty() || name.size() > kMaxName ||
+      !is_letter(name[0]) || !std::all_of(name.begin(), name.end(), is_legal))
+    throw ConfigError(node.origin, reader.path(key), in_words(node) + " is no name", legal);
+  return name;
+}
+
+Vector2d point_at(const FieldReader& reader, const char* key) {
+  const auto x = reader.numbers(key, 2, -kMaxPlace, kMaxPlace, "[x, y]");
+  return {x[0], x[1]};
+}
+
+Vector2d angles_at(const FieldReader& reader, const char* key) {
+  const std::string legal = "[least, most] in rad, at least 0.15 apart";
+  const auto angles = reader.numbers(key, 2, -kMaxAngle, kMaxAngle, legal);
+  if (angles[1] - angles[0] < kLeastAngles - kRounding)
+    throw ConfigError(reader.required(key, legal).value.origin, reader.path(key),
+                      "leaves hardly any angle", legal);
+  return {angles[0], angles[1]};
+}
+
+void fail_at(const ConfigNode& entry, const std::string& path, const char* key,
+             const std::string& wrong, const std::string& legal) {
+  const ConfigEntry* field = find(entry, key);
+  throw ConfigError(field ? field->value.origin : entry.origin, path + '.' + key, wrong, legal);
+}
+
+ConfigNode point_node(const Vector2d& x) {
+  return list_node({token_node(number_text(x.x())), token_node(number_text(x.y()))});
+}
+
+}  // namespace rtg

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "nodes/program/shutdown.hpp"
+#include "nodes/work/worker_node.hpp"
+
+namespace rtg {
+
+/// Serves the bus until the coordinator leaves or a signal comes; the exit status of the process.
+/// Ends the process with status 1 when it is stuck with a unit: the coordinator counts it as lost.
+/// Throws std::runtime_error if the coordinator falls silent, and what the node's work throws.
+template <class Work>
+int serve(Bus& bus, WorkerNode<Work>& node) {
+  int status = 0;
+  while (!stop_signal() && !node.coordinator().leaving()) {
+    bus.spin(std::chrono::milliseconds(50));
+    node.tick(monotonic_now());
+    if (node.stuck(monotonic_now())) {
+      std::fputs("stuck: a unit of work takes longer than any should; leaving it\n", stderr);
+      std::_Exit(1);  // nobody could wait for its thread
+    }
+    if (node.coordinator().silent(monotonic_now())) {
+      limit_shutdown(1);  // the node's end waits for its units, which may hang
+      throw std::runtime_error("no coordinator heard for 30 s");
+    }
+  }
+  if (stop_signal()) status = 128 + stop_signal();
+  limit_shutdown(status);
+  return status;
+}
+
+}  // namespace rtg

@@ -1,0 +1,45 @@
+#include "nodes/program/shutdown.hpp"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+
+namespace rtg {
+namespace {
+
+constexpr unsigned kGrace = 4;  // [s]; the promise is to be gone after 5
+
+std::atomic<int> first_signal{0};
+std::atomic<int> late_status{0};
+static_assert(std::atomic<int>::is_always_lock_free);  // hence usable in a handler
+
+void on_stop_signal(int number) {
+  if (first_signal.exchange(number) != 0) _exit(128 + number);
+  late_status = 128 + number;
+  alarm(kGrace);
+}
+
+void on_alarm(int) { _exit(late_status); }
+
+void handle(int number, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  sigaction(number, &action, nullptr);
+}
+
+}  // namespace
+
+void watch_signals() {
+  handle(SIGALRM, on_alarm);
+  for (const int number : {SIGINT, SIGTERM}) handle(number, on_stop_signal);
+}
+
+int stop_signal() { return first_signal; }
+
+void limit_shutdown(int status) {
+  late_status = status;
+  alarm(kGrace);
+}
+
+}  // namespace rtg

@@ -1,0 +1,188 @@
+#include "nodes/work/work.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/math/hash.hpp"
+#include "nodes/bus/wire.hpp"
+
+namespace rtg {
+namespace {
+
+constexpr std::size_t kEnvelope = 200;  // bytes of a message besides its arrays, generously
+constexpr std::size_t kPerJob = 16;     // bytes of a job or result besides its poses, generously
+
+/// State number `i` of a flat array.
+Poses poses_at(const std::vector<double>& numbers, std::size_t i, int bodies) {
+  Poses poses(static_cast<std::size_t>(bodies));
+  const double* p = numbers.data() + i * poses.size() * 3;
+  for (Pose& pose : poses) {
+    pose = {p[0], p[1], p[2]};
+    p += 3;
+  }
+  return poses;
+}
+
+template <class Message>
+bool has_shape(const Message& message, const TaskShape& shape) {
+  return message.n >= 1 && message.n_poses == std::int64_t{3} * message.n * shape.bodies;
+}
+
+/// Whether there are as many poses as the counts of starts say, and starts where they belong.
+bool has_starts(const rtg_msgs::reverse_result_t& message, const TaskShape& shape) {
+  std::int64_t sum = 0;
+  for (std::size_t i = 0; i < message.starts.size(); ++i) {
+    const bool converged = message.status[i] == static_cast<int>(SolveStatus::kConverged);
+    if (message.starts[i] < (converged ? 1 : 0) || message.starts[i] > (converged ? kMaxStarts : 0))
+      return false;
+    sum += message.starts[i];
+  }
+  return message.n >= 1 && message.n_poses == 3 * sum * shape.bodies;
+}
+
+bool all_between(const auto& values, auto least, auto most) {
+  return std::all_of(values.begin(), values.end(), [=](auto v) { return v >= least && v <= most; });
+}
+
+template <class Message>
+void set_counts(Message& message, std::size_t n, const std::vector<double>& poses) {
+  message.n = static_cast<std::int32_t>(n);
+  message.n_poses = static_cast<std::int32_t>(poses.size());
+}
+
+const Poses& state_of(const ReverseJob& job) { return job.end; }
+const Poses& state_of(const ReplayJob& job) { return job.start; }
+
+template <class Job>
+std::int64_t hash_of(std::span<const Job> jobs, std::int64_t config) {
+  auto hash = static_cast<std::uint64_t>(config);
+  for (const Job& job : jobs) hash = hashed(hash, key_of(state_of(job), job.action));
+  return static_cast<std::int64_t>(hash);
+}
+
+}  // namespace
+
+void append_poses(const Poses& poses, std::vector<double>& out) {
+  for (const Pose& p : poses) out.insert(out.end(), {p.x, p.y, p.theta});
+}
+
+ReverseWork::JobMessage ReverseWork::message(std::span<const Job> jobs) {
+  JobMessage out{};
+  for (const Job& job : jobs) {
+    append_poses(job.end, out.end);
+    out.action.push_back(job.action);
+  }
+  set_counts(out, jobs.size(), out.end);
+  return out;
+}
+
+ReverseWork::ResultMessage ReverseWork::message(std::span<const Result> results) {
+  ResultMessage out{};
+  for (const Result& r : results) {
+    out.status.push_back(static_cast<std::int8_t>(r.status));
+    out.iterations.push_back(r.iterations);
+    out.cpu_s.push_back(r.cpu_s);
+    out.starts.push_back(static_cast<std::int8_t>(r.starts.size()));
+    for (const Poses& start : r.starts) append_poses(start, out.start);
+  }
+  set_counts(out, results.size(), out.start);
+  return out;
+}
+
+std::optional<std::vector<ReverseJob>> ReverseWork::parse(const JobMessage& message,
+                                                          const TaskShape& shape) {
+  if (!has_shape(message, shape) || !all_between(message.action, 0, shape.headings - 1))
+    return std::nullopt;
+  std::vector<Job> jobs;
+  for (std::size_t i = 0; i < message.action.size(); ++i)
+    jobs.push_back({poses_at(message.end, i, shape.bodies), message.action[i]});
+  return jobs;
+}
+
+std::optional<std::vector<ReverseResult>> ReverseWork::parse(const ResultMessage& message,
+                                                             const TaskShape& shape) {
+  if (!all_between(message.status, 0, kSolveStatusCount - 1) ||
+      !all_between(message.iterations, 0, 1000000000) || !all_between(message.cpu_s, 0.0, 1e9) ||
+      !has_starts(message, shape))
+    return std::nullopt;
+  std::vector<Result> results;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < message.status.size(); ++i) {
+    Result r{
+        static_cast<SolveStatus>(message.status[i]), message.iterations[i], {}, message.cpu_s[i]};
+    for (int k = 0; k < message.starts[i]; ++k)
+      r.starts.push_back(poses_at(message.start, at++, shape.bodies));
+    results.push_back(std::move(r));
+  }
+  return results;
+}
+
+ReverseResult ReverseWork::given_up(const Job&) { return {SolveStatus::kNonFinite}; }
+
+ReplayWork::JobMessage ReplayWork::message(std::span<const Job> jobs) {
+  JobMessage out{};
+  for (const Job& job : jobs) {
+    append_poses(job.start, out.start);
+    out.action.push_back(job.action);
+  }
+  set_counts(out, jobs.size(), out.start);
+  return out;
+}
+
+ReplayWork::ResultMessage ReplayWork::message(std::span<const Result> results) {
+  ResultMessage out{};
+  for (const Result& r : results) {
+    out.ok.push_back(r.ok ? 1 : 0);
+    out.cpu_s.push_back(r.cpu_s);
+    append_poses(r.end, out.end);
+  }
+  set_counts(out, results.size(), out.end);
+  return out;
+}
+
+std::optional<std::vector<ReplayJob>> ReplayWork::parse(const JobMessage& message,
+                                                        const TaskShape& shape) {
+  static_assert(kSettle == -1);
+  if (!has_shape(message, shape) || !all_between(message.action, kSettle, shape.headings - 1))
+    return std::nullopt;
+  std::vector<Job> jobs;
+  for (std::size_t i = 0; i < message.action.size(); ++i)
+    jobs.push_back({poses_at(message.start, i, shape.bodies), message.action[i]});
+  return jobs;
+}
+
+std::optional<std::vector<ReplayResult>> ReplayWork::parse(const ResultMessage& message,
+                                                           const TaskShape& shape) {
+  if (!has_shape(message, shape) || !all_between(message.ok, 0, 1) ||
+      !all_between(message.cpu_s, 0.0, 1e9))
+    return std::nullopt;
+  std::vector<Result> results;
+  for (std::size_t i = 0; i < message.ok.size(); ++i)
+    results.push_back(
+        {poses_at(message.end, i, shape.bodies), message.ok[i] == 1, message.cpu_s[i]});
+  return results;
+}
+
+ReplayResult ReplayWork::given_up(const Job& job) { return {job.start, false, 0.0}; }
+
+std::vector<std::size_t> unit_sizes(std::size_t jobs, const UnitLimit& limit,
+                                    const TaskShape& shape) {
+  const std::size_t state = static_cast<std::size_t>(shape.bodies) * 3 * sizeof(double);
+  const std::size_t per_job = limit.states * state + kPerJob;
+  const std::size_t fits = (kMaxMessageBytes - kEnvelope) / per_job;
+  const std::size_t most = std::max<std::size_t>(1, std::min(limit.jobs, fits));
+  const std::size_t units = (jobs + most - 1) / most;
+  std::vector<std::size_t> sizes;
+  for (std::size_t k = 0; k < units; ++k) sizes.push_back((jobs + k) / units);
+  return sizes;
+}
+
+std::int64_t unit_id(std::span<const ReverseJob> jobs, std::int64_t config) {
+  return hash_of(jobs, config);
+}
+
+std::int64_t unit_id(std::span<const ReplayJob> jobs, std::int64_t config) {
+  return hash_of(jobs, config);
+}
+
+}  // namespace rtg

@@ -1,0 +1,145 @@
+#pragma once
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <rtg_msgs/worker_beat_t.hpp>
+#include <span>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "nodes/bus/bus.hpp"
+#include "nodes/bus/node_status.hpp"
+#include "nodes/work/job_inbox.hpp"
+#include "nodes/work/work.hpp"
+
+namespace rtg {
+
+/// A process that answers one kind of work. The thread that spins the bus hears jobs and says what
+/// is held; threads of the node's own answer, so a long solve never makes the process look dead.
+template <class Work>
+class WorkerNode {
+ public:
+  using Answer =
+      std::function<std::vector<typename Work::Result>(std::span<const typename Work::Job>)>;
+  struct Options {
+    TaskShape shape;
+    std::int64_t config = 0;  // hash of the configuration
+    int number = 0;           // of several workers, for people
+    int threads = 1;
+    Seconds patience = JobDispatcher::Limits{}.lease;  // with one unit, until the process is stuck
+  };
+
+  /// `answer` computes a unit's results in job order; it is called from `threads` threads at once.
+  WorkerNode(Bus& bus, const Options& options, Answer answer)
+      : bus_(bus),
+        options_(options),
+        answer_(std::move(answer)),
+        watch_(bus),
+        status_(bus, Work::kNode, options.number) {
+    bus_.subscribe<JobMessage>(Work::kJobs, [this](const JobMessage& m) { receive(m); });
+    for (int k = 0; k < options_.threads; ++k)
+      threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+  }
+
+  /// Beats and status; to be called after every spin of the bus. Rethrows what `answer` threw.
+  void tick(Seconds now) {
+    std::unique_lock lock(mutex_);
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+    const std::vector<JobId> held = inbox_.held();
+    const long done = done_;
+    lock.unlock();
+    if (beat_.due(now)) send_beat(held);
+    if (status_.due(now)) status_.publish(held.empty() ? "idle" : "busy", done);
+  }
+
+  /// Whether a unit has been in work for longer than any unit takes. Nothing but the end of the
+  /// process frees the thread, so that another one can take its place.
+  bool stuck(Seconds now) const {
+    const std::scoped_lock lock(mutex_);
+    return std::ranges::any_of(
+        begun_, [&](const auto& unit) { return now - unit.second > options_.patience; });
+  }
+
+  const CoordinatorWatch& coordinator() const { return watch_; }
+  std::int64_t incarnation() const { return incarnation_; }
+
+ private:
+  using JobMessage = typename Work::JobMessage;
+  using ResultMessage = typename Work::ResultMessage;
+  using Jobs = std::vector<typename Work::Job>;
+  static constexpr std::size_t kMostHeld = 3000;  // beyond any capacity that beats announce
+
+  void receive(const JobMessage& message) {
+    if (message.to != incarnation_) return;
+    std::optional<Jobs> jobs = Work::parse(message, options_.shape);
+    if (!jobs) return bus_.counters().add("jobs.illegal");
+    std::unique_lock lock(mutex_);
+    if (inbox_.held().size() >= kMostHeld) return bus_.counters().add("jobs.too_many");
+    const std::optional<ResultMessage> known = inbox_.receive(message.job_id, std::move(*jobs));
+    lock.unlock();
+    if (!known) return wake_.notify_one();
+    bus_.counters().add("jobs.answered_again");
+    bus_.publish(Work::kResults, *known);
+  }
+
+  void send_beat(const std::vector<JobId>& held) {
+    rtg_msgs::worker_beat_t message{};
+    message.incarnation = incarnation_;
+    message.worker = options_.number;
+    message.config = options_.config;
+    message.capacity = 2 * options_.threads + 1;  // some in work, some on their way
+    message.held = held;
+    message.n_held = static_cast<std::int32_t>(held.size());
+    bus_.publish(Work::kBeats, message);
+  }
+
+  void work(const std::stop_token& stop) {
+    try {
+      while (const auto unit = next(stop)) {
+        ResultMessage message = Work::message(answer_(unit->second));
+        message.job_id = unit->first;
+        message.incarnation = incarnation_;
+        bus_.publish(Work::kResults, message);
+        const std::scoped_lock lock(mutex_);
+        begun_.erase(unit->first);
+        inbox_.finish(unit->first, std::move(message));
+        ++done_;
+      }
+    } catch (...) {
+      const std::scoped_lock lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+    }
+  }
+
+  /// The unit to work on; none if the node ends.
+  std::optional<std::pair<JobId, Jobs>> next(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    std::optional<std::pair<JobId, Jobs>> unit;
+    wake_.wait(lock, stop, [&] { return (unit = inbox_.take()).has_value(); });
+    if (unit) begun_[unit->first] = monotonic_now();
+    return stop.stop_requested() ? std::nullopt : std::move(unit);
+  }
+
+  Bus& bus_;
+  Options options_;
+  Answer answer_;
+  std::int64_t incarnation_ = random_identity();
+  CoordinatorWatch watch_;
+  NodeStatus status_;
+  Ticker beat_{0.05};
+  mutable std::mutex mutex_;  // guards what follows
+  std::condition_variable_any wake_;
+  JobInbox<Jobs, ResultMessage> inbox_{64};
+  std::map<JobId, Seconds> begun_;  // units in work, and since when
+  long done_ = 0;
+  std::exception_ptr failure_;
+  std::vector<std::jthread> threads_;  // last: ends before all that it uses
+};
+
+}  // namespace rtg

@@ -1,0 +1,73 @@
+#include "core/reverse/problem/warm_start.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/touching_scene.hpp"
+
+namespace rtg {
+namespace {
+
+using testing::TouchingScene;
+
+// The servo's lead makes up for its lag in free motion.
+TEST(WarmStart, AFreeRobotKeepsToItsPath) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0.3}, {20, 0, 0}, {0, 20, 0}});
+  const auto x = warm_start(problem);
+  ASSERT_TRUE(x);
+  for (int k = 0; k <= problem.sub_steps; ++k) {
+    const Vector3d path(-0.2 * (problem.sub_steps - k), 0.0, 0.3);
+    EXPECT_LT((x->p[static_cast<std::size_t>(k)].head<3>() - path).norm(), 1e-6);
+  }
+}
+
+TEST(WarmStart, IsFeasibleAndEndsNearTheEnd) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  const auto x = warm_start(problem);
+  ASSERT_TRUE(x);
+  EXPECT_LT(violation(problem, *x).max(), 1e-6);
+  EXPECT_LT(terminal_miss(problem, *x), 0.1);
+}
+
+// A gap of 0.0087 carries the box's drag at push speed: before the last sub-step it was a stride of
+// a sub-step, 0.2, further back.
+TEST(WarmStart, DragsATouchedBodyAgainstThePush) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0}, {1.4 + 0.0087, 0, 0}, {20, 0, 0}});
+  const auto x = warm_start(problem);
+  ASSERT_TRUE(x);
+  const VectorXd moved = x->p[0] - problem.end;
+  EXPECT_NEAR(moved[0], -2.0, 0.01);
+  EXPECT_LT(moved[3], -0.19);
+  EXPECT_NEAR(moved[4], 0.0, 1e-6);
+  EXPECT_LT(terminal_miss(problem, *x), 0.01);
+}
+
+TEST(WarmStart, LeavesUntouchedBodiesAlone) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end[4] += 20.0;
+  problem.end[7] -= 20.0;
+  const auto x = warm_start(problem);
+  ASSERT_TRUE(x);
+  for (const VectorXd& p : x->p) EXPECT_EQ(p.tail(6), problem.end.tail(6));
+  EXPECT_LT(terminal_miss(problem, *x), 1e-6);
+}
+
+TEST(WarmStart, OfAnOverlappingEndThereIsNone) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = stacked({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
+  EXPECT_FALSE(warm_start(problem));
+}
+
+}  // namespace
+}  // namespace rtg
