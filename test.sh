@@ -51,8 +51,7 @@ case ${1:-all} in
     run_pytest
     ;;
   debug)
-    set_up debug rtg_cpp_tests
-    # The solver's own tests take half an hour here, and asan runs them as well.
+    set_up debug rtg_quick_tests
     run_ctest debug --exclude-regex '^core\.(math|energy|reverse)\.'
     ;;
   asan)

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/search/transition.hpp"
-#include "nodes/work/job_dispatcher.hpp"
+#include "nodes/bus/seconds.hpp"
 
 namespace rtg {
 

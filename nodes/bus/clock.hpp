@@ -4,10 +4,9 @@
 #include <cstdint>
 #include <random>
 
-namespace rtg {
+#include "nodes/bus/seconds.hpp"
 
-/// A time or a span of time [s].
-using Seconds = double;
+namespace rtg {
 
 /// The clock of all timeouts; never set back.
 inline Seconds monotonic_now() {

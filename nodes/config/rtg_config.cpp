@@ -13,6 +13,7 @@
 #include "nodes/config/config_overrides.hpp"
 #include "nodes/config/field_writer.hpp"
 #include "nodes/config/method.hpp"
+#include "nodes/config/run_checks.hpp"
 #include "nodes/config/start_checks.hpp"
 #include "nodes/config/task_section.hpp"
 #include "nodes/config/train_preset.hpp"
@@ -215,6 +216,7 @@ RtgConfig read_config(const ConfigNode& root) {
   check_randomisation(root, config);
   check_jitters(config, root);
   check_bus(root, config.run.bus);
+  check_run(config, root);
   if (config.run.workers == 0)
     config.run.workers = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 1024);
   return config;

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "nodes/bus/clock.hpp"
+#include "nodes/bus/seconds.hpp"
 
 namespace rtg {
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/search/generate.hpp"
 #include "core/search/simulators.hpp"
 #include "nodes/config/rtg_config.hpp"
 #include "tests/bench/arguments.hpp"

@@ -1,5 +1,5 @@
-"""The reverse problem with CasADi, written from its formulas (core/reverse/problem/reverse_problem.hpp,
-core/energy) and sharing no code with the solver."""
+"""The reverse problem with CasADi, written from its formulas
+(core/reverse/problem/reverse_problem.hpp, core/energy) and sharing no code with the solver."""
 
 from __future__ import annotations
 

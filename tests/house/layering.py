@@ -31,7 +31,6 @@ MAY_INCLUDE = {
     "nodes/config": {"core", "nodes/bus", "nodes/config"},
     "nodes/work": {"core", "nodes/bus", "nodes/work", "rtg_msgs"},
     "nodes/program": {"core", "nodes/bus", "nodes/config", "nodes/work", "nodes/program"},
-    "nodes/rtg_config": {"core", "nodes/config", "nodes/rtg_config"},
     "nodes/beam_coordinator": {*_OF_PROGRAMS, "rtg_msgs", "nodes/beam_coordinator"},
     "nodes/forward_sim_server": _OF_PROGRAMS,
     "nodes/reverse_worker": _OF_PROGRAMS,
@@ -109,7 +108,10 @@ def imports(text: str) -> Iterator[str]:
     """Modules of ours that a Python source imports, dotted."""
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names if alias.name.startswith("rtg."))
+            names = [alias.name for alias in node.names]
+            yield from ("rtg.all" if name == "rtg" else name for name in names if "rtg" in name)
+        elif isinstance(node, ast.ImportFrom) and node.level > 0:
+            yield "rtg.relative"
         elif isinstance(node, ast.ImportFrom) and node.module == "rtg":
             yield from (f"rtg.{alias.name}" for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("rtg."):
@@ -122,13 +124,15 @@ def python_faults(path: str, text: str) -> list[str]:
     if IMPORT_LCM.search(text) and path != "train/rtg/bus/bus.py":
         found.append(f"{path}: import lcm belongs in train/rtg/bus/bus.py alone")
     parts = PurePosixPath(path).parts
-    if parts[:2] != ("train", "rtg") or len(parts) == 3:  # tests, and what is above all rooms
+    if parts[:2] != ("train", "rtg"):
         return found
-    room = parts[2]
-    if room not in ROOMS:
+    room = parts[2].removesuffix(".py")
+    if len(parts) == 3 and room not in ROOF:  # above all rooms
+        return found
+    if len(parts) > 3 and room not in ROOMS:
         return [*found, f"{path}: {room} is no room of the package"]
-    allowed = {room, *ROOMS[room], *ROOF}
-    wrong = [module for module in imports(text) if module.split(".")[1] not in allowed]
+    allowed = {room, *ROOMS.get(room, set()), *ROOF}
+    wrong = [module for module in imports(text) if module.split(".", 2)[1] not in allowed]
     return found + [f"{path}: may not import {module}" for module in wrong]
 
 

@@ -29,6 +29,18 @@ def test_paths_exist(page: str) -> None:
     assert {name for name in paths if not (ROOT / name).exists()} <= READERS_OWN
 
 
+def test_every_room_has_a_line_on_what_it_holds() -> None:
+    rooms = {
+        f"{path.parent.relative_to(ROOT)}/"
+        for path in sources(".hpp", ".py")
+        if path.relative_to(ROOT).parts[0] in {"core", "nodes", "train"}
+        and path.parent not in {ROOT / "core", ROOT / "train" / "rtg", ROOT / "train" / "bindings"}
+    }
+    table = re.findall(r"^\| (`.*?`) \|", (ROOT / "CONTRIBUTING.md").read_text(), re.MULTILINE)
+    named = {name for cell in table for name in re.findall(r"`([^`]+)`", cell)}
+    assert rooms - named == set() and len(rooms) > 15
+
+
 def test_channels_of_the_code_are_in_the_table_and_only_they() -> None:
     processes = "\n".join(
         path.read_text()

@@ -138,6 +138,16 @@ TEST(RtgConfig, SettingsStandAboveTheFileInTheirOrder) {
   EXPECT_EQ(config.run.bus, "memq://");
 }
 
+TEST(RtgConfig, ABrokenByteInASettingIsNamed) {
+  try {
+    parsed("", {"task.name=gr\xf6sser"});
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "--set task.name=gr\xf6sser: a byte that is no UTF-8; legal: text in UTF-8");
+  }
+}
+
 TEST(RtgConfig, APolygonIsCentredAndItsTextReadsBackToTheSameBits) {
   const RtgConfig config =
       parsed("", {"task.bodies.1.shape={vertices: [[5, 5], [6.1, 5], [6, 6.5], [5.3, 6.6]]}"});

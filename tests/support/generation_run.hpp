@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/search/generate.hpp"
 #include "core/search/simulators.hpp"
 
 namespace rtg::testing {

@@ -3,7 +3,6 @@
 Says how many rows it has whenever some have come, and how many it lacks at the end.
 """
 
-import json
 import sys
 from pathlib import Path
 
@@ -19,7 +18,7 @@ def main(config_file: str, run: str, target: str, *receive_buffer: str) -> None:
     config = _core.Config.from_file(config_file)
     task = config.task
     recorder = Recorder(task)
-    url = json.loads(config.json)["run"]["bus"]
+    url = config.run.bus
     stream = TransitionStream(bus.Bus(url, run), task.bodies, task.headings, recorder.add)
     while not stream.complete:
         if stream.poll(0.1):

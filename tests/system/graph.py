@@ -28,7 +28,7 @@ class Graph:
         self.network, self.folder = network, folder
         self.config = folder / "config.yaml"
         given = [Override("", setting) for setting in overrides]
-        self.config.write_text(effective_config.canonical(_TINY, given))
+        self.config.write_text(effective_config.load(_TINY, given).yaml)
 
     def _program(self, name: str, *words: str | Path) -> Process:
         return self.network.start([paths.program(name), self.config, _RUN, *words])

@@ -7,15 +7,13 @@ import numpy as np
 from rtg import _core, paths
 from rtg.files.dataset import Transitions
 from rtg.learn.replay import ReplayRules
-from rtg.learn.settings import TrainSettings
 
 
-def train_settings(**train: Any) -> TrainSettings:
+def train_settings(**train: Any) -> _core.TrainConfig:
     """What the loader makes of these values; its defaults for all others."""
     overrides = [f"train.{key}={json.dumps(value)}" for key, value in train.items()]
-    text = f"task: {paths.CONFIG / 'gathering.yaml'}"
-    config = _core.Config.from_text(text, overrides=overrides)
-    return TrainSettings.from_config(json.loads(config.json)["train"])
+    text = f"task: {paths.CONFIG / 'gathering.yaml'}\nsearch: {{transitions: 1}}"
+    return _core.Config.from_text(text, overrides=overrides).train
 
 
 def replay_rules(**changes: Any) -> ReplayRules:

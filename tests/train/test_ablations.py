@@ -33,31 +33,35 @@ def test_all_departures_together_are_the_paper_but_for_how_it_is_measured():
     *departures, as_paper = ablations(FILE, [])
     words = [word for words in departures for word in words if word.startswith("train.")]
     taken_back = [Override("", word) for word in words]
-    found = effective_config.values(FILE, taken_back)["train"]
-    paper = effective_config.values(FILE, [Override("", word) for word in as_paper])["train"]
+    found = effective_config.values(effective_config.load(FILE, taken_back))["train"]
+    paper = effective_config.values(
+        effective_config.load(FILE, [Override("", word) for word in as_paper])
+    )["train"]
     assert {key for key in paper if found[key] != paper[key]} == {"preset"}
-    ours = effective_config.values(FILE)["train"]
+    ours = effective_config.values(effective_config.load(FILE))["train"]
     watched = ("interactions", "eval_every", "stop_at_success", "stop_evaluations")
     assert [paper[key] for key in watched] == [ours[key] for key in watched]
 
 
 def test_every_setting_of_the_search_has_an_ablation_or_is_a_size():
-    search = effective_config.values(FILE)["search"]
+    search = effective_config.values(effective_config.load(FILE))["search"]
     assert set(search) <= {*OF_BRANCHES, *OF_TREES, *SIZES, *DECIDED}
     tried = {words[0].partition("=")[0] for words in parts_of_search(search)}
     assert "search.branches" in tried and not tried & {f"search.{key}" for key in SIZES}
 
 
 def test_the_loader_takes_every_part_of_the_search_away():
-    before = effective_config.values(FILE)["search"]
+    before = effective_config.values(effective_config.load(FILE))["search"]
     for (word,) in parts_of_search(before):
-        after = effective_config.values(FILE, [Override("", word)])["search"]
+        after = effective_config.values(effective_config.load(FILE, [Override("", word)]))["search"]
         key = word.partition("=")[0].removeprefix("search.")
         assert {name for name in before if before[name] != after[name]} == {key}, word
 
 
 def test_what_the_search_is_without_is_not_taken_away():
-    search = effective_config.values(FILE, [Override("", "search.plans=0")])["search"]
+    search = effective_config.values(effective_config.load(FILE, [Override("", "search.plans=0")]))[
+        "search"
+    ]
     tried = {words[0] for words in parts_of_search(search)}
     assert "search.plans=1" in tried and "search.plans=0" not in tried
 

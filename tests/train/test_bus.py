@@ -130,7 +130,7 @@ def test_a_closed_bus_hears_nothing(ours):
 
 def warning(size):
     """Of a bus on the network that asks for a receive buffer of `size` bytes."""
-    program = f"""from rtg import bus
+    program = f"""from rtg.bus import bus
 bus.RECEIVE_BUFFER = {size}
 opened = bus.Bus("udpm://239.255.76.67:7667", "a run")
 opened.watch("A", print)

@@ -31,7 +31,7 @@ def begin(run, *overrides):
     """As `rtg run` does."""
     run.folder.mkdir(parents=True)
     args = run_args.parse([*run.words, *overrides, "--out", str(run.folder)])
-    text = effective_config.canonical(args.file, args.overrides)
+    text = effective_config.load(args.file, args.overrides).yaml
     (run.folder / "config.yaml").write_text(text)
 
 
@@ -61,10 +61,10 @@ def test_methods_stand_above_the_file_and_the_settings(words):
     """The file says naive."""
     for run, generator in zip(make_ready(parse(words)), ("naive", "rrbs"), strict=True):
         args = run_args.parse(run.words)
-        config = effective_config.values(args.file, args.overrides)
-        assert config["search"]["generator"] == generator
-        assert config["run"]["workers"] == 1 and config["run"]["in_process"]
-        assert config["train"]["batch"] == 8
+        config = effective_config.load(args.file, args.overrides)
+        assert config.search.generator == generator
+        assert config.run.workers == 1 and config.run.in_process
+        assert config.train.batch == 8
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,7 @@ def test_a_run_of_a_version_without_one_of_the_settings_is_refused(words):
 
 
 def test_what_no_run_can_do_is_refused_before_anything_starts(words, tmp_path):
-    with pytest.raises(UserError, match=r"train\.buffer: 100 is too small for search\.transitions"):
+    with pytest.raises(UserError, match=r"key 'train\.buffer': 100 is too small for search\.tr"):
         make_ready(parse([*words, "--set", "train.buffer=100"]))
     assert list(tmp_path.iterdir()) == []
 

@@ -1,6 +1,5 @@
 """Behaviour cloning: what is imitated, the loss, a mapping that it learns."""
 
-import dataclasses
 import json
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from rtg.learn import trainer
 from rtg.learn.cloning import IMITATED, Cloning, imitated
 from rtg.learn.offline_data import FileSource
 from rtg.learn.replay import Batch
-from samples import random_transitions
+from samples import random_transitions, train_settings
 from test_ddqn import SETTINGS
 from toy import line
 from training_runs import run_folder, training
@@ -23,7 +22,7 @@ WANTED = np.array([3, 1, 7, 0, 5])  # an action for each
 
 
 def cloning(**changes: object) -> Cloning:
-    settings = dataclasses.replace(SETTINGS, interact=False, learner="cloning", **changes)
+    settings = train_settings(**{**SETTINGS, "interact": False, "learner": "cloning", **changes})
     return Cloning(line(), settings, discount=0.9, seed=0)
 
 

@@ -1,6 +1,7 @@
 """The bindings against the stub and against each other."""
 
 import ast
+import json
 from pathlib import Path
 
 import numpy as np
@@ -15,14 +16,25 @@ def test_the_stub_lists_what_the_module_has() -> None:
     stub = {
         node.name: {m.name for m in getattr(node, "body", []) if isinstance(m, ast.FunctionDef)}
         for node in tree.body
-        if isinstance(node, ast.ClassDef | ast.FunctionDef)
+        if isinstance(node, ast.ClassDef | ast.FunctionDef) and not node.name.startswith("_")
     }
     public = {name for name in vars(_core) if not name.startswith("_")}
     assert public == set(stub)
     for name, members in stub.items():
         found = getattr(_core, name)
-        if isinstance(found, type):
+        sections = name.endswith("Config") and name != "Config"  # fields are those of the struct
+        if isinstance(found, type) and not sections:
             assert {m for m in vars(found) if not m.startswith("_")} == members - {"__init__"}
+
+
+def test_sections_of_the_configuration_have_the_values_of_its_text() -> None:
+    values = json.loads(CONFIG.json)
+    for name in ("physics", "reverse", "search", "train", "run"):
+        section = getattr(CONFIG, name)
+        found = {key: getattr(section, key) for key in dir(section) if not key.startswith("_")}
+        assert found == values[name] and len(found) > 5
+        assert {type(found[key]) for key in found} <= {bool, int, float, str}
+        assert [type(found[key]) for key in values[name]] == [*map(type, values[name].values())]
 
 
 def test_observation_is_the_documented_one() -> None:

@@ -1,5 +1,3 @@
-import dataclasses
-
 import numpy as np
 import pytest
 import torch as th
@@ -10,7 +8,7 @@ from samples import train_settings
 from stable_baselines3.common.vec_env import DummyVecEnv
 from toy import Outcomes, line
 
-SETTINGS = train_settings(
+SETTINGS = dict(
     interactions=1000,
     batch=32,
     target_sync=10,
@@ -23,7 +21,7 @@ SETTINGS = train_settings(
 
 
 def model(seed: int = 0, **changes: object) -> DoubleDqn:
-    return DoubleDqn(line(), dataclasses.replace(SETTINGS, **changes), discount=0.9, seed=seed)
+    return DoubleDqn(line(), train_settings(**{**SETTINGS, **changes}), discount=0.9, seed=seed)
 
 
 def column(*values: float) -> th.Tensor:
@@ -239,7 +237,7 @@ def test_recent_episodes_are_the_last_100() -> None:
     """60 successes, 30 failures, 70 successes."""
     ends = [True] * 60 + [False] * 30 + [True] * 70
     env = DummyVecEnv([lambda: Outcomes(ends)])
-    one = DoubleDqn(env, SETTINGS, discount=0.9, seed=0)
+    one = DoubleDqn(env, train_settings(**SETTINGS), discount=0.9, seed=0)
     assert one.recent_episodes() == {}
     one.learn(len(ends), reset_num_timesteps=False)
     found = one.recent_episodes()

@@ -34,7 +34,7 @@ def test_the_report_of_the_search_itself_has_every_figure_of_the_summary(tmp_pat
     """So a run that is stopped between the last transition and its end lacks none of them."""
     _, _, report = generated()
     run_folder.write_json(tmp_path / "generation.json", report)
-    config = json.loads(_core.Config.from_file(FILE).json)
+    config = _core.Config.from_file(FILE)
     summary = run_folder.summary(tmp_path, config, "lcm", {"lost_transitions": 0})
     of_the_learner = {"train_wall_s", "interactions", "online_successes", "success_rate"}
     of_the_learner |= {"episode_length_mean", "episode_return_mean", "train_cpu_s"}

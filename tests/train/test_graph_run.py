@@ -3,6 +3,7 @@
 import io
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from rtg import paths
@@ -25,16 +26,17 @@ def plan(tmp_path, monkeypatch):
     """A run of those programs, without a trainer, on a bus on which nobody speaks."""
     folder = tmp_path / "run"
     folder.mkdir()
-    (folder / "config.yaml").write_text(effective_config.canonical(TINY))
+    (folder / "config.yaml").write_text(effective_config.load(TINY).yaml)
     for name, script in PROGRAMS.items():
         program = tmp_path / name
         program.write_text(f"#!/bin/sh\n{script}\n")
         program.chmod(0o755)
     monkeypatch.setattr(paths, "program", lambda name: tmp_path / name)
-    config = {
-        "run": {"bus": "memq://", "record": False, "workers": 1},
-        "search": {"transitions": 0, "generator": "rrbs"},
-    }
+    config = SimpleNamespace(  # with a bus that no file may have
+        run=SimpleNamespace(bus="memq://", record=False, workers=1),
+        search=SimpleNamespace(transitions=0, generator="rrbs"),
+        task=effective_config.load(TINY).task,
+    )
     return RunPlan(folder, "test", config, train=False, resume=False, notes=())
 
 
@@ -56,21 +58,20 @@ def test_work_that_was_given_up_is_told_though_the_coordinator_was_not_waited_fo
 
 
 def test_a_search_that_finds_less_than_it_should_is_a_defect(plan):
-    plan.config["search"]["transitions"] = 1021
+    plan.config.search.transitions = 1021
     with display(io.StringIO()) as shown:
         (defect,) = graph_run.run(plan, shown)["defects"]
     assert defect.startswith("the search (rrbs) found 0 transitions of the 1,021 asked for and ")
 
 
 def test_a_resumed_run_still_tells_what_its_generation_gave_up(plan, monkeypatch):
-    plan.report_file.write_text(json.dumps({**REPORT, "units_given_up": 2}))
+    report = {**REPORT, "transitions": 2000, "units_given_up": 2}
+    plan.report_file.write_text(json.dumps(report))
     plan.transitions_file.touch()
     measured = {}
     monkeypatch.setattr(results, "finish", lambda plan, found: measured.update(found))
     monkeypatch.setattr(results, "words", lambda plan, summary: "done")
-    config = {**plan.config, "task": {"name": "a"}}
-    config["run"] = {**config["run"], "method": "ddqn_rtg", "seed": 1, "in_process": False}
-    config["train"] = {"offline": True}
+    config = effective_config.load(TINY)
     monkeypatch.setattr(run, "make_plan", lambda args: replace(plan, config=config, resume=True))
     assert run.run(parse(["--no-train"])) == 1
     assert measured["defects"] == ["the coordinator gave up 2 units of work"]

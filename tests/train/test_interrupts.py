@@ -12,7 +12,7 @@ from rtg.processes.interrupts import Interrupts
 
 TWO_SIGNALS = """
 import os, signal
-from rtg.interrupts import Interrupts
+from rtg.processes.interrupts import Interrupts
 with Interrupts(on_demand=lambda: print("at once", flush=True)) as interrupts:
     os.kill(os.getpid(), signal.SIGINT)
     print("asked", interrupts.requested(), flush=True)

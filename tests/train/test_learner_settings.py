@@ -1,4 +1,4 @@
-"""Each field of TrainSettings that is about the learner does what it says: measured with one value
+"""Each field of TrainConfig that is about the learner does what it says: measured with one value
 of it and with another. test_run_settings.py has those of a run."""
 
 from collections.abc import Callable
@@ -16,7 +16,8 @@ Measure = Callable[..., Any]
 
 def played(**changes: Any) -> DoubleDqn:
     """A learner that has made 400 interactions, a tenth of them explored, and learned nothing."""
-    one = model(**{"epsilon_start": 0.1, "epsilon_end": 0.1, "gradient_steps": 0, **changes})
+    one = model(**{"epsilon_start": 0.1, "epsilon_end": 0.1, **changes})
+    one.gradient_steps = 0
     one.learn(400)
     return one
 

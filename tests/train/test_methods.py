@@ -102,7 +102,8 @@ REFUSED = {
     ),
     "no messages": (
         ["--method", "rcg", "--set", "run.record=true"],
-        "rtg: run.record: without train.offline there are no messages; legal: false",
+        "rtg: --set run.record=true: key 'run.record': true, but without train.offline there are "
+        "no messages; legal: false",
     ),
     "no range": (
         ["--method", "ddqn_rtg_dr", "--set", "task.randomisation=0"],
@@ -111,22 +112,23 @@ REFUSED = {
     ),
     "a planner with data": (
         ["--method", "planner", "--set", "train.offline=true"],
-        "rtg: train.learner: planning learns from nothing; legal: with train.interact and "
-        "train.offline false",
+        "rtg: --set train.offline=true: key 'train.learner': planning learns "
+        "from nothing; legal: planning with train.interact and train.offline false",
     ),
     "nothing to learn from": (
         ["--method", "cql_rtg", "--set", "train.offline=false"],
-        "rtg: train.interact: false without train.offline leaves nothing to learn from; legal: "
-        "either true, or train.learner planning",
+        "rtg: --set train.offline=false: key 'train.interact': false without "
+        "train.offline leaves nothing to learn from; legal: either true, or train.learner planning",
     ),
     "steps that lead nowhere": (
         ["--method", "bc_rtg", "--set", "search.generator=scatter"],
-        "rtg: train.learner: cloning imitates generated steps alone; legal: with train.interact "
-        "false and search.generator one of rrbs, naive, forward",
+        "rtg: --set search.generator=scatter: key 'train.learner': cloning "
+        "imitates generated steps alone; legal: cloning with train.interact false and "
+        "search.generator one of rrbs, naive, forward",
     ),
     "a clone that interacts": (
         ["--method", "bc_rtg", "--set", "train.interact=true"],
-        "rtg: train.learner: cloning imitates generated steps alone; ",
+        "rtg: --set train.interact=true: key 'train.learner': cloning imitates ",
     ),
 }
 
@@ -159,12 +161,12 @@ def test_each_method_runs_from_the_flag_to_the_summary(method: str, tmp_path: Pa
     grows_trees = offline and method not in ("ddqn_random", "ddqn_scatter", "ddqn_forward")
     assert (out / "coverage.png").exists() == grows_trees
     assert (out / "episode.gif").exists() and (out / "learning_curve.png").exists()
-    written = effective_config.values(out / "config.yaml")
+    written = effective_config.values(effective_config.load(out / "config.yaml"))
     given = [Override("", setting) for setting in (f"run.method={method}", *more[1::2])]
     assert (
         written["train"].items()
         >= {
-            key: effective_config.values(TINY, given)["train"][key]
+            key: effective_config.values(effective_config.load(TINY, given))["train"][key]
             for key in ("offline", "double_q", "hindsight", "curriculum", "randomise")
         }.items()
     )

@@ -137,7 +137,7 @@ def test_a_killed_parent_takes_its_children_along(tmp_path):
     program = f"""
 import signal
 from pathlib import Path
-from rtg.processes import Node
+from rtg.processes.children import Node
 node = Node("child", {SLEEP!r}, Path({str(tmp_path / "log")!r}))
 print(node.pid, flush=True)
 signal.pause()

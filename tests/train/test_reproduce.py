@@ -34,7 +34,7 @@ def comparison(tmp_path, monkeypatch):
         for run, script in zip(runs, scripts, strict=True):
             config = tmp_path / f"{run.cell.seed}.yaml"
             parsed = run_args.parse(run.words)
-            config.write_text(effective_config.canonical(parsed.file, parsed.overrides))
+            config.write_text(effective_config.load(parsed.file, parsed.overrides).yaml)
             places = f"OUT={shlex.quote(str(run.folder))}; CONFIG={shlex.quote(str(config))}"
             commands[run.folder] = ["sh", "-c", f"{places}; {script}"]
         return Crew(runs, args.jobs, Failures(read_grid(args.out), args.out))

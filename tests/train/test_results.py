@@ -1,12 +1,11 @@
 """What is drawn and said of a run at its end."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 import pytest
-from rtg import _core
-from rtg.run import effective_config, results, run_args
+from rtg import _core, paths
+from rtg.run import results
 from rtg.run.plan import RunPlan
 
 
@@ -22,53 +21,53 @@ def test_the_pictures_of_an_episode_say_how_it_ended_and_whose_it_is(actions, su
     assert results.episode_title("gathering", actions, success, "her") == title
 
 
+def config(*overrides):
+    return _core.Config.from_file(paths.CONFIG / "gathering.yaml", overrides)
+
+
 @pytest.fixture
-def values(tmp_path):
+def learned(tmp_path):
     """Of a run in the folder that has learned, though it was never evaluated on the way."""
-    args = run_args.parse(["gathering", "--method", "ddqn"])
-    file = tmp_path / "config.yaml"
-    file.write_text(effective_config.canonical(args.file, args.overrides))
+    made_with = config("run.method=ddqn")
+    (tmp_path / "config.yaml").write_text(made_with.yaml)
     (tmp_path / "progress.csv").write_text("interactions,success_rate\n")
     (tmp_path / "training.json").write_text("{}")
-    config = _core.Config.from_file(file)
-    np.savez(tmp_path / "best_episode.npz", poses=config.task.start[None], success=False)
-    return json.loads(config.json)
+    np.savez(tmp_path / "best_episode.npz", poses=made_with.task.start[None], success=False)
+    return made_with
 
 
 def pictures(folder):
     return {path.name for path in folder.iterdir() if path.suffix in {".png", ".gif"}}
 
 
-def test_a_run_that_was_never_evaluated_ends_without_a_curve(tmp_path, values):
+def test_a_run_that_was_never_evaluated_ends_without_a_curve(tmp_path, learned):
     """Resumed with a budget below what it had used, before the first evaluation."""
-    plan = RunPlan(tmp_path, "x", values, train=True, resume=True, notes=())
+    plan = RunPlan(tmp_path, "x", learned, train=True, resume=True, notes=())
     assert results.finish(plan, {})["method"] == "ddqn"
     assert pictures(tmp_path) == {"episode.png", "episode.gif"}
 
 
-def test_the_episode_of_a_learner_stays_when_only_data_are_made(tmp_path, values):
-    learned = (tmp_path / "best_episode.npz").read_bytes()
-    plan = RunPlan(tmp_path, "x", values, train=False, resume=True, notes=())
+def test_the_episode_of_a_learner_stays_when_only_data_are_made(tmp_path, learned):
+    before = (tmp_path / "best_episode.npz").read_bytes()
+    plan = RunPlan(tmp_path, "x", learned, train=False, resume=True, notes=())
     results.finish(plan, {})
-    assert (tmp_path / "best_episode.npz").read_bytes() == learned
+    assert (tmp_path / "best_episode.npz").read_bytes() == before
     assert pictures(tmp_path) == {"episode.png", "episode.gif"}
 
 
 @pytest.mark.parametrize(
-    ("setting", "trained", "origin"),
+    ("method", "trained", "origin"),
     [
-        (("train", "learner", "q_learning"), True, "learned policy"),
-        (("train", "learner", "planning"), True, "forward search"),
-        (("search", "generator", "naive"), False, "plan found backwards, replayed"),
-        (("search", "generator", "forward"), False, "plan of the data, replayed"),
+        ("ddqn_rtg", True, "learned policy"),
+        ("planner", True, "forward search"),
+        ("ddqn_naive", False, "plan found backwards, replayed"),
+        ("ddqn_forward", False, "plan of the data, replayed"),
     ],
 )
-def test_an_episode_comes_from_the_learner_or_the_data(tmp_path, values, setting, trained, origin):
-    section, key, value = setting
-    values[section][key] = value
-    if not trained:
-        (tmp_path / "training.json").unlink()
-    plan = RunPlan(tmp_path, "x", values, train=trained, resume=False, notes=())
+def test_an_episode_comes_from_the_learner_or_the_data(tmp_path, method, trained, origin):
+    plan = RunPlan(
+        tmp_path, "x", config(f"run.method={method}"), train=trained, resume=False, notes=()
+    )
     assert results._origin(plan) == origin
 
 
@@ -86,7 +85,7 @@ SUMMARY = {
 
 
 def test_of_the_data_and_of_q_the_words_say_what_predicts_learning():
-    plan = RunPlan(Path("runs/x"), "x", {"train": {"interact": False}}, True, False, ())
+    plan = RunPlan(Path("runs/x"), "x", config("run.method=cql_rtg"), True, False, ())
     said = results.words(plan, SUMMARY).splitlines()
     assert said[0] == "2,000 transitions in 3 s, contact share 0.30, 4.9 headings per state"
     assert said[2] == "rank correlation of Q with the simulator, over all headings: 0.76"
@@ -102,16 +101,15 @@ def test_of_the_data_and_of_q_the_words_say_what_predicts_learning():
     ],
 )
 def test_an_early_end_of_training_is_explained(interactions, count, bar, words):
-    train = {"interactions": 350000, "stop_at_success": bar, "stop_evaluations": count}
-    config = {"train": {**train, "interact": True}}
-    plan = RunPlan(Path("runs/x"), "x", config, train=True, resume=False, notes=())
+    stops = config(f"train.stop_at_success={bar}", f"train.stop_evaluations={count}")
+    plan = RunPlan(Path("runs/x"), "x", stops, train=True, resume=False, notes=())
     said = results.words(plan, {**SUMMARY, "interactions": interactions})
     assert ("not needed" in said) == (words is not None)
     assert words is None or f"350,000 interactions were not needed: {words}" in said
 
 
 def test_learning_without_interactions_did_not_end_early_for_want_of_them():
-    train = {"interactions": 350000, "stop_at_success": 0.95, "stop_evaluations": 3}
-    config = {"train": {**train, "interact": False}}
-    plan = RunPlan(Path("runs/x"), "x", config, train=True, resume=False, notes=())
+    plan = RunPlan(
+        Path("runs/x"), "x", config("run.method=cql_rtg"), train=True, resume=False, notes=()
+    )
     assert "not needed" not in results.words(plan, {**SUMMARY, "interactions": 0})

@@ -4,15 +4,11 @@ import json
 import re
 
 import pytest
-from rtg import paths
+from rtg import _core, paths
 from rtg.errors import UserError
 from rtg.files import replay_gaps, run_folder
 
-CONFIG = {
-    "task": {"name": "gathering"},
-    "run": {"method": "ddqn_rtg", "seed": 7, "workers": 2},
-    "train": {"offline": True},
-}
+CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["run.seed=7", "run.workers=2"])
 
 
 def write_parts(folder):

@@ -1,6 +1,5 @@
-"""Each field of TrainSettings that is about a run and its parts does what it says."""
+"""Each field of TrainConfig that is about a run and its parts does what it says."""
 
-import dataclasses
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -8,14 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rtg import _core
 from rtg.files.dataset import Rows
 from rtg.learn import trainer
 from rtg.learn.evaluation import Evaluation
 from rtg.learn.hindsight import HindsightReplayBuffer
-from rtg.learn.settings import TrainSettings
 from rtg.learn.training import Training
 from test_learner_settings import OF_THE_LEARNER
-from training_runs import Stream, run_folder, training
+from training_runs import TINY, Stream, run_folder, training
 
 
 def course(one: Training, rows: Rows, success: list[bool]) -> dict[str, Any]:
@@ -91,7 +90,6 @@ def source(one: Training) -> str:
 
 
 OF_THE_PARTS: dict[str, tuple[Any, Any, Callable[[Training], Any], Any, Any]] = {
-    "learner": ("q_learning", "cloning", lambda t: type(t.model).__name__, "DoubleDqn", "Cloning"),
     "interact": (True, False, interactions_of_a_round, 4, 0),
     "offline": (True, False, source, "FileSource", "NoSource"),
     "discount": (0.7, 0.9, lambda t: t.model.gamma, 0.7, 0.9),
@@ -112,7 +110,13 @@ def test_a_setting_of_the_parts(field: str, tmp_path: Path, rows: Rows) -> None:
         assert measure(training(run_folder(tmp_path / name, rows, text))) == wanted
 
 
+@pytest.mark.parametrize(("learner", "name"), [("q_learning", "DoubleDqn"), ("cloning", "Cloning")])
+def test_the_learner_is_the_one_of_that_name(learner: str, name: str, tmp_path: Path) -> None:
+    settings = ["train.interact=false", f"train.learner={learner}"]
+    assert type(training(run_folder(tmp_path / "run", None, *settings)).model).__name__ == name
+
+
 def test_each_setting_has_its_test() -> None:
-    fields = {field.name for field in dataclasses.fields(TrainSettings)}
-    presets = {"preset"}  # of all others: test_settings.py
-    assert {*OF_THE_LEARNER, *OF_THE_COURSE, *OF_THE_PARTS} == fields - presets
+    fields = set(json.loads(_core.Config.from_file(TINY).json)["train"])
+    elsewhere = {"preset", "learner"}  # presets of all others: test_settings.py
+    assert {*OF_THE_LEARNER, *OF_THE_COURSE, *OF_THE_PARTS} == fields - elsewhere

@@ -1,21 +1,22 @@
 """What of the transitions of one run is good for another."""
 
-import copy
+import json
 
 import pytest
 from rtg.files import versions
 from rtg.run import effective_config, run_args
 from rtg.run.plan import make_plan
+from rtg.run.run_args import Override
 from rtg.run.shared_transitions import are_there, find, kind, take_over
 from training_runs import TINY
 
-CONFIG = effective_config.values(TINY)
+CONFIG = effective_config.load(TINY)
 
 
 def changed(section, key, value):
-    config = copy.deepcopy(CONFIG)
-    assert config[section][key] != value
-    config[section][key] = value
+    config = effective_config.load(TINY, [Override("", f"{section}.{key}={json.dumps(value)}")])
+    values, before = map(effective_config.values, (config, CONFIG))
+    assert values[section][key] != before[section][key]
     return config
 
 
@@ -24,7 +25,7 @@ def made(tmp_path):
     """A run of this program that has generated."""
     run = tmp_path / "ddqn_naive" / "seed-1"
     run.mkdir(parents=True)
-    (run / "config.yaml").write_text(effective_config.canonical(TINY))
+    (run / "config.yaml").write_text(effective_config.load(TINY).yaml)
     versions.note(run)
     for name in ("transitions.npz", "generation.json"):
         (run / name).write_text(name)
@@ -48,10 +49,18 @@ def test_what_changes_the_transitions_changes_their_kind(section, key, value):
 
 @pytest.mark.parametrize(
     ("section", "key", "value"),
-    [("train", "batch", 7), ("run", "method", "her"), ("run", "workers", 7)],
+    [("train", "batch", 7), ("train", "interact", False), ("run", "workers", 7)],
 )
 def test_what_changes_how_they_are_learned_from_does_not(section, key, value):
     assert kind(changed(section, key, value)) == kind(CONFIG)
+
+
+def test_methods_with_the_same_data_share_them():
+    methods = [
+        [Override("", f"run.method={name}")] for name in ("ddqn_rtg", "cql_rtg", "ddqn_naive")
+    ]
+    rtg, cql, naive = (kind(effective_config.load(TINY, method)) for method in methods)
+    assert rtg == cql != naive
 
 
 def test_without_offline_data_there_is_none():

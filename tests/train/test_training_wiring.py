@@ -71,7 +71,7 @@ def test_the_least_legal_buffer_takes_a_step_of_all_environments(
 ) -> None:
     with pytest.raises(_core.ConfigError, match=f"legal: an integer from {MAX_ENVIRONMENTS} to "):
         _core.Config.from_file(TINY, [f"train.buffer={MAX_ENVIRONMENTS - 1}"])
-    one = training(run_folder(tmp_path / "run", None, f"train.buffer={MAX_ENVIRONMENTS}"))
+    one = training(run_folder(tmp_path / "run", None, "search.transitions=4", "train.buffer=4"))
     assert one.env.num_envs == MAX_ENVIRONMENTS
     assert one.run(Stream(rows.after(0, 4), one.data, piece=4), lambda: False, record=False)
     assert one.interactions == 240

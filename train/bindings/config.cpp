@@ -2,9 +2,11 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "nodes/config/description.hpp"
 #include "nodes/config/rtg_config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
+#include "train/bindings/fields.hpp"
 
 namespace rtg {
 namespace {
@@ -23,11 +25,22 @@ RtgConfig from_text(const std::string& text, const std::string& name, const Over
 
 void bind_config(nb::module_& module) {
   nb::exception<ConfigError>(module, "ConfigError", PyExc_ValueError);
+  bind_fields<PhysicsConfig>(module, "PhysicsConfig");
+  bind_fields<ReverseConfig>(module, "ReverseConfig");
+  bind_fields<SearchConfig>(module, "SearchConfig");
+  bind_fields<TrainConfig>(module, "TrainConfig");
+  bind_fields<RunConfig>(module, "RunConfig");
   nb::class_<RtgConfig>(module, "Config")
       .def_static("from_file", &from_file, nb::arg("file"), nb::arg("overrides") = Overrides{})
       .def_static("from_text", &from_text, nb::arg("text"), nb::arg("name") = "text",
                   nb::arg("overrides") = Overrides{})
       .def_ro("task", &RtgConfig::task)
+      .def_ro("physics", &RtgConfig::physics)
+      .def_ro("reverse", &RtgConfig::reverse)
+      .def_ro("search", &RtgConfig::search)
+      .def_ro("train", &RtgConfig::train)
+      .def_ro("run", &RtgConfig::run)
+      .def_prop_ro("description", &description)
       .def_prop_ro("yaml", &canonical_yaml)
       .def_prop_ro("json", &config_json);
 }

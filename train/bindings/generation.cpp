@@ -6,6 +6,7 @@
 
 #include "core/search/batches_on_threads.hpp"
 #include "core/search/forward_search.hpp"
+#include "core/search/generate.hpp"
 #include "core/search/simulators.hpp"
 #include "nodes/config/rtg_config.hpp"
 #include "train/bindings/arrays.hpp"

@@ -37,7 +37,7 @@ def _bus_url(target: str) -> str:
 
     run_config = Path(target) / "config.yaml"
     file = run_config if run_config.is_file() else run_args.task_file(target, also=", a run folder")
-    return str(effective_config.values(file)["run"]["bus"])
+    return effective_config.load(file).run.bus
 
 
 def _watcher(tool: str, description: str) -> argparse.ArgumentParser:

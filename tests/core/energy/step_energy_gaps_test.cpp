@@ -44,16 +44,19 @@ TEST(StepEnergyGaps, CornersMayOverlapByLittle) {
 // The signed distance of a point beyond a corner is less than its distance from the corner: two
 // corners that face each other act on each other up to √2 of the range apart.
 TEST(StepEnergyGaps, CornersActAsFarAsTheSignedDistanceSays) {
-  const PhysicsConfig physics;
   const Scene scene{{{"robot", "robot", box(1.0, 1.0), 1.0, 0.5, false},
                      {"box", "box", box(1.0, 1.0), 1.0, 0.5, false}}};
-  const StepEnergy energy(scene, physics, {});
-  for (const double gap : {0.1, 0.12, 0.14, 0.149}) {
-    const double apart = 1.0 + gap;  // of the centres, along either axis
-    const VectorXd p = stacked({{0.0, 0.0, 0.0}, {apart, apart, 0.0}});
-    const double corner = std::log(2.0) / physics.sharpness;  // that smoothing adds
-    EXPECT_NEAR(energy.forces(p).maxCoeff(), energy.barrier().force(gap + corner), 1e-9);
-    EXPECT_EQ(energy.forces(p).maxCoeff() > 0.0, gap + corner < physics.range);
+  for (const double skin : {0.0, 0.06}) {
+    PhysicsConfig physics;
+    physics.skin = skin;
+    const StepEnergy energy(scene, physics, {});
+    for (const double gap : {0.1, 0.12, 0.13, 0.149}) {
+      const double apart = 1.0 + skin + gap;  // of the centres, along either axis
+      const VectorXd p = stacked({{0.0, 0.0, 0.0}, {apart, apart, 0.0}});
+      const double corner = std::log(2.0) / physics.sharpness;  // that smoothing adds
+      EXPECT_NEAR(energy.forces(p).maxCoeff(), energy.barrier().force(gap + corner), 1e-9);
+      EXPECT_EQ(energy.forces(p).maxCoeff() > 0.0, gap + corner < physics.range);
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/math/rng.hpp"
 #include "core/world/separation.hpp"
@@ -91,6 +92,8 @@ TEST_F(NaiveReverseTest, PullsTheNearestOfTwo) {
   add(box(0.4, 0.4), {1.85, 0.9, 0.0});  // 0.15 m ahead
   add(box(0.4, 0.4), {1.75, 0.1, 0.0});  // 0.05 m ahead
   expect_pulled(2);
+  std::swap(end[1], end[2]);
+  expect_pulled(1);
 }
 
 TEST_F(NaiveReverseTest, PullsNoFixedBody) {

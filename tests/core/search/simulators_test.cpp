@@ -31,7 +31,7 @@ std::vector<ReverseJob> layer(const Task& task) {
 // Enough of them that threads solve different slices of it together.
 TEST(Simulators, ALayerOfReverseSolvesHasTheSameBitsOn1To16Threads) {
   Task task = gathering();
-  task.push.headings = 12;
+  task.push.headings = 14;
   std::vector<ReverseJob> jobs;
   for (int node = 0; node < 2; ++node)
     for (ReverseJob job : layer(task)) {

@@ -48,13 +48,14 @@ def ablations(file: Path, common: Sequence[Override]) -> list[Settings]:
     """Of the cells of a task: nothing changed; without each part of the search; each departure of
     the preset `default` as `paper` has it; the whole preset `paper`. common: what else all of them
     are set to. Raises UserError."""
-    values = effective_config.values(file, common)
+    values = effective_config.values(effective_config.load(file, common))
     ours = values["train"]
-    paper = effective_config.values(file, [Override(f"--set {PAPER}", PAPER), *common])["train"]
+    as_paper = effective_config.load(file, [Override(f"--set {PAPER}", PAPER), *common])
+    paper = effective_config.values(as_paper)["train"]
     alike = _settings(_ALIKE, ours)
     data = parts_of_search(values["search"]) if ours["offline"] else []
-    as_paper = [] if ours["preset"] == "paper" else [(PAPER, *alike)]
-    return [(), *data, *departures(ours, paper), *as_paper]
+    whole = [] if ours["preset"] == "paper" else [(PAPER, *alike)]
+    return [(), *data, *departures(ours, paper), *whole]
 
 
 def parts_of_search(search: dict[str, Any]) -> list[Settings]:

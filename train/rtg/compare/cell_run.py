@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import shlex
 import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rtg import _core
 from rtg.compare.cells import Cell
 from rtg.compare.methods import run_words
 from rtg.compare.reproduce_args import ReproduceArgs
@@ -16,6 +16,7 @@ from rtg.errors import UserError
 from rtg.files import run_folder
 from rtg.run import effective_config, run_args, shared_transitions
 from rtg.run import plan as run_plan
+from rtg.run.effective_config import Values
 from rtg.run.run_args import Override
 
 # Of `train`: what runs of different methods must have in common.
@@ -95,8 +96,8 @@ def make_ready(args: ReproduceArgs) -> list[CellRun]:
     """
     runs, seen, checked = [], dict[str, str](), set[Path]()
     for cell in args.cells:
-        config = effective_config.values(args.files[cell.task], _overrides(args, cell))
-        twin = seen.setdefault(json.dumps(config), cell.name)
+        config = effective_config.load(args.files[cell.task], _overrides(args, cell))
+        twin = seen.setdefault(config.json, cell.name)
         if twin != cell.name:
             raise UserError(f"{cell.name}: is the same run as {twin}; legal: values that differ")
         run_plan.check(config, train=True)
@@ -106,7 +107,7 @@ def make_ready(args: ReproduceArgs) -> list[CellRun]:
             _check_seeds(folder.parent, config)
             _check_methods(folder, config)
             checked.add(folder.parent)
-        kind, device = shared_transitions.kind(config), config["train"]["device"]
+        kind, device = shared_transitions.kind(config), config.train.device
         runs.append(CellRun(cell, folder, _words(args, cell), kind, device))
     return runs
 
@@ -147,21 +148,23 @@ def _remove_drafts(folder: Path) -> None:
             file.unlink()
 
 
-def _check_seeds(label: Path, config: dict[str, Any]) -> None:
+def _check_seeds(label: Path, config: _core.Config) -> None:
     """Raises UserError unless all runs in the folder, also of seeds not asked for now, have this
     configuration but for the seed: tables show means over them."""
     for found in sorted(label.glob("seed-*/config.yaml")):
         seed = found.parent.name.removeprefix("seed-")
         if seed.isdigit():
-            _check_same(found.parent, {**config, "run": {**config["run"], "seed": int(seed)}})
+            asked = effective_config.values(config)
+            asked["run"]["seed"] = int(seed)
+            _check_same(found.parent, asked)
 
 
-def _check_same(folder: Path, config: dict[str, Any]) -> None:
-    """Raises UserError unless the run was made with this configuration, by this version."""
+def _check_same(folder: Path, asked: Values) -> None:
+    """Raises UserError unless the run was made with these values, by this version."""
     found = folder / "config.yaml"
-    before = effective_config.values(found)
-    for section in sorted({*before, *config}):
-        old, new = before.get(section), config.get(section)
+    before = effective_config.values(effective_config.load(found))
+    for section, new in sorted(asked.items()):
+        old = before[section]
         if old != new:
             what = _difference(section, old, new)
             remedy = f"another --out, or rm -r {shlex.quote(str(folder))}"
@@ -169,14 +172,14 @@ def _check_same(folder: Path, config: dict[str, Any]) -> None:
     effective_config.check_version(found)
 
 
-def _check_methods(folder: Path, config: dict[str, Any]) -> None:
+def _check_methods(folder: Path, config: _core.Config) -> None:
     """Raises UserError unless all runs in the folder of the task have that task, its physics, that
     budget and evaluation, but for what is swept: tables compare them. folder: of the run."""
     for found in sorted(folder.parents[1].glob("*/seed-*/config.yaml")):
         swept = _swept(found.parts[-3]) | _swept(folder.parts[-2])
-        before = effective_config.values(found)
+        before = effective_config.load(found)
         old, new = _compared(before, swept), _compared(config, swept)
-        if not (before["train"]["offline"] and config["train"]["offline"]):
+        if not (before.train.offline and config.train.offline):
             del old["search"], new["search"]
         for section in old:
             if old[section] != new[section]:
@@ -194,23 +197,22 @@ def _swept(label: str) -> set[str]:
     return found | of_preset
 
 
-def _compared(config: dict[str, Any], swept: set[str]) -> dict[str, dict[str, Any]]:
+def _compared(config: _core.Config, swept: set[str]) -> Values:
     """What runs in one table have in common, by section."""
+    values = effective_config.values(config)
     keys = {
-        "task": tuple(config["task"]),
-        "physics": tuple(config["physics"]),
+        "task": tuple(values["task"]),
+        "physics": tuple(values["physics"]),
         "search": ("transitions",),
         "train": _ALIKE,
     }
     return {
-        section: {name: config[section][name] for name in names if f"{section}.{name}" not in swept}
+        section: {name: values[section][name] for name in names if f"{section}.{name}" not in swept}
         for section, names in keys.items()
     }
 
 
-def _difference(section: str, old: Any, new: Any) -> str:
-    if not (isinstance(old, dict) and isinstance(new, dict)):
-        return f"another {section}"
+def _difference(section: str, old: dict[str, Any], new: dict[str, Any]) -> str:
     key = next(key for key in (*old, *new) if old.get(key) != new.get(key))
     words = f"{section}.{key} = {old.get(key)}, asked for is {new.get(key)}"
     return words if len(words) < 160 else f"another {section}.{key}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from rtg.compare.methods import METHODS, TASKS
 from rtg.errors import UserError
 from rtg.files import versions
 from rtg.files.run_folder import read_json, result
+from rtg.run import effective_config
 from rtg.run.results import learning_curve
 
 Floats = NDArray[np.float64]
@@ -41,7 +41,7 @@ class RunResult:
     versions: dict[str, Any]
     # Columns of progress.csv [N]; `pushes` and `cpu_s` with those of the generation.
     curve: dict[str, Floats]
-    train: dict[str, Any]  # the section of its configuration; of a run that is not done, empty
+    train: _core.TrainConfig | None  # of a run that is not done, none
 
     @property
     def done(self) -> bool:
@@ -50,7 +50,7 @@ class RunResult:
     @property
     def interacts(self) -> bool:
         """Without, the interactions of its curve are rounds of learning worth as many."""
-        return bool(self.train["interact"])
+        return self.train is not None and self.train.interact
 
     @property
     def commit(self) -> str | None:
@@ -89,9 +89,9 @@ class RunResult:
     def success_at_third(self) -> float | None:
         """Of the last evaluation within a third of the budget; of a run that had ended by then the
         final one, as it may have ended because the others went well by chance."""
-        if not self.curve:
+        if not self.curve or self.train is None:
             return None
-        third = self.train["interactions"] / 3
+        third = self.train.interactions / 3
         within = self.curve["interactions"] <= third
         if within.all():
             return float(self.summary["success_rate"])
@@ -140,10 +140,11 @@ def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
     summary = result(run)
     if summary:
         curve = _curve(run / "progress.csv", summary)
-        made_with, train = read_json(run / versions.FILE), _train(run / "config.yaml")
+        made_with = read_json(run / versions.FILE)
+        train = effective_config.load(run / "config.yaml").train
         return RunResult(cell, run, "done", summary, made_with, curve, train)
     begun = "unfinished" if run.is_dir() else "not run"
-    return RunResult(cell, run, "failed" if cell.name in grid.failed else begun, {}, {}, {}, {})
+    return RunResult(cell, run, "failed" if cell.name in grid.failed else begun, {}, {}, {}, None)
 
 
 def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
@@ -155,14 +156,6 @@ def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
         raise UserError(f"{progress}: lacks columns; legal: as the run left it")
     generated = {"pushes": summary.get("replays"), "cpu_s": summary.get("generate_cpu_s")}
     return curve | {cost: curve[cost] + (spent or 0) for cost, spent in generated.items()}
-
-
-def _train(config: Path) -> dict[str, Any]:
-    try:
-        train: dict[str, Any] = json.loads(_core.Config.from_file(config).json)["train"]
-    except _core.ConfigError as error:
-        raise UserError(str(error)) from None
-    return train
 
 
 def _place(cell: Cell) -> int:

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from rtg import paths
+from rtg import _core, paths
 from rtg.errors import UserError
 from rtg.files import replay_gaps
 
@@ -138,18 +138,18 @@ def default_path(task: str) -> Path:
 
 
 def summary(
-    run: Path, config: dict[str, Any], mode: str | None, measured: dict[str, Any]
+    run: Path, config: _core.Config, mode: str | None, measured: dict[str, Any]
 ) -> dict[str, Any]:
     """Generation and training merged; the contract's keys first, then what else was counted."""
-    generation = read_json(run / "generation.json") if config["train"]["offline"] else {}
+    generation = read_json(run / "generation.json") if config.train.offline else {}
     known: dict[str, Any] = {
         **{key: value for key, value in generation.items() if key not in _SAMPLES},
         **measured,
         **read_json(run / "training.json"),
-        "task": config["task"]["name"] if isinstance(config["task"], dict) else config["task"],
-        "method": config["run"]["method"],
-        "seed": config["run"]["seed"],
-        "workers": config["run"]["workers"],
+        "task": config.task.name,
+        "method": config.run.method,
+        "seed": config.run.seed,
+        "workers": config.run.workers,
         "mode": mode,
     }
     first = {key: known.get(key) for key in SUMMARY_KEYS}

@@ -15,12 +15,12 @@ from stable_baselines3.common.utils import polyak_update
 from stable_baselines3.common.vec_env import VecEnv
 from torch.nn import functional
 
+from rtg import _core
 from rtg.learn import device
 from rtg.learn.exploration import Exploration
 from rtg.learn.hindsight import HindsightReplayBuffer, Layouts
 from rtg.learn.networks import ValuePolicy
 from rtg.learn.replay import Batch, MixedReplayBuffer, ReplayRules
-from rtg.learn.settings import TrainSettings
 
 Array = npt.NDArray[Any]
 
@@ -57,7 +57,7 @@ def conservative_gap(q: th.Tensor, actions: th.Tensor) -> th.Tensor:
     return q.logsumexp(dim=1, keepdim=True) - q.gather(1, actions)
 
 
-def _rules(settings: TrainSettings, discount: float, seed: int) -> ReplayRules:
+def _rules(settings: _core.TrainConfig, discount: float, seed: int) -> ReplayRules:
     return ReplayRules(
         offline_share=settings.offline_share,
         recent_share=settings.recent_share,
@@ -82,7 +82,9 @@ class DoubleDqn(DQN):
 
     replay_buffer: MixedReplayBuffer  # type: ignore[assignment]
 
-    def __init__(self, env: VecEnv, settings: TrainSettings, discount: float, seed: int) -> None:
+    def __init__(
+        self, env: VecEnv, settings: _core.TrainConfig, discount: float, seed: int
+    ) -> None:
         self.settings = settings
         self.statistics = Statistics()
         buffer: dict[str, Any] = {"rules": _rules(settings, discount, seed)}

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from rtg.learn.settings import TrainSettings
+from rtg import _core
 
 Array = npt.NDArray[Any]
 
@@ -33,7 +33,7 @@ class Exploration:
 
     def __init__(
         self,
-        settings: TrainSettings,
+        settings: _core.TrainConfig,
         headings: int,
         seed: int,
         contact: ContactHeadings | None = None,

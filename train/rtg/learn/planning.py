@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import threading
 import time
 from collections.abc import Callable
@@ -17,7 +16,6 @@ from rtg.files import checkpoint, run_folder
 from rtg.learn import policy_file
 from rtg.learn.evaluation import FINAL, Evaluation, Floats, held_out_starts
 from rtg.learn.offline_data import Source
-from rtg.learn.settings import TrainSettings
 from rtg.learn.training_log import TrainingLog
 
 _FORMAT = 2  # of the checkpoint
@@ -59,9 +57,8 @@ class Planning:
     """
 
     def __init__(self, config: _core.Config, folder: Path) -> None:
-        values = json.loads(config.json)
         self.config, self.task = config, config.task
-        self.settings = s = TrainSettings.from_config(values["train"])
+        self.settings = s = config.train
         self.discount = s.discount or self.task.discount
         self.starts = held_out_starts(self.task, s.eval_episodes, FINAL, s.randomise)
         self.plans: list[Plan] = []  # of the first starts

@@ -17,10 +17,9 @@ from rtg.files import checkpoint
 from rtg.learn.evaluation import Policy
 from rtg.learn.hindsight import Layouts
 from rtg.learn.networks import ValuePolicy
-from rtg.learn.settings import TrainSettings
 
 
-def identity(task: _core.Task, settings: TrainSettings) -> dict[str, Any]:
+def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
     """What weights fit."""
     return {
         "observation_size": task.observation_size,
@@ -40,7 +39,9 @@ def check_identity(path: Path, found: Any, wanted: dict[str, Any]) -> None:
             raise UserError(f"{path}: made with {name} = {found.get(name)}; this run has {value}")
 
 
-def write(path: Path, task: _core.Task, settings: TrainSettings, weights: dict[str, Any]) -> None:
+def write(
+    path: Path, task: _core.Task, settings: _core.TrainConfig, weights: dict[str, Any]
+) -> None:
     """`weights`: state_dict of the value network."""
     checkpoint.write(path, {"identity": identity(task, settings), "weights": weights})
 

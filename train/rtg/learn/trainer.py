@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import json
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -28,7 +27,6 @@ from rtg.bus.transition_stream import TransitionStream
 from rtg.errors import RunError, UserError
 from rtg.learn.offline_data import FileSource, NoSource, Source
 from rtg.learn.planning import Planning
-from rtg.learn.settings import TrainSettings
 from rtg.learn.training import Training
 from rtg.processes.interrupts import Interrupts
 
@@ -57,8 +55,7 @@ def _source(training: Training | Planning, args: argparse.Namespace) -> Source:
         return NoSource()
     if args.no_stream:
         return FileSource(training.folder / "transitions.npz", training.task, training.data)
-    url = json.loads(training.config.json)["run"]["bus"]
-    bus = Bus(url, args.run_name or training.folder.resolve().name)
+    bus = Bus(training.config.run.bus, args.run_name or training.folder.resolve().name)
     training.tell = NodeStatus(bus, "trainer").tick
     task = training.task
     stream = TransitionStream(bus, task.bodies, task.headings, training.data.take)
@@ -69,8 +66,7 @@ def _source(training: Training | Planning, args: argparse.Namespace) -> Source:
 
 def _begin(folder: Path, args: argparse.Namespace) -> Training | Planning:
     config = _core.Config.from_file(folder / "config.yaml")
-    learner = TrainSettings.from_config(json.loads(config.json)["train"]).learner
-    training = (Planning if learner == "planning" else Training)(config, folder)
+    training = (Planning if config.train.learner == "planning" else Training)(config, folder)
     training.runs = len(args.folders)
     if args.resume and training.has_checkpoint():
         training.restore()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -19,7 +18,7 @@ from rtg.learn.cloning import Cloning, imitated
 from rtg.learn.ddqn import DoubleDqn
 from rtg.learn.evaluation import FINAL, Evaluation, Floats, evaluate, held_out_starts
 from rtg.learn.offline_data import OfflineData, Source, read_rows
-from rtg.learn.settings import OF_CHECKPOINT, TrainSettings
+from rtg.learn.settings import OF_CHECKPOINT
 from rtg.learn.training_log import TrainingLog
 
 MAX_ENVIRONMENTS = 4  # stepped together; the least legal train.buffer
@@ -44,11 +43,10 @@ class Training:
 
     def __init__(self, config: _core.Config, folder: Path) -> None:
         self.clock = Clock()
-        values = json.loads(config.json)
         self.config, self.task, self.folder = config, config.task, folder
-        self.settings = s = TrainSettings.from_config(values["train"])
+        self.settings = s = config.train
         self.discount = s.discount or self.task.discount
-        self.seed = seed = values["run"]["seed"]
+        self.seed = seed = config.run.seed
         count = math.gcd(s.train_frequency, MAX_ENVIRONMENTS)
         jitter = max(s.start_jitter, self.task.randomisation) if s.randomise else s.start_jitter
         curriculum = Curriculum(config, s.curriculum, seed) if s.curriculum else None

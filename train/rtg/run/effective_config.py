@@ -3,41 +3,31 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rtg import paths
-from rtg.errors import RunError, UserError
+from rtg import _core
+from rtg.errors import UserError
 from rtg.run.run_args import Override
 
+Values = dict[str, dict[str, Any]]  # by section and key
 
-def _rtg_config(file: Path, overrides: Sequence[Override], mode: str) -> str:
-    command = [str(paths.program("rtg_config")), str(file)]
-    for override in overrides:
-        command += ["--set", override.setting]
-    done = subprocess.run(  # Ctrl-C is for us
-        [*command, mode], capture_output=True, text=True, check=False, start_new_session=True
-    )
-    if done.returncode == 2:
-        message = done.stderr.strip()
+
+def load(file: Path, overrides: Sequence[Override] = ()) -> _core.Config:
+    """Raises UserError on a mistake in it, with the flags as the user typed them."""
+    try:
+        return _core.Config.from_file(file, [override.setting for override in overrides])
+    except _core.ConfigError as error:
+        message = str(error)
         for override in overrides:
             message = message.replace(f"--set {override.setting}", override.typed)
-        raise UserError(message)
-    if done.returncode != 0:
-        raise RunError(f"rtg_config failed: {done.stderr.strip() or done.returncode}")
-    return done.stdout
+        raise UserError(message) from None
 
 
-def canonical(file: Path, overrides: Sequence[Override] = ()) -> str:
-    """The whole configuration as canonical YAML. Raises UserError on a mistake in it."""
-    return _rtg_config(file, overrides, "--print")
-
-
-def values(file: Path, overrides: Sequence[Override] = ()) -> dict[str, Any]:
-    """The same as nested dictionaries."""
-    result: dict[str, Any] = json.loads(_rtg_config(file, overrides, "--json"))
+def values(config: _core.Config) -> Values:
+    """All values, to compare one configuration with another."""
+    result: Values = json.loads(config.json)
     return result
 
 
@@ -45,7 +35,7 @@ def check_version(file: Path) -> None:
     """Raises UserError unless this version writes the configuration of `file` as it stands there:
     one of another version may lack a setting whose default was different then."""
     found = _settings(file.read_text())
-    missing = [line for line in _settings(canonical(file)) if line not in found]
+    missing = [line for line in _settings(load(file).yaml) if line not in found]
     if missing:
         raise UserError(
             f"{file}: has no line '{missing[0][1]}': another version of RTG wrote it; legal: that "
@@ -64,4 +54,4 @@ def _settings(text: str) -> list[tuple[str, str]]:
 
 def check(file: Path) -> str:
     """What a task file says, for people. Raises UserError."""
-    return _rtg_config(file, (), "--check")
+    return f"{file}: legal\n{load(file).description}"

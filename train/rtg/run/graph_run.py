@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from rtg import _core, paths
+from rtg import paths
 from rtg.bus import lcm_tools
 from rtg.bus.bus import Bus
 from rtg.bus.transition_stream import TransitionStream
@@ -30,7 +30,7 @@ class _Recording:
     """This process as the consumer of the stream, in a run without a trainer."""
 
     def __init__(self, plan: RunPlan, bus: Bus) -> None:
-        task = _core.Config.from_file(plan.config_file).task
+        task = plan.config.task
         self._recorder = Recorder(task)
         self._stream = TransitionStream(bus, task.bodies, task.headings, self._recorder.add)
 
@@ -52,11 +52,11 @@ class _Recording:
 def generation_defects(plan: RunPlan) -> list[str]:
     """What went wrong in a generation that has come to its end, in words. None without one."""
     report = run_folder.read_json(plan.report_file)
-    wanted = plan.config["search"]["transitions"]
+    wanted = plan.config.search.transitions
     given_up, found = report.get("units_given_up", 0), report.get("transitions", wanted)
     defects = [f"the coordinator gave up {given_up} units of work"] if given_up else []
     if found < wanted:
-        what = plan.config["search"]["generator"]
+        what = plan.config.search.generator
         defects.append(
             f"the search ({what}) found {found:,} transitions of the {wanted:,} asked for and then "
             "nothing more, see generation.json; a wider one may find more (search.breadth, "
@@ -70,7 +70,7 @@ class GraphRun:
 
     def __init__(self, plan: RunPlan, display: Display) -> None:
         self._plan, self._display = plan, display
-        self._bus = Bus(plan.config["run"]["bus"], plan.name)
+        self._bus = Bus(plan.config.run.bus, plan.name)
         self._watch = RunWatch(self._bus, RunState(budget=plan.interactions))
         self._training = TrainingWatch(plan.folder)
         self._recording = None if plan.train else _Recording(plan, self._bus)
@@ -107,13 +107,13 @@ class GraphRun:
     def _start_programs(self) -> None:
         plan, graph = self._plan, self._graph
         arguments: list[str | Path] = [plan.config_file, plan.name]
-        if plan.config["run"]["record"]:
-            url, log = plan.config["run"]["bus"], plan.folder / "lcm.log"
+        if plan.config.run.record:
+            url, log = plan.config.run.bus, plan.folder / "lcm.log"
             graph.add("lcm_logger", lcm_tools.logger_command(url, log), helper=True)
         server = paths.program("rtg_forward_sim_server")
         graph.add("forward_sim_server", [server, *arguments], helper=True)
         worker = paths.program("rtg_reverse_worker")
-        for number in range(plan.config["run"]["workers"]):
+        for number in range(plan.config.run.workers):
             name = f"reverse_worker_{number}"
             graph.add(name, [worker, *arguments, str(number)], helper=True)
         coordinator = paths.program("rtg_beam_coordinator")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import atexit
-import json
 import os
 import threading
 from dataclasses import replace
@@ -29,7 +28,7 @@ class Generation:
 
     def __init__(self, config: _core.Config, recorder: Recorder) -> None:
         self._config, self._recorder = config, recorder
-        self._workers: int = json.loads(config.json)["run"]["workers"]
+        self._workers: int = config.run.workers
         self._progress: dict[str, Any] = {}
         self._stop = False
         self._report: str | None = None
@@ -79,10 +78,9 @@ class Generation:
 
 def generate(plan: RunPlan, display: Display) -> None:
     """Writes generation.json and transitions.npz."""
-    config = _core.Config.from_file(plan.config_file)
-    recorder = Recorder(config.task)
+    recorder = Recorder(plan.config.task)
     with Interrupts() as interrupts:
-        generation = Generation(config, recorder)
+        generation = Generation(plan.config, recorder)
         while not generation.wait(_POLL):
             display.show(replace(generation.state(), budget=plan.interactions))
             if interrupts.requested():

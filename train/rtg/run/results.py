@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rtg import _core
 from rtg.errors import UserError
 from rtg.files import dataset, run_folder
 from rtg.files.episodes import replayed_plan
@@ -32,17 +31,17 @@ def learning_curve(path: Path) -> dict[str, Floats]:
         raise UserError(f"{path}: damaged; legal: as the run left it") from None
 
 
-def _draw_generation(plan: RunPlan, task: _core.Task) -> None:
+def _draw_generation(plan: RunPlan) -> None:
     report = run_folder.read_json(plan.report_file)
     if report["replay_gaps"]:
         plots.replay_gap(plan.folder / "replay_gap.png", plan.title, report)
     nodes = report["nodes"]
     if not nodes:  # only trees have any
         return
-    poses = np.array([node["poses"] for node in nodes]).reshape(-1, task.bodies, 3)
+    poses = np.array([node["poses"] for node in nodes]).reshape(-1, plan.config.task.bodies, 3)
     depth = np.array([node["depth"] for node in nodes], float)
     picture = plan.folder / "coverage.png"
-    plots.coverage(picture, plan.title, task, poses, depth)
+    plots.coverage(picture, plan.title, plan.config.task, poses, depth)
 
 
 def _trained(plan: RunPlan) -> bool:
@@ -50,15 +49,16 @@ def _trained(plan: RunPlan) -> bool:
     return plan.train or (plan.folder / "training.json").is_file()
 
 
-def _episode(plan: RunPlan, config: _core.Config) -> Floats | None:
+def _episode(plan: RunPlan) -> Floats | None:
     """States of the learner's best evaluation episode; without a learner, of a plan of the data,
     which it writes to the same file."""
-    path, task = plan.folder / "best_episode.npz", config.task
+    path, task = plan.folder / "best_episode.npz", plan.config.task
     if _trained(plan):
         with np.load(path) as file:
             poses: Floats = file["poses"]
             return poses
-    found = replayed_plan(config, dataset.read(plan.transitions_file, task.bodies, task.headings))
+    rows = dataset.read(plan.transitions_file, task.bodies, task.headings)
+    found = replayed_plan(plan.config, rows)
     if found is not None:
         np.savez(path, poses=found, success=task.succeeded(found[-1:])[0])
     return found
@@ -67,9 +67,9 @@ def _episode(plan: RunPlan, config: _core.Config) -> Floats | None:
 def _origin(plan: RunPlan) -> str:
     """Where the episode comes from."""
     if _trained(plan):
-        plans = plan.config["train"]["learner"] == "planning"
+        plans = plan.config.train.learner == "planning"
         return "forward search" if plans else "learned policy"
-    is_reverse = plan.config["search"]["generator"] in _REVERSE
+    is_reverse = plan.config.search.generator in _REVERSE
     return "plan found backwards, replayed" if is_reverse else "plan of the data, replayed"
 
 
@@ -79,8 +79,8 @@ def episode_title(task: str, actions: int, success: bool, origin: str) -> str:
     return f"{task}: {end} {actions} action{'s' if actions != 1 else ''} ({origin})"
 
 
-def _draw_episode(plan: RunPlan, config: _core.Config) -> None:
-    poses, task = _episode(plan, config), config.task
+def _draw_episode(plan: RunPlan) -> None:
+    poses, task = _episode(plan), plan.config.task
     if poses is not None:
         success = bool(task.succeeded(poses[-1:])[0])
         title = episode_title(task.name, len(poses) - 1, success, _origin(plan))
@@ -90,19 +90,18 @@ def _draw_episode(plan: RunPlan, config: _core.Config) -> None:
 
 def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
     """Draws all pictures and writes summary.json; returns the summary."""
-    config = _core.Config.from_file(plan.config_file)
     if plan.offline:
-        _draw_generation(plan, config.task)
+        _draw_generation(plan)
     if plan.train:
         curve = learning_curve(plan.folder / "progress.csv")
         if curve:  # none of a run resumed with a budget below its first evaluation
             unit = (
                 "interactions"
-                if plan.config["train"]["interact"]
+                if plan.config.train.interact
                 else "rounds of learning, as interactions"
             )
             plots.learning_curve(plan.folder / "learning_curve.png", plan.title, curve, unit)
-    _draw_episode(plan, config)
+    _draw_episode(plan)
     mode = ("in_process" if plan.in_process else "lcm") if plan.offline else None
     summary = run_folder.summary(plan.folder, plan.config, mode, measured)
     run_folder.write_json(plan.folder / "summary.json", summary)
@@ -124,9 +123,9 @@ def _words_of_learning(plan: RunPlan, s: dict[str, Any]) -> list[str]:
     if s["q_rank_correlation"] is not None:
         ranked = f"{s['q_rank_correlation']:.2f}"
         lines.append(f"rank correlation of Q with the simulator, over all headings: {ranked}")
-    train = plan.config["train"]
-    if train["interact"] and s["interactions"] < plan.interactions:
-        bar, count = 100 * train["stop_at_success"], train["stop_evaluations"]
+    train = plan.config.train
+    if train.interact and s["interactions"] < plan.interactions:
+        bar, count = 100 * train.stop_at_success, train.stop_evaluations
         evaluations = f"{count} evaluations in a row" if count > 1 else "an evaluation"
         lines.append(
             f"{plan.interactions:,} interactions were not needed: {evaluations} had solved "

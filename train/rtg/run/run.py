@@ -17,7 +17,7 @@ from rtg.run.run_args import RunArgs
 def run(args: RunArgs) -> int:
     """Exit status. Raises UserError for bad input, RunError if a part of the run failed."""
     if args.print_config:
-        print(effective_config.canonical(args.file, args.overrides), end="")
+        print(effective_config.load(args.file, args.overrides).yaml, end="")
         return 0
     if args.resume:
         with run_folder.alone(args.file.parent, "another run"):

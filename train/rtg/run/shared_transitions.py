@@ -6,8 +6,8 @@ import json
 import os
 import shutil
 from pathlib import Path
-from typing import Any
 
+from rtg import _core
 from rtg.errors import UserError
 from rtg.files import versions
 from rtg.run import effective_config
@@ -15,13 +15,14 @@ from rtg.run import effective_config
 _FILES = ("transitions.npz", "generation.json")
 
 
-def kind(config: dict[str, Any]) -> str | None:
+def kind(config: _core.Config) -> str | None:
     """All that decides what a run generates, equal for equal transitions; None if it generates
-    nothing. config: as effective_config.values."""
-    if not config["train"]["offline"]:
+    nothing."""
+    if not config.train.offline:
         return None
-    parts = [config[section] for section in ("task", "physics", "reverse", "search")]
-    return json.dumps([*parts, config["run"]["seed"]])
+    values = effective_config.values(config)
+    parts = [values[section] for section in ("task", "physics", "reverse", "search")]
+    return json.dumps([*parts, config.run.seed])
 
 
 def are_there(run: Path) -> bool:
@@ -45,7 +46,7 @@ def _made_kind(run: Path) -> str | None:
         if versions.generator(run).get("core_sha256") != versions.core_digest():
             return None
         effective_config.check_version(config)
-        return kind(effective_config.values(config))
+        return kind(effective_config.load(config))
     except (UserError, OSError):
         return None
 

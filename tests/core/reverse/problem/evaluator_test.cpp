@@ -57,6 +57,31 @@ TEST(Evaluator, BodiesMayNotCrossThoughTheirVerticesAreApart) {
   EXPECT_TRUE(is_legal(problem, problem.end, stacked({{0, 0, 0}, {1.3, 0.4, 0}})));
 }
 
+// Nothing moves and nothing pushes, so every sub-step is at rest; what is wrong is that bodies so
+// near to each other exert no force.
+TEST(Evaluator, AForceThatIsNotThereCountsAlthoughAllIsAtRest) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = boxes_apart(0.05);
+  Iterate x = static_iterate(problem);
+  for (VectorXd& lambda : x.forces) lambda.setZero();
+  for (Vector3d& control : x.controls) control.setZero();
+  ProblemLanes<double> lanes(problem);
+  lanes.load(0, problem);
+  Trajectory<double> trajectory(lanes.energy, problem.sub_steps);
+  trajectory.load(0, problem, x);
+  Evaluator<double> evaluator(lanes);
+  PerContact<double> gaps = trajectory.forces;
+  for (std::vector<double>& level : gaps) level.assign(level.size(), 0.0);
+  bool legal = true;
+  const Merits<double> found = evaluator.evaluate(lanes, trajectory, gaps, gaps, legal);
+  EXPECT_TRUE(legal);
+  EXPECT_GT(found.infeasibility, 100.0 * config.feasibility_tol);
+  EXPECT_NEAR(found.infeasibility, violation(problem, x).max(), 1e-12);
+  EXPECT_NEAR(found.violation, violation(problem, x).l1(), 1e-12);
+}
+
 // A lane that is not legal leaves the others as they are.
 TEST(Evaluator, LanesAreEvaluatedAsIfAlone) {
   const TouchingScene scene;

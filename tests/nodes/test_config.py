@@ -1,15 +1,12 @@
-"""The program rtg_config on wrong input: exact text with place and legal values, exit 2."""
+"""The loader on wrong input: exact text with place and legal values."""
 
 from __future__ import annotations
 
-import dataclasses
 import json
-import subprocess
 from pathlib import Path
 
 import pytest
-from rtg import paths
-from rtg.learn.settings import TrainSettings
+from rtg import _core, paths
 
 TASK = """\
 task:
@@ -24,8 +21,6 @@ task:
 search:
   breadth: 4
 """
-
-USAGE = "usage: rtg_config FILE [--set KEY=VALUE]... (--print | --json | --check)"
 
 
 def blocks(name: str) -> list[list[str]]:
@@ -43,9 +38,13 @@ FILES = blocks("wrong_files.txt")
 SETTINGS = blocks("wrong_settings.txt")
 
 
-def rtg_config(*words: str | Path) -> subprocess.CompletedProcess[str]:
-    program = str(paths.program("rtg_config"))
-    return subprocess.run([program, *map(str, words)], capture_output=True, text=True, check=False)
+def refusal(file: Path, *settings: str) -> str:
+    """What is wrong; empty if nothing is."""
+    try:
+        _core.Config.from_file(file, settings)
+    except _core.ConfigError as error:
+        return str(error)
+    return ""
 
 
 @pytest.fixture(scope="module")
@@ -56,8 +55,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_text_behind_the_mistakes_is_legal(file: Path) -> None:
-    done = rtg_config(file, "--check")
-    assert (done.returncode, done.stderr) == (0, "")
+    assert refusal(file) == ""
 
 
 @pytest.mark.parametrize("block", FILES, ids=[b[1] for b in FILES])
@@ -67,18 +65,15 @@ def test_a_mistake_in_a_file_is_named_with_its_line(block: list[str], tmp_path: 
     assert TASK.count(old) == 1
     path = tmp_path / "wrong.yaml"
     path.write_text(TASK.replace(old, new))
-    done = rtg_config(path, "--check")
-    assert done.stderr == f"{path}:{message}\n".replace("{file}", str(path))
-    assert (done.returncode, done.stdout) == (2, "")
+    assert refusal(path) == f"{path}:{message}".replace("{file}", str(path))
 
 
 @pytest.mark.parametrize(("setting", "message"), SETTINGS, ids=[s for s, _ in SETTINGS])
 def test_a_mistake_in_a_setting_is_named_with_the_flag(
     setting: str, message: str, file: Path
 ) -> None:
-    done = rtg_config(file, "--set", "run.seed=2", "--set", setting, "--print")
-    assert done.stderr == f"--set {setting}: {message}\n".replace("{file}", str(file))
-    assert (done.returncode, done.stdout) == (2, "")
+    said = refusal(file, "run.seed=2", setting)
+    assert said == f"--set {setting}: {message}".replace("{file}", str(file))
 
 
 WALLS = """\
@@ -97,14 +92,7 @@ def test_text_must_be_utf8(file: Path, tmp_path: Path) -> None:
     path = tmp_path / "latin.yaml"
     path.write_bytes(file.read_bytes() + "# größer\n".encode("latin-1"))
     lines = file.read_bytes().count(b"\n") + 1
-    done = rtg_config(path, "--check")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == f"{path}:{lines}: {wrong}\n"
-    setting = b"task.name=gr\xf6sser"
-    command = [paths.program("rtg_config"), file, "--set", setting, "--check"]
-    raw = subprocess.run(command, capture_output=True, check=False)
-    assert (raw.returncode, raw.stdout) == (2, b"")
-    assert raw.stderr == b"--set " + setting + b": " + wrong.encode() + b"\n"
+    assert refusal(path) == f"{path}:{lines}: {wrong}"
 
 
 def test_jitters_must_leave_room_for_starts(tmp_path: Path) -> None:
@@ -112,18 +100,14 @@ def test_jitters_must_leave_room_for_starts(tmp_path: Path) -> None:
     path = tmp_path / "walls.yaml"
     path.write_text(TASK.replace("  goal:\n", WALLS + "  goal:\n"))
 
-    def says(*settings: str) -> tuple[int, str]:
-        done = rtg_config(path, *(w for s in settings for w in ("--set", s)), "--check")
-        return done.returncode, done.stderr
-
     task = "key 'task.start_jitter': with objects moved by +-"
-    assert says() == (2, f"{path}:4: {task}0.1 {HARDLY} 0.05 with these bodies\n")
+    assert refusal(path) == f"{path}:4: {task}0.1 {HARDLY} 0.05 with these bodies"
     wide = "task.start_jitter=0.2"
-    assert says(wide) == (2, f"--set {wide}: {task}0.2 {HARDLY} 0.05 with these bodies\n")
+    assert refusal(path, wide) == f"--set {wide}: {task}0.2 {HARDLY} 0.05 with these bodies"
     legal = ["task.start_jitter=0.01", "train.start_jitter=0.01"]
-    assert says(*legal) == (0, "")
+    assert refusal(path, *legal) == ""
     last = "train.start_jitter=0.4"
-    assert says(*legal, last)[1].startswith(
+    assert refusal(path, *legal, last).startswith(
         f"--set {last}: key 'train.start_jitter': with objects moved by +-0.4 m"
     )
 
@@ -131,24 +115,22 @@ def test_jitters_must_leave_room_for_starts(tmp_path: Path) -> None:
 def test_jitters_must_keep_objects_in_the_arena() -> None:
     """Of six boxes moved by up to 10 m, hardly ever all are within 7 m."""
     task, wide = paths.CONFIG / "sorting_hard.yaml", "task.randomisation=10"
-    assert rtg_config(task, "--set", "task.push.arena=7", "--check").returncode == 0
-    done = rtg_config(task, "--set", "task.push.arena=7", "--set", wide, "--check")
-    assert done.returncode == 2
-    assert done.stderr.startswith(f"--set {wide}: key 'task.randomisation': with objects moved by")
+    assert refusal(task, "task.push.arena=7") == ""
+    said = refusal(task, "task.push.arena=7", wide)
+    assert said.startswith(f"--set {wide}: key 'task.randomisation': with objects moved by")
 
 
 def test_of_several_settings_the_one_that_made_it_wrong_is_named(file: Path) -> None:
     settings = ["search.breadth=3", "task.goal.0.disc.radius=25", "run.seed=2"]
-    words = [word for setting in settings for word in ("--set", setting)]
-    done = rtg_config(file, *words, "--print")
-    assert done.stderr.startswith(f"--set {settings[1]}: {file}:8: key 'task.goal': holds ")
+    assert refusal(file, *settings).startswith(
+        f"--set {settings[1]}: {file}:8: key 'task.goal': holds "
+    )
 
 
 def test_a_mistake_of_the_file_is_not_blamed_on_a_setting(file: Path, tmp_path: Path) -> None:
     path = tmp_path / "wrong.yaml"
     path.write_text(TASK.replace("radius: 2", "radius: 25"))
-    done = rtg_config(path, "--set", "run.seed=2", "--print")
-    assert done.stderr.startswith(f"{path}:8: key 'task.goal': holds ")
+    assert refusal(path, "run.seed=2").startswith(f"{path}:8: key 'task.goal': holds ")
 
 
 def test_a_mistake_that_a_later_setting_mends_is_not_told(file: Path, tmp_path: Path) -> None:
@@ -156,37 +138,24 @@ def test_a_mistake_that_a_later_setting_mends_is_not_told(file: Path, tmp_path: 
     path.write_text(TASK.replace("radius: 2", "radius: 25"))
     same_name = "task.bodies.1={name: b, kind: box, shape: {box: [1, 1]}, start: [3, 0, 0]}"
     mend = "task.goal.0.disc.radius=2"
-    done = rtg_config(path, "--set", same_name, "--set", mend, "--print")
-    assert done.stderr.startswith(f"{path}:6: key 'task.bodies.2.name': ")
+    assert refusal(path, same_name, mend).startswith(f"{path}:6: key 'task.bodies.2.name': ")
 
 
 def test_there_are_many_mistakes() -> None:
     assert len(FILES) + len(SETTINGS) >= 80
 
 
-def test_a_mistake_on_the_command_line_is_named(file: Path, tmp_path: Path) -> None:
+def test_a_file_that_is_none_is_named(tmp_path: Path) -> None:
     legal = "legal: a YAML file with a section 'task'"
-    lines = {
-        ("--print",): f"no FILE; {USAGE}",
-        (file,): f"no mode; {USAGE}",
-        (file, "--prnt"): f"--prnt: no such flag; {USAGE}",
-        (file, "--print", "--set"): "--set: nothing behind it; legal: --set KEY=VALUE",
-        (file, file, "--print"): f"{file}: no such flag; {USAGE}",
-        (tmp_path / "none.yaml", "--print"): f"{tmp_path}/none.yaml: no such file; {legal}",
-        (tmp_path, "--print"): f"{tmp_path}: is a folder; {legal}",
-    }
-    for words, line in lines.items():
-        done = rtg_config(*words)
-        assert (done.returncode, done.stdout, done.stderr) == (2, "", line + "\n")
+    assert refusal(tmp_path / "none.yaml") == f"{tmp_path}/none.yaml: no such file; {legal}"
+    assert refusal(tmp_path) == f"{tmp_path}: is a folder; {legal}"
 
 
 def test_a_task_may_lie_in_another_file(file: Path, tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_text(f"task: {file}\nsearch: {{breadth: 7}}\n")
-    done = rtg_config(path, "--print")
-    assert done.returncode == 0
-    assert "name: two_boxes" in done.stdout
-    assert "\n  breadth: 7 " in done.stdout
+    text = _core.Config.from_file(path).yaml
+    assert "name: two_boxes" in text and "\n  breadth: 7 " in text
 
 
 @pytest.mark.parametrize(
@@ -199,25 +168,19 @@ def test_a_task_may_lie_in_another_file(file: Path, tmp_path: Path) -> None:
 def test_a_wrong_path_of_a_task_is_named(name: str, message: str, tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_text(f"\ntask: {name}\n")
-    done = rtg_config(path, "--print")
-    assert done.returncode == 2
-    assert done.stderr == f"{path}:2: key 'task': {tmp_path}/{name}: {message}\n"
+    assert refusal(path) == f"{path}:2: key 'task': {tmp_path}/{name}: {message}"
 
 
 def test_check_says_what_it_understood(file: Path) -> None:
-    done = rtg_config(
-        file,
-        *("--set", "search.transitions=500", "--set", "search.depth=6", "--set", "run.workers=3"),
-        *("--set", "train.interactions=900", "--set", "train.start_at=400", "--check"),
-    )
-    assert done.returncode == 0
-    understood = Path(__file__).with_name("understood.txt").read_text()
-    assert done.stdout == understood.replace("{file}", str(file))
+    settings = ["search.transitions=500", "search.depth=6", "run.workers=3"]
+    settings += ["train.interactions=900", "train.start_at=400"]
+    said = _core.Config.from_file(file, settings).description
+    assert said == Path(__file__).with_name("understood.txt").read_text()
 
 
 def test_check_says_joints_and_goals_of_a_chain() -> None:
-    done = rtg_config(paths.CONFIG / "art_manip.yaml", "--check")
-    said = done.stdout.split("actions\n")[0].splitlines()
+    config = _core.Config.from_file(paths.CONFIG / "art_manip.yaml")
+    said = config.description.split("actions\n")[0].splitlines()
     assert said[said.index("joints") :] == [
         "joints",
         "  'link2' on 'link1', from -137 to 137 deg",
@@ -241,8 +204,7 @@ HARD = {**SORTING, "a3": ("a", [1.2, -5.0, 0.2]), "b3": ("b", [-1.2, 5.0, -0.1])
 
 @pytest.mark.parametrize(("name", "bodies"), [("sorting", SORTING), ("sorting_hard", HARD)])
 def test_sorting_is_laid_out_in_two_columns(name: str, bodies: dict[str, object]) -> None:
-    done = rtg_config(paths.CONFIG / f"{name}.yaml", "--json")
-    task = json.loads(done.stdout)["task"]
+    task = json.loads(_core.Config.from_file(paths.CONFIG / f"{name}.yaml").json)["task"]
     found = {body["name"]: (body["kind"], body["start"]) for body in task["bodies"]}
     assert list(found.items()) == list(bodies.items())
     assert task["goal"] == [
@@ -253,8 +215,7 @@ def test_sorting_is_laid_out_in_two_columns(name: str, bodies: dict[str, object]
 
 
 def test_json_holds_the_values_with_their_types(file: Path) -> None:
-    done = rtg_config(file, "--set", "run.workers=3", "--set", "search.breadth=7", "--json")
-    config = json.loads(done.stdout)
+    config = json.loads(_core.Config.from_file(file, ["run.workers=3", "search.breadth=7"]).json)
     assert list(config) == ["task", "physics", "reverse", "search", "train", "run"]
     assert config["run"]["workers"] == 3
     assert config["run"]["in_process"] is False
@@ -272,9 +233,3 @@ def test_json_holds_the_values_with_their_types(file: Path) -> None:
     assert config["task"]["goal"] == [
         {"kind": "box", "disc": {"centre": [0.0, 0.0], "radius": 2.0}}
     ]
-
-
-def test_the_learner_of_python_has_the_fields_of_the_loader_and_their_types(file: Path) -> None:
-    train = json.loads(rtg_config(file, "--json").stdout)["train"]
-    types = {field.name: field.type for field in dataclasses.fields(TrainSettings)}
-    assert {key: type(value).__name__ for key, value in train.items()} == types

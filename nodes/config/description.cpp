@@ -1,4 +1,4 @@
-#include "nodes/rtg_config/description.hpp"
+#include "nodes/config/description.hpp"
 
 #include <algorithm>
 #include <cmath>

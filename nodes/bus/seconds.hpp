@@ -1,0 +1,8 @@
+#pragma once
+
+namespace rtg {
+
+/// A time of a clock that is never set back, or a span of time [s].
+using Seconds = double;
+
+}  // namespace rtg

@@ -1,0 +1,80 @@
+#include "nodes/config/run_checks.hpp"
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "nodes/config/config_error.hpp"
+
+namespace rtg {
+namespace {
+
+/// Where a value stands.
+struct Field {
+  std::string_view section, key;
+};
+
+/// Where the first of the fields stands that a file or a flag gives; defaults and the values of a
+/// method get along with each other.
+std::string place(const ConfigNode& root, std::initializer_list<Field> fields) {
+  for (const auto& [section, key] : fields) {
+    const ConfigEntry* given = find(root, section);
+    const ConfigEntry* value = given ? find(given->value, key) : nullptr;
+    if (value && !value->value.origin.starts_with("run.method ")) return value->value.origin;
+  }
+  return root.origin;
+}
+
+/// Whether a generator's steps were found to lead to success.
+bool imitable(Generator generator) {
+  return generator == Generator::kRrbs || generator == Generator::kNaive ||
+         generator == Generator::kForward;
+}
+
+void check_learner(const RtgConfig& config, const ConfigNode& root) {
+  const TrainConfig& train = config.train;
+  const Field learner{"train", "learner"}, interact{"train", "interact"},
+      offline{"train", "offline"}, generator{"search", "generator"};
+  if (train.learner == Learner::kPlanning) {
+    if (train.interact || train.offline)
+      throw ConfigError(place(root, {learner, interact, offline}), "train.learner",
+                        "planning learns from nothing",
+                        "planning with train.interact and train.offline false");
+    return;
+  }
+  if (!train.interact && !train.offline)
+    throw ConfigError(place(root, {interact, offline}), "train.interact",
+                      "false without train.offline leaves nothing to learn from",
+                      "either true, or train.learner planning");
+  if (train.learner == Learner::kCloning && (train.interact || !imitable(config.search.generator)))
+    throw ConfigError(place(root, {learner, interact, generator}), "train.learner",
+                      "cloning imitates generated steps alone",
+                      "cloning with train.interact false and search.generator one of rrbs, naive, "
+                      "forward");
+}
+
+void check_buffer(const RtgConfig& config, const ConfigNode& root) {
+  const int transitions = config.search.transitions, buffer = config.train.buffer;
+  if (!config.train.offline || buffer >= transitions) return;
+  throw ConfigError(place(root, {{"train", "buffer"}, {"search", "transitions"}}), "train.buffer",
+                    std::to_string(buffer) +
+                        " is too small for search.transitions = " + std::to_string(transitions),
+                    "equal or larger ones");
+}
+
+void check_record(const RtgConfig& config, const ConfigNode& root) {
+  if (!config.run.record || (config.train.offline && !config.run.in_process)) return;
+  const std::string why = config.run.in_process ? "with run.in_process" : "without train.offline";
+  throw ConfigError(place(root, {{"run", "record"}}), "run.record",
+                    "true, but " + why + " there are no messages", "false");
+}
+
+}  // namespace
+
+void check_run(const RtgConfig& config, const ConfigNode& root) {
+  check_learner(config, root);
+  check_buffer(config, root);
+  check_record(config, root);
+}
+
+}  // namespace rtg
