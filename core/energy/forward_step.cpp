@@ -41,7 +41,7 @@ ForwardStep<T>::ForwardStep(const SceneModel<T>& scene, double tolerance)
       gaps_(static_cast<std::size_t>(scene.contacts())),
       trial_gaps_(gaps_) {}
 
-/// Of Ψ with the servo; leaves trial_gaps_.
+/// Works on Ψ with the servo; leaves trial_gaps_.
 template <class T>
 T ForwardStep<T>::value(const Placement<T>& at, const Drive<T>& drive, Mask<T>& legal) {
   T sum = potential_.value(at, gaps_.data(), trial_gaps_.data(), legal);

@@ -8,7 +8,7 @@ namespace rtg {
 /// Scale of the servo's error, as a share of the sub-step's stride [m], [m], [rad].
 inline double servo_scale(double stride) { return 0.05 * stride; }
 
-/// What drives the robot in a sub-step: given controls, or a bounded servo towards a target pose,
+/// The drive of the robot in a sub-step: given controls, or a bounded servo towards a target pose,
 /// the potential B s ln cosh(e/s) of the error e = target - p₊₀, whose force B tanh(e/s) is that
 /// of the control c = e/s.
 template <class T>
@@ -39,7 +39,7 @@ struct StepStart {
   const Placement<T>* before = nullptr;
 };
 
-/// One sub-step, eq. (5): p₊ = argmin Ψ(·, p) under a drive, by Newton's method with
+/// A sub-step, eq. (5): p₊ = argmin Ψ(·, p) under a drive, by Newton's method with
 /// line search.
 template <class T>
 class ForwardStep {

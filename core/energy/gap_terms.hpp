@@ -17,7 +17,7 @@ struct GapTerms {
   }
 };
 
-/// What changes of them along a motion y, turn of the frame included: y·∇ of the gradient and of
+/// Their change along a motion y, turn of the frame included: y·∇ of the gradient and of
 /// the Hessian in q.
 template <class T>
 struct GapRates {

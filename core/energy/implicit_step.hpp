@@ -7,7 +7,7 @@
 
 namespace rtg {
 
-/// One sub-step of one scene, eq. (5): p₊ = argmin Ψ(·, p, p₋) under the drive.
+/// A sub-step of one scene, eq. (5): p₊ = argmin Ψ(·, p, p₋) under the drive.
 struct ImplicitStep {
   VectorXd next;     // p₊ [3·bodies]
   Vector3d control;  // c that the drive amounted to

@@ -6,7 +6,7 @@
 
 namespace rtg {
 
-/// One limit of a hinge as a contact without friction: the tip of the child meets a stop, at the
+/// A limit of a hinge as a contact without friction: the tip of the child meets a stop, at the
 /// gap
 ///
 ///   g = r (φ - φ_min) + g₀  or  r (φ_max - φ) + g₀,

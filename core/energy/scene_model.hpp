@@ -58,7 +58,7 @@ class SceneModel {
   double slip() const { return slip_; }
   double skin() const { return skin_; }
   const Damping<T>& damping(int body) const { return damping_[body]; }
-  /// Whether a sub-step depends on the one before it.
+  /// Says whether a sub-step depends on the one before it.
   bool inertial() const { return inertia_weight_ > 0.0; }
   /// How far what moves at push speed coasts, in strides of a sub-step: v Δt/k_D.
   double coasting() const { return inertia_weight_; }
@@ -66,7 +66,7 @@ class SceneModel {
     const Damping<T>& d = damping_[body];
     return {d.mass * T(inertia_weight_), d.moment * T(inertia_weight_), d.periodic};
   }
-  /// What damping and inertia have in Φ of a body that moves by a = (Δt, Δθ) after it moved by b.
+  /// The part of damping and inertia in Φ of a body that moves by a = (Δt, Δθ) after it moved by b.
   Vec3<T> motion_force(int body, const Vec3<T>& a, const Vec3<T>& b) const {
     const Damping<T>& d = damping_[body];
     Vec3<T> force(d.mass * a[0], d.mass * a[1], d.turn_slope(a[2]));
@@ -79,8 +79,8 @@ class SceneModel {
   const Vec3<T>& control_bound() const { return control_bound_; }
   const T& friction(int pair) const { return friction_[pair]; }
 
-  /// Whether the bodies are close enough for any of their contacts to act, turned round or not: the
-  /// gap of a vertex is less than the range in all of the other's offset_polygon().
+  /// Says whether the bodies are close enough for any of their contacts to act, turned round or
+  /// not: the gap of a vertex is less than the range in all of the other's offset_polygon().
   Mask<T> near(int pair, const Placement<T>& at) const {
     const auto [i, j] = pairs_[pair];
     const T x = at.body(i)[0] - at.body(j)[0], y = at.body(i)[1] - at.body(j)[1];

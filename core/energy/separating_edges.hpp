@@ -6,7 +6,7 @@
 
 namespace rtg {
 
-/// One side of the separating-axis test, along with what measures the gaps: least distance of a
+/// A side of the separating-axis test, along with what measures the gaps: least distance of a
 /// body's vertices to each plane of another. Corners, which the smoothed distance cuts, may overlap
 /// by 2 ln 2/α, and by as much again: acute tips pass each other without a vertex in the other
 /// body, and a wall there that no force announces would stop every solver.
@@ -24,7 +24,7 @@ class SeparatingEdges {
       least_[k] = select(real, lesser(least_[k], distances[k]), least_[k]);
   }
 
-  /// Whether, all vertices noted, one of the planes separates the two bodies.
+  /// Says whether, all vertices noted, one of the planes separates the two bodies.
   Mask<T> separate(double sharpness) const {
     T best(-INFINITY);
     for (int k = 0; k < planes_.count; ++k)

@@ -59,7 +59,7 @@ Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& 
           kRestSteps + static_cast<int>(std::clamp(coasting, 0.0, 1e6))};
 }
 
-/// Whether the bounding circle of body `i` is clear of those of all others.
+/// Says whether the bounding circle of body `i` is clear of those of all others.
 bool is_alone(const Scene& scene, const Poses& poses, std::size_t i) {
   const double radius = bounding_radius(scene.bodies[i].shape) + kClear;
   for (std::size_t j = 0; j < scene.size(); ++j)
@@ -69,7 +69,7 @@ bool is_alone(const Scene& scene, const Poses& poses, std::size_t i) {
   return true;
 }
 
-/// One scene in a Box2D world of its own.
+/// A scene in a Box2D world of its own.
 class Table {
  public:
   Table(const Scene& scene, const PhysicsConfig& physics, const Servo& servo, const Poses& start)
@@ -85,7 +85,7 @@ class Table {
     for (const Joint& joint : scene.joints) add_joint(joint);
   }
 
-  /// One Box2D step in which the servo heads for `target`. False: not finite, the step is
+  /// A Box2D step in which the servo heads for `target`. False: not finite, the step is
   /// discarded.
   bool step_towards(const Pose& target) {
     const Pose robot = pose_of(*bodies_[0]);

@@ -6,7 +6,7 @@
 
 namespace rtg {
 
-/// What one push led to. `ok` is false if the simulator met a non-finite state or an iteration
+/// The outcome of a push. `ok` is false if the simulator met a non-finite state or an iteration
 /// limit; `end` is then the last good state and must not be used as a transition.
 struct PushOutcome {
   Poses end;

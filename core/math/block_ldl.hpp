@@ -14,7 +14,7 @@ class BlockLdl {
 
   /// Reads the lower half of A. Returns in which lanes A is positive definite.
   Mask<T> factorize(const BlockMatrix<T>& A);
-  /// Whether no block of D was singular.
+  /// Says whether no block of D was singular.
   const Mask<T>& regular() const { return regular_; }
 
   /// x ← A⁻¹ x.

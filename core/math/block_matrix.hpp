@@ -112,7 +112,7 @@ Block<T> symmetric_inverse(const Block<T>& A, T& determinant) {
   return out;
 }
 
-/// Whether the determinant of A is more than rounding.
+/// Says whether the determinant of A is more than rounding.
 template <class T>
 Mask<T> is_regular(const Block<T>& A, const T& determinant) {
   constexpr double kRounding = 1e-14;

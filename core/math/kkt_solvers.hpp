@@ -36,7 +36,7 @@ class CyclicReduction final : public KktSolver {
   [[nodiscard]] BlockVector solve(const BlockVector& r) const override;
 
  private:
-  /// One halving: the odd blocks of the system are eliminated, the even ones stay.
+  /// A halving: the odd blocks of the system are eliminated, the even ones stay.
   struct Level {
     std::size_t blocks = 0;
     std::vector<PivotBlock> pivots;     // of the odd blocks

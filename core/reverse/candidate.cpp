@@ -35,7 +35,7 @@ std::vector<SqpResult> filter_sqp(std::span<const ReverseProblem* const> problem
       .solve(problems);
 }
 
-/// What candidates in the lanes of one solver have in common: numbers of bodies, and joints.
+/// The key that candidates in the lanes of one solver share: numbers of bodies, and joints.
 std::vector<int> structure_of(const StepEnergy& energy) {
   std::vector<int> structure{energy.dofs(), energy.bodies()};
   for (const Hinge<double>& hinge : energy.scene().articulation().hinges())

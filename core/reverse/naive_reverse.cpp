@@ -36,7 +36,7 @@ std::size_t NaiveReverse::touched_object(const Poses& end, const Vector2d& ahead
   return best;
 }
 
-/// Whether a body other than `touched` lies on the robot's way back.
+/// Says whether a body other than `touched` lies on the robot's way back.
 bool NaiveReverse::blocked(const Poses& end, std::size_t touched, const Vector2d& back) const {
   const double reach = bounding_radius(scene_.bodies[0].shape) + back.norm();
   for (std::size_t k = 1; k < scene_.size(); ++k) {

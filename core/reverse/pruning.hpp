@@ -12,9 +12,9 @@ namespace rtg {
 /// heading `theta`: what it sweeps over on a straight way.
 Polygon swept(const Polygon& shape, double theta, const Vector2d& by);
 
-/// Whether the action cannot have been the last one: the robot's straight way back leaves the arena
-/// or passes through a body behind it (through a link by more than it can have swung in since).
-/// Costs nothing next to a solve.
+/// Says whether the action cannot have been the last one: the robot's straight way back leaves the
+/// arena or passes through a body behind it (through a link by more than it can have swung in
+/// since). Costs nothing next to a solve.
 bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job);
 
 /// The bodies that can take part in the push, robot first, movable ones before fixed ones: those

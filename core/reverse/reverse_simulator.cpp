@@ -15,7 +15,7 @@ namespace {
 constexpr double kDragged = 0.05;  // [m]
 constexpr double kTurned = 0.05;   // [rad]
 
-/// Whether an object (all bodies but the first) is elsewhere in `other` than in `p`.
+/// Says whether an object (all bodies but the first) is elsewhere in `other` than in `p`.
 bool objects_differ(const VectorXd& p, const VectorXd& other) {
   for (Eigen::Index i = 3; i < p.size(); i += 3) {
     const Vector3d by = (other - p).segment<3>(i).cwiseAbs();

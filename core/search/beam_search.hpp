@@ -22,7 +22,7 @@ struct Node {
   int depth = 0;    // actions until success
 };
 
-/// One tree of reverse steps, grown layer by layer from goal states towards a layout (Algorithm 1).
+/// A tree of reverse steps, grown layer by layer from goal states towards a layout (Algorithm 1).
 class BeamSearch {
  public:
   /// `task` and `config` must outlive the search; `target`: the layout.
@@ -31,7 +31,7 @@ class BeamSearch {
   /// Makes goal states near the target (goal_roots()), brought to rest by `replay`, the first beam.
   void plant(const ReplayBatch& replay, SearchStats& stats);
 
-  /// One layer: solves for every action of every node of the beam, replays the best of what
+  /// Grows a layer: solves for every action of every node of the beam, replays the best of what
   /// converged and ranks what replays within the gap tolerance. In the states of the best
   /// config.followed steps per place in the beam, what is in place is put where a start like the
   /// target has it (placed()), and they go on with the plan of the node that they were found for.

@@ -9,7 +9,7 @@
 
 namespace rtg {
 
-/// What the choice of the next beam needs to know of a candidate.
+/// The figures by which the next beam is chosen, of a candidate.
 struct BeamEntry {
   double score = 0.0;        // the less the better
   std::uint64_t cell = 0;    // StateMetric::cell(); candidates of one cell count as the same

@@ -20,7 +20,7 @@ class ForwardSearch {
   /// `task` and `config` must outlive the search.
   ForwardSearch(const Task& task, const SearchConfig& config, Poses start);
 
-  /// One action more: replays every heading of every state of the beam and keeps the best. The
+  /// Goes an action on: replays every heading of every state of the beam and keeps the best. The
   /// steps that were kept come back; none if the search has come to its end.
   std::vector<Transition> grow(const ReplayBatch& replay);
 

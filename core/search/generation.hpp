@@ -13,7 +13,7 @@
 
 namespace rtg {
 
-/// One call of generate(): what all generators work with.
+/// A call of generate(): what all generators work with.
 struct Generation {
   const Task& task;
   const SearchConfig& config;
@@ -40,7 +40,7 @@ struct Generation {
   /// eight attempts in a row have stored nothing.
   void repeat(const std::function<void(int)>& attempt);
 
-  /// One line for the display: `layer` of `depth` of what `phase` names.
+  /// A line for the display: `layer` of `depth` of what `phase` names.
   void show(std::string phase, int layer, int depth) const;
 };
 

@@ -36,7 +36,7 @@ double replay_gap(const Poses& reverse_end, const Poses& replayed_end);
 /// Number of bodies, the robot left out, whose position differs by more than kMoved.
 int objects_moved(const Poses& a, const Poses& b);
 
-/// Whether a state can be the start of a transition: finite, robot in the arena, no overlap.
+/// Says whether a state can be the start of a transition: finite, robot in the arena, no overlap.
 bool legal_state(const Task& task, const Poses& poses);
 
 /// The starts of converged answers that, rounded to float, are legal states; others are counted.

@@ -18,7 +18,8 @@ struct ReportNode {
   int tree = 0;   // number of the tree
 };
 
-/// What a generation did: the generation part of summary.json plus the samples behind its pictures.
+/// The account of a generation: the generation part of summary.json plus the samples behind its
+/// pictures.
 struct GenerationReport {
   long transitions = 0;
   long tree_transitions = 0, branch_transitions = 0;  // of them by source, the two of reverse trees

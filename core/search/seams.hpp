@@ -13,7 +13,7 @@ namespace rtg {
 /// Stands for no push: the scene comes to rest with the robot held.
 inline constexpr int kSettle = -1;
 
-/// What does `action` do in `start`?
+/// The question what `action` does in `start`.
 struct ReplayJob {
   Poses start;
   int action = 0;  // or kSettle
@@ -32,13 +32,13 @@ struct ReplayResult {
 using SolveBatch = std::function<std::vector<ReverseResult>(std::span<const ReverseJob>)>;
 using ReplayBatch = std::function<std::vector<ReplayResult>(std::span<const ReplayJob>)>;
 
-/// One replay job after the other; pure, and callable from several threads at once.
+/// Answers one replay job after the other; pure, and callable from several threads at once.
 using ReplayOne = std::function<ReplayResult(const ReplayJob&)>;
 
 /// Receives transitions in sequence order; the k-th transition of a run has sequence number k.
 using TransitionSink = std::function<void(std::span<const Transition>)>;
 
-/// One line of the progress display.
+/// A line of the progress display.
 struct Progress {
   std::string phase;  // "tree 1", "plan 3", "random walks"
   int layer = 0;      // of `depth`

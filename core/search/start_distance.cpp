@@ -22,7 +22,7 @@ double farthest_pull(const Task& task, std::size_t body) {
          bounding_radius(task.scene.bodies[body].shape) + kReach;
 }
 
-/// Whether a robot at `robot` touches an object on the side that `way` points to.
+/// Says whether a robot at `robot` touches an object on the side that `way` points to.
 bool can_pull(const Task& task, const Pose& robot, const Pose& object, std::size_t body,
               const Vector2d& way) {
   const Polygon& hand = task.scene.bodies[0].shape;

@@ -18,7 +18,7 @@ namespace rtg {
 double start_distance(const Task& task, const StateMetric& metric, const Poses& poses,
                       const Poses& target);
 
-/// Whether all objects are in place; the robot may be anywhere.
+/// Says whether all objects are in place; the robot may be anywhere.
 bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target);
 
 /// `poses` with every object that is in place put where `start` has it, which is like `target`;

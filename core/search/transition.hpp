@@ -16,7 +16,7 @@ enum class Source : std::int8_t {
 };
 inline constexpr std::size_t kSourceCount = 4;
 
-/// One true transition of the true dynamics (Box2D). Success is the task's predicate on `next`.
+/// A true transition of the true dynamics (Box2D). Success is the task's predicate on `next`.
 struct Transition {
   Poses poses;
   int action = 0;

@@ -7,7 +7,7 @@
 
 namespace rtg {
 
-/// One condition on a state; a goal is the conjunction of its terms. What lies in the region:
+/// A condition on a state; a goal is the conjunction of its terms. What lies in the region:
 ///
 ///   kEvery     the centre of every body of the kind ("*": of all movable ones but the robot)
 ///   kCentroid  the mean of these centres
@@ -27,17 +27,17 @@ struct GoalTerm {
   bool operator==(const GoalTerm&) const = default;
 };
 
-/// Whether the centre of `body`, or of a centroid's bodies, is what `term` speaks of; never with
-/// kJoint.
+/// Says whether the centre of `body`, or of a centroid's bodies, is what `term` speaks of; never
+/// with kJoint.
 bool concerns(const GoalTerm& term, const Scene& scene, std::size_t body);
-/// Whether it is the angle of `joint`.
+/// Says whether it is the angle of `joint`.
 bool concerns(const GoalTerm& term, const Scene& scene, const Joint& joint);
 
 /// How far a point [m] or an angle [rad] lies outside of the region of a term: ≤ 0 inside.
 double outside(const GoalTerm& term, const Vector2d& x);
 double outside(const GoalTerm& term, double angle);
 
-/// Whether it lies in the region, shrunk by `tighten`.
+/// Says whether it lies in the region, shrunk by `tighten`.
 inline bool contains(const GoalTerm& term, const Vector2d& x, double tighten) {
   return outside(term, x) <= -tighten;
 }
@@ -48,7 +48,7 @@ inline bool contains(const GoalTerm& term, double angle, double tighten) {
 /// The mean of the centres that `term` speaks of.
 Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& poses);
 
-/// Whether `term` holds, its region shrunk by `tighten` [m], [rad].
+/// Says whether `term` holds, its region shrunk by `tighten` [m], [rad].
 bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten);
 
 }  // namespace rtg

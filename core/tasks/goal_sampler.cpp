@@ -40,7 +40,8 @@ Vector2d point_in_arena(const Task& task, Rng& rng) {
   return {x, rng.uniform(-a, a)};
 }
 
-/// Whether every region that the centre of that body has to be in contains x, with room to spare.
+/// Says whether every region that the centre of that body has to be in contains x, with room to
+/// spare.
 bool in_target(const Task& task, std::size_t body, const Vector2d& x) {
   return std::ranges::all_of(task.goal, [&](const GoalTerm& term) {
     return term.subject != GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||
@@ -101,7 +102,7 @@ void move(Group& group, const Vector2d& by) {
   }
 }
 
-/// Whether the mean centre of a term is decided by where the group goes: it is of some of its
+/// Says whether the mean centre of a term is decided by where the group goes: it is of some of its
 /// bodies, and all others have their places.
 bool decides(const Group& group, const GoalTerm& term, const Task& task, const Layout& layout) {
   const auto concerned = [&](std::size_t i) { return concerns(term, task.scene, i); };

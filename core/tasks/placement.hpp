@@ -7,7 +7,8 @@
 
 namespace rtg {
 
-/// What sample_goal() keeps between bodies; closer than 0.02 they are in contact for Box2D [m].
+/// The distance that sample_goal() keeps between bodies; closer than 0.02 they are in contact for
+/// Box2D [m].
 inline constexpr double kClearance = 0.0215;
 
 /// Bodies placed so far: `placed[i]` says whether `poses[i]` counts.
@@ -16,7 +17,7 @@ struct Layout {
   std::vector<bool> placed;
 };
 
-/// Whether body `i` at `pose` keeps kClearance from all placed bodies, but for what a joint
+/// Says whether body `i` at `pose` keeps kClearance from all placed bodies, but for what a joint
 /// connects it with.
 bool is_clear(const Task& task, const Layout& layout, std::size_t i, const Pose& pose);
 

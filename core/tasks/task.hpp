@@ -38,7 +38,7 @@ struct Task {
 /// [m].
 inline constexpr double kStartClearance = 0.02;
 
-/// Whether the goal holds in `poses`, with every region shrunk by `tighten` [m], [rad].
+/// Says whether the goal holds in `poses`, with every region shrunk by `tighten` [m], [rad].
 bool succeeded(const Task& task, const Poses& poses, double tighten = 0.0);
 
 /// The learner's view, float32, lengths / 8 m: robot x, y; per movable body x, y, cos θ, sin θ,
@@ -55,11 +55,11 @@ std::optional<Poses> jittered(const Task& task, const Poses& start, double ampli
 /// allows_jitter().
 Poses jittered_start(const Task& task, double amplitude, Rng& rng);
 
-/// Whether at least 5 of 250 draws of jittered_start() are legal. Where one in 50 is, a thousand in
-/// a row are not with probability 2e-9.
+/// Says whether at least 5 of 250 draws of jittered_start() are legal. Where one in 50 is, a
+/// thousand in a row are not with probability 2e-9.
 bool allows_jitter(const Task& task, double amplitude);
 
-/// What a sampled goal state meets the goal with to spare [m], [rad].
+/// The margin by which a sampled goal state meets the goal with to spare [m], [rad].
 inline constexpr double kGoalSpare = 0.05;
 
 /// A layout that satisfies the goal with kGoalSpare: each body somewhere in its region

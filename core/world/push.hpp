@@ -25,7 +25,7 @@ Vector2d direction(int action, const PushConfig& config);
 /// coordinate clipped to the arena; the heading is held.
 Pose push_target(const Pose& robot, int action, const PushConfig& config);
 
-/// Whether a robot pose lies in the arena.
+/// Says whether a robot pose lies in the arena.
 bool in_arena(const Pose& robot, const PushConfig& config);
 
 }  // namespace rtg

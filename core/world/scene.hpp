@@ -9,7 +9,7 @@
 
 namespace rtg {
 
-/// One rigid body. Its frame sits at the centroid of `shape`.
+/// A rigid body. Its frame sits at the centroid of `shape`.
 struct Body {
   std::string name;
   std::string kind;       // class label that goals refer to, for example "box"
@@ -42,10 +42,10 @@ struct Scene {
   std::size_t size() const { return bodies.size(); }
 };
 
-/// Whether the body has a joint.
+/// Says whether the body has a joint.
 bool has_joint(const Scene& scene, std::size_t body);
 
-/// Whether a joint connects the two bodies.
+/// Says whether a joint connects the two bodies.
 bool jointed(const Scene& scene, std::size_t a, std::size_t b);
 
 /// Distance between the two points that a joint pins together [m].

@@ -15,7 +15,7 @@ namespace rtg {
 /// vertex distances it also sees crossing bars.
 double separation(const Polygon& a, const Pose& pose_a, const Polygon& b, const Pose& pose_b);
 
-/// Whether an edge separates them by `margin` [m] or more: separation() ≥ margin.
+/// Says whether an edge separates them by `margin` [m] or more: separation() ≥ margin.
 bool are_apart(const Polygon& a, const Pose& pose_a, const Polygon& b, const Pose& pose_b,
                double margin);
 

@@ -23,7 +23,7 @@ struct PoolState {
   long resent = 0, reissued = 0, given_up = 0;
 };
 
-/// One kind of work, answered by processes behind the bus: a SolveBatch or ReplayBatch that hides
+/// A kind of work, answered by processes behind the bus: a SolveBatch or ReplayBatch that hides
 /// ids, units, retries and order. The search calls answers() on its thread; the thread that spins
 /// the bus calls tick().
 template <class Work>

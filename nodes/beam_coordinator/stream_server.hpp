@@ -60,11 +60,11 @@ class StreamServer {
   std::int64_t slowest_cursor() const;
   long resent() const { return resent_; }  // rows sent again on request
 
-  /// Whether due() will have more to send although nothing new comes in.
+  /// Says whether due() will have more to send although nothing new comes in.
   bool backlog(Seconds now) const { return !asked_.empty() || live_ < live_limit(now); }
 
-  /// Whether all of the sealed stream has been sent, at least `consumers` know that they have it,
-  /// and no living one does not.
+  /// Says whether all of the sealed stream has been sent, at least `consumers` know that they have
+  /// it, and no living one does not.
   bool drained(int consumers, Seconds now) const;
 
  private:

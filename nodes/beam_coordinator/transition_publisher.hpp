@@ -25,7 +25,7 @@ class TransitionPublisher {
   /// Sends what is due, and how long the stream is.
   void tick(Seconds now);
 
-  /// Whether tick() will have more to send although nothing new comes in.
+  /// Says whether tick() will have more to send although nothing new comes in.
   bool backlog(Seconds now) const;
 
   /// As StreamServer::drained().

@@ -52,7 +52,7 @@ void warn_of_small_buffer(const std::string& url) {
 struct Bus::Connection {
   explicit Connection(const std::string& bus_url) : url(bus_url), lcm(bus_url) {}
 
-  /// One listened-to channel.
+  /// A listened-to channel.
   struct Listener {
     Connection* connection;
     RawHandler handler;

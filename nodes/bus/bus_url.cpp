@@ -7,14 +7,14 @@
 namespace rtg {
 namespace {
 
-/// Whether `text` begins with `word`, which is then taken off it.
+/// Says whether `text` begins with `word`, which is then taken off it.
 bool take(std::string_view& text, std::string_view word) {
   if (!text.starts_with(word)) return false;
   text.remove_prefix(word.size());
   return true;
 }
 
-/// Whether `text` begins with a decimal number in [low, high], which is then taken off it. No
+/// Says whether `text` begins with a decimal number in [low, high], which is then taken off it. No
 /// leading zeros: inet_aton() would read them as octal.
 bool take_number(std::string_view& text, int low, int high) {
   int value = 0;

@@ -15,7 +15,7 @@ class NodeStatus {
   NodeStatus(Bus& bus, std::string node, int number)
       : bus_(bus), node_(std::move(node)), number_(number) {}
 
-  /// Whether it is time to publish(): twice a second.
+  /// Says whether it is time to publish(): twice a second.
   bool due(Seconds now) { return ticker_.due(now); }
 
   /// `done` as in node_status_t. `counts` are told beside the bus's counters.
@@ -29,7 +29,7 @@ class NodeStatus {
   Ticker ticker_{0.5};
 };
 
-/// Whether the coordinator is still there, as worker and server hear it: RTG_PROGRESS.
+/// Says whether the coordinator is still there, as worker and server hear it: RTG_PROGRESS.
 class CoordinatorWatch {
  public:
   static constexpr Seconds kSilence = 30.0;

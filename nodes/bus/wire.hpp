@@ -46,7 +46,7 @@ class Layout {
     for (std::int32_t i = 0; i < n && ok_; ++i) skip_text();
   }
 
-  /// Whether the bytes were those of the fields seen, no more and no fewer.
+  /// Says whether the bytes were those of the fields seen, no more and no fewer.
   bool complete() const { return ok_ && rest_.empty(); }
 
  private:
@@ -75,8 +75,8 @@ struct Finite {
   void texts(std::vector<std::string>&, std::int32_t) {}
 };
 
-/// Whether the vectors of an outgoing message are as long as its counts say: the generated encoder
-/// reads past their end otherwise.
+/// Says whether the vectors of an outgoing message are as long as its counts say: the generated
+/// encoder reads past their end otherwise.
 struct Consistent {
   bool ok = true;
 

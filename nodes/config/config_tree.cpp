@@ -19,7 +19,7 @@ std::string quote(const std::string& text) {
   return out + '"';
 }
 
-/// Whether YAML reads the bare word back as that text.
+/// Says whether YAML reads the bare word back as that text.
 bool is_plain_word(const std::string& text) {
   static const std::vector<std::string> kMeaning{"true", "false", "null", "Null", "NULL"};
   const auto in_word = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };

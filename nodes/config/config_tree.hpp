@@ -41,7 +41,7 @@ ConfigNode token_node(std::string token);
 ConfigNode list_node(std::vector<ConfigNode> items);
 ConfigNode map_node(std::string origin = {});
 
-/// What a node is, for messages: "'3x'", "a list", "a mapping", "nothing".
+/// A node in words, for messages: "'3x'", "a list", "a mapping", "nothing".
 std::string in_words(const ConfigNode& node);
 
 /// Block style with comments, as long as a mapping has some; flow style below.

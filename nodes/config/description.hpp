@@ -6,7 +6,7 @@
 
 namespace rtg {
 
-/// What a configuration says, for the person who wrote it: bodies with sizes and masses, the goal
+/// A configuration in words, for the person who wrote it: bodies with sizes and masses, the goal
 /// in words, actions, episodes, the work of the search and of the learner.
 std::string description(const RtgConfig& config);
 

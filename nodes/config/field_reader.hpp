@@ -11,7 +11,7 @@
 
 namespace rtg {
 
-/// One mapping of a configuration on its way into a struct: reads by key what is there, leaves the
+/// A mapping of a configuration on its way into a struct: reads by key what is there, leaves the
 /// rest of the struct as it is. As a visitor it takes the fields that visit() lists. All functions
 /// throw ConfigError for what is not legal.
 class FieldReader {

@@ -41,7 +41,7 @@ void read_half_plane(const ConfigNode& section, const std::string& path, GoalTer
   reader.number("offset", term.offset, -kMaxPlace, kMaxPlace);
 }
 
-/// What a term speaks of: kind (the default), centroid or joint.
+/// The subject of a term: kind (the default), centroid or joint.
 void read_subject(const FieldReader& reader, const std::string& path, GoalTerm& term) {
   const ConfigNode& section = reader.section();
   const bool of_joint = find(section, "joint"), of_centroid = find(section, "centroid");

@@ -6,7 +6,8 @@
 
 namespace rtg {
 
-/// What is compared: learners that differ in where their experience comes from and in little else.
+/// The methods that are compared: learners that differ in where their experience comes from and in
+/// little else.
 enum class Method {
   kDqn,
   kDdqn,
@@ -31,8 +32,8 @@ struct MethodSetting {
   std::string_view section, key, value;
 };
 
-/// What `method` stands for, and nothing else tells methods apart: a loader takes these values for
-/// the keys that are not given.
+/// The settings that `method` stands for; nothing else tells methods apart: a loader takes these
+/// values for the keys that are not given.
 ///
 ///   dqn           no offline data, targets of one network  [Mnih et al. 2015]
 ///   ddqn          the same with Double-Q targets  [van Hasselt et al. 2016]

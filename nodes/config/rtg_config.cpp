@@ -142,7 +142,7 @@ void check_physics(const ConfigNode& root, const PhysicsConfig& physics) {
                     "less than " + number_text(physics.range));
 }
 
-/// What dynamic mode asks of the other fields.
+/// Checks what dynamic mode asks of the other fields.
 void check_inertia(const ConfigNode& root, const RtgConfig& config) {
   if (!config.physics.inertia) return;
   const ConfigEntry* physics = find(root, "physics");
@@ -159,7 +159,7 @@ void check_inertia(const ConfigNode& root, const RtgConfig& config) {
         "false, or reverse.terminal_weight above 0 (reverse.preset paper sets it to 0)");
 }
 
-/// What `randomise` asks of the task.
+/// Checks what `randomise` asks of the task.
 void check_randomisation(const ConfigNode& root, const RtgConfig& config) {
   if (config.task.randomisation > 0.0) return;
   for (const auto& [section, asked] :
@@ -222,8 +222,8 @@ RtgConfig read_config(const ConfigNode& root) {
   return config;
 }
 
-/// What is wrong with the task as a whole is told of a line of the file. If it was right without
-/// the last settings, the one that made it wrong is told, too.
+/// Reads it. A mistake in the task as a whole is told of a line of the file. If it was right
+/// without the last settings, the one that made it wrong is told, too.
 RtgConfig read_config(const ConfigNode& file, std::span<const std::string> overrides) {
   try {
     ConfigNode root = file;

@@ -42,7 +42,7 @@ std::string canonical_yaml(const RtgConfig& config);
 /// The same values for Python.
 std::string config_json(const RtgConfig& config);
 
-/// Of the canonical text; names the configuration in messages and run folders.
+/// The hash of the canonical text, which names the configuration in messages and run folders.
 std::int64_t config_hash(const RtgConfig& config);
 
 }  // namespace rtg

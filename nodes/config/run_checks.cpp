@@ -25,7 +25,7 @@ std::string place(const ConfigNode& root, std::initializer_list<Field> fields) {
   return root.origin;
 }
 
-/// Whether a generator's steps were found to lead to success.
+/// Says whether a generator's steps were found to lead to success.
 bool imitable(Generator generator) {
   return generator == Generator::kRrbs || generator == Generator::kNaive ||
          generator == Generator::kForward;

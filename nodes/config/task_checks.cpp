@@ -64,7 +64,7 @@ std::string legal_kinds(const Task& task) {
   return listed(kinds);
 }
 
-/// Whether some point of the arena, |x|, |y| ≤ a, lies in the region.
+/// Says whether some point of the arena, |x|, |y| ≤ a, lies in the region.
 bool meets_arena(const GoalTerm& term, double a) {
   if (term.region == GoalTerm::Region::kAngles) return true;
   if (term.region == GoalTerm::Region::kHalfPlane)
@@ -127,7 +127,7 @@ void check_term(const Task& task, std::size_t k, const ConfigNode& section) {
         "regions with points of x and y from -" + arena + " to " + arena + " (task.push.arena)");
 }
 
-/// Whether a fixed body is where the terms that speak of it want it.
+/// Says whether a fixed body is where the terms that speak of it want it.
 bool stands_right(const Task& task, std::size_t body) {
   return std::ranges::all_of(task.goal, [&](const GoalTerm& term) {
     return term.subject != GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||

@@ -9,9 +9,9 @@ namespace rtg {
 /// two of the same name.
 void check_names(const Task& task, const ConfigNode& section);
 
-/// What concerns several values at once. Throws ConfigError with the place in `section`, which
-/// `task` was read from, for: nothing that can move, a start state that overlaps or lies outside, a
-/// goal that concerns nobody, holds from the start or that no layout meets.
+/// Checks what concerns several values at once. Throws ConfigError with the place in `section`,
+/// which `task` was read from, for: nothing that can move, a start state that overlaps or lies
+/// outside, a goal that concerns nobody, holds from the start or that no layout meets.
 void check_task(const Task& task, const ConfigNode& section);
 
 }  // namespace rtg

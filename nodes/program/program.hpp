@@ -8,7 +8,7 @@
 
 namespace rtg {
 
-/// What a node program is called with.
+/// The command line of a node program.
 using Words = std::vector<std::string>;
 
 /// The whole of a node program's main(): watches signals, checks the number of words, runs `body`

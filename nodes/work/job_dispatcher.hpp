@@ -14,7 +14,7 @@ namespace rtg {
 
 /// Content-determined name of a unit of work: equal questions have equal ids.
 using JobId = std::int64_t;
-/// One life of a worker process.
+/// A life of a worker process.
 using WorkerId = std::int64_t;
 
 /// Who works on what, over a network that loses, doubles and reorders, with workers that die: NEW
@@ -57,9 +57,9 @@ class JobDispatcher {
   void on_beat(const Beat& beat, Seconds now);
   Verdict on_result(JobId job);
 
-  /// What has to be sent now. To be called after every event and a few times a second: where
-  /// `silence` / 2 passed without a call, this process slept and heard nobody, so that the clocks
-  /// of the workers stood still meanwhile.
+  /// The messages that have to be sent now. To be called after every event and a few times a
+  /// second: where `silence` / 2 passed without a call, this process slept and heard nobody, so
+  /// that the clocks of the workers stood still meanwhile.
   std::vector<Send> due(Seconds now);
 
   bool finished() const { return open_ == 0; }

@@ -28,7 +28,7 @@ bool has_shape(const Message& message, const TaskShape& shape) {
   return message.n >= 1 && message.n_poses == std::int64_t{3} * message.n * shape.bodies;
 }
 
-/// Whether there are as many poses as the counts of starts say, and starts where they belong.
+/// Says whether there are as many poses as the counts of starts say, and starts where they belong.
 bool has_starts(const rtg_msgs::reverse_result_t& message, const TaskShape& shape) {
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < message.starts.size(); ++i) {

@@ -14,13 +14,13 @@
 
 namespace rtg {
 
-/// What the numbers of a task's messages may be.
+/// The legal numbers in a task's messages.
 struct TaskShape {
   int bodies = 0;
   int headings = 0;
 };
 
-/// What a unit, the load of one message, carries at most.
+/// The most that a unit, the load of one message, carries.
 struct UnitLimit {
   std::size_t jobs;
   std::size_t states;  // in a job or its result

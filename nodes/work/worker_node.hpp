@@ -58,8 +58,8 @@ class WorkerNode {
     if (status_.due(now)) status_.publish(held.empty() ? "idle" : "busy", done);
   }
 
-  /// Whether a unit has been in work for longer than any unit takes. Nothing but the end of the
-  /// process frees the thread, so that another one can take its place.
+  /// Says whether a unit has been in work for longer than any unit takes. Nothing but the end of
+  /// the process frees the thread, so that another one can take its place.
   bool stuck(Seconds now) const {
     const std::scoped_lock lock(mutex_);
     return std::ranges::any_of(

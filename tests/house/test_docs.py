@@ -1,5 +1,6 @@
 """The pages say what is there."""
 
+import ast
 import re
 
 import pytest
@@ -66,3 +67,27 @@ def test_notation_names_what_is_in_the_code() -> None:
     }
     assert len(words) > 50
     assert {word for word in words if not re.search(rf"\b{word}\b", CODE)} == set()
+
+
+def openings() -> list[str]:
+    """The first words of all doc comments of the product."""
+    found = []
+    for path in sources(".hpp", ".cpp", ".py"):
+        if path.relative_to(ROOT).parts[0] == "tests":
+            continue
+        text = path.read_text()
+        if path.suffix == ".py":
+            kinds = ast.Module | ast.ClassDef | ast.FunctionDef
+            nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, kinds)]
+            found += [doc for node in nodes if (doc := ast.get_docstring(node))]
+        else:
+            blocks = re.findall(r"(?:^ *///.*\n)+", text, re.MULTILINE)
+            found += [block.strip().removeprefix("///") for block in blocks]
+    return [words.split()[0] for words in found]
+
+
+def test_doc_comments_say_what_a_thing_does_or_is() -> None:
+    """Few begin with a word that leaves the reader to find subject and verb."""
+    words = openings()
+    vague = sum(word in {"What", "Whether", "One", "Of"} for word in words)
+    assert len(words) > 1000 and vague <= 0.03 * len(words)

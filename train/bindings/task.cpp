@@ -65,7 +65,7 @@ nb::ndarray<nb::numpy, bool> successes(const Task& task, const StateArray& state
   return out.release({states.shape(0)});
 }
 
-/// One heading per state that seeks contact, row k from stream k of `seed`.
+/// A heading per state that seeks contact, row k from stream k of `seed`.
 nb::ndarray<nb::numpy, std::int64_t> contact_headings(const Task& task, const StateArray& states,
                                                       std::uint64_t seed) {
   check_bodies(states, task.scene.size());

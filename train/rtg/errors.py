@@ -1,4 +1,4 @@
-"""What ends a command early, with its exit status."""
+"""The errors that end a command early, with its exit status."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ BUILD = ROOT / "build" / "release"
 
 
 def program(name: str) -> Path:
-    """One of our C++ programs. Raises RunError with the remedy if it is not built."""
+    """The path of a C++ program of ours. Raises RunError with the remedy if it is not built."""
     path = BUILD / "nodes" / name
     if not path.is_file():
         raise RunError(f"{path} is not built: start through ./run.sh, which builds it")

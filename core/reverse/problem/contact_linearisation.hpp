@@ -24,8 +24,8 @@ struct Eliminated {
   Vec4<T> b = Vec4<T>::Constant(T(0.0));
 };
 
-/// What a pair's contacts at one level add to one sub-step's part of the Newton system, in the
-/// pair's coordinates there.
+/// The terms that a pair's contacts at one level add to one sub-step's part of the Newton system,
+/// in the pair's coordinates there.
 template <class T>
 struct PairTerms {
   Mat4<T> Q = Mat4<T>::Constant(T(0.0)), E = Q;  // Hessian of the Lagrangian, ∂Φ/∂p
@@ -42,7 +42,7 @@ class ContactLinearisation {
   ContactLinearisation(const ProblemLanes<T>& problem, const Trajectory<T>& x,
                        const Curvature<T>& curvature, int level, int pair);
 
-  /// Whether any of the contacts may act. If not, there is nothing to add.
+  /// Says whether any of the contacts may act. If not, there is nothing to add.
   bool relevant() const { return relevant_; }
 
   /// Adds contact `vertex`, with its force as eliminated; whether it acts.

@@ -55,7 +55,7 @@ T free_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x) {
 
 }  // namespace
 
-/// One evaluation, level by level: a contact takes part in the residual of its own sub-step and of
+/// An evaluation, level by level: a contact takes part in the residual of its own sub-step and of
 /// the next.
 template <class T>
 struct Evaluator<T>::Pass {

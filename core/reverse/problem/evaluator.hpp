@@ -4,7 +4,7 @@
 
 namespace rtg {
 
-/// What line searches look at.
+/// The figures that line searches look at.
 template <class T>
 struct Merits {
   T objective = T(0.0);
@@ -26,7 +26,8 @@ class Evaluator {
   Merits<T> evaluate(const ProblemLanes<T>& problem, const Trajectory<T>& x,
                      const PerContact<T>& were, PerContact<T>& gaps, Mask<T>& legal);
 
-  /// Of the trajectory evaluated last: Φ_k [h + 1][dofs], entry 0 unused, and λ g - μ̃ w.
+  /// Residuals of the trajectory evaluated last: Φ_k [h + 1][dofs], entry 0 unused, and λ g - μ̃
+  /// w.
   const std::vector<std::vector<T>>& residuals() const { return residuals_; }
   const PerContact<T>& complementarity() const { return complementarity_; }
 

@@ -5,7 +5,7 @@
 namespace rtg {
 namespace {
 
-/// One hinge at one level k.
+/// A hinge at one level k.
 template <class T>
 class HingeReduction {
  public:
@@ -45,7 +45,7 @@ class HingeReduction {
     if (step_.roots()) add_rate(step_.parent(), by_parent_, phi, e);
   }
 
-  /// What one angle has of Dᵀ Φ, Dᵀ e and Σ Φ ∂²w/∂θ², which is Φ·(E ∂w/∂θ).
+  /// The share of one angle in Dᵀ Φ, Dᵀ e and Σ Φ ∂²w/∂θ², which is Φ·(E ∂w/∂θ).
   void add_rate(int body, const Vec2<T>& rate, const Vec3<T>& phi, const Vec3<T>& e) {
     const T slope = rate.x() * phi[0] + rate.y() * phi[1];
     poses_.gradient[k_][body][2] += slope;

@@ -5,8 +5,9 @@
 
 namespace rtg {
 
-/// What a limit of a joint adds to the Newton system at one level: vectors are multiples of its ∇g,
-/// matrices of ∇g ∇gᵀ. As ContactLinearisation without friction, for a gap whose Hessian vanishes.
+/// The terms that a limit of a joint adds to the Newton system at one level: vectors are multiples
+/// of its ∇g, matrices of ∇g ∇gᵀ. As ContactLinearisation without friction, for a gap whose Hessian
+/// vanishes.
 template <class T>
 struct LimitLinearisation {
   T a = T(0.0), b = T(0.0);  // Δλ = a + b ∇g·Δp
@@ -14,7 +15,7 @@ struct LimitLinearisation {
   T gradient = a;
   T q = a, e = a, residual = a;
 
-  /// Of the level at the start, in between, or at a fixed end.
+  /// The place of the level: at the start, in between, or at a fixed end.
   enum class Level { kStart, kWithin, kHeld };
   /// Its gap, force, and ∇g·y.
   struct State {

@@ -70,7 +70,7 @@ void NewtonSystem<T>::add_pair(const ProblemLanes<T>& problem, const Trajectory<
   scatter(scene, n, PulledBlocks<T>(ahead, contacts.N, here), next.N);
 }
 
-/// What a pair adds to one stage.
+/// Adds the terms of a pair to one stage.
 template <class T>
 void NewtonSystem<T>::add_own(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame,
                               const PairTerms<T>& terms, int k) {
@@ -141,7 +141,7 @@ void NewtonSystem<T>::force_steps(const ProblemLanes<T>& problem, const Trajecto
   }
 }
 
-/// Of one level, by how far all bodies move [3·movable].
+/// Handles one level, by how far all bodies move [3·movable].
 template <class T>
 void NewtonSystem<T>::find_force_steps(const SceneModel<T>& scene, const Placement<T>& at, int k,
                                        const T* moved, T* out) const {

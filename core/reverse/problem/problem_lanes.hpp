@@ -16,12 +16,12 @@ struct ProblemLanes {
   void load(int lane, const ReverseProblem& one);
 
   bool fixed_end() const { return config.terminal_weight == 0.0; }
-  /// Whether the final state names the poses after sub-step k: its own, and with inertia those
+  /// Says whether the final state names the poses after sub-step k: its own, and with inertia those
   /// before.
   bool ends(int k) const { return k >= sub_steps - (energy.inertial() ? 1 : 0); }
   /// (t̄₀, θ̄₀) after sub-step k.
   Vec3<T> robot_path(int k) const;
-  /// Of object i in sub-step k.
+  /// The price of the speed of object i in sub-step k.
   SpeedPenalty<T> speed(const Trajectory<T>& x, int k, int i) const;
 
   SceneModel<T> energy;
@@ -50,7 +50,7 @@ struct Trajectory {
   std::vector<std::vector<T>> multipliers;
 };
 
-/// One number per level and contact.
+/// A number per level and contact.
 template <class T>
 using PerContact = std::vector<std::vector<T>>;
 

@@ -7,7 +7,7 @@
 namespace rtg {
 namespace {
 
-/// One candidate's evaluation by the kernels.
+/// A candidate's evaluation by the kernels.
 struct Evaluation {
   ProblemLanes<double> problem;
   Evaluator<double> evaluator;

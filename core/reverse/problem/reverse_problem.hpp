@@ -55,7 +55,8 @@ struct Violation {
 };
 Violation violation(const ReverseProblem& problem, const Iterate& x);
 
-/// Of a converged iterate: kInfeasible if it misses the final state by more than the tolerance.
+/// The status of a converged iterate: kInfeasible if it misses the final state by more than the
+/// tolerance.
 SolveStatus judged(const ReverseProblem& problem, const Iterate& x);
 
 /// Largest distance of a movable body from where it should end [m].

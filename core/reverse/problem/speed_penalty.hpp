@@ -5,8 +5,8 @@
 
 namespace rtg {
 
-/// What an object pays for the way that it makes in one sub-step, (Δt, Δθ), in units of the robot's
-/// own way s = stride/h:
+/// The price that an object pays for the way that it makes in one sub-step, (Δt, Δθ), in units of
+/// the robot's own way s = stride/h:
 ///
 ///   χ q³,   q = (|Δt|² + (J/m) Δθ²) / (2 s²)
 ///

@@ -36,7 +36,7 @@ class WarmStart {
   std::vector<T> by_, lag_, moved_;  // moved_: by the push last solved, a guess for the next
 };
 
-/// Of one candidate. Nothing if a step fails.
+/// The start of one candidate. Nothing if a step fails.
 std::optional<Iterate> warm_start(const ReverseProblem& problem);
 
 }  // namespace rtg

@@ -13,7 +13,7 @@ class Filter {
     double objective = 0.0;  // J
   };
 
-  /// Whether no entry is as good as `trial` in both.
+  /// Says whether no entry is as good as `trial` in both.
   bool accepts(const Entry& trial) const {
     for (const Entry& e : entries_)
       if (trial.violation >= (1.0 - kMargin) * e.violation &&
@@ -22,7 +22,7 @@ class Filter {
     return true;
   }
 
-  /// Whether `trial` improves on `now` in one of the two by the margin.
+  /// Says whether `trial` improves on `now` in one of the two by the margin.
   static bool improves(const Entry& trial, const Entry& now) {
     return trial.violation <= (1.0 - kMargin) * now.violation ||
            trial.objective <= now.objective - kMargin * now.violation;

@@ -37,7 +37,7 @@ def run_key(run: str) -> int:
 
 
 def _is_finite(message: Any) -> bool:
-    """Whether every float of a decoded message is a number."""
+    """Says whether every float of a decoded message is a number."""
     for name, kind in zip(message.__slots__, message.__typenames__, strict=True):
         if kind in ("double", "float"):
             value = getattr(message, name)
@@ -62,7 +62,8 @@ def decoded(message_type: Any, data: bytes) -> Any:
 
 
 def _receive_buffer(port: int) -> int:
-    """Of the UDP socket bound to `port` [bytes]; LCM does not tell its descriptor. 0 if none is."""
+    """The size of the buffer of the UDP socket bound to `port` [bytes]; LCM does not tell its
+    descriptor. 0 if none is."""
     for number in map(int, os.listdir("/proc/self/fd")):
         try:
             if not stat.S_ISSOCK(os.fstat(number).st_mode):
@@ -77,7 +78,7 @@ def _receive_buffer(port: int) -> int:
 
 
 def _small_buffer(url: str) -> str | None:
-    """What to say if the kernel gave LCM's socket less than it was asked for; else None."""
+    """The words to say if the kernel gave LCM's socket less than it was asked for; else None."""
     match = re.match(r"udpm://[\d.]+:(\d+)", url)
     size = RECEIVE_BUFFER if match is None else _receive_buffer(int(match.group(1)))
     if size >= RECEIVE_BUFFER:

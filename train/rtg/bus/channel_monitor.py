@@ -1,4 +1,4 @@
-"""What goes over the channels: counts, rates, node states. Free of I/O, the clock passed in."""
+"""The traffic on the channels: counts, rates, node states. Free of I/O, the clock passed in."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class _Node:
 
 
 class ChannelRow(NamedTuple):
-    """One channel, for people."""
+    """A channel, for people."""
 
     channel: str
     type_name: str
@@ -65,7 +65,7 @@ class ChannelRow(NamedTuple):
 
 
 class NodeRow(NamedTuple):
-    """One process, for people."""
+    """A process, for people."""
 
     name: str
     pid: int

@@ -1,4 +1,4 @@
-"""Whether multicast, which LCM needs, works on this machine."""
+"""Says whether multicast, which LCM needs, works on this machine."""
 
 from __future__ import annotations
 

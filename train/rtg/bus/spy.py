@@ -50,7 +50,7 @@ def _table(*columns: str) -> Table:
 
 
 def channel_table(rows: list[ChannelRow]) -> Table:
-    """One line per channel."""
+    """A line per channel."""
     table = _table("channel", "type", ">messages", ">rate", ">bandwidth", ">undecodable")
     for row in rows:
         table.add_row(
@@ -66,7 +66,7 @@ def channel_table(rows: list[ChannelRow]) -> Table:
 
 
 def node_table(rows: list[NodeRow]) -> Table:
-    """One line per process."""
+    """A line per process."""
     table = _table("node", ">pid", "state", ">done", ">rate", ">CPU", "counters")
     for row in rows:
         silent = row.state.startswith("silent")

@@ -22,7 +22,7 @@ FAREWELLS = 10  # acknowledgements of the complete stream at once: who has it al
 
 
 class Ack(NamedTuple):
-    """What a consumer tells the server."""
+    """The message of a consumer to the server."""
 
     cursor: int  # rows below have been consumed
     credit: int  # rows it takes beyond the cursor; 0: it has all of a sealed stream
@@ -67,7 +67,7 @@ class StreamCursor:
         self.sealed = self.sealed or sealed
 
     def ack_due(self, now: float) -> Ack | None:
-        """What to tell the server now, if anything; to be asked until there is nothing."""
+        """The next message to the server, if anything; to be asked until there is nothing."""
         if self.complete:
             return self._farewell(now)
         missing = self._missing()
@@ -98,7 +98,7 @@ class StreamCursor:
 
     @property
     def complete(self) -> bool:
-        """Whether every row of a sealed stream has been handed out."""
+        """Says whether every row of a sealed stream has been handed out."""
         return self.sealed and self.cursor == self.count
 
     def _in_order(self) -> list[tuple[Any, int]]:
@@ -195,7 +195,7 @@ class TransitionStream:
 
     @property
     def complete(self) -> bool:
-        """Whether the stream has ended and every row went to the sink."""
+        """Says whether the stream has ended and every row went to the sink."""
         return self._cursor.complete
 
     def _on_batch(self, message: Any) -> None:

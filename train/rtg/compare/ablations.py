@@ -1,4 +1,4 @@
-"""What each part of the recipe is worth: the reference without it."""
+"""Ablations of the recipe: the reference without it."""
 
 from __future__ import annotations
 
@@ -45,9 +45,9 @@ Settings = tuple[str, ...]
 
 
 def ablations(file: Path, common: Sequence[Override]) -> list[Settings]:
-    """Of the cells of a task: nothing changed; without each part of the search; each departure of
-    the preset `default` as `paper` has it; the whole preset `paper`. common: what else all of them
-    are set to. Raises UserError."""
+    """The settings of the cells of a task: nothing changed; without each part of the search; each
+    departure of the preset `default` as `paper` has it; the whole preset `paper`. common: what else
+    all of them are set to. Raises UserError."""
     values = effective_config.values(effective_config.load(file, common))
     ours = values["train"]
     as_paper = effective_config.load(file, [Override(f"--set {PAPER}", PAPER), *common])

@@ -1,4 +1,4 @@
-"""One cell of a comparison: its command, and what of it is done."""
+"""A cell of a comparison: its command, and what of it is done."""
 
 from __future__ import annotations
 
@@ -41,17 +41,17 @@ class CellRun:
 
     @property
     def log(self) -> Path:
-        """What the run says; beside the folder, which the run itself makes."""
+        """The file of what the run says; beside the folder, which the run itself makes."""
         return self.folder.with_name(f"{self.folder.name}.log")
 
     @property
     def done(self) -> bool:
-        """Whether there is nothing left to do."""
+        """Says whether there is nothing left to do."""
         return bool(run_folder.result(self.folder))
 
     @property
     def begun(self) -> bool:
-        """Whether its folder holds the run, perhaps an unfinished one."""
+        """Says whether its folder holds the run, perhaps an unfinished one."""
         return (self.folder / "config.yaml").is_file()
 
     @property
@@ -79,7 +79,7 @@ class CellRun:
         return program("rtg", "run", *words, "--out", str(self.folder))
 
     def outcome(self) -> str:
-        """Of a run that is done."""
+        """The result of a run that is done, in words."""
         found = run_folder.result(self.folder)
         return f"success {found['success_rate']:.2f} after {found['interactions']:,} interactions"
 
@@ -198,7 +198,7 @@ def _swept(label: str) -> set[str]:
 
 
 def _compared(config: _core.Config, swept: set[str]) -> Values:
-    """What runs in one table have in common, by section."""
+    """The values that runs in one table have in common, by section."""
     values = effective_config.values(config)
     keys = {
         "task": tuple(values["task"]),

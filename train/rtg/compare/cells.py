@@ -13,7 +13,7 @@ from rtg.files.run_folder import read_json, write_json
 
 @dataclass(frozen=True)
 class Cell:
-    """One run of a comparison."""
+    """A run of a comparison."""
 
     task: str
     method: str
@@ -44,7 +44,7 @@ class Grid:
         return list(dict.fromkeys(self.cells.values()))
 
     def add(self, command: str, cells: Iterable[Cell]) -> None:
-        """What is there already stays where it is."""
+        """Adds cells; those that are there already stay where it is."""
         self.cells.update(dict.fromkeys(cells, command))
 
     def write(self, folder: Path) -> None:

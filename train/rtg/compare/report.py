@@ -61,7 +61,7 @@ method, not methods against each other."""
 
 
 def _listed(found: Iterable[str]) -> str:
-    """What differs between runs, with how many; most often: one thing."""
+    """The differences between runs, with how many; most often: one thing."""
     counts = Counter(found).most_common()
     if len(counts) == 1:
         return counts[0][0]
@@ -70,7 +70,8 @@ def _listed(found: Iterable[str]) -> str:
 
 
 def _commits(done: Sequence[RunResult]) -> str:
-    """Of the runs; where they differ, of which: rows of several are no clean comparison."""
+    """The commits of the runs; where they differ, of which: rows of several are no clean
+    comparison."""
     found: dict[str, list[RunResult]] = {}
     for run in done:
         found.setdefault(run.commits, []).append(run)
@@ -123,7 +124,7 @@ def _brief(name: str, words: str) -> str:
 
 
 def _troubles(grid: Grid, runs: Sequence[RunResult]) -> list[str]:
-    """What went wrong, run by run."""
+    """The defects, run by run."""
     lines = []
     for run in runs:
         name = f"`{run.cell.name}`"
@@ -151,7 +152,7 @@ def _of_task(folder: Path, comparison: Comparison, task: str) -> list[str]:
 
 
 def read_remarks(runs: Path) -> str:
-    """What people have to say, in their own words; raises UserError if it cannot be read."""
+    """The remarks that people wrote, in their own words; raises UserError if it cannot be read."""
     path = runs / REMARKS
     if not path.is_file():
         return ""

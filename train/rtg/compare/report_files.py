@@ -79,7 +79,7 @@ def _of_best_method(done: Sequence[RunResult]) -> list[RunResult]:
 
 @dataclass(frozen=True)
 class Episode:
-    """One to show."""
+    """An episode to show."""
 
     task: _core.Task
     label: str  # what was learned with

@@ -69,7 +69,7 @@ def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
 
 
 def split_names(labels: Sequence[str]) -> tuple[str, list[str]]:
-    """What all labels begin with, up to a method or key, and what is left of each."""
+    """Splits off what all labels begin with, up to a method or key, and what is left of each."""
     shared = os.path.commonprefix(labels)
     end = max(shared.rfind("@"), shared.rfind("=")) + 1
     return shared[:end].rstrip("@=").replace("@", ", "), [label[end:] for label in labels]

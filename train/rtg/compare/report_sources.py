@@ -37,7 +37,8 @@ seed of `{REFERENCE}`, too."""
 
 
 def _costs(comparison: Comparison, task: str, method: str, cost: str) -> Floats:
-    """What each seed needs, infinite if it never gets there; empty without runs. [seeds]"""
+    """The cost that each seed needs, infinite if it never gets there; empty without runs.
+    [seeds]"""
     runs = comparison.done(task, method)
     needed = [run.reached(BAR, cost) for run in runs if run.interacts or cost != "interactions"]
     return np.array([np.inf if value is None else value for value in needed])
@@ -66,7 +67,7 @@ def _fewest(comparison: Comparison, task: str, cost: str) -> str:
 
 
 def _multiple(reference: Floats, costs: Floats) -> str:
-    """Of the means; where seeds never get there, how many do."""
+    """The ratio of the means; where seeds never get there, how many do."""
     if len(costs) == 0:
         return NOTHING
     if _all_get_there(costs) and _all_get_there(reference):

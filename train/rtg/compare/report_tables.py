@@ -115,12 +115,12 @@ def _of_columns(comparison: Comparison, task: str, columns: Sequence[Column]) ->
 
 
 def learned(comparison: Comparison, task: str) -> str:
-    """What every method came to on one task."""
+    """The table of what every method came to on one task."""
     return _of_columns(comparison, task, _LEARNED)
 
 
 def spent(comparison: Comparison, task: str) -> str:
-    """What the runs of every method cost on one task, generation and learning."""
+    """The table of what the runs of every method cost on one task, generation and learning."""
     return _of_columns(comparison, task, _SPENT)
 
 
@@ -182,7 +182,7 @@ def pooled(comparison: Comparison) -> str:
 
 
 def mean_success(runs: Sequence[RunResult]) -> float:
-    """Of the final greedy policies."""
+    """The mean success of the final greedy policies."""
     return estimates.mean_std([run.summary["success_rate"] for run in runs])[0]
 
 

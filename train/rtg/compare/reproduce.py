@@ -58,18 +58,18 @@ def _run_all(args: ReproduceArgs, crew: Crew) -> list[Row]:
 
 
 class Job(Protocol):
-    """What a crew does in a process, as CellRun."""
+    """The work that a crew does in a process, as CellRun."""
 
     @property
     def name(self) -> str: ...
 
     @property
     def log(self) -> Path:
-        """What it says."""
+        """The file of what it says."""
 
     @property
     def done(self) -> bool:
-        """Whether there is nothing left to do."""
+        """Says whether there is nothing left to do."""
 
     @property
     def generates(self) -> str | None:
@@ -80,7 +80,7 @@ class Job(Protocol):
         """Begins the job, or goes on with it."""
 
     def outcome(self) -> str:
-        """Of a job that is done, in words."""
+        """The result of a job that is done, in words."""
 
 
 class Failures:
@@ -137,7 +137,7 @@ class Crew:
         kill_all(self._nodes.values())
 
     def _is_made(self, job: Job) -> bool:
-        """Whether one at work makes the transitions that the job would make."""
+        """Says whether one at work makes the transitions that the job would make."""
         kinds = {other.generates for other in self._jobs if other.name in self._nodes}
         return job.generates is not None and job.generates in kinds
 
@@ -172,5 +172,5 @@ class Crew:
 
 
 def _first_row(job: Job) -> Row:
-    """Of a job that is not at work."""
+    """The row of a job that is not at work."""
     return Row(job.name, "done", job.outcome()) if job.done else Row(job.name)

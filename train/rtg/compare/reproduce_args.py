@@ -52,7 +52,7 @@ The same command again goes on where it was stopped. Report and pictures: DIR/re
 
 @dataclass(frozen=True)
 class ReproduceArgs:
-    """One call of `rtg reproduce`."""
+    """A call of `rtg reproduce`."""
 
     files: dict[str, Path]  # by name of the task
     cells: tuple[Cell, ...]
@@ -189,7 +189,7 @@ def _settings(args: argparse.Namespace) -> tuple[str, ...]:
 
 
 def _common(args: argparse.Namespace, method: str) -> list[Override]:
-    """What all cells of a method are set to."""
+    """The settings of all cells of a method."""
     of_method = parse_run(run_words(method)).overrides
     return [*of_method, *(Override(f"--set {setting}", setting) for setting in _settings(args))]
 

@@ -1,4 +1,4 @@
-"""What the runs of a comparison came to, read from their folders."""
+"""The results of the runs of a comparison, read from their folders."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def costs(curve: dict[str, Floats], cost: str) -> list[float]:
 
 @dataclass(frozen=True)
 class RunResult:
-    """One cell and how far it has come."""
+    """A cell and how far it has come."""
 
     cell: Cell
     folder: Path
@@ -54,7 +54,7 @@ class RunResult:
 
     @property
     def commit(self) -> str | None:
-        """Of the program that ended the run."""
+        """The commit of the program that ended the run."""
         return versions.commit(self.versions)
 
     @property
@@ -87,8 +87,8 @@ class RunResult:
         return costs(self.curve, cost)[-1] if self.curve else None
 
     def success_at_third(self) -> float | None:
-        """Of the last evaluation within a third of the budget; of a run that had ended by then the
-        final one, as it may have ended because the others went well by chance."""
+        """The success in the last evaluation within a third of the budget; of a run that had ended
+        by then the final one, as it may have ended because the others went well by chance."""
         if not self.curve or self.train is None:
             return None
         third = self.train.interactions / 3

@@ -81,7 +81,7 @@ class Learning:
 
 
 def stages(runs: Sequence[CellRun], wanted: bool) -> tuple[list[Generation], list[Learning]]:
-    """What comes before the runs, one stage after the other; nothing unless networks are on a GPU,
+    """The jobs before the runs, one stage after the other; nothing unless networks are on a GPU,
     or that is `wanted`."""
     groups: dict[Path, list[CellRun]] = {}
     for run in runs:

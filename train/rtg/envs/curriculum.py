@@ -103,7 +103,7 @@ class Curriculum:
         self._set_pool(self._nearby(), old)
 
     def _frontier(self, rate: Floats) -> Floats:
-        """Of the new starts that are mastered the half with the longest episodes."""
+        """The half of the mastered new starts with the longest episodes."""
         mastered = np.flatnonzero(rate[: self._new] > MOST)
         lengths = self._lengths[mastered] / self._tries[mastered]
         longest = np.argsort(-lengths, kind="stable")[: (len(mastered) + 1) // 2]
@@ -136,7 +136,7 @@ class Curriculum:
         return found if len(found) else self._task.start[None]
 
     def _headings(self, states: Floats) -> NDArray[np.int64]:
-        """Of the next push of each walk. [walks]"""
+        """The heading of the next push of each walk. [walks]"""
         contact = self._task.contact_headings(states, int(self._rng.integers(1 << 62)))
         anywhere = self._rng.integers(self._task.headings, size=len(states))
         return np.where(self._rng.random(len(states)) < SEEKING, contact, anywhere)

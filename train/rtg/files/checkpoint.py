@@ -23,7 +23,7 @@ def write(path: Path, state: dict[str, Any]) -> None:
 
 
 def read(path: Path) -> dict[str, Any]:
-    """What write() wrote, arrays as tensors. Runs no code of the file's. Raises UserError."""
+    """Reads what write() wrote, arrays as tensors. Runs no code of the file's. Raises UserError."""
     try:
         state = th.load(path, map_location="cpu", weights_only=True)
     except FileNotFoundError:

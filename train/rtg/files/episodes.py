@@ -29,8 +29,8 @@ def _nearest(states: Floats, among: Floats) -> Ints:
 
 
 def _plans(steps: Transitions) -> tuple[Ints, Ints]:
-    """Of each step, how many there are to a success, itself included, and which is the next one;
-    0 where the steps lead to none. [steps] each"""
+    """Says of each step how many there are to a success, itself included, and which is the next
+    one; 0 where the steps lead to none. [steps] each"""
     following = _nearest(steps.next_poses, steps.poses)
     gaps = np.linalg.norm((steps.next_poses - steps.poses[following])[:, :, :2], axis=2)
     joined = gaps.max(axis=1) <= _GAP

@@ -61,7 +61,7 @@ _SAMPLES = ("replay_gaps", "nodes")
 
 @contextlib.contextmanager
 def writing_to(folder: Path) -> Iterator[None]:
-    """What the disk refuses is told as a mistake of --out. Raises UserError."""
+    """Tells what the disk refuses as a mistake of --out. Raises UserError."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""What a run was made with: versions.json of its folder."""
+"""The versions that a run was made with: versions.json of its folder."""
 
 from __future__ import annotations
 
@@ -54,7 +54,8 @@ def core_digest() -> str:
 
 
 def generator(run: Path) -> dict[str, Any]:
-    """What the transitions of the run were made with, as far as it says. Raises UserError."""
+    """The versions that the transitions of the run were made with, as far as it says. Raises
+    UserError."""
     found = run_folder.read_json(run / FILE).get("generator")
     return found if isinstance(found, dict) else {}
 

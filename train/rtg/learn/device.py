@@ -8,7 +8,7 @@ from rtg.errors import UserError
 
 
 def chosen(device: str) -> str:
-    """What `train.device` comes to here: cpu or cuda. Raises UserError."""
+    """The device that `train.device` means here: cpu or cuda. Raises UserError."""
     if device == "cuda" and not th.cuda.is_available():
         raise UserError("train.device: cuda, but PyTorch sees no such device; legal: auto, cpu")
     return "cuda" if device != "cpu" and th.cuda.is_available() else "cpu"

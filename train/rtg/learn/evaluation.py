@@ -49,7 +49,7 @@ def held_out_starts(
 
 
 def evaluate(config: _core.Config, policy: Policy, starts: Floats, discount: float) -> Evaluation:
-    """One episode from each start, up to task.horizon actions. starts [N, bodies, 3]
+    """Plays an episode from each start, up to task.horizon actions. starts [N, bodies, 3]
 
     An episode in which the simulator gives up a push ends there as a failure.
     """

@@ -52,7 +52,8 @@ class Exploration:
         return s.epsilon_start + done * (s.epsilon_end - s.epsilon_start)
 
     def actions(self, greedy: Array, observation: Array, epsilon: float) -> Array:
-        """What to do instead of `greedy`, [N], seeing `observation`, [N, observation]. [N]"""
+        """Chooses what to do instead of `greedy`, [N], seeing `observation`, [N, observation].
+        [N]"""
         n = len(greedy)
         explores = self.rng.random(n) < epsilon
         if self.settings.leave_loops:

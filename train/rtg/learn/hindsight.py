@@ -71,7 +71,7 @@ class Layouts:
         return layout
 
     def near(self, one: Array, other: Array) -> Array:
-        """Whether every object is within TOLERANCE, and TURN. [..., size] each -> [...] bool"""
+        """Says if every object is within TOLERANCE, and TURN. [..., size] each -> [...] bool"""
         places, turns = self._difference(one, other)
         close = np.hypot(places[..., 0], places[..., 1]) * LENGTH <= TOLERANCE
         alike = turns[..., 0] >= np.cos(TURN)
@@ -89,14 +89,14 @@ class Layouts:
         return nearest
 
     def asked(self, observation: Array, goal: Array) -> Array:
-        """What the network sees: the observation; from the objects to `goal` dx, dy [8 m]; cos, sin
-        of the turns to it. [N, observation], [N, size] -> [N, observation + size]"""
+        """The input of the network: the observation; from the objects to `goal` dx, dy [8 m]; cos,
+        sin of the turns to it. [N, observation], [N, size] -> [N, observation + size]"""
         parts = self._difference(self.of(observation), goal)
         way = [part.reshape(len(part), part.shape[1] * 2) for part in parts]
         return np.concatenate((observation, *way), axis=1)
 
     def asked_nearest(self, observation: Array) -> Array:
-        """What the network sees where it is asked for the nearest layout of the task."""
+        """The input of the network where it is asked for the nearest layout of the task."""
         return self.asked(observation, self.nearest(observation))
 
     def _difference(self, here: Array, there: Array) -> tuple[Array, Array]:

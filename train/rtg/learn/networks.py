@@ -18,14 +18,14 @@ LAYERS = (512, 512, 128)  # Table 2
 
 @cache
 def has_fast_bfloat16(device: str = "cpu") -> bool:
-    """Whether this processor, or the GPU, multiplies bfloat16 matrices in hardware."""
+    """Says whether this processor, or the GPU, multiplies bfloat16 matrices in hardware."""
     if device == "cuda":
         return bool(th.cuda.is_bf16_supported())
     return bool(getattr(th.cpu, "_is_avx512_bf16_supported", lambda: False)())
 
 
 def precision(reduced: bool, device: str) -> str:
-    """What the inner layers learn in."""
+    """The precision that the inner layers learn in."""
     return "bfloat16" if reduced and has_fast_bfloat16(device) else "float32"
 
 

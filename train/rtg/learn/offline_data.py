@@ -32,7 +32,7 @@ class Source(Protocol):
 
     @property
     def complete(self) -> bool:
-        """Whether all rows have been handed over."""
+        """Says whether all rows have been handed over."""
 
     @property
     def lost(self) -> int:

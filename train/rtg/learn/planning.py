@@ -23,7 +23,7 @@ _TURN = threading.Lock()  # a search takes all workers, and the process's time i
 
 
 class Plan(NamedTuple):
-    """What a search came to, and what it took."""
+    """The plan that a search found, and its cost."""
 
     states: Floats  # [T + 1, bodies, 3], the start alone if it found nothing
     pushes: int  # of the simulator
@@ -82,7 +82,7 @@ class Planning:
 
     @property
     def done(self) -> bool:
-        """Whether there is a plan, or none to be found, from each start."""
+        """Says whether there is a plan, or none to be found, from each start."""
         return len(self.plans) == len(self.starts)
 
     def finish(self, lost: int) -> None:

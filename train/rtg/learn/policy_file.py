@@ -20,7 +20,7 @@ from rtg.learn.networks import ValuePolicy
 
 
 def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
-    """What weights fit."""
+    """The values that weights must fit."""
     return {
         "observation_size": task.observation_size,
         "headings": task.headings,

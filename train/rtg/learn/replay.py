@@ -78,7 +78,8 @@ class Store:
         return numbers
 
     def set_bounds(self, numbers: Array, bounds: Array) -> None:
-        """Of the transitions with these numbers, as far as they have not been overwritten."""
+        """Sets the bounds of the transitions with these numbers, as far as they have not been
+        overwritten."""
         kept = numbers >= self.written - self.capacity
         self.bound[numbers[kept] % self.capacity] = bounds[kept]
 
@@ -105,7 +106,7 @@ class Store:
 
 @dataclass(frozen=True)
 class ReplayRules:
-    """What a batch is made of."""
+    """The rules by which a batch is drawn."""
 
     offline_share: float  # of a batch, once as many online ones exist; negative: no shares
     recent_share: float  # of its online rows: from the RECENT latest
@@ -115,7 +116,7 @@ class ReplayRules:
 
 
 class MixedReplayBuffer(BaseBuffer):
-    """What SB3's DQN samples from.
+    """The replay buffer that SB3's DQN samples from.
 
     `offline_share` of every batch is drawn from the offline transitions once a batch of online ones
     exists (before that, all of it); a negative share draws uniformly over both. `recent_share` of
@@ -265,7 +266,8 @@ class MixedReplayBuffer(BaseBuffer):
         raise NotImplementedError("rows belong to two stores; use sample()")
 
     def state(self) -> dict[str, Any]:
-        """What sampling depends on besides the offline transitions, which have a file of their own.
+        """The state that sampling depends on besides the offline transitions, which have a file of
+        their own.
 
         restore() continues with the same bits once those are back, their bounds refreshed alike.
         """

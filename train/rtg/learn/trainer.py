@@ -96,7 +96,7 @@ def train(args: argparse.Namespace, interrupts: Interrupts) -> int:
 
 
 def _keep_to_one_thread() -> None:
-    """Of PyTorch, in this thread: more are slower for networks this small, a hundred times on a
+    """Keeps PyTorch to one thread: more are slower for networks this small, a hundred times on a
     busy core."""
     th.set_num_threads(1)
 

@@ -1,4 +1,4 @@
-"""One training run: take transitions in, interact, learn, evaluate, write down."""
+"""A training run: take transitions in, interact, learn, evaluate, write down."""
 
 from __future__ import annotations
 
@@ -78,18 +78,18 @@ class Training:
 
     @property
     def interactions(self) -> int:
-        """Of the environment."""
+        """Interactions with the environment so far."""
         return self.scheduled if self.settings.interact else 0
 
     @property
     def pushes(self) -> int:
-        """Of the simulator, for learning: evaluations are not counted."""
+        """Pushes of the simulator for learning: those of evaluations are not counted."""
         curriculum = self.env.curriculum
         return self.interactions + (curriculum.pushes if curriculum else 0)
 
     @property
     def done(self) -> bool:
-        """Whether the budget is used up or success has been high for long enough."""
+        """Says whether the budget is used up or success has been high for long enough."""
         return self.scheduled >= self.settings.interactions or self._is_good()
 
     def _is_good(self) -> bool:
@@ -118,7 +118,7 @@ class Training:
         return self.done and source.complete
 
     def _may_begin(self) -> bool:
-        """Whether learning can begin with some of the transitions."""
+        """Says whether learning can begin with some of the transitions."""
         return self.settings.interact and self.data.count >= self.settings.start_at
 
     def _learn(self) -> None:
@@ -149,7 +149,7 @@ class Training:
         self.tell(self._activity(), self.scheduled)
 
     def _activity(self) -> str:
-        """What it does, and how well it did in the last evaluation."""
+        """The words for what it does, and how well it did in the last evaluation."""
         if not self.clock.running:
             return "waiting"
         rows = self.log.rows
@@ -199,7 +199,7 @@ class Training:
         return {"q_start_max": float(self.model.values(nominal).max())}
 
     def _state(self) -> dict[str, Any]:
-        """What a display shows; interactions of the schedule."""
+        """The figures that a display shows; interactions of the schedule."""
         rows = self.log.rows
         return {
             "interactions": self.scheduled,

@@ -1,4 +1,4 @@
-"""What a training run writes down: progress.csv for people, a small file for the display."""
+"""The log of a training run: progress.csv for people, a small file for the display."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ DISPLAY_INTERVAL = 0.5  # [s]
 
 
 class TrainingLog:
-    """One row per evaluation."""
+    """A row per evaluation."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder

@@ -14,7 +14,7 @@ _VALUES = ("q_rank_correlation", "q_error", "q_spread")  # of ValueCheck.summary
 
 
 def figures(run: Training, final: Evaluation, lost: int) -> dict[str, Any]:
-    """What training.json holds. lost: transitions that have not come in."""
+    """The content of training.json. lost: transitions that have not come in."""
     return {
         "interactions": run.interactions,
         "gradient_steps": run.model.gradient_steps_done,
@@ -32,7 +32,7 @@ def figures(run: Training, final: Evaluation, lost: int) -> dict[str, Any]:
 
 
 def _counts(run: Training) -> dict[str, int]:
-    """Of some methods alone."""
+    """Counts that some methods alone have."""
     found = {}
     if run.env.curriculum:
         found["curriculum_pushes"] = run.env.curriculum.pushes

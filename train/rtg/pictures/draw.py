@@ -30,7 +30,7 @@ SMOOTH = 3  # drawn this much larger, then reduced
 
 
 class GoalLike(Protocol):
-    """One term of the goal, as rtg._core.GoalTerm."""
+    """A term of the goal, as rtg._core.GoalTerm."""
 
     @property
     def kind(self) -> str: ...
@@ -53,7 +53,7 @@ class GoalLike(Protocol):
 
 
 class TaskLike(Protocol):
-    """What drawing needs to know of a task, as rtg._core.Task."""
+    """The properties that drawing needs of a task, as rtg._core.Task."""
 
     @property
     def shapes(self) -> Sequence[Floats]:

@@ -27,7 +27,7 @@ def _die_with(parent: int) -> Callable[[], None]:
 
 
 class Node:
-    """One program of the process graph in a process group of its own, its output in a log file."""
+    """A program of the process graph in a process group of its own, its output in a log file."""
 
     def __init__(self, name: str, command: Sequence[str | Path], log: Path) -> None:
         """Starts at once. Main thread only: the child dies with the thread that starts it."""
@@ -71,7 +71,7 @@ class Node:
                 os.killpg(self.pid, number)
 
     def wait(self, seconds: float) -> bool:
-        """Whether it has ended within that time."""
+        """Says whether it has ended within that time."""
         try:
             self._process.wait(seconds)
         except subprocess.TimeoutExpired:

@@ -23,7 +23,7 @@ class _Member:
     left: float | None = None  # when it was first seen to have ended well
 
     def has_left_early(self) -> bool:
-        """Whether it has been gone for longer than a good-bye needs."""
+        """Says whether it has been gone for longer than a good-bye needs."""
         now = time.monotonic()
         self.left = now if self.left is None else self.left
         return now - self.left > _GOOD_BYE
@@ -88,7 +88,7 @@ class ProcessGraph:
         return {member.node.name: member.node.pid for member in self._members}
 
     def working(self, name: str | None = None) -> bool:
-        """Whether a program that is no helper still runs, or the one of that name."""
+        """Says whether a program that is no helper still runs, or the one of that name."""
         return any(name in (None, node.name) for node in self._running(helpers=False))
 
     def wait(self, seconds: float) -> bool:
@@ -111,7 +111,8 @@ class ProcessGraph:
 
 
 def _failure(node: Node, status: int) -> Exception:
-    """What to raise for a program that has ended badly; all of ours end with 2 on bad input."""
+    """The error to raise for a program that has ended badly; all of ours end with 2 on bad
+    input."""
     words = node.last_words(lines=1)
     return UserError(words) if status == 2 and words else RunError(obituary(node))
 

@@ -40,7 +40,7 @@ class Interrupts:
             signal.signal(number, handler)
 
     def requested(self) -> bool:
-        """Whether there was a signal."""
+        """Says whether there was a signal."""
         return self.number != 0
 
     def raise_if_requested(self) -> None:

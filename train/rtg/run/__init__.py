@@ -1,1 +1,1 @@
-"""One run from the command line to its summary."""
+"""A run from the command line to its summary."""

@@ -53,5 +53,5 @@ def _settings(text: str) -> list[tuple[str, str]]:
 
 
 def check(file: Path) -> str:
-    """What a task file says, for people. Raises UserError."""
+    """The content of a task file, for people. Raises UserError."""
     return f"{file}: legal\n{load(file).description}"

@@ -50,7 +50,7 @@ class _Recording:
 
 
 def generation_defects(plan: RunPlan) -> list[str]:
-    """What went wrong in a generation that has come to its end, in words. None without one."""
+    """The defects of a generation that has come to its end, in words. None without one."""
     report = run_folder.read_json(plan.report_file)
     wanted = plan.config.search.transitions
     given_up, found = report.get("units_given_up", 0), report.get("transitions", wanted)
@@ -136,7 +136,7 @@ class GraphRun:
         self._display.show(self._training.update(self._watch.state))
 
     def _is_over(self) -> bool:
-        """Whether the coordinator waits for good-byes that were lost."""
+        """Says whether the coordinator waits for good-byes that were lost."""
         if not self._sealed or (self._plan.train and self._graph.working("trainer")):
             return False
         if self._recording and not self._recording.complete:

@@ -37,7 +37,7 @@ class Generation:
         self._thread.start()
 
     def wait(self, seconds: float) -> bool:
-        """Whether it has ended within that time. Raises what ended it early."""
+        """Says whether it has ended within that time. Raises what ended it early."""
         self._thread.join(seconds)
         if self._failure is not None:
             raise self._failure
@@ -56,7 +56,7 @@ class Generation:
         return replace(RunState(), **self._progress, workers=self._workers)
 
     def report(self) -> str:
-        """What generation.json holds. Only after the end."""
+        """The content of generation.json. Only after the end."""
         assert self._report is not None
         return self._report
 

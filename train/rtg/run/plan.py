@@ -1,4 +1,4 @@
-"""What one run is going to do, resolved and written down before anything starts."""
+"""The plan of a run, resolved and written down before anything starts."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class RunPlan:
 
     @property
     def report_file(self) -> Path:
-        """What the generation says of itself."""
+        """The report of the generation on itself."""
         return self.folder / "generation.json"
 
     @property
@@ -57,7 +57,7 @@ class RunPlan:
 
     @property
     def offline(self) -> bool:
-        """Whether transitions are generated."""
+        """Says whether transitions are generated."""
         return self.config.train.offline
 
     @property
@@ -66,7 +66,7 @@ class RunPlan:
         return self.config.train.interactions if self.train else 0
 
     def is_generated(self) -> bool:
-        """Whether an earlier process of this run has done the generation."""
+        """Says whether an earlier process of this run has done the generation."""
         return self.resume and shared_transitions.are_there(self.folder)
 
 
@@ -89,8 +89,8 @@ def check(config: _core.Config, train: bool) -> None:
 
 
 def _fixed_values(config: _core.Config, has_checkpoint: bool) -> dict[str, Any]:
-    """What a run keeps for good, by dotted name: what decides the transitions, and what a
-    checkpoint is bound to once there is one."""
+    """The values that a run keeps for good, by dotted name: what decides the transitions, and what
+    a checkpoint is bound to once there is one."""
     sections = effective_config.values(config)
     found: dict[str, Any] = {"run.seed": config.run.seed}
     for section in ("task", "physics", "reverse", "search"):

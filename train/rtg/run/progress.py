@@ -43,7 +43,7 @@ class RunState:
 
 
 def generation_text(state: RunState) -> str:
-    """One line on the generation."""
+    """A line on the generation."""
     parts = [state.phase or "starting"]
     if state.depth:
         parts.append(f"layer {state.layer}/{state.depth}")
@@ -55,7 +55,7 @@ def generation_text(state: RunState) -> str:
 
 
 def training_text(state: RunState) -> str:
-    """One line on the training."""
+    """A line on the training."""
     if not state.interactions:
         return "waiting for transitions" if state.generates else "starting"
     success = "-" if state.success_rate is None else f"{state.success_rate:.2f}"

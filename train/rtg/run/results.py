@@ -74,7 +74,7 @@ def _origin(plan: RunPlan) -> str:
 
 
 def episode_title(task: str, actions: int, success: bool, origin: str) -> str:
-    """What the pictures of the episode show, and where it comes from."""
+    """The title of the pictures of the episode: what they show, and where it comes from."""
     end = "success after" if success else "not solved in"
     return f"{task}: {end} {actions} action{'s' if actions != 1 else ''} ({origin})"
 
@@ -135,7 +135,7 @@ def _words_of_learning(plan: RunPlan, s: dict[str, Any]) -> list[str]:
 
 
 def words(plan: RunPlan, summary: dict[str, Any]) -> str:
-    """What the run came to, for people."""
+    """The results of the run, for people."""
     generated = summary["transitions"] is not None
     lines = [_words_of_generation(summary)] if generated else []
     learned = _words_of_learning(plan, summary) if plan.train else []

@@ -1,4 +1,4 @@
-"""One run from the configuration to the results."""
+"""A run from the configuration to the results."""
 
 from __future__ import annotations
 

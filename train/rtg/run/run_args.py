@@ -49,7 +49,7 @@ class Override:
 
 @dataclass(frozen=True)
 class RunArgs:
-    """One call of `rtg run`."""
+    """A call of `rtg run`."""
 
     file: Path
     overrides: tuple[Override, ...]

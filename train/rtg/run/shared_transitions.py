@@ -26,7 +26,7 @@ def kind(config: _core.Config) -> str | None:
 
 
 def are_there(run: Path) -> bool:
-    """Whether the generation of the run is complete."""
+    """Says whether the generation of the run is complete."""
     return all((run / name).is_file() for name in _FILES)
 
 

@@ -23,7 +23,7 @@ def trainer_command(plan: RunPlan, *flags: str) -> Sequence[str | Path]:
 
 
 def _begun(plan: RunPlan) -> RunState:
-    """What a display shows of the generation, which is over."""
+    """The figures that a display shows of the generation, which is over."""
     if not plan.offline:
         return RunState(generates=False, budget=plan.interactions)
     report = read_json(plan.report_file)

@@ -1,4 +1,4 @@
-"""What the processes of a run say about where it stands."""
+"""The view of a run that its processes give of where it stands."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class RunWatch:
         bus.subscribe("RTG_STATUS", message_type("node_status_t"), self._on_status)
 
     def counters(self) -> dict[str, int]:
-        """What all processes counted, added up by name."""
+        """The counts of all processes, added up by name."""
         total: dict[str, int] = {}
         for counted in self._counters.values():
             for name, value in counted.items():
