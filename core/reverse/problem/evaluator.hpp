@@ -26,8 +26,7 @@ class Evaluator {
   Merits<T> evaluate(const ProblemLanes<T>& problem, const Trajectory<T>& x,
                      const PerContact<T>& were, PerContact<T>& gaps, Mask<T>& legal);
 
-  /// Residuals of the trajectory evaluated last: Φ_k [h + 1][dofs], entry 0 unused, and λ g - μ̃
-  /// w.
+  /// Residuals Φ_k [h + 1][dofs] of the last trajectory, entry 0 unused, and λ g - μ̃ w.
   const std::vector<std::vector<T>>& residuals() const { return residuals_; }
   const PerContact<T>& complementarity() const { return complementarity_; }
 
