@@ -117,16 +117,16 @@ Poses BeamSearch::as_at_a_start(const Poses& poses) {
 /// so, as where a goal is in an object's own place, from their own.
 std::vector<std::optional<std::vector<Transition>>> BeamSearch::follow(
     std::vector<Predecessor>& steps, const ReplayBatch& replay) {
-  std::vector<Plan> own, at_start;
+  std::vector<Poses> own;
+  std::vector<Plan> plans;
   for (Predecessor& p : steps) {
-    own.push_back({p.start, plan(p)});
-    p.start = as_at_a_start(p.start);
-    at_start.push_back({p.start, own.back().actions});
+    own.push_back(std::exchange(p.start, as_at_a_start(p.start)));
+    plans.push_back({p.start, plan(p)});
   }
-  auto outcomes = carry_out(task_, at_start, replay);
+  auto outcomes = carry_out(task_, plans, replay);
   if (std::ranges::any_of(outcomes, [](const auto& o) { return o.has_value(); })) return outcomes;
-  for (std::size_t k = 0; k < steps.size(); ++k) steps[k].start = own[k].start;
-  return carry_out(task_, own, replay);
+  for (std::size_t k = 0; k < steps.size(); ++k) steps[k].start = plans[k].start = own[k];
+  return carry_out(task_, plans, replay);
 }
 
 std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed,

@@ -34,7 +34,8 @@ class BeamSearch {
   /// Grows a layer: solves for every action of every node of the beam, replays the best of what
   /// converged and ranks what replays within the gap tolerance. In the states of the best
   /// config.followed steps per place in the beam, what is in place is put where a start like the
-  /// target has it (placed()), and they go on with the plan of the node that they were found for.
+  /// target has it (placed()), and they go on with the plan of the node that they were found for;
+  /// if none comes to success so, from their own states.
   /// Those that come to success by it come back, of the share config.plans with all that follows
   /// them, and the best of them are the next beam. None begins where the goal holds, as that ends
   /// an episode.

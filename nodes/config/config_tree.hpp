@@ -34,6 +34,13 @@ inline const ConfigEntry* find(const ConfigNode& map, std::string_view key) {
   return nullptr;
 }
 
+/// The entry of a key of a section, or nullptr.
+inline const ConfigEntry* find(const ConfigNode& root, std::string_view section,
+                               std::string_view key) {
+  const ConfigEntry* found = find(root, section);
+  return found ? find(found->value, key) : nullptr;
+}
+
 /// Nodes of no origin: text, which YAML may not read as anything else; a number or flag; a list; a
 /// mapping without entries.
 ConfigNode text_node(std::string text);

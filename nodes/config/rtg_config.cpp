@@ -134,9 +134,8 @@ void read_preset_section(const ConfigNode& root, const std::string& name, Config
 
 void check_physics(const ConfigNode& root, const PhysicsConfig& physics) {
   if (physics.skin < physics.range) return;
-  const ConfigEntry* section = find(root, "physics");
-  const ConfigEntry* given = find(section->value, "skin");
-  if (!given) given = find(section->value, "range");
+  const ConfigEntry* given = find(root, "physics", "skin");
+  if (!given) given = find(root, "physics", "range");
   throw ConfigError(given->value.origin, "physics.skin",
                     number_text(physics.skin) + " is not below physics.range",
                     "less than " + number_text(physics.range));
@@ -145,9 +144,8 @@ void check_physics(const ConfigNode& root, const PhysicsConfig& physics) {
 /// Checks what dynamic mode asks of the other fields.
 void check_inertia(const ConfigNode& root, const RtgConfig& config) {
   if (!config.physics.inertia) return;
-  const ConfigEntry* physics = find(root, "physics");
-  const ConfigEntry *flag = find(physics->value, "inertia"),
-                    *damping = find(physics->value, "damping");
+  const ConfigEntry *flag = find(root, "physics", "inertia"),
+                    *damping = find(root, "physics", "damping");
   if (config.physics.damping < kLeastInertialDamping)
     throw ConfigError((damping ? damping : flag)->value.origin, "physics.damping",
                       number_text(config.physics.damping) + " with physics.inertia",
@@ -165,17 +163,15 @@ void check_randomisation(const ConfigNode& root, const RtgConfig& config) {
   for (const auto& [section, asked] :
        {std::pair{"train", config.train.randomise}, std::pair{"search", config.search.randomise}})
     if (asked)
-      throw ConfigError(find(find(root, section)->value, "randomise")->value.origin,
-                        "task.randomisation", std::string("0 with ") + section + ".randomise",
-                        "more than 0");
+      throw ConfigError(find(root, section, "randomise")->value.origin, "task.randomisation",
+                        std::string("0 with ") + section + ".randomise", "more than 0");
 }
 
 void check_bus(const ConfigNode& root, const std::string& url) {
   try {
     checked_bus_url(url);
   } catch (const std::invalid_argument& error) {
-    throw ConfigError(find(find(root, "run")->value, "bus")->value.origin +
-                      ": key 'run.bus': " + error.what());
+    throw ConfigError(find(root, "run", "bus")->value.origin + ": key 'run.bus': " + error.what());
   }
 }
 

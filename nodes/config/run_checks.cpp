@@ -18,8 +18,7 @@ struct Field {
 /// method get along with each other.
 std::string place(const ConfigNode& root, std::initializer_list<Field> fields) {
   for (const auto& [section, key] : fields) {
-    const ConfigEntry* given = find(root, section);
-    const ConfigEntry* value = given ? find(given->value, key) : nullptr;
+    const ConfigEntry* value = find(root, section, key);
     if (value && !value->value.origin.starts_with("run.method ")) return value->value.origin;
   }
   return root.origin;

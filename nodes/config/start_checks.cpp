@@ -22,9 +22,8 @@ double legal_amplitude(const Task& task, double amplitude) {
 
 /// Where the value stands; a default is the bodies' fault.
 const std::string& origin_of(const ConfigNode& root, const char* section, const char* key) {
-  if (const ConfigEntry* given = find(root, section))
-    if (const ConfigEntry* value = find(given->value, key)) return value->value.origin;
-  return find(find(root, "task")->value, "bodies")->value.origin;
+  if (const ConfigEntry* value = find(root, section, key)) return value->value.origin;
+  return find(root, "task", "bodies")->value.origin;
 }
 
 }  // namespace

@@ -42,6 +42,15 @@ def test_the_correlation_is_1_where_q_orders_as_the_simulator_and_its_opposite_i
     assert check.spread == pytest.approx(0.5 * 0.125 / np.sqrt(2.0), rel=0.01)
 
 
+def test_the_spread_is_over_the_headings_of_a_state_and_not_over_the_states() -> None:
+    """The robot is free everywhere; where it stands is worth more than what a heading moves."""
+    apart = np.repeat(TASK.start[None], 3, axis=0)
+    apart[:, 0, :2] = [[-4.0, -6.5], [0.0, -6.5], [4.0, -6.5]]
+    check = check_values(CONFIGURATION, lambda seen: one_step_ahead(seen, 1.0), DISCOUNT, apart)
+    assert check is not None
+    assert check.spread == pytest.approx(0.5 * 0.125 / np.sqrt(2.0), rel=0.01)
+
+
 def test_the_error_is_that_of_q_against_the_discounted_best_value_behind_the_push() -> None:
     constant = check_values(
         CONFIGURATION,

@@ -169,7 +169,7 @@ def _check_same(folder: Path, asked: Values) -> None:
             what = _difference(section, old, new)
             remedy = f"another --out, or rm -r {shlex.quote(str(folder))}"
             raise UserError(f"{folder}: was made with {what}; legal: the same, {remedy}")
-    effective_config.check_version(found)
+    effective_config.written(found)  # raises for another version
 
 
 def _check_methods(folder: Path, config: _core.Config) -> None:

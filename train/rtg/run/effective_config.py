@@ -31,16 +31,18 @@ def values(config: _core.Config) -> Values:
     return result
 
 
-def check_version(file: Path) -> None:
-    """Raises UserError unless this version writes the configuration of `file` as it stands there:
-    one of another version may lack a setting whose default was different then."""
-    found = _settings(file.read_text())
-    missing = [line for line in _settings(load(file).yaml) if line not in found]
+def written(file: Path) -> _core.Config:
+    """The configuration that this version wrote to `file`. Raises UserError unless it would write
+    it again as it stands there: one of another version may lack a setting whose default was
+    different then."""
+    config, found = load(file), _settings(file.read_text())
+    missing = [line for line in _settings(config.yaml) if line not in found]
     if missing:
         raise UserError(
             f"{file}: has no line '{missing[0][1]}': another version of RTG wrote it; legal: that "
             "version (git_revision in versions.json), or another --out"
         )
+    return config
 
 
 def _settings(text: str) -> list[tuple[str, str]]:

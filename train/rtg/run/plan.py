@@ -106,9 +106,8 @@ def _check_resumed(file: Path, config: _core.Config) -> None:
 
     Also without training: the configuration in the folder stays the one of its checkpoint.
     """
-    effective_config.check_version(file)
     has_checkpoint = run_folder.checkpoint_file(file.parent).exists()
-    before = _fixed_values(effective_config.load(file), has_checkpoint)
+    before = _fixed_values(effective_config.written(file), has_checkpoint)
     after = _fixed_values(config, has_checkpoint)
     for name in sorted({*before, *after}):
         old, new = before.get(name), after.get(name)

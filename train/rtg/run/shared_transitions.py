@@ -45,8 +45,7 @@ def _made_kind(run: Path) -> str | None:
     try:
         if versions.generator(run).get("core_sha256") != versions.core_digest():
             return None
-        effective_config.check_version(config)
-        return kind(effective_config.load(config))
+        return kind(effective_config.written(config))
     except (UserError, OSError):
         return None
 
