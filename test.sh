@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # Builds and runs the tests.
 #   ./test.sh             release build, ctest, pytest with the system tests
-#   ./test.sh debug       C++ tests but the solver's without optimisation, so that nothing hides what the linker mixes up
-#   ./test.sh asan        C++ tests under AddressSanitizer and UndefinedBehaviorSanitizer
+#   ./test.sh debug       C++ tests in a debug build with AddressSanitizer and UndefinedBehaviorSanitizer
 #   ./test.sh tsan        C++ tests that use threads under ThreadSanitizer
 #   ./test.sh coverage    line coverage of the physics and the solver by their own tests
 #   ./test.sh bench       benchmarks and gates: JSON and a Markdown table in build/bench/
@@ -11,7 +10,7 @@ set -euo pipefail
 # shellcheck source=setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 
-usage() { sed -n '3,9s/^# *//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '3,8s/^# *//p' "${BASH_SOURCE[0]}"; }
 
 set_up() { # PRESET TARGET
   lock_setup
@@ -51,12 +50,8 @@ case ${1:-all} in
     run_pytest
     ;;
   debug)
-    set_up debug rtg_quick_tests
-    run_ctest debug --exclude-regex '^core\.(math|energy|reverse)\.'
-    ;;
-  asan)
-    set_up asan rtg_cpp_tests
-    run_ctest asan
+    set_up debug rtg_cpp_tests
+    run_ctest debug
     ;;
   tsan)
     set_up tsan rtg_thread_tests
