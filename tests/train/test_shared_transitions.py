@@ -37,7 +37,7 @@ def made(tmp_path):
     [
         ("task", "horizon", 7),
         ("physics", "inertia", True),
-        ("reverse", "shakes", 99),
+        ("reverse", "softenings", 99),
         ("search", "generator", "rrbs"),
         ("search", "transitions", 7),
         ("run", "seed", 7),
@@ -114,7 +114,7 @@ def test_what_another_program_made_stays_that_of_the_other(made, tmp_path):
 
 def test_a_version_without_one_of_the_settings_is_not_found(made, tmp_path):
     lines = (made / "config.yaml").read_text().splitlines(keepends=True)
-    kept = [line for line in lines if not line.startswith("  shakes:")]
+    kept = [line for line in lines if not line.startswith("  softenings:")]
     assert len(kept) == len(lines) - 1
     (made / "config.yaml").write_text("".join(kept))
     assert find(kind(CONFIG), tmp_path, "seed-1") is None

@@ -65,7 +65,7 @@ struct Evaluator<T>::Pass {
   const PerContact<T>& were;
   PerContact<T>& gaps;
   Mask<T>& legal;
-  Merits<T> sum = {};
+  Measures<T> sum = {};
   const SceneModel<T>& scene = problem.energy;
 
   void add_level(int k) {
@@ -154,8 +154,8 @@ Evaluator<T>::Evaluator(const ProblemLanes<T>& problem, bool to_the_end)
           std::vector<T>(static_cast<std::size_t>(problem.energy.contacts()), T(0.0))) {}
 
 template <class T>
-Merits<T> Evaluator<T>::evaluate(const ProblemLanes<T>& problem, const Trajectory<T>& x,
-                                 const PerContact<T>& were, PerContact<T>& gaps, Mask<T>& legal) {
+Measures<T> Evaluator<T>::evaluate(const ProblemLanes<T>& problem, const Trajectory<T>& x,
+                                   const PerContact<T>& were, PerContact<T>& gaps, Mask<T>& legal) {
   Pass pass{*this, problem, x, were, gaps, legal};
   pass.sum.objective = free_objective(problem, x);
   for (int k = 0; k <= problem.sub_steps && (to_the_end_ || any(legal)); ++k) {

@@ -6,7 +6,7 @@ namespace rtg {
 
 /// The figures that line searches look at.
 template <class T>
-struct Merits {
+struct Measures {
   T objective = T(0.0);
   T violation = T(0.0);      // ‖C‖₁
   T infeasibility = T(0.0);  // ‖C‖∞
@@ -23,8 +23,8 @@ class Evaluator {
   /// looked at, comes back as where it is a legal iterate: every gap open and, below a tenth of the
   /// barrier's range, at least a tenth of itself, no two bodies overlapping by the separating-axis
   /// test. Where it is not, the rest may be wrong.
-  Merits<T> evaluate(const ProblemLanes<T>& problem, const Trajectory<T>& x,
-                     const PerContact<T>& were, PerContact<T>& gaps, Mask<T>& legal);
+  Measures<T> evaluate(const ProblemLanes<T>& problem, const Trajectory<T>& x,
+                       const PerContact<T>& were, PerContact<T>& gaps, Mask<T>& legal);
 
   /// Residuals Φ_k [h + 1][dofs] of the last trajectory, entry 0 unused, and λ g - μ̃ w.
   const std::vector<std::vector<T>>& residuals() const { return residuals_; }

@@ -31,7 +31,7 @@ struct ReverseConfig {
   double terminal_tolerance = 0.05;  // a solution that misses the final state by more fails [m]
   double plain_barrier = 0.0;        // μ of the paper's -μ log g [J]; 0: physics has the barrier
   double proximal_start = 1.0;       // δ of the first iteration
-  int shakes = 2;                    // times that the spring is softened, against poor minima
+  int softenings = 2;                // times that the spring is softened, against poor minima
   int releases = 7;                  // predecessors besides the one of the whole push
 
   template <class Visitor>
@@ -51,7 +51,7 @@ struct ReverseConfig {
     v.number("terminal_tolerance", terminal_tolerance, 0.0, 100.0, "largest miss of it [m]");
     v.number("plain_barrier", plain_barrier, 0.0, 1e6, "weight of -mu log g; 0: physics' barrier");
     v.number("proximal_start", proximal_start, 1e-4, 1e9, "regularisation of the first step");
-    v.integer("shakes", shakes, 0, 1000, "times the hold on the final state is softened");
+    v.integer("softenings", softenings, 0, 1000, "times the hold on the final state is softened");
     v.integer("releases", releases, 0, kMaxStarts - 1, "starts whose objects are met on the way");
   }
 };

@@ -11,7 +11,7 @@ namespace {
 struct Evaluation {
   ProblemLanes<double> problem;
   Evaluator<double> evaluator;
-  Merits<double> merits;
+  Measures<double> measures;
 
   Evaluation(const ReverseProblem& one, const Iterate& x) : problem(one), evaluator(problem, true) {
     problem.load(0, one);
@@ -20,7 +20,7 @@ struct Evaluation {
     PerContact<double> gaps = trajectory.forces;
     for (std::vector<double>& level : gaps) std::ranges::fill(level, 0.0);
     bool legal = true;
-    merits = evaluator.evaluate(problem, trajectory, gaps, gaps, legal);
+    measures = evaluator.evaluate(problem, trajectory, gaps, gaps, legal);
   }
 };
 
@@ -35,7 +35,7 @@ Iterate static_iterate(const ReverseProblem& problem) {
 }
 
 double objective(const ReverseProblem& problem, const Iterate& x) {
-  return Evaluation(problem, x).merits.objective;
+  return Evaluation(problem, x).measures.objective;
 }
 
 double Violation::l1() const {

@@ -6,22 +6,15 @@
 
 #include "core/reverse/problem/evaluator.hpp"
 #include "core/reverse/problem/newton_system.hpp"
-#include "core/reverse/sqp/filter.hpp"
 #include "core/reverse/sqp/sqp_result.hpp"
+#include "core/reverse/sqp/sqp_strategy.hpp"
 #include "core/reverse/sqp/start_queue.hpp"
 
 namespace rtg {
 
 /// The SQP of the preset `default`: exact Hessian with the objective's in its place where the model
 /// is not convex along the step, proximal term δ, filter line search. Each lane of T works on a
-/// candidate and takes the next one when that has ended.
-///
-/// The first attempt shakes iterates that come near a solution soon: ReverseConfig::shakes times it
-/// softens the spring K to the final state for a few iterations. That mostly leads out of poor
-/// minima, in which an object is let go of that could be dragged along, now and then into one. An
-/// attempt that fails, or misses the final state, is followed by others, up to three in all,
-/// without shaking and mostly with a larger first δ. Of two solutions that miss the final state the
-/// first is kept, and that is the end.
+/// candidate and takes the next one when that has ended; SqpStrategy says how each goes on.
 template <class T>
 class FilterSqp {
  public:
@@ -39,29 +32,22 @@ class FilterSqp {
 
  private:
   struct Lane {
-    int job = -1;  // none
-    int attempt = 0, iterations = 0;
-    double proximal = 1.0, first_proximal = 1.0;  // δ; of a phase's first iteration
-    bool exact = true;
-    int shaking = 0;  // phases that are to follow this one; odd: the spring is soft
-    int left = 0;     // iterations of this phase, where others are to follow
-    bool shaken = false;
-    double stationarity = 0.0;
-    Filter filter;
+    int job;  // -1: none
+    SqpStrategy strategy;
   };
 
   bool refill();
   void begin_attempt(int l);
-  void begin_phase(int l, int shaking);
-  void end_attempt(int l, SolveStatus status);
+  void begin_phase(int l);
+  bool obey(int l, SqpStrategy::Order order);
+  void end_attempt(int l);
   void evaluate_begun();
-  void adopt(const Mask<T>& where, const Merits<T>& found);
+  void adopt(const Mask<T>& where, const Measures<T>& found);
   void iterate();
-  void end_or_step(int l, double stationarity);
+  SqpStrategy::Figures figures(int l) const;
   void reject_ascent(const Mask<T>& descends);
-  void regularise(int l, SolveStatus if_hopeless);
   void line_search();
-  Mask<T> accept(const Mask<T>& legal, const Merits<T>& then, double alpha);
+  Mask<T> accept(const Mask<T>& legal, const Measures<T>& then, double alpha);
 
   const ReverseConfig& config_;
   std::span<const ReverseProblem* const> problems_;
@@ -74,7 +60,8 @@ class FilterSqp {
   Trajectory<T> x_, trial_, start_;
   StageStep<T> step_;
   PerContact<T> force_step_, gaps_, trial_gaps_;
-  Merits<T> now_;  // of x
+  Measures<T> now_;  // of x
+  T stationarity_;   // ‖∇L‖∞ of x
   std::vector<Lane> lane_;
   Mask<T> begun_, stepping_;  // at the start of a phase; with a step to take
   long busy_ = 0, lanes_ = 0;

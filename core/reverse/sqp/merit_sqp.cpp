@@ -82,7 +82,8 @@ class MeritSqp {
       make_trial(problem_.energy, x_, {step_, no_force_step_, alpha}, trial_);
       for (std::size_t k = 0; k < trial_.p.size(); ++k)
         problem_.energy.forces(trial_.p[k], trial_.forces[k].data());
-      const Merits<double> then = evaluator_.evaluate(problem_, trial_, gaps_, trial_gaps_, legal);
+      const Measures<double> then =
+          evaluator_.evaluate(problem_, trial_, gaps_, trial_gaps_, legal);
       if (!legal || then.violation > std::max(kSafeguard, now_.violation)) continue;
       if (!(merit_.value(then.objective, then.violation) <= before + kArmijo * alpha * slope))
         continue;
@@ -102,7 +103,7 @@ class MeritSqp {
   Trajectory<double> x_, trial_;
   StageStep<double> step_;
   PerContact<double> no_force_step_, gaps_, trial_gaps_;
-  Merits<double> now_;
+  Measures<double> now_;
   Merit merit_;
 };
 

@@ -75,7 +75,7 @@ TEST(Evaluator, AForceThatIsNotThereCountsAlthoughAllIsAtRest) {
   PerContact<double> gaps = trajectory.forces;
   for (std::vector<double>& level : gaps) level.assign(level.size(), 0.0);
   bool legal = true;
-  const Merits<double> found = evaluator.evaluate(lanes, trajectory, gaps, gaps, legal);
+  const Measures<double> found = evaluator.evaluate(lanes, trajectory, gaps, gaps, legal);
   EXPECT_TRUE(legal);
   EXPECT_GT(found.infeasibility, 100.0 * config.feasibility_tol);
   EXPECT_NEAR(found.infeasibility, violation(problem, x).max(), 1e-12);
@@ -101,7 +101,7 @@ TEST(Evaluator, LanesAreEvaluatedAsIfAlone) {
   PerContact<Lanes> gaps = x.forces;
   for (std::vector<Lanes>& level : gaps) level.assign(level.size(), Lanes(0.0));
   Mask<Lanes> legal(true);
-  const Merits<Lanes> found = evaluator.evaluate(lanes, x, gaps, gaps, legal);
+  const Measures<Lanes> found = evaluator.evaluate(lanes, x, gaps, gaps, legal);
   for (int l = 0; l < kWidth<Lanes>; ++l) {
     EXPECT_EQ(lane(legal, l), l != 1);
     if (l == 1) continue;

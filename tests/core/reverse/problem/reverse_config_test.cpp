@@ -87,7 +87,7 @@ TEST(ReverseConfig, EachFieldChangesTheSolutions) {
       {"terminal_tolerance", 1e-6},
       {"plain_barrier", 0.02},
       {"proximal_start", 10},
-      {"shakes", 0},
+      {"softenings", 0},
       {"releases", 2},
   };
   testing::expect_each_field_matters(ReverseConfig{}, others, {}, solutions);

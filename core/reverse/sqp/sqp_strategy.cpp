@@ -1,0 +1,120 @@
+#include "core/reverse/sqp/sqp_strategy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rtg {
+namespace {
+
+constexpr double kLeastProximal = 1e-8, kMostProximal = 1e6;
+constexpr double kMostViolation = 0.3;             // θ may not grow beyond it
+constexpr double kShortStep = 0.2;                 // a step of at most this makes δ grow
+constexpr double kGrowth = 4.0, kShrinkage = 0.1;  // of δ
+constexpr int kAttempts = 3;
+constexpr double kProximalGrowth = 4.0;  // per attempt
+// Softening: iterations before it (an iterate that has not come near a solution by then goes on
+// without), with a soft spring, and between; what is soft, in parts of K; what is near.
+constexpr int kBefore = 12, kSoft = 6, kBetween = 4;
+constexpr double kSoftness = 0.2;
+constexpr double kNearFeasible = 1e-2, kNearStationary = 1e-1;
+
+}  // namespace
+
+SqpStrategy::SqpStrategy(const ReverseConfig& config)
+    : config_(&config), first_proximal_(config.proximal_start) {
+  begin_attempt();
+}
+
+double SqpStrategy::terminal_weight() const {
+  return config_->terminal_weight * (soft() ? kSoftness : 1.0);
+}
+
+SqpStrategy::Order SqpStrategy::judge(const Figures& at) {
+  if (!std::isfinite(at.stationarity + at.infeasibility + at.objective))
+    return end_attempt(SolveStatus::kNonFinite);
+  if (phases_left_ > 0) {
+    if (at.infeasibility < std::max(kNearFeasible, config_->feasibility_tol) &&
+        at.stationarity < std::max(kNearStationary, config_->stationarity_tol))
+      return begin_phase(phases_left_ - 1);
+    const bool first = phases_left_ == 2 * config_->softenings;
+    if (iterations_left_ == 0 && !first) return begin_phase(phases_left_ - 1);
+    if (iterations_left_ == 0) phases_left_ = 0;
+  }
+  if (at.infeasibility < config_->feasibility_tol && at.stationarity < config_->stationarity_tol)
+    return end_attempt(SolveStatus::kConverged);
+  if (!exact_) return Order::kGoOn;  // the same iteration once more
+  if (iterations_ == config_->max_iterations) return end_attempt(SolveStatus::kIterationLimit);
+  ++iterations_;
+  if (phases_left_ > 0) --iterations_left_;
+  return Order::kGoOn;
+}
+
+SqpStrategy::Order SqpStrategy::reject_ascent() {
+  if (!exact_) return regularise(SolveStatus::kSingular);
+  exact_ = false;
+  return Order::kGoOn;
+}
+
+SqpStrategy::Order SqpStrategy::reject_line_search() {
+  return regularise(SolveStatus::kLineSearchFailed);
+}
+
+bool SqpStrategy::accept(const Filter::Entry& now, const Filter::Entry& next, double alpha) {
+  if (!std::isfinite(next.violation + next.objective) ||
+      next.violation > std::max(kMostViolation, now.violation) || !filter_.accepts(next) ||
+      !Filter::improves(next, now))
+    return false;
+  filter_.add(now);
+  exact_ = true;
+  if (alpha <= kShortStep) proximal_ *= kGrowth;
+  if (alpha > 0.5) proximal_ = std::max(kShrinkage * proximal_, kLeastProximal);
+  return true;
+}
+
+bool SqpStrategy::counts(SolveStatus ended) const {
+  return ended == SolveStatus::kConverged || !missed_;
+}
+
+bool SqpStrategy::try_again(SolveStatus ended) {
+  const bool missed = ended == SolveStatus::kInfeasible;
+  if (ended == SolveStatus::kConverged || (missed && missed_) || attempts() == kAttempts ||
+      iterations_ == config_->max_iterations)
+    return false;
+  // Where softening led to a failure, a small δ may still do.
+  if (missed || attempt_ > 0 || !softened_) first_proximal_ *= kProximalGrowth;
+  missed_ = missed_ || missed;
+  ++attempt_;
+  begin_attempt();
+  return true;
+}
+
+void SqpStrategy::begin_attempt() {
+  const bool softens = attempt_ == 0 && config_->terminal_weight > 0.0;
+  begin_phase(softens ? 2 * config_->softenings : 0);
+  iterations_left_ = kBefore;
+}
+
+SqpStrategy::Order SqpStrategy::begin_phase(int phases_left) {
+  phases_left_ = phases_left;
+  softened_ = softened_ || soft();
+  iterations_left_ = soft() ? kSoft : kBetween;
+  proximal_ = first_proximal_;
+  exact_ = true;
+  filter_ = Filter{};
+  return Order::kBeginPhase;
+}
+
+SqpStrategy::Order SqpStrategy::end_attempt(SolveStatus status) {
+  status_ = status;
+  return Order::kEndAttempt;
+}
+
+SqpStrategy::Order SqpStrategy::regularise(SolveStatus if_hopeless) {
+  proximal_ *= kGrowth;
+  exact_ = true;
+  if (proximal_ <= kMostProximal) return Order::kGoOn;
+  const bool softening = phases_left_ > 0 && phases_left_ < 2 * config_->softenings;
+  return softening ? begin_phase(phases_left_ - 1) : end_attempt(if_hopeless);
+}
+
+}  // namespace rtg
