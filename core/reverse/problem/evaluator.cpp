@@ -6,6 +6,8 @@
 #include "core/energy/scatter.hpp"
 #include "core/energy/slip_terms.hpp"
 #include "core/energy/touch.hpp"
+#include "core/reverse/problem/control_force.hpp"
+#include "core/reverse/problem/objective_terms.hpp"
 
 namespace rtg {
 namespace {
@@ -20,37 +22,25 @@ void set_free_residual(const ProblemLanes<T>& problem, const Trajectory<T>& x, i
     for (int m = 0; m < 3; ++m) e[3 * i + m] = force[m];
   }
   for (int m = 0; m < 3; ++m)
-    e[m] = e[m] - energy.control_bound()[m] * hyperbolic_tangent(x.controls[k][m]);
+    e[m] = e[m] - ControlForce<T>(energy.control_bound()[m], x.controls[k][m]).value;
 }
 
+/// J without the barrier at the start.
 template <class T>
 T free_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x) {
-  const ReverseConfig& config = problem.config;
-  const SceneModel<T>& energy = problem.energy;
+  const int h = problem.sub_steps, movable = problem.energy.movable();
   T sum(0.0);
-  for (int i = 0; i < energy.movable(); ++i) {
-    const T dx = x.p[0].body(i)[0] - problem.end[3 * i];
-    const T dy = x.p[0].body(i)[1] - problem.end[3 * i + 1];
-    const T along = problem.direction.x() * dx + problem.direction.y() * dy;
-    sum = sum + T(i == 0 ? config.robot_weight : config.object_weight) * along;
+  for (int i = 0; i < movable; ++i) sum = sum + StartPull<T>(problem, x.p[0], i).value;
+  for (int k = 0; k <= h; ++k) {
+    if (k > 0) sum = sum + ControlPrice<T>(problem, x.controls[k]).value;
+    const PathPenalty<T> path(problem, x.p[k], k);
+    sum = sum + path.place + path.heading;
   }
-  for (int k = 0; k <= problem.sub_steps; ++k) {
-    if (k > 0) sum = sum + T(config.control_weight) * x.controls[k].squaredNorm();
-    const Vec3<T> path = problem.robot_path(k);
-    const T *robot = x.p[k].body(0), dx = robot[0] - path[0], dy = robot[1] - path[1],
-            turn = robot[2] - path[2];
-    sum =
-        sum + T(config.path_weight) * (dx * dx + dy * dy) + T(config.heading_weight) * turn * turn;
-  }
-  for (int k = 1; k <= problem.sub_steps; ++k)
-    for (int i = 1; i < energy.movable(); ++i) sum = sum + problem.speed(x, k, i).value;
-  T miss(0.0);
-  for (int k = problem.sub_steps; k > 0 && problem.ends(k); --k)
-    for (int m = 0; m < 3 * energy.movable(); ++m) {
-      const T off = x.p[k].p[m] - problem.end[m];
-      miss = miss + off * off;
-    }
-  return sum + T(0.5) * problem.terminal_weight * miss;
+  for (int k = 1; k <= h; ++k)
+    for (int i = 1; i < movable; ++i) sum = sum + problem.speed(x, k, i).value;
+  for (int k = h; k > 0 && problem.ends(k); --k)
+    sum = sum + EndSpring<T>(problem, x.p[k], k).value();
+  return sum;
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // What the Newton system has of the objective, motion and controls: all but contacts and joints.
 
+#include "core/reverse/problem/control_force.hpp"
 #include "core/reverse/problem/newton_system.hpp"
+#include "core/reverse/problem/objective_terms.hpp"
 
 namespace rtg {
 namespace {
@@ -28,35 +30,21 @@ Vec3<T> way_before(const Trajectory<T>& x, int k, int body) {
 /// one.
 template <class T>
 void NewtonSystem<T>::set_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
-  const ReverseConfig& config = problem.config;
   Stage& stage = system_.stages[k];
   for (BlockMatrix<T>* block : {&stage.Q, &stage.E, &stage.F, &stage.G, &stage.N, &stage.U})
     block->clear();
-  const bool end = k > 0 && problem.ends(k);
-  const T spring = end ? problem.terminal_weight : T(0.0);
+  const EndSpring<T> spring(problem, x.p[k], k);
   for (int i = 0; i < system_.M; ++i) {
     stage.q[i].setConstant(T(0.0));
     stage.e[i].setConstant(T(0.0));
     residual_[k][i].setConstant(T(0.0));
-    Vec3<T>& g = gradient_[k][i];
-    Block<T> own = Block<T>::Constant(T(0.0));
-    for (int m = 0; m < 3; ++m) {
-      g[m] = spring * (x.p[k].body(i)[m] - problem.end[3 * i + m]);
-      own(m, m) = curvature_.proximal + spring;
-    }
-    if (k == 0) {
-      const T pull(i == 0 ? config.robot_weight : config.object_weight);
-      g[0] += pull * problem.direction.x();
-      g[1] += pull * problem.direction.y();
-    }
-    stage.Q.add(i, i, own);
+    for (int m = 0; m < 3; ++m) gradient_[k][i][m] = spring.gradient(i, m);
+    if (k == 0) gradient_[k][i] += StartPull<T>(problem, x.p[0], i).gradient;
+    stage.Q.add(i, i, diagonal<T>(Vec3<T>::Constant(curvature_.proximal + spring.hessian)));
   }
-  const Vec3<T> path = problem.robot_path(k);
-  for (int m = 0; m < 3; ++m) {
-    const T weight(2.0 * (m < 2 ? config.path_weight : config.heading_weight));
-    stage.Q.at(0, 0)(m, m) += weight;
-    gradient_[k][0][m] += weight * (x.p[k].body(0)[m] - path[m]);
-  }
+  const PathPenalty<T> path(problem, x.p[k], k);
+  gradient_[k][0] += path.gradient;
+  stage.Q.add(0, 0, diagonal<T>(path.hessian));
 }
 
 /// Damping and the price of speed of sub-step k.
@@ -130,15 +118,14 @@ void NewtonSystem<T>::add_turn_curvature(const typename Inertia<T>::Slope& s, co
 template <class T>
 void NewtonSystem<T>::add_control(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   Stage& stage = system_.stages[k];
-  const T price(2.0 * problem.config.control_weight);
+  const ControlPrice<T> price(problem, x.controls[k]);
   for (int m = 0; m < 3; ++m) {
-    const T push = hyperbolic_tangent(x.controls[k][m]);
-    const T bound = problem.energy.control_bound()[m], y = x.multipliers[k][m];
-    const T slope = -bound * (T(1.0) - push * push);
-    residual_[k][0][m] -= bound * push;
-    stage.B[m] = slope;
-    stage.R[m] = price + curvature_.proximal - curvature_.exact * T(2.0) * push * slope * y;
-    stage.r[m] = control_gradient_[k][m] = price * x.controls[k][m] + slope * y;
+    const ControlForce<T> force(problem.energy.control_bound()[m], x.controls[k][m]);
+    const T y = x.multipliers[k][m];
+    residual_[k][0][m] -= force.value;
+    stage.B[m] = -force.slope;
+    stage.R[m] = price.hessian + curvature_.proximal - curvature_.exact * force.curvature * y;
+    stage.r[m] = control_gradient_[k][m] = price.gradient[m] - force.slope * y;
   }
 }
 

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "core/reverse/problem/problem_lanes.hpp"
+
+namespace rtg {
+
+// The terms of the objective J of eq. (6), each with its derivatives; two more are in
+// SpeedPenalty and, at the start, in Barrier.
+
+/// w_i d·(t_i - t̄_i): pulls a body at the start, p_0, against the push.
+template <class T>
+struct StartPull {
+  T value;
+  Vec3<T> gradient;
+
+  StartPull(const ProblemLanes<T>& problem, const Placement<T>& start, int i) {
+    const T weight(i == 0 ? problem.config.robot_weight : problem.config.object_weight);
+    const T dx = start.body(i)[0] - problem.end[3 * i],
+            dy = start.body(i)[1] - problem.end[3 * i + 1];
+    value = weight * (problem.direction.x() * dx + problem.direction.y() * dy);
+    gradient = {weight * problem.direction.x(), weight * problem.direction.y(), T(0.0)};
+  }
+};
+
+/// ε |c|² of the controls of a sub-step.
+template <class T>
+struct ControlPrice {
+  T value;
+  Vec3<T> gradient;
+  T hessian;  // of each
+
+  ControlPrice(const ProblemLanes<T>& problem, const Vec3<T>& controls)
+      : value(T(problem.config.control_weight) * controls.squaredNorm()),
+        hessian(2.0 * problem.config.control_weight) {
+    gradient = controls * hessian;
+  }
+};
+
+/// κ_x |t₀ - t̄₀|² and κ_θ (θ₀ - θ̄₀)² of the robot after sub-step k, action consistency. Departs
+/// from the paper: it makes the controls those of the discrete action.
+template <class T>
+struct PathPenalty {
+  T place, heading;           // the two values
+  Vec3<T> gradient, hessian;  // the Hessian is diagonal
+
+  PathPenalty(const ProblemLanes<T>& problem, const Placement<T>& at, int k) {
+    const Vec3<T> path = problem.robot_path(k);
+    const T *robot = at.body(0), dx = robot[0] - path[0], dy = robot[1] - path[1],
+            turn = robot[2] - path[2];
+    place = T(problem.config.path_weight) * (dx * dx + dy * dy);
+    heading = T(problem.config.heading_weight) * turn * turn;
+    const T by_place(2.0 * problem.config.path_weight),
+        by_heading(2.0 * problem.config.heading_weight);
+    hessian = {by_place, by_place, by_heading};
+    gradient = {by_place * dx, by_place * dy, by_heading * turn};
+  }
+};
+
+/// K/2 |p_k - p̄|² over all bodies, where the final state names p_k. Departs from the paper: a stiff
+/// spring instead of a constraint, so that every forward simulation is feasible.
+template <class T>
+class EndSpring {
+ public:
+  EndSpring(const ProblemLanes<T>& problem, const Placement<T>& at, int k)
+      : hessian(k > 0 && problem.ends(k) ? problem.terminal_weight : T(0.0)),
+        problem_(problem),
+        at_(at) {}
+
+  T value() const {
+    T miss(0.0);
+    for (int m = 0; m < 3 * problem_.energy.movable(); ++m) {
+      const T off = at_.p[m] - problem_.end[m];
+      miss = miss + off * off;
+    }
+    return T(0.5) * hessian * miss;
+  }
+  T gradient(int i, int m) const { return hessian * (at_.body(i)[m] - problem_.end[3 * i + m]); }
+
+  T hessian;  // of each coordinate, K
+
+ private:
+  const ProblemLanes<T>& problem_;
+  const Placement<T>& at_;
+};
+
+}  // namespace rtg
