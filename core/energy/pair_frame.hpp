@@ -6,11 +6,6 @@
 
 namespace rtg {
 
-template <class T>
-using Vec4 = Eigen::Matrix<T, 4, 1>;
-template <class T>
-using Mat4 = Eigen::Matrix<T, 4, 4>;
-
 /// E = [0 -1; 1 0], the turn by +90°.
 template <class T>
 Vec2<T> turned(const Vec2<T>& a) {

@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "core/math/lanes.hpp"
+#include "core/math/vectors.hpp"
 
 namespace rtg {
 
 template <class T>
 using Block = Eigen::Matrix<T, 3, 3>;
-template <class T>
-using Vec3 = Eigen::Matrix<T, 3, 1>;
 
 /// Bit j of entry i: block (i, j) may differ from zero, in some lane. At most 64 bodies.
 using BlockPattern = std::vector<std::uint64_t>;

@@ -3,14 +3,10 @@
 #include <cstddef>
 
 #include "core/math/elementary.hpp"
+#include "core/math/vectors.hpp"
 #include "core/world/polygon.hpp"
 
 namespace rtg {
-
-template <class T>
-using Vec2 = Eigen::Matrix<T, 2, 1>;
-template <class T>
-using Mat2 = Eigen::Matrix<T, 2, 2>;
 
 /// A convex polygon as the intersection of its half planes n_k·x ≤ b_k, n_k the outward unit
 /// normals, in the body frame; one polygon per lane. Where lanes differ in the number of planes,

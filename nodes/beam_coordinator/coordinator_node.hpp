@@ -54,8 +54,8 @@ class CoordinatorNode {
 
   Bus& bus_;
   Options options_;
-  JobPool<ReverseWork> reverse_;
-  JobPool<ReplayWork> replay_;
+  JobPool<ReverseService> reverse_;
+  JobPool<ReplayService> replay_;
   TransitionPublisher transitions_;
   NodeStatus status_;
   Ticker progress_ticker_{0.5};

@@ -11,8 +11,8 @@
 #include "nodes/beam_coordinator/unit_table.hpp"
 #include "nodes/bus/bus.hpp"
 #include "nodes/bus/clock.hpp"
-#include "nodes/work/job_dispatcher.hpp"
-#include "nodes/work/work.hpp"
+#include "nodes/jobs/job_dispatcher.hpp"
+#include "nodes/jobs/services.hpp"
 
 namespace rtg {
 
@@ -26,17 +26,17 @@ struct PoolState {
 /// A kind of work, answered by processes behind the bus: a SolveBatch or ReplayBatch that hides
 /// ids, units, retries and order. The search calls answers() on its thread; the thread that spins
 /// the bus calls tick().
-template <class Work>
+template <class Service>
 class JobPool {
  public:
-  using Job = typename Work::Job;
-  using Result = typename Work::Result;
+  using Job = typename Service::Job;
+  using Result = typename Service::Result;
 
   JobPool(Bus& bus, const TaskShape& shape, std::int64_t config,
           const JobDispatcher::Limits& limits = {})
       : bus_(bus), shape_(shape), config_(config), dispatcher_(limits) {
-    bus_.subscribe<Beat>(Work::kBeats, [this](const Beat& m) { on_beat(m); });
-    bus_.subscribe<ResultMessage>(Work::kResults, [this](const ResultMessage& m) { on_result(m); });
+    bus_.subscribe<Beat>(Service::kBeats, [this](const Beat& m) { on_beat(m); });
+    bus_.subscribe<ResultMessage>(Service::kResults, [this](const ResultMessage& m) { on_result(m); });
   }
 
   /// The results in job order, however often workers die and messages are lost. Blocks until all
@@ -74,7 +74,7 @@ class JobPool {
 
  private:
   using Beat = rtg_msgs::worker_beat_t;
-  using ResultMessage = typename Work::ResultMessage;
+  using ResultMessage = typename Service::ResultMessage;
   static constexpr int kMostCapacity = 10000;
 
   void on_beat(const Beat& message) {
@@ -90,7 +90,7 @@ class JobPool {
     const std::scoped_lock lock(mutex_);
     const JobId id = message.job_id;
     if (!units_.contains(id)) return bus_.counters().add("results.unknown");
-    const auto results = Work::parse(message, shape_);
+    const auto results = Service::parse(message, shape_);
     if (!results || results->size() != units_.jobs(id).size())
       return bus_.counters().add("results.illegal");
     if (dispatcher_.on_result(id) != JobDispatcher::Verdict::kAccepted)
@@ -102,18 +102,18 @@ class JobPool {
 
   void send_due() {
     for (const auto& [worker, id, attempt] : dispatcher_.due(monotonic_now())) {
-      auto message = Work::message(units_.jobs(id));
+      auto message = Service::message(units_.jobs(id));
       message.job_id = id;
       message.to = worker;
       message.attempt = attempt;
-      bus_.publish(Work::kJobs, std::move(message));
+      bus_.publish(Service::kJobs, std::move(message));
     }
   }
 
   void give_up(JobId id) {
     ++given_up_;
     std::vector<Result> results;
-    for (const Job& job : units_.jobs(id)) results.push_back(Work::given_up(job));
+    for (const Job& job : units_.jobs(id)) results.push_back(Service::given_up(job));
     units_.store(id, results);
   }
 
@@ -123,7 +123,7 @@ class JobPool {
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   JobDispatcher dispatcher_;
-  UnitTable<Work> units_;
+  UnitTable<Service> units_;
   bool stopped_ = false;
   long given_up_ = 0;
 };

@@ -8,7 +8,7 @@
 
 #include "nodes/beam_coordinator/coordinator_node.hpp"
 #include "nodes/beam_coordinator/whole_file.hpp"
-#include "nodes/config/rtg_config.hpp"
+#include "nodes/config/config.hpp"
 #include "nodes/program/program.hpp"
 #include "nodes/program/shutdown.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 
 int run(const Words& words) {
   const int consumers = words.size() > 3 ? number_word(words[3], "CONSUMERS") : 1;
-  const RtgConfig config = load_config(words[0]);
+  const Config config = load_config(words[0]);
   Bus bus(config.run.bus, words[1]);
   CoordinatorNode node(bus, {shape_of(config.task), config_hash(config), config.search.transitions,
                              [] { return stop_signal() != 0; }});

@@ -9,7 +9,7 @@
 #include "nodes/beam_coordinator/stream_server.hpp"
 #include "nodes/bus/bus.hpp"
 #include "nodes/bus/clock.hpp"
-#include "nodes/work/work.hpp"
+#include "nodes/jobs/services.hpp"
 
 namespace rtg {
 

@@ -7,18 +7,18 @@
 #include <utility>
 #include <vector>
 
-#include "nodes/work/job_dispatcher.hpp"
-#include "nodes/work/work.hpp"
+#include "nodes/jobs/job_dispatcher.hpp"
+#include "nodes/jobs/services.hpp"
 
 namespace rtg {
 
 /// Which jobs of a batch travel in which unit, and where their results belong. Refers to the jobs
 /// of the caller.
-template <class Work>
+template <class Service>
 class UnitTable {
  public:
-  using Job = typename Work::Job;
-  using Result = typename Work::Result;
+  using Job = typename Service::Job;
+  using Result = typename Service::Result;
 
   /// Deals a new batch into units; their ids in order, equal ones for equal questions.
   std::vector<JobId> deal(std::span<const Job> jobs, const TaskShape& shape, std::int64_t config) {
@@ -26,7 +26,7 @@ class UnitTable {
     results_.assign(jobs.size(), {});
     std::vector<JobId> ids;
     std::size_t first = 0;
-    for (const std::size_t size : unit_sizes(jobs.size(), Work::kUnit, shape)) {
+    for (const std::size_t size : unit_sizes(jobs.size(), Service::kUnit, shape)) {
       const Unit unit{first, jobs.subspan(first, size)};
       ids.push_back(unit_id(unit.jobs, config));
       units_.emplace(ids.back(), unit);

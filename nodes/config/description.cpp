@@ -104,7 +104,7 @@ struct Amplitudes {
   double evaluation = 0.0, training = 0.0;
 };
 
-Amplitudes amplitudes(const RtgConfig& config) {
+Amplitudes amplitudes(const Config& config) {
   const Task& task = config.task;
   const double training = config.train.start_jitter;
   if (!config.train.randomise) return {task.start_jitter, training};
@@ -127,7 +127,7 @@ std::string task_in_words(const Task& task, const Amplitudes& starts) {
   return out;
 }
 
-std::string training_in_words(const RtgConfig& config) {
+std::string training_in_words(const Config& config) {
   const TrainConfig& train = config.train;
   if (train.learner == Learner::kPlanning) return "  search forwards from each start\n";
   const std::string from =
@@ -144,7 +144,7 @@ std::string processes_in_words(const RunConfig& run) {
                run.in_process ? "all in one process" : ("bus " + run.bus).c_str());
 }
 
-std::string work_in_words(const RtgConfig& config) {
+std::string work_in_words(const Config& config) {
   const SearchConfig& search = config.search;
   const TrainConfig& train = config.train;
   const RunConfig& run = config.run;
@@ -159,7 +159,7 @@ std::string work_in_words(const RtgConfig& config) {
 
 }  // namespace
 
-std::string description(const RtgConfig& config) {
+std::string description(const Config& config) {
   return task_in_words(config.task, amplitudes(config)) + work_in_words(config);
 }
 

@@ -2,12 +2,12 @@
 
 #include <string>
 
-#include "nodes/config/rtg_config.hpp"
+#include "nodes/config/config.hpp"
 
 namespace rtg {
 
 /// A configuration in words, for the person who wrote it: bodies with sizes and masses, the goal
 /// in words, actions, episodes, the work of the search and of the learner.
-std::string description(const RtgConfig& config);
+std::string description(const Config& config);
 
 }  // namespace rtg

@@ -33,16 +33,16 @@ class FieldWriter {
 };
 
 /// The fields that config.visit() lists.
-template <class Config>
-ConfigNode fields_of(Config config) {
+template <class Section>
+ConfigNode fields_of(Section config) {
   FieldWriter writer;
   config.visit(writer);
   return std::move(writer.section);
 }
 
 /// Reads the fields that config.visit() lists over the values that are there.
-template <class Config>
-void read_fields(const ConfigNode& section, const std::string& path, Config& config) {
+template <class Section>
+void read_fields(const ConfigNode& section, const std::string& path, Section& config) {
   std::vector<std::string> keys;
   for (const ConfigEntry& field : fields_of(config).entries) keys.push_back(field.key);
   FieldReader reader(section, path, keys);

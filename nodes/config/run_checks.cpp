@@ -30,7 +30,7 @@ bool imitable(Generator generator) {
          generator == Generator::kForward;
 }
 
-void check_learner(const RtgConfig& config, const ConfigNode& root) {
+void check_learner(const Config& config, const ConfigNode& root) {
   const TrainConfig& train = config.train;
   const Field learner{"train", "learner"}, interact{"train", "interact"},
       offline{"train", "offline"}, generator{"search", "generator"};
@@ -52,7 +52,7 @@ void check_learner(const RtgConfig& config, const ConfigNode& root) {
                       "forward");
 }
 
-void check_buffer(const RtgConfig& config, const ConfigNode& root) {
+void check_buffer(const Config& config, const ConfigNode& root) {
   const int transitions = config.search.transitions, buffer = config.train.buffer;
   if (!config.train.offline || buffer >= transitions) return;
   throw ConfigError(place(root, {{"train", "buffer"}, {"search", "transitions"}}), "train.buffer",
@@ -61,7 +61,7 @@ void check_buffer(const RtgConfig& config, const ConfigNode& root) {
                     "equal or larger ones");
 }
 
-void check_record(const RtgConfig& config, const ConfigNode& root) {
+void check_record(const Config& config, const ConfigNode& root) {
   if (!config.run.record || (config.train.offline && !config.run.in_process)) return;
   const std::string why = config.run.in_process ? "with run.in_process" : "without train.offline";
   throw ConfigError(place(root, {{"run", "record"}}), "run.record",
@@ -70,7 +70,7 @@ void check_record(const RtgConfig& config, const ConfigNode& root) {
 
 }  // namespace
 
-void check_run(const RtgConfig& config, const ConfigNode& root) {
+void check_run(const Config& config, const ConfigNode& root) {
   check_learner(config, root);
   check_buffer(config, root);
   check_record(config, root);

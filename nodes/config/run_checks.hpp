@@ -1,7 +1,7 @@
 #pragma once
 
 #include "nodes/config/config_tree.hpp"
-#include "nodes/config/rtg_config.hpp"
+#include "nodes/config/config.hpp"
 
 namespace rtg {
 
@@ -9,6 +9,6 @@ namespace rtg {
 /// learns from or with what it cannot use, a replay buffer smaller than the data (also where only
 /// data are made: they are there to be learned from), messages to record where there are none.
 /// Throws ConfigError with the place in `root` of a value that is part of it.
-void check_run(const RtgConfig& config, const ConfigNode& root);
+void check_run(const Config& config, const ConfigNode& root);
 
 }  // namespace rtg

@@ -28,7 +28,7 @@ const std::string& origin_of(const ConfigNode& root, const char* section, const 
 
 }  // namespace
 
-void check_jitters(const RtgConfig& config, const ConfigNode& root) {
+void check_jitters(const Config& config, const ConfigNode& root) {
   const struct {
     const char *section, *key;
     double amplitude;

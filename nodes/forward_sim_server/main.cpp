@@ -6,7 +6,7 @@
 
 #include "core/search/batches_on_threads.hpp"
 #include "core/search/simulators.hpp"
-#include "nodes/config/rtg_config.hpp"
+#include "nodes/config/config.hpp"
 #include "nodes/program/program.hpp"
 #include "nodes/program/serve.hpp"
 
@@ -14,10 +14,10 @@ namespace rtg {
 namespace {
 
 int run(const Words& words) {
-  const RtgConfig config = load_config(words[0]);
+  const Config config = load_config(words[0]);
   const ReplayOne replay = forward_replay(config.task, config.physics);
   Bus bus(config.run.bus, words[1]);
-  WorkerNode<ReplayWork> node(bus,
+  WorkerNode<ReplayService> node(bus,
                               {shape_of(config.task), config_hash(config), 0, config.run.workers},
                               replay_on_threads(replay, 1));
   return serve(bus, node);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/tasks/task.hpp"
-#include "nodes/work/work.hpp"
+#include "nodes/jobs/services.hpp"
 
 namespace rtg {
 

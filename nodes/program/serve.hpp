@@ -6,15 +6,15 @@
 #include <stdexcept>
 
 #include "nodes/program/shutdown.hpp"
-#include "nodes/work/worker_node.hpp"
+#include "nodes/jobs/worker_node.hpp"
 
 namespace rtg {
 
 /// Serves the bus until the coordinator leaves or a signal comes; the exit status of the process.
 /// Ends the process with status 1 when it is stuck with a unit: the coordinator counts it as lost.
 /// Throws std::runtime_error if the coordinator falls silent, and what the node's work throws.
-template <class Work>
-int serve(Bus& bus, WorkerNode<Work>& node) {
+template <class Service>
+int serve(Bus& bus, WorkerNode<Service>& node) {
   int status = 0;
   while (!stop_signal() && !node.coordinator().leaving()) {
     bus.spin(std::chrono::milliseconds(50));

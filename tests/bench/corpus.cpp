@@ -9,7 +9,7 @@
 #include "core/reverse/pruning.hpp"
 #include "core/world/selection.hpp"
 #include "core/world/separation.hpp"
-#include "nodes/config/rtg_config.hpp"
+#include "nodes/config/config.hpp"
 
 namespace rtg::bench {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "core/search/generate.hpp"
 #include "core/search/simulators.hpp"
-#include "nodes/config/rtg_config.hpp"
+#include "nodes/config/config.hpp"
 #include "tests/bench/arguments.hpp"
 
 namespace rtg {
@@ -60,7 +60,7 @@ void print_progress(const Progress& p) {
 }
 
 void run(const Options& options) {
-  const RtgConfig config = load_config(options.file, options.overrides);
+  const Config config = load_config(options.file, options.overrides);
   GenerationSeams seams = in_process_seams(
       reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
       forward_replay(config.task, config.physics), options.threads);

@@ -24,7 +24,7 @@ import matplotlib.pyplot as plt
 
 HERE = Path(__file__).parent
 Benchmarks = dict[str, dict[str, Any]]
-_UNIT = 24  # jobs of a unit of work (nodes/work/work.hpp), at most
+_UNIT = 24  # jobs of a unit of work (nodes/jobs/services.hpp), at most
 _THREADED = ("beam", "replay")
 _LABELS = {
     "lanes": "ours",

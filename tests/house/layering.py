@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 
 ROOT = Path(__file__).resolve().parents[2]
 
-_OF_PROGRAMS = {"core", "nodes/bus", "nodes/config", "nodes/work", "nodes/program"}
+_OF_PROGRAMS = {"core", "nodes/bus", "nodes/config", "nodes/jobs", "nodes/program"}
 MAY_INCLUDE = {
     "core/math": {"core/math"},
     "core/world": {"core/math", "core/world"},
@@ -29,8 +29,8 @@ MAY_INCLUDE = {
     "core/threads": {"core/threads"},
     "nodes/bus": {"core/threads", "nodes/bus", "rtg_msgs"},
     "nodes/config": {"core", "nodes/bus", "nodes/config"},
-    "nodes/work": {"core", "nodes/bus", "nodes/work", "rtg_msgs"},
-    "nodes/program": {"core", "nodes/bus", "nodes/config", "nodes/work", "nodes/program"},
+    "nodes/jobs": {"core", "nodes/bus", "nodes/jobs", "rtg_msgs"},
+    "nodes/program": {"core", "nodes/bus", "nodes/config", "nodes/jobs", "nodes/program"},
     "nodes/beam_coordinator": {*_OF_PROGRAMS, "rtg_msgs", "nodes/beam_coordinator"},
     "nodes/forward_sim_server": _OF_PROGRAMS,
     "nodes/reverse_worker": _OF_PROGRAMS,

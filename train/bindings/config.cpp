@@ -3,7 +3,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "nodes/config/description.hpp"
-#include "nodes/config/rtg_config.hpp"
+#include "nodes/config/config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 #include "train/bindings/fields.hpp"
@@ -13,11 +13,11 @@ namespace {
 
 using Overrides = std::vector<std::string>;
 
-RtgConfig from_file(const std::filesystem::path& file, const Overrides& overrides) {
+Config from_file(const std::filesystem::path& file, const Overrides& overrides) {
   return load_config(file, overrides);
 }
 
-RtgConfig from_text(const std::string& text, const std::string& name, const Overrides& overrides) {
+Config from_text(const std::string& text, const std::string& name, const Overrides& overrides) {
   return parse_config(text, name, overrides);
 }
 
@@ -30,16 +30,16 @@ void bind_config(nb::module_& module) {
   bind_fields<SearchConfig>(module, "SearchConfig");
   bind_fields<TrainConfig>(module, "TrainConfig");
   bind_fields<RunConfig>(module, "RunConfig");
-  nb::class_<RtgConfig>(module, "Config")
+  nb::class_<Config>(module, "Config")
       .def_static("from_file", &from_file, nb::arg("file"), nb::arg("overrides") = Overrides{})
       .def_static("from_text", &from_text, nb::arg("text"), nb::arg("name") = "text",
                   nb::arg("overrides") = Overrides{})
-      .def_ro("task", &RtgConfig::task)
-      .def_ro("physics", &RtgConfig::physics)
-      .def_ro("reverse", &RtgConfig::reverse)
-      .def_ro("search", &RtgConfig::search)
-      .def_ro("train", &RtgConfig::train)
-      .def_ro("run", &RtgConfig::run)
+      .def_ro("task", &Config::task)
+      .def_ro("physics", &Config::physics)
+      .def_ro("reverse", &Config::reverse)
+      .def_ro("search", &Config::search)
+      .def_ro("train", &Config::train)
+      .def_ro("run", &Config::run)
       .def_prop_ro("description", &description)
       .def_prop_ro("yaml", &canonical_yaml)
       .def_prop_ro("json", &config_json);

@@ -8,7 +8,7 @@
 #include "core/search/forward_search.hpp"
 #include "core/search/generate.hpp"
 #include "core/search/simulators.hpp"
-#include "nodes/config/rtg_config.hpp"
+#include "nodes/config/config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 
@@ -48,7 +48,7 @@ void report_progress(const nb::object& progress, const Progress& p) {
 }
 
 /// Exceptions of the callbacks, KeyboardInterrupt too, end the generation and come out of it.
-std::string generate_in_process(const RtgConfig& config, const nb::object& store,
+std::string generate_in_process(const Config& config, const nb::object& store,
                                 const nb::object& progress) {
   const nb::gil_scoped_release release;
   GenerationSeams seams = in_process_seams(
@@ -62,7 +62,7 @@ std::string generate_in_process(const RtgConfig& config, const nb::object& store
 
 /// The states of the plan that a forward search finds from a start, [T + 1, bodies, 3], the start
 /// alone if it finds none; and how many pushes it took to the simulator.
-std::pair<nb::ndarray<nb::numpy, double>, long> plan(const RtgConfig& config,
+std::pair<nb::ndarray<nb::numpy, double>, long> plan(const Config& config,
                                                      const StateArray& start) {
   const Task& task = config.task;
   check_bodies(start, task.scene.size());

@@ -1,7 +1,7 @@
 #include <nanobind/stl/pair.h>
 
 #include "core/forward/box2d_simulator.hpp"
-#include "nodes/config/rtg_config.hpp"
+#include "nodes/config/config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 
@@ -14,7 +14,7 @@ struct TaskSimulator {
   int headings;
   Box2dSimulator box2d;
 
-  explicit TaskSimulator(const RtgConfig& config)
+  explicit TaskSimulator(const Config& config)
       : bodies(config.task.scene.size()),
         headings(config.task.push.headings),
         box2d(config.task.scene, config.task.push, config.physics) {}
@@ -57,7 +57,7 @@ std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, bool>> push(
 
 void bind_simulator(nb::module_& module) {
   nb::class_<TaskSimulator>(module, "Simulator")
-      .def(nb::init<const RtgConfig&>(), nb::arg("config"))
+      .def(nb::init<const Config&>(), nb::arg("config"))
       .def("push", &push, nb::arg("states"), nb::arg("actions"));
 }
 

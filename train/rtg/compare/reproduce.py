@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
 
-from rtg.compare import together
+from rtg.compare import grouped_seeds
 from rtg.compare.cell_run import make_ready
 from rtg.compare.cells import Grid, read_grid
 from rtg.compare.grid_display import GridDisplay, Row, counts, display
@@ -33,7 +33,7 @@ def reproduce(args: ReproduceArgs) -> int:
         grid.add(args.command, args.cells)
         with run_folder.writing_to(args.out):
             grid.write(args.out)
-        for stage in together.stages(runs, args.together):  # what fails there, its run does again
+        for stage in grouped_seeds.stages(runs, args.together):  # what fails there, its run does again
             _run_all(args, Crew(stage, args.jobs))
         rows = _run_all(args, Crew(runs, args.jobs, Failures(grid, args.out)))
         from rtg.compare.report_files import write_report  # heavy

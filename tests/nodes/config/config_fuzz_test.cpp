@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/math/rng.hpp"
-#include "nodes/config/rtg_config.hpp"
-#include "tests/nodes/two_boxes.hpp"
+#include "nodes/config/config.hpp"
+#include "tests/nodes/config/two_boxes.hpp"
 
 namespace rtg {
 namespace {
@@ -84,7 +84,7 @@ struct Values {
   bool operator==(const Values&) const = default;
 };
 
-Values values(RtgConfig config) {
+Values values(Config config) {
   Values all;
   config.task.visit(all);
   config.task.push.visit(all);
@@ -97,9 +97,9 @@ Values values(RtgConfig config) {
 }
 
 /// A legal configuration prints as a text that reads back to equal values.
-void expect_to_read_back(const RtgConfig& config, const std::string& from) {
+void expect_to_read_back(const Config& config, const std::string& from) {
   const std::string canonical = canonical_yaml(config);
-  const RtgConfig again = parse_config(canonical, "canonical.yaml");
+  const Config again = parse_config(canonical, "canonical.yaml");
   EXPECT_EQ(canonical_yaml(again), canonical) << from;
   EXPECT_TRUE(values(again) == values(config)) << from;
   EXPECT_EQ(again.task.name, config.task.name) << from;
@@ -166,7 +166,7 @@ std::string shown(const std::string& setting) {
 
 bool is_legal_setting(const std::string& setting) {
   try {
-    const RtgConfig config =
+    const Config config =
         parse_config(testing::kTwoBoxes, "two_boxes.yaml", std::array{setting});
     expect_to_read_back(config, setting);
     return true;

@@ -54,10 +54,10 @@ class Played {
   }
 
   static rtg_msgs::replay_result_t result_of(const replay_job_t& job) {
-    const std::vector<ReplayJob> jobs = ReplayWork::parse(job, kShape).value();
+    const std::vector<ReplayJob> jobs = ReplayService::parse(job, kShape).value();
     std::vector<ReplayResult> results;
     for (const ReplayJob& j : jobs) results.push_back(answer(j));
-    auto message = ReplayWork::message(results);
+    auto message = ReplayService::message(results);
     message.job_id = job.job_id;
     return message;
   }
@@ -87,7 +87,7 @@ class Played {
   }
 
   Bus bus{"memq://", "test"};
-  JobPool<ReplayWork> pool;
+  JobPool<ReplayService> pool;
   std::function<void(const replay_job_t&)> on_job = [this](const replay_job_t& job) {
     publish(result_of(job));
   };
@@ -142,7 +142,7 @@ TEST(JobPool, CountsAndIgnoresResultsThatMakeNoSense) {
     auto spoilt = Played::result_of(job);
     spoilt.ok[0] = 7;
     played.publish(spoilt);
-    auto shorter = ReplayWork::message(std::vector<ReplayResult>{answer(many_jobs(1)[0])});
+    auto shorter = ReplayService::message(std::vector<ReplayResult>{answer(many_jobs(1)[0])});
     shorter.job_id = job.job_id;
     played.publish(shorter);
     auto unknown = Played::result_of(job);

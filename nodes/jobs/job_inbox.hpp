@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "nodes/work/job_dispatcher.hpp"
+#include "nodes/jobs/job_dispatcher.hpp"
 
 namespace rtg {
 

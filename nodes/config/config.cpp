@@ -1,4 +1,4 @@
-#include "nodes/config/rtg_config.hpp"
+#include "nodes/config/config.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -65,8 +65,8 @@ void fetch_task(ConfigNode& root, const std::filesystem::path& folder) {
 
 /// Takes the keys that presets of `section` decide out of the file's values: a preset on the
 /// command line stands above them.
-template <class Config, class Preset>
-void clear_for_preset(ConfigNode& root, const std::string& section, Config (*values)(Preset)) {
+template <class Section, class Preset>
+void clear_for_preset(ConfigNode& root, const std::string& section, Section (*values)(Preset)) {
   const ConfigNode a = fields_of(values(Preset::kDefault)), b = fields_of(values(Preset::kPaper));
   for (ConfigEntry& entry : root.entries) {
     if (entry.key != section) continue;
@@ -104,8 +104,8 @@ ConfigNode& section_of(ConfigNode& root, std::string_view name, const std::strin
   return root.entries.back().value;
 }
 
-template <class Config>
-void read_section(const ConfigNode& root, const std::string& name, Config& config) {
+template <class Section>
+void read_section(const ConfigNode& root, const std::string& name, Section& config) {
   if (const ConfigEntry* section = find(root, name)) read_fields(section->value, name, config);
 }
 
@@ -124,9 +124,9 @@ void apply_method(ConfigNode& root) {
 }
 
 /// A section whose field `preset` chooses the values of the fields that are not given.
-template <class Config, class Preset>
-void read_preset_section(const ConfigNode& root, const std::string& name, Config (*values)(Preset),
-                         Config& config) {
+template <class Section, class Preset>
+void read_preset_section(const ConfigNode& root, const std::string& name, Section (*values)(Preset),
+                         Section& config) {
   read_section(root, name, config);
   config = values(config.preset);
   read_section(root, name, config);
@@ -142,7 +142,7 @@ void check_physics(const ConfigNode& root, const PhysicsConfig& physics) {
 }
 
 /// Checks what dynamic mode asks of the other fields.
-void check_inertia(const ConfigNode& root, const RtgConfig& config) {
+void check_inertia(const ConfigNode& root, const Config& config) {
   if (!config.physics.inertia) return;
   const ConfigEntry *flag = find(root, "physics", "inertia"),
                     *damping = find(root, "physics", "damping");
@@ -158,7 +158,7 @@ void check_inertia(const ConfigNode& root, const RtgConfig& config) {
 }
 
 /// Checks what `randomise` asks of the task.
-void check_randomisation(const ConfigNode& root, const RtgConfig& config) {
+void check_randomisation(const ConfigNode& root, const Config& config) {
   if (config.task.randomisation > 0.0) return;
   for (const auto& [section, asked] :
        {std::pair{"train", config.train.randomise}, std::pair{"search", config.search.randomise}})
@@ -175,7 +175,7 @@ void check_bus(const ConfigNode& root, const std::string& url) {
   }
 }
 
-ConfigNode tree_of(const RtgConfig& config) {
+ConfigNode tree_of(const Config& config) {
   ConfigNode root = map_node();
   root.entries.push_back({"task", "", task_node(config.task)});
   root.entries.push_back({"physics", "", fields_of(config.physics)});
@@ -197,10 +197,10 @@ void check_sections(const ConfigNode& root) {
                           listed(kSections));
 }
 
-RtgConfig read_config(const ConfigNode& root) {
+Config read_config(const ConfigNode& root) {
   check_sections(root);
   const FieldReader reader(root, "", kSections);
-  RtgConfig config;
+  Config config;
   config.task = read_task(reader.required("task", kTaskLegal).value);
   read_section(root, "physics", config.physics);
   read_preset_section(root, "reverse", reverse_preset, config.reverse);
@@ -220,7 +220,7 @@ RtgConfig read_config(const ConfigNode& root) {
 
 /// Reads it. A mistake in the task as a whole is told of a line of the file. If it was right
 /// without the last settings, the one that made it wrong is told, too.
-RtgConfig read_config(const ConfigNode& file, std::span<const std::string> overrides) {
+Config read_config(const ConfigNode& file, std::span<const std::string> overrides) {
   try {
     ConfigNode root = file;
     apply_overrides(root, overrides);
@@ -241,22 +241,22 @@ RtgConfig read_config(const ConfigNode& file, std::span<const std::string> overr
 
 }  // namespace
 
-RtgConfig load_config(const std::filesystem::path& file, std::span<const std::string> overrides) {
+Config load_config(const std::filesystem::path& file, std::span<const std::string> overrides) {
   return parse_config(read_text(file, file.string()), file, overrides);
 }
 
-RtgConfig parse_config(const std::string& text, const std::filesystem::path& name,
+Config parse_config(const std::string& text, const std::filesystem::path& name,
                        std::span<const std::string> overrides) {
   ConfigNode root = parse_root(text, name.string());
   fetch_task(root, name.parent_path());
   return read_config(root, overrides);
 }
 
-std::string canonical_yaml(const RtgConfig& config) { return yaml_text(tree_of(config)); }
+std::string canonical_yaml(const Config& config) { return yaml_text(tree_of(config)); }
 
-std::string config_json(const RtgConfig& config) { return json_text(tree_of(config)); }
+std::string config_json(const Config& config) { return json_text(tree_of(config)); }
 
-std::int64_t config_hash(const RtgConfig& config) {
+std::int64_t config_hash(const Config& config) {
   return ContentHash().add(canonical_yaml(config)).value();
 }
 

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/search/batches_on_threads.hpp"
-#include "nodes/work/worker_node.hpp"
+#include "nodes/jobs/worker_node.hpp"
 #include "tests/support/gathering.hpp"
 #include "tests/support/generation_run.hpp"
 
@@ -42,7 +42,7 @@ class Graph {
     bus.subscribe<transition_batch_t>("RTG_TRANSITION",
                                       [this](const transition_batch_t& m) { on_rows(m); });
     for (int k = 0; k < workers; ++k)
-      workers_.emplace_back(bus, WorkerNode<ReverseWork>::Options{shape(), kConfig, k, 1},
+      workers_.emplace_back(bus, WorkerNode<ReverseService>::Options{shape(), kConfig, k, 1},
                             solve_on_threads(reverse_solver(task, {}, {}, Generator::kNaive), 1));
   }
 
@@ -80,8 +80,8 @@ class Graph {
     sources.insert(sources.end(), m.source.begin(), m.source.end());
   }
 
-  WorkerNode<ReplayWork> server_;
-  std::list<WorkerNode<ReverseWork>> workers_;
+  WorkerNode<ReplayService> server_;
+  std::list<WorkerNode<ReverseService>> workers_;
 };
 
 std::string without_times(GenerationReport report) {

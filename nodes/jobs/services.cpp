@@ -1,4 +1,4 @@
-#include "nodes/work/work.hpp"
+#include "nodes/jobs/services.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -66,7 +66,7 @@ void append_poses(const Poses& poses, std::vector<double>& out) {
   for (const Pose& p : poses) out.insert(out.end(), {p.x, p.y, p.theta});
 }
 
-ReverseWork::JobMessage ReverseWork::message(std::span<const Job> jobs) {
+ReverseService::JobMessage ReverseService::message(std::span<const Job> jobs) {
   JobMessage out{};
   for (const Job& job : jobs) {
     append_poses(job.end, out.end);
@@ -76,7 +76,7 @@ ReverseWork::JobMessage ReverseWork::message(std::span<const Job> jobs) {
   return out;
 }
 
-ReverseWork::ResultMessage ReverseWork::message(std::span<const Result> results) {
+ReverseService::ResultMessage ReverseService::message(std::span<const Result> results) {
   ResultMessage out{};
   for (const Result& r : results) {
     out.status.push_back(static_cast<std::int8_t>(r.status));
@@ -89,7 +89,7 @@ ReverseWork::ResultMessage ReverseWork::message(std::span<const Result> results)
   return out;
 }
 
-std::optional<std::vector<ReverseJob>> ReverseWork::parse(const JobMessage& message,
+std::optional<std::vector<ReverseJob>> ReverseService::parse(const JobMessage& message,
                                                           const TaskShape& shape) {
   if (!has_shape(message, shape) || !all_between(message.action, 0, shape.headings - 1))
     return std::nullopt;
@@ -99,7 +99,7 @@ std::optional<std::vector<ReverseJob>> ReverseWork::parse(const JobMessage& mess
   return jobs;
 }
 
-std::optional<std::vector<ReverseResult>> ReverseWork::parse(const ResultMessage& message,
+std::optional<std::vector<ReverseResult>> ReverseService::parse(const ResultMessage& message,
                                                              const TaskShape& shape) {
   if (!all_between(message.status, 0, kSolveStatusCount - 1) ||
       !all_between(message.iterations, 0, 1000000000) || !all_between(message.cpu_s, 0.0, 1e9) ||
@@ -117,9 +117,9 @@ std::optional<std::vector<ReverseResult>> ReverseWork::parse(const ResultMessage
   return results;
 }
 
-ReverseResult ReverseWork::given_up(const Job&) { return {SolveStatus::kNonFinite}; }
+ReverseResult ReverseService::given_up(const Job&) { return {SolveStatus::kNonFinite}; }
 
-ReplayWork::JobMessage ReplayWork::message(std::span<const Job> jobs) {
+ReplayService::JobMessage ReplayService::message(std::span<const Job> jobs) {
   JobMessage out{};
   for (const Job& job : jobs) {
     append_poses(job.start, out.start);
@@ -129,7 +129,7 @@ ReplayWork::JobMessage ReplayWork::message(std::span<const Job> jobs) {
   return out;
 }
 
-ReplayWork::ResultMessage ReplayWork::message(std::span<const Result> results) {
+ReplayService::ResultMessage ReplayService::message(std::span<const Result> results) {
   ResultMessage out{};
   for (const Result& r : results) {
     out.ok.push_back(r.ok ? 1 : 0);
@@ -140,7 +140,7 @@ ReplayWork::ResultMessage ReplayWork::message(std::span<const Result> results) {
   return out;
 }
 
-std::optional<std::vector<ReplayJob>> ReplayWork::parse(const JobMessage& message,
+std::optional<std::vector<ReplayJob>> ReplayService::parse(const JobMessage& message,
                                                         const TaskShape& shape) {
   static_assert(kSettle == -1);
   if (!has_shape(message, shape) || !all_between(message.action, kSettle, shape.headings - 1))
@@ -151,7 +151,7 @@ std::optional<std::vector<ReplayJob>> ReplayWork::parse(const JobMessage& messag
   return jobs;
 }
 
-std::optional<std::vector<ReplayResult>> ReplayWork::parse(const ResultMessage& message,
+std::optional<std::vector<ReplayResult>> ReplayService::parse(const ResultMessage& message,
                                                            const TaskShape& shape) {
   if (!has_shape(message, shape) || !all_between(message.ok, 0, 1) ||
       !all_between(message.cpu_s, 0.0, 1e9))
@@ -163,7 +163,7 @@ std::optional<std::vector<ReplayResult>> ReplayWork::parse(const ResultMessage& 
   return results;
 }
 
-ReplayResult ReplayWork::given_up(const Job& job) { return {job.start, false, 0.0}; }
+ReplayResult ReplayService::given_up(const Job& job) { return {job.start, false, 0.0}; }
 
 std::vector<std::size_t> unit_sizes(std::size_t jobs, const UnitLimit& limit,
                                     const TaskShape& shape) {

@@ -1,4 +1,4 @@
-#include "nodes/config/rtg_config.hpp"
+#include "nodes/config/config.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "nodes/config/config_error.hpp"
 #include "nodes/config/field_writer.hpp"
 #include "nodes/config/train_preset.hpp"
-#include "tests/nodes/two_boxes.hpp"
+#include "tests/nodes/config/two_boxes.hpp"
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
@@ -21,7 +21,7 @@ using testing::gathering_hard;
 
 const std::filesystem::path kConfig = RTG_CONFIG_FOLDER;
 
-RtgConfig parsed(const std::string& more, const std::vector<std::string>& overrides = {}) {
+Config parsed(const std::string& more, const std::vector<std::string>& overrides = {}) {
   return parse_config(testing::kTwoBoxes + more, "two_boxes.yaml", overrides);
 }
 
@@ -48,11 +48,11 @@ void expect_same_task(const Task& a, const Task& b) {
   EXPECT_EQ(text_of(a), text_of(b));
 }
 
-TEST(RtgConfig, EveryFileOfOursIsLegalAndItsCanonicalTextReadsBackToItself) {
+TEST(Config, EveryFileOfOursIsLegalAndItsCanonicalTextReadsBackToItself) {
   EXPECT_GE(files().size(), 3u);
   for (const std::filesystem::path& file : files()) {
-    const RtgConfig config = load_config(file);
-    const RtgConfig again = parse_config(canonical_yaml(config), "canonical.yaml");
+    const Config config = load_config(file);
+    const Config again = parse_config(canonical_yaml(config), "canonical.yaml");
     EXPECT_EQ(canonical_yaml(again), canonical_yaml(config)) << file;
     EXPECT_EQ(config_json(again), config_json(config)) << file;
     EXPECT_EQ(config_hash(again), config_hash(config)) << file;
@@ -60,14 +60,14 @@ TEST(RtgConfig, EveryFileOfOursIsLegalAndItsCanonicalTextReadsBackToItself) {
   }
 }
 
-TEST(RtgConfig, TheLayoutsOfTheFilesAreThoseOfTheTests) {
+TEST(Config, TheLayoutsOfTheFilesAreThoseOfTheTests) {
   expect_same_task(load_config(kConfig / "gathering.yaml").task, gathering());
   expect_same_task(load_config(kConfig / "gathering_hard.yaml").task, gathering_hard());
   expect_same_task(load_config(kConfig / "art_manip.yaml").task, testing::art_manip());
 }
 
-TEST(RtgConfig, WhatIsNotGivenHasTheDefaultOfItsStruct) {
-  const RtgConfig config = parsed("");
+TEST(Config, WhatIsNotGivenHasTheDefaultOfItsStruct) {
+  const Config config = parsed("");
   EXPECT_EQ(text_of(config.physics), text_of(PhysicsConfig{}));
   EXPECT_EQ(text_of(config.reverse), text_of(ReverseConfig{}));
   EXPECT_EQ(text_of(config.search), text_of(SearchConfig{}));
@@ -77,8 +77,8 @@ TEST(RtgConfig, WhatIsNotGivenHasTheDefaultOfItsStruct) {
   EXPECT_GE(config.run.workers, 1);  // one per core
 }
 
-TEST(RtgConfig, EveryFieldIsReadFromItsKey) {
-  const RtgConfig config = parsed(
+TEST(Config, EveryFieldIsReadFromItsKey) {
+  const Config config = parsed(
       "  horizon: 7\n  start_jitter: 1e-1\n"
       "physics: {skin: +0.01}\n"
       "search: {generator: 'naive', breadth: 12}\n"
@@ -96,8 +96,8 @@ TEST(RtgConfig, EveryFieldIsReadFromItsKey) {
   EXPECT_EQ(config.run.bus, "memq://");
 }
 
-TEST(RtgConfig, APresetChoosesTheDefaultsAndTheOtherKeysOverride) {
-  const RtgConfig config = parsed(
+TEST(Config, APresetChoosesTheDefaultsAndTheOtherKeysOverride) {
+  const Config config = parsed(
       "reverse: {max_iterations: 7, preset: paper}\n"
       "train: {preset: paper, target_sync: 9}\n");
   ReverseConfig reverse = reverse_preset(ReversePreset::kPaper);
@@ -108,13 +108,13 @@ TEST(RtgConfig, APresetChoosesTheDefaultsAndTheOtherKeysOverride) {
   EXPECT_EQ(text_of(config.train), text_of(train));
 }
 
-TEST(RtgConfig, APresetOnTheCommandLineStandsAboveWhatPresetsDecideInTheFile) {
+TEST(Config, APresetOnTheCommandLineStandsAboveWhatPresetsDecideInTheFile) {
   const std::vector<std::string> overrides{"train.preset=paper", "train.epsilon_start=0.7",
                                            "reverse.preset=paper"};
   TrainConfig train = train_preset(TrainPreset::kPaper);
   train.interactions = 400;
   train.epsilon_start = 0.7;
-  const RtgConfig config =
+  const Config config =
       parsed("train: {interactions: 400, target_sync: 9, epsilon_start: 0.5}\n", overrides);
   EXPECT_EQ(text_of(config.train), text_of(train));
   EXPECT_EQ(text_of(config.reverse), text_of(reverse_preset(ReversePreset::kPaper)));
@@ -124,8 +124,8 @@ TEST(RtgConfig, APresetOnTheCommandLineStandsAboveWhatPresetsDecideInTheFile) {
   EXPECT_EQ(text_of(parse_config(resolved, "config.yaml", overrides).train), text_of(train));
 }
 
-TEST(RtgConfig, SettingsStandAboveTheFileInTheirOrder) {
-  const RtgConfig config = parsed(
+TEST(Config, SettingsStandAboveTheFileInTheirOrder) {
+  const Config config = parsed(
       "search: {breadth: 5, depth: 6}\n",
       {"search.breadth=7", "run.seed=3", "search.breadth=8", "task.bodies.1.start=[3, 1, 0.5]",
        "task.bodies.2.density=2", "physics={skin: 0.01}", "run.bus=memq://"});
@@ -138,7 +138,7 @@ TEST(RtgConfig, SettingsStandAboveTheFileInTheirOrder) {
   EXPECT_EQ(config.run.bus, "memq://");
 }
 
-TEST(RtgConfig, ABrokenByteInASettingIsNamed) {
+TEST(Config, ABrokenByteInASettingIsNamed) {
   try {
     parsed("", {"task.name=gr\xf6sser"});
     FAIL();
@@ -148,26 +148,26 @@ TEST(RtgConfig, ABrokenByteInASettingIsNamed) {
   }
 }
 
-TEST(RtgConfig, APolygonIsCentredAndItsTextReadsBackToTheSameBits) {
-  const RtgConfig config =
+TEST(Config, APolygonIsCentredAndItsTextReadsBackToTheSameBits) {
+  const Config config =
       parsed("", {"task.bodies.1.shape={vertices: [[5, 5], [6.1, 5], [6, 6.5], [5.3, 6.6]]}"});
   const Polygon& shape = config.task.scene.bodies[1].shape;
   EXPECT_LT(moments(shape).centroid.norm(), 1e-12);
   EXPECT_NEAR((shape.vertices[1] - shape.vertices[0]).x(), 1.1, 1e-12);
   EXPECT_EQ(config.task.start[1], (Pose{3.0, 0.0, 0.0}));
-  const RtgConfig again = parse_config(canonical_yaml(config), "canonical.yaml");
+  const Config again = parse_config(canonical_yaml(config), "canonical.yaml");
   EXPECT_EQ(again.task.scene.bodies[1].shape, shape);
 }
 
-TEST(RtgConfig, NamesThatYamlReadsAsNothingReadBackToThemselves) {
-  const RtgConfig config =
+TEST(Config, NamesThatYamlReadsAsNothingReadBackToThemselves) {
+  const Config config =
       parsed("", {"task.bodies.1.name='null'", "task.bodies.2.name='Null'", "task.name='NULL'"});
-  const RtgConfig again = parse_config(canonical_yaml(config), "canonical.yaml");
+  const Config again = parse_config(canonical_yaml(config), "canonical.yaml");
   EXPECT_EQ(canonical_yaml(again), canonical_yaml(config));
   EXPECT_EQ(again.task.name, "NULL");
 }
 
-TEST(RtgConfig, TheHashTellsConfigurationsApart) {
+TEST(Config, TheHashTellsConfigurationsApart) {
   const auto with_breadth = [](int breadth) {
     return config_hash(parsed("search: {breadth: " + std::to_string(breadth) + "}\n"));
   };
@@ -196,7 +196,7 @@ std::string refusal(const std::string& more, const std::vector<std::string>& ove
   return "none";
 }
 
-TEST(RtgConfig, DynamicModeNeedsDampingAndAFreeFinalState) {
+TEST(Config, DynamicModeNeedsDampingAndAFreeFinalState) {
   EXPECT_TRUE(parsed("physics: {inertia: true, damping: 0.05}\n").physics.inertia);
   EXPECT_TRUE(
       refusal("physics: {inertia: true, damping: 0.04}\n")
@@ -207,8 +207,8 @@ TEST(RtgConfig, DynamicModeNeedsDampingAndAFreeFinalState) {
             "(reverse.preset paper sets it to 0)");
 }
 
-TEST(RtgConfig, AMethodGivesTheValuesThatAreNotGiven) {
-  const RtgConfig config = parsed(
+TEST(Config, AMethodGivesTheValuesThatAreNotGiven) {
+  const Config config = parsed(
       "train: {epsilon_start: 0.5}\n"
       "run: {method: her}\n");
   TrainConfig train;
@@ -222,7 +222,7 @@ TEST(RtgConfig, AMethodGivesTheValuesThatAreNotGiven) {
   EXPECT_EQ(text_of(config.train), text_of(train));
 }
 
-TEST(RtgConfig, AMethodAmongTheOverridesStandsAboveTheFileButNotAboveTheOthers) {
+TEST(Config, AMethodAmongTheOverridesStandsAboveTheFileButNotAboveTheOthers) {
   const std::string file =
       "search: {generator: naive}\ntrain: {hindsight: 9, epsilon_start: 0.5}\n";
   const std::vector<std::string> overrides{"train.epsilon_start=0.7", "run.method=dqn",
@@ -236,17 +236,17 @@ TEST(RtgConfig, AMethodAmongTheOverridesStandsAboveTheFileButNotAboveTheOthers) 
   EXPECT_EQ(parsed(file).search.generator, Generator::kNaive);
 }
 
-TEST(RtgConfig, WhatAMethodStandsForReadsBackToItself) {
+TEST(Config, WhatAMethodStandsForReadsBackToItself) {
   for (const std::string_view name : kMethods) {
     const std::vector<std::string> method{"run.method=" + std::string(name),
                                           "task.randomisation=0.3"};
-    const RtgConfig config = parsed("", method);
-    const RtgConfig again = parse_config(canonical_yaml(config), "canonical.yaml");
+    const Config config = parsed("", method);
+    const Config again = parse_config(canonical_yaml(config), "canonical.yaml");
     EXPECT_EQ(canonical_yaml(again), canonical_yaml(config)) << name;
   }
 }
 
-TEST(RtgConfig, DomainRandomisationNeedsItsRange) {
+TEST(Config, DomainRandomisationNeedsItsRange) {
   EXPECT_EQ(refusal("", {"train.randomise=true"}),
             "--set train.randomise=true: key 'task.randomisation': 0 with train.randomise; legal: "
             "more than 0");

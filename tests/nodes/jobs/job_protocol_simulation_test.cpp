@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "nodes/work/job_dispatcher.hpp"
-#include "nodes/work/job_inbox.hpp"
-#include "tests/nodes/faulty_network.hpp"
+#include "nodes/jobs/job_dispatcher.hpp"
+#include "nodes/jobs/job_inbox.hpp"
+#include "tests/nodes/jobs/faulty_network.hpp"
 
 // The two ends of the job protocol in virtual time, over a network that loses, doubles and
 // reorders, with workers that are killed or hang and are started again. A failing seed is printed

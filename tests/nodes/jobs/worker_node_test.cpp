@@ -1,4 +1,4 @@
-#include "nodes/work/worker_node.hpp"
+#include "nodes/jobs/worker_node.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ std::vector<ReverseResult> solve(std::span<const ReverseJob> jobs) {
 /// A worker and, on the same bus, what it says.
 class Pair {
  public:
-  explicit Pair(WorkerNode<ReverseWork>::Answer answer = solve)
+  explicit Pair(WorkerNode<ReverseService>::Answer answer = solve)
       : worker(bus, {kShape, kConfig, 3, 1}, std::move(answer)) {
     bus.subscribe<worker_beat_t>("RTG_REVERSE_BEAT",
                                  [this](const worker_beat_t& m) { beats.push_back(m); });
@@ -46,7 +46,7 @@ class Pair {
   }
 
   reverse_job_t job(std::int64_t id) const {
-    reverse_job_t message = ReverseWork::message(kJobs);
+    reverse_job_t message = ReverseService::message(kJobs);
     message.job_id = id;
     message.to = worker.incarnation();
     return message;
@@ -66,7 +66,7 @@ class Pair {
   Bus bus{"memq://", "test"};
   std::vector<worker_beat_t> beats;
   std::vector<reverse_result_t> results;
-  WorkerNode<ReverseWork> worker;
+  WorkerNode<ReverseService> worker;
 };
 
 TEST(WorkerNode, AnswersAsTheDirectCallDoes) {
@@ -75,7 +75,7 @@ TEST(WorkerNode, AnswersAsTheDirectCallDoes) {
   pair.serve_until([&] { return !pair.results.empty(); });
   EXPECT_EQ(pair.results[0].job_id, 11);
   EXPECT_EQ(pair.results[0].incarnation, pair.worker.incarnation());
-  const auto results = ReverseWork::parse(pair.results[0], kShape);
+  const auto results = ReverseService::parse(pair.results[0], kShape);
   ASSERT_TRUE(results && results->size() == 2);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ((*results)[k].starts, solved(kJobs[k]).starts);
@@ -174,8 +174,8 @@ TEST(WorkerNodeDeathTest, AProcessThatIsStuckEndsThoughItsThreadDoesNot) {
   };
   const auto process = [&] {
     Bus bus("memq://", "test");
-    WorkerNode<ReverseWork> worker(bus, {kShape, kConfig, 3, 1, 0.0}, hang);
-    reverse_job_t message = ReverseWork::message(kJobs);
+    WorkerNode<ReverseService> worker(bus, {kShape, kConfig, 3, 1, 0.0}, hang);
+    reverse_job_t message = ReverseService::message(kJobs);
     message.to = worker.incarnation();
     bus.publish("RTG_REVERSE_JOB", message);
     std::exit(serve(bus, worker));

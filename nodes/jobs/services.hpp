@@ -29,7 +29,7 @@ struct UnitLimit {
 /// The two kinds of work that cross the bus: names, messages, and conversions between messages and
 /// the core's types. A unit is what one message carries. A message that makes no sense for the task
 /// (counts, range of actions, statuses) converts to nothing.
-struct ReverseWork {
+struct ReverseService {
   using Job = ReverseJob;
   using Result = ReverseResult;
   using JobMessage = rtg_msgs::reverse_job_t;
@@ -49,7 +49,7 @@ struct ReverseWork {
   static Result given_up(const Job& job);
 };
 
-struct ReplayWork {
+struct ReplayService {
   using Job = ReplayJob;
   using Result = ReplayResult;
   using JobMessage = rtg_msgs::replay_job_t;

@@ -16,7 +16,7 @@
 namespace rtg {
 
 /// Everything that a run is made from, checked. The sections of the YAML have the same names.
-struct RtgConfig {
+struct Config {
   Task task;
   PhysicsConfig physics;
   ReverseConfig reverse;
@@ -29,20 +29,20 @@ struct RtgConfig {
 /// file, relative to this one, that holds it. `overrides` are `section.key=value` and stand above
 /// the file in their order; a preset among them also stands above the file's values of the keys
 /// that presets decide, and likewise a method, which stands above presets. Throws ConfigError.
-RtgConfig load_config(const std::filesystem::path& file,
+Config load_config(const std::filesystem::path& file,
                       std::span<const std::string> overrides = {});
 
 /// The same from the text of a file; `name` is for messages, and what its paths are relative to.
-RtgConfig parse_config(const std::string& text, const std::filesystem::path& name,
+Config parse_config(const std::string& text, const std::filesystem::path& name,
                        std::span<const std::string> overrides = {});
 
 /// All values with what is legal as comments. Reads back to the same configuration and text.
-std::string canonical_yaml(const RtgConfig& config);
+std::string canonical_yaml(const Config& config);
 
 /// The same values for Python.
-std::string config_json(const RtgConfig& config);
+std::string config_json(const Config& config);
 
 /// The hash of the canonical text, which names the configuration in messages and run folders.
-std::int64_t config_hash(const RtgConfig& config);
+std::int64_t config_hash(const Config& config);
 
 }  // namespace rtg

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/math/rng.hpp"
-#include "tests/nodes/filled_message.hpp"
+#include "tests/nodes/bus/filled_message.hpp"
 
 namespace rtg {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/nodes/filled_message.hpp"
+#include "tests/nodes/bus/filled_message.hpp"
 
 namespace rtg {
 namespace {

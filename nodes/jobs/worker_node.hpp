@@ -15,18 +15,18 @@
 
 #include "nodes/bus/bus.hpp"
 #include "nodes/bus/node_status.hpp"
-#include "nodes/work/job_inbox.hpp"
-#include "nodes/work/work.hpp"
+#include "nodes/jobs/job_inbox.hpp"
+#include "nodes/jobs/services.hpp"
 
 namespace rtg {
 
 /// A process that answers one kind of work. The thread that spins the bus hears jobs and says what
 /// is held; threads of the node's own answer, so a long solve never makes the process look dead.
-template <class Work>
+template <class Service>
 class WorkerNode {
  public:
   using Answer =
-      std::function<std::vector<typename Work::Result>(std::span<const typename Work::Job>)>;
+      std::function<std::vector<typename Service::Result>(std::span<const typename Service::Job>)>;
   struct Options {
     TaskShape shape;
     std::int64_t config = 0;  // hash of the configuration
@@ -41,8 +41,8 @@ class WorkerNode {
         options_(options),
         answer_(std::move(answer)),
         watch_(bus),
-        status_(bus, Work::kNode, options.number) {
-    bus_.subscribe<JobMessage>(Work::kJobs, [this](const JobMessage& m) { receive(m); });
+        status_(bus, Service::kNode, options.number) {
+    bus_.subscribe<JobMessage>(Service::kJobs, [this](const JobMessage& m) { receive(m); });
     for (int k = 0; k < options_.threads; ++k)
       threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
   }
@@ -70,14 +70,14 @@ class WorkerNode {
   std::int64_t incarnation() const { return incarnation_; }
 
  private:
-  using JobMessage = typename Work::JobMessage;
-  using ResultMessage = typename Work::ResultMessage;
-  using Jobs = std::vector<typename Work::Job>;
+  using JobMessage = typename Service::JobMessage;
+  using ResultMessage = typename Service::ResultMessage;
+  using Jobs = std::vector<typename Service::Job>;
   static constexpr std::size_t kMostHeld = 3000;  // beyond any capacity that beats announce
 
   void receive(const JobMessage& message) {
     if (message.to != incarnation_) return;
-    std::optional<Jobs> jobs = Work::parse(message, options_.shape);
+    std::optional<Jobs> jobs = Service::parse(message, options_.shape);
     if (!jobs) return bus_.counters().add("jobs.illegal");
     std::unique_lock lock(mutex_);
     if (inbox_.held().size() >= kMostHeld) return bus_.counters().add("jobs.too_many");
@@ -85,7 +85,7 @@ class WorkerNode {
     lock.unlock();
     if (!known) return wake_.notify_one();
     bus_.counters().add("jobs.answered_again");
-    bus_.publish(Work::kResults, *known);
+    bus_.publish(Service::kResults, *known);
   }
 
   void send_beat(const std::vector<JobId>& held) {
@@ -96,16 +96,16 @@ class WorkerNode {
     message.capacity = 2 * options_.threads + 1;  // some in work, some on their way
     message.held = held;
     message.n_held = static_cast<std::int32_t>(held.size());
-    bus_.publish(Work::kBeats, message);
+    bus_.publish(Service::kBeats, message);
   }
 
   void work(const std::stop_token& stop) {
     try {
       while (const auto unit = next(stop)) {
-        ResultMessage message = Work::message(answer_(unit->second));
+        ResultMessage message = Service::message(answer_(unit->second));
         message.job_id = unit->first;
         message.incarnation = incarnation_;
-        bus_.publish(Work::kResults, message);
+        bus_.publish(Service::kResults, message);
         const std::scoped_lock lock(mutex_);
         begun_.erase(unit->first);
         inbox_.finish(unit->first, std::move(message));

@@ -1,4 +1,4 @@
-#include "nodes/work/job_dispatcher.hpp"
+#include "nodes/jobs/job_dispatcher.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 """Which runs generate first and then learn side by side."""
 
 import pytest
-from rtg.compare import together
+from rtg.compare import grouped_seeds
 from rtg.compare.cell_run import make_ready
 from rtg.compare.reproduce_args import parse
 from rtg.files.run_folder import write_json
@@ -21,7 +21,7 @@ def names(jobs):
 
 
 def test_all_generate_and_then_the_seeds_of_each_method_learn(runs):
-    generations, learnings = together.stages(runs, wanted=True)
+    generations, learnings = grouped_seeds.stages(runs, wanted=True)
     assert names(generations) == [f"ddqn_naive/seed-{k}: transitions" for k in (1, 2)]
     assert names(learnings) == ["ddqn: 2 seeds learn", "ddqn_naive: 2 seeds learn"]
     assert not any(job.done for job in (*generations, *learnings))
@@ -31,7 +31,7 @@ def test_a_seed_alone_and_what_is_done_is_left_to_its_run(runs):
     done = runs[0].folder / "summary.json"
     done.parent.mkdir(parents=True)
     write_json(done, {"interactions": 1, "success_rate": 0.5})
-    generations, learnings = together.stages(runs, wanted=True)
+    generations, learnings = grouped_seeds.stages(runs, wanted=True)
     assert len(generations) == 2 and names(learnings) == ["ddqn_naive: 2 seeds learn"]
 
 
@@ -39,5 +39,5 @@ def test_a_seed_alone_and_what_is_done_is_left_to_its_run(runs):
 def test_on_a_gpu_they_do_so_unasked(runs, monkeypatch, where, count):
     asked = []
     monkeypatch.setattr(device, "chosen", lambda wanted: asked.append(wanted) or where)
-    assert len(together.stages(runs, wanted=False)[1]) == count
+    assert len(grouped_seeds.stages(runs, wanted=False)[1]) == count
     assert set(asked) == {"auto"}

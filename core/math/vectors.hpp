@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace rtg {
+
+// Vectors and matrices of fixed size over a scalar T: double, or Lanes.
+
+template <class T>
+using Vec2 = Eigen::Matrix<T, 2, 1>;
+template <class T>
+using Vec3 = Eigen::Matrix<T, 3, 1>;
+template <class T>
+using Vec4 = Eigen::Matrix<T, 4, 1>;
+template <class T>
+using Mat2 = Eigen::Matrix<T, 2, 2>;
+template <class T>
+using Mat4 = Eigen::Matrix<T, 4, 4>;
+
+}  // namespace rtg
