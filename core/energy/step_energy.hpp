@@ -1,16 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "core/energy/scene_model.hpp"
 #include "core/world/pose.hpp"
 
 namespace rtg {
-
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
 
 /// A vertex of body `body` that may touch body `other`; or a limit of a joint, body its child.
 struct Contact {

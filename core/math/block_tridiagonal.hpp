@@ -1,12 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
-namespace rtg {
+#include "core/math/vectors.hpp"
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+namespace rtg {
 
 /// Symmetric block-tridiagonal matrix of N blocks, and vectors cut alike.
 ///

@@ -4,6 +4,11 @@
 
 namespace rtg {
 
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
 // Vectors and matrices of fixed size over a scalar T: double, or Lanes.
 
 template <class T>

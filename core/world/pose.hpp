@@ -1,12 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
 #include <vector>
 
-namespace rtg {
+#include "core/math/vectors.hpp"
 
-using Eigen::Vector2d;
+namespace rtg {
 
 /// Planar pose p = (x, y, θ) of a body: X(v, p) = R(θ) v + (x, y), with v in the centroid frame.
 struct Pose {

@@ -1,16 +1,15 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "core/energy/contact_point.hpp"
 #include "core/math/block_tridiagonal.hpp"
 #include "core/math/rng.hpp"
+#include "core/math/vectors.hpp"
 #include "core/world/pose.hpp"
 
 namespace rtg::testing {
 
-using Eigen::Vector2d;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
 /// Sharpness at which the samples' corners are rounded.
