@@ -6,7 +6,7 @@
 
 #include "core/energy/hinge_step.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -100,4 +100,4 @@ template class Articulation<Lanes>;
 template Articulation<double> Articulation<double>::room_for(const Articulation<double>&);
 template Articulation<Lanes> Articulation<Lanes>::room_for(const Articulation<double>&);
 
-}  // namespace rtg
+}  // namespace rtg::energy

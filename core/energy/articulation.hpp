@@ -6,7 +6,7 @@
 #include "core/world/scene.hpp"
 #include "core/world/signed_distance.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// A revolute joint, t_i + R_i a = t_j + R_j b with the angle φ = θ_j - θ_i within its limits.
 template <class T>
@@ -74,4 +74,4 @@ struct Arms {
         b(turned_by(at.turns[static_cast<std::size_t>(hinge.child)], hinge.b)) {}
 };
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -4,7 +4,7 @@
 
 #include "core/math/elementary.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// Contact barrier of weight μ̃ over the gap g,
 ///
@@ -59,4 +59,4 @@ struct Barrier {
   }
 };
 
-}  // namespace rtg
+}  // namespace rtg::energy

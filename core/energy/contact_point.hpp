@@ -2,7 +2,7 @@
 
 #include "core/energy/pair_frame.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// A vertex v of body i in the frame of body j, x = offset + a with the arm a = R(θ_i - θ_j) v, as
 /// a function of the pair's coordinates u (PairFrame):
@@ -83,4 +83,4 @@ struct ContactPoint {
   }
 };
 
-}  // namespace rtg
+}  // namespace rtg::energy

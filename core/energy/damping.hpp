@@ -2,7 +2,7 @@
 
 #include "core/math/elementary.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// Damping of one body over a sub-step in units of k_D/Δt²: the quasi-static stand-in for inertia,
 ///
@@ -25,4 +25,4 @@ struct Damping {
   T turn_third(const T& a) const { return periodic ? -moment * turn_of(a).s : T(0.0); }
 };
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -5,7 +5,7 @@
 
 #include "core/energy/hinge_step.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 constexpr int kMaxIterations = 100;
@@ -188,4 +188,4 @@ Mask<T> ForwardStep<T>::solve(const StepStart<T>& start, const Drive<T>& drive,
 template class ForwardStep<double>;
 template class ForwardStep<Lanes>;
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -3,7 +3,7 @@
 #include "core/energy/step_potential.hpp"
 #include "core/math/block_ldl.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// Scale of the servo's error, as a share of the sub-step's stride [m], [m], [rad].
 inline double servo_scale(double stride) { return 0.05 * stride; }
@@ -71,4 +71,4 @@ class ForwardStep {
   std::vector<T> gaps_, trial_gaps_;  // [contacts]
 };
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -3,7 +3,7 @@
 #include "core/energy/contact_point.hpp"
 #include "core/world/signed_distance.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// Derivatives of the gap g = d(x) - d₀ of a contact in the pair's coordinates.
 template <class T>
@@ -36,4 +36,4 @@ struct GapRates {
   }
 };
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -3,7 +3,7 @@
 #include "core/energy/articulation.hpp"
 #include "core/math/register_sum.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// The step of one hinge from coordinates in which its child has a pose of its own to those in
 /// which it follows the parent: with T = ∂(old)/∂(new), identity but for
@@ -99,4 +99,4 @@ void mirror_lower(BlockMatrix<T>& H) {
     }
 }
 
-}  // namespace rtg
+}  // namespace rtg::energy

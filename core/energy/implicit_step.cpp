@@ -1,6 +1,6 @@
 #include "core/energy/implicit_step.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 constexpr double kTolerance = 1e-10;  // [kg m]
@@ -19,4 +19,4 @@ std::optional<ImplicitStep> implicit_step(const StepEnergy& energy, const StepFr
   return ImplicitStep{end, drive.control_at(next, servo_scale(energy.stride()))};
 }
 
-}  // namespace rtg
+}  // namespace rtg::energy

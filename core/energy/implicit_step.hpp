@@ -5,7 +5,7 @@
 #include "core/energy/forward_step.hpp"
 #include "core/energy/step_energy.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// A sub-step of one scene, eq. (5): p₊ = argmin Ψ(·, p, p₋) under the drive.
 struct ImplicitStep {
@@ -18,4 +18,4 @@ struct ImplicitStep {
 std::optional<ImplicitStep> implicit_step(const StepEnergy& energy, const StepFrom& from,
                                           const Drive<double>& drive);
 
-}  // namespace rtg
+}  // namespace rtg::energy

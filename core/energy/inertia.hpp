@@ -2,7 +2,7 @@
 
 #include "core/math/elementary.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// Inertia of one body over two sub-steps in units of k_D/Δt², I of eq. (8), with ι = 1/k_D and the
 /// turns a = θ₊ - θ, b = θ - θ₋:
@@ -42,4 +42,4 @@ struct Inertia {
   }
 };
 
-}  // namespace rtg
+}  // namespace rtg::energy

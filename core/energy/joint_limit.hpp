@@ -4,7 +4,7 @@
 
 #include "core/energy/articulation.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// A limit of a hinge as a contact without friction: the tip of the child meets a stop, at the
 /// gap
@@ -57,4 +57,4 @@ void for_each_limit(const Articulation<T>& articulation, const Placement<T>& at,
     for (const bool upper : {false, true}) f(index++, JointLimit<T>(hinge, upper, at));
 }
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -6,7 +6,7 @@
 #include "core/energy/scatter.hpp"
 #include "core/energy/touch.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 constexpr int kRounds = 50;
@@ -77,4 +77,4 @@ VectorXd with_open_gaps(const StepEnergy& energy, const VectorXd& p) {
   return Eigen::Map<const VectorXd>(at.p.data(), p.size());
 }
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -2,7 +2,7 @@
 
 #include "core/energy/step_energy.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// Least gap that a start of Newton's method is given, as a share of the barrier's range ĝ.
 inline constexpr double kGapFloor = 0.03;
@@ -14,4 +14,4 @@ double least_gap(const StepEnergy& energy, const VectorXd& p);
 /// bodies overlap by its slop, the barrier does not. Joints are closed.
 VectorXd with_open_gaps(const StepEnergy& energy, const VectorXd& p);
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -4,7 +4,7 @@
 #include "core/math/elementary.hpp"
 #include "core/world/signed_distance.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// E = [0 -1; 1 0], the turn by +90°.
 template <class T>
@@ -106,4 +106,4 @@ Mat4<T> row_turn(const T& rate, const Mat4<T>& H) {
   return out;
 }
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -5,7 +5,7 @@
 #include "core/math/block_matrix.hpp"
 #include "core/math/elementary.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// Poses of all bodies with the cosines and sines of their angles.
 template <class T>
@@ -40,4 +40,4 @@ Vec3<T> way(const Placement<T>& from, const Placement<T>& to, int body) {
   return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
 }
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -2,7 +2,7 @@
 
 #include "core/energy/scene_model.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// Entries of a body in a stacked vector; null for a body that does not move.
 template <class T, class V>
@@ -52,4 +52,4 @@ void scatter_lower(const SceneModel<T>& scene, int pair, const PairFrame<T>& fra
     into.add(j, i, blocks.ji);
 }
 
-}  // namespace rtg
+}  // namespace rtg::energy

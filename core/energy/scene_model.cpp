@@ -6,7 +6,7 @@
 #include "core/energy/joint_limit.hpp"
 #include "core/energy/touch.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 constexpr double kFarAway = 1e3;  // offset of a plane that a polygon lacks [m]
@@ -180,4 +180,4 @@ Mask<T> SceneModel<T>::separated(const Placement<T>& at) const {
 template class SceneModel<double>;
 template class SceneModel<Lanes>;
 
-}  // namespace rtg
+}  // namespace rtg::energy

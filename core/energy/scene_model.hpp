@@ -14,7 +14,7 @@
 #include "core/world/push.hpp"
 #include "core/world/scene.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// Ordered pair of bodies: vertices of `body` against the planes of `other`.
 struct BodyPair {
@@ -137,4 +137,4 @@ class SceneModel {
   double sharpness_, skin_, slip_, stride_, inertia_weight_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::energy

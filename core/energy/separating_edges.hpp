@@ -4,7 +4,7 @@
 
 #include "core/world/signed_distance.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// A side of the separating-axis test, along with what measures the gaps: least distance of a
 /// body's vertices to each plane of another. Corners, which the smoothed distance cuts, may overlap
@@ -40,4 +40,4 @@ class SeparatingEdges {
   T least_[kMaxVertices];
 };
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -2,7 +2,7 @@
 
 #include "core/energy/contact_point.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// Lagged friction of one contact for unit μ_f λ: the potential of the slip u over a sub-step,
 ///
@@ -125,4 +125,4 @@ class SlipRates {
   Vec4<T> behind_rate_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::energy

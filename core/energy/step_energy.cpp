@@ -3,7 +3,7 @@
 #include "core/energy/joint_limit.hpp"
 #include "core/energy/step_potential.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 StepEnergy::StepEnergy(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push)
     : scene_(scene, physics, push) {
   for (int n = 0; n < scene_.pair_count(); ++n)
@@ -115,4 +115,4 @@ Poses unstacked(const VectorXd& p) {
   return poses;
 }
 
-}  // namespace rtg
+}  // namespace rtg::energy

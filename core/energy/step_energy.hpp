@@ -5,7 +5,7 @@
 #include "core/energy/scene_model.hpp"
 #include "core/world/pose.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// A vertex of body `body` that may touch body `other`; or a limit of a joint, body its child.
 struct Contact {
@@ -83,4 +83,4 @@ Placement<double> placed(const VectorXd& p);
 VectorXd stacked(const Poses& poses);
 Poses unstacked(const VectorXd& p);
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -3,7 +3,7 @@
 #include "core/energy/gap_terms.hpp"
 #include "core/energy/joint_limit.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 template <class T>
 void StepPotential<T>::begin(const Placement<T>& now, const T* lag, const Placement<T>* before) {
@@ -155,4 +155,4 @@ void StepPotential<T>::model(const Placement<T>& next, T* gradient, BlockMatrix<
 template class StepPotential<double>;
 template class StepPotential<Lanes>;
 
-}  // namespace rtg
+}  // namespace rtg::energy

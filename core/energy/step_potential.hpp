@@ -4,7 +4,7 @@
 #include "core/energy/slip_terms.hpp"
 #include "core/energy/touch.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// Ψ without actuation as a function of the poses after a sub-step, eq. (8); see StepEnergy.
 template <class T>
@@ -44,4 +44,4 @@ class StepPotential {
   std::vector<char> drags_;  // per pair
 };
 
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -2,7 +2,7 @@
 
 #include "core/energy/scene_model.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 
 /// Share of the barrier's range below which a trial point must leave a gap that share of what it
 /// was.
@@ -44,4 +44,4 @@ struct Touch {
   T top_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::energy

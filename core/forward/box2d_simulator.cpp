@@ -9,7 +9,7 @@
 
 #include "core/forward/clear_way.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 namespace {
 
 constexpr double kMaxCoordinate =
@@ -279,7 +279,7 @@ PushOutcome Box2dSimulator::settle(const Poses& start) const {
   return {table.poses(), ok};
 }
 
-}  // namespace rtg
+}  // namespace rtg::forward
 
 // b2World::Step reads the clock some ten times for a profile that nobody looks at, an eighth of a
 // generation. It cannot be switched off, but the dynamic linker takes these for the library's own.

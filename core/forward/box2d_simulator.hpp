@@ -2,7 +2,7 @@
 
 #include "core/forward/simulator.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 
 /// The true dynamics for replay and learning: Box2D 2.4 (Catto), single precision.
 ///
@@ -46,4 +46,4 @@ class Box2dSimulator final : public Simulator {
   PhysicsConfig physics_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::forward

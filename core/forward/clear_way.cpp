@@ -5,7 +5,7 @@
 
 #include "core/world/separation.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 namespace {
 
 constexpr double kNear = 0.05;         // [m]
@@ -38,4 +38,4 @@ double clear_way(const Scene& scene, const Poses& poses, const Pose& to) {
   return clear;
 }
 
-}  // namespace rtg
+}  // namespace rtg::forward

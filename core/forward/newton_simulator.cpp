@@ -7,7 +7,7 @@
 #include "core/energy/open_gaps.hpp"
 #include "core/world/selection.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 
 NewtonSimulator::NewtonSimulator(Scene scene, const PushConfig& push, const PhysicsConfig& physics)
     : scene_(std::move(scene)),
@@ -37,15 +37,15 @@ PushOutcome NewtonSimulator::settle(const Poses& start) const {
 PushOutcome NewtonSimulator::follow(const Poses& start,
                                     const std::vector<Vector3d>& targets) const {
   if (!is_finite(start)) return {start, false};
-  VectorXd p = with_open_gaps(energy_, stacked(select(scene_, start, order_).poses));
+  VectorXd p = with_open_gaps(energy_, energy::stacked(select(scene_, start, order_).poses));
   VectorXd before = p;
   for (const Vector3d& target : targets) {
-    const auto step =
-        implicit_step(energy_, {p, energy_.forces(p), &before}, Drive<double>::towards(target));
+    const auto step = implicit_step(energy_, {p, energy_.forces(p), &before},
+                                    energy::Drive<double>::towards(target));
     if (!step) return {start, false};
     before = std::exchange(p, step->next);
   }
-  return {merged(start, unstacked(p), order_), true};
+  return {merged(start, energy::unstacked(p), order_), true};
 }
 
-}  // namespace rtg
+}  // namespace rtg::forward

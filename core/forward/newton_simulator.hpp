@@ -5,7 +5,7 @@
 #include "core/energy/step_energy.hpp"
 #include "core/forward/simulator.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 
 /// Forward simulation, eq. (5): every sub-step minimises Ψ, the robot on a bounded servo along the
 /// straight path; in dynamic mode (PhysicsConfig::inertia) from rest and with sub-steps in which
@@ -32,7 +32,7 @@ class NewtonSimulator final : public Simulator {
   int sub_steps_;
   std::size_t settling_;    // sub-steps
   std::vector<int> order_;  // of the bodies in energy_
-  StepEnergy energy_;
+  energy::StepEnergy energy_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::forward

@@ -4,7 +4,7 @@
 #include "core/world/push.hpp"
 #include "core/world/scene.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 
 /// The outcome of a push. `ok` is false if the simulator met a non-finite state or an iteration
 /// limit; `end` is then the last good state and must not be used as a transition.
@@ -27,4 +27,4 @@ class Simulator {
   [[nodiscard]] virtual PushOutcome settle(const Poses& start) const = 0;
 };
 
-}  // namespace rtg
+}  // namespace rtg::forward

@@ -13,7 +13,7 @@
 #include "core/reverse/sqp/filter_sqp.hpp"
 #include "core/reverse/sqp/merit_sqp.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 /// How far a body exerts forces: the plain barrier at any distance.
@@ -36,9 +36,9 @@ std::vector<SqpResult> filter_sqp(std::span<const ReverseProblem* const> problem
 }
 
 /// The key that candidates in the lanes of one solver share: numbers of bodies, and joints.
-std::vector<int> structure_of(const StepEnergy& energy) {
+std::vector<int> structure_of(const energy::StepEnergy& energy) {
   std::vector<int> structure{energy.dofs(), energy.bodies()};
-  for (const Hinge<double>& hinge : energy.scene().articulation().hinges())
+  for (const energy::Hinge<double>& hinge : energy.scene().articulation().hinges())
     structure.insert(structure.end(), {hinge.parent, hinge.child});
   return structure;
 }
@@ -69,7 +69,7 @@ Candidate::Candidate(const Scene& scene, const PhysicsConfig& physics, const Pus
       energy_(part_.scene, physics, push),
       problem_{energy_,
                config,
-               with_open_gaps(energy_, stacked(part_.poses)),
+               with_open_gaps(energy_, energy::stacked(part_.poses)),
                direction(job.action, push),
                physics.sub_steps + physics.settling_steps(),
                physics.settling_steps()} {}
@@ -84,4 +84,4 @@ std::vector<SqpResult> solve_together(std::span<const Candidate* const> candidat
   return results;
 }
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -7,7 +7,7 @@
 #include "core/reverse/sqp/sqp_result.hpp"
 #include "core/world/selection.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// A reverse job as an optimisation problem over the bodies that can take part in the push.
 class Candidate {
@@ -25,7 +25,7 @@ class Candidate {
  private:
   std::vector<int> bodies_;
   Selection part_;
-  StepEnergy energy_;
+  energy::StepEnergy energy_;
   ReverseProblem problem_;
 };
 
@@ -34,4 +34,4 @@ class Candidate {
 /// given final state by more than the tolerance.
 std::vector<SqpResult> solve_together(std::span<const Candidate* const> candidates);
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -5,7 +5,7 @@
 #include "core/math/rng.hpp"
 #include "core/world/separation.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 constexpr double kTouch = 0.2;      // an object closer than this ahead of the robot was pushed [m]
@@ -82,4 +82,4 @@ std::vector<Poses> NaiveReverse::pulled(const ReverseJob& job, std::size_t objec
   return out;
 }
 
-}  // namespace rtg
+}  // namespace rtg::reverse

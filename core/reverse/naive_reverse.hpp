@@ -4,7 +4,7 @@
 #include "core/world/push.hpp"
 #include "core/world/scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// Kinematic guess of predecessors, without any physics: the robot moves back one stride against
 /// its heading; the one object that it touches in front (if any) is pulled back with it, unturned,
@@ -32,4 +32,4 @@ class NaiveReverse {
   std::vector<std::size_t> roots_;  // as roots_of()
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

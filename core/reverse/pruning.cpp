@@ -4,7 +4,7 @@
 
 #include "core/world/separation.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 constexpr double kOverlap = 0.01;  // of a sweep with a body that still counts as touching [m]
@@ -91,4 +91,4 @@ std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, con
   return found;
 }
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -6,7 +6,7 @@
 #include "core/world/push.hpp"
 #include "core/world/scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// The convex hull of a body and of itself moved by `by` (world frame), in the body's frame at
 /// heading `theta`: what it sweeps over on a straight way.
@@ -22,4 +22,4 @@ bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job
 std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, const ReverseJob& job,
                                  double range);
 
-}  // namespace rtg
+}  // namespace rtg::reverse

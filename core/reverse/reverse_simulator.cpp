@@ -7,7 +7,7 @@
 #include "core/reverse/candidate.hpp"
 #include "core/reverse/pruning.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 // A push that moves every object by less, along either axis, and turns it by less has one
@@ -85,8 +85,8 @@ ReverseResult ReverseSimulator::answer(const ReverseJob& job, const Candidate& c
   if (result.status != SolveStatus::kConverged) return result;
   const int releases = physics_.inertia ? 0 : config_.releases;
   for (const VectorXd& start : predecessors(solved.x.p, releases))
-    result.starts.push_back(merged(job.end, unstacked(start), candidate.bodies()));
+    result.starts.push_back(merged(job.end, energy::unstacked(start), candidate.bodies()));
   return result;
 }
 
-}  // namespace rtg
+}  // namespace rtg::reverse

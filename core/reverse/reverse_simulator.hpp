@@ -10,7 +10,7 @@
 #include "core/world/push.hpp"
 #include "core/world/scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// The reverse rigid-body simulator, eq. (6) and (7): from which state does a push lead to a given
 /// one? Const and free of mutable state, so equal jobs give bit-equal results on any thread.
@@ -38,4 +38,4 @@ class ReverseSimulator {
   ReverseConfig config_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

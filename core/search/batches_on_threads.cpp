@@ -8,7 +8,7 @@
 #include "core/threads/cpu_clock.hpp"
 #include "core/threads/parallel_for.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 constexpr std::size_t kLanes = static_cast<std::size_t>(kWidth<Lanes>);
@@ -33,15 +33,15 @@ std::vector<std::size_t> slice_ends(std::size_t jobs, int threads) {
 }  // namespace
 
 SolveBatch solve_on_threads(SolveBatch solve, int threads) {
-  return [solve = std::move(solve), threads](std::span<const ReverseJob> jobs) {
-    std::vector<ReverseResult> results(jobs.size());
+  return [solve = std::move(solve), threads](std::span<const reverse::ReverseJob> jobs) {
+    std::vector<reverse::ReverseResult> results(jobs.size());
     const std::vector<std::size_t> ends = slice_ends(jobs.size(), threads);
-    parallel_for(ends.size(), threads, [&](std::size_t slice) {
+    threads::parallel_for(ends.size(), threads, [&](std::size_t slice) {
       const std::size_t first = slice == 0 ? 0 : ends[slice - 1], count = ends[slice] - first;
       if (count == 0) return;
-      const double begin = thread_cpu_s();
-      std::vector<ReverseResult> some = solve(jobs.subspan(first, count));
-      const double share = (thread_cpu_s() - begin) / static_cast<double>(count);
+      const double begin = threads::thread_cpu_s();
+      std::vector<reverse::ReverseResult> some = solve(jobs.subspan(first, count));
+      const double share = (threads::thread_cpu_s() - begin) / static_cast<double>(count);
       for (std::size_t k = 0; k < count; ++k) {
         results[first + k] = std::move(some[k]);
         results[first + k].cpu_s = share;
@@ -54,13 +54,13 @@ SolveBatch solve_on_threads(SolveBatch solve, int threads) {
 ReplayBatch replay_on_threads(ReplayOne replay, int threads) {
   return [replay = std::move(replay), threads](std::span<const ReplayJob> jobs) {
     std::vector<ReplayResult> results(jobs.size());
-    parallel_for(jobs.size(), threads, [&](std::size_t k) {
-      const double begin = thread_cpu_s();
+    threads::parallel_for(jobs.size(), threads, [&](std::size_t k) {
+      const double begin = threads::thread_cpu_s();
       results[k] = replay(jobs[k]);
-      results[k].cpu_s = thread_cpu_s() - begin;
+      results[k].cpu_s = threads::thread_cpu_s() - begin;
     });
     return results;
   };
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -11,9 +11,9 @@
 #include "core/search/plan.hpp"
 #include "core/search/start_distance.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
-BeamSearch::BeamSearch(const Task& task, const SearchConfig& config, Poses target,
+BeamSearch::BeamSearch(const tasks::Task& task, const SearchConfig& config, Poses target,
                        std::uint64_t seed)
     : task_(task), config_(config), metric_(task.scene), target_(std::move(target)), rng_(seed) {}
 
@@ -46,11 +46,11 @@ std::vector<Transition> BeamSearch::grow(const SolveBatch& solve, const ReplayBa
 /// Predecessors of every node of the beam by every action; their parents are nodes.
 std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
                                                    SearchStats& stats) const {
-  std::vector<ReverseJob> jobs;
+  std::vector<reverse::ReverseJob> jobs;
   for (const int k : beam_)
     for (int action = 0; action < task_.push.headings; ++action)
       jobs.push_back({node(k).poses, action});
-  const std::vector<ReverseResult> answers = solve(jobs);
+  const std::vector<reverse::ReverseResult> answers = solve(jobs);
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     const std::vector<Poses>& starts = answers[k].starts;
     stats.count(answers[k], !starts.empty() && objects_moved(starts[0], jobs[k].end) > 0);
@@ -166,4 +166,4 @@ double BeamSearch::best() const {
   return best;
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

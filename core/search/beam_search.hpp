@@ -12,7 +12,7 @@
 #include "core/search/search_stats.hpp"
 #include "core/search/state_metric.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// A state from which `action` and then the actions of the node `parent` lead to success.
 struct Node {
@@ -26,7 +26,7 @@ struct Node {
 class BeamSearch {
  public:
   /// `task` and `config` must outlive the search; `target`: the layout.
-  BeamSearch(const Task& task, const SearchConfig& config, Poses target, std::uint64_t seed);
+  BeamSearch(const tasks::Task& task, const SearchConfig& config, Poses target, std::uint64_t seed);
 
   /// Makes goal states near the target (goal_roots()), brought to rest by `replay`, the first beam.
   void plant(const ReplayBatch& replay, SearchStats& stats);
@@ -61,7 +61,7 @@ class BeamSearch {
   double distance_left(const Poses& poses) const;
   const Node& node(int k) const { return nodes_[static_cast<std::size_t>(k)]; }
 
-  const Task& task_;
+  const tasks::Task& task_;
   const SearchConfig& config_;
   StateMetric metric_;
   Poses target_;
@@ -71,4 +71,4 @@ class BeamSearch {
   std::unordered_set<std::uint64_t> seen_;  // cells of nodes
 };
 
-}  // namespace rtg
+}  // namespace rtg::search

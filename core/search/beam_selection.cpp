@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 /// The best entry of each new cell and the best `per_layout` of each layout, in order of (score,
@@ -55,4 +55,4 @@ std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const S
   return beam;
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

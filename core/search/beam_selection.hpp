@@ -7,7 +7,7 @@
 
 #include "core/search/search_config.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// The figures by which the next beam is chosen, of a candidate.
 struct BeamEntry {
@@ -24,4 +24,4 @@ struct BeamEntry {
 std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
                                      std::unordered_set<std::uint64_t>& seen, int times = 1);
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -5,7 +5,7 @@
 #include "core/math/draws.hpp"
 #include "core/reverse/problem/reverse_job.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 std::vector<int> other_headings(int action, int headings, const SearchConfig& config, Rng& rng) {
   std::vector<int> near, others;
@@ -21,13 +21,13 @@ std::vector<int> other_headings(int action, int headings, const SearchConfig& co
   return out;
 }
 
-std::vector<Transition> with_branches(const Task& task, std::span<const Transition> steps,
+std::vector<Transition> with_branches(const tasks::Task& task, std::span<const Transition> steps,
                                       const SearchConfig& config, std::uint64_t seed,
                                       const ReplayBatch& replay) {
   std::vector<ReplayJob> pushes;
   std::vector<std::size_t> ends;  // of each step's branches among the pushes
   for (const Transition& step : steps) {
-    Rng rng(seed, key_of(step.poses, step.action));
+    Rng rng(seed, reverse::key_of(step.poses, step.action));
     for (const int heading : other_headings(step.action, task.push.headings, config, rng))
       pushes.push_back({step.poses, heading});
     ends.push_back(pushes.size());
@@ -46,4 +46,4 @@ std::vector<Transition> with_branches(const Task& task, std::span<const Transiti
   return out;
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

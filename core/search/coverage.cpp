@@ -4,7 +4,7 @@
 #include "core/search/predecessor.hpp"
 #include "core/search/start_distance.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 double share(long part, long whole) {
@@ -13,7 +13,7 @@ double share(long part, long whole) {
 
 }  // namespace
 
-Coverage::Coverage(const Task& task)
+Coverage::Coverage(const tasks::Task& task)
     : task_(task), metric_(task.scene), movers_(movers_of(task.scene)) {}
 
 /// Says whether two objects moved that no joint connects.
@@ -33,7 +33,7 @@ void Coverage::add(const Transition& t) {
   contacts_ += objects_moved(t.poses, t.next) >= 1;
   multi_body_ += moves_several(t);
   start_region_ += in_place(metric_, t.poses, task_.start);
-  states_.insert(key_of(t.poses, 0));
+  states_.insert(reverse::key_of(t.poses, 0));
 }
 
 double Coverage::contact_share() const { return share(contacts_, transitions_); }
@@ -44,4 +44,4 @@ double Coverage::headings_per_state() const {
   return share(transitions_, static_cast<long>(states_.size()));
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -9,12 +9,12 @@
 #include "core/search/transition.hpp"
 #include "core/tasks/task.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// Counts what a stream of transitions covers.
 class Coverage {
  public:
-  explicit Coverage(const Task& task);
+  explicit Coverage(const tasks::Task& task);
 
   void add(const Transition& transition);
 
@@ -28,12 +28,12 @@ class Coverage {
  private:
   bool moves_several(const Transition& t) const;
 
-  const Task& task_;
+  const tasks::Task& task_;
   StateMetric metric_;
   std::vector<std::size_t> movers_;  // as movers_of()
   long transitions_ = 0, contacts_ = 0, multi_body_ = 0, start_region_ = 0;
-  std::array<long, kSourceCount> by_source_{};
+  std::array<long, kSources.size()> by_source_{};
   std::unordered_set<std::uint64_t> states_;  // keys
 };
 
-}  // namespace rtg
+}  // namespace rtg::search

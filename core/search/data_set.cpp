@@ -6,13 +6,13 @@
 #include "core/reverse/problem/reverse_job.hpp"
 #include "core/search/branches.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 void DataSet::store(std::span<const Transition> steps, const ReplayBatch& replay) {
   const auto room = static_cast<std::size_t>(config_.transitions - coverage_.transitions());
   const auto per_step = static_cast<std::size_t>(1 + config_.branches);
   const auto is_new = [this](const Transition& t) {
-    return known_.insert(key_of(t.poses, t.action)).second;
+    return known_.insert(reverse::key_of(t.poses, t.action)).second;
   };
   std::vector<Transition> fresh;
   for (const Transition& step : steps)
@@ -26,4 +26,4 @@ void DataSet::store(std::span<const Transition> steps, const ReplayBatch& replay
   sink_(kept);
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

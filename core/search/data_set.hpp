@@ -10,14 +10,14 @@
 #include "core/search/transition.hpp"
 #include "core/tasks/task.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// The stored transitions as they come about: steps, each followed by its branches, until
 /// config.transitions are there.
 class DataSet {
  public:
   /// All arguments must outlive it. `sink` receives the transitions.
-  DataSet(const Task& task, const SearchConfig& config, std::uint64_t seed,
+  DataSet(const tasks::Task& task, const SearchConfig& config, std::uint64_t seed,
           const TransitionSink& sink)
       : task_(task), config_(config), seed_(seed), sink_(sink), coverage_(task) {}
 
@@ -29,7 +29,7 @@ class DataSet {
   const Coverage& coverage() const { return coverage_; }
 
  private:
-  const Task& task_;
+  const tasks::Task& task_;
   const SearchConfig& config_;
   std::uint64_t seed_;
   const TransitionSink& sink_;
@@ -37,4 +37,4 @@ class DataSet {
   std::unordered_set<std::uint64_t> known_;  // key_of() state and action of all
 };
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -7,9 +7,9 @@
 #include "core/search/predecessor.hpp"
 #include "core/tasks/goal_distance.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
-ForwardSearch::ForwardSearch(const Task& task, const SearchConfig& config, Poses start)
+ForwardSearch::ForwardSearch(const tasks::Task& task, const SearchConfig& config, Poses start)
     : task_(task), config_(config), metric_(task.scene), beam_{0} {
   seen_.insert(metric_.cell(start));
   nodes_.push_back({{{}, -1, std::move(start)}, 0});
@@ -26,7 +26,7 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
   std::vector<Node> found;
   std::vector<BeamEntry> entries;
   for (std::size_t k = 0; k < pushes.size(); ++k) {
-    outcomes_.emplace(key_of(pushes[k].start, pushes[k].action), results[k]);
+    outcomes_.emplace(reverse::key_of(pushes[k].start, pushes[k].action), results[k]);
     if (!results[k].ok) continue;
     const Poses& end = results[k].end;
     entries.push_back({goal_distance(task_, end), metric_.cell(end), metric_.layout_cell(end),
@@ -53,7 +53,7 @@ std::vector<Transition> ForwardSearch::keep(std::vector<Node> found,
 }
 
 const ReplayResult& ForwardSearch::outcome(const ReplayJob& push) const {
-  return outcomes_.at(key_of(push.start, push.action));
+  return outcomes_.at(reverse::key_of(push.start, push.action));
 }
 
 std::vector<Transition> ForwardSearch::plan() const {
@@ -63,7 +63,7 @@ std::vector<Transition> ForwardSearch::plan() const {
   return steps;
 }
 
-std::vector<Transition> plan_forward(const Task& task, const SearchConfig& config,
+std::vector<Transition> plan_forward(const tasks::Task& task, const SearchConfig& config,
                                      const Poses& start, const ReplayBatch& replay) {
   ForwardSearch search(task, config, start);
   for (int layer = 0; layer < std::min(config.depth, task.horizon); ++layer)
@@ -88,4 +88,4 @@ void search_forward(Generation& run, int number) {
   }
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -11,14 +11,14 @@
 #include "core/search/seams.hpp"
 #include "core/search/state_metric.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// Planning without reverse steps: a beam search forwards from one start, over all headings, in the
 /// simulator, ranked by goal_distance(); selection of the beam as in BeamSearch.
 class ForwardSearch {
  public:
   /// `task` and `config` must outlive the search.
-  ForwardSearch(const Task& task, const SearchConfig& config, Poses start);
+  ForwardSearch(const tasks::Task& task, const SearchConfig& config, Poses start);
 
   /// Goes an action on: replays every heading of every state of the beam and keeps the best. The
   /// steps that were kept come back; none if the search has come to its end.
@@ -37,7 +37,7 @@ class ForwardSearch {
   };
   std::vector<Transition> keep(std::vector<Node> found, std::span<const BeamEntry> entries);
 
-  const Task& task_;
+  const tasks::Task& task_;
   const SearchConfig& config_;
   StateMetric metric_;
   std::vector<Node> nodes_;
@@ -48,11 +48,11 @@ class ForwardSearch {
 };
 
 /// A whole search of config.depth actions at most: its plan. A function of the arguments.
-std::vector<Transition> plan_forward(const Task& task, const SearchConfig& config,
+std::vector<Transition> plan_forward(const tasks::Task& task, const SearchConfig& config,
                                      const Poses& start, const ReplayBatch& replay);
 
 /// Stores what one search keeps, from a start (run.draw_start()), with branches that it has
 /// simulated anyway. Number `number` of the searches.
 void search_forward(Generation& run, int number);
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -10,7 +10,7 @@
 #include "core/search/walks.hpp"
 #include "core/threads/cpu_clock.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 /// Algorithm 1, once: a tree grows from goal states to a start of its own, until layers that come
@@ -59,10 +59,10 @@ void Generation::show(std::string phase, int layer, int depth) const {
                   c.contact_share(), c.start_region()});
 }
 
-GenerationReport generate(const Task& task, const SearchConfig& config, std::uint64_t seed,
+GenerationReport generate(const tasks::Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams) {
   const auto begin = std::chrono::steady_clock::now();
-  const double cpu_before = process_cpu_s();
+  const double cpu_before = threads::process_cpu_s();
   Generation run{task, config, seed, seams};
   run.repeat([&](int number) {
     switch (config.generator) {
@@ -79,8 +79,8 @@ GenerationReport generate(const Task& task, const SearchConfig& config, std::uin
   GenerationReport report = report_of(run);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   report.generate_wall_s = wall.count();
-  report.generate_cpu_s = process_cpu_s() - cpu_before;
+  report.generate_cpu_s = threads::process_cpu_s() - cpu_before;
   return report;
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

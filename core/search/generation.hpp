@@ -11,11 +11,11 @@
 #include "core/search/seams.hpp"
 #include "core/search/search_config.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// A call of generate(): what all generators work with.
 struct Generation {
-  const Task& task;
+  const tasks::Task& task;
   const SearchConfig& config;
   std::uint64_t seed;
   const GenerationSeams& seams;
@@ -44,4 +44,4 @@ struct Generation {
   void show(std::string phase, int layer, int depth) const;
 };
 
-}  // namespace rtg
+}  // namespace rtg::search

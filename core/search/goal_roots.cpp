@@ -7,7 +7,7 @@
 #include "core/search/predecessor.hpp"
 #include "core/search/state_metric.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 constexpr int kMaxFailures = 20;  // draws in vain in a row, and there are no more
@@ -21,7 +21,7 @@ bool look_the_same(const Scene& scene, std::size_t i, std::size_t j) {
 
 }  // namespace
 
-Poses relabelled(const Task& task, const Poses& poses, const Poses& target) {
+Poses relabelled(const tasks::Task& task, const Poses& poses, const Poses& target) {
   const StateMetric metric(task.scene);
   Poses best = poses;
   double least = metric.layout_distance(best, target);
@@ -42,8 +42,8 @@ Poses relabelled(const Task& task, const Poses& poses, const Poses& target) {
   return best;
 }
 
-std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, const Poses& target,
-                              Rng& rng, SearchStats& stats) {
+std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& config,
+                              const Poses& target, Rng& rng, SearchStats& stats) {
   const StateMetric metric(task.scene);
   std::unordered_set<std::uint64_t> seen;
   std::vector<std::pair<double, Poses>> drawn;
@@ -65,4 +65,4 @@ std::vector<Poses> goal_roots(const Task& task, const SearchConfig& config, cons
   return roots;
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

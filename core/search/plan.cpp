@@ -2,9 +2,9 @@
 
 #include <utility>
 
-namespace rtg {
+namespace rtg::search {
 
-std::vector<std::optional<std::vector<Transition>>> carry_out(const Task& task,
+std::vector<std::optional<std::vector<Transition>>> carry_out(const tasks::Task& task,
                                                               std::span<const Plan> plans,
                                                               const ReplayBatch& replay) {
   std::vector<std::optional<std::vector<Transition>>> done(plans.size());
@@ -41,4 +41,4 @@ std::vector<std::optional<std::vector<Transition>>> carry_out(const Task& task,
   return done;
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -8,7 +8,7 @@
 #include "core/search/transition.hpp"
 #include "core/tasks/task.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// A state and the actions that should lead from it to success.
 struct Plan {
@@ -19,8 +19,8 @@ struct Plan {
 /// Carries out plans in the simulator, all side by side: the transitions up to the first success,
 /// none where the start succeeds already. Nothing for a plan that does not succeed, or whose push
 /// the simulator rejects. The transitions are of Source::kTree.
-std::vector<std::optional<std::vector<Transition>>> carry_out(const Task& task,
+std::vector<std::optional<std::vector<Transition>>> carry_out(const tasks::Task& task,
                                                               std::span<const Plan> plans,
                                                               const ReplayBatch& replay);
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -6,7 +6,7 @@
 
 #include "core/world/separation.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 Poses float_rounded(const Poses& poses) {
   Poses out = poses;
@@ -28,13 +28,15 @@ int objects_moved(const Poses& a, const Poses& b) {
   return count;
 }
 
-bool legal_state(const Task& task, const Poses& poses) {
+bool legal_state(const tasks::Task& task, const Poses& poses) {
   return is_finite(poses) && in_arena(poses[0], task.push) &&
          !first_overlap(task.scene, poses).has_value();
 }
 
-std::vector<Predecessor> proposals(const Task& task, std::span<const ReverseJob> jobs,
-                                   std::span<const ReverseResult> answers, SearchStats& stats) {
+std::vector<Predecessor> proposals(const tasks::Task& task,
+                                   std::span<const reverse::ReverseJob> jobs,
+                                   std::span<const reverse::ReverseResult> answers,
+                                   SearchStats& stats) {
   std::vector<Predecessor> out;
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     for (const Poses& exact : answers[k].starts) {
@@ -69,4 +71,4 @@ std::vector<Predecessor> replay_predecessors(std::vector<Predecessor> predecesso
   return out;
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

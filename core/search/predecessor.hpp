@@ -8,7 +8,7 @@
 #include "core/search/transition.hpp"
 #include "core/tasks/task.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// A reverse step: pushing `action` in `start` should lead, and once replayed truly leads, to
 /// `end`.
@@ -37,16 +37,18 @@ double replay_gap(const Poses& reverse_end, const Poses& replayed_end);
 int objects_moved(const Poses& a, const Poses& b);
 
 /// Says whether a state can be the start of a transition: finite, robot in the arena, no overlap.
-bool legal_state(const Task& task, const Poses& poses);
+bool legal_state(const tasks::Task& task, const Poses& poses);
 
 /// The starts of converged answers that, rounded to float, are legal states; others are counted.
 /// `end` is still the state that the job asked for. `jobs` and `answers` have equal length.
-std::vector<Predecessor> proposals(const Task& task, std::span<const ReverseJob> jobs,
-                                   std::span<const ReverseResult> answers, SearchStats& stats);
+std::vector<Predecessor> proposals(const tasks::Task& task,
+                                   std::span<const reverse::ReverseJob> jobs,
+                                   std::span<const reverse::ReverseResult> answers,
+                                   SearchStats& stats);
 
 /// Replaces `end` by what the push truly leads to and fills in moved, gap and miss; those
 /// whose push the simulator rejects are left out.
 std::vector<Predecessor> replay_predecessors(std::vector<Predecessor> predecessors,
                                              const ReplayBatch& replay);
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -8,7 +8,7 @@
 #include "core/math/quantile.hpp"
 #include "core/search/start_distance.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 void fill(GenerationReport& report, const Coverage& coverage) {
   report.transitions = coverage.transitions();
@@ -20,7 +20,7 @@ void fill(GenerationReport& report, const Coverage& coverage) {
   report.start_region_transitions = coverage.start_region();
 }
 
-void fill(GenerationReport& report, const Task& task, std::vector<ReportNode> nodes) {
+void fill(GenerationReport& report, const tasks::Task& task, std::vector<ReportNode> nodes) {
   const StateMetric metric(task.scene);
   for (const ReportNode& n : nodes) {
     report.trees = std::max(report.trees, n.tree + 1);
@@ -81,7 +81,7 @@ std::string to_json(const GenerationReport& r) {
                                 {"trees", r.trees},
                                 {"candidates", r.candidates}};
   for (std::size_t k = 0; k < r.statuses.size(); ++k)
-    out[std::string(name(static_cast<SolveStatus>(k)))] = r.statuses[k];
+    out[std::string(name(static_cast<reverse::SolveStatus>(k)))] = r.statuses[k];
   out["illegal_starts"] = r.illegal_starts;
   out["undrawn_goals"] = r.undrawn_goals;
   out["unsettled_goals"] = r.unsettled_goals;
@@ -104,4 +104,4 @@ std::string to_json(const GenerationReport& r) {
   return out.dump();
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -9,7 +9,7 @@
 #include "core/search/search_stats.hpp"
 #include "core/world/pose.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// A node of the stored search graph, for coverage pictures.
 struct ReportNode {
@@ -29,8 +29,8 @@ struct GenerationReport {
   long start_region_transitions = 0;  // that begin in the start region
   int start_region_depth = -1;  // least depth of a node in the start region; -1: never reached
   int trees = 0;
-  long candidates = 0;                             // reverse jobs asked for, pruned ones included
-  std::array<long, kSolveStatusCount> statuses{};  // by SolveStatus
+  long candidates = 0;  // reverse jobs asked for, pruned ones included
+  std::array<long, reverse::kSolveStatusCount> statuses{};  // by SolveStatus
   // As in SearchStats.
   long illegal_starts = 0, undrawn_goals = 0, unsettled_goals = 0, replays = 0, rejected_pushes = 0;
   long units_given_up = 0;  // of work, as no worker survived them; the coordinator fills it in
@@ -48,7 +48,7 @@ struct GenerationReport {
 void fill(GenerationReport& report, const Coverage& coverage);
 
 /// Takes the nodes of the trees.
-void fill(GenerationReport& report, const Task& task, std::vector<ReportNode> nodes);
+void fill(GenerationReport& report, const tasks::Task& task, std::vector<ReportNode> nodes);
 
 /// Writes into `report` what `stats` has counted, with the medians and 90th percentiles.
 void fill(GenerationReport& report, const SearchStats& stats);
@@ -57,4 +57,4 @@ void fill(GenerationReport& report, const SearchStats& stats);
 /// name).
 std::string to_json(const GenerationReport& report);
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -8,7 +8,7 @@
 #include "core/reverse/problem/reverse_job.hpp"
 #include "core/search/transition.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// Stands for no push: the scene comes to rest with the robot held.
 inline constexpr int kSettle = -1;
@@ -29,7 +29,8 @@ struct ReplayResult {
 
 /// The seams of the search. Results come back in job order, whoever computes them: a loop, a thread
 /// pool, processes behind a bus, a lambda in a test. All homes give the same bits.
-using SolveBatch = std::function<std::vector<ReverseResult>(std::span<const ReverseJob>)>;
+using SolveBatch =
+    std::function<std::vector<reverse::ReverseResult>(std::span<const reverse::ReverseJob>)>;
 using ReplayBatch = std::function<std::vector<ReplayResult>(std::span<const ReplayJob>)>;
 
 /// Answers one replay job after the other; pure, and callable from several threads at once.
@@ -59,4 +60,4 @@ struct GenerationSeams {
   std::function<bool()> cancelled = {};
 };
 
-}  // namespace rtg
+}  // namespace rtg::search

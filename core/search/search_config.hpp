@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-namespace rtg {
+namespace rtg::search {
 
 /// Where the stored steps come from, their branches aside.
 enum class Generator {
@@ -58,4 +58,4 @@ struct SearchConfig {
   }
 };
 
-}  // namespace rtg
+}  // namespace rtg::search

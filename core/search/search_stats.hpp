@@ -7,15 +7,15 @@
 
 #include "core/search/seams.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// Counts of a run's reverse solves and replays, and of those that failed; what the search merely
 /// chooses not to replay or to expand is not counted.
 struct SearchStats {
-  long candidates = 0;                             // reverse jobs answered
-  std::array<long, kSolveStatusCount> statuses{};  // of them, by SolveStatus
-  std::vector<int> iterations;                     // of converged solves
-  std::vector<int> pushing_iterations;             // of those of them that moved an object
+  long candidates = 0;                                      // reverse jobs answered
+  std::array<long, reverse::kSolveStatusCount> statuses{};  // of them, by SolveStatus
+  std::vector<int> iterations;                              // of converged solves
+  std::vector<int> pushing_iterations;                      // of those of them that moved an object
   long illegal_starts = 0;   // converged, yet the start overlaps or leaves the arena
   long undrawn_goals = 0;    // draws of a goal state in vain
   long unsettled_goals = 0;  // sampled goals that do not come to rest as legal goal states
@@ -24,10 +24,10 @@ struct SearchStats {
   std::vector<float> gaps;   // of replayed candidates [m]
   double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
 
-  void count(const ReverseResult& answer, bool moved_object) {
+  void count(const reverse::ReverseResult& answer, bool moved_object) {
     ++candidates;
     ++statuses[static_cast<std::size_t>(answer.status)];
-    if (answer.status == SolveStatus::kConverged) {
+    if (answer.status == reverse::SolveStatus::kConverged) {
       iterations.push_back(answer.iterations);
       if (moved_object) pushing_iterations.push_back(answer.iterations);
     }
@@ -50,4 +50,4 @@ inline ReplayBatch counted(ReplayBatch replay, SearchStats& stats) {
   };
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -8,25 +8,27 @@
 #include "core/reverse/reverse_simulator.hpp"
 #include "core/search/batches_on_threads.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
-SolveBatch reverse_solver(const Task& task, const PhysicsConfig& physics,
-                          const ReverseConfig& reverse, Generator generator) {
+SolveBatch reverse_solver(const tasks::Task& task, const PhysicsConfig& physics,
+                          const reverse::ReverseConfig& reverse, Generator generator) {
   if (generator == Generator::kNaive)
-    return [naive = std::make_shared<const NaiveReverse>(task.scene, task.push)](
-               std::span<const ReverseJob> jobs) {
-      std::vector<ReverseResult> results;
-      for (const ReverseJob& job : jobs) results.push_back(naive->solve(job));
+    return [naive = std::make_shared<const reverse::NaiveReverse>(task.scene, task.push)](
+               std::span<const reverse::ReverseJob> jobs) {
+      std::vector<reverse::ReverseResult> results;
+      for (const reverse::ReverseJob& job : jobs) results.push_back(naive->solve(job));
       return results;
     };
-  return [rrbs = std::make_shared<const ReverseSimulator>(task.scene, physics, task.push, reverse)](
-             std::span<const ReverseJob> jobs) { return rrbs->solve(jobs); };
+  return [rrbs = std::make_shared<const reverse::ReverseSimulator>(
+              task.scene, physics, task.push, reverse)](std::span<const reverse::ReverseJob> jobs) {
+    return rrbs->solve(jobs);
+  };
 }
 
-ReplayOne forward_replay(const Task& task, const PhysicsConfig& physics) {
-  return [box2d = std::make_shared<const Box2dSimulator>(task.scene, task.push, physics)](
+ReplayOne forward_replay(const tasks::Task& task, const PhysicsConfig& physics) {
+  return [box2d = std::make_shared<const forward::Box2dSimulator>(task.scene, task.push, physics)](
              const ReplayJob& job) {
-    PushOutcome outcome =
+    forward::PushOutcome outcome =
         job.action == kSettle ? box2d->settle(job.start) : box2d->push(job.start, job.action);
     return ReplayResult{std::move(outcome.end), outcome.ok, 0.0};
   };
@@ -39,4 +41,4 @@ GenerationSeams in_process_seams(SolveBatch solve, ReplayOne replay, int threads
   return seams;
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -6,18 +6,18 @@
 #include "core/tasks/task.hpp"
 #include "core/world/physics_config.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// The reverse simulator behind `generator`: NaiveReverse for kNaive, else RRBS; pure, and callable
 /// from several threads at once.
-SolveBatch reverse_solver(const Task& task, const PhysicsConfig& physics,
-                          const ReverseConfig& reverse, Generator generator);
+SolveBatch reverse_solver(const tasks::Task& task, const PhysicsConfig& physics,
+                          const reverse::ReverseConfig& reverse, Generator generator);
 
 /// The true dynamics, Box2D; kSettle is answered, too.
-ReplayOne forward_replay(const Task& task, const PhysicsConfig& physics);
+ReplayOne forward_replay(const tasks::Task& task, const PhysicsConfig& physics);
 
 /// The seams with all simulators on `threads` threads of this process; store, progress and
 /// cancelled are left to the caller.
 GenerationSeams in_process_seams(SolveBatch solve, ReplayOne replay, int threads);
 
-}  // namespace rtg
+}  // namespace rtg::search

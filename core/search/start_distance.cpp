@@ -7,7 +7,7 @@
 
 #include "core/world/separation.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 constexpr double kWalk = 2.0;      // pushes to get from one object to the next, about
@@ -17,13 +17,13 @@ constexpr double kReach = 0.15;    // the robot can pull what is nearer than thi
 constexpr double kTouching = 0.8;  // distance of touching bodies, of their bounding radii, about
 
 /// Distance of their centres beyond which the robot cannot pull a body [m].
-double farthest_pull(const Task& task, std::size_t body) {
+double farthest_pull(const tasks::Task& task, std::size_t body) {
   return bounding_radius(task.scene.bodies[0].shape) +
          bounding_radius(task.scene.bodies[body].shape) + kReach;
 }
 
 /// Says whether a robot at `robot` touches an object on the side that `way` points to.
-bool can_pull(const Task& task, const Pose& robot, const Pose& object, std::size_t body,
+bool can_pull(const tasks::Task& task, const Pose& robot, const Pose& object, std::size_t body,
               const Vector2d& way) {
   const Polygon& hand = task.scene.bodies[0].shape;
   const Polygon& shape = task.scene.bodies[body].shape;
@@ -37,7 +37,7 @@ bool can_pull(const Task& task, const Pose& robot, const Pose& object, std::size
 
 /// Pushes until the robot can pull an object along `way`: 0, 1 or, as any distance of up to two
 /// strides can be walked in two, at least 2.
-double walk(const Task& task, const Poses& poses, std::size_t body, const Vector2d& way) {
+double walk(const tasks::Task& task, const Poses& poses, std::size_t body, const Vector2d& way) {
   const Pose& robot = poses[0];
   const Pose& object = poses[body];
   if (can_pull(task, robot, object, body, way)) return 0.0;
@@ -61,7 +61,7 @@ bool in_place(const StateMetric& metric, const StateMetric::Object& o, const Pos
 }
 
 /// The same to the next object that is out of place, or to the robot's own place.
-double next_walk(const Task& task, const StateMetric& metric, const Poses& poses,
+double next_walk(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
                  const Poses& target) {
   double best = std::numeric_limits<double>::infinity();
   for (const auto& o : metric.objects()) {
@@ -77,7 +77,7 @@ double next_walk(const Task& task, const StateMetric& metric, const Poses& poses
 
 }  // namespace
 
-double start_distance(const Task& task, const StateMetric& metric, const Poses& poses,
+double start_distance(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
                       const Poses& target) {
   double sum = next_walk(task, metric, poses, target);
   for (const auto& o : metric.objects())
@@ -91,7 +91,7 @@ bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target
                              [&](const auto& o) { return in_place(metric, o, poses, target); });
 }
 
-Poses placed(const Task& task, const StateMetric& metric, Poses poses, const Poses& target,
+Poses placed(const tasks::Task& task, const StateMetric& metric, Poses poses, const Poses& target,
              const Poses& start) {
   const double from_home = (poses[0].position() - target[0].position()).norm();
   if (from_home <= kInPlace && in_place(metric, poses, target)) poses[0] = start[0];
@@ -104,4 +104,4 @@ Poses placed(const Task& task, const StateMetric& metric, Poses poses, const Pos
   return poses;
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

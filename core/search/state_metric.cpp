@@ -6,7 +6,7 @@
 
 #include "core/math/hash.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 constexpr double kRobotCell = 0.8;    // [m]
@@ -83,4 +83,4 @@ std::uint64_t StateMetric::cell(const Poses& poses) const {
   return with_slot(hash, slot(poses[0].y, kRobotCell));
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -6,7 +6,7 @@
 
 #include "core/world/scene.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// Largest k such that turning the shape about its origin by 2π/k maps it onto itself.
 int symmetry_order(const Polygon& shape);
@@ -46,4 +46,4 @@ class StateMetric {
   std::vector<Object> objects_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <cstddef>
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "core/world/pose.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// Where a stored transition comes from.
 enum class Source : std::int8_t {
@@ -14,7 +15,7 @@ enum class Source : std::int8_t {
   kWalk,    // a push of a random walk
   kPlan,    // a step that a beam search forwards from a start kept
 };
-inline constexpr std::size_t kSourceCount = 4;
+inline constexpr std::array<std::string_view, 4> kSources{"tree", "branch", "walk", "plan"};
 
 /// A true transition of the true dynamics (Box2D). Success is the task's predicate on `next`.
 struct Transition {
@@ -27,4 +28,4 @@ struct Transition {
   bool operator==(const Transition&) const = default;
 };
 
-}  // namespace rtg
+}  // namespace rtg::search

@@ -6,7 +6,7 @@
 
 #include "core/tasks/contact_heading.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 constexpr int kWave = 50;         // walks that go on side by side
@@ -45,4 +45,4 @@ void walk(Generation& run, int number) {
   run.show("random walks", number + 1, 0);
 }
 
-}  // namespace rtg
+}  // namespace rtg::search

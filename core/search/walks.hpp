@@ -2,7 +2,7 @@
 
 #include "core/search/generation.hpp"
 
-namespace rtg {
+namespace rtg::search {
 
 /// Data without any search: a wave of random walks, half of whose pushes seek contact
 /// (contact_heading()), from starts (run.draw_start(); Generator::kRandom: the baseline of App. D),
@@ -11,4 +11,4 @@ namespace rtg {
 /// waves.
 void walk(Generation& run, int number);
 
-}  // namespace rtg
+}  // namespace rtg::search

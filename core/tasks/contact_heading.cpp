@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-namespace rtg {
+namespace rtg::tasks {
 namespace {
 
 /// A point within the bounding circle of a movable object.
@@ -30,4 +30,4 @@ int contact_heading(const Task& task, const Poses& state, Rng& rng) {
   return (nearest + headings) % headings;
 }
 
-}  // namespace rtg
+}  // namespace rtg::tasks

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace rtg {
+namespace rtg::tasks {
 namespace {
 
 /// Calls `visit` with whether each atom holds: one per body (kEvery) or joint (kJoint) that the
@@ -65,4 +65,4 @@ bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double 
   return all;
 }
 
-}  // namespace rtg
+}  // namespace rtg::tasks

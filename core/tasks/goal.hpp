@@ -5,7 +5,7 @@
 
 #include "core/world/scene.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 
 /// A condition on a state; a goal is the conjunction of its terms. What lies in the region:
 ///
@@ -51,4 +51,4 @@ Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& pose
 /// Says whether `term` holds, its region shrunk by `tighten` [m], [rad].
 bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten);
 
-}  // namespace rtg
+}  // namespace rtg::tasks

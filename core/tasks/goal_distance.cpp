@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace rtg {
+namespace rtg::tasks {
 namespace {
 
 constexpr double kWay = 0.2;  // w
@@ -53,4 +53,4 @@ double goal_distance(const Task& task, const Poses& poses) {
   return d.violation > 0.0 ? d.violation + kWay * d.way : 0.0;
 }
 
-}  // namespace rtg
+}  // namespace rtg::tasks

@@ -2,7 +2,7 @@
 
 #include "core/tasks/task.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 
 /// Estimates how far a state is from success [m], [rad]; 0 where the goal holds:
 ///
@@ -12,4 +12,4 @@ namespace rtg {
 /// atoms that do not hold (of a joint the two that it connects), w = 0.2.
 double goal_distance(const Task& task, const Poses& poses);
 
-}  // namespace rtg
+}  // namespace rtg::tasks

@@ -7,7 +7,7 @@
 #include "core/tasks/placement.hpp"
 #include "core/tasks/task.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 namespace {
 
 constexpr int kAttempts = 1000;
@@ -286,4 +286,4 @@ std::optional<Poses> sample_goal(const Task& task, Rng& rng) {
   return std::nullopt;
 }
 
-}  // namespace rtg
+}  // namespace rtg::tasks

@@ -4,7 +4,7 @@
 
 #include "core/world/separation.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 namespace {
 
 constexpr double kSlideError = 1e-3;  // [m]
@@ -40,4 +40,4 @@ std::optional<Pose> slide(const Task& task, const Layout& layout, std::size_t i,
   return std::nullopt;
 }
 
-}  // namespace rtg
+}  // namespace rtg::tasks

@@ -5,7 +5,7 @@
 
 #include "core/tasks/task.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 
 /// The distance that sample_goal() keeps between bodies; closer than 0.02 they are in contact for
 /// Box2D [m].
@@ -34,4 +34,4 @@ struct Approach {
 std::optional<Pose> slide(const Task& task, const Layout& layout, std::size_t i,
                           const Approach& way);
 
-}  // namespace rtg
+}  // namespace rtg::tasks

@@ -8,7 +8,7 @@
 
 #include "core/world/separation.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 namespace {
 
 constexpr double kLengthScale = 8.0;  // of the observation [m]
@@ -91,4 +91,4 @@ bool allows_jitter(const Task& task, double amplitude) {
   return false;
 }
 
-}  // namespace rtg
+}  // namespace rtg::tasks

@@ -8,7 +8,7 @@
 #include "core/tasks/goal.hpp"
 #include "core/world/push.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 
 /// A sparse-reward task: reward +1 and termination when the goal holds, nothing otherwise.
 struct Task {
@@ -70,4 +70,4 @@ inline constexpr double kGoalSpare = 0.05;
 /// settle it. Empty if none was found in 1000 attempts.
 std::optional<Poses> sample_goal(const Task& task, Rng& rng);
 
-}  // namespace rtg
+}  // namespace rtg::tasks

@@ -2,7 +2,7 @@
 
 #include <time.h>
 
-namespace rtg {
+namespace rtg::threads {
 namespace {
 
 double seconds(clockid_t clock) {
@@ -17,4 +17,4 @@ double thread_cpu_s() { return seconds(CLOCK_THREAD_CPUTIME_ID); }
 
 double process_cpu_s() { return seconds(CLOCK_PROCESS_CPUTIME_ID); }
 
-}  // namespace rtg
+}  // namespace rtg::threads

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace rtg {
+namespace rtg::threads {
 
 /// CPU time the calling thread has used so far [s].
 double thread_cpu_s();
@@ -8,4 +8,4 @@ double thread_cpu_s();
 /// The same of all threads of the process, those that have ended, too [s].
 double process_cpu_s();
 
-}  // namespace rtg
+}  // namespace rtg::threads

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace rtg {
+namespace rtg::threads {
 namespace {
 
 /// The exception of the least index among those thrown.
@@ -59,4 +59,4 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
   error.rethrow();
 }
 
-}  // namespace rtg
+}  // namespace rtg::threads

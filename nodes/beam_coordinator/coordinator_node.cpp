@@ -6,7 +6,7 @@
 #include <thread>
 #include <utility>
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 namespace {
 
 using namespace std::chrono_literals;
@@ -18,7 +18,7 @@ constexpr auto kFarewellWait = 40ms;
 
 }  // namespace
 
-CoordinatorNode::CoordinatorNode(Bus& bus, Options options)
+CoordinatorNode::CoordinatorNode(bus::Bus& bus, Options options)
     : bus_(bus),
       options_(std::move(options)),
       reverse_(bus, options_.shape, options_.config),
@@ -36,8 +36,8 @@ CoordinatorNode::~CoordinatorNode() {
   }
 }
 
-std::optional<GenerationReport> CoordinatorNode::run(const Search& search) {
-  std::optional<GenerationReport> report;
+std::optional<search::GenerationReport> CoordinatorNode::run(const Search& search) {
+  std::optional<search::GenerationReport> report;
   std::exception_ptr failure;
   std::atomic<bool> ended = false;
   std::jthread thread([&] {
@@ -67,15 +67,17 @@ void CoordinatorNode::drain(int consumers) {
     const std::scoped_lock lock(mutex_);
     progress_.phase = "sealed";
   }
-  while (!options_.stopped() && !transitions_.drained(consumers, monotonic_now())) serve();
+  while (!options_.stopped() && !transitions_.drained(consumers, bus::monotonic_now())) serve();
 }
 
-GenerationSeams CoordinatorNode::seams() {
-  GenerationSeams seams;
-  seams.solve = [this](std::span<const ReverseJob> jobs) { return reverse_.answers(jobs); };
-  seams.replay = [this](std::span<const ReplayJob> jobs) { return replay_.answers(jobs); };
-  seams.store = [this](std::span<const Transition> rows) { transitions_.store(rows); };
-  seams.progress = [this](const Progress& progress) {
+search::GenerationSeams CoordinatorNode::seams() {
+  search::GenerationSeams seams;
+  seams.solve = [this](std::span<const reverse::ReverseJob> jobs) {
+    return reverse_.answers(jobs);
+  };
+  seams.replay = [this](std::span<const search::ReplayJob> jobs) { return replay_.answers(jobs); };
+  seams.store = [this](std::span<const search::Transition> rows) { transitions_.store(rows); };
+  seams.progress = [this](const search::Progress& progress) {
     const std::scoped_lock lock(mutex_);
     progress_ = progress;
   };
@@ -85,10 +87,10 @@ GenerationSeams CoordinatorNode::seams() {
 
 void CoordinatorNode::serve() {
   if (options_.stopped()) stop_search();
-  bus_.spin(transitions_.backlog(monotonic_now()) ? kBacklogWait : kWait);
+  bus_.spin(transitions_.backlog(bus::monotonic_now()) ? kBacklogWait : kWait);
   reverse_.tick();
   replay_.tick();
-  const Seconds now = monotonic_now();
+  const bus::Seconds now = bus::monotonic_now();
   transitions_.tick(now);
   if (progress_ticker_.due(now)) publish_progress();
   if (status_.due(now)) publish_status();
@@ -101,7 +103,7 @@ void CoordinatorNode::stop_search() {
 
 void CoordinatorNode::publish_progress() {
   std::unique_lock lock(mutex_);
-  const Progress progress = progress_;
+  const search::Progress progress = progress_;
   lock.unlock();
   const TransitionPublisher::State stream = transitions_.state();
   const PoolState reverse = reverse_.state();
@@ -132,4 +134,4 @@ void CoordinatorNode::publish_status() {
                    {"stream.resent", stream.resent}});
 }
 
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

@@ -10,7 +10,7 @@
 #include "nodes/beam_coordinator/transition_publisher.hpp"
 #include "nodes/bus/node_status.hpp"
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 
 /// The process that owns a generation: hands its work to workers and server, serves the transition
 /// stream, says where it stands.
@@ -20,23 +20,23 @@ namespace rtg {
 class CoordinatorNode {
  public:
   struct Options {
-    TaskShape shape;
+    jobs::TaskShape shape;
     std::int64_t config = 0;        // hash of the configuration
     long target = 0;                // transitions to be stored, for the display
     std::function<bool()> stopped;  // polled; true: end as soon as possible
   };
 
-  CoordinatorNode(Bus& bus, Options options);
+  CoordinatorNode(bus::Bus& bus, Options options);
   /// Tells workers and server to end.
   ~CoordinatorNode();
   CoordinatorNode(const CoordinatorNode&) = delete;
   CoordinatorNode& operator=(const CoordinatorNode&) = delete;
 
-  using Search = std::function<GenerationReport(const GenerationSeams&)>;
+  using Search = std::function<search::GenerationReport(const search::GenerationSeams&)>;
 
   /// Runs `search` to its end and serves the bus meanwhile. Empty if it was stopped; rethrows what
   /// the search or a handler threw.
-  std::optional<GenerationReport> run(const Search& search);
+  std::optional<search::GenerationReport> run(const Search& search);
 
   /// Seals the stream and serves it until `consumers` and all others that are alive have it, or
   /// until stopped.
@@ -46,22 +46,22 @@ class CoordinatorNode {
   long given_up() const { return reverse_.state().given_up + replay_.state().given_up; }
 
  private:
-  GenerationSeams seams();
+  search::GenerationSeams seams();
   void serve();
   void stop_search();
   void publish_progress();
   void publish_status();
 
-  Bus& bus_;
+  bus::Bus& bus_;
   Options options_;
-  JobPool<ReverseService> reverse_;
-  JobPool<ReplayService> replay_;
+  JobPool<jobs::ReverseService> reverse_;
+  JobPool<jobs::ReplayService> replay_;
   TransitionPublisher transitions_;
-  NodeStatus status_;
-  Ticker progress_ticker_{0.5};
+  bus::NodeStatus status_;
+  bus::Ticker progress_ticker_{0.5};
   bool leaving_ = false;
   mutable std::mutex mutex_;  // guards what follows
-  Progress progress_{.phase = "starting"};
+  search::Progress progress_{.phase = "starting"};
 };
 
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

@@ -2,7 +2,7 @@
 
 #include <exception>
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 
 /// Ends a generation from within when the process has been asked to end.
 class Interrupted : public std::exception {
@@ -10,4 +10,4 @@ class Interrupted : public std::exception {
   const char* what() const noexcept override { return "interrupted"; }
 };
 
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

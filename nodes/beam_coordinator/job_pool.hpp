@@ -14,7 +14,7 @@
 #include "nodes/jobs/job_dispatcher.hpp"
 #include "nodes/jobs/services.hpp"
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 
 /// Where a JobPool stands.
 struct PoolState {
@@ -32,11 +32,12 @@ class JobPool {
   using Job = typename Service::Job;
   using Result = typename Service::Result;
 
-  JobPool(Bus& bus, const TaskShape& shape, std::int64_t config,
-          const JobDispatcher::Limits& limits = {})
+  JobPool(bus::Bus& bus, const jobs::TaskShape& shape, std::int64_t config,
+          const jobs::JobDispatcher::Limits& limits = {})
       : bus_(bus), shape_(shape), config_(config), dispatcher_(limits) {
     bus_.subscribe<Beat>(Service::kBeats, [this](const Beat& m) { on_beat(m); });
-    bus_.subscribe<ResultMessage>(Service::kResults, [this](const ResultMessage& m) { on_result(m); });
+    bus_.subscribe<ResultMessage>(Service::kResults,
+                                  [this](const ResultMessage& m) { on_result(m); });
   }
 
   /// The results in job order, however often workers die and messages are lost. Blocks until all
@@ -46,7 +47,7 @@ class JobPool {
     dispatcher_.submit(units_.deal(jobs, shape_, config_));
     send_due();
     changed_.wait(lock, [this] { return stopped_ || dispatcher_.finished(); });
-    for (const JobId id : dispatcher_.poisoned()) give_up(id);
+    for (const jobs::JobId id : dispatcher_.poisoned()) give_up(id);
     dispatcher_.submit({});
     std::vector<Result> results = units_.take();
     if (stopped_) throw Interrupted();
@@ -82,18 +83,19 @@ class JobPool {
       return bus_.counters().add("beats.illegal");
     if (message.config != config_) return bus_.counters().add("beats.other_configuration");
     const std::scoped_lock lock(mutex_);
-    dispatcher_.on_beat({message.incarnation, message.capacity, message.held}, monotonic_now());
+    dispatcher_.on_beat({message.incarnation, message.capacity, message.held},
+                        bus::monotonic_now());
     send_due();
   }
 
   void on_result(const ResultMessage& message) {
     const std::scoped_lock lock(mutex_);
-    const JobId id = message.job_id;
+    const jobs::JobId id = message.job_id;
     if (!units_.contains(id)) return bus_.counters().add("results.unknown");
     const auto results = Service::parse(message, shape_);
     if (!results || results->size() != units_.jobs(id).size())
       return bus_.counters().add("results.illegal");
-    if (dispatcher_.on_result(id) != JobDispatcher::Verdict::kAccepted)
+    if (dispatcher_.on_result(id) != jobs::JobDispatcher::Verdict::kAccepted)
       return bus_.counters().add("results.repeated");
     units_.store(id, *results);
     send_due();
@@ -101,7 +103,7 @@ class JobPool {
   }
 
   void send_due() {
-    for (const auto& [worker, id, attempt] : dispatcher_.due(monotonic_now())) {
+    for (const auto& [worker, id, attempt] : dispatcher_.due(bus::monotonic_now())) {
       auto message = Service::message(units_.jobs(id));
       message.job_id = id;
       message.to = worker;
@@ -110,22 +112,22 @@ class JobPool {
     }
   }
 
-  void give_up(JobId id) {
+  void give_up(jobs::JobId id) {
     ++given_up_;
     std::vector<Result> results;
     for (const Job& job : units_.jobs(id)) results.push_back(Service::given_up(job));
     units_.store(id, results);
   }
 
-  Bus& bus_;
-  TaskShape shape_;
+  bus::Bus& bus_;
+  jobs::TaskShape shape_;
   std::int64_t config_;
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
-  JobDispatcher dispatcher_;
+  jobs::JobDispatcher dispatcher_;
   UnitTable<Service> units_;
   bool stopped_ = false;
   long given_up_ = 0;
 };
 
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

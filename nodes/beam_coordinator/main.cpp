@@ -12,16 +12,17 @@
 #include "nodes/program/program.hpp"
 #include "nodes/program/shutdown.hpp"
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 namespace {
 
-int run(const Words& words) {
-  const int consumers = words.size() > 3 ? number_word(words[3], "CONSUMERS") : 1;
-  const Config config = load_config(words[0]);
-  Bus bus(config.run.bus, words[1]);
-  CoordinatorNode node(bus, {shape_of(config.task), config_hash(config), config.search.transitions,
-                             [] { return stop_signal() != 0; }});
-  auto report = node.run([&](const GenerationSeams& seams) {
+int run(const program::Words& words) {
+  const int consumers = words.size() > 3 ? program::number_word(words[3], "CONSUMERS") : 1;
+  const config::Config config = config::load_config(words[0]);
+  bus::Bus bus(config.run.bus, words[1]);
+  CoordinatorNode node(
+      bus, {program::shape_of(config.task), config_hash(config), config.search.transitions,
+            [] { return program::stop_signal() != 0; }});
+  auto report = node.run([&](const search::GenerationSeams& seams) {
     const auto seed = static_cast<std::uint64_t>(config.run.seed);
     return generate(config.task, config.search, seed, seams);
   });
@@ -30,7 +31,7 @@ int run(const Words& words) {
     write_whole_file(std::filesystem::path(words[2]) / "generation.json", to_json(*report));
     node.drain(consumers);
   }
-  if (stop_signal()) return 128 + stop_signal();
+  if (program::stop_signal()) return 128 + program::stop_signal();
   if (node.given_up() == 0) return 0;
   std::fprintf(stderr,
                "rtg_beam_coordinator: %ld units of work took down or stopped every worker that had "
@@ -40,8 +41,9 @@ int run(const Words& words) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator
 
 int main(int argc, char** argv) {
-  return rtg::run_program(argc, argv, "CONFIG.yaml RUN FOLDER [CONSUMERS]", rtg::run);
+  return rtg::program::run(argc, argv, "CONFIG.yaml RUN FOLDER [CONSUMERS]",
+                           rtg::beam_coordinator::run);
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 
 StreamServer::StreamServer(const Limits& limits, std::int64_t row_bytes)
     : limits_(limits),
@@ -10,11 +10,11 @@ StreamServer::StreamServer(const Limits& limits, std::int64_t row_bytes)
       row_bytes_(static_cast<double>(row_bytes)),
       tokens_(limits.burst) {}
 
-void StreamServer::append(std::span<const Transition> rows) {
+void StreamServer::append(std::span<const search::Transition> rows) {
   rows_.insert(rows_.end(), rows.begin(), rows.end());
 }
 
-bool StreamServer::on_ack(const Ack& ack, Seconds now) {
+bool StreamServer::on_ack(const Ack& ack, bus::Seconds now) {
   if (ack.cursor < 0 || ack.cursor > count() || ack.credit < 0) return false;
   Consumer& consumer = consumers_[ack.consumer];
   consumer.cursor = std::max(consumer.cursor, ack.cursor);  // an old acknowledgement may come late
@@ -32,7 +32,7 @@ bool StreamServer::on_ack(const Ack& ack, Seconds now) {
   return true;
 }
 
-std::vector<RowRange> StreamServer::due(Seconds now) {
+std::vector<RowRange> StreamServer::due(bus::Seconds now) {
   tokens_ = std::min(limits_.burst, tokens_ + limits_.rate * std::max(0.0, now - refilled_));
   refilled_ = now;
   std::vector<RowRange> sends;
@@ -45,7 +45,7 @@ std::vector<RowRange> StreamServer::due(Seconds now) {
   return sends;
 }
 
-std::span<const Transition> StreamServer::rows(RowRange range) const {
+std::span<const search::Transition> StreamServer::rows(RowRange range) const {
   return std::span(rows_).subspan(static_cast<std::size_t>(range.begin),
                                   static_cast<std::size_t>(range.end - range.begin));
 }
@@ -56,7 +56,7 @@ std::int64_t StreamServer::slowest_cursor() const {
   return cursor;
 }
 
-bool StreamServer::drained(int consumers, Seconds now) const {
+bool StreamServer::drained(int consumers, bus::Seconds now) const {
   int complete = 0;
   for (const auto& [id, consumer] : consumers_) {
     if (consumer.complete)
@@ -79,7 +79,7 @@ void StreamServer::ask(RowRange range) {
 }
 
 /// The next message's worth of rows, those asked for first; empty if there is nothing to send.
-RowRange StreamServer::next(Seconds now) {
+RowRange StreamServer::next(bus::Seconds now) {
   if (!asked_.empty()) {
     const auto [begin, end] = *asked_.begin();
     const RowRange range{begin, std::min(end, begin + rows_per_message_)};
@@ -94,7 +94,7 @@ RowRange StreamServer::next(Seconds now) {
 }
 
 /// First row that may not go out yet.
-std::int64_t StreamServer::live_limit(Seconds now) const {
+std::int64_t StreamServer::live_limit(bus::Seconds now) const {
   std::int64_t limit = count();
   for (const auto& [id, consumer] : consumers_)
     if (now - consumer.heard <= limits_.silence)
@@ -102,4 +102,4 @@ std::int64_t StreamServer::live_limit(Seconds now) const {
   return limit;
 }
 
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

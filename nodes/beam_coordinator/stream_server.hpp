@@ -8,7 +8,7 @@
 #include "core/search/transition.hpp"
 #include "nodes/bus/seconds.hpp"
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 
 /// Half-open range of sequence numbers.
 struct RowRange {
@@ -29,7 +29,7 @@ class StreamServer {
     double rate = 10e6;                // [bytes/s]
     double burst = 64e3;               // [bytes] at once; a stock receive buffer holds 208 kB
     std::int64_t chunk_bytes = 16000;  // of one message
-    Seconds silence = 2.0;             // a consumer unheard for so long has no say in the pace
+    bus::Seconds silence = 2.0;        // a consumer unheard for so long has no say in the pace
     std::int64_t max_nacked = 65536;   // rows one acknowledgement may ask for
   };
   struct Ack {
@@ -42,17 +42,17 @@ class StreamServer {
   /// `row_bytes`: size of one transition on the wire.
   StreamServer(const Limits& limits, std::int64_t row_bytes);
 
-  void append(std::span<const Transition> rows);
+  void append(std::span<const search::Transition> rows);
   void seal() { sealed_ = true; }
 
   /// False if the acknowledgement contradicts the stream (a cursor beyond its end); it is then
   /// ignored.
-  bool on_ack(const Ack& ack, Seconds now);
+  bool on_ack(const Ack& ack, bus::Seconds now);
 
   /// The messages to send now, each a range of at most rows_per_message() rows.
-  std::vector<RowRange> due(Seconds now);
+  std::vector<RowRange> due(bus::Seconds now);
 
-  std::span<const Transition> rows(RowRange range) const;
+  std::span<const search::Transition> rows(RowRange range) const;
   std::int64_t count() const { return static_cast<std::int64_t>(rows_.size()); }
   std::int64_t rows_per_message() const { return rows_per_message_; }
   bool sealed() const { return sealed_; }
@@ -61,34 +61,34 @@ class StreamServer {
   long resent() const { return resent_; }  // rows sent again on request
 
   /// Says whether due() will have more to send although nothing new comes in.
-  bool backlog(Seconds now) const { return !asked_.empty() || live_ < live_limit(now); }
+  bool backlog(bus::Seconds now) const { return !asked_.empty() || live_ < live_limit(now); }
 
   /// Says whether all of the sealed stream has been sent, at least `consumers` know that they have
   /// it, and no living one does not.
-  bool drained(int consumers, Seconds now) const;
+  bool drained(int consumers, bus::Seconds now) const;
 
  private:
   struct Consumer {
     std::int64_t cursor = 0, credit = 0;
-    Seconds heard = 0.0;
+    bus::Seconds heard = 0.0;
     bool complete = false;
   };
 
   void ask(RowRange range);
-  RowRange next(Seconds now);
-  std::int64_t live_limit(Seconds now) const;
+  RowRange next(bus::Seconds now);
+  std::int64_t live_limit(bus::Seconds now) const;
 
   Limits limits_;
   std::int64_t rows_per_message_;
   double row_bytes_;
-  std::vector<Transition> rows_;
+  std::vector<search::Transition> rows_;
   bool sealed_ = false;
   std::int64_t live_ = 0;                       // rows below have been sent once
   std::map<std::int64_t, std::int64_t> asked_;  // begin -> end, disjoint
   std::map<std::int64_t, Consumer> consumers_;
   double tokens_ = 0.0;  // [bytes]
-  Seconds refilled_ = 0.0;
+  bus::Seconds refilled_ = 0.0;
   long resent_ = 0;
 };
 
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

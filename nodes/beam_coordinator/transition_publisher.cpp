@@ -2,21 +2,23 @@
 
 #include <utility>
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 namespace {
 
 /// Bytes of one transition on the wire: two states, action, success, source.
-std::int64_t row_bytes(const TaskShape& shape) { return std::int64_t{2} * shape.bodies * 24 + 6; }
+std::int64_t row_bytes(const jobs::TaskShape& shape) {
+  return std::int64_t{2} * shape.bodies * 24 + 6;
+}
 
 }  // namespace
 
-TransitionPublisher::TransitionPublisher(Bus& bus, const TaskShape& shape)
+TransitionPublisher::TransitionPublisher(bus::Bus& bus, const jobs::TaskShape& shape)
     : bus_(bus), server_({}, row_bytes(shape)) {
   using rtg_msgs::stream_ack_t;
   bus_.subscribe<stream_ack_t>("RTG_ACK", [this](const stream_ack_t& m) { on_ack(m); });
 }
 
-void TransitionPublisher::store(std::span<const Transition> rows) {
+void TransitionPublisher::store(std::span<const search::Transition> rows) {
   const std::scoped_lock lock(mutex_);
   server_.append(rows);
 }
@@ -26,7 +28,7 @@ void TransitionPublisher::seal() {
   server_.seal();
 }
 
-void TransitionPublisher::tick(Seconds now) {
+void TransitionPublisher::tick(bus::Seconds now) {
   const std::scoped_lock lock(mutex_);
   for (const RowRange& range : server_.due(now)) send(range);
   if (!tail_.due(now)) return;
@@ -37,12 +39,12 @@ void TransitionPublisher::tick(Seconds now) {
   bus_.publish("RTG_TAIL", message);
 }
 
-bool TransitionPublisher::backlog(Seconds now) const {
+bool TransitionPublisher::backlog(bus::Seconds now) const {
   const std::scoped_lock lock(mutex_);
   return server_.backlog(now);
 }
 
-bool TransitionPublisher::drained(int consumers, Seconds now) const {
+bool TransitionPublisher::drained(int consumers, bus::Seconds now) const {
   const std::scoped_lock lock(mutex_);
   return server_.drained(consumers, now);
 }
@@ -61,7 +63,8 @@ void TransitionPublisher::on_ack(const rtg_msgs::stream_ack_t& message) {
     if (message.first[k] >= 0 && message.last[k] >= message.first[k] &&
         message.last[k] < server_.count())
       missing.push_back({message.first[k], message.last[k] + 1});
-  if (!server_.on_ack({message.consumer, message.cursor, message.credit, missing}, monotonic_now()))
+  if (!server_.on_ack({message.consumer, message.cursor, message.credit, missing},
+                      bus::monotonic_now()))
     bus_.counters().add("stream.illegal_ack");
 }
 
@@ -69,9 +72,9 @@ void TransitionPublisher::send(RowRange range) {
   rtg_msgs::transition_batch_t message{};
   message.stream = stream_;
   message.first = range.begin;
-  for (const Transition& t : server_.rows(range)) {
-    append_poses(t.poses, message.poses);
-    append_poses(t.next, message.next_poses);
+  for (const search::Transition& t : server_.rows(range)) {
+    jobs::append_poses(t.poses, message.poses);
+    jobs::append_poses(t.next, message.next_poses);
     message.action.push_back(t.action);
     message.success.push_back(t.success ? 1 : 0);
     message.source.push_back(static_cast<std::int8_t>(t.source));
@@ -81,4 +84,4 @@ void TransitionPublisher::send(RowRange range) {
   bus_.publish("RTG_TRANSITION", std::move(message));
 }
 
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

@@ -11,25 +11,25 @@
 #include "nodes/bus/clock.hpp"
 #include "nodes/jobs/services.hpp"
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 
 /// The transition stream on the bus. The search calls store() on its thread; everything else
 /// belongs to the thread that spins the bus.
 class TransitionPublisher {
  public:
-  TransitionPublisher(Bus& bus, const TaskShape& shape);
+  TransitionPublisher(bus::Bus& bus, const jobs::TaskShape& shape);
 
-  void store(std::span<const Transition> rows);
+  void store(std::span<const search::Transition> rows);
   void seal();
 
   /// Sends what is due, and how long the stream is.
-  void tick(Seconds now);
+  void tick(bus::Seconds now);
 
   /// Says whether tick() will have more to send although nothing new comes in.
-  bool backlog(Seconds now) const;
+  bool backlog(bus::Seconds now) const;
 
   /// As StreamServer::drained().
-  bool drained(int consumers, Seconds now) const;
+  bool drained(int consumers, bus::Seconds now) const;
 
   struct State {
     std::int64_t rows = 0, slowest_cursor = 0;
@@ -43,11 +43,11 @@ class TransitionPublisher {
   void on_ack(const rtg_msgs::stream_ack_t& message);
   void send(RowRange range);
 
-  Bus& bus_;
-  std::int64_t stream_ = random_identity();
-  Ticker tail_{0.2};
+  bus::Bus& bus_;
+  std::int64_t stream_ = bus::random_identity();
+  bus::Ticker tail_{0.2};
   mutable std::mutex mutex_;  // guards what follows
   StreamServer server_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

@@ -10,7 +10,7 @@
 #include "nodes/jobs/job_dispatcher.hpp"
 #include "nodes/jobs/services.hpp"
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 
 /// Which jobs of a batch travel in which unit, and where their results belong. Refers to the jobs
 /// of the caller.
@@ -21,27 +21,28 @@ class UnitTable {
   using Result = typename Service::Result;
 
   /// Deals a new batch into units; their ids in order, equal ones for equal questions.
-  std::vector<JobId> deal(std::span<const Job> jobs, const TaskShape& shape, std::int64_t config) {
+  std::vector<jobs::JobId> deal(std::span<const Job> jobs, const jobs::TaskShape& shape,
+                                std::int64_t config) {
     units_.clear();
     results_.assign(jobs.size(), {});
-    std::vector<JobId> ids;
+    std::vector<jobs::JobId> ids;
     std::size_t first = 0;
     for (const std::size_t size : unit_sizes(jobs.size(), Service::kUnit, shape)) {
       const Unit unit{first, jobs.subspan(first, size)};
-      ids.push_back(unit_id(unit.jobs, config));
+      ids.push_back(jobs::unit_id(unit.jobs, config));
       units_.emplace(ids.back(), unit);
       first += size;
     }
     return ids;
   }
 
-  bool contains(JobId id) const { return units_.contains(id); }
+  bool contains(jobs::JobId id) const { return units_.contains(id); }
 
   /// The jobs of a unit that the table contains.
-  std::span<const Job> jobs(JobId id) const { return units_.find(id)->second.jobs; }
+  std::span<const Job> jobs(jobs::JobId id) const { return units_.find(id)->second.jobs; }
 
   /// Takes the results of a unit's jobs, as many as the unit has jobs.
-  void store(JobId id, std::span<const Result> results) {
+  void store(jobs::JobId id, std::span<const Result> results) {
     const auto [begin, end] = units_.equal_range(id);
     for (auto it = begin; it != end; ++it)
       std::copy(results.begin(), results.end(),
@@ -60,8 +61,8 @@ class UnitTable {
     std::span<const Job> jobs;
   };
 
-  std::unordered_multimap<JobId, Unit> units_;
+  std::unordered_multimap<jobs::JobId, Unit> units_;
   std::vector<Result> results_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

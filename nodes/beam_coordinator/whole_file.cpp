@@ -7,7 +7,7 @@
 #include <fstream>
 #include <system_error>
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 namespace {
 
 /// Waits until the file would outlive a power cut.
@@ -35,4 +35,4 @@ void write_whole_file(const std::filesystem::path& path, const std::string& text
   std::filesystem::rename(part, path);
 }
 
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

@@ -14,7 +14,7 @@
 #include "nodes/bus/bus_url.hpp"
 #include "nodes/bus/content_hash.hpp"
 
-namespace rtg {
+namespace rtg::bus {
 namespace {
 
 constexpr int kQueueCapacity = 1000;  // messages; LCM's default of 30 drops new ones silently
@@ -122,4 +122,4 @@ bool Bus::is_ours(const rtg_msgs::header_t& header) {
   return true;
 }
 
-}  // namespace rtg
+}  // namespace rtg::bus

@@ -10,7 +10,7 @@
 #include "nodes/bus/counters.hpp"
 #include "nodes/bus/wire.hpp"
 
-namespace rtg {
+namespace rtg::bus {
 
 /// Version of the rules in msgs/CHANNELS.md.
 inline constexpr std::int32_t kProtocol = 1;
@@ -71,4 +71,4 @@ class Bus {
   std::unique_ptr<Connection> connection_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::bus

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace rtg {
+namespace rtg::bus {
 namespace {
 
 /// Says whether `text` begins with `word`, which is then taken off it.
@@ -41,4 +41,4 @@ std::string checked_bus_url(const std::string& url) {
   return url + (has_ttl ? "&" : "?ttl=0&") + "recv_buf_size=" + std::to_string(kReceiveBuffer);
 }
 
-}  // namespace rtg
+}  // namespace rtg::bus

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace rtg {
+namespace rtg::bus {
 
 /// The kernel's default of 208 kB loses every burst [bytes].
 inline constexpr int kReceiveBuffer = 4 << 20;
@@ -11,4 +11,4 @@ inline constexpr int kReceiveBuffer = 4 << 20;
 /// legal.
 std::string checked_bus_url(const std::string& url);
 
-}  // namespace rtg
+}  // namespace rtg::bus

@@ -6,7 +6,7 @@
 
 #include "nodes/bus/seconds.hpp"
 
-namespace rtg {
+namespace rtg::bus {
 
 /// The clock of all timeouts; never set back.
 inline Seconds monotonic_now() {
@@ -35,4 +35,4 @@ inline std::int64_t random_identity() {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(device()) << 32 | device());
 }
 
-}  // namespace rtg
+}  // namespace rtg::bus

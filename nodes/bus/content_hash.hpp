@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace rtg {
+namespace rtg::bus {
 
 /// FNV-1a, 64 bit: names a text the same way in every process and language. Not a
 /// defence against forgers.
@@ -22,4 +22,4 @@ class ContentHash {
   std::uint64_t state_ = 0xcbf29ce484222325;
 };
 
-}  // namespace rtg
+}  // namespace rtg::bus

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <string>
 
-namespace rtg {
+namespace rtg::bus {
 
 /// Named event counts of one process, published in node_status_t: nothing is dropped without a
 /// trace. Safe to use from several threads.
@@ -32,4 +32,4 @@ class Counters {
   std::map<std::string, long> counts_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::bus

@@ -5,7 +5,7 @@
 
 #include "core/threads/cpu_clock.hpp"
 
-namespace rtg {
+namespace rtg::bus {
 
 void NodeStatus::publish(const std::string& state, std::int64_t done,
                          const std::map<std::string, long>& counts) {
@@ -14,7 +14,7 @@ void NodeStatus::publish(const std::string& state, std::int64_t done,
   message.number = number_;
   message.state = state;
   message.done = done;
-  message.cpu_s = process_cpu_s();
+  message.cpu_s = threads::process_cpu_s();
   std::map<std::string, long> all = bus_.counters().all();
   all.insert(counts.begin(), counts.end());
   for (const auto& [name, value] : all) {
@@ -33,4 +33,4 @@ CoordinatorWatch::CoordinatorWatch(Bus& bus) {
                                              });
 }
 
-}  // namespace rtg
+}  // namespace rtg::bus

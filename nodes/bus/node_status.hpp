@@ -7,7 +7,7 @@
 #include "nodes/bus/bus.hpp"
 #include "nodes/bus/clock.hpp"
 
-namespace rtg {
+namespace rtg::bus {
 
 /// Tells people what a process does and what it has counted: RTG_STATUS.
 class NodeStatus {
@@ -46,4 +46,4 @@ class CoordinatorWatch {
   Seconds heard_ = monotonic_now();
 };
 
-}  // namespace rtg
+}  // namespace rtg::bus

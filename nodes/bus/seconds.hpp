@@ -1,8 +1,8 @@
 #pragma once
 
-namespace rtg {
+namespace rtg::bus {
 
 /// A time of a clock that is never set back, or a span of time [s].
 using Seconds = double;
 
-}  // namespace rtg
+}  // namespace rtg::bus

@@ -1,6 +1,6 @@
 #include "nodes/bus/wire.hpp"
 
-namespace rtg {
+namespace rtg::bus {
 namespace {
 
 std::uint64_t big_endian(std::span<const std::uint8_t> bytes) {
@@ -45,4 +45,4 @@ bool has_fingerprint(std::span<const std::uint8_t> bytes, std::int64_t fingerpri
 }
 
 }  // namespace wire
-}  // namespace rtg
+}  // namespace rtg::bus

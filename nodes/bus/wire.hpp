@@ -12,7 +12,7 @@
 
 #include "nodes/bus/wire_fields.hpp"
 
-namespace rtg {
+namespace rtg::bus {
 
 /// Largest message, payload only. LCM splits beyond 65,499 bytes, and its reassembly loses and
 /// corrupts.
@@ -127,4 +127,4 @@ template <class Msg>
   return std::nullopt;
 }
 
-}  // namespace rtg
+}  // namespace rtg::bus

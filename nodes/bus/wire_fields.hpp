@@ -14,7 +14,7 @@
 /// The fields of each message in the order of its .lcm file, for visitors that check bytes before
 /// decoding and values after: v.scalar(x), v.count(n), v.array(vector, n), v.text(string),
 /// v.texts(vector of strings, n).
-namespace rtg {
+namespace rtg::bus {
 
 template <class V>
 void fields(V& v, rtg_msgs::header_t& m) {
@@ -99,4 +99,4 @@ void fields(V& v, rtg_msgs::node_status_t& m) {
   v.count(m.n), v.texts(m.counter_name, m.n), v.array(m.counter_value, m.n);
 }
 
-}  // namespace rtg
+}  // namespace rtg::bus

@@ -19,7 +19,7 @@
 #include "nodes/config/train_preset.hpp"
 #include "nodes/config/yaml_parser.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 using Kind = ConfigNode::Kind;
@@ -89,7 +89,8 @@ void clear_for_method(ConfigNode& root) {
 
 void apply_overrides(ConfigNode& root, std::span<const std::string> overrides) {
   for (const std::string& setting : overrides) {
-    if (setting.starts_with("reverse.preset=")) clear_for_preset(root, "reverse", reverse_preset);
+    if (setting.starts_with("reverse.preset="))
+      clear_for_preset(root, "reverse", reverse::reverse_preset);
     if (setting.starts_with("train.preset=")) clear_for_preset(root, "train", train_preset);
     if (setting.starts_with("run.method=")) clear_for_method(root);
   }
@@ -169,7 +170,7 @@ void check_randomisation(const ConfigNode& root, const Config& config) {
 
 void check_bus(const ConfigNode& root, const std::string& url) {
   try {
-    checked_bus_url(url);
+    bus::checked_bus_url(url);
   } catch (const std::invalid_argument& error) {
     throw ConfigError(find(root, "run", "bus")->value.origin + ": key 'run.bus': " + error.what());
   }
@@ -203,7 +204,7 @@ Config read_config(const ConfigNode& root) {
   Config config;
   config.task = read_task(reader.required("task", kTaskLegal).value);
   read_section(root, "physics", config.physics);
-  read_preset_section(root, "reverse", reverse_preset, config.reverse);
+  read_preset_section(root, "reverse", reverse::reverse_preset, config.reverse);
   read_section(root, "search", config.search);
   read_preset_section(root, "train", train_preset, config.train);
   read_section(root, "run", config.run);
@@ -246,7 +247,7 @@ Config load_config(const std::filesystem::path& file, std::span<const std::strin
 }
 
 Config parse_config(const std::string& text, const std::filesystem::path& name,
-                       std::span<const std::string> overrides) {
+                    std::span<const std::string> overrides) {
   ConfigNode root = parse_root(text, name.string());
   fetch_task(root, name.parent_path());
   return read_config(root, overrides);
@@ -257,7 +258,7 @@ std::string canonical_yaml(const Config& config) { return yaml_text(tree_of(conf
 std::string config_json(const Config& config) { return json_text(tree_of(config)); }
 
 std::int64_t config_hash(const Config& config) {
-  return ContentHash().add(canonical_yaml(config)).value();
+  return bus::ContentHash().add(canonical_yaml(config)).value();
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -13,14 +13,14 @@
 #include "nodes/config/run_config.hpp"
 #include "nodes/config/train_config.hpp"
 
-namespace rtg {
+namespace rtg::config {
 
 /// Everything that a run is made from, checked. The sections of the YAML have the same names.
 struct Config {
-  Task task;
+  tasks::Task task;
   PhysicsConfig physics;
-  ReverseConfig reverse;
-  SearchConfig search;
+  reverse::ReverseConfig reverse;
+  search::SearchConfig search;
   TrainConfig train;
   RunConfig run;
 };
@@ -29,12 +29,11 @@ struct Config {
 /// file, relative to this one, that holds it. `overrides` are `section.key=value` and stand above
 /// the file in their order; a preset among them also stands above the file's values of the keys
 /// that presets decide, and likewise a method, which stands above presets. Throws ConfigError.
-Config load_config(const std::filesystem::path& file,
-                      std::span<const std::string> overrides = {});
+Config load_config(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// The same from the text of a file; `name` is for messages, and what its paths are relative to.
 Config parse_config(const std::string& text, const std::filesystem::path& name,
-                       std::span<const std::string> overrides = {});
+                    std::span<const std::string> overrides = {});
 
 /// All values with what is legal as comments. Reads back to the same configuration and text.
 std::string canonical_yaml(const Config& config);
@@ -45,4 +44,4 @@ std::string config_json(const Config& config);
 /// The hash of the canonical text, which names the configuration in messages and run folders.
 std::int64_t config_hash(const Config& config);
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-namespace rtg {
+namespace rtg::config {
 
 /// A mistake in the configuration; what() is one line for its writer, who gets exit status 2:
 ///
@@ -29,4 +29,4 @@ class ConfigError : public std::runtime_error {
   }
 };
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -7,7 +7,7 @@
 #include "nodes/config/config_error.hpp"
 #include "nodes/config/yaml_parser.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 using Kind = ConfigNode::Kind;
@@ -55,4 +55,4 @@ void apply_override(ConfigNode& root, const std::string& setting) {
   if (node->origin.empty()) node->origin = flag;
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <utility>
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 using Kind = ConfigNode::Kind;
@@ -134,4 +134,4 @@ std::string yaml_text(const ConfigNode& root) { return block(root, ""); }
 
 std::string json_text(const ConfigNode& root) { return json(root, "") + '\n'; }
 
-}  // namespace rtg
+}  // namespace rtg::config

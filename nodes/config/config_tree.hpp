@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace rtg {
+namespace rtg::config {
 
 struct ConfigEntry;
 
@@ -57,4 +57,4 @@ std::string yaml_text(const ConfigNode& root);
 /// Indented, comments left out.
 std::string json_text(const ConfigNode& root);
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -9,7 +9,7 @@
 
 #include "core/world/separation.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 [[gnu::format(printf, 1, 2)]] std::string print(const char* format, ...) {
@@ -46,7 +46,7 @@ std::string body_line(const Body& body, const Pose& start, std::size_t width) {
                degrees(start.theta));
 }
 
-std::string bodies_in_words(const Task& task) {
+std::string bodies_in_words(const tasks::Task& task) {
   std::size_t width = 0;
   for (const Body& body : task.scene.bodies) width = std::max(width, body.name.size());
   std::string out = "bodies, the first is the robot\n";
@@ -83,16 +83,16 @@ std::string joints_in_words(const Scene& scene) {
   return out;
 }
 
-std::string term_in_words(const GoalTerm& term) {
+std::string term_in_words(const tasks::GoalTerm& term) {
   const bool any = term.kind == "*";
-  if (term.subject == GoalTerm::Subject::kJoint)
+  if (term.subject == tasks::GoalTerm::Subject::kJoint)
     return (any ? "  every joint" : "  the joint of '" + term.kind + "'") + " has an angle " +
            angles_in_words(term.least, term.most) + '\n';
-  const bool mean = term.subject == GoalTerm::Subject::kCentroid;
+  const bool mean = term.subject == tasks::GoalTerm::Subject::kCentroid;
   const std::string who =
       any ? (mean ? "movable objects" : "movable object") : "'" + term.kind + "'";
   const std::string where =
-      term.region == GoalTerm::Region::kDisc
+      term.region == tasks::GoalTerm::Region::kDisc
           ? print("within %.4g m of (%.4g, %.4g)", term.radius, term.centre.x(), term.centre.y())
           : "at " + half_plane_in_words(term.normal, term.offset);
   return (mean ? "  the mean centre of all " : "  the centre of every ") + who + " lies " + where +
@@ -105,16 +105,16 @@ struct Amplitudes {
 };
 
 Amplitudes amplitudes(const Config& config) {
-  const Task& task = config.task;
+  const tasks::Task& task = config.task;
   const double training = config.train.start_jitter;
   if (!config.train.randomise) return {task.start_jitter, training};
   return {task.randomisation, std::max(training, task.randomisation)};
 }
 
-std::string task_in_words(const Task& task, const Amplitudes& starts) {
+std::string task_in_words(const tasks::Task& task, const Amplitudes& starts) {
   std::string out = "task " + task.name + "\n" + bodies_in_words(task) +
                     joints_in_words(task.scene) + "goal, all of\n";
-  for (const GoalTerm& term : task.goal) out += term_in_words(term);
+  for (const tasks::GoalTerm& term : task.goal) out += term_in_words(term);
   const PushConfig& push = task.push;
   out += print(
       "actions\n  %d headings, %.4g degrees apart; a push is %.4g m straight ahead, "
@@ -145,15 +145,15 @@ std::string processes_in_words(const RunConfig& run) {
 }
 
 std::string work_in_words(const Config& config) {
-  const SearchConfig& search = config.search;
+  const search::SearchConfig& search = config.search;
   const TrainConfig& train = config.train;
   const RunConfig& run = config.run;
   const auto method = kMethods[static_cast<std::size_t>(run.method)];
   std::string out = print("work by method %s\n", method.data());
   if (!train.offline) return out + training_in_words(config) + processes_in_words(run);
-  out += print("  generate %d transitions by %s, %d other headings with each step\n",
-               search.transitions, kGenerators[static_cast<std::size_t>(search.generator)].data(),
-               search.branches);
+  out += print(
+      "  generate %d transitions by %s, %d other headings with each step\n", search.transitions,
+      search::kGenerators[static_cast<std::size_t>(search.generator)].data(), search.branches);
   return out + training_in_words(config) + processes_in_words(run);
 }
 
@@ -163,4 +163,4 @@ std::string description(const Config& config) {
   return task_in_words(config.task, amplitudes(config)) + work_in_words(config);
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

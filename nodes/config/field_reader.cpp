@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 using Kind = ConfigNode::Kind;
@@ -174,4 +174,4 @@ std::string listed(std::span<const std::string> words) {
   return out;
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -9,7 +9,7 @@
 #include "nodes/config/config_error.hpp"
 #include "nodes/config/config_tree.hpp"
 
-namespace rtg {
+namespace rtg::config {
 
 /// A mapping of a configuration on its way into a struct: reads by key what is there, leaves the
 /// rest of the struct as it is. As a visitor it takes the fields that visit() lists. All functions
@@ -61,4 +61,4 @@ std::string single_text(float number);
 /// "a, b, c".
 std::string listed(std::span<const std::string> words);
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 std::string with_range(const char* doc, const std::string& least, const std::string& most) {
@@ -42,4 +42,4 @@ void FieldWriter::add(const char* key, std::string value, bool quoted, std::stri
   section.entries.push_back({key, "", std::move(node), std::move(comment)});
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -8,7 +8,7 @@
 #include "nodes/config/config_tree.hpp"
 #include "nodes/config/field_reader.hpp"
 
-namespace rtg {
+namespace rtg::config {
 
 /// Visitor that lists the fields of a struct as a mapping: values, comments with what is legal.
 class FieldWriter {
@@ -49,4 +49,4 @@ void read_fields(const ConfigNode& section, const std::string& path, Section& co
   config.visit(reader);
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

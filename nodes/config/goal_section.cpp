@@ -6,7 +6,7 @@
 #include "nodes/config/field_reader.hpp"
 #include "nodes/config/task_words.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 constexpr double kUnitWithin = 1e-2;    // length of a normal, so that [0.71, 0.71] will do
@@ -20,17 +20,17 @@ const std::string kTermLegal =
     "kind or centroid with disc: {centre: [x, y], radius: m} or half_plane: {normal: [x, y], "
     "offset: m}; joint with angles: [least, most]";
 
-void read_disc(const ConfigNode& section, const std::string& path, GoalTerm& term) {
+void read_disc(const ConfigNode& section, const std::string& path, tasks::GoalTerm& term) {
   FieldReader reader(section, path, kDiscKeys);
-  term.region = GoalTerm::Region::kDisc;
+  term.region = tasks::GoalTerm::Region::kDisc;
   term.centre = point_at(reader, "centre");
   reader.required("radius", "a number from 0.1 to 1000.0 [m]");
   reader.number("radius", term.radius, 0.1, kMaxPlace);
 }
 
-void read_half_plane(const ConfigNode& section, const std::string& path, GoalTerm& term) {
+void read_half_plane(const ConfigNode& section, const std::string& path, tasks::GoalTerm& term) {
   FieldReader reader(section, path, kHalfPlaneKeys);
-  term.region = GoalTerm::Region::kHalfPlane;
+  term.region = tasks::GoalTerm::Region::kHalfPlane;
   term.normal = point_at(reader, "normal");
   const double length = term.normal.norm();
   if (std::abs(length - 1.0) > kUnitWithin)
@@ -42,15 +42,15 @@ void read_half_plane(const ConfigNode& section, const std::string& path, GoalTer
 }
 
 /// The subject of a term: kind (the default), centroid or joint.
-void read_subject(const FieldReader& reader, const std::string& path, GoalTerm& term) {
+void read_subject(const FieldReader& reader, const std::string& path, tasks::GoalTerm& term) {
   const ConfigNode& section = reader.section();
   const bool of_joint = find(section, "joint"), of_centroid = find(section, "centroid");
   if (of_joint + of_centroid + (find(section, "kind") != nullptr) > 1)
     throw ConfigError(section.origin, path, "has two subjects", kTermLegal);
   const char* key = of_joint ? "joint" : of_centroid ? "centroid" : "kind";
-  term.subject = of_joint      ? GoalTerm::Subject::kJoint
-                 : of_centroid ? GoalTerm::Subject::kCentroid
-                               : GoalTerm::Subject::kEvery;
+  term.subject = of_joint      ? tasks::GoalTerm::Subject::kJoint
+                 : of_centroid ? tasks::GoalTerm::Subject::kCentroid
+                               : tasks::GoalTerm::Subject::kEvery;
   const ConfigEntry* subject = find(section, key);
   if (subject && subject->value.scalar != "*")
     term.kind = name_at(reader, key,
@@ -58,9 +58,9 @@ void read_subject(const FieldReader& reader, const std::string& path, GoalTerm& 
                                  : "the kind of a body, or \"*\" for all objects");
 }
 
-ConfigNode region_node(const GoalTerm& term) {
-  if (term.region == GoalTerm::Region::kAngles) return point_node({term.least, term.most});
-  const bool is_disc = term.region == GoalTerm::Region::kDisc;
+ConfigNode region_node(const tasks::GoalTerm& term) {
+  if (term.region == tasks::GoalTerm::Region::kAngles) return point_node({term.least, term.most});
+  const bool is_disc = term.region == tasks::GoalTerm::Region::kDisc;
   ConfigNode region = map_node();
   region.entries.push_back(
       {is_disc ? "centre" : "normal", "", point_node(is_disc ? term.centre : term.normal)});
@@ -71,7 +71,7 @@ ConfigNode region_node(const GoalTerm& term) {
 
 }  // namespace
 
-GoalTerm read_term(const ConfigNode& section, const std::string& path) {
+tasks::GoalTerm read_term(const ConfigNode& section, const std::string& path) {
   const FieldReader reader(section, path, kTermKeys);
   const ConfigEntry *disc = find(section, "disc"), *half_plane = find(section, "half_plane"),
                     *angles = find(section, "angles");
@@ -79,9 +79,9 @@ GoalTerm read_term(const ConfigNode& section, const std::string& path) {
   if (regions != 1)
     throw ConfigError(section.origin, path, regions ? "has two regions" : "has no region",
                       kTermLegal);
-  GoalTerm term;
+  tasks::GoalTerm term;
   read_subject(reader, path, term);
-  if ((angles != nullptr) != (term.subject == GoalTerm::Subject::kJoint))
+  if ((angles != nullptr) != (term.subject == tasks::GoalTerm::Subject::kJoint))
     throw ConfigError(section.origin, path,
                       angles ? "has angles of what is no joint" : "has a joint without angles",
                       kTermLegal);
@@ -89,14 +89,14 @@ GoalTerm read_term(const ConfigNode& section, const std::string& path) {
   if (half_plane) read_half_plane(half_plane->value, reader.path("half_plane"), term);
   if (angles) {
     const Vector2d range = angles_at(reader, "angles");
-    term.region = GoalTerm::Region::kAngles;
+    term.region = tasks::GoalTerm::Region::kAngles;
     term.least = range[0];
     term.most = range[1];
   }
   return term;
 }
 
-ConfigNode term_node(const GoalTerm& term) {
+ConfigNode term_node(const tasks::GoalTerm& term) {
   constexpr const char* kSubjects[] = {"kind", "centroid", "joint"};
   constexpr const char* kRegions[] = {"disc", "half_plane", "angles"};
   ConfigNode node = map_node();
@@ -106,4 +106,4 @@ ConfigNode term_node(const GoalTerm& term) {
   return node;
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -8,7 +8,7 @@
 #include "nodes/config/field_reader.hpp"
 #include "nodes/config/task_words.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 constexpr double kOffPin = 1e-3;    // of a start state [m]
@@ -56,7 +56,7 @@ void check_tree(const Scene& scene, const ConfigNode& section) {
 }
 
 /// Every joint of the start state is closed, its angle within the limits.
-void check_start(const Task& task, const ConfigNode& section) {
+void check_start(const tasks::Task& task, const ConfigNode& section) {
   for (std::size_t k = 0; k < task.scene.joints.size(); ++k) {
     const Joint& joint = task.scene.joints[k];
     const auto child = static_cast<std::size_t>(joint.child);
@@ -110,7 +110,7 @@ ConfigNode joint_node(const Joint& joint, const Scene& scene) {
   return node;
 }
 
-void close_joints(Task& task, const ConfigNode& section) {
+void close_joints(tasks::Task& task, const ConfigNode& section) {
   if (task.scene.joints.empty()) return;
   check_tree(task.scene, section);
   check_start(task, section);
@@ -118,4 +118,4 @@ void close_joints(Task& task, const ConfigNode& section) {
   std::ranges::transform(task.start, task.start.begin(), to_single);
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

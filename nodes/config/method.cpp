@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 using Settings = std::vector<MethodSetting>;
@@ -59,4 +59,4 @@ std::span<const MethodSetting> settings_of(Method method) {
   return table()[static_cast<std::size_t>(method)];
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-namespace rtg {
+namespace rtg::config {
 
 /// The methods that are compared: learners that differ in where their experience comes from and in
 /// little else.
@@ -54,4 +54,4 @@ struct MethodSetting {
 /// half of the time and is uniform over all headings else: there is nothing yet to stay near to.
 std::span<const MethodSetting> settings_of(Method method);
 
-}  // namespace rtg
+}  // namespace rtg::config

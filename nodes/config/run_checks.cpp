@@ -6,7 +6,7 @@
 
 #include "nodes/config/config_error.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 /// Where a value stands.
@@ -25,9 +25,9 @@ std::string place(const ConfigNode& root, std::initializer_list<Field> fields) {
 }
 
 /// Says whether a generator's steps were found to lead to success.
-bool imitable(Generator generator) {
-  return generator == Generator::kRrbs || generator == Generator::kNaive ||
-         generator == Generator::kForward;
+bool imitable(search::Generator generator) {
+  return generator == search::Generator::kRrbs || generator == search::Generator::kNaive ||
+         generator == search::Generator::kForward;
 }
 
 void check_learner(const Config& config, const ConfigNode& root) {
@@ -76,4 +76,4 @@ void check_run(const Config& config, const ConfigNode& root) {
   check_record(config, root);
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

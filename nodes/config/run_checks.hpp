@@ -1,9 +1,9 @@
 #pragma once
 
-#include "nodes/config/config_tree.hpp"
 #include "nodes/config/config.hpp"
+#include "nodes/config/config_tree.hpp"
 
-namespace rtg {
+namespace rtg::config {
 
 /// Refuses values that are legal each but do not go together in a run: a learner without what it
 /// learns from or with what it cannot use, a replay buffer smaller than the data (also where only
@@ -11,4 +11,4 @@ namespace rtg {
 /// Throws ConfigError with the place in `root` of a value that is part of it.
 void check_run(const Config& config, const ConfigNode& root);
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -4,7 +4,7 @@
 
 #include "nodes/config/method.hpp"
 
-namespace rtg {
+namespace rtg::config {
 
 /// How a run is carried out. Of these only the seed, and the method by the values that it stands
 /// for, change the transitions; what is learned from them also depends, over LCM, on when they come
@@ -28,4 +28,4 @@ struct RunConfig {
   }
 };
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -10,7 +10,7 @@
 #include "nodes/config/field_writer.hpp"
 #include "nodes/config/task_words.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 using Kind = ConfigNode::Kind;
@@ -105,4 +105,4 @@ ConfigNode shape_node(const Polygon& shape) {
   return keyed("vertices", list_node(std::move(vertices)));
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

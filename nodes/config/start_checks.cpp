@@ -6,13 +6,13 @@
 #include "nodes/config/config_error.hpp"
 #include "nodes/config/field_reader.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 constexpr int kHalvings = 10;
 
 /// An amplitude below `amplitude` that is legal, 0 if there is none of 0.1 % of it and more.
-double legal_amplitude(const Task& task, double amplitude) {
+double legal_amplitude(const tasks::Task& task, double amplitude) {
   for (int k = 0; k < kHalvings; ++k) {
     amplitude /= 2.0;
     if (allows_jitter(task, amplitude)) return amplitude;
@@ -44,4 +44,4 @@ void check_jitters(const Config& config, const ConfigNode& root) {
           "up to " + number_text(legal_amplitude(config.task, amplitude)) + " with these bodies");
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

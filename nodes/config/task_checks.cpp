@@ -9,7 +9,7 @@
 #include "nodes/config/field_reader.hpp"
 #include "nodes/config/task_words.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 std::string body_path(std::size_t i) { return "task.bodies." + std::to_string(i); }
@@ -23,7 +23,7 @@ const ConfigNode& body_section(const ConfigNode& section, std::size_t i) {
   fail_at(body_section(section, body), body_path(body), key, wrong, legal);
 }
 
-void check_movable(const Task& task, const ConfigNode& section) {
+void check_movable(const tasks::Task& task, const ConfigNode& section) {
   const auto& bodies = task.scene.bodies;
   if (bodies[0].fixed)
     fail_at(section, 0, "fixed", "the first body is the robot, which moves", "false");
@@ -31,7 +31,7 @@ void check_movable(const Task& task, const ConfigNode& section) {
     fail_at(section, 1, "fixed", "no object can move", "false for one body besides the robot");
 }
 
-void check_start(const Task& task, const ConfigNode& section) {
+void check_start(const tasks::Task& task, const ConfigNode& section) {
   const std::string arena = number_text(task.push.arena);
   for (std::size_t i = 0; i < task.scene.size(); ++i) {
     const Body& body = task.scene.bodies[i];
@@ -43,7 +43,7 @@ void check_start(const Task& task, const ConfigNode& section) {
       fail_at(section, i, "shape", "is larger than the arena",
               "a reach of at most " + arena + " m (task.push.arena)");
   }
-  if (const auto pair = first_overlap(task.scene, task.start, kStartClearance)) {
+  if (const auto pair = first_overlap(task.scene, task.start, tasks::kStartClearance)) {
     const auto [a, b] = std::minmax(pair->first, pair->second);
     const double gap = separation(task.scene.bodies[a].shape, task.start[a],
                                   task.scene.bodies[b].shape, task.start[b]);
@@ -54,7 +54,7 @@ void check_start(const Task& task, const ConfigNode& section) {
 }
 
 /// The kinds of the objects that can move, and "*".
-std::string legal_kinds(const Task& task) {
+std::string legal_kinds(const tasks::Task& task) {
   std::vector<std::string> kinds{"\"*\""};
   for (std::size_t i = 1; i < task.scene.size(); ++i) {
     const Body& body = task.scene.bodies[i];
@@ -65,23 +65,23 @@ std::string legal_kinds(const Task& task) {
 }
 
 /// Says whether some point of the arena, |x|, |y| ≤ a, lies in the region.
-bool meets_arena(const GoalTerm& term, double a) {
-  if (term.region == GoalTerm::Region::kAngles) return true;
-  if (term.region == GoalTerm::Region::kHalfPlane)
+bool meets_arena(const tasks::GoalTerm& term, double a) {
+  if (term.region == tasks::GoalTerm::Region::kAngles) return true;
+  if (term.region == tasks::GoalTerm::Region::kHalfPlane)
     return -a * term.normal.lpNorm<1>() <= term.offset;
   const Vector2d nearest = term.centre.cwiseMax(-a).cwiseMin(a);
   return (term.centre - nearest).norm() <= term.radius;
 }
 
 /// The children of joints, and "*".
-std::string legal_joints(const Task& task) {
+std::string legal_joints(const tasks::Task& task) {
   std::vector<std::string> names{"\"*\""};
   for (const Joint& joint : task.scene.joints)
     names.push_back(task.scene.bodies[static_cast<std::size_t>(joint.child)].name);
   return task.scene.joints.empty() ? "task.joints, of which there are none" : listed(names);
 }
 
-bool concerns_something(const GoalTerm& term, const Scene& scene) {
+bool concerns_something(const tasks::GoalTerm& term, const Scene& scene) {
   for (std::size_t i = 1; i < scene.size(); ++i)
     if (concerns(term, scene, i) && !scene.bodies[i].fixed) return true;
   return std::ranges::any_of(scene.joints,
@@ -89,14 +89,14 @@ bool concerns_something(const GoalTerm& term, const Scene& scene) {
 }
 
 /// Throws unless the joint can have the angles that the term asks for, with room to spare.
-void check_angles(const GoalTerm& term, const Joint& joint, const Task& task,
+void check_angles(const tasks::GoalTerm& term, const Joint& joint, const tasks::Task& task,
                   const ConfigEntry& angles, const std::string& path) {
   if (!concerns(term, task.scene, joint)) return;
   if (!(joint.upper - joint.lower < 2.0 * std::numbers::pi))
     throw ConfigError(angles.value.origin, path + ".joint", "can turn round and round",
                       "joints with limits less than 6.28 rad apart");
-  if (std::max(joint.lower, term.least + kGoalSpare) >
-      std::min(joint.upper, term.most - kGoalSpare))
+  if (std::max(joint.lower, term.least + tasks::kGoalSpare) >
+      std::min(joint.upper, term.most - tasks::kGoalSpare))
     throw ConfigError(angles.value.origin, path + ".angles",
                       "are none that the joint of '" +
                           task.scene.bodies[static_cast<std::size_t>(joint.child)].name +
@@ -105,12 +105,12 @@ void check_angles(const GoalTerm& term, const Joint& joint, const Task& task,
                           number_text(joint.upper) + " (its limits), with 0.05 rad to spare");
 }
 
-void check_term(const Task& task, std::size_t k, const ConfigNode& section) {
-  const GoalTerm& term = task.goal[k];
+void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& section) {
+  const tasks::GoalTerm& term = task.goal[k];
   const ConfigNode& node = find(section, "goal")->value.items[k];
   const std::string path = "task.goal." + std::to_string(k);
   if (!concerns_something(term, task.scene)) {
-    const bool of_joint = term.subject == GoalTerm::Subject::kJoint;
+    const bool of_joint = term.subject == tasks::GoalTerm::Subject::kJoint;
     const char* key = of_joint ? "joint" : find(node, "centroid") ? "centroid" : "kind";
     const ConfigEntry* subject = find(node, key);
     throw ConfigError(subject ? subject->value.origin : node.origin, path + '.' + key,
@@ -128,14 +128,14 @@ void check_term(const Task& task, std::size_t k, const ConfigNode& section) {
 }
 
 /// Says whether a fixed body is where the terms that speak of it want it.
-bool stands_right(const Task& task, std::size_t body) {
-  return std::ranges::all_of(task.goal, [&](const GoalTerm& term) {
-    return term.subject != GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||
+bool stands_right(const tasks::Task& task, std::size_t body) {
+  return std::ranges::all_of(task.goal, [&](const tasks::GoalTerm& term) {
+    return term.subject != tasks::GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||
            contains(term, task.start[body].position(), 0.0);
   });
 }
 
-void check_goal(const Task& task, const ConfigNode& section) {
+void check_goal(const tasks::Task& task, const ConfigNode& section) {
   for (std::size_t k = 0; k < task.goal.size(); ++k) check_term(task, k, section);
   const std::string& origin = find(section, "goal")->value.origin;
   for (std::size_t i = 1; i < task.scene.size(); ++i)
@@ -154,7 +154,7 @@ void check_goal(const Task& task, const ConfigNode& section) {
 
 }  // namespace
 
-void check_names(const Task& task, const ConfigNode& section) {
+void check_names(const tasks::Task& task, const ConfigNode& section) {
   const auto& bodies = task.scene.bodies;
   for (std::size_t i = 1; i < bodies.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
@@ -164,10 +164,10 @@ void check_names(const Task& task, const ConfigNode& section) {
                 "names that differ");
 }
 
-void check_task(const Task& task, const ConfigNode& section) {
+void check_task(const tasks::Task& task, const ConfigNode& section) {
   check_movable(task, section);
   check_start(task, section);
   check_goal(task, section);
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -12,7 +12,7 @@
 #include "nodes/config/task_checks.hpp"
 #include "nodes/config/task_words.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 using Kind = ConfigNode::Kind;
@@ -74,9 +74,9 @@ ConfigNode body_node(const Body& body, const Pose& start) {
 
 }  // namespace
 
-Task read_task(const ConfigNode& section) {
+tasks::Task read_task(const ConfigNode& section) {
   std::vector<std::string> keys{"name", "bodies", "joints", "goal", "push"};
-  Task task;
+  tasks::Task task;
   for (const ConfigEntry& field : fields_of(task).entries) keys.push_back(field.key);
   FieldReader reader(section, "task", keys);
   task.name = name_at(reader, "name", kNameLegal);
@@ -102,13 +102,13 @@ Task read_task(const ConfigNode& section) {
   return task;
 }
 
-ConfigNode task_node(Task task) {
+ConfigNode task_node(tasks::Task task) {
   ConfigNode node = map_node();
   std::vector<ConfigNode> bodies, joints, goal;
   for (std::size_t i = 0; i < task.scene.size(); ++i)
     bodies.push_back(body_node(task.scene.bodies[i], task.start[i]));
   for (const Joint& joint : task.scene.joints) joints.push_back(joint_node(joint, task.scene));
-  for (const GoalTerm& term : task.goal) goal.push_back(term_node(term));
+  for (const tasks::GoalTerm& term : task.goal) goal.push_back(term_node(term));
   node.entries.push_back({"name", "", text_node(task.name)});
   node.entries.push_back({"bodies", "", list_node(std::move(bodies)), "the first is the robot"});
   if (!joints.empty()) node.entries.push_back({"joints", "", list_node(std::move(joints))});
@@ -118,4 +118,4 @@ ConfigNode task_node(Task task) {
   return node;
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

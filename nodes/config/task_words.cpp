@@ -4,7 +4,7 @@
 
 #include "nodes/config/config_error.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 constexpr std::size_t kMaxName = 40;   // characters
@@ -50,4 +50,4 @@ ConfigNode point_node(const Vector2d& x) {
   return list_node({token_node(number_text(x.x())), token_node(number_text(x.y()))});
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -5,7 +5,7 @@
 #include "core/world/pose.hpp"
 #include "nodes/config/field_reader.hpp"
 
-namespace rtg {
+namespace rtg::config {
 
 // What the sections of a task have in common; all functions throw ConfigError.
 
@@ -30,4 +30,4 @@ Vector2d angles_at(const FieldReader& reader, const char* key);
 
 ConfigNode point_node(const Vector2d& x);
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-namespace rtg {
+namespace rtg::config {
 
 enum class TrainPreset { kDefault, kPaper };
 inline constexpr std::array<std::string_view, 2> kTrainPresets{"default", "paper"};
@@ -129,4 +129,4 @@ struct TrainConfig {
   }
 };
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -2,7 +2,7 @@
 
 #include "nodes/config/train_config.hpp"
 
-namespace rtg {
+namespace rtg::config {
 
 /// The values that `preset` stands for. `paper` is Table 2 with uniform mixing. The table leaves
 /// open how often the target network is copied and how exploration decays. A copy hands the value
@@ -37,4 +37,4 @@ inline TrainConfig train_preset(TrainPreset preset) {
   return config;
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

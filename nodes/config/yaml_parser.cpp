@@ -12,7 +12,7 @@
 
 #include "nodes/config/config_error.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 constexpr std::size_t kMaxBytes = 1 << 18;  // of a text
@@ -170,4 +170,4 @@ ConfigNode parse_yaml_value(const std::string& text, const std::string& flag) {
   return parse(text, [&flag](int) { return flag; });
 }
 
-}  // namespace rtg
+}  // namespace rtg::config

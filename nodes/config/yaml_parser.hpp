@@ -4,7 +4,7 @@
 
 #include "nodes/config/config_tree.hpp"
 
-namespace rtg {
+namespace rtg::config {
 
 /// The tree of a YAML text; origins are "file:line". Of YAML it takes one document of mappings with
 /// plain keys, lists and scalars in UTF-8: no anchors, aliases, tags. Throws ConfigError with the
@@ -14,4 +14,4 @@ ConfigNode parse_yaml(const std::string& text, const std::string& file);
 /// The value of a flag: all of it has the origin `flag`.
 ConfigNode parse_yaml_value(const std::string& text, const std::string& flag);
 
-}  // namespace rtg
+}  // namespace rtg::config

@@ -10,22 +10,22 @@
 #include "nodes/program/program.hpp"
 #include "nodes/program/serve.hpp"
 
-namespace rtg {
+namespace rtg::forward_sim_server {
 namespace {
 
-int run(const Words& words) {
-  const Config config = load_config(words[0]);
-  const ReplayOne replay = forward_replay(config.task, config.physics);
-  Bus bus(config.run.bus, words[1]);
-  WorkerNode<ReplayService> node(bus,
-                              {shape_of(config.task), config_hash(config), 0, config.run.workers},
-                              replay_on_threads(replay, 1));
-  return serve(bus, node);
+int run(const program::Words& words) {
+  const config::Config config = config::load_config(words[0]);
+  const search::ReplayOne replay = search::forward_replay(config.task, config.physics);
+  bus::Bus bus(config.run.bus, words[1]);
+  jobs::WorkerNode<jobs::ReplayService> node(
+      bus, {program::shape_of(config.task), config_hash(config), 0, config.run.workers},
+      replay_on_threads(replay, 1));
+  return program::serve(bus, node);
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::forward_sim_server
 
 int main(int argc, char** argv) {
-  return rtg::run_program(argc, argv, "CONFIG.yaml RUN", rtg::run);
+  return rtg::program::run(argc, argv, "CONFIG.yaml RUN", rtg::forward_sim_server::run);
 }

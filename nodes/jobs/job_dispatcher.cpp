@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace rtg {
+namespace rtg::jobs {
 
 void JobDispatcher::submit(std::span<const JobId> jobs) {
   jobs_.clear();
@@ -14,7 +14,7 @@ void JobDispatcher::submit(std::span<const JobId> jobs) {
   open_ = static_cast<long>(jobs_.size());
 }
 
-void JobDispatcher::on_beat(const Beat& beat, Seconds now) {
+void JobDispatcher::on_beat(const Beat& beat, bus::Seconds now) {
   Worker& worker = workers_[beat.worker];
   worker.beat = now;
   worker.capacity = beat.capacity;
@@ -33,7 +33,7 @@ JobDispatcher::Verdict JobDispatcher::on_result(JobId id) {
   return Verdict::kAccepted;
 }
 
-std::vector<JobDispatcher::Send> JobDispatcher::due(Seconds now) {
+std::vector<JobDispatcher::Send> JobDispatcher::due(bus::Seconds now) {
   std::vector<Send> sends;
   leave_out_sleep(now);
   bury_silent_workers(now);
@@ -50,10 +50,10 @@ std::vector<JobId> JobDispatcher::poisoned() const {
   return ids;
 }
 
-void JobDispatcher::leave_out_sleep(Seconds now) {
-  const Seconds slept = now - std::exchange(last_due_, now);
+void JobDispatcher::leave_out_sleep(bus::Seconds now) {
+  const bus::Seconds slept = now - std::exchange(last_due_, now);
   if (slept <= limits_.silence / 2.0) return;
-  const auto later = [&](Seconds& time) { time = std::min(time + slept, now); };
+  const auto later = [&](bus::Seconds& time) { time = std::min(time + slept, now); };
   for (auto& [id, worker] : workers_) later(worker.beat);
   for (auto& [id, job] : jobs_) {
     later(job.leased);
@@ -61,7 +61,7 @@ void JobDispatcher::leave_out_sleep(Seconds now) {
   }
 }
 
-void JobDispatcher::bury_silent_workers(Seconds now) {
+void JobDispatcher::bury_silent_workers(bus::Seconds now) {
   std::erase_if(workers_, [&](const auto& entry) {
     const Worker& worker = entry.second;
     if (now - worker.beat <= limits_.silence) return false;
@@ -70,7 +70,7 @@ void JobDispatcher::bury_silent_workers(Seconds now) {
   });
 }
 
-void JobDispatcher::give_up_stuck_workers(Seconds now) {
+void JobDispatcher::give_up_stuck_workers(bus::Seconds now) {
   for (auto& [worker_id, worker] : workers_) {
     const auto has_run_out = [&](JobId id) { return now - jobs_.at(id).leased > limits_.lease; };
     if (std::ranges::none_of(worker.leases, has_run_out)) continue;
@@ -96,7 +96,7 @@ void JobDispatcher::take_back(JobId id, bool victim) {
   }
 }
 
-void JobDispatcher::resend_unheard(Seconds now, std::vector<Send>& sends) {
+void JobDispatcher::resend_unheard(bus::Seconds now, std::vector<Send>& sends) {
   for (auto& [worker_id, worker] : workers_)
     for (const JobId id : worker.leases) {
       Job& job = jobs_.at(id);
@@ -117,7 +117,7 @@ int JobDispatcher::room(const Worker& worker, bool suspect) const {
   return worker.capacity - leases;
 }
 
-void JobDispatcher::hand_out(Seconds now, std::vector<Send>& sends) {
+void JobDispatcher::hand_out(bus::Seconds now, std::vector<Send>& sends) {
   while (!queue_.empty()) {
     const JobId id = queue_.front();
     Job& job = jobs_.at(id);
@@ -139,4 +139,4 @@ void JobDispatcher::hand_out(Seconds now, std::vector<Send>& sends) {
   }
 }
 
-}  // namespace rtg
+}  // namespace rtg::jobs

@@ -10,7 +10,7 @@
 
 #include "nodes/bus/seconds.hpp"
 
-namespace rtg {
+namespace rtg::jobs {
 
 /// Content-determined name of a unit of work: equal questions have equal ids.
 using JobId = std::int64_t;
@@ -29,10 +29,10 @@ using WorkerId = std::int64_t;
 class JobDispatcher {
  public:
   struct Limits {
-    Seconds silence = 2.0;  // without a beat for so long: dead
-    Seconds resend = 0.1;   // a beat so long after sending should list the job
-    Seconds lease = 300.0;  // from lease to result, some hundred times what a job takes: stuck
-    int poison = 3;         // lost workers that held one job until it is given up
+    bus::Seconds silence = 2.0;  // without a beat for so long: dead
+    bus::Seconds resend = 0.1;   // a beat so long after sending should list the job
+    bus::Seconds lease = 300.0;  // from lease to result, some hundred times what a job takes: stuck
+    int poison = 3;              // lost workers that held one job until it is given up
   };
   struct Send {
     WorkerId worker = 0;
@@ -54,13 +54,13 @@ class JobDispatcher {
   /// A new set of jobs, handed out in this order; equal ids are one job. Forgets the set before.
   void submit(std::span<const JobId> jobs);
 
-  void on_beat(const Beat& beat, Seconds now);
+  void on_beat(const Beat& beat, bus::Seconds now);
   Verdict on_result(JobId job);
 
   /// The messages that have to be sent now. To be called after every event and a few times a
   /// second: where `silence` / 2 passed without a call, this process slept and heard nobody, so
   /// that the clocks of the workers stood still meanwhile.
-  std::vector<Send> due(Seconds now);
+  std::vector<Send> due(bus::Seconds now);
 
   bool finished() const { return open_ == 0; }
   long open() const { return open_; }
@@ -74,31 +74,31 @@ class JobDispatcher {
   struct Job {
     State state = State::kNew;
     WorkerId worker = 0;
-    Seconds leased = 0.0, sent = 0.0;
+    bus::Seconds leased = 0.0, sent = 0.0;
     int attempt = 0, victims = 0;
   };
   struct Worker {
-    Seconds beat = 0.0;
+    bus::Seconds beat = 0.0;
     int capacity = 0;
     std::set<JobId> held;    // as of its last beat
     std::set<JobId> leases;  // as we see it
     std::set<JobId> stuck;   // of what it holds: leases that have run out
   };
 
-  void leave_out_sleep(Seconds now);
-  void bury_silent_workers(Seconds now);
-  void give_up_stuck_workers(Seconds now);
+  void leave_out_sleep(bus::Seconds now);
+  void bury_silent_workers(bus::Seconds now);
+  void give_up_stuck_workers(bus::Seconds now);
   void take_back(JobId id, bool victim);
-  void resend_unheard(Seconds now, std::vector<Send>& sends);
+  void resend_unheard(bus::Seconds now, std::vector<Send>& sends);
   int room(const Worker& worker, bool suspect) const;
-  void hand_out(Seconds now, std::vector<Send>& sends);
+  void hand_out(bus::Seconds now, std::vector<Send>& sends);
 
   Limits limits_;
   std::map<JobId, Job> jobs_;
   std::deque<JobId> queue_;  // NEW, plus ids that have been answered meanwhile
   std::map<WorkerId, Worker> workers_;
   long open_ = 0, reissued_ = 0, resent_ = 0;
-  Seconds last_due_ = std::numeric_limits<Seconds>::infinity();
+  bus::Seconds last_due_ = std::numeric_limits<bus::Seconds>::infinity();
 };
 
-}  // namespace rtg
+}  // namespace rtg::jobs

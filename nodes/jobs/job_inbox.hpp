@@ -9,7 +9,7 @@
 
 #include "nodes/jobs/job_dispatcher.hpp"
 
-namespace rtg {
+namespace rtg::jobs {
 
 /// A worker's memory of its jobs, free of I/O: what waits, what is being worked on, and the last
 /// answers, so that a job said twice is neither done twice at once nor forgotten.
@@ -54,4 +54,4 @@ class JobInbox {
   std::deque<JobId> order_;  // of answers, oldest first
 };
 
-}  // namespace rtg
+}  // namespace rtg::jobs

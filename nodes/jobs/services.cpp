@@ -6,7 +6,7 @@
 #include "core/math/hash.hpp"
 #include "nodes/bus/wire.hpp"
 
-namespace rtg {
+namespace rtg::jobs {
 namespace {
 
 constexpr std::size_t kEnvelope = 200;  // bytes of a message besides its arrays, generously
@@ -32,8 +32,9 @@ bool has_shape(const Message& message, const TaskShape& shape) {
 bool has_starts(const rtg_msgs::reverse_result_t& message, const TaskShape& shape) {
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < message.starts.size(); ++i) {
-    const bool converged = message.status[i] == static_cast<int>(SolveStatus::kConverged);
-    if (message.starts[i] < (converged ? 1 : 0) || message.starts[i] > (converged ? kMaxStarts : 0))
+    const bool converged = message.status[i] == static_cast<int>(reverse::SolveStatus::kConverged);
+    if (message.starts[i] < (converged ? 1 : 0) ||
+        message.starts[i] > (converged ? reverse::kMaxStarts : 0))
       return false;
     sum += message.starts[i];
   }
@@ -50,13 +51,13 @@ void set_counts(Message& message, std::size_t n, const std::vector<double>& pose
   message.n_poses = static_cast<std::int32_t>(poses.size());
 }
 
-const Poses& state_of(const ReverseJob& job) { return job.end; }
-const Poses& state_of(const ReplayJob& job) { return job.start; }
+const Poses& state_of(const reverse::ReverseJob& job) { return job.end; }
+const Poses& state_of(const search::ReplayJob& job) { return job.start; }
 
 template <class Job>
 std::int64_t hash_of(std::span<const Job> jobs, std::int64_t config) {
   auto hash = static_cast<std::uint64_t>(config);
-  for (const Job& job : jobs) hash = hashed(hash, key_of(state_of(job), job.action));
+  for (const Job& job : jobs) hash = hashed(hash, reverse::key_of(state_of(job), job.action));
   return static_cast<std::int64_t>(hash);
 }
 
@@ -89,8 +90,8 @@ ReverseService::ResultMessage ReverseService::message(std::span<const Result> re
   return out;
 }
 
-std::optional<std::vector<ReverseJob>> ReverseService::parse(const JobMessage& message,
-                                                          const TaskShape& shape) {
+std::optional<std::vector<reverse::ReverseJob>> ReverseService::parse(const JobMessage& message,
+                                                                      const TaskShape& shape) {
   if (!has_shape(message, shape) || !all_between(message.action, 0, shape.headings - 1))
     return std::nullopt;
   std::vector<Job> jobs;
@@ -99,17 +100,19 @@ std::optional<std::vector<ReverseJob>> ReverseService::parse(const JobMessage& m
   return jobs;
 }
 
-std::optional<std::vector<ReverseResult>> ReverseService::parse(const ResultMessage& message,
-                                                             const TaskShape& shape) {
-  if (!all_between(message.status, 0, kSolveStatusCount - 1) ||
+std::optional<std::vector<reverse::ReverseResult>> ReverseService::parse(
+    const ResultMessage& message, const TaskShape& shape) {
+  if (!all_between(message.status, 0, reverse::kSolveStatusCount - 1) ||
       !all_between(message.iterations, 0, 1000000000) || !all_between(message.cpu_s, 0.0, 1e9) ||
       !has_starts(message, shape))
     return std::nullopt;
   std::vector<Result> results;
   std::size_t at = 0;
   for (std::size_t i = 0; i < message.status.size(); ++i) {
-    Result r{
-        static_cast<SolveStatus>(message.status[i]), message.iterations[i], {}, message.cpu_s[i]};
+    Result r{static_cast<reverse::SolveStatus>(message.status[i]),
+             message.iterations[i],
+             {},
+             message.cpu_s[i]};
     for (int k = 0; k < message.starts[i]; ++k)
       r.starts.push_back(poses_at(message.start, at++, shape.bodies));
     results.push_back(std::move(r));
@@ -117,7 +120,9 @@ std::optional<std::vector<ReverseResult>> ReverseService::parse(const ResultMess
   return results;
 }
 
-ReverseResult ReverseService::given_up(const Job&) { return {SolveStatus::kNonFinite}; }
+reverse::ReverseResult ReverseService::given_up(const Job&) {
+  return {reverse::SolveStatus::kNonFinite};
+}
 
 ReplayService::JobMessage ReplayService::message(std::span<const Job> jobs) {
   JobMessage out{};
@@ -140,10 +145,11 @@ ReplayService::ResultMessage ReplayService::message(std::span<const Result> resu
   return out;
 }
 
-std::optional<std::vector<ReplayJob>> ReplayService::parse(const JobMessage& message,
-                                                        const TaskShape& shape) {
-  static_assert(kSettle == -1);
-  if (!has_shape(message, shape) || !all_between(message.action, kSettle, shape.headings - 1))
+std::optional<std::vector<search::ReplayJob>> ReplayService::parse(const JobMessage& message,
+                                                                   const TaskShape& shape) {
+  static_assert(search::kSettle == -1);
+  if (!has_shape(message, shape) ||
+      !all_between(message.action, search::kSettle, shape.headings - 1))
     return std::nullopt;
   std::vector<Job> jobs;
   for (std::size_t i = 0; i < message.action.size(); ++i)
@@ -151,8 +157,8 @@ std::optional<std::vector<ReplayJob>> ReplayService::parse(const JobMessage& mes
   return jobs;
 }
 
-std::optional<std::vector<ReplayResult>> ReplayService::parse(const ResultMessage& message,
-                                                           const TaskShape& shape) {
+std::optional<std::vector<search::ReplayResult>> ReplayService::parse(const ResultMessage& message,
+                                                                      const TaskShape& shape) {
   if (!has_shape(message, shape) || !all_between(message.ok, 0, 1) ||
       !all_between(message.cpu_s, 0.0, 1e9))
     return std::nullopt;
@@ -163,13 +169,13 @@ std::optional<std::vector<ReplayResult>> ReplayService::parse(const ResultMessag
   return results;
 }
 
-ReplayResult ReplayService::given_up(const Job& job) { return {job.start, false, 0.0}; }
+search::ReplayResult ReplayService::given_up(const Job& job) { return {job.start, false, 0.0}; }
 
 std::vector<std::size_t> unit_sizes(std::size_t jobs, const UnitLimit& limit,
                                     const TaskShape& shape) {
   const std::size_t state = static_cast<std::size_t>(shape.bodies) * 3 * sizeof(double);
   const std::size_t per_job = limit.states * state + kPerJob;
-  const std::size_t fits = (kMaxMessageBytes - kEnvelope) / per_job;
+  const std::size_t fits = (bus::kMaxMessageBytes - kEnvelope) / per_job;
   const std::size_t most = std::max<std::size_t>(1, std::min(limit.jobs, fits));
   const std::size_t units = (jobs + most - 1) / most;
   std::vector<std::size_t> sizes;
@@ -177,12 +183,12 @@ std::vector<std::size_t> unit_sizes(std::size_t jobs, const UnitLimit& limit,
   return sizes;
 }
 
-std::int64_t unit_id(std::span<const ReverseJob> jobs, std::int64_t config) {
+std::int64_t unit_id(std::span<const reverse::ReverseJob> jobs, std::int64_t config) {
   return hash_of(jobs, config);
 }
 
-std::int64_t unit_id(std::span<const ReplayJob> jobs, std::int64_t config) {
+std::int64_t unit_id(std::span<const search::ReplayJob> jobs, std::int64_t config) {
   return hash_of(jobs, config);
 }
 
-}  // namespace rtg
+}  // namespace rtg::jobs

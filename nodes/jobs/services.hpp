@@ -12,7 +12,7 @@
 
 #include "core/search/seams.hpp"
 
-namespace rtg {
+namespace rtg::jobs {
 
 /// The legal numbers in a task's messages.
 struct TaskShape {
@@ -30,15 +30,15 @@ struct UnitLimit {
 /// the core's types. A unit is what one message carries. A message that makes no sense for the task
 /// (counts, range of actions, statuses) converts to nothing.
 struct ReverseService {
-  using Job = ReverseJob;
-  using Result = ReverseResult;
+  using Job = reverse::ReverseJob;
+  using Result = reverse::ReverseResult;
   using JobMessage = rtg_msgs::reverse_job_t;
   using ResultMessage = rtg_msgs::reverse_result_t;
   static constexpr const char* kNode = "reverse_worker";
   static constexpr const char* kBeats = "RTG_REVERSE_BEAT";
   static constexpr const char* kJobs = "RTG_REVERSE_JOB";
   static constexpr const char* kResults = "RTG_REVERSE_RESULT";
-  static constexpr UnitLimit kUnit{.jobs = 24, .states = kMaxStarts};
+  static constexpr UnitLimit kUnit{.jobs = 24, .states = reverse::kMaxStarts};
 
   static JobMessage message(std::span<const Job> jobs);
   static ResultMessage message(std::span<const Result> results);
@@ -50,8 +50,8 @@ struct ReverseService {
 };
 
 struct ReplayService {
-  using Job = ReplayJob;
-  using Result = ReplayResult;
+  using Job = search::ReplayJob;
+  using Result = search::ReplayResult;
   using JobMessage = rtg_msgs::replay_job_t;
   using ResultMessage = rtg_msgs::replay_result_t;
   static constexpr const char* kNode = "forward_sim_server";
@@ -74,10 +74,10 @@ std::vector<std::size_t> unit_sizes(std::size_t jobs, const UnitLimit& limit,
                                     const TaskShape& shape);
 
 /// Name of a unit: a hash of the configuration and of everything that is asked.
-std::int64_t unit_id(std::span<const ReverseJob> jobs, std::int64_t config);
-std::int64_t unit_id(std::span<const ReplayJob> jobs, std::int64_t config);
+std::int64_t unit_id(std::span<const reverse::ReverseJob> jobs, std::int64_t config);
+std::int64_t unit_id(std::span<const search::ReplayJob> jobs, std::int64_t config);
 
 /// Appends x [m], y [m], θ [rad] of every body.
 void append_poses(const Poses& poses, std::vector<double>& out);
 
-}  // namespace rtg
+}  // namespace rtg::jobs

@@ -18,7 +18,7 @@
 #include "nodes/jobs/job_inbox.hpp"
 #include "nodes/jobs/services.hpp"
 
-namespace rtg {
+namespace rtg::jobs {
 
 /// A process that answers one kind of work. The thread that spins the bus hears jobs and says what
 /// is held; threads of the node's own answer, so a long solve never makes the process look dead.
@@ -32,11 +32,12 @@ class WorkerNode {
     std::int64_t config = 0;  // hash of the configuration
     int number = 0;           // of several workers, for people
     int threads = 1;
-    Seconds patience = JobDispatcher::Limits{}.lease;  // with one unit, until the process is stuck
+    bus::Seconds patience =
+        JobDispatcher::Limits{}.lease;  // with one unit, until the process is stuck
   };
 
   /// `answer` computes a unit's results in job order; it is called from `threads` threads at once.
-  WorkerNode(Bus& bus, const Options& options, Answer answer)
+  WorkerNode(bus::Bus& bus, const Options& options, Answer answer)
       : bus_(bus),
         options_(options),
         answer_(std::move(answer)),
@@ -48,7 +49,7 @@ class WorkerNode {
   }
 
   /// Beats and status; to be called after every spin of the bus. Rethrows what `answer` threw.
-  void tick(Seconds now) {
+  void tick(bus::Seconds now) {
     std::unique_lock lock(mutex_);
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
     const std::vector<JobId> held = inbox_.held();
@@ -60,13 +61,13 @@ class WorkerNode {
 
   /// Says whether a unit has been in work for longer than any unit takes. Nothing but the end of
   /// the process frees the thread, so that another one can take its place.
-  bool stuck(Seconds now) const {
+  bool stuck(bus::Seconds now) const {
     const std::scoped_lock lock(mutex_);
     return std::ranges::any_of(
         begun_, [&](const auto& unit) { return now - unit.second > options_.patience; });
   }
 
-  const CoordinatorWatch& coordinator() const { return watch_; }
+  const bus::CoordinatorWatch& coordinator() const { return watch_; }
   std::int64_t incarnation() const { return incarnation_; }
 
  private:
@@ -122,24 +123,24 @@ class WorkerNode {
     std::unique_lock lock(mutex_);
     std::optional<std::pair<JobId, Jobs>> unit;
     wake_.wait(lock, stop, [&] { return (unit = inbox_.take()).has_value(); });
-    if (unit) begun_[unit->first] = monotonic_now();
+    if (unit) begun_[unit->first] = bus::monotonic_now();
     return stop.stop_requested() ? std::nullopt : std::move(unit);
   }
 
-  Bus& bus_;
+  bus::Bus& bus_;
   Options options_;
   Answer answer_;
-  std::int64_t incarnation_ = random_identity();
-  CoordinatorWatch watch_;
-  NodeStatus status_;
-  Ticker beat_{0.05};
+  std::int64_t incarnation_ = bus::random_identity();
+  bus::CoordinatorWatch watch_;
+  bus::NodeStatus status_;
+  bus::Ticker beat_{0.05};
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any wake_;
   JobInbox<Jobs, ResultMessage> inbox_{64};
-  std::map<JobId, Seconds> begun_;  // units in work, and since when
+  std::map<JobId, bus::Seconds> begun_;  // units in work, and since when
   long done_ = 0;
   std::exception_ptr failure_;
   std::vector<std::jthread> threads_;  // last: ends before all that it uses
 };
 
-}  // namespace rtg
+}  // namespace rtg::jobs

@@ -9,7 +9,7 @@
 #include "nodes/config/config_error.hpp"
 #include "nodes/program/shutdown.hpp"
 
-namespace rtg {
+namespace rtg::program {
 namespace {
 
 int fail(const std::string& program, const std::exception& error, int status) {
@@ -26,14 +26,14 @@ void check_count(const Words& words, const std::string& usage) {
 
 }  // namespace
 
-int run_program(int argc, char** argv, const std::string& usage, int (*body)(const Words&)) {
+int run(int argc, char** argv, const std::string& usage, int (*body)(const Words&)) {
   const std::string program = std::filesystem::path(argv[0]).filename();
   try {
     watch_signals();
     const Words words(argv + 1, argv + argc);
     check_count(words, usage);
     return body(words);
-  } catch (const ConfigError& error) {
+  } catch (const config::ConfigError& error) {
     return fail(program, error, 2);
   } catch (const std::invalid_argument& error) {
     return fail(program, error, 2);
@@ -51,8 +51,8 @@ int number_word(const std::string& word, const std::string& name) {
   return number;
 }
 
-TaskShape shape_of(const Task& task) {
+jobs::TaskShape shape_of(const tasks::Task& task) {
   return {static_cast<int>(task.scene.size()), task.push.headings};
 }
 
-}  // namespace rtg
+}  // namespace rtg::program

@@ -6,7 +6,7 @@
 #include "core/tasks/task.hpp"
 #include "nodes/jobs/services.hpp"
 
-namespace rtg {
+namespace rtg::program {
 
 /// The command line of a node program.
 using Words = std::vector<std::string>;
@@ -15,11 +15,11 @@ using Words = std::vector<std::string>;
 /// and turns what it throws into a line on stderr and an exit status, 2 for bad input
 /// (std::invalid_argument, ConfigError), 1 for the rest. `usage`: the words by name, optional ones
 /// in brackets, as in "CONFIG.yaml RUN [NUMBER]".
-int run_program(int argc, char** argv, const std::string& usage, int (*body)(const Words&));
+int run(int argc, char** argv, const std::string& usage, int (*body)(const Words&));
 
 /// A word that must be a number ≥ 0; throws std::invalid_argument that calls it `name`.
 int number_word(const std::string& word, const std::string& name);
 
-TaskShape shape_of(const Task& task);
+jobs::TaskShape shape_of(const tasks::Task& task);
 
-}  // namespace rtg
+}  // namespace rtg::program

@@ -5,25 +5,25 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "nodes/program/shutdown.hpp"
 #include "nodes/jobs/worker_node.hpp"
+#include "nodes/program/shutdown.hpp"
 
-namespace rtg {
+namespace rtg::program {
 
 /// Serves the bus until the coordinator leaves or a signal comes; the exit status of the process.
 /// Ends the process with status 1 when it is stuck with a unit: the coordinator counts it as lost.
 /// Throws std::runtime_error if the coordinator falls silent, and what the node's work throws.
 template <class Service>
-int serve(Bus& bus, WorkerNode<Service>& node) {
+int serve(bus::Bus& bus, jobs::WorkerNode<Service>& node) {
   int status = 0;
   while (!stop_signal() && !node.coordinator().leaving()) {
     bus.spin(std::chrono::milliseconds(50));
-    node.tick(monotonic_now());
-    if (node.stuck(monotonic_now())) {
+    node.tick(bus::monotonic_now());
+    if (node.stuck(bus::monotonic_now())) {
       std::fputs("stuck: a unit of work takes longer than any should; leaving it\n", stderr);
       std::_Exit(1);  // nobody could wait for its thread
     }
-    if (node.coordinator().silent(monotonic_now())) {
+    if (node.coordinator().silent(bus::monotonic_now())) {
       limit_shutdown(1);  // the node's end waits for its units, which may hang
       throw std::runtime_error("no coordinator heard for 30 s");
     }
@@ -33,4 +33,4 @@ int serve(Bus& bus, WorkerNode<Service>& node) {
   return status;
 }
 
-}  // namespace rtg
+}  // namespace rtg::program

@@ -5,7 +5,7 @@
 
 #include <atomic>
 
-namespace rtg {
+namespace rtg::program {
 namespace {
 
 constexpr unsigned kGrace = 4;  // [s]; the promise is to be gone after 5
@@ -42,4 +42,4 @@ void limit_shutdown(int status) {
   alarm(kGrace);
 }
 
-}  // namespace rtg
+}  // namespace rtg::program

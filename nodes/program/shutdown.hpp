@@ -1,6 +1,6 @@
 #pragma once
 
-namespace rtg {
+namespace rtg::program {
 
 /// From here on SIGINT and SIGTERM end the process in an orderly way: the first one makes
 /// stop_signal() tell its number, the second one ends the process at once. To be called before
@@ -14,4 +14,4 @@ int stop_signal();
 /// who begin to shut down without a signal.
 void limit_shutdown(int status);
 
-}  // namespace rtg
+}  // namespace rtg::program

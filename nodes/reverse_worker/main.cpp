@@ -9,23 +9,24 @@
 #include "nodes/program/program.hpp"
 #include "nodes/program/serve.hpp"
 
-namespace rtg {
+namespace rtg::reverse_worker {
 namespace {
 
-int run(const Words& words) {
-  const int number = words.size() > 2 ? number_word(words[2], "NUMBER") : 0;
-  const Config config = load_config(words[0]);
-  const SolveBatch solve =
+int run(const program::Words& words) {
+  const int number = words.size() > 2 ? program::number_word(words[2], "NUMBER") : 0;
+  const config::Config config = config::load_config(words[0]);
+  const search::SolveBatch solve =
       reverse_solver(config.task, config.physics, config.reverse, config.search.generator);
-  Bus bus(config.run.bus, words[1]);
-  WorkerNode<ReverseService> node(bus, {shape_of(config.task), config_hash(config), number, 1},
-                               solve_on_threads(solve, 1));
-  return serve(bus, node);
+  bus::Bus bus(config.run.bus, words[1]);
+  jobs::WorkerNode<jobs::ReverseService> node(
+      bus, {program::shape_of(config.task), config_hash(config), number, 1},
+      search::solve_on_threads(solve, 1));
+  return program::serve(bus, node);
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse_worker
 
 int main(int argc, char** argv) {
-  return rtg::run_program(argc, argv, "CONFIG.yaml RUN [NUMBER]", rtg::run);
+  return rtg::program::run(argc, argv, "CONFIG.yaml RUN [NUMBER]", rtg::reverse_worker::run);
 }

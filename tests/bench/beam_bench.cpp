@@ -10,7 +10,7 @@
 #include "core/search/simulators.hpp"
 #include "tests/bench/gathering_states.hpp"
 
-namespace rtg {
+namespace rtg::bench {
 namespace {
 
 using testing::gathering;
@@ -38,17 +38,18 @@ class Clock {
 };
 
 void beam(benchmark::State& state, const Size& size) {
-  const Task task = gathering();
-  SearchConfig config;
+  const tasks::Task task = gathering();
+  search::SearchConfig config;
   config.breadth = size.breadth;
-  GenerationSeams seams = in_process_seams(reverse_solver(task, {}, {}, Generator::kRrbs),
-                                           forward_replay(task, {}), size.threads);
+  search::GenerationSeams seams =
+      search::in_process_seams(reverse_solver(task, {}, {}, search::Generator::kRrbs),
+                               search::forward_replay(task, {}), size.threads);
   double simulating = 0.0;
-  seams.solve = [&simulating, solve = seams.solve](std::span<const ReverseJob> jobs) {
+  seams.solve = [&simulating, solve = seams.solve](std::span<const reverse::ReverseJob> jobs) {
     const Clock clock(simulating);
     return solve(jobs);
   };
-  seams.replay = [&simulating, replay = seams.replay](std::span<const ReplayJob> jobs) {
+  seams.replay = [&simulating, replay = seams.replay](std::span<const search::ReplayJob> jobs) {
     const Clock clock(simulating);
     return replay(jobs);
   };
@@ -56,8 +57,8 @@ void beam(benchmark::State& state, const Size& size) {
   long nodes = 0, layers = 0;
   std::uint64_t seed = 0;
   for (auto _ : state) {  // trees differ in how soon they meet objects
-    SearchStats stats;
-    BeamSearch search(task, config, task.start, ++seed);
+    search::SearchStats stats;
+    search::BeamSearch search(task, config, task.start, ++seed);
     search.plant(seams.replay, stats);
     for (int layer = 0; layer < size.depth; ++layer, ++layers) {
       nodes += static_cast<long>(search.beam().size());
@@ -79,10 +80,10 @@ void over_threads(benchmark::State& state) {
 }
 
 void replay(benchmark::State& state) {
-  const Task task = gathering();
-  const ReplayBatch push =
-      replay_on_threads(forward_replay(task, {}), static_cast<int>(state.range(0)));
-  std::vector<ReplayJob> jobs;
+  const tasks::Task task = gathering();
+  const search::ReplayBatch push =
+      search::replay_on_threads(search::forward_replay(task, {}), static_cast<int>(state.range(0)));
+  std::vector<search::ReplayJob> jobs;
   for (const Poses& start : bench::goal_states(task))
     for (int action = 0; action < 8; ++action) jobs.push_back({start, 6 * action});
   for (auto _ : state) benchmark::DoNotOptimize(push(jobs).data());
@@ -122,4 +123,4 @@ BENCHMARK(replay)
     ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::bench

@@ -23,7 +23,7 @@ bool vertices_meet(const Body& a, const Pose& at, const Body& b, const Pose& bt)
   return false;
 }
 
-Problem read_problem(const std::string& line, const std::map<std::string, Task>& tasks) {
+Problem read_problem(const std::string& line, const std::map<std::string, tasks::Task>& tasks) {
   std::istringstream words(line);
   Problem problem;
   std::string difficulty;
@@ -46,7 +46,8 @@ Problem read_problem(const std::string& line, const std::map<std::string, Task>&
 
 }  // namespace
 
-Difficulty difficulty_of(const Task& task, const PhysicsConfig& physics, const ReverseJob& job) {
+Difficulty difficulty_of(const tasks::Task& task, const PhysicsConfig& physics,
+                         const reverse::ReverseJob& job) {
   const double range = physics.range + physics.skin;
   const Selection part =
       select(task.scene, job.end, relevant_bodies(task.scene, task.push, job, range));
@@ -67,11 +68,11 @@ Difficulty difficulty_of(const Task& task, const PhysicsConfig& physics, const R
   return bodies.size() == 2 ? Difficulty::kSingle : Difficulty::kMulti;
 }
 
-std::map<std::string, Task> read_tasks(const std::filesystem::path& folder) {
-  std::map<std::string, Task> tasks;
+std::map<std::string, tasks::Task> read_tasks(const std::filesystem::path& folder) {
+  std::map<std::string, tasks::Task> tasks;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".yaml") continue;
-    Task task = load_config(entry.path()).task;
+    tasks::Task task = config::load_config(entry.path()).task;
     const std::string name = task.name;
     tasks.emplace(name, std::move(task));
   }

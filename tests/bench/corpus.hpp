@@ -24,25 +24,26 @@ enum class Difficulty {
 inline constexpr std::array<std::string_view, 5> kDifficulties{"free", "single", "multi", "corner",
                                                                "jam"};
 
-Difficulty difficulty_of(const Task& task, const PhysicsConfig& physics, const ReverseJob& job);
+Difficulty difficulty_of(const tasks::Task& task, const PhysicsConfig& physics,
+                         const reverse::ReverseJob& job);
 
 /// One candidate that a search has asked for and pruning has let through.
 struct Problem {
   std::string task;
   Difficulty difficulty = Difficulty::kFree;
-  ReverseJob job;
+  reverse::ReverseJob job;
 };
 
 /// Committed reverse problems. `folder` holds TASK.yaml and problems.txt, a line per problem:
 ///
 ///   TASK DIFFICULTY ACTION x y θ x y θ ...     poses of all bodies afterwards [m], [rad]
 struct Corpus {
-  std::map<std::string, Task> tasks;
+  std::map<std::string, tasks::Task> tasks;
   std::vector<Problem> problems;
 };
 
 /// The tasks of FOLDER/TASK.yaml by name, at least one. Throws std::runtime_error, ConfigError.
-std::map<std::string, Task> read_tasks(const std::filesystem::path& folder);
+std::map<std::string, tasks::Task> read_tasks(const std::filesystem::path& folder);
 
 /// At least one problem. Throws std::runtime_error with file and line, ConfigError.
 Corpus read_corpus(const std::filesystem::path& folder);

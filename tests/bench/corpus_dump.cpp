@@ -24,9 +24,9 @@ constexpr std::array<std::size_t, 5> kQuota{50, 140, 140, 120, 120};
 /// on the order in which threads hand them in.
 class Sample {
  public:
-  explicit Sample(const Task& task) : task_(task) {}
+  explicit Sample(const tasks::Task& task) : task_(task) {}
 
-  void add(const ReverseJob& job) {
+  void add(const reverse::ReverseJob& job) {
     if (is_pruned(task_.scene, task_.push, job)) return;
     const Difficulty difficulty = difficulty_of(task_, {}, job);
     const auto kind = static_cast<std::size_t>(difficulty);
@@ -46,7 +46,7 @@ class Sample {
   }
 
  private:
-  const Task& task_;
+  const tasks::Task& task_;
   std::mutex mutex_;
   std::array<std::map<std::uint64_t, Problem>, kQuota.size()> kept_;
   std::array<long, kQuota.size()> seen_{};
@@ -55,16 +55,17 @@ class Sample {
 void dump(const std::filesystem::path& folder, int transitions) {
   std::vector<Problem> problems;
   for (const auto& [name, task] : read_tasks(folder)) {
-    SearchConfig search;
+    search::SearchConfig search;
     search.transitions = transitions;
     Sample sample(task);
-    const SolveBatch solve = reverse_solver(task, {}, {}, search.generator);
-    const auto sampled = [&](std::span<const ReverseJob> jobs) {
-      for (const ReverseJob& job : jobs) sample.add(job);
+    const search::SolveBatch solve = reverse_solver(task, {}, {}, search.generator);
+    const auto sampled = [&](std::span<const reverse::ReverseJob> jobs) {
+      for (const reverse::ReverseJob& job : jobs) sample.add(job);
       return solve(jobs);
     };
-    GenerationSeams seams = in_process_seams(sampled, forward_replay(task, {}), 2);
-    seams.store = [](std::span<const Transition>) {};
+    search::GenerationSeams seams =
+        search::in_process_seams(sampled, search::forward_replay(task, {}), 2);
+    seams.store = [](std::span<const search::Transition>) {};
     generate(task, search, 1, seams);
     sample.move_to(problems);
   }

@@ -7,7 +7,7 @@
 #include "core/forward/newton_simulator.hpp"
 #include "tests/bench/gathering_states.hpp"
 
-namespace rtg {
+namespace rtg::bench {
 namespace {
 
 using testing::gathering;
@@ -26,13 +26,13 @@ bool moves_an_object(const Poses& before, const Poses& after) {
 }
 
 /// All pushes from the goal states that both simulators finish and that move an object.
-std::vector<Push> contact_pushes(const Task& task) {
-  const Box2dSimulator box2d(task.scene, task.push, {});
-  const NewtonSimulator newton(task.scene, task.push, {});
+std::vector<Push> contact_pushes(const tasks::Task& task) {
+  const forward::Box2dSimulator box2d(task.scene, task.push, {});
+  const forward::NewtonSimulator newton(task.scene, task.push, {});
   std::vector<Push> pushes;
   for (const Poses& state : bench::goal_states(task))
     for (int action = 0; action < task.push.headings; ++action) {
-      const PushOutcome outcome = box2d.push(state, action);
+      const forward::PushOutcome outcome = box2d.push(state, action);
       if (outcome.ok && moves_an_object(state, outcome.end) && newton.push(state, action).ok)
         pushes.push_back({state, action});
     }
@@ -41,21 +41,21 @@ std::vector<Push> contact_pushes(const Task& task) {
 
 template <class Forward>
 void push(benchmark::State& state) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const std::vector<Push> pushes = contact_pushes(task);
   if (pushes.empty()) return state.SkipWithError("no push moves an object");
   const Forward simulator(task.scene, task.push, {});
   std::size_t k = 0;
   for (auto _ : state) {
     const Push& next = pushes[k++ % pushes.size()];
-    const PushOutcome outcome = simulator.push(next.start, next.action);
+    const forward::PushOutcome outcome = simulator.push(next.start, next.action);
     if (!outcome.ok) return state.SkipWithError("a push failed");
     benchmark::DoNotOptimize(outcome.end.data());
   }
 }
 
-BENCHMARK(push<Box2dSimulator>)->Name("push/box2d")->Unit(benchmark::kMicrosecond);
-BENCHMARK(push<NewtonSimulator>)->Name("push/newton")->Unit(benchmark::kMicrosecond);
+BENCHMARK(push<forward::Box2dSimulator>)->Name("push/box2d")->Unit(benchmark::kMicrosecond);
+BENCHMARK(push<forward::NewtonSimulator>)->Name("push/newton")->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::bench

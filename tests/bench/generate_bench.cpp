@@ -16,7 +16,7 @@
 #include "nodes/config/config.hpp"
 #include "tests/bench/arguments.hpp"
 
-namespace rtg {
+namespace rtg::bench {
 namespace {
 
 using bench::read_number;
@@ -54,34 +54,34 @@ bool read(std::span<char* const> arguments, Options& options) {
   return true;
 }
 
-void print_progress(const Progress& p) {
+void print_progress(const search::Progress& p) {
   std::fprintf(stderr, "%-10s layer %2d  %6ld of %6ld  contact %.2f  start region %ld\n",
                p.phase.c_str(), p.layer, p.transitions, p.target, p.contact_share, p.start_region);
 }
 
 void run(const Options& options) {
-  const Config config = load_config(options.file, options.overrides);
-  GenerationSeams seams = in_process_seams(
+  const config::Config config = config::load_config(options.file, options.overrides);
+  search::GenerationSeams seams = search::in_process_seams(
       reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
-      forward_replay(config.task, config.physics), options.threads);
-  seams.store = [](std::span<const Transition>) {};
+      search::forward_replay(config.task, config.physics), options.threads);
+  seams.store = [](std::span<const search::Transition>) {};
   seams.progress = print_progress;
-  GenerationReport report = generate(config.task, config.search, options.seed, seams);
+  search::GenerationReport report = generate(config.task, config.search, options.seed, seams);
   report.replay_gaps.clear();
   report.nodes.clear();
   std::printf("%s\n", to_json(report).c_str());
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::bench
 
 int main(int argc, char** argv) {
-  rtg::Options options;
-  if (!rtg::read({argv + 1, argv + argc}, options)) return 2;
+  rtg::bench::Options options;
+  if (!rtg::bench::read({argv + 1, argv + argc}, options)) return 2;
   try {
-    rtg::run(options);
+    rtg::bench::run(options);
     return 0;
-  } catch (const rtg::ConfigError& e) {
+  } catch (const rtg::config::ConfigError& e) {
     std::fprintf(stderr, "generate_bench: %s\n", e.what());
     return 2;
   }

@@ -16,7 +16,7 @@
 #include "tests/support/gathering.hpp"
 #include "tests/support/random_stages.hpp"
 
-namespace rtg {
+namespace rtg::bench {
 namespace {
 
 using testing::gathering;
@@ -42,13 +42,13 @@ class Row {
   }
   void linearise() { newton_.linearise(lanes_, x_, {T(1.0), T(1.0)}); }
 
-  const ProblemLanes<T>& problem() const { return lanes_; }
-  const Trajectory<T>& x() const { return x_; }
-  const NewtonSystem<T>& newton() const { return newton_; }
+  const reverse::ProblemLanes<T>& problem() const { return lanes_; }
+  const reverse::Trajectory<T>& x() const { return x_; }
+  const reverse::NewtonSystem<T>& newton() const { return newton_; }
 
  private:
   static Scene scene(int bodies) {
-    const Task task = gathering();
+    const tasks::Task task = gathering();
     Scene row{{task.scene.bodies[0]}};
     row.bodies.resize(static_cast<std::size_t>(bodies), task.scene.bodies[1]);
     return row;
@@ -59,12 +59,12 @@ class Row {
     return p;
   }
 
-  ReverseConfig config_;
-  StepEnergy energy_;
-  ReverseProblem problem_;
-  ProblemLanes<T> lanes_;
-  Trajectory<T> x_;
-  NewtonSystem<T> newton_;
+  reverse::ReverseConfig config_;
+  energy::StepEnergy energy_;
+  reverse::ReverseProblem problem_;
+  reverse::ProblemLanes<T> lanes_;
+  reverse::Trajectory<T> x_;
+  reverse::NewtonSystem<T> newton_;
 };
 
 /// Newton systems of six bodies: of a row in contact, quasi-static or with inertia, and random ones
@@ -142,9 +142,10 @@ void sqp_iteration(benchmark::State& state, int bodies, int h) {
   Row<Lanes> row(h, {}, bodies);
   Riccati<Lanes> solver(bodies, h);
   StageStep<Lanes> step(bodies, h);
-  Evaluator<Lanes> evaluator(row.problem());
-  Trajectory<Lanes> trial = row.x();
-  PerContact<Lanes> force_step = trial.forces, gaps = trial.forces, trial_gaps = trial.forces;
+  reverse::Evaluator<Lanes> evaluator(row.problem());
+  reverse::Trajectory<Lanes> trial = row.x();
+  reverse::PerContact<Lanes> force_step = trial.forces, gaps = trial.forces,
+                             trial_gaps = trial.forces;
   for (std::vector<Lanes>& level : gaps) level.assign(level.size(), Lanes(0.0));
   for (auto _ : state) {
     row.linearise();
@@ -152,7 +153,7 @@ void sqp_iteration(benchmark::State& state, int bodies, int h) {
     benchmark::DoNotOptimize(solver.solve(row.newton().system(), step));
     benchmark::DoNotOptimize(row.newton().model_curvature(step));
     row.newton().force_steps(row.problem(), row.x(), step, force_step);
-    Mask<Lanes> legal = bounded(step, Lanes(1e-3));
+    Mask<Lanes> legal = reverse::bounded(step, Lanes(1e-3));
     make_trial(row.problem().energy, row.x(), {step, force_step, Lanes(1e-3)}, trial);
     benchmark::DoNotOptimize(evaluator.evaluate(row.problem(), trial, gaps, trial_gaps, legal));
     if (!any(legal)) return state.SkipWithError("the trial point is not legal");
@@ -216,4 +217,4 @@ const bool kRegistered = [] {
 }();
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::bench

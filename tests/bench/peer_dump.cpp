@@ -38,8 +38,8 @@ struct Numbers {
   void choice(const char*, Enum, const Names&, const char*) {}
 };
 
-template <class Config>
-Json numbers(Config config) {
+template <class Section>
+Json numbers(Section config) {
   Numbers numbers;
   config.visit(numbers);
   return numbers.found;
@@ -65,31 +65,32 @@ Json bodies(const Scene& scene) {
   return out;
 }
 
-Json iterate(const Iterate& x) {
+Json iterate(const reverse::Iterate& x) {
   return {{"p", rows(x.p)}, {"forces", rows(x.forces)}, {"controls", rows(x.controls)}};
 }
 
 /// The configurations that all problems are solved with.
 const PhysicsConfig kPhysics;
-const ReverseConfig kReverse;
+const reverse::ReverseConfig kReverse;
 
 /// A problem with its place in the corpus.
 struct Entry {
   std::size_t line = 0;
   const Problem* problem = nullptr;
   bool wanted = false;
-  std::unique_ptr<Candidate> candidate;
+  std::unique_ptr<reverse::Candidate> candidate;
 };
 
 /// Task and numbers of degrees of freedom and bodies: an iteration costs problems alike the same.
 using Kind = std::tuple<std::string, int, int>;
 
-Json dumped(const Entry& entry, const Task& task, const SqpResult& solved, double cpu) {
+Json dumped(const Entry& entry, const tasks::Task& task, const reverse::SqpResult& solved,
+            double cpu) {
   const Problem& problem = *entry.problem;
-  const Candidate& candidate = *entry.candidate;
-  const ReverseProblem& nlp = candidate.problem();
+  const reverse::Candidate& candidate = *entry.candidate;
+  const reverse::ReverseProblem& nlp = candidate.problem();
   const auto warm = warm_start(nlp);
-  const Violation v = violation(nlp, solved.x);
+  const reverse::Violation v = violation(nlp, solved.x);
   return {{"line", entry.line},
           {"difficulty", kDifficulties[static_cast<std::size_t>(problem.difficulty)]},
           {"bodies", bodies(candidate.scene())},
@@ -114,11 +115,11 @@ std::map<Kind, std::vector<Entry>> entries(const Corpus& corpus, std::size_t eve
   for (std::size_t k = 0; k < corpus.problems.size(); ++k) {
     const Problem& problem = corpus.problems[k];
     if (problem.difficulty == Difficulty::kFree) continue;
-    const Task& task = corpus.tasks.at(problem.task);
-    Entry entry{
-        k + 1, &problem, met++ % every == 0,
-        std::make_unique<Candidate>(task.scene, kPhysics, task.push, kReverse, problem.job)};
-    const StepEnergy& energy = entry.candidate->problem().energy;
+    const tasks::Task& task = corpus.tasks.at(problem.task);
+    Entry entry{k + 1, &problem, met++ % every == 0,
+                std::make_unique<reverse::Candidate>(task.scene, kPhysics, task.push, kReverse,
+                                                     problem.job)};
+    const energy::StepEnergy& energy = entry.candidate->problem().energy;
     out[{problem.task, energy.dofs(), energy.bodies()}].push_back(std::move(entry));
   }
   return out;
@@ -127,14 +128,14 @@ std::map<Kind, std::vector<Entry>> entries(const Corpus& corpus, std::size_t eve
 void dump(const std::filesystem::path& folder, std::size_t every) {
   const Corpus corpus = read_corpus(folder);
   for (const auto& [kind, alike] : entries(corpus, every)) {
-    std::vector<const Candidate*> candidates;
+    std::vector<const reverse::Candidate*> candidates;
     for (const Entry& entry : alike) candidates.push_back(entry.candidate.get());
-    const double begin = thread_cpu_s();
-    const std::vector<SqpResult> solved = solve_together(candidates);
-    const double cpu = thread_cpu_s() - begin;
-    const auto weight = [](const SqpResult& one) { return one.iterations + 1; };
+    const double begin = threads::thread_cpu_s();
+    const std::vector<reverse::SqpResult> solved = solve_together(candidates);
+    const double cpu = threads::thread_cpu_s() - begin;
+    const auto weight = [](const reverse::SqpResult& one) { return one.iterations + 1; };
     int all = 0;
-    for (const SqpResult& one : solved) all += weight(one);
+    for (const reverse::SqpResult& one : solved) all += weight(one);
     for (std::size_t k = 0; k < alike.size(); ++k)
       if (alike[k].wanted)
         std::puts(dumped(alike[k], corpus.tasks.at(std::get<0>(kind)), solved[k],

@@ -6,7 +6,7 @@
 #include "core/reverse/reverse_simulator.hpp"
 #include "tests/bench/gathering_states.hpp"
 
-namespace rtg {
+namespace rtg::bench {
 namespace {
 
 using testing::gathering;
@@ -16,29 +16,29 @@ struct Tally {
   long candidates = 0, pruned = 0, converged = 0;
   std::vector<int> iterations;  // of the converged ones
 
-  void add(const ReverseResult& result) {
+  void add(const reverse::ReverseResult& result) {
     ++candidates;
-    if (result.status == SolveStatus::kPruned) ++pruned;
-    if (result.status != SolveStatus::kConverged) return;
+    if (result.status == reverse::SolveStatus::kPruned) ++pruned;
+    if (result.status != reverse::SolveStatus::kConverged) return;
     ++converged;
     iterations.push_back(result.iterations);
   }
 };
 
-void candidates(benchmark::State& state, ReversePreset preset) {
-  const Task task = gathering();
+void candidates(benchmark::State& state, reverse::ReversePreset preset) {
+  const tasks::Task task = gathering();
   const std::vector<Poses> states = bench::goal_states(task);
-  const ReverseSimulator reverse(task.scene, {}, task.push, reverse_preset(preset));
+  const reverse::ReverseSimulator reverse(task.scene, {}, task.push, reverse_preset(preset));
   Tally tally;
   std::size_t k = 0;
   for (auto _ : state) {
     const Poses& end = states[k++ % states.size()];
-    std::vector<ReverseJob> jobs;
+    std::vector<reverse::ReverseJob> jobs;
     for (int action = 0; action < task.push.headings; ++action) jobs.push_back({end, action});
-    for (const ReverseResult& result : reverse.solve(jobs)) tally.add(result);
+    for (const reverse::ReverseResult& result : reverse.solve(jobs)) tally.add(result);
   }
   // `paper` may fail throughout, that is its figure.
-  if (tally.converged == 0 && preset == ReversePreset::kDefault)
+  if (tally.converged == 0 && preset == reverse::ReversePreset::kDefault)
     return state.SkipWithError("no candidate converged");
   const auto solved = static_cast<double>(tally.candidates - tally.pruned);
   state.counters["pruned"] =
@@ -47,14 +47,14 @@ void candidates(benchmark::State& state, ReversePreset preset) {
   state.counters["iterations_median"] = quantile(tally.iterations, 0.5);
 }
 
-BENCHMARK_CAPTURE(candidates, default, ReversePreset::kDefault)
+BENCHMARK_CAPTURE(candidates, default, reverse::ReversePreset::kDefault)
     ->Name("action48/default")
     ->Unit(benchmark::kMillisecond)
     ->Iterations(bench::kStates);
-BENCHMARK_CAPTURE(candidates, paper, ReversePreset::kPaper)
+BENCHMARK_CAPTURE(candidates, paper, reverse::ReversePreset::kPaper)
     ->Name("action48/paper")
     ->Unit(benchmark::kMillisecond)
     ->Iterations(bench::kStates);
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::bench

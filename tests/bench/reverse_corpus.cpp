@@ -24,7 +24,7 @@ namespace rtg::bench {
 namespace {
 
 struct Options {
-  ReverseConfig reverse;
+  reverse::ReverseConfig reverse;
   PhysicsConfig physics;
   std::size_t every = 1;
   bool failures = false;
@@ -36,12 +36,13 @@ constexpr std::size_t kTogether = 48;
 struct Outcome {
   std::size_t line = 0;
   Difficulty difficulty = Difficulty::kFree;
-  SolveStatus status = SolveStatus::kNonFinite;
+  reverse::SolveStatus status = reverse::SolveStatus::kNonFinite;
   int iterations = 0;
   double cpu_ms = 0.0;
 
   bool decided() const {
-    return status == SolveStatus::kConverged || status == SolveStatus::kInfeasible;
+    return status == reverse::SolveStatus::kConverged ||
+           status == reverse::SolveStatus::kInfeasible;
   }
 };
 
@@ -59,15 +60,17 @@ std::vector<Outcome> solve(const Corpus& corpus, const Options& options) {
     alike[{corpus.problems[k].task, corpus.problems[k].difficulty}].push_back(k);
   std::vector<Outcome> outcomes;
   for (const auto& [kind, lines] : alike) {
-    const Task& task = corpus.tasks.at(kind.first);
-    const ReverseSimulator simulator(task.scene, options.physics, task.push, options.reverse);
+    const tasks::Task& task = corpus.tasks.at(kind.first);
+    const reverse::ReverseSimulator simulator(task.scene, options.physics, task.push,
+                                              options.reverse);
     for (std::size_t first = 0; first < lines.size(); first += kTogether) {
-      std::vector<ReverseJob> jobs;
+      std::vector<reverse::ReverseJob> jobs;
       for (std::size_t k = first; k < std::min(first + kTogether, lines.size()); ++k)
         jobs.push_back(corpus.problems[lines[k]].job);
-      const double begin = thread_cpu_s();
-      const std::vector<ReverseResult> results = simulator.solve(jobs);
-      const double share = 1e3 * (thread_cpu_s() - begin) / static_cast<double>(jobs.size());
+      const double begin = threads::thread_cpu_s();
+      const std::vector<reverse::ReverseResult> results = simulator.solve(jobs);
+      const double share =
+          1e3 * (threads::thread_cpu_s() - begin) / static_cast<double>(jobs.size());
       for (std::size_t k = 0; k < jobs.size(); ++k)
         outcomes.push_back(
             {lines[first + k] + 1, kind.second, results[k].status, results[k].iterations, share});
@@ -80,7 +83,7 @@ void print_by_difficulty(std::span<const Outcome> outcomes) {
   std::printf("%-8s %6s %9s %10s %9s %7s %7s %9s\n", "", "count", "converged", "infeasible",
               "undecided", "median", "p90", "CPU [ms]");
   for (std::size_t k = 0; k < kDifficulties.size(); ++k) {
-    std::array<int, kSolveStatusCount> ends{};
+    std::array<int, reverse::kSolveStatusCount> ends{};
     int count = 0;
     double cpu = 0.0;
     for (const Outcome& o : outcomes) {
@@ -89,8 +92,8 @@ void print_by_difficulty(std::span<const Outcome> outcomes) {
       ++ends[static_cast<std::size_t>(o.status)];
       cpu += o.cpu_ms;
     }
-    const int converged = ends[static_cast<std::size_t>(SolveStatus::kConverged)];
-    const int infeasible = ends[static_cast<std::size_t>(SolveStatus::kInfeasible)];
+    const int converged = ends[static_cast<std::size_t>(reverse::SolveStatus::kConverged)];
+    const int infeasible = ends[static_cast<std::size_t>(reverse::SolveStatus::kInfeasible)];
     const std::vector<int> iterations = iterations_of(outcomes, static_cast<Difficulty>(k));
     std::printf("%-8s %6d %9d %10d %9d %7.0f %7.0f %9.2f\n", kDifficulties[k].data(), count,
                 converged, infeasible, count - converged - infeasible, quantile(iterations, 0.5),
@@ -116,7 +119,7 @@ void print_profile(std::span<const Outcome> outcomes) {
 
 void print_failures(std::span<const Outcome> outcomes) {
   std::printf("\nundecided: cause, line of problems.txt, difficulty, iterations\n");
-  for (int status = 0; status < kSolveStatusCount; ++status)
+  for (int status = 0; status < reverse::kSolveStatusCount; ++status)
     for (const Outcome& o : outcomes)
       if (!o.decided() && static_cast<int>(o.status) == status)
         std::printf("  %-18s %4zu %-7s %4d\n", name(o.status).data(), o.line,
@@ -131,7 +134,8 @@ bool gate(const char* what, double value, const char* goal, bool passed) {
 bool gates(std::span<const Outcome> outcomes) {
   const auto decided = std::ranges::count_if(outcomes, &Outcome::decided);
   const double share = static_cast<double>(decided) / static_cast<double>(outcomes.size());
-  const auto solved = std::ranges::count(outcomes, SolveStatus::kConverged, &Outcome::status);
+  const auto solved =
+      std::ranges::count(outcomes, reverse::SolveStatus::kConverged, &Outcome::status);
   const double converged = static_cast<double>(solved) / static_cast<double>(outcomes.size());
   const std::vector<int> iterations = iterations_of(outcomes, std::nullopt);
   const double median = quantile(iterations, 0.5), p90 = quantile(iterations, 0.9);
@@ -150,9 +154,10 @@ bool apply(Options& options, std::span<char* const> words) {
   if (flag == "--every")
     return read_number(words[1], std::size_t{1}, std::size_t{100000}, options.every);
   if (flag == "--preset") {
-    const auto preset = std::ranges::find(kReversePresets, std::string_view(words[1]));
-    if (preset == kReversePresets.end()) return false;
-    options.reverse = reverse_preset(static_cast<ReversePreset>(preset - kReversePresets.begin()));
+    const auto preset = std::ranges::find(reverse::kReversePresets, std::string_view(words[1]));
+    if (preset == reverse::kReversePresets.end()) return false;
+    options.reverse = reverse_preset(
+        static_cast<reverse::ReversePreset>(preset - reverse::kReversePresets.begin()));
     return true;
   }
   if (flag != "--set" || words.size() < 3) return false;

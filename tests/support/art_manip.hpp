@@ -7,8 +7,8 @@
 namespace rtg::testing {
 
 /// The task of config/art_manip.yaml.
-inline Task art_manip() {
-  Task task;
+inline tasks::Task art_manip() {
+  tasks::Task task;
   task.name = "art_manip";
   task.scene.bodies.push_back({"robot", "robot", regular_polygon(6, 0.8), 1.0, 0.5, false});
   task.start.push_back({0.0, -4.0, 0.0});
@@ -20,13 +20,13 @@ inline Task art_manip() {
   }
   task.start = with_closed_joints(task.scene, task.start);
   for (Pose& pose : task.start) pose = to_single(pose);
-  GoalTerm square;
-  square.subject = GoalTerm::Subject::kJoint;
-  square.region = GoalTerm::Region::kAngles;
+  tasks::GoalTerm square;
+  square.subject = tasks::GoalTerm::Subject::kJoint;
+  square.region = tasks::GoalTerm::Region::kAngles;
   square.least = 1.309;
   square.most = 1.833;
-  GoalTerm place;
-  place.subject = GoalTerm::Subject::kCentroid;
+  tasks::GoalTerm place;
+  place.subject = tasks::GoalTerm::Subject::kCentroid;
   place.kind = "link";
   place.centre = {0.0, 3.0};
   place.radius = 1.0;

@@ -62,21 +62,21 @@ struct ChainScene : TouchingScene {
 };
 
 /// Stacked poses moved onto the joints.
-inline VectorXd closed(const StepEnergy& energy, const VectorXd& p) {
-  Placement<double> at = placed(p);
+inline VectorXd closed(const energy::StepEnergy& energy, const VectorXd& p) {
+  energy::Placement<double> at = energy::placed(p);
   energy.scene().place(at);
   return Eigen::Map<const VectorXd>(at.p.data(), p.size());
 }
 
 /// J y of a motion of the coordinates at p.
-inline VectorXd spread(const StepEnergy& energy, const VectorXd& p, VectorXd y) {
-  energy.scene().articulation().spread(placed(p), y.data());
+inline VectorXd spread(const energy::StepEnergy& energy, const VectorXd& p, VectorXd y) {
+  energy.scene().articulation().spread(energy::placed(p), y.data());
   return y;
 }
 
 /// `y` without the entries that belong to no coordinate.
-inline VectorXd of_coordinates(const StepEnergy& energy, VectorXd y) {
-  for (const Hinge<double>& hinge : energy.scene().articulation().hinges())
+inline VectorXd of_coordinates(const energy::StepEnergy& energy, VectorXd y) {
+  for (const energy::Hinge<double>& hinge : energy.scene().articulation().hinges())
     y.segment<2>(3 * hinge.child).setZero();
   return y;
 }

@@ -53,12 +53,12 @@ inline Eigen::Vector3d net_wrench(const Vec6& g, const Vec6& q) {
   return net;
 }
 
-inline PairFrame<double> frame_of(const VectorXd& q) {
+inline energy::PairFrame<double> frame_of(const VectorXd& q) {
   return {q.data(), turn_of(q[2]), q.data() + 3, turn_of(q[5])};
 }
 
 /// V of PairFrame [4 × 6], by its effect on the unit vectors.
-inline Eigen::Matrix<double, 4, 6> pushing(const PairFrame<double>& frame) {
+inline Eigen::Matrix<double, 4, 6> pushing(const energy::PairFrame<double>& frame) {
   Eigen::Matrix<double, 4, 6> V;
   for (int m = 0; m < 6; ++m) {
     const Vec6 unit = Vec6::Unit(m);

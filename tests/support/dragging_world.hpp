@@ -20,23 +20,23 @@ inline Poses moved(Poses poses, std::size_t body, const Vector2d& by) {
 /// object of its own, which can be reckoned backwards but for the rounding to float,
 /// 1e-7 of 8 m.
 struct DraggingWorld {
-  Task task = gathering();
-  std::vector<double> drags{kDrag};  // one predecessor each per solve of a push that drags
-  double aside = 0.0;                // how far off every third push sets the robot down [m]
-  double over = 0.0;                 // how much farther than reckoned a push drags [m]
-  std::vector<ReverseJob> asked;     // last
-  std::vector<ReverseResult> answered;
+  tasks::Task task = gathering();
+  std::vector<double> drags{kDrag};        // one predecessor each per solve of a push that drags
+  double aside = 0.0;                      // how far off every third push sets the robot down [m]
+  double over = 0.0;                       // how much farther than reckoned a push drags [m]
+  std::vector<reverse::ReverseJob> asked;  // last
+  std::vector<reverse::ReverseResult> answered;
 
-  SolveBatch solve = [this](std::span<const ReverseJob> jobs) {
+  search::SolveBatch solve = [this](std::span<const reverse::ReverseJob> jobs) {
     asked.assign(jobs.begin(), jobs.end());
     answered.clear();
-    for (const ReverseJob& job : jobs) answered.push_back(predecessors(job));
+    for (const reverse::ReverseJob& job : jobs) answered.push_back(predecessors(job));
     return answered;
   };
 
-  ReplayBatch replay = [this](std::span<const ReplayJob> jobs) {
-    std::vector<ReplayResult> results;
-    for (const ReplayJob& job : jobs) results.push_back({pushed(job), true, 0.0});
+  search::ReplayBatch replay = [this](std::span<const search::ReplayJob> jobs) {
+    std::vector<search::ReplayResult> results;
+    for (const search::ReplayJob& job : jobs) results.push_back({pushed(job), true, 0.0});
     return results;
   };
 
@@ -51,23 +51,23 @@ struct DraggingWorld {
 
   bool misses(int action) const { return aside > 0.0 && action % 3 == 0; }
 
-  ReverseResult predecessors(const ReverseJob& job) const {
+  reverse::ReverseResult predecessors(const reverse::ReverseJob& job) const {
     const Vector2d d = direction(job.action, task.push);
     const Poses back = moved(job.end, 0, -task.push.stride * d);
     const std::size_t object = dragged(job.action);
-    if (object == 0) return {SolveStatus::kConverged, 1, {back}};
-    ReverseResult out{SolveStatus::kConverged, 1};
+    if (object == 0) return {reverse::SolveStatus::kConverged, 1, {back}};
+    reverse::ReverseResult out{reverse::SolveStatus::kConverged, 1};
     for (const double drag : drags) out.starts.push_back(moved(back, object, -drag * d));
     return out;
   }
 
-  Poses pushed(const ReplayJob& job) const {
-    if (job.action == kSettle) return job.start;
+  Poses pushed(const search::ReplayJob& job) const {
+    if (job.action == search::kSettle) return job.start;
     const Vector2d d = direction(job.action, task.push);
     Poses end = moved(job.start, 0, task.push.stride * d);
     if (const std::size_t object = dragged(job.action); object != 0)
       end = moved(end, object, (kDrag + over) * d);
-    return float_rounded(misses(job.action) ? moved(end, 0, {0.0, aside}) : end);
+    return search::float_rounded(misses(job.action) ? moved(end, 0, {0.0, aside}) : end);
   }
 };
 

@@ -44,17 +44,17 @@ struct FieldChange {
 
 /// Expects that each field of `config`, with its value in `others`, changes what `result` makes of
 /// the configuration, and that `others` has all fields but `left_out`.
-template <class Config, class Result>
-void expect_each_field_matters(const Config& config, const OtherValues& others,
+template <class Section, class Result>
+void expect_each_field_matters(const Section& config, const OtherValues& others,
                                const std::set<std::string>& left_out, Result result) {
   const auto usual = result(config);
   FieldChange none{""};
-  Config all = config;
+  Section all = config;
   all.visit(none);
   std::set<std::string> tried = left_out;
   for (const auto& [name, value] : others) {
     tried.insert(name);
-    Config changed = config;
+    Section changed = config;
     FieldChange change{name, value};
     changed.visit(change);
     EXPECT_FALSE(result(changed) == usual) << name << " does nothing";

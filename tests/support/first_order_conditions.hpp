@@ -8,7 +8,8 @@
 namespace rtg::testing {
 
 /// x moved by t along d; jointed bodies and their multipliers follow.
-inline Iterate moved(const ReverseProblem& problem, Iterate x, const Direction& d, double t) {
+inline reverse::Iterate moved(const reverse::ReverseProblem& problem, reverse::Iterate x,
+                              const Direction& d, double t) {
   for (std::size_t k = 0; k < x.p.size(); ++k) {
     x.p[k].head(d.p[k].size()) += t * d.p[k];
     x.forces[k] += t * d.forces[k];
@@ -21,7 +22,7 @@ inline Iterate moved(const ReverseProblem& problem, Iterate x, const Direction& 
 }
 
 /// The first-order conditions (∇L; Φ) with complementarity left out.
-inline VectorXd conditions(const ReverseProblem& problem, const Iterate& x) {
+inline VectorXd conditions(const reverse::ReverseProblem& problem, const reverse::Iterate& x) {
   return joined(Linearisation(problem, x, {true, 0.0}).conditions());
 }
 
@@ -41,7 +42,7 @@ inline BlockVector noise_like(const BlockTridiagonal& K, Rng& rng) {
 /// A vector of the system without the entries that belong to no coordinate.
 inline BlockVector of_coordinates(const Linearisation& lin, const BlockVector& x) {
   StageStep<double> step = lin.step(x);
-  for (const Hinge<double>& hinge : lin.problem().energy.scene().articulation().hinges())
+  for (const energy::Hinge<double>& hinge : lin.problem().energy.scene().articulation().hinges())
     for (auto* levels : {&step.poses, &step.multipliers})
       for (std::size_t k = levels == &step.poses ? 0 : 1; k < levels->size(); ++k)
         (*levels)[k][static_cast<std::size_t>(hinge.child)].head<2>().setZero();
@@ -61,7 +62,8 @@ inline std::vector<BlockVector> directions(const Linearisation& lin) {
 
 /// The system's matrix against central differences of the first-order conditions along directions
 /// on which the forces follow the gaps (Δλ = b·Δp).
-inline void expect_matrix_is_derivative(const ReverseProblem& problem, const Iterate& x) {
+inline void expect_matrix_is_derivative(const reverse::ReverseProblem& problem,
+                                        const reverse::Iterate& x) {
   const Linearisation lin(problem, x, {true, 0.0});
   for (const BlockVector& along : directions(lin)) {
     const Direction d = lin.direction(along, false);
@@ -77,14 +79,15 @@ inline void expect_matrix_is_derivative(const ReverseProblem& problem, const Ite
 
 /// To first order in t, x + t d leaves (1 - t) of every constraint, d the Newton step with either
 /// Hessian; by central differences over t.
-inline void expect_step_solves_the_constraints(const ReverseProblem& problem, const Iterate& x,
-                                               double t, double tolerance) {
+inline void expect_step_solves_the_constraints(const reverse::ReverseProblem& problem,
+                                               const reverse::Iterate& x, double t,
+                                               double tolerance) {
   for (const Curvature curvature : {Curvature{false, 1.0}, Curvature{true, 0.1}}) {
     const Linearisation lin(problem, x, curvature);
     const Direction d = lin.direction(solution_of(lin), true);
-    const Violation now = violation(problem, x);
-    const Violation up = violation(problem, moved(problem, x, d, t));
-    const Violation down = violation(problem, moved(problem, x, d, -t));
+    const reverse::Violation now = violation(problem, x);
+    const reverse::Violation up = violation(problem, moved(problem, x, d, t));
+    const reverse::Violation down = violation(problem, moved(problem, x, d, -t));
     for (std::size_t k = 0; k < now.residuals.size(); ++k) {
       const VectorXd slope = (up.residuals[k] - down.residuals[k]) / (2.0 * t);
       EXPECT_LT((slope + now.residuals[k]).lpNorm<Eigen::Infinity>(), tolerance);
@@ -95,8 +98,8 @@ inline void expect_step_solves_the_constraints(const ReverseProblem& problem, co
 }
 
 /// J + Σ y·Φ.
-inline double lagrangian(const ReverseProblem& problem, const Iterate& x) {
-  const Violation v = violation(problem, x);
+inline double lagrangian(const reverse::ReverseProblem& problem, const reverse::Iterate& x) {
+  const reverse::Violation v = violation(problem, x);
   double sum = objective(problem, x);
   for (std::size_t k = 1; k < x.p.size(); ++k) sum += x.multipliers[k].dot(v.residuals[k]);
   return sum;
@@ -104,7 +107,8 @@ inline double lagrangian(const ReverseProblem& problem, const Iterate& x) {
 
 /// The right-hand side against differences of the Lagrangian, along directions that keep
 /// complementarity (Δλ = b·Δp): its multipliers drop out there.
-inline void expect_right_hand_side_is_gradient(const ReverseProblem& problem, const Iterate& x) {
+inline void expect_right_hand_side_is_gradient(const reverse::ReverseProblem& problem,
+                                               const reverse::Iterate& x) {
   const Linearisation lin(problem, x, {true, 0.0});
   const VectorXd gradient = joined(lin.conditions());
   for (const BlockVector& along : directions(lin)) {

@@ -8,7 +8,7 @@ namespace rtg::testing {
 
 /// `config` with the paper's objective and the final state fixed: reverse problems that have a
 /// closed form where nothing touches.
-inline ReverseConfig free_push_config(ReverseConfig config) {
+inline reverse::ReverseConfig free_push_config(reverse::ReverseConfig config) {
   config.path_weight = config.heading_weight = config.terminal_weight = 0.0;
   return config;
 }
@@ -16,7 +16,7 @@ inline ReverseConfig free_push_config(ReverseConfig config) {
 /// With Φ_k solved for the poses, t₀ = t_h - B/m Σ tanh c_k, the objective falls apart into one
 /// function of each control, -w₀ d B/m tanh c + ε c², whose derivative is monotone for d c ≥ 0:
 /// its zero by bisection.
-inline double closed_form_control(const ReverseProblem& problem, double d) {
+inline double closed_form_control(const reverse::ReverseProblem& problem, double d) {
   const double pull = problem.config.robot_weight * std::abs(d) *
                       problem.energy.control_bound()[0] / problem.energy.damping(0).mass;
   double low = 0.0, high = 50.0;
@@ -28,7 +28,8 @@ inline double closed_form_control(const ReverseProblem& problem, double d) {
   return std::copysign(low, d);
 }
 
-inline void expect_closed_form(const ReverseProblem& problem, const Iterate& x, double tolerance) {
+inline void expect_closed_form(const reverse::ReverseProblem& problem, const reverse::Iterate& x,
+                               double tolerance) {
   const double reach = problem.energy.control_bound()[0] / problem.energy.damping(0).mass;
   for (int m = 0; m < 2; ++m) {
     const double c = closed_form_control(problem, problem.direction[m]);

@@ -6,22 +6,22 @@
 
 namespace rtg::testing {
 
-inline void add_box(Task& task, const Pose& pose) {
+inline void add_box(tasks::Task& task, const Pose& pose) {
   const std::string name = "box" + std::to_string(task.scene.size());
   task.scene.bodies.push_back({name, "box", box(1.2, 1.2), 1.0, 0.5, false});
   task.start.push_back(to_single(pose));
 }
 
 /// The task of config/gathering.yaml, for tests of the core, which reads no YAML.
-inline Task gathering() {
-  Task task;
+inline tasks::Task gathering() {
+  tasks::Task task;
   task.name = "gathering";
   task.scene.bodies.push_back({"robot", "robot", regular_polygon(6, 0.8), 1.0, 0.5, false});
   task.start.push_back({0.0, -5.0, 0.0});
   add_box(task, {-3.0, 1.13, 0.2});
   add_box(task, {2.63, 2.25, -0.3});
   add_box(task, {2.25, -2.25, 0.6});
-  GoalTerm near_origin;
+  tasks::GoalTerm near_origin;
   near_origin.radius = 2.0;
   task.goal.push_back(near_origin);
   task.randomisation = 0.5;
@@ -36,8 +36,8 @@ inline Poses robot_at(double x) {
 }
 
 /// The task of config/gathering_hard.yaml.
-inline Task gathering_hard() {
-  Task task = gathering();
+inline tasks::Task gathering_hard() {
+  tasks::Task task = gathering();
   task.name = "gathering_hard";
   add_box(task, {-1.88, -2.63, 0.1});
   return task;

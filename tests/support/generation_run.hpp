@@ -9,25 +9,25 @@ namespace rtg::testing {
 
 /// Everything that a generation with naive reverse and Box2D gave out.
 struct GenerationRun {
-  std::vector<Transition> stored;
-  std::vector<Progress> progress;
-  GenerationReport report;
+  std::vector<search::Transition> stored;
+  std::vector<search::Progress> progress;
+  search::GenerationReport report;
 };
 
 /// The in-process seams over the naive reverse.
-inline GenerationSeams naive_seams(const Task& task, int threads) {
-  return in_process_seams(reverse_solver(task, {}, {}, Generator::kNaive), forward_replay(task, {}),
-                          threads);
+inline search::GenerationSeams naive_seams(const tasks::Task& task, int threads) {
+  return search::in_process_seams(reverse_solver(task, {}, {}, search::Generator::kNaive),
+                                  search::forward_replay(task, {}), threads);
 }
 
-inline GenerationRun run_naive(const Task& task, const SearchConfig& config, std::uint64_t seed,
-                               int threads) {
+inline GenerationRun run_naive(const tasks::Task& task, const search::SearchConfig& config,
+                               std::uint64_t seed, int threads) {
   GenerationRun run;
-  GenerationSeams seams = naive_seams(task, threads);
-  seams.store = [&](std::span<const Transition> batch) {
+  search::GenerationSeams seams = naive_seams(task, threads);
+  seams.store = [&](std::span<const search::Transition> batch) {
     run.stored.insert(run.stored.end(), batch.begin(), batch.end());
   };
-  seams.progress = [&](const Progress& p) { run.progress.push_back(p); };
+  seams.progress = [&](const search::Progress& p) { run.progress.push_back(p); };
   run.report = generate(task, config, seed, seams);
   return run;
 }

@@ -15,7 +15,7 @@ struct Direction {
   std::vector<VectorXd> multipliers;  // [dofs]
 };
 
-/// rtg::Curvature of one candidate.
+/// reverse::Curvature of one candidate.
 struct Curvature {
   bool exact = false;
   double proximal = 1.0;
@@ -24,19 +24,20 @@ struct Curvature {
 /// One candidate's NewtonSystem as a matrix.
 class Linearisation {
  public:
-  Linearisation(const ReverseProblem& problem, const Iterate& x, const Curvature& curvature)
+  Linearisation(const reverse::ReverseProblem& problem, const reverse::Iterate& x,
+                const Curvature& curvature)
       : one_(problem),
         problem_(problem),
         x_(loaded(problem, x)),
         newton_(problem_),
-        violation_(rtg::violation(problem, x)) {
+        violation_(reverse::violation(problem, x)) {
     newton_.linearise(problem_, x_, {curvature.exact ? 1.0 : 0.0, curvature.proximal});
   }
 
-  const ReverseProblem& problem() const { return one_; }
-  const NewtonSystem<double>& newton() const { return newton_; }
-  const Trajectory<double>& trajectory() const { return x_; }
-  const Violation& violation() const { return violation_; }
+  const reverse::ReverseProblem& problem() const { return one_; }
+  const reverse::NewtonSystem<double>& newton() const { return newton_; }
+  const reverse::Trajectory<double>& trajectory() const { return x_; }
+  const reverse::Violation& violation() const { return violation_; }
   Assembled assembled() const { return {newton_.system(), problem_.fixed_end()}; }
   BlockTridiagonal matrix() const { return assembled().matrix(); }
   /// Of the Newton step.
@@ -68,7 +69,7 @@ class Linearisation {
   Direction direction(const BlockVector& solution, bool closing) const {
     const StageStep<double> s = step(solution);
     const StageStep<double> none(newton_.system().M, newton_.system().h);
-    PerContact<double> forces = x_.forces, rest = x_.forces;
+    reverse::PerContact<double> forces = x_.forces, rest = x_.forces;
     newton_.force_steps(problem_, x_, s, forces);
     newton_.force_steps(problem_, x_, zero(none), rest);
     Direction d;
@@ -94,18 +95,19 @@ class Linearisation {
       for (Vec3<double>& block : poses) block.setZero();
     return step;
   }
-  Trajectory<double> loaded(const ReverseProblem& problem, const Iterate& x) {
+  reverse::Trajectory<double> loaded(const reverse::ReverseProblem& problem,
+                                     const reverse::Iterate& x) {
     problem_.load(0, problem);
-    Trajectory<double> out(problem_.energy, problem.sub_steps);
+    reverse::Trajectory<double> out(problem_.energy, problem.sub_steps);
     out.load(0, problem, x);
     return out;
   }
 
-  const ReverseProblem& one_;
-  ProblemLanes<double> problem_;
-  Trajectory<double> x_;
-  NewtonSystem<double> newton_;
-  Violation violation_;
+  const reverse::ReverseProblem& one_;
+  reverse::ProblemLanes<double> problem_;
+  reverse::Trajectory<double> x_;
+  reverse::NewtonSystem<double> newton_;
+  reverse::Violation violation_;
 };
 
 /// The Newton step.

@@ -10,20 +10,20 @@ namespace rtg::testing {
 /// Gathering's robot with two boxes in a row in front of it, the second one turned: after a push to
 /// the right all three rest in contact, face to face and corner to face.
 struct TouchingScene {
-  Task task = gathering();
+  tasks::Task task = gathering();
   PhysicsConfig physics;
   Scene scene{{task.scene.bodies[0], task.scene.bodies[1], task.scene.bodies[2]}};
-  StepEnergy energy{scene, physics, task.push};
+  energy::StepEnergy energy{scene, physics, task.push};
   Poses poses{{0.0, 0.0, 0.0}, {1.46, 0.15, 0.05}, {2.95, 0.35, 0.6}};
 
   /// To be called when the physics have changed.
-  void update() { energy = StepEnergy(scene, physics, task.push); }
+  void update() { energy = energy::StepEnergy(scene, physics, task.push); }
 
   /// The reverse problem that ends in these poses.
-  ReverseProblem problem(const ReverseConfig& config) const {
+  reverse::ReverseProblem problem(const reverse::ReverseConfig& config) const {
     return {energy,
             config,
-            stacked(poses),
+            energy::stacked(poses),
             Vector2d::UnitX(),
             physics.sub_steps + physics.settling_steps(),
             physics.settling_steps()};
@@ -46,7 +46,7 @@ inline VectorXd noise(Eigen::Index n, double size, Rng& rng) {
 }
 
 /// x with random multipliers, and everything else moved at random by ±size.
-inline Iterate disturbed(Iterate x, double size, Rng& rng) {
+inline reverse::Iterate disturbed(reverse::Iterate x, double size, Rng& rng) {
   for (std::size_t k = 0; k < x.p.size(); ++k) {
     x.p[k] += noise(x.p[k].size(), size, rng);
     for (double& force : x.forces[k])

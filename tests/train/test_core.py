@@ -18,8 +18,13 @@ def test_the_stub_lists_what_the_module_has() -> None:
         for node in tree.body
         if isinstance(node, ast.ClassDef | ast.FunctionDef) and not node.name.startswith("_")
     }
+    constants = {
+        node.target.id
+        for node in tree.body
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name)
+    }
     public = {name for name in vars(_core) if not name.startswith("_")}
-    assert public == set(stub)
+    assert public == {*stub, *constants}
     for name, members in stub.items():
         found = getattr(_core, name)
         sections = name.endswith("Config") and name != "Config"  # fields are those of the struct

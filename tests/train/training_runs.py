@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import torch as th
 from rtg import _core, paths
 from rtg.files.dataset import Rows
 from rtg.files.recorder import Recorder
@@ -50,3 +51,13 @@ def after_polls(count: int) -> Callable[[], bool]:
     """False `count` times."""
     left = iter(range(count))
     return lambda: next(left, None) is None
+
+
+def flat(value: object) -> list[object]:
+    """Every leaf of a checkpoint, seconds left out."""
+    if isinstance(value, dict):
+        kept = [key for key in value if key not in ("wall_s", "cpu_s")]
+        return [leaf for key in kept for leaf in [key, *flat(value[key])]]
+    if isinstance(value, list):
+        return [leaf for part in value for leaf in flat(part)]
+    return [value.numpy().tobytes() if isinstance(value, th.Tensor) else value]

@@ -11,7 +11,7 @@
 
 #include "core/world/pose.hpp"
 
-namespace rtg {
+namespace rtg::bindings {
 
 namespace nb = nanobind;
 
@@ -65,4 +65,4 @@ inline nb::ndarray<nb::numpy, double> state_array(const Poses& poses) {
   return out.release({poses.size(), 3});
 }
 
-}  // namespace rtg
+}  // namespace rtg::bindings

@@ -2,7 +2,7 @@
 
 #include <nanobind/nanobind.h>
 
-namespace rtg {
+namespace rtg::bindings {
 
 /// Each adds its part of the module rtg._core.
 void bind_config(nanobind::module_& module);
@@ -10,4 +10,4 @@ void bind_generation(nanobind::module_& module);
 void bind_task(nanobind::module_& module);
 void bind_simulator(nanobind::module_& module);
 
-}  // namespace rtg
+}  // namespace rtg::bindings

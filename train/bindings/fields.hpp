@@ -5,15 +5,16 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
-namespace rtg {
+namespace rtg::bindings {
 
 /// Binds the fields that Config::visit() lists as read-only properties of the same names. A choice
 /// is the text of the configuration, whose list of names lasts for ever.
-template <class Config>
+template <class Section>
 class FieldBinder {
  public:
-  FieldBinder(nanobind::class_<Config>& bound, const Config& like) : bound_(bound), like_(like) {}
+  FieldBinder(nanobind::class_<Section>& bound, const Section& like) : bound_(bound), like_(like) {}
 
   void number(const char* name, const double& at, double, double, const char* doc) {
     bind(name, at, doc);
@@ -27,7 +28,7 @@ class FieldBinder {
     const std::size_t offset = offset_of(at);
     bound_.def_prop_ro(
         name,
-        [offset, &names](const Config& config) {
+        [offset, &names](const Section& config) {
           return std::string(names[static_cast<std::size_t>(field<Enum>(config, offset))]);
         },
         doc);
@@ -35,7 +36,7 @@ class FieldBinder {
 
  private:
   template <class Value>
-  static const Value& field(const Config& config, std::size_t offset) {
+  static const Value& field(const Section& config, std::size_t offset) {
     return *reinterpret_cast<const Value*>(reinterpret_cast<const char*>(&config) + offset);
   }
 
@@ -49,19 +50,27 @@ class FieldBinder {
   void bind(const char* name, const Value& at, const char* doc) {
     const std::size_t offset = offset_of(at);
     bound_.def_prop_ro(
-        name, [offset](const Config& config) { return field<Value>(config, offset); }, doc);
+        name, [offset](const Section& config) { return field<Value>(config, offset); }, doc);
   }
 
-  nanobind::class_<Config>& bound_;
-  const Config& like_;
+  nanobind::class_<Section>& bound_;
+  const Section& like_;
 };
 
-template <class Config>
+/// The names of an enumeration, by value.
+template <class Names>
+nanobind::tuple names_of(const Names& names) {
+  nanobind::list found;
+  for (const std::string_view name : names) found.append(std::string(name));
+  return nanobind::tuple(found);
+}
+
+template <class Section>
 void bind_fields(nanobind::module_& module, const char* name) {
-  nanobind::class_<Config> bound(module, name);
-  Config like;
-  FieldBinder<Config> binder(bound, like);
+  nanobind::class_<Section> bound(module, name);
+  Section like;
+  FieldBinder<Section> binder(bound, like);
   like.visit(binder);
 }
 
-}  // namespace rtg
+}  // namespace rtg::bindings

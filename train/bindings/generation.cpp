@@ -11,12 +11,13 @@
 #include "nodes/config/config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
+#include "train/bindings/fields.hpp"
 
-namespace rtg {
+namespace rtg::bindings {
 namespace {
 
 /// Calls store(poses, action, next_poses, success, source) with arrays of the rows.
-void hand_over(const nb::object& store, std::span<const Transition> rows) {
+void hand_over(const nb::object& store, std::span<const search::Transition> rows) {
   const nb::gil_scoped_acquire acquire;
   const std::size_t count = rows.size(), bodies = count ? rows[0].poses.size() : 0;
   OwnedArray<double> poses(count * bodies * 3), next(count * bodies * 3);
@@ -34,7 +35,7 @@ void hand_over(const nb::object& store, std::span<const Transition> rows) {
         next.release({count, bodies, 3}), success.release({count}), source.release({count}));
 }
 
-void report_progress(const nb::object& progress, const Progress& p) {
+void report_progress(const nb::object& progress, const search::Progress& p) {
   const nb::gil_scoped_acquire acquire;
   nb::dict line;
   line["phase"] = p.phase;
@@ -48,32 +49,33 @@ void report_progress(const nb::object& progress, const Progress& p) {
 }
 
 /// Exceptions of the callbacks, KeyboardInterrupt too, end the generation and come out of it.
-std::string generate_in_process(const Config& config, const nb::object& store,
+std::string generate_in_process(const config::Config& config, const nb::object& store,
                                 const nb::object& progress) {
   const nb::gil_scoped_release release;
-  GenerationSeams seams = in_process_seams(
+  search::GenerationSeams seams = search::in_process_seams(
       reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
-      forward_replay(config.task, config.physics), config.run.workers);
-  seams.store = [&](std::span<const Transition> rows) { hand_over(store, rows); };
-  seams.progress = [&](const Progress& p) { report_progress(progress, p); };
+      search::forward_replay(config.task, config.physics), config.run.workers);
+  seams.store = [&](std::span<const search::Transition> rows) { hand_over(store, rows); };
+  seams.progress = [&](const search::Progress& p) { report_progress(progress, p); };
   const auto seed = static_cast<std::uint64_t>(config.run.seed);
   return to_json(generate(config.task, config.search, seed, seams));
 }
 
 /// The states of the plan that a forward search finds from a start, [T + 1, bodies, 3], the start
 /// alone if it finds none; and how many pushes it took to the simulator.
-std::pair<nb::ndarray<nb::numpy, double>, long> plan(const Config& config,
+std::pair<nb::ndarray<nb::numpy, double>, long> plan(const config::Config& config,
                                                      const StateArray& start) {
-  const Task& task = config.task;
+  const tasks::Task& task = config.task;
   check_bodies(start, task.scene.size());
   if (start.shape(0) != 1) throw nb::value_error("one start is wanted, [1, bodies, 3]");
-  SearchStats stats;
+  search::SearchStats stats;
   const Poses from = state_at(start, 0);
-  std::vector<Transition> steps;
+  std::vector<search::Transition> steps;
   {
     const nb::gil_scoped_release release;
-    const ReplayBatch replay =
-        counted(replay_on_threads(forward_replay(task, config.physics), config.run.workers), stats);
+    const search::ReplayBatch replay = counted(
+        search::replay_on_threads(search::forward_replay(task, config.physics), config.run.workers),
+        stats);
     steps = plan_forward(task, config.search, from, replay);
   }
   const std::size_t width = task.scene.size() * 3;
@@ -87,9 +89,10 @@ std::pair<nb::ndarray<nb::numpy, double>, long> plan(const Config& config,
 }  // namespace
 
 void bind_generation(nb::module_& module) {
+  module.attr("SOURCES") = names_of(search::kSources);
   module.def("generate", &generate_in_process, nb::arg("config"), nb::arg("store"),
              nb::arg("progress"));
   module.def("plan", &plan, nb::arg("config"), nb::arg("start"));
 }
 
-}  // namespace rtg
+}  // namespace rtg::bindings

@@ -2,8 +2,8 @@
 
 NB_MODULE(_core, module) {
   module.doc() = "The C++ core of RTG: configuration, tasks, the true dynamics, generation.";
-  rtg::bind_task(module);
-  rtg::bind_config(module);
-  rtg::bind_simulator(module);
-  rtg::bind_generation(module);
+  rtg::bindings::bind_task(module);
+  rtg::bindings::bind_config(module);
+  rtg::bindings::bind_simulator(module);
+  rtg::bindings::bind_generation(module);
 }

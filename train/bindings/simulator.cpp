@@ -5,16 +5,16 @@
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 
-namespace rtg {
+namespace rtg::bindings {
 namespace {
 
 /// The true dynamics of one task.
 struct TaskSimulator {
   std::size_t bodies;
   int headings;
-  Box2dSimulator box2d;
+  forward::Box2dSimulator box2d;
 
-  explicit TaskSimulator(const Config& config)
+  explicit TaskSimulator(const config::Config& config)
       : bodies(config.task.scene.size()),
         headings(config.task.push.headings),
         box2d(config.task.scene, config.task.push, config.physics) {}
@@ -45,7 +45,7 @@ std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, bool>> push(
     const nb::gil_scoped_release release;
     for (std::size_t row = 0; row < count; ++row) {
       const int action = static_cast<int>(actions.data()[row]);
-      const PushOutcome outcome = simulator.box2d.push(state_at(states, row), action);
+      const forward::PushOutcome outcome = simulator.box2d.push(state_at(states, row), action);
       write_state(outcome.end, next.data.get() + row * width);
       ok.data[row] = outcome.ok;
     }
@@ -57,8 +57,8 @@ std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, bool>> push(
 
 void bind_simulator(nb::module_& module) {
   nb::class_<TaskSimulator>(module, "Simulator")
-      .def(nb::init<const Config&>(), nb::arg("config"))
+      .def(nb::init<const config::Config&>(), nb::arg("config"))
       .def("push", &push, nb::arg("states"), nb::arg("actions"));
 }
 
-}  // namespace rtg
+}  // namespace rtg::bindings

@@ -10,12 +10,12 @@
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 
-namespace rtg {
+namespace rtg::bindings {
 namespace {
 
 using Vertices = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
-std::vector<Vertices> shapes(const Task& task) {
+std::vector<Vertices> shapes(const tasks::Task& task) {
   std::vector<Vertices> out;
   for (const Body& body : task.scene.bodies) {
     Vertices& vertices = out.emplace_back(static_cast<Eigen::Index>(body.shape.size()), 2);
@@ -25,25 +25,25 @@ std::vector<Vertices> shapes(const Task& task) {
   return out;
 }
 
-std::vector<std::string> names(const Task& task) {
+std::vector<std::string> names(const tasks::Task& task) {
   std::vector<std::string> out;
   for (const Body& body : task.scene.bodies) out.push_back(body.name);
   return out;
 }
 
-std::vector<std::string> kinds(const Task& task) {
+std::vector<std::string> kinds(const tasks::Task& task) {
   std::vector<std::string> out;
   for (const Body& body : task.scene.bodies) out.push_back(body.kind);
   return out;
 }
 
-std::vector<bool> fixed(const Task& task) {
+std::vector<bool> fixed(const tasks::Task& task) {
   std::vector<bool> out;
   for (const Body& body : task.scene.bodies) out.push_back(body.fixed);
   return out;
 }
 
-nb::ndarray<nb::numpy, float> observations(const Task& task, const StateArray& states) {
+nb::ndarray<nb::numpy, float> observations(const tasks::Task& task, const StateArray& states) {
   check_bodies(states, task.scene.size());
   const auto size = static_cast<std::size_t>(observation_size(task));
   OwnedArray<float> out(states.shape(0) * size);
@@ -57,7 +57,7 @@ nb::ndarray<nb::numpy, float> observations(const Task& task, const StateArray& s
   return out.release({states.shape(0), size});
 }
 
-nb::ndarray<nb::numpy, bool> successes(const Task& task, const StateArray& states) {
+nb::ndarray<nb::numpy, bool> successes(const tasks::Task& task, const StateArray& states) {
   check_bodies(states, task.scene.size());
   OwnedArray<bool> out(states.shape(0));
   for (std::size_t row = 0; row < states.shape(0); ++row)
@@ -66,7 +66,8 @@ nb::ndarray<nb::numpy, bool> successes(const Task& task, const StateArray& state
 }
 
 /// A heading per state that seeks contact, row k from stream k of `seed`.
-nb::ndarray<nb::numpy, std::int64_t> contact_headings(const Task& task, const StateArray& states,
+nb::ndarray<nb::numpy, std::int64_t> contact_headings(const tasks::Task& task,
+                                                      const StateArray& states,
                                                       std::uint64_t seed) {
   check_bodies(states, task.scene.size());
   OwnedArray<std::int64_t> out(states.shape(0));
@@ -77,15 +78,15 @@ nb::ndarray<nb::numpy, std::int64_t> contact_headings(const Task& task, const St
   return out.release({states.shape(0)});
 }
 
-std::optional<nb::ndarray<nb::numpy, double>> goal_state(const Task& task, std::uint64_t seed,
-                                                         std::uint64_t index) {
+std::optional<nb::ndarray<nb::numpy, double>> goal_state(const tasks::Task& task,
+                                                         std::uint64_t seed, std::uint64_t index) {
   Rng rng(seed, index);
   const std::optional<Poses> poses = sample_goal(task, rng);
   if (!poses) return std::nullopt;
   return state_array(*poses);
 }
 
-nb::ndarray<nb::numpy, double> start(const Task& task, double amplitude, std::uint64_t seed,
+nb::ndarray<nb::numpy, double> start(const tasks::Task& task, double amplitude, std::uint64_t seed,
                                      std::uint64_t index) {
   if (!(amplitude >= 0.0 && amplitude <= 10.0))
     throw nb::value_error("amplitude: legal are 0 to 10 m");
@@ -94,7 +95,7 @@ nb::ndarray<nb::numpy, double> start(const Task& task, double amplitude, std::ui
 }
 
 /// As (parent, child, pin in the frame of the parent).
-std::vector<std::tuple<int, int, Vector2d>> joints(const Task& task) {
+std::vector<std::tuple<int, int, Vector2d>> joints(const tasks::Task& task) {
   std::vector<std::tuple<int, int, Vector2d>> out;
   for (const Joint& joint : task.scene.joints)
     out.emplace_back(joint.parent, joint.child, joint.on_parent);
@@ -102,19 +103,19 @@ std::vector<std::tuple<int, int, Vector2d>> joints(const Task& task) {
 }
 
 /// The one state of an array. Throws std::invalid_argument of none or several.
-Poses only_state(const Task& task, const StateArray& states) {
+Poses only_state(const tasks::Task& task, const StateArray& states) {
   check_bodies(states, task.scene.size());
   if (states.shape(0) != 1) throw std::invalid_argument("one state is wanted, [1, bodies, 3]");
   return state_at(states, 0);
 }
 
 /// Per joint, whether the goal speaks of its angle and the angle is as asked.
-std::vector<bool> joints_reached(const Task& task, const StateArray& states) {
+std::vector<bool> joints_reached(const tasks::Task& task, const StateArray& states) {
   const Poses poses = only_state(task, states);
   std::vector<bool> out;
   for (const Joint& joint : task.scene.joints) {
     int asked = 0, held = 0;
-    for (const GoalTerm& term : task.goal) {
+    for (const tasks::GoalTerm& term : task.goal) {
       if (!concerns(term, task.scene, joint)) continue;
       ++asked;
       held += contains(term, joint_angle(joint, poses), 0.0);
@@ -125,56 +126,57 @@ std::vector<bool> joints_reached(const Task& task, const StateArray& states) {
 }
 
 /// The mean centres that the goal speaks of.
-std::vector<Vector2d> centroids(const Task& task, const StateArray& states) {
+std::vector<Vector2d> centroids(const tasks::Task& task, const StateArray& states) {
   const Poses poses = only_state(task, states);
   std::vector<Vector2d> out;
-  for (const GoalTerm& term : task.goal)
-    if (term.subject == GoalTerm::Subject::kCentroid)
+  for (const tasks::GoalTerm& term : task.goal)
+    if (term.subject == tasks::GoalTerm::Subject::kCentroid)
       out.push_back(centroid_of(term, task.scene, poses));
   return out;
 }
 
 void bind_goal_term(nb::module_& module) {
-  nb::class_<GoalTerm>(module, "GoalTerm")
-      .def_ro("kind", &GoalTerm::kind)
+  nb::class_<tasks::GoalTerm>(module, "GoalTerm")
+      .def_ro("kind", &tasks::GoalTerm::kind)
       .def_prop_ro("region",
-                   [](const GoalTerm& term) {
+                   [](const tasks::GoalTerm& term) {
                      constexpr const char* kNames[] = {"disc", "half_plane", "angles"};
                      return kNames[static_cast<std::size_t>(term.region)];
                    })
       .def_prop_ro("subject",
-                   [](const GoalTerm& term) {
+                   [](const tasks::GoalTerm& term) {
                      constexpr const char* kNames[] = {"every", "centroid", "joint"};
                      return kNames[static_cast<std::size_t>(term.subject)];
                    })
-      .def_ro("centre", &GoalTerm::centre)
-      .def_ro("radius", &GoalTerm::radius)
-      .def_ro("normal", &GoalTerm::normal)
-      .def_ro("offset", &GoalTerm::offset);
+      .def_ro("centre", &tasks::GoalTerm::centre)
+      .def_ro("radius", &tasks::GoalTerm::radius)
+      .def_ro("normal", &tasks::GoalTerm::normal)
+      .def_ro("offset", &tasks::GoalTerm::offset);
 }
 
 }  // namespace
 
 void bind_task(nb::module_& module) {
   bind_goal_term(module);
-  nb::class_<Task>(module, "Task")
-      .def_ro("name", &Task::name)
+  nb::class_<tasks::Task>(module, "Task")
+      .def_ro("name", &tasks::Task::name)
       .def_prop_ro("shapes", &shapes)
       .def_prop_ro("names", &names)
       .def_prop_ro("kinds", &kinds)
       .def_prop_ro("fixed", &fixed)
       .def_prop_ro("joints", &joints)
-      .def_ro("goal", &Task::goal)
-      .def_prop_ro("arena", [](const Task& task) { return task.push.arena; })
-      .def_prop_ro("headings", [](const Task& task) { return task.push.headings; })
+      .def_ro("goal", &tasks::Task::goal)
+      .def_prop_ro("arena", [](const tasks::Task& task) { return task.push.arena; })
+      .def_prop_ro("headings", [](const tasks::Task& task) { return task.push.headings; })
       .def_prop_ro(
-          "start", [](const Task& task) { return state_array(task.start); }, nb::rv_policy::move)
-      .def_ro("horizon", &Task::horizon)
-      .def_ro("discount", &Task::discount)
-      .def_ro("start_jitter", &Task::start_jitter)
-      .def_ro("randomisation", &Task::randomisation)
-      .def_prop_ro("bodies", [](const Task& task) { return task.scene.size(); })
-      .def_prop_ro("observation_size", &observation_size)
+          "start", [](const tasks::Task& task) { return state_array(task.start); },
+          nb::rv_policy::move)
+      .def_ro("horizon", &tasks::Task::horizon)
+      .def_ro("discount", &tasks::Task::discount)
+      .def_ro("start_jitter", &tasks::Task::start_jitter)
+      .def_ro("randomisation", &tasks::Task::randomisation)
+      .def_prop_ro("bodies", [](const tasks::Task& task) { return task.scene.size(); })
+      .def_prop_ro("observation_size", &tasks::observation_size)
       .def("observation", &observations, nb::arg("states"))
       .def("joints_reached", &joints_reached, nb::arg("states"))
       .def("centroids", &centroids, nb::arg("states"))
@@ -184,4 +186,4 @@ void bind_task(nb::module_& module) {
       .def("jittered_start", &start, nb::arg("amplitude"), nb::arg("seed"), nb::arg("index") = 0);
 }
 
-}  // namespace rtg
+}  // namespace rtg::bindings

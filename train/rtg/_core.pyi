@@ -10,6 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+METHODS: tuple[str, ...]
+"""What is compared, see nodes/config/method.hpp."""
+SOURCES: tuple[str, ...]
+"""Where a transition comes from, by value, see core/search/transition.hpp."""
+
 class GoalTerm:
     """One condition on a state: what the subject is lies in the region."""
 

@@ -1,6 +1,6 @@
 #include "core/reverse/problem/contact_linearisation.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 template <class T>
@@ -20,7 +20,7 @@ ContactLinearisation<T>::ContactLinearisation(const ProblemLanes<T>& problem,
       first_(level == 0),
       last_(level == problem.sub_steps),
       held_(last_ && problem.fixed_end()),
-      forces_(x.forces[level].data() + contact_of(pair, 0)),
+      forces_(x.forces[level].data() + energy::contact_of(pair, 0)),
       close_(scene_.near(pair, x.p[level])),
       here_(scene_.frame(pair, x.p[level])),
       ahead_(scene_.frame(pair, x.p[last_ ? level : level + 1])),
@@ -35,15 +35,15 @@ ContactLinearisation<T>::ContactLinearisation(const ProblemLanes<T>& problem,
 template <class T>
 bool ContactLinearisation<T>::add(int vertex, Eliminated<T>& eliminated) {
   eliminated = {};
-  const Touch<T> touch(scene_, pair_, vertex, here_, close_);
+  const energy::Touch<T> touch(scene_, pair_, vertex, here_, close_);
   const T force = forces_[vertex];
   const Mask<T> acts = touch.within || force != T(0.0);
   if (!any(acts)) return false;
   const SignedDistance<T> d = touch.distance();
   const Mat2<T> D = d.hessian();
-  const GapTerms<T> gap(d, D, touch.point);
+  const energy::GapTerms<T> gap(d, D, touch.point);
   const T g = touch.gap(d, acts), inverse = T(1.0) / g;
-  const Barrier::Window<T> window = scene_.barrier().window(g);
+  const energy::Barrier::Window<T> window = scene_.barrier().window(g);
   const T weight = select(acts, T(scene_.barrier().weight), T(0.0));
   const T s = force - weight * window.d1;
   eliminated.a = (weight * window.w - force * g) * inverse;
@@ -61,7 +61,7 @@ bool ContactLinearisation<T>::add(int vertex, Eliminated<T>& eliminated) {
 /// b(g(p_0)) of the objective.
 template <class T>
 void ContactLinearisation<T>::add_start_barrier(const Contact& c) {
-  const Barrier& barrier = scene_.barrier();
+  const energy::Barrier& barrier = scene_.barrier();
   const T pressure = select(c.touch.within, barrier.force(c.g), T(0.0));
   const T stiffness = select(c.touch.within, barrier.force_slope(c.g), T(0.0));
   own.gradient -= c.gap.gradient * pressure;
@@ -72,7 +72,7 @@ void ContactLinearisation<T>::add_start_barrier(const Contact& c) {
 /// -λ ∇g(p_k) in Φ_k.
 template <class T>
 void ContactLinearisation<T>::add_normal_force(Contact& c) {
-  const GapRates<T> rates(c.d, c.D, c.touch.point, c.gap, y_);
+  const energy::GapRates<T> rates(c.d, c.D, c.touch.point, c.gap, y_);
   own.E -= c.gap.hessian * c.force;
   own.E -= c.gap.gradient * c.b.transpose();
   own.e -= c.gap.gradient * c.a;
@@ -85,11 +85,11 @@ void ContactLinearisation<T>::add_normal_force(Contact& c) {
 
 /// μ_f λ ∂φ/∂q₊ in Φ_{k+1}.
 template <class T>
-void ContactLinearisation<T>::add_friction(Contact& c, const ContactPoint<T>& after) {
-  const SlipTerms<T> slip(c.d.gradient, after, c.touch.point.x, scene_.slip());
+void ContactLinearisation<T>::add_friction(Contact& c, const energy::ContactPoint<T>& after) {
+  const energy::SlipTerms<T> slip(c.d.gradient, after, c.touch.point.x, scene_.slip());
   const Mat4<T> hessian = slip.hessian(after);
-  const SlipPlace<T> at{c.d, c.D, after, c.touch.point};
-  const SlipRates<T> rates(slip, at, hessian, y_next_);
+  const energy::SlipPlace<T> at{c.d, c.D, after, c.touch.point};
+  const energy::SlipRates<T> rates(slip, at, hessian, y_next_);
   const T mu = scene_.friction(pair_), load = mu * c.force, bent = curvature_.exact * load;
   const Vec4<T> drag = slip.gradient() * mu;
   next.E += hessian * load;
@@ -128,4 +128,4 @@ void ContactLinearisation<T>::add_complementarity(const Contact& c, const T& s, 
 template class ContactLinearisation<double>;
 template class ContactLinearisation<Lanes>;
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -6,7 +6,7 @@
 #include "core/energy/touch.hpp"
 #include "core/reverse/problem/problem_lanes.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 inline constexpr double kForceProximal = 0.01;  // share of δ on the forces
 
@@ -48,8 +48,8 @@ class ContactLinearisation {
   /// Adds contact `vertex`, with its force as eliminated; whether it acts.
   bool add(int vertex, Eliminated<T>& eliminated);
 
-  const PairFrame<T>& frame() const { return here_; }
-  const PairFrame<T>& frame_ahead() const { return ahead_; }
+  const energy::PairFrame<T>& frame() const { return here_; }
+  const energy::PairFrame<T>& frame_ahead() const { return ahead_; }
 
   PairTerms<T> own, next;                        // of levels k and k + 1
   Mat4<T> F = Mat4<T>::Constant(T(0.0)), N = F;  // ∂Φ_{k+1}/∂p_k, ∂²L/∂p_{k+1}∂p_k
@@ -57,10 +57,10 @@ class ContactLinearisation {
  private:
   /// The contact at hand.
   struct Contact {
-    const Touch<T>& touch;
+    const energy::Touch<T>& touch;
     const SignedDistance<T>& d;
     const Mat2<T>& D;
-    const GapTerms<T>& gap;
+    const energy::GapTerms<T>& gap;
     T g, force;
     Vec4<T> b;
     T a;
@@ -69,18 +69,18 @@ class ContactLinearisation {
   };
   void add_start_barrier(const Contact& c);
   void add_normal_force(Contact& c);
-  void add_friction(Contact& c, const ContactPoint<T>& after);
+  void add_friction(Contact& c, const energy::ContactPoint<T>& after);
   void add_complementarity(const Contact& c, const T& s, const T& bend);
 
-  const SceneModel<T>& scene_;
+  const energy::SceneModel<T>& scene_;
   const Curvature<T>& curvature_;
   int pair_;
   bool first_, last_, held_;  // held: the poses of the level are no unknowns
   const T* forces_;
   Mask<T> close_;
   bool relevant_;
-  PairFrame<T> here_, ahead_;
+  energy::PairFrame<T> here_, ahead_;
   Vec4<T> y_, y_next_;  // V y_k, V y_{k+1}
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -2,7 +2,7 @@
 
 #include "core/math/elementary.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// The force with which a control c moves the robot, B tanh c, in Φ with a minus; eq. (8)'s P_E.
 template <class T>
@@ -17,4 +17,4 @@ struct ControlForce {
   }
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

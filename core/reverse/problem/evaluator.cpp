@@ -9,13 +9,13 @@
 #include "core/reverse/problem/control_force.hpp"
 #include "core/reverse/problem/objective_terms.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 /// Φ_k without contacts.
 template <class T>
 void set_free_residual(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k, T* e) {
-  const SceneModel<T>& energy = problem.energy;
+  const energy::SceneModel<T>& energy = problem.energy;
   for (int i = 0; i < energy.movable(); ++i) {
     const Vec3<T> force = energy.motion_force(i, way(x.p[k - 1], x.p[k], i),
                                               way(x.p[std::max(k - 2, 0)], x.p[k - 1], i));
@@ -56,7 +56,7 @@ struct Evaluator<T>::Pass {
   PerContact<T>& gaps;
   Mask<T>& legal;
   Measures<T> sum = {};
-  const SceneModel<T>& scene = problem.energy;
+  const energy::SceneModel<T>& scene = problem.energy;
 
   void add_level(int k) {
     Mask<T> apart(true);
@@ -64,8 +64,8 @@ struct Evaluator<T>::Pass {
       const Mask<T> close = scene.near(n, x.p[k]);
       if (n % 2 == 0) apart = !close;
       for (int v = 0; v < scene.corners(n); ++v) {
-        gaps[k][contact_of(n, v)] = Touch<T>::far(scene);
-        into.complementarity_[k][contact_of(n, v)] = T(0.0);
+        gaps[k][energy::contact_of(n, v)] = energy::Touch<T>::far(scene);
+        into.complementarity_[k][energy::contact_of(n, v)] = T(0.0);
       }
       if (any(close) || has_force(k, n)) apart = add_pair(k, n, close) || apart;
       if (n % 2 == 1) legal = legal && apart;  // an edge of either body will do
@@ -74,7 +74,7 @@ struct Evaluator<T>::Pass {
   }
 
   void add_limits(int k) {
-    for_each_limit(scene.articulation(), x.p[k], [&](int l, const JointLimit<T>& limit) {
+    for_each_limit(scene.articulation(), x.p[k], [&](int l, const energy::JointLimit<T>& limit) {
       const int contact = scene.limit_contact(l);
       const T force = x.forces[k][contact];
       if (k > 0) limit.add_gradient(-force, scene.movable(), into.residuals_[k].data());
@@ -86,27 +86,28 @@ struct Evaluator<T>::Pass {
   bool has_force(int k, int n) const {
     Mask<T> found(false);
     for (int v = 0; v < scene.corners(n); ++v)
-      found = found || x.forces[k][contact_of(n, v)] != T(0.0);
+      found = found || x.forces[k][energy::contact_of(n, v)] != T(0.0);
     return any(found);
   }
 
   /// Returns where an edge of the pair's second body separates the two.
   Mask<T> add_pair(int k, int n, const Mask<T>& close) {
     const bool last = k == problem.sub_steps;
-    const PairFrame<T> here = scene.frame(n, x.p[k]);
-    const PairFrame<T> ahead = scene.frame(n, x.p[last ? k : k + 1]);
+    const energy::PairFrame<T> here = scene.frame(n, x.p[k]);
+    const energy::PairFrame<T> ahead = scene.frame(n, x.p[last ? k : k + 1]);
     Vec4<T> own = Vec4<T>::Constant(T(0.0)), next = own;
-    SeparatingEdges<T> edges = scene.edges(n);
+    energy::SeparatingEdges<T> edges = scene.edges(n);
     for (int v = 0; v < scene.corners(n); ++v) {
-      const T force = x.forces[k][contact_of(n, v)];
-      const Touch<T> touch(scene, n, v, here, close);
+      const T force = x.forces[k][energy::contact_of(n, v)];
+      const energy::Touch<T> touch(scene, n, v, here, close);
       edges.note(touch.distances, scene.real(n, v));
       if (!any(touch.within || force != T(0.0))) continue;
       const SignedDistance<T> d = touch.distance();
-      add_contact(k, contact_of(n, v), touch, d);
+      add_contact(k, energy::contact_of(n, v), touch, d);
       own -= touch.point.pulled(d.gradient) * force;
       if (last || !any(force != T(0.0))) continue;
-      const SlipTerms<T> s(d.gradient, scene.point(n, v, ahead), touch.point.x, scene.slip());
+      const energy::SlipTerms<T> s(d.gradient, scene.point(n, v, ahead), touch.point.x,
+                                   scene.slip());
       next += s.gradient() * (scene.friction(n) * force);
     }
     if (k > 0) pull(scene, n, here, own, into.residuals_[k].data());
@@ -125,8 +126,8 @@ struct Evaluator<T>::Pass {
   }
 
   /// Its gap, and at the start the barrier of the objective.
-  void add_contact(int k, int contact, const Touch<T>& touch, const SignedDistance<T>& d) {
-    const Barrier& barrier = scene.barrier();
+  void add_contact(int k, int contact, const energy::Touch<T>& touch, const SignedDistance<T>& d) {
+    const energy::Barrier& barrier = scene.barrier();
     const Mask<T> acts = touch.within || x.forces[k][contact] != T(0.0);
     const T g = touch.gap(d, acts);
     note_gap(k, contact, g, select(acts, barrier.window(g).w, T(0.0)));
@@ -164,4 +165,4 @@ Measures<T> Evaluator<T>::evaluate(const ProblemLanes<T>& problem, const Traject
 template class Evaluator<double>;
 template class Evaluator<Lanes>;
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -2,7 +2,7 @@
 
 #include "core/reverse/problem/problem_lanes.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// The figures that line searches look at.
 template <class T>
@@ -38,4 +38,4 @@ class Evaluator {
   PerContact<T> complementarity_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -2,7 +2,7 @@
 
 #include "core/energy/hinge_step.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 /// A hinge at one level k.
@@ -11,7 +11,7 @@ class HingeReduction {
  public:
   using Stage = typename StageSystem<T>::Stage;
 
-  HingeReduction(const PoseSystem<T>& poses, const HingeStep<T>& step, int k)
+  HingeReduction(const PoseSystem<T>& poses, const energy::HingeStep<T>& step, int k)
       : poses_(poses), step_(step), stage_(poses.system.stages[k]), k_(k) {}
 
   /// `y`: multipliers [3·movable].
@@ -96,7 +96,7 @@ class HingeReduction {
   }
 
   const PoseSystem<T>& poses_;
-  const HingeStep<T>& step_;
+  const energy::HingeStep<T>& step_;
   Stage& stage_;
   int k_;
   Vec2<T> by_child_, by_parent_;  // ∂w_j/∂θ_j, ∂w_j/∂θ_i
@@ -107,13 +107,13 @@ class HingeReduction {
 template <class T>
 void reduce_joints(const ProblemLanes<T>& problem, const Trajectory<T>& x,
                    const PoseSystem<T>& poses) {
-  const Articulation<T>& articulation = problem.energy.articulation();
+  const energy::Articulation<T>& articulation = problem.energy.articulation();
   const auto& hinges = articulation.hinges();
   for (int k = 0; k <= poses.system.h; ++k) {
-    mirror_lower(poses.system.stages[k].Q);
-    mirror_lower(poses.system.stages[k].E);
+    energy::mirror_lower(poses.system.stages[k].Q);
+    energy::mirror_lower(poses.system.stages[k].E);
     for (auto hinge = hinges.rbegin(); hinge != hinges.rend(); ++hinge) {
-      const HingeStep<T> step(articulation, *hinge, x.p[k]);
+      const energy::HingeStep<T> step(articulation, *hinge, x.p[k]);
       HingeReduction<T>(poses, step, k).apply(x.multipliers[k].data());
     }
   }
@@ -124,4 +124,4 @@ template void reduce_joints(const ProblemLanes<double>&, const Trajectory<double
 template void reduce_joints(const ProblemLanes<Lanes>&, const Trajectory<Lanes>&,
                             const PoseSystem<Lanes>&);
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -3,7 +3,7 @@
 #include "core/math/stage_system.hpp"
 #include "core/reverse/problem/problem_lanes.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// A Newton system over the poses p of all bodies, on its way to one over the coordinates q of
 /// jointed ones (Articulation).
@@ -28,4 +28,4 @@ template <class T>
 void reduce_joints(const ProblemLanes<T>& problem, const Trajectory<T>& x,
                    const PoseSystem<T>& poses);
 
-}  // namespace rtg
+}  // namespace rtg::reverse

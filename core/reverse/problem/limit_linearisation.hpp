@@ -3,7 +3,7 @@
 #include "core/energy/joint_limit.hpp"
 #include "core/reverse/problem/contact_linearisation.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// The terms that a limit of a joint adds to the Newton system at one level: vectors are multiples
 /// of its ∇g, matrices of ∇g ∇gᵀ. As ContactLinearisation without friction, for a gap whose Hessian
@@ -22,10 +22,10 @@ struct LimitLinearisation {
     T gap, force, along;
   };
 
-  LimitLinearisation(const State& at, const Barrier& barrier, const Curvature<T>& curvature,
+  LimitLinearisation(const State& at, const energy::Barrier& barrier, const Curvature<T>& curvature,
                      Level level) {
     const T inverse = T(1.0) / at.gap, mu(barrier.weight);
-    const Barrier::Window<T> window = barrier.window(at.gap);
+    const energy::Barrier::Window<T> window = barrier.window(at.gap);
     const T slope = at.force - mu * window.d1;
     a = (mu * window.w - at.force * at.gap) * inverse;
     if (level != Level::kHeld) b = -slope * inverse;
@@ -47,4 +47,4 @@ struct LimitLinearisation {
   }
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -3,7 +3,7 @@
 #include "core/reverse/problem/joint_reduction.hpp"
 #include "core/reverse/problem/limit_linearisation.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 /// Pairs of level k are added once stage k + kReach has begun: what motion and inertia add to
@@ -54,26 +54,26 @@ void NewtonSystem<T>::linearise(const ProblemLanes<T>& problem, const Trajectory
 template <class T>
 void NewtonSystem<T>::add_pair(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k,
                                int n) {
-  const SceneModel<T>& scene = problem.energy;
+  const energy::SceneModel<T>& scene = problem.energy;
   ContactLinearisation<T> contacts(problem, x, curvature_, k, n);
   active_[k][n] = 0;
   if (!contacts.relevant()) return;
   for (int v = 0; v < scene.corners(n); ++v)
-    if (contacts.add(v, eliminated_[k][contact_of(n, v)])) active_[k][n] = 1;
+    if (contacts.add(v, eliminated_[k][energy::contact_of(n, v)])) active_[k][n] = 1;
   if (!active_[k][n]) return;
   add_own(scene, n, contacts.frame(), contacts.own, k);
   if (k == problem.sub_steps) return;
   add_own(scene, n, contacts.frame_ahead(), contacts.next, k + 1);
   Stage& next = system_.stages[k + 1];
-  const PairFrame<T>&ahead = contacts.frame_ahead(), &here = contacts.frame();
-  scatter(scene, n, PulledBlocks<T>(ahead, contacts.F, here), next.F);
-  scatter(scene, n, PulledBlocks<T>(ahead, contacts.N, here), next.N);
+  const energy::PairFrame<T>&ahead = contacts.frame_ahead(), &here = contacts.frame();
+  scatter(scene, n, energy::PulledBlocks<T>(ahead, contacts.F, here), next.F);
+  scatter(scene, n, energy::PulledBlocks<T>(ahead, contacts.N, here), next.N);
 }
 
 /// Adds the terms of a pair to one stage.
 template <class T>
-void NewtonSystem<T>::add_own(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame,
-                              const PairTerms<T>& terms, int k) {
+void NewtonSystem<T>::add_own(const energy::SceneModel<T>& scene, int pair,
+                              const energy::PairFrame<T>& frame, const PairTerms<T>& terms, int k) {
   Stage& stage = system_.stages[k];
   pull(scene, pair, frame, terms.gradient, gradient_[k][0].data());
   pull(scene, pair, frame, terms.q, stage.q[0].data());
@@ -88,13 +88,13 @@ void NewtonSystem<T>::add_own(const SceneModel<T>& scene, int pair, const PairFr
 template <class T>
 void NewtonSystem<T>::add_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   using Terms = LimitLinearisation<T>;
-  const SceneModel<T>& scene = problem.energy;
+  const energy::SceneModel<T>& scene = problem.energy;
   Stage& stage = system_.stages[k];
   const typename Terms::Level level = k == 0 ? Terms::Level::kStart
                                       : k == problem.sub_steps && fixed_end_
                                           ? Terms::Level::kHeld
                                           : Terms::Level::kWithin;
-  for_each_limit(scene.articulation(), x.p[k], [&](int l, const JointLimit<T>& limit) {
+  for_each_limit(scene.articulation(), x.p[k], [&](int l, const energy::JointLimit<T>& limit) {
     const T along = limit.along(x.multipliers[k].data(), system_.M);
     const Terms terms({limit.gap, x.forces[k][scene.limit_contact(l)], along}, scene.barrier(),
                       curvature_, level);
@@ -143,21 +143,22 @@ void NewtonSystem<T>::force_steps(const ProblemLanes<T>& problem, const Trajecto
 
 /// Handles one level, by how far all bodies move [3·movable].
 template <class T>
-void NewtonSystem<T>::find_force_steps(const SceneModel<T>& scene, const Placement<T>& at, int k,
-                                       const T* moved, T* out) const {
+void NewtonSystem<T>::find_force_steps(const energy::SceneModel<T>& scene,
+                                       const energy::Placement<T>& at, int k, const T* moved,
+                                       T* out) const {
   for (int n = 0; n < scene.pair_count(); ++n) {
-    T* forces = out + contact_of(n, 0);
+    T* forces = out + energy::contact_of(n, 0);
     if (!active_[k][n]) {
       for (int v = 0; v < scene.corners(n); ++v) forces[v] = T(0.0);
       continue;
     }
     const Vec4<T> along = pushed(scene, n, scene.frame(n, at), moved);
     for (int v = 0; v < scene.corners(n); ++v) {
-      const Eliminated<T>& e = eliminated_[k][contact_of(n, v)];
+      const Eliminated<T>& e = eliminated_[k][energy::contact_of(n, v)];
       forces[v] = e.a + e.b.dot(along);
     }
   }
-  for_each_limit(scene.articulation(), at, [&](int l, const JointLimit<T>& limit) {
+  for_each_limit(scene.articulation(), at, [&](int l, const energy::JointLimit<T>& limit) {
     const Eliminated<T>& e = eliminated_[k][scene.limit_contact(l)];
     out[scene.limit_contact(l)] = e.a + e.b[0] * limit.along(moved, scene.movable());
   });
@@ -194,4 +195,4 @@ T NewtonSystem<T>::objective_slope(const Trajectory<T>& x, const StageStep<T>& s
 template class NewtonSystem<double>;
 template class NewtonSystem<Lanes>;
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -3,7 +3,7 @@
 #include "core/math/stage_system.hpp"
 #include "core/reverse/problem/contact_linearisation.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// The Newton system of the first-order conditions, eq. (9) and (10), by sub-steps. Each force is
 /// eliminated by its own complementarity row,
@@ -40,13 +40,13 @@ class NewtonSystem {
   void set_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
   void add_motion(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
   void add_inertia(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
-  void add_turn_curvature(const typename Inertia<T>::Slope& s, const T& y, int k, int i);
+  void add_turn_curvature(const typename energy::Inertia<T>::Slope& s, const T& y, int k, int i);
   void add_control(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
   void add_pair(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k, int n);
   void add_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
-  void find_force_steps(const SceneModel<T>& scene, const Placement<T>& at, int k, const T* moved,
-                        T* out) const;
-  void add_own(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame,
+  void find_force_steps(const energy::SceneModel<T>& scene, const energy::Placement<T>& at, int k,
+                        const T* moved, T* out) const;
+  void add_own(const energy::SceneModel<T>& scene, int pair, const energy::PairFrame<T>& frame,
                const PairTerms<T>& terms, int k);
 
   bool fixed_end_;
@@ -60,4 +60,4 @@ class NewtonSystem {
   mutable BlockColumn<T> moved_;                        // of all bodies, at work
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

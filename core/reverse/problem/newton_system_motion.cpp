@@ -4,7 +4,7 @@
 #include "core/reverse/problem/newton_system.hpp"
 #include "core/reverse/problem/objective_terms.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 template <class T>
@@ -53,7 +53,7 @@ void NewtonSystem<T>::add_motion(const ProblemLanes<T>& problem, const Trajector
   Stage &stage = system_.stages[k], &before = system_.stages[k - 1];
   for (int i = 0; i < system_.M; ++i) {
     const Vec3<T> moved = way(x.p[k - 1], x.p[k], i), y = multipliers_of(x, k, i);
-    const Damping<T>& body = problem.energy.damping(i);
+    const energy::Damping<T>& body = problem.energy.damping(i);
     const Vec3<T> slope(body.mass, body.mass, body.turn_curvature(moved[2]));
     residual_[k][i] += problem.energy.motion_force(i, moved, way_before(x, k, i));
     gradient_[k][i] += slope.cwiseProduct(y);
@@ -79,7 +79,7 @@ template <class T>
 void NewtonSystem<T>::add_inertia(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   const bool first = k == 1;
   for (int i = 0; i < system_.M; ++i) {
-    const Inertia<T> body = problem.energy.inertia(i);
+    const energy::Inertia<T> body = problem.energy.inertia(i);
     const Vec3<T> a = way(x.p[k - 1], x.p[k], i);
     const Vec3<T> b = way_before(x, k, i);
     const Vec3<T> y = multipliers_of(x, k, i);
@@ -102,8 +102,8 @@ void NewtonSystem<T>::add_inertia(const ProblemLanes<T>& problem, const Trajecto
 
 /// Second derivatives of y·Φ_k in the angles of body i.
 template <class T>
-void NewtonSystem<T>::add_turn_curvature(const typename Inertia<T>::Slope& s, const T& y, int k,
-                                         int i) {
+void NewtonSystem<T>::add_turn_curvature(const typename energy::Inertia<T>::Slope& s, const T& y,
+                                         int k, int i) {
   const auto entry = [](const T& x) { return diagonal<T>(Vec3<T>(T(0.0), T(0.0), x)); };
   Stage &stage = system_.stages[k], &before = system_.stages[k - 1];
   stage.Q.add(i, i, entry(y * s.aa));
@@ -146,4 +146,4 @@ template void NewtonSystem<Lanes>::add_inertia(const ProblemLanes<Lanes>&, const
 template void NewtonSystem<Lanes>::add_control(const ProblemLanes<Lanes>&, const Trajectory<Lanes>&,
                                                int);
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -2,7 +2,7 @@
 
 #include "core/reverse/problem/problem_lanes.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 // The terms of the objective J of eq. (6), each with its derivatives; two more are in
 // SpeedPenalty and, at the start, in Barrier.
@@ -13,7 +13,7 @@ struct StartPull {
   T value;
   Vec3<T> gradient;
 
-  StartPull(const ProblemLanes<T>& problem, const Placement<T>& start, int i) {
+  StartPull(const ProblemLanes<T>& problem, const energy::Placement<T>& start, int i) {
     const T weight(i == 0 ? problem.config.robot_weight : problem.config.object_weight);
     const T dx = start.body(i)[0] - problem.end[3 * i],
             dy = start.body(i)[1] - problem.end[3 * i + 1];
@@ -43,7 +43,7 @@ struct PathPenalty {
   T place, heading;           // the two values
   Vec3<T> gradient, hessian;  // the Hessian is diagonal
 
-  PathPenalty(const ProblemLanes<T>& problem, const Placement<T>& at, int k) {
+  PathPenalty(const ProblemLanes<T>& problem, const energy::Placement<T>& at, int k) {
     const Vec3<T> path = problem.robot_path(k);
     const T *robot = at.body(0), dx = robot[0] - path[0], dy = robot[1] - path[1],
             turn = robot[2] - path[2];
@@ -61,7 +61,7 @@ struct PathPenalty {
 template <class T>
 class EndSpring {
  public:
-  EndSpring(const ProblemLanes<T>& problem, const Placement<T>& at, int k)
+  EndSpring(const ProblemLanes<T>& problem, const energy::Placement<T>& at, int k)
       : hessian(k > 0 && problem.ends(k) ? problem.terminal_weight : T(0.0)),
         problem_(problem),
         at_(at) {}
@@ -80,7 +80,7 @@ class EndSpring {
 
  private:
   const ProblemLanes<T>& problem_;
-  const Placement<T>& at_;
+  const energy::Placement<T>& at_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

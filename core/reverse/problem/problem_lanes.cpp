@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-namespace rtg {
+namespace rtg::reverse {
 
 template <class T>
 ProblemLanes<T>::ProblemLanes(const ReverseProblem& like)
-    : energy(SceneModel<T>::room_for(like.energy.scene())),
+    : energy(energy::SceneModel<T>::room_for(like.energy.scene())),
       config(like.config),
       end(static_cast<std::size_t>(like.end.size()), T(0.0)),
       direction(T(0.0), T(0.0)),
@@ -38,8 +38,8 @@ SpeedPenalty<T> ProblemLanes<T>::speed(const Trajectory<T>& x, int k, int i) con
 }
 
 template <class T>
-Trajectory<T>::Trajectory(const SceneModel<T>& energy, int sub_steps)
-    : p(static_cast<std::size_t>(sub_steps) + 1, Placement<T>(energy.bodies())),
+Trajectory<T>::Trajectory(const energy::SceneModel<T>& energy, int sub_steps)
+    : p(static_cast<std::size_t>(sub_steps) + 1, energy::Placement<T>(energy.bodies())),
       forces(p.size(), std::vector<T>(static_cast<std::size_t>(energy.contacts()), T(0.0))),
       controls(p.size(), Vec3<T>::Constant(T(0.0))),
       multipliers(p.size(),
@@ -108,4 +108,4 @@ template struct ProblemLanes<Lanes>;
 template struct Trajectory<double>;
 template struct Trajectory<Lanes>;
 
-}  // namespace rtg
+}  // namespace rtg::reverse

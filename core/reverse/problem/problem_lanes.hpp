@@ -3,7 +3,7 @@
 #include "core/reverse/problem/reverse_problem.hpp"
 #include "core/reverse/problem/speed_penalty.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 template <class T>
 struct Trajectory;
@@ -24,7 +24,7 @@ struct ProblemLanes {
   /// The price of the speed of object i in sub-step k.
   SpeedPenalty<T> speed(const Trajectory<T>& x, int k, int i) const;
 
-  SceneModel<T> energy;
+  energy::SceneModel<T> energy;
   const ReverseConfig& config;
   std::vector<T> end;  // p̄ [3·bodies]
   Vec2<T> direction;
@@ -36,7 +36,7 @@ struct ProblemLanes {
 /// do. Multipliers are those of all poses, w = J y, where bodies are jointed: y is part of w.
 template <class T>
 struct Trajectory {
-  Trajectory(const SceneModel<T>& energy, int sub_steps);
+  Trajectory(const energy::SceneModel<T>& energy, int sub_steps);
   void load(int lane, const ReverseProblem& problem, const Iterate& x);
   Iterate unload(int lane, const ReverseProblem& problem) const;
   /// This lane ← another's.
@@ -44,7 +44,7 @@ struct Trajectory {
   /// Becomes the other in the lanes of the mask.
   void assign(const Mask<T>& where, const Trajectory& other);
 
-  std::vector<Placement<T>> p;
+  std::vector<energy::Placement<T>> p;
   std::vector<std::vector<T>> forces;
   std::vector<Vec3<T>> controls;
   std::vector<std::vector<T>> multipliers;
@@ -54,4 +54,4 @@ struct Trajectory {
 template <class T>
 using PerContact = std::vector<std::vector<T>>;
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -6,7 +6,7 @@
 #include "core/math/kkt_solver.hpp"
 #include "core/reverse/problem/reverse_job.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 enum class ReversePreset { kDefault, kPaper };
 inline constexpr std::array<std::string_view, 2> kReversePresets{"default", "paper"};
@@ -73,4 +73,4 @@ inline ReverseConfig reverse_preset(ReversePreset preset) {
   return config;
 }
 
-}  // namespace rtg
+}  // namespace rtg::reverse

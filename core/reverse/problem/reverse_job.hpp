@@ -8,7 +8,7 @@
 #include "core/reverse/problem/solve_status.hpp"
 #include "core/world/pose.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// Which state, pushed with `action`, ends in `end`?
 struct ReverseJob {
@@ -39,4 +39,4 @@ struct ReverseResult {
   double cpu_s = 0.0;  // thread CPU time; the one field that is not a function of the job
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

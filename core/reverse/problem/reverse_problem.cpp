@@ -4,7 +4,7 @@
 
 #include "core/reverse/problem/evaluator.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 /// A candidate's evaluation by the kernels.
@@ -75,4 +75,4 @@ double terminal_miss(const ReverseProblem& problem, const Iterate& x) {
   return most;
 }
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -6,7 +6,7 @@
 #include "core/reverse/problem/reverse_config.hpp"
 #include "core/reverse/problem/solve_status.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// The reverse problem of one candidate, eq. (6) and (7), over the sub-steps k = 1 ... h of a push:
 ///
@@ -24,7 +24,7 @@ namespace rtg {
 /// spring K holds the final state, so that every forward simulation is feasible. With the preset
 /// `paper` κ = χ = 0, λ = μ̃ w/g throughout, w = 1 at any gap, and the final state is fixed.
 struct ReverseProblem {
-  const StepEnergy& energy;
+  const energy::StepEnergy& energy;
   const ReverseConfig& config;
   VectorXd end;        // p̄ [3·bodies]
   Vector2d direction;  // d(a)
@@ -62,4 +62,4 @@ SolveStatus judged(const ReverseProblem& problem, const Iterate& x);
 /// Largest distance of a movable body from where it should end [m].
 double terminal_miss(const ReverseProblem& problem, const Iterate& x);
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// How a reverse solve ended.
 enum class SolveStatus : std::int8_t {
@@ -24,4 +24,4 @@ constexpr std::string_view name(SolveStatus s) {
   return names[static_cast<int>(s)];
 }
 
-}  // namespace rtg
+}  // namespace rtg::reverse

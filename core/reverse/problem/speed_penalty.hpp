@@ -3,7 +3,7 @@
 #include "core/energy/damping.hpp"
 #include "core/math/block_matrix.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// The price that an object pays for the way that it makes in one sub-step, (Δt, Δθ), in units of
 /// the robot's own way s = stride/h:
@@ -19,7 +19,7 @@ struct SpeedPenalty {
   Vec3<T> gradient;  // with respect to (Δt, Δθ)
   Block<T> hessian;
 
-  SpeedPenalty(double weight, double stride, const Damping<T>& body, const Vec3<T>& way) {
+  SpeedPenalty(double weight, double stride, const energy::Damping<T>& body, const Vec3<T>& way) {
     const T scale(1.0 / (2.0 * stride * stride)), w(weight);
     const Vec3<T> metric(scale, scale, scale * body.moment / body.mass);
     Vec3<T> slope;  // ½ ∂q
@@ -32,4 +32,4 @@ struct SpeedPenalty {
   }
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -1,6 +1,6 @@
 #include "core/reverse/problem/trial_point.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 constexpr double kLongestMove = 1.0;  // [m]
@@ -21,7 +21,7 @@ Mask<T> bounded(const StageStep<T>& step, const T& alpha) {
 }
 
 template <class T>
-void make_trial(const SceneModel<T>& scene, const Trajectory<T>& x, const Move<T>& move,
+void make_trial(const energy::SceneModel<T>& scene, const Trajectory<T>& x, const Move<T>& move,
                 Trajectory<T>& trial) {
   const T& alpha = move.alpha;
   for (std::size_t k = 0; k < x.p.size(); ++k) {
@@ -44,9 +44,9 @@ void make_trial(const SceneModel<T>& scene, const Trajectory<T>& x, const Move<T
 
 template Mask<double> bounded(const StageStep<double>&, const double&);
 template Mask<Lanes> bounded(const StageStep<Lanes>&, const Lanes&);
-template void make_trial(const SceneModel<double>&, const Trajectory<double>&, const Move<double>&,
-                         Trajectory<double>&);
-template void make_trial(const SceneModel<Lanes>&, const Trajectory<Lanes>&, const Move<Lanes>&,
-                         Trajectory<Lanes>&);
+template void make_trial(const energy::SceneModel<double>&, const Trajectory<double>&,
+                         const Move<double>&, Trajectory<double>&);
+template void make_trial(const energy::SceneModel<Lanes>&, const Trajectory<Lanes>&,
+                         const Move<Lanes>&, Trajectory<Lanes>&);
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -3,7 +3,7 @@
 #include "core/math/stage_system.hpp"
 #include "core/reverse/problem/problem_lanes.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// Where no pose moves by more than 1 m or 0.5 rad in α step.
 template <class T>
@@ -20,7 +20,7 @@ struct Move {
 /// trial ← x + α step; jointed bodies and their multipliers follow. Poses of fixed bodies are left
 /// as they are in `trial`.
 template <class T>
-void make_trial(const SceneModel<T>& scene, const Trajectory<T>& x, const Move<T>& move,
+void make_trial(const energy::SceneModel<T>& scene, const Trajectory<T>& x, const Move<T>& move,
                 Trajectory<T>& trial);
 
-}  // namespace rtg
+}  // namespace rtg::reverse

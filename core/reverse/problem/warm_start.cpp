@@ -5,14 +5,14 @@
 
 #include "core/energy/open_gaps.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 constexpr double kLeastShare = 0.05;  // of a mirrored step
 constexpr double kTolerance = 1e-6;   // of a forward step [kg m]
 
 template <class T>
-void put_robot(const Vec3<T>& pose, Placement<T>& at) {
+void put_robot(const Vec3<T>& pose, energy::Placement<T>& at) {
   for (int m = 0; m < 3; ++m) at.p[m] = pose[m];
   at.update();
 }
@@ -39,7 +39,7 @@ Vec3<T> WarmStart<T>::straight_target(int k) const {
   const T share = scene_.damping(0).mass * T(scene_.stride()) / scene_.control_bound()[0];
   const T bounded = lesser(share, T(1.0 - 1e-12));
   const T artanh = T(0.5) * logarithm((T(1.0) + bounded) / (T(1.0) - bounded));
-  const T lead = select(share < T(1.0), artanh * T(servo_scale(scene_.stride())), T(0.0));
+  const T lead = select(share < T(1.0), artanh * T(energy::servo_scale(scene_.stride())), T(0.0));
   Vec3<T> pose = problem_.robot_path(k);
   if (k > problem_.sub_steps - problem_.settling) return pose;
   for (int m = 0; m < 2; ++m) pose[m] += lead * problem_.direction[m];
@@ -48,9 +48,9 @@ Vec3<T> WarmStart<T>::straight_target(int k) const {
 
 /// F(from); notes how far it went.
 template <class T>
-Mask<T> WarmStart<T>::push(const StepStart<T>& from, const Vec3<T>& target, const Mask<T>& wanted,
-                           Placement<T>& to) {
-  const Mask<T> found = step_.solve(from, Drive<T>::towards(target), wanted, to);
+Mask<T> WarmStart<T>::push(const energy::StepStart<T>& from, const Vec3<T>& target,
+                           const Mask<T>& wanted, energy::Placement<T>& to) {
+  const Mask<T> found = step_.solve(from, energy::Drive<T>::towards(target), wanted, to);
   for (std::size_t m = 0; m < moved_.size(); ++m)
     moved_[m] = select(found, to.p[m] - from.now.p[m], moved_[m]);
   return found;
@@ -59,8 +59,9 @@ Mask<T> WarmStart<T>::push(const StepStart<T>& from, const Vec3<T>& target, cons
 /// out ← `p` with its objects moved by -share·by_ for the largest share in 1, ½, ... that leaves
 /// the gaps open, where there is one. The robot's part of by_ is ignored.
 template <class T>
-void WarmStart<T>::move_back(const Placement<T>& p, const Mask<T>& wanted, Placement<T>& out) {
-  const T floor = lesser(T(kGapFloor * scene_.barrier().range), scene_.least_gap(p));
+void WarmStart<T>::move_back(const energy::Placement<T>& p, const Mask<T>& wanted,
+                             energy::Placement<T>& out) {
+  const T floor = lesser(T(energy::kGapFloor * scene_.barrier().range), scene_.least_gap(p));
   Mask<T> searching = wanted;
   for (double share = 1.0; share > kLeastShare && any(searching); share *= 0.5) {
     trial_ = p;
@@ -82,7 +83,7 @@ Mask<T> WarmStart<T>::mirror(int k, const Mask<T>& wanted) {
   const Vec3<T> here(start_.p[0], start_.p[1], start_.p[2]);
   scene_.forces(start_, lag_.data());
   Mask<T> going = push({start_, lag_.data(), moved_.data()}, ahead, wanted, pushed_);
-  going = step_.solve({start_, lag_.data()}, Drive<T>::towards(here), going, still_);
+  going = step_.solve({start_, lag_.data()}, energy::Drive<T>::towards(here), going, still_);
   for (std::size_t m = 0; m < by_.size(); ++m) by_[m] = pushed_.p[m] - still_.p[m];
   robot_back_ = start_;
   put_robot(mirrored_path(k - 1), robot_back_);
@@ -97,10 +98,11 @@ Mask<T> WarmStart<T>::roll_out(const Mask<T>& wanted, Trajectory<T>& x) {
   Mask<T> going = wanted;
   for (int k = 1; k <= problem_.sub_steps; ++k) {
     const Vec3<T> target = straight_target(k);
-    const StepStart<T> from{x.p[k - 1], x.forces[k - 1].data(), moved_.data(),
-                            &x.p[std::max(k - 2, 0)]};
+    const energy::StepStart<T> from{x.p[k - 1], x.forces[k - 1].data(), moved_.data(),
+                                    &x.p[std::max(k - 2, 0)]};
     going = push(from, target, going, x.p[k]);
-    x.controls[k] = Drive<T>::towards(target).control_at(x.p[k], servo_scale(scene_.stride()));
+    x.controls[k] =
+        energy::Drive<T>::towards(target).control_at(x.p[k], energy::servo_scale(scene_.stride()));
     scene_.forces(x.p[k], x.forces[k].data());
   }
   return going;
@@ -158,4 +160,4 @@ std::optional<Iterate> warm_start(const ReverseProblem& problem) {
 template class WarmStart<double>;
 template class WarmStart<Lanes>;
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// Filter of [Fletcher & Leyffer 2002]: remembers pairs (θ, J) of constraint violation and
 /// objective; a trial point must be better than each in one of the two.
@@ -35,4 +35,4 @@ class Filter {
   std::vector<Entry> entries_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -5,7 +5,7 @@
 
 #include "core/reverse/problem/trial_point.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 constexpr double kLeastStep = 0.03;
@@ -191,4 +191,4 @@ Mask<T> FilterSqp<T>::accept(const Mask<T>& legal, const Measures<T>& then, doub
 template class FilterSqp<double>;
 template class FilterSqp<Lanes>;
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -10,7 +10,7 @@
 #include "core/reverse/sqp/sqp_strategy.hpp"
 #include "core/reverse/sqp/start_queue.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// The SQP of the preset `default`: exact Hessian with the objective's in its place where the model
 /// is not convex along the step, proximal term δ, filter line search. Each lane of T works on a
@@ -67,4 +67,4 @@ class FilterSqp {
   long busy_ = 0, lanes_ = 0;
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// l1 merit function M = J + ν ‖C‖₁, eq. (9), exact once ν exceeds every multiplier.
 class Merit {
@@ -23,4 +23,4 @@ class Merit {
   double weight_ = kLeast;
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

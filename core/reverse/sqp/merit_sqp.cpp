@@ -10,7 +10,7 @@
 #include "core/reverse/problem/trial_point.hpp"
 #include "core/reverse/sqp/l1_merit.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 constexpr double kArmijo = 1e-4;
@@ -113,4 +113,4 @@ SqpResult merit_sqp(const ReverseProblem& problem, const Iterate& start) {
   return MeritSqp(problem, start).run();
 }
 
-}  // namespace rtg
+}  // namespace rtg::reverse

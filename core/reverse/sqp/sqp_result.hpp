@@ -3,7 +3,7 @@
 #include "core/reverse/problem/reverse_problem.hpp"
 #include "core/reverse/problem/solve_status.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// How an SQP run ended. `x`: the last iterate of the attempt that counts; the static one if bodies
 /// overlap in the end.
@@ -16,4 +16,4 @@ struct SqpResult {
   double stationarity = 0.0;   // ‖∇L‖∞
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

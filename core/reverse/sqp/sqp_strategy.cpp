@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 constexpr double kLeastProximal = 1e-8, kMostProximal = 1e6;
@@ -117,4 +117,4 @@ SqpStrategy::Order SqpStrategy::regularise(SolveStatus if_hopeless) {
   return softening ? begin_phase(phases_left_ - 1) : end_attempt(if_hopeless);
 }
 
-}  // namespace rtg
+}  // namespace rtg::reverse

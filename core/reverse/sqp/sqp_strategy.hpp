@@ -4,7 +4,7 @@
 #include "core/reverse/problem/solve_status.hpp"
 #include "core/reverse/sqp/filter.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// The control flow of one candidate's SQP: decides from the figures of its iterates alone with
 /// which Hessian and which δ the next step is made, whether a trial point is taken, and how phases
@@ -76,4 +76,4 @@ class SqpStrategy {
   Filter filter_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

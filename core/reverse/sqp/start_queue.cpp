@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace rtg {
+namespace rtg::reverse {
 
 template <class T>
 StartQueue<T>::StartQueue(const ReverseProblem& like)
@@ -48,9 +48,9 @@ void StartQueue<T>::prepare() {
 
 template <class T>
 void StartQueue<T>::find_starts(const Mask<T>& wanted) {
-  const SceneModel<T>& energy = problem_.energy;
+  const energy::SceneModel<T>& energy = problem_.energy;
   // At rest in the final state: λ = λ(g), c = 0.
-  for (Placement<T>& level : x_.p) {
+  for (energy::Placement<T>& level : x_.p) {
     level.p = problem_.end;
     level.update();
   }
@@ -72,4 +72,4 @@ void StartQueue<T>::find_starts(const Mask<T>& wanted) {
 template class StartQueue<double>;
 template class StartQueue<Lanes>;
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -5,7 +5,7 @@
 
 #include "core/reverse/problem/warm_start.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 
 /// The candidates of a batch with the trajectories that their SQP begins with, found for as many at
 /// a time as T has lanes.
@@ -38,4 +38,4 @@ class StartQueue {
   Trajectory<T> x_, warm_x_;
 };
 
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -5,7 +5,7 @@
 #include "tests/support/chain_scene.hpp"
 #include "tests/support/differences.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 using testing::ChainScene;
@@ -92,4 +92,4 @@ TEST(Articulation, EveryLaneHasPinsOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 const Barrier kBarrier{0.003, 0.15, false}, kPlain{0.003, 0.15, true};
@@ -97,4 +97,4 @@ TEST(Barrier, PlainOneIsThePapersLogarithmAtAnyGap) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -4,7 +4,7 @@
 
 #include "core/world/scene.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 const Damping<double> kQuadratic{1.7, 0.4, false}, kPeriodic{1.7, 0.4, true};
@@ -52,4 +52,4 @@ TEST(Damping, PeriodicFormForgetsWholeTurnsAndTheQuadraticOneDoesNot) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::energy

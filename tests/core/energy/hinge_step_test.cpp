@@ -5,7 +5,7 @@
 #include "tests/support/chain_scene.hpp"
 #include "tests/support/differences.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 using testing::ChainScene;
@@ -63,4 +63,4 @@ TEST(HingeStep, GradientAndHessianOfTheStepEnergyMatchDifferences) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -8,7 +8,7 @@
 #include "tests/support/linearisation.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 using testing::noise;
@@ -118,7 +118,8 @@ struct ResidualJacobians {
   MatrixXd next, now, control;
 };
 
-ResidualJacobians residual_jacobians(const ReverseProblem& problem, const Iterate& x) {
+ResidualJacobians residual_jacobians(const reverse::ReverseProblem& problem,
+                                     const reverse::Iterate& x) {
   const int n = problem.energy.dofs();
   const BlockTridiagonal K = testing::Linearisation(problem, x, {false, 0.0}).matrix();
   const MatrixXd rows = K.A[1].bottomRows(n);
@@ -129,11 +130,11 @@ ResidualJacobians residual_jacobians(const ReverseProblem& problem, const Iterat
 // of the lagged normal forces.
 TEST(ImplicitStep, DerivativesOfTheEndMatchStepsSolvedAgain) {
   const TouchingScene scene;
-  const ReverseConfig config;
-  ReverseProblem problem = scene.problem(config);
+  const reverse::ReverseConfig config;
+  reverse::ReverseProblem problem = scene.problem(config);
   problem.sub_steps = 1;
   const Vector3d target(0.2, 0.01, 0.02);
-  Iterate x = static_iterate(problem);
+  reverse::Iterate x = static_iterate(problem);
   const auto first =
       implicit_step(scene.energy, {problem.end, x.forces[0]}, Drive<double>::towards(target));
   ASSERT_TRUE(first);
@@ -172,4 +173,4 @@ TEST(ImplicitStep, ImpossibleStartsGiveNothing) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -4,7 +4,7 @@
 
 #include "core/world/scene.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 const Inertia<double> kQuadratic{1.7, 0.4, false}, kPeriodic{1.7, 0.4, true};
@@ -65,4 +65,4 @@ TEST(Inertia, ASteadySpinIsFreeOfForceButForWhatThePeriodicFormTakes) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::energy

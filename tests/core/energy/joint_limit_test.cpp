@@ -4,7 +4,7 @@
 
 #include "tests/support/chain_scene.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 using testing::ChainScene;
@@ -67,4 +67,4 @@ TEST(JointLimit, AJointWithoutLimitsExertsNoForce) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -4,7 +4,7 @@
 
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 using testing::TouchingScene;
@@ -71,4 +71,4 @@ TEST(OpenGaps, StayWhereJointsDoNotLetThemOpen) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -5,7 +5,7 @@
 #include "tests/support/contact_samples.hpp"
 #include "tests/support/differences.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 using testing::frame_of;
@@ -92,4 +92,4 @@ TEST(PairFrame, TurnTermsAreDerivativesOfPulledConstants) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -5,7 +5,7 @@
 #include "tests/support/contact_samples.hpp"
 #include "tests/support/differences.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 using testing::derivative_error;
@@ -186,4 +186,4 @@ TEST(SlipTerms, PressingWithoutSlipCostsNothing) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -7,7 +7,7 @@
 #include "core/energy/step_energy.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 /// Two bars that cross in their middles: no vertex of either is near the other.
@@ -61,4 +61,4 @@ TEST(StepEnergyGaps, CornersActAsFarAsTheSignedDistanceSays) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::energy

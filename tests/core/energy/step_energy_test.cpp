@@ -9,7 +9,7 @@
 #include "tests/support/differences.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::energy {
 namespace {
 
 using testing::derivative_error;
@@ -278,4 +278,4 @@ TEST(StepEnergy, PosesStackAndUnstack) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::energy

@@ -6,7 +6,7 @@
 
 #include "core/forward/box2d_simulator.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 namespace {
 
 /// A square with corners at the distance `reach` along the axes, so that one points to +x and one
@@ -57,4 +57,4 @@ TEST(Box2dRotation, TheTorqueBoundDecidesWhetherAFixedCornerTurnsTheRobot) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::forward

@@ -7,7 +7,7 @@
 
 #include "core/forward/box2d_simulator.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 namespace {
 
 const Poses kBelowABox{{0, 0, 0}, {1.3, 1.0, 0}};  // their sides overlap by 0.1 m seen along +x
@@ -79,4 +79,4 @@ TEST(Box2dServo, ARobotHeldUpAtTheEndOfItsPathCatchesUp) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::forward

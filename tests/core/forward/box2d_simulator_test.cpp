@@ -12,7 +12,7 @@
 #include "core/world/separation.hpp"
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 namespace {
 
 using testing::gathering;
@@ -20,7 +20,7 @@ using testing::gathering;
 const PhysicsConfig kPhysics;
 const PushConfig kPush;
 
-Box2dSimulator simulator_of(const Task& task) { return {task.scene, task.push, kPhysics}; }
+Box2dSimulator simulator_of(const tasks::Task& task) { return {task.scene, task.push, kPhysics}; }
 
 /// A robot box at the left of one box, pushed by action 0 (along +x).
 Scene robot_and_box() {
@@ -29,7 +29,7 @@ Scene robot_and_box() {
 }
 
 /// Starts from which a push touches zero, one or more boxes.
-std::vector<Poses> varied_starts(const Task& task, int count) {
+std::vector<Poses> varied_starts(const tasks::Task& task, int count) {
   std::vector<Poses> starts;
   Rng rng(11);
   while (starts.size() < static_cast<std::size_t>(count)) {
@@ -40,7 +40,7 @@ std::vector<Poses> varied_starts(const Task& task, int count) {
 }
 
 TEST(Box2dSimulator, EqualPushesGiveEqualBitsInAnyOrderOnAnyThread) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const Box2dSimulator simulator = simulator_of(task);
   const std::vector<Poses> starts = varied_starts(task, 40);
   std::vector<Poses> alone, mixed(starts.size());
@@ -57,7 +57,7 @@ TEST(Box2dSimulator, EqualPushesGiveEqualBitsInAnyOrderOnAnyThread) {
 }
 
 TEST(Box2dSimulator, MovedBodiesHaveSinglePrecisionPosesSoChainsReproduce) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const Box2dSimulator simulator = simulator_of(task);
   for (const Poses& start : varied_starts(task, 20)) {
     const Poses middle = simulator.push(start, 5).end;
@@ -67,7 +67,7 @@ TEST(Box2dSimulator, MovedBodiesHaveSinglePrecisionPosesSoChainsReproduce) {
 }
 
 TEST(Box2dSimulator, AFreePushEndsAtTheTargetWithTheHeadingHeld) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const Box2dSimulator simulator = simulator_of(task);
   Poses start = task.start;
   start[0] = {6.0, -6.5, 0.4};
@@ -85,7 +85,7 @@ TEST(Box2dSimulator, AFreePushEndsAtTheTargetWithTheHeadingHeld) {
 // With bodies near the path the push is stepped through, without any the result is known; both must
 // agree.
 TEST(Box2dSimulator, APushCloselyPastABodyEndsAtTheTargetToo) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   Poses start = task.start;
   start[0] = {0.0, 0.0, 0.0};
   start[1] = {1.0, 0.8 * std::sqrt(0.75) + 0.6 + 0.03, 0.0};  // 0.03 from the hexagon's upper side
@@ -109,7 +109,7 @@ TEST(Box2dSimulator, APushedBoxPushesTheNext) {
 }
 
 TEST(Box2dSimulator, UntouchedBodiesKeepTheirPosesBitForBit) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const Box2dSimulator simulator = simulator_of(task);
   Poses start = task.start;
   start[1].theta = std::numbers::pi;  // not a single-precision number
@@ -121,7 +121,7 @@ TEST(Box2dSimulator, UntouchedBodiesKeepTheirPosesBitForBit) {
 }
 
 TEST(Box2dSimulator, UntouchedBodiesInContactDoNotCreep) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   Poses start = task.start;
   start[1] = {-3.0, 3.0, 0.0};
   start[2] = {-3.0 + 1.2 + 0.008, 3.0,
@@ -188,7 +188,7 @@ TEST(Box2dSimulator, AnOffCentrePushTurnsTheBoxTheRightWay) {
 }
 
 TEST(Box2dSimulator, BadInputIsReportedAndNeverCrashes) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const Box2dSimulator simulator = simulator_of(task);
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30, -1001.0}) {
     Poses start = task.start;
@@ -203,7 +203,7 @@ TEST(Box2dSimulator, BadInputIsReportedAndNeverCrashes) {
 }
 
 TEST(Box2dSimulator, DeepOverlapComesApartOrIsReported) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const Box2dSimulator simulator = simulator_of(task);
   Rng rng(8);
   for (int k = 0; k < 100; ++k) {
@@ -233,4 +233,4 @@ TEST(Box2dSimulator, StepsDoNotReadTheClock) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::forward

@@ -5,7 +5,7 @@
 #include "core/world/separation.hpp"
 #include "tests/support/random_push.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 namespace {
 
 constexpr double kNear = 0.05;  // [m]
@@ -60,4 +60,4 @@ TEST(ClearWay, NoBodyIsNearBeforeItsEnd) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::forward

@@ -10,7 +10,7 @@
 #include "core/forward/newton_simulator.hpp"
 #include "tests/support/chain_scene.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 namespace {
 
 using testing::ChainScene;
@@ -98,16 +98,16 @@ TEST(Joints, ALimitStopsADoorAndTheRobotThatPushesIt) {
 
 TEST(Joints, AStepEndsWhereTheEnergyOverTheCoordinatesIsLeast) {
   const ChainScene scene;
-  const StepEnergy& energy = scene.energy;
-  const VectorXd now = stacked(scene.poses), lag = energy.forces(now);
+  const energy::StepEnergy& energy = scene.energy;
+  const VectorXd now = energy::stacked(scene.poses), lag = energy.forces(now);
   const Vector3d control(0.4, 0.3, 0.1);
   const auto total = [&](const VectorXd& p) {
     return energy.value(p, {now, lag}) -
            energy.control_bound().dot(control.array().tanh().matrix().cwiseProduct(p.head<3>()));
   };
-  const auto step = implicit_step(energy, {now, lag}, Drive<double>::controls(control));
+  const auto step = implicit_step(energy, {now, lag}, energy::Drive<double>::controls(control));
   ASSERT_TRUE(step);
-  EXPECT_LT(widest_joint(scene.scene, unstacked(step->next)), 1e-14);
+  EXPECT_LT(widest_joint(scene.scene, energy::unstacked(step->next)), 1e-14);
   EXPECT_GT((step->next - now).segment<3>(6).norm(), 1e-3);  // a link was pushed
   Rng rng(1);
   for (int trial = 0; trial < 20; ++trial) {
@@ -118,4 +118,4 @@ TEST(Joints, AStepEndsWhereTheEnergyOverTheCoordinatesIsLeast) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::forward

@@ -10,7 +10,7 @@
 #include "core/forward/newton_simulator.hpp"
 #include "tests/support/random_push.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 namespace {
 
 constexpr std::uint64_t kScenes = 200;
@@ -48,4 +48,4 @@ TEST(ModelDifference, MedianOverTheRandomScenesIsSmall) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::forward

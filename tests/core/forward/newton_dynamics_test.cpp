@@ -11,20 +11,20 @@
 #include "tests/support/random_push.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 namespace {
 
 using testing::CoastingScene;
 using testing::TouchingScene;
 
 /// One sub-step after the other without any force, from `now` moved by `by` in the sub-step before.
-std::vector<VectorXd> coasted(const StepEnergy& energy, VectorXd now, const VectorXd& by,
+std::vector<VectorXd> coasted(const energy::StepEnergy& energy, VectorXd now, const VectorXd& by,
                               int sub_steps) {
   VectorXd before = now - by;
   std::vector<VectorXd> all{now};
   for (int k = 0; k < sub_steps; ++k) {
     const auto step = implicit_step(energy, {now, energy.forces(now), &before},
-                                    Drive<double>::controls(Vector3d::Zero()));
+                                    energy::Drive<double>::controls(Vector3d::Zero()));
     EXPECT_TRUE(step);
     before = std::exchange(now, step->next);
     all.push_back(now);
@@ -32,7 +32,7 @@ std::vector<VectorXd> coasted(const StepEnergy& energy, VectorXd now, const Vect
   return all;
 }
 
-VectorXd scattered() { return stacked({{0, 0, 0.4}, {5, 0, 0.1}, {0, 5, 0.2}}); }
+VectorXd scattered() { return energy::stacked({{0, 0, 0.4}, {5, 0, 0.1}, {0, 5, 0.2}}); }
 
 // The way of a sub-step falls by 1 + k_D in each, for both forms of small turns: after n of them a
 // body has coasted (1 - (1 + k_D)^-n)/k_D of its last way.
@@ -57,7 +57,7 @@ TEST(NewtonDynamics, MomentumChangesByDampingAlone) {
   const CoastingScene scene;  // k_D = 1
   VectorXd by = VectorXd::Zero(9);
   by.segment<3>(0) << 0.15, 0.02, 0.0;
-  const std::vector<VectorXd> p = coasted(scene.energy, stacked(scene.poses), by, 8);
+  const std::vector<VectorXd> p = coasted(scene.energy, energy::stacked(scene.poses), by, 8);
   EXPECT_GT(p.back()[6] - p.front()[6], 0.02);  // the collisions reached the last body
   Vector2d last = scene.energy.damping(0).mass * by.head<2>();
   for (std::size_t n = 1; n < p.size(); ++n) {
@@ -134,12 +134,12 @@ TEST(NewtonDynamics, WithLittleDampingItIsNearerToBox2dThanQuasiStaticSteps) {
 
 TEST(NewtonDynamics, QuasiStaticStepsDoNotDependOnTheMotionBefore) {
   const TouchingScene scene;
-  const VectorXd now = stacked(scene.poses), lag = scene.energy.forces(now);
+  const VectorXd now = energy::stacked(scene.poses), lag = scene.energy.forces(now);
   const VectorXd before = now - VectorXd::Constant(9, 0.1);
-  const auto drive = Drive<double>::towards({0.2, 0, 0});
+  const auto drive = energy::Drive<double>::towards({0.2, 0, 0});
   EXPECT_EQ(implicit_step(scene.energy, {now, lag, &before}, drive)->next,
             implicit_step(scene.energy, {now, lag}, drive)->next);
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::forward

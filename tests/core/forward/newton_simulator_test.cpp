@@ -10,7 +10,7 @@
 #include "core/math/rng.hpp"
 #include "tests/support/random_push.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 namespace {
 
 using testing::random_push;
@@ -30,7 +30,7 @@ NewtonSimulator simulator() { return {robot_and_boxes(), kPush, kPhysics}; }
 
 /// How far the servo lags behind where it pulls with share·B: e = s artanh(share).
 double servo_lag(double share) {
-  return servo_scale(kPush.stride / kPhysics.sub_steps) * std::atanh(share);
+  return energy::servo_scale(kPush.stride / kPhysics.sub_steps) * std::atanh(share);
 }
 
 /// Where a free push by `action` ends: at push speed the drag along d(a) is B/force_factor, and
@@ -74,7 +74,7 @@ TEST(NewtonSimulator, TheRobotStaysInTheArena) {
 }
 
 /// The gap at which the barrier's force is `force`, by bisection.
-double resting_gap(const Barrier& barrier, double force) {
+double resting_gap(const energy::Barrier& barrier, double force) {
   double low = 1e-9, high = barrier.range;
   for (int k = 0; k < 100; ++k) {
     const double middle = 0.5 * (low + high);
@@ -87,7 +87,7 @@ double resting_gap(const Barrier& barrier, double force) {
 // servo that of both. Without inertia nothing coasts.
 TEST(NewtonSimulator, APushedBoxEndsWhereItsDragBalancesTheBarrier) {
   const Scene scene = robot_and_boxes();
-  const StepEnergy energy(scene, kPhysics, kPush);
+  const energy::StepEnergy energy(scene, kPhysics, kPush);
   const double robot = mass_of(scene.bodies[0]).mass, box = mass_of(scene.bodies[1]).mass;
   const double gap = resting_gap(energy.barrier(), box * energy.stride());
   const PushOutcome out = simulator().push({{0, 0, 0}, {1.7, 0, 0}, {-5, -5, 0}}, 0);
@@ -187,4 +187,4 @@ TEST(NewtonSimulator, BadInputIsReportedAndComesBackUnchanged) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::forward

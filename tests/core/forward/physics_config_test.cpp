@@ -8,7 +8,7 @@
 #include "core/forward/newton_simulator.hpp"
 #include "tests/support/each_field.hpp"
 
-namespace rtg {
+namespace rtg::forward {
 namespace {
 
 /// A robot that pushes a box off centre into a wall.
@@ -46,4 +46,4 @@ TEST(PhysicsConfig, EachFieldChangesWhereAPushEnds) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::forward

@@ -104,10 +104,10 @@ std::vector<BlockTridiagonal> newton_systems() {
   Rng rng(4);
   std::vector<BlockTridiagonal> systems;
   for (const double terminal_weight : {300.0, 0.0}) {
-    ReverseConfig config;
+    reverse::ReverseConfig config;
     config.terminal_weight = terminal_weight;
-    const ReverseProblem problem = scene.problem(config);
-    const Iterate x = testing::disturbed(testing::in_contact(problem), 1e-3, rng);
+    const reverse::ReverseProblem problem = scene.problem(config);
+    const reverse::Iterate x = testing::disturbed(testing::in_contact(problem), 1e-3, rng);
     for (const testing::Curvature curvature :
          {testing::Curvature{false, 1.0}, testing::Curvature{true, 1e-2}})
       systems.push_back(testing::Linearisation(problem, x, curvature).matrix());

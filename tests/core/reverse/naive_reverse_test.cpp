@@ -9,7 +9,7 @@
 #include "core/math/rng.hpp"
 #include "core/world/separation.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 constexpr auto kDraws = static_cast<std::size_t>(kMaxStarts);
@@ -199,4 +199,4 @@ TEST_F(NaiveReverseTest, AnswersWithFiniteStartsOfAllBodiesOrNone) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

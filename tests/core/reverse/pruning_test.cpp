@@ -9,7 +9,7 @@
 #include "core/world/separation.hpp"
 #include "tests/support/random_push.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 const PushConfig kPush;
@@ -124,8 +124,8 @@ TEST(Pruning, AgreesWithASampledWayBack) {
 TEST(Pruning, TheActionThatLedToAStateIsNeverPruned) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const testing::RandomPush drawn = testing::random_push(seed, kPush);
-    const PushOutcome box2d =
-        Box2dSimulator(drawn.scene, kPush, {}).push(drawn.start, drawn.action);
+    const forward::PushOutcome box2d =
+        forward::Box2dSimulator(drawn.scene, kPush, {}).push(drawn.start, drawn.action);
     ASSERT_TRUE(box2d.ok);
     EXPECT_FALSE(is_pruned(drawn.scene, kPush, {box2d.end, drawn.action})) << seed;
   }
@@ -164,4 +164,4 @@ TEST(RelevantBodies, FixedOnesComeLastAndPassNothingOn) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

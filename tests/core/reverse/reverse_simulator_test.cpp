@@ -12,7 +12,7 @@
 #include "tests/support/free_push.hpp"
 #include "tests/support/random_push.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 const PhysicsConfig kPhysics;
@@ -51,13 +51,13 @@ TEST(ReverseSimulator, AFreeRobotStepsBackOneStrideAndTheOthersStay) {
 // Alone: the plain barrier has no end.
 TEST(ReverseSimulator, WithThePapersPresetAFreeRobotFollowsTheClosedForm) {
   const Scene scene = robot_and_boxes(0);
-  const StepEnergy energy(scene, kPhysics, kPush);
+  const energy::StepEnergy energy(scene, kPhysics, kPush);
   const ReverseConfig config = reverse_preset(ReversePreset::kPaper);
   const Poses end{{1, -2, 0.3}};
   const ReverseResult result = solve(scene, {end, 5}, config);
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   const Vector2d d = direction(5, kPush);
-  const ReverseProblem problem{energy, config, stacked(end), d, kPhysics.sub_steps};
+  const ReverseProblem problem{energy, config, energy::stacked(end), d, kPhysics.sub_steps};
   const double reach =
       kPhysics.sub_steps * energy.control_bound()[0] / mass_of(scene.bodies[0]).mass;
   const auto moved = [&](double along) {
@@ -132,7 +132,7 @@ std::vector<double> model_gaps(int scenes) {
   std::vector<double> gaps;
   for (int seed = 0; seed < scenes; ++seed) {
     const testing::RandomPush drawn = testing::random_push(seed, kPush);
-    const NewtonSimulator model(drawn.scene, kPush, kPhysics);
+    const forward::NewtonSimulator model(drawn.scene, kPush, kPhysics);
     const Poses end = model.push(drawn.start, drawn.action).end;
     const ReverseResult result = solve(drawn.scene, {end, drawn.action});
     for (const Poses& start : result.starts) {
@@ -253,4 +253,4 @@ TEST(ReverseSimulator, AnswersAnyLayoutWithFiniteStarts) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -10,7 +10,7 @@
 
 #include "core/math/lanes.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 /// As many jobs as `count`, told apart by their action.
@@ -22,22 +22,22 @@ std::vector<Job> numbered(int count) {
 }
 
 TEST(BatchesOnThreads, SolvesInJobOrderForAnyNumberOfThreads) {
-  const std::vector<ReverseJob> jobs = numbered<ReverseJob>(100);
+  const std::vector<reverse::ReverseJob> jobs = numbered<reverse::ReverseJob>(100);
   for (int threads = 1; threads <= 8; ++threads) {
     const SolveBatch solve = solve_on_threads(
-        [](std::span<const ReverseJob> some) {
-          std::vector<ReverseResult> answers;
-          for (const ReverseJob& job : some)
-            answers.push_back({SolveStatus::kInfeasible, 2 * job.action, {job.end}, -1.0});
+        [](std::span<const reverse::ReverseJob> some) {
+          std::vector<reverse::ReverseResult> answers;
+          for (const reverse::ReverseJob& job : some)
+            answers.push_back({reverse::SolveStatus::kInfeasible, 2 * job.action, {job.end}, -1.0});
           return answers;
         },
         threads);
-    const std::vector<ReverseResult> results = solve(jobs);
+    const std::vector<reverse::ReverseResult> results = solve(jobs);
     ASSERT_EQ(results.size(), jobs.size());
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       ASSERT_EQ(results[k].iterations, 2 * jobs[k].action);
       ASSERT_EQ(results[k].starts.at(0), jobs[k].end);
-      ASSERT_EQ(results[k].status, SolveStatus::kInfeasible);
+      ASSERT_EQ(results[k].status, reverse::SolveStatus::kInfeasible);
       ASSERT_GE(results[k].cpu_s, 0.0);  // filled in
     }
     EXPECT_TRUE(solve({}).empty());
@@ -65,19 +65,19 @@ TEST(BatchesOnThreads, ReplaysInJobOrderForAnyNumberOfThreads) {
 
 TEST(BatchesOnThreads, PassesExceptionsOnToTheCaller) {
   const SolveBatch solve = solve_on_threads(
-      [](std::span<const ReverseJob> some) {
-        for (const ReverseJob& job : some)
+      [](std::span<const reverse::ReverseJob> some) {
+        for (const reverse::ReverseJob& job : some)
           if (job.action >= 7) throw std::runtime_error("job " + std::to_string(job.action));
-        return std::vector<ReverseResult>(some.size());
+        return std::vector<reverse::ReverseResult>(some.size());
       },
       4);
   try {
-    static_cast<void>(solve(numbered<ReverseJob>(50)));
+    static_cast<void>(solve(numbered<reverse::ReverseJob>(50)));
     FAIL() << "no exception";
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(), "job 7");
   }
-  EXPECT_EQ(solve(numbered<ReverseJob>(7)).size(), 7U);  // and goes on working
+  EXPECT_EQ(solve(numbered<reverse::ReverseJob>(7)).size(), 7U);  // and goes on working
 }
 
 /// Sizes of the slices that `count` jobs are solved in.
@@ -85,13 +85,13 @@ std::vector<std::size_t> slices(std::size_t count, int threads) {
   std::mutex mutex;
   std::vector<std::size_t> sizes;
   const SolveBatch solve = solve_on_threads(
-      [&](std::span<const ReverseJob> jobs) {
+      [&](std::span<const reverse::ReverseJob> jobs) {
         const std::lock_guard lock(mutex);
         sizes.push_back(jobs.size());
-        return std::vector<ReverseResult>(jobs.size());
+        return std::vector<reverse::ReverseResult>(jobs.size());
       },
       threads);
-  EXPECT_EQ(solve(std::vector<ReverseJob>(count)).size(), count);
+  EXPECT_EQ(solve(std::vector<reverse::ReverseJob>(count)).size(), count);
   return sizes;
 }
 
@@ -112,4 +112,4 @@ TEST(BatchesOnThreads, NoThreadWaitsForWorkAndNoSliceLeavesLanesIdle) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

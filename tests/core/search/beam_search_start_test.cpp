@@ -9,7 +9,7 @@
 #include "core/search/start_distance.hpp"
 #include "tests/support/dragging_world.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 /// How the nodes of a tree look where they are like its target.
@@ -96,7 +96,7 @@ TEST_F(BeamSearchStartTest, WithSomethingInTheWayTheStateStaysAsItIs) {
 }
 
 TEST_F(BeamSearchStartTest, WhereNoPlanSucceedsFromThereTheStatesStayAsTheyAre) {
-  GoalTerm beside_its_place;  // box 3 has its goal within 0.4 m of its start
+  tasks::GoalTerm beside_its_place;  // box 3 has its goal within 0.4 m of its start
   beside_its_place.kind = task.scene.bodies[3].kind = "near";
   beside_its_place.centre = task.start[3].position() + Vector2d(0.0, 0.3);
   beside_its_place.radius = 0.1;
@@ -107,4 +107,4 @@ TEST_F(BeamSearchStartTest, WhereNoPlanSucceedsFromThereTheStatesStayAsTheyAre) 
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

@@ -12,7 +12,7 @@
 #include "core/search/start_distance.hpp"
 #include "tests/support/dragging_world.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 using testing::moved;
@@ -71,7 +71,7 @@ TEST_F(BeamSearchTest, GoalsThatComeToRestElsewhereAreCountedNotPlanted) {
 TEST_F(BeamSearchTest, SolvesForEveryActionOfEveryNodeOfTheBeam) {
   BeamSearch search = planted();
   for (int layer = 0; layer < 2; ++layer) {
-    std::vector<ReverseJob> expected;
+    std::vector<reverse::ReverseJob> expected;
     for (const int node : search.beam())
       for (int action = 0; action < task.push.headings; ++action)
         expected.push_back({search.nodes()[node].poses, action});
@@ -119,7 +119,7 @@ TEST_F(BeamSearchTest, ReturnsTrueStepsThatLeadToAboutANodeOfTheBeam) {
 }
 
 /// Lengths of the plans that the steps are cut into by success; each goes on where it stands.
-std::vector<int> plans_of(const Task& task, const std::vector<Transition>& steps) {
+std::vector<int> plans_of(const tasks::Task& task, const std::vector<Transition>& steps) {
   std::vector<int> lengths;
   for (std::size_t k = 0, first = 0; k < steps.size(); ++k) {
     EXPECT_TRUE(k == first || steps[k].poses == steps[k - 1].next);
@@ -267,8 +267,8 @@ TEST_F(WorthReplayingTest, NoFreeMoveIsReplayedWhereNoneIsAllowed) {
 
 TEST_F(BeamSearchTest, ATreeWithoutPredecessorsHasNoBeam) {
   BeamSearch search = planted();
-  const SolveBatch none = [](std::span<const ReverseJob> jobs) {
-    return std::vector<ReverseResult>(jobs.size(), {SolveStatus::kPruned, 0});
+  const SolveBatch none = [](std::span<const reverse::ReverseJob> jobs) {
+    return std::vector<reverse::ReverseResult>(jobs.size(), {reverse::SolveStatus::kPruned, 0});
   };
   EXPECT_TRUE(search.grow(none, replay, stats).empty() && search.beam().empty());
   EXPECT_EQ(search.best(), std::numeric_limits<double>::infinity());
@@ -297,4 +297,4 @@ TEST_F(BeamSearchTest, NodesAreAFunctionOfTheSeed) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

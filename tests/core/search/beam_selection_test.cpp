@@ -8,7 +8,7 @@
 
 #include "core/math/rng.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 using Cells = std::unordered_set<std::uint64_t>;
@@ -168,4 +168,4 @@ TEST(BeamSelection, DoesNotDependOnTheOrderInWhichResultsArrived) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

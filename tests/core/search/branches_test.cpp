@@ -9,7 +9,7 @@
 #include "core/search/search_stats.hpp"
 #include "tests/support/dragging_world.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 int away(int a, int b, int headings) {
@@ -126,4 +126,4 @@ TEST_F(BranchesTest, ThatTheSimulatorRejectsAreLeftOutAndCounted) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

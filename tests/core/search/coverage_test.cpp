@@ -7,7 +7,7 @@
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 using testing::gathering;
@@ -22,7 +22,7 @@ Transition moving(int objects, double distance) {
 }
 
 TEST(Coverage, SharesAreZeroWithoutTransitions) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const Coverage coverage(task);
   EXPECT_EQ(coverage.transitions(), 0);
   EXPECT_EQ(coverage.contact_share(), 0.0);
@@ -30,7 +30,7 @@ TEST(Coverage, SharesAreZeroWithoutTransitions) {
 }
 
 TEST(Coverage, CountsTransitionsThatMoveOneObjectOrMore) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   Coverage coverage(task);
   for (const int objects : {0, 0, 0, 1, 1, 2, 3, 0}) coverage.add(moving(objects, 0.06));
   coverage.add(moving(3, 0.04));  // too little to count as moved
@@ -41,7 +41,7 @@ TEST(Coverage, CountsTransitionsThatMoveOneObjectOrMore) {
 }
 
 /// Share of transitions that move several, of one that moves all movable bodies.
-double multi_body_share(const Task& task) {
+double multi_body_share(const tasks::Task& task) {
   Transition t{task.start, 0, task.start, false, Source::kTree};
   for (std::size_t k = 1; k < task.scene.size(); ++k)
     if (!task.scene.bodies[k].fixed) t.next[k].y += 1.0;
@@ -51,7 +51,7 @@ double multi_body_share(const Task& task) {
 }
 
 TEST(Coverage, WhatJointsConnectCountsAsOneButForWhatHangsOnAFixedBody) {
-  Task task = testing::art_manip();
+  tasks::Task task = testing::art_manip();
   EXPECT_EQ(multi_body_share(task), 0.0);
   task.scene.bodies[2].fixed = true;  // 1 hangs on it, and 3 with 4
   std::swap(task.scene.joints[0].parent, task.scene.joints[0].child);
@@ -59,7 +59,7 @@ TEST(Coverage, WhatJointsConnectCountsAsOneButForWhatHangsOnAFixedBody) {
 }
 
 TEST(Coverage, CountsWhatBeginsInTheStartRegionAndWhereItComesFrom) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   Coverage coverage(task);
   Transition t = moving(0, 0.0);
   for (const Source source : {Source::kTree, Source::kBranch, Source::kBranch, Source::kWalk}) {
@@ -77,7 +77,7 @@ TEST(Coverage, CountsWhatBeginsInTheStartRegionAndWhereItComesFrom) {
 }
 
 TEST(Coverage, HeadingsPerStateAreTransitionsOverDistinctStates) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   Coverage coverage(task);
   EXPECT_EQ(coverage.headings_per_state(), 0.0);
   Transition t = moving(0, 0.0);
@@ -91,4 +91,4 @@ TEST(Coverage, HeadingsPerStateAreTransitionsOverDistinctStates) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

@@ -8,7 +8,7 @@
 #include "core/search/search_stats.hpp"
 #include "tests/support/dragging_world.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 struct DataSetTest : ::testing::Test, testing::DraggingWorld {
@@ -92,4 +92,4 @@ TEST_F(DataSetTest, WithoutBranchesIsTheStepsAlone) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

@@ -12,7 +12,7 @@
 #include "tests/support/dragging_world.hpp"
 #include "tests/support/generation_run.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 using testing::moved;
@@ -113,12 +113,12 @@ TEST(GenerateForward, StoresWhatItsBeamsKeepWithBranches) {
   // Steps from one state may ask for the same headings; any other has four branches of its own.
   std::map<std::uint64_t, std::pair<int, int>> of_state;          // steps, branches
   for (const Transition& t : std::span(run.stored).first(995)) {  // the last may be cut off
-    auto& [steps, beside] = of_state[key_of(t.poses, 0)];
+    auto& [steps, beside] = of_state[reverse::key_of(t.poses, 0)];
     ++(t.source == Source::kPlan ? steps : beside);
   }
   for (const auto& [state, counts] : of_state) {
     EXPECT_TRUE(counts.first > 1 || counts.second == 4 ||
-                state == key_of(run.stored[994].poses, 0));
+                state == reverse::key_of(run.stored[994].poses, 0));
     EXPECT_LE(counts.second, 4 * counts.first);
   }
   EXPECT_NEAR(branches, 800, 40);
@@ -130,4 +130,4 @@ TEST(GenerateForward, StoresWhatItsBeamsKeepWithBranches) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

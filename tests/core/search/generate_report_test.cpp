@@ -8,7 +8,7 @@
 #include "core/search/generate.hpp"
 #include "tests/support/dragging_world.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 /// A world that misses what is asked of it and notes what passes the seams.
@@ -34,20 +34,20 @@ struct NotingWorld : testing::DraggingWorld {
 
  private:
   /// Solves take 1 to 40 iterations; every 7th gives up after 50 more.
-  std::vector<ReverseResult> noted_solve(std::span<const ReverseJob> jobs) {
-    std::vector<ReverseResult> answers = solve(jobs);
+  std::vector<reverse::ReverseResult> noted_solve(std::span<const reverse::ReverseJob> jobs) {
+    std::vector<reverse::ReverseResult> answers = solve(jobs);
     for (std::size_t k = 0; k < jobs.size(); ++k) {
-      ReverseResult& answer = answers[k];
+      reverse::ReverseResult& answer = answers[k];
       answer.iterations = 1 + static_cast<int>(k % 40);
       if (k % 7 == 0) {
-        answer = {SolveStatus::kIterationLimit, answer.iterations + 50};
+        answer = {reverse::SolveStatus::kIterationLimit, answer.iterations + 50};
       } else {
         iterations.push_back(answer.iterations);
         if (moves(answer.starts[0], jobs[k].end)) pushing.push_back(answer.iterations);
       }
       if (k % static_cast<std::size_t>(task.push.headings) == 0) expanded.push_back(jobs[k].end);
       for (const Poses& start : answer.starts)
-        wanted_[key_of(float_rounded(start), jobs[k].action)] = jobs[k].end;
+        wanted_[reverse::key_of(float_rounded(start), jobs[k].action)] = jobs[k].end;
     }
     to_come_ = true;
     return answers;
@@ -58,7 +58,8 @@ struct NotingWorld : testing::DraggingWorld {
     const std::vector<ReplayResult> results = replay(jobs);
     if (to_come_)
       for (std::size_t k = 0; k < jobs.size(); ++k)
-        gaps.push_back(gap(wanted_.at(key_of(jobs[k].start, jobs[k].action)), results[k].end));
+        gaps.push_back(
+            gap(wanted_.at(reverse::key_of(jobs[k].start, jobs[k].action)), results[k].end));
     to_come_ = false;
     return results;
   }
@@ -162,4 +163,4 @@ TEST_F(GenerationReportTest, HasEveryNodeThatWasExpanded) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

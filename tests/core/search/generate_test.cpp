@@ -12,7 +12,7 @@
 #include "tests/support/gathering.hpp"
 #include "tests/support/generation_run.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 using testing::gathering;
@@ -63,10 +63,10 @@ TEST(Generate, StoresExactlyTheBudget) {
 }
 
 TEST(Generate, EveryTransitionSimulatesToItselfAndIsLabelledByThePredicate) {
-  const Task task = gathering();
-  const Box2dSimulator simulator(task.scene, task.push, {});
+  const tasks::Task task = gathering();
+  const forward::Box2dSimulator simulator(task.scene, task.push, {});
   for (const Transition& t : reference_run().stored) {
-    const PushOutcome outcome = simulator.push(t.poses, t.action);
+    const forward::PushOutcome outcome = simulator.push(t.poses, t.action);
     ASSERT_TRUE(outcome.ok);
     ASSERT_EQ(outcome.end, t.next);
     ASSERT_EQ(t.success, succeeded(task, t.next));
@@ -76,7 +76,8 @@ TEST(Generate, EveryTransitionSimulatesToItselfAndIsLabelledByThePredicate) {
 
 TEST(Generate, StoresNothingTwice) {
   std::set<std::uint64_t> keys;
-  for (const Transition& t : reference_run().stored) keys.insert(key_of(t.poses, t.action));
+  for (const Transition& t : reference_run().stored)
+    keys.insert(reverse::key_of(t.poses, t.action));
   EXPECT_EQ(keys.size(), reference_run().stored.size());
 }
 
@@ -98,7 +99,8 @@ TEST(Generate, EveryTreeStepIsFollowedByItsBranches) {
 }
 
 /// How far the nearest node of a tree is from its target.
-double nearest(const Task& task, const GenerationReport& report, int tree, const Poses& target) {
+double nearest(const tasks::Task& task, const GenerationReport& report, int tree,
+               const Poses& target) {
   const StateMetric metric(task.scene);
   double least = 1e9;
   for (const ReportNode& n : report.nodes)
@@ -107,7 +109,7 @@ double nearest(const Task& task, const GenerationReport& report, int tree, const
 }
 
 TEST(Generate, EachTreeGrowsFromGoalStatesToAStartOfItsOwn) {
-  Task task = gathering();
+  tasks::Task task = gathering();
   task.start_jitter = 1.5;
   SearchConfig config = small();
   config.transitions = 800;
@@ -169,14 +171,14 @@ TEST(Generate, ATreeThatComesNoNearerEndsWithItsPatience) {
 
 TEST(Generate, ATreeEndsWhereNothingLeadsToIt) {
   GenerationSeams seams = testing::naive_seams(gathering(), 1);
-  seams.solve = [](std::span<const ReverseJob> jobs) {
-    return std::vector<ReverseResult>(jobs.size(), {SolveStatus::kPruned});
+  seams.solve = [](std::span<const reverse::ReverseJob> jobs) {
+    return std::vector<reverse::ReverseResult>(jobs.size(), {reverse::SolveStatus::kPruned});
   };
   EXPECT_EQ(layers(small(), seams), 1);
 }
 
 TEST(Generate, ReportAgreesWithTheStoredTransitions) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const GenerationReport& report = reference_run().report;
   long contacts = 0, several = 0, region = 0;
   for (const Transition& t : reference_run().stored) {
@@ -200,7 +202,7 @@ TEST(Generate, ReportAgreesWithTheStoredTransitions) {
 }
 
 TEST(Generate, CancelStopsIt) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   GenerationSeams seams = testing::naive_seams(task, 1);
   long stored = 0;
   seams.store = [&](std::span<const Transition> batch) {
@@ -214,11 +216,12 @@ TEST(Generate, CancelStopsIt) {
 }
 
 TEST(Generate, EndsEvenIfNoReverseSolveConverges) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   GenerationSeams seams = testing::naive_seams(task, 1);
   seams.store = [](std::span<const Transition>) {};
-  seams.solve = [](std::span<const ReverseJob> jobs) {
-    return std::vector<ReverseResult>(jobs.size(), {SolveStatus::kIterationLimit, 50});
+  seams.solve = [](std::span<const reverse::ReverseJob> jobs) {
+    return std::vector<reverse::ReverseResult>(jobs.size(),
+                                               {reverse::SolveStatus::kIterationLimit, 50});
   };
   const GenerationReport report = generate(task, small(), 7, seams);
   EXPECT_EQ(report.transitions, 0);
@@ -227,9 +230,9 @@ TEST(Generate, EndsEvenIfNoReverseSolveConverges) {
 }
 
 TEST(Generate, WithRandomiseTreesAndWalksHaveStartsAllOverTheTasksRandomisation) {
-  Task task = gathering();
+  tasks::Task task = gathering();
   task.start_jitter = 0.25;  // what is in place in a tree is moved no farther
-  Task wide = task;
+  tasks::Task wide = task;
   wide.start_jitter = task.randomisation;
   ASSERT_GT(wide.start_jitter, task.start_jitter);
   for (const Generator generator : {Generator::kNaive, Generator::kRandom}) {
@@ -244,4 +247,4 @@ TEST(Generate, WithRandomiseTreesAndWalksHaveStartsAllOverTheTasksRandomisation)
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

@@ -11,7 +11,7 @@
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 using testing::gathering;
@@ -19,13 +19,13 @@ using testing::gathering_hard;
 
 constexpr int kStates = 500;
 
-Poses random_poses(const Task& task, Rng& rng) {
+Poses random_poses(const tasks::Task& task, Rng& rng) {
   Poses out = task.start;
   for (Pose& p : out) p = {rng.uniform(-5.0, 5.0), rng.uniform(-5.0, 5.0), rng.uniform(-3.0, 3.0)};
   return out;
 }
 
-double distance(const Task& task, const Poses& a, const Poses& b) {
+double distance(const tasks::Task& task, const Poses& a, const Poses& b) {
   return StateMetric(task.scene).layout_distance(a, b);
 }
 
@@ -35,7 +35,7 @@ Poses exchanged(Poses poses, std::size_t i, std::size_t j) {
 }
 
 /// Least distance over all ways to share out the poses of Gathering's three boxes.
-double least_distance(const Task& task, const Poses& poses, const Poses& target) {
+double least_distance(const tasks::Task& task, const Poses& poses, const Poses& target) {
   double least = std::numeric_limits<double>::infinity();
   std::vector<std::size_t> order{1, 2, 3};
   do {
@@ -46,13 +46,13 @@ double least_distance(const Task& task, const Poses& poses, const Poses& target)
 }
 
 TEST(Relabelled, LeavesBodiesWithJointsAlone) {
-  const Task task = testing::art_manip();
+  const tasks::Task task = testing::art_manip();
   const Poses mixed = exchanged(task.start, 1, 4);
   EXPECT_EQ(relabelled(task, mixed, task.start), mixed);
 }
 
 TEST(Relabelled, UndoesEveryExchangeOfThreeAlike) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   std::vector<std::size_t> order{1, 2, 3};
   do {
     const Poses mixed{task.start[0], task.start[order[0]], task.start[order[1]],
@@ -62,7 +62,7 @@ TEST(Relabelled, UndoesEveryExchangeOfThreeAlike) {
 }
 
 TEST(Relabelled, IsNoFartherThanBeforeNorThanAfterAnyFurtherExchange) {
-  const Task task = gathering_hard();
+  const tasks::Task task = gathering_hard();
   Rng rng(61);
   int nearer = 0;
   for (int k = 0; k < kStates; ++k) {
@@ -80,7 +80,7 @@ TEST(Relabelled, IsNoFartherThanBeforeNorThanAfterAnyFurtherExchange) {
 
 // A cycle of three may be nearer where no exchange of two is: in 6 of these 500.
 TEST(Relabelled, IsTheNearestLabellingOfThreeAlmostAlways) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   Rng rng(62);
   int nearest = 0;
   for (int k = 0; k < kStates; ++k) {
@@ -94,7 +94,7 @@ TEST(Relabelled, IsTheNearestLabellingOfThreeAlmostAlways) {
 }
 
 TEST(Relabelled, ExchangesOnlyWhatLooksTheSame) {
-  Task task = gathering_hard();
+  tasks::Task task = gathering_hard();
   task.scene.bodies[3].kind = "other";
   task.scene.bodies[4].kind = "other";
   Rng rng(63);
@@ -110,7 +110,7 @@ TEST(Relabelled, ExchangesOnlyWhatLooksTheSame) {
 
 TEST(Relabelled, EveryDifferenceOfLooksCounts) {
   const auto stays = [](auto change) {
-    Task task = gathering();
+    tasks::Task task = gathering();
     change(task.scene.bodies[1]);
     const Poses crossed = exchanged(task.start, 1, 2);
     return relabelled(task, crossed, task.start) == crossed;
@@ -124,7 +124,7 @@ TEST(Relabelled, EveryDifferenceOfLooksCounts) {
 }
 
 TEST(Relabelled, TheRobotStaysWhateverLooksLikeIt) {
-  Task task = gathering();
+  tasks::Task task = gathering();
   task.scene.bodies[1] = task.scene.bodies[0];
   const Poses crossed = exchanged(task.start, 0, 1);
   EXPECT_EQ(relabelled(task, crossed, task.start), crossed);
@@ -137,14 +137,14 @@ SearchConfig of(int breadth, int root_draws) {
   return config;
 }
 
-std::vector<Poses> roots(const Task& task, const SearchConfig& config, std::uint64_t seed) {
+std::vector<Poses> roots(const tasks::Task& task, const SearchConfig& config, std::uint64_t seed) {
   Rng rng(seed);
   SearchStats stats;
   return goal_roots(task, config, task.start, rng, stats);
 }
 
 TEST(GoalRoots, DrawsInVainAreCountedAndEndNothingUntilThereAreTooMany) {
-  Task task = gathering();
+  tasks::Task task = gathering();
   task.goal[0].radius = 0.04;  // less than what a goal is met with to spare
   Rng rng(1);
   SearchStats stats;
@@ -153,7 +153,7 @@ TEST(GoalRoots, DrawsInVainAreCountedAndEndNothingUntilThereAreTooMany) {
 }
 
 TEST(GoalRoots, AreDistinctGoalsNearestFirst) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const StateMetric metric(task.scene);
   const std::vector<Poses> found = roots(task, of(20, 4), 64);
   ASSERT_EQ(found.size(), 20U);
@@ -170,7 +170,7 @@ TEST(GoalRoots, AreDistinctGoalsNearestFirst) {
 }
 
 TEST(GoalRoots, AreTheNearestOfAllDraws) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const std::vector<Poses> all = roots(task, of(80, 1), 65);
   const std::vector<Poses> best = roots(task, of(20, 4), 65);
   ASSERT_GE(all.size(), 20U);
@@ -179,7 +179,7 @@ TEST(GoalRoots, AreTheNearestOfAllDraws) {
 
 // A disc just large enough for one box and no room for the robot elsewhere: few cells.
 TEST(GoalRoots, StatesOfOneCellAreOneRoot) {
-  Task task = gathering();
+  tasks::Task task = gathering();
   task.scene.bodies.resize(2);
   task.start.resize(2);
   task.goal[0].radius = 0.1;
@@ -193,16 +193,16 @@ TEST(GoalRoots, StatesOfOneCellAreOneRoot) {
 }
 
 TEST(GoalRoots, AreAFunctionOfTheRandomStream) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   EXPECT_EQ(roots(task, of(8, 2), 67), roots(task, of(8, 2), 67));
   EXPECT_NE(roots(task, of(8, 2), 67), roots(task, of(8, 2), 68));
 }
 
 TEST(GoalRoots, OfAnImpossibleGoalAreNone) {
-  Task task = gathering();
+  tasks::Task task = gathering();
   task.goal[0].radius = 0.04;  // less than what a goal is met with to spare
   EXPECT_TRUE(roots(task, of(2, 1), 69).empty());
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

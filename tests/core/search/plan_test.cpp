@@ -5,7 +5,7 @@
 #include "core/search/search_stats.hpp"
 #include "tests/support/dragging_world.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 struct PlanTest : ::testing::Test, testing::DraggingWorld {
@@ -65,4 +65,4 @@ TEST_F(PlanTest, EndsWhereTheSimulatorRejectsAPush) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

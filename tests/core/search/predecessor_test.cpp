@@ -8,7 +8,7 @@
 
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 using testing::gathering;
@@ -40,7 +40,7 @@ TEST(ObjectsMoved, CountsObjectsBeyondTheThresholdWithoutTheRobot) {
 }
 
 TEST(LegalState, IsFiniteInTheArenaAndWithoutOverlap) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   EXPECT_TRUE(legal_state(task, task.start));
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     Poses poses = task.start;
@@ -56,20 +56,21 @@ TEST(LegalState, IsFiniteInTheArenaAndWithoutOverlap) {
 }
 
 TEST(Proposals, AreTheConvergedAnswersWithLegalStarts) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   Poses outside = task.start, overlapping = task.start, moved = task.start;
   outside[0].x = 8.5;
   overlapping[2] = overlapping[3];
   moved[0].x = 0.1;  // no single-precision number
   moved[1].y += 0.5;
   moved[3].y -= 0.5;
-  const std::vector<ReverseJob> jobs{
+  const std::vector<reverse::ReverseJob> jobs{
       {task.start, 3}, {task.start, 4}, {task.start, 5}, {task.start, 6}, {task.start, 7}};
-  const std::vector<ReverseResult> answers{{SolveStatus::kConverged, 9, {outside}},
-                                           {SolveStatus::kPruned},
-                                           {SolveStatus::kConverged, 9, {moved, task.start}},
-                                           {SolveStatus::kLineSearchFailed, 50},
-                                           {SolveStatus::kConverged, 9, {overlapping}}};
+  const std::vector<reverse::ReverseResult> answers{
+      {reverse::SolveStatus::kConverged, 9, {outside}},
+      {reverse::SolveStatus::kPruned},
+      {reverse::SolveStatus::kConverged, 9, {moved, task.start}},
+      {reverse::SolveStatus::kLineSearchFailed, 50},
+      {reverse::SolveStatus::kConverged, 9, {overlapping}}};
   SearchStats stats;
   const std::vector<Predecessor> found = proposals(task, jobs, answers, stats);
   ASSERT_EQ(found.size(), 2U);
@@ -86,14 +87,14 @@ TEST(Proposals, AreTheConvergedAnswersWithLegalStarts) {
 }
 
 TEST(Proposals, AreJudgedAfterRounding) {
-  Task task = gathering();
+  tasks::Task task = gathering();
   task.push.arena = 0.1;  // below its single-precision neighbour
   Poses edge = task.start;
   edge[0] = {0.1, 0.0, 0.0};
   ASSERT_TRUE(legal_state(task, edge));
   SearchStats stats;
-  const std::vector<ReverseJob> jobs{{edge, 0}};
-  const std::vector<ReverseResult> answers{{SolveStatus::kConverged, 1, {edge}}};
+  const std::vector<reverse::ReverseJob> jobs{{edge, 0}};
+  const std::vector<reverse::ReverseResult> answers{{reverse::SolveStatus::kConverged, 1, {edge}}};
   EXPECT_TRUE(proposals(task, jobs, answers, stats).empty());
   EXPECT_EQ(stats.illegal_starts, 1);
 }
@@ -149,4 +150,4 @@ TEST(ReplayPredecessors, LeaveOutAndCountWhatTheSimulatorRejects) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

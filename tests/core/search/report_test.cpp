@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 /// A report whose numbers all differ and are exact in single precision.
@@ -77,4 +77,4 @@ TEST(Report, OfNothingHasEmptyListsAndNoDepth) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

@@ -6,7 +6,7 @@
 #include "tests/support/dragging_world.hpp"
 #include "tests/support/each_field.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 /// What a generation in the world without contact stores.
@@ -40,4 +40,4 @@ TEST(SearchConfig, EachFieldChangesTheStoredTransitions) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

@@ -9,20 +9,20 @@
 #include "core/search/batches_on_threads.hpp"
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 using testing::gathering;
 
 /// Gathering after a push to the right: the robot touches a box, which touches the next.
-Poses touching(const Task& task) {
+Poses touching(const tasks::Task& task) {
   const Poses row{{-2, 0, 0}, {-0.5, 0.1, 0.05}, {0.85, 0.2, 0.3}, {2, 4, 0}};
   return forward_replay(task, {})({row, 0}).end;
 }
 
 /// What one node of the beam asks for: a job per heading.
-std::vector<ReverseJob> layer(const Task& task) {
-  std::vector<ReverseJob> jobs;
+std::vector<reverse::ReverseJob> layer(const tasks::Task& task) {
+  std::vector<reverse::ReverseJob> jobs;
   for (int action = 0; action < task.push.headings; ++action)
     jobs.push_back({touching(task), action});
   return jobs;
@@ -30,20 +30,21 @@ std::vector<ReverseJob> layer(const Task& task) {
 
 // Enough of them that threads solve different slices of it together.
 TEST(Simulators, ALayerOfReverseSolvesHasTheSameBitsOn1To16Threads) {
-  Task task = gathering();
+  tasks::Task task = gathering();
   task.push.headings = 14;
-  std::vector<ReverseJob> jobs;
+  std::vector<reverse::ReverseJob> jobs;
   for (int node = 0; node < 2; ++node)
-    for (ReverseJob job : layer(task)) {
+    for (reverse::ReverseJob job : layer(task)) {
       job.end[1].y += 0.02 * node;
       jobs.push_back(std::move(job));
     }
   const SolveBatch solve = reverse_solver(task, {}, {}, Generator::kRrbs);
-  const std::vector<ReverseResult> reference = solve_on_threads(solve, 1)(jobs);
-  const auto iterations = std::ranges::max(reference, {}, &ReverseResult::iterations).iterations;
+  const std::vector<reverse::ReverseResult> reference = solve_on_threads(solve, 1)(jobs);
+  const auto iterations =
+      std::ranges::max(reference, {}, &reverse::ReverseResult::iterations).iterations;
   ASSERT_GT(iterations, 10);  // solves in contact are among them
   for (const int threads : {2, 16}) {
-    const std::vector<ReverseResult> results = solve_on_threads(solve, threads)(jobs);
+    const std::vector<reverse::ReverseResult> results = solve_on_threads(solve, threads)(jobs);
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       ASSERT_EQ(results[k].status, reference[k].status);
       ASSERT_EQ(results[k].iterations, reference[k].iterations);
@@ -53,8 +54,8 @@ TEST(Simulators, ALayerOfReverseSolvesHasTheSameBitsOn1To16Threads) {
 }
 
 TEST(Simulators, ReplayIsBox2dsPushAndItsSettling) {
-  const Task task = gathering();
-  const Box2dSimulator box2d(task.scene, task.push, {});
+  const tasks::Task task = gathering();
+  const forward::Box2dSimulator box2d(task.scene, task.push, {});
   const ReplayOne replay = forward_replay(task, {});
   Poses close = task.start;
   close[0] = {-3.0, -0.3, 0.0};  // overlaps a box a little
@@ -66,11 +67,11 @@ TEST(Simulators, ReplayIsBox2dsPushAndItsSettling) {
 }
 
 TEST(Simulators, NaiveGeneratorIsTheNaiveReverse) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const SolveBatch solve = reverse_solver(task, {}, {}, Generator::kNaive);
-  const NaiveReverse naive(task.scene, task.push);
-  const std::vector<ReverseJob> jobs = layer(task);
-  const std::vector<ReverseResult> results = solve(jobs);
+  const reverse::NaiveReverse naive(task.scene, task.push);
+  const std::vector<reverse::ReverseJob> jobs = layer(task);
+  const std::vector<reverse::ReverseResult> results = solve(jobs);
   ASSERT_EQ(results.size(), jobs.size());
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     EXPECT_EQ(results[k].status, naive.solve(jobs[k]).status);
@@ -79,4 +80,4 @@ TEST(Simulators, NaiveGeneratorIsTheNaiveReverse) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

@@ -7,7 +7,7 @@
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 using testing::gathering;
@@ -15,7 +15,7 @@ using testing::gathering;
 /// Gathering, its start as the target, all objects in place but the first, which stands 3 m to the
 /// right of its place: it has to be pulled to the left.
 struct StartDistanceTest : ::testing::Test {
-  Task task = gathering();
+  tasks::Task task = gathering();
   StateMetric metric{task.scene};
   Poses poses = task.start;
 
@@ -100,7 +100,7 @@ TEST_F(StartDistanceTest, WhatIsInPlaceIsPutWhereAStartHasIt) {
 }
 
 TEST(Placed, WhatTurnsOnAPinIsInPlaceOnlyIfItIsTurnedRight) {
-  Task task = gathering();
+  tasks::Task task = gathering();
   task.scene.bodies[1].fixed = true;
   task.start[2] = task.start[1];
   task.scene.joints.push_back({1, 2});
@@ -116,7 +116,7 @@ TEST(Placed, WhatTurnsOnAPinIsInPlaceOnlyIfItIsTurnedRight) {
 }
 
 TEST(Placed, WhatJointsConnectIsPutThereTogether) {
-  const Task task = testing::art_manip();
+  const tasks::Task task = testing::art_manip();
   const StateMetric metric(task.scene);
   Poses poses = task.start;
   for (std::size_t i = 1; i < poses.size(); ++i) poses[i].y += 0.3;
@@ -126,4 +126,4 @@ TEST(Placed, WhatJointsConnectIsPutThereTogether) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

@@ -10,7 +10,7 @@
 
 #include "core/math/rng.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -183,4 +183,4 @@ TEST(StateMetricCell, AnglesGoRoundWithThePeriodOfTheShape) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

@@ -8,7 +8,7 @@
 #include "tests/support/gathering.hpp"
 #include "tests/support/generation_run.hpp"
 
-namespace rtg {
+namespace rtg::search {
 namespace {
 
 using testing::gathering;
@@ -61,11 +61,11 @@ TEST(Walks, StoreExactlyTheBudgetWithoutReverseSteps) {
 }
 
 TEST(Walks, AreTrueTransitionsThatEndWithinTheHorizonAndStartWhereTheGoalDoesNotHold) {
-  const Task task = gathering();
-  const Box2dSimulator simulator(task.scene, task.push, {});
+  const tasks::Task task = gathering();
+  const forward::Box2dSimulator simulator(task.scene, task.push, {});
   for (const GenerationRun* run : {&random_run(), &scatter_run()})
     for (const Transition& t : run->stored) {
-      const PushOutcome outcome = simulator.push(t.poses, t.action);
+      const forward::PushOutcome outcome = simulator.push(t.poses, t.action);
       ASSERT_TRUE(outcome.ok);
       ASSERT_EQ(outcome.end, t.next);
       ASSERT_EQ(t.success, succeeded(task, t.next));
@@ -75,7 +75,7 @@ TEST(Walks, AreTrueTransitionsThatEndWithinTheHorizonAndStartWhereTheGoalDoesNot
 }
 
 TEST(Walks, BeginAtJitteredStarts) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   const std::vector<Poses> begun = origins(random_run());
   EXPECT_GE(begun.size(), 100U);  // two waves
   for (const Poses& start : begun)
@@ -85,7 +85,7 @@ TEST(Walks, BeginAtJitteredStarts) {
 }
 
 TEST(Walks, OrScatterFromGoalStates) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   // The first stored step begins where a walk has left the goal, a push or more away from it.
   double nearest = 1e9;
   for (const Poses& begun : origins(scatter_run()))
@@ -108,7 +108,7 @@ TEST(Walks, HaveBranchesAsAllStepsDo) {
 }
 
 TEST(Walks, EndWithAPushThatTheSimulatorRejects) {
-  const Task task = gathering();
+  const tasks::Task task = gathering();
   GenerationSeams seams;
   long calls = 0;
   std::vector<Transition> stored;
@@ -126,4 +126,4 @@ TEST(Walks, EndWithAPushThatTheSimulatorRejects) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::search

@@ -9,7 +9,7 @@
 
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 namespace {
 
 /// How often each heading is drawn.
@@ -55,4 +55,4 @@ TEST(ContactHeading, SeeksAllMovableObjectsAlikeAndNoFixedOne) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::tasks

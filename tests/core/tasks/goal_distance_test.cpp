@@ -8,7 +8,7 @@
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 namespace {
 
 constexpr double kWay = 0.2;
@@ -44,4 +44,4 @@ TEST(GoalDistance, OfJointsAndAMeanCentreIsOfAnglesAndOfTheMean) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::tasks

@@ -5,7 +5,7 @@
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 namespace {
 
 using testing::gathering;
@@ -71,10 +71,10 @@ TEST(GoalSampler, BringsTheMeanOfALinkAndALooseBodyIntoASmallRegion) {
 
 TEST(GoalSampler, SettledGoalsStillHold) {
   const Task task = gathering();
-  const Box2dSimulator simulator(task.scene, task.push, PhysicsConfig{});
+  const forward::Box2dSimulator simulator(task.scene, task.push, PhysicsConfig{});
   int held = 0;
   for (const Poses& poses : goals(task, 2)) {
-    const PushOutcome rest = simulator.settle(poses);
+    const forward::PushOutcome rest = simulator.settle(poses);
     held += rest.ok && succeeded(task, rest.end, 0.04);
   }
   RecordProperty("held", held);
@@ -108,4 +108,4 @@ TEST(GoalSampler, AnImpossibleGoalIsReported) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::tasks

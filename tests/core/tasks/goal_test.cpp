@@ -9,7 +9,7 @@
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 namespace {
 
 using testing::art_manip;
@@ -135,4 +135,4 @@ TEST(Goal, AFixedBodyMayStandAtTheEdgeOfItsRegion) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::tasks

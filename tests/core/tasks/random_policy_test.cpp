@@ -3,7 +3,7 @@
 #include "core/forward/box2d_simulator.hpp"
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 namespace {
 
 using testing::gathering;
@@ -18,13 +18,13 @@ bool moved_object(const Poses& before, const Poses& after) {
 // touched an object in 5 to 12.6 % of random steps.
 TEST(RandomPolicy, NeverGathersAndSeldomTouches) {
   const Task task = gathering();
-  const Box2dSimulator simulator(task.scene, task.push, PhysicsConfig{});
+  const forward::Box2dSimulator simulator(task.scene, task.push, PhysicsConfig{});
   int successes = 0, steps = 0, touching = 0;
   for (std::uint64_t episode = 0; episode < 200; ++episode) {
     Rng rng(42, episode);
     Poses poses = task.start;
     for (int k = 0; k < task.horizon; ++k, ++steps) {
-      const PushOutcome out = simulator.push(poses, rng.below(task.push.headings));
+      const forward::PushOutcome out = simulator.push(poses, rng.below(task.push.headings));
       ASSERT_TRUE(out.ok);
       touching += moved_object(poses, out.end);
       poses = out.end;
@@ -38,4 +38,4 @@ TEST(RandomPolicy, NeverGathersAndSeldomTouches) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::tasks

@@ -5,7 +5,7 @@
 #include "core/world/separation.hpp"
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::tasks {
 namespace {
 
 using testing::gathering;
@@ -152,4 +152,4 @@ TEST(Gathering, StartsLegalAndUnsolved) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::tasks

@@ -4,7 +4,7 @@
 
 #include <thread>
 
-namespace rtg {
+namespace rtg::threads {
 namespace {
 
 constexpr double kWork = 0.05;  // CPU time [s]
@@ -27,4 +27,4 @@ TEST(CpuClock, IsThatOfTheCallingThreadOrOfAll) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::threads

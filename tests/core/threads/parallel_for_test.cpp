@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace rtg {
+namespace rtg::threads {
 namespace {
 
 TEST(ParallelFor, CallsEveryIndexOnce) {
@@ -60,4 +60,4 @@ TEST(ParallelFor, AllCallsHaveReturnedWhenItThrows) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::threads

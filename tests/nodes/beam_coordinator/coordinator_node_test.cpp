@@ -13,7 +13,7 @@
 #include "tests/support/gathering.hpp"
 #include "tests/support/generation_run.hpp"
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 namespace {
 
 using rtg_msgs::search_progress_t;
@@ -23,9 +23,9 @@ using testing::gathering;
 constexpr std::int64_t kConfig = 77;
 constexpr std::uint64_t kSeed = 7;
 
-SearchConfig small() {
-  SearchConfig config;
-  config.generator = Generator::kNaive;
+search::SearchConfig small() {
+  search::SearchConfig config;
+  config.generator = search::Generator::kNaive;
   config.transitions = 1200;
   config.breadth = 6;
   config.depth = 10;
@@ -38,34 +38,39 @@ class Graph {
   explicit Graph(
       int workers, std::function<bool()> stopped = [] { return false; })
       : coordinator(bus, {shape(), kConfig, small().transitions, std::move(stopped)}),
-        server_(bus, {shape(), kConfig, 0, 2}, replay_on_threads(forward_replay(task, {}), 1)) {
+        server_(bus, {shape(), kConfig, 0, 2},
+                search::replay_on_threads(search::forward_replay(task, {}), 1)) {
     bus.subscribe<transition_batch_t>("RTG_TRANSITION",
                                       [this](const transition_batch_t& m) { on_rows(m); });
     for (int k = 0; k < workers; ++k)
-      workers_.emplace_back(bus, WorkerNode<ReverseService>::Options{shape(), kConfig, k, 1},
-                            solve_on_threads(reverse_solver(task, {}, {}, Generator::kNaive), 1));
+      workers_.emplace_back(
+          bus, jobs::WorkerNode<jobs::ReverseService>::Options{shape(), kConfig, k, 1},
+          search::solve_on_threads(reverse_solver(task, {}, {}, search::Generator::kNaive), 1));
   }
 
-  std::optional<GenerationReport> run() {
+  std::optional<search::GenerationReport> run() {
     const std::jthread ticking([this](const std::stop_token& stop) {
       while (!stop.stop_requested()) {
-        for (auto& worker : workers_) worker.tick(monotonic_now());
-        server_.tick(monotonic_now());
+        for (auto& worker : workers_) worker.tick(bus::monotonic_now());
+        server_.tick(bus::monotonic_now());
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
       }
     });
-    auto report = coordinator.run(
-        [this](const GenerationSeams& seams) { return generate(task, small(), kSeed, seams); });
+    auto report = coordinator.run([this](const search::GenerationSeams& seams) {
+      return generate(task, small(), kSeed, seams);
+    });
     if (report) coordinator.drain(0);
     while (bus.spin(std::chrono::milliseconds(0)) > 0) {
     }  // what was sent last has yet to be received
     return report;
   }
 
-  TaskShape shape() const { return {static_cast<int>(task.scene.size()), task.push.headings}; }
+  jobs::TaskShape shape() const {
+    return {static_cast<int>(task.scene.size()), task.push.headings};
+  }
 
-  const Task task = gathering();
-  Bus bus{"memq://", "test"};
+  const tasks::Task task = gathering();
+  bus::Bus bus{"memq://", "test"};
   CoordinatorNode coordinator;
   std::vector<double> poses, next_poses;  // as streamed
   std::vector<int> actions, successes, sources;
@@ -80,11 +85,11 @@ class Graph {
     sources.insert(sources.end(), m.source.begin(), m.source.end());
   }
 
-  WorkerNode<ReplayService> server_;
-  std::list<WorkerNode<ReverseService>> workers_;
+  jobs::WorkerNode<jobs::ReplayService> server_;
+  std::list<jobs::WorkerNode<jobs::ReverseService>> workers_;
 };
 
-std::string without_times(GenerationReport report) {
+std::string without_times(search::GenerationReport report) {
   report.reverse_cpu_s = report.replay_cpu_s = report.generate_wall_s = 0.0;
   report.generate_cpu_s = 0.0;
   return to_json(report);
@@ -100,9 +105,9 @@ TEST_P(GraphOf, StreamsTheBytesOfTheDirectCall) {
   EXPECT_EQ(without_times(*report), without_times(direct.report));
   std::vector<double> poses, next_poses;
   for (std::size_t k = 0; k < direct.stored.size(); ++k) {
-    const Transition& t = direct.stored[k];
-    append_poses(t.poses, poses);
-    append_poses(t.next, next_poses);
+    const search::Transition& t = direct.stored[k];
+    jobs::append_poses(t.poses, poses);
+    jobs::append_poses(t.next, next_poses);
     ASSERT_LT(k, graph.actions.size());
     ASSERT_EQ(graph.actions[k], t.action);
     ASSERT_EQ(graph.successes[k], t.success);
@@ -126,29 +131,29 @@ TEST(CoordinatorNode, AStopEndsTheSearchWithoutAReport) {
 }
 
 TEST(CoordinatorNode, WhatTheSearchThrowsComesOut) {
-  Bus bus("memq://", "test");
+  bus::Bus bus("memq://", "test");
   CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [] { return false; }});
-  EXPECT_THROW(coordinator.run([](const GenerationSeams&) -> GenerationReport {
+  EXPECT_THROW(coordinator.run([](const search::GenerationSeams&) -> search::GenerationReport {
     throw std::range_error("boom");
   }),
                std::range_error);
 }
 
 TEST(CoordinatorNode, WhatAHandlerThrowsComesOutAndEndsTheSearch) {
-  Bus bus("memq://", "test");
+  bus::Bus bus("memq://", "test");
   CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [] { return false; }});
   bus.subscribe<search_progress_t>(
       "RTG_PROGRESS", [](const search_progress_t&) { throw std::range_error("boom"); });
-  EXPECT_THROW(coordinator.run([](const GenerationSeams& seams) {
-    const ReverseJob job{{{}}, 0};
+  EXPECT_THROW(coordinator.run([](const search::GenerationSeams& seams) {
+    const reverse::ReverseJob job{{{}}, 0};
     seams.solve({&job, 1});  // nobody is there to answer
-    return GenerationReport{};
+    return search::GenerationReport{};
   }),
                std::range_error);
 }
 
 TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
-  Bus bus("memq://", "test");
+  bus::Bus bus("memq://", "test");
   std::vector<search_progress_t> heard;
   std::atomic<bool> said = false;
   bus.subscribe<search_progress_t>("RTG_PROGRESS", [&](const search_progress_t& m) {
@@ -158,10 +163,10 @@ TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
   });
   {
     CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [] { return false; }});
-    const auto report = coordinator.run([&](const GenerationSeams& seams) {
+    const auto report = coordinator.run([&](const search::GenerationSeams& seams) {
       seams.progress({.phase = "round 1", .layer = 3, .depth = 24});
       said.wait(false);
-      return GenerationReport{};
+      return search::GenerationReport{};
     });
     EXPECT_TRUE(report.has_value());
     coordinator.drain(0);
@@ -178,4 +183,4 @@ TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

@@ -7,30 +7,30 @@
 #include <set>
 #include <thread>
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 namespace {
 
 using namespace std::chrono_literals;
 using rtg_msgs::replay_job_t;
 
-constexpr TaskShape kShape{.bodies = 1, .headings = 48};
+constexpr jobs::TaskShape kShape{.bodies = 1, .headings = 48};
 constexpr std::int64_t kConfig = 77;
-constexpr WorkerId kAnn = 1;
+constexpr jobs::WorkerId kAnn = 1;
 
-std::vector<ReplayJob> many_jobs(int count) {
-  std::vector<ReplayJob> jobs;
+std::vector<search::ReplayJob> many_jobs(int count) {
+  std::vector<search::ReplayJob> jobs;
   for (int k = 0; k < count; ++k) jobs.push_back({{{0.5 * k, 0.0, 0.0}}, k % 48});
   return jobs;
 }
 
-ReplayResult answer(const ReplayJob& job) {
+search::ReplayResult answer(const search::ReplayJob& job) {
   return {{{job.start[0].x + job.action, 1.0, 0.0}}, job.action % 2 == 0, 0.0};
 }
 
 /// A pool whose worker, Ann, is played by the test.
 class Played {
  public:
-  explicit Played(JobDispatcher::Limits limits = {}) : pool(bus, kShape, kConfig, limits) {
+  explicit Played(jobs::JobDispatcher::Limits limits = {}) : pool(bus, kShape, kConfig, limits) {
     bus.subscribe<replay_job_t>("RTG_REPLAY_JOB", [this](const replay_job_t& m) { on_job(m); });
   }
 
@@ -43,7 +43,7 @@ class Played {
   }
 
   /// Of a worker that holds the unit and can take four.
-  void beat_of(WorkerId worker, std::optional<JobId> held) {
+  void beat_of(jobs::WorkerId worker, std::optional<jobs::JobId> held) {
     rtg_msgs::worker_beat_t message{};
     message.incarnation = worker;
     message.config = kConfig;
@@ -54,10 +54,10 @@ class Played {
   }
 
   static rtg_msgs::replay_result_t result_of(const replay_job_t& job) {
-    const std::vector<ReplayJob> jobs = ReplayService::parse(job, kShape).value();
-    std::vector<ReplayResult> results;
-    for (const ReplayJob& j : jobs) results.push_back(answer(j));
-    auto message = ReplayService::message(results);
+    const std::vector<search::ReplayJob> jobs = jobs::ReplayService::parse(job, kShape).value();
+    std::vector<search::ReplayResult> results;
+    for (const search::ReplayJob& j : jobs) results.push_back(answer(j));
+    auto message = jobs::ReplayService::message(results);
     message.job_id = job.job_id;
     return message;
   }
@@ -67,8 +67,8 @@ class Played {
   }
 
   /// What the pool answers, or nothing if it was stopped; serves the bus meanwhile.
-  std::optional<std::vector<ReplayResult>> ask(const std::vector<ReplayJob>& jobs) {
-    std::optional<std::vector<ReplayResult>> results;
+  std::optional<std::vector<search::ReplayResult>> ask(const std::vector<search::ReplayJob>& jobs) {
+    std::optional<std::vector<search::ReplayResult>> results;
     std::atomic<bool> ended = false;
     std::jthread search([&] {
       try {
@@ -86,16 +86,16 @@ class Played {
     return results;
   }
 
-  Bus bus{"memq://", "test"};
-  JobPool<ReplayService> pool;
+  bus::Bus bus{"memq://", "test"};
+  JobPool<jobs::ReplayService> pool;
   std::function<void(const replay_job_t&)> on_job = [this](const replay_job_t& job) {
     publish(result_of(job));
   };
   std::function<void()> each_round;
 };
 
-void expect_right(const std::vector<ReplayJob>& jobs,
-                  const std::optional<std::vector<ReplayResult>>& results) {
+void expect_right(const std::vector<search::ReplayJob>& jobs,
+                  const std::optional<std::vector<search::ReplayResult>>& results) {
   ASSERT_TRUE(results.has_value());
   ASSERT_EQ(results->size(), jobs.size());
   for (std::size_t k = 0; k < jobs.size(); ++k) {
@@ -130,7 +130,7 @@ TEST(JobPool, EqualUnitsAreAskedOnce) {
     ++asked;
     played.publish(Played::result_of(job));
   };
-  const std::vector<ReplayJob> jobs(48, many_jobs(2)[1]);
+  const std::vector<search::ReplayJob> jobs(48, many_jobs(2)[1]);
   expect_right(jobs, played.ask(jobs));
   EXPECT_EQ(asked, 1);
 }
@@ -142,7 +142,8 @@ TEST(JobPool, CountsAndIgnoresResultsThatMakeNoSense) {
     auto spoilt = Played::result_of(job);
     spoilt.ok[0] = 7;
     played.publish(spoilt);
-    auto shorter = ReplayService::message(std::vector<ReplayResult>{answer(many_jobs(1)[0])});
+    auto shorter =
+        jobs::ReplayService::message(std::vector<search::ReplayResult>{answer(many_jobs(1)[0])});
     shorter.job_id = job.job_id;
     played.publish(shorter);
     auto unknown = Played::result_of(job);
@@ -188,7 +189,7 @@ TEST(JobPool, SendsAgainWhatGotLost) {
 
 TEST(JobPool, GivesUpAUnitThatNobodySurvives) {
   Played played({.silence = 0.2, .poison = 2});
-  std::optional<JobId> deadly;
+  std::optional<jobs::JobId> deadly;
   bool alive = true;
   played.on_job = [&](const replay_job_t& job) {
     if (!deadly) deadly = job.job_id;
@@ -206,7 +207,7 @@ TEST(JobPool, GivesUpAUnitThatNobodySurvives) {
   EXPECT_GE(played.pool.state().reissued, 2);
   int skipped = 0;
   for (std::size_t k = 0; k < jobs.size(); ++k) {
-    const ReplayResult& result = (*results)[k];
+    const search::ReplayResult& result = (*results)[k];
     if (result.end == answer(jobs[k]).end) continue;
     ++skipped;
     EXPECT_FALSE(result.ok);
@@ -217,8 +218,8 @@ TEST(JobPool, GivesUpAUnitThatNobodySurvives) {
 
 TEST(JobPool, GivesUpAUnitThatHangsOnEveryLivingWorker) {
   Played played({.lease = 0.1, .poison = 2});
-  std::optional<JobId> hanging;
-  std::set<WorkerId> stuck;
+  std::optional<jobs::JobId> hanging;
+  std::set<jobs::WorkerId> stuck;
   played.on_job = [&](const replay_job_t& job) {
     if (!hanging) hanging = job.job_id;
     if (job.job_id == *hanging)
@@ -227,7 +228,7 @@ TEST(JobPool, GivesUpAUnitThatHangsOnEveryLivingWorker) {
       played.publish(Played::result_of(job));
   };
   played.each_round = [&] {  // there is always one more
-    for (WorkerId worker = 1; worker <= std::ssize(stuck) + 1; ++worker)
+    for (jobs::WorkerId worker = 1; worker <= std::ssize(stuck) + 1; ++worker)
       played.beat_of(worker, stuck.contains(worker) ? hanging : std::nullopt);
   };
   const auto jobs = many_jobs(72);
@@ -249,4 +250,4 @@ TEST(JobPool, StopEndsASearchThatWaits) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

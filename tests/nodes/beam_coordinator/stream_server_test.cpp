@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 namespace {
 
 using Ranges = std::vector<RowRange>;
@@ -13,12 +13,12 @@ constexpr std::int64_t kRowBytes = 100;  // hence 160 rows per message, 640 per 
 
 StreamServer server_with(int rows) {
   StreamServer server({}, kRowBytes);
-  server.append(std::vector<Transition>(static_cast<std::size_t>(rows)));
+  server.append(std::vector<search::Transition>(static_cast<std::size_t>(rows)));
   return server;
 }
 
-void ack(StreamServer& server, std::int64_t cursor, const Ranges& missing = {}, Seconds now = 0.0,
-         std::int64_t credit = 100000) {
+void ack(StreamServer& server, std::int64_t cursor, const Ranges& missing = {},
+         bus::Seconds now = 0.0, std::int64_t credit = 100000) {
   EXPECT_TRUE(server.on_ack({7, cursor, credit, missing}, now));
 }
 
@@ -26,7 +26,7 @@ TEST(StreamServer, SendsNewRowsOnceInMessagesOfBoundedSize) {
   StreamServer server = server_with(400);
   EXPECT_EQ(server.due(0.0), (Ranges{{0, 160}, {160, 320}, {320, 400}}));
   EXPECT_EQ(server.due(0.1), Ranges{});
-  server.append(std::vector<Transition>(1));
+  server.append(std::vector<search::Transition>(1));
   EXPECT_EQ(server.due(0.2), (Ranges{{400, 401}}));
 }
 
@@ -40,7 +40,7 @@ TEST(StreamServer, ABurstIsNoLongerThanAReceiveBufferStands) {
 TEST(StreamServer, RowsAskedForGoOutAgainAndFirst) {
   StreamServer server = server_with(400);
   server.due(0.0);
-  server.append(std::vector<Transition>(10));
+  server.append(std::vector<search::Transition>(10));
   ack(server, 20, {{20, 30}, {100, 300}, {25, 40}});
   EXPECT_EQ(server.due(1.0), (Ranges{{20, 40}, {100, 260}, {260, 300}, {400, 410}}));
   EXPECT_EQ(server.resent(), 220);
@@ -126,4 +126,4 @@ TEST(StreamServer, TellsWhetherMoreIsToBeSent) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 namespace {
 
 using namespace std::chrono_literals;
@@ -14,26 +14,26 @@ using rtg_msgs::stream_tail_t;
 using rtg_msgs::transition_batch_t;
 
 /// Number k of a stream of two bodies.
-Transition row(int k) {
+search::Transition row(int k) {
   const Poses poses{{k + 0.1, k + 0.2, k + 0.3}, {k + 0.4, k + 0.5, k + 0.6}};
   Poses next = poses;
   next[0].x += 100.0;
-  return {poses, k % 48, next, k % 3 == 0, static_cast<Source>(k % 4)};
+  return {poses, k % 48, next, k % 3 == 0, static_cast<search::Source>(k % 4)};
 }
 
-std::vector<Transition> rows(int first, int end) {
-  std::vector<Transition> out;
+std::vector<search::Transition> rows(int first, int end) {
+  std::vector<search::Transition> out;
   for (int k = first; k < end; ++k) out.push_back(row(k));
   return out;
 }
 
 /// A publisher and one that listens on the same bus.
 struct TransitionPublisherTest : ::testing::Test {
-  Bus bus{"memq://", "test"};
+  bus::Bus bus{"memq://", "test"};
   std::vector<transition_batch_t> batches;
   std::vector<stream_tail_t> tails;
-  TransitionPublisher publisher{bus, TaskShape{.bodies = 2, .headings = 48}};
-  Seconds now = monotonic_now();
+  TransitionPublisher publisher{bus, jobs::TaskShape{.bodies = 2, .headings = 48}};
+  bus::Seconds now = bus::monotonic_now();
 
   TransitionPublisherTest() {
     bus.subscribe<transition_batch_t>("RTG_TRANSITION",
@@ -87,8 +87,8 @@ TEST_F(TransitionPublisherTest, SendsEachRowOnceWithAllItsColumns) {
   ASSERT_EQ(batches.size(), 2U);
   std::vector<double> poses, next_poses;
   for (int k = 3; k < 5; ++k) {
-    append_poses(row(k).poses, poses);
-    append_poses(row(k).next, next_poses);
+    jobs::append_poses(row(k).poses, poses);
+    jobs::append_poses(row(k).next, next_poses);
   }
   const transition_batch_t& second = batches[1];
   EXPECT_EQ(second.first, 3);
@@ -157,9 +157,9 @@ TEST_F(TransitionPublisherTest, IsDrainedOnceAConsumerKnowsThatItHasAll) {
   publisher.seal();
   tick();
   ack(20, 100);
-  EXPECT_FALSE(publisher.drained(1, monotonic_now())) << "it does not know yet";
+  EXPECT_FALSE(publisher.drained(1, bus::monotonic_now())) << "it does not know yet";
   ack(20, 0);
-  EXPECT_TRUE(publisher.drained(1, monotonic_now()));
+  EXPECT_TRUE(publisher.drained(1, bus::monotonic_now()));
   const TransitionPublisher::State state = publisher.state();
   EXPECT_EQ(state.rows, 20);
   EXPECT_EQ(state.slowest_cursor, 20);
@@ -168,4 +168,4 @@ TEST_F(TransitionPublisherTest, IsDrainedOnceAConsumerKnowsThatItHasAll) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator

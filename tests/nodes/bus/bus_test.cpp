@@ -4,7 +4,7 @@
 
 #include "tests/nodes/bus/filled_message.hpp"
 
-namespace rtg {
+namespace rtg::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -16,7 +16,7 @@ TEST(Bus, DeliversWhatWasPublished) {
   bus.subscribe<stream_tail_t>("TAIL",
                                [&](const stream_tail_t& tail) { counts.push_back(tail.count); });
   for (const int n : {1, 2, 3}) {
-    auto tail = test::filled<stream_tail_t>();
+    auto tail = testing::filled<stream_tail_t>();
     tail.count = n;
     bus.publish("TAIL", tail);
   }
@@ -52,10 +52,10 @@ std::map<std::string, long> counters_after(std::span<const std::uint8_t> bytes) 
 using Counts = std::map<std::string, long>;
 
 TEST(Bus, CountsWhatItRejects) {
-  auto tail = test::filled<stream_tail_t>();
+  auto tail = testing::filled<stream_tail_t>();
   EXPECT_EQ(counters_after(encode(tail)), (Counts{{"bus.foreign_run", 1}}));
 
-  auto other = test::filled<rtg_msgs::worker_beat_t>();
+  auto other = testing::filled<rtg_msgs::worker_beat_t>();
   EXPECT_EQ(counters_after(encode(other)), (Counts{{"bus.wrong_type", 1}}));
 
   auto bytes = encode(tail);
@@ -67,4 +67,4 @@ TEST(Bus, CountsWhatItRejects) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::bus

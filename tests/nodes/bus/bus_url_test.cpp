@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace rtg {
+namespace rtg::bus {
 namespace {
 
 TEST(BusUrl, IsSpeltOut) {
@@ -35,4 +35,4 @@ TEST(BusUrl, IllegalOnesAreNamed) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::bus

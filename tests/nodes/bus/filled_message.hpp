@@ -6,7 +6,7 @@
 
 #include "nodes/bus/wire_fields.hpp"
 
-namespace rtg::test {
+namespace rtg::testing {
 
 /// Fills every field of a message: counts with `n`, numbers with 1, 2, 3, ..., texts likewise.
 struct Fill {
@@ -34,8 +34,8 @@ template <class Msg>
 Msg filled(std::int32_t n = 3) {
   Msg msg{};
   Fill fill{n};
-  fields(fill, msg);
+  bus::fields(fill, msg);
   return msg;
 }
 
-}  // namespace rtg::test
+}  // namespace rtg::testing

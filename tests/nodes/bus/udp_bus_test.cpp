@@ -4,7 +4,7 @@
 
 #include "nodes/bus/bus.hpp"
 
-namespace rtg {
+namespace rtg::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -56,4 +56,4 @@ TEST_F(UdpBus, ANetworkThatSwallowsEverythingIsAnErrorThatSaysWhatToDo) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::bus

@@ -7,7 +7,7 @@
 #include "core/math/rng.hpp"
 #include "tests/nodes/bus/filled_message.hpp"
 
-namespace rtg {
+namespace rtg::bus {
 namespace {
 
 using rtg_msgs::node_status_t;
@@ -15,18 +15,18 @@ using rtg_msgs::reverse_job_t;
 using rtg_msgs::worker_beat_t;
 
 template <class Msg>
-class EveryMessage : public testing::Test {};
+class EveryMessage : public ::testing::Test {};
 
 using AllMessages =
-    testing::Types<rtg_msgs::node_status_t, rtg_msgs::replay_job_t, rtg_msgs::replay_result_t,
-                   rtg_msgs::reverse_job_t, rtg_msgs::reverse_result_t, rtg_msgs::search_progress_t,
-                   rtg_msgs::stream_ack_t, rtg_msgs::stream_tail_t, rtg_msgs::transition_batch_t,
-                   rtg_msgs::worker_beat_t>;
+    ::testing::Types<rtg_msgs::node_status_t, rtg_msgs::replay_job_t, rtg_msgs::replay_result_t,
+                     rtg_msgs::reverse_job_t, rtg_msgs::reverse_result_t,
+                     rtg_msgs::search_progress_t, rtg_msgs::stream_ack_t, rtg_msgs::stream_tail_t,
+                     rtg_msgs::transition_batch_t, rtg_msgs::worker_beat_t>;
 TYPED_TEST_SUITE(EveryMessage, AllMessages);
 
 TYPED_TEST(EveryMessage, SurvivesTheRoundTrip) {
   for (const int n : {0, 1, 3, 50}) {
-    auto sent = test::filled<TypeParam>(n);
+    auto sent = testing::filled<TypeParam>(n);
     const auto bytes = encode(sent);
     TypeParam received{};
     ASSERT_EQ(decode(bytes, received), std::nullopt);
@@ -35,7 +35,7 @@ TYPED_TEST(EveryMessage, SurvivesTheRoundTrip) {
 }
 
 TYPED_TEST(EveryMessage, IsRejectedAtEveryOtherLength) {
-  auto sent = test::filled<TypeParam>();
+  auto sent = testing::filled<TypeParam>();
   auto bytes = encode(sent);
   TypeParam received{};
   for (std::size_t n = 0; n < bytes.size(); ++n)
@@ -47,7 +47,7 @@ TYPED_TEST(EveryMessage, IsRejectedAtEveryOtherLength) {
 
 // Under AddressSanitizer this also proves that no byte beyond the end is read.
 TYPED_TEST(EveryMessage, FlippedBytesAreHarmless) {
-  auto sent = test::filled<TypeParam>(5);
+  auto sent = testing::filled<TypeParam>(5);
   const auto good = encode(sent);
   Rng rng(7);
   int accepted = 0;
@@ -64,7 +64,7 @@ TYPED_TEST(EveryMessage, FlippedBytesAreHarmless) {
 
 /// A worker_beat_t with its count n_held overwritten.
 std::vector<std::uint8_t> beat_with_count(std::uint32_t n) {
-  auto msg = test::filled<worker_beat_t>();
+  auto msg = testing::filled<worker_beat_t>();
   auto bytes = encode(msg);
   constexpr std::size_t offset = 8 + 16 + 24;  // fingerprint, header, the fields before it
   for (std::size_t i = 0; i < 4; ++i)
@@ -82,7 +82,7 @@ TEST(Wire, HostileCountsAreRejectedBeforeAnythingIsAllocated) {
 }
 
 TEST(Wire, AnUnterminatedTextIsRejected) {
-  auto msg = test::filled<node_status_t>(0);
+  auto msg = testing::filled<node_status_t>(0);
   auto bytes = encode(msg);
   constexpr std::size_t name = 8 + 16 + 4;  // fingerprint, header, length
   bytes[name + msg.node.size()] = 'x';
@@ -91,7 +91,7 @@ TEST(Wire, AnUnterminatedTextIsRejected) {
 }
 
 TEST(Wire, AnotherTypeIsRejected) {
-  auto msg = test::filled<worker_beat_t>();
+  auto msg = testing::filled<worker_beat_t>();
   reverse_job_t received{};
   EXPECT_EQ(decode(encode(msg), received), WireDefect::kWrongType);
 }
@@ -99,7 +99,7 @@ TEST(Wire, AnotherTypeIsRejected) {
 TEST(Wire, NumbersThatAreNotFiniteAreRejected) {
   using Limits = std::numeric_limits<double>;
   for (const double x : {Limits::quiet_NaN(), Limits::infinity()}) {
-    auto msg = test::filled<reverse_job_t>();
+    auto msg = testing::filled<reverse_job_t>();
     msg.end[1] = x;
     reverse_job_t received{};
     EXPECT_EQ(decode(encode(msg), received), WireDefect::kNotFinite);
@@ -107,12 +107,12 @@ TEST(Wire, NumbersThatAreNotFiniteAreRejected) {
 }
 
 TEST(Wire, OurOwnMistakesThrow) {
-  auto wrong_count = test::filled<reverse_job_t>();
+  auto wrong_count = testing::filled<reverse_job_t>();
   wrong_count.n = 4;
   EXPECT_THROW(encode(wrong_count), std::logic_error);
-  auto too_long = test::filled<reverse_job_t>(6000);
+  auto too_long = testing::filled<reverse_job_t>(6000);
   EXPECT_THROW(encode(too_long), std::logic_error);
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::bus

@@ -11,7 +11,7 @@
 #include "nodes/config/config.hpp"
 #include "tests/nodes/config/two_boxes.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 constexpr int kTexts = 3000;
@@ -166,8 +166,7 @@ std::string shown(const std::string& setting) {
 
 bool is_legal_setting(const std::string& setting) {
   try {
-    const Config config =
-        parse_config(testing::kTwoBoxes, "two_boxes.yaml", std::array{setting});
+    const Config config = parse_config(testing::kTwoBoxes, "two_boxes.yaml", std::array{setting});
     expect_to_read_back(config, setting);
     return true;
   } catch (const ConfigError& error) {
@@ -189,4 +188,4 @@ TEST(ConfigFuzz, MutatedSettingsAreReadOrRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::config

@@ -13,7 +13,7 @@
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
 
-namespace rtg {
+namespace rtg::config {
 namespace {
 
 using testing::gathering;
@@ -26,8 +26,8 @@ Config parsed(const std::string& more, const std::vector<std::string>& overrides
 }
 
 /// The visited fields of a struct as text, for comparison.
-template <class Config>
-std::string text_of(const Config& config) {
+template <class Section>
+std::string text_of(const Section& config) {
   return yaml_text(fields_of(config));
 }
 
@@ -38,7 +38,7 @@ std::vector<std::filesystem::path> files() {
   return found;
 }
 
-void expect_same_task(const Task& a, const Task& b) {
+void expect_same_task(const tasks::Task& a, const tasks::Task& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.scene.bodies, b.scene.bodies);
   EXPECT_EQ(a.start, b.start);
@@ -69,8 +69,8 @@ TEST(Config, TheLayoutsOfTheFilesAreThoseOfTheTests) {
 TEST(Config, WhatIsNotGivenHasTheDefaultOfItsStruct) {
   const Config config = parsed("");
   EXPECT_EQ(text_of(config.physics), text_of(PhysicsConfig{}));
-  EXPECT_EQ(text_of(config.reverse), text_of(ReverseConfig{}));
-  EXPECT_EQ(text_of(config.search), text_of(SearchConfig{}));
+  EXPECT_EQ(text_of(config.reverse), text_of(reverse::ReverseConfig{}));
+  EXPECT_EQ(text_of(config.search), text_of(search::SearchConfig{}));
   EXPECT_EQ(text_of(config.train), text_of(TrainConfig{}));
   EXPECT_EQ(config.run.seed, RunConfig{}.seed);
   EXPECT_EQ(config.run.bus, RunConfig{}.bus);
@@ -87,7 +87,7 @@ TEST(Config, EveryFieldIsReadFromItsKey) {
   EXPECT_EQ(config.task.horizon, 7);
   EXPECT_EQ(config.task.start_jitter, 0.1);
   EXPECT_EQ(config.physics.skin, 0.01);
-  EXPECT_EQ(config.search.generator, Generator::kNaive);
+  EXPECT_EQ(config.search.generator, search::Generator::kNaive);
   EXPECT_EQ(config.search.breadth, 12);
   EXPECT_FALSE(config.train.double_q);
   EXPECT_EQ(config.run.seed, 5);
@@ -100,7 +100,7 @@ TEST(Config, APresetChoosesTheDefaultsAndTheOtherKeysOverride) {
   const Config config = parsed(
       "reverse: {max_iterations: 7, preset: paper}\n"
       "train: {preset: paper, target_sync: 9}\n");
-  ReverseConfig reverse = reverse_preset(ReversePreset::kPaper);
+  reverse::ReverseConfig reverse = reverse_preset(reverse::ReversePreset::kPaper);
   reverse.max_iterations = 7;
   TrainConfig train = train_preset(TrainPreset::kPaper);
   train.target_sync = 9;
@@ -117,7 +117,7 @@ TEST(Config, APresetOnTheCommandLineStandsAboveWhatPresetsDecideInTheFile) {
   const Config config =
       parsed("train: {interactions: 400, target_sync: 9, epsilon_start: 0.5}\n", overrides);
   EXPECT_EQ(text_of(config.train), text_of(train));
-  EXPECT_EQ(text_of(config.reverse), text_of(reverse_preset(ReversePreset::kPaper)));
+  EXPECT_EQ(text_of(config.reverse), text_of(reverse_preset(reverse::ReversePreset::kPaper)));
 
   // A resolved file gives all keys.
   const std::string resolved = canonical_yaml(parsed("train: {interactions: 400}\n"));
@@ -171,8 +171,8 @@ TEST(Config, TheHashTellsConfigurationsApart) {
   const auto with_breadth = [](int breadth) {
     return config_hash(parsed("search: {breadth: " + std::to_string(breadth) + "}\n"));
   };
-  EXPECT_EQ(config_hash(parsed("")), with_breadth(SearchConfig{}.breadth));
-  EXPECT_NE(config_hash(parsed("")), with_breadth(SearchConfig{}.breadth + 1));
+  EXPECT_EQ(config_hash(parsed("")), with_breadth(search::SearchConfig{}.breadth));
+  EXPECT_NE(config_hash(parsed("")), with_breadth(search::SearchConfig{}.breadth + 1));
 }
 
 TEST(NumberText, IsTheShortestThatReadsBackAndIsARealForYamlAndJson) {
@@ -232,8 +232,8 @@ TEST(Config, AMethodAmongTheOverridesStandsAboveTheFileButNotAboveTheOthers) {
   train.epsilon_start = 0.7;
   train.contact_share = 0.5;
   EXPECT_EQ(text_of(parsed(file, overrides).train), text_of(train));
-  EXPECT_EQ(parsed(file, overrides).search.generator, Generator::kRrbs);
-  EXPECT_EQ(parsed(file).search.generator, Generator::kNaive);
+  EXPECT_EQ(parsed(file, overrides).search.generator, search::Generator::kRrbs);
+  EXPECT_EQ(parsed(file).search.generator, search::Generator::kNaive);
 }
 
 TEST(Config, WhatAMethodStandsForReadsBackToItself) {
@@ -253,4 +253,4 @@ TEST(Config, DomainRandomisationNeedsItsRange) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::config

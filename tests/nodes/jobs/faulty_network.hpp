@@ -5,7 +5,7 @@
 
 #include "core/math/rng.hpp"
 
-namespace rtg::test {
+namespace rtg::testing {
 
 /// A network in virtual time that loses, doubles and reorders, the same way for the same seed.
 class FaultyNetwork {
@@ -39,4 +39,4 @@ class FaultyNetwork {
   std::multimap<double, std::function<void()>> flying_;
 };
 
-}  // namespace rtg::test
+}  // namespace rtg::testing

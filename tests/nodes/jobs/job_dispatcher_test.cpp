@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace rtg {
+namespace rtg::jobs {
 namespace {
 
 using Send = JobDispatcher::Send;
@@ -14,15 +14,15 @@ using Sends = std::vector<Send>;
 
 constexpr WorkerId kAnn = 1, kBob = 2, kCat = 3;
 
-void beat(JobDispatcher& jobs, WorkerId worker, Seconds now, const Ids& held = {},
+void beat(JobDispatcher& jobs, WorkerId worker, bus::Seconds now, const Ids& held = {},
           int capacity = 2) {
   jobs.on_beat({worker, capacity, held}, now);
 }
 
 /// What is sent from `begin` to `end` when nothing is heard.
-Sends sent_between(JobDispatcher& jobs, Seconds begin, Seconds end) {
+Sends sent_between(JobDispatcher& jobs, bus::Seconds begin, bus::Seconds end) {
   Sends sends;
-  for (Seconds now = begin; now <= end; now += 0.5)
+  for (bus::Seconds now = begin; now <= end; now += 0.5)
     for (const Send& send : jobs.due(now)) sends.push_back(send);
   return sends;
 }
@@ -81,10 +81,10 @@ TEST(JobDispatcher, GivesTheJobsOfASilentWorkerToAnother) {
 }
 
 /// Beats of a worker that holds the jobs, once a second until `end`; what is sent meanwhile.
-Sends beats_until(JobDispatcher& jobs, WorkerId worker, const Ids& held, Seconds begin,
-                  Seconds end) {
+Sends beats_until(JobDispatcher& jobs, WorkerId worker, const Ids& held, bus::Seconds begin,
+                  bus::Seconds end) {
   Sends sends;
-  for (Seconds now = begin; now <= end; now += 1.0) {
+  for (bus::Seconds now = begin; now <= end; now += 1.0) {
     beat(jobs, worker, now, held);
     for (const Send& send : jobs.due(now)) sends.push_back(send);
   }
@@ -124,7 +124,7 @@ TEST(JobDispatcher, AJobThatThreeLivingWorkersGetStuckWithIsPoison) {
   jobs.submit(Ids{10, 11});
   std::set<WorkerId> stuck;  // each holds 10 for ever
   int sent = 0;
-  for (Seconds now = 0.0; now < 2000.0 && !jobs.finished(); now += 1.0) {
+  for (bus::Seconds now = 0.0; now < 2000.0 && !jobs.finished(); now += 1.0) {
     for (const WorkerId worker : {kAnn, kBob, kCat})
       beat(jobs, worker, now, stuck.contains(worker) ? Ids{10} : Ids{});
     for (const Send& send : jobs.due(now)) {
@@ -156,7 +156,7 @@ TEST(JobDispatcher, AJobThatNeverReachedItsWorkerMakesItNoVictim) {
 TEST(JobDispatcher, AJobThatTakesThreeWorkersDownIsPoison) {
   JobDispatcher jobs;
   jobs.submit(Ids{10});
-  Seconds now = 0.0;
+  bus::Seconds now = 0.0;
   for (const WorkerId victim : {kAnn, kBob, kCat}) {
     beat(jobs, victim, now);
     EXPECT_EQ(sent_between(jobs, now, now + 2.5).size(), 1u);
@@ -188,7 +188,7 @@ TEST(JobDispatcher, ASleepOfItsOwnBuriesNobody) {
   jobs.submit(Ids{10, 11});
   for (const WorkerId worker : {kAnn, kBob}) beat(jobs, worker, 0.0, {}, 1);
   EXPECT_EQ(jobs.due(0.0).size(), 2U);
-  for (Seconds now = 10.0; now < 2000.0; now += 500.0) {  // longer than a lease, too
+  for (bus::Seconds now = 10.0; now < 2000.0; now += 500.0) {  // longer than a lease, too
     beat(jobs, kAnn, now, {10}, 1);
     EXPECT_EQ(jobs.due(now), Sends{});
     beat(jobs, kBob, now, {11}, 1);
@@ -211,4 +211,4 @@ TEST(JobDispatcher, ANewSetForgetsTheOldOne) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::jobs

@@ -9,7 +9,7 @@
 // The two ends of the job protocol in virtual time, over a network that loses, doubles and
 // reorders, with workers that are killed or hang and are started again. A failing seed is printed
 // and can be run alone.
-namespace rtg {
+namespace rtg::jobs {
 namespace {
 
 constexpr double kStep = 0.01, kBeatInterval = 0.2, kPatience = 3.0;
@@ -92,7 +92,7 @@ class Simulation {
   static int answer_to(JobId job) { return static_cast<int>(job * 7 % 1000); }
 
   Rng rng_;
-  test::FaultyNetwork network_;
+  testing::FaultyNetwork network_;
   double kill_rate_;
   double now_ = 0.0;
   WorkerId lives_ = 0;
@@ -122,4 +122,4 @@ TEST(JobProtocol, AnswersEveryJobOnceUnderLossDuplicationReorderKillsAndHangs) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::jobs

@@ -6,22 +6,24 @@
 
 #include "nodes/bus/wire.hpp"
 
-namespace rtg {
+namespace rtg::jobs {
 namespace {
 
 constexpr TaskShape kShape{.bodies = 2, .headings = 48};
 
 Poses state(double x) { return {{x, x + 0.25, 0.1}, {-x, 1.0 / 3.0, 7.0}}; }
 
-std::vector<ReverseJob> reverse_jobs() { return {{state(1.0), 0}, {state(2.0), 47}}; }
-std::vector<ReplayJob> replay_jobs() { return {{state(1.0), kSettle}, {state(2.0), 47}}; }
-
-std::vector<ReverseResult> reverse_results() {
-  return {{SolveStatus::kConverged, 12, {state(3.0), state(5.0)}, 0.5},
-          {SolveStatus::kNonFinite, 0, {}, 0.25},
-          {SolveStatus::kConverged, 7, {state(4.0)}, 0.0}};
+std::vector<reverse::ReverseJob> reverse_jobs() { return {{state(1.0), 0}, {state(2.0), 47}}; }
+std::vector<search::ReplayJob> replay_jobs() {
+  return {{state(1.0), search::kSettle}, {state(2.0), 47}};
 }
-std::vector<ReplayResult> replay_results() {
+
+std::vector<reverse::ReverseResult> reverse_results() {
+  return {{reverse::SolveStatus::kConverged, 12, {state(3.0), state(5.0)}, 0.5},
+          {reverse::SolveStatus::kNonFinite, 0, {}, 0.25},
+          {reverse::SolveStatus::kConverged, 7, {state(4.0)}, 0.0}};
+}
+std::vector<search::ReplayResult> replay_results() {
   return {{state(3.0), true, 0.5}, {state(4.0), false, 0.0}};
 }
 
@@ -29,28 +31,31 @@ std::vector<ReplayResult> replay_results() {
 template <class Message>
 Message flown(Message message) {
   Message out{};
-  EXPECT_FALSE(decode(encode(message), out).has_value());
+  EXPECT_FALSE(bus::decode(bus::encode(message), out).has_value());
   return out;
 }
 
 TEST(Service, JobsAndResultsSurviveTheWireBitForBit) {
   EXPECT_EQ(ReverseService::parse(flown(ReverseService::message(reverse_jobs())), kShape),
             reverse_jobs());
-  EXPECT_EQ(ReplayService::parse(flown(ReplayService::message(replay_jobs())), kShape), replay_jobs());
+  EXPECT_EQ(ReplayService::parse(flown(ReplayService::message(replay_jobs())), kShape),
+            replay_jobs());
 
-  const auto solved = ReverseService::parse(flown(ReverseService::message(reverse_results())), kShape);
+  const auto solved =
+      ReverseService::parse(flown(ReverseService::message(reverse_results())), kShape);
   ASSERT_TRUE(solved && solved->size() == 3);
   for (std::size_t k = 0; k < 3; ++k) {
-    const ReverseResult &got = (*solved)[k], wanted = reverse_results()[k];
+    const reverse::ReverseResult &got = (*solved)[k], wanted = reverse_results()[k];
     EXPECT_EQ(got.status, wanted.status);
     EXPECT_EQ(got.iterations, wanted.iterations);
     EXPECT_EQ(got.starts, wanted.starts);
     EXPECT_EQ(got.cpu_s, wanted.cpu_s);
   }
-  const auto replayed = ReplayService::parse(flown(ReplayService::message(replay_results())), kShape);
+  const auto replayed =
+      ReplayService::parse(flown(ReplayService::message(replay_results())), kShape);
   ASSERT_TRUE(replayed && replayed->size() == 2);
   for (std::size_t k = 0; k < 2; ++k) {
-    const ReplayResult &got = (*replayed)[k], wanted = replay_results()[k];
+    const search::ReplayResult &got = (*replayed)[k], wanted = replay_results()[k];
     EXPECT_EQ(got.ok, wanted.ok);
     EXPECT_EQ(got.end, wanted.end);
     EXPECT_EQ(got.cpu_s, wanted.cpu_s);
@@ -59,7 +64,8 @@ TEST(Service, JobsAndResultsSurviveTheWireBitForBit) {
 
 /// Whether a message is refused once `spoil` has been at it.
 template <class Service, class Items>
-bool refused(const Items& items, const std::function<void(decltype(Service::message(items))&)>& spoil,
+bool refused(const Items& items,
+             const std::function<void(decltype(Service::message(items))&)>& spoil,
              const TaskShape& shape = kShape) {
   auto message = Service::message(items);
   EXPECT_TRUE(Service::parse(message, kShape).has_value());
@@ -69,7 +75,8 @@ bool refused(const Items& items, const std::function<void(decltype(Service::mess
 
 TEST(Service, JobsThatMakeNoSenseAreRefused) {
   EXPECT_TRUE(refused<ReverseService>(reverse_jobs(), [](auto& m) { m.action[1] = 48; }));
-  EXPECT_TRUE(refused<ReverseService>(reverse_jobs(), [](auto& m) { m.action[0] = kSettle; }));
+  EXPECT_TRUE(
+      refused<ReverseService>(reverse_jobs(), [](auto& m) { m.action[0] = search::kSettle; }));
   EXPECT_TRUE(refused<ReverseService>(reverse_jobs(), [](auto& m) { m = {}; }));
   EXPECT_TRUE(refused<ReverseService>(reverse_jobs(), [](auto&) {}, {.bodies = 3, .headings = 48}));
   EXPECT_TRUE(refused<ReplayService>(replay_jobs(), [](auto& m) { m.action[1] = 48; }));
@@ -87,10 +94,12 @@ TEST(Service, ResultsThatMakeNoSenseAreRefused) {
   EXPECT_TRUE(refused<ReverseService>(reverse_results(), [](auto& m) { m.starts[2] = 0; }));
   EXPECT_TRUE(refused<ReverseService>(reverse_results(), [](auto& m) { m.starts = {2, 1, 0}; }));
   EXPECT_TRUE(refused<ReverseService>(reverse_results(), [](auto& m) { m.starts[0] = -1; }));
-  EXPECT_TRUE(refused<ReverseService>(reverse_results(), [](auto&) {}, {.bodies = 3, .headings = 48}));
+  EXPECT_TRUE(
+      refused<ReverseService>(reverse_results(), [](auto&) {}, {.bodies = 3, .headings = 48}));
   EXPECT_TRUE(refused<ReplayService>(replay_results(), [](auto& m) { m.ok[0] = 2; }));
   EXPECT_TRUE(refused<ReplayService>(replay_results(), [](auto& m) { m.cpu_s[1] = 1e300; }));
-  EXPECT_TRUE(refused<ReplayService>(replay_results(), [](auto&) {}, {.bodies = 3, .headings = 48}));
+  EXPECT_TRUE(
+      refused<ReplayService>(replay_results(), [](auto&) {}, {.bodies = 3, .headings = 48}));
 }
 
 TEST(Service, UnitsAreAsEqualAsCanBeAndFitIntoMessages) {
@@ -102,12 +111,12 @@ TEST(Service, UnitsAreAsEqualAsCanBeAndFitIntoMessages) {
     const TaskShape shape{bodies, 48};
     const auto sizes = unit_sizes(1000, limit, shape);
     EXPECT_EQ(std::accumulate(sizes.begin(), sizes.end(), 0U), 1000U);
-    const std::vector<ReverseResult> results(
+    const std::vector<reverse::ReverseResult> results(
         *std::max_element(sizes.begin(), sizes.end()),
-        {SolveStatus::kConverged, 1,
-         std::vector<Poses>(kMaxStarts, Poses(static_cast<std::size_t>(bodies)))});
+        {reverse::SolveStatus::kConverged, 1,
+         std::vector<Poses>(reverse::kMaxStarts, Poses(static_cast<std::size_t>(bodies)))});
     auto message = ReverseService::message(results);
-    EXPECT_NO_THROW(encode(message)) << bodies;
+    EXPECT_NO_THROW(bus::encode(message)) << bodies;
   }
 }
 
@@ -126,4 +135,4 @@ TEST(Service, AUnitIsNamedByEverythingThatIsAsked) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::jobs

@@ -8,7 +8,7 @@
 
 #include "nodes/program/serve.hpp"
 
-namespace rtg {
+namespace rtg::jobs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -19,18 +19,18 @@ using rtg_msgs::worker_beat_t;
 constexpr TaskShape kShape{.bodies = 2, .headings = 48};
 constexpr std::int64_t kConfig = 77;
 
-const std::vector<ReverseJob> kJobs{{{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 5},
-                                    {{{1.5, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 47}};
+const std::vector<reverse::ReverseJob> kJobs{{{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 5},
+                                             {{{1.5, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 47}};
 
-ReverseResult solved(const ReverseJob& job) {
+reverse::ReverseResult solved(const reverse::ReverseJob& job) {
   Poses start = job.end;
   start[0].x -= 1.0;
-  return {SolveStatus::kConverged, job.action, {start}, 0.25};
+  return {reverse::SolveStatus::kConverged, job.action, {start}, 0.25};
 }
 
-std::vector<ReverseResult> solve(std::span<const ReverseJob> jobs) {
-  std::vector<ReverseResult> out;
-  for (const ReverseJob& job : jobs) out.push_back(solved(job));
+std::vector<reverse::ReverseResult> solve(std::span<const reverse::ReverseJob> jobs) {
+  std::vector<reverse::ReverseResult> out;
+  for (const reverse::ReverseJob& job : jobs) out.push_back(solved(job));
   return out;
 }
 
@@ -59,11 +59,11 @@ class Pair {
   void serve_until(const Done& done) {
     while (!done()) {
       bus.spin(5ms);
-      worker.tick(monotonic_now());
+      worker.tick(bus::monotonic_now());
     }
   }
 
-  Bus bus{"memq://", "test"};
+  bus::Bus bus{"memq://", "test"};
   std::vector<worker_beat_t> beats;
   std::vector<reverse_result_t> results;
   WorkerNode<ReverseService> worker;
@@ -86,7 +86,7 @@ TEST(WorkerNode, AnswersAsTheDirectCallDoes) {
 TEST(WorkerNode, SaysWhoItIsAndWhatItHolds) {
   std::mutex gate;
   std::unique_lock closed(gate);
-  Pair pair([&](std::span<const ReverseJob> jobs) {
+  Pair pair([&](std::span<const reverse::ReverseJob> jobs) {
     const std::scoped_lock wait(gate);
     return solve(jobs);
   });
@@ -104,7 +104,7 @@ TEST(WorkerNode, SaysWhoItIsAndWhatItHolds) {
 
 TEST(WorkerNode, AnswersARepeatedQuestionFromMemory) {
   std::atomic<int> calls = 0;
-  Pair pair([&](std::span<const ReverseJob> jobs) { return ++calls, solve(jobs); });
+  Pair pair([&](std::span<const reverse::ReverseJob> jobs) { return ++calls, solve(jobs); });
   pair.send(pair.job(11));
   pair.serve_until([&] { return !pair.beats.empty() && pair.results.size() == 1; });
   pair.serve_until([&] { return pair.beats.back().n_held == 0; });
@@ -124,10 +124,10 @@ TEST(WorkerNode, CountsAndIgnoresWhatItCannotUse) {
   nothing.to = pair.worker.incarnation();
   for (const auto& message : {out_of_range, other_bodies, nothing}) pair.send(message);
   reverse_job_t foreign = pair.job(3);
-  foreign.header.protocol = kProtocol;
+  foreign.header.protocol = bus::kProtocol;
   foreign.header.run = 1;
-  pair.bus.send("RTG_REVERSE_JOB", encode(foreign));
-  auto bytes = encode(foreign);
+  pair.bus.send("RTG_REVERSE_JOB", bus::encode(foreign));
+  auto bytes = bus::encode(foreign);
   bytes.pop_back();
   pair.bus.send("RTG_REVERSE_JOB", bytes);
   reverse_job_t someone_elses = pair.job(4);
@@ -142,7 +142,7 @@ TEST(WorkerNode, CountsAndIgnoresWhatItCannotUse) {
 }
 
 TEST(WorkerNode, WhatTheSolverThrowsSurfacesInTick) {
-  Pair pair([](std::span<const ReverseJob>) -> std::vector<ReverseResult> {
+  Pair pair([](std::span<const reverse::ReverseJob>) -> std::vector<reverse::ReverseResult> {
     throw std::range_error("boom");
   });
   pair.send(pair.job(11));
@@ -152,33 +152,34 @@ TEST(WorkerNode, WhatTheSolverThrowsSurfacesInTick) {
 TEST(WorkerNode, IsStuckOnceAUnitHasBeenInWorkForLongerThanAnyTakes) {
   std::mutex gate;
   std::unique_lock closed(gate);
-  Pair pair([&](std::span<const ReverseJob> jobs) {
+  Pair pair([&](std::span<const reverse::ReverseJob> jobs) {
     const std::scoped_lock wait(gate);
     return solve(jobs);
   });
-  const Seconds lease = JobDispatcher::Limits{}.lease;
-  EXPECT_FALSE(pair.worker.stuck(monotonic_now() + lease + 1.0));  // with nothing
+  const bus::Seconds lease = JobDispatcher::Limits{}.lease;
+  EXPECT_FALSE(pair.worker.stuck(bus::monotonic_now() + lease + 1.0));  // with nothing
   pair.send(pair.job(11));
-  pair.serve_until([&] { return pair.worker.stuck(monotonic_now() + lease + 1.0); });
-  EXPECT_FALSE(pair.worker.stuck(monotonic_now() + lease - 100.0));
+  pair.serve_until([&] { return pair.worker.stuck(bus::monotonic_now() + lease + 1.0); });
+  EXPECT_FALSE(pair.worker.stuck(bus::monotonic_now() + lease - 100.0));
   closed.unlock();
   pair.serve_until([&] { return !pair.results.empty() && pair.beats.back().n_held == 0; });
-  EXPECT_FALSE(pair.worker.stuck(monotonic_now() + lease + 1.0));
+  EXPECT_FALSE(pair.worker.stuck(bus::monotonic_now() + lease + 1.0));
 }
 
 TEST(WorkerNodeDeathTest, AProcessThatIsStuckEndsThoughItsThreadDoesNot) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  const auto hang = [](std::span<const ReverseJob>) -> std::vector<ReverseResult> {
+  const auto hang =
+      [](std::span<const reverse::ReverseJob>) -> std::vector<reverse::ReverseResult> {
     std::promise<void>().get_future().wait();
     return {};
   };
   const auto process = [&] {
-    Bus bus("memq://", "test");
+    bus::Bus bus("memq://", "test");
     WorkerNode<ReverseService> worker(bus, {kShape, kConfig, 3, 1, 0.0}, hang);
     reverse_job_t message = ReverseService::message(kJobs);
     message.to = worker.incarnation();
     bus.publish("RTG_REVERSE_JOB", message);
-    std::exit(serve(bus, worker));
+    std::exit(program::serve(bus, worker));
   };
   EXPECT_EXIT(process(), ::testing::ExitedWithCode(1), "stuck: a unit of work takes longer");
 }
@@ -186,8 +187,9 @@ TEST(WorkerNodeDeathTest, AProcessThatIsStuckEndsThoughItsThreadDoesNot) {
 TEST(WorkerNode, HearsThatTheCoordinatorLeavesOrIsGone) {
   Pair pair;
   EXPECT_FALSE(pair.worker.coordinator().leaving());
-  EXPECT_FALSE(pair.worker.coordinator().silent(monotonic_now()));
-  EXPECT_TRUE(pair.worker.coordinator().silent(monotonic_now() + CoordinatorWatch::kSilence + 1));
+  EXPECT_FALSE(pair.worker.coordinator().silent(bus::monotonic_now()));
+  EXPECT_TRUE(
+      pair.worker.coordinator().silent(bus::monotonic_now() + bus::CoordinatorWatch::kSilence + 1));
   rtg_msgs::search_progress_t progress{};
   pair.bus.publish("RTG_PROGRESS", progress);
   progress.leaving = 1;
@@ -196,4 +198,4 @@ TEST(WorkerNode, HearsThatTheCoordinatorLeavesOrIsGone) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::jobs

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from rtg import _core, cli
+from rtg.compare.methods import METHODS
 from rtg.errors import UserError
 from rtg.files import checkpoint
 from rtg.files.dataset import Rows
@@ -14,24 +15,8 @@ from rtg.learn import device, policy_file, trainer
 from rtg.learn.offline_data import NoSource
 from rtg.run import effective_config
 from rtg.run.run_args import Override
-from test_training import flat
-from training_runs import TINY, after_polls, run_folder, training
+from training_runs import TINY, after_polls, flat, run_folder, training
 
-METHODS = (
-    "dqn",
-    "ddqn",
-    "ddqn_random",
-    "ddqn_scatter",
-    "ddqn_naive",
-    "ddqn_forward",
-    "ddqn_rtg",
-    "ddqn_rtg_dr",
-    "her",
-    "rcg",
-    "cql_rtg",
-    "bc_rtg",
-    "planner",
-)
 WITHOUT_DATA = ("dqn", "ddqn", "her", "rcg", "planner")
 WITHOUT_INTERACTION = ("cql_rtg", "bc_rtg", "planner")
 

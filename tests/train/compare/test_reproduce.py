@@ -45,7 +45,7 @@ def comparison(tmp_path, monkeypatch):
 
 
 def finish(crew):
-    """The most runs that were ever at work grouped_seeds."""
+    """The most runs that were ever at work together."""
     most = 0
     with PlainGrid(io.StringIO()) as shown:
         while crew.tend(shown):

@@ -10,8 +10,7 @@ from rtg.files import checkpoint
 from rtg.files.dataset import Rows
 from rtg.learn.offline_data import FileSource
 from rtg.learn.training import Training
-from test_training import flat
-from training_runs import Stream, after_polls, run_folder, training
+from training_runs import Stream, after_polls, flat, run_folder, training
 
 METHODS = ("cql_rtg", "bc_rtg")
 

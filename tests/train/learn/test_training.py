@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import torch as th
 from rtg import _core
 from rtg.errors import RunError, UserError
 from rtg.files import checkpoint, dataset
@@ -18,17 +17,7 @@ from rtg.learn import policy_file, trainer
 from rtg.learn.evaluation import FINAL, HELD_OUT, evaluate, held_out_starts
 from rtg.learn.offline_data import FileSource
 from rtg.learn.training_log import COLUMNS, TrainingLog
-from training_runs import TINY, Stream, after_polls, run_folder, training
-
-
-def flat(value: object) -> list[object]:
-    """Every leaf of a checkpoint, seconds left out."""
-    if isinstance(value, dict):
-        kept = [key for key in value if key not in ("wall_s", "cpu_s")]
-        return [leaf for key in kept for leaf in [key, *flat(value[key])]]
-    if isinstance(value, list):
-        return [leaf for part in value for leaf in flat(part)]
-    return [value.numpy().tobytes() if isinstance(value, th.Tensor) else value]
+from training_runs import TINY, Stream, after_polls, flat, run_folder, training
 
 
 def test_a_run_leaves_its_files(tmp_path: Path, rows: Rows) -> None:

@@ -1,7 +1,7 @@
 """Seeds that learn in one process: they share one GPU context.
 
 What a comparison does before it lets each run end on its own: all runs generate, a process each;
-then the seeds of each method learn grouped_seeds. The runs find that done, or go on with what is left.
+then the seeds of each method learn together. The runs find that done, or go on with what is left.
 """
 
 from __future__ import annotations

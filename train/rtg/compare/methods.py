@@ -2,22 +2,10 @@
 
 from __future__ import annotations
 
+from rtg import _core
+
 TASKS = ("gathering", "sorting", "art_manip")
-METHODS = (
-    "dqn",
-    "ddqn",
-    "ddqn_random",
-    "ddqn_scatter",
-    "ddqn_naive",
-    "ddqn_forward",
-    "ddqn_rtg",
-    "ddqn_rtg_dr",
-    "her",
-    "rcg",
-    "cql_rtg",
-    "bc_rtg",
-    "planner",
-)
+METHODS = _core.METHODS
 REFERENCE = "ddqn_rtg"  # what the others are compared with
 WIDER = "ddqn_rtg_dr"  # starts elsewhere, so its success is no one else's
 

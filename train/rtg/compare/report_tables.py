@@ -152,7 +152,7 @@ def is_wider(label: str) -> bool:
 
 
 def pooled(comparison: Comparison) -> str:
-    """All tasks and seeds grouped_seeds."""
+    """All tasks and seeds together."""
     head = [
         "method",
         "tasks",

@@ -33,7 +33,9 @@ def reproduce(args: ReproduceArgs) -> int:
         grid.add(args.command, args.cells)
         with run_folder.writing_to(args.out):
             grid.write(args.out)
-        for stage in grouped_seeds.stages(runs, args.together):  # what fails there, its run does again
+        for stage in grouped_seeds.stages(
+            runs, args.together
+        ):  # what fails there, its run does again
             _run_all(args, Crew(stage, args.jobs))
         rows = _run_all(args, Crew(runs, args.jobs, Failures(grid, args.out)))
         from rtg.compare.report_files import write_report  # heavy

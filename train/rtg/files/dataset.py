@@ -10,11 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from rtg import _core
 from rtg.errors import UserError
 
 Array = npt.NDArray[Any]
 
-SOURCES = ("tree", "branch", "walk", "plan")  # rtg::Source by value
+SOURCES = _core.SOURCES  # names of where a transition comes from, by value
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip entry can carry
 
 
@@ -46,23 +47,26 @@ class Transitions(NamedTuple):
     source: Array  # [N] int8, index into SOURCES
 
 
-_DTYPES = {
-    "poses": np.float64,
-    "action": np.int32,
-    "next_poses": np.float64,
-    "reward": np.float32,
-    "terminated": np.bool_,
-    "observation": np.float32,
-    "next_observation": np.float32,
-    "source": np.int8,
+class _Column(NamedTuple):
+    dtype: type[np.generic]
+    shape: str = "[N]"
+
+    @property
+    def rank(self) -> int:
+        return self.shape.count(",") + 1
+
+
+# How each array of Transitions stands in the file.
+_COLUMNS = {
+    "poses": _Column(np.float64, "[N, bodies, 3]"),
+    "action": _Column(np.int32),
+    "next_poses": _Column(np.float64, "[N, bodies, 3]"),
+    "reward": _Column(np.float32),
+    "terminated": _Column(np.bool_),
+    "observation": _Column(np.float32, "[N, observation]"),
+    "next_observation": _Column(np.float32, "[N, observation]"),
+    "source": _Column(np.int8),
 }
-_SHAPES = {
-    "poses": "[N, bodies, 3]",
-    "next_poses": "[N, bodies, 3]",
-    "observation": "[N, observation]",
-    "next_observation": "[N, observation]",
-}
-_RANK = {"poses": 3, "next_poses": 3, "observation": 2, "next_observation": 2}
 
 
 # What numpy and zipfile answer damaged files with.
@@ -84,10 +88,12 @@ def write(path: Path, transitions: Transitions) -> None:
     partial = path.with_name(path.name + ".part")
     with partial.open("wb") as file:
         with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
-            for name, dtype in _DTYPES.items():
+            for name, column in _COLUMNS.items():
                 entry = zipfile.ZipInfo(f"{name}.npy", _EPOCH)
                 with archive.open(entry, "w", force_zip64=True) as member:
-                    array: Array = np.ascontiguousarray(getattr(transitions, name), dtype=dtype)
+                    array: Array = np.ascontiguousarray(
+                        getattr(transitions, name), dtype=column.dtype
+                    )
                     np.lib.format.write_array(member, array, allow_pickle=False)
         file.flush()
         os.fsync(file.fileno())
@@ -101,7 +107,7 @@ def read(path: Path, bodies: int | None = None, headings: int | None = None) -> 
     """
     try:
         with np.load(path, allow_pickle=False) as archive:
-            arrays = {name: _member(path, archive, name) for name in _DTYPES}
+            arrays = {name: _member(path, archive, name) for name in _COLUMNS}
     except (DatasetError, FileNotFoundError):
         raise
     except (*_NOT_NUMPYS, OSError) as error:
@@ -115,10 +121,10 @@ def read(path: Path, bodies: int | None = None, headings: int | None = None) -> 
 
 def _member(path: Path, archive: Any, name: str) -> Array:
     if name not in archive:
-        raise DatasetError(f"{path}: array '{name}' is missing; legal: {', '.join(_DTYPES)}")
+        raise DatasetError(f"{path}: array '{name}' is missing; legal: {', '.join(_COLUMNS)}")
     array: Array = archive[name]
-    if array.dtype != _DTYPES[name]:
-        expected = np.dtype(_DTYPES[name]).name
+    if array.dtype != _COLUMNS[name].dtype:
+        expected = np.dtype(_COLUMNS[name].dtype).name
         raise DatasetError(f"{path}: '{name}' is {array.dtype}; legal: {expected}")
     return array
 
@@ -126,8 +132,8 @@ def _member(path: Path, archive: Any, name: str) -> Array:
 def _check_shapes(path: Path, transitions: Transitions) -> None:
     count = len(transitions.action) if transitions.action.ndim == 1 else -1
     for name, array in transitions._asdict().items():
-        legal = _SHAPES.get(name, "[N]")
-        wrong = array.ndim != _RANK.get(name, 1) or array.shape[0] != count
+        legal = _COLUMNS[name].shape
+        wrong = array.ndim != _COLUMNS[name].rank or array.shape[0] != count
         if wrong or (legal.endswith("3]") and array.shape[2] != 3):
             shape = list(array.shape)
             raise DatasetError(f"{path}: '{name}' has shape {shape}; legal: {legal}, one N for all")

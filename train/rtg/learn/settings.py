@@ -1,4 +1,4 @@
-"""Which settings of the learner its checkpoint is bound to. rtg::TrainConfig has them all."""
+"""Which settings of the learner its checkpoint is bound to. TrainConfig has them all."""
 
 # The shape of its network and buffer, and the returns that it has counted.
 OF_CHECKPOINT = (

@@ -5,7 +5,7 @@
 #include "tests/support/one_candidate.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::TouchingScene;
@@ -31,7 +31,9 @@ bool is_legal(const ReverseProblem& problem, const VectorXd& before, const Vecto
   return legal;
 }
 
-VectorXd boxes_apart(double gap) { return stacked({{-5, 0, 0}, {0, 0, 0}, {0.1, 1.2 + gap, 0}}); }
+VectorXd boxes_apart(double gap) {
+  return energy::stacked({{-5, 0, 0}, {0, 0, 0}, {0.1, 1.2 + gap, 0}});
+}
 
 TEST(Evaluator, GapsKeepATenthOfThemselves) {
   const TouchingScene scene;
@@ -49,12 +51,12 @@ TEST(Evaluator, GapsKeepATenthOfThemselves) {
 TEST(Evaluator, BodiesMayNotCrossThoughTheirVerticesAreApart) {
   const Scene bars{{{"robot", "robot", box(2.0, 0.2), 1.0, 0.3, false},
                     {"bar", "bar", box(0.2, 2.0), 1.0, 0.3, false}}};
-  const StepEnergy energy(bars, {}, {});
+  const energy::StepEnergy energy(bars, {}, {});
   const ReverseConfig config;
-  const ReverseProblem problem{energy, config, stacked({{0, 0, 0}, {0.9, 1.3, 0}}),
+  const ReverseProblem problem{energy, config, energy::stacked({{0, 0, 0}, {0.9, 1.3, 0}}),
                                Vector2d::UnitX(), 2};
-  EXPECT_FALSE(is_legal(problem, problem.end, stacked({{0, 0, 0}, {0.5, 0.4, 0}})));
-  EXPECT_TRUE(is_legal(problem, problem.end, stacked({{0, 0, 0}, {1.3, 0.4, 0}})));
+  EXPECT_FALSE(is_legal(problem, problem.end, energy::stacked({{0, 0, 0}, {0.5, 0.4, 0}})));
+  EXPECT_TRUE(is_legal(problem, problem.end, energy::stacked({{0, 0, 0}, {1.3, 0.4, 0}})));
 }
 
 // Nothing moves and nothing pushes, so every sub-step is at rest; what is wrong is that bodies so
@@ -94,7 +96,7 @@ TEST(Evaluator, LanesAreEvaluatedAsIfAlone) {
   for (int l = 0; l < kWidth<Lanes>; ++l) {
     each.push_back(testing::disturbed(testing::in_contact(problem), 1e-3, rng));
     lanes.load(l, problem);
-    if (l == 1) each[1].p[4] = stacked({{0, 0, 0}, {0.5, 0, 0}, {9, 9, 0}});  // overlap
+    if (l == 1) each[1].p[4] = energy::stacked({{0, 0, 0}, {0.5, 0, 0}, {9, 9, 0}});  // overlap
     x.load(l, problem, each.back());
   }
   Evaluator<Lanes> evaluator(lanes);
@@ -113,4 +115,4 @@ TEST(Evaluator, LanesAreEvaluatedAsIfAlone) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -3,7 +3,7 @@
 #include "tests/support/first_order_conditions.hpp"
 #include "tests/support/one_candidate.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::ChainScene;
@@ -87,4 +87,4 @@ TEST(JointReduction, EntriesThatBelongToNoCoordinateDoNotMove) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

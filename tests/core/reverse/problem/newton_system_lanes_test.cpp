@@ -7,7 +7,7 @@
 #include "tests/support/one_candidate.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::Direction;
@@ -68,4 +68,4 @@ TEST(NewtonSystemLanes, LanesAgreeWithDouble) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

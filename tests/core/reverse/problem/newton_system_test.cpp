@@ -6,7 +6,7 @@
 #include "tests/support/one_candidate.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::CoastingScene;
@@ -192,4 +192,4 @@ TEST(NewtonSystem, CurvatureOfTheControlsIsThatOfTheObjectiveAndTheProximalTerm)
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -10,7 +10,7 @@
 #include "core/reverse/reverse_simulator.hpp"
 #include "tests/support/each_field.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 /// Checks the range of every field that it visits.
@@ -114,4 +114,4 @@ TEST(SolveStatus, EveryEndHasANameOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -6,7 +6,7 @@
 #include "tests/support/one_candidate.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::disturbed;
@@ -96,7 +96,7 @@ TEST(ReverseProblem, ObjectiveIsTheSumOfItsTerms) {
   config.heading_weight = 5.0;
   config.speed_weight = 0.0;
   ReverseProblem problem = scene.problem(config);
-  problem.end = stacked({{0, 0, 0}, {20, 0, 0}, {0, 20, 0}});
+  problem.end = energy::stacked({{0, 0, 0}, {20, 0, 0}, {0, 20, 0}});
   Iterate x = static_iterate(problem);
   for (int k = 0; k <= 10; ++k) x.p[static_cast<std::size_t>(k)].head<3>() = robot_path(problem, k);
   EXPECT_NEAR(objective(problem, x), -config.robot_weight * 2.0, 1e-14);
@@ -117,7 +117,7 @@ TEST(ReverseProblem, ObjectsPayForTheirSpeedTheRobotDoesNot) {
   ReverseConfig config;
   config.speed_weight = 0.7;
   ReverseProblem problem = scene.problem(config);
-  problem.end = stacked({{0, 0, 0}, {20, 0, 0}, {0, 20, 0}});
+  problem.end = energy::stacked({{0, 0, 0}, {20, 0, 0}, {0, 20, 0}});
   Iterate x = static_iterate(problem);
   for (int k = 0; k <= 10; ++k) x.p[static_cast<std::size_t>(k)].head<3>() = robot_path(problem, k);
   const double before = objective(problem, x), stride = scene.energy.stride();
@@ -134,7 +134,7 @@ TEST(ReverseProblem, ObjectiveHoldsTheBarrierOfTheStart) {
   Iterate apart = touching;
   apart.p[0][7] += 10.0;  // across the push, where it costs nothing else
   double barrier = 0.0;
-  for (const Contact& c : scene.energy.contacts())
+  for (const energy::Contact& c : scene.energy.contacts())
     if (c.body == 2 || c.other == 2)
       barrier += scene.energy.barrier().value(scene.energy.gap_value(c, problem.end));
   EXPECT_GT(barrier, 0.0);
@@ -142,4 +142,4 @@ TEST(ReverseProblem, ObjectiveHoldsTheBarrierOfTheStart) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

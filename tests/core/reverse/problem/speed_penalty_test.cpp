@@ -6,11 +6,11 @@
 
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 constexpr double kWeight = 0.3, kStride = 0.2;
-const Damping<double> kBody{2.0, 0.5, false};
+const energy::Damping<double> kBody{2.0, 0.5, false};
 
 SpeedPenalty<double> at(const Vector3d& way) { return {kWeight, kStride, kBody, way}; }
 
@@ -42,4 +42,4 @@ TEST(SpeedPenalty, IsConvex) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -4,7 +4,7 @@
 
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::TouchingScene;
@@ -93,4 +93,4 @@ TEST(Trial, AForceThatIsAllButGoneIsGone) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -4,7 +4,7 @@
 
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::TouchingScene;
@@ -14,7 +14,7 @@ TEST(WarmStart, AFreeRobotKeepsToItsPath) {
   const TouchingScene scene;
   const ReverseConfig config;
   ReverseProblem problem = scene.problem(config);
-  problem.end = stacked({{0, 0, 0.3}, {20, 0, 0}, {0, 20, 0}});
+  problem.end = energy::stacked({{0, 0, 0.3}, {20, 0, 0}, {0, 20, 0}});
   const auto x = warm_start(problem);
   ASSERT_TRUE(x);
   for (int k = 0; k <= problem.sub_steps; ++k) {
@@ -39,7 +39,7 @@ TEST(WarmStart, DragsATouchedBodyAgainstThePush) {
   const TouchingScene scene;
   const ReverseConfig config;
   ReverseProblem problem = scene.problem(config);
-  problem.end = stacked({{0, 0, 0}, {1.4 + 0.0087, 0, 0}, {20, 0, 0}});
+  problem.end = energy::stacked({{0, 0, 0}, {1.4 + 0.0087, 0, 0}, {20, 0, 0}});
   const auto x = warm_start(problem);
   ASSERT_TRUE(x);
   const VectorXd moved = x->p[0] - problem.end;
@@ -65,9 +65,9 @@ TEST(WarmStart, OfAnOverlappingEndThereIsNone) {
   const TouchingScene scene;
   const ReverseConfig config;
   ReverseProblem problem = scene.problem(config);
-  problem.end = stacked({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
+  problem.end = energy::stacked({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
   EXPECT_FALSE(warm_start(problem));
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -8,7 +8,7 @@
 #include "tests/bench/corpus.hpp"
 #include "tests/support/one_candidate.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 /// The corpus' problems with Gathering in which one object may be dragged.
@@ -35,7 +35,7 @@ class FilterSqpAttempts : public ::testing::Test {
     return {std::move(result), found};
   }
 
-  static inline Task task_;
+  static inline tasks::Task task_;
   static inline std::vector<ReverseJob> jobs_;
 };
 
@@ -78,4 +78,4 @@ TEST_F(FilterSqpAttempts, OfSolutionsThatMissTheFinalStateTheFirstIsKept) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

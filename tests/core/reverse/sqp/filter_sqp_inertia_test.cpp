@@ -8,7 +8,7 @@
 #include "tests/support/random_push.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::CoastingScene;
@@ -24,10 +24,11 @@ struct AfterAPush {
   ReverseProblem problem = scene.problem(config);
 
   AfterAPush() {
-    const PushOutcome out = NewtonSimulator(scene.scene, scene.task.push, scene.physics)
-                                .push({{-2, 0, 0}, {-0.2, 0.02, 0}, {0, 40, 0}}, 0);
+    const forward::PushOutcome out =
+        forward::NewtonSimulator(scene.scene, scene.task.push, scene.physics)
+            .push({{-2, 0, 0}, {-0.2, 0.02, 0}, {0, 40, 0}}, 0);
     EXPECT_TRUE(out.ok);
-    problem.end = stacked(out.end);
+    problem.end = energy::stacked(out.end);
     config.feasibility_tol = 1e-9;
   }
 };
@@ -76,7 +77,7 @@ TEST(FilterSqpInertia, WithoutFrictionSubStepsAreExplicitBackwards) {
     const Vector3d push = result.x.controls[k].array().tanh();
     force.head<3>() -= at.scene.energy.control_bound().cwiseProduct(push);
     for (int i = 0; i < 3; ++i) {
-      const Damping<double>& body = at.scene.energy.damping(i);
+      const energy::Damping<double>& body = at.scene.energy.damping(i);
       const Vector3d mass(body.mass, body.mass, body.moment);
       const auto part = [i](const VectorXd& p) { return Vector3d(p.segment<3>(3 * i)); };
       const Vector3d before = 2.0 * part(now) - part(next) - 0.7 * (part(next) - part(now)) -
@@ -101,8 +102,8 @@ TEST(FilterSqpInertia, PushesOfRandomScenesAreFoundBack) {
   int converged = 0, moved = 0;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const testing::RandomPush drawn = testing::random_push(seed, push);
-    const PushOutcome end =
-        NewtonSimulator(drawn.scene, push, physics).push(drawn.start, drawn.action);
+    const forward::PushOutcome end =
+        forward::NewtonSimulator(drawn.scene, push, physics).push(drawn.start, drawn.action);
     ASSERT_TRUE(end.ok);
     const ReverseResult result =
         ReverseSimulator(drawn.scene, physics, push, {}).solve({end.end, drawn.action});
@@ -120,4 +121,4 @@ TEST(FilterSqpInertia, PushesOfRandomScenesAreFoundBack) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

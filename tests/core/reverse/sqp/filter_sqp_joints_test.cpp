@@ -8,7 +8,7 @@
 #include "tests/support/chain_scene.hpp"
 #include "tests/support/one_candidate.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::expect_the_same_solution;
@@ -20,7 +20,7 @@ using testing::widest_joint;
 /// States after pushes of Box2D at a chain of four links, with the action that led there.
 std::vector<ReverseJob> pushed_chains(const Scene& scene, const PushConfig& push,
                                       const PhysicsConfig& physics) {
-  const Box2dSimulator box2d(scene, push, physics);
+  const forward::Box2dSimulator box2d(scene, push, physics);
   Rng rng(1);
   std::vector<ReverseJob> jobs;
   Poses state =
@@ -29,7 +29,7 @@ std::vector<ReverseJob> pushed_chains(const Scene& scene, const PushConfig& push
     const Vector2d way = state[1 + rng.below(4)].position() - state[0].position();
     const double turns = std::atan2(way.y(), way.x()) / 6.2832 + 1.0;
     const int action = static_cast<int>(48.0 * turns + rng.uniform(-3.0, 3.0)) % 48;
-    const PushOutcome out = box2d.push(state, action);
+    const forward::PushOutcome out = box2d.push(state, action);
     if ((out.end[2].position() - state[2].position()).norm() > 0.1)
       jobs.push_back({out.end, action});
     state = out.end;
@@ -43,9 +43,9 @@ struct PushedChain {
   PushConfig push;
   PhysicsConfig physics;
   ReverseConfig config;
-  StepEnergy energy{scene, physics, push};
+  energy::StepEnergy energy{scene, physics, push};
   ReverseJob job = pushed_chains(scene, push, physics).front();
-  ReverseProblem problem{energy, config, with_open_gaps(energy, stacked(job.end)),
+  ReverseProblem problem{energy, config, with_open_gaps(energy, energy::stacked(job.end)),
                          direction(job.action, push), physics.sub_steps};
 };
 
@@ -57,7 +57,7 @@ TEST(FilterSqpJoints, ForwardOfReverseWithTheSolversControlsIsTheEnd) {
   EXPECT_LT(terminal_miss(chain.problem, result.x), chain.config.terminal_tolerance);
   EXPECT_GT((result.x.p[0] - chain.problem.end).segment<2>(6).norm(), 0.5);  // it was dragged
   for (std::size_t k = 1; k < result.x.p.size(); ++k)
-    EXPECT_LT(widest_joint(chain.scene, unstacked(result.x.p[k])), 1e-14);
+    EXPECT_LT(widest_joint(chain.scene, energy::unstacked(result.x.p[k])), 1e-14);
   const VectorXd p = replayed(chain.problem, result.x).p.back();
   EXPECT_LT((p - result.x.p.back()).norm(), 1e-6);
 }
@@ -72,7 +72,7 @@ TEST(FilterSqpJoints, PushesOfAChainAreFoundBackAndReplay) {
   const Scene scene = robot_and_chain();
   const PushConfig push;
   const PhysicsConfig physics;
-  const Box2dSimulator box2d(scene, push, physics);
+  const forward::Box2dSimulator box2d(scene, push, physics);
   const std::vector<ReverseJob> jobs = pushed_chains(scene, push, physics);
   const std::vector<ReverseResult> results = ReverseSimulator(scene, physics, push, {}).solve(jobs);
   int solved = 0, converged = 0, dragged = 0, replayed = 0;
@@ -115,4 +115,4 @@ TEST(FilterSqpJoints, LanesFindWhatEachFindsAlone) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -6,7 +6,7 @@
 #include "tests/support/one_candidate.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::solved;
@@ -111,7 +111,7 @@ const std::vector<ReverseJob> kStuck{{{{2.42285872, 2.21452594, -0.00326369028},
                                       9}};
 
 TEST(FilterSqpLanes, FurtherAttemptsGetOutWhereTheFirstIsStuckWithinTheSharedLimit) {
-  const Task task = testing::gathering();
+  const tasks::Task task = testing::gathering();
   const PhysicsConfig physics;
   int freed = 0;
   for (const ReverseJob& job : kStuck) {
@@ -131,4 +131,4 @@ TEST(FilterSqpLanes, FurtherAttemptsGetOutWhereTheFirstIsStuckWithinTheSharedLim
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

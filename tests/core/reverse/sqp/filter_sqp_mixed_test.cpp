@@ -8,7 +8,7 @@
 #include "tests/support/one_candidate.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::TouchingScene;
@@ -20,9 +20,9 @@ struct OtherShapes : TouchingScene {
   OtherShapes(int sides, const ReverseConfig& config) : problem{TouchingScene::problem(config)} {
     scene.bodies[1].shape = regular_polygon(sides, 0.6);
     scene.bodies[2].shape = sides % 2 == 0 ? regular_polygon(3, 0.7) : box(1.0, 0.8);
-    energy = StepEnergy(scene, physics, task.push);
+    energy = energy::StepEnergy(scene, physics, task.push);
     problem.end = with_open_gaps(
-        energy, stacked({{0, 0, 0}, {1.38, 0.1, 0.2 + 0.1 * sides}, {2.7, 0.3, 0.6}}));
+        energy, energy::stacked({{0, 0, 0}, {1.38, 0.1, 0.2 + 0.1 * sides}, {2.7, 0.3, 0.6}}));
   }
   OtherShapes(const OtherShapes&) = delete;
 };
@@ -61,11 +61,11 @@ TEST(FilterSqpMixed, OverlapAndNonsenseBesideAGoodCandidateLeaveItAlone) {
   TouchingScene bars;
   bars.scene.bodies[1].shape = box(4.0, 0.2);
   bars.scene.bodies[2].shape = box(0.2, 4.0);
-  bars.energy = StepEnergy(bars.scene, bars.physics, bars.task.push);
+  bars.energy = energy::StepEnergy(bars.scene, bars.physics, bars.task.push);
   const ReverseProblem good = touching.problem(config);
   ReverseProblem crossed = bars.problem(config), overlapping = good;
-  crossed.end = stacked({{-9, 0, 0}, {0, 0, 0}, {0, 0, 0}});
-  overlapping.end = stacked({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
+  crossed.end = energy::stacked({{-9, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+  overlapping.end = energy::stacked({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
   ASSERT_GT(least_gap(bars.energy, crossed.end), 0.0);
   const std::vector<const ReverseProblem*> all{&crossed, &good, &overlapping, &good};
   const std::vector<SqpResult> results = solve(all);
@@ -105,4 +105,4 @@ TEST(FilterSqpMixed, EveryLaneStopsAtTheIterationLimit) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -10,7 +10,7 @@
 #include "tests/support/random_push.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::expect_the_same_solution;
@@ -26,7 +26,7 @@ TEST(FilterSqp, ReverseOfAFreePushIsTheClosedForm) {
   config.feasibility_tol = 1e-11;
   config.stationarity_tol = 1e-10;
   ReverseProblem problem = scene.problem(config);
-  problem.end = stacked({{1, 2, 0.3}, {40, 0, 0}, {0, 40, 0}});
+  problem.end = energy::stacked({{1, 2, 0.3}, {40, 0, 0}, {0, 40, 0}});
   problem.direction = {0.6, 0.8};
   const SqpResult result = solved_from(problem, static_iterate(problem));
   ASSERT_EQ(result.status, SolveStatus::kConverged);
@@ -39,7 +39,7 @@ TEST(FilterSqp, ATouchedBoxIsDraggedTheWholeStrideBack) {
   const TouchingScene scene;
   const ReverseConfig config;
   ReverseProblem problem = scene.problem(config);
-  problem.end = stacked({{0, 0, 0}, {1.4087, 0, 0}, {40, 0, 0}});
+  problem.end = energy::stacked({{0, 0, 0}, {1.4087, 0, 0}, {40, 0, 0}});
   const SqpResult result = solved(problem);
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   EXPECT_NEAR(result.x.p[0][3] - problem.end[3], -2.0, 0.02);
@@ -92,12 +92,13 @@ TEST(FilterSqp, ForwardOfReverseIsTheGivenStateWhereItIsFixed) {
 struct PushedScene {
   PushConfig push;
   testing::RandomPush drawn;
-  StepEnergy energy{drawn.scene, {}, push};
+  energy::StepEnergy energy{drawn.scene, {}, push};
 
   explicit PushedScene(std::uint64_t seed) : drawn(testing::random_push(seed, push)) {}
   ReverseProblem problem(const ReverseConfig& config) const {
-    const PushOutcome end = NewtonSimulator(drawn.scene, push, {}).push(drawn.start, drawn.action);
-    return {energy, config, stacked(end.end), direction(drawn.action, push), 10};
+    const forward::PushOutcome end =
+        forward::NewtonSimulator(drawn.scene, push, {}).push(drawn.start, drawn.action);
+    return {energy, config, energy::stacked(end.end), direction(drawn.action, push), 10};
   }
 };
 
@@ -124,7 +125,7 @@ TEST(FilterSqp, ForwardOfReverseIsTheEndInMostRandomScenes) {
 TEST(FilterSqp, WithoutFrictionSubStepsAreExplicitBackwards) {
   TouchingScene scene;
   for (Body& body : scene.scene.bodies) body.friction = 0.0;
-  scene.energy = StepEnergy(scene.scene, scene.physics, scene.task.push);
+  scene.energy = energy::StepEnergy(scene.scene, scene.physics, scene.task.push);
   const ReverseConfig config;
   const ReverseProblem problem = scene.problem(config);
   const SqpResult result = solved(problem);
@@ -135,7 +136,7 @@ TEST(FilterSqp, WithoutFrictionSubStepsAreExplicitBackwards) {
     const Vector3d push = result.x.controls[k].array().tanh();
     force.head<3>() -= scene.energy.control_bound().cwiseProduct(push);
     for (int i = 0; i < 3; ++i) {
-      const Damping<double>& body = scene.energy.damping(i);
+      const energy::Damping<double>& body = scene.energy.damping(i);
       const Vector3d mass(body.mass, body.mass, body.moment);
       EXPECT_LT((next.segment<3>(3 * i) + force.segment<3>(3 * i).cwiseQuotient(mass) -
                  result.x.p[k - 1].segment<3>(3 * i))
@@ -197,7 +198,7 @@ TEST(FilterSqp, WhereTheFinalStateIsFixedTheSolutionEndsInIt) {
   const TouchingScene scene;
   ReverseConfig config;
   ReverseProblem problem = scene.problem(config);
-  problem.end = stacked({{0, 0, 0}, {1.41, 0.2, 0.05}, {20, 0, 0}});
+  problem.end = energy::stacked({{0, 0, 0}, {1.41, 0.2, 0.05}, {20, 0, 0}});
   config.terminal_weight = 0.0;
   ASSERT_GT(terminal_miss(problem, *warm_start(problem)), 1e-4);
   const SqpResult result = solved(problem);
@@ -210,7 +211,7 @@ TEST(FilterSqp, AnOverlappingEndIsInfeasible) {
   const TouchingScene scene;
   const ReverseConfig config;
   ReverseProblem problem = scene.problem(config);
-  problem.end = stacked({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
+  problem.end = energy::stacked({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
   const SqpResult result = solved(problem);
   EXPECT_EQ(result.status, SolveStatus::kInfeasible);
   EXPECT_EQ(result.iterations, 0);
@@ -231,7 +232,7 @@ TEST(FilterSqp, ReportsAStartThatIsNoLegalIterate) {
   const TouchingScene scene;
   const ReverseConfig config;
   ReverseProblem problem = scene.problem(config);
-  problem.end = stacked({{0, 0, 0}, {40, 0, 0}, {40.9, 0.2, 0}});
+  problem.end = energy::stacked({{0, 0, 0}, {40, 0, 0}, {40.9, 0.2, 0}});
   const SqpResult result = solved_from(problem, static_iterate(problem));
   EXPECT_EQ(result.status, SolveStatus::kNonFinite);
 }
@@ -241,14 +242,14 @@ TEST(FilterSqp, ReportsAStartThatIsNoLegalIterate) {
 TEST(FilterSqp, ReportsSingularSystems) {
   TouchingScene scene;
   scene.scene.bodies[2].density = 1e25;
-  scene.energy = StepEnergy(scene.scene, scene.physics, scene.task.push);
+  scene.energy = energy::StepEnergy(scene.scene, scene.physics, scene.task.push);
   ReverseConfig config;
   config.kkt = KktMethod::kCyclicReduction;
   ReverseProblem problem = scene.problem(config);
-  problem.end = stacked({{0, 0, 0}, {40, 0, 0}, {0, 40, 0}});
+  problem.end = energy::stacked({{0, 0, 0}, {40, 0, 0}, {0, 40, 0}});
   const SqpResult result = solved_from(problem, static_iterate(problem));
   EXPECT_EQ(result.status, SolveStatus::kSingular);
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 TEST(Filter, EmptyOneAcceptsEverything) { EXPECT_TRUE(Filter().accepts({1e9, 1e9})); }
@@ -36,4 +36,4 @@ TEST(Filter, ImprovementIsByTheMarginInOneOfTheTwo) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 TEST(Merit, WeightStaysAboveEveryMultiplierSeen) {
@@ -43,4 +43,4 @@ TEST(Merit, IsExactOnceTheWeightExceedsTheMultiplier) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

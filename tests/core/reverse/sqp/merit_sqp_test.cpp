@@ -12,7 +12,7 @@
 #include "tests/support/linearisation.hpp"
 #include "tests/support/touching_scene.hpp"
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using testing::TouchingScene;
@@ -25,7 +25,7 @@ struct PaperScene : TouchingScene {
   PaperScene() {
     physics.plain_barrier = true;
     physics.barrier = config.plain_barrier;
-    energy = StepEnergy(scene, physics, task.push);
+    energy = energy::StepEnergy(scene, physics, task.push);
   }
   ReverseProblem problem() const {
     ReverseProblem out = TouchingScene::problem(config);
@@ -38,7 +38,7 @@ struct PaperScene : TouchingScene {
 struct FreeRobot : PaperScene {
   FreeRobot() {
     scene.bodies.resize(1);
-    energy = StepEnergy(scene, physics, task.push);
+    energy = energy::StepEnergy(scene, physics, task.push);
     poses = {{1, 2, 0.3}};
     push = {0.6, 0.8};
   }
@@ -127,11 +127,11 @@ TEST(MeritSqp, IteratesEndInTheGivenStateWithTheForcesOfTheirGaps) {
 TEST(MeritSqp, AfterAPushInGatheringItsIteratesDragTheBoxBack) {
   PaperScene scene;
   scene.scene = scene.task.scene;
-  scene.energy = StepEnergy(scene.scene, scene.physics, scene.task.push);
+  scene.energy = energy::StepEnergy(scene.scene, scene.physics, scene.task.push);
   Poses before = scene.task.start;
   before[0] = {-3.0, -1.0, 0.0};
   constexpr int kUp = 12;
-  scene.poses = Box2dSimulator(scene.scene, scene.task.push, {}).push(before, kUp).end;
+  scene.poses = forward::Box2dSimulator(scene.scene, scene.task.push, {}).push(before, kUp).end;
   ASSERT_GT(scene.poses[1].y, before[1].y + 1.0);
   scene.push = direction(kUp, scene.task.push);
   const VectorXd moved = iterates(scene, 40).back().p[0] - scene.problem().end;
@@ -165,17 +165,17 @@ TEST(MeritSqp, ReportsWhatIsNotFinite) {
 TEST(MeritSqp, ReportsAStartThatIsNoLegalIterate) {
   const PaperScene scene;
   ReverseProblem problem = scene.problem();
-  problem.end = stacked({{0, 0, 0}, {40, 0, 0}, {40.9, 0.2, 0}});
+  problem.end = energy::stacked({{0, 0, 0}, {40, 0, 0}, {40.9, 0.2, 0}});
   EXPECT_EQ(merit_sqp(problem, static_iterate(problem)).status, SolveStatus::kNonFinite);
 }
 
 TEST(MeritSqp, ReportsSingularSystems) {
   PaperScene scene;
   scene.scene.bodies[2].density = 1e25;
-  scene.energy = StepEnergy(scene.scene, scene.physics, scene.task.push);
+  scene.energy = energy::StepEnergy(scene.scene, scene.physics, scene.task.push);
   const ReverseProblem problem = scene.problem();
   EXPECT_EQ(merit_sqp(problem, static_iterate(problem)).status, SolveStatus::kSingular);
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace rtg {
+namespace rtg::reverse {
 namespace {
 
 using Order = SqpStrategy::Order;
@@ -266,4 +266,4 @@ TEST(SqpStrategyAttempts, AfterAMissTheFirstProximalTermGrowsInAnyCase) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::reverse

@@ -1,0 +1,60 @@
+"""One namespace per folder. The vocabulary of core/math and core/world is rtg's own."""
+
+from __future__ import annotations
+
+import re
+from pathlib import PurePosixPath
+
+import pytest
+from layering import ROOT, sources
+
+OPENED = re.compile(r"^namespace (rtg[\w:]*) \{$", re.MULTILINE)
+
+
+def namespace_of(path: str) -> str:
+    """What the file at `path` is to be in."""
+    parts = PurePosixPath(path).parts
+    if parts[:2] in {("tests", "support"), ("tests", "bench")}:
+        return "rtg::testing" if parts[1] == "support" else "rtg::bench"
+    if parts[:2] == ("train", "bindings"):
+        return "rtg::bindings"
+    room = parts[2 if parts[0] == "tests" else 1]
+    return "rtg" if room in {"math", "world"} else f"rtg::{room}"
+
+
+def fault(path: str, text: str) -> str:
+    """What is wrong with the namespaces that `text` opens; empty when nothing is."""
+    asked = namespace_of(path)
+    wrong = [
+        found
+        for found in OPENED.findall(text)
+        if found != asked and not found.startswith((f"{asked}::", "rtg::testing"))
+    ]
+    return f"{path}: in {wrong[0]} instead of {asked}" if wrong else ""
+
+
+def test_each_file_is_in_the_namespace_of_its_folder() -> None:
+    files = {
+        str(path.relative_to(ROOT)): path.read_text()
+        for path in sources(".hpp", ".cpp")
+        if "msgs" not in path.relative_to(ROOT).parts
+    }
+    assert sum(bool(OPENED.search(text)) for text in files.values()) > 250
+    assert [said for path, text in files.items() if (said := fault(path, text))] == []
+
+
+@pytest.mark.parametrize(
+    ("path", "namespace", "right"),
+    [
+        ("core/reverse/sqp/a.hpp", "rtg::reverse", True),
+        ("core/reverse/sqp/a.hpp", "rtg", False),
+        ("core/world/a.hpp", "rtg", True),
+        ("core/energy/a.hpp", "rtg::reverse", False),
+        ("tests/core/search/a.cpp", "rtg::search", True),
+        ("tests/nodes/jobs/a.cpp", "rtg::bus", False),
+        ("tests/support/a.hpp", "rtg::testing", True),
+        ("nodes/bus/a.hpp", "rtg::bus::wire", True),
+    ],
+)
+def test_what_is_in_another_is_found(path: str, namespace: str, right: bool) -> None:
+    assert (fault(path, f"namespace {namespace} {{\n") == "") == right
