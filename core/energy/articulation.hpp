@@ -13,29 +13,31 @@ template <class T>
 struct Hinge {
   int parent = 0, child = 0;  // i, j
   Vec2<T> a, b;               // the pin in the frames of parent and child [m]
-  T lower, upper;             // of φ [rad]; infinite: none
-  T reach;                    // of the child from the pin [m]
+  T lower, upper;             // limits of φ [rad]; infinite if there is none
+  T reach;                    // largest distance of a child's vertex from the pin [m]
 };
 
-/// The bodies of jointed scenes in reduced coordinates q: the poses of the roots and the angles of
-/// all others, which are entries of the poses p. So joints never open. p(q) follows the hinges,
+/// The reduced coordinates q of scenes with joints: the poses of the root bodies and the angles of
+/// all other bodies. They are entries of the poses p. In reduced coordinates joints never open.
+/// p(q) is computed hinge by hinge, from the roots to the leaves,
 ///
 ///   t_j = t_i + R_i a - R_j b,   ∂t_j/∂θ_i = E R_i a,   ∂t_j/∂θ_j = -E R_j b,
 ///
-/// from the roots on, forces and rows of matrices back from the leaves, one hinge at a time:
-/// J = ∂p/∂q is the product of these steps. Where a body is jointed, the entries x, y of its block
-/// belong to no coordinate; they are zero in vectors over q.
+/// and J = ∂p/∂q is the product of these steps. Forces and rows of matrices are transformed from
+/// the leaves to the roots. The entries x, y of a child's block belong to no coordinate; they are
+/// zero in vectors over q.
 template <class T>
 class Articulation {
  public:
   Articulation() = default;
-  /// `scene`: movable bodies first.
+  /// `scene` must list its movable bodies first.
   explicit Articulation(const Scene& scene);
-  /// Room for joints like those of `like`.
+  /// Returns an articulation with the hinges of `like` but without their geometry, which load()
+  /// fills in.
   template <class U>
   static Articulation room_for(const Articulation<U>& like);
   void load(int lane, const Articulation<double>& one);
-  /// No limits in that lane.
+  /// Removes all limits in this lane.
   void unload(int lane);
 
   bool empty() const { return hinges_.empty(); }
@@ -45,9 +47,10 @@ class Articulation {
 
   /// p ← p(q).
   void close(Placement<T>& at) const;
-  /// y ← J y: of motions (or multipliers) of the coordinates, those of all bodies [3·movable].
+  /// y ← J y [3·movable]: converts motions (or multipliers) of the coordinates to those of all
+  /// bodies.
   void spread(const Placement<T>& at, T* y) const;
-  /// g ← Jᵀ g: of forces on the bodies, those on the coordinates [3·movable].
+  /// g ← Jᵀ g [3·movable]: converts forces on the bodies to those on the coordinates.
   void gather(const Placement<T>& at, T* g) const;
 
  private:
@@ -64,7 +67,7 @@ Vec2<T> turned_by(const Turn<T>& turn, const Vec2<T>& v) {
   return {turn.c * v.x() - turn.s * v.y(), turn.s * v.x() + turn.c * v.y()};
 }
 
-/// The pin of a hinge as seen from the two centres, in the world frame.
+/// The vectors from the centres of the two bodies to the pin of their hinge, in the world frame.
 template <class T>
 struct Arms {
   Vec2<T> a, b;  // R_i a, R_j b [m]

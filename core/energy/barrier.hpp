@@ -14,13 +14,13 @@ namespace rtg::energy {
 /// C³ at ĝ. The contact force λ = -b'(g) satisfies the relaxed complementarity λ g = μ̃ w(g).
 ///
 /// Departs from the paper: its -μ̃ ln g has infinite range and moves bodies that nothing touches.
-/// `plain` selects it: w = 1.
+/// `plain` selects the paper's barrier: w = 1.
 struct Barrier {
   double weight = 1.0;  // μ̃ [kg m²]
   double range = 1.0;   // ĝ [m]
   bool plain = false;
 
-  /// b(g) [kg m²]; +∞ for g ≤ 0, so that line searches back off.
+  /// Returns b(g) [kg m²]; +∞ for g ≤ 0, so that line searches shorten their step.
   template <class T>
   T value(const T& g) const {
     const T open = select(g > T(0.0), g, T(1.0));
@@ -47,11 +47,12 @@ struct Barrier {
     return {rest * rest * rest, T(-3.0 / range) * rest * rest, T(6.0 / (range * range)) * rest};
   }
 
-  /// λ(g) = -b'(g) ≥ 0 [kg m], and its derivative.
+  /// λ(g) = -b'(g) ≥ 0 [kg m].
   template <class T>
   T force(const T& g) const {
     return T(weight) * window(g).w / g;
   }
+  /// λ'(g) [kg].
   template <class T>
   T force_slope(const T& g) const {
     const Window<T> w = window(g);

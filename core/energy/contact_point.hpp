@@ -4,13 +4,13 @@
 
 namespace rtg::energy {
 
-/// A vertex v of body i in the frame of body j, x = offset + a with the arm a = R(θ_i - θ_j) v, as
-/// a function of the pair's coordinates u (PairFrame):
+/// A vertex v of body i in the frame of body j: x = offset + a with the arm a = R(θ_i - θ_j) v. As
+/// a function of the pair's coordinates u (PairFrame) it has the derivatives
 ///
-///   ∂x/∂u = X = [ I₂ | E a | -E x ]
+///   ∂x/∂u = X = [ I₂ | E a | -E x ].
 ///
-/// and second derivatives that vanish but for those through the turns. Given a motion y, the
-/// derivatives of x and a along it are a point themselves: along().
+/// Its second derivatives are zero except for those that involve the angles. The derivatives (ẋ, ȧ)
+/// along a motion y have the form of a ContactPoint, too; see along().
 template <class T>
 struct ContactPoint {
   Vec2<T> x, a;  // [m]
@@ -22,7 +22,7 @@ struct ContactPoint {
     x = pair.offset + a;
   }
 
-  /// (ẋ, ȧ) along y.
+  /// Returns (ẋ, ȧ) along y.
   ContactPoint along(const Vec4<T>& y) const {
     ContactPoint rate;
     rate.a = turned(a) * (y[2] - y[3]);
@@ -38,14 +38,14 @@ struct ContactPoint {
   Vec4<T> pulled(const Vec2<T>& w) const {
     return {w.x(), w.y(), a.x() * w.y() - a.y() * w.x(), x.y() * w.x() - x.x() * w.y()};
   }
-  /// Ẋᵀ w of a rate of change: as Xᵀ w, whose first part is constant.
+  /// Ẋᵀ w, if this is (ẋ, ȧ): as Xᵀ w, but without the part of I₂, which is constant.
   Vec4<T> pulled_rate(const Vec2<T>& w) const {
     Vec4<T> out = pulled(w);
     out[0] = out[1] = T(0.0);
     return out;
   }
 
-  /// Xᵀ D Y, with Y of another point.
+  /// Xᵀ D Y, with Y the matrix X of another point.
   Mat4<T> pulled(const Mat2<T>& D, const ContactPoint& other) const {
     Mat4<T> out;
     const Vec4<T> top = other.pulled(Vec2<T>(D(0, 0), D(0, 1)));
@@ -58,14 +58,14 @@ struct ContactPoint {
     }
     return out;
   }
-  /// Ẋᵀ D Y of a rate of change.
+  /// Ẋᵀ D Y, if this is (ẋ, ȧ).
   Mat4<T> pulled_rate(const Mat2<T>& D, const ContactPoint& other) const {
     Mat4<T> out = pulled(D, other);
     out.row(0).setConstant(T(0.0));
     out.row(1).setConstant(T(0.0));
     return out;
   }
-  /// Adds the second derivatives of x in q, contracted with w, as coefficients of u.
+  /// Adds the second derivatives of x with respect to q, contracted with w and expressed in u.
   void add_curvature(const Vec2<T>& w, Mat4<T>& H) const {
     add_curvature_rate(w, H);
     H(0, 3) -= w.y();
@@ -73,7 +73,7 @@ struct ContactPoint {
     H(1, 3) += w.x();
     H(3, 1) += w.x();
   }
-  /// The same for a rate of change (ẋ, ȧ), whose mixed part with the offset is constant.
+  /// Does the same if this is (ẋ, ȧ): without the part mixed with the offset, which is constant.
   void add_curvature_rate(const Vec2<T>& w, Mat4<T>& H) const {
     const T arm = w.dot(a);
     H(2, 2) -= arm;

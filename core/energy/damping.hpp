@@ -4,13 +4,14 @@
 
 namespace rtg::energy {
 
-/// Damping of one body over a sub-step in units of k_D/Δt²: the quasi-static stand-in for inertia,
+/// Damping of one body over a sub-step in units of k_D/Δt². It takes the place of inertia in
+/// quasi-static mode:
 ///
 ///   ½ m |Δt|² + ½ J (Δθ)²     (quadratic), or
 ///   ½ m |Δt|² + J (1 - cos Δθ)  (periodic: the area integral of eq. (8)).
 ///
 /// Departs from the paper: quadratic is the default, because the periodic form has spurious roots
-/// at whole turns. The functions are those of the rotational part.
+/// at whole turns. The member functions return the rotational part and its derivatives.
 template <class T>
 struct Damping {
   T mass;    // m [kg]

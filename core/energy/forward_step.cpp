@@ -11,7 +11,7 @@ namespace {
 constexpr int kMaxIterations = 100;
 constexpr double kArmijo = 1e-4;
 constexpr double kLeastStep = 1e-12;
-constexpr double kLargestShift = 1e6;  // of the largest diagonal entry
+constexpr double kLargestShift = 1e6;  // in units of the Hessian's largest diagonal entry
 
 template <class T>
 T log_cosh(const T& x) {
@@ -41,7 +41,7 @@ ForwardStep<T>::ForwardStep(const SceneModel<T>& scene, double tolerance)
       gaps_(static_cast<std::size_t>(scene.contacts())),
       trial_gaps_(gaps_) {}
 
-/// Works on Ψ with the servo; leaves trial_gaps_.
+/// Returns Ψ including the drive, and `legal` as StepPotential::value does. Sets trial_gaps_.
 template <class T>
 T ForwardStep<T>::value(const Placement<T>& at, const Drive<T>& drive, Mask<T>& legal) {
   T sum = potential_.value(at, gaps_.data(), trial_gaps_.data(), legal);
@@ -68,7 +68,7 @@ void ForwardStep<T>::linearise(const Placement<T>& at, const Drive<T>& drive) {
   reduce(at);
 }
 
-/// Gradient and Hessian over the coordinates of jointed bodies.
+/// Converts gradient_ and hessian_ to reduced coordinates (Articulation).
 template <class T>
 void ForwardStep<T>::reduce(const Placement<T>& at) {
   const Articulation<T>& articulation = scene_.articulation();
@@ -83,8 +83,8 @@ void ForwardStep<T>::reduce(const Placement<T>& at) {
   }
 }
 
-/// Newton direction of the Hessian made positive definite by a growing multiple of its diagonal;
-/// returns the lanes in which there is one.
+/// Computes the Newton direction. Where the Hessian is indefinite, adds growing multiples of the
+/// identity until it is positive definite. Returns the lanes in which this succeeds.
 template <class T>
 Mask<T> ForwardStep<T>::find_direction(Mask<T> wanted) {
   T size(0.0), shift(0.0);
@@ -104,7 +104,7 @@ Mask<T> ForwardStep<T>::find_direction(Mask<T> wanted) {
   return wanted;
 }
 
-/// p ← trial_ and its gaps.
+/// p ← trial_ and gaps_ ← trial_gaps_ in the lanes `better`.
 template <class T>
 void ForwardStep<T>::accept(const Mask<T>& better, Placement<T>& p) {
   p.assign(better, trial_);
@@ -112,7 +112,7 @@ void ForwardStep<T>::accept(const Mask<T>& better, Placement<T>& p) {
     gaps_[c] = select(better, trial_gaps_[c], gaps_[c]);
 }
 
-/// Begins at now + guess where that is legal and better than `now`.
+/// p ← p + guess in the lanes where that is legal and has a lower value.
 template <class T>
 void ForwardStep<T>::take_guess(const Drive<T>& drive, const T* guess, Placement<T>& p, T& value) {
   trial_ = p;
@@ -125,7 +125,8 @@ void ForwardStep<T>::take_guess(const Drive<T>& drive, const T* guess, Placement
   value = select(better, after, value);
 }
 
-/// Moves p in the lanes `wanted`; returns those in which there was an acceptable step.
+/// Moves p along direction_ in the lanes `wanted`, by a backtracking line search. Returns those in
+/// which it found an acceptable trial point.
 template <class T>
 Mask<T> ForwardStep<T>::line_search(const Drive<T>& drive, const Mask<T>& wanted, Placement<T>& p,
                                     T& value) {
@@ -150,7 +151,8 @@ Mask<T> ForwardStep<T>::line_search(const Drive<T>& drive, const Mask<T>& wanted
   return wanted && !searching;
 }
 
-/// The pending lanes whose gradient is small enough; those where it is not finite are given up.
+/// Returns the pending lanes whose gradient is below the tolerance. Removes lanes whose gradient is
+/// not finite from `pending`.
 template <class T>
 Mask<T> ForwardStep<T>::converged(Mask<T>& pending) const {
   T top(0.0), sum(0.0);

@@ -5,21 +5,22 @@
 
 namespace rtg::energy {
 
-/// Scale of the servo's error, as a share of the sub-step's stride [m], [m], [rad].
+/// Returns the scale s of the servo's error for a sub-step's stride [m]; the same number in [m] for
+/// x and y and in [rad] for θ.
 inline double servo_scale(double stride) { return 0.05 * stride; }
 
-/// The drive of the robot in a sub-step: given controls, or a bounded servo towards a target pose,
-/// the potential B s ln cosh(e/s) of the error e = target - p₊₀, whose force B tanh(e/s) is that
-/// of the control c = e/s.
+/// The drive of the robot in a sub-step: given controls, or a bounded servo towards a target pose.
+/// The servo has the potential B s ln cosh(e/s) of the error e = target - p₊₀. Its force
+/// B tanh(e/s) equals that of the control c = e/s.
 template <class T>
 struct Drive {
   bool servo = false;
-  Vec3<T> control;  // c, before tanh; or the target pose [m], [m], [rad]
+  Vec3<T> control;  // c, the argument of tanh; or the target pose of the servo [m], [m], [rad]
 
   static Drive controls(const Vec3<T>& c) { return {false, c}; }
   static Drive towards(const Vec3<T>& target) { return {true, target}; }
 
-  /// c at the robot's pose.
+  /// Returns c at the robot's pose; `scale` is s.
   Vec3<T> control_at(const Placement<T>& at, double scale) const {
     if (!servo) return control;
     Vec3<T> c;
@@ -28,26 +29,25 @@ struct Drive {
   }
 };
 
-/// Where a sub-step begins: the poses, with open gaps, their normal forces [contacts], and, if not
-/// null, a guess of how far they will move [3·bodies] and the poses one sub-step before, which
-/// inertia asks for; null: at rest.
+/// Start of a sub-step.
 template <class T>
 struct StepStart {
-  const Placement<T>& now;
-  const T* lag;
-  const T* guess = nullptr;
-  const Placement<T>* before = nullptr;
+  const Placement<T>& now;               // poses, with positive gaps
+  const T* lag;                          // normal forces at `now` [contacts]
+  const T* guess = nullptr;              // expected motion [3·movable]; null if there is none
+  const Placement<T>* before = nullptr;  // poses one sub-step earlier, for inertia; null: at rest
 };
 
-/// A sub-step, eq. (5): p₊ = argmin Ψ(·, p) under a drive, by Newton's method with
-/// line search.
+/// Solver of a sub-step, eq. (5): p₊ = argmin Ψ(·, p) under a drive, by Newton's method with line
+/// search.
 template <class T>
 class ForwardStep {
  public:
-  /// Ends at ‖∂Ψ/∂p₊‖∞ < tolerance [kg m]. The scene must outlive it.
+  /// solve() has converged if ‖∂Ψ/∂p₊‖∞ < tolerance [kg m]. `scene` must outlive this object.
   ForwardStep(const SceneModel<T>& scene, double tolerance);
 
-  /// Returns in which of the lanes `wanted` it got there; `next` is defined there alone.
+  /// Returns the lanes of `wanted` in which Newton's method converged. `next` is p₊ in these lanes
+  /// and undefined in the others.
   Mask<T> solve(const StepStart<T>& start, const Drive<T>& drive, const Mask<T>& wanted,
                 Placement<T>& next);
 

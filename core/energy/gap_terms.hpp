@@ -17,8 +17,8 @@ struct GapTerms {
   }
 };
 
-/// Their change along a motion y, turn of the frame included: y·∇ of the gradient and of
-/// the Hessian in q.
+/// The derivatives of GapTerms along a motion y, with the turn of the frame: y·∇ of the gradient
+/// and of the Hessian in q.
 template <class T>
 struct GapRates {
   Vec4<T> gradient;

@@ -5,13 +5,13 @@
 
 namespace rtg::energy {
 
-/// The step of one hinge from coordinates in which its child has a pose of its own to those in
-/// which it follows the parent: with T = ∂(old)/∂(new), identity but for
+/// The change of coordinates at one hinge. In the old coordinates the child has a pose of its own;
+/// in the new ones its position follows the parent. T = ∂(old)/∂(new) is the identity except for
 ///
-///   dt_j = dt_i + E A dθ_i - E B dθ_j,   A = R_i a, B = R_j b,
+///   dt_j = dt_i + E A dθ_i - E B dθ_j,   A = R_i a, B = R_j b.
 ///
-/// forces become Tᵀ g, Hessians Tᵀ H T + Σ g ∂²(old)/∂(new)². Hinges take it from the leaves to the
-/// roots.
+/// Forces become Tᵀ g, Hessians Tᵀ H T + Σ g ∂²(old)/∂(new)². The steps must be applied hinge by
+/// hinge, from the leaves to the roots.
 template <class T>
 class HingeStep {
  public:
@@ -62,7 +62,8 @@ class HingeStep {
     }
   }
 
-  /// H ← Tᵀ H T of both halves; the entries that belong to no coordinate any more make an identity.
+  /// H ← Tᵀ H T, for both halves of H. The rows and columns of the child's x and y, which are no
+  /// longer coordinates, become those of the identity.
   void gather_both(BlockMatrix<T>& H) const {
     gather_rows(H);
     gather_columns(H);
@@ -70,7 +71,7 @@ class HingeStep {
     own(0, 0) = own(1, 1) = T(1.0);
   }
 
-  /// Adds weight Σ g ∂²(old)/∂(new)², with g before its own step.
+  /// Adds weight Σ g ∂²(old)/∂(new)², with g before gather().
   void add_curvature(const T* g, const T& weight, BlockMatrix<T>& H) const {
     const T x = g[3 * j_], y = g[3 * j_ + 1];
     H.at(j_, j_)(2, 2) += weight * (arms_.b.x() * x + arms_.b.y() * y);
@@ -80,7 +81,7 @@ class HingeStep {
   const Arms<T>& arms() const { return arms_; }
   int parent() const { return i_; }
   int child() const { return j_; }
-  bool roots() const { return roots_; }  // whether the parent has coordinates
+  bool roots() const { return roots_; }  // whether the parent is movable and so has coordinates
 
  private:
   int i_, j_;
@@ -88,7 +89,7 @@ class HingeStep {
   Arms<T> arms_;
 };
 
-/// The upper half of a symmetric matrix of which the lower one is given.
+/// Fills the upper half of a symmetric matrix from the lower half.
 template <class T>
 void mirror_lower(BlockMatrix<T>& H) {
   for (int i = 0; i < H.M; ++i)

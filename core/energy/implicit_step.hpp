@@ -7,14 +7,14 @@
 
 namespace rtg::energy {
 
-/// A sub-step of one scene, eq. (5): p₊ = argmin Ψ(·, p, p₋) under the drive.
+/// Result of a sub-step of one scene, eq. (5): p₊ = argmin Ψ(·, p, p₋) under the drive.
 struct ImplicitStep {
   VectorXd next;     // p₊ [3·bodies]
-  Vector3d control;  // c that the drive amounted to
+  Vector3d control;  // c, the control equivalent to the drive at p₊
 };
 
-/// From poses whose gaps must be positive. Ends at ‖∂Ψ/∂p₊‖∞ < 1e-10 kg m. Nothing if it does not
-/// get there.
+/// Solves a sub-step to ‖∂Ψ/∂p₊‖∞ < 1e-10 kg m; returns nothing if Newton's method does not
+/// converge. All gaps at the start must be positive.
 std::optional<ImplicitStep> implicit_step(const StepEnergy& energy, const StepFrom& from,
                                           const Drive<double>& drive);
 

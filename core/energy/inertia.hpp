@@ -4,15 +4,15 @@
 
 namespace rtg::energy {
 
-/// Inertia of one body over two sub-steps in units of k_D/Δt², I of eq. (8), with ι = 1/k_D and the
-/// turns a = θ₊ - θ, b = θ - θ₋:
+/// Inertia of one body over two sub-steps in units of k_D/Δt²: the term I of eq. (8), with
+/// ι = 1/k_D and the rotations a = θ₊ - θ, b = θ - θ₋:
 ///
 ///   ½ ι m |t₊ - 2t + t₋|² + ½ ι J (a - b)²                             (quadratic), or
 ///   ½ ι m |t₊ - 2t + t₋|² + ι J (3 - 2 cos a - 2 cos b + cos(a + b))  (periodic: the area
 ///   integral)
 ///
-/// The functions are those of the rotational part. Departs from the paper as Damping does; the
-/// periodic form also slows a free spin down, by b³ per sub-step.
+/// The member functions return the rotational part and its derivatives. Departs from the paper as
+/// Damping does. The periodic form also slows a free spin, by b³ per sub-step.
 template <class T>
 struct Inertia {
   T mass;    // ι m [kg]
@@ -24,7 +24,8 @@ struct Inertia {
     return moment * (T(3.0) - T(2.0) * (turn_of(a).c + turn_of(b).c) + turn_of(a + b).c);
   }
 
-  /// The derivative in θ₊ and its derivatives in a and b, to second order.
+  /// The derivative with respect to θ₊, and its own first and second derivatives with respect to a
+  /// and b.
   struct Slope {
     T value, a, b, aa, ab, bb;
   };

@@ -6,13 +6,13 @@
 
 namespace rtg::energy {
 
-/// A limit of a hinge as a contact without friction: the tip of the child meets a stop, at the
-/// gap
+/// A limit of a hinge as a contact without friction. The tip of the child meets a stop; the gap is
 ///
 ///   g = r (φ - φ_min) + g₀  or  r (φ_max - φ) + g₀,
 ///
-/// linear in the angles, with r the reach of the child from the pin. g₀ is what bodies in contact
-/// keep between each other in Box2D, to which the barrier is matched; a limit has no skin.
+/// linear in the angles, with r the reach of the child from the pin. g₀ is the distance that Box2D
+/// keeps between bodies in contact, to which the barrier is matched. The offset d₀ of other
+/// contacts does not apply.
 template <class T>
 struct JointLimit {
   int parent, child;
@@ -26,7 +26,7 @@ struct JointLimit {
     slope = select(gap < T(kFar), slope, T(0.0));
   }
 
-  /// Adds f ∇g to [3·movable], or f ∇g ∇gᵀ to a symmetric matrix, of which the lower half counts.
+  /// Adds f ∇g to `into` [3·movable].
   void add_gradient(const T& f, int movable, T* into) const {
     into[3 * child + 2] = into[3 * child + 2] + f * slope;
     if (parent < movable) into[3 * parent + 2] = into[3 * parent + 2] - f * slope;
@@ -35,6 +35,7 @@ struct JointLimit {
   T along(const T* y, int movable) const {
     return slope * (parent < movable ? y[3 * child + 2] - y[3 * parent + 2] : y[3 * child + 2]);
   }
+  /// Adds f ∇g ∇gᵀ to the lower half of a symmetric matrix.
   void add_hessian(const T& f, int movable, BlockMatrix<T>& into) const {
     const T square = f * slope * slope;
     const auto add = [&into](int i, int j, const T& x) {
@@ -49,7 +50,8 @@ struct JointLimit {
   static constexpr double kSlack = 0.02, kFar = 1e6;  // g₀ [m]
 };
 
-/// Calls f(index, limit) for the limits of all hinges, in their order.
+/// Calls f(index, limit) for the limits of all hinges: in the order of the hinges, each lower limit
+/// before the upper one.
 template <class T, class F>
 void for_each_limit(const Articulation<T>& articulation, const Placement<T>& at, F f) {
   int index = 0;

@@ -6,26 +6,26 @@
 
 namespace rtg::energy {
 
-/// E = [0 -1; 1 0], the turn by +90°.
+/// Returns E a with E = [0 -1; 1 0], the rotation by +90°.
 template <class T>
 Vec2<T> turned(const Vec2<T>& a) {
   return {-a.y(), a.x()};
 }
 
-/// D a; Eigen's own product does not compile for 2 × 2 lanes.
+/// Returns D a. Eigen's own product does not compile for 2 × 2 matrices of Lanes.
 template <class T>
 Vec2<T> product(const Mat2<T>& D, const Vec2<T>& a) {
   return {D(0, 0) * a.x() + D(0, 1) * a.y(), D(1, 0) * a.x() + D(1, 1) * a.y()};
 }
 
-/// Body i seen from body j. Whatever depends on the poses through this view alone (distances,
-/// slips) has its derivatives in four coordinates instead of six,
+/// The pose of body i relative to body j. Functions of this relative pose alone (distances, slips)
+/// are differentiated with respect to four coordinates u instead of six,
 ///
 ///   du = (R(θ_j)ᵀ (dt_i - dt_j), dθ_i, dθ_j) = V dq,   q = (p_i, p_j):
 ///
-/// gradient and Hessian in q are Vᵀ g and Vᵀ H V. V turns with body j, so along a motion with
-/// dθ_j = ω the derivatives of Vᵀ g and Vᵀ H V are Vᵀ (ġ + Ωᵀ g) and Vᵀ (Ḣ + Ωᵀ H + H Ω), with
-/// Ω = -ω E on the first two coordinates.
+/// With gradient g and Hessian H in u, those in q are Vᵀ g and Vᵀ H V. V turns with body j. Along a
+/// motion with dθ_j = ω the derivatives of Vᵀ g and Vᵀ H V are therefore Vᵀ (ġ + Ωᵀ g) and
+/// Vᵀ (Ḣ + Ωᵀ H + H Ω), with Ω = -ω E on the first two coordinates.
 template <class T>
 struct PairFrame {
   Turn<T> frame;   // θ_j
@@ -38,7 +38,7 @@ struct PairFrame {
     offset = {j.c * x + j.s * y, j.c * y - j.s * x};
   }
 
-  /// V y for a vector y in q's coordinates; null for a body that does not move.
+  /// Returns V y for y = (yi, yj) in the coordinates q; null for a fixed body.
   Vec4<T> pushed(const T* yi, const T* yj) const {
     T x = yi ? yi[0] : T(0.0), y = yi ? yi[1] : T(0.0);
     if (yj) {
@@ -49,7 +49,7 @@ struct PairFrame {
             yj ? yj[2] : T(0.0)};
   }
 
-  /// Adds Vᵀ g; null for a body that does not move.
+  /// Adds Vᵀ g to (into_i, into_j); null for a fixed body.
   void pull(const Vec4<T>& g, T* into_i, T* into_j) const {
     const T x = frame.c * g[0] - frame.s * g[1], y = frame.s * g[0] + frame.c * g[1];
     if (into_i) {
@@ -65,15 +65,16 @@ struct PairFrame {
   }
 };
 
-/// Vᵀ H W as blocks of bodies (i, j) after and (i, j) before; `rows` and `columns` may be frames of
-/// different times.
+/// The blocks of Vᵀ H W for bodies (i, j), with V the matrix of `rows` and W that of `columns`.
+/// `rows` and `columns` may be frames of different times: for mixed derivatives, after a sub-step
+/// and before it.
 template <class T>
 struct PulledBlocks {
   Block<T> ii, ij, ji, jj;
 
   PulledBlocks(const PairFrame<T>& rows, const Mat4<T>& H, const PairFrame<T>& columns) {
     const Turn<T>&a = rows.frame, &b = columns.frame;
-    // Rows turned by R(a).
+    // Rows rotated by R(a), then columns by R(b).
     Mat4<T> G = H;
     for (int m = 0; m < 4; ++m) {
       G(0, m) = a.c * H(0, m) - a.s * H(1, m);
@@ -91,11 +92,12 @@ struct PulledBlocks {
   }
 };
 
-/// Ωᵀ g and Ωᵀ H + H Ω of a frame that turns at rate ω.
+/// Returns Ωᵀ g of a frame that turns at `rate` ω; see PairFrame.
 template <class T>
 Vec4<T> frame_turn(const T& rate, const Vec4<T>& g) {
   return {-rate * g[1], rate * g[0], T(0.0), T(0.0)};
 }
+/// Returns Ωᵀ H of a frame that turns at `rate` ω. For a symmetric H, H Ω is its transpose.
 template <class T>
 Mat4<T> row_turn(const T& rate, const Mat4<T>& H) {
   Mat4<T> out = Mat4<T>::Constant(T(0.0));

@@ -13,14 +13,14 @@ struct Placement {
   explicit Placement(int bodies = 0)
       : p(3 * static_cast<std::size_t>(bodies), T(0.0)), turns(static_cast<std::size_t>(bodies)) {}
 
-  /// To be called when p has changed.
+  /// Recomputes `turns`; must be called after each change of p.
   void update() {
     for (std::size_t i = 0; i < turns.size(); ++i) turns[i] = turn_of(p[3 * i + 2]);
   }
   T* body(int i) { return p.data() + 3 * i; }
   const T* body(int i) const { return p.data() + 3 * i; }
 
-  /// Becomes the other in the lanes of the mask.
+  /// Copies `other` in the lanes of `where`.
   void assign(const Mask<T>& where, const Placement& other) {
     for (std::size_t m = 0; m < p.size(); ++m) p[m] = select(where, other.p[m], p[m]);
     for (std::size_t i = 0; i < turns.size(); ++i) {
@@ -33,7 +33,7 @@ struct Placement {
   std::vector<Turn<T>> turns;
 };
 
-/// (Δt, Δθ) of a body between two placements.
+/// Returns the motion (Δt, Δθ) of a body from one placement to another.
 template <class T>
 Vec3<T> way(const Placement<T>& from, const Placement<T>& to, int body) {
   const T *a = from.body(body), *b = to.body(body);

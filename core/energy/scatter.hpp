@@ -4,20 +4,20 @@
 
 namespace rtg::energy {
 
-/// Entries of a body in a stacked vector; null for a body that does not move.
+/// Returns the entries of a body in a stacked vector; null for a fixed body.
 template <class T, class V>
 V* entries(const SceneModel<T>& scene, V* stacked, int body) {
   return scene.movable(body) ? stacked + 3 * body : nullptr;
 }
 
-/// V y of a pair, y [3·movable].
+/// Returns V y of a pair for y [3·movable].
 template <class T>
 Vec4<T> pushed(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame, const T* y) {
   const auto [i, j] = scene.pairs()[pair];
   return frame.pushed(entries(scene, y, i), entries(scene, y, j));
 }
 
-/// Adds Vᵀ g of a pair.
+/// Adds Vᵀ g of a pair to `into` [3·movable].
 template <class T>
 void pull(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame, const Vec4<T>& g,
           T* into) {
@@ -25,7 +25,7 @@ void pull(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame, const
   frame.pull(g, entries(scene, into, i), entries(scene, into, j));
 }
 
-/// Adds the blocks of a pair, those of bodies that move.
+/// Adds the blocks of a pair to a matrix, except those of fixed bodies.
 template <class T>
 void scatter(const SceneModel<T>& scene, int pair, const PulledBlocks<T>& blocks,
              BlockMatrix<T>& into) {
@@ -37,7 +37,7 @@ void scatter(const SceneModel<T>& scene, int pair, const PulledBlocks<T>& blocks
   into.add(j, i, blocks.ji);
 }
 
-/// The same for a symmetric matrix, the lower half alone: Vᵀ H V.
+/// Adds Vᵀ H V of a pair to the lower half of a symmetric matrix, except blocks of fixed bodies.
 template <class T>
 void scatter_lower(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame,
                    const Mat4<T>& H, BlockMatrix<T>& into) {

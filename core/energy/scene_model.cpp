@@ -9,7 +9,7 @@
 namespace rtg::energy {
 namespace {
 
-constexpr double kFarAway = 1e3;  // offset of a plane that a polygon lacks [m]
+constexpr double kFarAway = 1e3;  // offset of the unused planes of a polygon [m]
 
 int movable_bodies(const Scene& scene) {
   int count = 0;
@@ -60,7 +60,8 @@ SceneModel<T>::SceneModel(const Scene& scene, const PhysicsConfig& physics, cons
     for (std::size_t v = 0; v < body.shape.size(); ++v)
       vertices_.back()[v] = {T(body.shape.vertices[v].x()), T(body.shape.vertices[v].y())};
   }
-  // Of the robot: what push speed takes, and what gains it in a sub-step.
+  // The force that holds the robot at push speed, plus the force that accelerates it to push speed
+  // within a sub-step.
   const T drag = damping_[0].mass * T(stride_ * (1.0 + inertia_weight_));
   control_bound_ = {T(physics.force_factor) * drag, T(physics.force_factor) * drag,
                     T(physics.torque_factor) * drag * radius_[0]};

@@ -21,30 +21,33 @@ struct BodyPair {
   int body = 0, other = 0;
 };
 
-/// Contacts of pair n are n kMaxVertices, n kMaxVertices + 1, ..., one per vertex. Behind those of
-/// all pairs come the limits of joints.
+/// Returns the index of a contact. Pair n has the contacts n kMaxVertices, n kMaxVertices + 1, ...,
+/// one per vertex. The limits of joints follow the contacts of all pairs.
 inline int contact_of(int pair, int vertex) {
   return pair * static_cast<int>(kMaxVertices) + vertex;
 }
 
-/// Scenes of the same numbers of bodies, one per lane: what energies and contacts are computed
-/// from, in units of k_D/Δt² (core/NOTATION.md). Bodies of a lane may have shapes of their own.
+/// The constants from which energies and contacts are computed, in units of k_D/Δt²
+/// (core/NOTATION.md), for one scene per lane. All scenes have the same number of bodies and of
+/// movable bodies. The shapes may differ between lanes.
 template <class T>
 class SceneModel {
  public:
-  /// That scene in every lane: movable bodies first, body 0 is the robot.
+  /// Loads `scene` into every lane. `scene` lists its movable bodies first; body 0 is the robot.
   SceneModel(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push);
-  /// Room for scenes like that one, as many bodies and the same constants, and none in it yet.
+  /// Returns a model for scenes with as many bodies and the same constants as `like`. All of its
+  /// lanes are empty.
   static SceneModel room_for(const SceneModel<double>& like) { return {like, Room{}}; }
 
   void load(int lane, const SceneModel<double>& one);
-  /// Nothing in that lane touches anything.
+  /// Empties this lane: nothing in it touches anything.
   void unload(int lane);
 
   int bodies() const { return bodies_; }
   int movable() const { return movable_; }
   bool movable(int body) const { return body < movable_; }
-  /// Pair n + 1 is pair n turned round for even n. Jointed bodies are no pair.
+  /// For even n, pair n + 1 is pair n reversed. Two fixed bodies, or two bodies that a joint
+  /// connects, form no pair.
   const std::vector<BodyPair>& pairs() const { return pairs_; }
   int pair_count() const { return static_cast<int>(pairs_.size()); }
   int contacts() const {
@@ -58,15 +61,17 @@ class SceneModel {
   double slip() const { return slip_; }
   double skin() const { return skin_; }
   const Damping<T>& damping(int body) const { return damping_[body]; }
-  /// Says whether a sub-step depends on the one before it.
+  /// Returns whether a sub-step depends on the one before it.
   bool inertial() const { return inertia_weight_ > 0.0; }
-  /// How far what moves at push speed coasts, in strides of a sub-step: v Δt/k_D.
+  /// Returns the distance v Δt/k_D that a body coasts from push speed v, in strides of a sub-step;
+  /// 0 without inertia.
   double coasting() const { return inertia_weight_; }
   Inertia<T> inertia(int body) const {
     const Damping<T>& d = damping_[body];
     return {d.mass * T(inertia_weight_), d.moment * T(inertia_weight_), d.periodic};
   }
-  /// The part of damping and inertia in Φ of a body that moves by a = (Δt, Δθ) after it moved by b.
+  /// Returns what damping and inertia contribute to Φ for a body that moves by a = (Δt, Δθ) after a
+  /// motion by b in the sub-step before.
   Vec3<T> motion_force(int body, const Vec3<T>& a, const Vec3<T>& b) const {
     const Damping<T>& d = damping_[body];
     Vec3<T> force(d.mass * a[0], d.mass * a[1], d.turn_slope(a[2]));
@@ -79,8 +84,9 @@ class SceneModel {
   const Vec3<T>& control_bound() const { return control_bound_; }
   const T& friction(int pair) const { return friction_[pair]; }
 
-  /// Says whether the bodies are close enough for any of their contacts to act, turned round or
-  /// not: the gap of a vertex is less than the range in all of the other's offset_polygon().
+  /// Returns whether the bodies are close enough for any contact of the pair, or of the reversed
+  /// pair, to act. A vertex whose gap is below the range lies in the offset_polygon() of the other
+  /// body, so the test compares the distance of the centres with bounding radii.
   Mask<T> near(int pair, const Placement<T>& at) const {
     const auto [i, j] = pairs_[pair];
     const T x = at.body(i)[0] - at.body(j)[0], y = at.body(i)[1] - at.body(j)[1];
@@ -92,8 +98,9 @@ class SceneModel {
     const auto [i, j] = pairs_[pair];
     return {at.body(i), at.turns[i], at.body(j), at.turns[j]};
   }
-  /// Most vertices that the pair's first body has in any lane.
+  /// Returns the largest number of vertices that the pair's first body has in any lane.
   int corners(int pair) const { return corners_[pairs_[pair].body]; }
+  /// Returns the lanes in which the pair's first body has this vertex.
   Mask<T> real(int pair, int vertex) const { return corner_count_[pairs_[pair].body] > T(vertex); }
   ContactPoint<T> point(int pair, int vertex, const PairFrame<T>& frame) const {
     return {vertices_[pairs_[pair].body][vertex], frame};
@@ -103,17 +110,17 @@ class SceneModel {
     return {planes(pair), corner_count_[pairs_[pair].other]};
   }
 
-  /// To be called when poses have changed: jointed bodies go where their joints close.
+  /// Updates `at` after a change of its poses and moves jointed bodies to where their joints close.
   void place(Placement<T>& at) const {
     at.update();
     articulation_.close(at);
   }
 
-  /// λ(g(p)) of every contact [contacts].
+  /// Computes λ(g(p)) of every contact [contacts].
   void forces(const Placement<T>& at, T* lambda) const;
-  /// Least gap of all contacts, at most ĝ [m].
+  /// Returns the least gap of all contacts, at most ĝ [m].
   T least_gap(const Placement<T>& at) const;
-  /// Separating-axis test of all pairs of which one may move.
+  /// Returns whether all pairs pass the separating-axis test; see SeparatingEdges.
   Mask<T> separated(const Placement<T>& at) const;
 
  private:
@@ -127,10 +134,10 @@ class SceneModel {
   std::vector<BodyPair> pairs_;
   std::vector<T> friction_;  // per pair
   std::vector<std::array<Vec2<T>, kMaxVertices>> vertices_;
-  std::vector<int> corners_;  // most of any lane
-  std::vector<T> corner_count_;
+  std::vector<int> corners_;     // per body, the largest number in any lane
+  std::vector<T> corner_count_;  // per body; 0 in an empty lane
   std::vector<Planes<T>> planes_;
-  std::vector<T> radius_, reach_;  // of the corners, of those of the offset polygon
+  std::vector<T> radius_, reach_;  // bounding radii of the shape and of its offset polygon [m]
   std::vector<Damping<T>> damping_;
   Vec3<T> control_bound_;
   Barrier barrier_;

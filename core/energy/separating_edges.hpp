@@ -6,25 +6,29 @@
 
 namespace rtg::energy {
 
-/// A side of the separating-axis test, along with what measures the gaps: least distance of a
-/// body's vertices to each plane of another. Corners, which the smoothed distance cuts, may overlap
-/// by 2 ln 2/α, and by as much again: acute tips pass each other without a vertex in the other
-/// body, and a wall there that no force announces would stop every solver.
+/// A direction of the separating-axis test: the edges of one body against the vertices of another.
+/// It uses the same distances to the planes as the gaps.
+///
+/// The test permits an overlap of 4 ln 2/α. The first 2 ln 2/α are for corners, which the smoothed
+/// distance cuts. The rest is for acute tips, which can pass each other with no vertex inside the
+/// other body: there no contact force grows before the test fails, and this would stop every
+/// solver.
 template <class T>
 class SeparatingEdges {
  public:
-  /// `edges`: how many planes are real, by lane.
+  /// `edges` is the number of edges of the polygon in each lane; further planes are unused.
   SeparatingEdges(const Planes<T>& planes, const T& edges) : planes_(planes), edges_(edges) {
     for (int k = 0; k < planes.count; ++k) least_[k] = T(INFINITY);
   }
 
-  /// Takes the plane distances of a vertex into account where it is real.
+  /// Takes the plane distances of a vertex into account in the lanes `real`, those that have it.
   void note(const T* distances, const Mask<T>& real) {
     for (int k = 0; k < planes_.count; ++k)
       least_[k] = select(real, lesser(least_[k], distances[k]), least_[k]);
   }
 
-  /// Says whether, all vertices noted, one of the planes separates the two bodies.
+  /// Returns whether one of the planes separates the two bodies. Call note() for all vertices
+  /// first.
   Mask<T> separate(double sharpness) const {
     T best(-INFINITY);
     for (int k = 0; k < planes_.count; ++k)
@@ -33,11 +37,11 @@ class SeparatingEdges {
   }
 
  private:
-  static constexpr double kCorners = 4.0;
+  static constexpr double kCorners = 4.0;  // permitted overlap in units of ln 2/α
 
   const Planes<T>& planes_;
   const T& edges_;
-  T least_[kMaxVertices];
+  T least_[kMaxVertices];  // per plane: least distance of the vertices [m]
 };
 
 }  // namespace rtg::energy

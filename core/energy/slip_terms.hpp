@@ -8,16 +8,17 @@ namespace rtg::energy {
 ///
 ///   φ(u) = √(u² + ε²) - ε,   u = t·(x₊ - x),   t = E ∇d(x),
 ///
-/// and its derivatives in the pair's coordinates after (first) and before (second).
+/// and its derivatives. In these, u₊ and u are the pair's coordinates (PairFrame) after and before
+/// the sub-step.
 template <class T>
 struct SlipTerms {
   Vec2<T> tangent;      // t = ∂u/∂x₊
-  Vec2<T> way;          // Eᵀ (x₊ - x), so u = ∇d·way
+  Vec2<T> way;          // Eᵀ (x₊ - x); slip u = ∇d·way
   T root, slope, bend;  // √(u² + ε²), φ', φ''
   T slip;               // u
   Vec4<T> ahead;        // X₊ᵀ t
 
-  /// `normal`: ∇d(x); `x`: the point before.
+  /// `normal` is ∇d(x), `x` the point before the sub-step, `scale` ε.
   SlipTerms(const Vec2<T>& normal, const ContactPoint<T>& next, const Vec2<T>& x, double scale)
       : tangent(turned(normal)) {
     const Vec2<T> moved = next.x - x;
@@ -44,20 +45,21 @@ struct SlipTerms {
   }
 };
 
-/// Where a contact slips.
+/// The geometry of a slipping contact: its points after and before a sub-step, and the distance d
+/// at the latter.
 template <class T>
 struct SlipPlace {
-  const SignedDistance<T>& d;  // of the point before
+  const SignedDistance<T>& d;  // at the point before
   const Mat2<T>& D;            // ∇²d
   const ContactPoint<T>&after, &before;
 };
 
-/// The rest of φ's second derivatives, and the derivatives of its gradient and Hessian along a
-/// motion y of the pose after (x₊ moves, x stays), turn of the frame included.
+/// The mixed second derivatives of φ, and the derivatives of its gradient and Hessian along a
+/// motion y of the poses after the sub-step: x₊ moves, x stays. They include the turn of the frame.
 template <class T>
 class SlipRates {
  public:
-  /// `hessian`: ∂²φ/∂u₊².
+  /// `hessian` is ∂²φ/∂u₊².
   SlipRates(const SlipTerms<T>& s, const SlipPlace<T>& at, const Mat4<T>& hessian, const Vec4<T>& y)
       : s_(s), at_(at), rate_(at.after.along(y)), way_(rate_.x.y(), -rate_.x.x()) {
     tangent_slope_ << -at.D(1, 0), -at.D(1, 1), at.D(0, 0), at.D(0, 1);

@@ -39,7 +39,7 @@ VectorXd StepEnergy::forces(const VectorXd& p) const {
 
 namespace {
 
-/// A StepPotential with the placements that it begins from.
+/// A StepPotential after begin(), together with the placements that must outlive it.
 struct Begun {
   Placement<double> now, before;
   StepPotential<double> potential;

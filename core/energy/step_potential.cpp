@@ -26,13 +26,13 @@ void StepPotential<T>::begin(const Placement<T>& now, const T* lag, const Placem
   }
 }
 
-/// How far a body moved in the sub-step before.
+/// Returns the motion of a body in the sub-step before; 0 if it is at rest.
 template <class T>
 Vec3<T> StepPotential<T>::way_before(int body) const {
   return before_ ? way(*before_, *now_, body) : Vec3<T>(T(0.0), T(0.0), T(0.0));
 }
 
-/// Damping and inertia.
+/// Returns the potential of damping and inertia.
 template <class T>
 T StepPotential<T>::motion(const Placement<T>& next) const {
   T sum(0.0);
@@ -76,7 +76,7 @@ T StepPotential<T>::value(const Placement<T>& next, const T* were, T* gaps, Mask
       const SlipTerms<T> s(lagged_[c].normal, touch.point, lagged_[c].x, scene_.slip());
       sum = sum + lagged_[c].load * s.value(scene_.slip());
     }
-    apart = apart || edges.separate(scene_.sharpness());  // an edge of either body will do
+    apart = apart || edges.separate(scene_.sharpness());  // an edge of either body suffices
     if (n % 2 == 1) legal = legal && apart;
   }
   for_each_limit(scene_.articulation(), next, [&](int l, const JointLimit<T>& limit) {

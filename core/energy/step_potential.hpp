@@ -15,23 +15,25 @@ class StepPotential {
         lagged_(static_cast<std::size_t>(scene.contacts())),
         drags_(scene.pairs().size()) {}
 
-  /// The sub-step begins at `now` with normal forces `lag`. With inertia `before` are the poses a
-  /// sub-step earlier, null where everything is at rest. Placements must outlive the calls below.
+  /// Begins a sub-step at poses `now` with normal forces `lag`. Inertia also uses `before`, the
+  /// poses one sub-step earlier; null means that everything is at rest. The placements must outlive
+  /// all calls of value() and model().
   void begin(const Placement<T>& now, const T* lag, const Placement<T>* before = nullptr);
 
-  /// Its value, infinite where a gap is not open; `gaps` [contacts]; `legal`: where they keep
-  /// enough of what they `were` and bodies are separated.
+  /// Returns Ψ without actuation, infinite in lanes where a gap is not positive. Sets `gaps`
+  /// [contacts], and `legal` to the lanes in which keeps_gap() holds for each gap and its previous
+  /// value in `were` [contacts] and all bodies are separated.
   T value(const Placement<T>& next, const T* were, T* gaps, Mask<T>& legal) const;
 
-  /// Adds its gradient [3·movable] and Hessian, the lower half.
+  /// Adds the gradient of value() [3·movable] and the lower half of its Hessian.
   void model(const Placement<T>& next, T* gradient, BlockMatrix<T>& hessian) const;
 
  private:
-  /// A contact that drags.
+  /// Lagged friction of a contact.
   struct Lagged {
-    Vec2<T> x, normal;  // before
-    T load;             // μ_f λ
-    bool drags = false;
+    Vec2<T> x, normal;   // point and normal at the start of the sub-step
+    T load;              // μ_f λ
+    bool drags = false;  // λ ≠ 0 in some lane; else the members above are not set
   };
   T motion(const Placement<T>& next) const;
   void add_motion(const Placement<T>& next, T* gradient, BlockMatrix<T>& hessian) const;
@@ -41,7 +43,7 @@ class StepPotential {
   const SceneModel<T>& scene_;
   const Placement<T>*now_ = nullptr, *before_ = nullptr;
   std::vector<Lagged> lagged_;
-  std::vector<char> drags_;  // per pair
+  std::vector<char> drags_;  // per pair: whether some contact drags
 };
 
 }  // namespace rtg::energy

@@ -12,17 +12,18 @@
 namespace rtg::forward {
 namespace {
 
-constexpr double kMaxCoordinate =
-    1000.0;                        // beyond it single precision is coarser than the slop [m]
-constexpr double kMaxAngle = 1e4;  // ... likewise [rad]
-constexpr double kCatchUp = 1.5;   // largest servo speed / push speed
-constexpr int kCatchUpSteps = 2;   // make up for what first contacts cost at the end of the path
-constexpr double kClear = 0.1;     // bodies farther apart do not meet in the next steps [m]
+// Largest coordinate [m] and angle [rad]: there the spacing of single-precision numbers is still
+// well below Box2D's linear and angular slop.
+constexpr double kMaxCoordinate = 1000.0;
+constexpr double kMaxAngle = 1e4;
+constexpr double kCatchUp = 1.5;  // largest servo speed / push speed
+constexpr int kCatchUpSteps = 2;  // extra steps after the path: first contacts delay the robot
+constexpr double kClear = 0.1;    // bodies farther apart do not touch in the next steps [m]
 constexpr int kRestSteps = 400;
-constexpr double kRestSpeed = 1e-4;  // [m/s] and [rad/s]
-constexpr double kSlowSpeed = 1e-2;  // still good enough when the steps run out
-constexpr double kRestShift =
-    1e-5;  // contacts have come apart when no step moves a body by more [m]
+constexpr double kRestSpeed = 1e-4;  // speed of a body at rest [m/s] and [rad/s]
+constexpr double kSlowSpeed = 1e-2;  // speed that is accepted after the last step, same units
+// Box2D has moved overlapping contacts apart when no step moves a body by more [m] and [rad].
+constexpr double kRestShift = 1e-5;
 
 b2Vec2 to_b2(const Vector2d& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
 
@@ -30,18 +31,18 @@ Pose pose_of(const b2Body& body) {
   return {body.GetPosition().x, body.GetPosition().y, body.GetAngle()};
 }
 
-/// Quantities of the servo that hold for a whole push.
+/// Quantities of the servo that are constant over a push.
 struct Servo {
   double step_s = 0.0;   // length of a Box2D step [s]
-  double advance = 0.0;  // of the robot per Box2D step [m]
+  double advance = 0.0;  // motion of the robot per Box2D step [m]
   double radius = 0.0;   // r₀ [m]
   double max_force = 0.0, max_torque = 0.0;
-  int rest_steps = 0;  // in which everything should come to rest
+  int rest_steps = 0;  // number of steps in which all bodies must come to rest
 };
 
-// A joint impulse is not damped in its own step, an applied force is: the same motion takes 1/(1 +
-// h d) of the force. Dividing the bounds by that factor makes them stop the robot where they would
-// in Ψ.
+// Box2D damps an applied force in its own step, but not the impulse of a joint: for the same motion
+// a joint needs only 1/(1 + h d) of the force, with h the Box2D step and d the damping. With its
+// bounds scaled by this factor, the servo stops the robot where it would stop in Ψ.
 Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& physics) {
   const double damping = physics.damping / physics.time_step;
   const double speed = push.stride / (physics.sub_steps * physics.time_step);
@@ -49,7 +50,7 @@ Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& 
   const double radius = bounding_radius(scene.bodies[0].shape);
   const double drag = mass_of(scene.bodies[0]).mass * damping * speed *
                       (1.0 + physics.inertia_weight()) / (1.0 + step_s * damping);
-  // Free bodies lose 1 + h d of their speed in each step.
+  // Each step divides the speed of a free body by 1 + h d.
   const double coasting = std::log(kCatchUp * speed / kRestSpeed) / std::log1p(step_s * damping);
   return {step_s,
           speed * step_s,
@@ -59,7 +60,7 @@ Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& 
           kRestSteps + static_cast<int>(std::clamp(coasting, 0.0, 1e6))};
 }
 
-/// Says whether the bounding circle of body `i` is clear of those of all others.
+/// Returns whether the bounding circle of body `i` is kClear or more away from all others.
 bool is_alone(const Scene& scene, const Poses& poses, std::size_t i) {
   const double radius = bounding_radius(scene.bodies[i].shape) + kClear;
   for (std::size_t j = 0; j < scene.size(); ++j)
@@ -69,7 +70,7 @@ bool is_alone(const Scene& scene, const Poses& poses, std::size_t i) {
   return true;
 }
 
-/// A scene in a Box2D world of its own.
+/// A Box2D world that holds one scene.
 class Table {
  public:
   Table(const Scene& scene, const PhysicsConfig& physics, const Servo& servo, const Poses& start)
@@ -77,7 +78,7 @@ class Table {
     world_.SetAllowSleeping(false);
     world_.SetContinuousPhysics(false);  // a Box2D step moves bodies by far less than their size
     for (std::size_t i = 0; i < scene.size(); ++i) {
-      // A body on its own sleeps until something runs into it, which saves its island's cost.
+      // An isolated body sleeps until another body hits it, which saves the cost of its island.
       add(scene.bodies[i], start[i], i == 0 || !is_alone(scene, start, i));
     }
     touched_[0] = true;
@@ -85,8 +86,8 @@ class Table {
     for (const Joint& joint : scene.joints) add_joint(joint);
   }
 
-  /// A Box2D step in which the servo heads for `target`. False: not finite, the step is
-  /// discarded.
+  /// Makes a Box2D step in which the servo moves the robot towards `target`. Returns false if a
+  /// pose is not finite; poses() then stay those before the step.
   bool step_towards(const Pose& target) {
     const Pose robot = pose_of(*bodies_[0]);
     const double reach = kCatchUp * servo_.advance;
@@ -101,8 +102,8 @@ class Table {
     return observe();
   }
 
-  /// Steps with the robot held where it is until nothing moves any more. False: something still
-  /// moves, or not finite.
+  /// Makes steps with the robot held at its pose until nothing moves. Returns false if a body still
+  /// moves after the last step or a pose is not finite.
   bool come_to_rest() {
     const Pose hold = pose_of(*bodies_[0]);
     for (int k = 0; k < servo_.rest_steps; ++k) {
@@ -112,7 +113,7 @@ class Table {
     return fastest_ < kSlowSpeed;
   }
 
-  /// The robot is on its way to `target`, at push speed.
+  /// Gives the robot push speed towards `target`.
   void set_speed(const Pose& target) {
     const Vector2d way = target.position() - pose_of(*bodies_[0]).position();
     bodies_[0]->SetLinearVelocity(to_b2(servo_.advance / servo_.step_s * way.normalized()));
@@ -142,8 +143,8 @@ class Table {
     fixture.friction = static_cast<float>(body.friction);
     added->CreateFixture(&fixture);
     if (!body.fixed) {
-      // An exactly zero centre keeps poses free of rounding: Box2D stores the centre, not the
-      // origin.
+      // Box2D stores the centre of mass, not the origin of a body. A centre of exactly zero keeps
+      // poses free of rounding.
       const Mass mass = mass_of(body);
       const b2MassData data{
           static_cast<float>(mass.mass), {0.0f, 0.0f}, static_cast<float>(mass.moment)};
@@ -159,7 +160,7 @@ class Table {
     def.localAnchorA = to_b2(joint.on_parent);
     def.localAnchorB = to_b2(joint.on_child);
     def.enableLimit = std::isfinite(joint.lower) || std::isfinite(joint.upper);
-    // Box2D lets a pressed joint go on by its slop.
+    // Box2D lets a loaded joint exceed its limits by the angular slop.
     const double slop =
         std::min(static_cast<double>(b2_angularSlop), 0.5 * (joint.upper - joint.lower));
     def.lowerAngle = static_cast<float>(std::max(joint.lower + slop, -kMaxAngle));
@@ -179,6 +180,7 @@ class Table {
     servo_joint_ = static_cast<b2MotorJoint*>(world_.CreateJoint(&def));
   }
 
+  /// Updates the state below after a step. Returns false, with no update, if a pose is not finite.
   bool observe() {
     for (const b2Body* body : bodies_)
       if (!is_finite(pose_of(*body))) return false;
@@ -186,8 +188,8 @@ class Table {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const double speed = bodies_[i]->GetLinearVelocity().Length();
       const double spin = std::abs(bodies_[i]->GetAngularVelocity());
-      // Contacts at rest exchange exactly zero impulse; what then still moves is Box2D's position
-      // correction.
+      // Contacts at rest exchange exactly zero impulse. If a body without speed still moves, this
+      // is Box2D's position correction.
       if (speed > 0.0 || spin > 0.0) touched_[i] = true;
       if (!touched_[i]) continue;
       const Pose now = pose_of(*bodies_[i]);
@@ -205,15 +207,15 @@ class Table {
   std::vector<b2Body*> bodies_;
   b2MotorJoint* servo_joint_ = nullptr;
   Poses good_;                 // after the last finite step
-  std::vector<bool> touched_;  // has had a velocity
+  std::vector<bool> touched_;  // per body: whether it has had a velocity
   double fastest_ = 0.0;       // largest speed of a touched body [m/s] or [rad/s]
   double shift_ = 0.0;         // largest displacement in the last step [m] or [rad]
 };
 
-/// The robot's straight way, at push speed.
+/// The robot's straight path at push speed.
 struct Path {
   Pose from, to;
-  double advance;  // per step [m]
+  double advance;  // motion per step [m]
   int steps;
 
   Path(const Pose& start, const Pose& end, double per_step, int most)
@@ -223,7 +225,7 @@ struct Path {
         steps(std::min(most, static_cast<int>(std::ceil(length() / advance - 1e-6)))) {}
 
   double length() const { return (to.position() - from.position()).norm(); }
-  /// After k steps.
+  /// Returns the robot's pose after k steps.
   Pose at(int k) const {
     const double done = std::min(1.0, k * advance / std::max(length(), advance));
     const Vector2d x = from.position() + done * (to.position() - from.position());
@@ -231,7 +233,8 @@ struct Path {
   }
 };
 
-/// Drives the robot on from where it is after `done` steps. False: a step was not finite.
+/// Drives the robot along the rest of its path, after the first `done` steps. Returns false if a
+/// step was not finite.
 bool drive(Table& table, const Path& path, int done) {
   for (int k = done + 1; k <= path.steps + kCatchUpSteps; ++k)
     if (!table.step_towards(path.at(k))) return false;
@@ -258,7 +261,7 @@ PushOutcome Box2dSimulator::push(const Poses& start, int action) const {
                   physics_.sub_steps * physics_.box2d_steps);
   const double clear = clear_way(scene_, start, path.to);
   Poses begun = start;
-  if (clear >= path.length()) {  // nothing is met on the way
+  if (clear >= path.length()) {  // no body is near the path
     begun[0] = to_single(path.to);
     return {begun, true};
   }
@@ -281,9 +284,9 @@ PushOutcome Box2dSimulator::settle(const Poses& start) const {
 
 }  // namespace rtg::forward
 
-// b2World::Step reads the clock some ten times for a profile that nobody looks at, an eighth of a
-// generation. It cannot be switched off, but the dynamic linker takes these for the library's own.
-// The members are those of Linux and macOS.
+// b2World::Step reads the clock about ten times for a profile that is not used here. This costs an
+// eighth of the time of a generation and cannot be switched off. The dynamic linker resolves the
+// library's timer to these empty functions instead. The members are those of Linux and macOS.
 b2Timer::b2Timer() : m_start_sec(0), m_start_usec(0) {}
 void b2Timer::Reset() {}
 float b2Timer::GetMilliseconds() const { return 0.0f; }

@@ -8,12 +8,12 @@
 namespace rtg::forward {
 namespace {
 
-constexpr double kNear = 0.05;         // [m]
-constexpr double kNearEnough = 0.055;  // where strides end, which shrink towards kNear [m]
+constexpr double kNear = 0.05;         // gap that the robot keeps to all bodies [m]
+constexpr double kNearEnough = 0.055;  // gap that ends the search: strides shrink towards kNear [m]
 
 }  // namespace
 
-/// By strides as long as the separating axes allow (conservative advancement).
+/// Advances by the longest strides that the separation permits (conservative advancement).
 double clear_way(const Scene& scene, const Poses& poses, const Pose& to) {
   const Vector2d from = poses[0].position();
   const double length = (to.position() - from).norm();

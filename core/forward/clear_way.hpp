@@ -4,8 +4,9 @@
 
 namespace rtg::forward {
 
-/// How far the robot moves straight on to `to`, heading held, until a body is within 0.05 m of it,
-/// at most the whole way [m]; 0 where one is there already.
+/// Returns the distance that the robot can move straight towards `to`, heading held, before it is
+/// within 0.05 m of a body; at most the distance of `to` [m]. Returns 0 if a body is that near
+/// already.
 double clear_way(const Scene& scene, const Poses& poses, const Pose& to);
 
 }  // namespace rtg::forward

@@ -6,21 +6,22 @@
 
 namespace rtg::forward {
 
-/// The outcome of a push. `ok` is false if the simulator met a non-finite state or an iteration
-/// limit; `end` is then the last good state and must not be used as a transition.
+/// The outcome of a push. `ok` is false if the start is not usable, a state is not finite or the
+/// simulator reached an iteration limit. `end` is then the start or the last good state, and must
+/// not be used as a transition.
 struct PushOutcome {
   Poses end;
   bool ok = true;
 };
 
-/// Forward dynamics of a scene at rest: equal arguments give bit-equal results, in any order, on
-/// any number of threads (implementations hold no mutable state).
+/// Forward dynamics of a scene at rest. Equal arguments give bit-equal results, whatever the order
+/// of the calls and the number of threads: implementations hold no mutable state.
 class Simulator {
  public:
   virtual ~Simulator() = default;
 
-  /// The pushing action: the robot moves straight to push_target(), heading held, force and torque
-  /// bounded; then everything settles. `start` has one pose per body.
+  /// Simulates a pushing action: the robot moves straight to push_target(), with the heading held
+  /// and bounded force and torque. Then everything settles. `start` has one pose per body.
   [[nodiscard]] virtual PushOutcome push(const Poses& start, int action) const = 0;
 
   /// Lets the scene come to rest with the robot held.

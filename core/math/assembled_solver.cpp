@@ -6,7 +6,8 @@
 namespace rtg {
 namespace {
 
-constexpr double kMultiplierShift = 1e-9;  // on the multipliers' diagonal, against a singular E
+// Subtracted from the diagonal of the multipliers, so that a singular E does not make K singular.
+constexpr double kMultiplierShift = 1e-9;
 
 void write(const BlockColumn<double>& from, double sign, VectorXd& to, Eigen::Index at) {
   for (std::size_t i = 0; i < from.size(); ++i)
@@ -92,7 +93,8 @@ void Assembled::add_stage(const StageSystem<double>::Stage& stage, int k) {
   write(stage.e, -1.0, r_[y.block], y.row);
 }
 
-/// Below (or on) the diagonal of K.
+/// Returns the entry of K at (row, column), or at (column, row) if that is the one on or below the
+/// diagonal.
 double& Assembled::entry(const Place& row, const Place& column) {
   if (row.block < column.block || (row.block == column.block && row.row < column.row))
     return entry(column, row);
@@ -100,7 +102,7 @@ double& Assembled::entry(const Place& row, const Place& column) {
                                    : K_.B[row.block](row.row, column.row);
 }
 
-/// M off the diagonal of K.
+/// Adds M to K at (row, column), off the diagonal of K.
 void Assembled::add(const BlockMatrix<double>& M, const Place& row, const Place& column) {
   for (int i = 0; i < M_; ++i)
     for (const int j : Bits(M.pattern[i]))
@@ -110,7 +112,8 @@ void Assembled::add(const BlockMatrix<double>& M, const Place& row, const Place&
               M.at(i, j)(a, b);
 }
 
-/// M symmetric, of which the lower half counts; on the diagonal of K that half alone.
+/// Adds a symmetric M, given by its lower half, to K at (row, column). On the diagonal of K adds
+/// the lower half alone.
 void Assembled::add_symmetric(const BlockMatrix<double>& M, const Place& row, const Place& column) {
   const bool own = row.block == column.block && row.row == column.row;
   for (int i = 0; i < n_; ++i)

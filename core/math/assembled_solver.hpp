@@ -7,19 +7,19 @@
 
 namespace rtg {
 
-/// A StageSystem as a symmetric block-tridiagonal matrix and right-hand side, with the centred
-/// pairing: block k holds the pose after sub-step k, its control and the multiplier of its
+/// A StageSystem as a symmetric block-tridiagonal matrix and a right-hand side, with the centred
+/// pairing. Block k holds the poses after sub-step k, its control and the multipliers of its
 /// residual,
 ///
-///   ζ_k = (Δp_k, Δc_k, Δy_k), k = 1 ... h;  ζ_0 = Δp_0,
+///   ζ_k = (Δp_k, Δc_k, Δy_k), k = 1 ... h;  ζ_0 = Δp_0.
 ///
-/// or, where the final state is fixed (Δp_h = 0) and block h would have no pose, those of the next
-/// sub-step,
+/// If the final state is fixed (Δp_h = 0), block h would have no poses. Then block k holds the
+/// control and the multipliers of the next sub-step,
 ///
 ///   ζ_k = (Δp_k, Δc_{k+1}, Δy_{k+1}), k = 0 ... h-1.
 ///
-/// With inertia, which couples three levels, a block holds two sub-steps: (ζ_1, ζ_2), (ζ_3, ζ_4),
-/// ... after ζ_0; the final state is not fixed then.
+/// Inertia couples three successive states, so that a block holds two sub-steps: the blocks are
+/// ζ_0, (ζ_1, ζ_2), (ζ_3, ζ_4), ... With inertia the final state must not be fixed.
 ///
 /// Departs from the paper: its printed pairing is pentadiagonal.
 class Assembled {
@@ -28,12 +28,12 @@ class Assembled {
 
   const BlockTridiagonal& matrix() const { return K_; }
   const BlockVector& right_hand_side() const { return r_; }
-  /// The step that a vector of the system stands for, and back.
+  /// Convert a vector of the system to a step, and back.
   void read(const BlockVector& x, StageStep<double>& step) const;
   BlockVector written(const StageStep<double>& step) const;
 
  private:
-  /// First row of something, within its block.
+  /// Position of the first row of a variable: its block, and the row within this block.
   struct Place {
     int block, row;
   };
@@ -47,13 +47,14 @@ class Assembled {
   void add(const BlockMatrix<double>& M, const Place& row, const Place& column);
   void add_symmetric(const BlockMatrix<double>& M, const Place& row, const Place& column);
 
-  int M_, n_, h_, per_block_;  // sub-steps per block
+  int M_, n_, h_, per_block_;  // bodies, entries of Δp_k, sub-steps, sub-steps per block
   bool fixed_end_;
   BlockTridiagonal K_;
   BlockVector r_;
 };
 
-/// Solves the assembled matrix by any of the methods: the paper's, and the oracle of the others.
+/// Solves the assembled system by any KktMethod, which includes the paper's method and the
+/// reference methods for the others.
 class AssembledSolver final : public StageSolver<double> {
  public:
   AssembledSolver(KktMethod method, bool fixed_end)

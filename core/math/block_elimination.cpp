@@ -11,7 +11,7 @@ bool PivotBlock::factorize(const MatrixXd& A) {
   return pivots.size() == 0 || pivots.minCoeff() > 1e-14 * pivots.maxCoeff();
 }
 
-/// S_N = A_N; S_{k-1} = A_{k-1} - B_kᵀ S_k⁻¹ B_k.
+/// Computes the pivots S_{N-1} = A_{N-1}, S_{k-1} = A_{k-1} - B_kᵀ S_k⁻¹ B_k.
 bool BlockElimination::factorize(const BlockTridiagonal& K) {
   const std::size_t N = K.blocks();
   pivots_.resize(N);

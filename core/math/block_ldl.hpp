@@ -4,24 +4,27 @@
 
 namespace rtg {
 
-/// A = L D Lᵀ of a symmetric block matrix, in the order of the bodies and without pivoting beyond
-/// the 3 × 3 blocks of D; L has a unit diagonal and the pattern of A's lower half with its fill.
+/// Factorisation A = L D Lᵀ of a symmetric block matrix. It keeps the order of the bodies: the
+/// pivots are the 3 × 3 blocks of D. L has a unit diagonal and the pattern of A's lower half with
+/// its fill.
 template <class T>
 class BlockLdl {
  public:
   explicit BlockLdl(int count = 0)
       : L_(count), inverse_(static_cast<std::size_t>(count)), row_(inverse_) {}
 
-  /// Reads the lower half of A. Returns in which lanes A is positive definite.
+  /// Factorises A, of which it reads the lower half. Returns the lanes in which A is positive
+  /// definite.
   Mask<T> factorize(const BlockMatrix<T>& A);
-  /// Says whether no block of D was singular.
+  /// Returns the lanes in which no block of D is singular.
   const Mask<T>& regular() const { return regular_; }
 
   /// x ← A⁻¹ x.
   void solve(Vec3<T>* x) const;
 
-  /// out ← r A⁻¹ for a row r of M blocks, of which `load`(i) returns the RegisterSum r_i. Those
-  /// before `first` are zero; the result is wanted from `from` on, before it `out` is arbitrary.
+  /// out ← r A⁻¹ for a row r of M blocks. `load`(i) returns block r_i as a RegisterSum; it is
+  /// called for i ≥ `first` only, the blocks before count as zero. The result is complete from
+  /// block `from` on; the blocks of `out` before `from` are arbitrary.
   template <class Load>
   void solve_row(const Load& load, int first, int from, Block<T>* out) const;
 
@@ -30,9 +33,9 @@ class BlockLdl {
   std::uint64_t before(int i) const { return L_.pattern[i] & ((std::uint64_t{1} << i) - 1); }
   std::uint64_t after(int i) const { return L_.pattern[i] & ~((std::uint64_t{2} << i) - 1); }
 
-  BlockMatrix<T> L_;               // strictly lower half; (j, i) of the pattern beside (i, j)
+  BlockMatrix<T> L_;               // strictly lower half; the pattern is symmetric
   std::vector<Block<T>> inverse_;  // D_i⁻¹
-  std::vector<Block<T>> row_;      // of L D
+  std::vector<Block<T>> row_;      // the current row of L D
   Mask<T> regular_ = Mask<T>(true);
 };
 
@@ -61,7 +64,7 @@ Mask<T> BlockLdl<T>::factorize(const BlockMatrix<T>& A) {
   return positive;
 }
 
-/// Row i of L D left of the diagonal, and its pattern.
+/// Computes row i of L D left of the diagonal, and its pattern.
 template <class T>
 void BlockLdl<T>::eliminate_row(const BlockMatrix<T>& A, int i) {
   for (int j = 0; j < i; ++j) {

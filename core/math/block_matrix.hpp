@@ -14,11 +14,12 @@ namespace rtg {
 template <class T>
 using Block = Eigen::Matrix<T, 3, 3>;
 
-/// Bit j of entry i: block (i, j) may differ from zero, in some lane. At most 64 bodies.
+/// Sparsity pattern: bit j of entry i is set if block (i, j) may differ from zero in some lane. At
+/// most 64 bodies.
 using BlockPattern = std::vector<std::uint64_t>;
 
-/// Square matrix of M × M blocks of 3 × 3, a block row and column per body, row by row. Blocks
-/// outside the pattern are not looked at.
+/// Square matrix of M × M blocks of 3 × 3, stored row by row, with a block row and a block column
+/// per body. Blocks outside the pattern count as zero and are never read.
 template <class T>
 struct BlockMatrix {
   explicit BlockMatrix(int count = 0)
@@ -32,7 +33,7 @@ struct BlockMatrix {
   const Block<T>& at(int i, int j) const { return blocks[index(i, j)]; }
   bool has(int i, int j) const { return (pattern[static_cast<std::size_t>(i)] >> j & 1U) != 0; }
 
-  /// Adds X to block (i, j), which joins the pattern.
+  /// Adds X to block (i, j) and the block to the pattern.
   template <class Summand>
   void add(int i, int j, const Summand& X) {
     if (has(i, j)) {
@@ -42,7 +43,7 @@ struct BlockMatrix {
       at(i, j) = X;
     }
   }
-  /// The pattern of column j.
+  /// Returns the pattern of column j: bit i is set for block (i, j).
   std::uint64_t column(int j) const {
     std::uint64_t rows = 0;
     for (int i = 0; i < M; ++i) rows |= std::uint64_t{has(i, j)} << i;
@@ -63,11 +64,12 @@ struct BlockMatrix {
   }
 };
 
-/// A vector cut alike.
+/// A vector of M blocks of 3 entries.
 template <class T>
 using BlockColumn = std::vector<Vec3<T>>;
 
-/// The bits of a pattern's row, in order: for (const int j : Bits(row)) ...
+/// Range over the set bits of a pattern's row, in ascending order: for (const int j : Bits(row))
+/// ...
 class Bits {
  public:
   explicit Bits(std::uint64_t bits) : bits_(bits) {}
@@ -94,7 +96,8 @@ Block<T> diagonal(const Vec3<T>& entries) {
   return D;
 }
 
-/// The inverse of a symmetric block, by cofactors; `determinant` as found.
+/// Returns the inverse of a symmetric block, by cofactors, and sets `determinant`. Reads the lower
+/// half of A.
 template <class T>
 Block<T> symmetric_inverse(const Block<T>& A, T& determinant) {
   const T c00 = A(1, 1) * A(2, 2) - A(2, 1) * A(2, 1);
@@ -111,7 +114,7 @@ Block<T> symmetric_inverse(const Block<T>& A, T& determinant) {
   return out;
 }
 
-/// Says whether the determinant of A is more than rounding.
+/// Returns whether A, with this determinant, is regular: the determinant exceeds rounding errors.
 template <class T>
 Mask<T> is_regular(const Block<T>& A, const T& determinant) {
   constexpr double kRounding = 1e-14;

@@ -6,7 +6,7 @@
 
 namespace rtg {
 
-/// Symmetric block-tridiagonal matrix of N blocks, and vectors cut alike.
+/// Symmetric block-tridiagonal matrix of N block rows:
 ///
 ///     ⎡ A₀  B₁ᵀ         ⎤
 ///     ⎢ B₁  A₁  B₂ᵀ     ⎥    A[k]  [n_k × n_k]      symmetric, may be indefinite
@@ -20,9 +20,10 @@ struct BlockTridiagonal {
   MatrixXd dense() const;      // for tests and small problems only
 };
 
+/// A vector of N blocks, [n_k] each.
 using BlockVector = std::vector<VectorXd>;
 
-/// K x.
+/// Returns K x.
 BlockVector product(const BlockTridiagonal& K, const BlockVector& x);
 
 VectorXd joined(const BlockVector& x);

@@ -2,7 +2,8 @@
 
 namespace rtg {
 
-/// Eliminates blocks 1, 3, ... of K, which becomes the system of blocks 0, 2, ...:
+/// Eliminates blocks 1, 3, ... of K by the equation below; K becomes the system of blocks
+/// 0, 2, ... Returns false if a pivot block is singular.
 ///   x_j = P_j⁻¹ (r_j - B_j x_{j-1} - B_{j+1}ᵀ x_{j+1}),  j odd.
 bool CyclicReduction::halve(BlockTridiagonal& K) {
   Level level;

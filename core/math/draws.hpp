@@ -9,7 +9,8 @@
 
 namespace rtg {
 
-/// `count` of them drawn at random without replacement, or all, in random order.
+/// Returns `count` elements of `from`, or all if there are fewer, drawn at random without
+/// replacement and in random order.
 template <class T>
 std::vector<T> drawn(std::vector<T> from, int count, Rng& rng) {
   const int size = static_cast<int>(from.size());

@@ -4,10 +4,11 @@
 
 namespace rtg {
 
+/// Largest `count` of exponentials() of Lanes.
 inline constexpr int kMostNumbers = 8;
 
-/// Elementary functions, of lanes to a few units in the last place of those of double; e^x in
-/// place, for at most kMostNumbers.
+/// Elementary functions. Those of Lanes agree with those of double to a few units in the last
+/// place. exponentials() replaces each of `count` numbers x by e^x.
 void exponentials(double* x, int count);
 void exponentials(Lanes* x, int count);
 

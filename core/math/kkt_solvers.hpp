@@ -7,7 +7,8 @@
 
 namespace rtg {
 
-/// LU of a pivot block; singular if it is not finite or its pivots span more than 1e14.
+/// LU factorisation of a pivot block. factorize() returns false for a singular block: one that is
+/// not finite or whose largest pivot is 1e14 times the least or more.
 class PivotBlock {
  public:
   [[nodiscard]] bool factorize(const MatrixXd& A);
@@ -20,6 +21,7 @@ class PivotBlock {
   Eigen::PartialPivLU<MatrixXd> lu_;
 };
 
+/// Block elimination from the last block to the first; see make_kkt_solver().
 class BlockElimination final : public KktSolver {
  public:
   [[nodiscard]] bool factorize(const BlockTridiagonal& K) override;
@@ -30,13 +32,14 @@ class BlockElimination final : public KktSolver {
   std::vector<MatrixXd> B_, gain_;  // gain_[k] = pivot_k⁻¹ B_k
 };
 
+/// Cyclic reduction [Hockney 1965]; see make_kkt_solver().
 class CyclicReduction final : public KktSolver {
  public:
   [[nodiscard]] bool factorize(const BlockTridiagonal& K) override;
   [[nodiscard]] BlockVector solve(const BlockVector& r) const override;
 
  private:
-  /// A halving: the odd blocks of the system are eliminated, the even ones stay.
+  /// A reduction step, which eliminates the odd blocks of the system and keeps the even ones.
   struct Level {
     std::size_t blocks = 0;
     std::vector<PivotBlock> pivots;     // of the odd blocks

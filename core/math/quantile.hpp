@@ -6,8 +6,8 @@
 
 namespace rtg {
 
-/// The value that the share `share` ∈ [0, 1] of `values` does not exceed, the nearest one; 0 of
-/// none.
+/// Returns the quantile of `values` at `share` ∈ [0, 1]: the value of the nearest rank, without
+/// interpolation. Returns 0 if there are no values.
 template <class Number>
 double quantile(std::vector<Number> values, double share) {
   if (values.empty()) return 0.0;

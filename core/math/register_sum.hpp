@@ -4,9 +4,9 @@
 
 namespace rtg {
 
-/// A sum of products of blocks, member by member, so that it stays in registers: the compiler keeps
-/// an Eigen matrix, even a local one, in memory. A: 3 × 3, B: as the sum, 3 × 3 or 3 × 1; both, and
-/// a summand X, may be transposed.
+/// A sum of blocks X and of products A B of blocks. Each entry is a member of its own, so that the
+/// sum stays in registers; the compiler keeps an Eigen matrix, even a local one, in memory. A is
+/// 3 × 3; B, X and the sum are all 3 × 3 or all 3 × 1. 3 × 3 arguments may be transposes.
 template <class Entry>
 class RegisterSum;
 

@@ -42,7 +42,7 @@ Mask<T> Riccati<T>::solve(const StageSystem<T>& system, StageStep<T>& step) {
   return regular_ && start_.regular();
 }
 
-/// P and v of the last stage.
+/// Sets P and v of the last stage.
 template <class T>
 void Riccati<T>::set_end(const Stage& stage) {
   for (int i = 0; i < M_; ++i)
@@ -51,7 +51,7 @@ void Riccati<T>::set_end(const Stage& stage) {
   carries_ = false;
 }
 
-/// P ← W.
+/// P ← W = S P S.
 template <class T>
 void Riccati<T>::sandwich(const BlockLdl<T>& E) {
   const auto loaded = [](const auto& block) { return RegisterSum<Block<T>>(block); };
@@ -62,7 +62,7 @@ void Riccati<T>::sandwich(const BlockLdl<T>& E) {
                 &P_[i * M_]);
 }
 
-/// Row i of X, C and N̂ᵀ S e; row i of A, all of it where the stage reaches back.
+/// Computes row i of X, C and N̂ᵀ S e, and of A: the first block, or all blocks if the stage has G.
 template <class T>
 void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E, int i) {
   find_NS(stage, E, i);
@@ -118,7 +118,7 @@ void Riccati<T>::eliminate(const Stage& stage, const Stage& before, int k) {
   if (carries_) carry(stage, gain_[k]);
 }
 
-/// w; expects S v in v.
+/// Computes w. Expects S v in v_.
 template <class T>
 void Riccati<T>::find_w(const Stage& stage) {
   for (int i = 0; i < M_; ++i) {
@@ -130,7 +130,7 @@ void Riccati<T>::find_w(const Stage& stage) {
   }
 }
 
-/// R'⁻¹ C and R'⁻¹ r'; returns R'⁻¹.
+/// Computes R'⁻¹ C and R'⁻¹ r'. Returns R'⁻¹.
 template <class T>
 Block<T> Riccati<T>::find_gain(const Stage& stage, Gain& gain) {
   Block<T> R = P_[0];
@@ -154,7 +154,7 @@ Block<T> Riccati<T>::find_gain(const Stage& stage, Gain& gain) {
   return inverse;
 }
 
-/// P of the stage before.
+/// Computes P of the stage before.
 template <class T>
 void Riccati<T>::fold_hessian(const Stage& before, const Stage& stage, const Gain& gain) {
   for (int i = 0; i < M_; ++i)
@@ -169,7 +169,7 @@ void Riccati<T>::fold_hessian(const Stage& before, const Stage& stage, const Gai
     }
 }
 
-/// v of the stage before.
+/// Computes v of the stage before.
 template <class T>
 void Riccati<T>::fold_gradient(const Stage& before, const Stage& stage, const Gain& gain) {
   for (int i = 0; i < M_; ++i) {
@@ -208,7 +208,7 @@ void Riccati<T>::roll_forward(const StageSystem<T>& system, StageStep<T>& step) 
   }
 }
 
-/// Stationarity in Δp_k, from the last sub-step to the first:
+/// Computes the multipliers from stationarity in Δp_k, from the last sub-step to the first:
 ///   Q Δp_k + q + N_k Δp_{k-1} + U_k Δp_{k-2} + N_{k+1}ᵀ Δp_{k+1} + U_{k+2}ᵀ Δp_{k+2}
 ///     + E Δy_k + F_{k+1}ᵀ Δy_{k+1} + G_{k+2}ᵀ Δy_{k+2} = 0.
 template <class T>

@@ -5,9 +5,9 @@
 namespace rtg {
 
 /// Solves a StageSystem by block elimination in time, from the last sub-step to the first, O(h).
-/// What the sub-steps from k on cost is a quadratic function of (Δp_k, Δp_{k-1}) with the Hessian
-/// (P Y; Yᵀ Z) and the gradient (v, z); Y, Z and z are there where inertia is. With S = E⁻¹ (sparse
-/// LDLᵀ, by the graph of the bodies in contact) and N̂ = N + Y,
+/// The cost of the sub-steps from k on is a quadratic function of (Δp_k, Δp_{k-1}) with the Hessian
+/// (P Y; Yᵀ Z) and the gradient (v, z). Y, Z and z are zero without inertia. With S = E⁻¹ (sparse
+/// LDLᵀ, whose pattern follows the graph of the bodies in contact) and N̂ = N + Y,
 ///
 ///   W = S P S,  A = Fᵀ W - N̂ᵀ S,  X = A - ½ Fᵀ W,  V = W G - S U,  w = W e - S v
 ///   R' = R + B W₀₀ B,  C = B (Aᵀ)₀,  D = B V₀,  r' = r + B w₀
@@ -18,19 +18,19 @@ namespace rtg {
 ///   z ← Gᵀ w - Uᵀ S e - Dᵀ R'⁻¹ r'
 ///
 /// and forward in time Δc = -R'⁻¹ (C Δp_{k-1} + D Δp_{k-2} + r'),
-/// Δp_k = -S (F Δp_{k-1} + G Δp_{k-2} + B Δc + e). Q, E, F, G, N and U have the graph's pattern, P,
-/// W, A, X, V, Y and Z are dense. Allocates only when made.
+/// Δp_k = -S (F Δp_{k-1} + G Δp_{k-2} + B Δc + e). Q, E, F, G, N and U have the pattern of the
+/// graph; P, W, A, X, V, Y and Z are dense. Only the constructor allocates memory.
 template <class T>
 class Riccati final : public StageSolver<T> {
  public:
   Riccati(int count, int sub_steps);
 
-  /// Regular: no pivot block is singular.
+  /// Returns the lanes in which no pivot block is singular.
   Mask<T> solve(const StageSystem<T>& system, StageStep<T>& step) override;
 
  private:
   struct Gain {
-    std::vector<Block<T>> C, D;  // R'⁻¹ C, R'⁻¹ D, a block per body
+    std::vector<Block<T>> C, D;  // R'⁻¹ C and R'⁻¹ D, one block per body
     Vec3<T> r;                   // R'⁻¹ r'
   };
   using Stage = typename StageSystem<T>::Stage;
@@ -53,20 +53,21 @@ class Riccati final : public StageSolver<T> {
   std::vector<BlockLdl<T>> E_;
   BlockLdl<T> start_;
   std::vector<Gain> gain_;
-  // [M × M] row by row. P: the upper half; in its place also W, as the fastest cache is small.
+  // Matrices of [M × M] blocks, row by row. P_ holds the upper half of P, then that of W in the
+  // same place, because the fastest cache is small.
   std::vector<Block<T>> P_;
-  std::vector<Block<T>> X_;  // first P S
-  std::vector<Block<T>> A_;  // the first column where nothing reaches back
+  std::vector<Block<T>> X_;  // P S, then X
+  std::vector<Block<T>> A_;  // only the first column if the stage has no G
   std::vector<Block<T>> Y_, Z_, V_;
   std::vector<Block<T>> US_;  // Uᵀ S
-  bool reaches_ = false;      // the stage at hand has G
+  bool reaches_ = false;      // the current stage has G
   bool carries_ = false;      // Y, Z and z are not zero
-  BlockPattern columns_;      // of F
+  BlockPattern columns_;      // pattern of F by columns
   std::vector<Block<T>> C_, D_;
   BlockColumn<T> v_, w_, z_;
   BlockColumn<T> Ne_;          // N̂ᵀ S e
-  std::vector<Block<T>> row_;  // at work: of N̂ᵀ S
-  BlockMatrix<T> whole_;       // P_0
+  std::vector<Block<T>> row_;  // the current row of N̂ᵀ S
+  BlockMatrix<T> whole_;       // lower half of P_0
   Mask<T> regular_;
 };
 

@@ -1,11 +1,11 @@
-// The part of the recursion that reaches two sub-steps back.
+// The terms of the recursion that couple a sub-step with the second one before it.
 
 #include "core/math/block_products.hpp"
 #include "core/math/riccati.hpp"
 
 namespace rtg {
 
-/// V, D. Expects W in P.
+/// Computes V, D and R'⁻¹ D; `inverse` is R'⁻¹. Expects W in P_.
 template <class T>
 void Riccati<T>::find_V(const Stage& stage, const BlockLdl<T>& E, const Block<T>& inverse,
                         Gain& gain) {
@@ -29,7 +29,7 @@ void Riccati<T>::find_V(const Stage& stage, const BlockLdl<T>& E, const Block<T>
   }
 }
 
-/// Y, Z and z of the stage before.
+/// Computes Y, Z and z of the stage before.
 template <class T>
 void Riccati<T>::carry(const Stage& stage, const Gain& gain) {
   const bool bends = !stage.U.empty();

@@ -7,25 +7,25 @@ namespace rtg {
 
 /// Deterministic random stream: the same seed gives the same numbers in every process.
 ///
-/// std::mt19937_64 is fixed by the standard; the mapping to reals is ours because
-/// std::uniform_real_distribution is not.
+/// The standard fixes std::mt19937_64 but not std::uniform_real_distribution, so this class maps
+/// the bits to reals itself.
 class Rng {
  public:
   explicit Rng(std::uint64_t seed) : engine_(mix(seed)) {}
 
-  /// An independent stream for a sub-task, a pure function of (seed, key).
+  /// Makes an independent stream for a sub-task, which depends on (seed, key) alone.
   Rng(std::uint64_t seed, std::uint64_t key)
       : engine_(mix(mix(seed) ^ (key + 0x9e3779b97f4a7c15))) {}
 
-  /// Uniform in [lo, hi).
+  /// Draws a number, uniform in [lo, hi).
   double uniform(double lo, double hi) {
     return lo + (hi - lo) * static_cast<double>(engine_() >> 11) * 0x1.0p-53;
   }
 
-  /// 64 random bits, for seeding another stream.
+  /// Draws 64 random bits, for seeding another stream.
   std::uint64_t word() { return engine_(); }
 
-  /// Uniform in {0, ..., n-1}; n ≥ 1.
+  /// Draws an integer, uniform in {0, ..., n-1}; n ≥ 1.
   int below(int n) { return static_cast<int>(uniform(0.0, static_cast<double>(n))); }
 
  private:

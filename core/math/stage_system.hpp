@@ -12,9 +12,9 @@ namespace rtg {
 ///            + ½ Δc_kᵀ R_k Δc_k + r_k·Δc_k
 ///   s.t. E_k Δp_k + F_k Δp_{k-1} + G_k Δp_{k-2} + B_k Δc_k + e_k = 0,  k = 1 ... h
 ///
-/// with multipliers Δy_k. Δp_0 ... Δp_h [M blocks], Δc_k [3] acts on body 0 alone; Q_k and E_k
-/// symmetric, of which the lower halves count, R_k and B_k diagonal. G and U, from k = 2 on, are
-/// those of inertia; without it they are empty.
+/// with multipliers Δy_k. Each of Δp_0 ... Δp_h has M blocks; Δc_k [3] acts on body 0 alone. Q_k
+/// and E_k are symmetric and given by their lower halves; R_k and B_k are diagonal. G_k and U_k
+/// couple by inertia, from k = 2 on; without inertia they are empty.
 template <class T>
 struct StageSystem {
   struct Stage {
@@ -38,7 +38,7 @@ struct StageSystem {
       : M(count), h(sub_steps), stages(static_cast<std::size_t>(sub_steps) + 1, Stage(count)) {}
 
   int M, h;
-  std::vector<Stage> stages;  // entry 0 has Q and q alone
+  std::vector<Stage> stages;  // [h + 1]; entry 0 has only Q and q
 };
 
 /// Solution of a StageSystem; entry 0 of `controls` and `multipliers` is unused.
@@ -54,7 +54,7 @@ struct StageStep {
   std::vector<Vec3<T>> controls;            // Δc_k
 };
 
-/// Direct solver of such systems.
+/// Direct solver of a StageSystem.
 template <class T>
 class StageSolver {
  public:

@@ -8,7 +8,7 @@
 namespace rtg {
 namespace {
 
-/// Compressed columns of the nonzeros of K.
+/// The nonzeros of K in compressed-column format.
 struct SparseColumns {
   std::vector<int> start{0}, row;
   std::vector<double> value;
@@ -54,7 +54,8 @@ class Umfpack final : public KktSolver {
     const int n = static_cast<int>(K.order());
     double control[UMFPACK_CONTROL];
     umfpack_di_defaults(control);
-    // The band as it is: fill grows with the number of blocks, under AMD with its square.
+    // Keeps the order of the band: fill then grows linearly with the number of blocks; with AMD it
+    // grows quadratically.
     control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
     control[UMFPACK_ORDERING] = UMFPACK_ORDERING_NONE;
     void* symbolic = nullptr;
@@ -103,7 +104,7 @@ class Klu final : public KktSolver {
     SparseColumns S = sparse(K);
     if (!all_finite(S.value)) return false;
     const int n = static_cast<int>(K.order());
-    // The band as it is, for the same reason.
+    // Keeps the order of the band, for the same reason as Umfpack does.
     symbolic_ = klu_analyze_given(n, S.start.data(), S.row.data(), nullptr, nullptr, &common_);
     if (!symbolic_) return false;
     numeric_ = klu_factor(S.start.data(), S.row.data(), S.value.data(), symbolic_, &common_);
@@ -120,7 +121,7 @@ class Klu final : public KktSolver {
   }
 
  private:
-  static constexpr double kSingular = 1e-16;  // ratio of pivots
+  static constexpr double kSingular = 1e-16;  // least / largest pivot of a singular matrix
 
   void clear() {
     if (numeric_) klu_free_numeric(&numeric_, &common_);

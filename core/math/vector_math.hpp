@@ -2,9 +2,11 @@
 
 namespace rtg::vector_math {
 
-/// Elementary functions of `count` numbers, the one file that is compiled with -ffast-math: that is
-/// what lets the compiler call the C library's vector versions (libmvec, at most 4 units in the
-/// last place off). No header of ours may be included there: the linker could take its fast copy.
+/// Elementary functions of `count` numbers, in place. vector_math.cpp is the only file compiled
+/// with -ffast-math, which permits the compiler to call the vector versions of the C library
+/// (libmvec, errors of at most 4 units in the last place). vector_math.cpp must not include any
+/// other header of this repository: the linker could use its -ffast-math copy of an inline function
+/// everywhere.
 void exponentials(double* x, int count);
 void sines(double* x, int count);
 void cosines(double* x, int count);

@@ -16,13 +16,14 @@
 namespace rtg::reverse {
 namespace {
 
-/// How far a body exerts forces: the plain barrier at any distance.
+/// Returns the distance up to which a body exerts contact forces [m]: infinite with the plain
+/// barrier.
 double reach(const PhysicsConfig& physics) {
   return physics.plain_barrier ? std::numeric_limits<double>::infinity()
                                : physics.range + physics.skin;
 }
 
-/// FilterSqp over candidates alike, in lanes where the configuration allows.
+/// Runs FilterSqp on problems of equal structure, in lanes if the configuration allows lanes.
 std::vector<SqpResult> filter_sqp(std::span<const ReverseProblem* const> problems) {
   const ReverseProblem& like = *problems[0];
   const ReverseConfig& config = like.config;
@@ -35,7 +36,8 @@ std::vector<SqpResult> filter_sqp(std::span<const ReverseProblem* const> problem
       .solve(problems);
 }
 
-/// The key that candidates in the lanes of one solver share: numbers of bodies, and joints.
+/// Returns the structure of a candidate: its numbers of coordinates and bodies, and its joints.
+/// The candidates in the lanes of one solver have equal structures.
 std::vector<int> structure_of(const energy::StepEnergy& energy) {
   std::vector<int> structure{energy.dofs(), energy.bodies()};
   for (const energy::Hinge<double>& hinge : energy.scene().articulation().hinges())
@@ -43,7 +45,7 @@ std::vector<int> structure_of(const energy::StepEnergy& energy) {
   return structure;
 }
 
-/// The same for candidates of any structure.
+/// Runs FilterSqp on candidates of any structures, once per structure.
 std::vector<SqpResult> filter_sqp_of_all(std::span<const Candidate* const> candidates) {
   std::map<std::vector<int>, std::vector<std::size_t>> alike;
   for (std::size_t k = 0; k < candidates.size(); ++k)

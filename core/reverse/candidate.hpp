@@ -12,15 +12,15 @@ namespace rtg::reverse {
 /// A reverse job as an optimisation problem over the bodies that can take part in the push.
 class Candidate {
  public:
-  /// `config` must outlive it; `job.end` is finite and has a pose for each body.
+  /// `config` must outlive the candidate; `job.end` is finite and has one pose per body.
   Candidate(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push,
             const ReverseConfig& config, const ReverseJob& job);
   Candidate(const Candidate&) = delete;
   Candidate& operator=(const Candidate&) = delete;
 
   const ReverseProblem& problem() const { return problem_; }
-  const std::vector<int>& bodies() const { return bodies_; }  // of the scene, as the problem counts
-  const Scene& scene() const { return part_.scene; }          // these
+  const std::vector<int>& bodies() const { return bodies_; }  // scene indices, in problem order
+  const Scene& scene() const { return part_.scene; }          // of these bodies alone
 
  private:
   std::vector<int> bodies_;
@@ -29,9 +29,9 @@ class Candidate {
   ReverseProblem problem_;
 };
 
-/// Solves candidates by the SQP that their common configuration names; results in their order, and
-/// the same whatever candidates are solved together. kInfeasible also if a solution misses the
-/// given final state by more than the tolerance.
+/// Solves candidates with the SQP that their common configuration selects. The results are in the
+/// order of the candidates and do not depend on which candidates are solved together. The status
+/// is kInfeasible also if a solution misses the given final state by more than the tolerance.
 std::vector<SqpResult> solve_together(std::span<const Candidate* const> candidates);
 
 }  // namespace rtg::reverse

@@ -9,8 +9,8 @@ namespace rtg::reverse {
 namespace {
 
 constexpr double kTouch = 0.2;      // an object closer than this ahead of the robot was pushed [m]
-constexpr double kLeastPull = 0.2;  // of the stride
-constexpr double kSweepStep = 0.1;  // [m]
+constexpr double kLeastPull = 0.2;  // least L, as a share of the stride
+constexpr double kSweepStep = 0.1;  // largest distance between tested robot positions [m]
 
 Pose moved(const Pose& p, const Vector2d& by) { return {p.x + by.x(), p.y + by.y(), p.theta}; }
 
@@ -19,7 +19,8 @@ Pose moved(const Pose& p, const Vector2d& by) { return {p.x + by.x(), p.y + by.y
 NaiveReverse::NaiveReverse(Scene scene, PushConfig push)
     : scene_(std::move(scene)), push_(push), roots_(roots_of(scene_)) {}
 
-/// The movable object nearest to the robot within reach in front of it; 0 if there is none.
+/// Returns the movable object nearest to the robot among those less than kTouch ahead of it; 0 if
+/// there is none.
 std::size_t NaiveReverse::touched_object(const Poses& end, const Vector2d& ahead) const {
   std::size_t best = 0;
   double nearest = kTouch;
@@ -36,7 +37,7 @@ std::size_t NaiveReverse::touched_object(const Poses& end, const Vector2d& ahead
   return best;
 }
 
-/// Says whether a body other than `touched` lies on the robot's way back.
+/// Returns whether a body other than `touched` lies on the robot's way back.
 bool NaiveReverse::blocked(const Poses& end, std::size_t touched, const Vector2d& back) const {
   const double reach = bounding_radius(scene_.bodies[0].shape) + back.norm();
   for (std::size_t k = 1; k < scene_.size(); ++k) {
@@ -66,7 +67,8 @@ ReverseResult NaiveReverse::solve(const ReverseJob& job) const {
   return {SolveStatus::kConverged, 0, std::move(starts)};
 }
 
-/// `start` with that object, and what joints connect with it, pulled back, once per draw of L.
+/// Returns copies of `start`, one per draw of L, in which `object` and the bodies that joints
+/// connect with it are pulled back by L. Returns none if `object` is fixed.
 std::vector<Poses> NaiveReverse::pulled(const ReverseJob& job, std::size_t object,
                                         const Poses& start) const {
   std::vector<Poses> out;

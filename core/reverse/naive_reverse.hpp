@@ -6,16 +6,17 @@
 
 namespace rtg::reverse {
 
-/// Kinematic guess of predecessors, without any physics: the robot moves back one stride against
-/// its heading; the one object that it touches in front (if any) is pulled back with it, unturned,
-/// and with it what joints connect. The baseline that the reverse simulator must beat.
+/// Guesses predecessors kinematically, without any physics. The robot moves back by one stride
+/// against its heading. The one object that the robot touches in front, if any, is pulled back
+/// without turning, together with the bodies that joints connect with it. NaiveReverse is the
+/// baseline that the reverse simulator must beat.
 ///
 ///   start(robot) = end(robot) - stride·d,   start(object) = end(object) - L·d
 ///
-/// L is drawn from [0.2, 1]·stride, kMaxStarts times as a function of the job: the robot may have
-/// met the object anywhere on its way. Statuses: kPruned if the robot would start outside of the
-/// arena or its way back is blocked; kInfeasible if bodies would overlap with every L, or if the
-/// object hangs on a fixed body.
+/// The robot may have met the object anywhere on its way, so L is drawn kMaxStarts times from
+/// [0.2, 1]·stride. The draws are a function of the job. The status is kPruned if the robot would
+/// start outside the arena or if its way back is blocked. The status is kInfeasible if bodies would
+/// overlap with every L, or if joints connect the object with a fixed root.
 class NaiveReverse {
  public:
   NaiveReverse(Scene scene, PushConfig push);
@@ -29,7 +30,7 @@ class NaiveReverse {
 
   Scene scene_;
   PushConfig push_;
-  std::vector<std::size_t> roots_;  // as roots_of()
+  std::vector<std::size_t> roots_;  // roots_of(scene_)
 };
 
 }  // namespace rtg::reverse

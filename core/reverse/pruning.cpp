@@ -7,17 +7,17 @@
 namespace rtg::reverse {
 namespace {
 
-constexpr double kOverlap = 0.01;  // of a sweep with a body that still counts as touching [m]
-// Of a sweep with a link, which may have swung in behind the robot [m]: a little more than the
-// most, 0.71, of 24,000 pushes that moved ArtManip's chain.
+constexpr double kOverlap = 0.01;  // largest overlap of sweep and body that counts as touching [m]
+// Largest allowed overlap of a sweep and a link, which may have swung in behind the robot [m]. It
+// is a little more than 0.71, the maximum over 24,000 pushes that moved ArtManip's chain.
 constexpr double kSwing = 0.75;
-constexpr double kClearance = 0.1;  // beyond the range, for objects that turn on their way [m]
+constexpr double kClearance = 0.1;  // added to the range, as objects turn on their way [m]
 
 double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
   return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
 }
 
-/// Counter-clockwise convex hull [Andrew 1979].
+/// Returns the counter-clockwise convex hull [Andrew 1979].
 std::vector<Vector2d> convex_hull(std::vector<Vector2d> points) {
   std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
@@ -74,7 +74,7 @@ std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, con
     if (scene.bodies[i].fixed) continue;
     const Polygon way = swept(scene.bodies[i].shape, job.end[i].theta, back);
     double reach = i == 0 ? range : range + kClearance;
-    if (has_joint(scene, i)) reach += push.stride;  // links swing as well
+    if (has_joint(scene, i)) reach += push.stride;  // links also swing
     for (std::size_t k = 1; k < scene.size(); ++k) {
       if (seen[k]) continue;
       if (!jointed(scene, i, k) &&

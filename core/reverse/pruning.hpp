@@ -8,17 +8,19 @@
 
 namespace rtg::reverse {
 
-/// The convex hull of a body and of itself moved by `by` (world frame), in the body's frame at
-/// heading `theta`: what it sweeps over on a straight way.
+/// Returns the area that a body sweeps over on a straight way: the convex hull of `shape` and of
+/// `shape` moved by `by` (world frame), in the body's frame at heading `theta`.
 Polygon swept(const Polygon& shape, double theta, const Vector2d& by);
 
-/// Says whether the action cannot have been the last one: the robot's straight way back leaves the
-/// arena or passes through a body behind it (through a link by more than it can have swung in
-/// since). Costs nothing next to a solve.
+/// Returns whether the action cannot have been the last one, as the robot's straight way back
+/// leaves the arena or passes through a body behind the robot. A link may lie on the way as far as
+/// it can have swung in since. The test is very cheap compared with a solve.
 bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job);
 
-/// The bodies that can take part in the push, robot first, movable ones before fixed ones: those
-/// within `range` [m] of the robot's way, and of the ways of such bodies, one stride back.
+/// Returns the bodies that can take part in the push: the robot first, movable bodies before fixed
+/// ones. They are the bodies within about `range` [m] of the robot's way one stride back, those
+/// within that distance of the equal way of another movable body found, and those that joints
+/// connect with one.
 std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, const ReverseJob& job,
                                  double range);
 

@@ -10,12 +10,13 @@
 namespace rtg::reverse {
 namespace {
 
-// A push that moves every object by less, along either axis, and turns it by less has one
-// predecessor.
+// A push has a single predecessor if it moves every object by less than kDragged along either axis
+// and turns it by less than kTurned.
 constexpr double kDragged = 0.05;  // [m]
 constexpr double kTurned = 0.05;   // [rad]
 
-/// Says whether an object (all bodies but the first) is elsewhere in `other` than in `p`.
+/// Returns whether the pose of an object (any body but the first) differs between `p` and `other`
+/// by kDragged or kTurned at least.
 bool objects_differ(const VectorXd& p, const VectorXd& other) {
   for (Eigen::Index i = 3; i < p.size(); i += 3) {
     const Vector3d by = (other - p).segment<3>(i).cwiseAbs();
@@ -24,9 +25,10 @@ bool objects_differ(const VectorXd& p, const VectorXd& other) {
   return false;
 }
 
-/// The start of a quasi-static push p_0 ... p_h, and others of which it makes the same end: nothing
-/// but the robot moves until the robot is where it meets the objects, so they may as well stand
-/// where they are at a later sub-step k, the robot at its start. With inertia, releases = 0.
+/// Returns the start of a quasi-static push p_0 ... p_h and further starts from which the push
+/// leads to the same end. Until the robot meets the objects, nothing else moves. So at the start,
+/// the objects may as well have the poses that they have after a later sub-step k, with the robot
+/// at its own start. With inertia, `releases` must be 0.
 ///
 ///   start_j = (robot of p_0, objects of p_k),  k = h·j/(releases + 1),  j = 0 ... releases
 std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int releases) {

@@ -12,20 +12,21 @@
 
 namespace rtg::reverse {
 
-/// The reverse rigid-body simulator, eq. (6) and (7): from which state does a push lead to a given
-/// one? Const and free of mutable state, so equal jobs give bit-equal results on any thread.
+/// The reverse rigid-body simulator, eq. (6) and (7): finds the states from which a push leads to a
+/// given state. It has no mutable state, so equal jobs give bit-equal results on any thread.
 class ReverseSimulator {
  public:
-  /// `scene`: legal shapes only (polygon_defect() empty), bodies[0] movable.
+  /// `scene` must have legal shapes only (polygon_defect() empty) and a movable bodies[0].
   ReverseSimulator(Scene scene, const PhysicsConfig& physics, const PushConfig& push,
                    const ReverseConfig& config);
 
-  /// `job.end`: one pose per body, at rest. Bodies that the push cannot reach stay where they are;
-  /// with the plain barrier, whose range is infinite, there are none. Never throws; kNonFinite also
-  /// for an end state of the wrong size or with a pose that is not finite.
+  /// Solves one job. `job.end` is a state at rest with one pose per body. Bodies that the push
+  /// cannot reach keep their poses; with the plain barrier, whose range is infinite, the push
+  /// reaches all bodies. Never throws. The status is kNonFinite also if `job.end` has the wrong
+  /// size or a pose that is not finite.
   [[nodiscard]] ReverseResult solve(const ReverseJob& job) const;
-  /// Many jobs at once, which takes much less time than one after the other; the results are the
-  /// same to the bit, whatever jobs are asked for together.
+  /// Solves many jobs together, which takes much less time than one after the other. The results
+  /// do not depend, to the bit, on which jobs are solved together.
   [[nodiscard]] std::vector<ReverseResult> solve(std::span<const ReverseJob> jobs) const;
 
  private:

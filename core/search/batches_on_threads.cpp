@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t kLanes = static_cast<std::size_t>(kWidth<Lanes>);
 
-/// Ends of the slices of jobs that are handed out together, in order: each half a thread's share of
-/// what is left (guided self-scheduling [Polychronopoulos & Kuck 1987]), so that threads end
-/// together, but not so few that lanes idle.
+/// Returns the ends of the slices into which the jobs are cut, in order. Each slice is half a
+/// thread's share of the remaining jobs (guided self-scheduling [Polychronopoulos & Kuck 1987]), so
+/// that all threads finish at about the same time, but large enough to keep the lanes busy.
 std::vector<std::size_t> slice_ends(std::size_t jobs, int threads) {
   if (threads <= 1) return {jobs};
   const auto workers = static_cast<std::size_t>(threads);

@@ -43,7 +43,8 @@ std::vector<Transition> BeamSearch::grow(const SolveBatch& solve, const ReplayBa
   return keep(std::move(found), replay);
 }
 
-/// Predecessors of every node of the beam by every action; their parents are nodes.
+/// Returns the predecessors of every node of the beam for every action. Predecessor::parent is the
+/// index of the node.
 std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
                                                    SearchStats& stats) const {
   std::vector<reverse::ReverseJob> jobs;
@@ -61,8 +62,8 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
   return found;
 }
 
-/// Leaves out, per node, all but the best `free_moves` of the steps that move no object and, per
-/// solve, all but the best `starts` of those that do.
+/// Returns the steps to replay: per node the best config.free_moves of the steps that move no
+/// object, and per solve the best config.starts of the steps that move one.
 std::vector<Predecessor> BeamSearch::worth_replaying(std::vector<Predecessor> all) const {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -70,7 +71,7 @@ std::vector<Predecessor> BeamSearch::worth_replaying(std::vector<Predecessor> al
     order.emplace_back(all[k].left, k);
   }
   std::sort(order.begin(), order.end());
-  std::unordered_map<int, int> idle, pushing;  // kept so far, per node and per solve
+  std::unordered_map<int, int> idle, pushing;  // counts per node and per solve
   std::vector<bool> dropped(all.size(), false);
   for (const auto& [value, k] : order) {
     const Predecessor& p = all[k];
@@ -84,7 +85,7 @@ std::vector<Predecessor> BeamSearch::worth_replaying(std::vector<Predecessor> al
   return out;
 }
 
-/// The best steps, `times` as many as a beam has at most, in order.
+/// Returns the best steps in order, by select_beam(): at most `times` · config.breadth.
 std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int times,
                                              std::unordered_set<std::uint64_t>& seen) {
   std::vector<BeamEntry> entries;
@@ -96,7 +97,7 @@ std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int
   return best;
 }
 
-/// The actions that lead from the start of a step to success.
+/// Returns the actions that lead from the start of a step to success.
 std::vector<int> BeamSearch::plan(const Predecessor& step) const {
   std::vector<int> actions{step.action};
   for (int k = step.parent; node(k).action >= 0; k = node(k).parent)
@@ -104,17 +105,19 @@ std::vector<int> BeamSearch::plan(const Predecessor& step) const {
   return actions;
 }
 
-/// The state with what is in place put where a start like the target has it, if that is legal.
+/// Draws a start like the target and returns `poses` with the bodies that are in place moved to
+/// their poses in that start (placed()). Returns `poses` unchanged if the result is not legal.
 Poses BeamSearch::as_at_a_start(const Poses& poses) {
-  constexpr double kAround = 0.25;  // objects are moved by up to ± this [m]
+  constexpr double kAround = 0.25;  // largest jitter of the drawn start [m]
   const double around = std::min(task_.start_jitter, kAround);
   const std::optional<Poses> start = jittered(task_, target_, around, rng_);
   const Poses at_start = placed(task_, metric_, poses, target_, start.value_or(target_));
   return legal_state(task_, at_start) ? at_start : poses;
 }
 
-/// Carries out the plans of the steps, from their starts put as_at_a_start() or, if none succeeds
-/// so, as where a goal is in an object's own place, from their own.
+/// Carries out the plans of the steps after replacing the steps' starts by as_at_a_start(). If no
+/// plan succeeds, for example where a goal lies in an object's own place, restores the starts and
+/// carries out the plans from these.
 std::vector<std::optional<std::vector<Transition>>> BeamSearch::follow(
     std::vector<Predecessor>& steps, const ReplayBatch& replay) {
   std::vector<Poses> own;

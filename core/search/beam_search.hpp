@@ -28,21 +28,23 @@ class BeamSearch {
   /// `task` and `config` must outlive the search; `target`: the layout.
   BeamSearch(const tasks::Task& task, const SearchConfig& config, Poses target, std::uint64_t seed);
 
-  /// Makes goal states near the target (goal_roots()), brought to rest by `replay`, the first beam.
+  /// Makes the first beam of goal states near the target (goal_roots()), brought to rest by
+  /// `replay`.
   void plant(const ReplayBatch& replay, SearchStats& stats);
 
-  /// Grows a layer: solves for every action of every node of the beam, replays the best of what
-  /// converged and ranks what replays within the gap tolerance. In the states of the best
-  /// config.followed steps per place in the beam, what is in place is put where a start like the
-  /// target has it (placed()), and they go on with the plan of the node that they were found for;
-  /// if none comes to success so, from their own states.
-  /// Those that come to success by it come back, of the share config.plans with all that follows
-  /// them, and the best of them are the next beam. None begins where the goal holds, as that ends
-  /// an episode.
+  /// Grows a layer and returns the transitions to store. Solves for every action of every node of
+  /// the beam, replays the best of the converged steps and ranks those that replay within the gap
+  /// tolerance. The best config.followed steps per place in the beam are tried: bodies that are in
+  /// place in the start of a step are moved to their poses in a start like the target (placed()),
+  /// and from there the step and the plan of its parent node are carried out. If no plan succeeds,
+  /// all are carried out from the unchanged starts instead.
+  /// Of each plan that succeeds, the first transition is returned and, for the share config.plans
+  /// of the plans, all later ones as well. The best of the successful steps become the next beam.
+  /// No transition begins where the goal holds, as that ends an episode.
   std::vector<Transition> grow(const SolveBatch& solve, const ReplayBatch& replay,
                                SearchStats& stats);
 
-  /// Least start_distance() of the beam to the target; infinity without a beam.
+  /// Returns the least start_distance() of the beam to the target; infinity if the beam is empty.
   double best() const;
 
   std::span<const Node> nodes() const { return nodes_; }

@@ -9,8 +9,8 @@
 namespace rtg::search {
 namespace {
 
-/// The best entry of each new cell and the best `per_layout` of each layout, in order of (score,
-/// index).
+/// Returns the indices of distinct entries in order of (score, index): the best entry of each cell
+/// that is not in `seen`, and of these at most the best `per_layout` of each layout.
 std::vector<std::size_t> distinct(std::span<const BeamEntry> entries, int per_layout,
                                   std::unordered_set<std::uint64_t> seen) {
   std::vector<std::size_t> order(entries.size());
@@ -28,7 +28,7 @@ std::vector<std::size_t> distinct(std::span<const BeamEntry> entries, int per_la
   return order;
 }
 
-/// Moves the first `count` of `from` that satisfy `wanted` to `to`.
+/// Moves the first `count` elements of `from` that satisfy `wanted` to the end of `to`.
 template <class Wanted>
 void take(std::vector<std::size_t>& from, std::vector<std::size_t>& to, int count, Wanted wanted) {
   std::erase_if(from, [&](std::size_t k) {

@@ -25,7 +25,7 @@ std::vector<Transition> with_branches(const tasks::Task& task, std::span<const T
                                       const SearchConfig& config, std::uint64_t seed,
                                       const ReplayBatch& replay) {
   std::vector<ReplayJob> pushes;
-  std::vector<std::size_t> ends;  // of each step's branches among the pushes
+  std::vector<std::size_t> ends;  // end of each step's branches in `pushes`
   for (const Transition& step : steps) {
     Rng rng(seed, reverse::key_of(step.poses, step.action));
     for (const int heading : other_headings(step.action, task.push.headings, config, rng))

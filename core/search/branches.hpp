@@ -12,14 +12,16 @@
 
 namespace rtg::search {
 
-/// Headings other than `action`, all different: config.near_branches up to config.near_headings
-/// away from it, the rest of config.branches anywhere; fewer only where there are no more.
+/// Draws config.branches different headings other than `action`: config.near_branches of them at
+/// most config.near_headings away from `action`, the rest anywhere. Returns fewer only if there are
+/// no more.
 std::vector<int> other_headings(int action, int headings, const SearchConfig& config, Rng& rng);
 
-/// Each step followed by its branches: the true outcomes of other headings in the state in which
-/// it begins. A reverse step says what one heading of a state does and nearly always leads on; what
-/// the other headings do, a learner has to know as well to choose among them. Which headings is a
-/// function of the step and `seed`. Pushes that the simulator rejects are left out.
+/// Returns each step followed by its branches: the true outcomes of other headings in the state in
+/// which the step begins. A reverse step shows the outcome of one heading only, which nearly always
+/// leads towards the goal. To choose among headings, a learner needs the outcomes of others as
+/// well. The headings are a function of the step and `seed`. Pushes that the simulator rejects are
+/// left out.
 std::vector<Transition> with_branches(const tasks::Task& task, std::span<const Transition> steps,
                                       const SearchConfig& config, std::uint64_t seed,
                                       const ReplayBatch& replay);

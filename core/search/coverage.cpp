@@ -16,7 +16,7 @@ double share(long part, long whole) {
 Coverage::Coverage(const tasks::Task& task)
     : task_(task), metric_(task.scene), movers_(movers_of(task.scene)) {}
 
-/// Says whether two objects moved that no joint connects.
+/// Returns whether two objects moved that no joint connects.
 bool Coverage::moves_several(const Transition& t) const {
   std::size_t first = 0;
   for (std::size_t k = 1; k < t.poses.size(); ++k) {

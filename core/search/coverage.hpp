@@ -11,7 +11,7 @@
 
 namespace rtg::search {
 
-/// Counts what a stream of transitions covers.
+/// Computes coverage statistics of a stream of transitions.
 class Coverage {
  public:
   explicit Coverage(const tasks::Task& task);
@@ -20,10 +20,10 @@ class Coverage {
 
   long transitions() const { return transitions_; }
   long of(Source source) const { return by_source_[static_cast<std::size_t>(source)]; }
-  double contact_share() const;       // moved an object by more than kMoved
-  double multi_body_share() const;    // moved two or more that no joint connects
-  double headings_per_state() const;  // mean over the distinct states, none stored twice
-  long start_region() const { return start_region_; }  // begin with all objects in_place()
+  double contact_share() const;       // share that moved an object by more than kMoved
+  double multi_body_share() const;    // share that moved two or more that no joint connects
+  double headings_per_state() const;  // mean over distinct states; assumes no duplicate transitions
+  long start_region() const { return start_region_; }  // number that begin with all in_place()
 
  private:
   bool moves_several(const Transition& t) const;
@@ -33,7 +33,7 @@ class Coverage {
   std::vector<std::size_t> movers_;  // as movers_of()
   long transitions_ = 0, contacts_ = 0, multi_body_ = 0, start_region_ = 0;
   std::array<long, kSources.size()> by_source_{};
-  std::unordered_set<std::uint64_t> states_;  // keys
+  std::unordered_set<std::uint64_t> states_;  // key_of() of each
 };
 
 }  // namespace rtg::search

@@ -12,17 +12,17 @@
 
 namespace rtg::search {
 
-/// The stored transitions as they come about: steps, each followed by its branches, until
-/// config.transitions are there.
+/// Stores transitions as they are generated: steps, each followed by its branches, until
+/// config.transitions are stored.
 class DataSet {
  public:
-  /// All arguments must outlive it. `sink` receives the transitions.
+  /// All arguments must outlive the DataSet. `sink` receives the transitions.
   DataSet(const tasks::Task& task, const SearchConfig& config, std::uint64_t seed,
           const TransitionSink& sink)
       : task_(task), config_(config), seed_(seed), sink_(sink), coverage_(task) {}
 
-  /// Stores the first of `steps` with their branches, as far as there is room; nothing twice.
-  /// `replay` says what the branches lead to.
+  /// Stores `steps` in order, each with its branches, as long as there is room. Skips a transition
+  /// whose state and action are stored already. `replay` simulates the branches.
   void store(std::span<const Transition> steps, const ReplayBatch& replay);
 
   bool full() const { return coverage_.transitions() >= config_.transitions; }
@@ -34,7 +34,7 @@ class DataSet {
   std::uint64_t seed_;
   const TransitionSink& sink_;
   Coverage coverage_;
-  std::unordered_set<std::uint64_t> known_;  // key_of() state and action of all
+  std::unordered_set<std::uint64_t> known_;  // key_of() of state and action
 };
 
 }  // namespace rtg::search

@@ -38,7 +38,7 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
   return keep(std::move(found), entries);
 }
 
-/// Makes the best of the steps the next beam.
+/// Makes the best of `found` the next beam. Returns their steps.
 std::vector<Transition> ForwardSearch::keep(std::vector<Node> found,
                                             std::span<const BeamEntry> entries) {
   std::vector<Transition> steps;

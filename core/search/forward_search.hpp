@@ -13,21 +13,22 @@
 
 namespace rtg::search {
 
-/// Planning without reverse steps: a beam search forwards from one start, over all headings, in the
-/// simulator, ranked by goal_distance(); selection of the beam as in BeamSearch.
+/// Plans without reverse steps: a forward beam search from one start, over all headings, in the
+/// simulator. States are ranked by goal_distance(); the beam is selected as in BeamSearch.
 class ForwardSearch {
  public:
   /// `task` and `config` must outlive the search.
   ForwardSearch(const tasks::Task& task, const SearchConfig& config, Poses start);
 
-  /// Goes an action on: replays every heading of every state of the beam and keeps the best. The
-  /// steps that were kept come back; none if the search has come to its end.
+  /// Grows a layer: replays every heading in every state of the beam and keeps the best steps.
+  /// Returns the steps that were kept; none if the search has ended.
   std::vector<Transition> grow(const ReplayBatch& replay);
 
-  /// Answers a push that the last layer replayed.
+  /// Returns the outcome of a push that the last layer replayed. Throws std::out_of_range for any
+  /// other push.
   const ReplayResult& outcome(const ReplayJob& push) const;
 
-  /// The steps from the start to the first success found; none without one.
+  /// Returns the steps from the start to the first success found; none if there is no success.
   std::vector<Transition> plan() const;
 
  private:
@@ -42,17 +43,18 @@ class ForwardSearch {
   StateMetric metric_;
   std::vector<Node> nodes_;
   std::vector<std::size_t> beam_;
-  std::size_t solved_ = 0;  // the node whose step succeeds; 0: there is none
+  std::size_t solved_ = 0;  // first node whose step succeeds; 0: none
   std::unordered_set<std::uint64_t> seen_;
   std::unordered_map<std::uint64_t, ReplayResult> outcomes_;  // by key_of() of state and action
 };
 
-/// A whole search of config.depth actions at most: its plan. A function of the arguments.
+/// Runs a whole search, of at most config.depth and task.horizon actions, and returns its plan. A
+/// pure function of the arguments.
 std::vector<Transition> plan_forward(const tasks::Task& task, const SearchConfig& config,
                                      const Poses& start, const ReplayBatch& replay);
 
-/// Stores what one search keeps, from a start (run.draw_start()), with branches that it has
-/// simulated anyway. Number `number` of the searches.
+/// Runs search number `number` from a start (run.draw_start()) and stores the steps that it keeps.
+/// Their branches are outcomes that the search has simulated anyway.
 void search_forward(Generation& run, int number);
 
 }  // namespace rtg::search

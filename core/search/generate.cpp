@@ -13,8 +13,8 @@
 namespace rtg::search {
 namespace {
 
-/// Algorithm 1, once: a tree grows from goal states to a start of its own, until layers that come
-/// no nearer have used up its patience.
+/// Runs Algorithm 1 once: grows a tree from goal states towards a start that is drawn for it. Ends
+/// after config.depth layers, or after config.patience layers in a row that come no nearer.
 void grow_tree(Generation& run, int number) {
   Rng rng = run.stream(number);
   const Poses target = run.draw_start(rng);

@@ -9,10 +9,11 @@
 
 namespace rtg::search {
 
-/// The whole generation, Algorithm 1: trees of reverse steps grow from goal states to the start
-/// layout; every step whose plan the forward simulator carries out to success is stored as what it
-/// makes of it, with its branches. With another config.generator the steps come from elsewhere
-/// (forward_search.hpp, walks.hpp). A pure function of (task, config, seed) and the seams.
+/// Generates a data set by Algorithm 1 and returns the report. Trees of reverse steps grow from
+/// goal states to the start layout. Every step whose plan succeeds in the forward simulator is
+/// stored as simulated there, with its branches. With another config.generator the steps come from
+/// other sources (forward_search.hpp, walks.hpp). A pure function of (task, config, seed) and the
+/// seams.
 GenerationReport generate(const tasks::Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams);
 

@@ -13,22 +13,23 @@
 
 namespace rtg::search {
 
-/// A call of generate(): what all generators work with.
+/// State of one call of generate(), on which all generators work.
 struct Generation {
   const tasks::Task& task;
   const SearchConfig& config;
   std::uint64_t seed;
   const GenerationSeams& seams;
   SearchStats stats = {};
-  std::vector<ReportNode> nodes = {};  // of trees
+  std::vector<ReportNode> nodes = {};  // of all trees
   ReplayBatch replay = counted(seams.replay, stats);
   DataSet data{task, config, seed, seams.store};
 
-  /// Random numbers of attempt `number`, none of which a training start has.
+  /// Returns the random numbers of attempt `number`. No training start uses the same ones.
   Rng stream(int number) const { return Rng(Rng(seed).word(), static_cast<std::uint64_t>(number)); }
 
-  /// A start that a tree grows to, or that another search or walk begins at: objects are moved by
-  /// up to ± task.start_jitter, with config.randomise ± task.randomisation at least.
+  /// Draws a start, towards which a tree grows or from which a forward search or a walk begins.
+  /// Objects are moved by up to ± task.start_jitter or, with config.randomise, by up to ± the
+  /// larger of task.start_jitter and task.randomisation.
   Poses draw_start(Rng& rng) const {
     const double least = config.randomise ? task.randomisation : 0.0;
     return jittered_start(task, std::max(least, task.start_jitter), rng);
@@ -36,11 +37,11 @@ struct Generation {
 
   bool cancelled() const { return seams.cancelled && seams.cancelled(); }
 
-  /// Calls attempt(0), attempt(1), ... until the data set is full, nobody wants it any more, or
-  /// eight attempts in a row have stored nothing.
+  /// Calls attempt(0), attempt(1), ... until the data set is full, the run is cancelled, or eight
+  /// attempts in a row have stored nothing.
   void repeat(const std::function<void(int)>& attempt);
 
-  /// A line for the display: `layer` of `depth` of what `phase` names.
+  /// Sends a line to the progress display: layer `layer` of `depth` in phase `phase`.
   void show(std::string phase, int layer, int depth) const;
 };
 

@@ -10,7 +10,7 @@
 namespace rtg::search {
 namespace {
 
-constexpr int kMaxFailures = 20;  // draws in vain in a row, and there are no more
+constexpr int kMaxFailures = 20;  // consecutive failed draws that end the drawing
 
 bool look_the_same(const Scene& scene, std::size_t i, std::size_t j) {
   const Body &a = scene.bodies[i], &b = scene.bodies[j];

@@ -16,9 +16,10 @@ struct Plan {
   std::vector<int> actions;
 };
 
-/// Carries out plans in the simulator, all side by side: the transitions up to the first success,
-/// none where the start succeeds already. Nothing for a plan that does not succeed, or whose push
-/// the simulator rejects. The transitions are of Source::kTree.
+/// Carries out plans in the simulator, all side by side. Returns for each plan the transitions up
+/// to the first success, an empty vector if the start succeeds already. Returns std::nullopt for a
+/// plan that does not succeed or of which the simulator rejects a push. The transitions have
+/// Source::kTree.
 std::vector<std::optional<std::vector<Transition>>> carry_out(const tasks::Task& task,
                                                               std::span<const Plan> plans,
                                                               const ReplayBatch& replay);

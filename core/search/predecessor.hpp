@@ -10,44 +10,47 @@
 
 namespace rtg::search {
 
-/// A reverse step: pushing `action` in `start` should lead, and once replayed truly leads, to
-/// `end`.
+/// A reverse step: the push `action` in `start` should lead to `end`. After the replay, `end` is
+/// the state to which the push truly leads.
 struct Predecessor {
-  int parent = 0;  // index of the job that it answers
+  int parent = 0;  // index of the job that it answers; in BeamSearch, of a node
   int action = 0;
   Poses start;
   Poses end;
   int moved = 0;      // objects moved by the push, objects_moved()
   double gap = 0.0;   // replay gap [m]; 0 before the replay
-  double miss = 0.0;  // the same of the body that is off most [m]
+  double miss = 0.0;  // largest distance of a body from `end` in the replay [m]
   double left = 0.0;  // start_distance() of `start`, filled in by the search
   int depth = 0;      // actions until success, filled in by the search
 };
 
-/// Displacement from which on an object counts as moved [m].
+/// Displacement above which an object counts as moved [m].
 inline constexpr double kMoved = 0.05;
 
-/// to_single() of every pose.
+/// Returns to_single() of every pose.
 Poses float_rounded(const Poses& poses);
 
-/// Mean over the bodies of the distance between their positions [m]: Fig. 16's replay gap.
+/// Returns the mean over all bodies of the distance between their two positions [m], the replay gap
+/// of Fig. 16.
 double replay_gap(const Poses& reverse_end, const Poses& replayed_end);
 
-/// Number of bodies, the robot left out, whose position differs by more than kMoved.
+/// Returns the number of bodies, without the robot, whose positions differ by more than kMoved.
 int objects_moved(const Poses& a, const Poses& b);
 
-/// Says whether a state can be the start of a transition: finite, robot in the arena, no overlap.
+/// Returns whether a state can be the start of a transition: it is finite, the robot is in the
+/// arena, and no bodies overlap.
 bool legal_state(const tasks::Task& task, const Poses& poses);
 
-/// The starts of converged answers that, rounded to float, are legal states; others are counted.
-/// `end` is still the state that the job asked for. `jobs` and `answers` have equal length.
+/// Returns a Predecessor for each start of a converged answer that is a legal state after rounding
+/// to float; counts the others as stats.illegal_starts. `end` is the end state of the job. `jobs`
+/// and `answers` have equal length.
 std::vector<Predecessor> proposals(const tasks::Task& task,
                                    std::span<const reverse::ReverseJob> jobs,
                                    std::span<const reverse::ReverseResult> answers,
                                    SearchStats& stats);
 
-/// Replaces `end` by what the push truly leads to and fills in moved, gap and miss; those
-/// whose push the simulator rejects are left out.
+/// Returns the predecessors with `end` replaced by the state to which the push truly leads and with
+/// moved, gap and miss filled in. Predecessors whose push the simulator rejects are left out.
 std::vector<Predecessor> replay_predecessors(std::vector<Predecessor> predecessors,
                                              const ReplayBatch& replay);
 

@@ -66,7 +66,7 @@ nlohmann::ordered_json to_json(std::span<const ReportNode> nodes) {
 }  // namespace
 
 std::string to_json(const GenerationReport& r) {
-  // Without reverse steps: null.
+  // The value, or null without reverse steps.
   const auto searched = [&r](double value) {
     return r.candidates > 0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
   };

@@ -11,50 +11,49 @@
 
 namespace rtg::search {
 
-/// A node of the stored search graph, for coverage pictures.
+/// A node of a search tree, for plots of the coverage.
 struct ReportNode {
   Poses poses;
   int depth = 0;  // actions until success
   int tree = 0;   // number of the tree
 };
 
-/// The account of a generation: the generation part of summary.json plus the samples behind its
-/// pictures.
+/// Report of a generation: the generation part of summary.json and the samples behind its plots.
 struct GenerationReport {
   long transitions = 0;
-  long tree_transitions = 0, branch_transitions = 0;  // of them by source, the two of reverse trees
-  double contact_share = 0.0;         // share of them that moved an object by more than 0.05 m
-  double multi_body_share = 0.0;      // ... two or more that no joint connects
-  double headings_per_state = 0.0;    // distinct headings stored from a state, mean over the states
-  long start_region_transitions = 0;  // that begin in the start region
+  long tree_transitions = 0, branch_transitions = 0;  // those of kTree and of kBranch
+  double contact_share = 0.0;         // share that moved an object by more than 0.05 m
+  double multi_body_share = 0.0;      // share that moved two or more that no joint connects
+  double headings_per_state = 0.0;    // distinct headings stored per state, mean over the states
+  long start_region_transitions = 0;  // transitions that begin in the start region
   int start_region_depth = -1;  // least depth of a node in the start region; -1: never reached
   int trees = 0;
-  long candidates = 0;  // reverse jobs asked for, pruned ones included
+  long candidates = 0;                                      // reverse jobs, pruned ones included
   std::array<long, reverse::kSolveStatusCount> statuses{};  // by SolveStatus
   // As in SearchStats.
   long illegal_starts = 0, undrawn_goals = 0, unsettled_goals = 0, replays = 0, rejected_pushes = 0;
-  long units_given_up = 0;  // of work, as no worker survived them; the coordinator fills it in
-  double iterations_median = 0.0, iterations_p90 = 0.0;  // over converged ones
-  long pushing_converged = 0;                            // that moved an object
+  long units_given_up = 0;  // units of work that no worker survived; set by the coordinator
+  double iterations_median = 0.0, iterations_p90 = 0.0;  // over converged solves
+  long pushing_converged = 0;                            // converged solves that moved an object
   double pushing_iterations_median = 0.0, pushing_iterations_p90 = 0.0;
   double replay_gap_median = 0.0, replay_gap_p90 = 0.0;  // [m]
   double reverse_cpu_s = 0.0, replay_cpu_s = 0.0, generate_wall_s = 0.0;
-  double generate_cpu_s = 0.0;     // of this process; solves and replays elsewhere left out
+  double generate_cpu_s = 0.0;     // of this process, without solves and replays in others
   std::vector<float> replay_gaps;  // one per replayed candidate [m]
   std::vector<ReportNode> nodes;
 };
 
-/// Writes into `report` what the stored transitions cover.
+/// Writes the coverage of the stored transitions into `report`.
 void fill(GenerationReport& report, const Coverage& coverage);
 
-/// Takes the nodes of the trees.
+/// Writes the nodes of the trees, the number of trees and start_region_depth into `report`.
 void fill(GenerationReport& report, const tasks::Task& task, std::vector<ReportNode> nodes);
 
-/// Writes into `report` what `stats` has counted, with the medians and 90th percentiles.
+/// Writes the counts of `stats`, with medians and 90th percentiles, into `report`.
 void fill(GenerationReport& report, const SearchStats& stats);
 
-/// The report as JSON text, keys as the fields above (pruned, converged and the other statuses by
-/// name).
+/// Returns the report as JSON text. The keys are the names of the fields above, and the name of
+/// each status in place of `statuses`.
 std::string to_json(const GenerationReport& report);
 
 }  // namespace rtg::search

@@ -10,10 +10,10 @@
 
 namespace rtg::search {
 
-/// Stands for no push: the scene comes to rest with the robot held.
+/// Action that stands for no push: the scene comes to rest with the robot held.
 inline constexpr int kSettle = -1;
 
-/// The question what `action` does in `start`.
+/// A request to simulate the push `action` from the state `start`.
 struct ReplayJob {
   Poses start;
   int action = 0;  // or kSettle
@@ -27,13 +27,14 @@ struct ReplayResult {
   double cpu_s = 0.0;  // thread CPU time; the one field that is not a function of the job
 };
 
-/// The seams of the search. Results come back in job order, whoever computes them: a loop, a thread
-/// pool, processes behind a bus, a lambda in a test. All homes give the same bits.
+/// Interfaces by which the search has jobs computed; the results are in job order. Implementations
+/// are a loop, a thread pool, processes behind a message bus, or a lambda in a test. All give the
+/// same results to the bit.
 using SolveBatch =
     std::function<std::vector<reverse::ReverseResult>(std::span<const reverse::ReverseJob>)>;
 using ReplayBatch = std::function<std::vector<ReplayResult>(std::span<const ReplayJob>)>;
 
-/// Answers one replay job after the other; pure, and callable from several threads at once.
+/// Answers a single replay job; pure, and safe to call from several threads at once.
 using ReplayOne = std::function<ReplayResult(const ReplayJob&)>;
 
 /// Receives transitions in sequence order; the k-th transition of a run has sequence number k.
@@ -47,15 +48,15 @@ struct Progress {
   long transitions = 0;  // stored so far
   long target = 0;       // to be stored in all
   double contact_share = 0.0;
-  long start_region = 0;  // transitions whose state lies in the start region so far
+  long start_region = 0;  // transitions so far that begin in the start region
 };
 
-/// Everything the search needs from outside of itself.
+/// The functions that the search receives from its caller.
 struct GenerationSeams {
   SolveBatch solve;
   ReplayBatch replay;
   TransitionSink store;  // receives every transition, in order
-  // Called and polled after each layer or wave; may be empty.
+  // `progress` is called and `cancelled` is polled after each layer or wave; both may be empty.
   std::function<void(const Progress&)> progress = {};
   std::function<bool()> cancelled = {};
 };

@@ -5,7 +5,7 @@
 
 namespace rtg::search {
 
-/// Where the stored steps come from, their branches aside.
+/// Source of the stored steps; branches are added to all of them.
 enum class Generator {
   kRrbs,     // trees of reverse steps of the reverse simulator
   kNaive,    // trees of kinematic reverse steps, NaiveReverse
@@ -16,25 +16,25 @@ enum class Generator {
 inline constexpr std::array<std::string_view, 5> kGenerators{"rrbs", "naive", "forward", "scatter",
                                                              "random"};
 
-/// Beam search and the stored data set.
+/// Parameters of the beam search and of the stored data set.
 struct SearchConfig {
   Generator generator = Generator::kRrbs;
-  int transitions = 60000;      // stored in all
+  int transitions = 60000;      // stored in all, branches included
   int branches = 4;             // other headings simulated from the start of each stored step
-  int near_branches = 1;        // of them up to near_headings away from the step's own
-  int near_headings = 3;        // ... either way
+  int near_branches = 1;        // branches at most near_headings away from the step's own heading
+  int near_headings = 3;        // in either direction
   int breadth = 100;            // B, nodes kept per layer
   int followed = 2;             // steps per place in the beam whose plans are carried out
-  double plans = 0.05;          // share of the stored steps with all that follows them
+  double plans = 0.05;          // share of steps stored with all later steps of their plans
   int depth = 40;               // D, layers per tree at most
   double contact_quota = 0.4;   // share of the beam reserved for nodes whose step moved an object
-  double gap_tolerance = 0.25;  // a step that misses by more is not kept [m]
-  int starts = 2;               // predecessors of one solve that are replayed, the best ones
-  int free_moves = 6;           // steps that move no object replayed per node, the best ones
-  int per_layout = 18;          // nodes of a beam that differ in the robot only, at most
+  double gap_tolerance = 0.25;  // largest miss of a body in a step that is kept [m]
+  int starts = 2;               // predecessors replayed per solve, the best ones
+  int free_moves = 6;           // steps that move no object, replayed per node, the best ones
+  int per_layout = 18;          // most nodes of a beam that differ in the robot only
   int root_draws = 4;           // goal states drawn per root kept
-  int patience = 4;             // layers without a better node that end a tree
-  bool randomise = false;       // starts lie all over task.randomisation
+  int patience = 4;             // consecutive layers without a better node that end a tree
+  bool randomise = false;       // starts are jittered by up to task.randomisation
 
   template <class Visitor>
   void visit(Visitor& v) {

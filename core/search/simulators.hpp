@@ -8,16 +8,16 @@
 
 namespace rtg::search {
 
-/// The reverse simulator behind `generator`: NaiveReverse for kNaive, else RRBS; pure, and callable
-/// from several threads at once.
+/// Returns the reverse simulator for `generator`: NaiveReverse for kNaive, otherwise
+/// ReverseSimulator. It is pure and safe to call from several threads at once.
 SolveBatch reverse_solver(const tasks::Task& task, const PhysicsConfig& physics,
                           const reverse::ReverseConfig& reverse, Generator generator);
 
-/// The true dynamics, Box2D; kSettle is answered, too.
+/// Returns the simulator of the true dynamics, Box2D; it also answers kSettle.
 ReplayOne forward_replay(const tasks::Task& task, const PhysicsConfig& physics);
 
-/// The seams with all simulators on `threads` threads of this process; store, progress and
-/// cancelled are left to the caller.
+/// Returns seams that run all simulators on `threads` threads of this process. The caller sets
+/// store, progress and cancelled.
 GenerationSeams in_process_seams(SolveBatch solve, ReplayOne replay, int threads);
 
 }  // namespace rtg::search

@@ -10,19 +10,20 @@
 namespace rtg::search {
 namespace {
 
-constexpr double kWalk = 2.0;      // pushes to get from one object to the next, about
+constexpr double kWalk = 2.0;      // approximate pushes to get from one object to the next
 constexpr double kInPlace = 0.4;   // an object this near to its place needs no pull [m]
-constexpr double kPullCone = 0.5;  // [rad]
-constexpr double kReach = 0.15;    // the robot can pull what is nearer than this [m]
-constexpr double kTouching = 0.8;  // distance of touching bodies, of their bounding radii, about
+constexpr double kPullCone = 0.5;  // largest angle between the robot and the pull, seen from the
+                                   // object [rad]
+constexpr double kReach = 0.15;    // largest gap over which the robot can pull an object [m]
+constexpr double kTouching = 0.8;  // approximate distance of touching bodies / sum of their radii
 
-/// Distance of their centres beyond which the robot cannot pull a body [m].
+/// Returns the distance of the centres beyond which the robot cannot pull `body` [m].
 double farthest_pull(const tasks::Task& task, std::size_t body) {
   return bounding_radius(task.scene.bodies[0].shape) +
          bounding_radius(task.scene.bodies[body].shape) + kReach;
 }
 
-/// Says whether a robot at `robot` touches an object on the side that `way` points to.
+/// Returns whether a robot at `robot` touches an object on the side to which `way` points.
 bool can_pull(const tasks::Task& task, const Pose& robot, const Pose& object, std::size_t body,
               const Vector2d& way) {
   const Polygon& hand = task.scene.bodies[0].shape;
@@ -35,8 +36,8 @@ bool can_pull(const tasks::Task& task, const Pose& robot, const Pose& object, st
   return gap >= 0.0 && gap <= kReach;
 }
 
-/// Pushes until the robot can pull an object along `way`: 0, 1 or, as any distance of up to two
-/// strides can be walked in two, at least 2.
+/// Estimates the number of pushes until the robot can pull an object along `way`: 0, 1, or at least
+/// 2, as two pushes cover any distance of up to two strides.
 double walk(const tasks::Task& task, const Poses& poses, std::size_t body, const Vector2d& way) {
   const Pose& robot = poses[0];
   const Pose& object = poses[body];
@@ -53,14 +54,16 @@ double walk(const tasks::Task& task, const Poses& poses, std::size_t body, const
   return std::max(2.0, (robot.position() - spot).norm() / task.push.stride);
 }
 
-/// A body with a joint must be turned right as well: a pin can hold its centre where it is.
+/// Returns whether an object is in place. A body with a joint must have the right angle as well,
+/// since a pin can hold its centre in place at any angle.
 bool in_place(const StateMetric& metric, const StateMetric::Object& o, const Poses& poses,
               const Poses& target) {
   return (o.jointed ? metric.distance(o, poses, target)
                     : (poses[o.body].position() - target[o.body].position()).norm()) <= kInPlace;
 }
 
-/// The same to the next object that is out of place, or to the robot's own place.
+/// Estimates the number of pushes until the robot can pull the next object that is out of place or,
+/// if all are in place, until the robot is in its own place.
 double next_walk(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
                  const Poses& target) {
   double best = std::numeric_limits<double>::infinity();

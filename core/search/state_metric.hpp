@@ -8,15 +8,15 @@
 
 namespace rtg::search {
 
-/// Largest k such that turning the shape about its origin by 2π/k maps it onto itself.
+/// Returns the largest k such that turning the shape about its origin by 2π/k maps it onto itself.
 int symmetry_order(const Polygon& shape);
 
-/// a - b modulo the period 2π/order, in [-π/order, π/order] [rad].
+/// Returns a - b modulo the period 2π/order, in [-π/order, π/order] [rad].
 double angle_difference(double a, double b, int order);
 
-/// Compares states of a scene modulo the symmetry order of each object (1 with a joint), so that
-/// poses which look the same are the same. The robot's heading is held by every push and does not
-/// count; fixed bodies do not move.
+/// Compares states of a scene modulo the symmetry of each object (order 1 with a joint), so that
+/// poses that look the same count as equal. The robot's heading does not count, as every push holds
+/// it; nor do fixed bodies.
 class StateMetric {
  public:
   explicit StateMetric(const Scene& scene);
@@ -29,17 +29,18 @@ class StateMetric {
   };
   std::span<const Object> objects() const { return objects_; }
 
-  /// Distance of an object's positions plus r · angle difference [m].
+  /// Returns the distance between an object's positions plus r · its angle difference [m].
   double distance(const Object& object, const Poses& a, const Poses& b) const;
 
-  /// The same, summed over the objects.
+  /// Returns the sum of distance() over all objects.
   double layout_distance(const Poses& a, const Poses& b) const;
 
-  /// Names the cell that a state lies in: cells of 0.8 m for the robot's x, y and of 0.4 m and
-  /// about 0.4 rad (a whole number per period) for the objects.
+  /// Returns the key of the cell in which a state lies. A cell measures 0.8 m in the robot's x and
+  /// y, 0.4 m in an object's x and y, and about 0.4 rad in an object's angle (a whole number of
+  /// cells per period).
   std::uint64_t cell(const Poses& poses) const;
 
-  /// Names the cell without the robot.
+  /// Returns the key of the cell without the robot's coordinates.
   std::uint64_t layout_cell(const Poses& poses) const;
 
  private:

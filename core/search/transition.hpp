@@ -8,16 +8,16 @@
 
 namespace rtg::search {
 
-/// Where a stored transition comes from.
+/// Source of a stored transition.
 enum class Source : std::int8_t {
-  kTree,    // a reverse step, as it replays
+  kTree,    // a reverse step, as simulated forwards
   kBranch,  // another heading from the state in which a stored step begins
   kWalk,    // a push of a random walk
-  kPlan,    // a step that a beam search forwards from a start kept
+  kPlan,    // a step that a forward beam search kept
 };
 inline constexpr std::array<std::string_view, 4> kSources{"tree", "branch", "walk", "plan"};
 
-/// A true transition of the true dynamics (Box2D). Success is the task's predicate on `next`.
+/// A transition of the true dynamics (Box2D). `success` is the task's predicate on `next`.
 struct Transition {
   Poses poses;
   int action = 0;

@@ -9,7 +9,7 @@
 namespace rtg::search {
 namespace {
 
-constexpr int kWave = 50;         // walks that go on side by side
+constexpr int kWave = 50;         // walks that run side by side
 constexpr double kSeeking = 0.5;  // share of the pushes that seek contact, the others are uniform
 
 int heading(const Generation& run, const Poses& state, Rng& rng) {

@@ -7,7 +7,7 @@
 namespace rtg::tasks {
 namespace {
 
-/// A point within the bounding circle of a movable object.
+/// Draws a random point within the bounding circle of a random movable object.
 Vector2d aim(const Task& task, const Poses& state, Rng& rng) {
   std::vector<std::size_t> objects;
   for (std::size_t k = 1; k < state.size(); ++k)

@@ -5,8 +5,9 @@
 
 namespace rtg::tasks {
 
-/// A heading that seeks contact: the one that points closest to a random point of the bounding
-/// circle of a random movable object. Of uniform pushes one in ten moves anything.
+/// Draws a heading that seeks contact: the heading that points closest to a random point within the
+/// bounding circle of a random movable object. Of pushes with uniform headings, only one in ten
+/// moves an object.
 int contact_heading(const Task& task, const Poses& state, Rng& rng);
 
 }  // namespace rtg::tasks

@@ -5,9 +5,9 @@
 namespace rtg::tasks {
 namespace {
 
-/// Calls `visit` with whether each atom holds: one per body (kEvery) or joint (kJoint) that the
-/// term concerns, or one in all (kCentroid). Nothing is allocated: a search asks whether goals hold
-/// all the time.
+/// Calls visit(holds) once per atom of the term. There is one atom per body (kEvery) or joint
+/// (kJoint) to which the term applies, or a single atom (kCentroid). Allocates no memory, as
+/// searches test goals very often.
 template <class Visit>
 void for_each_atom(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten,
                    Visit visit) {

@@ -7,9 +7,10 @@
 
 namespace rtg::tasks {
 
-/// A condition on a state; a goal is the conjunction of its terms. What lies in the region:
+/// A condition on a state; a goal is the conjunction of its terms. A term holds if its subject lies
+/// in its region. The subjects are:
 ///
-///   kEvery     the centre of every body of the kind ("*": of all movable ones but the robot)
+///   kEvery     the centre of every body of the kind ("*": of every movable body but the robot)
 ///   kCentroid  the mean of these centres
 ///   kJoint     θ_child - θ_parent of the joint whose child has that name ("*": of every joint)
 struct GoalTerm {
@@ -27,17 +28,18 @@ struct GoalTerm {
   bool operator==(const GoalTerm&) const = default;
 };
 
-/// Says whether the centre of `body`, or of a centroid's bodies, is what `term` speaks of; never
-/// with kJoint.
+/// Returns whether `term` applies to the centre of `body`, alone (kEvery) or as a part of the mean
+/// (kCentroid). Returns false for kJoint and for the robot.
 bool concerns(const GoalTerm& term, const Scene& scene, std::size_t body);
-/// Says whether it is the angle of `joint`.
+/// Returns whether `term` applies to the angle of `joint`.
 bool concerns(const GoalTerm& term, const Scene& scene, const Joint& joint);
 
-/// How far a point [m] or an angle [rad] lies outside of the region of a term: ≤ 0 inside.
+/// Returns how far a point [m] or an angle [rad] lies outside the region of `term`: ≤ 0 inside.
 double outside(const GoalTerm& term, const Vector2d& x);
 double outside(const GoalTerm& term, double angle);
 
-/// Says whether it lies in the region, shrunk by `tighten`.
+/// Returns whether a point or an angle lies in the region of `term`, shrunk by `tighten` [m],
+/// [rad].
 inline bool contains(const GoalTerm& term, const Vector2d& x, double tighten) {
   return outside(term, x) <= -tighten;
 }
@@ -45,10 +47,10 @@ inline bool contains(const GoalTerm& term, double angle, double tighten) {
   return outside(term, angle) <= -tighten;
 }
 
-/// The mean of the centres that `term` speaks of.
+/// Returns the mean of the centres to which `term` applies.
 Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& poses);
 
-/// Says whether `term` holds, its region shrunk by `tighten` [m], [rad].
+/// Returns whether `term` holds with its region shrunk by `tighten` [m], [rad].
 bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten);
 
 }  // namespace rtg::tasks

@@ -8,16 +8,16 @@ namespace {
 
 constexpr double kWay = 0.2;  // w
 
-/// Sums up goal_distance().
+/// Accumulates the parts of goal_distance().
 struct Distance {
   const Poses& poses;
   double violation = 0.0;
   double way = std::numeric_limits<double>::infinity();
 
-  /// Counts an atom that is `off` if that is positive.
+  /// Adds the violation of an atom that lies `off` outside its region (≤ 0: inside).
   void violate(double off) { violation += std::max(0.0, off); }
 
-  /// Notes the way to `body`, which an atom that is `off` is about.
+  /// Updates the least distance from the robot with `body`, if its atom lies outside its region.
   void reach(std::size_t body, double off) {
     if (off > 0.0) way = std::min(way, (poses[body].position() - poses[0].position()).norm());
   }

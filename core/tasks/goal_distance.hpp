@@ -8,8 +8,8 @@ namespace rtg::tasks {
 ///
 ///   Σ_atoms v + w · min_b |x_robot - x_b|,
 ///
-/// v how far the point or angle of an atom of the goal lies outside of its region, b the bodies of
-/// atoms that do not hold (of a joint the two that it connects), w = 0.2.
+/// where v is how far the point or angle of an atom of the goal lies outside its region (0 inside),
+/// b runs over the bodies of the atoms that do not hold (both bodies of a joint), and w = 0.2.
 double goal_distance(const Task& task, const Poses& poses);
 
 }  // namespace rtg::tasks

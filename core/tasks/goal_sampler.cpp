@@ -12,19 +12,17 @@ namespace {
 
 constexpr int kAttempts = 1000;
 constexpr int kProposals = 50;         // per body and attempt
-constexpr double kBesideShare = 0.5;   // of the proposals that put a body beside another one
-constexpr double kBesideGap = 0.1;     // ... at most so far from it [m]
-constexpr double kBehindShare = 0.75;  // of the robots that stand as after a push
-constexpr double kBehindGap =
-    0.03;  // ... at most so far from what they pushed beyond the clearance [m]
-constexpr double kFreeRange =
-    3.0;  // a free robot is at most so far from a body (each coordinate) [m]
+constexpr double kBesideShare = 0.5;   // share of proposals that put a body beside another one
+constexpr double kBesideGap = 0.1;     // largest gap to that other body [m]
+constexpr double kBehindShare = 0.75;  // share of robots that stand as after a push
+constexpr double kBehindGap = 0.03;    // largest gap to the pushed object, beyond kClearance [m]
+constexpr double kFreeRange = 3.0;     // largest offset of other robots from a body, x and y [m]
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 Vector2d unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
-/// x moved into the region of a term: anywhere in a disc, behind the line of a half-plane the
-/// closer the likelier.
+/// Moves x into the region of a term: to a uniform point of a disc, or behind the line of a
+/// half-plane, no farther from it than x was, so that points close to the line are likelier.
 Vector2d moved_into(const GoalTerm& term, const Vector2d& x, Rng& rng) {
   if (term.region == GoalTerm::Region::kDisc) {
     const double r = (term.radius - kGoalSpare) * std::sqrt(rng.uniform(0.0, 1.0));
@@ -40,8 +38,8 @@ Vector2d point_in_arena(const Task& task, Rng& rng) {
   return {x, rng.uniform(-a, a)};
 }
 
-/// Says whether every region that the centre of that body has to be in contains x, with room to
-/// spare.
+/// Returns whether x lies in every region that must contain the centre of `body`, with margin
+/// kGoalSpare.
 bool in_target(const Task& task, std::size_t body, const Vector2d& x) {
   return std::ranges::all_of(task.goal, [&](const GoalTerm& term) {
     return term.subject != GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||
@@ -49,7 +47,8 @@ bool in_target(const Task& task, std::size_t body, const Vector2d& x) {
   });
 }
 
-/// A point uniform in the arena, moved into the regions that the centre of body `i` has to be in.
+/// Draws a uniform point of the arena and moves it into the regions that must contain the centre of
+/// body `i`.
 Vector2d point_in_goal(const Task& task, std::size_t i, Rng& rng) {
   Vector2d x = point_in_arena(task, rng);
   for (const GoalTerm& term : task.goal)
@@ -58,14 +57,14 @@ Vector2d point_in_goal(const Task& task, std::size_t i, Rng& rng) {
   return x;
 }
 
-/// Angle of the outward normal of edge `k`, body frame.
+/// Returns the angle of the outward normal of edge `k` in the body frame.
 double normal_angle(const Polygon& shape, std::size_t k) {
   const Vector2d edge = shape.vertices[(k + 1) % shape.size()] - shape.vertices[k];
   return std::atan2(-edge.x(), edge.y());
 }
 
-/// Body `i` slid towards a placed body from a random side: with equal odds face to face or at a
-/// random angle.
+/// Draws another body and, if it is placed, slides body `i` towards it from a random side: with
+/// equal odds face to face or at a random angle. Returns the pose at contact, or nothing.
 std::optional<Pose> beside(const Task& task, const Layout& layout, std::size_t i, Rng& rng) {
   const auto j = static_cast<std::size_t>(1 + rng.below(static_cast<int>(task.scene.size()) - 1));
   if (j == i || !layout.placed[j]) return std::nullopt;
@@ -88,10 +87,10 @@ std::optional<Pose> beside(const Task& task, const Layout& layout, std::size_t i
                 .range = 2.0 * reach});
 }
 
-/// Bodies that are placed together, and where they are meant to be.
+/// Bodies that are placed together, with their intended poses.
 struct Group {
   std::size_t root;
-  std::vector<std::size_t> members;  // the root too
+  std::vector<std::size_t> members;  // root included
   Poses poses;                       // of all bodies
 };
 
@@ -102,8 +101,8 @@ void move(Group& group, const Vector2d& by) {
   }
 }
 
-/// Says whether the mean centre of a term is decided by where the group goes: it is of some of its
-/// bodies, and all others have their places.
+/// Returns whether the place of the group determines the mean centre of a term: the term applies to
+/// bodies of the group, and all other bodies to which it applies are placed.
 bool decides(const Group& group, const GoalTerm& term, const Task& task, const Layout& layout) {
   const auto concerned = [&](std::size_t i) { return concerns(term, task.scene, i); };
   if (term.subject != GoalTerm::Subject::kCentroid) return false;
@@ -112,7 +111,7 @@ bool decides(const Group& group, const GoalTerm& term, const Task& task, const L
   return std::ranges::any_of(group.members, concerned);
 }
 
-/// Moves the group so that the mean centres which it decides come into their regions.
+/// Moves the group so that the mean centres that it determines (decides()) come into their regions.
 void aim_at_centroids(const Task& task, const Layout& layout, Group& group, Rng& rng) {
   for (const GoalTerm& term : task.goal) {
     if (!decides(group, term, task, layout)) continue;
@@ -126,8 +125,8 @@ void aim_at_centroids(const Task& task, const Layout& layout, Group& group, Rng&
   }
 }
 
-/// Takes the bodies of a group over if all that can move are in their regions and in the arena,
-/// clear of what is placed and of each other.
+/// Adds the bodies of a group to the layout if all its movable bodies are in their regions and in
+/// the arena, clear of placed bodies and of each other. Returns whether it did.
 bool stand(const Task& task, Layout& layout, const Group& group) {
   Layout trial = layout;
   for (const std::size_t i : group.members) {
@@ -160,7 +159,7 @@ bool place_object(const Task& task, Layout& layout, std::size_t i, Rng& rng) {
   return false;
 }
 
-/// The angles of the joint within its limits and the goal; empty if there is none.
+/// Returns the range of the joint's angles within its limits and the goal; nothing if it is empty.
 std::optional<std::pair<double, double>> angles_in_goal(const Task& task, const Joint& joint) {
   double least = std::isfinite(joint.lower) ? joint.lower : -std::numbers::pi;
   double most = std::isfinite(joint.upper) ? joint.upper : std::numbers::pi;
@@ -173,7 +172,8 @@ std::optional<std::pair<double, double>> angles_in_goal(const Task& task, const 
   return std::pair{least, most};
 }
 
-/// The member whose own region decides where the group goes: the first that has one, or the root.
+/// Returns the member that is moved into its own region: the first that has one, otherwise the
+/// root.
 std::size_t aimed_member(const Task& task, const Group& group) {
   for (const std::size_t i : group.members)
     for (const GoalTerm& term : task.goal)
@@ -181,7 +181,8 @@ std::size_t aimed_member(const Task& task, const Group& group) {
   return group.root;
 }
 
-/// Turns the children of joints to random angles; false if there are none within limits and goal.
+/// Turns the children of joints to random angles. Returns false if a joint has no angle within its
+/// limits and the goal.
 bool turn(const Task& task, Group& group, Rng& rng) {
   for (const std::size_t n : root_first(task.scene)) {
     const Joint& joint = task.scene.joints[n];
@@ -196,8 +197,9 @@ bool turn(const Task& task, Group& group, Rng& rng) {
   return true;
 }
 
-/// Bodies that joints connect, as one: at random angles, then moved to where a member, or the mean
-/// centre that the goal speaks of, is in its region. A fixed root stays.
+/// Places bodies that joints connect as one group: turns them to random angles, then moves the
+/// group so that a member, or a mean centre of the goal, is in its region. A fixed root stays.
+/// Returns whether a proposal succeeded.
 bool place_tree(const Task& task, Layout& layout, const Group& tree, Rng& rng) {
   for (int k = 0; k < kProposals; ++k) {
     Group group = tree;
@@ -214,8 +216,8 @@ bool place_tree(const Task& task, Layout& layout, const Group& tree, Rng& rng) {
   return false;
 }
 
-/// Where the robot ends a push along a random heading d(a) that ends with it behind a random
-/// object.
+/// Draws the robot's pose at the end of a push along a random heading d(a) towards a random body;
+/// nothing if the robot meets no body.
 std::optional<Pose> robot_behind(const Task& task, const Layout& layout, Rng& rng) {
   const auto j = static_cast<std::size_t>(1 + rng.below(static_cast<int>(task.scene.size()) - 1));
   const Vector2d d = direction(rng.below(task.push.headings), task.push);
@@ -270,7 +272,7 @@ std::optional<Poses> attempt(const Task& task, Rng& rng) {
   for (std::size_t i = 1; i < task.scene.size(); ++i) layout.placed[i] = task.scene.bodies[i].fixed;
   if (!place_objects(task, layout, rng)) return std::nullopt;
   if (task.scene.size() > 1 && !place_robot(task, layout, rng)) return std::nullopt;
-  for (const GoalTerm& term : task.goal)  // what concerns each alone holds since it was placed
+  for (const GoalTerm& term : task.goal)  // kEvery holds since stand()
     if (term.subject != GoalTerm::Subject::kEvery &&
         !holds(term, task.scene, layout.poses, kGoalSpare))
       return std::nullopt;

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kSlideError = 1e-3;  // [m]
 
-/// Least separation of body `i` at `pose` from all placed bodies.
+/// Returns the least separation of body `i` at `pose` from all placed bodies, except those that a
+/// joint connects with it.
 double clearance(const Task& task, const Layout& layout, std::size_t i, const Pose& pose) {
   double least = 1e9;
   for (std::size_t j = 0; j < layout.poses.size(); ++j)
@@ -25,7 +26,8 @@ bool is_clear(const Task& task, const Layout& layout, std::size_t i, const Pose&
   return clearance(task, layout, i, pose) >= kClearance - kSlideError;
 }
 
-/// The separating-axis gap never exceeds the distance, so no step passes through.
+/// Moves in steps of the separating-axis gap, which never exceeds the distance, so that no step
+/// passes through a body.
 std::optional<Pose> slide(const Task& task, const Layout& layout, std::size_t i,
                           const Approach& way) {
   Pose pose = way.from;

@@ -7,30 +7,30 @@
 
 namespace rtg::tasks {
 
-/// The distance that sample_goal() keeps between bodies; closer than 0.02 they are in contact for
-/// Box2D [m].
+/// Distance that sample_goal() keeps between bodies [m]. For Box2D, bodies closer than 0.02 m are
+/// in contact.
 inline constexpr double kClearance = 0.0215;
 
-/// Bodies placed so far: `placed[i]` says whether `poses[i]` counts.
+/// Bodies placed so far: `poses[i]` is valid if `placed[i]`.
 struct Layout {
   Poses poses;
   std::vector<bool> placed;
 };
 
-/// Says whether body `i` at `pose` keeps kClearance from all placed bodies, but for what a joint
-/// connects it with.
+/// Returns whether body `i` at `pose` keeps kClearance from all placed bodies, except those that a
+/// joint connects with it.
 bool is_clear(const Task& task, const Layout& layout, std::size_t i, const Pose& pose);
 
-/// A straight way of a body towards the placed ones.
+/// A straight motion of a body towards the placed bodies.
 struct Approach {
   Pose from;
   Vector2d heading;
-  double gap = 0.0;    // left between them [m]
-  double range = 0.0;  // its longest [m]
+  double gap = 0.0;    // left to the first placed body [m]
+  double range = 0.0;  // greatest length of the motion [m]
 };
 
-/// Where body `i` ends its approach, `gap` away from the first placed body; empty if it meets none
-/// within `range`.
+/// Returns the pose of body `i` at the end of its approach, `gap` away from the first placed body;
+/// nothing if it meets none within `range` or begins closer than `gap`.
 std::optional<Pose> slide(const Task& task, const Layout& layout, std::size_t i,
                           const Approach& way);
 

@@ -2,10 +2,11 @@
 
 namespace rtg::threads {
 
-/// CPU time the calling thread has used so far [s].
+/// Returns the CPU time that the calling thread has used so far [s].
 double thread_cpu_s();
 
-/// The same of all threads of the process, those that have ended, too [s].
+/// Returns the CPU time that all threads of the process have used so far, including threads that
+/// have ended [s].
 double process_cpu_s();
 
 }  // namespace rtg::threads

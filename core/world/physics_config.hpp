@@ -4,33 +4,34 @@
 
 namespace rtg {
 
-/// Least k_D in dynamic mode: with less, bodies coast for more than a hundred sub-steps.
+/// Least k_D in dynamic mode. With a smaller k_D, bodies coast for about a hundred sub-steps or
+/// more.
 inline constexpr double kLeastInertialDamping = 0.05;
 
 /// Constants of the step energy Ψ and of the Box2D world matched to it.
 struct PhysicsConfig {
-  double time_step = 0.05;     // Δt of a sub-step [s]
-  int sub_steps = 10;          // h, sub-steps of one push
-  double damping = 20.0;       // k_D; Box2D gets linearDamping = angularDamping = k_D/Δt
-  double barrier = 24.0;       // μ, weight of the contact barrier [J]
-  double range = 0.15;         // ĝ, gap beyond which there is no contact force [m]
-  double skin = 0.0;           // d₀, offset of the gap [m]; μ and ĝ set the distance of contact
-  double sharpness = 50.0;     // α of the log-sum-exp signed distance [1/m]
-  double slip = 0.025;         // ε_u, displacement over which friction builds up [m]
-  double force_factor = 6.0;   // B_f in units of the robot's own drag at push speed
-  double torque_factor = 6.0;  // B_ω, the same times the robot's radius
-  bool plain_barrier = false;  // the paper's -μ log g, of infinite range
-  bool inertia = false;        // dynamic mode: bodies keep their speed, and coast after a push
+  double time_step = 0.05;  // Δt of a sub-step [s]
+  int sub_steps = 10;       // h, sub-steps of one push
+  double damping = 20.0;    // k_D; Box2D gets linearDamping = angularDamping = k_D/Δt
+  double barrier = 24.0;    // μ, weight of the contact barrier [J]
+  double range = 0.15;      // ĝ, gap beyond which there is no contact force [m]
+  double skin = 0.0;  // d₀, offset of the gap [m]; μ and ĝ set the gap of resting contacts
+  double sharpness = 50.0;      // α of the log-sum-exp signed distance [1/m]
+  double slip = 0.025;          // ε_u, displacement over which friction builds up [m]
+  double force_factor = 6.0;    // B_f in units of the robot's own drag at push speed
+  double torque_factor = 6.0;   // B_ω in units of that drag times the robot's radius
+  bool plain_barrier = false;   // the paper's -μ log g, of infinite range
+  bool inertia = false;         // dynamic mode: bodies keep their speed and coast after a push
   bool periodic_turns = false;  // the paper's 1 - cos Δθ in damping and inertia
   int box2d_steps = 5;          // Box2D steps per sub-step
   int box2d_velocity_iterations = 16;
   int box2d_position_iterations = 8;
 
-  /// Weight of inertia beside damping, ι = 1/k_D.
+  /// Returns the weight of inertia relative to damping: ι = 1/k_D in dynamic mode, else 0.
   double inertia_weight() const { return inertia ? 1.0 / damping : 0.0; }
 
-  /// Sub-steps after those of a push, the robot held, in which the speed of a free body falls to a
-  /// hundredth, by 1 + k_D in each; none where nothing coasts.
+  /// Returns the number of sub-steps with the robot held after a push. In each, the speed of a free
+  /// body is divided by 1 + k_D; in all, by a hundred or more. 0 without inertia.
   int settling_steps() const {
     return inertia ? static_cast<int>(std::ceil(std::log(100.0) / std::log1p(damping))) : 0;
   }

@@ -87,7 +87,7 @@ Polygon regular_polygon(int sides, double circumradius) {
 
 Polygon offset_polygon(const Polygon& polygon, double by) {
   const std::size_t count = polygon.size();
-  std::vector<Vector2d> normals;  // outward, of the edges that begin at the vertices
+  std::vector<Vector2d> normals;  // outward; entry k is that of the edge that begins at vertex k
   for (std::size_t k = 0; k < count; ++k) {
     const Vector2d edge = polygon.vertices[(k + 1) % count] - polygon.vertices[k];
     normals.push_back(Vector2d(edge.y(), -edge.x()).normalized());

@@ -17,7 +17,7 @@ struct Polygon {
   std::size_t size() const { return vertices.size(); }
 };
 
-/// Box2D's limit, and ours.
+/// Largest number of vertices of a polygon; also Box2D's limit.
 inline constexpr std::size_t kMaxVertices = 8;
 
 /// Area integrals of a polygon of unit density.
@@ -29,21 +29,21 @@ struct Moments {
 
 Moments moments(const Polygon& shape);
 
-/// Why `vertices` is no legal shape (too few or many, not finite, clockwise, not convex,
-/// degenerate), in words a user can act on; empty if it is legal.
+/// Returns why `vertices` is not a legal shape (too few or many, not finite, clockwise, not convex,
+/// degenerate), as a message that a user can act on; nothing if it is legal.
 std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices);
 
-/// The same shape with its centroid at the origin.
+/// Returns the same shape with its centroid at the origin.
 Polygon centred(const Polygon& shape);
 
-/// Largest distance of a vertex from the body origin [m].
+/// Returns the largest distance of a vertex from the body origin [m].
 double bounding_radius(const Polygon& shape);
 
 Polygon box(double width, double height);
 Polygon regular_polygon(int sides, double circumradius);
 
-/// All edges moved outwards by `by` [m], corners mitred: the points whose signed distance from all
-/// edges is at most that. At a sharp corner it reaches far.
+/// Returns the polygon with all edges moved outwards by `by` [m] and mitred corners: the points
+/// whose signed distance from each edge line is at most `by`. Sharp corners extend far.
 Polygon offset_polygon(const Polygon& polygon, double by);
 
 }  // namespace rtg

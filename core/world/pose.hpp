@@ -20,24 +20,24 @@ struct Pose {
 /// State of a scene at rest: one pose per body, body 0 is the robot.
 using Poses = std::vector<Pose>;
 
-/// R(θ) v.
+/// Returns R(θ) v.
 inline Vector2d rotate(double theta, const Vector2d& v) {
   const double c = std::cos(theta), s = std::sin(theta);
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
-/// X(v, p), a body-frame point in the world frame.
+/// Returns X(v, p), the world-frame position of a point v in the body frame.
 inline Vector2d to_world(const Pose& p, const Vector2d& v) {
   return p.position() + rotate(p.theta, v);
 }
 
-/// The inverse of to_world.
+/// Returns the body-frame position of a point x in the world frame: the inverse of to_world().
 inline Vector2d to_local(const Pose& p, const Vector2d& x) {
   return rotate(-p.theta, x - p.position());
 }
 
-/// The nearest pose in single precision, widened again. Box2D computes with these; a state made of
-/// them goes through a simulator without rounding.
+/// Returns the pose rounded to single precision and widened to double again. Box2D computes in
+/// single precision, so that a state of such poses enters a simulator without rounding.
 inline Pose to_single(const Pose& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.theta)};
 }

@@ -4,7 +4,8 @@
 
 namespace rtg {
 
-/// The discrete action set: push straight along d(a) = (cos 2πa/n, sin 2πa/n), heading held.
+/// The discrete action set: action a pushes straight along d(a) = (cos 2πa/n, sin 2πa/n) with the
+/// heading held.
 struct PushConfig {
   int headings = 48;    // n
   double stride = 2.0;  // length of one push [m]
@@ -18,14 +19,14 @@ struct PushConfig {
   }
 };
 
-/// d(a), unit vector of action a ∈ {0, ..., headings-1}.
+/// Returns d(a), the unit vector of action a ∈ {0, ..., headings-1}.
 Vector2d direction(int action, const PushConfig& config);
 
-/// Where the robot stands after action `action` from `robot`: one stride along d(a), each
-/// coordinate clipped to the arena; the heading is held.
+/// Returns the target pose of the robot for `action` from pose `robot`: one stride along d(a), with
+/// each coordinate clipped to the arena and the heading held.
 Pose push_target(const Pose& robot, int action, const PushConfig& config);
 
-/// Says whether a robot pose lies in the arena.
+/// Returns whether a robot pose lies in the arena.
 bool in_arena(const Pose& robot, const PushConfig& config);
 
 }  // namespace rtg

@@ -42,7 +42,7 @@ double joint_angle(const Joint& joint, const Poses& poses) {
 
 std::vector<std::size_t> root_first(const Scene& scene) {
   std::vector<std::size_t> order;
-  std::vector<int> waiting(scene.size(), 0);  // joints that have not been listed, by child
+  std::vector<int> waiting(scene.size(), 0);  // per child: joints not listed yet
   for (const Joint& joint : scene.joints) {
     assert(joint.parent > 0 && joint.child > 0 && joint.lower <= joint.upper);
     ++waiting[static_cast<std::size_t>(joint.child)];
@@ -65,7 +65,8 @@ std::vector<std::size_t> root_first(const Scene& scene) {
 
 namespace {
 
-/// Per body the first of its ancestors on the way to which all joints `bind`.
+/// Returns for each body the farthest ancestor that binding joints alone connect it with, or the
+/// body itself. A joint binds if binds(parent) is true.
 template <class Binds>
 std::vector<std::size_t> first_of(const Scene& scene, Binds binds) {
   std::vector<std::size_t> first(scene.size());

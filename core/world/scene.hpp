@@ -21,8 +21,8 @@ struct Body {
   bool operator==(const Body&) const = default;
 };
 
-/// Revolute joint: a point of the child is pinned to one of the parent. The two do not collide.
-/// lower ≤ upper.
+/// Revolute joint: a point of the child is pinned to a point of the parent. The two bodies do not
+/// collide with each other. lower ≤ upper.
 struct Joint {
   int parent = 0, child = 0;                                // bodies of the scene
   Vector2d on_parent = Vector2d::Zero();                    // the pin in the parent's frame [m]
@@ -33,8 +33,8 @@ struct Joint {
   bool operator==(const Joint&) const = default;
 };
 
-/// The bodies of a task; bodies[0] is the robot, which has no joint. Joints make trees of the
-/// others: no body is the child of two, no child is fixed.
+/// The bodies of a task and their joints. bodies[0] is the robot, which has no joint. The joints
+/// connect the other bodies to trees: no body is the child of two joints, no child is fixed.
 struct Scene {
   std::vector<Body> bodies;
   std::vector<Joint> joints = {};
@@ -42,29 +42,30 @@ struct Scene {
   std::size_t size() const { return bodies.size(); }
 };
 
-/// Says whether the body has a joint.
+/// Returns whether the body has a joint, as parent or as child.
 bool has_joint(const Scene& scene, std::size_t body);
 
-/// Says whether a joint connects the two bodies.
+/// Returns whether a joint connects the two bodies.
 bool jointed(const Scene& scene, std::size_t a, std::size_t b);
 
-/// Distance between the two points that a joint pins together [m].
+/// Returns the distance between the two points that a joint pins together [m].
 double joint_gap(const Joint& joint, const Poses& poses);
 
-/// θ_child - θ_parent [rad].
+/// Returns θ_child - θ_parent [rad].
 double joint_angle(const Joint& joint, const Poses& poses);
 
-/// Indices of joints, those of parents before those of their children.
+/// Returns the indices of all joints in an order from the roots of the trees to the leaves.
 std::vector<std::size_t> root_first(const Scene& scene);
 
-/// Per body the one at the root of the tree of joints that it belongs to; itself without a joint.
+/// Returns for each body the root of its tree of joints. A body without a joint is its own root.
 std::vector<std::size_t> roots_of(const Scene& scene);
 
-/// Per body the one that stands for all that move with it: as roots_of(), but what hangs on a fixed
-/// body moves alone.
+/// Returns for each body the body that represents all bodies that move with it: its root, as in
+/// roots_of(), except that a child of a fixed body counts as a root.
 std::vector<std::size_t> movers_of(const Scene& scene);
 
-/// `poses` with every child moved, its angle kept, to where its pin closes.
+/// Returns `poses` with all joints closed: each child is translated so that its pin meets that of
+/// the parent, and keeps its angle.
 Poses with_closed_joints(const Scene& scene, Poses poses);
 
 /// m and J (about the centroid) of a body [kg], [kg·m²].
@@ -73,7 +74,7 @@ struct Mass {
 };
 Mass mass_of(const Body& body);
 
-/// μ_f of a pair.
+/// Returns μ_f of a pair.
 double pair_friction(const Body& a, const Body& b);
 
 }  // namespace rtg

@@ -12,13 +12,14 @@ struct Selection {
   Poses poses;
 };
 
-/// With the joints between them.
+/// Returns `bodies` of the scene in the given order, with their poses and the joints between them.
 Selection select(const Scene& scene, const Poses& poses, const std::vector<int>& bodies);
 
-/// All bodies, movable ones before fixed ones, otherwise in order.
+/// Returns the indices of all bodies, movable ones before fixed ones, each group in ascending
+/// order.
 std::vector<int> movable_first(const Scene& scene);
 
-/// `poses` with those of `bodies` replaced by `part`.
+/// Returns `poses` with the poses of `bodies` replaced by `part`.
 Poses merged(Poses poses, const Poses& part, const std::vector<int>& bodies);
 
 }  // namespace rtg

@@ -6,10 +6,11 @@
 namespace rtg {
 namespace {
 
-/// Vertices, as columns; of what a shape sweeps there are some more than of a body.
+/// Vertices as columns: up to 2 kMaxVertices, because the area that a shape sweeps has more
+/// vertices than the shape.
 using Points = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 2 * kMaxVertices>;
 
-/// The vertices of b in the frame of a.
+/// Returns the vertices of b in the frame of a.
 Points local_points(const Pose& pose_a, const Polygon& b, const Pose& pose_b) {
   const Vector2d offset = to_local(pose_a, pose_b.position());
   const double c = std::cos(pose_b.theta - pose_a.theta), s = std::sin(pose_b.theta - pose_a.theta);
@@ -22,7 +23,8 @@ Points local_points(const Pose& pose_a, const Polygon& b, const Pose& pose_b) {
   return out;
 }
 
-/// The largest gap at an edge of a; any one of at least `enough` will do.
+/// Returns the largest gap between an edge of a and the vertices of b, or any gap of at least
+/// `enough`.
 double one_sided(const Polygon& a, const Pose& pose_a, const Polygon& b, const Pose& pose_b,
                  double enough = INFINITY) {
   const Points points = local_points(pose_a, b, pose_b);

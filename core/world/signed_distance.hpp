@@ -8,9 +8,9 @@
 
 namespace rtg {
 
-/// A convex polygon as the intersection of its half planes n_k·x ≤ b_k, n_k the outward unit
-/// normals, in the body frame; one polygon per lane. Where lanes differ in the number of planes,
-/// those that a polygon lacks are far from everything.
+/// A convex polygon as the intersection of its half planes n_k·x ≤ b_k, with n_k the outward unit
+/// normals, in the body frame; one polygon per lane. If the polygon of a lane has fewer than
+/// `count` edges, its unused planes are far from everything.
 template <class T>
 struct Planes {
   int count = 0;
@@ -21,7 +21,7 @@ using HalfPlanes = Planes<double>;
 
 HalfPlanes half_planes(const Polygon& shape);
 
-/// n_k·x - b_k of each plane; returns the largest, which is at most d(x).
+/// Sets `distances` to n_k·x - b_k of each plane. Returns the largest, which is at most d(x).
 template <class T>
 T plane_distances(const Planes<T>& planes, const Vec2<T>& x, T* distances) {
   T top = distances[0] = planes.normal[0].dot(x) - planes.offset[0];
@@ -37,14 +37,14 @@ T plane_distances(const Planes<T>& planes, const Vec2<T>& x, T* distances) {
 ///   d(x) = 1/α ln Σ_k exp(α (n_k·x - b_k)),   w = softmax(α (n_k·x - b_k)),
 ///   ∇d = n̄ = Σ w n,   ∇²d = α (Σ w n nᵀ - n̄ n̄ᵀ),   ∇³d = α² Σ w (n - n̄)^⊗3,
 ///
-/// all in the polygon's frame. Exact on faces; right angles are cut by at most
-/// √2 ln 2/α.
+/// all in the polygon's frame. d is exact on faces, away from corners. It cuts right-angled corners
+/// by at most √2 ln 2/α.
 template <class T>
 class SignedDistance {
  public:
   static_assert(kMaxVertices <= static_cast<std::size_t>(kMostNumbers));
 
-  /// `distances`, `top`: plane_distances() at x.
+  /// `distances` and `top` are those that plane_distances() sets and returns at x.
   SignedDistance(const Planes<T>& planes, double alpha, const T* distances, const T& top)
       : planes_(planes), alpha_(alpha) {
     T exponent[kMaxVertices];
@@ -81,7 +81,7 @@ class SignedDistance {
   Vec2<T> gradient;  // ∇d, |∇d| ≤ 1
 
  private:
-  static constexpr double kNothing = -100.0;  // logarithm of a weight that is none
+  static constexpr double kNothing = -100.0;  // weights with a logarithm up to this one are zero
 
   /// scale Σ weight(w, n - n̄) (n - n̄)(n - n̄)ᵀ.
   template <class Weight>
@@ -104,7 +104,7 @@ class SignedDistance {
   T weight_[kMaxVertices];
 };
 
-/// At a point of one polygon.
+/// Returns the SignedDistance of a point x to one polygon.
 inline SignedDistance<double> signed_distance(const HalfPlanes& planes, double alpha,
                                               const Vector2d& x) {
   double distances[kMaxVertices];

@@ -11,9 +11,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kWait = 50ms;        // between two looks at the clock
-constexpr auto kBacklogWait = 5ms;  // the same while the stream waits for its pace
-constexpr int kFarewells = 5;       // any of them ends a worker
+constexpr auto kWait = 50ms;        // longest wait for a message before timers are checked
+constexpr auto kBacklogWait = 5ms;  // the same while the stream has rows left to send
+constexpr int kFarewells = 5;       // messages with `leaving` set; a worker ends at the first one
 constexpr auto kFarewellWait = 40ms;
 
 }  // namespace

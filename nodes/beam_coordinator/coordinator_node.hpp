@@ -12,18 +12,18 @@
 
 namespace rtg::beam_coordinator {
 
-/// The process that owns a generation: hands its work to workers and server, serves the transition
-/// stream, says where it stands.
+/// The coordinator process of a generation. It sends jobs to workers and server, serves the
+/// transition stream and publishes the progress.
 ///
-/// The search runs on a thread of its own and blocks in its seams, so that the bus is served while
-/// it computes.
+/// The search runs on its own thread and blocks in its seams until the results are there. The bus
+/// is served meanwhile.
 class CoordinatorNode {
  public:
   struct Options {
     jobs::TaskShape shape;
     std::int64_t config = 0;        // hash of the configuration
     long target = 0;                // transitions to be stored, for the display
-    std::function<bool()> stopped;  // polled; true: end as soon as possible
+    std::function<bool()> stopped;  // polled; true asks the node to end as soon as possible
   };
 
   CoordinatorNode(bus::Bus& bus, Options options);
@@ -34,15 +34,15 @@ class CoordinatorNode {
 
   using Search = std::function<search::GenerationReport(const search::GenerationSeams&)>;
 
-  /// Runs `search` to its end and serves the bus meanwhile. Empty if it was stopped; rethrows what
-  /// the search or a handler threw.
+  /// Runs `search` to its end and serves the bus meanwhile. Returns nothing if the node was
+  /// stopped. Rethrows an exception of the search or of a handler.
   std::optional<search::GenerationReport> run(const Search& search);
 
-  /// Seals the stream and serves it until `consumers` and all others that are alive have it, or
-  /// until stopped.
+  /// Seals the stream and serves it until at least `consumers` consumers and all living ones have
+  /// all of it, or until the node is stopped.
   void drain(int consumers);
 
-  /// Units given up since they took down or stopped every worker that had them.
+  /// Returns the number of units given up because every worker that held them was lost.
   long given_up() const { return reverse_.state().given_up + replay_.state().given_up; }
 
  private:
@@ -60,7 +60,7 @@ class CoordinatorNode {
   bus::NodeStatus status_;
   bus::Ticker progress_ticker_{0.5};
   bool leaving_ = false;
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members below
   search::Progress progress_{.phase = "starting"};
 };
 

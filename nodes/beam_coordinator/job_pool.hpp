@@ -16,16 +16,16 @@
 
 namespace rtg::beam_coordinator {
 
-/// Where a JobPool stands.
+/// Counts of a JobPool, for progress and status messages.
 struct PoolState {
   int workers = 0;  // alive
   long open = 0;    // units neither answered nor given up
   long resent = 0, reissued = 0, given_up = 0;
 };
 
-/// A kind of work, answered by processes behind the bus: a SolveBatch or ReplayBatch that hides
-/// ids, units, retries and order. The search calls answers() on its thread; the thread that spins
-/// the bus calls tick().
+/// Has worker processes compute one kind of work. answers() serves as SolveBatch or ReplayBatch and
+/// hides ids, units, retries and order. The search calls answers() on its own thread; the thread
+/// that spins the bus calls tick().
 template <class Service>
 class JobPool {
  public:
@@ -40,8 +40,8 @@ class JobPool {
                                   [this](const ResultMessage& m) { on_result(m); });
   }
 
-  /// The results in job order, however often workers die and messages are lost. Blocks until all
-  /// are there; throws Interrupted once stop() has been called.
+  /// Returns the results in job order, even if workers die and messages are lost. Blocks until
+  /// every unit is answered or given up. Throws Interrupted once stop() has been called.
   std::vector<Result> answers(std::span<const Job> jobs) {
     std::unique_lock lock(mutex_);
     dispatcher_.submit(units_.deal(jobs, shape_, config_));
@@ -54,11 +54,11 @@ class JobPool {
     return results;
   }
 
-  /// Hands out again what died or got lost.
+  /// Hands out again the units of lost workers and those whose messages were lost.
   void tick() {
     const std::scoped_lock lock(mutex_);
     send_due();
-    if (dispatcher_.finished()) changed_.notify_all();  // poison ends a unit without a result
+    if (dispatcher_.finished()) changed_.notify_all();  // a poisoned unit has no result
   }
 
   void stop() {
@@ -122,7 +122,7 @@ class JobPool {
   bus::Bus& bus_;
   jobs::TaskShape shape_;
   std::int64_t config_;
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   jobs::JobDispatcher dispatcher_;
   UnitTable<Service> units_;

@@ -67,7 +67,7 @@ bool StreamServer::drained(int consumers, bus::Seconds now) const {
   return sealed_ && live_ == count() && complete >= consumers;
 }
 
-/// Unites `range` with those asked for already, so that a repeated question costs nothing.
+/// Merges `range` into the requested ranges, so that a repeated request costs nothing.
 void StreamServer::ask(RowRange range) {
   auto it = asked_.upper_bound(range.begin);
   if (it != asked_.begin() && std::prev(it)->second >= range.begin) --it;
@@ -78,7 +78,8 @@ void StreamServer::ask(RowRange range) {
   asked_[range.begin] = range.end;
 }
 
-/// The next message's worth of rows, those asked for first; empty if there is nothing to send.
+/// Returns the rows of the next message, requested rows first. Returns an empty range if there is
+/// nothing to send.
 RowRange StreamServer::next(bus::Seconds now) {
   if (!asked_.empty()) {
     const auto [begin, end] = *asked_.begin();
@@ -93,7 +94,7 @@ RowRange StreamServer::next(bus::Seconds now) {
   return range;
 }
 
-/// First row that may not go out yet.
+/// Returns the first new row that may not be sent yet.
 std::int64_t StreamServer::live_limit(bus::Seconds now) const {
   std::int64_t limit = count();
   for (const auto& [id, consumer] : consumers_)

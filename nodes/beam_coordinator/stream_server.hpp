@@ -17,25 +17,25 @@ struct RowRange {
   bool operator==(const RowRange&) const = default;
 };
 
-/// The sending end of the transition stream: a dense sequence kept in memory, of which every
-/// consumer gets every row however much the network loses. Free of I/O: events in, row ranges to
-/// send out, the clock passed in.
+/// The sending end of the transition stream, a sequence of rows without gaps that is kept in
+/// memory. Every consumer gets every row, however many messages the network loses. The class does
+/// no I/O: the caller passes in events and the time, and sends the row ranges that due() returns.
 ///
-/// New rows go out once, at a pace that receive buffers can stand and no further than the slowest
-/// living consumer has credit; after that a row is sent only to one that asks.
+/// New rows are sent once, at a rate that receive buffers can take, and not beyond the credit of
+/// any living consumer. After that a row is sent again only when a consumer requests it.
 class StreamServer {
  public:
   struct Limits {
     double rate = 10e6;                // [bytes/s]
-    double burst = 64e3;               // [bytes] at once; a stock receive buffer holds 208 kB
-    std::int64_t chunk_bytes = 16000;  // of one message
-    bus::Seconds silence = 2.0;        // a consumer unheard for so long has no say in the pace
-    std::int64_t max_nacked = 65536;   // rows one acknowledgement may ask for
+    double burst = 64e3;               // [bytes] at once; a default receive buffer holds 208 kB
+    std::int64_t chunk_bytes = 16000;  // rows of one message [bytes]
+    bus::Seconds silence = 2.0;        // a consumer silent for longer is no longer waited for
+    std::int64_t max_nacked = 65536;   // rows that one acknowledgement may request
   };
   struct Ack {
     std::int64_t consumer = 0;
     std::int64_t cursor = 0;
-    std::int64_t credit = 0;  // rows beyond the cursor; 0: it knows that it has the whole stream
+    std::int64_t credit = 0;  // rows beyond the cursor; 0: the consumer has the sealed stream
     std::span<const RowRange> missing;
   };
 
@@ -45,11 +45,11 @@ class StreamServer {
   void append(std::span<const search::Transition> rows);
   void seal() { sealed_ = true; }
 
-  /// False if the acknowledgement contradicts the stream (a cursor beyond its end); it is then
-  /// ignored.
+  /// Applies `ack`. Returns false and ignores `ack` if it contradicts the stream: negative numbers,
+  /// a cursor beyond the end.
   bool on_ack(const Ack& ack, bus::Seconds now);
 
-  /// The messages to send now, each a range of at most rows_per_message() rows.
+  /// Returns the messages to send now, each a range of at most rows_per_message() rows.
   std::vector<RowRange> due(bus::Seconds now);
 
   std::span<const search::Transition> rows(RowRange range) const;
@@ -60,11 +60,11 @@ class StreamServer {
   std::int64_t slowest_cursor() const;
   long resent() const { return resent_; }  // rows sent again on request
 
-  /// Says whether due() will have more to send although nothing new comes in.
+  /// Returns whether due() will have more to send without new events.
   bool backlog(bus::Seconds now) const { return !asked_.empty() || live_ < live_limit(now); }
 
-  /// Says whether all of the sealed stream has been sent, at least `consumers` know that they have
-  /// it, and no living one does not.
+  /// Returns whether the whole sealed stream has been sent, and at least `consumers` consumers and
+  /// all living ones have confirmed that they have it.
   bool drained(int consumers, bus::Seconds now) const;
 
  private:
@@ -83,8 +83,8 @@ class StreamServer {
   double row_bytes_;
   std::vector<search::Transition> rows_;
   bool sealed_ = false;
-  std::int64_t live_ = 0;                       // rows below have been sent once
-  std::map<std::int64_t, std::int64_t> asked_;  // begin -> end, disjoint
+  std::int64_t live_ = 0;                       // rows below live_ have been sent once
+  std::map<std::int64_t, std::int64_t> asked_;  // requested ranges, begin -> end, disjoint
   std::map<std::int64_t, Consumer> consumers_;
   double tokens_ = 0.0;  // [bytes]
   bus::Seconds refilled_ = 0.0;

@@ -5,7 +5,7 @@
 namespace rtg::beam_coordinator {
 namespace {
 
-/// Bytes of one transition on the wire: two states, action, success, source.
+/// Returns the encoded size of one transition [bytes]: two states, action, success, source.
 std::int64_t row_bytes(const jobs::TaskShape& shape) {
   return std::int64_t{2} * shape.bodies * 24 + 6;
 }

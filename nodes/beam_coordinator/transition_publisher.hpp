@@ -13,8 +13,8 @@
 
 namespace rtg::beam_coordinator {
 
-/// The transition stream on the bus. The search calls store() on its thread; everything else
-/// belongs to the thread that spins the bus.
+/// Publishes the transition stream on the bus. The search calls store() on its own thread; the
+/// thread that spins the bus calls all other functions.
 class TransitionPublisher {
  public:
   TransitionPublisher(bus::Bus& bus, const jobs::TaskShape& shape);
@@ -22,13 +22,13 @@ class TransitionPublisher {
   void store(std::span<const search::Transition> rows);
   void seal();
 
-  /// Sends what is due, and how long the stream is.
+  /// Sends the rows that are due, and five times a second the length of the stream (RTG_TAIL).
   void tick(bus::Seconds now);
 
-  /// Says whether tick() will have more to send although nothing new comes in.
+  /// Returns whether tick() will have more rows to send without new events.
   bool backlog(bus::Seconds now) const;
 
-  /// As StreamServer::drained().
+  /// See StreamServer::drained().
   bool drained(int consumers, bus::Seconds now) const;
 
   struct State {
@@ -46,7 +46,7 @@ class TransitionPublisher {
   bus::Bus& bus_;
   std::int64_t stream_ = bus::random_identity();
   bus::Ticker tail_{0.2};
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members below
   StreamServer server_;
 };
 

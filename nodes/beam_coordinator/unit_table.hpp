@@ -12,15 +12,16 @@
 
 namespace rtg::beam_coordinator {
 
-/// Which jobs of a batch travel in which unit, and where their results belong. Refers to the jobs
-/// of the caller.
+/// Splits a batch of jobs into units and collects the results in job order. Refers to the jobs of
+/// the caller, which must outlive their use.
 template <class Service>
 class UnitTable {
  public:
   using Job = typename Service::Job;
   using Result = typename Service::Result;
 
-  /// Deals a new batch into units; their ids in order, equal ones for equal questions.
+  /// Splits a new batch into units. Returns the ids of the units in order; equal units have equal
+  /// ids.
   std::vector<jobs::JobId> deal(std::span<const Job> jobs, const jobs::TaskShape& shape,
                                 std::int64_t config) {
     units_.clear();
@@ -38,10 +39,10 @@ class UnitTable {
 
   bool contains(jobs::JobId id) const { return units_.contains(id); }
 
-  /// The jobs of a unit that the table contains.
+  /// Returns the jobs of unit `id`. The table must contain it.
   std::span<const Job> jobs(jobs::JobId id) const { return units_.find(id)->second.jobs; }
 
-  /// Takes the results of a unit's jobs, as many as the unit has jobs.
+  /// Stores the results of unit `id`, one per job, for all units with that id.
   void store(jobs::JobId id, std::span<const Result> results) {
     const auto [begin, end] = units_.equal_range(id);
     for (auto it = begin; it != end; ++it)
@@ -49,7 +50,7 @@ class UnitTable {
                 results_.begin() + static_cast<std::ptrdiff_t>(it->second.first));
   }
 
-  /// The results in job order; the table is empty afterwards.
+  /// Returns the results in job order and empties the table.
   std::vector<Result> take() {
     units_.clear();
     return std::exchange(results_, {});

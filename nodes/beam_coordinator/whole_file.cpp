@@ -10,7 +10,7 @@
 namespace rtg::beam_coordinator {
 namespace {
 
-/// Waits until the file would outlive a power cut.
+/// Flushes the file to disk, so that it survives a power cut. Returns whether that succeeded.
 bool is_on_disk(const std::filesystem::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return false;

@@ -5,8 +5,8 @@
 
 namespace rtg::beam_coordinator {
 
-/// Writes `text` to `path` at once or not at all, also if the machine goes down. Throws
-/// std::system_error that names the file.
+/// Writes `text` to `path` atomically: the file is written completely or not at all, even if the
+/// machine crashes. Throws std::system_error that names the file.
 void write_whole_file(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace rtg::beam_coordinator

@@ -17,11 +17,11 @@
 namespace rtg::bus {
 namespace {
 
-constexpr int kQueueCapacity = 1000;  // messages; LCM's default of 30 drops new ones silently
-constexpr int kMaxPerSpin = 1000;     // a flood must not keep the caller from its own work
+constexpr int kQueueCapacity = 1000;  // messages; LCM silently drops more, by default beyond 30
+constexpr int kMaxPerSpin = 1000;     // messages; a flood of messages must not block the caller
 
-/// Receive buffer of the UDP socket bound to `port` [bytes]; LCM does not tell its descriptor. 0 if
-/// there is none.
+/// Returns the receive buffer size of the UDP socket bound to `port` [bytes], 0 if there is no such
+/// socket. Searches all file descriptors, because LCM does not expose the one that it uses.
 int receive_buffer(int port) {
   for (int fd = 3; fd < 256; ++fd) {
     sockaddr_in address{};
@@ -39,7 +39,7 @@ int receive_buffer(int port) {
 void warn_of_small_buffer(const std::string& url) {
   if (!url.starts_with("udpm")) return;
   const int port = std::stoi(url.substr(url.find(':', 7) + 1));
-  const int size = receive_buffer(port) / 2;  // Linux reports twice what it was asked for
+  const int size = receive_buffer(port) / 2;  // Linux reports twice the requested size
   if (size >= kReceiveBuffer) return;
   std::fprintf(stderr,
                "bus: receive buffer is %d kB instead of %d kB; bursts will be lost and sent again. "
@@ -52,13 +52,14 @@ void warn_of_small_buffer(const std::string& url) {
 struct Bus::Connection {
   explicit Connection(const std::string& bus_url) : url(bus_url), lcm(bus_url) {}
 
-  /// A listened-to channel.
+  /// A subscription to one channel.
   struct Listener {
     Connection* connection;
     RawHandler handler;
   };
 
-  /// LCM's handler: called from C, where no exception may pass.
+  /// Callback that LCM's C code calls. Stores an exception of the handler in `failure`, because no
+  /// exception may propagate through C code.
   static void receive(const lcm_recv_buf_t* buffer, const char*, void* user) {
     const auto& listener = *static_cast<Listener*>(user);
     try {
@@ -71,7 +72,7 @@ struct Bus::Connection {
 
   std::string url;
   lcm::LCM lcm;
-  std::list<Listener> listeners;  // a list: LCM keeps their addresses
+  std::list<Listener> listeners;  // std::list: LCM stores their addresses
   std::exception_ptr failure;
 };
 
@@ -104,8 +105,8 @@ void Bus::send(const std::string& channel, std::span<const std::uint8_t> bytes) 
 
 void Bus::listen(const std::string& channel, RawHandler handler) {
   auto& listener = connection_->listeners.emplace_back(connection_.get(), std::move(handler));
-  // Not lcm::LCM::subscribe(): it hides a failed self-test, and its call through a member pointer
-  // is a false alarm of GCC 12's UndefinedBehaviorSanitizer.
+  // lcm::LCM::subscribe() is not used: it hides a failed self-test, and GCC 12's
+  // UndefinedBehaviorSanitizer reports a false positive for its call through a member pointer.
   lcm_subscription_t* const subscription = lcm_subscribe(
       connection_->lcm.getUnderlyingLCM(), channel.c_str(), &Connection::receive, &listener);
   if (!subscription)

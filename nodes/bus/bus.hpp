@@ -15,24 +15,24 @@ namespace rtg::bus {
 /// Version of the rules in msgs/CHANNELS.md.
 inline constexpr std::int32_t kProtocol = 1;
 
-/// The only C++ code that touches LCM.
+/// A connection to the message bus; the only C++ class that uses LCM.
 ///
-/// LCM loses, doubles and reorders messages, and anyone may send: whatever arrives is checked
-/// against its type, the run and finite values before a handler sees it; what is dropped is counted
-/// ("bus.malformed", "bus.foreign_run", ...). publish() may be called from any thread; everything
-/// else belongs to one thread.
+/// LCM loses, duplicates and reorders messages, and any process may send them. Handlers therefore
+/// receive only messages of the expected type, run and protocol with finite values. The Bus drops
+/// all other messages and counts them ("bus.malformed", "bus.foreign_run", ...). publish() may be
+/// called from any thread; all other functions must be called from one thread.
 class Bus {
  public:
-  /// `url`: "udpm://GROUP:PORT[?ttl=N]" or "memq://" (one process, for tests). ttl is 0, this
-  /// machine only, unless named. Only messages of the run named `run` are heard. Throws
+  /// `url`: "udpm://GROUP:PORT[?ttl=N]" or "memq://" (one process, for tests). The default ttl of 0
+  /// keeps messages on this machine. Handlers receive only messages of the run named `run`. Throws
   /// std::invalid_argument for an illegal URL, std::runtime_error if the network cannot be opened.
   Bus(const std::string& url, const std::string& run);
   ~Bus();
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// Fills the header and sends. A datagram that the kernel refuses counts as "bus.unsent", as lost
-  /// as any other.
+  /// Fills the header of `msg` and sends `msg`. If the kernel refuses the datagram, the message is
+  /// lost and counted as "bus.unsent".
   template <class Msg>
   void publish(const std::string& channel, Msg msg) {
     msg.header = header_;
@@ -50,11 +50,11 @@ class Bus {
     });
   }
 
-  /// Waits for a message for `timeout` at most, then handles all that have arrived. Returns how
-  /// many; rethrows the first exception of a handler.
+  /// Waits up to `timeout` for a message, then handles all messages that have arrived, at most
+  /// 1000. Returns the number of handled messages. Rethrows the first exception of a handler.
   int spin(std::chrono::milliseconds timeout);
 
-  /// Sends bytes as they are; for tests of what a stranger may send.
+  /// Sends `bytes` unchanged; public for tests with malformed or foreign messages.
   void send(const std::string& channel, std::span<const std::uint8_t> bytes);
 
   Counters& counters() { return counters_; }

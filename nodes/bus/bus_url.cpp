@@ -7,15 +7,15 @@
 namespace rtg::bus {
 namespace {
 
-/// Says whether `text` begins with `word`, which is then taken off it.
+/// Removes the prefix `word` from `text`. Returns whether `text` began with `word`.
 bool take(std::string_view& text, std::string_view word) {
   if (!text.starts_with(word)) return false;
   text.remove_prefix(word.size());
   return true;
 }
 
-/// Says whether `text` begins with a decimal number in [low, high], which is then taken off it. No
-/// leading zeros: inet_aton() would read them as octal.
+/// Removes a decimal number in [low, high] from the beginning of `text`. Returns whether `text`
+/// began with one. Rejects leading zeros, since inet_aton() would read the number as octal.
 bool take_number(std::string_view& text, int low, int high) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -4,11 +4,11 @@
 
 namespace rtg::bus {
 
-/// The kernel's default of 208 kB loses every burst [bytes].
+/// Size of the UDP receive buffer [bytes]. The kernel's default of 208 kB overflows in every burst.
 inline constexpr int kReceiveBuffer = 4 << 20;
 
-/// The URL with ttl and receive buffer spelt out; throws std::invalid_argument that says what is
-/// legal.
+/// Returns `url` with explicit ttl and receive buffer size; returns "memq://" unchanged. Throws
+/// std::invalid_argument, whose message lists the legal URLs, if `url` is not legal.
 std::string checked_bus_url(const std::string& url);
 
 }  // namespace rtg::bus

@@ -8,12 +8,12 @@
 
 namespace rtg::bus {
 
-/// The clock of all timeouts; never set back.
+/// Returns the time of the monotonic clock that all timeouts use.
 inline Seconds monotonic_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Says when something that happens every `interval` seconds is due again, the first time at once.
+/// Timer that is due() once every `interval` seconds, the first time at once.
 class Ticker {
  public:
   explicit Ticker(Seconds interval) : interval_(interval) {}
@@ -29,7 +29,7 @@ class Ticker {
   Seconds next_ = 0.0;
 };
 
-/// A name that no other process start has.
+/// Returns a random 64-bit number that identifies, for example, one start of a process.
 inline std::int64_t random_identity() {
   std::random_device device;
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(device()) << 32 | device());

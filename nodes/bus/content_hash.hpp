@@ -5,8 +5,8 @@
 
 namespace rtg::bus {
 
-/// FNV-1a, 64 bit: names a text the same way in every process and language. Not a
-/// defence against forgers.
+/// 64-bit FNV-1a hash of a text, the same in every process and programming language. It is not
+/// cryptographic and does not protect against forgery.
 class ContentHash {
  public:
   ContentHash& add(std::string_view text) {

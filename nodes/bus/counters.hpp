@@ -6,8 +6,8 @@
 
 namespace rtg::bus {
 
-/// Named event counts of one process, published in node_status_t: nothing is dropped without a
-/// trace. Safe to use from several threads.
+/// Named event counters of one process, published in node_status_t, so that every dropped message
+/// leaves a trace. Thread-safe.
 class Counters {
  public:
   void add(const std::string& name, long n = 1) {
@@ -15,7 +15,7 @@ class Counters {
     counts_[name] += n;
   }
 
-  /// 0 for a name never counted.
+  /// Returns 0 for a name that was never counted.
   long value(const std::string& name) const {
     const std::scoped_lock lock(mutex_);
     const auto found = counts_.find(name);

@@ -9,16 +9,16 @@
 
 namespace rtg::bus {
 
-/// Tells people what a process does and what it has counted: RTG_STATUS.
+/// Publishes the state and the counters of a process on channel RTG_STATUS, for people.
 class NodeStatus {
  public:
   NodeStatus(Bus& bus, std::string node, int number)
       : bus_(bus), node_(std::move(node)), number_(number) {}
 
-  /// Says whether it is time to publish(): twice a second.
+  /// Returns whether publish() is due, which is twice a second.
   bool due(Seconds now) { return ticker_.due(now); }
 
-  /// `done` as in node_status_t. `counts` are told beside the bus's counters.
+  /// Publishes `counts` in addition to the counters of the bus. `done`: see node_status_t.
   void publish(const std::string& state, std::int64_t done,
                const std::map<std::string, long>& counts = {});
 
@@ -29,16 +29,16 @@ class NodeStatus {
   Ticker ticker_{0.5};
 };
 
-/// Says whether the coordinator is still there, as worker and server hear it: RTG_PROGRESS.
+/// Monitors the coordinator by its messages on channel RTG_PROGRESS; used by workers and server.
 class CoordinatorWatch {
  public:
   static constexpr Seconds kSilence = 30.0;
 
   explicit CoordinatorWatch(Bus& bus);
 
-  /// It has said that it ends.
+  /// Returns whether the coordinator has announced that it is leaving.
   bool leaving() const { return leaving_; }
-  /// It has not been heard for kSilence.
+  /// Returns whether no message of the coordinator has arrived for kSilence.
   bool silent(Seconds now) const { return now - heard_ > kSilence; }
 
  private:

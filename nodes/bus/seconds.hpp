@@ -2,7 +2,7 @@
 
 namespace rtg::bus {
 
-/// A time of a clock that is never set back, or a span of time [s].
+/// A time of a monotonic clock, or a duration [s].
 using Seconds = double;
 
 }  // namespace rtg::bus

@@ -4,30 +4,30 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <rtg_msgs/wire_fields.hpp>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "nodes/bus/wire_fields.hpp"
-
 namespace rtg::bus {
 
-/// Largest message, payload only. LCM splits beyond 65,499 bytes, and its reassembly loses and
-/// corrupts.
+/// Maximum size of an encoded message, without LCM's packet header [bytes]. LCM fragments messages
+/// beyond 65,499 bytes, and its reassembly loses and corrupts messages.
 inline constexpr std::size_t kMaxMessageBytes = 60000;
 
-/// Why received bytes are not a message of the type expected.
+/// Reasons to reject received bytes as a message of the expected type.
 enum class WireDefect { kTooLong, kWrongType, kMalformed, kNotFinite };
 
-/// Name of the defect's counter.
+/// Returns the name of the counter of `defect`.
 std::string_view counter_name(WireDefect defect);
 
 namespace wire {
 
-/// Walks the bytes of a message without allocating: the generated decoder trusts every count it
-/// reads, so a payload of 31 bytes could make it allocate gigabytes or abort.
+/// Visitor that checks the layout of an encoded message without allocating memory. The generated
+/// decoder trusts every count that it reads, so a payload of 31 bytes could make it allocate
+/// gigabytes or abort.
 class Layout {
  public:
   explicit Layout(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
@@ -46,19 +46,19 @@ class Layout {
     for (std::int32_t i = 0; i < n && ok_; ++i) skip_text();
   }
 
-  /// Says whether the bytes were those of the fields seen, no more and no fewer.
+  /// Returns whether the visited fields fill the bytes exactly.
   bool complete() const { return ok_ && rest_.empty(); }
 
  private:
-  std::int32_t length();  // big-endian, 0 ... kMaxMessageBytes
+  std::int32_t length();  // reads a big-endian count, 0 ... kMaxMessageBytes
   void skip(std::int32_t n, std::size_t size);
-  void skip_text();  // length including the final NUL, then the bytes
+  void skip_text();  // skips a length that includes the final NUL, then the bytes
 
   std::span<const std::uint8_t> rest_;
   bool ok_ = true;
 };
 
-/// Looks for NaN and infinity in a decoded message.
+/// Visitor that checks whether all numbers of a decoded message are finite.
 struct Finite {
   bool ok = true;
 
@@ -75,8 +75,8 @@ struct Finite {
   void texts(std::vector<std::string>&, std::int32_t) {}
 };
 
-/// Says whether the vectors of an outgoing message are as long as its counts say: the generated
-/// encoder reads past their end otherwise.
+/// Visitor that checks whether the sizes of the vectors of an outgoing message equal its counts.
+/// The generated encoder reads past the end of a vector that is too short.
 struct Consistent {
   bool ok = true;
 
@@ -95,8 +95,8 @@ bool has_fingerprint(std::span<const std::uint8_t> bytes, std::int64_t fingerpri
 
 }  // namespace wire
 
-/// The bytes of a message; our own mistakes (inconsistent counts, over kMaxMessageBytes) throw
-/// std::logic_error.
+/// Returns the encoded message. Throws std::logic_error if the counts are inconsistent or the
+/// message is longer than kMaxMessageBytes.
 template <class Msg>
 std::vector<std::uint8_t> encode(Msg& msg) {
   wire::Consistent consistent;
@@ -110,7 +110,8 @@ std::vector<std::uint8_t> encode(Msg& msg) {
   return bytes;
 }
 
-/// Fills `msg`, or says why the bytes are no such message. Safe for any bytes.
+/// Decodes `bytes` into `msg`. Returns the defect if `bytes` are not a valid message of this type.
+/// Safe for arbitrary bytes.
 template <class Msg>
 [[nodiscard]] std::optional<WireDefect> decode(std::span<const std::uint8_t> bytes, Msg& msg) {
   if (bytes.size() > kMaxMessageBytes) return WireDefect::kTooLong;

@@ -49,7 +49,7 @@ ConfigNode parse_root(const std::string& text, const std::string& name) {
   return root;
 }
 
-/// Puts the section of another file in the place of its path.
+/// Replaces a section `task` that is a path by the section `task` of the file at that path.
 void fetch_task(ConfigNode& root, const std::filesystem::path& folder) {
   for (ConfigEntry& entry : root.entries) {
     if (entry.key != "task" || entry.value.kind != Kind::kScalar) continue;
@@ -63,8 +63,8 @@ void fetch_task(ConfigNode& root, const std::filesystem::path& folder) {
   }
 }
 
-/// Takes the keys that presets of `section` decide out of the file's values: a preset on the
-/// command line stands above them.
+/// Removes the file's values of those keys in which the presets of `section` differ, because a
+/// preset on the command line takes precedence over them.
 template <class Section, class Preset>
 void clear_for_preset(ConfigNode& root, const std::string& section, Section (*values)(Preset)) {
   const ConfigNode a = fields_of(values(Preset::kDefault)), b = fields_of(values(Preset::kPaper));
@@ -77,7 +77,8 @@ void clear_for_preset(ConfigNode& root, const std::string& section, Section (*va
   }
 }
 
-/// The same with the keys that methods decide.
+/// Removes the file's values of the keys that methods set, because a method on the command line
+/// takes precedence over them.
 void clear_for_method(ConfigNode& root) {
   for (std::size_t k = 0; k < kMethods.size(); ++k)
     for (const MethodSetting& setting : settings_of(static_cast<Method>(k)))
@@ -97,7 +98,7 @@ void apply_overrides(ConfigNode& root, std::span<const std::string> overrides) {
   for (const std::string& setting : overrides) apply_override(root, setting);
 }
 
-/// The mapping of that section, made if it is not there.
+/// Returns the mapping of section `name`; creates it if it is missing.
 ConfigNode& section_of(ConfigNode& root, std::string_view name, const std::string& origin) {
   for (ConfigEntry& entry : root.entries)
     if (entry.key == name) return entry.value;
@@ -110,7 +111,7 @@ void read_section(const ConfigNode& root, const std::string& name, Section& conf
   if (const ConfigEntry* section = find(root, name)) read_fields(section->value, name, config);
 }
 
-/// Gives the fields that the method decides its values where nothing else does.
+/// Adds the settings of the run's method for all keys that are not given.
 void apply_method(ConfigNode& root) {
   RunConfig run;
   read_section(root, "run", run);
@@ -124,7 +125,7 @@ void apply_method(ConfigNode& root) {
   }
 }
 
-/// A section whose field `preset` chooses the values of the fields that are not given.
+/// Reads a section whose field `preset` determines the values of the fields that are not given.
 template <class Section, class Preset>
 void read_preset_section(const ConfigNode& root, const std::string& name, Section (*values)(Preset),
                          Section& config) {
@@ -142,7 +143,7 @@ void check_physics(const ConfigNode& root, const PhysicsConfig& physics) {
                     "less than " + number_text(physics.range));
 }
 
-/// Checks what dynamic mode asks of the other fields.
+/// Throws ConfigError if dynamic mode (physics.inertia) is on and another field forbids it.
 void check_inertia(const ConfigNode& root, const Config& config) {
   if (!config.physics.inertia) return;
   const ConfigEntry *flag = find(root, "physics", "inertia"),
@@ -158,7 +159,7 @@ void check_inertia(const ConfigNode& root, const Config& config) {
         "false, or reverse.terminal_weight above 0 (reverse.preset paper sets it to 0)");
 }
 
-/// Checks what `randomise` asks of the task.
+/// Throws ConfigError if a field `randomise` is true but task.randomisation is 0.
 void check_randomisation(const ConfigNode& root, const Config& config) {
   if (config.task.randomisation > 0.0) return;
   for (const auto& [section, asked] :
@@ -187,7 +188,8 @@ ConfigNode tree_of(const Config& config) {
   return root;
 }
 
-/// A key at the root that belongs in a section: `breadth` for `search.breadth`.
+/// Throws ConfigError for a key at the root that belongs in a section, as `breadth` for
+/// `search.breadth`.
 void check_sections(const ConfigNode& root) {
   const ConfigNode known = tree_of({});
   for (const ConfigEntry& entry : root.entries)
@@ -219,8 +221,8 @@ Config read_config(const ConfigNode& root) {
   return config;
 }
 
-/// Reads it. A mistake in the task as a whole is told of a line of the file. If it was right
-/// without the last settings, the one that made it wrong is told, too.
+/// Reads `file` with `overrides`. An error in several values at once may name a line of the file
+/// although an override causes it. The message then also names the override that causes it.
 Config read_config(const ConfigNode& file, std::span<const std::string> overrides) {
   try {
     ConfigNode root = file;
@@ -234,7 +236,7 @@ Config read_config(const ConfigNode& file, std::span<const std::string> override
       (void)read_config(file, overrides.first(overrides.size() - 1));
     } catch (const ConfigError& earlier) {
       if (std::string(earlier.what()).ends_with(message)) throw;
-      throw error;  // another mistake, which the last settings mend
+      throw error;  // without the last override there is a different error
     }
     throw ConfigError("--set " + overrides.back() + ": " + message);
   }

@@ -15,7 +15,7 @@
 
 namespace rtg::config {
 
-/// Everything that a run is made from, checked. The sections of the YAML have the same names.
+/// The complete, checked configuration of a run. Its members are the sections of the YAML file.
 struct Config {
   tasks::Task task;
   PhysicsConfig physics;
@@ -25,23 +25,29 @@ struct Config {
   RunConfig run;
 };
 
-/// Reads a configuration file. Only its section `task` must be there: a mapping, or the path of the
-/// file, relative to this one, that holds it. `overrides` are `section.key=value` and stand above
-/// the file in their order; a preset among them also stands above the file's values of the keys
-/// that presets decide, and likewise a method, which stands above presets. Throws ConfigError.
+/// Reads and checks a configuration file. Only the section `task` is required: a mapping, or the
+/// path, relative to `file`, of another file that holds the section.
+///
+/// `overrides` have the form section.key=value. They take precedence over the file, later ones over
+/// earlier ones. A preset among them also takes precedence over the file's values of those keys in
+/// which presets differ, and a method over the file's values of the keys that methods set. The
+/// values of a method take precedence over those of a preset. Throws ConfigError.
 Config load_config(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
-/// The same from the text of a file; `name` is for messages, and what its paths are relative to.
+/// Reads and checks the text of a configuration file as load_config() does. `name` is the name of
+/// the file: messages contain it, and paths in the text are relative to its folder.
 Config parse_config(const std::string& text, const std::filesystem::path& name,
                     std::span<const std::string> overrides = {});
 
-/// All values with what is legal as comments. Reads back to the same configuration and text.
+/// Returns all values as YAML, with the legal values in comments. Reading the text gives the same
+/// configuration, and its canonical text is the same.
 std::string canonical_yaml(const Config& config);
 
-/// The same values for Python.
+/// Returns the same values as JSON, for Python.
 std::string config_json(const Config& config);
 
-/// The hash of the canonical text, which names the configuration in messages and run folders.
+/// Returns the hash of canonical_yaml(), which identifies the configuration in messages and run
+/// folders.
 std::int64_t config_hash(const Config& config);
 
 }  // namespace rtg::config

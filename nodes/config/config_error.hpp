@@ -6,12 +6,13 @@
 
 namespace rtg::config {
 
-/// A mistake in the configuration; what() is one line for its writer, who gets exit status 2:
+/// An error in the configuration, which makes the program end with exit status 2. what() is one
+/// line for the user:
 ///
 ///   FILE:LINE: key 'search.breadth': what is wrong; legal: what would be right
 ///
-/// with the flag, `--set KEY=VALUE`, in the place of FILE:LINE if that is where it was given, and
-/// before it if the flag made wrong what the file says there.
+/// The flag, `--set KEY=VALUE`, replaces FILE:LINE if the flag gave the value. The flag precedes
+/// FILE:LINE if it made a value at that line of the file illegal.
 class ConfigError : public std::runtime_error {
  public:
   explicit ConfigError(std::string line) : std::runtime_error(printable(std::move(line))) {}
@@ -21,7 +22,7 @@ class ConfigError : public std::runtime_error {
       : ConfigError(origin + ": key '" + key + "': " + wrong + "; legal: " + legal) {}
 
  private:
-  /// Quotations from a file may hold line ends or worse.
+  /// Replaces control characters by spaces, since quotations from a file may contain some.
   static std::string printable(std::string line) {
     for (char& c : line)
       if ((c >= 0 && c < ' ') || c == '\x7f') c = ' ';

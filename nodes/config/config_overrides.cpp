@@ -23,7 +23,8 @@ ConfigNode& item_at(ConfigNode& list, const std::string& key, const std::string&
   return list.items[index];
 }
 
-/// The value of that key of a node, made if it is not there.
+/// Returns the value of `key` in `node`. Creates a missing key of a mapping; throws ConfigError for
+/// a missing entry of a list.
 ConfigNode& child(ConfigNode& node, const std::string& key, const std::string& flag,
                   const std::string& path) {
   if (node.kind == Kind::kList) return item_at(node, key, flag, path);

@@ -6,9 +6,9 @@
 
 namespace rtg::config {
 
-/// Puts the value of `--set KEY=VALUE` in its place in the tree. KEY is dotted, entries of lists go
-/// by their number from 0. What is on the way and missing is made, so that readers find fault with
-/// a key that means nothing. Throws ConfigError.
+/// Sets the value of `setting`, "KEY=VALUE" of a flag `--set`, in the tree. KEY is a dotted path;
+/// a list entry is selected by its number, counted from 0. Missing mappings and keys on the path
+/// are created; the readers of the sections then report unknown keys. Throws ConfigError.
 void apply_override(ConfigNode& root, const std::string& setting);
 
 }  // namespace rtg::config

@@ -9,7 +9,7 @@ namespace {
 
 using Kind = ConfigNode::Kind;
 
-/// `text` as a JSON string, which YAML reads the same way.
+/// Returns `text` as a JSON string, which YAML reads as the same text.
 std::string quote(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -19,7 +19,7 @@ std::string quote(const std::string& text) {
   return out + '"';
 }
 
-/// Says whether YAML reads the bare word back as that text.
+/// Returns whether YAML reads `text` without quotes back as the same text.
 bool is_plain_word(const std::string& text) {
   static const std::vector<std::string> kMeaning{"true", "false", "null", "Null", "NULL"};
   const auto in_word = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
@@ -79,7 +79,7 @@ std::string json(const ConfigNode& node, const std::string& indent) {
   return (is_list ? '[' : '{') + out + '\n' + indent + (is_list ? ']' : '}');
 }
 
-/// At most 60 bytes and no broken UTF-8.
+/// Returns `text`, cut off after at most 60 bytes but never inside a UTF-8 character.
 std::string shortened(const std::string& text) {
   std::size_t size = 60;
   if (text.size() <= size) return text;

@@ -8,16 +8,16 @@ namespace rtg::config {
 
 struct ConfigEntry;
 
-/// A configuration as it is written: nested mappings, lists and scalars, each with the place that
-/// it was read from. Mappings keep their order.
+/// A node of the tree of a configuration text: a mapping, list or scalar, with the place that it
+/// was read from. Mappings keep the order of their entries.
 struct ConfigNode {
   enum class Kind { kNull, kScalar, kList, kMap };
   Kind kind = Kind::kNull;
   std::string scalar;
-  bool quoted = false;               // a scalar that is text whatever it looks like
+  bool quoted = false;               // the scalar is text, even if it looks like a number
   std::string origin;                // "FILE:LINE" or "--set KEY=VALUE"
   std::vector<ConfigNode> items;     // kList
-  std::vector<ConfigEntry> entries;  // kMap, keys differ
+  std::vector<ConfigEntry> entries;  // kMap, unique keys
 };
 
 struct ConfigEntry {
@@ -27,34 +27,35 @@ struct ConfigEntry {
   std::string comment = {};  // printed behind or above the value
 };
 
-/// The entry of a mapping with that key, or nullptr.
+/// Returns the entry of `map` with key `key`, or nullptr.
 inline const ConfigEntry* find(const ConfigNode& map, std::string_view key) {
   for (const ConfigEntry& entry : map.entries)
     if (entry.key == key) return &entry;
   return nullptr;
 }
 
-/// The entry of a key of a section, or nullptr.
+/// Returns the entry with key `key` of section `section`, or nullptr.
 inline const ConfigEntry* find(const ConfigNode& root, std::string_view section,
                                std::string_view key) {
   const ConfigEntry* found = find(root, section);
   return found ? find(found->value, key) : nullptr;
 }
 
-/// Nodes of no origin: text, which YAML may not read as anything else; a number or flag; a list; a
-/// mapping without entries.
+/// These functions make a text (which YAML reads back as text), a number or flag, a list, and an
+/// empty mapping. Only map_node() sets an origin.
 ConfigNode text_node(std::string text);
 ConfigNode token_node(std::string token);
 ConfigNode list_node(std::vector<ConfigNode> items);
 ConfigNode map_node(std::string origin = {});
 
-/// A node in words, for messages: "'3x'", "a list", "a mapping", "nothing".
+/// Returns a description of `node` for messages: "'3x'", "a list", "a mapping", "nothing".
 std::string in_words(const ConfigNode& node);
 
-/// Block style with comments, as long as a mapping has some; flow style below.
+/// Returns the tree as YAML text. Mappings with comments, lists of mappings and all mappings around
+/// them are in block style, the rest is in flow style.
 std::string yaml_text(const ConfigNode& root);
 
-/// Indented, comments left out.
+/// Returns the tree as indented JSON text without the comments.
 std::string json_text(const ConfigNode& root);
 
 }  // namespace rtg::config

@@ -23,7 +23,7 @@ namespace {
 
 double degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
 
-/// Width and height of the smallest upright rectangle around a shape, as it lies at angle 0.
+/// Returns width and height of the axis-aligned bounding box of `shape` at angle 0 [m].
 Vector2d extent(const Polygon& shape) {
   Vector2d low = shape.vertices[0], high = low;
   for (const Vector2d& v : shape.vertices) {
@@ -99,7 +99,7 @@ std::string term_in_words(const tasks::GoalTerm& term) {
          '\n';
 }
 
-/// How far objects are moved about in starts [m].
+/// Largest random displacements of objects, in x and in y, in the starts of episodes [m].
 struct Amplitudes {
   double evaluation = 0.0, training = 0.0;
 };

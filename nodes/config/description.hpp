@@ -6,8 +6,8 @@
 
 namespace rtg::config {
 
-/// A configuration in words, for the person who wrote it: bodies with sizes and masses, the goal
-/// in words, actions, episodes, the work of the search and of the learner.
+/// Returns a description of the configuration for the user: bodies with sizes and masses, goal,
+/// actions, episodes, and the work of the search and of the learner.
 std::string description(const Config& config);
 
 }  // namespace rtg::config

@@ -14,7 +14,7 @@ using Kind = ConfigNode::Kind;
 
 constexpr std::size_t kMaxText = 200;  // characters of a text
 
-/// Levenshtein distance.
+/// Returns the Levenshtein distance of two texts.
 std::size_t edits(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0u);
@@ -28,7 +28,7 @@ std::size_t edits(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// " (did you mean 'x'?)" for the nearest of `keys`, if one is near.
+/// Returns " (did you mean 'x'?)" for the key most similar to `key`, or "" if none is similar.
 std::string suggestion(const std::string& key, std::span<const std::string> keys) {
   constexpr std::size_t kLongestKey = 40;
   if (keys.empty() || key.size() > kLongestKey) return "";
@@ -43,7 +43,8 @@ std::string range_text(const char* what, const std::string& least, const std::st
   return std::string(what) + " from " + least + " to " + most;
 }
 
-/// The value that a plain scalar spells from its first to its last character.
+/// Returns the number that an unquoted scalar holds, or nothing if the scalar holds any other
+/// character. Sets `error` if the number is out of range.
 template <class Number>
 std::optional<Number> spelled(const ConfigNode& node, std::errc& error) {
   if (node.kind != Kind::kScalar || node.quoted) return std::nullopt;

@@ -11,13 +11,13 @@
 
 namespace rtg::config {
 
-/// A mapping of a configuration on its way into a struct: reads by key what is there, leaves the
-/// rest of the struct as it is. As a visitor it takes the fields that visit() lists. All functions
-/// throw ConfigError for what is not legal.
+/// Visitor that reads a mapping of a configuration into a struct. Fields whose key is given get the
+/// value of the mapping; the other fields keep their values. All functions throw ConfigError for
+/// illegal values.
 class FieldReader {
  public:
-  /// `section`: the mapping. `path`: its dotted key, "" at the root. `keys`: all that are legal in
-  /// it.
+  /// `section`: the mapping. `path`: its dotted key, "" at the root. `keys`: all its legal keys;
+  /// other keys throw ConfigError.
   FieldReader(const ConfigNode& section, std::string path, std::span<const std::string> keys);
 
   void number(const char* key, double& value, double least, double most, const char* doc = "");
@@ -32,10 +32,10 @@ class FieldReader {
       value = static_cast<Enum>(index_of(*entry, names));
   }
 
-  /// The entry of a key that must be there.
+  /// Returns the entry of `key`, which must be given.
   const ConfigEntry& required(const char* key, const std::string& legal) const;
 
-  /// The values of a list of `count` numbers.
+  /// Returns the numbers of the list `key`, which must have `count` entries.
   std::vector<double> numbers(const char* key, std::size_t count, double least, double most,
                               const std::string& legal) const;
 
@@ -49,16 +49,17 @@ class FieldReader {
   std::string path_;
 };
 
-/// The finite number that a scalar spells in full. Throws ConfigError.
+/// Returns the number that a scalar holds. Throws ConfigError if the scalar holds anything else or
+/// the number is not in [least, most].
 double read_number(const ConfigNode& node, const std::string& path, double least, double most);
 
-/// `number` as the shortest text that reads back to it, with a point or an exponent.
+/// Returns the shortest text with a decimal point that reads back to `number`.
 std::string number_text(double number);
 
-/// The same for a number in single precision.
+/// Returns the shortest text with a decimal point that reads back to `number` in single precision.
 std::string single_text(float number);
 
-/// "a, b, c".
+/// Returns the words joined by commas: "a, b, c".
 std::string listed(std::span<const std::string> words);
 
 }  // namespace rtg::config

@@ -10,7 +10,7 @@
 
 namespace rtg::config {
 
-/// Visitor that lists the fields of a struct as a mapping: values, comments with what is legal.
+/// Visitor that writes the fields of a struct into a mapping, with the legal values in comments.
 class FieldWriter {
  public:
   ConfigNode section = map_node();
@@ -32,7 +32,7 @@ class FieldWriter {
   void add(const char* key, std::string value, bool quoted, std::string comment);
 };
 
-/// The fields that config.visit() lists.
+/// Returns a mapping of the fields that config.visit() lists.
 template <class Section>
 ConfigNode fields_of(Section config) {
   FieldWriter writer;
@@ -40,7 +40,8 @@ ConfigNode fields_of(Section config) {
   return std::move(writer.section);
 }
 
-/// Reads the fields that config.visit() lists over the values that are there.
+/// Reads the fields that config.visit() lists from `section`. Fields that are not given keep their
+/// values.
 template <class Section>
 void read_fields(const ConfigNode& section, const std::string& path, Section& config) {
   std::vector<std::string> keys;

@@ -9,8 +9,8 @@
 namespace rtg::config {
 namespace {
 
-constexpr double kUnitWithin = 1e-2;    // length of a normal, so that [0.71, 0.71] will do
-constexpr double kUnitExactly = 1e-12;  // ... that stays as it is
+constexpr double kUnitWithin = 1e-2;    // legal error of a normal's length, as of [0.71, 0.71]
+constexpr double kUnitExactly = 1e-12;  // error of the length that is not corrected
 
 const std::vector<std::string> kTermKeys{"kind", "centroid",   "joint",
                                          "disc", "half_plane", "angles"};
@@ -41,7 +41,7 @@ void read_half_plane(const ConfigNode& section, const std::string& path, tasks::
   reader.number("offset", term.offset, -kMaxPlace, kMaxPlace);
 }
 
-/// The subject of a term: kind (the default), centroid or joint.
+/// Reads the subject of a term: kind (the default), centroid or joint.
 void read_subject(const FieldReader& reader, const std::string& path, tasks::GoalTerm& term) {
   const ConfigNode& section = reader.section();
   const bool of_joint = find(section, "joint"), of_centroid = find(section, "centroid");

@@ -5,10 +5,10 @@
 
 namespace rtg::config {
 
-/// The term of a goal that a section describes; throws ConfigError for what is none.
+/// Returns the goal term that `section` describes. Throws ConfigError if it describes none.
 tasks::GoalTerm read_term(const ConfigNode& section, const std::string& path);
 
-/// The section that reads back to `term`.
+/// Returns the section from which read_term() reads `term`.
 ConfigNode term_node(const tasks::GoalTerm& term);
 
 }  // namespace rtg::config

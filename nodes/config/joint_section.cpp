@@ -11,8 +11,8 @@
 namespace rtg::config {
 namespace {
 
-constexpr double kOffPin = 1e-3;    // of a start state [m]
-constexpr double kRounding = 1e-5;  // of angles to single precision [rad]
+constexpr double kOffPin = 1e-3;    // largest legal gap of a joint in a start state [m]
+constexpr double kRounding = 1e-5;  // rounding error of angles in single precision [rad]
 
 const std::vector<std::string> kJointKeys{"parent", "child", "on_parent", "on_child", "limits"};
 
@@ -33,7 +33,7 @@ int read_body_name(const FieldReader& reader, const char* key, const Scene& scen
           legal);
 }
 
-/// No body is the child of two joints, fixed, or its own ancestor.
+/// Throws ConfigError if a child is fixed, the child of two joints, or its own ancestor.
 void check_tree(const Scene& scene, const ConfigNode& section) {
   for (std::size_t k = 0; k < scene.joints.size(); ++k) {
     const int child = scene.joints[k].child;
@@ -55,7 +55,7 @@ void check_tree(const Scene& scene, const ConfigNode& section) {
   }
 }
 
-/// Every joint of the start state is closed, its angle within the limits.
+/// Throws ConfigError if a joint of the start state is open or has an angle beyond its limits.
 void check_start(const tasks::Task& task, const ConfigNode& section) {
   for (std::size_t k = 0; k < task.scene.joints.size(); ++k) {
     const Joint& joint = task.scene.joints[k];

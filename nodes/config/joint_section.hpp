@@ -5,16 +5,16 @@
 
 namespace rtg::config {
 
-/// The joint that a section describes, between bodies of `scene`; throws ConfigError for what is
-/// none.
+/// Returns the joint between bodies of `scene` that `section` describes. Throws ConfigError if it
+/// describes none.
 Joint read_joint(const ConfigNode& section, const std::string& path, const Scene& scene);
 
-/// The section that reads back to `joint`.
+/// Returns the section from which read_joint() reads `joint`.
 ConfigNode joint_node(const Joint& joint, const Scene& scene);
 
-/// Moves every child of the start state to its pin, in single precision. Throws ConfigError where
-/// joints make no trees, a child is fixed, the start state is more than 1 mm off a pin or an angle
-/// beyond its limits. `section`: of the task.
+/// Moves every child of the start state to its pin, in single precision. Throws ConfigError if the
+/// joints do not form trees, a child is fixed, or a joint of the start state is open by more than
+/// 1 mm or has an angle beyond its limits. `section`: the section `task`.
 void close_joints(tasks::Task& task, const ConfigNode& section);
 
 }  // namespace rtg::config

@@ -8,7 +8,8 @@ namespace {
 
 using Settings = std::vector<MethodSetting>;
 
-/// A learner whose data, if any, are random: it explores until it has found its way by itself.
+/// Adds the exploration settings of a learner whose offline data, if any, come from random walks:
+/// it has to find successes by its own exploration.
 Settings unguided(Settings more) {
   const Settings exploration{{"train", "epsilon_start", "1.0"},
                              {"train", "epsilon_end", "0.05"},
@@ -18,18 +19,18 @@ Settings unguided(Settings more) {
   return more;
 }
 
-/// A learner of its own experience alone.
+/// Adds the settings of a learner that learns from its own experience alone.
 Settings online(Settings more) {
   more.push_back({"train", "offline", "false"});
   return unguided(std::move(more));
 }
 
-/// In the order of Method.
+/// Returns the settings of all methods, in the order of Method.
 const std::array<Settings, kMethods.size()>& table() {
   static const std::array<Settings, kMethods.size()> kTable{
       online({{"train", "double_q", "false"}}),
       online({{"train", "double_q", "true"}}),
-      // Half of every batch would be of data without any success.
+      // Uniform: with the default share half of every batch would be data without any success.
       unguided({{"search", "generator", "random"}, {"train", "offline_share", "-1.0"}}),
       unguided({{"search", "generator", "scatter"}}),
       Settings{{"search", "generator", "naive"}},

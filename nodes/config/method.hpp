@@ -6,7 +6,7 @@
 
 namespace rtg::config {
 
-/// The methods that are compared: learners that differ in where their experience comes from and in
+/// The methods of the comparison: learners that differ in the source of their experience and in
 /// little else.
 enum class Method {
   kDqn,
@@ -27,31 +27,32 @@ inline constexpr std::array<std::string_view, 13> kMethods{
     "dqn",         "ddqn", "ddqn_random", "ddqn_scatter", "ddqn_naive", "ddqn_forward", "ddqn_rtg",
     "ddqn_rtg_dr", "her",  "rcg",         "cql_rtg",      "bc_rtg",     "planner"};
 
-/// A value of another section of the configuration.
+/// A value that a method sets in another section of the configuration.
 struct MethodSetting {
   std::string_view section, key, value;
 };
 
-/// The settings that `method` stands for; nothing else tells methods apart: a loader takes these
-/// values for the keys that are not given.
+/// Returns the settings of `method`. Methods differ in nothing else: a loader uses these values for
+/// the keys that are not given.
 ///
 ///   dqn           no offline data, targets of one network  [Mnih et al. 2015]
-///   ddqn          the same with Double-Q targets  [van Hasselt et al. 2016]
-///   ddqn_random   unguided; the steps are those of random walks from starts  [App. D]
-///   ddqn_scatter  unguided; ... from goal states
-///   ddqn_naive    as ddqn_rtg; reverse steps by kinematics alone
-///   ddqn_forward  as ddqn_rtg; the steps are those of beam searches forwards from starts
+///   ddqn          no offline data, Double-Q targets  [van Hasselt et al. 2016]
+///   ddqn_random   offline data of random walks from starts  [App. D]
+///   ddqn_scatter  offline data of random walks from goal states
+///   ddqn_naive    as ddqn_rtg, but the reverse steps follow from kinematics alone
+///   ddqn_forward  as ddqn_rtg, but with the steps of forward beam searches from starts
 ///   ddqn_rtg      offline data of reverse trajectory generation
-///   ddqn_rtg_dr   the same, all episodes start all over task.randomisation  [App. D]
+///   ddqn_rtg_dr   as ddqn_rtg, with all starts randomised by task.randomisation  [App. D]
 ///   her           as ddqn, with hindsight goals  [Andrychowicz et al. 2017]
 ///   rcg           as ddqn, with starts grown back from goal states  [Florensa et al. 2017]
-///   cql_rtg       the data of ddqn_rtg alone, no interaction; values of headings that are not in
-///                 them are held down  [Kumar et al. 2020]
-///   bc_rtg        the data of ddqn_rtg alone: what the kept steps do is imitated
-///   planner       no learning: a beam search forwards from each start that it is evaluated from
+///   cql_rtg       the data of ddqn_rtg without interaction; a penalty lowers the values of
+///                 headings that are not in the data  [Kumar et al. 2020]
+///   bc_rtg        the data of ddqn_rtg without interaction; imitates the actions of the kept steps
+///   planner       no learning: a forward beam search from each start of the evaluation
 ///
-/// Without offline data, and with those of random walks, exploration begins at 1, seeks contact
-/// half of the time and is uniform over all headings else: there is nothing yet to stay near to.
+/// Without offline data, and with data of random walks, ε starts at 1. Half of the exploring
+/// actions then seek contact, and the others are uniform over all headings instead of near the
+/// greedy one, because the greedy heading means nothing yet.
 std::span<const MethodSetting> settings_of(Method method);
 
 }  // namespace rtg::config

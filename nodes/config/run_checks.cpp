@@ -9,13 +9,13 @@
 namespace rtg::config {
 namespace {
 
-/// Where a value stands.
+/// The section and key of a value.
 struct Field {
   std::string_view section, key;
 };
 
-/// Where the first of the fields stands that a file or a flag gives; defaults and the values of a
-/// method get along with each other.
+/// Returns the origin of the first of `fields` that a file or a flag gives, else that of the root.
+/// Defaults and the values of a method cannot be the cause: they are consistent with each other.
 std::string place(const ConfigNode& root, std::initializer_list<Field> fields) {
   for (const auto& [section, key] : fields) {
     const ConfigEntry* value = find(root, section, key);
@@ -24,7 +24,7 @@ std::string place(const ConfigNode& root, std::initializer_list<Field> fields) {
   return root.origin;
 }
 
-/// Says whether a generator's steps were found to lead to success.
+/// Returns whether the steps of `generator` are known to lead to success.
 bool imitable(search::Generator generator) {
   return generator == search::Generator::kRrbs || generator == search::Generator::kNaive ||
          generator == search::Generator::kForward;

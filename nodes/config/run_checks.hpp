@@ -5,10 +5,10 @@
 
 namespace rtg::config {
 
-/// Refuses values that are legal each but do not go together in a run: a learner without what it
-/// learns from or with what it cannot use, a replay buffer smaller than the data (also where only
-/// data are made: they are there to be learned from), messages to record where there are none.
-/// Throws ConfigError with the place in `root` of a value that is part of it.
+/// Throws ConfigError for values that are each legal but inconsistent in one run: a learner without
+/// the data that it needs or with data that it cannot use; a replay buffer smaller than the offline
+/// data (even if the run only generates them, since they are meant for learning); recording of
+/// messages in a run without messages. The error names the place in `root` of one of the values.
 void check_run(const Config& config, const ConfigNode& root);
 
 }  // namespace rtg::config

@@ -6,9 +6,9 @@
 
 namespace rtg::config {
 
-/// How a run is carried out. Of these only the seed, and the method by the values that it stands
-/// for, change the transitions; what is learned from them also depends, over LCM, on when they come
-/// in.
+/// Settings for the execution of a run. Only `seed`, and `method` through its settings, affect the
+/// generated transitions. Over LCM the result of learning also depends on the arrival times of the
+/// transitions.
 struct RunConfig {
   Method method = Method::kDdqnRtg;
   int seed = 1;

@@ -15,10 +15,10 @@ namespace {
 
 using Kind = ConfigNode::Kind;
 
-constexpr double kMaxSize = 1000.0;      // of a number [m]
-constexpr double kMinSize = 0.005;       // [m]
-constexpr double kMaxRadius = 100.0;     // of a shape [m]
-constexpr double kCentredWithin = 1e-9;  // of the bounding radius: what rounding leaves
+constexpr double kMaxSize = 1000.0;      // largest length or coordinate [m]
+constexpr double kMinSize = 0.005;       // smallest length [m]
+constexpr double kMaxRadius = 100.0;     // largest bounding radius [m]
+constexpr double kCentredWithin = 1e-9;  // rounding error of the centroid / bounding radius
 
 const std::vector<std::string> kShapes{"box", "regular", "vertices"};
 const std::vector<std::string> kRegularKeys{"sides", "radius"};
@@ -27,7 +27,7 @@ const std::string kShapeLegal =
 const std::string kVerticesLegal =
     "a convex polygon of 3 to 8 vertices [x, y], counter-clockwise, within 100 m of its centre";
 
-/// `shape` unless it is no legal one.
+/// Returns `shape`. Throws ConfigError if it is not legal.
 Polygon checked(Polygon shape, const std::string& origin, const std::string& path) {
   std::optional<std::string> defect = polygon_defect(shape.vertices);
   if (!defect && bounding_radius(shape) > kMaxRadius)

@@ -7,11 +7,11 @@
 
 namespace rtg::config {
 
-/// A shape, centred: {box: [w, h]}, {regular: {sides: n, radius: r}} or {vertices: [[x, y], ...]}.
-/// Throws ConfigError.
+/// Returns the shape that `section` describes, with its centroid at the origin: {box: [w, h]},
+/// {regular: {sides: n, radius: r}} or {vertices: [[x, y], ...]}. Throws ConfigError.
 Polygon read_shape(const ConfigNode& section, const std::string& path);
 
-/// The shortest of these that reads back to `shape`.
+/// Returns the shortest section from which read_shape() reads `shape`.
 ConfigNode shape_node(const Polygon& shape);
 
 }  // namespace rtg::config

@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kHalvings = 10;
 
-/// An amplitude below `amplitude` that is legal, 0 if there is none of 0.1 % of it and more.
+/// Halves `amplitude` until it is legal and returns it. Returns 0 if no amplitude down to 0.1 % of
+/// the original one is legal.
 double legal_amplitude(const tasks::Task& task, double amplitude) {
   for (int k = 0; k < kHalvings; ++k) {
     amplitude /= 2.0;
@@ -20,7 +21,8 @@ double legal_amplitude(const tasks::Task& task, double amplitude) {
   return 0.0;
 }
 
-/// Where the value stands; a default is the bodies' fault.
+/// Returns the origin of the value. If the value is a default, the bodies are the cause, so their
+/// origin is returned.
 const std::string& origin_of(const ConfigNode& root, const char* section, const char* key) {
   if (const ConfigEntry* value = find(root, section, key)) return value->value.origin;
   return find(root, "task", "bodies")->value.origin;

@@ -5,8 +5,8 @@
 
 namespace rtg::config {
 
-/// Throws ConfigError, with the place in `root`, if objects cannot be moved about by one of the
-/// jitters of `config`: see allows_jitter().
+/// Throws ConfigError, with the place in `root`, if too few random starts are legal for one of the
+/// jitter amplitudes of `config`; see allows_jitter().
 void check_jitters(const Config& config, const ConfigNode& root);
 
 }  // namespace rtg::config

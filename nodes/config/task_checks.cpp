@@ -53,7 +53,7 @@ void check_start(const tasks::Task& task, const ConfigNode& section) {
   }
 }
 
-/// The kinds of the objects that can move, and "*".
+/// Lists "*" and the kinds of the objects that can move.
 std::string legal_kinds(const tasks::Task& task) {
   std::vector<std::string> kinds{"\"*\""};
   for (std::size_t i = 1; i < task.scene.size(); ++i) {
@@ -64,7 +64,7 @@ std::string legal_kinds(const tasks::Task& task) {
   return listed(kinds);
 }
 
-/// Says whether some point of the arena, |x|, |y| ≤ a, lies in the region.
+/// Returns whether the region of `term` contains a point of the arena, |x|, |y| ≤ a.
 bool meets_arena(const tasks::GoalTerm& term, double a) {
   if (term.region == tasks::GoalTerm::Region::kAngles) return true;
   if (term.region == tasks::GoalTerm::Region::kHalfPlane)
@@ -73,7 +73,7 @@ bool meets_arena(const tasks::GoalTerm& term, double a) {
   return (term.centre - nearest).norm() <= term.radius;
 }
 
-/// The children of joints, and "*".
+/// Lists "*" and the names of the children of joints.
 std::string legal_joints(const tasks::Task& task) {
   std::vector<std::string> names{"\"*\""};
   for (const Joint& joint : task.scene.joints)
@@ -88,7 +88,8 @@ bool concerns_something(const tasks::GoalTerm& term, const Scene& scene) {
                              [&](const Joint& joint) { return concerns(term, scene, joint); });
 }
 
-/// Throws unless the joint can have the angles that the term asks for, with room to spare.
+/// Throws ConfigError unless the limits of the joint allow an angle that lies kGoalSpare inside the
+/// range of the term.
 void check_angles(const tasks::GoalTerm& term, const Joint& joint, const tasks::Task& task,
                   const ConfigEntry& angles, const std::string& path) {
   if (!concerns(term, task.scene, joint)) return;
@@ -127,7 +128,7 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
         "regions with points of x and y from -" + arena + " to " + arena + " (task.push.arena)");
 }
 
-/// Says whether a fixed body is where the terms that speak of it want it.
+/// Returns whether the position of a fixed body meets all goal terms that concern the body.
 bool stands_right(const tasks::Task& task, std::size_t body) {
   return std::ranges::all_of(task.goal, [&](const tasks::GoalTerm& term) {
     return term.subject != tasks::GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||

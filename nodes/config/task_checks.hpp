@@ -5,13 +5,14 @@
 
 namespace rtg::config {
 
-/// Throws ConfigError with the place in `section`, which the bodies of `task` were read from, for
-/// two of the same name.
+/// Throws ConfigError if two bodies of `task` have the same name. `section`: the section `task`,
+/// for the place in the message.
 void check_names(const tasks::Task& task, const ConfigNode& section);
 
-/// Checks what concerns several values at once. Throws ConfigError with the place in `section`,
-/// which `task` was read from, for: nothing that can move, a start state that overlaps or lies
-/// outside, a goal that concerns nobody, holds from the start or that no layout meets.
+/// Checks conditions on several values of the task. Throws ConfigError if no object can move, a
+/// body of the start state overlaps another one or lies outside the arena, a goal term concerns no
+/// movable object and no joint, the goal holds in the start state, or no layout that meets the goal
+/// is found. `section`: the section `task`, for the place in the message.
 void check_task(const tasks::Task& task, const ConfigNode& section);
 
 }  // namespace rtg::config

@@ -38,7 +38,7 @@ Body read_body(const ConfigNode& section, const std::string& path, Poses& start)
   return body;
 }
 
-/// The list `key`, with between `least` and `most` entries.
+/// Returns the list `key`, which must have `least` to `most` entries.
 const ConfigNode& list_at(const FieldReader& reader, const char* key, std::size_t least,
                           std::size_t most) {
   const std::string legal =
@@ -52,7 +52,7 @@ const ConfigNode& list_at(const FieldReader& reader, const char* key, std::size_
   return list;
 }
 
-/// The shortest number that rounds to that single.
+/// Returns a node with the shortest number that rounds to `single` in single precision.
 ConfigNode single_node(double single) {
   return token_node(single_text(static_cast<float>(single)));
 }

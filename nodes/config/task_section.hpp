@@ -5,12 +5,12 @@
 
 namespace rtg::config {
 
-/// The task that the section `task` describes; throws ConfigError for anything that makes no legal
-/// task: shapes, names, overlaps, a goal that nothing can meet. A polygon's vertices may be listed
-/// in any frame; start states are of the centroid.
+/// Returns the task that the section `task` describes. Throws ConfigError if the task is not legal:
+/// shapes, names, overlaps, a goal that no layout meets. The vertices of a polygon may be given in
+/// any frame with the body's orientation; start positions are those of the centroids.
 tasks::Task read_task(const ConfigNode& section);
 
-/// The section that reads back to `task`.
+/// Returns the section from which read_task() reads `task`.
 ConfigNode task_node(tasks::Task task);
 
 }  // namespace rtg::config

@@ -8,8 +8,8 @@ namespace rtg::config {
 namespace {
 
 constexpr std::size_t kMaxName = 40;   // characters
-constexpr double kLeastAngles = 0.15;  // between the ends of a range, more than goals keep clear
-constexpr double kRounding = 1e-9;     // [rad]
+constexpr double kLeastAngles = 0.15;  // least width of an angle range, > 2 kGoalSpare [rad]
+constexpr double kRounding = 1e-9;     // rounding error of that width [rad]
 
 }  // namespace
 

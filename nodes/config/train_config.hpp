@@ -15,60 +15,63 @@ inline constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"}
 enum class Learner { kQLearning, kCloning, kPlanning };
 inline constexpr std::array<std::string_view, 3> kLearners{"q_learning", "cloning", "planning"};
 
-/// How the Python trainer learns. The values here are the preset `default`: what works best within
-/// Table 2's interaction budget. A loader begins with train_preset(preset) and reads the other
-/// fields over it. With a hard copy every 500 steps instead of target_rate success swings between
-/// 0.7 and 1. Without recent_share and cautious a policy of ArtManip fell from 0.95 to 0.01 for
-/// 20,000 interactions. On the same transitions (ArtManip, 85,000 to 110,000 interactions, means)
-/// the target network's policy solves 0.85, the mean's 0.97, and 0.90 if the mean acts in training,
-/// too: its mistakes are then seen too late.
+/// Settings of the Python trainer. The values here are the preset `default`, which works best
+/// within Table 2's interaction budget. A loader starts with train_preset(preset) and then reads
+/// the fields that are given.
+///
+/// Reasons for some defaults: With a hard copy every 500 steps instead of target_rate, the success
+/// rate oscillates between 0.7 and 1. Without recent_share and cautious, the success rate of a
+/// policy of ArtManip fell from 0.95 to 0.01 for 20,000 interactions. On the same transitions
+/// (ArtManip, mean over 85,000 to 110,000 interactions) the policy of the target network has
+/// success rate 0.85, that of the averaged weights 0.97. The latter falls to 0.90 if the averaged
+/// weights also act in training, because their mistakes are then seen too late.
 struct TrainConfig {
   TrainPreset preset = TrainPreset::kDefault;
   Learner learner = Learner::kQLearning;
   int interactions = 350000;    // Table 2
-  bool interact = true;         // false: learn from generated transitions alone, as many rounds
+  bool interact = true;         // false: only generated transitions, same number of rounds
   bool offline = true;          // learn from generated transitions, too
-  int start_at = 40000;         // transitions in hand before learning starts
-  int buffer = 1500000;         // Table 2; of each of the two buffers
+  int start_at = 40000;         // transitions that must have arrived before learning starts
+  int buffer = 1500000;         // transitions in each of the two replay buffers, Table 2
   int batch = 256;              // half of Table 2's: a third less time per step, learns as fast
   double learning_rate = 3e-4;  // of Adam
   int train_frequency = 4;      // interactions per training round, Table 2
   int gradient_steps = 1;       // per training round, Table 2
   int target_sync = 1;          // gradient steps between updates of the target network
-  double target_rate = 0.005;   // τ: share that it moves then; 1: a copy
-  bool target_acts = true;      // the target network acts in training, not the learner's
-  double policy_rate = 1.5e-4;  // least share by which the policy's mean weights move per step
+  double target_rate = 0.005;   // τ: step of an update towards the online network; 1: a copy
+  bool target_acts = true;      // the target network acts in training, not the online network
+  double policy_rate = 1.5e-4;  // least rate per gradient step at which the policy averages weights
   double discount = 0.95;       // γ; 0: the task's
-  double offline_share = 0.5;   // of a batch; negative: uniform over all transitions
-  double recent_share = 0.5;    // of the online part of a batch: among the 10,000 latest
-  double conservatism = 0.0;    // α: values of headings that are not in the data are held down
+  double offline_share = 0.5;   // share of a batch; negative: uniform over all transitions
+  double recent_share = 0.5;    // share of a batch's online part from the 10,000 latest
+  double conservatism = 0.0;    // α of CQL, which lowers values of headings not in the data
   bool double_q = true;         // van Hasselt et al. 2016
-  bool cautious = true;         // ... with the lesser of both networks' values of that action
+  bool cautious = true;         // use the smaller of both networks' values of the chosen action
   bool dueling = true;          // Wang et al. 2016
   bool layer_norm = true;       // after each hidden layer
   bool small_head = true;       // last layer starts near 0
-  bool clip_targets = true;     // to [0, 1], where the values lie
-  bool value_bounds = true;     // raise targets to what stored trajectories prove
-  double epsilon_start = 0.3;   // exploration at the first interaction
-  double epsilon_end = 0.02;    // ... and from epsilon_share of the interactions on
+  bool clip_targets = true;     // to [0, 1], the range of the values
+  bool value_bounds = true;     // raise targets to lower bounds proven by stored trajectories
+  double epsilon_start = 0.3;   // ε at the first interaction
+  double epsilon_end = 0.02;    // ε from epsilon_share of the interactions on
   double epsilon_share = 0.2;
-  double nearby_share = 0.5;   // of the exploring actions: near the greedy heading
-  int nearby_headings = 2;     // how near
-  double contact_share = 0.0;  // of the exploring actions: towards an object
-  bool leave_loops = true;     // explore where the episode came back to, too
+  double nearby_share = 0.5;   // exploring actions not towards objects: share near the greedy one
+  int nearby_headings = 2;     // largest distance from the greedy heading, in headings
+  double contact_share = 0.0;  // share of the exploring actions towards an object
+  bool leave_loops = true;     // also explore where the episode returns to a recent state
   double start_jitter = 0.1;   // training starts: object positions ± this [m]
   bool randomise = false;      // all starts: object positions ± task.randomisation
-  int hindsight = 0;           // goals reached later on that each online transition is seen with
-  double curriculum = 0.0;     // share of the episodes that start where learning is at its edge
+  int hindsight = 0;           // k, goals of later states per online transition; 0: none
+  double curriculum = 0.0;     // share of episodes that start from the reverse curriculum
   int eval_every = 5000;       // interactions
   int eval_episodes = 100;
   int checkpoint_every = 20000;   // interactions
   double stop_at_success = 0.95;  // end early at this success rate; 0: use all interactions
-  int stop_evaluations = 3;       // ... of so many evaluations in a row
-  bool reduced_precision = true;  // inner layers in bfloat16 where the processor has it
-  Device device = Device::kAuto;  // of the networks; auto: a GPU if PyTorch sees one
+  int stop_evaluations = 3;       // consecutive evaluations that must reach stop_at_success
+  bool reduced_precision = true;  // inner layers in bfloat16 where the processor supports it
+  Device device = Device::kAuto;  // device of the networks; auto: a GPU if PyTorch finds one
 
-  /// The fields on how online transitions are made.
+  /// Visits the fields that control how online transitions are made.
   template <class Visitor>
   void visit_experience(Visitor& v) {
     v.number("epsilon_start", epsilon_start, 0.0, 1.0, "exploration at the first interaction");
@@ -89,7 +92,7 @@ struct TrainConfig {
   template <class Visitor>
   void visit(Visitor& v) {
     constexpr int kMany = 1000000000;
-    constexpr int kTogether = 4;  // environments stepped at once, whose transitions must fit
+    constexpr int kTogether = 4;  // environments stepped at once; their transitions must fit
     v.choice("preset", preset, kTrainPresets, "values of all fields that are not given");
     v.choice("learner", learner, kLearners, "what makes a policy of the data");
     v.flag("interact", interact, "act in the environment, or learn from generated data alone");

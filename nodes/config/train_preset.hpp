@@ -4,11 +4,12 @@
 
 namespace rtg::config {
 
-/// The values that `preset` stands for. `paper` is Table 2 with uniform mixing. The table leaves
-/// open how often the target network is copied and how exploration decays. A copy hands the value
-/// of success back by about one push: every 250 gradient steps (1,000 interactions) makes it 350
-/// times within the budget, where plans have 20 pushes; the 2,500 steps of Stable-Baselines3's
-/// default would make it 35 times. Exploration decays as by default there.
+/// Returns the values of `preset`. `paper` is Table 2 with uniform mixing of offline and online
+/// transitions. Table 2 does not state how often the target network is copied and how exploration
+/// decays. Each copy propagates the value of success back by about one push, and plans have 20
+/// pushes. A copy every 250 gradient steps (1,000 interactions) gives 350 copies within the budget;
+/// the 2,500 gradient steps of Stable-Baselines3's default would give 35. Exploration decays as in
+/// the default of Stable-Baselines3.
 inline TrainConfig train_preset(TrainPreset preset) {
   TrainConfig config;
   if (preset == TrainPreset::kDefault) return config;

@@ -15,12 +15,12 @@
 namespace rtg::config {
 namespace {
 
-constexpr std::size_t kMaxBytes = 1 << 18;  // of a text
+constexpr std::size_t kMaxBytes = 1 << 18;  // largest size of a text
 constexpr std::size_t kMaxDepth = 16;
 
-using OriginOfLine = std::function<std::string(int)>;  // lines from 0
+using OriginOfLine = std::function<std::string(int)>;  // lines count from 0
 
-/// Builds the tree from the parser's events and refuses what we do not take.
+/// Builds the tree from the parser's events. Throws ConfigError for YAML that is not accepted.
 class TreeBuilder : public YAML::EventHandler {
  public:
   explicit TreeBuilder(OriginOfLine origin) : origin_(std::move(origin)) {}
@@ -106,7 +106,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
   }
 
-  /// The dotted key of the innermost level and a dot; "" at the root.
+  /// Returns the dotted key of the innermost level with a trailing dot; "" at the root.
   std::string path() const {
     std::string out;
     for (std::size_t k = 0; k + 1 < levels_.size(); ++k) {

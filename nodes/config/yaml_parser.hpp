@@ -6,12 +6,12 @@
 
 namespace rtg::config {
 
-/// The tree of a YAML text; origins are "file:line". Of YAML it takes one document of mappings with
-/// plain keys, lists and scalars in UTF-8: no anchors, aliases, tags. Throws ConfigError with the
-/// line for wrong syntax, a duplicate key or anything else.
+/// Returns the tree of a YAML text; the origins are "file:line". Accepts one document in UTF-8 of
+/// mappings with scalar keys, lists and scalars. Anchors, aliases and tags are not accepted. Throws
+/// ConfigError with the line for wrong syntax, a duplicate key or YAML that is not accepted.
 ConfigNode parse_yaml(const std::string& text, const std::string& file);
 
-/// The value of a flag: all of it has the origin `flag`.
+/// Returns the tree of the value of a flag; all its nodes have the origin `flag`.
 ConfigNode parse_yaml_value(const std::string& text, const std::string& flag);
 
 }  // namespace rtg::config

@@ -1,8 +1,8 @@
 // rtg_forward_sim_server CONFIG.yaml RUN
 //
-// Answers replay jobs with the true dynamics, Box2D, for the coordinator of the run named RUN until
-// it leaves. CONFIG.yaml is the resolved configuration of the run; as many units are answered at
-// once as the run has workers, which wait for the replays meanwhile.
+// Answers replay jobs of the run named RUN with the true dynamics, Box2D, until the coordinator
+// leaves. CONFIG.yaml is the resolved configuration of the run. The server answers as many units
+// concurrently as the run has reverse workers, because these are idle during replays.
 
 #include "core/search/batches_on_threads.hpp"
 #include "core/search/simulators.hpp"

@@ -75,7 +75,7 @@ void JobDispatcher::give_up_stuck_workers(bus::Seconds now) {
     const auto has_run_out = [&](JobId id) { return now - jobs_.at(id).leased > limits_.lease; };
     if (std::ranges::none_of(worker.leases, has_run_out)) continue;
     for (const JobId id : worker.leases) {
-      // One that it does not hold never reached it: nobody's victim.
+      // A job that the worker does not hold never reached it, so the worker is not its victim.
       if (worker.held.contains(id) && has_run_out(id)) worker.stuck.insert(id);
       take_back(id, worker.held.contains(id));
     }
@@ -100,7 +100,7 @@ void JobDispatcher::resend_unheard(bus::Seconds now, std::vector<Send>& sends) {
   for (auto& [worker_id, worker] : workers_)
     for (const JobId id : worker.leases) {
       Job& job = jobs_.at(id);
-      // Only a beat that left the worker well after the job reached it proves that the job did not.
+      // Only a beat sent well after the job should have arrived proves that it did not arrive.
       if (worker.held.contains(id) || worker.beat - job.sent < limits_.resend) continue;
       job.sent = now;
       ++resent_;
@@ -108,7 +108,8 @@ void JobDispatcher::resend_unheard(bus::Seconds now, std::vector<Send>& sends) {
     }
 }
 
-/// Jobs that a worker can take now. One that may be deadly is alone with it.
+/// Returns the number of jobs that `worker` can take now. `suspect`: lost workers held the job that
+/// is to be handed out. A suspect job must be the only job of its worker.
 int JobDispatcher::room(const Worker& worker, bool suspect) const {
   if (!worker.stuck.empty()) return 0;
   const int leases = static_cast<int>(worker.leases.size());

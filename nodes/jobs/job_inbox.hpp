@@ -11,22 +11,23 @@
 
 namespace rtg::jobs {
 
-/// A worker's memory of its jobs, free of I/O: what waits, what is being worked on, and the last
-/// answers, so that a job said twice is neither done twice at once nor forgotten.
+/// The jobs of one worker: those that wait, those in work, and the last answers. A job that arrives
+/// again is not queued again; if its answer is remembered, receive() returns the answer. The class
+/// does no I/O.
 template <class Job, class Answer>
 class JobInbox {
  public:
-  /// `remembered`: answers kept for repeated questions.
+  /// `remembered`: number of answers kept for jobs that arrive again.
   explicit JobInbox(std::size_t remembered) : remembered_(remembered) {}
 
-  /// The answer if the job was done before; otherwise the job waits for its turn, once.
+  /// Returns the answer if it is remembered. Otherwise queues the job, unless it is already held.
   std::optional<Answer> receive(JobId id, Job job) {
     if (const auto found = answers_.find(id); found != answers_.end()) return found->second;
     if (held_.insert(id).second) waiting_.emplace_back(id, std::move(job));
     return std::nullopt;
   }
 
-  /// The job to work on next, if any; it is held until finish().
+  /// Removes the next job from the queue and returns it, if any. The job is held until finish().
   std::optional<std::pair<JobId, Job>> take() {
     if (waiting_.empty()) return std::nullopt;
     std::pair<JobId, Job> next = std::move(waiting_.front());
@@ -43,7 +44,7 @@ class JobInbox {
     order_.pop_front();
   }
 
-  /// Jobs that wait or are being worked on.
+  /// Returns the jobs that wait or are in work.
   std::vector<JobId> held() const { return {held_.begin(), held_.end()}; }
 
  private:
@@ -51,7 +52,7 @@ class JobInbox {
   std::set<JobId> held_;
   std::deque<std::pair<JobId, Job>> waiting_;
   std::map<JobId, Answer> answers_;
-  std::deque<JobId> order_;  // of answers, oldest first
+  std::deque<JobId> order_;  // keys of answers_, oldest first
 };
 
 }  // namespace rtg::jobs

@@ -9,10 +9,10 @@
 namespace rtg::jobs {
 namespace {
 
-constexpr std::size_t kEnvelope = 200;  // bytes of a message besides its arrays, generously
-constexpr std::size_t kPerJob = 16;     // bytes of a job or result besides its poses, generously
+constexpr std::size_t kEnvelope = 200;  // upper bound of a message without its arrays [bytes]
+constexpr std::size_t kPerJob = 16;     // upper bound of a job or result without its poses [bytes]
 
-/// State number `i` of a flat array.
+/// Returns state number `i` of a flat array of states.
 Poses poses_at(const std::vector<double>& numbers, std::size_t i, int bodies) {
   Poses poses(static_cast<std::size_t>(bodies));
   const double* p = numbers.data() + i * poses.size() * 3;
@@ -28,7 +28,8 @@ bool has_shape(const Message& message, const TaskShape& shape) {
   return message.n >= 1 && message.n_poses == std::int64_t{3} * message.n * shape.bodies;
 }
 
-/// Says whether there are as many poses as the counts of starts say, and starts where they belong.
+/// Returns whether the number of poses matches the counts of starts, and whether a result has
+/// starts (1 to kMaxStarts) exactly if its solve has converged.
 bool has_starts(const rtg_msgs::reverse_result_t& message, const TaskShape& shape) {
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < message.starts.size(); ++i) {

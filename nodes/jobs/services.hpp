@@ -14,21 +14,21 @@
 
 namespace rtg::jobs {
 
-/// The legal numbers in a task's messages.
+/// The sizes of a task that its messages are checked against.
 struct TaskShape {
   int bodies = 0;
   int headings = 0;
 };
 
-/// The most that a unit, the load of one message, carries.
+/// Upper limits of a unit, which is the set of jobs in one message.
 struct UnitLimit {
   std::size_t jobs;
-  std::size_t states;  // in a job or its result
+  std::size_t states;  // in one job or its result
 };
 
-/// The two kinds of work that cross the bus: names, messages, and conversions between messages and
-/// the core's types. A unit is what one message carries. A message that makes no sense for the task
-/// (counts, range of actions, statuses) converts to nothing.
+/// ReverseService and ReplayService describe the two kinds of work that cross the bus: names,
+/// messages, and conversions between messages and the core's types. parse() returns nothing for a
+/// message that is illegal for the task (counts, range of actions, statuses).
 struct ReverseService {
   using Job = reverse::ReverseJob;
   using Result = reverse::ReverseResult;
@@ -45,7 +45,7 @@ struct ReverseService {
   static std::optional<std::vector<Job>> parse(const JobMessage& message, const TaskShape& shape);
   static std::optional<std::vector<Result>> parse(const ResultMessage& message,
                                                   const TaskShape& shape);
-  /// The result of a job that nobody survives.
+  /// Returns the result that stands in for a job that was given up.
   static Result given_up(const Job& job);
 };
 
@@ -68,16 +68,16 @@ struct ReplayService {
   static Result given_up(const Job& job);
 };
 
-/// Sizes of the units that `jobs` jobs are dealt into: as few as fit into messages and `limit`
-/// allows, and as equal as possible.
+/// Returns the sizes of the units for `jobs` jobs: as few units as the message size and `limit`
+/// allow, with sizes as equal as possible.
 std::vector<std::size_t> unit_sizes(std::size_t jobs, const UnitLimit& limit,
                                     const TaskShape& shape);
 
-/// Name of a unit: a hash of the configuration and of everything that is asked.
+/// Returns the id of a unit: a hash of the configuration and of all states and actions of `jobs`.
 std::int64_t unit_id(std::span<const reverse::ReverseJob> jobs, std::int64_t config);
 std::int64_t unit_id(std::span<const search::ReplayJob> jobs, std::int64_t config);
 
-/// Appends x [m], y [m], θ [rad] of every body.
+/// Appends x [m], y [m], θ [rad] of every body to `out`.
 void append_poses(const Poses& poses, std::vector<double>& out);
 
 }  // namespace rtg::jobs

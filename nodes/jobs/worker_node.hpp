@@ -20,8 +20,8 @@
 
 namespace rtg::jobs {
 
-/// A process that answers one kind of work. The thread that spins the bus hears jobs and says what
-/// is held; threads of the node's own answer, so a long solve never makes the process look dead.
+/// A worker process for one kind of work. The thread that spins the bus receives jobs and sends
+/// beats. The node's own threads compute the answers, so beats continue during a long solve.
 template <class Service>
 class WorkerNode {
  public:
@@ -30,13 +30,13 @@ class WorkerNode {
   struct Options {
     TaskShape shape;
     std::int64_t config = 0;  // hash of the configuration
-    int number = 0;           // of several workers, for people
+    int number = 0;           // tells several workers apart, for people
     int threads = 1;
     bus::Seconds patience =
-        JobDispatcher::Limits{}.lease;  // with one unit, until the process is stuck
+        JobDispatcher::Limits{}.lease;  // a process that works longer on one unit is stuck
   };
 
-  /// `answer` computes a unit's results in job order; it is called from `threads` threads at once.
+  /// `answer` computes the results of a unit in job order; `threads` threads call it concurrently.
   WorkerNode(bus::Bus& bus, const Options& options, Answer answer)
       : bus_(bus),
         options_(options),
@@ -48,7 +48,8 @@ class WorkerNode {
       threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
   }
 
-  /// Beats and status; to be called after every spin of the bus. Rethrows what `answer` threw.
+  /// Sends a beat and the status when they are due. Must be called after every spin of the bus.
+  /// Rethrows an exception of `answer`.
   void tick(bus::Seconds now) {
     std::unique_lock lock(mutex_);
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
@@ -59,8 +60,8 @@ class WorkerNode {
     if (status_.due(now)) status_.publish(held.empty() ? "idle" : "busy", done);
   }
 
-  /// Says whether a unit has been in work for longer than any unit takes. Nothing but the end of
-  /// the process frees the thread, so that another one can take its place.
+  /// Returns whether a unit has been in work for longer than `patience`. Its thread cannot be
+  /// stopped; the process has to end so that another process can replace it.
   bool stuck(bus::Seconds now) const {
     const std::scoped_lock lock(mutex_);
     return std::ranges::any_of(
@@ -74,7 +75,7 @@ class WorkerNode {
   using JobMessage = typename Service::JobMessage;
   using ResultMessage = typename Service::ResultMessage;
   using Jobs = std::vector<typename Service::Job>;
-  static constexpr std::size_t kMostHeld = 3000;  // beyond any capacity that beats announce
+  static constexpr std::size_t kMostHeld = 3000;  // units, more than any beat announces as capacity
 
   void receive(const JobMessage& message) {
     if (message.to != incarnation_) return;
@@ -94,7 +95,7 @@ class WorkerNode {
     message.incarnation = incarnation_;
     message.worker = options_.number;
     message.config = options_.config;
-    message.capacity = 2 * options_.threads + 1;  // some in work, some on their way
+    message.capacity = 2 * options_.threads + 1;  // units in work and in transit
     message.held = held;
     message.n_held = static_cast<std::int32_t>(held.size());
     bus_.publish(Service::kBeats, message);
@@ -118,7 +119,7 @@ class WorkerNode {
     }
   }
 
-  /// The unit to work on; none if the node ends.
+  /// Waits for a unit and returns it. Returns nothing when the node stops.
   std::optional<std::pair<JobId, Jobs>> next(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     std::optional<std::pair<JobId, Jobs>> unit;
@@ -134,13 +135,13 @@ class WorkerNode {
   bus::CoordinatorWatch watch_;
   bus::NodeStatus status_;
   bus::Ticker beat_{0.05};
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members below
   std::condition_variable_any wake_;
   JobInbox<Jobs, ResultMessage> inbox_{64};
-  std::map<JobId, bus::Seconds> begun_;  // units in work, and since when
+  std::map<JobId, bus::Seconds> begun_;  // units in work and their start times
   long done_ = 0;
   std::exception_ptr failure_;
-  std::vector<std::jthread> threads_;  // last: ends before all that it uses
+  std::vector<std::jthread> threads_;  // last: joined before the members that it uses end
 };
 
 }  // namespace rtg::jobs

@@ -10,9 +10,10 @@
 
 namespace rtg::program {
 
-/// Serves the bus until the coordinator leaves or a signal comes; the exit status of the process.
-/// Ends the process with status 1 when it is stuck with a unit: the coordinator counts it as lost.
-/// Throws std::runtime_error if the coordinator falls silent, and what the node's work throws.
+/// Serves the bus until the coordinator leaves or a signal arrives. Returns the exit status of the
+/// process. Ends the process with status 1 if the node is stuck with a unit; the coordinator then
+/// counts the worker as lost. Throws std::runtime_error if the coordinator falls silent, and
+/// rethrows exceptions of the node.
 template <class Service>
 int serve(bus::Bus& bus, jobs::WorkerNode<Service>& node) {
   int status = 0;
@@ -21,10 +22,10 @@ int serve(bus::Bus& bus, jobs::WorkerNode<Service>& node) {
     node.tick(bus::monotonic_now());
     if (node.stuck(bus::monotonic_now())) {
       std::fputs("stuck: a unit of work takes longer than any should; leaving it\n", stderr);
-      std::_Exit(1);  // nobody could wait for its thread
+      std::_Exit(1);  // its thread cannot be joined
     }
     if (node.coordinator().silent(bus::monotonic_now())) {
-      limit_shutdown(1);  // the node's end waits for its units, which may hang
+      limit_shutdown(1);  // the node's destructor waits for its units, which may hang
       throw std::runtime_error("no coordinator heard for 30 s");
     }
   }

@@ -8,11 +8,11 @@
 namespace rtg::program {
 namespace {
 
-constexpr unsigned kGrace = 4;  // [s]; the promise is to be gone after 5
+constexpr unsigned kGrace = 4;  // [s]; the process must have ended after 5 s
 
 std::atomic<int> first_signal{0};
 std::atomic<int> late_status{0};
-static_assert(std::atomic<int>::is_always_lock_free);  // hence usable in a handler
+static_assert(std::atomic<int>::is_always_lock_free);  // so signal handlers may use it
 
 void on_stop_signal(int number) {
   if (first_signal.exchange(number) != 0) _exit(128 + number);

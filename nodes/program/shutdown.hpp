@@ -2,16 +2,16 @@
 
 namespace rtg::program {
 
-/// From here on SIGINT and SIGTERM end the process in an orderly way: the first one makes
-/// stop_signal() tell its number, the second one ends the process at once. To be called before
-/// threads start.
+/// Installs the handlers of SIGINT and SIGTERM. After the first signal stop_signal() returns its
+/// number, and the process ends within a few seconds. The second signal ends the process at once.
+/// Must be called before threads start.
 void watch_signals();
 
-/// Number of the signal that asks for an end; 0 as long as there was none.
+/// Returns the number of the signal that asked the process to end; 0 if none has arrived.
 int stop_signal();
 
-/// The process ends with `status` after a few seconds, whatever its threads are doing; for those
-/// who begin to shut down without a signal.
+/// Makes the process end with exit status `status` in a few seconds at the latest, whatever its
+/// threads are doing. Needed where a shutdown begins without a signal.
 void limit_shutdown(int status);
 
 }  // namespace rtg::program

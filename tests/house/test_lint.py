@@ -19,11 +19,11 @@ def test_cpp_is_formatted() -> None:
 
 
 def test_python_is_formatted() -> None:
-    check(str(TOOLS / "ruff"), "format", "--check", "--config", PYPROJECT, "train", "tests")
+    check(str(TOOLS / "ruff"), "format", "--check", "--config", PYPROJECT, "train", "tests", "msgs")
 
 
 def test_python_is_clean() -> None:
-    check(str(TOOLS / "ruff"), "check", "--no-cache", "--config", PYPROJECT, "train", "tests")
+    check(str(TOOLS / "ruff"), "check", "--no-cache", "--config", PYPROJECT, "train", "tests", "msgs")
 
 
 def test_python_types_hold() -> None:

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
-
-#include "nodes/bus/wire_fields.hpp"
+#include <rtg_msgs/wire_fields.hpp>
 
 // A failure here is a change of the wire: processes of the two versions do not understand each
 // other. If it is meant, copy the printed value and say so under "Wire" in CHANGELOG.md.

@@ -9,8 +9,9 @@
 
 namespace rtg::bindings {
 
-/// Binds the fields that Config::visit() lists as read-only properties of the same names. A choice
-/// is the text of the configuration, whose list of names lasts for ever.
+/// Visitor that binds the fields that Section::visit() lists as read-only properties of the same
+/// names. A choice is bound as the name of its value. The list of names must have static storage
+/// duration, because the property keeps a reference to it.
 template <class Section>
 class FieldBinder {
  public:
@@ -57,7 +58,7 @@ class FieldBinder {
   const Section& like_;
 };
 
-/// The names of an enumeration, by value.
+/// Returns the names of an enumeration as a tuple, in the order of the values.
 template <class Names>
 nanobind::tuple names_of(const Names& names) {
   nanobind::list found;

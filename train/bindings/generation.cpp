@@ -16,7 +16,7 @@
 namespace rtg::bindings {
 namespace {
 
-/// Calls store(poses, action, next_poses, success, source) with arrays of the rows.
+/// Calls store(poses, action, next_poses, success, source); each argument is an array over `rows`.
 void hand_over(const nb::object& store, std::span<const search::Transition> rows) {
   const nb::gil_scoped_acquire acquire;
   const std::size_t count = rows.size(), bodies = count ? rows[0].poses.size() : 0;
@@ -48,7 +48,8 @@ void report_progress(const nb::object& progress, const search::Progress& p) {
   progress(line);
 }
 
-/// Exceptions of the callbacks, KeyboardInterrupt too, end the generation and come out of it.
+/// Runs the generation in this process and returns its report as JSON. An exception of a callback,
+/// including KeyboardInterrupt, ends the generation and propagates to the caller.
 std::string generate_in_process(const config::Config& config, const nb::object& store,
                                 const nb::object& progress) {
   const nb::gil_scoped_release release;
@@ -61,8 +62,9 @@ std::string generate_in_process(const config::Config& config, const nb::object& 
   return to_json(generate(config.task, config.search, seed, seams));
 }
 
-/// The states of the plan that a forward search finds from a start, [T + 1, bodies, 3], the start
-/// alone if it finds none; and how many pushes it took to the simulator.
+/// Searches forwards for a plan from `start`, [1, bodies, 3]. Returns the states of the plan,
+/// [T + 1, bodies, 3] (the start alone if the search finds no plan), and the number of pushes that
+/// the search simulated. Throws ValueError unless `start` is one state.
 std::pair<nb::ndarray<nb::numpy, double>, long> plan(const config::Config& config,
                                                      const StateArray& start) {
   const tasks::Task& task = config.task;

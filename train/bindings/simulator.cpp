@@ -8,7 +8,7 @@
 namespace rtg::bindings {
 namespace {
 
-/// The true dynamics of one task.
+/// The simulator of the true dynamics of one task.
 struct TaskSimulator {
   std::size_t bodies;
   int headings;

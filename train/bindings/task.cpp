@@ -65,7 +65,7 @@ nb::ndarray<nb::numpy, bool> successes(const tasks::Task& task, const StateArray
   return out.release({states.shape(0)});
 }
 
-/// A heading per state that seeks contact, row k from stream k of `seed`.
+/// Returns one heading per state that seeks contact. Row k uses random stream k of `seed`.
 nb::ndarray<nb::numpy, std::int64_t> contact_headings(const tasks::Task& task,
                                                       const StateArray& states,
                                                       std::uint64_t seed) {
@@ -94,7 +94,7 @@ nb::ndarray<nb::numpy, double> start(const tasks::Task& task, double amplitude, 
   return state_array(jittered_start(task, amplitude, rng));
 }
 
-/// As (parent, child, pin in the frame of the parent).
+/// Returns the joints as (parent, child, pin in the frame of the parent).
 std::vector<std::tuple<int, int, Vector2d>> joints(const tasks::Task& task) {
   std::vector<std::tuple<int, int, Vector2d>> out;
   for (const Joint& joint : task.scene.joints)
@@ -102,14 +102,14 @@ std::vector<std::tuple<int, int, Vector2d>> joints(const tasks::Task& task) {
   return out;
 }
 
-/// The one state of an array. Throws std::invalid_argument of none or several.
+/// Returns the state in an array of one state. Throws std::invalid_argument for any other number.
 Poses only_state(const tasks::Task& task, const StateArray& states) {
   check_bodies(states, task.scene.size());
   if (states.shape(0) != 1) throw std::invalid_argument("one state is wanted, [1, bodies, 3]");
   return state_at(states, 0);
 }
 
-/// Per joint, whether the goal speaks of its angle and the angle is as asked.
+/// Returns, per joint, whether goal terms concern its angle and the angle meets all of them.
 std::vector<bool> joints_reached(const tasks::Task& task, const StateArray& states) {
   const Poses poses = only_state(task, states);
   std::vector<bool> out;
@@ -125,7 +125,7 @@ std::vector<bool> joints_reached(const tasks::Task& task, const StateArray& stat
   return out;
 }
 
-/// The mean centres that the goal speaks of.
+/// Returns the mean centre of the bodies of each centroid term of the goal.
 std::vector<Vector2d> centroids(const tasks::Task& task, const StateArray& states) {
   const Poses poses = only_state(task, states);
   std::vector<Vector2d> out;

@@ -1,4 +1,4 @@
-"""`python -m rtg ...`: the command of the user."""
+"""`python -m rtg ...`: runs the command line of RTG."""
 
 import sys
 

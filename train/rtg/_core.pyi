@@ -1,4 +1,4 @@
-"""The C++ core of RTG: configuration, tasks, the true dynamics, generation.
+"""The C++ core of RTG: configuration, tasks, the true dynamics, generation, planning.
 
 Poses are x [m], y [m], θ [rad]; body 0 is the robot.
 """
@@ -11,22 +11,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 METHODS: tuple[str, ...]
-"""What is compared, see nodes/config/method.hpp."""
+"""The names of the methods to compare, see nodes/config/method.hpp."""
 SOURCES: tuple[str, ...]
-"""Where a transition comes from, by value, see core/search/transition.hpp."""
+"""The names of the sources of transitions; an index here is a `source` value. See
+core/search/transition.hpp."""
 
 class GoalTerm:
-    """One condition on a state: what the subject is lies in the region."""
+    """A condition on a state: the subject lies in the region."""
 
     @property
     def subject(self) -> str:
-        """ "every": the centres of the bodies of the kind ("*": all objects); "centroid": their
-        mean; "joint": the angle of the joint whose child is named `kind` ("*": of every joint)."""
+        """The quantity that must lie in the region.
+
+        "every": the centre of each body of class `kind` ("*": of each object); "centroid": the mean
+        of these centres; "joint": the angle of the joint whose child is named `kind` ("*": of each
+        joint).
+        """
     @property
     def kind(self) -> str: ...
     @property
     def region(self) -> str:
-        """ "disc": |x - centre| <= radius; "half_plane": normal·x <= offset; "angles"."""
+        """ "disc": |x - centre| <= radius; "half_plane": normal·x <= offset; "angles": an interval
+        of the joint angle."""
     @property
     def centre(self) -> NDArray[np.float64]:
         """[2], m"""
@@ -39,7 +45,10 @@ class GoalTerm:
     def offset(self) -> float: ...
 
 class Task:
-    """A sparse-reward task: reward 1 and the end when the goal holds. Body 0 is the robot."""
+    """A sparse-reward task: the reward is 1 when the goal holds, which ends the episode, else 0.
+
+    Body 0 is the robot.
+    """
 
     @property
     def name(self) -> str: ...
@@ -48,19 +57,19 @@ class Task:
         """Per body [vertices, 2], counter-clockwise, centroid at the origin [m]."""
     @property
     def names(self) -> list[str]:
-        """Of the bodies; they differ."""
+        """The unique names of the bodies."""
     @property
     def kinds(self) -> list[str]:
         """The class of each body."""
     @property
     def fixed(self) -> list[bool]:
-        """Whether a body stays where it is."""
+        """Per body, True if it never moves."""
     @property
     def joints(self) -> list[tuple[int, int, NDArray[np.float64]]]:
-        """(parent, child, pin in the frame of the parent [2])."""
+        """Per joint (parent, child, pin in the frame of the parent [2], m)."""
     @property
     def goal(self) -> list[GoalTerm]:
-        """All must hold."""
+        """The terms of the goal; all must hold."""
     @property
     def arena(self) -> float:
         """Half width of the square that the robot stays in [m]."""
@@ -69,10 +78,10 @@ class Task:
         """Number of actions: action a pushes along 2πa/headings."""
     @property
     def start(self) -> NDArray[np.float64]:
-        """[bodies, 3]"""
+        """The nominal start. [bodies, 3]"""
     @property
     def horizon(self) -> int:
-        """Actions of an episode; then it is truncated."""
+        """Number of actions after which an episode is truncated."""
     @property
     def discount(self) -> float: ...
     @property
@@ -80,37 +89,50 @@ class Task:
         """Evaluation starts: object positions ± this [m]."""
     @property
     def randomisation(self) -> float:
-        """How far domain randomisation goes: object positions ± this [m]."""
+        """Amplitude of domain randomisation: object positions ± this [m]."""
     @property
     def bodies(self) -> int: ...
     @property
     def observation_size(self) -> int: ...
     def observation(self, states: NDArray[np.float64]) -> NDArray[np.float32]:
-        """The learner's view. [N, bodies, 3] -> [N, observation_size]"""
+        """Returns the observations of the states. [N, bodies, 3] -> [N, observation_size]"""
     def joints_reached(self, states: NDArray[np.float64]) -> list[bool]:
-        """Per joint, whether the goal speaks of its angle and it is as asked. [1, bodies, 3]"""
-    def centroids(self, states: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-        """The mean centres that the goal speaks of. [1, bodies, 3] -> each [2]"""
-    def contact_headings(self, states: NDArray[np.float64], seed: int) -> NDArray[np.int64]:
-        """Per state a heading towards a random movable object; that of row k is a function of the
-        state, `seed` and k. [N, bodies, 3] -> [N]"""
-    def goal_state(self, seed: int, index: int = 0) -> NDArray[np.float64] | None:
-        """Sample number `index` of stream `seed` of the states where the goal holds, nearly at
-        rest. [bodies, 3]; None if 1,000 attempts found none."""
-    def succeeded(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Whether the goal holds. [N, bodies, 3] -> [N]"""
-    def jittered_start(self, amplitude: float, seed: int, index: int = 0) -> NDArray[np.float64]:
-        """Start number `index` of stream `seed`, objects moved by ± amplitude [m]. [bodies, 3]
+        """Returns per joint whether goal terms concern its angle and all of them hold.
 
-        Raises ValueError if 1000 draws in a row overlap, or for an amplitude beyond [0, 10] m.
+        [1, bodies, 3]
+        """
+    def centroids(self, states: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+        """Returns the centroid of each goal term with that subject. [1, bodies, 3] -> each [2]"""
+    def contact_headings(self, states: NDArray[np.float64], seed: int) -> NDArray[np.int64]:
+        """Returns per state a heading towards a random movable object.
+
+        Row k is a function of the state, `seed` and k. [N, bodies, 3] -> [N]
+        """
+    def goal_state(self, seed: int, index: int = 0) -> NDArray[np.float64] | None:
+        """Returns sample number `index` of random stream `seed` of the goal states. [bodies, 3]
+
+        The bodies are nearly at rest in it. Returns None if 1,000 attempts find none.
+        """
+    def succeeded(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Returns whether the goal holds. [N, bodies, 3] -> [N]"""
+    def jittered_start(self, amplitude: float, seed: int, index: int = 0) -> NDArray[np.float64]:
+        """Returns start number `index` of random stream `seed`. [bodies, 3]
+
+        Its objects are moved by ± amplitude [m].
+
+        Raises ValueError if 1000 consecutive draws overlap, or for an amplitude outside
+        [0, 10] m.
         """
 
 class ConfigError(ValueError):
-    """A mistake in the configuration: file:line, the key, what is legal."""
+    """A mistake in the configuration; the text gives file:line, the key and the legal values."""
 
 class _Section:
-    """A section of the configuration: its fields, with what they mean, are those that the C++
-    struct of the same name lists. Choices are texts."""
+    """A section of the configuration.
+
+    Its fields are those of the C++ struct of the same name, which documents them. Choices are
+    strings.
+    """
 
     def __getattr__(self, name: str) -> Any: ...
 
@@ -121,14 +143,17 @@ class TrainConfig(_Section): ...
 class RunConfig(_Section): ...
 
 class Config:
-    """Everything that a run is made from, checked."""
+    """The checked configuration of a run."""
 
     @staticmethod
     def from_file(file: str | PathLike[str], overrides: Sequence[str] = ()) -> Config:
-        """`overrides`: "section.key=value". Raises ConfigError."""
+        """Loads a file. `overrides`: each "section.key=value". Raises ConfigError."""
     @staticmethod
     def from_text(text: str, name: str = "text", overrides: Sequence[str] = ()) -> Config:
-        """`name` stands in messages; paths in the text are relative to it. Raises ConfigError."""
+        """Loads a text. Raises ConfigError.
+
+        `name` is used in messages as the name of the file; paths in the text are relative to it.
+        """
     @property
     def task(self) -> Task: ...
     @property
@@ -143,13 +168,13 @@ class Config:
     def run(self) -> RunConfig: ...
     @property
     def description(self) -> str:
-        """What it says, for people."""
+        """The configuration in human-readable text."""
     @property
     def yaml(self) -> str:
-        """The canonical text; reads back to the same."""
+        """The canonical YAML text; loading it gives an equal configuration."""
     @property
     def json(self) -> str:
-        """The same values."""
+        """The values as JSON."""
 
 class Simulator:
     """The true dynamics of a task: Box2D. Holds no state; equal arguments give equal bits."""
@@ -158,9 +183,10 @@ class Simulator:
     def push(
         self, states: NDArray[np.float64], actions: NDArray[np.int64]
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """One action in each state. [N, bodies, 3], [N] -> [N, bodies, 3], [N]
+        """Simulates one action in each state. [N, bodies, 3], [N] -> [N, bodies, 3], [N]
 
-        The second array is False where the bodies did not come to rest: no legal transition.
+        The second array is False where the bodies did not come to rest: there the row is not a
+        legal transition.
         Raises ValueError for arrays that do not fit the task.
         """
 
@@ -178,16 +204,16 @@ def generate(
     ],
     progress: Callable[[dict[str, Any]], Any],
 ) -> str:
-    """The whole generation in this process, on config's run.workers threads; the report as JSON.
+    """Runs the whole generation in this process, on run.workers threads; returns the report, JSON.
 
-    store(poses, action, next_poses, success, source) gets the transitions in sequence order,
-    progress({"phase", "layer", "depth", "transitions", "target", "contact_share", "start_region"})
-    is called after each layer. What they raise ends the generation.
+    Calls store(poses, action, next_poses, success, source) with the transitions in sequence order,
+    and after each layer progress({"phase", "layer", "depth", "transitions", "target",
+    "contact_share", "start_region"}). An exception of either ends the generation and is raised.
     """
 
 def plan(config: Config, start: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
-    """A plan of the forward beam search from one start, [1, bodies, 3].
+    """Searches forwards for a plan from one start, [1, bodies, 3], by beam search.
 
-    Its states, [T + 1, bodies, 3], the start alone if none was found; and the pushes that the
-    simulator was asked for. Raises ValueError for arrays that do not fit the task.
+    Returns the states of the plan, [T + 1, bodies, 3], or only the start if there is none, and the
+    number of simulated pushes. Raises ValueError for arrays that do not fit the task.
     """

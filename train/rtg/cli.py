@@ -1,4 +1,4 @@
-"""The command of the user: `./run.sh ...`, `rtg ...`, `python -m rtg ...`."""
+"""The command line of RTG: `./run.sh ...`, `rtg ...`, `python -m rtg ...`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 from rtg.errors import RunError, UserError
 from rtg.run import run_args
 
-# Nothing heavy is imported before it is needed: --help and mistakes answer at once.
+# Modules that load slowly are imported where they are used: --help and errors appear at once.
 
 
 def _run(words: Sequence[str]) -> int:
@@ -127,13 +127,13 @@ def _check_utf8(words: Sequence[str]) -> None:
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Exit status: 0 success, 2 bad input, 1 anything else."""
+    """Runs the command and returns its exit status: 0 success, 2 bad input, 1 anything else."""
     words = list(sys.argv[1:] if words is None else words)
     tool = _TOOLS.get(words[0]) if words else None
     try:
         _check_utf8(words)
         status = tool(words[1:]) if tool else _run(words)
-        sys.stdout.flush()  # or Python does it after main(), where nobody can catch what it meets
+        sys.stdout.flush()  # Python would flush after main(), where no handler catches errors
         return status
     except UserError as error:
         print(f"rtg: {error}", file=sys.stderr)
@@ -144,7 +144,7 @@ def main(words: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("rtg: interrupted", file=sys.stderr)
         return 1
-    except BrokenPipeError:  # whoever read our output has gone, as `head` does
+    except BrokenPipeError:  # the reader of the output has closed the pipe, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
 

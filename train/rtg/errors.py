@@ -1,15 +1,18 @@
-"""The errors that end a command early, with its exit status."""
+"""Errors that end a command early, each with the exit status of the command."""
 
 from __future__ import annotations
 
 
 class UserError(Exception):
-    """Bad input: a flag, a file, a folder. The message names it and says what is legal. Exit 2."""
+    """Bad input: a flag, a file or a folder.
+
+    The message names the input and the legal values. Exit status 2.
+    """
 
 
 class RunError(Exception):
-    """The run itself failed; the message says what broke and where to look. Exit 1."""
+    """The run failed. The message names the cause and where to look for details. Exit status 1."""
 
 
 class StoppedError(Exception):
-    """The user asked for the end of the run. Exit 1."""
+    """The user stopped the run. The command turns it into a RunError: exit status 1."""

@@ -1,4 +1,4 @@
-"""Where things are in the checkout."""
+"""Paths of folders and programs in the checkout."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ BUILD = ROOT / "build" / "release"
 
 
 def program(name: str) -> Path:
-    """The path of a C++ program of ours. Raises RunError with the remedy if it is not built."""
+    """Returns the path of a C++ program of RTG.
+
+    Raises RunError, which names the remedy, if the program is not built.
+    """
     path = BUILD / "nodes" / name
     if not path.is_file():
         raise RunError(f"{path} is not built: start through ./run.sh, which builds it")
@@ -21,5 +24,5 @@ def program(name: str) -> Path:
 
 
 def task_names() -> list[str]:
-    """Tasks that can be named without a path."""
+    """Returns the names of the tasks in config/, which need no path on the command line."""
     return sorted(path.stem for path in CONFIG.glob("*.yaml"))

@@ -58,7 +58,7 @@ bool ContactLinearisation<T>::add(int vertex, Eliminated<T>& eliminated) {
   return true;
 }
 
-/// b(g(p_0)) of the objective.
+/// Adds the barrier b(g(p_0)) of the objective.
 template <class T>
 void ContactLinearisation<T>::add_start_barrier(const Contact& c) {
   const energy::Barrier& barrier = scene_.barrier();
@@ -69,7 +69,7 @@ void ContactLinearisation<T>::add_start_barrier(const Contact& c) {
   own.Q -= c.gap.hessian * (curvature_.exact * pressure);
 }
 
-/// -λ ∇g(p_k) in Φ_k.
+/// Adds the normal force, -λ ∇g(p_k) in Φ_k.
 template <class T>
 void ContactLinearisation<T>::add_normal_force(Contact& c) {
   const energy::GapRates<T> rates(c.d, c.D, c.touch.point, c.gap, y_);
@@ -83,7 +83,7 @@ void ContactLinearisation<T>::add_normal_force(Contact& c) {
   c.force_gradient = c.force_gradient - c.gap.gradient.dot(y_);
 }
 
-/// μ_f λ ∂φ/∂q₊ in Φ_{k+1}.
+/// Adds the friction, μ_f λ ∂φ/∂q₊ in Φ_{k+1}.
 template <class T>
 void ContactLinearisation<T>::add_friction(Contact& c, const energy::ContactPoint<T>& after) {
   const energy::SlipTerms<T> slip(c.d.gradient, after, c.touch.point.x, scene_.slip());
@@ -109,8 +109,8 @@ void ContactLinearisation<T>::add_friction(Contact& c, const energy::ContactPoin
   c.force_gradient = c.force_gradient + drag.dot(y_next_);
 }
 
-/// Folds the force and the multiplier of its complementarity into the system. `s`: slope of the
-/// row; `bend`: μ̃ w''.
+/// Eliminates the force and the multiplier of its complementarity row from the system. `s` is the
+/// slope of the row, `bend` is μ̃ w''.
 template <class T>
 void ContactLinearisation<T>::add_complementarity(const Contact& c, const T& s, const T& bend) {
   own.gradient += c.b * c.force_gradient;

@@ -8,13 +8,13 @@
 
 namespace rtg::reverse {
 
-inline constexpr double kForceProximal = 0.01;  // share of δ on the forces
+inline constexpr double kForceProximal = 0.01;  // proximal weight of the forces, as a share of δ
 
-/// How second derivatives are formed, by lane.
+/// Selects per lane how second derivatives are formed.
 template <class T>
 struct Curvature {
-  T exact;     // 1: of the Lagrangian; 0: of the objective alone
-  T proximal;  // δ, on poses and controls, and kForceProximal δ on forces
+  T exact;     // 1: Hessian of the Lagrangian; 0: of the objective alone
+  T proximal;  // δ, weight on poses and controls; kForceProximal δ on forces
 };
 
 /// A force eliminated from the system: Δλ = a + b·V Δp.
@@ -24,38 +24,39 @@ struct Eliminated {
   Vec4<T> b = Vec4<T>::Constant(T(0.0));
 };
 
-/// The terms that a pair's contacts at one level add to one sub-step's part of the Newton system,
-/// in the pair's coordinates there.
+/// Terms that the contacts of a pair at one level add to one stage of the Newton system, in the
+/// coordinates of the pair at that stage (PairFrame).
 template <class T>
 struct PairTerms {
   Mat4<T> Q = Mat4<T>::Constant(T(0.0)), E = Q;  // Hessian of the Lagrangian, ∂Φ/∂p
   Vec4<T> gradient = Vec4<T>::Constant(T(0.0));  // of the Lagrangian
   Vec4<T> residual = gradient;                   // Φ
-  Vec4<T> q = gradient, e = gradient;            // the rest of the two right-hand sides
+  Vec4<T> q = gradient, e = gradient;            // of the stage, without gradient and residual
 };
 
-/// The contacts of a pair of bodies at a level k: normal forces in Φ_k, friction in Φ_{k+1}, their
-/// complementarity, and at the start the barrier of the objective.
+/// Linearises the contacts of a pair of bodies at level k: the normal forces in Φ_k, the friction
+/// in Φ_{k+1}, the complementarity rows and, at the start (k = 0), the barrier of the objective.
 template <class T>
 class ContactLinearisation {
  public:
   ContactLinearisation(const ProblemLanes<T>& problem, const Trajectory<T>& x,
                        const Curvature<T>& curvature, int level, int pair);
 
-  /// Says whether any of the contacts may act. If not, there is nothing to add.
+  /// Returns whether any of the contacts may act. If none may, there is nothing to add.
   bool relevant() const { return relevant_; }
 
-  /// Adds contact `vertex`, with its force as eliminated; whether it acts.
+  /// Adds the terms of contact `vertex` and writes its eliminated force to `eliminated`. Returns
+  /// whether the contact acts.
   bool add(int vertex, Eliminated<T>& eliminated);
 
   const energy::PairFrame<T>& frame() const { return here_; }
   const energy::PairFrame<T>& frame_ahead() const { return ahead_; }
 
-  PairTerms<T> own, next;                        // of levels k and k + 1
+  PairTerms<T> own, next;                        // for stages k and k + 1
   Mat4<T> F = Mat4<T>::Constant(T(0.0)), N = F;  // ∂Φ_{k+1}/∂p_k, ∂²L/∂p_{k+1}∂p_k
 
  private:
-  /// The contact at hand.
+  /// The contact that add() is adding.
   struct Contact {
     const energy::Touch<T>& touch;
     const SignedDistance<T>& d;
@@ -64,7 +65,7 @@ class ContactLinearisation {
     T g, force;
     Vec4<T> b;
     T a;
-    T force_gradient = T(0.0);                // ∂L/∂λ, complementarity aside
+    T force_gradient = T(0.0);                // ∂L/∂λ without the complementarity row
     Vec4<T> now = Vec4<T>::Constant(T(0.0));  // ∂²L/∂λ∂p_k
   };
   void add_start_barrier(const Contact& c);
@@ -75,7 +76,7 @@ class ContactLinearisation {
   const energy::SceneModel<T>& scene_;
   const Curvature<T>& curvature_;
   int pair_;
-  bool first_, last_, held_;  // held: the poses of the level are no unknowns
+  bool first_, last_, held_;  // held: the poses of the level are fixed
   const T* forces_;
   Mask<T> close_;
   bool relevant_;

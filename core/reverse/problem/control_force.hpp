@@ -4,10 +4,11 @@
 
 namespace rtg::reverse {
 
-/// The force with which a control c moves the robot, B tanh c, in Φ with a minus; eq. (8)'s P_E.
+/// The force B tanh c that a control c exerts on the robot, from P_E of eq. (8). It enters Φ with a
+/// minus sign.
 template <class T>
 struct ControlForce {
-  T value, slope, curvature;  // and its derivatives in c
+  T value, slope, curvature;  // the force and its first and second derivatives in c
 
   ControlForce(const T& bound, const T& control) {
     const T push = hyperbolic_tangent(control);

@@ -12,7 +12,7 @@
 namespace rtg::reverse {
 namespace {
 
-/// Φ_k without contacts.
+/// Sets `e` to Φ_k without contacts.
 template <class T>
 void set_free_residual(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k, T* e) {
   const energy::SceneModel<T>& energy = problem.energy;
@@ -25,7 +25,7 @@ void set_free_residual(const ProblemLanes<T>& problem, const Trajectory<T>& x, i
     e[m] = e[m] - ControlForce<T>(energy.control_bound()[m], x.controls[k][m]).value;
 }
 
-/// J without the barrier at the start.
+/// Returns J without the barrier at the start.
 template <class T>
 T free_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x) {
   const int h = problem.sub_steps, movable = problem.energy.movable();
@@ -45,8 +45,8 @@ T free_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x) {
 
 }  // namespace
 
-/// An evaluation, level by level: a contact takes part in the residual of its own sub-step and of
-/// the next.
+/// One evaluation of a trajectory, level by level. A contact at level k contributes to the
+/// residuals Φ_k and Φ_{k+1}.
 template <class T>
 struct Evaluator<T>::Pass {
   Evaluator& into;
@@ -68,7 +68,7 @@ struct Evaluator<T>::Pass {
         into.complementarity_[k][energy::contact_of(n, v)] = T(0.0);
       }
       if (any(close) || has_force(k, n)) apart = add_pair(k, n, close) || apart;
-      if (n % 2 == 1) legal = legal && apart;  // an edge of either body will do
+      if (n % 2 == 1) legal = legal && apart;  // an edge of either body suffices
     }
     add_limits(k);
   }
@@ -90,7 +90,8 @@ struct Evaluator<T>::Pass {
     return any(found);
   }
 
-  /// Returns where an edge of the pair's second body separates the two.
+  /// Adds the contacts of pair n at level k. Returns the lanes in which an edge of the pair's
+  /// second body separates the two bodies.
   Mask<T> add_pair(int k, int n, const Mask<T>& close) {
     const bool last = k == problem.sub_steps;
     const energy::PairFrame<T> here = scene.frame(n, x.p[k]);
@@ -115,7 +116,8 @@ struct Evaluator<T>::Pass {
     return edges.separate(scene.sharpness());
   }
 
-  /// Legality, and λ g - μ̃ w.
+  /// Stores the gap of a contact, updates `legal`, and adds the complementarity residual λ g - μ̃ w
+  /// to the measures. `window` is w(g).
   void note_gap(int k, int contact, const T& g, const T& window) {
     gaps[k][contact] = g;
     legal = legal && keeps_gap(g, were[k][contact], scene.barrier());
@@ -125,7 +127,8 @@ struct Evaluator<T>::Pass {
     sum.infeasibility = greater(sum.infeasibility, magnitude(off));
   }
 
-  /// Its gap, and at the start the barrier of the objective.
+  /// Stores the gap of a contact as note_gap() does and, at the start, adds the barrier to the
+  /// objective.
   void add_contact(int k, int contact, const energy::Touch<T>& touch, const SignedDistance<T>& d) {
     const energy::Barrier& barrier = scene.barrier();
     const Mask<T> acts = touch.within || x.forces[k][contact] != T(0.0);

@@ -4,7 +4,7 @@
 
 namespace rtg::reverse {
 
-/// The figures that line searches look at.
+/// The figures by which line searches judge trajectories.
 template <class T>
 struct Measures {
   T objective = T(0.0);
@@ -16,17 +16,19 @@ struct Measures {
 template <class T>
 class Evaluator {
  public:
-  /// `to_the_end`: also where no lane is legal any more.
+  /// `to_the_end`: evaluate() goes through all levels, even if no lane is legal any more.
   explicit Evaluator(const ProblemLanes<T>& problem, bool to_the_end = false);
 
-  /// A trial point of an iterate whose gaps `were`; their own in `gaps`. `legal`, where x is to be
-  /// looked at, comes back as where it is a legal iterate: every gap open and, below a tenth of the
-  /// barrier's range, at least a tenth of itself, no two bodies overlapping by the separating-axis
-  /// test. Where it is not, the rest may be wrong.
+  /// Evaluates the trial point x and writes its gaps to `gaps`; `were` holds the gaps of the
+  /// iterate that it was made from. On entry, `legal` marks the lanes to evaluate; on return, those
+  /// in which x is a legal iterate. There every gap is open, every gap below a tenth of the
+  /// barrier's range is at least a tenth of its value in `were`, and no two bodies overlap by the
+  /// separating-axis test. In other lanes all results may be wrong.
   Measures<T> evaluate(const ProblemLanes<T>& problem, const Trajectory<T>& x,
                        const PerContact<T>& were, PerContact<T>& gaps, Mask<T>& legal);
 
-  /// Residuals Φ_k [h + 1][dofs] of the last trajectory, entry 0 unused, and λ g - μ̃ w.
+  /// Return the residuals of the last trajectory: Φ_k [h + 1][dofs], entry 0 unused, and λ g - μ̃ w
+  /// [h + 1][contacts].
   const std::vector<std::vector<T>>& residuals() const { return residuals_; }
   const PerContact<T>& complementarity() const { return complementarity_; }
 

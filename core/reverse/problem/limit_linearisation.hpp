@@ -5,9 +5,9 @@
 
 namespace rtg::reverse {
 
-/// The terms that a limit of a joint adds to the Newton system at one level: vectors are multiples
-/// of its ∇g, matrices of ∇g ∇gᵀ. As ContactLinearisation without friction, for a gap whose Hessian
-/// vanishes.
+/// Terms that one joint limit adds to the Newton system at one level. Vectors are multiples of the
+/// limit's ∇g, matrices are multiples of ∇g ∇gᵀ. The terms are those of ContactLinearisation
+/// without friction, for a gap whose Hessian is zero.
 template <class T>
 struct LimitLinearisation {
   T a = T(0.0), b = T(0.0);  // Δλ = a + b ∇g·Δp
@@ -15,9 +15,9 @@ struct LimitLinearisation {
   T gradient = a;
   T q = a, e = a, residual = a;
 
-  /// The place of the level: at the start, in between, or at a fixed end.
+  /// The kind of the level: the start, a fixed end (kHeld), or any other level (kWithin).
   enum class Level { kStart, kWithin, kHeld };
-  /// Its gap, force, and ∇g·y.
+  /// Gap and force of the limit, and ∇g·y.
   struct State {
     T gap, force, along;
   };
@@ -29,7 +29,7 @@ struct LimitLinearisation {
     const T slope = at.force - mu * window.d1;
     a = (mu * window.w - at.force * at.gap) * inverse;
     if (level != Level::kHeld) b = -slope * inverse;
-    T by_force(0.0);  // ∂L/∂λ, complementarity aside
+    T by_force(0.0);  // ∂L/∂λ without the complementarity row
     if (level == Level::kStart) {
       gradient = -barrier.force(at.gap);
       Q = -barrier.force_slope(at.gap);

@@ -6,8 +6,8 @@
 namespace rtg::reverse {
 namespace {
 
-/// Pairs of level k are added once stage k + kReach has begun: what motion and inertia add to
-/// stages k and k + 1 is there by then, and both are still in the cache.
+/// Number of stages by which the pairs of a level are added later than the objective and motion: by
+/// then motion and inertia have contributed to stages k and k + 1, and both are still in the cache.
 constexpr int kReach = 3;
 
 }  // namespace
@@ -70,7 +70,7 @@ void NewtonSystem<T>::add_pair(const ProblemLanes<T>& problem, const Trajectory<
   scatter(scene, n, energy::PulledBlocks<T>(ahead, contacts.N, here), next.N);
 }
 
-/// Adds the terms of a pair to one stage.
+/// Adds the terms of a pair to stage k.
 template <class T>
 void NewtonSystem<T>::add_own(const energy::SceneModel<T>& scene, int pair,
                               const energy::PairFrame<T>& frame, const PairTerms<T>& terms, int k) {
@@ -84,7 +84,7 @@ void NewtonSystem<T>::add_own(const energy::SceneModel<T>& scene, int pair,
   scatter_lower(scene, pair, frame, terms.E, stage.E);
 }
 
-/// The limits of joints at level k, over the poses of all bodies.
+/// Adds the joint limits at level k, over the poses of all bodies.
 template <class T>
 void NewtonSystem<T>::add_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   using Terms = LimitLinearisation<T>;
@@ -141,7 +141,8 @@ void NewtonSystem<T>::force_steps(const ProblemLanes<T>& problem, const Trajecto
   }
 }
 
-/// Handles one level, by how far all bodies move [3·movable].
+/// Writes the changes of the forces at level k to `out`. `moved` is the step of the poses of all
+/// bodies [3·movable].
 template <class T>
 void NewtonSystem<T>::find_force_steps(const energy::SceneModel<T>& scene,
                                        const energy::Placement<T>& at, int k, const T* moved,
@@ -164,7 +165,7 @@ void NewtonSystem<T>::find_force_steps(const energy::SceneModel<T>& scene,
   });
 }
 
-/// sᵀ H s = -g·s - y·A s, and A s = -e.
+/// Uses sᵀ H s = -g·s - y·A s and A s = -e.
 template <class T>
 T NewtonSystem<T>::model_curvature(const StageStep<T>& step) const {
   T sum(0.0);
@@ -178,7 +179,7 @@ T NewtonSystem<T>::model_curvature(const StageStep<T>& step) const {
   return sum;
 }
 
-/// ∇J·s = ∇L·s - y·A s.
+/// Uses ∇J·s = ∇L·s - y·A s and A s = -e.
 template <class T>
 T NewtonSystem<T>::objective_slope(const Trajectory<T>& x, const StageStep<T>& step) const {
   T sum(0.0);

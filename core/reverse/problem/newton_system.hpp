@@ -5,13 +5,13 @@
 
 namespace rtg::reverse {
 
-/// The Newton system of the first-order conditions, eq. (9) and (10), by sub-steps. Each force is
-/// eliminated by its own complementarity row,
+/// The Newton system of the first-order conditions, eq. (9) and (10), one stage per sub-step. Each
+/// force is eliminated by its own complementarity row,
 ///
 ///   g Δλ + s ∇g·Δp = -(λ g - μ̃ w),  s = λ - μ̃ w'   =>   Δλ = a + b·Δp,
 ///
-/// and the multiplier z of that row by stationarity in λ, z = -L_λ/g. Contacts are summed up in the
-/// coordinates of their pair (PairFrame).
+/// and the multiplier z of that row by stationarity in λ, z = -L_λ/g. The contacts of a pair are
+/// summed in the pair's coordinates (PairFrame).
 template <class T>
 class NewtonSystem {
  public:
@@ -21,17 +21,18 @@ class NewtonSystem {
                  const Curvature<T>& curvature);
 
   const StageSystem<T>& system() const { return system_; }
-  /// Gradient of the Lagrangian over poses (coordinates of jointed bodies), forces eliminated
-  /// [h + 1][bodies].
+  /// Returns the gradient of the Lagrangian with forces eliminated [h + 1][movable], over the poses
+  /// or, with joints, over the coordinates (Articulation).
   const std::vector<BlockColumn<T>>& gradient() const { return gradient_; }
-  /// ‖∇L‖∞ over poses and controls; NaN where it is not finite.
+  /// Returns ‖∇L‖∞ over poses and controls; NaN in lanes in which ∇L is not finite.
   T stationarity() const;
 
-  /// Changes of the forces along a step [h + 1][contacts].
+  /// Writes the changes of the forces along `step` to `out` [h + 1][contacts].
   void force_steps(const ProblemLanes<T>& problem, const Trajectory<T>& x, const StageStep<T>& step,
                    PerContact<T>& out) const;
 
-  /// Curvature of the model, and slope of the objective, along the solution of the system.
+  /// Return the curvature of the model and the slope of the objective along `step`, which must be
+  /// the solution of the system.
   T model_curvature(const StageStep<T>& step) const;
   T objective_slope(const Trajectory<T>& x, const StageStep<T>& step) const;
 
@@ -57,7 +58,7 @@ class NewtonSystem {
   std::vector<Vec3<T>> control_gradient_;
   std::vector<std::vector<Eliminated<T>>> eliminated_;  // [h + 1][contacts]
   std::vector<std::vector<char>> active_;               // [h + 1][pairs]
-  mutable BlockColumn<T> moved_;                        // of all bodies, at work
+  mutable BlockColumn<T> moved_;                        // workspace of force_steps()
 };
 
 }  // namespace rtg::reverse

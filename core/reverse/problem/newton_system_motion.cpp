@@ -1,4 +1,5 @@
-// What the Newton system has of the objective, motion and controls: all but contacts and joints.
+// The terms of the Newton system from the objective, motion and controls: all but contacts and
+// joints.
 
 #include "core/reverse/problem/control_force.hpp"
 #include "core/reverse/problem/newton_system.hpp"
@@ -18,7 +19,7 @@ Vec3<T> multipliers_of(const Trajectory<T>& x, int k, int body) {
   return {y[0], y[1], y[2]};
 }
 
-/// How far a body moved in the sub-step before; everything is at rest before the first.
+/// Returns how far `body` moved in sub-step k - 1; zero if k = 1, as all bodies begin at rest.
 template <class T>
 Vec3<T> way_before(const Trajectory<T>& x, int k, int body) {
   return k == 1 ? nothing<T>() : way(x.p[k - 2], x.p[k - 1], body);
@@ -26,8 +27,8 @@ Vec3<T> way_before(const Trajectory<T>& x, int k, int body) {
 
 }  // namespace
 
-/// Begins stage k with the terms of one level in the objective, barrier aside, and the proximal
-/// one.
+/// Initialises stage k with the terms of level k in the objective, except the barrier, and with the
+/// proximal term.
 template <class T>
 void NewtonSystem<T>::set_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   Stage& stage = system_.stages[k];
@@ -47,7 +48,7 @@ void NewtonSystem<T>::set_objective(const ProblemLanes<T>& problem, const Trajec
   stage.Q.add(0, 0, diagonal<T>(path.hessian));
 }
 
-/// Damping and the price of speed of sub-step k.
+/// Adds the damping and the speed penalty of sub-step k, and the force of inertia in Φ_k.
 template <class T>
 void NewtonSystem<T>::add_motion(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   Stage &stage = system_.stages[k], &before = system_.stages[k - 1];
@@ -74,7 +75,8 @@ void NewtonSystem<T>::add_motion(const ProblemLanes<T>& problem, const Trajector
   }
 }
 
-/// Derivatives of inertia over the sub-steps k - 1 and k; before the first everything is at rest.
+/// Adds the derivatives of the force of inertia in Φ_k, which depends on sub-steps k - 1 and k. All
+/// bodies are at rest before the first sub-step.
 template <class T>
 void NewtonSystem<T>::add_inertia(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   const bool first = k == 1;
@@ -100,7 +102,7 @@ void NewtonSystem<T>::add_inertia(const ProblemLanes<T>& problem, const Trajecto
   }
 }
 
-/// Second derivatives of y·Φ_k in the angles of body i.
+/// Adds the second derivatives of y·Φ_k in the angles of body i.
 template <class T>
 void NewtonSystem<T>::add_turn_curvature(const typename energy::Inertia<T>::Slope& s, const T& y,
                                          int k, int i) {

@@ -4,10 +4,10 @@
 
 namespace rtg::reverse {
 
-// The terms of the objective J of eq. (6), each with its derivatives; two more are in
-// SpeedPenalty and, at the start, in Barrier.
+// The terms of the objective J of eq. (6), each with its derivatives. The two other terms are
+// SpeedPenalty and, at the start, Barrier.
 
-/// w_i d·(t_i - t̄_i): pulls a body at the start, p_0, against the push.
+/// The term w_i d·(t_i - t̄_i), which pulls body i against the push at the start, p_0.
 template <class T>
 struct StartPull {
   T value;
@@ -22,12 +22,12 @@ struct StartPull {
   }
 };
 
-/// ε |c|² of the controls of a sub-step.
+/// The term ε |c|² of the controls of one sub-step.
 template <class T>
 struct ControlPrice {
   T value;
   Vec3<T> gradient;
-  T hessian;  // of each
+  T hessian;  // the same for each control
 
   ControlPrice(const ProblemLanes<T>& problem, const Vec3<T>& controls)
       : value(T(problem.config.control_weight) * controls.squaredNorm()),
@@ -36,11 +36,11 @@ struct ControlPrice {
   }
 };
 
-/// κ_x |t₀ - t̄₀|² and κ_θ (θ₀ - θ̄₀)² of the robot after sub-step k, action consistency. Departs
-/// from the paper: it makes the controls those of the discrete action.
+/// The terms κ_x |t₀ - t̄₀|² and κ_θ (θ₀ - θ̄₀)² of the robot after sub-step k: action consistency.
+/// Departs from the paper: these terms make the controls those of the discrete action.
 template <class T>
 struct PathPenalty {
-  T place, heading;           // the two values
+  T place, heading;           // values of the two terms
   Vec3<T> gradient, hessian;  // the Hessian is diagonal
 
   PathPenalty(const ProblemLanes<T>& problem, const energy::Placement<T>& at, int k) {
@@ -56,8 +56,9 @@ struct PathPenalty {
   }
 };
 
-/// K/2 |p_k - p̄|² over all bodies, where the final state names p_k. Departs from the paper: a stiff
-/// spring instead of a constraint, so that every forward simulation is feasible.
+/// The term K/2 |p_k - p̄|² over all movable bodies, where the final state prescribes p_k
+/// (ProblemLanes::ends()). Departs from the paper: a stiff spring replaces the constraint, so that
+/// every forward simulation is feasible.
 template <class T>
 class EndSpring {
  public:
@@ -76,7 +77,7 @@ class EndSpring {
   }
   T gradient(int i, int m) const { return hessian * (at_.body(i)[m] - problem_.end[3 * i + m]); }
 
-  T hessian;  // of each coordinate, K
+  T hessian;  // K, the same for each coordinate; 0 where p_k is not prescribed
 
  private:
   const ProblemLanes<T>& problem_;

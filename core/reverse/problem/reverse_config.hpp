@@ -11,9 +11,9 @@ namespace rtg::reverse {
 enum class ReversePreset { kDefault, kPaper };
 inline constexpr std::array<std::string_view, 2> kReversePresets{"default", "paper"};
 
-/// The reverse problem (eq. 6, 7) and its SQP (A.2). The values here are the preset `default`. A
-/// loader begins with reverse_preset(preset) and reads the other fields over it. Energies are in
-/// units of k_D/Δt², see core/NOTATION.md.
+/// Parameters of the reverse problem (eq. 6, 7) and its SQP (A.2). The default values are those of
+/// the preset `default`. A loader begins with reverse_preset(preset) and overwrites the fields that
+/// are given. Energies are in units of k_D/Δt², see core/NOTATION.md.
 struct ReverseConfig {
   ReversePreset preset = ReversePreset::kDefault;
   KktMethod kkt = KktMethod::kBlockElimination;
@@ -25,14 +25,14 @@ struct ReverseConfig {
   double control_weight = 1e-3;      // ε of eq. (6)
   double path_weight = 100.0;        // κ_x, action consistency; 0: the paper's objective
   double heading_weight = 100.0;     // κ_θ
-  double speed_weight = 0.2;         // χ, holds objects to about the robot's speed
-  double terminal_weight = 300.0;    // spring to the given final state; 0: that state is fixed,
-                                     // and few at which Box2D comes to rest have a predecessor
+  double speed_weight = 0.2;         // χ, limits the speed of objects to about the robot's
+  double terminal_weight = 300.0;    // K of the spring to the final state; 0: that state is fixed,
+                                     // and few rest states of Box2D have a predecessor then
   double terminal_tolerance = 0.05;  // a solution that misses the final state by more fails [m]
-  double plain_barrier = 0.0;        // μ of the paper's -μ log g [J]; 0: physics has the barrier
+  double plain_barrier = 0.0;        // μ of the paper's -μ log g [J]; 0: the barrier of `physics`
   double proximal_start = 1.0;       // δ of the first iteration
-  int softenings = 2;                // times that the spring is softened, against poor minima
-  int releases = 7;                  // predecessors besides the one of the whole push
+  int softenings = 2;                // how often the spring is softened, against poor minima
+  int releases = 7;                  // predecessors besides the start of the whole push
 
   template <class Visitor>
   void visit(Visitor& v) {
@@ -56,11 +56,11 @@ struct ReverseConfig {
   }
 };
 
-/// The values that `preset` stands for. `paper` is App. E: the printed objective, l1 merit,
-/// Hessian of the objective only, static start, 1000 iterations, final state fixed, plain barrier.
-/// Its weight is one at which it converges at all: for 78 % of the candidates of Gathering's goal
-/// states that survive pruning, in 147 iterations in the median (`action48/paper` of the
-/// benchmarks).
+/// Returns the values of `preset`. `paper` is App. E: the objective as printed, l1 merit, Hessian
+/// of the objective only, static start, 1000 iterations, fixed final state, plain barrier. The
+/// weight of the barrier is one at which the SQP converges at all: for 78 % of the candidates of
+/// Gathering's goal states that survive pruning, in a median of 147 iterations (`action48/paper` of
+/// the benchmarks).
 inline ReverseConfig reverse_preset(ReversePreset preset) {
   ReverseConfig config;
   if (preset == ReversePreset::kDefault) return config;

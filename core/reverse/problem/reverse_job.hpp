@@ -10,7 +10,7 @@
 
 namespace rtg::reverse {
 
-/// Which state, pushed with `action`, ends in `end`?
+/// A request for the states from which the push `action` leads to `end`.
 struct ReverseJob {
   Poses end;
   int action = 0;
@@ -18,7 +18,8 @@ struct ReverseJob {
   bool operator==(const ReverseJob&) const = default;
 };
 
-/// A number that differs between pairs of a state and an action, but for one in 2⁶⁴.
+/// Returns a hash of a state and an action. The hashes of two different pairs are equal with
+/// probability 2⁻⁶⁴.
 inline std::uint64_t key_of(const Poses& state, int action) {
   std::uint64_t key = hashed(0, static_cast<std::uint64_t>(action));
   for (const Pose& p : state)
@@ -27,11 +28,12 @@ inline std::uint64_t key_of(const Poses& state, int action) {
 }
 inline std::uint64_t key_of(const ReverseJob& job) { return key_of(job.end, job.action); }
 
-/// Most predecessors in the answer to one job.
+/// Largest number of predecessors in the answer to one job.
 inline constexpr int kMaxStarts = 8;
 
-/// Answer to a ReverseJob. `starts`: predecessors, finite, the one of the whole push first; 1 to
-/// kMaxStarts if status is kConverged, else none.
+/// Answer to a ReverseJob. If `status` is kConverged, `starts` holds 1 to kMaxStarts predecessors,
+/// all finite; those of ReverseSimulator begin with the start of the whole push. Otherwise `starts`
+/// is empty.
 struct ReverseResult {
   SolveStatus status = SolveStatus::kNonFinite;
   int iterations = 0;

@@ -7,7 +7,7 @@
 namespace rtg::reverse {
 namespace {
 
-/// A candidate's evaluation by the kernels.
+/// Evaluates one iterate of a candidate with the kernels.
 struct Evaluation {
   ProblemLanes<double> problem;
   Evaluator<double> evaluator;

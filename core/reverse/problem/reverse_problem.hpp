@@ -14,22 +14,23 @@ namespace rtg::reverse {
 ///        + κ_θ Σ_k (θ₀ - θ̄₀)²_k + χ Σ_k Σ_{i>0} q³_{k,i} + K/2 |p_h - p̄|² [+ K/2 |p_{h-1} - p̄|²]
 ///   s.t. Φ_k = ∂Ψ/∂p₊(p_k, p_{k-1}, p_{k-2}, c_k) = 0,   λ_k g(p_k) = μ̃ w(g(p_k)),   g > 0.
 ///
-/// p̄ is the given final state, (t̄₀, θ̄₀)_k the straight path of the robot that ends in it, q half
-/// the squared speed of an object (SpeedPenalty). In dynamic mode the push begins at rest, p_{-1} =
-/// p_0, and the states s_h = (p_h, p_{h-1}) end there, after sub-steps in which the robot is held.
+/// p̄ is the given final state, (t̄₀, θ̄₀)_k is the straight path of the robot that ends in p̄, and
+/// q is half the squared speed of an object (SpeedPenalty). In dynamic mode, which has the term in
+/// brackets, the push begins at rest, p_{-1} = p_0, and ends at rest, in the state
+/// s_h = (p_h, p_{h-1}), after sub-steps in which the robot is held.
 ///
-/// Departs from the paper: action consistency κ makes the controls those of the discrete action; no
-/// object outruns the push by much (χ);
-/// the normal forces λ are unknowns (relaxed complementarity), bilinear instead of 1/g; a stiff
-/// spring K holds the final state, so that every forward simulation is feasible. With the preset
-/// `paper` κ = χ = 0, λ = μ̃ w/g throughout, w = 1 at any gap, and the final state is fixed.
+/// Departs from the paper: action consistency (κ) makes the controls those of the discrete action.
+/// The speed penalty (χ) keeps objects from outrunning the push by much. The normal forces λ are
+/// unknowns (relaxed complementarity), so the constraints are bilinear instead of containing 1/g. A
+/// stiff spring K holds the final state, so that every forward simulation is feasible. With the
+/// preset `paper`, κ = χ = 0, λ = μ̃ w/g throughout, w = 1 at any gap, and the final state is fixed.
 struct ReverseProblem {
   const energy::StepEnergy& energy;
   const ReverseConfig& config;
   VectorXd end;        // p̄ [3·bodies]
   Vector2d direction;  // d(a)
   int sub_steps = 1;   // h
-  int settling = 0;    // the last of them, in which the robot is held
+  int settling = 0;    // number of last sub-steps, in which the robot is held
 };
 
 /// A trajectory with its forces and multipliers; entry k belongs to the end of sub-step k, entry 0
@@ -41,12 +42,12 @@ struct Iterate {
   std::vector<VectorXd> multipliers;  // of Φ_k = 0 [dofs]; of jointed bodies J y, see Articulation
 };
 
-/// At rest in the final state: λ = λ(g), c = 0.
+/// Returns the iterate at rest in the final state: λ = λ(g), c = 0.
 Iterate static_iterate(const ReverseProblem& problem);
 
 double objective(const ReverseProblem& problem, const Iterate& x);
 
-/// How far the constraints are from holding.
+/// Residuals of the constraints.
 struct Violation {
   std::vector<VectorXd> residuals;        // Φ_k [dofs], entry 0 unused
   std::vector<VectorXd> complementarity;  // λ g - μ̃ w [contacts]
@@ -55,11 +56,11 @@ struct Violation {
 };
 Violation violation(const ReverseProblem& problem, const Iterate& x);
 
-/// The status of a converged iterate: kInfeasible if it misses the final state by more than the
-/// tolerance.
+/// Returns the status of a converged iterate: kInfeasible if it misses the final state by more than
+/// the tolerance, otherwise kConverged.
 SolveStatus judged(const ReverseProblem& problem, const Iterate& x);
 
-/// Largest distance of a movable body from where it should end [m].
+/// Returns the largest distance of a movable body from its position in the final state [m].
 double terminal_miss(const ReverseProblem& problem, const Iterate& x);
 
 }  // namespace rtg::reverse

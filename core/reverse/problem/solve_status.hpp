@@ -5,15 +5,15 @@
 
 namespace rtg::reverse {
 
-/// How a reverse solve ended.
+/// Outcome of a reverse solve.
 enum class SolveStatus : std::int8_t {
   kConverged,         // constraints and stationarity below their tolerances
   kPruned,            // the action cannot have been the last one; nothing was solved
   kInfeasible,        // the solution misses the final state, or bodies overlap in it
-  kIterationLimit,    // max_iterations
+  kIterationLimit,    // max_iterations reached
   kLineSearchFailed,  // no acceptable step, even with the largest regularisation
-  kSingular,          // no descent step: the KKT system could not be factorised
-  kNonFinite,         // NaN or infinity met
+  kSingular,          // no descent step, or a KKT system that could not be factorised
+  kNonFinite,         // NaN or infinity occurred
 };
 inline constexpr int kSolveStatusCount = 7;
 

@@ -5,14 +5,14 @@
 
 namespace rtg::reverse {
 
-/// The price that an object pays for the way that it makes in one sub-step, (Δt, Δθ), in units of
-/// the robot's own way s = stride/h:
+/// The penalty on the motion (Δt, Δθ) of an object in one sub-step, relative to the robot's own way
+/// s = stride/h:
 ///
 ///   χ q³,   q = (|Δt|² + (J/m) Δθ²) / (2 s²)
 ///
-/// convex, next to nothing up to the robot's speed (q = ½), a wall beyond twice that. Departs from
-/// the paper: contact is felt only at the ends of sub-steps, and without it the optimiser finds
-/// trajectories on which a thin body steps over the robot.
+/// The penalty is convex, negligible up to the robot's speed (q = ½), and steep beyond twice that
+/// speed. Departs from the paper: contact acts only at the ends of sub-steps, so without the
+/// penalty the optimiser finds trajectories on which a thin body jumps over the robot.
 template <class T>
 struct SpeedPenalty {
   T value;

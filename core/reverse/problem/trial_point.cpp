@@ -5,7 +5,7 @@ namespace {
 
 constexpr double kLongestMove = 1.0;  // [m]
 constexpr double kLargestTurn = 0.5;  // [rad]
-constexpr double kNoForce = 1e-14;    // [kg m], the rest of a contact that has opened
+constexpr double kNoForce = 1e-14;    // smaller forces become zero: the contact has opened [kg m]
 
 }  // namespace
 

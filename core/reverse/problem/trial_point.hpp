@@ -5,11 +5,11 @@
 
 namespace rtg::reverse {
 
-/// Where no pose moves by more than 1 m or 0.5 rad in α step.
+/// Returns the lanes in which α step moves no pose by more than 1 m or 0.5 rad.
 template <class T>
 Mask<T> bounded(const StageStep<T>& step, const T& alpha);
 
-/// A share of a Newton step.
+/// The fraction α of a Newton step, with the steps of the forces.
 template <class T>
 struct Move {
   const StageStep<T>& step;
@@ -17,8 +17,8 @@ struct Move {
   const T& alpha;
 };
 
-/// trial ← x + α step; jointed bodies and their multipliers follow. Poses of fixed bodies are left
-/// as they are in `trial`.
+/// Sets `trial` to x + α step. The poses and multipliers of jointed bodies follow from the
+/// coordinates. The poses of fixed bodies in `trial` stay as they are.
 template <class T>
 void make_trial(const energy::SceneModel<T>& scene, const Trajectory<T>& x, const Move<T>& move,
                 Trajectory<T>& trial);

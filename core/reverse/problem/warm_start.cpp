@@ -8,7 +8,7 @@
 namespace rtg::reverse {
 namespace {
 
-constexpr double kLeastShare = 0.05;  // of a mirrored step
+constexpr double kLeastShare = 0.05;  // smaller shares of a mirrored step are not tried
 constexpr double kTolerance = 1e-6;   // of a forward step [kg m]
 
 template <class T>
@@ -33,7 +33,8 @@ WarmStart<T>::WarmStart(const ProblemLanes<T>& problem)
       lag_(static_cast<std::size_t>(scene_.contacts()), T(0.0)),
       moved_(start_.p) {}
 
-/// The straight path's pose after sub-step k, led by what the servo lags behind in steady motion.
+/// Returns the servo's target in sub-step k: the pose of the straight path after sub-step k, moved
+/// ahead, while the robot moves, by the servo's lag in steady motion.
 template <class T>
 Vec3<T> WarmStart<T>::straight_target(int k) const {
   const T share = scene_.damping(0).mass * T(scene_.stride()) / scene_.control_bound()[0];
@@ -46,7 +47,8 @@ Vec3<T> WarmStart<T>::straight_target(int k) const {
   return pose;
 }
 
-/// F(from); notes how far it went.
+/// Computes the forward step `to` = F(from) and stores its displacement in moved_. Returns the
+/// lanes in which it succeeded.
 template <class T>
 Mask<T> WarmStart<T>::push(const energy::StepStart<T>& from, const Vec3<T>& target,
                            const Mask<T>& wanted, energy::Placement<T>& to) {
@@ -56,8 +58,9 @@ Mask<T> WarmStart<T>::push(const energy::StepStart<T>& from, const Vec3<T>& targ
   return found;
 }
 
-/// out ← `p` with its objects moved by -share·by_ for the largest share in 1, ½, ... that leaves
-/// the gaps open, where there is one. The robot's part of by_ is ignored.
+/// Sets `out` to `p` with the objects moved by -share·by_, for the largest share in 1, ½, ... that
+/// leaves the gaps open. Leaves `out` as it is where no share does. Ignores the robot's part of
+/// by_.
 template <class T>
 void WarmStart<T>::move_back(const energy::Placement<T>& p, const Mask<T>& wanted,
                              energy::Placement<T>& out) {
@@ -73,8 +76,8 @@ void WarmStart<T>::move_back(const energy::Placement<T>& p, const Mask<T>& wante
   }
 }
 
-/// start_ ← the state before by a mirrored forward step, the robot on its straight path, at
-/// mirrored_path(k - 1).
+/// Sets start_ to the state before sub-step k, with objects from a mirrored forward step and the
+/// robot at mirrored_path(k - 1). Returns the lanes in which the forward steps succeeded.
 template <class T>
 Mask<T> WarmStart<T>::mirror(int k, const Mask<T>& wanted) {
   const T stride(scene_.stride());
@@ -108,7 +111,8 @@ Mask<T> WarmStart<T>::roll_out(const Mask<T>& wanted, Trajectory<T>& x) {
   return going;
 }
 
-/// The robot's straight path, and on beyond its end as far as objects coast.
+/// Returns the robot's pose after sub-step k on the straight path, which here continues beyond its
+/// end as far as objects coast.
 template <class T>
 Vec3<T> WarmStart<T>::mirrored_path(int k) const {
   const int beyond = k - (problem_.sub_steps - problem_.settling);
@@ -119,8 +123,8 @@ Vec3<T> WarmStart<T>::mirrored_path(int k) const {
   return pose;
 }
 
-/// start_ ← start_ with the robot where mirrored_path(k) is, in those of the lanes where that is
-/// legal; returns them.
+/// Puts the robot of start_ at mirrored_path(k) in those of the lanes `wanted` in which that is
+/// legal. Returns these lanes.
 template <class T>
 Mask<T> WarmStart<T>::begin_at(int k, const Mask<T>& wanted) {
   robot_back_ = start_;
@@ -136,7 +140,8 @@ Mask<T> WarmStart<T>::find(const Mask<T>& wanted, Trajectory<T>& x) {
   std::ranges::fill(moved_, T(0.0));
   start_.p = problem_.end;
   start_.update();
-  // What has coasted was pushed by a robot that went on: mirroring begins there.
+  // Objects that have coasted move as if pushed by a robot that went on beyond the end of its path.
+  // Mirroring begins at the poses of such a robot.
   const int stop = problem_.sub_steps - problem_.settling;
   Mask<T> going = wanted, begun(false);
   for (int k = stop + static_cast<int>(std::ceil(scene_.coasting())); k > 0 && any(going); --k) {

@@ -7,16 +7,17 @@
 
 namespace rtg::reverse {
 
-/// Feasible starts of the SQP.
+/// Computes feasible starts of the SQP.
 template <class T>
 class WarmStart {
  public:
-  /// The problem must outlive it.
+  /// `problem` must outlive the WarmStart.
   explicit WarmStart(const ProblemLanes<T>& problem);
 
-  /// A forward simulation that ends near the final state, from mirrored forward steps: against a
-  /// push the contacts drag, p_{k-1} = p_k - (F(p_k) - p_k). Corrections towards F(p_{k-1}) = p_k
-  /// would end nearer, but in worse minima. Returns the lanes in which it succeeded.
+  /// Sets x to a forward simulation that ends near the final state. Its start results from mirrored
+  /// forward steps, p_{k-1} = p_k - (F(p_k) - p_k): against the push, contacts drag the objects.
+  /// Corrections towards F(p_{k-1}) = p_k would end nearer to the final state, but in worse minima.
+  /// Returns the lanes in which it succeeded.
   Mask<T> find(const Mask<T>& wanted, Trajectory<T>& x);
 
  private:
@@ -33,10 +34,10 @@ class WarmStart {
   const energy::SceneModel<T>& scene_;
   energy::ForwardStep<T> step_;
   energy::Placement<T> start_, pushed_, still_, robot_back_, trial_;
-  std::vector<T> by_, lag_, moved_;  // moved_: by the push last solved, a guess for the next
+  std::vector<T> by_, lag_, moved_;  // moved_: displacement of the last push, guess for the next
 };
 
-/// The start of one candidate. Nothing if a step fails.
+/// Returns the warm start of one candidate, or nothing if a forward step fails.
 std::optional<Iterate> warm_start(const ReverseProblem& problem);
 
 }  // namespace rtg::reverse

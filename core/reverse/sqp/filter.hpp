@@ -4,8 +4,8 @@
 
 namespace rtg::reverse {
 
-/// Filter of [Fletcher & Leyffer 2002]: remembers pairs (θ, J) of constraint violation and
-/// objective; a trial point must be better than each in one of the two.
+/// Filter of [Fletcher & Leyffer 2002]: a set of pairs (θ, J) of constraint violation and
+/// objective. A trial point must be better than every pair of the set in θ or in J.
 class Filter {
  public:
   struct Entry {
@@ -13,7 +13,7 @@ class Filter {
     double objective = 0.0;  // J
   };
 
-  /// Says whether no entry is as good as `trial` in both.
+  /// Returns whether `trial` is better than every entry in violation or objective, by the margin.
   bool accepts(const Entry& trial) const {
     for (const Entry& e : entries_)
       if (trial.violation >= (1.0 - kMargin) * e.violation &&
@@ -22,7 +22,7 @@ class Filter {
     return true;
   }
 
-  /// Says whether `trial` improves on `now` in one of the two by the margin.
+  /// Returns whether `trial` is better than `now` in violation or objective, by the margin.
   static bool improves(const Entry& trial, const Entry& now) {
     return trial.violation <= (1.0 - kMargin) * now.violation ||
            trial.objective <= now.objective - kMargin * now.violation;

@@ -43,7 +43,8 @@ std::vector<SqpResult> FilterSqp<T>::solve(std::span<const ReverseProblem* const
   return std::move(results_);
 }
 
-/// Gives lanes without a candidate the next one; false if none has one.
+/// Gives each lane without a candidate the next candidate of the queue. Returns whether any lane
+/// has a candidate then.
 template <class T>
 bool FilterSqp<T>::refill() {
   for (int l = 0; l < kWidth<T>; ++l) {
@@ -72,7 +73,7 @@ void FilterSqp<T>::begin_phase(int l) {
   set_lane(begun_, l, true);
 }
 
-/// Does as ordered. Returns whether the lane goes on with its iterate.
+/// Carries out `order`. Returns whether lane l continues with its iterate.
 template <class T>
 bool FilterSqp<T>::obey(int l, SqpStrategy::Order order) {
   if (order == SqpStrategy::Order::kBeginPhase) begin_phase(l);
@@ -98,7 +99,7 @@ void FilterSqp<T>::end_attempt(int l) {
     own.job = -1;
 }
 
-/// Measures and gaps of the trajectories that attempts and phases begin with.
+/// Evaluates the measures and gaps of x_ in the lanes that begin an attempt or a phase.
 template <class T>
 void FilterSqp<T>::evaluate_begun() {
   for (std::vector<T>& level : trial_gaps_) std::ranges::fill(level, T(0.0));
@@ -109,7 +110,7 @@ void FilterSqp<T>::evaluate_begun() {
   begun_ = Mask<T>(false);
 }
 
-/// The measures and trial_gaps_ are those of x from now on.
+/// Takes `found` and trial_gaps_ as the measures and gaps of x_ in the lanes `where`.
 template <class T>
 void FilterSqp<T>::adopt(const Mask<T>& where, const Measures<T>& found) {
   now_ = {select(where, found.objective, now_.objective),
@@ -159,7 +160,7 @@ void FilterSqp<T>::reject_ascent(const Mask<T>& descends) {
 template <class T>
 void FilterSqp<T>::line_search() {
   Mask<T> searching = stepping_;
-  for (std::size_t k = 0; k < x_.p.size(); ++k) trial_.p[k] = x_.p[k];  // bodies that do not move
+  for (std::size_t k = 0; k < x_.p.size(); ++k) trial_.p[k] = x_.p[k];  // for the fixed bodies
   for (double alpha = 1.0; alpha >= kLeastStep && any(searching); alpha *= 0.5) {
     const T length = select(searching, T(alpha), T(0.0));
     Mask<T> legal = searching && bounded(step_, length);
@@ -176,7 +177,7 @@ void FilterSqp<T>::line_search() {
     if (lane(searching, l)) obey(l, lane_[l].strategy.reject_line_search());
 }
 
-/// The lanes that take the trial point.
+/// Returns the lanes that accept the trial point.
 template <class T>
 Mask<T> FilterSqp<T>::accept(const Mask<T>& legal, const Measures<T>& then, double alpha) {
   Mask<T> accepted(false);

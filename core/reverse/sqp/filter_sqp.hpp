@@ -12,22 +12,23 @@
 
 namespace rtg::reverse {
 
-/// The SQP of the preset `default`: exact Hessian with the objective's in its place where the model
-/// is not convex along the step, proximal term δ, filter line search. Each lane of T works on a
-/// candidate and takes the next one when that has ended; SqpStrategy says how each goes on.
+/// The SQP of the preset `default`, with the Hessian of the Lagrangian, a proximal term δ and a
+/// filter line search. Where the model is not convex along the step, the Hessian of the objective
+/// replaces that of the Lagrangian. Each lane of T solves one candidate at a time and then takes
+/// the next one. An SqpStrategy per lane controls the iterations.
 template <class T>
 class FilterSqp {
  public:
-  /// For problems with the numbers of bodies, the joints and the configurations of `like`.
+  /// All problems must have the same numbers of bodies, joints and configuration as `like`.
   FilterSqp(const ReverseProblem& like, std::unique_ptr<StageSolver<T>> kkt);
 
-  /// From the given starts, one per problem (kNonFinite where one is not legal, its barrier being
-  /// infinite); from warm starts if there are none (kInfeasible where bodies overlap in the final
-  /// state).
+  /// Solves `problems` from the given starts, one per problem, or from warm starts if `starts` is
+  /// empty. The status is kNonFinite where a given start is not legal, as its barrier is infinite.
+  /// With warm starts the status is kInfeasible where bodies overlap in the final state.
   std::vector<SqpResult> solve(std::span<const ReverseProblem* const> problems,
                                std::span<const Iterate> starts = {});
 
-  /// Share of the lanes at work, over all iterations so far.
+  /// Returns the share of busy lanes over all iterations so far.
   double occupancy() const { return static_cast<double>(busy_) / static_cast<double>(lanes_); }
 
  private:
@@ -60,10 +61,10 @@ class FilterSqp {
   Trajectory<T> x_, trial_, start_;
   StageStep<T> step_;
   PerContact<T> force_step_, gaps_, trial_gaps_;
-  Measures<T> now_;  // of x
-  T stationarity_;   // ‖∇L‖∞ of x
+  Measures<T> now_;  // of x_
+  T stationarity_;   // ‖∇L‖∞ of x_
   std::vector<Lane> lane_;
-  Mask<T> begun_, stepping_;  // at the start of a phase; with a step to take
+  Mask<T> begun_, stepping_;  // lanes that begin a phase; lanes that take a step
   long busy_ = 0, lanes_ = 0;
 };
 

@@ -7,13 +7,13 @@ namespace rtg::reverse {
 /// l1 merit function M = J + ν ‖C‖₁, eq. (9), exact once ν exceeds every multiplier.
 class Merit {
  public:
-  /// Keeps ν above ‖y‖∞ with a margin.
+  /// Raises ν, if necessary, above the largest multiplier `multiplier` = ‖y‖∞, with a margin.
   void raise_weight_above(double multiplier) {
     weight_ = std::max(weight_, kMargin * multiplier + kLeast);
   }
   double weight() const { return weight_; }
   double value(double objective, double violation) const { return objective + weight_ * violation; }
-  /// Derivative along a Newton step, for which ‖C‖₁ falls at the rate of itself.
+  /// Returns the derivative of M along a Newton step. The derivative of ‖C‖₁ is -‖C‖₁ there.
   double slope(double objective_slope, double violation) const {
     return objective_slope - weight_ * violation;
   }

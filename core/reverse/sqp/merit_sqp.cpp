@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kArmijo = 1e-4;
 constexpr double kLeastStep = 1e-12;
-constexpr double kProximal = 1e-6;  // keeps the poses' Hessian from being singular
-constexpr double kSafeguard = 1.0;  // ε_c [kg m]; far less lets even free pushes creep
+constexpr double kProximal = 1e-6;  // keeps the Hessian over the poses regular
+constexpr double kSafeguard = 1.0;  // ε_c [kg m]; far below it even free pushes converge slowly
 
 class MeritSqp {
  public:
@@ -72,7 +72,8 @@ class MeritSqp {
     return top;
   }
 
-  /// Backtracking on the merit function, eq. (11), and the safeguard.
+  /// Backtracks on the merit function, eq. (11), subject to the safeguard. Returns whether a trial
+  /// point was accepted.
   bool line_search() {
     const double before = merit_.value(now_.objective, now_.violation);
     const double slope = merit_.slope(newton_.objective_slope(x_, step_), now_.violation);

@@ -4,9 +4,10 @@
 
 namespace rtg::reverse {
 
-/// The paper's SQP, A.2: steps of the quadratic model with the objective's Hessian, l1 merit with
-/// weight above the multipliers, Armijo line search, eq. (11), and the feasibility safeguard: a
-/// step must not leave ‖C‖₁ ≤ ε_c, once there. The baseline of every comparison.
+/// Solves `problem` with the paper's SQP, A.2: quadratic model with the Hessian of the objective,
+/// l1 merit function with a weight above the multipliers, Armijo line search, eq. (11), and the
+/// feasibility safeguard. The safeguard rejects a step that raises ‖C‖₁ to a value above ε_c. This
+/// SQP is the baseline of every comparison.
 SqpResult merit_sqp(const ReverseProblem& problem, const Iterate& start);
 
 }  // namespace rtg::reverse

@@ -5,12 +5,12 @@
 
 namespace rtg::reverse {
 
-/// How an SQP run ended. `x`: the last iterate of the attempt that counts; the static one if bodies
-/// overlap in the end.
+/// Result of an SQP run. `x` is the last iterate of the attempt that counts, or the static iterate
+/// if bodies overlap in the final state.
 struct SqpResult {
   SolveStatus status = SolveStatus::kNonFinite;
   Iterate x;
-  int iterations = 0;  // steps looked for, in all attempts
+  int iterations = 0;  // over all attempts, those without an accepted step included
   int attempts = 1;
   double infeasibility = 0.0;  // ‖C‖∞
   double stationarity = 0.0;   // ‖∇L‖∞

@@ -7,13 +7,15 @@ namespace rtg::reverse {
 namespace {
 
 constexpr double kLeastProximal = 1e-8, kMostProximal = 1e6;
-constexpr double kMostViolation = 0.3;             // θ may not grow beyond it
-constexpr double kShortStep = 0.2;                 // a step of at most this makes δ grow
-constexpr double kGrowth = 4.0, kShrinkage = 0.1;  // of δ
+constexpr double kMostViolation = 0.3;             // a step must not raise θ above this
+constexpr double kShortStep = 0.2;                 // step length up to which δ grows
+constexpr double kGrowth = 4.0, kShrinkage = 0.1;  // factors of δ
 constexpr int kAttempts = 3;
-constexpr double kProximalGrowth = 4.0;  // per attempt
-// Softening: iterations before it (an iterate that has not come near a solution by then goes on
-// without), with a soft spring, and between; what is soft, in parts of K; what is near.
+constexpr double kProximalGrowth = 4.0;  // factor of the first δ, per attempt
+// Softening. kBefore: most iterations before the first softening; an attempt whose iterate is not
+// near a solution by then continues without softening. kSoft, kBetween: most iterations with the
+// soft spring, and between two softenings. kSoftness: weight of the soft spring, as a share of K.
+// kNearFeasible, kNearStationary: ‖C‖∞ and ‖∇L‖∞ below which an iterate is near a solution.
 constexpr int kBefore = 12, kSoft = 6, kBetween = 4;
 constexpr double kSoftness = 0.2;
 constexpr double kNearFeasible = 1e-2, kNearStationary = 1e-1;
@@ -42,7 +44,7 @@ SqpStrategy::Order SqpStrategy::judge(const Figures& at) {
   }
   if (at.infeasibility < config_->feasibility_tol && at.stationarity < config_->stationarity_tol)
     return end_attempt(SolveStatus::kConverged);
-  if (!exact_) return Order::kGoOn;  // the same iteration once more
+  if (!exact_) return Order::kGoOn;  // repeats the same iteration
   if (iterations_ == config_->max_iterations) return end_attempt(SolveStatus::kIterationLimit);
   ++iterations_;
   if (phases_left_ > 0) --iterations_left_;
@@ -80,7 +82,7 @@ bool SqpStrategy::try_again(SolveStatus ended) {
   if (ended == SolveStatus::kConverged || (missed && missed_) || attempts() == kAttempts ||
       iterations_ == config_->max_iterations)
     return false;
-  // Where softening led to a failure, a small δ may still do.
+  // If the first attempt failed after softening, the same small δ may still suffice without it.
   if (missed || attempt_ > 0 || !softened_) first_proximal_ *= kProximalGrowth;
   missed_ = missed_ || missed;
   ++attempt_;

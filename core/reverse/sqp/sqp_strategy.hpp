@@ -6,25 +6,29 @@
 
 namespace rtg::reverse {
 
-/// The control flow of one candidate's SQP: decides from the figures of its iterates alone with
-/// which Hessian and which δ the next step is made, whether a trial point is taken, and how phases
-/// and attempts follow each other. It knows neither lanes nor trajectories.
+/// The control flow of one candidate's SQP. From the figures of the iterates alone it decides which
+/// Hessian and which δ the next step uses, whether a trial point is accepted, and how phases and
+/// attempts follow each other. It depends neither on lanes nor on trajectories.
 ///
-/// The first attempt softens the spring K to the final state ReverseConfig::softenings times for a
-/// few iterations, once its iterate has come near a solution or after a few iterations in any case.
-/// That mostly leads out of poor minima, in which an object is let go of that could be dragged
-/// along, now and then into one. An attempt that fails, or misses the final state, is followed by
-/// others, up to three in all, without softening and mostly with a larger first δ. Of two solutions
-/// that miss the final state the first is kept, and that is the end.
+/// The first attempt softens the spring K to the final state ReverseConfig::softenings times, for a
+/// few iterations each. The first softening begins when the iterate is near a solution; if it is
+/// not after a few iterations, the attempt continues without softening. Each later softening begins
+/// when the iterate is near a solution again, or after a few iterations in any case. Softening
+/// mostly leads out of poor minima, in which the push loses an object that it could drag along; now
+/// and then it leads into one.
+///
+/// An attempt that fails or misses the final state is followed by another, up to three in all,
+/// without softening and mostly with a larger first δ. A solution that misses the final state is
+/// replaced only by a converged one. After a second solution that misses it, no attempt follows.
 class SqpStrategy {
  public:
   enum class Order {
-    kGoOn,        // to the next step
+    kGoOn,        // compute the next step
     kBeginPhase,  // at the same iterate, with another terminal_weight()
     kEndAttempt,  // with status()
   };
 
-  /// What is known of an iterate.
+  /// Figures of an iterate on which the decisions depend.
   struct Figures {
     double objective = 0.0;
     double infeasibility = 0.0;  // ‖C‖∞
@@ -34,27 +38,32 @@ class SqpStrategy {
   explicit SqpStrategy(const ReverseConfig& config);
 
   double proximal() const { return proximal_; }  // δ
-  /// Says whether the next step is made with the Lagrangian's Hessian, or else the objective's.
+  /// Returns whether the next step uses the Hessian of the Lagrangian; otherwise it uses that of
+  /// the objective.
   bool exact() const { return exact_; }
-  /// The weight K of the spring to the final state, softened or not.
+  /// Returns the present weight of the spring to the final state: K, or less in a soft phase.
   double terminal_weight() const;
-  int iterations() const { return iterations_; }  // in all attempts
+  int iterations() const { return iterations_; }  // over all attempts
   int attempts() const { return attempt_ + 1; }
   SolveStatus status() const { return status_; }
 
-  /// To be asked at each linearised iterate. Counts an iteration if it orders a step.
+  /// Decides how to continue at a linearised iterate; to be called at each of them. Counts an
+  /// iteration if it orders a step, unless that step repeats an iteration (reject_ascent()).
   Order judge(const Figures& at);
-  /// Where the model is not convex along the step, the same iteration is done with the objective's
-  /// Hessian, and with a larger δ where that was it.
+  /// To be called if the system is singular or the model is not convex along the step. The
+  /// iteration is repeated with the Hessian of the objective; if it used that one, δ grows.
   Order reject_ascent();
-  /// No trial point was taken: δ grows.
+  /// To be called if no trial point was accepted: δ grows.
   Order reject_line_search();
-  /// Decides on the trial point `next` that lies `alpha` of a step from `now`.
+  /// Decides whether to accept the trial point `next`, reached from `now` with step length `alpha`.
+  /// If so, updates the filter and δ.
   bool accept(const Filter::Entry& now, const Filter::Entry& next, double alpha);
 
-  /// Says whether the attempt that ended so is the one whose solution counts.
+  /// Returns whether the solution of the attempt that ended with status `ended` replaces those of
+  /// earlier attempts.
   bool counts(SolveStatus ended) const;
-  /// Begins another attempt after one that ended so; false if there is none.
+  /// Begins another attempt after one that ended with status `ended`. Returns false if no further
+  /// attempt follows.
   bool try_again(SolveStatus ended);
 
  private:
@@ -66,12 +75,12 @@ class SqpStrategy {
 
   const ReverseConfig* config_;
   int attempt_ = 0, iterations_ = 0;
-  double proximal_ = 1.0, first_proximal_;  // of a phase's first iteration
+  double proximal_ = 1.0, first_proximal_;  // δ; δ of a phase's first iteration
   bool exact_ = true;
   int phases_left_ = 0;      // of this attempt; odd: the spring is soft
-  int iterations_left_ = 0;  // of this phase, where others are to follow
-  bool softened_ = false;    // in any attempt
-  bool missed_ = false;      // the final state, in an attempt before
+  int iterations_left_ = 0;  // of this phase, if others follow
+  bool softened_ = false;    // whether any attempt has had a soft phase
+  bool missed_ = false;      // whether an earlier attempt missed the final state
   SolveStatus status_ = SolveStatus::kNonFinite;
   Filter filter_;
 };

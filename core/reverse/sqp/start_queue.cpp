@@ -49,7 +49,7 @@ void StartQueue<T>::prepare() {
 template <class T>
 void StartQueue<T>::find_starts(const Mask<T>& wanted) {
   const energy::SceneModel<T>& energy = problem_.energy;
-  // At rest in the final state: λ = λ(g), c = 0.
+  // The static iterate: at rest in the final state, λ = λ(g), c = 0.
   for (energy::Placement<T>& level : x_.p) {
     level.p = problem_.end;
     level.update();
@@ -60,7 +60,7 @@ void StartQueue<T>::find_starts(const Mask<T>& wanted) {
   const Mask<T> open = energy.least_gap(x_.p[0]) > T(0.0) && energy.separated(x_.p[0]);
   warm_x_ = x_;
   const Mask<T> found = warm_.find(wanted, warm_x_);
-  if (problem_.fixed_end()) {  // a forward simulation ends near it
+  if (problem_.fixed_end()) {  // a forward simulation only ends near the final state
     warm_x_.p.back() = x_.p.back();
     warm_x_.forces.back() = x_.forces.back();
   }

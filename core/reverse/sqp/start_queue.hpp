@@ -7,21 +7,22 @@
 
 namespace rtg::reverse {
 
-/// The candidates of a batch with the trajectories that their SQP begins with, found for as many at
-/// a time as T has lanes.
+/// Queue of the candidates of a batch, with the trajectories at which their SQP begins. The
+/// trajectories of as many candidates as T has lanes are computed together.
 template <class T>
 class StartQueue {
  public:
   explicit StartQueue(const ReverseProblem& like);
-  StartQueue(const StartQueue&) = delete;  // parts of it refer to others
+  StartQueue(const StartQueue&) = delete;  // members refer to each other
   StartQueue& operator=(const StartQueue&) = delete;
 
-  /// `starts`: one per problem, or none at all: then warm starts, and the static iterate where
-  /// there is none.
+  /// Begins a batch. `starts` has one entry per problem or is empty. If it is empty, the queue
+  /// computes warm starts and, where that fails, uses the static iterate.
   void begin(std::span<const ReverseProblem* const> problems, std::span<const Iterate> starts);
 
-  /// Index of the next candidate, whose trajectory it puts into lane l of x; -1 if that was all.
-  /// Candidates in whose final state bodies overlap have no warm start and are skipped.
+  /// Copies the trajectory of the next candidate to lane l of `x`. Returns the candidate's index,
+  /// or -1 if no candidate is left. Without given starts, skips candidates in whose final state
+  /// bodies overlap, as they have no warm start.
   int take(int l, Trajectory<T>& x);
 
  private:
@@ -30,8 +31,8 @@ class StartQueue {
 
   std::span<const ReverseProblem* const> problems_;
   std::span<const Iterate> starts_;
-  std::size_t next_ = 0;    // not yet prepared
-  std::vector<int> ready_;  // by lane; -1: to be skipped
+  std::size_t next_ = 0;    // first candidate not yet prepared
+  std::vector<int> ready_;  // candidates by lane; -1: to be skipped
   std::size_t handed_out_ = 0;
   ProblemLanes<T> problem_;
   WarmStart<T> warm_;

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <rtg_msgs/wire_fields.hpp>
 #include <string>
 #include <vector>
-
-#include "nodes/bus/wire_fields.hpp"
 
 namespace rtg::testing {
 
@@ -34,7 +33,7 @@ template <class Msg>
 Msg filled(std::int32_t n = 3) {
   Msg msg{};
   Fill fill{n};
-  bus::fields(fill, msg);
+  fields(fill, msg);
   return msg;
 }
 

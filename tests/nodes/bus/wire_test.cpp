@@ -17,12 +17,7 @@ using rtg_msgs::worker_beat_t;
 template <class Msg>
 class EveryMessage : public ::testing::Test {};
 
-using AllMessages =
-    ::testing::Types<rtg_msgs::node_status_t, rtg_msgs::replay_job_t, rtg_msgs::replay_result_t,
-                     rtg_msgs::reverse_job_t, rtg_msgs::reverse_result_t,
-                     rtg_msgs::search_progress_t, rtg_msgs::stream_ack_t, rtg_msgs::stream_tail_t,
-                     rtg_msgs::transition_batch_t, rtg_msgs::worker_beat_t>;
-TYPED_TEST_SUITE(EveryMessage, AllMessages);
+TYPED_TEST_SUITE(EveryMessage, rtg_msgs::EveryMessage<::testing::Types>);
 
 TYPED_TEST(EveryMessage, SurvivesTheRoundTrip) {
   for (const int n : {0, 1, 3, 50}) {

@@ -1,1 +1,1 @@
-"""LCM in Python: messages, the stream of transitions, and programs that watch the channels."""
+"""LCM in Python: messages, the transition stream, and programs that monitor the channels."""

@@ -1,7 +1,8 @@
-"""The only Python module that touches LCM.
+"""The only Python module that uses the LCM library.
 
-LCM loses, doubles and reorders messages, and anyone may send: what arrives is checked against its
-type, the run and finite numbers before a handler sees it; what is dropped is counted.
+LCM may lose, duplicate and reorder messages, and any program may send. So a message reaches a
+handler only if it has the right type and run and finite numbers. Other messages are dropped and
+counted.
 """
 
 from __future__ import annotations
@@ -22,14 +23,14 @@ from rtg.errors import RunError
 
 PROTOCOL = 1  # version of the rules in msgs/CHANNELS.md
 MAX_MESSAGE_BYTES = 60_000
-RECEIVE_BUFFER = 4 << 20  # [bytes]; the kernel's default of 208 kB loses every burst
-QUEUE_CAPACITY = 1000  # messages; LCM's default of 30 drops new ones silently
+RECEIVE_BUFFER = 4 << 20  # [bytes]; the kernel's default of 208 kB loses messages in every burst
+QUEUE_CAPACITY = 1000  # messages; LCM's default of 30 silently drops new messages
 
 Message = TypeVar("Message")
 
 
 def run_key(run: str) -> int:
-    """`header.run` of the run of this name: FNV-1a, 64 bit, as a signed number."""
+    """Returns `header.run` for a run name: its 64-bit FNV-1a hash as a signed number."""
     key = 0xCBF29CE484222325
     for byte in run.encode():
         key = (key ^ byte) * 0x100000001B3 % 2**64
@@ -37,7 +38,7 @@ def run_key(run: str) -> int:
 
 
 def _is_finite(message: Any) -> bool:
-    """Says whether every float of a decoded message is a number."""
+    """Returns whether all floats of a decoded message are finite."""
     for name, kind in zip(message.__slots__, message.__typenames__, strict=True):
         if kind in ("double", "float"):
             value = getattr(message, name)
@@ -48,7 +49,7 @@ def _is_finite(message: Any) -> bool:
 
 
 def decoded(message_type: Any, data: bytes) -> Any:
-    """The message of whatever run, or the name of the counter of its defect."""
+    """Decodes a message of any run; returns the name of the error counter if it is invalid."""
     if len(data) > MAX_MESSAGE_BYTES:
         return "bus.too_long"
     try:
@@ -62,8 +63,10 @@ def decoded(message_type: Any, data: bytes) -> Any:
 
 
 def _receive_buffer(port: int) -> int:
-    """The size of the buffer of the UDP socket bound to `port` [bytes]; LCM does not tell its
-    descriptor. 0 if none is."""
+    """Returns the receive buffer size [bytes] of this process's UDP socket on `port`, 0 if none.
+
+    Searches all open descriptors, because LCM does not expose that of its socket.
+    """
     for number in map(int, os.listdir("/proc/self/fd")):
         try:
             if not stat.S_ISSOCK(os.fstat(number).st_mode):
@@ -71,14 +74,14 @@ def _receive_buffer(port: int) -> int:
             with socket.socket(fileno=os.dup(number)) as found:
                 if found.family == socket.AF_INET and found.getsockname()[1] == port:
                     size = found.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
-                    return size // 2  # Linux reports twice what it was asked for
-        except OSError:  # closed meanwhile: LCM's thread runs
+                    return size // 2  # Linux reports twice the requested size
+        except OSError:  # closed meanwhile, as LCM's thread runs concurrently
             continue
     return 0
 
 
 def _small_buffer(url: str) -> str | None:
-    """The words to say if the kernel gave LCM's socket less than it was asked for; else None."""
+    """Returns a warning if the receive buffer of LCM's socket is too small, else None."""
     match = re.match(r"udpm://[\d.]+:(\d+)", url)
     size = RECEIVE_BUFFER if match is None else _receive_buffer(int(match.group(1)))
     if size >= RECEIVE_BUFFER:
@@ -93,9 +96,10 @@ class Bus:
     """Publishes and receives the messages of one run.
 
     `url`: "udpm://GROUP:PORT[?ttl=N]" or "memq://" (one process, for tests); the C++ configuration
-    loader checks it. ttl is 0, this machine only, unless named. Raises RunError if the network
-    cannot be opened or swallows what is sent. `warning`, known from the first subscription on: what
-    whoever opened the bus should say where people read it.
+    loader checks it. ttl defaults to 0, which restricts messages to this machine. The constructor
+    raises RunError if the network cannot be opened; subscribe() and watch() raise it if sent
+    messages do not come back. `warning` is set by the first subscription: a text that the owner of
+    the bus should show to the user, or None.
     """
 
     def __init__(self, url: str, run: str) -> None:
@@ -113,7 +117,10 @@ class Bus:
         self._failure: BaseException | None = None
 
     def publish(self, channel: str, message: Any) -> None:
-        """Fills the header and sends. A datagram the kernel refuses is as lost as any other."""
+        """Fills in the header and sends. A datagram that the kernel refuses is lost.
+
+        Raises ValueError if the message is longer than MAX_MESSAGE_BYTES.
+        """
         message.header.protocol = PROTOCOL
         message.header.run = self._run
         message.header.sender = os.getpid()
@@ -123,7 +130,7 @@ class Bus:
         self.send(channel, data)
 
     def send(self, channel: str, data: bytes) -> None:
-        """Sends bytes as they are; for tests of what a stranger may send."""
+        """Sends `data` unchanged; tests use it for messages of unknown senders."""
         try:
             self._lcm.publish(channel, data)
         except OSError:
@@ -140,12 +147,15 @@ class Bus:
         self.watch(channel, receive)
 
     def watch(self, pattern: str, handler: Callable[[str, bytes], None]) -> None:
-        """Undecoded messages of all channels that match the regular expression, for monitors."""
+        """Passes the undecoded messages of all channels that match `pattern` to `handler`.
+
+        `pattern` is a regular expression. Raises RunError if sent messages do not come back.
+        """
 
         def receive(channel: str, data: bytes) -> None:
             try:
                 handler(channel, data)
-            except BaseException as error:  # carried past LCM's C frames, raised by spin()
+            except BaseException as error:  # cannot pass LCM's C frames; spin() raises it
                 self._failure = self._failure or error
 
         subscription = self._lcm.subscribe(pattern, receive)
@@ -157,13 +167,13 @@ class Bus:
         self._subscriptions.append(subscription)
 
     def close(self) -> None:
-        """Hears nothing more. The handlers are let go; LCM's would be kept until the very end."""
+        """Ends all subscriptions and releases the handlers, which LCM would keep until exit."""
         for subscription in self._subscriptions:
             self._lcm.unsubscribe(subscription)
         self._subscriptions.clear()
 
     def decode(self, message_type: type[Message], data: bytes) -> Message | None:
-        """The message, or None and a count of why not."""
+        """Decodes a message of this run. Returns None for any other and counts the reason."""
         message = decoded(message_type, data)
         if isinstance(message, str):
             self.counters[message] += 1
@@ -177,7 +187,7 @@ class Bus:
         return None
 
     def spin(self, timeout: float) -> int:
-        """Waits `timeout` s at most for a message, then handles all that came; returns how many.
+        """Waits at most `timeout` s for a message, handles all that arrived, returns their number.
 
         Raises the first exception of a handler. A signal ends the wait early.
         """
@@ -186,7 +196,7 @@ class Bus:
             try:
                 if self._lcm.handle_timeout(wait_ms) <= 0:
                     break
-            except OSError:  # how LCM reports an interrupting signal, and all else that goes wrong
+            except OSError:  # LCM reports an interrupting signal, and any other error, so
                 self.counters["bus.interrupted"] += 1
                 break
             handled, wait_ms = handled + 1, 0

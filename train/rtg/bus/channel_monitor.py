@@ -1,4 +1,4 @@
-"""The traffic on the channels: counts, rates, node states. Free of I/O, the clock passed in."""
+"""The traffic on the channels: counts, rates, node states. Does no I/O; the caller passes times."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from rtg.bus.bus import decoded
 from rtg.bus.messages import type_of
 from rtg.bus.node_status import ENDED
 
-STRETCH = 4.0  # [s], over which rates are taken
-SILENT = 3.0  # [s] without a status: the node counts as silent
-_OF_LCM = "LCM_SELF_TEST"  # channel on which every process tries whether it hears itself
+STRETCH = 4.0  # [s], period of time that rates cover
+SILENT = 3.0  # [s] without a status after which a node counts as silent
+_OF_LCM = "LCM_SELF_TEST"  # channel on which LCM tests whether a process receives its own messages
 
 
 class Rates:
-    """Growth per second of a few counts over the last stretch of time."""
+    """The rates of several counts [1/s] over the last STRETCH seconds."""
 
     def __init__(self, size: int) -> None:
         self._samples: deque[tuple[float, tuple[float, ...]]] = deque()
         self.per_second = (0.0,) * size
 
     def sample(self, now: float, *counts: float) -> None:
-        """Takes the counts at time `now` [s] in."""
+        """Adds the counts at time `now` [s]; ignores a time that is not later than the last."""
         if self._samples and now <= self._samples[-1][0]:
             return
         self._samples.append((now, counts))
@@ -41,7 +41,7 @@ class Rates:
 class _Channel:
     type_name: str = ""
     messages: int = 0
-    size: int = 0  # [bytes] in all
+    size: int = 0  # [bytes], sum over all messages
     undecodable: int = 0
     rates: Rates = field(default_factory=lambda: Rates(2))
 
@@ -49,12 +49,12 @@ class _Channel:
 @dataclass
 class _Node:
     status: Any  # the last node_status_t
-    heard: float
+    heard: float  # [s], when `status` arrived
     rates: Rates = field(default_factory=lambda: Rates(2))
 
 
 class ChannelRow(NamedTuple):
-    """A channel, for people."""
+    """The display values of a channel."""
 
     channel: str
     type_name: str
@@ -65,19 +65,19 @@ class ChannelRow(NamedTuple):
 
 
 class NodeRow(NamedTuple):
-    """A process, for people."""
+    """The display values of a process."""
 
     name: str
     pid: int
     state: str
     done: int
-    rate: float  # of `done` [1/s]
+    rate: float  # [1/s], increase of `done`
     cpu: float  # share of one core
-    counters: str  # those that are not 0
+    counters: str  # names and values of the counters that are not 0
 
 
 class ChannelMonitor:
-    """Counts every message by channel and keeps the last status of every node, of whatever run."""
+    """Counts the messages per channel and keeps the last status of every node, for all runs."""
 
     def __init__(self) -> None:
         self._channels: dict[str, _Channel] = {}
@@ -90,7 +90,7 @@ class ChannelMonitor:
         }
 
     def on_message(self, channel: str, data: bytes, now: float) -> None:
-        """Takes one message in. now [s]."""
+        """Counts a message that arrived at time `now` [s]."""
         if channel == _OF_LCM:
             return
         stats = self._channels.setdefault(channel, _Channel())
@@ -106,25 +106,25 @@ class ChannelMonitor:
             self._handlers[kind.__name__](message, now)
 
     def sample(self, now: float) -> None:
-        """Takes the rates up to `now` [s]; to be called about twice a second."""
+        """Updates the rates at time `now` [s]; to be called about twice a second."""
         for stats in self._channels.values():
             stats.rates.sample(now, stats.messages, stats.size)
         for node in self._nodes.values():
             node.rates.sample(node.heard, node.status.done, node.status.cpu_s)
 
     def channels(self) -> list[ChannelRow]:
-        """All channels by name."""
+        """Returns all channels, sorted by name."""
         return [_channel_row(name, stats) for name, stats in sorted(self._channels.items())]
 
     def nodes(self, now: float) -> list[NodeRow]:
-        """All nodes heard so far, by name."""
+        """Returns all nodes that have sent a status, sorted by run and name. now [s]"""
         return [
             _node_row(node, now - node.heard, run in self._over and name != "trainer")
             for (run, name, _), node in sorted(self._nodes.items())
         ]
 
     def progress(self) -> str:
-        """Where the generation stands, in one line; empty if nothing was heard of it."""
+        """Describes the progress of the generation in one line; empty before a progress message."""
         p = self._progress
         if p is None:
             return ""
@@ -141,14 +141,14 @@ class ChannelMonitor:
         key = (message.header.run, message.node, message.number)
         node = self._nodes.get(key)
         if node is None or node.status.header.sender != message.header.sender:
-            node = self._nodes[key] = _Node(message, now)  # a restarted one counts from 0
+            node = self._nodes[key] = _Node(message, now)  # a restarted node counts from 0
         node.status, node.heard = message, now
 
     def _on_progress(self, message: Any, _: float) -> None:
         self._progress = message
         if message.leaving:
             self._over.add(message.header.run)
-        else:  # a run resumed
+        else:  # a resumed run
             self._over.discard(message.header.run)
 
 

@@ -1,4 +1,4 @@
-"""LCM's own programs: lcm-spy with our types, lcm-logger."""
+"""LCM's own programs: lcm-spy with the message types of RTG, and lcm-logger."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ _TYPES_JAR = paths.BUILD / "msgs" / "rtg_msgs.jar"
 
 
 def lcm_program(name: str) -> Path:
-    """The program itself. The scripts of that name in .venv/bin only start it as a child."""
+    """Returns the path of the binary `name`. Raises RunError if the package lcm is missing.
+
+    The script of the same name in .venv/bin would only start the binary as a child process.
+    """
     spec = importlib.util.find_spec("lcm")
     if spec is None or spec.origin is None:
         raise RunError("the Python package lcm is missing: start through ./run.sh")
@@ -24,12 +27,12 @@ def lcm_program(name: str) -> Path:
 
 
 def logger_command(url: str, log: Path) -> list[str | Path]:
-    """lcm-logger, which adds everything on the bus at `url` to `log`."""
+    """Returns the command of lcm-logger that appends all messages on the bus at `url` to `log`."""
     return [lcm_program("lcm-logger"), "--quiet", "--append", f"--lcm-url={url}", log]
 
 
 def _build_types_jar() -> None:
-    """The build made none if there was no JDK then; there may be one now."""
+    """Builds the jar, which the main build leaves out if it finds no JDK. Raises RunError."""
     for command in (
         ["cmake", "--preset", "release"],
         ["cmake", "--build", "--preset", "release", "--target", "rtg_msgs_jar"],
@@ -46,7 +49,7 @@ def _types_jar() -> Path | None:
 
 
 def lcm_spy(url: str) -> None:
-    """Becomes lcm-spy. Raises RunError with the remedy if this machine cannot show it."""
+    """Replaces this process by lcm-spy. Raises RunError with a remedy if it cannot run here."""
     if shutil.which("java") is None:
         raise RunError("lcm-spy needs Java: apt-get install default-jdk. Without: ./run.sh spy")
     if not os.environ.get("DISPLAY"):

@@ -1,4 +1,4 @@
-"""The message types that lcm-gen makes of msgs/*.lcm, imported from the build folder."""
+"""The message types that lcm-gen generates from msgs/*.lcm, imported from the build folder."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ NAMES: list[str] = sorted(name for name in dir(_MODULE) if name.endswith("_t"))
 
 
 def message_type(name: str) -> Any:
-    """The class of that name. Raises AttributeError."""
+    """Returns the message class `name`. Raises AttributeError if there is none."""
     return getattr(_MODULE, name)
 
 
 def type_of(data: bytes) -> Any | None:
-    """The class that the first 8 bytes, LCM's fingerprint, stand for; None if it is not ours."""
+    """Returns the class of an encoded message, by LCM's fingerprint; None if it is not of RTG."""
     return _BY_FINGERPRINT.get(data[:8])
 
 

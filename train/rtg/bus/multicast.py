@@ -1,4 +1,4 @@
-"""Says whether multicast, which LCM needs, works on this machine."""
+"""Checks whether multicast, which LCM needs, works on this machine."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def _echo(group: str, wait: float) -> str | None:
 
 
 def defect(url: str, wait: float = 1.0) -> str | None:
-    """Why messages on the bus at `url` would not arrive, and what helps; None if they do.
+    """Returns why messages on the bus at `url` do not arrive, with a remedy; None if they arrive.
 
-    Sends one datagram to the group of the URL, at a free port, as LCM would: ttl 0, on the
-    interface that the routes name.
+    Sends one datagram to the multicast group of `url`, at a free port. It uses ttl 0 and the
+    interface that the routing table selects, as LCM does. `wait`: time limit [s].
     """
     match = re.match(r"udpm://([\d.]+):\d+", url)
     if match is None:

@@ -1,4 +1,4 @@
-"""Tells people what a process does and what it has counted: RTG_STATUS."""
+"""Publishes the state and the counters of a process, for displays, on RTG_STATUS."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ import time
 from rtg.bus.bus import Bus
 from rtg.bus.messages import message_type
 
-INTERVAL = 0.5  # [s]
-ENDED = "ended"  # the last state of a process that says good-bye
+INTERVAL = 0.5  # [s], between two messages with the same state
+ENDED = "ended"  # the last state that a process publishes before it exits
 
 
 class NodeStatus:
-    """The voice of one process of the graph."""
+    """Publishes the status of one process of the graph."""
 
     def __init__(self, bus: Bus, node: str, number: int = 0) -> None:
         self._bus, self._node, self._number = bus, node, number
         self._said, self._said_at = "", -1e9
 
     def tick(self, state: str, done: int) -> None:
-        """Sends a new state at once, the same one twice a second; call it as often as you like."""
+        """Publishes a new state at once, else every INTERVAL; may be called at any rate."""
         now = time.monotonic()
         if state == self._said and now - self._said_at < INTERVAL:
             return

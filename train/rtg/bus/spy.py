@@ -1,4 +1,4 @@
-"""`rtg spy`: watches the channels of all runs of this machine, in the manner of lcm-spy."""
+"""`rtg spy`: monitors the channels of all runs on this machine, similar to lcm-spy."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rtg.errors import RunError
 _REFRESH = 0.5  # [s]
 _POLL = 0.05  # [s]
 _PRINT = 2.0  # [s] between two plain tables
-_WIDTH = 200  # columns of plain tables at most
+_WIDTH = 200  # maximum width of plain tables in characters
 _STATE_STYLES = {"busy": "green", "idle": "dim", ENDED: "dim"}
 _NOTHING = (
     "no message heard: no run is on this bus, or it sends nothing (with --in-process, or where "
@@ -32,7 +32,7 @@ _NOTHING = (
 
 
 def bandwidth(bytes_per_second: float) -> str:
-    """For people: "12.3 kB/s"."""
+    """Formats a bandwidth, such as "12.3 kB/s"."""
     for unit in ("B/s", "kB/s", "MB/s"):
         if bytes_per_second < 999.95:
             return f"{bytes_per_second:.1f} {unit}"
@@ -41,7 +41,7 @@ def bandwidth(bytes_per_second: float) -> str:
 
 
 def _table(*columns: str) -> Table:
-    """Columns named with a leading ">" hold numbers, aligned to the right."""
+    """Returns an empty table. A leading ">" in a column name means: align to the right."""
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
     for column in columns:
         right = column.startswith(">")
@@ -50,7 +50,7 @@ def _table(*columns: str) -> Table:
 
 
 def channel_table(rows: list[ChannelRow]) -> Table:
-    """A line per channel."""
+    """Returns a table with a line per channel."""
     table = _table("channel", "type", ">messages", ">rate", ">bandwidth", ">undecodable")
     for row in rows:
         table.add_row(
@@ -66,7 +66,7 @@ def channel_table(rows: list[ChannelRow]) -> Table:
 
 
 def node_table(rows: list[NodeRow]) -> Table:
-    """A line per process."""
+    """Returns a table with a line per process."""
     table = _table("node", ">pid", "state", ">done", ">rate", ">CPU", "counters")
     for row in rows:
         silent = row.state.startswith("silent")
@@ -83,7 +83,7 @@ def node_table(rows: list[NodeRow]) -> Table:
 
 
 def picture(monitor: ChannelMonitor, now: float) -> RenderableType:
-    """Everything the monitor knows at time `now` [s]."""
+    """Returns a view of all data of the monitor at time `now` [s]."""
     channels, nodes = monitor.channels(), monitor.nodes(now)
     if not channels:
         return Text(_NOTHING)
@@ -96,7 +96,7 @@ def picture(monitor: ChannelMonitor, now: float) -> RenderableType:
 
 
 class SpyApp(App[None]):
-    """The picture, twice a second."""
+    """A terminal application that shows picture() twice a second."""
 
     TITLE = "rtg spy"
     ENABLE_COMMAND_PALETTE = False
@@ -120,12 +120,12 @@ class SpyApp(App[None]):
             self.set_timer(self._seconds, self.exit)
 
     def action_pause(self) -> None:
-        """Keeps counting, stops showing."""
+        """Pauses or resumes the display; counting continues."""
         self._paused = not self._paused
         self.sub_title = "paused" if self._paused else ""
 
     def refresh_picture(self) -> None:
-        """Shows what the monitor knows now."""
+        """Updates the rates and, unless paused, the display."""
         now = time.monotonic()
         self._monitor.sample(now)
         if not self._paused:
@@ -136,7 +136,7 @@ class SpyApp(App[None]):
 
 
 def watch_plainly(bus: Bus, monitor: ChannelMonitor, seconds: float | None, out: TextIO) -> None:
-    """Prints one picture after `seconds`, or one every 2 s for ever."""
+    """Prints one picture after `seconds`, or one every 2 s without end if None."""
     console = Console(file=out, width=_WIDTH, highlight=False)
     start = sampled = printed = time.monotonic()
     while seconds is None or time.monotonic() - start < seconds:
@@ -154,7 +154,10 @@ def watch_plainly(bus: Bus, monitor: ChannelMonitor, seconds: float | None, out:
 
 
 def spy(url: str, seconds: float | None) -> None:
-    """Watches the bus at `url` until `seconds` have passed, or for ever. Raises RunError."""
+    """Monitors the bus at `url` for `seconds`, or without a limit if None.
+
+    Raises RunError if multicast does not work.
+    """
     if why := multicast.defect(url):
         raise RunError(f"nothing to be heard: {why}")
     monitor = ChannelMonitor()

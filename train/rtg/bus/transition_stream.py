@@ -1,4 +1,4 @@
-"""The receiving end of the transition stream: every row once and in order, whatever is lost."""
+"""The consumer of the transition stream: gets every row once, in order, despite message loss."""
 
 from __future__ import annotations
 
@@ -14,32 +14,34 @@ from rtg.bus.messages import message_type
 from rtg.errors import RunError
 from rtg.files.dataset import SOURCES, Rows
 
-ACK_INTERVAL = 0.5  # [s], without progress
-RETRY_INTERVAL = 0.1  # [s], between two questions for the same rows
+ACK_INTERVAL = 0.5  # [s], between acknowledgements without progress
+RETRY_INTERVAL = 0.1  # [s], between two requests for the same rows
 MIN_INTERVAL = 0.01  # [s], between any two acknowledgements
-MAX_RANGES = 32  # of one acknowledgement
-FAREWELLS = 10  # acknowledgements of the complete stream at once: who has it all may stop talking
+MAX_RANGES = 32  # maximum number of ranges in one acknowledgement
+# Number of acknowledgements of the complete stream sent at once: a consumer may then exit, so they
+# must survive message loss.
+FAREWELLS = 10
 
 
 class Ack(NamedTuple):
-    """The message of a consumer to the server."""
+    """An acknowledgement, the message of a consumer to the server."""
 
     cursor: int  # rows below have been consumed
-    credit: int  # rows it takes beyond the cursor; 0: it has all of a sealed stream
-    missing: list[tuple[int, int]]  # ranges asked for, first and last row
+    credit: int  # number of rows accepted beyond the cursor; 0: has the complete stream
+    missing: list[tuple[int, int]]  # requested ranges, first and last row
 
 
 class StreamCursor:
-    """Protocol core of a consumer, free of I/O: messages in, ordered rows and acknowledgements out.
+    """The protocol of a consumer, without I/O: takes messages, returns ordered rows and Acks.
 
     Holds at most `credit` rows beyond the cursor. `now` is any monotonic clock [s].
     """
 
     def __init__(self, credit: int) -> None:
         self.credit = credit
-        self.cursor = 0  # rows below have been handed out
-        self.count = 0  # rows known to exist
-        self.sealed = False  # whether `count` is final
+        self.cursor = 0  # rows below have been returned
+        self.count = 0  # number of rows known to exist
+        self.sealed = False  # True if `count` is final
         self._held: dict[int, tuple[int, Any]] = {}  # first row -> (end, rows), may overlap
         self._acked_at = -1e9
         self._acked_cursor = 0
@@ -49,9 +51,9 @@ class StreamCursor:
         self._farewells = FAREWELLS
 
     def on_rows(self, first: int, rows: Any, size: int, now: float) -> list[tuple[Any, int]]:
-        """Takes rows first ... first + size - 1.
+        """Takes rows first ... first + size - 1; ignores them if they exceed the credit.
 
-        Returns the pieces that are next in order, each with how many of its rows to skip.
+        Returns the pieces that are next in order, each with the number of leading rows to skip.
         """
         self._arrived_at = now
         end = first + size
@@ -67,15 +69,15 @@ class StreamCursor:
         self.sealed = self.sealed or sealed
 
     def ack_due(self, now: float) -> Ack | None:
-        """The next message to the server, if anything; to be asked until there is nothing."""
+        """Returns the next message to the server; to be called until it returns None."""
         if self.complete:
             return self._farewell(now)
         missing = self._missing()
         ask = bool(missing) and (
-            self.cursor >= self._asked_end  # all that was asked for has come
+            self.cursor >= self._asked_end  # all requested rows have arrived
             or now - self._asked_at >= RETRY_INTERVAL
         )
-        # Rows that nobody has seen yet are most likely on their way.
+        # If no later row has arrived, the missing rows are probably still in transit.
         if ask and not self._held and now - self._arrived_at < RETRY_INTERVAL / 2:
             ask = False
         moved = self.cursor - self._acked_cursor >= self.credit // 4
@@ -98,7 +100,7 @@ class StreamCursor:
 
     @property
     def complete(self) -> bool:
-        """Says whether every row of a sealed stream has been handed out."""
+        """True if the stream is sealed and every row has been returned."""
         return self.sealed and self.cursor == self.count
 
     def _in_order(self) -> list[tuple[Any, int]]:
@@ -113,7 +115,7 @@ class StreamCursor:
         return pieces
 
     def _missing(self) -> list[tuple[int, int]]:
-        """Gaps below the end of the window, first and last row of each."""
+        """Returns the missing ranges within the credit, at most MAX_RANGES, as (first, last)."""
         gaps, at = [], self.cursor
         for first in sorted(self._held):
             if first > at:
@@ -126,7 +128,7 @@ class StreamCursor:
 
 
 def to_rows(message: Any, bodies: int, headings: int) -> Rows | None:
-    """The rows of a transition_batch_t, or None if it makes no sense for this task."""
+    """Returns the rows of a transition_batch_t, or None if they are invalid for this task."""
     n = message.n
     if n < 1 or message.first < 0 or message.n_poses != n * bodies * 3:
         return None
@@ -148,7 +150,7 @@ def to_rows(message: Any, bodies: int, headings: int) -> Rows | None:
 
 
 class TransitionStream:
-    """Hands every transition of the run to `sink`, once and in sequence order.
+    """Passes every transition of the run to `sink`, once and in sequence order.
 
     stream = TransitionStream(bus, bodies=7, headings=48, sink=buffer.add)
     while not stream.complete:
@@ -173,29 +175,32 @@ class TransitionStream:
         bus.subscribe("RTG_TAIL", message_type("stream_tail_t"), self._on_tail)
 
     def poll(self, timeout: float) -> int:
-        """Receives for `timeout` s at most; returns how many rows went to the sink."""
+        """Waits at most `timeout` s for messages; returns the number of rows passed to the sink.
+
+        Raises RunError if the coordinator was restarted.
+        """
         before = self._cursor.cursor
         self._bus.spin(timeout)
         self._acknowledge()
         return self._cursor.cursor - before
 
     def close(self) -> None:
-        """Takes nothing more; closes the bus."""
+        """Ends the reception of rows and closes the bus."""
         self._bus.close()
 
     @property
     def received(self) -> int:
-        """Rows handed to the sink."""
+        """Number of rows passed to the sink."""
         return self._cursor.cursor
 
     @property
     def lost(self) -> int:
-        """Rows known to exist and not received yet; 0 when the stream is complete."""
+        """Number of rows known to exist and not received; 0 when the stream is complete."""
         return self._cursor.count - self._cursor.cursor
 
     @property
     def complete(self) -> bool:
-        """Says whether the stream has ended and every row went to the sink."""
+        """True if the stream is sealed and every row has been passed to the sink."""
         return self._cursor.complete
 
     def _on_batch(self, message: Any) -> None:

@@ -1,4 +1,4 @@
-"""A cell of a comparison: its command, and what of it is done."""
+"""The run of one cell of a comparison: its command, its folder and its state."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from rtg.run import plan as run_plan
 from rtg.run.effective_config import Values
 from rtg.run.run_args import Override
 
-# Of `train`: what runs of different methods must have in common.
+# Keys of `train` that runs of different methods must have in common.
 _ALIKE = ("interactions", "eval_every", "eval_episodes", "stop_at_success", "stop_evaluations")
-# One core each: libraries that would start a thread per core.
+# Limits to one thread the libraries that would start a thread per core.
 _ONE_THREAD = [f"{name}_NUM_THREADS=1" for name in ("OMP", "OPENBLAS", "MKL")]
 
 
 @dataclass(frozen=True)
 class CellRun:
-    """A cell with its place on the disk."""
+    """A cell with its run folder and its command line."""
 
     cell: Cell
     folder: Path
-    words: tuple[str, ...]  # of `rtg run`, but for the folder
-    kind: str | None = None  # of its transitions, as shared_transitions.kind()
+    words: tuple[str, ...]  # arguments of `rtg run`, without --out
+    kind: str | None = None  # of its transitions, as from shared_transitions.kind()
     device: str = "auto"  # train.device
 
     @property
@@ -41,32 +41,35 @@ class CellRun:
 
     @property
     def log(self) -> Path:
-        """The file of what the run says; beside the folder, which the run itself makes."""
+        """The log file. It lies beside the folder, because the run itself makes the folder."""
         return self.folder.with_name(f"{self.folder.name}.log")
 
     @property
     def done(self) -> bool:
-        """Says whether there is nothing left to do."""
+        """Returns whether the run has a result."""
         return bool(run_folder.result(self.folder))
 
     @property
     def begun(self) -> bool:
-        """Says whether its folder holds the run, perhaps an unfinished one."""
+        """Returns whether the folder holds the run, finished or not."""
         return (self.folder / "config.yaml").is_file()
 
     @property
     def generates(self) -> str | None:
-        """The kind of its transitions while they are not there."""
+        """The kind of transitions that the run has yet to generate; None if there are none."""
         return None if shared_transitions.are_there(self.folder) else self.kind
 
     def begin(self) -> None:
-        """Makes the folder, without `rtg run`."""
+        """Makes the run folder without starting `rtg run`. Raises UserError."""
         _remove_drafts(self.folder)
         run_plan.make_plan(run_args.parse([*self.words, "--out", str(self.folder)]))
 
     def command(self) -> list[str]:
-        """Begins the run, or goes on with it; takes over the transitions of another run that has
-        the same. Raises UserError."""
+        """Returns the command that begins or resumes the run.
+
+        First takes over the transitions of another run if they are of the same kind, and removes
+        the drafts of a killed run. Raises UserError.
+        """
         if self.generates:
             place = self.folder.parents[1], self.folder.name
             if source := shared_transitions.find(self.generates, *place):
@@ -79,20 +82,21 @@ class CellRun:
         return program("rtg", "run", *words, "--out", str(self.folder))
 
     def outcome(self) -> str:
-        """The result of a run that is done, in words."""
+        """Returns the result of a finished run in words."""
         found = run_folder.result(self.folder)
         return f"success {found['success_rate']:.2f} after {found['interactions']:,} interactions"
 
 
 def program(module: str, *words: str) -> list[str]:
-    """A Python program of ours that keeps to one core."""
+    """Returns the command that runs a Python module of RTG on one core."""
     return ["env", *_ONE_THREAD, sys.executable, "-m", module, *words]
 
 
 def make_ready(args: ReproduceArgs) -> list[CellRun]:
-    """All cells, checked against the loader, each other and what is there already.
+    """Returns the runs of all cells.
 
-    Raises UserError before anything has started.
+    Raises UserError, before any run has started, if the configuration of a cell is illegal, cannot
+    run on this machine, equals that of another cell or does not fit the runs in the folder.
     """
     runs, seen, checked = [], dict[str, str](), set[Path]()
     for cell in args.cells:
@@ -123,14 +127,14 @@ def _words(args: ReproduceArgs, cell: Cell) -> tuple[str, ...]:
 
 
 def _overrides(args: ReproduceArgs, cell: Cell) -> list[Override]:
-    """Those of the words, named by the flags that the user typed."""
+    """Returns the overrides that _words() contains, each with the flag that the user typed."""
     overrides = [Override(f"--set {setting}", setting) for setting in args.settings]
     overrides += [Override(f"--sweep {setting}", setting) for setting in cell.settings]
     return [*overrides, *run_args.parse(_flags(cell)).overrides]
 
 
 def _check_folder(folder: Path) -> None:
-    """Raises UserError unless the folder holds a run, or nothing."""
+    """Raises UserError unless the folder holds a run, is empty or does not exist."""
     if (folder / "config.yaml").is_file():
         return
     if folder.exists() and not (folder.is_dir() and all(map(_is_draft, folder.iterdir()))):
@@ -138,7 +142,7 @@ def _check_folder(folder: Path) -> None:
 
 
 def _is_draft(file: Path) -> bool:
-    """Left by a run that was killed as it began."""
+    """Returns whether `file` is an unfinished config.yaml, left by a run killed at its start."""
     return file.name.startswith(".config.yaml.")
 
 
@@ -149,8 +153,10 @@ def _remove_drafts(folder: Path) -> None:
 
 
 def _check_seeds(label: Path, config: _core.Config) -> None:
-    """Raises UserError unless all runs in the folder, also of seeds not asked for now, have this
-    configuration but for the seed: tables show means over them."""
+    """Raises UserError unless all runs in the folder have this configuration, except for the seed.
+
+    Runs of seeds that are not requested now are checked too: tables show means over all runs.
+    """
     for found in sorted(label.glob("seed-*/config.yaml")):
         seed = found.parent.name.removeprefix("seed-")
         if seed.isdigit():
@@ -160,7 +166,7 @@ def _check_seeds(label: Path, config: _core.Config) -> None:
 
 
 def _check_same(folder: Path, asked: Values) -> None:
-    """Raises UserError unless the run was made with these values, by this version."""
+    """Raises UserError unless this version of RTG made the run, with these values."""
     found = folder / "config.yaml"
     before = effective_config.values(effective_config.load(found))
     for section, new in sorted(asked.items()):
@@ -169,12 +175,16 @@ def _check_same(folder: Path, asked: Values) -> None:
             what = _difference(section, old, new)
             remedy = f"another --out, or rm -r {shlex.quote(str(folder))}"
             raise UserError(f"{folder}: was made with {what}; legal: the same, {remedy}")
-    effective_config.written(found)  # raises for another version
+    effective_config.written(found)  # raises UserError if another version wrote it
 
 
 def _check_methods(folder: Path, config: _core.Config) -> None:
-    """Raises UserError unless all runs in the folder of the task have that task, its physics, that
-    budget and evaluation, but for what is swept: tables compare them. folder: of the run."""
+    """Raises UserError unless all runs of the task agree in the values that _compared() returns.
+
+    These are task, physics, budget and evaluation, except for swept keys: tables compare the runs.
+    The number of transitions counts only between runs that generate them. `folder` is the run
+    folder of one cell, `config` its configuration.
+    """
     for found in sorted(folder.parents[1].glob("*/seed-*/config.yaml")):
         swept = _swept(found.parts[-3]) | _swept(folder.parts[-2])
         before = effective_config.load(found)
@@ -190,7 +200,7 @@ def _check_methods(folder: Path, config: _core.Config) -> None:
 
 
 def _swept(label: str) -> set[str]:
-    """The keys `section.name` in which a label names values, or which it decides."""
+    """Returns the keys `section.name` that a label sets, directly or through `train.preset`."""
     paths = (setting.partition("=")[0] for setting in label.split("@")[1:])
     found = {".".join(path.split(".")[:2]) for path in paths}
     of_preset = {f"train.{key}" for key in _ALIKE} if "train.preset" in found else set()
@@ -198,7 +208,7 @@ def _swept(label: str) -> set[str]:
 
 
 def _compared(config: _core.Config, swept: set[str]) -> Values:
-    """The values that runs in one table have in common, by section."""
+    """Returns the values, by section, that all runs in one table must share; omits swept keys."""
     values = effective_config.values(config)
     keys = {
         "task": tuple(values["task"]),

@@ -1,4 +1,4 @@
-"""The cells of a comparison, one run each, and the file that lists them."""
+"""The cells of a comparison, each of which is one run, and the file that lists them."""
 
 from __future__ import annotations
 
@@ -13,42 +13,42 @@ from rtg.files.run_folder import read_json, write_json
 
 @dataclass(frozen=True)
 class Cell:
-    """A run of a comparison."""
+    """A run of a comparison: its task, method, swept settings and seed."""
 
     task: str
     method: str
-    settings: tuple[str, ...]  # of swept keys, KEY=VALUE each
+    settings: tuple[str, ...]  # KEY=VALUE for each swept key
     seed: int
 
     @property
     def label(self) -> str:
-        """The method with what was swept: a row of the tables."""
+        """The method with its swept settings; it names a row of the tables."""
         return "@".join((self.method, *self.settings))
 
     @property
     def name(self) -> str:
-        """TASK/LABEL/seed-N, also of the run folder below that of the comparison."""
+        """TASK/LABEL/seed-N: also the path of the run folder within the comparison folder."""
         return f"{self.task}/{self.label}/seed-{self.seed}"
 
 
 @dataclass
 class Grid:
-    """All that was ever asked for in one folder."""
+    """All cells that were ever requested in one comparison folder."""
 
-    cells: dict[Cell, str]  # with the command that asked last; they all come to the same run
-    failed: dict[str, str]  # name of the cell -> its last words
+    cells: dict[Cell, str]  # cell -> the last command that requested it; all give the same run
+    failed: dict[str, str]  # name of the cell -> how its run failed, with the end of its log
 
     @property
     def commands(self) -> list[str]:
-        """Those that are still the last to ask for a cell."""
+        """The commands that were the last to request at least one cell."""
         return list(dict.fromkeys(self.cells.values()))
 
     def add(self, command: str, cells: Iterable[Cell]) -> None:
-        """Adds cells; those that are there already stay where it is."""
+        """Adds cells. A cell that is there already keeps its place and gets the new command."""
         self.cells.update(dict.fromkeys(cells, command))
 
     def write(self, folder: Path) -> None:
-        """Replaces grid.json."""
+        """Replaces grid.json in `folder`."""
         cells = [
             {**vars(cell), "settings": list(cell.settings), "command": command}
             for cell, command in self.cells.items()
@@ -66,14 +66,14 @@ def _cell(value: dict[str, Any]) -> Cell:
 
 
 def _texts(value: Any) -> list[str]:
-    """Raises TypeError unless they are, none of them empty."""
+    """Returns `value`. Raises TypeError unless it is a list of non-empty strings."""
     if not (isinstance(value, list) and all(isinstance(one, str) and one for one in value)):
         raise TypeError
     return value
 
 
 def read_grid(folder: Path) -> Grid:
-    """An empty one where there is none yet. Raises UserError if it is damaged."""
+    """Reads grid.json; the grid is empty if there is no file. Raises UserError if it is damaged."""
     value = read_json(_file(folder))
     try:
         failed = value.get("failed", {})

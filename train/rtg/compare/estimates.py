@@ -1,6 +1,6 @@
-"""Figures over seeds and tasks, after Agarwal et al. 2021 (the measures of `rliable`).
+"""Statistics over seeds and tasks, after Agarwal et al. 2021 (the measures of `rliable`).
 
-A score table is a list with the scores of one method per task, [seeds] each.
+`Scores` are the scores of one method: an array [seeds] per task.
 """
 
 from __future__ import annotations
@@ -19,21 +19,24 @@ _LEVEL = 0.95
 
 
 def mean_std(values: Sequence[float]) -> tuple[float, float | None]:
-    """Mean and sample standard deviation; None of a single value."""
+    """Returns mean and sample standard deviation; the latter is None for a single value."""
     return float(np.mean(values)), float(np.std(values, ddof=1)) if len(values) > 1 else None
 
 
 def interquartile_mean(scores: Scores) -> float:
-    """Mean of the middle half of all scores: a quarter, rounded down, is cut off at either end."""
+    """Returns the mean of the middle half of all scores.
+
+    A quarter of the scores, rounded down, is cut off at each end.
+    """
     ordered = np.sort(np.concatenate(scores))
     cut = len(ordered) // 4
     return float(ordered[cut : len(ordered) - cut].mean())
 
 
 def probability_of_improvement(scores: Scores, others: Scores) -> float:
-    """That a run scores above one of the other method on the same task, mean over the tasks.
+    """Returns the probability that a run scores above a run of the other method on the same task.
 
-    Equal scores count half: the statistic of Mann and Whitney.
+    The result is the mean over the tasks. Equal scores count half: the Mann-Whitney statistic.
     """
     wins = [np.sign(x[:, None] - y[None, :]).mean() for x, y in zip(scores, others, strict=True)]
     return 0.5 + 0.5 * float(np.mean(wins))
@@ -44,8 +47,10 @@ def _are_single(scores: Scores) -> bool:
 
 
 def interval(estimate: Callable[[Scores], float], scores: Scores) -> tuple[float, float] | None:
-    """Percentile interval of `estimate` by stratified bootstrap: seeds are drawn within a task. Of
-    single seeds None."""
+    """Returns the 95 % percentile interval of `estimate` by stratified bootstrap.
+
+    Seeds are drawn within a task. Returns None if every task has a single seed.
+    """
     if _are_single(scores):
         return None
     rng = np.random.default_rng(_SEED)
@@ -58,8 +63,10 @@ def interval(estimate: Callable[[Scores], float], scores: Scores) -> tuple[float
 
 
 def improvement_interval(scores: Scores, others: Scores) -> tuple[float, float] | None:
-    """The same of the probability of improvement: seeds of both methods are drawn. None if either
-    has single seeds alone."""
+    """Returns the interval, as interval() does, of the probability of improvement.
+
+    Seeds of both methods are drawn. Returns None if either method has a single seed on every task.
+    """
     if _are_single(scores) or _are_single(others):
         return None
     count = len(scores)
@@ -69,15 +76,18 @@ def improvement_interval(scores: Scores, others: Scores) -> tuple[float, float] 
 
 
 def first_reach(interactions: Floats, success: Floats, bar: float) -> int | None:
-    """Interactions at the first evaluation with that success or more; None: never. [N] each"""
+    """Returns the interactions at the first evaluation with a success of at least `bar`.
+
+    Returns None if there is none. [N] each
+    """
     reached = np.flatnonzero(success >= bar)
     return int(interactions[reached[0]]) if len(reached) else None
 
 
 def carried_forward(interactions: Floats, values: Floats, grid: Floats) -> Floats:
-    """A course on another grid: the last value before, that of the end from there on. [grid]
+    """Returns a curve on another grid: at each point, the last finite value up to that point.
 
-    NaN before the first value.
+    The last value of the curve holds beyond its end; NaN before the first value. [grid]
     """
     known = np.isfinite(values)
     at = np.searchsorted(interactions[known], grid, side="right") - 1

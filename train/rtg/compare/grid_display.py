@@ -1,4 +1,4 @@
-"""How a comparison shows itself: a row per run on a terminal, a line per change anywhere else."""
+"""Displays of a comparison: a row per run on a terminal, a line per change anywhere else."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from rtg.run.progress import Shown, TimedLines
 _REDRAW = 0.5  # [s]
 _MARKS = {"waiting": " ", "running": "▸", "done": "✓", "failed": "✗"}
 _STYLES = {"waiting": "dim", "running": "", "done": "green", "failed": "red"}
-_URGENT = ("running", "failed", "waiting", "done")  # what a small terminal shows first
+_URGENT = ("running", "failed", "waiting", "done")  # phases by priority on a small terminal
 
 
 @dataclass(frozen=True)
 class Row:
-    """Where a run stands."""
+    """The state of a run in the display."""
 
     name: str
     phase: str = "waiting"  # or running, done, failed
@@ -30,21 +30,21 @@ class Row:
 
 
 def counts(rows: Sequence[Row]) -> str:
-    """All runs in one line."""
+    """Counts the runs by phase, in one line of text."""
     total = {phase: sum(row.phase == phase for row in rows) for phase in _MARKS}
     failed = f", {total['failed']} failed" if total["failed"] else ""
     return f"{total['done']} of {len(rows)} runs done{failed}, {total['running']} running"
 
 
 class GridDisplay(Shown, Protocol):
-    """Shows rows."""
+    """A display of rows."""
 
     def show(self, rows: Sequence[Row]) -> None:
-        """The newest state of all runs; may be called as often as one likes."""
+        """Shows the newest state of all runs; may be called at any rate."""
 
 
 class PlainGrid(TimedLines):
-    """A line per run that begins or ends."""
+    """Prints a line when a run begins or ends."""
 
     def __init__(self, out: TextIO) -> None:
         super().__init__(out)
@@ -59,11 +59,11 @@ class PlainGrid(TimedLines):
 
 
 class LiveGrid:
-    """Rows that change in place; those that matter most where they do not all fit."""
+    """Shows rows that change in place; the most urgent ones if they do not all fit."""
 
     def __init__(self, console: Console) -> None:
         self._console = console
-        # No thread of its own: this process starts others with fork.
+        # Without a refresh thread, because this process forks child processes.
         self._live = Live(console=console, auto_refresh=False)
         self._start = time.monotonic()
         self._drawn = 0.0
@@ -101,12 +101,12 @@ class LiveGrid:
 
 
 def visible(rows: Sequence[Row], room: int) -> list[Row]:
-    """As many rows as there is room for, in their order, the urgent ones first to be chosen."""
+    """Selects the `room` most urgent rows, at least one, and returns them in their order."""
     ranked = sorted(range(len(rows)), key=lambda k: _URGENT.index(rows[k].phase))
     return [rows[k] for k in sorted(ranked[: max(room, 1)])]
 
 
 def display(out: TextIO) -> GridDisplay:
-    """The display that suits where the output goes."""
+    """Returns a LiveGrid if `out` is a terminal, else a PlainGrid."""
     console = Console(file=out)
     return LiveGrid(console) if console.is_terminal else PlainGrid(out)

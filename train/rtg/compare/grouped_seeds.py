@@ -1,7 +1,8 @@
-"""Seeds that learn in one process: they share one GPU context.
+"""Jobs in which several seeds learn in one process, so that they share one GPU context.
 
-What a comparison does before it lets each run end on its own: all runs generate, a process each;
-then the seeds of each method learn together. The runs find that done, or go on with what is left.
+A comparison does these jobs before it starts the runs themselves. First each run generates its
+transitions in a process of its own; then the seeds of each method learn together in one process.
+The runs find this work done, or continue with what is left.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from rtg.run import shared_transitions
 
 @dataclass(frozen=True)
 class Generation:
-    """The transitions of one run."""
+    """The job that generates the transitions of one run."""
 
     run: CellRun
 
@@ -45,7 +46,7 @@ class Generation:
 
 @dataclass(frozen=True)
 class Learning:
-    """Several seeds in one process."""
+    """The job in which several seeds learn in one process."""
 
     runs: tuple[CellRun, ...]
 
@@ -67,7 +68,7 @@ class Learning:
 
     def command(self) -> list[str]:
         for run in self.runs:
-            if not run.begun:  # nothing was generated for it
+            if not run.begun:  # no Generation has made its folder
                 run.begin()
         folders = [str(run.folder) for run in self.runs]
         return program("rtg.learn.trainer", *folders, "--no-stream", "--resume")
@@ -81,8 +82,11 @@ class Learning:
 
 
 def stages(runs: Sequence[CellRun], wanted: bool) -> tuple[list[Generation], list[Learning]]:
-    """The jobs before the runs, one stage after the other; nothing unless networks are on a GPU,
-    or that is `wanted`."""
+    """Returns the jobs of the two stages before the runs: all generation, then all learning.
+
+    The jobs are for labels with several unfinished runs. Only runs whose networks are on a GPU
+    count, unless `wanted`.
+    """
     groups: dict[Path, list[CellRun]] = {}
     for run in runs:
         if not run.done and (wanted or _on_gpu(run)):
@@ -93,6 +97,6 @@ def stages(runs: Sequence[CellRun], wanted: bool) -> tuple[list[Generation], lis
 
 
 def _on_gpu(run: CellRun) -> bool:
-    from rtg.learn import device  # takes seconds
+    from rtg.learn import device  # imports PyTorch, which takes seconds
 
     return device.chosen(run.device) == "cuda"

@@ -1,4 +1,4 @@
-"""The tasks and methods that are compared, and how a run is told its method."""
+"""The tasks and methods of comparisons, and the flags that select a method."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from rtg import _core
 
 TASKS = ("gathering", "sorting", "art_manip")
 METHODS = _core.METHODS
-REFERENCE = "ddqn_rtg"  # what the others are compared with
-WIDER = "ddqn_rtg_dr"  # starts elsewhere, so its success is no one else's
+REFERENCE = "ddqn_rtg"  # the method with which the others are compared
+WIDER = "ddqn_rtg_dr"  # starts in a wider region, so its success is not comparable
 
 
 def run_words(method: str) -> tuple[str, ...]:
-    """Flags of `rtg run` that make it a run of the method."""
+    """Returns the flags of `rtg run` that select the method."""
     return ("--method", method)

@@ -61,7 +61,7 @@ method, not methods against each other."""
 
 
 def _listed(found: Iterable[str]) -> str:
-    """The differences between runs, with how many; most often: one thing."""
+    """Returns the distinct values, with the number of runs of each if there are several values."""
     counts = Counter(found).most_common()
     if len(counts) == 1:
         return counts[0][0]
@@ -70,8 +70,10 @@ def _listed(found: Iterable[str]) -> str:
 
 
 def _commits(done: Sequence[RunResult]) -> str:
-    """The commits of the runs; where they differ, of which: rows of several are no clean
-    comparison."""
+    """Returns the commit of the runs, or each commit with its runs if they differ.
+
+    Rows of runs of different commits are no clean comparison.
+    """
     found: dict[str, list[RunResult]] = {}
     for run in done:
         found.setdefault(run.commits, []).append(run)
@@ -117,14 +119,14 @@ def _origin(grid: Grid, comparison: Comparison) -> str:
 
 
 def _brief(name: str, words: str) -> str:
-    """The first of the words of a failure, and the last of its log."""
+    """Returns the first line of a failure message and the last line of the log that it quotes."""
     how, *log = words.splitlines()
     how = how.removeprefix(f"{name} ").removesuffix("; the end of its log:")
     return f"{how}: {log[-1]}" if log else how
 
 
 def _troubles(grid: Grid, runs: Sequence[RunResult]) -> list[str]:
-    """The defects, run by run."""
+    """Returns the section on failed runs and defects, run by run; empty if there are none."""
     lines = []
     for run in runs:
         name = f"`{run.cell.name}`"
@@ -152,7 +154,10 @@ def _of_task(folder: Path, comparison: Comparison, task: str) -> list[str]:
 
 
 def read_remarks(runs: Path) -> str:
-    """The remarks that people wrote, in their own words; raises UserError if it cannot be read."""
+    """Returns the text that people wrote in remarks.md; empty if there is no file.
+
+    Raises UserError if the file cannot be read.
+    """
     path = runs / REMARKS
     if not path.is_file():
         return ""
@@ -163,7 +168,7 @@ def read_remarks(runs: Path) -> str:
 
 
 def report(folder: Path, grid: Grid, comparison: Comparison, remarks: str) -> str:
-    """The page for `folder`, with the pictures that lie there."""
+    """Returns the page for `folder`, with the pictures that are in `folder` already."""
     missing = ", ".join(f"`{method}`" for method in tables.not_run(comparison))
     parts = [
         "# Results",

@@ -1,4 +1,4 @@
-"""`./run.sh plot`: report, tables and pictures of a comparison, made anew from its run folders."""
+"""`./run.sh plot`: makes report, tables and pictures of a comparison from its run folders."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _PICTURES = (*_OF_TASKS, "replay_gap.png")
 
 
 def write_report(runs: Path, out: Path) -> Path:
-    """Replaces the files of the report in `out`; the page's path. Raises UserError."""
+    """Replaces the files of the report in `out`; returns the path of the page. Raises UserError."""
     grid = read_grid(runs)
     if not grid.cells:
         raise UserError(f"{runs}: holds no comparison (no grid.json); legal: DIR of `reproduce`")
@@ -62,7 +62,7 @@ def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | No
 
 
 def _remove_pictures(out: Path) -> None:
-    """Those of the page that lies there, also of tasks and sweeps that are no more."""
+    """Removes all pictures that the existing page shows, also those of former tasks and sweeps."""
     page = out / "report.md"
     text = page.read_text(errors="replace") if page.is_file() else ""
     for picture in (path for pattern in _PICTURES for path in out.glob(pattern)):
@@ -71,7 +71,7 @@ def _remove_pictures(out: Path) -> None:
 
 
 def _of_best_method(done: Sequence[RunResult]) -> list[RunResult]:
-    """Those of the reference method; without any, those of the first label."""
+    """Returns the runs of the reference method; if there are none, those of the first label."""
     labels = {run.cell.label for run in done}
     label = REFERENCE if REFERENCE in labels else next((run.cell.label for run in done), "")
     return [run for run in done if run.cell.label == label]
@@ -82,13 +82,16 @@ class Episode:
     """An episode to show."""
 
     task: _core.Task
-    label: str  # what was learned with
+    label: str  # method and swept settings of the run
     poses: NDArray[np.float64]  # [states, bodies, 3]
     success: bool
 
 
 def _read_episode(run: RunResult) -> Episode | None:
-    """The best one of the run's final evaluation. Raises UserError."""
+    """Reads the best episode of the run's final evaluation; None if there is no file.
+
+    Raises UserError if the file is damaged.
+    """
     path, config = run.folder / "best_episode.npz", run.folder / "config.yaml"
     if not path.is_file():
         return None
@@ -104,7 +107,11 @@ def _read_episode(run: RunResult) -> Episode | None:
 
 
 def _best_episode(comparison: Comparison, task: str) -> Episode | None:
-    """The shortest success of the final evaluations, of the reference method if it has one."""
+    """Returns the best episode of the final evaluations of a task; None if there are no episodes.
+
+    Successes come before failures, then the reference method before others, then short episodes
+    before long ones.
+    """
     runs = [run for run in comparison.all_done() if run.cell.task == task]
     found = [episode for run in runs if (episode := _read_episode(run))]
     return min(
@@ -138,7 +145,7 @@ def _name(run: RunResult) -> dict[str, Any]:
 
 
 def _rows(comparison: Comparison) -> list[dict[str, Any]]:
-    """All of each run's figures that are single numbers or words."""
+    """Returns a row per run, with all its figures that are single numbers or words."""
     more = [
         name
         for run in comparison.all_done()
@@ -158,7 +165,7 @@ def _rows(comparison: Comparison) -> list[dict[str, Any]]:
 
 
 def _curve_rows(run: RunResult) -> list[dict[str, Any]]:
-    """A row per evaluation."""
+    """Returns a row per evaluation of the run."""
     if not run.curve:
         return []
     columns = {name: costs(run.curve, name) for name in COSTS}
@@ -170,7 +177,7 @@ def _curve_rows(run: RunResult) -> list[dict[str, Any]]:
 
 
 def _write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Numbers to six digits; empty where nothing was measured."""
+    """Writes rows with fractions to six digits; cells without a measurement stay empty."""
     text = io.StringIO()
     table = csv.DictWriter(text, list(rows[0]) if rows else [], lineterminator="\n")
     table.writeheader()

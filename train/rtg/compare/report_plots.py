@@ -1,4 +1,4 @@
-"""Pictures of a comparison: learning curves, replay gaps, what a sweep changes."""
+"""Plots of a comparison: learning curves, costs, replay gaps, effects of swept settings."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from rtg.pictures import plots
 
 Floats = NDArray[np.float64]
 
-# A colour per method, most of them Okabe and Ito's, which colour-blind people tell apart, too; the
-# others are no nearer to any of the same dashes. Dashed: without generated data; dash-dotted:
-# without interactions.
+# Colour and line style per method. Most colours are those of Okabe and Ito, which colour-blind
+# people can distinguish; the others are no closer to any colour with the same line style. Dashed:
+# without generated data; dash-dotted: without interactions.
 _PALETTE = {
     "dqn": ("#b0b0b0", "--"),
     "ddqn": ("#000000", "--"),
@@ -60,7 +60,10 @@ _RIGHT: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8}
 
 
 def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
-    """Colour and dashes: a colour per method; of swept values a shade each."""
+    """Returns colour and line style of each label.
+
+    Each method has its colour. If any method has several labels, every label has a shade instead.
+    """
     if len({label.split("@")[0] for label in labels}) == len(labels):
         return {label: _PALETTE.get(label.split("@")[0], ("#000000", "-")) for label in labels}
     shades = plt.get_cmap("viridis")(np.linspace(0.0, 0.9, len(labels)))
@@ -69,14 +72,20 @@ def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
 
 
 def split_names(labels: Sequence[str]) -> tuple[str, list[str]]:
-    """Splits off what all labels begin with, up to a method or key, and what is left of each."""
+    """Returns the common beginning of all labels and the rest of each label.
+
+    The beginning ends with a method or a key.
+    """
     shared = os.path.commonprefix(labels)
     end = max(shared.rfind("@"), shared.rfind("=")) + 1
     return shared[:end].rstrip("@=").replace("@", ", "), [label[end:] for label in labels]
 
 
 def _course(runs: Sequence[RunResult], column: str) -> tuple[Floats, Floats]:
-    """Interactions [N] and values [runs, N]; a run that ended early keeps its last value."""
+    """Returns the interactions [N] and the values [runs, N] of a column at these interactions.
+
+    A run that ended early keeps its last value.
+    """
     grid = np.unique(np.concatenate([run.curve["interactions"] for run in runs]))
     values = [carried_forward(run.curve["interactions"], run.curve[column], grid) for run in runs]
     return grid, np.array(values)
@@ -85,7 +94,7 @@ def _course(runs: Sequence[RunResult], column: str) -> tuple[Floats, Floats]:
 def _draw_course(
     axis: Axes, course: tuple[Floats, Floats], is_share: bool, style: tuple[str, str]
 ) -> None:
-    """Mean and standard deviation of the seeds, from where all of them have a value."""
+    """Draws mean and standard deviation over the seeds, at points where all seeds have a value."""
     grid, values = course
     known = np.isfinite(values).all(axis=0)
     if not known.any():
@@ -104,7 +113,10 @@ def _draw_course(
 
 
 def curve_labels(comparison: Comparison, task: str) -> list[str]:
-    """Those with learning curves; of more than one can tell apart, those without swept settings."""
+    """Returns the labels with learning curves.
+
+    Leaves out labels with swept settings if there are too many labels to tell apart.
+    """
     found = [
         label
         for label in comparison.labels
@@ -123,7 +135,7 @@ def _drawn(comparison: Comparison, task: str) -> Drawn:
 
 
 def _name_lines(figure: Figure, drawn: Drawn, title: str, columns: int = 4) -> None:
-    """The legend, with the final success of each label, below the panels; the title above them."""
+    """Adds the legend, with the final success of each label, below the panels, the title above."""
     styles = _styles(list(drawn))
     handles = [
         plt.Line2D([], [], color=styles[label][0], ls=styles[label][1], lw=2) for label in drawn
@@ -146,7 +158,10 @@ def _name_lines(figure: Figure, drawn: Drawn, title: str, columns: int = 4) -> N
 
 
 def curves(path: Path, comparison: Comparison, task: str) -> None:
-    """Success, episode length and return over interactions, a line per method that makes any."""
+    """Plots success, episode length and return over interactions, a line per label.
+
+    Leaves out methods without interactions.
+    """
     drawn = {name: runs for name, runs in _drawn(comparison, task).items() if runs[0].interacts}
     styles = _styles(list(drawn))
     with plots.style():
@@ -169,8 +184,10 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
 
 
 def costs(path: Path, comparison: Comparison, task: str) -> None:
-    """Greedy success over what it cost, a line per method: means of both over the seeds after
-    equally many interactions, the costs on logarithmic axes."""
+    """Plots greedy success over each cost, on logarithmic axes of cost, a line per label.
+
+    Success and cost are means over the seeds after the same number of interactions.
+    """
     drawn = _drawn(comparison, task)
     styles = _styles(list(drawn))
     with plots.style():
@@ -191,8 +208,10 @@ def costs(path: Path, comparison: Comparison, task: str) -> None:
 
 
 def replay_gaps(path: Path, of_tasks: Mapping[str, Sequence[RunResult]]) -> None:
-    """A histogram of the replay gap per task, over its runs; median and 90th percentile are means
-    over them, as in the table."""
+    """Plots a histogram of the replay gap per task, over all runs that are given for it.
+
+    Median and 90th percentile are means over the runs, as in the table.
+    """
     with plots.style():
         size = (6.4, 3.0 * len(of_tasks) + 0.3)
         figure, axes = plt.subplots(
@@ -209,7 +228,7 @@ def replay_gaps(path: Path, of_tasks: Mapping[str, Sequence[RunResult]]) -> None
 
 
 def _swept(comparison: Comparison, task: str) -> dict[str, Sequence[RunResult]]:
-    """The runs of each swept value, and of their methods as they are, under short names."""
+    """Returns the runs of each swept value, and of the same methods unchanged, by short names."""
     labels = [label for label in comparison.labels if comparison.row(task, label)]
     methods = {label.split("@")[0] for label in labels if "@" in label}
     shown = [label for label in labels if label.split("@")[0] in methods]
@@ -220,7 +239,7 @@ def _swept(comparison: Comparison, task: str) -> dict[str, Sequence[RunResult]]:
 
 
 def sweep(path: Path, comparison: Comparison, task: str) -> None:
-    """The final greedy success and the interactions to 0.95 of each swept value, a dot per run."""
+    """Plots final greedy success and interactions to 0.95 of each swept value, a dot per run."""
     rows = _swept(comparison, task)
     with plots.style():
         size = (9.6, 1.2 + 0.16 * sum(2 + name.count("\n") for name in rows))

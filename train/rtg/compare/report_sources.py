@@ -1,4 +1,4 @@
-"""On which tasks reverse simulation is the better source of data, said by the figures alone."""
+"""Decides from the figures alone on which tasks reverse simulation is the better data source."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from rtg.compare.run_results import COSTS, Comparison
 
 Floats = NDArray[np.float64]
 
-BAR = 0.95  # greedy success
-# Methods that learn from data of another source.
+BAR = 0.95  # greedy success to reach
+# Methods that learn from data of a source other than reverse simulation.
 SOURCES = ("ddqn_random", "ddqn_scatter", "ddqn_naive", "ddqn_forward")
-RIVALS = ("ddqn_forward", "ddqn_naive", "planner")  # shown as ratios
+# Methods whose costs are shown as multiples of those of the reference.
+RIVALS = ("ddqn_forward", "ddqn_naive", "planner")
 _WORDS = {"interactions": "interactions", "pushes": "pushes", "cpu_s": "CPU seconds"}
 _HEADS = {"interactions": "interactions [1000]", "pushes": "pushes [1000]", "cpu_s": "CPU [s]"}
 NOTE = f"""\
@@ -37,8 +38,11 @@ seed of `{REFERENCE}`, too."""
 
 
 def _costs(comparison: Comparison, task: str, method: str, cost: str) -> Floats:
-    """The cost that each seed needs, infinite if it never gets there; empty without runs.
-    [seeds]"""
+    """Returns the cost of each seed until its greedy success reaches BAR. [seeds]
+
+    The cost is infinite if a seed never reaches BAR. For the cost `interactions`, runs without
+    interactions are left out. The array is empty if there are no runs.
+    """
     runs = comparison.done(task, method)
     needed = [run.reached(BAR, cost) for run in runs if run.interacts or cost != "interactions"]
     return np.array([np.inf if value is None else value for value in needed])
@@ -67,7 +71,10 @@ def _fewest(comparison: Comparison, task: str, cost: str) -> str:
 
 
 def _multiple(reference: Floats, costs: Floats) -> str:
-    """The ratio of the means; where seeds never get there, how many do."""
+    """Returns the ratio of the mean costs to those of the reference, as text.
+
+    If a seed of either method never reaches BAR, returns how many seeds of the method do.
+    """
     if len(costs) == 0:
         return NOTHING
     if _all_get_there(costs) and _all_get_there(reference):
@@ -76,10 +83,10 @@ def _multiple(reference: Floats, costs: Floats) -> str:
 
 
 class _Verdict(NamedTuple):
-    """How the reference compares with the other sources on one task, by one cost."""
+    """The result of comparing the reference with the other sources on one task, by one cost."""
 
-    kind: str  # of _SAID; empty where there is nothing to compare
-    methods: Sequence[str] = ()  # that make it so
+    kind: str  # key of _SAID; empty if there is nothing to compare
+    methods: Sequence[str] = ()  # the sources that the verdict names
 
     def __str__(self) -> str:
         of_methods = _SAID.get(self.kind, NOTHING).format(costs="", methods=_named(self.methods))
@@ -135,7 +142,7 @@ def _sentence(task: str, verdicts: dict[str, _Verdict]) -> str:
 
 
 def better_source(comparison: Comparison) -> str:
-    """A sentence per task and, below, the figures behind it."""
+    """Returns a sentence per task, followed by the table of the figures behind the sentences."""
     sentences, rows = [], []
     for task in comparison.tasks:
         verdicts = {cost: _verdict(comparison, task, cost) for cost in COSTS}

@@ -16,15 +16,16 @@ NOTHING = "–"
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> str:
-    """A Markdown table, its first columns to the left."""
+    """Returns a Markdown table whose first `left` columns are left-aligned."""
     lines = [head, ["---"] * left + ["---:"] * (len(head) - left), *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
 def spread(values: Sequence[float | None], form: str) -> str:
-    """Mean ± standard deviation of what there is; how many of how many, if not all.
+    """Returns mean ± standard deviation of the values that are not None, as text.
 
-    form: of the format function; between 0 and 10, "count" has a digit behind the point.
+    If some are None, the text ends with "(k of n)". `form` is a format specification, or "count":
+    one decimal for means between 0 and 10, none for others.
     """
     known = [value for value in values if value is not None]
     if not known:
@@ -37,7 +38,7 @@ def spread(values: Sequence[float | None], form: str) -> str:
 
 
 def seeds(numbers: Sequence[int]) -> str:
-    """1, 2, 3, 5 -> 1-3, 5."""
+    """Writes seeds as ranges: 1, 2, 3, 5 -> 1-3, 5."""
     parts: list[list[int]] = []
     for number in sorted(numbers):
         if parts and number == parts[-1][-1] + 1:
@@ -48,7 +49,7 @@ def seeds(numbers: Sequence[int]) -> str:
 
 
 def states(runs: Sequence[RunResult]) -> str:
-    """Seeds by how far they have come."""
+    """Returns the seeds, grouped by the state of their runs."""
     found = []
     for state in dict.fromkeys(run.state for run in runs):
         numbers = seeds([run.cell.seed for run in runs if run.state == state])
@@ -57,7 +58,7 @@ def states(runs: Sequence[RunResult]) -> str:
 
 
 def named(runs: Sequence[RunResult]) -> str:
-    """Tasks, methods and seeds of runs that are in the order of a comparison, in words."""
+    """Returns tasks, labels and seeds of `runs` in words; `runs` are in the order of Comparison."""
     rows: dict[tuple[str, str], list[int]] = {}
     for run in runs:
         rows.setdefault((run.cell.task, run.cell.label), []).append(run.cell.seed)
@@ -73,7 +74,7 @@ def _same(value: float | None) -> float | None:
 
 
 Column = tuple[str, str, str, Callable[[float | None], float | None]]
-# Head, key of RunResult.figures(), form of spread(), unit.
+# Head, key of RunResult.figures(), `form` of spread(), conversion to the unit of the column.
 _LEARNED: tuple[Column, ...] = (
     ("success", "success_rate", ".2f", _same),
     ("length", "episode_length_mean", ".1f", _same),
@@ -105,7 +106,7 @@ def _cell(done: Sequence[RunResult], column: Column) -> str:
 
 
 def _of_columns(comparison: Comparison, task: str, columns: Sequence[Column]) -> str:
-    """A row per method, also of those without a result."""
+    """Returns a table with a row per label, also for labels without a result."""
     rows = []
     for label in comparison.labels:
         runs = comparison.row(task, label)
@@ -115,17 +116,17 @@ def _of_columns(comparison: Comparison, task: str, columns: Sequence[Column]) ->
 
 
 def learned(comparison: Comparison, task: str) -> str:
-    """The table of what every method came to on one task."""
+    """Returns the table of the learning results of all labels on one task."""
     return _of_columns(comparison, task, _LEARNED)
 
 
 def spent(comparison: Comparison, task: str) -> str:
-    """The table of what the runs of every method cost on one task, generation and learning."""
+    """Returns the table of the costs of all labels on one task, in generation and learning."""
     return _of_columns(comparison, task, _SPENT)
 
 
 def _shared_tasks(comparison: Comparison) -> list[str]:
-    """Those that more than one method was run on; all if there are none."""
+    """Returns the tasks on which several labels have results; all tasks if there are none."""
     rows = {
         task: [bool(comparison.done(task, label)) for label in comparison.labels]
         for task in comparison.tasks
@@ -134,7 +135,7 @@ def _shared_tasks(comparison: Comparison) -> list[str]:
 
 
 def _scores(comparison: Comparison, tasks: Sequence[str], label: str) -> dict[str, Floats]:
-    """Final success of the seeds, per task that has any."""
+    """Returns the final success of each seed, [seeds] per task that has results."""
     found = {task: comparison.done(task, label) for task in tasks}
     return {
         task: np.array([run.summary["success_rate"] for run in runs])
@@ -152,7 +153,7 @@ def is_wider(label: str) -> bool:
 
 
 def pooled(comparison: Comparison) -> str:
-    """All tasks and seeds together."""
+    """Returns the table of statistics over all shared tasks and all seeds."""
     head = [
         "method",
         "tasks",
@@ -182,14 +183,17 @@ def pooled(comparison: Comparison) -> str:
 
 
 def mean_success(runs: Sequence[RunResult]) -> float:
-    """The mean success of the final greedy policies."""
+    """Returns the mean success of the final greedy policies."""
     return estimates.mean_std([run.summary["success_rate"] for run in runs])[0]
 
 
 def _ratio(
     above: str, below: Callable[[RunResult], float], scale: float
 ) -> Callable[[RunResult], float | None]:
-    """A key of the summary for each of what `below` counts; None where it was not counted."""
+    """Returns a function of a run: scale * summary[above] / below(run).
+
+    That function returns None if the summary lacks `above` or the count `below` is 0.
+    """
 
     def of(run: RunResult) -> float | None:
         value, count = run.summary.get(above), below(run)
@@ -254,7 +258,10 @@ def _per_method(
     made: str,
     columns: Sequence[tuple[str, Callable[[RunResult], float | None], str]],
 ) -> str:
-    """A row per task and method whose runs have `made` any, a count of their summaries."""
+    """Returns a table with a row per task and label.
+
+    Only finished runs count whose summary has a count `made` above 0.
+    """
     rows = []
     for task in comparison.tasks:
         for label in comparison.labels:
@@ -265,16 +272,16 @@ def _per_method(
 
 
 def runtime(comparison: Comparison) -> str:
-    """Appendix E: what the actions cost, backward and forward."""
+    """Returns the table of the run times of backward and forward actions (Appendix E)."""
     return _per_method(comparison, "candidates", _RUNTIME)
 
 
 def data(comparison: Comparison) -> str:
-    """How well reverse steps replay (Appendix F), and what the data cover."""
+    """Returns the table on the data: amount, coverage, replay gap (Appendix F), accuracy of Q."""
     return _per_method(comparison, "transitions", _DATA)
 
 
 def not_run(comparison: Comparison) -> list[str]:
-    """Methods that were not asked for."""
+    """Returns the methods of which the comparison has no cell."""
     asked = {run.cell.method for run in comparison.results}
     return [method for method in METHODS if method not in asked]

@@ -1,4 +1,4 @@
-"""Methods x seeds x tasks: runs what is not done yet, side by side, and reports on all."""
+"""Runs the unfinished runs of a comparison (methods x seeds x tasks) in parallel and reports."""
 
 from __future__ import annotations
 
@@ -19,12 +19,17 @@ from rtg.processes.children import Node, kill_all, stop_all
 from rtg.processes.interrupts import Interrupts
 
 _POLL = 0.2  # [s]
-_GRACE = 10.0  # [s]; a run gives its own processes less
+_GRACE = 10.0  # [s] from SIGTERM to SIGKILL; a run allows its own processes less
 _STAMP = re.compile(r"^\[ *[\d.]+ s\] ")
 
 
 def reproduce(args: ReproduceArgs) -> int:
-    """Exit status. Raises UserError before anything starts, RunError if it was stopped."""
+    """Runs the comparison, writes its report and returns the exit status.
+
+    Raises UserError before any job starts if the arguments are illegal or do not fit the folder,
+    and while it writes the report if a file of a run is damaged. Raises RunError if the user
+    stopped the comparison.
+    """
     runs = make_ready(args)
     with run_folder.writing_to(args.out):
         args.out.mkdir(parents=True, exist_ok=True)
@@ -33,12 +38,11 @@ def reproduce(args: ReproduceArgs) -> int:
         grid.add(args.command, args.cells)
         with run_folder.writing_to(args.out):
             grid.write(args.out)
-        for stage in grouped_seeds.stages(
-            runs, args.together
-        ):  # what fails there, its run does again
+        # A run repeats the work of a job that fails in these stages.
+        for stage in grouped_seeds.stages(runs, args.together):
             _run_all(args, Crew(stage, args.jobs))
         rows = _run_all(args, Crew(runs, args.jobs, Failures(grid, args.out)))
-        from rtg.compare.report_files import write_report  # heavy
+        from rtg.compare.report_files import write_report  # imports matplotlib, which takes long
 
         report = write_report(args.out, args.out)
     print(f"{counts(rows)}\nreport: {report}")
@@ -46,7 +50,7 @@ def reproduce(args: ReproduceArgs) -> int:
 
 
 def _run_all(args: ReproduceArgs, crew: Crew) -> list[Row]:
-    """How each job ended."""
+    """Runs all jobs and returns a row on how each ended. Raises RunError if the user stopped it."""
     with display(sys.stdout) as shown, Interrupts(on_demand=crew.kill) as interrupts:
         try:
             while crew.tend(shown):
@@ -60,33 +64,35 @@ def _run_all(args: ReproduceArgs, crew: Crew) -> list[Row]:
 
 
 class Job(Protocol):
-    """The work that a crew does in a process, as CellRun."""
+    """Work that a crew does in one process; CellRun is an example."""
 
     @property
     def name(self) -> str: ...
 
     @property
     def log(self) -> Path:
-        """The file of what it says."""
+        """The log file of the process."""
 
     @property
     def done(self) -> bool:
-        """Says whether there is nothing left to do."""
+        """Returns whether there is nothing left to do."""
 
     @property
     def generates(self) -> str | None:
-        """The kind of transitions that it makes and others may wait for; None if there are none,
-        or they are there."""
+        """The kind of transitions that the job has yet to generate; None if there are none.
+
+        Other jobs that need the same kind wait for this job.
+        """
 
     def command(self) -> list[str]:
-        """Begins the job, or goes on with it."""
+        """Returns the command that begins or resumes the job, after preparing its folder."""
 
     def outcome(self) -> str:
-        """The result of a job that is done, in words."""
+        """Returns the result of a finished job in words."""
 
 
 class Failures:
-    """How jobs failed, with their last words, kept in the list of cells."""
+    """Records in grid.json how jobs failed, with the end of their logs."""
 
     def __init__(self, grid: Grid, folder: Path) -> None:
         self._grid, self._folder = grid, folder
@@ -96,21 +102,24 @@ class Failures:
         self._grid.write(self._folder)
 
     def drop(self, name: str) -> None:
-        """It gets another chance."""
+        """Removes the failure of a job that is about to start again."""
         if self._grid.failed.pop(name, None) is not None:
             self._grid.write(self._folder)
 
 
 class Crew:
-    """Jobs, so many of them at work at a time."""
+    """Runs jobs, at most `places` of them at the same time."""
 
     def __init__(self, jobs: Sequence[Job], places: int, failures: Failures | None = None) -> None:
         self._jobs, self._places, self._failures = list(jobs), places, failures
-        self._nodes: dict[str, Node] = {}  # at work
+        self._nodes: dict[str, Node] = {}  # the running jobs, by name
         self._rows = {job.name: _first_row(job) for job in jobs}
 
     def tend(self, shown: GridDisplay) -> bool:
-        """Takes note of what has ended, starts what there is room for; whether any is at work."""
+        """Records the jobs that have ended, starts jobs while there is room and shows all rows.
+
+        Returns whether any job is running.
+        """
         for job in self._jobs:
             node = self._nodes.get(job.name)
             if node is not None:
@@ -123,23 +132,23 @@ class Crew:
         return bool(self._nodes)
 
     def rows(self) -> list[Row]:
-        """In the order of the jobs."""
+        """Returns a row per job, in the order of the jobs."""
         return list(self._rows.values())
 
     def wait(self, seconds: float) -> None:
-        """Until one of those at work has ended, perhaps, or so much time has passed."""
+        """Waits until the running job that started first has ended, or for at most `seconds`."""
         next(iter(self._nodes.values())).wait(seconds)
 
     def stop(self) -> None:
-        """Ends all jobs, so that they can go on."""
+        """Stops all jobs so that they can be resumed; kills those still running after _GRACE."""
         stop_all(self._nodes.values(), _GRACE)
 
     def kill(self) -> None:
-        """Ends all jobs at once."""
+        """Kills all jobs at once."""
         kill_all(self._nodes.values())
 
     def _is_made(self, job: Job) -> bool:
-        """Says whether one at work makes the transitions that the job would make."""
+        """Returns whether a running job generates the transitions that `job` would generate."""
         kinds = {other.generates for other in self._jobs if other.name in self._nodes}
         return job.generates is not None and job.generates in kinds
 
@@ -174,5 +183,5 @@ class Crew:
 
 
 def _first_row(job: Job) -> Row:
-    """The row of a job that is not at work."""
+    """Returns the row of a job that is not running: done or waiting."""
     return Row(job.name, "done", job.outcome()) if job.done else Row(job.name)

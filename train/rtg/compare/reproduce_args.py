@@ -1,4 +1,4 @@
-"""The flags of `./run.sh reproduce` and the cells that they stand for."""
+"""Parses the flags of `./run.sh reproduce` into the cells of a comparison."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rtg.run.run_args import Override, Parser, task_file
 from rtg.run.run_args import parse as parse_run
 
 SEEDS = "5"
-# Enough to see every part at work; no figure of such a run is a result.
+# Settings of --quick: every part runs, but on budgets too small for results.
 QUICK = (
     "search.transitions=30000",
     "train.interactions=30000",
@@ -29,7 +29,7 @@ QUICK = (
     "train.checkpoint_every=5000",
 )
 MAX_SEEDS = 1000
-# What a cell decides, with the flag to use.
+# Keys that --set must leave to the cells -> the flag to use instead.
 DECIDED = {
     "run.seed": "--seeds",
     "run.method": "--methods",
@@ -54,18 +54,18 @@ The same command again goes on where it was stopped. Report and pictures: DIR/re
 class ReproduceArgs:
     """A call of `rtg reproduce`."""
 
-    files: dict[str, Path]  # by name of the task
+    files: dict[str, Path]  # by task name
     cells: tuple[Cell, ...]
-    settings: tuple[str, ...]  # KEY=VALUE, of all cells
+    settings: tuple[str, ...]  # KEY=VALUE, for all cells
     jobs: int
     together: bool  # seeds of a method learn in one process even without a GPU
     out: Path
-    command: str  # with all that decides the results, for the report
-    typed: str  # as the user typed it
+    command: str  # with all flags that affect the results, for the report
+    typed: str  # the command as the user typed it
 
 
 def parser() -> Parser:
-    """The flags."""
+    """Returns the parser of the flags."""
     p = Parser(
         prog="./run.sh reproduce",
         description="Run methods x seeds on tasks, one process per core, and write a report.",
@@ -103,7 +103,7 @@ def _number(flag: str, word: str, least: int, most: int, legal: str = "") -> int
 
 
 def parse_seeds(words: str) -> tuple[int, ...]:
-    """Raises UserError."""
+    """Parses a number N (seeds 1 to N) or a list 1,2,3. Raises UserError."""
     if "," not in words:
         legal = f"a number from 1 to {MAX_SEEDS}, or a list 1,2,3"
         return tuple(range(1, 1 + _number("--seeds", words, 1, MAX_SEEDS, legal)))
@@ -115,7 +115,7 @@ def parse_seeds(words: str) -> tuple[int, ...]:
 
 
 def _methods(args: argparse.Namespace) -> tuple[str, ...]:
-    """Raises UserError."""
+    """Returns the methods to compare. Raises UserError for an unknown one."""
     if args.methods is None:
         is_of_reference = args.sweep or args.ablations
         return QUICK_METHODS if args.quick else (REFERENCE,) if is_of_reference else METHODS
@@ -129,7 +129,7 @@ def _methods(args: argparse.Namespace) -> tuple[str, ...]:
 
 
 def _seeds(args: argparse.Namespace) -> str:
-    """As the user types them."""
+    """Returns the value of --seeds, or its default, as the user types it."""
     default = "1" if args.quick else SEEDS
     return default if args.seeds is None else str(args.seeds)
 
@@ -145,7 +145,7 @@ def _files(words: Sequence[str]) -> dict[str, Path]:
 
 
 def parse_sweep(words: str) -> tuple[str, ...]:
-    """KEY=V1,V2 -> (KEY=V1, KEY=V2). Raises UserError."""
+    """Splits KEY=V1,V2 into (KEY=V1, KEY=V2). Raises UserError."""
     key, sign, values = words.partition("=")
     found = [f"{key}={value}" for value in values.split(",")]
     if not (key and sign) or any(bad in words for bad in "/@ ") or "" in values.split(","):
@@ -156,7 +156,7 @@ def parse_sweep(words: str) -> tuple[str, ...]:
 
 
 def _check_keys(sweeps: Sequence[tuple[str, ...]]) -> None:
-    """Raises UserError if a key has two axes."""
+    """Raises UserError if two sweeps have the same key."""
     seen = set[str]()
     for key in (sweep[0].partition("=")[0] for sweep in sweeps):
         if key in seen:
@@ -165,7 +165,7 @@ def _check_keys(sweeps: Sequence[tuple[str, ...]]) -> None:
 
 
 def _cells(args: argparse.Namespace, files: dict[str, Path]) -> tuple[Cell, ...]:
-    """Tasks x methods x settings x seeds. Raises UserError."""
+    """Returns the cells: tasks x methods x settings x seeds. Raises UserError."""
     sweeps = [parse_sweep(sweep) for sweep in args.sweep]
     _check_keys(sweeps)
     if args.ablations and sweeps:
@@ -181,7 +181,7 @@ def _cells(args: argparse.Namespace, files: dict[str, Path]) -> tuple[Cell, ...]
 
 
 def _settings(args: argparse.Namespace) -> tuple[str, ...]:
-    """Raises UserError for what other flags decide."""
+    """Returns the settings of all cells. Raises UserError if --set names a key of DECIDED."""
     for setting in args.set:
         if (key := setting.partition("=")[0]) in DECIDED:
             raise UserError(f"--set {setting}: reproduce decides it; legal: {DECIDED[key]}")
@@ -189,13 +189,13 @@ def _settings(args: argparse.Namespace) -> tuple[str, ...]:
 
 
 def _common(args: argparse.Namespace, method: str) -> list[Override]:
-    """The settings of all cells of a method."""
+    """Returns the overrides that all cells of a method share."""
     of_method = parse_run(run_words(method)).overrides
     return [*of_method, *(Override(f"--set {setting}", setting) for setting in _settings(args))]
 
 
 def parse(words: Sequence[str]) -> ReproduceArgs:
-    """Raises UserError, or SystemExit(0) after --help."""
+    """Parses the command line. Raises UserError, or SystemExit(0) after --help."""
     args = parser().parse_args(words)
     tasks = args.tasks or TASKS
     files = _files(tasks)

@@ -1,4 +1,4 @@
-"""The results of the runs of a comparison, read from their folders."""
+"""Reads the results of the runs of a comparison from their folders."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ CURVES = ("success_rate", "rollout_success", "episode_length_mean", "episode_ret
 
 
 def costs(curve: dict[str, Floats], cost: str) -> list[float]:
-    """That column, whole numbers but for seconds. [N]"""
+    """Returns the column `cost` of a curve; the values are whole numbers except for seconds. [N]"""
     return (curve[cost] if cost == "cpu_s" else curve[cost].astype(int)).tolist()
 
 
 @dataclass(frozen=True)
 class RunResult:
-    """A cell and how far it has come."""
+    """A cell with the state and the results of its run."""
 
     cell: Cell
     folder: Path
     state: str  # done, failed, unfinished, not run
-    summary: dict[str, Any]  # summary.json; of a run that is not done, empty like the next two
+    summary: dict[str, Any]  # summary.json; empty, as the next two, unless the run is done
     versions: dict[str, Any]
-    # Columns of progress.csv [N]; `pushes` and `cpu_s` with those of the generation.
+    # Columns of progress.csv [N]; `pushes` and `cpu_s` include those of the generation.
     curve: dict[str, Floats]
-    train: _core.TrainConfig | None  # of a run that is not done, none
+    train: _core.TrainConfig | None  # None unless the run is done
 
     @property
     def done(self) -> bool:
@@ -49,17 +49,25 @@ class RunResult:
 
     @property
     def interacts(self) -> bool:
-        """Without, the interactions of its curve are rounds of learning worth as many."""
+        """Returns whether the learner interacts with the environment.
+
+        If not, `interactions` of the curve stands for rounds of learning: it is the number of
+        interactions that would have brought as many rounds.
+        """
         return self.train is not None and self.train.interact
 
     @property
     def commit(self) -> str | None:
-        """The commit of the program that ended the run."""
+        """The commit of the program that finished the run."""
         return versions.commit(self.versions)
 
     @property
     def commits(self) -> str:
-        """In words, with others that learned before it was resumed or made the transitions."""
+        """All commits of the run in words.
+
+        Names `commit`, the other commits that worked on the run before it was resumed, and the
+        commit that generated the transitions if it is another one.
+        """
         generator = versions.commit(self.versions.get("generator", {}))
         is_other = generator not in (None, self.commit) and self.summary.get("transitions")
         words = [f"`{self.commit}`"]
@@ -67,7 +75,7 @@ class RunResult:
         return ", ".join([*words, f"transitions by `{generator}`"] if is_other else words)
 
     def figures(self) -> dict[str, Any]:
-        """The entry of report.json."""
+        """Returns the entry of the run in report.json."""
         names = ("success_rate", "episode_length_mean", "rollout_success", "interactions")
         of_generation = ("transitions", "replays", "generate_cpu_s", "generate_wall_s")
         of_learner = ("train_cpu_s", "train_wall_s", "q_rank_correlation")
@@ -83,12 +91,16 @@ class RunResult:
         }
 
     def spent(self, cost: str) -> float | None:
-        """At the last evaluation, in all; None without any."""
+        """Returns the total cost at the last evaluation; None if there are no evaluations."""
         return costs(self.curve, cost)[-1] if self.curve else None
 
     def success_at_third(self) -> float | None:
-        """The success in the last evaluation within a third of the budget; of a run that had ended
-        by then the final one, as it may have ended because the others went well by chance."""
+        """Returns the success in the last evaluation within a third of the budget.
+
+        For a run that had ended by then, returns the success of the final evaluation instead: the
+        run may have ended because evaluations during learning succeeded by chance. Returns None if
+        there is no such evaluation.
+        """
         if not self.curve or self.train is None:
             return None
         third = self.train.interactions / 3
@@ -99,7 +111,10 @@ class RunResult:
         return float(known[-1]) if len(known) else None
 
     def reached(self, bar: float, cost: str = COSTS[0]) -> float | None:
-        """The cost at the first evaluation with that greedy success; None: never."""
+        """Returns the cost at the first evaluation with a greedy success of at least `bar`.
+
+        Returns None if there is none.
+        """
         if not self.curve:
             return None
         success = self.curve["success_rate"]
@@ -109,7 +124,7 @@ class RunResult:
 
 @dataclass(frozen=True)
 class Comparison:
-    """All runs, in the order in which tables show them."""
+    """All runs of a comparison, in the order in which tables show them."""
 
     results: tuple[RunResult, ...]
 
@@ -119,16 +134,16 @@ class Comparison:
 
     @property
     def labels(self) -> list[str]:
-        """Methods, and what was swept of them."""
+        """The labels of the cells (method with swept settings), in the order of the methods."""
         cells = sorted((r.cell for r in self.results), key=_place)
         return list(dict.fromkeys(cell.label for cell in cells))
 
     def row(self, task: str, label: str) -> list[RunResult]:
-        """The runs of all seeds."""
+        """Returns the runs of all seeds of a label on a task."""
         return [r for r in self.results if (r.cell.task, r.cell.label) == (task, label)]
 
     def done(self, task: str, label: str) -> list[RunResult]:
-        """Those of them that have a result."""
+        """Returns the runs of row() that have a result."""
         return [r for r in self.row(task, label) if r.done]
 
     def all_done(self) -> list[RunResult]:
@@ -148,7 +163,10 @@ def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
 
 
 def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
-    """The learner's costs and those of the generation before it added up. Raises UserError."""
+    """Reads progress.csv and adds the costs of the generation to those of the learner.
+
+    Empty without evaluations. Raises UserError if the file is damaged.
+    """
     curve = learning_curve(progress) if progress.is_file() else {}
     if not curve:
         return {}
@@ -163,8 +181,11 @@ def _place(cell: Cell) -> int:
 
 
 def read_comparison(folder: Path, grid: Grid) -> Comparison:
-    """Tasks in the order of TASKS, methods in that of METHODS, what is not among them after them,
-    like swept values in the order of the grid; then seeds."""
+    """Reads the results of all cells of the grid. Raises UserError if a file is damaged.
+
+    The runs are sorted by task, method, settings and seed. Tasks have the order of TASKS, methods
+    that of METHODS; others follow. Other tasks and all settings have the order of the grid.
+    """
     tasks = list(dict.fromkeys((*TASKS, *(cell.task for cell in grid.cells))))
     settings = list(dict.fromkeys(cell.settings for cell in grid.cells))
     cells = sorted(

@@ -1,1 +1,1 @@
-"""The task as environments: one, many at once, and a curriculum of starts."""
+"""Environments of a task: a single one, a vector of them, and a curriculum of starts."""

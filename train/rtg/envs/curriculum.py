@@ -1,22 +1,24 @@
 """Reverse curriculum generation [Florensa et al. 2017]: starts that grow back from goal states.
 
-A round trains from a pool of starts. Those that the learner solves now and then, but not always,
-are good: short walks of random pushes from them give most of the next pool, good ones of earlier
-rounds the rest. The first walks begin at states in which the goal holds.
+A round trains from a pool of starts. A start is good if the learner solves it sometimes but not
+always. Most of the next pool comes from short walks of random pushes that begin at good starts; the
+rest are good starts of earlier rounds. The first walks begin at states in which the goal holds.
 
-Its bounds of a good start and its ratio of new and old ones are kept. Its pools, 200 and 100, would
-leave six rounds of whole episodes in Table 2's interactions; ours leave 30, and more of shorter.
+The paper's bounds of a good start and its ratio of new to old starts are kept. Its pools of 200 new
+and 100 old starts would allow six rounds of full-length episodes within the interactions of
+Table 2. The pools here allow 30 such rounds, and more if episodes are shorter.
 
 Choices that give the method its best chance:
-- Its walks of 50 small steps are PUSHES whole pushes, of which half seek contact: of uniform pushes
-  one in ten moves anything, so the starts would differ in where the robot stands.
-- Where a round has fewer than FEWEST good starts, since it was too easy or too hard, the next walks
-  begin at mastered ones, too: else a learner that solves all starts so far would stay among them.
-  They are those of the starts it added, as the old ones lie further in, and of these the half that
-  took the learner most pushes, as walks lead inwards as often as outwards. Where it has neither
-  they begin again where the last ones began.
-- Starts with an object beyond the arena are left out: the robot cannot push it back.
-- A share of the episodes begins at the task's own starts, which is what the learner is judged by.
+- The paper's walks of 50 small steps become walks of PUSHES whole pushes, half of which seek
+  contact. Only one in ten uniform pushes moves an object, so without contact the starts would
+  differ only in the position of the robot.
+- If a round has fewer than FEWEST good starts, because it was too easy or too hard, the next walks
+  begin at mastered starts, too. Otherwise a learner that solves all starts would never leave them.
+  Only new starts of the round qualify, as old ones are closer to the goal. Of the mastered new
+  starts only the half with the longest episodes is used, as walks lead towards the goal as often as
+  away from it. Without good and mastered starts the walks begin where the previous ones began.
+- Starts with an object outside the arena are left out, because the robot cannot push it back.
+- A share of the episodes begins at the task's own starts, from which the learner is evaluated.
 """
 
 from __future__ import annotations
@@ -31,20 +33,23 @@ from rtg.errors import UserError
 
 Floats = NDArray[np.float64]
 
-LEAST, MOST = 0.1, 0.9  # success from a good start
-NEW, OLD = 40, 20  # starts of a pool
-FEWEST = 10  # good starts that a round needs to go on from them alone
-EPISODES = 3  # per start and round, in the mean
-GOALS = 100  # states that the first walks begin at
-WALKS, PUSHES = 100, 3  # from which the new starts are drawn
-SEEKING = 0.5  # share of their pushes that seek contact
-OF_GOALS = 1 << 62  # seeds of goal states, beyond those of runs
+LEAST, MOST = 0.1, 0.9  # bounds of the success rate from a good start
+NEW, OLD = 40, 20  # numbers of new and old starts in a pool
+FEWEST = 10  # number of good starts below which mastered starts are used, too
+EPISODES = 3  # mean number of episodes per start and round
+GOALS = 100  # number of draws of the goal states where the first walks begin
+WALKS, PUSHES = 100, 3  # number of walks for the new starts; pushes per walk
+SEEKING = 0.5  # share of the walks' pushes that seek contact
+OF_GOALS = 1 << 62  # offset of the seeds of goal states, above the seeds of runs
 
-ELSEWHERE = -1  # number of a start that is not of the curriculum
+ELSEWHERE = -1  # number of all starts that are not from the curriculum
 
 
 def goal_states(task: _core.Task, seed: int, count: int = GOALS) -> Floats:
-    """`count` draws but for those in vain. [goals, bodies, 3]; UserError if none is left."""
+    """Draws `count` goal states and leaves out failed draws. [goals, bodies, 3]
+
+    Raises UserError if all draws fail.
+    """
     draws = [task.goal_state(seed, k) for k in range(count)]
     found = [state for state in draws if state is not None]
     if not found:
@@ -53,17 +58,17 @@ def goal_states(task: _core.Task, seed: int, count: int = GOALS) -> Floats:
 
 
 class Curriculum:
-    """Where a share of the training episodes begin; how they end decides where the next ones do."""
+    """Provides starts for a share of the training episodes and adapts them to the results."""
 
     def __init__(self, config: _core.Config, share: float, seed: int) -> None:
         self._task, self._simulator = config.task, _core.Simulator(config)
         self._share = share
         self._rng = np.random.default_rng([seed, 2])
-        self._seeds: Floats = goal_states(self._task, OF_GOALS + seed)  # where walks begin
-        self._good = self._seeds[:0]  # of all rounds
+        self._seeds: Floats = goal_states(self._task, OF_GOALS + seed)  # states where walks begin
+        self._good = self._seeds[:0]  # good starts of all rounds
         self._first = 0  # number of the pool's first start
-        self._drawn = 0  # starts of this pool
-        self.pushes = 0  # of the simulator on walks, beside the learner's interactions
+        self._drawn = 0  # number of starts drawn from this pool
+        self.pushes = 0  # simulated pushes of walks, in addition to the learner's interactions
         self._set_pool(self._nearby(), self._good)
 
     @property
@@ -72,7 +77,10 @@ class Curriculum:
         return self._pool
 
     def draw(self) -> tuple[int, Floats | None]:
-        """The next episode's start with its number; ELSEWHERE if it shall begin as without."""
+        """Returns the number and the start of the next episode.
+
+        They are ELSEWHERE and None if the episode shall begin at a start of the task.
+        """
         if self._rng.random() >= self._share:
             return ELSEWHERE, None
         k = self._drawn % len(self._pool)
@@ -80,10 +88,12 @@ class Curriculum:
         return self._first + k, self._pool[k]
 
     def note(self, number: int, success: bool, length: int) -> None:
-        """How an episode from that start ended, after `length` pushes. Those of earlier rounds no
-        longer count."""
+        """Records how an episode from start `number` ended after `length` pushes.
+
+        Ignores starts of earlier rounds and ELSEWHERE. Begins the next round if this one is over.
+        """
         k = number - self._first
-        if k < 0:  # ELSEWHERE, too
+        if k < 0:  # includes ELSEWHERE
             return
         self._tries[k] += 1
         self._wins[k] += success
@@ -103,7 +113,7 @@ class Curriculum:
         self._set_pool(self._nearby(), old)
 
     def _frontier(self, rate: Floats) -> Floats:
-        """The half of the mastered new starts with the longest episodes."""
+        """Returns the half of the mastered new starts that has the longest episodes."""
         mastered = np.flatnonzero(rate[: self._new] > MOST)
         lengths = self._lengths[mastered] / self._tries[mastered]
         longest = np.argsort(-lengths, kind="stable")[: (len(mastered) + 1) // 2]
@@ -118,11 +128,11 @@ class Curriculum:
         self._lengths = np.zeros(len(pool), np.int64)  # pushes in all tries
 
     def _some(self, states: Floats, count: int) -> Floats:
-        """`count` of them, or all, in random order."""
+        """Returns `count` of the states, or all if there are fewer, in random order."""
         return states[self._rng.permutation(len(states))[:count]]
 
     def _nearby(self) -> Floats:
-        """New starts: states on random walks from the seeds; the start of the task without any."""
+        """Returns new starts: states on random walks from the seeds, else the task's start."""
         states = self._seeds[self._rng.integers(len(self._seeds), size=WALKS)]
         met = []
         for _ in range(PUSHES):
@@ -136,13 +146,13 @@ class Curriculum:
         return found if len(found) else self._task.start[None]
 
     def _headings(self, states: Floats) -> NDArray[np.int64]:
-        """The heading of the next push of each walk. [walks]"""
+        """Draws the heading of the next push of each walk. [walks]"""
         contact = self._task.contact_headings(states, int(self._rng.integers(1 << 62)))
         anywhere = self._rng.integers(self._task.headings, size=len(states))
         return np.where(self._rng.random(len(states)) < SEEKING, contact, anywhere)
 
     def state(self) -> dict[str, Any]:
-        """Everything that the next starts depend on."""
+        """Returns everything that the next starts depend on."""
         return {
             "rng": self._rng.bit_generator.state,
             "seeds": self._seeds,

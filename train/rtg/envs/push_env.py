@@ -1,4 +1,4 @@
-"""The task as a Gymnasium environment, for one's own learners, notebooks and pictures."""
+"""The task as a Gymnasium environment, for other learners, notebooks and pictures."""
 
 from __future__ import annotations
 
@@ -13,22 +13,23 @@ from numpy.typing import NDArray
 from rtg import _core, paths
 from rtg.pictures.draw import state_image
 
-OBSERVATION_LIMIT = 200.0  # a body 1 km away is 125; nothing gets that far
+OBSERVATION_LIMIT = 200.0  # a body 1 km away gives 125; no body gets that far
 
 
 def observation_space(task: _core.Task) -> spaces.Box:
-    """Lengths / 8 m, sines and cosines. float32 [observation]"""
+    """Returns the space of observations: lengths / 8 m, sines, cosines. float32 [observation]"""
     return spaces.Box(-OBSERVATION_LIMIT, OBSERVATION_LIMIT, (task.observation_size,), np.float32)
 
 
 class PushEnv(gymnasium.Env[Any, Any]):
-    """Push the bodies of a task into their goal: reward 1 and the end when it holds, else 0.
+    """The task of pushing bodies until the goal holds.
 
-    `config`: what to take the task and the physics from, or its file; Gathering's if None.
-    Action a moves the robot one stride along 2πa/headings. Time runs out after task.horizon
-    actions (truncated). `jitter` [m] moves the objects of the start, None: by the task's own
-    amount. The seed decides all. `info`: "poses" [bodies, 3], "is_success", and "rejected" for a
-    push that the simulator could not finish (the episode is cut there, the state stays).
+    The reward is 1 when the goal holds, which ends the episode, else 0. `config`: the configuration
+    with the task and the physics, or its file; Gathering's if None. Action a moves the robot one
+    stride along 2πa/headings. An episode is truncated after task.horizon actions. `jitter`: the
+    objects of the start are moved by ± this [m]; None: by the task's own amount. The seed
+    determines all random numbers. `info`: "poses" [bodies, 3], "is_success", and "rejected", True
+    for a push that the simulator could not finish (it truncates the episode and leaves the state).
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012  (gymnasium's own way)
@@ -47,17 +48,20 @@ class PushEnv(gymnasium.Env[Any, Any]):
         self.observation_space = observation_space(self.task)
         self.action_space = spaces.Discrete(self.task.headings)
         self._simulator = _core.Simulator(config)
-        self._path: list[NDArray[np.float64]] = [self.task.start]  # states of the episode
+        self._path: list[NDArray[np.float64]] = [self.task.start]  # states of the current episode
 
     @property
     def poses(self) -> NDArray[np.float64]:
-        """The state. [bodies, 3]"""
+        """The current state. [bodies, 3]"""
         return self._path[-1]
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """`options`: "poses" [bodies, 3] starts there, "jitter" [m] replaces the env's own."""
+        """Begins an episode. Raises ValueError for unknown options.
+
+        `options`: "poses", the start [bodies, 3]; "jitter" [m], used instead of self.jitter.
+        """
         super().reset(seed=seed)
         options = options or {}
         unknown = set(options) - {"poses", "jitter"}
@@ -86,7 +90,7 @@ class PushEnv(gymnasium.Env[Any, Any]):
         if self.render_mode != "rgb_array":
             return None
         way = np.array(self._path)
-        way[:-1, 1:] = self.poses[1:]  # of the objects, only where they are now
+        way[:-1, 1:] = self.poses[1:]  # shows the objects only at their current poses
         reached = bool(self.task.succeeded(self.poses[None])[0])
         return state_image(self.task, way, caption=f"{len(way) - 1}", reached=reached)
 

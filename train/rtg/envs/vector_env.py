@@ -1,4 +1,4 @@
-"""Many copies of a task at once, as the learner takes them: one call of the core per step."""
+"""Many environments of a task for the learner, with one call of the core per step."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from rtg.envs.push_env import observation_space
 
 
 class PushVecEnv(VecEnv):
-    """PushEnv's environments in SB3's manner: a finished one starts again at once.
+    """A vector of PushEnv environments for SB3; a finished environment starts again at once.
 
-    Start number k of the whole run is start k of the stream `seed`, whichever environment is next;
-    with a curriculum some episodes begin at its starts instead.
+    The k-th start of the run is start k of the random stream `seed`, in whichever environment.
+    With a curriculum, some episodes begin at its starts instead; k does not count these.
     """
 
     def __init__(
@@ -36,11 +36,11 @@ class PushVecEnv(VecEnv):
         self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
         self.curriculum = curriculum
-        self._origins = [ELSEWHERE] * count  # of the running episodes, in the curriculum
-        self._starts = 0  # drawn so far, the curriculum's left out
-        self.successes = 0  # episodes that ended in one
+        self._origins = [ELSEWHERE] * count  # curriculum's start numbers of the current episodes
+        self._starts = 0  # number of starts so far, without the curriculum's
+        self.successes = 0  # number of successful episodes
         self._poses = np.zeros((count, task.bodies, 3))  # [count, bodies, 3]
-        self._steps = np.zeros(count, np.int64)  # actions in the running episodes
+        self._steps = np.zeros(count, np.int64)  # number of actions in the current episodes
         self._actions = np.zeros(count, np.int64)
 
     def reset(self) -> NDArray[np.float32]:
@@ -67,7 +67,7 @@ class PushVecEnv(VecEnv):
         if done.any():
             for env in map(int, np.flatnonzero(done)):
                 infos[env]["terminal_observation"] = observation[env]
-                if self._origins[env] == ELSEWHERE:  # what the learner is judged by
+                if self._origins[env] == ELSEWHERE:  # the task's own start, as in evaluations
                     infos[env]["is_success"] = bool(success[env])
                     infos[env]["episode"] = {"r": float(success[env]), "l": int(self._steps[env])}
                 if self.curriculum:
@@ -79,7 +79,7 @@ class PushVecEnv(VecEnv):
         return observation, success.astype(np.float32), done, infos
 
     def contact_headings(self, seed: int) -> NDArray[np.int64]:
-        """Per environment a heading towards a random object of its present state. [count]"""
+        """Draws per environment a heading towards a random object of its current state. [count]"""
         return self.task.contact_headings(self._poses, seed)
 
     def _begin(self, env: int) -> None:
@@ -91,7 +91,7 @@ class PushVecEnv(VecEnv):
         self._steps[env] = 0
 
     def state(self) -> dict[str, Any]:
-        """Everything that the next steps depend on."""
+        """Returns everything that the next steps depend on."""
         return {
             "poses": self._poses.copy(),
             "steps": self._steps.copy(),
@@ -110,7 +110,7 @@ class PushVecEnv(VecEnv):
         if self.curriculum:
             self.curriculum.restore(state["curriculum"])
 
-    # What SB3 asks of a VecEnv beyond that.
+    # The remaining methods of VecEnv.
 
     def close(self) -> None:
         pass
@@ -130,5 +130,5 @@ class PushVecEnv(VecEnv):
         return [False] * len(list(self._get_indices(indices)))
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
-        """The seed is given at construction; starting the stream anew is not supported."""
+        """Does nothing: the seed is fixed at construction."""
         return [None] * self.num_envs

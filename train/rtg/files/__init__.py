@@ -1,2 +1,1 @@
-"""The files that a run leaves in its folder: data set, checkpoint, versions, and how they are read
-back."""
+"""Reads and writes the files of a run folder: data set, checkpoint, versions, summary."""

@@ -13,7 +13,7 @@ from rtg.errors import UserError
 
 
 def write(path: Path, state: dict[str, Any]) -> None:
-    """Replaces the file at once or not at all, also if the machine goes down."""
+    """Replaces the file atomically, even if the machine crashes."""
     draft = path.with_name(path.name + ".part")
     with draft.open("wb") as file:
         th.save(_portable(state), file)
@@ -23,14 +23,17 @@ def write(path: Path, state: dict[str, Any]) -> None:
 
 
 def read(path: Path) -> dict[str, Any]:
-    """Reads what write() wrote, arrays as tensors. Runs no code of the file's. Raises UserError."""
+    """Reads a file of write(); arrays become tensors. Executes no code from the file.
+
+    Raises UserError if the file is missing, unreadable or damaged.
+    """
     try:
         state = th.load(path, map_location="cpu", weights_only=True)
     except FileNotFoundError:
         raise UserError(f"{path}: no such checkpoint") from None
     except OSError as error:
         raise UserError(f"{path}: {error.strerror or error}; legal: a file to read") from None
-    except Exception as error:  # the unpickler answers bytes of others with whatever they lead to
+    except Exception as error:  # the unpickler may raise any error on foreign bytes
         raise UserError(f"{path}: damaged, or not a file that RTG wrote") from error
     if not isinstance(state, dict):
         raise UserError(f"{path}: holds a {type(state).__name__}, which RTG never wrote there")
@@ -38,7 +41,7 @@ def read(path: Path) -> dict[str, Any]:
 
 
 def _portable(value: Any) -> Any:
-    """With arrays as tensors and numpy's numbers as Python's."""
+    """Returns `value` with arrays replaced by tensors and numpy scalars by Python numbers."""
     if isinstance(value, dict):
         return {key: _portable(part) for key, part in value.items()}
     if isinstance(value, list | tuple):

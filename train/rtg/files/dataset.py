@@ -1,4 +1,4 @@
-"""Transition sets: the arrays, the file `transitions.npz`, the check of files from outside."""
+"""Transition sets: their arrays, the file `transitions.npz` and the checks when it is read."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ from rtg.errors import UserError
 
 Array = npt.NDArray[Any]
 
-SOURCES = _core.SOURCES  # names of where a transition comes from, by value
-_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip entry can carry
+SOURCES = _core.SOURCES  # names of the origins of transitions; the value of `source` is the index
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip entry can store
 
 
 class Rows(NamedTuple):
-    """Consecutive transitions as a search gives them out, without what a learner sees of them."""
+    """Consecutive transitions as a search emits them, without observations."""
 
     poses: npt.NDArray[np.float64]  # [n, bodies, 3]: x [m], y [m], theta [rad]
     action: npt.NDArray[np.int32]  # [n]
     next_poses: npt.NDArray[np.float64]  # [n, bodies, 3]
     reward: npt.NDArray[np.float32]  # [n], 1 on success
-    terminated: npt.NDArray[np.bool_]  # [n], on success
-    source: npt.NDArray[np.int8]  # [n]
+    terminated: npt.NDArray[np.bool_]  # [n], True on success
+    source: npt.NDArray[np.int8]  # [n], index into SOURCES
 
     def after(self, skip: int, end: int | None = None) -> Rows:
-        """Without the first `skip` rows, and without those from `end` on."""
+        """Returns the rows from index `skip` up to, but not including, index `end`."""
         return Rows._make(column[skip:end] for column in self)
 
 
 class Transitions(NamedTuple):
-    """N true transitions of the true dynamics, in sequence order."""
+    """N transitions of the true dynamics, in sequence order."""
 
     poses: Array  # [N, bodies, 3] float64, x [m], y [m], θ [rad]; body 0 is the robot
     action: Array  # [N] int32
@@ -56,7 +56,7 @@ class _Column(NamedTuple):
         return self.shape.count(",") + 1
 
 
-# How each array of Transitions stands in the file.
+# Element type and shape that each array of Transitions has in the file.
 _COLUMNS = {
     "poses": _Column(np.float64, "[N, bodies, 3]"),
     "action": _Column(np.int32),
@@ -69,22 +69,27 @@ _COLUMNS = {
 }
 
 
-# What numpy and zipfile answer damaged files with.
+# Errors that numpy and zipfile raise on damaged files.
 _NOT_NUMPYS = (ValueError, EOFError, KeyError, RuntimeError, MemoryError, zipfile.BadZipFile)
 
 
 class DatasetError(UserError, ValueError):
-    """A file that is no transition set; the text names the file, the array and what is legal."""
+    """Bad input: a file that is no transition set.
+
+    The message names the file, the array and the legal values.
+    """
 
 
 def concatenate(parts: list[Transitions]) -> Transitions:
-    """The parts one after the other; at least one part."""
+    """Returns the parts joined in their order; needs at least one part."""
     return Transitions(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
 
 
 def write(path: Path, transitions: Transitions) -> None:
-    """Writes `path` at once or not at all, also if the machine goes down; equal transitions give
-    equal bytes."""
+    """Replaces `path` atomically, even if the machine crashes.
+
+    Equal transitions give equal bytes.
+    """
     partial = path.with_name(path.name + ".part")
     with partial.open("wb") as file:
         with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
@@ -101,9 +106,10 @@ def write(path: Path, transitions: Transitions) -> None:
 
 
 def read(path: Path, bodies: int | None = None, headings: int | None = None) -> Transitions:
-    """Reads and checks a transition set; `bodies` and `headings` of the task are checked if given.
+    """Reads and checks a transition set.
 
-    Raises DatasetError for anything that is no legal transition set, FileNotFoundError.
+    If `bodies` and `headings` of a task are given, the transitions must fit them. Raises
+    FileNotFoundError if there is no file, DatasetError if it is no legal transition set.
     """
     try:
         with np.load(path, allow_pickle=False) as archive:

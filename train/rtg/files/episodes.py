@@ -1,4 +1,4 @@
-"""A plan of a transition set, replayed."""
+"""Replays a plan of a transition set in the simulator."""
 
 from __future__ import annotations
 
@@ -11,17 +11,20 @@ from rtg.files.dataset import SOURCES, Transitions
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_GAP = 0.25  # [m], how far a body may lie from where the next step of a plan begins
-_REPLAYED = 50  # plans
+_GAP = 0.25  # [m], largest distance of a body from its place where the next step begins
+_REPLAYED = 50  # plans, at most
 
 
 def _places(states: Floats) -> Floats:
-    """[N, bodies, 3] -> [N, 2 bodies], m"""
+    """Returns the positions of all bodies [m]. [N, bodies, 3] -> [N, 2 bodies]"""
     return states[:, :, :2].reshape(len(states), -1)
 
 
 def _nearest(states: Floats, among: Floats) -> Ints:
-    """For each state the number of the nearest by place. [N, bodies, 3], [M, bodies, 3] -> [N]"""
+    """Returns, for each state, the index of the state in `among` with the nearest positions.
+
+    [N, bodies, 3], [M, bodies, 3] -> [N]
+    """
     x = _places(among)
     squares = (x * x).sum(axis=1)
     parts = np.array_split(_places(states), 1 + len(states) // 500)
@@ -29,8 +32,11 @@ def _nearest(states: Floats, among: Floats) -> Ints:
 
 
 def _plans(steps: Transitions) -> tuple[Ints, Ints]:
-    """Says of each step how many there are to a success, itself included, and which is the next
-    one; 0 where the steps lead to none. [steps] each"""
+    """Returns, for each step, the length of its plan and the index of the following step.
+
+    The length counts the steps to a success, the step itself included; it is 0 if the following
+    steps lead to no success. [steps] each
+    """
     following = _nearest(steps.next_poses, steps.poses)
     gaps = np.linalg.norm((steps.next_poses - steps.poses[following])[:, :, :2], axis=2)
     joined = gaps.max(axis=1) <= _GAP
@@ -41,7 +47,11 @@ def _plans(steps: Transitions) -> tuple[Ints, Ints]:
 
 
 def _replayed(config: _core.Config, start: Floats, actions: Ints) -> Floats:
-    """The states of an episode, up to success. [bodies, 3], [actions] -> [T+1, bodies, 3]"""
+    """Simulates `actions` from `start` and returns the states.
+
+    Stops after a success and before a push that the simulator cannot finish.
+    [bodies, 3], [actions] -> [T+1, bodies, 3]
+    """
     simulator, states = _core.Simulator(config), [start]
     for action in actions:
         after, ok = simulator.push(states[-1][None], np.array([action]))
@@ -54,12 +64,12 @@ def _replayed(config: _core.Config, start: Floats, actions: Ints) -> Floats:
 
 
 def replayed_plan(config: _core.Config, transitions: Transitions) -> Floats | None:
-    """A true episode: a plan's actions end to end, whether they still succeed or not.
+    """Returns the states of a true episode: the actions of a plan, simulated one after the other.
 
-    A plan goes from step to step (a tree's, but no branch), each of which begins within 0.25 m of
-    where the one before it ends, to a success. Of those that begin nearest to the start of the task
-    it is the first one that succeeds; without any, the nearest. [T+1, bodies, 3]; None without a
-    plan.
+    A plan is a chain of steps, branches excluded, that ends in a success; each step begins within
+    0.25 m of the end of the step before it. Up to 50 plans, those that begin nearest to the start
+    of the task, are simulated in order of that distance until one succeeds. If none succeeds, the
+    episode of the nearest plan is returned. [T+1, bodies, 3]; None if there is no plan.
     """
     chosen = transitions.source != SOURCES.index("branch")
     steps = Transitions(*(column[chosen] for column in transitions))

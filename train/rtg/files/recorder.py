@@ -12,7 +12,7 @@ from rtg.files.dataset import Rows, Transitions
 
 
 class Recorder:
-    """A sink of rows; the file is a function of the rows alone."""
+    """Collects rows. The file that it writes depends on the rows alone."""
 
     def __init__(self, task: _core.Task) -> None:
         self._task = task
@@ -20,7 +20,7 @@ class Recorder:
         self.count = 0
 
     def add(self, rows: Rows) -> Transitions:
-        """Takes the next rows of the sequence; returns them with what the learner sees."""
+        """Appends the next rows of the sequence and returns them with their observations."""
         self._parts.append(self._seen(rows))
         self.count += len(rows.action)
         return self._parts[-1]
@@ -34,12 +34,12 @@ class Recorder:
         )
 
     def transitions(self) -> Transitions:
-        """Everything so far."""
+        """Returns all transitions so far."""
         self._parts = [dataset.concatenate(self._parts)]
         return self._parts[0]
 
     def write(self, path: Path) -> None:
-        """Writes the file, at once or not at all."""
+        """Replaces the file atomically."""
         dataset.write(path, self.transitions())
 
 

@@ -1,4 +1,4 @@
-"""The folder of one run: what it was made from, and its summary."""
+"""The folder of one run: its lock, its text and JSON files, its summary."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rtg import _core, paths
 from rtg.errors import UserError
 from rtg.files import replay_gaps
 
-# What summary.json holds at least, null where a part did not run; train/SUMMARY.md explains it.
+# Keys of every summary.json, null where a part did not run; train/SUMMARY.md explains them.
 SUMMARY_KEYS = (
     "task",
     "method",
@@ -55,13 +55,13 @@ SUMMARY_KEYS = (
     "q_spread",
     "lost_transitions",
 )
-# Samples behind the pictures, too long for a summary.
+# Keys of generation.json with the data of the pictures, which are too long for summary.json.
 _SAMPLES = ("replay_gaps", "nodes")
 
 
 @contextlib.contextmanager
 def writing_to(folder: Path) -> Iterator[None]:
-    """Tells what the disk refuses as a mistake of --out. Raises UserError."""
+    """Turns an OSError of its `with` block into a UserError about --out."""
     try:
         yield
     except OSError as error:
@@ -70,7 +70,10 @@ def writing_to(folder: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def alone(folder: Path, other: str) -> Iterator[None]:
-    """No two processes work in the folder, which exists. Raises UserError if `other` does."""
+    """Locks the folder, which must exist, against other processes during the `with` block.
+
+    Raises UserError if the folder is locked already; the message names the holder, `other`.
+    """
     with writing_to(folder):
         directory = os.open(folder, os.O_RDONLY)
     try:
@@ -84,12 +87,12 @@ def alone(folder: Path, other: str) -> Iterator[None]:
 
 
 def checkpoint_file(run: Path) -> Path:
-    """Where the learner goes on from, once it has been stopped."""
+    """Returns the path of the checkpoint from which a stopped learner resumes."""
     return run / "checkpoint" / "state.pt"
 
 
 def write_text(path: Path, text: str) -> None:
-    """Replaces the file at once or not at all, also if the machine goes down."""
+    """Replaces the file atomically, even if the machine crashes."""
     draft = path.with_name(f".{path.name}.{os.getpid()}")
     with draft.open("w") as file:
         file.write(text)
@@ -99,12 +102,12 @@ def write_text(path: Path, text: str) -> None:
 
 
 def write_json(path: Path, value: Any) -> None:
-    """Indented, keys in the given order, in one step."""
+    """Replaces the file atomically by `value` as indented JSON, keys in their given order."""
     write_text(path, json.dumps(value, indent=2, ensure_ascii=False) + "\n")
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    """Empty if there is no such file. Raises UserError if it is damaged."""
+    """Reads a JSON object; empty if there is no file. Raises UserError if the file is damaged."""
     if not path.is_file():
         return {}
     try:
@@ -117,8 +120,10 @@ def read_json(path: Path) -> dict[str, Any]:
 
 
 def result(run: Path) -> dict[str, Any]:
-    """summary.json of a run that has learned to its end; of any other, empty. Raises UserError if
-    it is damaged."""
+    """Returns the content of summary.json; empty unless the run has finished learning.
+
+    Raises UserError if the file is damaged.
+    """
     found = read_json(run / "summary.json")
     if found.get("interactions") is None:
         return {}
@@ -128,7 +133,7 @@ def result(run: Path) -> dict[str, Any]:
 
 
 def default_path(task: str) -> Path:
-    """runs/TASK-TIME, with a number behind it if that second has one already."""
+    """Returns the path runs/TASK-TIME, with a number appended if that path exists."""
     base = paths.RUNS / f"{task}-{time.strftime('%Y%m%d-%H%M%S')}"
     path, count = base, 1
     while path.exists():
@@ -140,7 +145,10 @@ def default_path(task: str) -> Path:
 def summary(
     run: Path, config: _core.Config, mode: str | None, measured: dict[str, Any]
 ) -> dict[str, Any]:
-    """Generation and training merged; the contract's keys first, then what else was counted."""
+    """Merges the figures of generation and training: first SUMMARY_KEYS, then all other keys.
+
+    `measured` holds further figures by key. Raises UserError if a file of the run is damaged.
+    """
     generation = read_json(run / "generation.json") if config.train.offline else {}
     known: dict[str, Any] = {
         **{key: value for key, value in generation.items() if key not in _SAMPLES},

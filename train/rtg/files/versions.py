@@ -1,4 +1,4 @@
-"""The versions that a run was made with: versions.json of its folder."""
+"""Versions of the programs that made a run, as versions.json in its folder stores them."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ def _debian_version(package: str) -> str | None:
 
 
 def _processor() -> str | None:
-    """Model name of the processor, as Linux tells it."""
+    """Returns the model name of the processor from /proc/cpuinfo; None if the file lacks it."""
     lines = Path("/proc/cpuinfo").read_text().splitlines()
     names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
     return names[0] if names else None
 
 
 def _revision() -> tuple[str | None, bool | None]:
-    """The commit that is checked out, and whether files differ from it; None without git."""
-    # But for results/, where the runs of the committed report are made.
+    """Returns the checked-out commit and whether files differ from it; None without git."""
+    # results/ is left out: the runs of the committed report are made there.
     changes = _output(
         "git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!results"
     )
@@ -48,20 +48,22 @@ def _revision() -> tuple[str | None, bool | None]:
 
 
 def core_digest() -> str:
-    """SHA-256 of the compiled core: equal ones make equal transitions."""
+    """Returns the SHA-256 of the compiled core. Equal cores generate equal transitions."""
     with Path(_core.__file__).open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def generator(run: Path) -> dict[str, Any]:
-    """The versions that the transitions of the run were made with, as far as it says. Raises
-    UserError."""
+    """Returns the versions of the program that generated the transitions of the run.
+
+    Empty if versions.json lacks them. Raises UserError if versions.json is damaged.
+    """
     found = run_folder.read_json(run / FILE).get("generator")
     return found if isinstance(found, dict) else {}
 
 
 def versions() -> dict[str, Any]:
-    """Null where it cannot be told."""
+    """Returns the versions of this program and its machine; None where a value is unknown."""
     return {
         **dict(zip(_REVISION, _revision(), strict=True)),
         "python": platform.python_version(),
@@ -75,8 +77,12 @@ def versions() -> dict[str, Any]:
 
 
 def note(run: Path, made_by: dict[str, Any] | None = None) -> None:
-    """Writes what the run goes on with, which other commits it was begun by, and what makes its
-    transitions: `made_by`, or if that is not given, this program."""
+    """Writes versions.json of a run that this program begins or resumes.
+
+    The file holds the versions of this program, the other commits that worked on the run before,
+    and the generator of its transitions: `made_by`, or this program if `made_by` is None. Raises
+    UserError if the previous versions.json is damaged.
+    """
     found, before = versions(), run_folder.read_json(run / FILE)
     if made_by is None:
         made_by = {key: found[key] for key in _REVISION} | {"core_sha256": core_digest()}
@@ -87,6 +93,6 @@ def note(run: Path, made_by: dict[str, Any] | None = None) -> None:
 
 
 def commit(made_with: dict[str, Any]) -> str | None:
-    """In words."""
+    """Returns the commit, with the suffix -modified if files differed from it; None if unknown."""
     revision = made_with.get("git_revision")
     return f"{revision}-modified" if made_with.get("git_modified") else revision

@@ -1,1 +1,1 @@
-"""The learner: networks, replay, gradient steps, evaluation, and the process that does them."""
+"""The learner: networks, replay, gradient steps, evaluation, and the process that runs them."""

@@ -1,4 +1,4 @@
-"""Seconds of learning, over all processes that took part in it."""
+"""The time spent on learning, summed over all processes of a resumed run."""
 
 from __future__ import annotations
 
@@ -7,21 +7,22 @@ from collections.abc import Callable, Mapping
 
 
 class Clock:
-    """Wall time while it runs, and processor time from when it was made.
+    """Measures wall time while the clock runs, and processor time since its construction.
 
-    Processor time is that of the whole process: what a run prepares before it learns counts as
-    well. Where several runs share the process it is that of the thread that calls, and while the
-    clock runs: what a run leaves to other threads (a GPU's share of its gradients) is not seen.
+    Processor time is that of the whole process, so it includes the preparation before learning. If
+    several runs share the process, it is that of the calling thread while the clock runs; work that
+    a run leaves to other threads (the gradients on a GPU) is then not counted.
     """
 
     def __init__(self) -> None:
-        self._made: float | None = time.process_time()  # until it starts
-        self._before = (0.0, 0.0)  # [s], of the runs so far: wall, processor
+        # [s], processor time at construction; None after the first start.
+        self._made: float | None = time.process_time()
+        self._before = (0.0, 0.0)  # [s], wall and processor time of the finished periods
         self._since: tuple[float, float] | None = None
         self._cpu: Callable[[], float] = time.process_time
 
     def start(self, alone: bool = True) -> None:
-        """`alone`: no other run shares the process."""
+        """Starts the clock. `alone`: no other run shares the process."""
         self._cpu = time.process_time if alone else time.thread_time
         wall, cpu = self._now()
         self._since = (wall, cpu if self._made is None or not alone else self._made)
@@ -35,12 +36,12 @@ class Clock:
         return self._since is not None
 
     def seconds(self) -> dict[str, float]:
-        """So far, under the names of progress.csv."""
+        """Returns the times so far [s], by their column names in progress.csv."""
         wall, cpu = self._total()
         return {"wall_s": wall, "cpu_s": cpu}
 
     def restore(self, seconds: Mapping[str, float]) -> None:
-        """`seconds`: of seconds(), among others."""
+        """Continues from `seconds`, which holds at least the values of an earlier seconds()."""
         self._before = (seconds["wall_s"], seconds["cpu_s"])
 
     def _now(self) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Behaviour cloning: the policy does what the stored steps do [Pomerleau 1988]."""
+"""Behaviour cloning: the policy learns to imitate the stored actions [Pomerleau 1988]."""
 
 from __future__ import annotations
 
@@ -9,21 +9,22 @@ from rtg.files.dataset import SOURCES, Transitions
 from rtg.learn.ddqn import DoubleDqn
 from rtg.learn.replay import Batch
 
-IMITATED = ("tree", "plan")  # steps that were found to lead on; a branch may lead anywhere
+IMITATED = ("tree", "plan")  # sources of steps that lead towards the goal; a "branch" need not
 
 
 def imitated(data: Transitions) -> Transitions:
-    """The rows whose actions are worth imitating."""
+    """Returns the rows whose source is in IMITATED."""
     kept = np.isin(data.source, [SOURCES.index(name) for name in IMITATED])
     return Transitions(*(column[kept] for column in data))
 
 
 class Cloning(DoubleDqn):
-    """The network of DoubleDqn, its outputs f(s, ·) taken for logits of the actions:
+    """Trains the network of DoubleDqn with its outputs f(s, ·) as the logits of the actions:
 
         loss = -mean log softmax(f(s, ·))_a
 
-    over batches of steps to imitate. The policy is the likeliest action by the mean weights.
+    over batches of steps to imitate. The policy chooses the most likely action according to the
+    network with the averaged weights.
     """
 
     def _gradient_step(self, batch: Batch) -> None:

@@ -25,15 +25,17 @@ from rtg.learn.replay import Batch, MixedReplayBuffer, ReplayRules
 Array = npt.NDArray[Any]
 
 MAX_GRADIENT_NORM = 10.0
-YOUTH = 5.0  # the mean is over the last 1 / YOUTH of the gradient steps, or as policy_rate says
+# Sets the averaging rate of early gradient steps: the mean covers their last 1 / YOUTH.
+YOUTH = 5.0
 
 
 def next_values(online: th.Tensor, target: th.Tensor, cautious: bool) -> th.Tensor:
-    """Value of s' from the Q of both networks, [B, actions] each -> [B, 1].
+    """Returns the value of s' from the Q of both networks. [B, actions] each -> [B, 1]
 
-    Double Q: the online network chooses, the target network values [van Hasselt et al. 2016];
-    `cautious`: the one of both that thinks less of the choice does [cf. Fujimoto et al. 2018], so
-    that a network alone cannot think up a value. With the target network twice, plain Q.
+    Double Q: the online network chooses the action, and the target network evaluates it [van
+    Hasselt et al. 2016]. `cautious` takes the smaller of the two networks' values of that action
+    [cf. Fujimoto et al. 2018], so that an error of one network alone cannot raise it. If the target
+    network is passed as both, this is plain Q-learning.
     """
     choice = online.argmax(dim=1, keepdim=True)
     value = target.gather(1, choice)
@@ -41,19 +43,22 @@ def next_values(online: th.Tensor, target: th.Tensor, cautious: bool) -> th.Tens
 
 
 def bootstrap_targets(batch: Batch, next_value: th.Tensor, discount: float) -> th.Tensor:
-    """r + γ (1 - terminated) Q(s'). [B, 1]"""
+    """Returns r + γ (1 - terminated) Q(s'). [B, 1]"""
     return batch.rewards + discount * (1.0 - batch.terminated) * next_value
 
 
 def td_targets(bootstrap: th.Tensor, bounds: th.Tensor, clip: bool) -> th.Tensor:
-    """The bootstrap targets, raised to the proven bounds, in [0, 1] if `clip`. [B, 1]"""
+    """Returns the bootstrap targets, raised to the bounds, clipped to [0, 1] if `clip`. [B, 1]"""
     y = th.maximum(bootstrap, bounds)
     return y.clamp(0.0, 1.0) if clip else y
 
 
 def conservative_gap(q: th.Tensor, actions: th.Tensor) -> th.Tensor:
-    """log Σ_b exp Q(s, b) - Q(s, a): how far actions other than a could be thought better of, the
-    term of CQL(H) [Kumar et al. 2020, eq. 4]. q [B, actions], actions [B, 1] -> [B, 1]"""
+    """Returns log Σ_b exp Q(s, b) - Q(s, a), the term of CQL(H) [Kumar et al. 2020, eq. 4].
+
+    Minimising it lowers Q(s, b) of the other actions b relative to Q(s, a).
+    q [B, actions], actions [B, 1] -> [B, 1]
+    """
     return q.logsumexp(dim=1, keepdim=True) - q.gather(1, actions)
 
 
@@ -70,14 +75,19 @@ def _rules(settings: _core.TrainConfig, discount: float, seed: int) -> ReplayRul
 class DoubleDqn(DQN):
     """SB3's DQN with the batch of MixedReplayBuffer.
 
-    Departs from SB3: Double-Q; target updates counted in gradient steps (`target_sync`);
-    exploration of our own, by absolute interactions (learning in pieces and resuming leave its
-    schedule alone); and three policies. The learner's own comes and goes: a long plan breaks where
-    a single action is wrong. In training episodes the target network acts (`target_acts`), which is
-    a mean over few weights: steady, and yet its mistakes are soon seen and mended. What is
-    evaluated and kept is a mean over many [Polyak and Juditsky 1992]: after gradient step t it
-    moves by max(`policy_rate`, 5 / (5 + t)) towards the learner's weights, so it is over the last
-    fifth of the steps, or the last 1 / `policy_rate`; with a rate of 1 it is the learner's own.
+    Departs from SB3:
+    - It uses Double Q-learning.
+    - It counts target updates in gradient steps (`target_sync`).
+    - Exploration is class Exploration. Its schedule uses the absolute number of interactions, so
+      learning in rounds and resuming do not change it.
+    - There are three policies. That of the online network varies from step to step, and a single
+      wrong action breaks a long plan. In training episodes the target network acts
+      (`target_acts`). It averages over few steps, so it is steadier, and still its mistakes are
+      soon visited and corrected. The policy that is evaluated and saved averages over many steps
+      [Polyak and Juditsky 1992]: after gradient step t its weights move by
+      max(`policy_rate`, 5 / (5 + t)) towards those of the online network. So it averages over
+      about the last fifth of the steps, at most over the last 1 / `policy_rate`; with
+      `policy_rate` 1 it equals the online network.
     """
 
     replay_buffer: MixedReplayBuffer  # type: ignore[assignment]
@@ -118,18 +128,20 @@ class DoubleDqn(DQN):
         self.mean_net = copy.deepcopy(self.q_net).requires_grad_(False)
         self.set_logger(Logger(folder=None, output_formats=[]))
         headings = int(self.action_space.n)  # type: ignore[attr-defined]
-        contact = getattr(env, "contact_headings", None)  # not of every environment
+        contact = getattr(env, "contact_headings", None)  # None if the environment has none
         self.exploration = Exploration(settings, headings, seed, contact)
         self.update_exploration()
 
     def learn_offline(self) -> None:
-        """A round of learning that no interaction comes before; those that would have are counted,
-        so that schedules go on."""
+        """Performs the gradient steps of one round without its interactions.
+
+        Counts the interactions all the same, so that schedules advance.
+        """
         self.num_timesteps += self.settings.train_frequency
         self.train(self.settings.gradient_steps, self.settings.batch)
 
     def train(self, gradient_steps: int, batch_size: int = 100) -> None:
-        self.policy.train(True)  # both networks
+        self.policy.train(True)  # online and target network
         self._update_learning_rate(self.policy.optimizer)
         for _ in range(gradient_steps):
             self._gradient_step(self.replay_buffer.sample(batch_size))
@@ -178,7 +190,10 @@ class DoubleDqn(DQN):
         episode_start: Any = None,
         deterministic: bool = False,
     ) -> tuple[Array, Any]:
-        """The policy's choice, or where it is not `deterministic` one of a training episode."""
+        """Returns the greedy actions of the policy if `deterministic`, else those for training.
+
+        SB3 calls it in training episodes. It passes `state` through.
+        """
         if deterministic:
             return self.greedy(observation), state
         net = self.q_net_target if self.settings.target_acts else self.q_net
@@ -189,11 +204,14 @@ class DoubleDqn(DQN):
         return self.exploration.actions(action, observation, self.exploration_rate), state
 
     def greedy(self, observation: Array) -> Array:
-        """The policy's own choice. [N, observation] float32 -> [N] int"""
+        """Returns the greedy actions of the policy. [N, observation] float32 -> [N] int"""
         return self.values(observation).argmax(axis=1)
 
     def values(self, observation: Array) -> Array:
-        """The policy's Q of all actions. [N, observation] float32 -> [N, actions] float32"""
+        """Returns Q of all actions, by the mean weights.
+
+        [N, observation] float32 -> [N, actions] float32
+        """
         seen = self.layouts.asked_nearest(observation) if self.layouts else observation
         return self._values_of(self.mean_net, seen)
 
@@ -205,7 +223,7 @@ class DoubleDqn(DQN):
         return q
 
     def state(self) -> dict[str, Any]:
-        """Everything that learning goes on from, but the replay buffer and the environments."""
+        """Returns all state for resuming except that of the replay buffer and the environments."""
         return {
             "q_net": self.q_net.state_dict(),
             "q_net_target": self.q_net_target.state_dict(),
@@ -238,7 +256,7 @@ class DoubleDqn(DQN):
         self.update_exploration()
 
     def recent_episodes(self) -> dict[str, float]:
-        """Success and mean length of the last 100 training episodes; empty before the first."""
+        """Returns success rate and mean length of the last 100 training episodes, {} before any."""
         if not self.ep_success_buffer or not self.ep_info_buffer:
             return {}
         return {
@@ -252,7 +270,7 @@ class DoubleDqn(DQN):
 
 
 class Statistics:
-    """Running means over the gradient steps since the last row of the log."""
+    """Means and maxima over the gradient steps since the last row of the log."""
 
     def __init__(self) -> None:
         self._sums: dict[str, float] = {}
@@ -260,10 +278,13 @@ class Statistics:
         self._peaks: dict[str, float] = {}
 
     def note(self, batch: Batch, q: th.Tensor, y: th.Tensor, bootstrap: th.Tensor) -> None:
-        """Q(s, a), its target, and the same before it was raised and clipped. [B, 1] each"""
+        """Adds a gradient step: q = Q(s, a), its target y, and the bootstrap target. [B, 1] each
+
+        y is `bootstrap` after raising to the bounds and clipping, see td_targets().
+        """
         error, bounds = q - y, batch.bounds
         beyond = (bootstrap < 0.0) | (bootstrap > 1.0)
-        raised = (bootstrap < bounds) & (bounds > 0.0)  # 0: nothing is proven
+        raised = (bootstrap < bounds) & (bounds > 0.0)  # a bound of 0 proves nothing
         self._add("td_error", float(error.square().mean().sqrt()))
         self._add("clipped_share", float(beyond.float().mean()))
         self._add("bound_share", float(raised.float().mean()))
@@ -285,7 +306,7 @@ class Statistics:
         self._peaks = dict(state["peaks"])
 
     def take(self) -> dict[str, float]:
-        """The means and peaks so far; starts afresh."""
+        """Returns the means and maxima so far and resets them."""
         means = {name: total / self._counts[name] for name, total in self._sums.items()}
         means.update(self._peaks)
         self.__init__()  # type: ignore[misc]

@@ -1,4 +1,4 @@
-"""Where the networks are."""
+"""The device that holds the networks."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from rtg.errors import UserError
 
 
 def chosen(device: str) -> str:
-    """The device that `train.device` means here: cpu or cuda. Raises UserError."""
+    """Resolves `train.device` to "cpu" or "cuda". Raises UserError if cuda is missing."""
     if device == "cuda" and not th.cuda.is_available():
         raise UserError("train.device: cuda, but PyTorch sees no such device; legal: auto, cpu")
     return "cuda" if device != "cpu" and th.cuda.is_available() else "cpu"
 
 
 def name(kind: str) -> str:
-    """For people: of a GPU its model, else `kind`."""
+    """Returns a name for people: the model of the GPU if `kind` is "cuda", else `kind`."""
     return th.cuda.get_device_name() if kind == "cuda" else kind

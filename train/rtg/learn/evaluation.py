@@ -1,4 +1,4 @@
-"""How good a policy is: episodes from held-out starts, all side by side."""
+"""Evaluation of a policy by episodes from held-out starts, simulated side by side."""
 
 from __future__ import annotations
 
@@ -13,25 +13,28 @@ from rtg import _core
 Floats = NDArray[np.float64]
 Policy = Callable[[NDArray[np.float32]], NDArray[Any]]  # [N, observation] -> [N] actions
 
-# Seeds of runs are smaller, so no training start is among these.
-HELD_OUT = 1 << 63  # what training is watched, and stopped, with
-FINAL = HELD_OUT + 1  # what the result is measured with: nothing was chosen by these
+# Seeds of the held-out starts. Seeds of runs are smaller, so no training start is held out.
+HELD_OUT = 1 << 63  # for evaluations during training, which decide when to stop
+FINAL = HELD_OUT + 1  # for the final result: no decision depended on these starts
 
 
 class Evaluation(NamedTuple):
-    """Episodes of a policy, one per start."""
+    """The results of episodes of a policy, one per start."""
 
     success: NDArray[np.bool_]  # [N]
-    length: NDArray[np.int64]  # [N], actions; the horizon where time ran out
-    discounted: NDArray[np.float64]  # [N], γ^(length - 1) of a success, else 0
+    length: NDArray[np.int64]  # [N], number of actions; the horizon if time ran out
+    discounted: NDArray[np.float64]  # [N], γ^(length - 1) after a success, else 0
     paths: list[Floats]  # per episode [length + 1, bodies, 3]
 
     def best(self) -> int:
-        """The first among the shortest successes; without any, the first among the longest."""
+        """Returns the index of the shortest successful episode, without success of the longest one.
+
+        The first of several equally long episodes counts.
+        """
         return int(np.argmin(np.where(self.success, self.length, 10**9 - self.length)))
 
     def summary(self) -> dict[str, float]:
-        """The means under the names of summary.json."""
+        """Returns the means over the episodes, by their names in summary.json."""
         return {
             "success_rate": float(self.success.mean()),
             "episode_length_mean": float(self.length.mean()),
@@ -42,8 +45,10 @@ class Evaluation(NamedTuple):
 def held_out_starts(
     task: _core.Task, count: int, seed: int = HELD_OUT, randomise: bool = False
 ) -> Floats:
-    """The same for every run: objects moved by ± task.start_jitter, or ± task.randomisation if
-    `randomise`. [count, bodies, 3]"""
+    """Returns starts that are the same for every run. [count, bodies, 3]
+
+    Their objects are moved by ± task.start_jitter, or by ± task.randomisation if `randomise`.
+    """
     amplitude = task.randomisation if randomise else task.start_jitter
     return np.stack([task.jittered_start(amplitude, seed, k) for k in range(count)])
 
@@ -51,7 +56,7 @@ def held_out_starts(
 def evaluate(config: _core.Config, policy: Policy, starts: Floats, discount: float) -> Evaluation:
     """Plays an episode from each start, up to task.horizon actions. starts [N, bodies, 3]
 
-    An episode in which the simulator gives up a push ends there as a failure.
+    An episode ends as a failure if the simulator cannot finish one of its pushes.
     """
     task, simulator = config.task, _core.Simulator(config)
     success = np.zeros(len(starts), np.bool_)

@@ -1,4 +1,4 @@
-"""Where training episodes leave the greedy policy, to see what its choices miss."""
+"""Exploration in training episodes: deviations from the greedy policy."""
 
 from __future__ import annotations
 
@@ -12,23 +12,24 @@ from rtg import _core
 
 Array = npt.NDArray[Any]
 
-LOOP = 8  # a state is taken for one that came back if it was among so many last ones
-SAME = 0.02  # ... up to this in every number of the observation (0.16 m)
+LOOP = 8  # a state counts as revisited if it equals one of this many previous states
+SAME = 0.02  # ... with a difference below this in every entry of the observation (0.16 m)
 
-# Of a seed: per environment a heading towards a random object of its present state, [N]
+# Maps a seed to one heading per environment, towards a random object of its current state. [N]
 ContactHeadings = Callable[[int], Array]
 
 
 class Exploration:
-    """ε-greedy, partly near the greedy heading or towards an object, and a way out of loops.
+    """ε-greedy exploration that prefers some headings and leaves loops.
 
-    The share `contact_share` of what explores heads towards an object: of uniform pushes one in ten
-    touches any. Of the rest `nearby_share` is near the greedy heading, and the others anywhere.
+    The share `contact_share` of the exploring actions heads towards an object, because only one in
+    ten uniform pushes touches an object. Of the other exploring actions, the share `nearby_share`
+    is near the greedy heading and the rest is uniform.
 
-    A greedy policy in a deterministic simulator that comes back to a state stays in that loop to
-    the end of the episode, and learns little from seeing it again. With `leave_loops` it explores
-    wherever one of the last states comes back. (What the last ones of an episode make the first of
-    the next one do is of no weight.)
+    When a greedy policy in a deterministic simulator returns to an earlier state, it repeats that
+    loop until the episode ends, and the repetitions teach it little. With `leave_loops`, every
+    revisited state makes the policy explore. (The last states of an episode are also compared with
+    the first states of the next episode; the effect is negligible.)
     """
 
     def __init__(
@@ -38,22 +39,24 @@ class Exploration:
         seed: int,
         contact: ContactHeadings | None = None,
     ) -> None:
-        """`contact`: of the environments that act; needed where contact_share is above 0."""
+        """`contact`: contact headings of the environments; needed if contact_share is above 0."""
         self.settings = settings
         self.headings = headings
         self.contact = contact
         self.rng = np.random.default_rng([seed, 1])
-        self.last: list[Array] = []  # of each environment, [N, observation], oldest first
+        self.last: list[Array] = []  # previous observations, each [N, observation], oldest first
 
     def epsilon(self, interactions: int) -> float:
-        """Linear from start to end over the first `epsilon_share` of the interactions."""
+        """Returns ε, linear from start to end over the first `epsilon_share` of interactions."""
         s = self.settings
         done = min(1.0, interactions / max(1.0, s.epsilon_share * s.interactions))
         return s.epsilon_start + done * (s.epsilon_end - s.epsilon_start)
 
     def actions(self, greedy: Array, observation: Array, epsilon: float) -> Array:
-        """Chooses what to do instead of `greedy`, [N], seeing `observation`, [N, observation].
-        [N]"""
+        """Returns the actions to take: those of `greedy`, some replaced by exploration.
+
+        greedy [N], observation [N, observation] -> [N]
+        """
         n = len(greedy)
         explores = self.rng.random(n) < epsilon
         if self.settings.leave_loops:
@@ -66,7 +69,7 @@ class Exploration:
         return np.where(explores, noise, greedy)
 
     def _towards_objects(self, noise: Array) -> Array:
-        """The headings with the share `contact_share` of them towards an object. [N]"""
+        """Replaces the share `contact_share` of the headings by headings towards an object. [N]"""
         if self.settings.contact_share == 0.0:
             return noise
         assert self.contact is not None
@@ -74,7 +77,7 @@ class Exploration:
         return np.where(seeks, self.contact(int(self.rng.integers(1 << 62))), noise)
 
     def _came_back(self, observation: Array) -> Array:
-        """Which environments are where they were a few steps ago. Notes where they are. [N] bool"""
+        """Returns which environments revisit a recent state; stores `observation`. [N] bool"""
         found = np.zeros(len(observation), np.bool_)
         for earlier in self.last:
             found |= (np.abs(observation - earlier) < SAME).all(axis=1)

@@ -1,27 +1,28 @@
 """Hindsight experience replay [Andrychowicz et al. 2017] on the poses of the objects.
 
-A goal is a layout: where every movable object shall be, and how bodies that joints connect shall be
-turned. The network sees the observation and how far each object is from the layout asked for. A
-training episode is asked for a layout in which the task's goal holds. In the replay buffer the
-share k / (k + 1) of the online transitions is asked for one that the episode reached later on (the
-paper's strategy "future" with k goals drawn per transition). Then the reward is 1, and the episode
-over, where the objects of s' are within TOLERANCE and TURN of it. The other transitions keep the
-reward of the task: its goal is reached whichever layout was asked for.
+A goal is a layout: the desired position of every movable object and the desired angle of every body
+with a joint. The network receives the observation and the offset of each object from the desired
+layout. Each training episode has a desired layout, in which the task's goal holds. Of the online
+transitions in a batch, the share k / (k + 1) is relabelled with a layout that the episode reached
+later (the paper's strategy "future" with k goals drawn per transition). For these the reward is 1
+and the episode ends if the objects of s' are within TOLERANCE and TURN of the new layout. The other
+transitions keep the reward of the task, which does not depend on the desired layout.
 
 Choices that give the method its best chance:
-- The layouts of the task are those of DRAWS goal states that stay goal states when their objects
-  are moved by TOLERANCE in any direction and the two bodies of each joint are turned by TURN
-  against each other (all, where none is). So to reach one means success.
-- Objects of one kind may stand for each other, and any goal state will do. So an episode is asked
-  for the layout that is nearest to its start, among a random tenth of them: in training many are
-  asked for, which the paper finds to learn faster. The policy that is judged asks in each state for
-  the nearest of all.
-- A layout that s has reached already teaches nothing: an episode that was asked for it is over
-  before s. Hindsight goals are drawn from the later states that s is not near to. Where there is
-  none the transition keeps the layout that its episode was asked for.
+- The layouts of the task come from DRAWS goal states. Only those are used that remain goal states
+  when their objects move by TOLERANCE in any direction and the two bodies of each joint turn by
+  TURN against each other; if there are none, all are used. At most LAYOUTS are kept. So reaching a
+  layout means success.
+- Objects of one kind are interchangeable, and any goal state suffices. So the desired layout of a
+  training episode is the one nearest to its start among a random tenth of the layouts. Training
+  thus covers many layouts, which the paper finds to learn faster. The evaluated policy uses, in
+  each state, the nearest of all layouts.
+- A layout that s has reached already teaches nothing, because an episode with that desired layout
+  ends before s. So hindsight goals are drawn from the later states that s is not near to. Without
+  such a state the transition keeps the desired layout of its episode.
 
-TOLERANCE is 0.5 m: one push of 2 m, of 48 headings, seldom places a box more precisely, and a
-disc of 2 m or a half-plane has layouts that keep so far from its edge.
+TOLERANCE is 0.5 m: one push of 2 m, in one of 48 headings, seldom places a box more precisely, and
+goal regions such as a disc of 2 m or a half-plane contain layouts that far from their edge.
 """
 
 from __future__ import annotations
@@ -38,18 +39,19 @@ from rtg.learn.replay import MixedReplayBuffer, Part, Store
 Array = npt.NDArray[Any]
 
 TOLERANCE = 0.5  # of each object [m]
-TURN = 0.05  # of each body that a joint connects [rad]
-DRAWS, LAYOUTS = 5000, 1000  # goal states drawn; the most layouts that are kept of them
-FEW = 10  # a training episode is asked for the nearest of 1 / FEW of the layouts
-OF_LAYOUTS = 3 << 61  # seed of the draws: no run's, so that a policy's file need not hold it
-LENGTH = 8.0  # of an observation's lengths [m]
-OF_BODY = 6  # numbers of an observation per movable object; the first two are the robot's
+TURN = 0.05  # of each body with a joint [rad]
+DRAWS, LAYOUTS = 5000, 1000  # number of goal states drawn; maximum number of layouts
+FEW = 10  # a training episode gets the nearest of 1 / FEW of the layouts
+OF_LAYOUTS = 3 << 61  # fixed seed of the draws, so a policy file need not store it
+LENGTH = 8.0  # unit of lengths in an observation [m]
+OF_BODY = 6  # entries of an observation per movable object; two entries of the robot come first
 
 
 class Layouts:
-    """The layouts of a task: as part of an observation, as goals, as the network sees them.
+    """The layouts of a task: extracted from observations, as goals, and as network inputs.
 
-    A layout is float32: x, y of each movable object [8 m], cos θ, sin θ of each that has a joint.
+    A layout is a float32 vector: x, y of each movable object [8 m], then cos θ, sin θ of each
+    movable object with a joint.
     """
 
     def __init__(self, task: _core.Task) -> None:
@@ -59,19 +61,19 @@ class Layouts:
         turned = [first for first, body in zip(at, movable, strict=True) if body in jointed]
         places = [column for first in at for column in (first, first + 1)]
         turns = [column for first in turned for column in (first + 2, first + 3)]
-        self._columns = np.array(places + turns)  # of an observation
+        self._columns = np.array(places + turns)  # columns of an observation
         self._places = len(places)
         self.size = len(self._columns)
         goals = lasting(task, goal_states(task, OF_LAYOUTS, DRAWS))[:LAYOUTS]
         self.of_task = self.of(task.observation(goals))  # [layouts, size]
 
     def of(self, observation: Array) -> Array:
-        """Where the objects are. [N, observation] -> [N, size]"""
+        """Returns the layouts of the observations. [N, observation] -> [N, size]"""
         layout: Array = observation[:, self._columns]
         return layout
 
     def near(self, one: Array, other: Array) -> Array:
-        """Says if every object is within TOLERANCE, and TURN. [..., size] each -> [...] bool"""
+        """Returns if all objects agree within TOLERANCE, TURN. [..., size] each -> [...] bool"""
         places, turns = self._difference(one, other)
         close = np.hypot(places[..., 0], places[..., 1]) * LENGTH <= TOLERANCE
         alike = turns[..., 0] >= np.cos(TURN)
@@ -79,9 +81,9 @@ class Layouts:
         return reached
 
     def nearest(self, observation: Array, among: Array | None = None) -> Array:
-        """The layout of the task to which the objects have the shortest way in all.
+        """Returns the layout of the task with the smallest sum of distances to the objects.
 
-        `among`: rows of `of_task`, all of them if None. [N, observation] -> [N, size]
+        `among`: row numbers of `of_task` to choose from, or None. [N, observation] -> [N, size]
         """
         goals = self.of_task if among is None else self.of_task[among]
         way, _ = self._difference(self.of(observation)[:, None], goals)
@@ -89,18 +91,24 @@ class Layouts:
         return nearest
 
     def asked(self, observation: Array, goal: Array) -> Array:
-        """The input of the network: the observation; from the objects to `goal` dx, dy [8 m]; cos,
-        sin of the turns to it. [N, observation], [N, size] -> [N, observation + size]"""
+        """Returns the input of the network for the desired layout `goal`.
+
+        It holds the observation, the offsets dx, dy [8 m] from the objects to `goal`, and cos, sin
+        of the angles to it. [N, observation], [N, size] -> [N, observation + size]
+        """
         parts = self._difference(self.of(observation), goal)
         way = [part.reshape(len(part), part.shape[1] * 2) for part in parts]
         return np.concatenate((observation, *way), axis=1)
 
     def asked_nearest(self, observation: Array) -> Array:
-        """The input of the network where it is asked for the nearest layout of the task."""
+        """Returns the input of the network for the nearest layout of the task."""
         return self.asked(observation, self.nearest(observation))
 
     def _difference(self, here: Array, there: Array) -> tuple[Array, Array]:
-        """dx, dy [8 m], [..., objects, 2], and cos, sin of the turns, [..., jointed, 2]."""
+        """Returns the differences from layout `here` to layout `there`.
+
+        They are dx, dy [8 m], [..., objects, 2], and cos, sin of the angles, [..., jointed, 2].
+        """
         places = there[..., : self._places] - here[..., : self._places]
         c, s = here[..., self._places :: 2], here[..., self._places + 1 :: 2]
         d, t = there[..., self._places :: 2], there[..., self._places + 1 :: 2]
@@ -109,7 +117,7 @@ class Layouts:
 
 
 def _sides(task: _core.Task) -> Array:
-    """1 or -1 for bodies that joints connect, different for the two of a joint; else 0. [bodies]"""
+    """Returns 1 and -1 for the two bodies of each joint, 0 for bodies without a joint. [bodies]"""
     sides = np.zeros(task.bodies)
     for parent, child, _ in task.joints:
         sides[parent] = sides[parent] or 1.0
@@ -118,9 +126,11 @@ def _sides(task: _core.Task) -> Array:
 
 
 def lasting(task: _core.Task, states: Array) -> Array:
-    """Those in which the goal still holds with all objects moved by TOLERANCE in any of eight
-    directions and the two bodies of each joint turned by TURN, one against the other; all of them
-    where none is. [N, bodies, 3]"""
+    """Returns the states whose goal is robust, or all of them if there is none. [N, bodies, 3]
+
+    Robust: it still holds with all objects moved by TOLERANCE in any of eight directions and the
+    two bodies of each joint turned by TURN against each other, in either sense.
+    """
     angles = np.arange(8) * np.pi / 4
     moved = np.repeat(states[:, None], 2 * len(angles), axis=1)  # [N, 16, bodies, 3]
     moved[:, :, 1:, 0] += TOLERANCE * np.tile(np.cos(angles), 2)[:, None]
@@ -138,10 +148,11 @@ def future_goals(
     discount: float,
     rng: np.random.Generator,
 ) -> tuple[Array, Array, Array]:
-    """For each transition `count` layouts that its episode reached later on and s is not near to.
+    """Draws for each transition `count` later layouts of its episode that s is not near to.
 
-    With the values that the episode proves, γ^n with n more actions from s' to where it is near the
-    layout; and whether there are any.  [T, count, size], [T, count] float32, [T] bool
+    Returns these layouts, [T, count, size]; the lower bounds γ^n of their values, [T, count]
+    float32, where n is the number of actions from s' to the first state near the layout; and
+    whether such layouts exist, [T] bool.
     """
     steps = len(path) - 1
     goals = np.zeros((steps, count, layouts.size), np.float32)
@@ -158,7 +169,7 @@ def future_goals(
 
 
 class GoalStore(Store):
-    """Transitions with the layout that was asked for, and those that their episode reached."""
+    """Transitions with the desired layout of their episode and their hindsight goals."""
 
     columns = (*Store.columns, "asked", "goals", "goal_bounds", "has_goals")
 
@@ -167,30 +178,30 @@ class GoalStore(Store):
         self.asked = np.zeros((0, size), np.float32)
         self.goals = np.zeros((0, goals, size), np.float32)
         self.goal_bounds = np.zeros((0, goals), np.float32)
-        self.has_goals = np.zeros(0, np.bool_)  # not before the episode is over
+        self.has_goals = np.zeros(0, np.bool_)  # False until the episode has ended
 
 
 class HindsightReplayBuffer(MixedReplayBuffer):
-    """Batches whose observations end with the way to the layout asked for.
+    """A replay buffer whose observations end with the offsets to a desired layout.
 
-    Transitions of running episodes keep what they were asked for. Offline ones are asked for the
-    layout that is nearest to their s.
+    Transitions of running episodes keep the desired layout of their episode. Offline transitions
+    get the layout that is nearest to their s.
     """
 
     offline: GoalStore
     online: GoalStore
 
     def __init__(self, *of_buffer: Any, layouts: Layouts, goals: int, **more: Any) -> None:
-        """`goals`: of hindsight, per transition."""
+        """`goals`: number of hindsight goals per transition."""
         super().__init__(*of_buffer, **more)
         self.layouts, self.goals = layouts, goals
         shape = (self.buffer_size, self.obs_shape[0], layouts.size, goals)
         self.offline, self.online = GoalStore(*shape), GoalStore(*shape)
         self._asked = np.zeros((self.n_envs, layouts.size), np.float32)
-        self._begins = np.ones(self.n_envs, np.bool_)  # whether the next step is an episode's first
+        self._begins = np.ones(self.n_envs, np.bool_)  # True if the next step begins an episode
 
     def asked_of(self, observation: Array) -> Array:
-        """The layout that the episode of each environment is asked for; drawn where one begins.
+        """Returns the desired layout of each environment's episode; draws it for a new episode.
 
         [environments, observation] -> [environments, size]
         """
@@ -205,7 +216,7 @@ class HindsightReplayBuffer(MixedReplayBuffer):
         return {"asked": self.asked_of(observation)}
 
     def _more_offline(self, observation: Array) -> dict[str, Array]:
-        pieces = np.array_split(observation, 1 + len(observation) // 1000)  # they take less memory
+        pieces = np.array_split(observation, 1 + len(observation) // 1000)  # to limit memory
         return {"asked": np.concatenate([self.layouts.nearest(piece) for piece in pieces])}
 
     def _close_episode(self, env: int, success: bool) -> None:
@@ -213,7 +224,7 @@ class HindsightReplayBuffer(MixedReplayBuffer):
         super()._close_episode(env, success)
         self._begins[env] = True
         rows = numbers[numbers >= store.written - store.capacity] % store.capacity
-        if len(rows) == 0:  # the simulator gave up its first push
+        if len(rows) == 0:  # the simulator could not finish its first push
             return
         seen = np.concatenate((store.observation[rows[:1]], store.next_observation[rows]))
         store.goals[rows], store.goal_bounds[rows], store.has_goals[rows] = future_goals(
@@ -231,9 +242,14 @@ class HindsightReplayBuffer(MixedReplayBuffer):
         return columns
 
     def _relabel(self, columns: dict[str, Array], goal: Array, rows: Array) -> None:
-        """`rows`: of the online transitions, which stand last in `columns` and `goal`."""
+        """Replaces desired layouts of online transitions by hindsight goals; adapts `columns`.
+
+        Draws a hindsight goal with probability k / (k + 1) where the transition has any.
+
+        `rows`: rows of the online transitions, which are last in `columns` and `goal`.
+        """
         store, place = self.online, np.arange(len(goal) - len(rows), len(goal))
-        pick = self.rng.integers(self.goals + 1, size=len(rows))  # the last: as it was asked
+        pick = self.rng.integers(self.goals + 1, size=len(rows))  # the last number: no relabelling
         seen = (pick < self.goals) & store.has_goals[rows]
         place, rows, pick = place[seen], rows[seen], pick[seen]
         goal[place] = store.goals[rows, pick]

@@ -18,29 +18,29 @@ LAYERS = (512, 512, 128)  # Table 2
 
 @cache
 def has_fast_bfloat16(device: str = "cpu") -> bool:
-    """Says whether this processor, or the GPU, multiplies bfloat16 matrices in hardware."""
+    """Returns whether the device, "cpu" or "cuda", multiplies bfloat16 matrices in hardware."""
     if device == "cuda":
         return bool(th.cuda.is_bf16_supported())
     return bool(getattr(th.cpu, "_is_avx512_bf16_supported", lambda: False)())
 
 
 def precision(reduced: bool, device: str) -> str:
-    """The precision that the inner layers learn in."""
+    """Returns the precision in which the inner layers are trained."""
     return "bfloat16" if reduced and has_fast_bfloat16(device) else "float32"
 
 
 class ValueNetwork(QNetwork):
-    """Q(s, ·): three hidden layers, optionally LayerNorm and the dueling head
+    """Q(s, ·): three hidden layers, optionally with LayerNorm and the dueling head
 
         Q(s, a) = V(s) + A(s, a) - mean_b A(s, b)  [Wang et al. 2016].
 
-    With `goal_size` as many numbers follow the observation that say what it is asked for: see
+    `goal_size`: number of inputs after the observation that describe the desired goal, see
     rtg.learn.hindsight.
 
-    `reduced_precision` multiplies the two inner layers in bfloat16 while training: 2.4 times faster
-    where the processor can, unused where it cannot, and never for choosing actions. Weights and
-    sums stay float32, and so do the first layer (it sees positions, of which 8 bits resolve 2 cm)
-    and the last.
+    `reduced_precision` computes the two inner layers in bfloat16 during training, which is 2.4
+    times faster. It has no effect without hardware support or when actions are chosen. Weights and
+    sums stay in float32. So do the last layer and the first one, whose inputs are positions, which
+    8 bits resolve to 2 cm.
     """
 
     def __init__(
@@ -61,14 +61,14 @@ class ValueNetwork(QNetwork):
         self.first = _layer(self.features_dim + goal_size, widths[0], layer_norm)
         self.inner = nn.Sequential(*(_layer(a, b, layer_norm) for a, b in pairwise(widths)))
         self.head = nn.Linear(widths[-1], actions + 1 if dueling else actions)
-        if small_head:  # Q starts within 0.01 of 0: default noise equals γ^(T-1) of a long plan
+        if small_head:  # |Q| starts below 0.01; by default it is as large as γ^(T-1) of a long plan
             with th.no_grad():
                 self.head.weight.mul_(0.01)
                 self.head.bias.zero_()
         del self.q_net  # the plain network of the base class
 
     def forward(self, obs: PyTorchObs) -> th.Tensor:
-        """Q of all actions. [B, observation + goal_size] -> [B, actions]"""
+        """Returns Q of all actions. [B, observation + goal_size] -> [B, actions]"""
         hidden = self.first(self.extract_features(obs, self.features_extractor))
         device = hidden.device.type
         reduced = precision(self.reduced_precision, device) == "bfloat16"
@@ -87,7 +87,7 @@ def _layer(inputs: int, outputs: int, layer_norm: bool) -> nn.Sequential:
 
 
 class ValuePolicy(DQNPolicy):
-    """SB3's DQN policy around ValueNetwork; `network` holds the flags of ValueNetwork."""
+    """SB3's DQN policy with ValueNetwork; `network` holds the keyword arguments of ValueNetwork."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""The transitions of the run: into the replay buffer as they come in, and kept for their file."""
+"""The offline transitions of a run: added to the replay buffer on arrival, kept for their file."""
 
 from __future__ import annotations
 
@@ -16,38 +16,39 @@ from rtg.files.dataset import Rows, Transitions
 from rtg.files.recorder import Recorder
 from rtg.learn.replay import MixedReplayBuffer
 
-# numpy parses the heads of arrays with `ast`, which Python 3.11 gets wrong in two threads at once.
+# numpy parses array headers with `ast`, which fails in Python 3.11 if two threads use it at once.
 _READING = threading.Lock()
-REFRESH_GROWTH = 1.25  # bounds are proven anew when the data has grown by this factor
+REFRESH_GROWTH = 1.25  # value bounds are recomputed when the data has grown by this factor
 
 
 class Source(Protocol):
-    """Where transitions come from, as rtg.bus.transition_stream.TransitionStream."""
+    """A source of transitions, such as rtg.bus.transition_stream.TransitionStream."""
 
     def poll(self, timeout: float) -> int:
-        """Hands over what comes within `timeout` s; returns how many rows."""
+        """Waits at most `timeout` s for rows, hands them over and returns their number."""
 
     def close(self) -> None:
-        """Takes nothing more."""
+        """Ends the reception of rows."""
 
     @property
     def complete(self) -> bool:
-        """Says whether all rows have been handed over."""
+        """True if all rows have been handed over."""
 
     @property
     def lost(self) -> int:
-        """Rows known to exist that have not been handed over."""
+        """Number of rows that are known to exist and have not been handed over."""
 
 
 def read_rows(path: Path, task: _core.Task) -> Rows:
-    """The rows of a transition file. Raises dataset.DatasetError, FileNotFoundError."""
+    """Reads the rows of a transition file. Raises dataset.DatasetError or FileNotFoundError."""
     with _READING:
         transitions = dataset.read(path, bodies=task.bodies, headings=task.headings)
     return Rows(*(getattr(transitions, name) for name in Rows._fields))
 
 
 class OfflineData:
-    """Everything that came in so far, in sequence order; the buffer gets what is `chosen` of it."""
+    """Records all received transitions in sequence order; adds those that `chosen` selects to the
+    replay buffer."""
 
     def __init__(
         self,
@@ -57,16 +58,20 @@ class OfflineData:
     ) -> None:
         self._buffer, self._chosen = buffer, chosen
         self.record = Recorder(task)
-        self._known: Rows | None = None  # restored; a source says them again from the first
-        self._repeated = 0  # rows said again so far
-        self._refreshed = 0  # rows when the bounds were last proven
+        # Rows of the checkpoint until the source, which starts again, has repeated all of them.
+        self._known: Rows | None = None
+        self._repeated = 0  # rows that the source has sent again so far
+        self._refreshed = 0  # number of rows when the bounds were last computed
 
     @property
     def count(self) -> int:
         return self.record.count
 
     def take(self, rows: Rows) -> None:
-        """The next rows of the source."""
+        """Takes the next rows of the source.
+
+        Raises RunError if repeated rows differ from those of the checkpoint.
+        """
         if self._known is not None:
             rows = rows.after(self._check_repeated(rows, self._known))
         if len(rows.action):
@@ -87,18 +92,22 @@ class OfflineData:
         return again
 
     def prove_bounds(self, complete: bool) -> None:
-        """Brings the value bounds up to date when enough came in since, or all."""
+        """Recomputes the value bounds if enough rows are new, or any are new and all are in."""
         grown = self.count >= REFRESH_GROWTH * self._refreshed
         if self.count > self._refreshed and (grown or complete):
             self._refreshed = self.count
             self._buffer.refresh_bounds()
 
     def state(self) -> dict[str, int]:
-        """The rows themselves go to a transition file."""
+        """Returns the counts; the rows themselves are in a transition file."""
         return {"count": self.count, "refreshed": self._refreshed}
 
     def restore(self, state: dict[str, int], rows: Rows) -> None:
-        """`rows`: of the transition file, those that came in after the checkpoint too."""
+        """Restores the counts and adds the rows of the checkpoint to the replay buffer.
+
+        `rows`: all rows of the transition file, which may include some from after the checkpoint.
+        Raises RunError if it has fewer rows than the checkpoint.
+        """
         count, refreshed = state["count"], state["refreshed"]
         if len(rows.action) < count:
             found = len(rows.action)
@@ -112,7 +121,7 @@ class OfflineData:
 
 
 class NoSource:
-    """For a learner without offline data."""
+    """An empty source, for a learner without offline data."""
 
     lost = 0
     complete = True
@@ -126,7 +135,7 @@ class NoSource:
 
 
 class FileSource:
-    """The transitions of a file, all at the first poll."""
+    """A source that hands over all transitions of a file at the first poll."""
 
     lost = 0
 

@@ -1,4 +1,4 @@
-"""The rival that learns nothing: a beam search forwards from each start that it is judged by."""
+"""The baseline that learns nothing: a forward beam search from each start of the evaluation."""
 
 from __future__ import annotations
 
@@ -18,21 +18,22 @@ from rtg.learn.evaluation import FINAL, Evaluation, Floats, held_out_starts
 from rtg.learn.offline_data import Source
 from rtg.learn.training_log import TrainingLog
 
-_FORMAT = 2  # of the checkpoint
-_TURN = threading.Lock()  # a search takes all workers, and the process's time is counted as its own
+_FORMAT = 2  # version of the checkpoint format
+# One search at a time: it uses all workers, and its cpu_s is the processor time of the process.
+_TURN = threading.Lock()
 
 
 class Plan(NamedTuple):
     """The plan that a search found, and its cost."""
 
-    states: Floats  # [T + 1, bodies, 3], the start alone if it found nothing
-    pushes: int  # of the simulator
+    states: Floats  # [T + 1, bodies, 3]; only the start if no plan was found
+    pushes: int  # number of simulated pushes
     wall_s: float
     cpu_s: float  # of all workers
 
 
 def plan(config: _core.Config, start: Floats) -> Plan:
-    """A function of the arguments, its seconds aside. start [bodies, 3]"""
+    """Plans from `start` [bodies, 3]. Equal arguments give equal plans, except for their times."""
     with _TURN:
         began, cpu = time.monotonic(), time.process_time()
         states, pushes = _core.plan(config, start[None])
@@ -40,8 +41,10 @@ def plan(config: _core.Config, start: Floats) -> Plan:
 
 
 def judged(task: _core.Task, plans: list[Plan], discount: float) -> Evaluation:
-    """The plans as episodes of a policy: one without success, or beyond the horizon, takes all of
-    it. At least one plan; paths are those of the plans."""
+    """Evaluates the plans, at least one, as episodes of a policy with the plans as paths.
+
+    A plan without success, or longer than the horizon, counts as a failure of horizon length.
+    """
     actions = np.array([len(one.states) - 1 for one in plans])
     success = task.succeeded(np.stack([one.states[-1] for one in plans]))
     success &= (actions > 0) & (actions <= task.horizon)
@@ -51,9 +54,9 @@ def judged(task: _core.Task, plans: list[Plan], discount: float) -> Evaluation:
 
 
 class Planning:
-    """Plans from the final held-out starts, writing to a run folder as Training does.
+    """Plans from the final held-out starts and writes to a run folder as Training does.
 
-    Resumed, it goes on with the next start.
+    A resumed run continues with the next start.
     """
 
     def __init__(self, config: _core.Config, folder: Path) -> None:
@@ -61,17 +64,19 @@ class Planning:
         self.settings = s = config.train
         self.discount = s.discount or self.task.discount
         self.starts = held_out_starts(self.task, s.eval_episodes, FINAL, s.randomise)
-        self.plans: list[Plan] = []  # of the first starts
+        self.plans: list[Plan] = []  # of the first len(plans) starts
         self.log = TrainingLog(folder)
-        self.runs = 1  # in this process
-        self.scheduled = 0  # interactions
-        self.tell: Callable[[str, int], None] = lambda state, done: None  # as NodeStatus.tick
+        self.runs = 1  # number of runs in this process
+        self.scheduled = 0  # interactions: none
+        self.tell: Callable[[str, int], None] = lambda state, done: None  # NodeStatus.tick
         self._checkpoint = run_folder.checkpoint_file(folder)
         self._identity = {"learner": "planning", "format": _FORMAT}
 
     def run(self, source: Source, stop: Callable[[], bool], record: bool) -> bool:
-        """Until all starts are planned from; False if `stop` said so before. A checkpoint follows
-        each start. There is nothing to take in and to record."""
+        """Plans until all starts are done or `stop` returns True; returns whether all are done.
+
+        Writes a checkpoint after each start. Ignores `source` and `record`.
+        """
         del source, record
         self._display()
         while not self.done and not stop():
@@ -82,11 +87,11 @@ class Planning:
 
     @property
     def done(self) -> bool:
-        """Says whether there is a plan, or none to be found, from each start."""
+        """True if the search from each start has ended, with or without a plan."""
         return len(self.plans) == len(self.starts)
 
     def finish(self, lost: int) -> None:
-        """Writes progress.csv, of one row, the best plan and training.json."""
+        """Writes progress.csv with one row, the best plan and training.json."""
         final = judged(self.task, self.plans, self.discount)
         wall, cpu = sum(one.wall_s for one in self.plans), sum(one.cpu_s for one in self.plans)
         pushes = sum(one.pushes for one in self.plans)
@@ -109,7 +114,7 @@ class Planning:
         self._display()
 
     def _display(self) -> None:
-        """training_state.json, with the success so far."""
+        """Writes training_state.json with the success rate so far."""
         found = judged(self.task, self.plans, self.discount) if self.plans else None
         state = {
             "interactions": 0,
@@ -130,9 +135,9 @@ class Planning:
         return self._checkpoint.exists()
 
     def restore(self) -> None:
-        """Takes over the plans of the checkpoint as far as their starts are those of this run.
+        """Restores the plans of the checkpoint up to the first whose start differs from this run's.
 
-        Raises UserError if it is another learner's.
+        Raises UserError if another learner wrote the checkpoint.
         """
         state = checkpoint.read(self._checkpoint)
         policy_file.check_identity(self._checkpoint, state.get("identity"), self._identity)

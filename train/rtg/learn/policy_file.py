@@ -1,4 +1,4 @@
-"""A trained policy in a file: the weights of the value network and what they fit."""
+"""The file of a trained policy: the weights of the value network and the values they must fit."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rtg.learn.networks import ValuePolicy
 
 
 def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
-    """The values that weights must fit."""
+    """Returns the values of task and settings that the weights must fit."""
     return {
         "observation_size": task.observation_size,
         "headings": task.headings,
@@ -31,7 +31,7 @@ def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
 
 
 def check_identity(path: Path, found: Any, wanted: dict[str, Any]) -> None:
-    """Raises UserError, naming what differs."""
+    """Raises UserError with the first value that differs."""
     if not isinstance(found, dict):
         raise UserError(f"{path}: of another kind: it does not say what made it")
     for name, value in wanted.items():
@@ -42,12 +42,15 @@ def check_identity(path: Path, found: Any, wanted: dict[str, Any]) -> None:
 def write(
     path: Path, task: _core.Task, settings: _core.TrainConfig, weights: dict[str, Any]
 ) -> None:
-    """`weights`: state_dict of the value network."""
+    """Writes the policy. `weights`: state_dict of the value network."""
     checkpoint.write(path, {"identity": identity(task, settings), "weights": weights})
 
 
 def read(path: Path, task: _core.Task) -> Policy:
-    """The greedy policy, [N, observation] -> [N] actions. Raises UserError if it does not fit."""
+    """Reads the greedy policy, [N, observation] -> [N] actions.
+
+    Raises UserError if the file does not fit the task.
+    """
     state = checkpoint.read(path)
     found: Any = state.get("identity")
     weights = state.get("weights")

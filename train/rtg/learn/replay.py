@@ -1,4 +1,4 @@
-"""Two replay buffers as one: offline transitions, never evicted, and a ring of online ones."""
+"""A replay buffer with two stores: offline transitions, never evicted, and online ones, a ring."""
 
 from __future__ import annotations
 
@@ -17,27 +17,27 @@ from rtg.learn.value_bounds import value_bounds
 
 Array = npt.NDArray[Any]
 Infos = list[dict[str, Any]]
-Part = tuple["Store", Array]  # rows of one of the stores
+Part = tuple["Store", Array]  # a store and indices of some of its rows
 
-RECENT = 10_000  # online transitions that count as recent
+RECENT = 10_000  # number of latest online transitions that count as recent
 
 
 class Batch(NamedTuple):
-    """A sample for one gradient step; its first `offline` rows are offline transitions."""
+    """The sample of one gradient step; the first `offline` rows are offline transitions."""
 
     observations: th.Tensor  # [B, observation] float32
     actions: th.Tensor  # [B, 1] int64
     next_observations: th.Tensor  # [B, observation] float32
     rewards: th.Tensor  # [B, 1] float32
-    terminated: th.Tensor  # [B, 1] float32, 1 ends the bootstrap; a time-out is 0
-    bounds: th.Tensor  # [B, 1] float32, a proven lower bound of Q*(s, a); -inf if unused
+    terminated: th.Tensor  # [B, 1] float32, 1: no bootstrap from s'; 0 after a time-out
+    bounds: th.Tensor  # [B, 1] float32, proven lower bounds of Q*(s, a); -inf if unused
     offline: int
 
 
 class Store:
-    """Columns of transitions. Grows up to `capacity` rows, then overwrites the oldest.
+    """Stores transitions by column. Grows to `capacity` rows, then overwrites the oldest row.
 
-    The k-th transition written stands in row k modulo `capacity`.
+    Transition number k, counted from 0 in order of writing, is in row k modulo `capacity`.
     """
 
     columns: tuple[str, ...] = (
@@ -51,7 +51,7 @@ class Store:
 
     def __init__(self, capacity: int, observation_size: int) -> None:
         self.capacity = capacity
-        self.written = 0  # transitions, those overwritten since too
+        self.written = 0  # transitions so far, including overwritten ones
         wide, one = (0, observation_size), (0,)
         self.observation = np.zeros(wide, np.float32)  # [rows, observation]
         self.next_observation = np.zeros(wide, np.float32)  # [rows, observation]
@@ -62,11 +62,14 @@ class Store:
 
     @property
     def count(self) -> int:
-        """Rows filled."""
+        """Number of filled rows."""
         return min(self.written, self.capacity)
 
     def append(self, **columns: Array) -> Array:
-        """Adds transitions (at most `capacity`); returns their numbers, [added] int64."""
+        """Adds transitions and returns their numbers, [added] int64. Missing columns become 0.
+
+        Raises ValueError for more than `capacity` transitions.
+        """
         added = len(columns["action"])
         if added > self.capacity:
             raise ValueError(f"{added} transitions do not fit into a buffer of {self.capacity}")
@@ -78,8 +81,7 @@ class Store:
         return numbers
 
     def set_bounds(self, numbers: Array, bounds: Array) -> None:
-        """Sets the bounds of the transitions with these numbers, as far as they have not been
-        overwritten."""
+        """Sets the bounds of the transitions with these numbers; skips overwritten transitions."""
         kept = numbers >= self.written - self.capacity
         self.bound[numbers[kept] % self.capacity] = bounds[kept]
 
@@ -94,7 +96,7 @@ class Store:
             setattr(self, name, new)
 
     def state(self) -> dict[str, Any]:
-        """The filled rows and nothing else."""
+        """Returns the filled rows and the count of written transitions."""
         rows = {name: getattr(self, name)[: self.count].copy() for name in self.columns}
         return {"written": self.written, **rows}
 
@@ -106,11 +108,11 @@ class Store:
 
 @dataclass(frozen=True)
 class ReplayRules:
-    """The rules by which a batch is drawn."""
+    """The settings that determine how a batch is drawn."""
 
-    offline_share: float  # of a batch, once as many online ones exist; negative: no shares
-    recent_share: float  # of its online rows: from the RECENT latest
-    discount: float  # of the value bounds
+    offline_share: float  # of a batch, once a batch of online ones exists; negative: uniform
+    recent_share: float  # share of the online rows that the RECENT latest provide
+    discount: float  # γ of the value bounds
     use_bounds: bool
     seed: int
 
@@ -118,10 +120,11 @@ class ReplayRules:
 class MixedReplayBuffer(BaseBuffer):
     """The replay buffer that SB3's DQN samples from.
 
-    `offline_share` of every batch is drawn from the offline transitions once a batch of online ones
-    exists (before that, all of it); a negative share draws uniformly over both. `recent_share` of
-    the online rows are drawn from the latest: what a policy does wrong it does now, and among all
-    that was ever stored its mistakes would come up too rarely to be mended soon.
+    The share `offline_share` of every batch is drawn from the offline transitions once the buffer
+    holds a batch of online transitions; before that, the whole batch is offline. A negative share
+    draws uniformly from both stores. The share `recent_share` of the online rows is drawn from the
+    RECENT latest ones. Those contain the mistakes of the current policy, which uniform sampling of
+    all stored transitions would draw too rarely to correct them soon.
     """
 
     def __init__(
@@ -133,7 +136,7 @@ class MixedReplayBuffer(BaseBuffer):
         **of_sb3: Any,
     ) -> None:
         """`of_sb3`: `device`, `n_envs` and `optimize_memory_usage`, which SB3 passes by name."""
-        # s and s' are both kept: offline transitions are not consecutive.
+        # Both s and s' are stored, because offline transitions are not consecutive.
         of_sb3.pop("optimize_memory_usage", None)
         arguments = {"device": "cpu", **of_sb3}
         super().__init__(buffer_size, observation_space, action_space, **arguments)
@@ -145,13 +148,17 @@ class MixedReplayBuffer(BaseBuffer):
         self.discount = rules.discount
         self.use_bounds = rules.use_bounds
         self.rng = np.random.default_rng(rules.seed)
-        self._episodes: list[list[int]] = [[] for _ in range(self.n_envs)]  # numbers in `online`
+        # Per environment, the numbers in `online` of the transitions of its current episode.
+        self._episodes: list[list[int]] = [[] for _ in range(self.n_envs)]
 
     def size(self) -> int:
         return self.offline.count + self.online.count
 
     def add_offline(self, batch: Transitions) -> None:
-        """Takes transitions of the stream, while training or before. Raises if they do not fit."""
+        """Adds offline transitions, before or during training.
+
+        Raises ValueError if they do not fit.
+        """
         if self.offline.count + len(batch.action) > self.offline.capacity:
             raise ValueError(f"more offline transitions than train.buffer = {self.buffer_size}")
         self.offline.append(
@@ -164,7 +171,7 @@ class MixedReplayBuffer(BaseBuffer):
         )
 
     def refresh_bounds(self) -> None:
-        """Recomputes the lower bounds of all offline transitions; call it when data came in."""
+        """Recomputes the lower bounds of all offline transitions; to be called after new data."""
         store, n = self.offline, self.offline.count
         if self.use_bounds and n:
             store.bound[:n] = value_bounds(
@@ -174,9 +181,10 @@ class MixedReplayBuffer(BaseBuffer):
     def add(
         self, obs: Array, next_obs: Array, action: Array, reward: Array, done: Array, infos: Infos
     ) -> None:
-        """SB3's call: one row per environment; `done` with a time-out keeps the bootstrap.
+        """Adds one online transition per environment; SB3 calls it after each step.
 
-        A push that the simulator gave up is no transition; its row is left out.
+        An episode that ends by a time-out keeps the bootstrap. A push that the simulator could not
+        finish is not a transition, so its row is left out.
         """
         timeout = np.array([info.get("TimeLimit.truncated", False) for info in infos])
         kept = np.flatnonzero([not info.get("rejected", False) for info in infos])
@@ -196,12 +204,12 @@ class MixedReplayBuffer(BaseBuffer):
             self._close_episode(int(env), success=bool(reward[env] > 0))
 
     def _more_online(self, observation: Array) -> dict[str, Array]:
-        """Further columns of the online store. observation [environments, observation]"""
+        """Returns further columns for the online store. observation [environments, observation]"""
         del observation
         return {}
 
     def _more_offline(self, observation: Array) -> dict[str, Array]:
-        """Further columns of the offline store. observation [N, observation]"""
+        """Returns further columns for the offline store. observation [N, observation]"""
         del observation
         return {}
 
@@ -235,7 +243,7 @@ class MixedReplayBuffer(BaseBuffer):
         )
 
     def _columns(self, parts: list[Part]) -> dict[str, Array]:
-        """The rows of a batch by column, as its tensors will hold them."""
+        """Returns the rows of a batch by column, as the tensors of the batch hold them."""
         columns = {
             name: np.concatenate([getattr(store, name)[rows] for store, rows in parts])
             for name in Store.columns
@@ -245,7 +253,7 @@ class MixedReplayBuffer(BaseBuffer):
         return columns
 
     def _online_rows(self, count: int) -> Array:
-        """Rows of the online store; the first are recent ones."""
+        """Returns row numbers of the online store; the first `recent_share` of them are recent."""
         store = self.online
         rows = self.rng.integers(store.count, size=count)
         back = self.rng.integers(min(store.count, RECENT), size=round(self.recent_share * count))
@@ -266,10 +274,10 @@ class MixedReplayBuffer(BaseBuffer):
         raise NotImplementedError("rows belong to two stores; use sample()")
 
     def state(self) -> dict[str, Any]:
-        """The state that sampling depends on besides the offline transitions, which have a file of
-        their own.
+        """Returns the state that sampling depends on, except the offline transitions.
 
-        restore() continues with the same bits once those are back, their bounds refreshed alike.
+        These have their own file. restore() continues bit for bit if the same offline transitions
+        were added again, with their bounds refreshed at the same counts.
         """
         return {
             "online": self.online.state(),

@@ -1,6 +1,6 @@
-"""Which settings of the learner its checkpoint is bound to. TrainConfig has them all."""
+"""The settings of the learner that must not change after a checkpoint; see TrainConfig."""
 
-# The shape of its network and buffer, and the returns that it has counted.
+# They determine the shapes of network and buffer, and the returns and counts in the checkpoint.
 OF_CHECKPOINT = (
     "learner",
     "interact",

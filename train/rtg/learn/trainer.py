@@ -1,12 +1,12 @@
 """The learner's process, which ./run.sh starts.
 
 `python -m rtg.learn.trainer RUN_FOLDER... [--resume] [--no-stream] [--run-name NAME]` reads
-RUN_FOLDER/config.yaml, takes the transitions of the run in while it learns, and leaves
+RUN_FOLDER/config.yaml and receives the transitions of the run while it learns. It writes
 transitions.npz, progress.csv, training_state.json (for displays), checkpoint/, model.pt,
-best_episode.npz and training.json there; with `train.learner: planning` nothing is learned, and
-there is no model.pt. Several runs learn side by side, a thread each, and come to the same bits as
-alone. SIGINT, SIGTERM or SIGHUP: checkpoint and exit with 128 + number; a
-second one: exit at once.
+best_episode.npz and training.json to the same folder. With `train.learner: planning` it learns
+nothing and writes no model.pt. Several runs learn side by side, each on its own thread, with
+results that are bitwise equal to those of separate runs. On SIGINT, SIGTERM or SIGHUP it writes a
+checkpoint and exits with status 128 + signal number; a second signal ends it at once.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def _begin(folder: Path, args: argparse.Namespace) -> Training | Planning:
 
 
 def _learn(training: Training | Planning, args: argparse.Namespace, interrupts: Interrupts) -> int:
-    """The exit status. Raises UserError, RunError."""
+    """Learns from start to end; returns the exit status. Raises UserError or RunError."""
     with contextlib.closing(_source(training, args)) as source:
         try:
             if not training.run(source, interrupts.requested, record=not args.no_stream):
@@ -86,9 +86,11 @@ def _learn(training: Training | Planning, args: argparse.Namespace, interrupts: 
 
 
 def train(args: argparse.Namespace, interrupts: Interrupts) -> int:
-    """The exit status, of several runs the highest. Raises UserError, RunError; of several runs
-    what the first one raised, at the end of the others."""
-    # One after the other: the first weights come from the generator of the process.
+    """Learns all runs; returns their highest exit status. Raises UserError or RunError.
+
+    If runs fail, it raises the error of the first of them after all runs have ended.
+    """
+    # Sequentially, because the initial weights come from the random generator of the process.
     trainings = [_begin(folder, args) for folder in args.folders]
     with ThreadPoolExecutor(len(trainings), initializer=_keep_to_one_thread) as pool:
         ends = [pool.submit(_learn, training, args, interrupts) for training in trainings]
@@ -96,8 +98,10 @@ def train(args: argparse.Namespace, interrupts: Interrupts) -> int:
 
 
 def _keep_to_one_thread() -> None:
-    """Keeps PyTorch to one thread: more are slower for networks this small, a hundred times on a
-    busy core."""
+    """Limits PyTorch to one thread.
+
+    With networks this small more threads are slower, up to a hundred times on a busy core.
+    """
     th.set_num_threads(1)
 
 

@@ -1,4 +1,4 @@
-"""A training run: take transitions in, interact, learn, evaluate, write down."""
+"""A training run: receives transitions, interacts, learns, evaluates and writes the results."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ from rtg.learn.offline_data import OfflineData, Source, read_rows
 from rtg.learn.settings import OF_CHECKPOINT
 from rtg.learn.training_log import TrainingLog
 
-MAX_ENVIRONMENTS = 4  # stepped together; the least legal train.buffer
-_FORMAT = 6  # of the checkpoint; another one is not read
-WAIT = 0.1  # [s], for transitions when there is nothing else to do
+MAX_ENVIRONMENTS = 4  # environments stepped together; train.buffer must not be smaller
+_FORMAT = 6  # version of the checkpoint format; other versions are rejected
+WAIT = 0.1  # [s], how long a poll waits for transitions while not learning
 
 Stop = Callable[[], bool]
 
 
 class Training:
-    """The learner with everything around it, writing to a run folder.
+    """Runs the learner with its environments and data, and writes to a run folder.
 
-    Once begun, learning does not wait for transitions that still come in. What it does next depends
-    on its checkpoint, the transitions and at which step they come in: from a finished set, and from
-    a stream that delivers alike, a resumed run goes on with the same bits. LCM does not deliver
-    alike, so over it two runs of one seed may learn differently.
+    Once learning has begun it does not wait for transitions that are still to come. It depends on
+    its checkpoint, on the transitions, and on the step at which each of them arrives. So a resumed
+    run continues bit for bit with a finished transition set, or with a stream that delivers rows at
+    the same steps. LCM does not deliver them so: over LCM two runs with one seed may differ.
 
-    Without `train.interact` learning waits for all transitions, and does its rounds without the
-    interactions before them. Schedules and progress.csv count these all the same; the result has
-    those of the environment: none.
+    Without `train.interact`, learning waits for all transitions, and its rounds have no
+    interactions. Schedules and progress.csv count the interactions all the same; training.json
+    counts the real ones, 0.
     """
 
     def __init__(self, config: _core.Config, folder: Path) -> None:
@@ -64,32 +64,32 @@ class Training:
             **policy_file.identity(self.task, s),
         }
         self.starts = held_out_starts(self.task, s.eval_episodes, randomise=s.randomise)
-        self.runs = 1  # that learn in this process
-        self.place: dict[str, Any] = {}  # where it has last learned something
-        self.tell: Callable[[str, int], None] = lambda state, done: None  # as NodeStatus.tick
+        self.runs = 1  # number of runs that learn in this process
+        self.place: dict[str, Any] = {}  # device and precision of the last learning, see _here()
+        self.tell: Callable[[str, int], None] = lambda state, done: None  # NodeStatus.tick
         self._checkpoint = run_folder.checkpoint_file(folder)
-        self._saved_at = 0  # interactions of the schedule
-        self._saved_rows = 0  # offline transitions
+        self._saved_at = 0  # `scheduled` at the last save
+        self._saved_rows = 0  # offline transitions at the last save
 
     @property
     def scheduled(self) -> int:
-        """Interactions so far by the schedule."""
+        """Number of interactions so far that schedules count."""
         return self.model.num_timesteps
 
     @property
     def interactions(self) -> int:
-        """Interactions with the environment so far."""
+        """Number of interactions with the environment so far; 0 without `train.interact`."""
         return self.scheduled if self.settings.interact else 0
 
     @property
     def pushes(self) -> int:
-        """Pushes of the simulator for learning: those of evaluations are not counted."""
+        """Number of simulated pushes for learning; those of evaluations do not count."""
         curriculum = self.env.curriculum
         return self.interactions + (curriculum.pushes if curriculum else 0)
 
     @property
     def done(self) -> bool:
-        """Says whether the budget is used up or success has been high for long enough."""
+        """True if the budget is used up or the last evaluations reached `stop_at_success`."""
         return self.scheduled >= self.settings.interactions or self._is_good()
 
     def _is_good(self) -> bool:
@@ -98,9 +98,10 @@ class Training:
         return bar > 0.0 and len(last) == count and min(last) >= bar
 
     def run(self, source: Source, stop: Stop, record: bool) -> bool:
-        """Until learning is done and all transitions are in; False if `stop` said so before.
+        """Learns and receives transitions until both are complete or `stop` returns True.
 
-        Leaves a checkpoint either way. `record`: write what comes in to transitions.npz.
+        Returns whether both are complete, and writes a checkpoint in either case. `record`: writes
+        transitions.npz once all transitions are in.
         """
         while not (stop() or source.complete or self._may_begin()):
             self._take_in(source, record, WAIT)
@@ -118,11 +119,11 @@ class Training:
         return self.done and source.complete
 
     def _may_begin(self) -> bool:
-        """Says whether learning can begin with some of the transitions."""
+        """Returns whether learning can begin before all transitions are in."""
         return self.settings.interact and self.data.count >= self.settings.start_at
 
     def _learn(self) -> None:
-        """A round."""
+        """Performs one round of learning. Raises RunError if there is nothing to learn from."""
         if self.settings.interact:
             self.model.learn(self.settings.train_frequency, reset_num_timesteps=False)
         elif self.model.replay_buffer.size():
@@ -140,7 +141,7 @@ class Training:
 
     def _take_in(self, source: Source, record: bool, timeout: float) -> None:
         news = not source.complete
-        source.poll(timeout)  # also when complete: the stream is told so again and again
+        source.poll(timeout)  # also when complete, to repeat the final acknowledgement
         if news:
             self.data.prove_bounds(source.complete)
             if source.complete and record:
@@ -149,14 +150,14 @@ class Training:
         self.tell(self._activity(), self.scheduled)
 
     def _activity(self) -> str:
-        """The words for what it does, and how well it did in the last evaluation."""
+        """Describes the current activity and the last success rate, for people."""
         if not self.clock.running:
             return "waiting"
         rows = self.log.rows
         return f"learning, success {rows[-1]['success_rate']:.2f}" if rows else "learning"
 
     def _write_down(self) -> None:
-        """Evaluation and checkpoint, where they are due."""
+        """Evaluates and writes a checkpoint if either is due."""
         evaluated_at = self.log.rows[-1]["interactions"] if self.log.rows else 0
         over = self.scheduled >= self.settings.interactions > evaluated_at
         if over or self._is_due(self.settings.eval_every, evaluated_at):
@@ -168,7 +169,7 @@ class Training:
         return self.scheduled // every > last // every
 
     def evaluate(self) -> Evaluation:
-        """The greedy policy on the held-out starts; changes nothing."""
+        """Evaluates the greedy policy on the held-out starts; changes no state of the learner."""
         return self._evaluate(self.starts)
 
     def _evaluate(self, starts: Floats) -> Evaluation:
@@ -199,7 +200,7 @@ class Training:
         return {"q_start_max": float(self.model.values(nominal).max())}
 
     def _state(self) -> dict[str, Any]:
-        """The figures that a display shows; interactions of the schedule."""
+        """Returns the figures for displays; "interactions" are those that schedules count."""
         rows = self.log.rows
         return {
             "interactions": self.scheduled,
@@ -211,7 +212,10 @@ class Training:
         }
 
     def save(self) -> None:
-        """Writes the checkpoint, and the transitions in hand as long as their file is not there."""
+        """Writes the checkpoint.
+
+        Until transitions.npz exists, also writes the transitions so far, next to the checkpoint.
+        """
         self._checkpoint.parent.mkdir(exist_ok=True)
         whole, part = self._transition_files()
         if whole.exists():
@@ -236,7 +240,7 @@ class Training:
         return self._checkpoint.exists()
 
     def restore(self) -> None:
-        """Goes back to the checkpoint in the run folder. Raises UserError if it does not fit."""
+        """Restores the checkpoint of the run folder. Raises UserError if it does not fit."""
         path = self._checkpoint
         state = checkpoint.read(path)
         policy_file.check_identity(path, state.get("identity"), self._identity)
@@ -252,7 +256,10 @@ class Training:
         self._saved_at, self._saved_rows = self.scheduled, self.data.count
 
     def _transition_files(self) -> tuple[Path, Path]:
-        """All of the run; those that were in at the checkpoint, while the former is not there."""
+        """Returns the file of all transitions, and that of the transitions at the checkpoint.
+
+        The second one exists only until the first one does.
+        """
         return self.folder / "transitions.npz", self._checkpoint.parent / "transitions.npz"
 
     def _seen_transitions(self) -> Path:
@@ -267,8 +274,8 @@ class Training:
     def finish(self, lost: int) -> None:
         """Writes the model, the best final episode and training.json.
 
-        The final figures are of starts that no evaluation before has seen: training may have been
-        stopped because those of the others went well by chance.
+        The final figures use starts of no earlier evaluation, because an evaluation that was
+        successful by chance may have stopped training. `lost`: number of lost transitions.
         """
         s = self.settings
         starts = held_out_starts(self.task, s.eval_episodes, FINAL, s.randomise)

@@ -1,4 +1,4 @@
-"""The log of a training run: progress.csv for people, a small file for the display."""
+"""The log of a training run: progress.csv, and training_state.json for displays."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from rtg.files.run_folder import write_json, write_text
 from rtg.learn.evaluation import Evaluation
 
 COLUMNS = (
-    "interactions",  # without train.interact: rounds of learning that so many would give
+    "interactions",  # without train.interact: those that the rounds of learning stand for
     "gradient_steps",
-    "success_rate",  # greedy, held-out starts
+    "success_rate",  # of the greedy policy from the held-out starts
     "episode_length_mean",
     "episode_return_mean",  # discounted
     "rollout_success",  # of the last 100 training episodes
@@ -30,18 +30,18 @@ COLUMNS = (
     "q_online_mean",
     "q_online_max",
     "td_error",
-    "clipped_share",  # of the targets, beyond [0, 1] before they are raised and clipped
-    "bound_share",  # of the targets, raised to what stored trajectories prove
+    "clipped_share",  # share of the bootstrap targets outside [0, 1]
+    "bound_share",  # share of the targets raised to the bounds that stored trajectories prove
     "offline_transitions",
-    "pushes",  # of the simulator for learning: interactions, starts of a curriculum, plans
+    "pushes",  # simulated for learning: by interactions, a curriculum or planning
     "wall_s",
-    "cpu_s",  # of the learner's processes; evaluations included, as in wall_s
+    "cpu_s",  # of the learner's processes; includes evaluations, as wall_s does
 )
 DISPLAY_INTERVAL = 0.5  # [s]
 
 
 class TrainingLog:
-    """A row per evaluation."""
+    """The log of a training run, with one row per evaluation."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -49,7 +49,7 @@ class TrainingLog:
         self._shown_at = -1e9
 
     def add(self, row: Mapping[str, Any]) -> None:
-        """Appends a row; columns that were not measured stay empty."""
+        """Appends a row; missing columns stay empty. Raises KeyError for an unknown column."""
         unknown = set(row) - set(COLUMNS)
         if unknown:
             raise KeyError(f"no columns of progress.csv: {sorted(unknown)}")
@@ -57,7 +57,7 @@ class TrainingLog:
         self.write()
 
     def write(self) -> None:
-        """Replaces progress.csv."""
+        """Writes all rows to progress.csv."""
         text = io.StringIO()
         table = csv.DictWriter(text, COLUMNS, lineterminator="\n")
         table.writeheader()
@@ -67,7 +67,7 @@ class TrainingLog:
         write_text(self._folder / "progress.csv", text.getvalue())
 
     def write_result(self, final: Evaluation, figures: Mapping[str, Any]) -> None:
-        """best_episode.npz and, in the end, training.json."""
+        """Writes best_episode.npz and then training.json."""
         best = final.best()
         np.savez(
             self._folder / "best_episode.npz", poses=final.paths[best], success=final.success[best]
@@ -75,7 +75,7 @@ class TrainingLog:
         write_json(self._folder / "training.json", dict(figures))
 
     def display(self, state: Mapping[str, Any], force: bool = False) -> None:
-        """training_state.json, for whoever watches; twice a second at most."""
+        """Writes training_state.json for displays, at most twice a second unless `force`."""
         now = time.monotonic()
         if force or now - self._shown_at >= DISPLAY_INTERVAL:
             self._shown_at = now

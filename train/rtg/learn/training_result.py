@@ -1,4 +1,4 @@
-"""The figures of a training run that has come to its end."""
+"""The figures of a finished training run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _VALUES = ("q_rank_correlation", "q_error", "q_spread")  # of ValueCheck.summary
 
 
 def figures(run: Training, final: Evaluation, lost: int) -> dict[str, Any]:
-    """The content of training.json. lost: transitions that have not come in."""
+    """Returns the content of training.json. `lost`: number of lost transitions."""
     return {
         "interactions": run.interactions,
         "gradient_steps": run.model.gradient_steps_done,
@@ -32,7 +32,7 @@ def figures(run: Training, final: Evaluation, lost: int) -> dict[str, Any]:
 
 
 def _counts(run: Training) -> dict[str, int]:
-    """Counts that some methods alone have."""
+    """Returns the counts that only some methods have."""
     found = {}
     if run.env.curriculum:
         found["curriculum_pushes"] = run.env.curriculum.pushes
@@ -42,7 +42,7 @@ def _counts(run: Training) -> dict[str, int]:
 
 
 def _value_check(run: Training) -> dict[str, float | None]:
-    """How well Q ranks the headings of stored states; empty without a Q or such states."""
+    """Returns the figures of check_values(); empty without a Q or stored states."""
     if run.settings.learner != "q_learning" or not run.data.count:
         return {}
     states = stored_states(run.data.record.transitions(), STATES, run.seed)

@@ -1,8 +1,8 @@
-"""Lower bounds of Q* that a set of true transitions proves.
+"""Lower bounds of Q* that follow from a set of true transitions.
 
 The dynamics are deterministic. If the stored transitions lead from (s, a) to a success in k
-actions, then Q*(s, a) ≥ γ^(k-1), whatever the network thinks. States are matched by the bits of
-their observations.
+actions, then Q*(s, a) ≥ γ^(k-1), independently of the network. Two states count as equal if their
+observations are bitwise equal.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ def value_bounds(
     reward: Array,  # [N] float32, 1 is a success and ends the episode
     discount: float,
 ) -> Array:
-    """The bound of each transition, 0 where no success is reachable within the set. [N] float32"""
+    """Returns the bound of each transition, 0 if the set leads to no success. [N] float32"""
     here, there = _state_ids(observation, next_observation)
     order = np.argsort(here, kind="stable")
-    first = np.flatnonzero(np.diff(here[order], prepend=-1))  # where each state's group begins
+    first = np.flatnonzero(np.diff(here[order], prepend=-1))  # first index of each state's group
     value = np.zeros(max(here.max(), there.max()) + 1, np.float64)
     bound = reward.astype(np.float64)
     while True:

@@ -1,8 +1,8 @@
-"""How well Q ranks the headings of a state, by the simulator: what predicts whether data teach.
+"""Checks by simulation how well Q ranks the headings of a state, an indicator of useful data.
 
-Every heading of some hundred stored states is simulated. It is worth 1 where it succeeds, else
-γ max_b Q(s', b): what Q itself thinks of where it leads. A policy chooses among the headings by
-Q(s, ·), so that should rank them alike.
+It simulates every heading in some hundred stored states. The value of a heading is 1 if it
+succeeds, else γ max_b Q(s', b), with Q's own value of the next state. The policy chooses headings
+by Q(s, ·), so Q(s, ·) should rank them as their values do.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ STATES = 300
 
 
 class ValueCheck(NamedTuple):
-    """Q(s, ·) against the values of the headings, one simulated push each."""
+    """The agreement of Q(s, ·) with the values of the headings, from one simulated push each."""
 
-    rank_correlation: float  # Spearman's, over the headings of a state, mean over the states
+    rank_correlation: float  # Spearman's, over the headings of a state; mean over the states
     error: float  # root mean square of Q(s, a) - the value of a in s
-    spread: float  # standard deviation of the values over the headings, mean over the states
+    spread: float  # standard deviation of the values over the headings; mean over the states
 
     def summary(self) -> dict[str, float]:
-        """Under the names of summary.json."""
+        """Returns the figures by their names in summary.json."""
         return {
             "q_rank_correlation": self.rank_correlation,
             "q_error": self.error,
@@ -39,19 +39,22 @@ class ValueCheck(NamedTuple):
 
 
 def stored_states(data: Transitions, count: int, seed: int) -> Array:
-    """`count` distinct states in which stored transitions begin, or all. [states, bodies, 3]"""
+    """Draws `count` distinct states in which stored transitions begin; returns all if fewer exist.
+
+    [states, bodies, 3]
+    """
     states = np.unique(data.poses, axis=0)
     chosen = np.random.default_rng(seed).permutation(len(states))[:count]
     return states[np.sort(chosen)]
 
 
 def _centred_ranks(values: Array) -> Array:
-    """Ranks within each row but for their mean and a factor; equal values share one. [N, M]"""
+    """Returns centred ranks within each row, times 2; equal values share one. [N, M] -> [N, M]"""
     return np.sign(values[:, :, None] - values[:, None, :]).sum(axis=2)
 
 
 def _spearman(a: Array, b: Array) -> Array:
-    """Row by row; 0 where all values of a row are equal. [N, M] each -> [N]"""
+    """Returns the rank correlation per row, 0 if all values are equal. [N, M] each -> [N]"""
     x, y = _centred_ranks(a), _centred_ranks(b)
     norm = np.sqrt((x * x).sum(axis=1) * (y * y).sum(axis=1))
     product = (x * y).sum(axis=1)
@@ -61,8 +64,11 @@ def _spearman(a: Array, b: Array) -> Array:
 def check_values(
     config: _core.Config, values: Values, discount: float, states: Array
 ) -> ValueCheck | None:
-    """states [N, bodies, 3]; None where the simulator gives up pushes of every state, or no state's
-    headings differ in value."""
+    """Compares `values` with the simulated values of all headings. states [N, bodies, 3]
+
+    Leaves out states in which the simulator cannot finish a push, or whose headings have equal
+    values. Returns None if no state is left.
+    """
     task, simulator = config.task, _core.Simulator(config)
     headings = np.arange(task.headings)
     after, ok = simulator.push(

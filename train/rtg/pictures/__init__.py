@@ -1,1 +1,1 @@
-"""Scenes and figures of a run, drawn."""
+"""Pictures of a run: drawings of its states and plots of its figures."""

@@ -1,4 +1,4 @@
-"""Draws one state of a task, from the data that the goal predicate itself uses."""
+"""Draws one state of a task, from the same data as the goal predicate uses."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ KINDS: tuple[Colour, ...] = (
     (200, 92, 92),
     (96, 160, 160),
 )
-SMOOTH = 3  # drawn this much larger, then reduced
+SMOOTH = 3  # pictures are drawn this many times larger, then reduced
 
 
 class GoalLike(Protocol):
-    """A term of the goal, as rtg._core.GoalTerm."""
+    """The properties of a goal term that drawing needs, as in rtg._core.GoalTerm."""
 
     @property
     def kind(self) -> str: ...
@@ -53,7 +53,7 @@ class GoalLike(Protocol):
 
 
 class TaskLike(Protocol):
-    """The properties that drawing needs of a task, as rtg._core.Task."""
+    """The properties of a task that drawing needs, as in rtg._core.Task."""
 
     @property
     def shapes(self) -> Sequence[Floats]:
@@ -82,12 +82,12 @@ class TaskLike(Protocol):
 
 
 def objects(task: TaskLike) -> list[int]:
-    """The bodies that can be pushed; body 0 is the robot."""
+    """Returns the indices of the bodies that can be pushed; body 0 is the robot."""
     return [body for body in range(1, len(task.kinds)) if not task.fixed[body]]
 
 
 def kind_colours(task: TaskLike) -> dict[str, Colour]:
-    """A colour per kind of object, in order of first appearance."""
+    """Returns a colour per kind of object; kinds are in order of first appearance."""
     colours: dict[str, Colour] = {}
     for kind in (task.kinds[body] for body in objects(task)):
         if kind not in colours:
@@ -96,7 +96,7 @@ def kind_colours(task: TaskLike) -> dict[str, Colour]:
 
 
 def on_paper(colour: Colour, share: float) -> Colour:
-    """The colour thinned."""
+    """Mixes `share` of the colour with PAPER."""
     red, green, blue = (
         round(share * c + (1.0 - share) * p) for c, p in zip(colour, PAPER, strict=True)
     )
@@ -104,7 +104,7 @@ def on_paper(colour: Colour, share: float) -> Colour:
 
 
 def outline(shape: Floats, pose: Floats) -> Floats:
-    """World vertices of a body. shape [V, 2], pose [3] -> [V, 2]."""
+    """Returns the vertices of a body in world coordinates. shape [V, 2], pose [3] -> [V, 2]."""
     c, s = np.cos(pose[2]), np.sin(pose[2])
     return np.asarray(shape) @ np.array([[c, s], [-s, c]]) + pose[:2]
 
@@ -112,24 +112,24 @@ def outline(shape: Floats, pose: Floats) -> Floats:
 class Window(NamedTuple):
     """A square part of the plane [m]."""
 
-    x: float  # of its centre
-    y: float
-    half: float  # of its side
+    x: float  # of the centre
+    y: float  # of the centre
+    half: float  # half the side
 
     def at(self, right: float, up: float) -> tuple[float, float]:
-        """A place in it; -1 and 1 are the edges."""
+        """Returns the point at `right` and `up` from the centre; -1 and 1 are the edges."""
         return self.x + right * self.half, self.y + up * self.half
 
 
 def arena_window(task: TaskLike) -> Window:
-    """The whole arena with a margin."""
+    """Returns the window that shows the whole arena with a margin."""
     return Window(0.0, 0.0, 1.06 * task.arena)
 
 
 def episode_window(task: TaskLike, poses: Floats) -> Window:
-    """All that an episode needs: the bodies at all times, discs of the goal. poses [T, bodies, 3]
+    """Returns the window that shows all bodies at all times and the goal discs of an episode.
 
-    No larger than the arena with its margin.
+    The window is at most that of arena_window(). poses [T, bodies, 3]
     """
     marks = [term for term in task.goal if term.region == "disc"]
     corners = [circle(term.centre, term.radius) for term in marks]
@@ -145,7 +145,7 @@ def episode_window(task: TaskLike, poses: Floats) -> Window:
 
 
 class Canvas:
-    """A square window on the plane with y upwards."""
+    """A square picture of a window, with y upwards."""
 
     def __init__(self, window: Window, pixels: int = 360) -> None:
         self.window = window
@@ -160,39 +160,39 @@ class Canvas:
         return list(zip(x.tolist(), y.tolist(), strict=True))
 
     def polygon(self, xy: Any, fill: Colour, edge: Colour) -> None:
-        """Filled polygon with an outline."""
+        """Draws a filled polygon with an outline."""
         ImageDraw.Draw(self._image).polygon(self._points(xy), fill=fill)
         self.line(np.vstack([np.atleast_2d(xy), np.atleast_2d(xy)[:2]]), edge, 0.07)
 
     def line(self, xy: Any, colour: Colour, width: float) -> None:
-        """Polyline of `width` [m]."""
+        """Draws a polyline of `width` [m]."""
         pixels = max(1, round(width * self._scale))
         ImageDraw.Draw(self._image).line(self._points(xy), fill=colour, width=pixels, joint="curve")
 
     def dot(self, xy: Any, colour: Colour, radius: float) -> None:
-        """Disc of `radius` [m]."""
+        """Draws a disc of `radius` [m]."""
         (x, y), r = self._points(xy)[0], radius * self._scale
         ImageDraw.Draw(self._image).ellipse((x - r, y - r, x + r, y + r), fill=colour)
 
     def text(self, xy: Any, words: str, size: float = 0.75, colour: Colour = INK) -> None:
-        """Words with their upper left corner at `xy`, `size` [m] high."""
+        """Draws words with their upper left corner at `xy`; the font size is `size` [m]."""
         font = ImageFont.load_default(size=size * self._scale)
         ImageDraw.Draw(self._image).text(self._points(xy)[0], words, fill=colour, font=font)
 
     def pixels(self) -> NDArray[np.uint8]:
-        """[height, width, 3]."""
+        """Returns the reduced picture. [height, width, 3]"""
         return np.asarray(self._image.reduce(SMOOTH))
 
 
 def circle(centre: Any, radius: float, corners: int = 96) -> Floats:
-    """Polygon of a disc, [corners, 2]."""
+    """Returns a polygon that approximates a disc. [corners, 2]"""
     angle = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
     centre = np.asarray(centre, dtype=float).reshape(2)
     return centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
 def _half_plane(term: GoalLike, reach: float) -> Floats:
-    """The part of normal·x <= offset that a window can show, as a rectangle."""
+    """Returns a rectangle that covers normal·x <= offset wherever a window can show it. [4, 2]"""
     normal = np.asarray(term.normal, dtype=float).reshape(2)
     along = np.array([-normal[1], normal[0]])
     edge = normal * term.offset
@@ -202,7 +202,7 @@ def _half_plane(term: GoalLike, reach: float) -> Floats:
 
 
 def draw_goal(canvas: Canvas, task: TaskLike, reached: bool = False) -> None:
-    """The regions of the goal, stronger when they hold; discs lie on half-planes."""
+    """Draws the regions of the goal, darker if `reached`; discs lie on top of half-planes."""
     colours = kind_colours(task)
     regions = [term for term in task.goal if term.region != "angles"]
     for term in sorted(regions, key=lambda term: term.region == "disc"):
@@ -215,7 +215,7 @@ def draw_goal(canvas: Canvas, task: TaskLike, reached: bool = False) -> None:
 
 
 def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
-    """All bodies, walls first, the robot last and on top. poses [bodies, 3]."""
+    """Draws all bodies: walls first, the robot last and on top. poses [bodies, 3]."""
     colours = kind_colours(task)
 
     def draw(body: int, colour: Colour) -> None:
@@ -231,8 +231,10 @@ def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
 
 
 def draw_joints(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
-    """A pin per joint, in the colour of the goal where its angle is as asked; a cross at each mean
-    centre that the goal speaks of. poses [bodies, 3]
+    """Draws a pin per joint and a cross at each mean centre that the goal constrains.
+
+    A pin has the colour of the goal if the goal constrains the joint angle and the angle meets the
+    constraint. poses [bodies, 3]
     """
     reached = task.joints_reached(poses[None])
     for (parent, _, pin), right in zip(task.joints, reached, strict=True):
@@ -245,7 +247,7 @@ def draw_joints(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
 
 
 def draw_ghosts(canvas: Canvas, task: TaskLike, before: Floats, poses: Floats) -> None:
-    """Outlines of where the objects that moved since `before` came from. [bodies, 3] each"""
+    """Draws the outlines at `before` of the objects that have moved since. [bodies, 3] each"""
     colours = kind_colours(task)
     for body in objects(task):
         if np.abs(poses[body] - before[body]).max() > 0.02:
@@ -261,10 +263,10 @@ def state_image(
     caption: str = "",
     reached: bool = False,
 ) -> NDArray[np.uint8]:
-    """The last state of a path as an RGB picture [pixels, pixels, 3].
+    """Draws the last state of a path as an RGB picture [pixels, pixels, 3].
 
-    path [T, bodies, 3]: the robot's way and the objects' first places are shown, too; `reached`
-    marks a success; an empty canvas of the whole arena if none is given.
+    path [T, bodies, 3]: the picture also shows the path of the robot and the first places of the
+    objects. `reached` marks a success. Without `canvas`, the picture shows the whole arena.
     """
     canvas = canvas or Canvas(arena_window(task))
     path = np.asarray(path, dtype=float)

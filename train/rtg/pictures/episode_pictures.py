@@ -22,33 +22,34 @@ from rtg.pictures.draw import (
 Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]  # [height, width, 3]
 
-_COLUMNS = 5  # of a strip
-_FRAMES_PER_PUSH = 8  # of a short episode
-_FRAMES = 160  # in all, about
+_COLUMNS = 5  # of a strip, at most
+_FRAMES_PER_PUSH = 8  # at most; fewer in long episodes
+_FRAMES = 160  # of a film, about
 _FILM_SIDE = 360  # [pixel]
 _FRAME_MS = 45
-_HOLD_MS = 1200  # at the start and at the end
+_HOLD_MS = 1200  # at the start; twice as long at the end
 
 
 def between(task: TaskLike, before: Floats, after: Floats, share: float) -> Floats:
-    """The state when `share` of a push is done. [bodies, 3]
+    """Interpolates the state after a `share` of a push. [bodies, 3]
 
-    The robot moves evenly; an object stands still until the rest of the push covers its way, then
-    moves along, with all that joints connect to it. Exact for straight drags, good enough to watch.
+    The robot moves at constant speed. An object rests until the remaining push is as long as the
+    path of the object, then moves as fast as the robot; bodies connected by joints move
+    during the same time. Exact for straight drags, an approximation otherwise.
     """
     way = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)  # [bodies]
-    for _ in task.joints:  # the longest way spreads along every chain
+    for _ in task.joints:  # the longest path spreads along every chain of joints
         for parent, child, _ in task.joints:
             way[[parent, child]] = max(way[parent], way[child])
     stride = max(float(way[0]), 1e-9)
-    rest = np.clip(way / stride, 1e-9, 1.0)  # share of the push in which a body moves
+    rest = np.clip(way / stride, 1e-9, 1.0)  # final share of the push, in which a body moves
     moved = np.clip((share - (1.0 - rest)) / rest, 0.0, 1.0)
     moved[0] = share
     return before + (after - before) * moved[:, None]
 
 
 def _heading(title: str, width: int) -> Picture:
-    """A line of words across a picture of that width, as large as fits. [height, width, 3]"""
+    """Draws a line of words across `width` pixels, as large as fits. [height, width, 3]"""
     largest = 18.0 * SMOOTH  # [pixel]
     length = ImageFont.load_default(size=largest).getlength(title)
     size = min(largest, largest * 0.95 * width * SMOOTH / length)
@@ -60,7 +61,10 @@ def _heading(title: str, width: int) -> Picture:
 
 
 def strip(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -> None:
-    """Two rows at most of states from the first to the last. poses [T+1, bodies, 3]."""
+    """Writes a picture of states from the first to the last, in at most two rows.
+
+    poses [T+1, bodies, 3]
+    """
     last = len(poses) - 1
     shown = np.unique(np.linspace(0, last, min(last + 1, 2 * _COLUMNS)).round().astype(int))
     window = episode_window(task, poses)
@@ -81,7 +85,7 @@ def strip(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) 
 
 
 def _sheet(tiles: list[Picture], columns: int) -> Picture:
-    """The tiles row by row with thin lines between them."""
+    """Arranges the tiles row by row, with thin lines between them."""
     line, side = 2, tiles[0].shape[0]
     rows = -(-len(tiles) // columns)
     size = ((side + line) * rows - line, (side + line) * columns - line)
@@ -94,7 +98,7 @@ def _sheet(tiles: list[Picture], columns: int) -> Picture:
 
 
 def film(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -> None:
-    """An animated GIF of the pushes. poses [T+1, bodies, 3]."""
+    """Writes an animated GIF of the pushes. poses [T+1, bodies, 3]."""
     last = len(poses) - 1
     window = episode_window(task, poses)
     heading = _heading(title, _FILM_SIDE)
@@ -103,7 +107,7 @@ def film(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -
 
     def add(state: Floats, step: int, milliseconds: int, reached: bool = False) -> None:
         way = np.concatenate([poses[max(0, step - 3) : step + 1], state[None]])
-        way[:-1, 1:] = state[1:]  # the film itself shows where the objects came from
+        way[:-1, 1:] = state[1:]  # no outlines of earlier places: the film shows the motion
         canvas = Canvas(window, _FILM_SIDE)
         picture = state_image(task, way, canvas=canvas, caption=f"{step}", reached=reached)
         frames.append(Image.fromarray(np.concatenate([heading, picture])))
@@ -115,8 +119,8 @@ def film(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -
             state = between(task, poses[step], poses[step + 1], frame / per_push)
             add(state, step, _FRAME_MS)
     add(poses[last], last, 2 * _HOLD_MS, reached=success)
-    pair = _side_by_side(frames[len(frames) // 2], frames[-1])  # has all colours
-    palette = pair.quantize(64, Image.Quantize.MAXCOVERAGE)  # keeps the faint ones apart
+    pair = _side_by_side(frames[len(frames) // 2], frames[-1])  # has all colours of the film
+    palette = pair.quantize(64, Image.Quantize.MAXCOVERAGE)  # keeps faint colours distinct
     reduced = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     reduced[0].save(
         path, save_all=True, append_images=reduced[1:], duration=durations, loop=0, optimize=True

@@ -1,4 +1,4 @@
-"""Pictures of numbers: learning curve, replay gap, coverage."""
+"""Plots of the figures of a run: learning curve, replay gap, coverage."""
 
 from __future__ import annotations
 
@@ -59,21 +59,21 @@ def _rgb(colour: Sequence[int]) -> tuple[float, ...]:
 
 
 def style() -> AbstractContextManager[None]:
-    """The look of all our plots, within its `with`."""
+    """Returns a context manager that applies the style of all plots of RTG."""
     return plt.rc_context(_STYLE)
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Writes the picture and closes the figure."""
+    """Writes the figure to `path` and closes it."""
     figure.savefig(path, dpi=130)
     plt.close(figure)
 
 
 def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: str) -> None:
-    """Success, episode length and return over interactions, named `unit`.
+    """Plots success, episode length and return over interactions; `unit` labels their axis.
 
-    curve: columns `interactions`, `success_rate`, `episode_length_mean`, `episode_return_mean` of
-    the evaluations and, where known, `rollout_success`; all [N], NaN where not measured.
+    curve: the columns `interactions`, `success_rate`, `episode_length_mean`, `episode_return_mean`
+    and, if known, `rollout_success`, a value per evaluation; all [N], NaN where not measured.
     """
     panels = [
         ("success rate", "success_rate", "rollout_success", (-0.03, 1.03)),
@@ -113,7 +113,10 @@ def _metres(value: float) -> str:
 
 
 def gap_histogram(axis: Axes, counts: Sequence[int], median: float, p90: float) -> None:
-    """The bins of replay_gaps as bars, with median and 90th percentile [m]. counts [bins]."""
+    """Draws the bins of replay_gaps as bars and marks median and 90th percentile [m].
+
+    counts [bins]
+    """
     bounds, top = replay_gaps.EDGES, int(np.flatnonzero(counts).max(initial=0)) + 1
     axis.bar(bounds[:-1], counts, np.diff(bounds), align="edge", color=_BLUE, alpha=0.85)
     axis.set_xscale("log")
@@ -130,12 +133,12 @@ def gap_histogram(axis: Axes, counts: Sequence[int], median: float, p90: float) 
             va="top",
             color="#a35d14",
             bbox={"facecolor": _rgb(PAPER), "edgecolor": "none", "pad": 1.0},
-            zorder=5,  # above the other line
+            zorder=5,  # above the line of the other mark
         )
 
 
 def replay_gap(path: Path, title: str, report: Mapping[str, Any]) -> None:
-    """Histogram of the replay gap of one run. report: generation.json."""
+    """Plots the histogram of the replay gap of one run. report: the content of generation.json."""
     with style():
         figure, axis = plt.subplots(figsize=(6.4, 3.4), layout="constrained")
         counts = replay_gaps.counts(report["replay_gaps"])
@@ -146,8 +149,11 @@ def replay_gap(path: Path, title: str, report: Mapping[str, Any]) -> None:
 
 
 def _scene(axis: Axes, task: TaskLike, body: int) -> None:
-    """Goal, also of means that the body is part of, arena, start layout in outline, the body's
-    own in bold."""
+    """Draws the arena, the start layout and the goal regions that concern a body.
+
+    These are the regions for its own centre and for the mean centres that it is part of. The start
+    layout is drawn in outline, with the outline of the body in bold.
+    """
     colours = kind_colours(task)
     a = task.arena
     for term in task.goal:
@@ -171,14 +177,15 @@ def _scene(axis: Axes, task: TaskLike, body: int) -> None:
 
 
 def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Floats) -> None:
-    """Where the search brought each object, coloured by the number of actions to success.
+    """Plots the places to which the search brought each object.
 
-    poses [N, bodies, 3] and depth [N] are the stored nodes.
+    The colour of a place is the number of actions from there to success. `poses` [N, bodies, 3] and
+    `depth` [N] are those of the stored nodes.
     """
     bodies = objects(task)
     columns = min(4, len(bodies))
     rows = -(-len(bodies) // columns)
-    order = np.argsort(depth, kind="stable")  # the far ones on top
+    order = np.argsort(depth, kind="stable")  # nodes with many actions to success on top
     with style():
         size = (3.1 * columns + 0.9, 3.1 * rows + 0.5)
         figure, axes = plt.subplots(

@@ -1,1 +1,1 @@
-"""Child processes: one, the graph of them, and signals that end them."""
+"""Child processes: a single one, the process graph, and stop signals."""

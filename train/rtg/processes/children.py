@@ -1,4 +1,4 @@
-"""Child processes that never outlive their parent."""
+"""Child processes that end with their parent."""
 
 from __future__ import annotations
 
@@ -16,28 +16,31 @@ _libc = ctypes.CDLL(None)
 
 
 def _die_with(parent: int) -> Callable[[], None]:
-    """For the child: the kernel kills it when the thread that started it ends."""
+    """Returns a function for the child process to call before it starts its program.
+
+    It makes the kernel kill the child when the thread that started the child ends.
+    """
 
     def die_with_parent() -> None:
         _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-        if os.getppid() != parent:  # gone before the kernel was told
+        if os.getppid() != parent:  # the parent ended before prctl()
             os._exit(1)
 
     return die_with_parent
 
 
 class Node:
-    """A program of the process graph in a process group of its own, its output in a log file."""
+    """A program of the process graph. It has its own process group and writes to a log file."""
 
     def __init__(self, name: str, command: Sequence[str | Path], log: Path) -> None:
-        """Starts at once. Main thread only: the child dies with the thread that starts it."""
+        """Starts the program. Main thread only: the child dies when its starting thread ends."""
         self.name = name
         self.command = [str(part) for part in command]
         self.log = log
         self.start()
 
     def start(self) -> None:
-        """Starts the program, again if it ran before."""
+        """Starts or restarts the program."""
         self.started = time.monotonic()
         self._gone = False
         with self.log.open("ab") as output:
@@ -53,25 +56,28 @@ class Node:
 
     @property
     def pid(self) -> int:
-        """Also the id of the process group."""
+        """The process id, which is also the id of the process group."""
         return self._process.pid
 
     def exit_status(self) -> int | None:
-        """None while it runs. What it started ends with it."""
+        """Returns the exit status of the program, None while it runs.
+
+        If the program has ended, kills the rest of its process group.
+        """
         status = self._process.poll()
         if status is not None and not self._gone:
             self.signal_group(signal.SIGKILL)
-            self._gone = True  # from now on the id may be another's
+            self._gone = True  # from now on the kernel may reuse the id
         return status
 
     def signal_group(self, number: int) -> None:
-        """To the program and everything it started."""
+        """Sends signal `number` to the process group: the program and its descendants."""
         if not self._gone:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self.pid, number)
 
     def wait(self, seconds: float) -> bool:
-        """Says whether it has ended within that time."""
+        """Waits at most `seconds`; returns whether the program has ended."""
         try:
             self._process.wait(seconds)
         except subprocess.TimeoutExpired:
@@ -79,12 +85,12 @@ class Node:
         return self.exit_status() is not None
 
     def last_words(self, lines: int = 8) -> str:
-        """The end of what it wrote to its log since it was last started."""
+        """Returns the last lines that the program has logged since its last start."""
         said = self.log.read_bytes()[self._said_before :] if self.log.exists() else b""
         return "\n".join(said.decode(errors="replace").splitlines()[-lines:])
 
     def epitaph(self) -> str:
-        """How it ended, for people."""
+        """Describes how the program ended."""
         status = self.exit_status()
         if status is not None and status < 0:
             return f"{self.name} was killed by {signal.Signals(-status).name}"
@@ -92,7 +98,7 @@ class Node:
 
 
 def stop_all(nodes: Iterable[Node], grace: float = 4.0) -> None:
-    """SIGTERM to all, SIGKILL to the groups of those that are still there after `grace` seconds."""
+    """Sends SIGTERM to all process groups, after `grace` s SIGKILL to those that still run."""
     nodes = list(nodes)
     for node in nodes:
         if node.exit_status() is None:
@@ -106,6 +112,6 @@ def stop_all(nodes: Iterable[Node], grace: float = 4.0) -> None:
 
 
 def kill_all(nodes: Iterable[Node]) -> None:
-    """SIGKILL to all groups."""
+    """Sends SIGKILL to the process groups of all running nodes."""
     for node in nodes:
         node.signal_group(signal.SIGKILL)

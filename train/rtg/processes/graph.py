@@ -1,4 +1,4 @@
-"""The processes of a run: helpers are replaced when they die, the others take the run with them."""
+"""The processes of a run: dead helpers are restarted; the death of another one ends the run."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from pathlib import Path
 from rtg.errors import RunError, UserError
 from rtg.processes.children import Node, kill_all, stop_all
 
-_QUICK = 5.0  # [s]; a worker that dies this soon after its start may never do better
-_QUICK_DEATHS = 10  # in a row, of one worker; one job may take down three
-_GOOD_BYE = 1.0  # [s]; a helper that ended well may have heard earlier than we that all is over
+_QUICK = 5.0  # [s]; a death this soon after the start may recur at every start
+_QUICK_DEATHS = 10  # consecutive, of one worker; one job alone may cause three
+# [s]; a helper with exit status 0 may have received the end of the run before this process did.
+_GOOD_BYE = 1.0
 
 
 @dataclass
@@ -20,17 +21,17 @@ class _Member:
     node: Node
     helper: bool
     quick_deaths: int = 0
-    left: float | None = None  # when it was first seen to have ended well
+    left: float | None = None  # [s], when exit status 0 was first seen
 
     def has_left_early(self) -> bool:
-        """Says whether it has been gone for longer than a good-bye needs."""
+        """Returns whether exit status 0 was first seen more than _GOOD_BYE s ago."""
         now = time.monotonic()
         self.left = now if self.left is None else self.left
         return now - self.left > _GOOD_BYE
 
 
 class ProcessGraph:
-    """Starts, watches and stops the programs; their output goes to RUN/logs/NAME.log."""
+    """Starts, monitors and stops programs, whose output goes to `logs`/NAME.log."""
 
     def __init__(self, logs: Path) -> None:
         logs.mkdir(parents=True, exist_ok=True)
@@ -40,15 +41,15 @@ class ProcessGraph:
         self.restarts = 0
 
     def add(self, name: str, command: Sequence[str | Path], helper: bool = False) -> None:
-        """Starts a program; a helper is started again when it dies."""
+        """Starts a program. tend() restarts a `helper` that has died."""
         node = Node(name, command, self._logs / f"{name}.log")
         self._members.append(_Member(node, helper))
 
     def tend(self, leaving: bool = False) -> list[str]:
-        """Replaces dead helpers, unless they are `leaving`; returns what there is to say about it.
+        """Restarts dead helpers, unless the run is `leaving`; returns a message for each of them.
 
-        Raises RunError with the last words of a program that the run cannot do without, UserError
-        if bad input is what ended it.
+        Raises RunError with the end of its log if another program has failed, UserError if bad
+        input was the cause. Raises RunError for a helper with too many quick deaths.
         """
         notes = []
         for member in self._members:
@@ -66,11 +67,11 @@ class ProcessGraph:
         return notes
 
     def spare(self, name: str) -> None:
-        """From now on the failure of that program is no reason to stop the others."""
+        """Makes tend() ignore a failure of program `name` from now on."""
         self._spared.add(name)
 
     def failures(self) -> list[str]:
-        """The last words of programs, no helpers, that ended badly."""
+        """Returns the obituaries of all programs, except helpers, that ended with an error."""
         essential = [member.node for member in self._members if not member.helper]
         return [obituary(node) for node in essential if node.exit_status() not in (None, 0)]
 
@@ -84,25 +85,25 @@ class ProcessGraph:
         self.restarts += 1
 
     def pids(self) -> dict[str, int]:
-        """Process ids of the programs by name."""
+        """Returns the process ids of the programs by name."""
         return {member.node.name: member.node.pid for member in self._members}
 
     def working(self, name: str | None = None) -> bool:
-        """Says whether a program that is no helper still runs, or the one of that name."""
+        """Returns whether any program that is no helper still runs, or the one called `name`."""
         return any(name in (None, node.name) for node in self._running(helpers=False))
 
     def wait(self, seconds: float) -> bool:
-        """working(), once one has ended or so much time has passed."""
+        """Waits at most `seconds` for the first running program, no helper; returns working()."""
         for node in self._running(helpers=False)[:1]:
             node.wait(seconds)
         return self.working()
 
     def stop(self) -> None:
-        """Ends all programs within 5 s."""
+        """Stops all programs with SIGTERM, then SIGKILL; takes at most 5 s."""
         stop_all(self._running())
 
     def kill(self) -> None:
-        """Ends all programs at once."""
+        """Kills all programs at once."""
         kill_all(self._running())
 
     def _running(self, helpers: bool = True) -> list[Node]:
@@ -111,13 +112,15 @@ class ProcessGraph:
 
 
 def _failure(node: Node, status: int) -> Exception:
-    """The error to raise for a program that has ended badly; all of ours end with 2 on bad
-    input."""
+    """Returns the error to raise for a failed program.
+
+    It is a UserError for exit status 2, which all programs of RTG use for bad input.
+    """
     words = node.last_words(lines=1)
     return UserError(words) if status == 2 and words else RunError(obituary(node))
 
 
 def obituary(node: Node) -> str:
-    """How it ended and the end of its log."""
+    """Describes how a program ended, with the end of its log."""
     words = node.last_words()
     return f"{node.epitaph()}; the end of {node.log}:\n{words}" if words else node.epitaph()

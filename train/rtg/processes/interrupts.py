@@ -1,4 +1,4 @@
-"""Two stages of stopping: the first signal asks, the second does not."""
+"""Handling of stop signals: the first one requests a stop, the second one ends the process."""
 
 from __future__ import annotations
 
@@ -14,13 +14,15 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Interrupts:
-    """While entered, the first SIGINT, SIGTERM or SIGHUP is kept in `number`; the second calls
-    `on_demand` and ends this process at once, with exit status 128 + its number. SIGHUP means
-    nothing to what nohup started. Main thread only.
+    """A context manager that handles SIGINT, SIGTERM and SIGHUP.
+
+    It stores the number of the first signal in `number`. At a second signal it calls `on_demand`
+    and ends this process at once, with exit status 128 + signal number. It ignores SIGHUP if the
+    process ignored it before, as under nohup. Main thread only.
     """
 
     def __init__(self, on_demand: Callable[[], None] = lambda: None) -> None:
-        self.number = 0  # none yet
+        self.number = 0  # number of the first signal; 0: none yet
         self._on_demand = on_demand
         self._before: dict[int, Any] = {}
 
@@ -40,7 +42,7 @@ class Interrupts:
             signal.signal(number, handler)
 
     def requested(self) -> bool:
-        """Says whether there was a signal."""
+        """Returns whether a signal has arrived."""
         return self.number != 0
 
     def raise_if_requested(self) -> None:

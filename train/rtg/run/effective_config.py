@@ -1,4 +1,4 @@
-"""The configuration as the C++ loader resolves it; Python reads no YAML of its own."""
+"""The configuration as the C++ loader resolves it; no Python code parses YAML."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from rtg import _core
 from rtg.errors import UserError
 from rtg.run.run_args import Override
 
-Values = dict[str, dict[str, Any]]  # by section and key
+Values = dict[str, dict[str, Any]]  # section -> key -> value
 
 
 def load(file: Path, overrides: Sequence[Override] = ()) -> _core.Config:
-    """Raises UserError on a mistake in it, with the flags as the user typed them."""
+    """Loads `file`. Raises UserError for a mistake; it names the flags as the user typed them."""
     try:
         return _core.Config.from_file(file, [override.setting for override in overrides])
     except _core.ConfigError as error:
@@ -26,15 +26,17 @@ def load(file: Path, overrides: Sequence[Override] = ()) -> _core.Config:
 
 
 def values(config: _core.Config) -> Values:
-    """All values, to compare one configuration with another."""
+    """Returns all values, for comparison with those of another configuration."""
     result: Values = json.loads(config.json)
     return result
 
 
 def written(file: Path) -> _core.Config:
-    """The configuration that this version wrote to `file`. Raises UserError unless it would write
-    it again as it stands there: one of another version may lack a setting whose default was
-    different then."""
+    """Loads a configuration that this version of RTG wrote to `file`.
+
+    Raises UserError if `file` lacks a line that this version would write: another version may lack
+    a setting whose default was different.
+    """
     config, found = load(file), _settings(file.read_text())
     missing = [line for line in _settings(config.yaml) if line not in found]
     if missing:
@@ -46,7 +48,7 @@ def written(file: Path) -> _core.Config:
 
 
 def _settings(text: str) -> list[tuple[str, str]]:
-    """The lines without their comments, each with the section that it stands in."""
+    """Returns (section, line without comment) for each line."""
     found, section = [], ""
     for line in text.splitlines():
         section = section if line.startswith((" ", "#")) else line
@@ -55,5 +57,5 @@ def _settings(text: str) -> list[tuple[str, str]]:
 
 
 def check(file: Path) -> str:
-    """The content of a task file, for people. Raises UserError."""
+    """Checks a task file; returns its content in human-readable text. Raises UserError."""
     return f"{file}: legal\n{load(file).description}"

@@ -23,11 +23,11 @@ from rtg.run.training_watch import TrainingWatch
 from rtg.run.watch import RunWatch
 
 _POLL = 0.1  # [s]
-_GOOD_BYE = 5.0  # [s] for the coordinator to leave by itself
+_GOOD_BYE = 5.0  # [s] that the coordinator may take to end after all rows were consumed
 
 
 class _Recording:
-    """This process as the consumer of the stream, in a run without a trainer."""
+    """The consumer of the stream in a run without a trainer: this process records the rows."""
 
     def __init__(self, plan: RunPlan, bus: Bus) -> None:
         task = plan.config.task
@@ -42,7 +42,7 @@ class _Recording:
         return self._stream.complete
 
     def write(self, plan: RunPlan) -> int:
-        """Writes transitions.npz if nothing is missing; returns how many rows are."""
+        """Writes transitions.npz if no row is missing; returns the number of missing rows."""
         missing = int(run_folder.read_json(plan.report_file)["transitions"]) - self._recorder.count
         if missing == 0:
             self._recorder.write(plan.transitions_file)
@@ -50,7 +50,7 @@ class _Recording:
 
 
 def generation_defects(plan: RunPlan) -> list[str]:
-    """The defects of a generation that has come to its end, in words. None without one."""
+    """Describes the defects of the finished generation; empty without defects or generation."""
     report = run_folder.read_json(plan.report_file)
     wanted = plan.config.search.transitions
     given_up, found = report.get("units_given_up", 0), report.get("transitions", wanted)
@@ -66,7 +66,7 @@ def generation_defects(plan: RunPlan) -> list[str]:
 
 
 class GraphRun:
-    """The programs, and what this process does meanwhile: watch them and replace dead workers."""
+    """Starts the programs of a run, watches them and replaces dead workers."""
 
     def __init__(self, plan: RunPlan, display: Display) -> None:
         self._plan, self._display = plan, display
@@ -76,12 +76,15 @@ class GraphRun:
         self._recording = None if plan.train else _Recording(plan, self._bus)
         self._graph = ProcessGraph(plan.folder / "logs")
         self._sealed = False
-        self._consumed = math.inf  # when the consumer had all
+        self._consumed = math.inf  # [s], when the consumer was first seen to have all rows
         if self._bus.warning:
             display.note(self._bus.warning)
 
     def run(self) -> dict[str, Any]:
-        """Starts everything, waits for its end; returns what was measured."""
+        """Starts all programs, waits for their end and returns the measurements for summary.json.
+
+        Raises RunError if transitions are missing, StoppedError on a signal.
+        """
         with Interrupts(on_demand=self._graph.kill) as interrupts:
             try:
                 self._start_programs()
@@ -89,7 +92,7 @@ class GraphRun:
                     self._step()
                     interrupts.raise_if_requested()
                 self._graph.tend(leaving=True)
-                self._listen(0.0)  # what came after the last look
+                self._listen(0.0)  # messages that arrived since the last step
                 defects = self._graph.failures()
             finally:
                 self._graph.stop()
@@ -136,7 +139,10 @@ class GraphRun:
         self._display.show(self._training.update(self._watch.state))
 
     def _is_over(self) -> bool:
-        """Says whether the coordinator waits for good-byes that were lost."""
+        """Returns whether the run is over although the coordinator has not ended.
+
+        The final acknowledgements of consumers may be lost, and the coordinator waits for them.
+        """
         if not self._sealed or (self._plan.train and self._graph.working("trainer")):
             return False
         if self._recording and not self._recording.complete:
@@ -146,11 +152,11 @@ class GraphRun:
         return now - self._consumed > _GOOD_BYE
 
     def _on_sealed(self) -> None:
-        """All transitions are stored: whatever the coordinator says in the end, they count."""
+        """Tolerates failures of the coordinator from now on: all transitions are stored."""
         self._sealed = True
         self._graph.spare("beam_coordinator")
 
 
 def run(plan: RunPlan, display: Display) -> dict[str, Any]:
-    """Generation and training at the same time; returns what was measured, for summary.json."""
+    """Generates and trains at the same time; returns the measurements for summary.json."""
     return GraphRun(plan, display).run()

@@ -1,4 +1,4 @@
-"""The generation without LCM: on threads of this process."""
+"""Generation without LCM, on threads of this process."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from rtg.run.plan import RunPlan
 from rtg.run.progress import Display, RunState
 
 _POLL = 0.1  # [s]
-_PATIENCE = 4.0  # [s] for the search to notice that it shall stop
+_PATIENCE = 4.0  # [s] that stop() waits for the end of a layer
 
 
 class Generation:
-    """`_core.generate` on a thread, so that this one can show and stop it."""
+    """Runs `_core.generate` on a thread, so that the calling thread can display and stop it."""
 
     def __init__(self, config: _core.Config, recorder: Recorder) -> None:
         self._config, self._recorder = config, recorder
@@ -37,26 +37,29 @@ class Generation:
         self._thread.start()
 
     def wait(self, seconds: float) -> bool:
-        """Says whether it has ended within that time. Raises what ended it early."""
+        """Waits at most `seconds`; returns whether the generation has ended. Raises its error."""
         self._thread.join(seconds)
         if self._failure is not None:
             raise self._failure
         return not self._thread.is_alive()
 
     def stop(self) -> None:
-        """Waits for the end of a layer, but not for long."""
+        """Stops the generation at the end of the layer.
+
+        If this takes longer than _PATIENCE, the process will end with os._exit(1).
+        """
         self._stop = True
         self._thread.join(_PATIENCE)
         if self._thread.is_alive():
-            # Its threads still compute: leave before the interpreter takes itself apart under them.
+            # Its threads still run: exit before the interpreter finalises while they use it.
             atexit.register(os._exit, 1)
 
     def state(self) -> RunState:
-        """Where it stands."""
+        """Returns the current state of the generation."""
         return replace(RunState(), **self._progress, workers=self._workers)
 
     def report(self) -> str:
-        """The content of generation.json. Only after the end."""
+        """Returns the content of generation.json; to be called after the end only."""
         assert self._report is not None
         return self._report
 
@@ -77,7 +80,7 @@ class Generation:
 
 
 def generate(plan: RunPlan, display: Display) -> None:
-    """Writes generation.json and transitions.npz."""
+    """Generates; writes generation.json and transitions.npz. Raises StoppedError on a signal."""
     recorder = Recorder(plan.config.task)
     with Interrupts() as interrupts:
         generation = Generation(plan.config, recorder)

@@ -1,4 +1,4 @@
-"""The plan of a run, resolved and written down before anything starts."""
+"""The plan of a run, resolved and written to the run folder before any process starts."""
 
 from __future__ import annotations
 
@@ -19,54 +19,54 @@ from rtg.run.run_args import Override, RunArgs
 
 @dataclass(frozen=True)
 class RunPlan:
-    """A run whose folder, with config.yaml and versions.json in it, exists."""
+    """A run; its folder exists and contains config.yaml and versions.json."""
 
     folder: Path
-    name: str  # of the run on the bus; no two runs share it
+    name: str  # of the run on the bus; unique
     config: _core.Config
     train: bool
     resume: bool
-    notes: tuple[str, ...]  # for the user
+    notes: tuple[str, ...]  # messages for the user
 
     @property
     def in_process(self) -> bool:
-        """The search in this process, no LCM."""
+        """True if the search runs in this process, without LCM."""
         return self.config.run.in_process
 
     @property
     def config_file(self) -> Path:
-        """The canonical configuration."""
+        """The file of the canonical configuration."""
         return self.folder / "config.yaml"
 
     @property
     def transitions_file(self) -> Path:
-        """Written at the end of the generation."""
+        """The file of the transitions, written at the end of the generation."""
         return self.folder / "transitions.npz"
 
     @property
     def report_file(self) -> Path:
-        """The report of the generation on itself."""
+        """The file of the report that the generation writes."""
         return self.folder / "generation.json"
 
     @property
     def title(self) -> str:
-        """For pictures and first words."""
+        """The title for pictures and for the first line of output."""
         run = self.config.run
         generator = f", {self.config.search.generator}" if self.offline else ""
         return f"{self.config.task.name}, {run.method}{generator}, seed {run.seed}"
 
     @property
     def offline(self) -> bool:
-        """Says whether transitions are generated."""
+        """True if the run generates transitions."""
         return self.config.train.offline
 
     @property
     def interactions(self) -> int:
-        """Budget of the learner; 0 without training."""
+        """The learner's budget of interactions; 0 without training."""
         return self.config.train.interactions if self.train else 0
 
     def is_generated(self) -> bool:
-        """Says whether an earlier process of this run has done the generation."""
+        """Returns whether an earlier process of this run has finished the generation."""
         return self.resume and shared_transitions.are_there(self.folder)
 
 
@@ -78,7 +78,7 @@ def _check_device(config: _core.Config) -> None:
 
 
 def check(config: _core.Config, train: bool) -> None:
-    """Raises UserError for what the loader takes and this run cannot do, here."""
+    """Raises UserError without the configured CUDA device, or if there is nothing to do."""
     if train:
         _check_device(config)
     elif not config.train.offline:
@@ -89,8 +89,10 @@ def check(config: _core.Config, train: bool) -> None:
 
 
 def _fixed_values(config: _core.Config, has_checkpoint: bool) -> dict[str, Any]:
-    """The values that a run keeps for good, by dotted name: what decides the transitions, and what
-    a checkpoint is bound to once there is one."""
+    """Returns, by dotted name, the values that must not change when the run is resumed.
+
+    These determine the transitions and, if there is a checkpoint, the learner it belongs to.
+    """
     sections = effective_config.values(config)
     found: dict[str, Any] = {"run.seed": config.run.seed}
     for section in ("task", "physics", "reverse", "search"):
@@ -102,9 +104,10 @@ def _fixed_values(config: _core.Config, has_checkpoint: bool) -> dict[str, Any]:
 
 
 def _check_resumed(file: Path, config: _core.Config) -> None:
-    """Raises UserError if `config` does not go on with the run whose configuration is `file`.
+    """Raises UserError if `config` cannot continue the run whose configuration is `file`.
 
-    Also without training: the configuration in the folder stays the one of its checkpoint.
+    It checks the learner also without training, because the configuration in the folder must fit
+    the checkpoint there.
     """
     has_checkpoint = run_folder.checkpoint_file(file.parent).exists()
     before = _fixed_values(effective_config.written(file), has_checkpoint)
@@ -121,7 +124,7 @@ def _check_resumed(file: Path, config: _core.Config) -> None:
 
 
 def make_plan(args: RunArgs) -> RunPlan:
-    """Resolves the configuration and makes the run folder. Raises UserError."""
+    """Resolves the configuration and creates the run folder. Raises UserError."""
     overrides = args.overrides
     config = effective_config.load(args.file, overrides)
     if args.resume:

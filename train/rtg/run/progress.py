@@ -1,4 +1,4 @@
-"""How a run shows itself: bars on a terminal, a line per change anywhere else."""
+"""The display of a run: progress bars on a terminal, otherwise a line per change."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ _REDRAW = 0.2  # [s]
 
 @dataclass(frozen=True)
 class RunState:
-    """Where a run stands."""
+    """The progress of a run."""
 
-    generates: bool = True  # whether there is a generation
-    phase: str = ""  # of the generation: "tree 1", "plan 3", "random walks"
-    layer: int = 0  # of `depth`
+    generates: bool = True  # False without generation
+    phase: str = ""  # phase of the generation, such as "tree 1", "plan 3", "random walks"
+    layer: int = 0  # current layer, of `depth` layers
     depth: int = 0
     transitions: int = 0
     target: int = 0
@@ -37,13 +37,13 @@ class RunState:
     start_region: int = 0
     workers: int = 0
     interactions: int = 0
-    budget: int = 0  # interactions in all; 0: no training
+    budget: int = 0  # total number of interactions; 0: no training
     rate: float = 0.0  # interactions per second
     success_rate: float | None = None  # of the last evaluation
 
 
 def generation_text(state: RunState) -> str:
-    """A line on the generation."""
+    """Describes the generation in one line."""
     parts = [state.phase or "starting"]
     if state.depth:
         parts.append(f"layer {state.layer}/{state.depth}")
@@ -55,7 +55,7 @@ def generation_text(state: RunState) -> str:
 
 
 def training_text(state: RunState) -> str:
-    """A line on the training."""
+    """Describes the training in one line."""
     if not state.interactions:
         return "waiting for transitions" if state.generates else "starting"
     success = "-" if state.success_rate is None else f"{state.success_rate:.2f}"
@@ -64,7 +64,7 @@ def training_text(state: RunState) -> str:
 
 
 class Shown(Protocol):
-    """A context manager, within which something is on the screen."""
+    """A context manager that shows something on the screen while it is entered."""
 
     def __enter__(self) -> Self: ...
 
@@ -77,17 +77,17 @@ class Shown(Protocol):
 
 
 class Display(Shown, Protocol):
-    """Shows states and notes."""
+    """Shows the states of a run and notes."""
 
     def show(self, state: RunState) -> None:
-        """The newest state; may be called as often as one likes."""
+        """Shows the newest state; may be called at any rate."""
 
     def note(self, message: str) -> None:
-        """Something worth a line that stays."""
+        """Prints a line that stays visible."""
 
 
 class TimedLines:
-    """Lines with the seconds since the start."""
+    """Prints lines that begin with the seconds since construction."""
 
     def __init__(self, out: TextIO) -> None:
         self._out = out
@@ -104,7 +104,7 @@ class TimedLines:
 
 
 class PlainDisplay(TimedLines):
-    """A line per change."""
+    """Prints a line per change."""
 
     def __init__(self, out: TextIO) -> None:
         super().__init__(out)
@@ -126,7 +126,7 @@ class PlainDisplay(TimedLines):
 
 
 class _Counts(ProgressColumn):
-    """How many of how many."""
+    """The column "completed of total"."""
 
     def render(self, task: Task) -> Text:
         total = "?" if task.total is None else f"{task.total:,.0f}"
@@ -134,12 +134,12 @@ class _Counts(ProgressColumn):
 
 
 class LiveDisplay:
-    """Two bars that change in place, with a line of words under each."""
+    """Shows two progress bars that are updated in place, each with a line of text below."""
 
     def __init__(self, console: Console) -> None:
         self._console = console
         self._bars = [self._bar("generate"), self._bar("train")]
-        # No thread of its own: this process starts others with fork.
+        # No refresh thread, because this process starts other processes with fork.
         self._live = Live(console=console, auto_refresh=False)
         self._drawn = 0.0
 
@@ -148,7 +148,7 @@ class LiveDisplay:
             TextColumn("{task.description:<8}"),
             BarColumn(bar_width=28),
             _Counts(),
-            TimeElapsedColumn(),  # training ends early: no remainder is known
+            TimeElapsedColumn(),  # training may end early, so the remaining time is unknown
             console=self._console,
         )
         bar.add_task(name, total=None, start=False)
@@ -188,20 +188,20 @@ def _under(words: str) -> Text:
 
 
 def display(out: TextIO) -> Display:
-    """The display that suits where the output goes."""
+    """Returns the display that suits `out`: live on a terminal, else plain."""
     console = Console(file=out)
     return LiveDisplay(console) if console.is_terminal else PlainDisplay(out)
 
 
 class RateMeter:
-    """Counts per second over the last stretch of time."""
+    """The rate of a count [1/s] over the last `stretch` seconds."""
 
     def __init__(self, stretch: float = 10.0) -> None:
         self._stretch = stretch
         self._samples: list[tuple[float, int]] = []
 
     def rate(self, count: int, now: float) -> float:
-        """Takes the count at time `now` [s] in; one below the last begins anew."""
+        """Adds a count at time `now` [s] and returns the rate. A decrease resets the meter."""
         if self._samples and count < self._samples[-1][1]:
             self._samples.clear()
         if not self._samples or count != self._samples[-1][1]:

@@ -1,4 +1,4 @@
-"""The end of a run: pictures, summary.json, the last words."""
+"""The results of a run: pictures, summary.json and the final output."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ _REVERSE = ("rrbs", "naive")  # generators that search backwards
 
 
 def learning_curve(path: Path) -> dict[str, Floats]:
-    """Columns of progress.csv, NaN where a cell is empty, [N] each. Raises UserError."""
+    """Reads the columns of progress.csv, [N] each, with NaN for an empty cell.
+
+    Raises UserError if the file is damaged.
+    """
     try:
         with path.open(newline="") as file:
             rows = list(csv.DictReader(file, strict=True))
@@ -36,7 +39,7 @@ def _draw_generation(plan: RunPlan) -> None:
     if report["replay_gaps"]:
         plots.replay_gap(plan.folder / "replay_gap.png", plan.title, report)
     nodes = report["nodes"]
-    if not nodes:  # only trees have any
+    if not nodes:  # only a tree search has nodes
         return
     poses = np.array([node["poses"] for node in nodes]).reshape(-1, plan.config.task.bodies, 3)
     depth = np.array([node["depth"] for node in nodes], float)
@@ -45,13 +48,16 @@ def _draw_generation(plan: RunPlan) -> None:
 
 
 def _trained(plan: RunPlan) -> bool:
-    """Now, or before a `--resume --no-train`."""
+    """Returns whether this process or, with `--resume --no-train`, an earlier one has trained."""
     return plan.train or (plan.folder / "training.json").is_file()
 
 
 def _episode(plan: RunPlan) -> Floats | None:
-    """States of the learner's best evaluation episode; without a learner, of a plan of the data,
-    which it writes to the same file."""
+    """Returns the states of the learner's best evaluation episode.
+
+    Without a learner, replays a plan from the data, if there is any, returns its states and writes
+    them to best_episode.npz.
+    """
     path, task = plan.folder / "best_episode.npz", plan.config.task
     if _trained(plan):
         with np.load(path) as file:
@@ -65,7 +71,7 @@ def _episode(plan: RunPlan) -> Floats | None:
 
 
 def _origin(plan: RunPlan) -> str:
-    """Where the episode comes from."""
+    """Returns the origin of the episode, in words."""
     if _trained(plan):
         plans = plan.config.train.learner == "planning"
         return "forward search" if plans else "learned policy"
@@ -74,7 +80,7 @@ def _origin(plan: RunPlan) -> str:
 
 
 def episode_title(task: str, actions: int, success: bool, origin: str) -> str:
-    """The title of the pictures of the episode: what they show, and where it comes from."""
+    """Returns the title of the pictures of an episode: its result and its origin."""
     end = "success after" if success else "not solved in"
     return f"{task}: {end} {actions} action{'s' if actions != 1 else ''} ({origin})"
 
@@ -94,7 +100,7 @@ def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
         _draw_generation(plan)
     if plan.train:
         curve = learning_curve(plan.folder / "progress.csv")
-        if curve:  # none of a run resumed with a budget below its first evaluation
+        if curve:  # empty if a resumed run had a budget below its first evaluation
             unit = (
                 "interactions"
                 if plan.config.train.interact
@@ -135,7 +141,7 @@ def _words_of_learning(plan: RunPlan, s: dict[str, Any]) -> list[str]:
 
 
 def words(plan: RunPlan, summary: dict[str, Any]) -> str:
-    """The results of the run, for people."""
+    """Returns the results of the run in human-readable text."""
     generated = summary["transitions"] is not None
     lines = [_words_of_generation(summary)] if generated else []
     learned = _words_of_learning(plan, summary) if plan.train else []

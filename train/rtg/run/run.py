@@ -15,7 +15,10 @@ from rtg.run.run_args import RunArgs
 
 
 def run(args: RunArgs) -> int:
-    """Exit status. Raises UserError for bad input, RunError if a part of the run failed."""
+    """Carries out `rtg run`; returns the exit status.
+
+    Raises UserError for bad input, RunError if a part of the run failed or it was stopped.
+    """
     if args.print_config:
         print(effective_config.load(args.file, args.overrides).yaml, end="")
         return 0
@@ -28,8 +31,8 @@ def run(args: RunArgs) -> int:
 
 
 def _work(plan: RunPlan) -> int:
-    """Exit status."""
-    from rtg.run import results  # heavy
+    """Generates, trains and writes the results; returns the exit status."""
+    from rtg.run import results  # slow to import
 
     with display(sys.stdout) as shown:
         for note in (f"{plan.title}: {plan.folder}", *plan.notes):

@@ -1,4 +1,4 @@
-"""The flags of `./run.sh` and what they mean in the configuration."""
+"""The flags of `./run.sh` and the configuration values that they set."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ tools:
 
 exit status: 0 success, 2 bad input, 1 anything else"""
 
-# Flag -> the configuration key that it sets.
+# Flag -> configuration key.
 _KEYS = {
     "workers": "run.workers",
     "method": "run.method",
@@ -41,15 +41,15 @@ _KEYS = {
 
 @dataclass(frozen=True)
 class Override:
-    """A value from the command line, as the user typed it and as the configuration takes it."""
+    """A configuration value from the command line."""
 
-    typed: str  # "--workers 4"
-    setting: str  # "run.workers=4"
+    typed: str  # as the user typed it: "--workers 4"
+    setting: str  # as the configuration loader takes it: "run.workers=4"
 
 
 @dataclass(frozen=True)
 class RunArgs:
-    """A call of `rtg run`."""
+    """The parsed arguments of `rtg run`."""
 
     file: Path
     overrides: tuple[Override, ...]
@@ -60,7 +60,7 @@ class RunArgs:
 
 
 class Parser(argparse.ArgumentParser):
-    """Takes flags in full alone. Mistakes become a UserError, which says what is legal."""
+    """Accepts no abbreviated flags. Raises UserError with the legal usage for a mistake."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(allow_abbrev=False, **options)
@@ -71,7 +71,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def parser() -> argparse.ArgumentParser:
-    """The flags of `rtg run`."""
+    """Returns the parser of the arguments of `rtg run`."""
     p = Parser(
         prog="./run.sh",
         description="From goal states to a trained policy: generate reverse transitions, train, "
@@ -98,9 +98,9 @@ def parser() -> argparse.ArgumentParser:
 
 
 def task_file(task: str, also: str = "") -> Path:
-    """The file that `task`, a name or a path, stands for. Raises UserError.
+    """Returns the file of `task`, which is a name or a path. Raises UserError if there is none.
 
-    `also`: what else the caller takes, for the message.
+    `also`: text for the message with further values that the caller accepts.
     """
     if task in paths.task_names():
         return paths.CONFIG / f"{task}.yaml"
@@ -129,9 +129,9 @@ def _overrides(args: argparse.Namespace) -> tuple[Override, ...]:
 
 
 def parse(argv: Sequence[str]) -> RunArgs:
-    """Raises UserError, or SystemExit(0) after --help."""
+    """Parses and checks the arguments. Raises UserError, or SystemExit(0) after --help."""
     if argv and not argv[0].startswith("-"):
-        _task_file(argv[0])  # a misspelt tool is named, and not the words behind it
+        _task_file(argv[0])  # reports a misspelt tool before the words after it
     args = parser().parse_args(argv)
     if args.out == "":
         raise UserError("--out: '' is no folder; legal: the path of one")

@@ -1,4 +1,4 @@
-"""Transitions that several runs have in common: what changes only the learner leaves them alone."""
+"""Transitions shared by runs that differ only in their learner."""
 
 from __future__ import annotations
 
@@ -16,8 +16,10 @@ _FILES = ("transitions.npz", "generation.json")
 
 
 def kind(config: _core.Config) -> str | None:
-    """All that decides what a run generates, equal for equal transitions; None if it generates
-    nothing."""
+    """Returns all values that determine the generated transitions, as a key.
+
+    Runs with equal keys have equal transitions. Returns None if the run generates nothing.
+    """
     if not config.train.offline:
         return None
     values = effective_config.values(config)
@@ -26,12 +28,15 @@ def kind(config: _core.Config) -> str | None:
 
 
 def are_there(run: Path) -> bool:
-    """Says whether the generation of the run is complete."""
+    """Returns whether the generation of the run is complete."""
     return all((run / name).is_file() for name in _FILES)
 
 
 def find(wanted: str, folder: Path, name: str) -> Path | None:
-    """A run folder/*/name whose transitions are there and of that kind, made by this program."""
+    """Returns a run folder/*/name with complete transitions of the kind `wanted`; None if none.
+
+    This version of the program must have generated them.
+    """
     for run in sorted(folder.glob(f"*/{name}")):
         if are_there(run) and _made_kind(run) == wanted:
             return run
@@ -39,8 +44,11 @@ def find(wanted: str, folder: Path, name: str) -> Path | None:
 
 
 def _made_kind(run: Path) -> str | None:
-    """The kind of what this program has made there. What was made by another one, or cannot be
-    read, is nothing to take over, whatever it may be to others."""
+    """Returns the kind of the transitions of `run`.
+
+    Returns None if another version of the program made them, or if the folder cannot be read:
+    they are not used then, but this is no error.
+    """
     config = run / "config.yaml"
     try:
         if versions.generator(run).get("core_sha256") != versions.core_digest():
@@ -51,7 +59,7 @@ def _made_kind(run: Path) -> str | None:
 
 
 def take_over(source: Path, run: Path) -> None:
-    """Into the folder of a run that has begun, without a copy where the disk allows that."""
+    """Puts the transitions of `source` into `run`, which exists: as hard links, else as copies."""
     versions.note(run, versions.generator(source))
     for name in _FILES:
         draft = run / f".{name}.{os.getpid()}"

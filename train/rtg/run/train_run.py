@@ -1,4 +1,4 @@
-"""The learner on a finished transition set."""
+"""Training on a finished transition set."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _POLL = 0.1  # [s]
 
 
 def trainer_command(plan: RunPlan, *flags: str) -> Sequence[str | Path]:
-    """The learner's program."""
+    """Returns the command that starts the learner."""
     resume = ["--resume"] if plan.resume else []
     return [sys.executable, "-m", "rtg.learn.trainer", plan.folder, *resume, *flags]
 
 
 def _begun(plan: RunPlan) -> RunState:
-    """The figures that a display shows of the generation, which is over."""
+    """Returns the state for displays before training, with the figures of the generation."""
     if not plan.offline:
         return RunState(generates=False, budget=plan.interactions)
     report = read_json(plan.report_file)
@@ -38,7 +38,7 @@ def _begun(plan: RunPlan) -> RunState:
 
 
 def run(plan: RunPlan, display: Display) -> None:
-    """Learns in a process of its own, so that it can be stopped at any time."""
+    """Trains in a separate process, so that training can be stopped at any time."""
     graph = ProcessGraph(plan.folder / "logs")
     watch = TrainingWatch(plan.folder)
     state = _begun(plan)

@@ -1,4 +1,4 @@
-"""Where the learner stands, from the file that it writes for displays."""
+"""The progress of the learner, from the file that the learner writes for displays."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class TrainingWatch:
         self._state = RunState()
 
     def update(self, state: RunState) -> RunState:
-        """`state` with the learner's part as of now."""
+        """Returns `state` with the current figures of the learner."""
         changed = self._path.stat().st_mtime_ns if self._path.is_file() else 0
         if changed != self._changed:
             self._changed = changed

@@ -1,4 +1,4 @@
-"""The view of a run that its processes give of where it stands."""
+"""The progress of a run, from the messages of its processes."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from rtg.run.progress import RunState
 
 
 class RunWatch:
-    """Keeps the newest state of the run, and every node's counters."""
+    """Receives the newest state of the run and the counters of every node."""
 
     def __init__(self, bus: Bus, state: RunState) -> None:
         self.state = state
-        self.leaving = False  # the coordinator has said good-bye
+        self.leaving = False  # True once the coordinator has announced its end
         self._counters: dict[tuple[str, int, int], dict[str, int]] = {}
         bus.subscribe("RTG_PROGRESS", message_type("search_progress_t"), self._on_progress)
         bus.subscribe("RTG_STATUS", message_type("node_status_t"), self._on_status)
 
     def counters(self) -> dict[str, int]:
-        """The counts of all processes, added up by name."""
+        """Returns the counters of all processes, summed by name."""
         total: dict[str, int] = {}
         for counted in self._counters.values():
             for name, value in counted.items():

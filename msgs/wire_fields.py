@@ -1,0 +1,95 @@
+"""python wire_fields.py HEADER FILE.lcm...: writes the fields of each message, for C++ visitors.
+
+A message is a struct of scalars, texts, `header_t header` first, and arrays of one dimension whose
+length is an int32_t field before them. Anything else is refused with exit status 1.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+HEAD = """// Made by msgs/wire_fields.py from the .lcm files.
+#pragma once
+
+{includes}
+
+/// fields(v, m) calls visitor `v` with each field of message `m`, in the order of its .lcm file:
+/// v.scalar(x), v.count(n), v.array(vector, n), v.text(string), v.texts(vector of strings, n).
+/// Visitors check the bytes of a message before decoding and its values after decoding.
+namespace rtg_msgs {{
+
+/// A list of all types of messages.
+template <template <class...> class List>
+using EveryMessage = List<{types}>;
+"""
+FUNCTION = """
+template <class V>
+void fields(V& v, {name}& m) {{
+{lines}
+}}
+"""
+TAIL = """
+}  // namespace rtg_msgs
+"""
+NUMBERS = {"int8_t", "int16_t", "int32_t", "int64_t", "float", "double"}
+STRUCT = re.compile(r"struct\s+(\w+)\s*\{(.*)\}", re.DOTALL)
+FIELD = re.compile(r"(\w+)\s+(\w+)(?:\[(\w+)\])?")
+
+
+def refuse(name: str, field: str) -> str:
+    raise SystemExit(f"{name}.lcm: '{field}': no field that the bus can check; see {__file__}")
+
+
+def visit(name: str, field: str, lengths: set[str]) -> str:
+    """The call that shows a visitor the field."""
+    match = FIELD.fullmatch(field)
+    if not match:
+        return refuse(name, field)
+    kind, key, length = match.groups()
+    if kind not in NUMBERS | {"string", "header_t"} or (kind == "header_t" and length):
+        return refuse(name, field)
+    if kind == "header_t":
+        return f"fields(v, m.{key});"
+    if length:
+        return f"v.{'texts' if kind == 'string' else 'array'}(m.{key}, m.{length});"
+    if key in lengths:
+        return f"v.count(m.{key});" if kind == "int32_t" else refuse(name, field)
+    return f"v.{'text' if kind == 'string' else 'scalar'}(m.{key});"
+
+
+def function(name: str, text: str) -> str:
+    """The visit of the message called `name`, from the text of its file."""
+    struct = STRUCT.search(re.sub(r"//[^\n]*", "", text))
+    if not struct or struct[1] != name:
+        raise SystemExit(f"{name}.lcm: no struct {name}")
+    found = [" ".join(field.split()) for field in struct[2].split(";") if field.strip()]
+    lengths = {match[3] for field in found if (match := FIELD.fullmatch(field)) and match[3]}
+    seen: set[str] = set()
+    for field in found:
+        match = FIELD.fullmatch(field)
+        if match and match[3] and match[3] not in seen:
+            refuse(name, field)
+        seen.add(field.split()[-1])
+    return FUNCTION.format(
+        name=name, lines="\n".join(f"  {visit(name, field, lengths)}" for field in found)
+    )
+
+
+def header(files: dict[str, str]) -> str:
+    """The C++ header for .lcm files, a map of message name to text."""
+    names = sorted(files)
+    ordered = sorted(names, key=lambda name: name != "header_t")  # the others contain it
+    head = HEAD.format(
+        includes="\n".join(f"#include <rtg_msgs/{name}.hpp>" for name in names),
+        types=", ".join(name for name in names if name != "header_t"),
+    )
+    return head + "".join(function(name, files[name]) for name in ordered) + TAIL
+
+
+if __name__ == "__main__":
+    target, *paths = [Path(word) for word in sys.argv[1:]]
+    text = header({path.stem: path.read_text() for path in paths})
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_text(text)
