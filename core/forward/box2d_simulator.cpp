@@ -71,9 +71,9 @@ bool is_alone(const Scene& scene, const Poses& poses, std::size_t i) {
 }
 
 /// A Box2D world that holds one scene.
-class Table {
+class World {
  public:
-  Table(const Scene& scene, const PhysicsConfig& physics, const Servo& servo, const Poses& start)
+  World(const Scene& scene, const PhysicsConfig& physics, const Servo& servo, const Poses& start)
       : physics_(physics), servo_(servo), good_(start), touched_(start.size(), false) {
     world_.SetAllowSleeping(false);
     world_.SetContinuousPhysics(false);  // a Box2D step moves bodies by far less than their size
@@ -235,7 +235,7 @@ struct Path {
 
 /// Drives the robot along the rest of its path, after the first `done` steps. Returns false if a
 /// step was not finite.
-bool drive(Table& table, const Path& path, int done) {
+bool drive(World& table, const Path& path, int done) {
   for (int k = done + 1; k <= path.steps + kCatchUpSteps; ++k)
     if (!table.step_towards(path.at(k))) return false;
   return true;
@@ -267,7 +267,7 @@ PushOutcome Box2dSimulator::push(const Poses& start, int action) const {
   }
   const int done = std::min(path.steps, static_cast<int>(clear / servo.advance));
   begun[0] = path.at(done);
-  Table table(scene_, physics_, servo, begun);
+  World table(scene_, physics_, servo, begun);
   if (done > 0) table.set_speed(path.to);
   const bool ok = drive(table, path, done) && table.come_to_rest();
   return {table.poses(), ok};
@@ -276,7 +276,7 @@ PushOutcome Box2dSimulator::push(const Poses& start, int action) const {
 PushOutcome Box2dSimulator::settle(const Poses& start) const {
   if (!plausible(start)) return {start, false};
   const Servo servo = servo_of(scene_, push_, physics_);
-  Table table(scene_, physics_, servo, start);
+  World table(scene_, physics_, servo, start);
   table.touch_all();
   const bool ok = table.come_to_rest();
   return {table.poses(), ok};

@@ -36,7 +36,7 @@ void BeamSearch::plant(const ReplayBatch& replay, SearchStats& stats) {
 
 std::vector<Transition> BeamSearch::grow(const SolveBatch& solve, const ReplayBatch& replay,
                                          SearchStats& stats) {
-  std::vector<Predecessor> found = worth_replaying(reverse_layer(solve, stats));
+  std::vector<Predecessor> found = best_to_replay(reverse_layer(solve, stats));
   found = replay_predecessors(std::move(found), replay);
   for (const Predecessor& p : found) stats.gaps.push_back(static_cast<float>(p.gap));
   std::erase_if(found, [this](const Predecessor& p) { return p.miss > config_.gap_tolerance; });
@@ -64,7 +64,7 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
 
 /// Returns the steps to replay: per node the best config.free_moves of the steps that move no
 /// object, and per solve the best config.starts of the steps that move one.
-std::vector<Predecessor> BeamSearch::worth_replaying(std::vector<Predecessor> all) const {
+std::vector<Predecessor> BeamSearch::best_to_replay(std::vector<Predecessor> all) const {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t k = 0; k < all.size(); ++k) {
     all[k].left = distance_left(all[k].start);
@@ -107,7 +107,7 @@ std::vector<int> BeamSearch::plan(const Predecessor& step) const {
 
 /// Draws a start like the target and returns `poses` with the bodies that are in place moved to
 /// their poses in that start (placed()). Returns `poses` unchanged if the result is not legal.
-Poses BeamSearch::as_at_a_start(const Poses& poses) {
+Poses BeamSearch::with_drawn_start(const Poses& poses) {
   constexpr double kAround = 0.25;  // largest jitter of the drawn start [m]
   const double around = std::min(task_.start_jitter, kAround);
   const std::optional<Poses> start = jittered(task_, target_, around, rng_);
@@ -115,15 +115,15 @@ Poses BeamSearch::as_at_a_start(const Poses& poses) {
   return legal_state(task_, at_start) ? at_start : poses;
 }
 
-/// Carries out the plans of the steps after replacing the steps' starts by as_at_a_start(). If no
-/// plan succeeds, for example where a goal lies in an object's own place, restores the starts and
-/// carries out the plans from these.
+/// Carries out the plans of the steps after replacing the steps' starts by with_drawn_start(). If
+/// no plan succeeds, for example where a goal lies in an object's own place, restores the starts
+/// and carries out the plans from these.
 std::vector<std::optional<std::vector<Transition>>> BeamSearch::follow(
     std::vector<Predecessor>& steps, const ReplayBatch& replay) {
   std::vector<Poses> own;
   std::vector<Plan> plans;
   for (Predecessor& p : steps) {
-    own.push_back(std::exchange(p.start, as_at_a_start(p.start)));
+    own.push_back(std::exchange(p.start, with_drawn_start(p.start)));
     plans.push_back({p.start, plan(p)});
   }
   auto outcomes = carry_out(task_, plans, replay);

@@ -52,14 +52,14 @@ class BeamSearch {
 
  private:
   std::vector<Predecessor> reverse_layer(const SolveBatch& solve, SearchStats& stats) const;
-  std::vector<Predecessor> worth_replaying(std::vector<Predecessor> all) const;
+  std::vector<Predecessor> best_to_replay(std::vector<Predecessor> all) const;
   std::vector<Transition> keep(std::vector<Predecessor> replayed, const ReplayBatch& replay);
   std::vector<Predecessor> best_of(std::vector<Predecessor> steps, int times,
                                    std::unordered_set<std::uint64_t>& seen);
   std::vector<int> plan(const Predecessor& step) const;
   std::vector<std::optional<std::vector<Transition>>> follow(std::vector<Predecessor>& steps,
                                                              const ReplayBatch& replay);
-  Poses as_at_a_start(const Poses& poses);
+  Poses with_drawn_start(const Poses& poses);
   double distance_left(const Poses& poses) const;
   const Node& node(int k) const { return nodes_[static_cast<std::size_t>(k)]; }
 

@@ -33,7 +33,8 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
                        objects_moved(pushes[k].start, end) > 0});
     const std::size_t parent = beam_[k / static_cast<std::size_t>(task_.push.headings)];
     found.push_back(
-        {{pushes[k].start, pushes[k].action, end, succeeded(task_, end), Source::kPlan}, parent});
+        {{pushes[k].start, pushes[k].action, end, succeeded(task_, end), Source::kForward},
+         parent});
   }
   return keep(std::move(found), entries);
 }

@@ -6,8 +6,8 @@
 
 #include <cstdio>
 
+#include "nodes/beam_coordinator/atomic_file.hpp"
 #include "nodes/beam_coordinator/coordinator_node.hpp"
-#include "nodes/beam_coordinator/whole_file.hpp"
 #include "nodes/config/config.hpp"
 #include "nodes/program/program.hpp"
 #include "nodes/program/shutdown.hpp"
@@ -16,7 +16,7 @@ namespace rtg::beam_coordinator {
 namespace {
 
 int run(const program::Words& words) {
-  const int consumers = words.size() > 3 ? program::number_word(words[3], "CONSUMERS") : 1;
+  const int consumers = words.size() > 3 ? program::parse_number(words[3], "CONSUMERS") : 1;
   const config::Config config = config::load_config(words[0]);
   bus::Bus bus(config.run.bus, words[1]);
   CoordinatorNode node(
@@ -28,7 +28,7 @@ int run(const program::Words& words) {
   });
   if (report) {
     report->units_given_up = node.given_up();
-    write_whole_file(std::filesystem::path(words[2]) / "generation.json", to_json(*report));
+    write_atomically(std::filesystem::path(words[2]) / "generation.json", to_json(*report));
     node.drain(consumers);
   }
   if (program::stop_signal()) return 128 + program::stop_signal();

@@ -19,7 +19,7 @@ std::string_view counter_name(WireDefect defect) {
 
 namespace wire {
 
-std::int32_t Layout::length() {
+std::int32_t LayoutCheck::length() {
   if (!ok_ || rest_.size() < 4) return ok_ = false, 0;
   const std::uint64_t n = big_endian(rest_.first(4));
   rest_ = rest_.subspan(4);
@@ -27,13 +27,13 @@ std::int32_t Layout::length() {
   return ok_ ? static_cast<std::int32_t>(n) : 0;
 }
 
-void Layout::skip(std::int32_t n, std::size_t size) {
+void LayoutCheck::skip(std::int32_t n, std::size_t size) {
   const std::size_t bytes = static_cast<std::size_t>(n) * size;
   ok_ = ok_ && bytes <= rest_.size();
   if (ok_) rest_ = rest_.subspan(bytes);
 }
 
-void Layout::skip_text() {
+void LayoutCheck::skip_text() {
   const std::int32_t n = length();
   ok_ = ok_ && n >= 1 && static_cast<std::size_t>(n) <= rest_.size() &&
         rest_[static_cast<std::size_t>(n) - 1] == 0;

@@ -28,9 +28,9 @@ namespace wire {
 /// Visitor that checks the layout of an encoded message without allocating memory. The generated
 /// decoder trusts every count that it reads, so a payload of 31 bytes could make it allocate
 /// gigabytes or abort.
-class Layout {
+class LayoutCheck {
  public:
-  explicit Layout(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
+  explicit LayoutCheck(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
 
   template <class T>
   void scalar(T&) {
@@ -59,7 +59,7 @@ class Layout {
 };
 
 /// Visitor that checks whether all numbers of a decoded message are finite.
-struct Finite {
+struct FiniteCheck {
   bool ok = true;
 
   template <class T>
@@ -77,7 +77,7 @@ struct Finite {
 
 /// Visitor that checks whether the sizes of the vectors of an outgoing message equal its counts.
 /// The generated encoder reads past the end of a vector that is too short.
-struct Consistent {
+struct CountCheck {
   bool ok = true;
 
   template <class T>
@@ -99,7 +99,7 @@ bool has_fingerprint(std::span<const std::uint8_t> bytes, std::int64_t fingerpri
 /// message is longer than kMaxMessageBytes.
 template <class Msg>
 std::vector<std::uint8_t> encode(Msg& msg) {
-  wire::Consistent consistent;
+  wire::CountCheck consistent;
   fields(consistent, msg);
   if (!consistent.ok)
     throw std::logic_error(std::string(Msg::getTypeName()) + ": counts do not match the arrays");
@@ -116,13 +116,13 @@ template <class Msg>
 [[nodiscard]] std::optional<WireDefect> decode(std::span<const std::uint8_t> bytes, Msg& msg) {
   if (bytes.size() > kMaxMessageBytes) return WireDefect::kTooLong;
   if (!wire::has_fingerprint(bytes, Msg::getHash())) return WireDefect::kWrongType;
-  wire::Layout layout(bytes.subspan(8));
+  wire::LayoutCheck layout(bytes.subspan(8));
   Msg counts{};
   fields(layout, counts);
   const int size = static_cast<int>(bytes.size());
   if (!layout.complete() || msg.decode(bytes.data(), 0, size) != size)
     return WireDefect::kMalformed;
-  wire::Finite finite;
+  wire::FiniteCheck finite;
   fields(finite, msg);
   if (!finite.ok) return WireDefect::kNotFinite;
   return std::nullopt;

@@ -25,7 +25,7 @@ std::string place(const ConfigNode& root, std::initializer_list<Field> fields) {
 }
 
 /// Returns whether the steps of `generator` are known to lead to success.
-bool imitable(search::Generator generator) {
+bool leads_to_success(search::Generator generator) {
   return generator == search::Generator::kRrbs || generator == search::Generator::kNaive ||
          generator == search::Generator::kForward;
 }
@@ -45,7 +45,8 @@ void check_learner(const Config& config, const ConfigNode& root) {
     throw ConfigError(place(root, {interact, offline}), "train.interact",
                       "false without train.offline leaves nothing to learn from",
                       "either true, or train.learner planning");
-  if (train.learner == Learner::kCloning && (train.interact || !imitable(config.search.generator)))
+  if (train.learner == Learner::kCloning &&
+      (train.interact || !leads_to_success(config.search.generator)))
     throw ConfigError(place(root, {learner, interact, generator}), "train.learner",
                       "cloning imitates generated steps alone",
                       "cloning with train.interact false and search.generator one of rrbs, naive, "

@@ -36,7 +36,7 @@ JobDispatcher::Verdict JobDispatcher::on_result(JobId id) {
 std::vector<JobDispatcher::Send> JobDispatcher::due(bus::Seconds now) {
   std::vector<Send> sends;
   leave_out_sleep(now);
-  bury_silent_workers(now);
+  drop_silent_workers(now);
   give_up_stuck_workers(now);
   resend_unheard(now, sends);
   hand_out(now, sends);
@@ -61,7 +61,7 @@ void JobDispatcher::leave_out_sleep(bus::Seconds now) {
   }
 }
 
-void JobDispatcher::bury_silent_workers(bus::Seconds now) {
+void JobDispatcher::drop_silent_workers(bus::Seconds now) {
   std::erase_if(workers_, [&](const auto& entry) {
     const Worker& worker = entry.second;
     if (now - worker.beat <= limits_.silence) return false;

@@ -88,7 +88,7 @@ class JobDispatcher {
   };
 
   void leave_out_sleep(bus::Seconds now);
-  void bury_silent_workers(bus::Seconds now);
+  void drop_silent_workers(bus::Seconds now);
   void give_up_stuck_workers(bus::Seconds now);
   void take_back(JobId id, bool victim);
   void resend_unheard(bus::Seconds now, std::vector<Send>& sends);

@@ -42,7 +42,7 @@ int run(int argc, char** argv, const std::string& usage, int (*body)(const Words
   }
 }
 
-int number_word(const std::string& word, const std::string& name) {
+int parse_number(const std::string& word, const std::string& name) {
   int number = 0;
   const char* end = word.data() + word.size();
   const auto [stop, error] = std::from_chars(word.data(), end, number);

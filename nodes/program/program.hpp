@@ -19,7 +19,7 @@ int run(int argc, char** argv, const std::string& usage, int (*body)(const Words
 
 /// Returns the whole number ≥ 0 that `word` spells. Throws std::invalid_argument, with `name` in
 /// the message, if `word` is none.
-int number_word(const std::string& word, const std::string& name);
+int parse_number(const std::string& word, const std::string& name);
 
 jobs::TaskShape shape_of(const tasks::Task& task);
 

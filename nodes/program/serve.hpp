@@ -25,12 +25,12 @@ int serve(bus::Bus& bus, jobs::WorkerNode<Service>& node) {
       std::_Exit(1);  // its thread cannot be joined
     }
     if (node.coordinator().silent(bus::monotonic_now())) {
-      limit_shutdown(1);  // the node's destructor waits for its units, which may hang
+      set_shutdown_deadline(1);  // the node's destructor waits for its units, which may hang
       throw std::runtime_error("no coordinator heard for 30 s");
     }
   }
   if (stop_signal()) status = 128 + stop_signal();
-  limit_shutdown(status);
+  set_shutdown_deadline(status);
   return status;
 }
 

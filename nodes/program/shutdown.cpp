@@ -37,7 +37,7 @@ void watch_signals() {
 
 int stop_signal() { return first_signal; }
 
-void limit_shutdown(int status) {
+void set_shutdown_deadline(int status) {
   late_status = status;
   alarm(kGrace);
 }

@@ -12,6 +12,6 @@ int stop_signal();
 
 /// Makes the process end with exit status `status` in a few seconds at the latest, whatever its
 /// threads are doing. Needed where a shutdown begins without a signal.
-void limit_shutdown(int status);
+void set_shutdown_deadline(int status);
 
 }  // namespace rtg::program

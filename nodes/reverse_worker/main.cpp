@@ -13,7 +13,7 @@ namespace rtg::reverse_worker {
 namespace {
 
 int run(const program::Words& words) {
-  const int number = words.size() > 2 ? program::number_word(words[2], "NUMBER") : 0;
+  const int number = words.size() > 2 ? program::parse_number(words[2], "NUMBER") : 0;
   const config::Config config = config::load_config(words[0]);
   const search::SolveBatch solve =
       reverse_solver(config.task, config.physics, config.reverse, config.search.generator);

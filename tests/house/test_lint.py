@@ -23,7 +23,9 @@ def test_python_is_formatted() -> None:
 
 
 def test_python_is_clean() -> None:
-    check(str(TOOLS / "ruff"), "check", "--no-cache", "--config", PYPROJECT, "train", "tests", "msgs")
+    check(
+        str(TOOLS / "ruff"), "check", "--no-cache", "--config", PYPROJECT, "train", "tests", "msgs"
+    )
 
 
 def test_python_types_hold() -> None:

@@ -1,5 +1,5 @@
-"""The fields of a configuration and of a message stand in one file each: one that is added there, in
-a scratch copy, is read, written, sent and checked without a change anywhere else."""
+"""The fields of a configuration and of a message stand in one file each: a field that is added
+there is read, written, sent and checked without a change elsewhere. The tests add one in a copy."""
 
 from __future__ import annotations
 

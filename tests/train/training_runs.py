@@ -43,7 +43,7 @@ class Stream:
 
     def poll(self, timeout: float) -> int:
         begin, self.at = self.at, min(self.at + self.piece, len(self.rows.action))
-        self.data.take(Rows(*(column[begin : self.at] for column in self.rows)))
+        self.data.add(Rows(*(column[begin : self.at] for column in self.rows)))
         return self.at - begin
 
 

@@ -30,11 +30,11 @@ template <class T>
 T free_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x) {
   const int h = problem.sub_steps, movable = problem.energy.movable();
   T sum(0.0);
-  for (int i = 0; i < movable; ++i) sum = sum + StartPull<T>(problem, x.p[0], i).value;
+  for (int i = 0; i < movable; ++i) sum = sum + StartTerm<T>(problem, x.p[0], i).value;
   for (int k = 0; k <= h; ++k) {
-    if (k > 0) sum = sum + ControlPrice<T>(problem, x.controls[k]).value;
+    if (k > 0) sum = sum + ControlPenalty<T>(problem, x.controls[k]).value;
     const PathPenalty<T> path(problem, x.p[k], k);
-    sum = sum + path.place + path.heading;
+    sum = sum + path.position + path.heading;
   }
   for (int k = 1; k <= h; ++k)
     for (int i = 1; i < movable; ++i) sum = sum + problem.speed(x, k, i).value;

@@ -40,7 +40,7 @@ void NewtonSystem<T>::set_objective(const ProblemLanes<T>& problem, const Trajec
     stage.e[i].setConstant(T(0.0));
     residual_[k][i].setConstant(T(0.0));
     for (int m = 0; m < 3; ++m) gradient_[k][i][m] = spring.gradient(i, m);
-    if (k == 0) gradient_[k][i] += StartPull<T>(problem, x.p[0], i).gradient;
+    if (k == 0) gradient_[k][i] += StartTerm<T>(problem, x.p[0], i).gradient;
     stage.Q.add(i, i, diagonal<T>(Vec3<T>::Constant(curvature_.proximal + spring.hessian)));
   }
   const PathPenalty<T> path(problem, x.p[k], k);
@@ -120,7 +120,7 @@ void NewtonSystem<T>::add_turn_curvature(const typename energy::Inertia<T>::Slop
 template <class T>
 void NewtonSystem<T>::add_control(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   Stage& stage = system_.stages[k];
-  const ControlPrice<T> price(problem, x.controls[k]);
+  const ControlPenalty<T> price(problem, x.controls[k]);
   for (int m = 0; m < 3; ++m) {
     const ControlForce<T> force(problem.energy.control_bound()[m], x.controls[k][m]);
     const T y = x.multipliers[k][m];

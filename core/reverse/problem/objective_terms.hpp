@@ -9,11 +9,11 @@ namespace rtg::reverse {
 
 /// The term w_i d·(t_i - t̄_i), which pulls body i against the push at the start, p_0.
 template <class T>
-struct StartPull {
+struct StartTerm {
   T value;
   Vec3<T> gradient;
 
-  StartPull(const ProblemLanes<T>& problem, const energy::Placement<T>& start, int i) {
+  StartTerm(const ProblemLanes<T>& problem, const energy::Placement<T>& start, int i) {
     const T weight(i == 0 ? problem.config.robot_weight : problem.config.object_weight);
     const T dx = start.body(i)[0] - problem.end[3 * i],
             dy = start.body(i)[1] - problem.end[3 * i + 1];
@@ -24,12 +24,12 @@ struct StartPull {
 
 /// The term ε |c|² of the controls of one sub-step.
 template <class T>
-struct ControlPrice {
+struct ControlPenalty {
   T value;
   Vec3<T> gradient;
   T hessian;  // the same for each control
 
-  ControlPrice(const ProblemLanes<T>& problem, const Vec3<T>& controls)
+  ControlPenalty(const ProblemLanes<T>& problem, const Vec3<T>& controls)
       : value(T(problem.config.control_weight) * controls.squaredNorm()),
         hessian(2.0 * problem.config.control_weight) {
     gradient = controls * hessian;
@@ -40,19 +40,19 @@ struct ControlPrice {
 /// Departs from the paper: these terms make the controls those of the discrete action.
 template <class T>
 struct PathPenalty {
-  T place, heading;           // values of the two terms
+  T position, heading;        // values of the two terms
   Vec3<T> gradient, hessian;  // the Hessian is diagonal
 
   PathPenalty(const ProblemLanes<T>& problem, const energy::Placement<T>& at, int k) {
     const Vec3<T> path = problem.robot_path(k);
     const T *robot = at.body(0), dx = robot[0] - path[0], dy = robot[1] - path[1],
             turn = robot[2] - path[2];
-    place = T(problem.config.path_weight) * (dx * dx + dy * dy);
+    position = T(problem.config.path_weight) * (dx * dx + dy * dy);
     heading = T(problem.config.heading_weight) * turn * turn;
-    const T by_place(2.0 * problem.config.path_weight),
+    const T by_position(2.0 * problem.config.path_weight),
         by_heading(2.0 * problem.config.heading_weight);
-    hessian = {by_place, by_place, by_heading};
-    gradient = {by_place * dx, by_place * dy, by_heading * turn};
+    hessian = {by_position, by_position, by_heading};
+    gradient = {by_position * dx, by_position * dy, by_heading * turn};
   }
 };
 

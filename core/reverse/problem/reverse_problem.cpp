@@ -63,7 +63,7 @@ Violation violation(const ReverseProblem& problem, const Iterate& x) {
   return v;
 }
 
-SolveStatus judged(const ReverseProblem& problem, const Iterate& x) {
+SolveStatus status_of_converged(const ReverseProblem& problem, const Iterate& x) {
   return terminal_miss(problem, x) > problem.config.terminal_tolerance ? SolveStatus::kInfeasible
                                                                        : SolveStatus::kConverged;
 }

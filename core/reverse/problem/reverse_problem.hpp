@@ -58,7 +58,7 @@ Violation violation(const ReverseProblem& problem, const Iterate& x);
 
 /// Returns the status of a converged iterate: kInfeasible if it misses the final state by more than
 /// the tolerance, otherwise kConverged.
-SolveStatus judged(const ReverseProblem& problem, const Iterate& x);
+SolveStatus status_of_converged(const ReverseProblem& problem, const Iterate& x);
 
 /// Returns the largest distance of a movable body from its position in the final state [m].
 double terminal_miss(const ReverseProblem& problem, const Iterate& x);

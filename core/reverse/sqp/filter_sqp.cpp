@@ -27,8 +27,8 @@ FilterSqp<T>::FilterSqp(const ReverseProblem& like, std::unique_ptr<StageSolver<
       force_step_(x_.forces),
       gaps_(x_.forces),
       trial_gaps_(x_.forces),
-      lane_(static_cast<std::size_t>(kWidth<T>), Lane{-1, SqpStrategy(like.config)}),
-      begun_(false),
+      lanes_(static_cast<std::size_t>(kWidth<T>), Lane{-1, SqpStrategy(like.config)}),
+      beginning_(false),
       stepping_(false) {}
 
 template <class T>
@@ -48,17 +48,17 @@ std::vector<SqpResult> FilterSqp<T>::solve(std::span<const ReverseProblem* const
 template <class T>
 bool FilterSqp<T>::refill() {
   for (int l = 0; l < kWidth<T>; ++l) {
-    if (lane_[l].job >= 0) continue;
-    lane_[l] = {queue_.take(l, start_), SqpStrategy(config_)};
-    if (lane_[l].job >= 0) {
-      problem_.load(l, *problems_[lane_[l].job]);
+    if (lanes_[l].job >= 0) continue;
+    lanes_[l] = {queue_.take(l, start_), SqpStrategy(config_)};
+    if (lanes_[l].job >= 0) {
+      problem_.load(l, *problems_[lanes_[l].job]);
       begin_attempt(l);
     } else {
       problem_.energy.unload(l);
     }
   }
-  if (any(begun_)) evaluate_begun();
-  return std::ranges::any_of(lane_, [](const Lane& lane) { return lane.job >= 0; });
+  if (any(beginning_)) evaluate_beginning();
+  return std::ranges::any_of(lanes_, [](const Lane& lane) { return lane.job >= 0; });
 }
 
 template <class T>
@@ -69,13 +69,13 @@ void FilterSqp<T>::begin_attempt(int l) {
 
 template <class T>
 void FilterSqp<T>::begin_phase(int l) {
-  set_lane(problem_.terminal_weight, l, lane_[l].strategy.terminal_weight());
-  set_lane(begun_, l, true);
+  set_lane(problem_.terminal_weight, l, lanes_[l].strategy.terminal_weight());
+  set_lane(beginning_, l, true);
 }
 
 /// Carries out `order`. Returns whether lane l continues with its iterate.
 template <class T>
-bool FilterSqp<T>::obey(int l, SqpStrategy::Order order) {
+bool FilterSqp<T>::carry_out(int l, SqpStrategy::Order order) {
   if (order == SqpStrategy::Order::kBeginPhase) begin_phase(l);
   if (order == SqpStrategy::Order::kEndAttempt) end_attempt(l);
   return order == SqpStrategy::Order::kGoOn;
@@ -83,13 +83,13 @@ bool FilterSqp<T>::obey(int l, SqpStrategy::Order order) {
 
 template <class T>
 void FilterSqp<T>::end_attempt(int l) {
-  Lane& own = lane_[l];
+  Lane& own = lanes_[l];
   const ReverseProblem& problem = *problems_[own.job];
   SqpResult& result = results_[own.job];
   Iterate x = x_.unload(l, problem);
   SolveStatus status = own.strategy.status();
-  if (status == SolveStatus::kConverged) status = judged(problem, x);
-  if (own.strategy.counts(status))
+  if (status == SolveStatus::kConverged) status = status_of_converged(problem, x);
+  if (own.strategy.replaces_result(status))
     result = {status, std::move(x), 0, 0, lane(now_.infeasibility, l), lane(stationarity_, l)};
   result.iterations = own.strategy.iterations();
   result.attempts = own.strategy.attempts();
@@ -101,13 +101,13 @@ void FilterSqp<T>::end_attempt(int l) {
 
 /// Evaluates the measures and gaps of x_ in the lanes that begin an attempt or a phase.
 template <class T>
-void FilterSqp<T>::evaluate_begun() {
+void FilterSqp<T>::evaluate_beginning() {
   for (std::vector<T>& level : trial_gaps_) std::ranges::fill(level, T(0.0));
-  Mask<T> legal = begun_;
+  Mask<T> legal = beginning_;
   Measures<T> found = evaluator_.evaluate(problem_, x_, trial_gaps_, trial_gaps_, legal);
   found.objective = select(legal, found.objective, T(INFINITY));
-  adopt(begun_, found);
-  begun_ = Mask<T>(false);
+  adopt(beginning_, found);
+  beginning_ = Mask<T>(false);
 }
 
 /// Takes `found` and trial_gaps_ as the measures and gaps of x_ in the lanes `where`.
@@ -125,16 +125,17 @@ template <class T>
 void FilterSqp<T>::iterate() {
   T exact(0.0), proximal(1.0);
   for (int l = 0; l < kWidth<T>; ++l) {
-    set_lane(exact, l, lane_[l].strategy.exact() ? 1.0 : 0.0);
-    set_lane(proximal, l, lane_[l].strategy.proximal());
-    busy_ += lane_[l].job >= 0 ? 1 : 0;
+    set_lane(exact, l, lanes_[l].strategy.exact() ? 1.0 : 0.0);
+    set_lane(proximal, l, lanes_[l].strategy.proximal());
+    busy_ += lanes_[l].job >= 0 ? 1 : 0;
   }
-  lanes_ += kWidth<T>;
+  lane_iterations_ += kWidth<T>;
   newton_.linearise(problem_, x_, {exact, proximal});
   stationarity_ = newton_.stationarity();
   stepping_ = Mask<T>(false);
   for (int l = 0; l < kWidth<T>; ++l)
-    if (lane_[l].job >= 0) set_lane(stepping_, l, obey(l, lane_[l].strategy.judge(figures(l))));
+    if (lanes_[l].job >= 0)
+      set_lane(stepping_, l, carry_out(l, lanes_[l].strategy.judge(figures(l))));
   if (!any(stepping_)) return;
   const Mask<T> regular = kkt_->solve(newton_.system(), step_);
   reject_ascent(regular && newton_.model_curvature(step_) > T(0.0));
@@ -153,7 +154,7 @@ void FilterSqp<T>::reject_ascent(const Mask<T>& descends) {
   for (int l = 0; l < kWidth<T>; ++l) {
     if (!lane(stepping_, l) || lane(descends, l)) continue;
     set_lane(stepping_, l, false);
-    obey(l, lane_[l].strategy.reject_ascent());
+    carry_out(l, lanes_[l].strategy.reject_ascent());
   }
 }
 
@@ -174,7 +175,7 @@ void FilterSqp<T>::line_search() {
     searching = searching && !accepted;
   }
   for (int l = 0; l < kWidth<T>; ++l)
-    if (lane(searching, l)) obey(l, lane_[l].strategy.reject_line_search());
+    if (lane(searching, l)) carry_out(l, lanes_[l].strategy.reject_line_search());
 }
 
 /// Returns the lanes that accept the trial point.
@@ -183,9 +184,10 @@ Mask<T> FilterSqp<T>::accept(const Mask<T>& legal, const Measures<T>& then, doub
   Mask<T> accepted(false);
   for (int l = 0; l < kWidth<T>; ++l)
     if (lane(legal, l))
-      set_lane(accepted, l,
-               lane_[l].strategy.accept({lane(now_.violation, l), lane(now_.objective, l)},
-                                        {lane(then.violation, l), lane(then.objective, l)}, alpha));
+      set_lane(
+          accepted, l,
+          lanes_[l].strategy.accept({lane(now_.violation, l), lane(now_.objective, l)},
+                                    {lane(then.violation, l), lane(then.objective, l)}, alpha));
   return accepted;
 }
 

@@ -29,7 +29,9 @@ class FilterSqp {
                                std::span<const Iterate> starts = {});
 
   /// Returns the share of busy lanes over all iterations so far.
-  double occupancy() const { return static_cast<double>(busy_) / static_cast<double>(lanes_); }
+  double occupancy() const {
+    return static_cast<double>(busy_) / static_cast<double>(lane_iterations_);
+  }
 
  private:
   struct Lane {
@@ -40,9 +42,9 @@ class FilterSqp {
   bool refill();
   void begin_attempt(int l);
   void begin_phase(int l);
-  bool obey(int l, SqpStrategy::Order order);
+  bool carry_out(int l, SqpStrategy::Order order);
   void end_attempt(int l);
-  void evaluate_begun();
+  void evaluate_beginning();
   void adopt(const Mask<T>& where, const Measures<T>& found);
   void iterate();
   SqpStrategy::Figures figures(int l) const;
@@ -63,9 +65,9 @@ class FilterSqp {
   PerContact<T> force_step_, gaps_, trial_gaps_;
   Measures<T> now_;  // of x_
   T stationarity_;   // ‖∇L‖∞ of x_
-  std::vector<Lane> lane_;
-  Mask<T> begun_, stepping_;  // lanes that begin a phase; lanes that take a step
-  long busy_ = 0, lanes_ = 0;
+  std::vector<Lane> lanes_;
+  Mask<T> beginning_, stepping_;  // lanes that begin a phase; lanes that take a step
+  long busy_ = 0, lane_iterations_ = 0;
 };
 
 }  // namespace rtg::reverse

@@ -48,7 +48,7 @@ class MeritSqp {
       const double stationarity = newton_.stationarity();
       const auto ended = [&](SolveStatus status) {
         Iterate x = x_.unload(0, one_);
-        if (status == SolveStatus::kConverged) status = judged(one_, x);
+        if (status == SolveStatus::kConverged) status = status_of_converged(one_, x);
         return SqpResult{status, std::move(x), iterations, 1, now_.infeasibility, stationarity};
       };
       if (!std::isfinite(stationarity + now_.violation + now_.objective))

@@ -7,16 +7,17 @@ namespace rtg::reverse {
 namespace {
 
 constexpr double kLeastProximal = 1e-8, kMostProximal = 1e6;
-constexpr double kMostViolation = 0.3;             // a step must not raise θ above this
+constexpr double kMaxViolation = 0.3;              // a step must not raise θ above this
 constexpr double kShortStep = 0.2;                 // step length up to which δ grows
 constexpr double kGrowth = 4.0, kShrinkage = 0.1;  // factors of δ
 constexpr int kAttempts = 3;
 constexpr double kProximalGrowth = 4.0;  // factor of the first δ, per attempt
-// Softening. kBefore: most iterations before the first softening; an attempt whose iterate is not
-// near a solution by then continues without softening. kSoft, kBetween: most iterations with the
-// soft spring, and between two softenings. kSoftness: weight of the soft spring, as a share of K.
-// kNearFeasible, kNearStationary: ‖C‖∞ and ‖∇L‖∞ below which an iterate is near a solution.
-constexpr int kBefore = 12, kSoft = 6, kBetween = 4;
+// Softening. kIterationsBeforeSoftening: most iterations before the first softening; an attempt
+// whose iterate is not near a solution by then continues without softening. kSoftIterations,
+// kStiffIterations: most iterations with the soft spring, and between two softenings. kSoftness:
+// weight of the soft spring, as a share of K. kNearFeasible, kNearStationary: ‖C‖∞ and ‖∇L‖∞ below
+// which an iterate is near a solution.
+constexpr int kIterationsBeforeSoftening = 12, kSoftIterations = 6, kStiffIterations = 4;
 constexpr double kSoftness = 0.2;
 constexpr double kNearFeasible = 1e-2, kNearStationary = 1e-1;
 
@@ -63,7 +64,7 @@ SqpStrategy::Order SqpStrategy::reject_line_search() {
 
 bool SqpStrategy::accept(const Filter::Entry& now, const Filter::Entry& next, double alpha) {
   if (!std::isfinite(next.violation + next.objective) ||
-      next.violation > std::max(kMostViolation, now.violation) || !filter_.accepts(next) ||
+      next.violation > std::max(kMaxViolation, now.violation) || !filter_.accepts(next) ||
       !Filter::improves(next, now))
     return false;
   filter_.add(now);
@@ -73,18 +74,18 @@ bool SqpStrategy::accept(const Filter::Entry& now, const Filter::Entry& next, do
   return true;
 }
 
-bool SqpStrategy::counts(SolveStatus ended) const {
-  return ended == SolveStatus::kConverged || !missed_;
+bool SqpStrategy::replaces_result(SolveStatus ended) const {
+  return ended == SolveStatus::kConverged || !missed_final_state_;
 }
 
 bool SqpStrategy::try_again(SolveStatus ended) {
   const bool missed = ended == SolveStatus::kInfeasible;
-  if (ended == SolveStatus::kConverged || (missed && missed_) || attempts() == kAttempts ||
-      iterations_ == config_->max_iterations)
+  if (ended == SolveStatus::kConverged || (missed && missed_final_state_) ||
+      attempts() == kAttempts || iterations_ == config_->max_iterations)
     return false;
   // If the first attempt failed after softening, the same small δ may still suffice without it.
   if (missed || attempt_ > 0 || !softened_) first_proximal_ *= kProximalGrowth;
-  missed_ = missed_ || missed;
+  missed_final_state_ = missed_final_state_ || missed;
   ++attempt_;
   begin_attempt();
   return true;
@@ -93,13 +94,13 @@ bool SqpStrategy::try_again(SolveStatus ended) {
 void SqpStrategy::begin_attempt() {
   const bool softens = attempt_ == 0 && config_->terminal_weight > 0.0;
   begin_phase(softens ? 2 * config_->softenings : 0);
-  iterations_left_ = kBefore;
+  iterations_left_ = kIterationsBeforeSoftening;
 }
 
 SqpStrategy::Order SqpStrategy::begin_phase(int phases_left) {
   phases_left_ = phases_left;
   softened_ = softened_ || soft();
-  iterations_left_ = soft() ? kSoft : kBetween;
+  iterations_left_ = soft() ? kSoftIterations : kStiffIterations;
   proximal_ = first_proximal_;
   exact_ = true;
   filter_ = Filter{};

@@ -61,7 +61,7 @@ class SqpStrategy {
 
   /// Returns whether the solution of the attempt that ended with status `ended` replaces those of
   /// earlier attempts.
-  bool counts(SolveStatus ended) const;
+  bool replaces_result(SolveStatus ended) const;
   /// Begins another attempt after one that ended with status `ended`. Returns false if no further
   /// attempt follows.
   bool try_again(SolveStatus ended);
@@ -77,10 +77,10 @@ class SqpStrategy {
   int attempt_ = 0, iterations_ = 0;
   double proximal_ = 1.0, first_proximal_;  // δ; δ of a phase's first iteration
   bool exact_ = true;
-  int phases_left_ = 0;      // of this attempt; odd: the spring is soft
-  int iterations_left_ = 0;  // of this phase, if others follow
-  bool softened_ = false;    // whether any attempt has had a soft phase
-  bool missed_ = false;      // whether an earlier attempt missed the final state
+  int phases_left_ = 0;              // of this attempt; odd: the spring is soft
+  int iterations_left_ = 0;          // of this phase, if others follow
+  bool softened_ = false;            // whether any attempt has had a soft phase
+  bool missed_final_state_ = false;  // whether an earlier attempt missed the final state
   SolveStatus status_ = SolveStatus::kNonFinite;
   Filter filter_;
 };

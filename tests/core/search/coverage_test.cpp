@@ -67,13 +67,13 @@ TEST(Coverage, CountsWhatBeginsInTheStartRegionAndWhereItComesFrom) {
     coverage.add(t);
   }
   t.poses[1].x += 1.0;  // begins outside, ends inside
-  t.source = Source::kPlan;
+  t.source = Source::kForward;
   coverage.add(t);
   EXPECT_EQ(coverage.start_region(), 4);
   EXPECT_EQ(coverage.of(Source::kTree), 1);
   EXPECT_EQ(coverage.of(Source::kBranch), 2);
   EXPECT_EQ(coverage.of(Source::kWalk), 1);
-  EXPECT_EQ(coverage.of(Source::kPlan), 1);
+  EXPECT_EQ(coverage.of(Source::kForward), 1);
 }
 
 TEST(Coverage, HeadingsPerStateAreTransitionsOverDistinctStates) {

@@ -66,7 +66,7 @@ TEST_F(ForwardSearchTest, FindsAPlanOfTrueStepsToSuccess) {
     EXPECT_EQ(t.poses, state);
     EXPECT_EQ(t.next, pushed({t.poses, t.action}));
     EXPECT_EQ(t.success, &t == &plan.back());
-    EXPECT_EQ(t.source, Source::kPlan);
+    EXPECT_EQ(t.source, Source::kForward);
     state = t.next;
   }
   EXPECT_TRUE(succeeded(task, state));
@@ -114,7 +114,7 @@ TEST(GenerateForward, StoresWhatItsBeamsKeepWithBranches) {
   std::map<std::uint64_t, std::pair<int, int>> of_state;          // steps, branches
   for (const Transition& t : std::span(run.stored).first(995)) {  // the last may be cut off
     auto& [steps, beside] = of_state[reverse::key_of(t.poses, 0)];
-    ++(t.source == Source::kPlan ? steps : beside);
+    ++(t.source == Source::kForward ? steps : beside);
   }
   for (const auto& [state, counts] : of_state) {
     EXPECT_TRUE(counts.first > 1 || counts.second == 4 ||
@@ -124,7 +124,7 @@ TEST(GenerateForward, StoresWhatItsBeamsKeepWithBranches) {
   EXPECT_NEAR(branches, 800, 40);
   EXPECT_GT(run.report.headings_per_state, 5.0);
   EXPECT_EQ(run.stored.size() - branches,
-            std::ranges::count(run.stored, Source::kPlan, &Transition::source));
+            std::ranges::count(run.stored, Source::kForward, &Transition::source));
   EXPECT_EQ(run.report.replays % 48, 0) << "the branches are pushes of the layers";
   EXPECT_EQ(testing::run_naive(testing::gathering(), config, 3, 2).stored, run.stored);
 }

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from rtg.bus.bus import Bus
 from rtg.bus.messages import message_type
-from rtg.bus.transition_stream import FAREWELLS, StreamCursor, TransitionStream, to_rows
+from rtg.bus.transition_stream import FINAL_ACKS, StreamCursor, TransitionStream, to_rows
 from rtg.errors import RunError
 from rtg.files.dataset import Rows
 
@@ -109,7 +109,7 @@ def test_who_has_all_of_a_sealed_stream_says_so_many_times_and_goes_on_saying_it
     cursor.on_tail(10, False)
     assert cursor.ack_due(now=1.0) == (10, 100, [])  # not sealed yet
     cursor.on_tail(10, True)
-    assert [cursor.ack_due(now=1.0) for _ in range(FAREWELLS)] == [(10, 0, [])] * FAREWELLS
+    assert [cursor.ack_due(now=1.0) for _ in range(FINAL_ACKS)] == [(10, 0, [])] * FINAL_ACKS
     assert cursor.ack_due(now=1.1) is None
     assert cursor.ack_due(now=1.6) == (10, 0, [])
 
@@ -172,7 +172,7 @@ def test_rows_have_the_shapes_of_the_data_set():
     assert rows.next_poses[1, 2, 2] == 35.0
     assert rows.reward.tolist() == [0.0, 1.0] and rows.reward.dtype == np.float32
     assert rows.terminated.tolist() == [False, True]
-    assert rows.after(1).action.tolist() == [47]
+    assert rows.slice(1).action.tolist() == [47]
 
 
 @pytest.mark.parametrize(

@@ -2,14 +2,14 @@
 
 from rtg import paths
 from rtg.compare.ablations import (
-    DECIDED,
-    OF_BRANCHES,
-    OF_TREES,
-    PAPER,
-    SIZES,
+    BRANCH_ABLATIONS,
+    PAPER_PRESET,
+    SET_BY_METHOD,
+    SIZE_KEYS,
+    TREE_ABLATIONS,
     ablations,
     departures,
-    parts_of_search,
+    search_ablations,
 )
 from rtg.run import effective_config
 from rtg.run.run_args import Override
@@ -18,15 +18,15 @@ FILE = paths.CONFIG / "sorting.yaml"
 
 
 def test_what_differs_is_taken_back_key_by_key():
-    ours = {"batch": 256, "dueling": True, "discount": 0.95, "eval_every": 5000}
+    current = {"batch": 256, "dueling": True, "discount": 0.95, "eval_every": 5000}
     paper = {"batch": 512, "dueling": False, "discount": 0.95, "eval_every": 10000}
-    assert departures(ours, paper) == [("train.batch=512",), ("train.dueling=false",)]
+    assert departures(current, paper) == [("train.batch=512",), ("train.dueling=false",)]
 
 
 def test_keys_that_belong_together_are_taken_back_together():
-    ours = {"target_sync": 1, "target_rate": 0.005}
+    current = {"target_sync": 1, "target_rate": 0.005}
     paper = {"target_sync": 250, "target_rate": 1.0}
-    assert departures(ours, paper) == [("train.target_sync=250", "train.target_rate=1.0")]
+    assert departures(current, paper) == [("train.target_sync=250", "train.target_rate=1.0")]
 
 
 def test_all_departures_together_are_the_paper_but_for_how_it_is_measured():
@@ -38,21 +38,23 @@ def test_all_departures_together_are_the_paper_but_for_how_it_is_measured():
         effective_config.load(FILE, [Override("", word) for word in as_paper])
     )["train"]
     assert {key for key in paper if found[key] != paper[key]} == {"preset"}
-    ours = effective_config.values(effective_config.load(FILE))["train"]
+    current = effective_config.values(effective_config.load(FILE))["train"]
     watched = ("interactions", "eval_every", "stop_at_success", "stop_evaluations")
-    assert [paper[key] for key in watched] == [ours[key] for key in watched]
+    assert [paper[key] for key in watched] == [current[key] for key in watched]
 
 
 def test_every_setting_of_the_search_has_an_ablation_or_is_a_size():
     search = effective_config.values(effective_config.load(FILE))["search"]
-    assert set(search) <= {*OF_BRANCHES, *OF_TREES, *SIZES, *DECIDED}
-    tried = {words[0].partition("=")[0] for words in parts_of_search(search)}
-    assert "search.branches" in tried and not tried & {f"search.{key}" for key in SIZES}
+    assert set(search) <= {*BRANCH_ABLATIONS, *TREE_ABLATIONS, *SIZE_KEYS, *SET_BY_METHOD}
+    alternatives = {words[0].partition("=")[0] for words in search_ablations(search)}
+    assert "search.branches" in alternatives and not alternatives & {
+        f"search.{key}" for key in SIZE_KEYS
+    }
 
 
 def test_the_loader_takes_every_part_of_the_search_away():
     before = effective_config.values(effective_config.load(FILE))["search"]
-    for (word,) in parts_of_search(before):
+    for (word,) in search_ablations(before):
         after = effective_config.values(effective_config.load(FILE, [Override("", word)]))["search"]
         key = word.partition("=")[0].removeprefix("search.")
         assert {name for name in before if before[name] != after[name]} == {key}, word
@@ -62,8 +64,8 @@ def test_what_the_search_is_without_is_not_taken_away():
     search = effective_config.values(effective_config.load(FILE, [Override("", "search.plans=0")]))[
         "search"
     ]
-    tried = {words[0] for words in parts_of_search(search)}
-    assert "search.plans=1" in tried and "search.plans=0" not in tried
+    alternatives = {words[0] for words in search_ablations(search)}
+    assert "search.plans=1" in alternatives and "search.plans=0" not in alternatives
 
 
 def test_only_trees_lose_parts_of_trees_and_only_data_any():
@@ -74,7 +76,7 @@ def test_only_trees_lose_parts_of_trees_and_only_data_any():
 
 
 def test_of_the_paper_nothing_is_taken_back():
-    found = ablations(FILE, [Override("", PAPER)])
+    found = ablations(FILE, [Override("", PAPER_PRESET)])
     assert all(word.startswith("search.") for settings in found for word in settings)
 
 
@@ -84,4 +86,4 @@ def test_what_is_set_for_all_is_no_departure():
     found = ablations(FILE, common)
     words = [word.partition("=")[0] for settings in found for word in settings]
     assert not {"train.batch", "train.nearby_share"} & set(words)
-    assert found[-1] == (PAPER, "train.eval_every=5000", "train.stop_at_success=0.5")
+    assert found[-1] == (PAPER_PRESET, "train.eval_every=5000", "train.stop_at_success=0.5")

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from rtg.compare.cell_run import make_ready
+from rtg.compare.cell_run import prepare_runs
 from rtg.compare.reproduce_args import parse
 from rtg.errors import UserError
 from rtg.files.run_folder import write_json
@@ -30,17 +30,17 @@ def words(tmp_path):
 def begin(run, *overrides):
     """As `rtg run` does."""
     run.folder.mkdir(parents=True)
-    args = run_args.parse([*run.words, *overrides, "--out", str(run.folder)])
+    args = run_args.parse([*run.arguments, *overrides, "--out", str(run.folder)])
     text = effective_config.load(args.file, args.overrides).yaml
     (run.folder / "config.yaml").write_text(text)
 
 
 def test_a_new_run_begins_and_one_that_has_begun_goes_on(words):
-    naive, rtg = make_ready(parse(words))
+    naive, rtg = prepare_runs(parse(words))
     assert naive.command()[-2:] == ["--out", str(naive.folder)]
     assert "--resume" not in naive.command() and str(TINY) in naive.command()
     begin(naive)
-    naive, _ = make_ready(parse(words))
+    naive, _ = prepare_runs(parse(words))
     assert "--resume" in naive.command() and str(TINY) not in naive.command()
     assert not naive.done and not rtg.done
     write_json(naive.folder / "summary.json", {"interactions": None})  # of --no-train
@@ -49,18 +49,18 @@ def test_a_new_run_begins_and_one_that_has_begun_goes_on(words):
     assert naive.done
     write_json(naive.folder / "summary.json", {"interactions": 400})
     with pytest.raises(UserError, match=r"summary\.json: no success_rate; legal: as the run left"):
-        make_ready(parse(words))[0].outcome()
+        prepare_runs(parse(words))[0].outcome()
 
 
 def test_a_run_keeps_to_one_thread(words):
-    command = make_ready(parse(words))[0].command()
+    command = prepare_runs(parse(words))[0].command()
     assert {"OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1", "MKL_NUM_THREADS=1"} <= set(command)
 
 
 def test_methods_stand_above_the_file_and_the_settings(words):
     """The file says naive."""
-    for run, generator in zip(make_ready(parse(words)), ("naive", "rrbs"), strict=True):
-        args = run_args.parse(run.words)
+    for run, generator in zip(prepare_runs(parse(words)), ("naive", "rrbs"), strict=True):
+        args = run_args.parse(run.arguments)
         config = effective_config.load(args.file, args.overrides)
         assert config.search.generator == generator
         assert config.run.workers == 1 and config.run.in_process
@@ -75,23 +75,23 @@ def test_methods_stand_above_the_file_and_the_settings(words):
     ],
 )
 def test_a_run_with_another_configuration_is_refused_and_left_alone(words, more, what):
-    run = make_ready(parse(words))[0]
+    run = prepare_runs(parse(words))[0]
     begin(run)
     before = (run.folder / "config.yaml").read_bytes()
     with pytest.raises(UserError) as error:
-        make_ready(parse([*words, *more]))
+        prepare_runs(parse([*words, *more]))
     assert str(error.value).startswith(f"{run.folder}: was made with {what}; legal: the same, ")
     assert (run.folder / "config.yaml").read_bytes() == before
 
 
 def test_a_run_of_a_version_without_one_of_the_settings_is_refused(words):
     """Its value was another then, perhaps."""
-    run = make_ready(parse(words))[0]
+    run = prepare_runs(parse(words))[0]
     begin(run)
     file = run.folder / "config.yaml"
     file.write_text(re.sub(r"\n  stop_evaluations: .*", "", file.read_text()))
     with pytest.raises(UserError) as error:
-        make_ready(parse(words))
+        prepare_runs(parse(words))
     assert str(error.value).startswith(
         f"{file}: has no line 'stop_evaluations: 3': another version of RTG wrote it; legal: "
     )
@@ -99,23 +99,23 @@ def test_a_run_of_a_version_without_one_of_the_settings_is_refused(words):
 
 def test_what_no_run_can_do_is_refused_before_anything_starts(words, tmp_path):
     with pytest.raises(UserError, match=r"key 'train\.buffer': 100 is too small for search\.tr"):
-        make_ready(parse([*words, "--set", "train.buffer=100"]))
+        prepare_runs(parse([*words, "--set", "train.buffer=100"]))
     assert list(tmp_path.iterdir()) == []
 
 
 def test_seeds_with_another_configuration_are_refused_though_not_asked_for(words):
-    begin(make_ready(parse(words))[0])
+    begin(prepare_runs(parse(words))[0])
     other = [word if word != "1" else "2," for word in words]
-    assert len(make_ready(parse(other))) == 2
+    assert len(prepare_runs(parse(other))) == 2
     with pytest.raises(UserError, match=r"seed-1: was made with train\.batch = 8, asked for"):
-        make_ready(parse([*other, "--set", "train.batch=9"]))
+        prepare_runs(parse([*other, "--set", "train.batch=9"]))
 
 
 def test_a_run_killed_as_it_began_begins_again(words):
-    run = make_ready(parse(words))[0]
+    run = prepare_runs(parse(words))[0]
     run.folder.mkdir(parents=True)
     (run.folder / ".config.yaml.123").write_text("ta")
-    again = make_ready(parse(words))[0]
+    again = prepare_runs(parse(words))[0]
     command = again.command()
     assert "--resume" not in command
     assert run_args.parse(command[command.index("run") + 1 :]).out == run.folder
@@ -128,18 +128,18 @@ def test_a_run_that_has_begun_takes_transitions_over_too(words, monkeypatch):
     """Killed between the one and the other."""
     found = []
     monkeypatch.setattr("rtg.run.shared_transitions.find", lambda *place: found.append(place))
-    run = make_ready(parse(words))[0]
+    run = prepare_runs(parse(words))[0]
     begin(run)
     assert "--resume" in run.command()
-    assert found == [(run.kind, run.folder.parents[1], "seed-1")]
+    assert found == [(run.generation_key, run.folder.parents[1], "seed-1")]
 
 
 def test_a_file_where_a_run_belongs_is_refused(words):
-    run = make_ready(parse(words))[0]
+    run = prepare_runs(parse(words))[0]
     run.folder.parent.mkdir(parents=True)
     run.folder.write_text("mine")
     with pytest.raises(UserError, match="holds no run; legal: an empty --out, or none"):
-        make_ready(parse(words))
+        prepare_runs(parse(words))
 
 
 @pytest.mark.parametrize(
@@ -154,15 +154,15 @@ def test_a_file_where_a_run_belongs_is_refused(words):
     ],
 )
 def test_methods_that_cannot_be_compared_are_refused(words, more, what):
-    naive, rtg = make_ready(parse(words))
+    naive, rtg = prepare_runs(parse(words))
     begin(naive)
     alone = [word.replace("ddqn_naive,", "") for word in words]
-    make_ready(parse([*alone, "--set", "train.learning_rate=0.5"]))
-    make_ready(parse([*alone, "--sweep", more]))
+    prepare_runs(parse([*alone, "--set", "train.learning_rate=0.5"]))
+    prepare_runs(parse([*alone, "--sweep", more]))
     with pytest.raises(UserError, match=f"ddqn_naive/seed-1: was made with {what}; legal: "):
-        make_ready(parse([*alone, "--set", more]))
+        prepare_runs(parse([*alone, "--set", more]))
     with pytest.raises(UserError, match=f"ddqn_naive/seed-1: was made with {what}; legal: "):
-        make_ready(parse([*alone, "--sweep", "train.dueling=false", "--set", more]))
+        prepare_runs(parse([*alone, "--sweep", "train.dueling=false", "--set", more]))
     assert not rtg.begun
 
 
@@ -171,28 +171,28 @@ def test_methods_that_cannot_be_compared_are_refused(words, more, what):
 )
 def test_a_sweep_of_the_task_goes_on(words, sweep):
     alone = [word.replace("ddqn_naive,", "") for word in words]
-    for run in make_ready(parse([*alone, "--sweep", sweep])):
+    for run in prepare_runs(parse([*alone, "--sweep", sweep])):
         begin(run)
-    runs = make_ready(parse([*alone, "--sweep", sweep]))
+    runs = prepare_runs(parse([*alone, "--sweep", sweep]))
     assert len(runs) == 2 and all(run.begun for run in runs)
 
 
 def test_a_folder_of_another_kind_is_refused(words):
-    run = make_ready(parse(words))[0]
+    run = prepare_runs(parse(words))[0]
     run.folder.mkdir(parents=True)
     (run.folder / "notes.txt").write_text("mine")
     with pytest.raises(UserError, match="holds no run; legal: an empty --out, or none"):
-        make_ready(parse(words))
+        prepare_runs(parse(words))
 
 
 def test_wrong_values_are_named_by_the_flag_that_they_came_with(words):
     for flag, setting in (("--set", "train.batch=0"), ("--sweep", "train.offline_share=0.5,3")):
         key, value = setting.split("=")
         with pytest.raises(UserError) as error:
-            make_ready(parse([*words, flag, setting]))
+            prepare_runs(parse([*words, flag, setting]))
         assert str(error.value).startswith(f"{flag} {key}={value.split(',')[-1]}: ")
 
 
 def test_values_that_make_the_same_run_are_refused(words):
     with pytest.raises(UserError, match=r"=0\.50/seed-1: is the same run as .*=0\.5/seed-1; legal"):
-        make_ready(parse([*words, "--sweep", "train.offline_share=0.5,0.50"]))
+        prepare_runs(parse([*words, "--sweep", "train.offline_share=0.5,0.50"]))

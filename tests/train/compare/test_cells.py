@@ -21,7 +21,7 @@ def test_a_command_is_forgotten_once_others_ask_for_all_that_it_asked_for():
     grid.add("two", [TWO])
     assert grid.commands == ["one", "two"]
     grid.add("both", [TWO, ONE])
-    assert grid.commands == ["both"] and list(grid.cells) == [ONE, TWO]
+    assert grid.commands == ["both"] and list(grid.commands_by_cell) == [ONE, TWO]
     grid.add("two", [TWO])
     assert grid.commands == ["both", "two"]
 

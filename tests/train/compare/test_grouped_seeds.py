@@ -2,7 +2,7 @@
 
 import pytest
 from rtg.compare import grouped_seeds
-from rtg.compare.cell_run import make_ready
+from rtg.compare.cell_run import prepare_runs
 from rtg.compare.reproduce_args import parse
 from rtg.files.run_folder import write_json
 from rtg.learn import device
@@ -13,7 +13,7 @@ from training_runs import TINY
 def runs(tmp_path):
     """Of two methods, one of them with offline data, two seeds each."""
     words = [str(TINY), "--methods", "ddqn,ddqn_naive", "--seeds", "2", "--out", str(tmp_path)]
-    return make_ready(parse(words))
+    return prepare_runs(parse(words))
 
 
 def names(jobs):
@@ -21,7 +21,7 @@ def names(jobs):
 
 
 def test_all_generate_and_then_the_seeds_of_each_method_learn(runs):
-    generations, learnings = grouped_seeds.stages(runs, wanted=True)
+    generations, learnings = grouped_seeds.stages(runs, together=True)
     assert names(generations) == [f"ddqn_naive/seed-{k}: transitions" for k in (1, 2)]
     assert names(learnings) == ["ddqn: 2 seeds learn", "ddqn_naive: 2 seeds learn"]
     assert not any(job.done for job in (*generations, *learnings))
@@ -31,7 +31,7 @@ def test_a_seed_alone_and_what_is_done_is_left_to_its_run(runs):
     done = runs[0].folder / "summary.json"
     done.parent.mkdir(parents=True)
     write_json(done, {"interactions": 1, "success_rate": 0.5})
-    generations, learnings = grouped_seeds.stages(runs, wanted=True)
+    generations, learnings = grouped_seeds.stages(runs, together=True)
     assert len(generations) == 2 and names(learnings) == ["ddqn_naive: 2 seeds learn"]
 
 
@@ -39,5 +39,5 @@ def test_a_seed_alone_and_what_is_done_is_left_to_its_run(runs):
 def test_on_a_gpu_they_do_so_unasked(runs, monkeypatch, where, count):
     asked = []
     monkeypatch.setattr(device, "chosen", lambda wanted: asked.append(wanted) or where)
-    assert len(grouped_seeds.stages(runs, wanted=False)[1]) == count
+    assert len(grouped_seeds.stages(runs, together=False)[1]) == count
     assert set(asked) == {"auto"}

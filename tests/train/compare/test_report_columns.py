@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from comparison_samples import finished, summary_of, write_grid
 from rtg.compare.cells import Cell, read_grid
-from rtg.compare.report_tables import data, learned, runtime, spent
+from rtg.compare.report_tables import cost_table, data_table, results_table, runtime_table
 from rtg.compare.run_results import Comparison, read_comparison
 
 COURSES = ([0.1, 0.72, 0.96, 0.93], [0.0, 0.3, 0.75, 0.95], [0.5, 0.97, 0.99, 1.0])
@@ -74,7 +74,7 @@ def test_what_was_learned(runs: tuple[Comparison, list[Summary]]) -> None:
     comparison, found = runs
     at_95 = [first(course, 0.95) for course in COURSES]
     of = {name: [s[name] for s in found] for name in found[0]}
-    assert cells_of(learned(comparison, "gathering")) == {
+    assert cells_of(results_table(comparison, "gathering")) == {
         "method": "`ddqn_rtg`",
         "seeds": "1-3",
         "success": words(of["success_rate"], 2),
@@ -96,7 +96,7 @@ def test_what_the_runs_cost(runs: tuple[Comparison, list[Summary]]) -> None:
     comparison, found = runs
     of = {name: [s[name] for s in found] for name in found[0]}
     thousands = {name: [v / 1000 for v in of[name]] for name in ("transitions", "replays")}
-    assert cells_of(spent(comparison, "gathering")) == {
+    assert cells_of(cost_table(comparison, "gathering")) == {
         "method": "`ddqn_rtg`",
         "seeds": "1-3",
         "transitions": words(thousands["transitions"]),
@@ -132,7 +132,7 @@ def test_run_time(runs: tuple[Comparison, list[Summary]]) -> None:
     }
     expected = {name: per_run(found, *column) for name, column in columns.items()}
     named = {"task": "gathering", "method": "`ddqn_rtg`"}
-    assert cells_of(runtime(comparison)) == {**named, **expected}
+    assert cells_of(runtime_table(comparison)) == {**named, **expected}
 
 
 def test_the_data(runs: tuple[Comparison, list[Summary]]) -> None:
@@ -157,4 +157,4 @@ def test_the_data(runs: tuple[Comparison, list[Summary]]) -> None:
         for name, (key, unit, digits) in columns.items()
     }
     named = {"task": "gathering", "method": "`ddqn_rtg`"}
-    assert cells_of(data(comparison)) == {**named, **expected}
+    assert cells_of(data_table(comparison)) == {**named, **expected}

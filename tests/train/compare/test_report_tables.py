@@ -1,7 +1,7 @@
 """How the tables of a report put the figures of seeds."""
 
 import pytest
-from rtg.compare.report_tables import seeds, spread
+from rtg.compare.report_tables import seed_ranges, spread
 
 
 @pytest.mark.parametrize(
@@ -21,4 +21,4 @@ def test_seeds_are_put_together_in_words(values, form, words):
 
 
 def test_seeds_in_a_row_are_written_short():
-    assert seeds([3, 1, 2, 7]) == "1-3, 7"
+    assert seed_ranges([3, 1, 2, 7]) == "1-3, 7"

@@ -6,10 +6,10 @@ import shlex
 
 import pytest
 from rtg import cli
-from rtg.compare.cell_run import CellRun, make_ready
+from rtg.compare.cell_run import CellRun, prepare_runs
 from rtg.compare.cells import read_grid
 from rtg.compare.grid_display import PlainGrid
-from rtg.compare.reproduce import Crew, Failures
+from rtg.compare.reproduce import Failures, JobPool
 from rtg.compare.reproduce_args import parse
 from rtg.files import run_folder
 from rtg.run import effective_config, run_args
@@ -25,68 +25,68 @@ FAILS = "echo working; echo no memory; exit 3"
 
 @pytest.fixture
 def comparison(tmp_path, monkeypatch):
-    """Gives a crew for three seeds whose runs do what the scripts say, one script each."""
+    """Gives a pool for three seeds whose runs do what the scripts say, one script each."""
 
     def make(jobs, *scripts):
         words = [str(TINY), "--methods", "ddqn_rtg", "--seeds", str(len(scripts))]
         args = parse([*words, "--jobs", str(jobs), "--out", str(tmp_path / "out")])
-        runs = make_ready(args)
+        runs = prepare_runs(args)
         for run, script in zip(runs, scripts, strict=True):
             config = tmp_path / f"{run.cell.seed}.yaml"
-            parsed = run_args.parse(run.words)
+            parsed = run_args.parse(run.arguments)
             config.write_text(effective_config.load(parsed.file, parsed.overrides).yaml)
             places = f"OUT={shlex.quote(str(run.folder))}; CONFIG={shlex.quote(str(config))}"
             commands[run.folder] = ["sh", "-c", f"{places}; {script}"]
-        return Crew(runs, args.jobs, Failures(read_grid(args.out), args.out))
+        return JobPool(runs, args.jobs, Failures(read_grid(args.out), args.out))
 
     commands = {}
     monkeypatch.setattr(CellRun, "command", lambda run: commands[run.folder])
     return make
 
 
-def finish(crew):
+def finish(pool):
     """The most runs that were ever at work together."""
     most = 0
     with PlainGrid(io.StringIO()) as shown:
-        while crew.tend(shown):
-            most = max(most, [row.phase for row in crew.rows()].count("running"))
-            crew.wait(0.05)
+        while pool.poll(shown):
+            most = max(most, [row.phase for row in pool.rows()].count("running"))
+            pool.wait(0.05)
     return most
 
 
 def test_a_run_that_fails_leaves_the_others_alone_and_says_why(comparison, tmp_path):
-    crew = comparison(1, SUCCEEDS, FAILS, SUCCEEDS)
-    assert finish(crew) == 1
-    assert [row.phase for row in crew.rows()] == ["done", "failed", "done"]
-    assert crew.rows()[0].words == "success 0.50 after 400 interactions"
+    pool = comparison(1, SUCCEEDS, FAILS, SUCCEEDS)
+    assert finish(pool) == 1
+    assert [row.phase for row in pool.rows()] == ["done", "failed", "done"]
+    assert pool.rows()[0].words == "success 0.50 after 400 interactions"
     name = "tiny/ddqn_rtg/seed-2"
     words = f"{name} ended with exit status 3; the end of its log:\nworking\nno memory"
-    assert crew.rows()[1].words == words
-    assert read_grid(tmp_path / "out").failed == {name: words}
+    assert pool.rows()[1].words == words
+    assert read_grid(tmp_path / "out").failure_by_name == {name: words}
 
 
 def test_of_a_run_that_ended_without_a_word_earlier_words_are_not_repeated(comparison, tmp_path):
     finish(comparison(1, FAILS))
-    crew = comparison(1, "kill -9 $$")
-    finish(crew)
-    assert crew.rows()[0].words == "tiny/ddqn_rtg/seed-1 was killed by SIGKILL"
+    pool = comparison(1, "kill -9 $$")
+    finish(pool)
+    assert pool.rows()[0].words == "tiny/ddqn_rtg/seed-1 was killed by SIGKILL"
 
 
 def test_a_run_that_cannot_start_leaves_the_others_alone(comparison, tmp_path):
-    crew = comparison(1, SUCCEEDS, SUCCEEDS)
+    pool = comparison(1, SUCCEEDS, SUCCEEDS)
     label = tmp_path / "out/tiny/ddqn_rtg/seed-1.log"
     label.mkdir(parents=True)
-    finish(crew)
-    assert [row.phase for row in crew.rows()] == ["failed", "done"]
-    assert "seed-1.log" in crew.rows()[0].words
+    finish(pool)
+    assert [row.phase for row in pool.rows()] == ["failed", "done"]
+    assert "seed-1.log" in pool.rows()[0].words
 
 
 def test_a_failed_run_gets_another_chance_and_a_done_one_is_left(comparison, tmp_path):
     finish(comparison(2, SUCCEEDS, FAILS))
-    crew = comparison(2, "echo again; exit 1", SUCCEEDS)
-    finish(crew)
-    assert [row.phase for row in crew.rows()] == ["done", "done"]
-    assert read_grid(tmp_path / "out").failed == {}
+    pool = comparison(2, "echo again; exit 1", SUCCEEDS)
+    finish(pool)
+    assert [row.phase for row in pool.rows()] == ["done", "done"]
+    assert read_grid(tmp_path / "out").failure_by_name == {}
 
 
 def test_so_many_are_at_work_as_there_are_jobs(comparison):
@@ -94,18 +94,18 @@ def test_so_many_are_at_work_as_there_are_jobs(comparison):
 
 
 def test_a_run_that_is_stopped_has_not_failed(comparison, tmp_path):
-    crew = comparison(1, "echo begun; sleep 1000")
+    pool = comparison(1, "echo begun; sleep 1000")
     with PlainGrid(io.StringIO()) as shown:
-        crew.tend(shown)
+        pool.poll(shown)
         while "begun" not in (tmp_path / "out/tiny/ddqn_rtg/seed-1.log").read_text():
-            crew.wait(0.05)
-    crew.stop()
-    assert read_grid(tmp_path / "out").failed == {}
-    assert crew.rows()[0].phase == "running"
+            pool.wait(0.05)
+    pool.stop()
+    assert read_grid(tmp_path / "out").failure_by_name == {}
+    assert pool.rows()[0].phase == "running"
 
 
 def test_two_commands_do_not_work_in_one_folder(tmp_path, capsys):
-    with run_folder.alone(tmp_path, "nobody"):
+    with run_folder.exclusive_lock(tmp_path, "nobody"):
         assert cli.main(["reproduce", str(TINY), "--out", str(tmp_path)]) == 2
     assert "another reproduce works there" in capsys.readouterr().err
 

@@ -4,7 +4,7 @@ import pytest
 from rtg import _core, paths
 from rtg.compare import reproduce_args
 from rtg.compare.cells import Cell
-from rtg.compare.methods import METHODS, REFERENCE, run_words
+from rtg.compare.methods import METHODS, REFERENCE, method_flags
 from rtg.compare.reproduce_args import parse, parse_seeds, parse_sweep
 from rtg.errors import UserError
 
@@ -22,13 +22,13 @@ def test_the_methods_are_those_of_the_loader():
     with pytest.raises(_core.ConfigError) as told:
         _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["run.method=none"])
     assert str(told.value).endswith("legal: " + ", ".join(METHODS))
-    assert REFERENCE in METHODS and run_words(REFERENCE) == ("--method", REFERENCE)
+    assert REFERENCE in METHODS and method_flags(REFERENCE) == ("--method", REFERENCE)
 
 
 def test_quick_is_small_and_what_the_user_sets_stands_above_it():
     args = parse(["--quick", "--set", "train.interactions=7"])
     assert len(args.cells) == 6 and args.out.name == "reproduce-quick"
-    assert args.settings == (*reproduce_args.QUICK, "train.interactions=7")
+    assert args.settings == (*reproduce_args.QUICK_SETTINGS, "train.interactions=7")
 
 
 def test_a_sweep_is_one_more_axis_of_the_reference_method():
@@ -65,7 +65,7 @@ def test_the_command_of_the_report_has_all_that_decides_the_results_and_no_more(
         "./run.sh reproduce gathering --methods ddqn_rtg --seeds 2 --sweep train.dueling=true "
         "--set train.batch=9"
     )
-    assert args.typed == f"./run.sh reproduce {words}"
+    assert args.command_line == f"./run.sh reproduce {words}"
     assert parse(args.command.split()[2:]).cells == args.cells
 
 

@@ -7,7 +7,16 @@ import numpy as np
 import pytest
 from rtg import _core, paths
 from rtg.envs import curriculum
-from rtg.envs.curriculum import ELSEWHERE, EPISODES, FEWEST, NEW, OLD, PUSHES, WALKS, Curriculum
+from rtg.envs.curriculum import (
+    EPISODES_PER_START,
+    MIN_GOOD_STARTS,
+    NEW_STARTS,
+    NOT_FROM_CURRICULUM,
+    OLD_STARTS,
+    PUSHES_PER_WALK,
+    WALKS,
+    Curriculum,
+)
 from rtg.envs.vector_env import PushVecEnv
 from rtg.errors import UserError
 from rtg.learn.offline_data import NoSource
@@ -18,15 +27,15 @@ TASK = CONFIG.task
 
 
 def play_round(one: Curriculum, solved: dict[int, int]) -> np.ndarray:
-    """The pool of a round in which start k is solved `solved[k]` times of EPISODES, else never.
+    """The pool of a round in which start k is solved `solved[k]` times, else never.
 
-    An episode from start k takes k pushes.
+    It plays EPISODES_PER_START episodes per start. An episode from start k takes k pushes.
     """
     pool = one.pool
-    numbers = [one.draw()[0] for _ in range(EPISODES * len(pool))]
+    numbers = [one.draw()[0] for _ in range(EPISODES_PER_START * len(pool))]
     for count, number in enumerate(numbers):
         k = number - numbers[0]
-        one.note(number, success=count // len(pool) < solved.get(k, 0), length=k)
+        one.record_episode(number, success=count // len(pool) < solved.get(k, 0), length=k)
     return pool
 
 
@@ -38,10 +47,10 @@ def near(states: np.ndarray, seeds: np.ndarray) -> np.ndarray:
 
 def test_the_first_starts_are_near_goals_and_do_not_meet_them() -> None:
     pool = Curriculum(CONFIG, 1.0, seed=1).pool
-    assert pool.shape == (NEW, TASK.bodies, 3)
+    assert pool.shape == (NEW_STARTS, TASK.bodies, 3)
     assert not TASK.succeeded(pool).any()
     assert (np.linalg.norm(pool[:, 1:, :2], axis=2) < 2.0).mean() > 0.4  # at the start none is
-    assert len(np.unique(pool[:, 0, 0])) > NEW / 2
+    assert len(np.unique(pool[:, 0, 0])) > NEW_STARTS / 2
 
 
 class Rarely:
@@ -65,48 +74,49 @@ def test_draws_of_goal_states_in_vain_are_left_out() -> None:
 
 def test_pushes_of_the_walks_are_counted() -> None:
     one = Curriculum(CONFIG, 1.0, seed=1)
-    assert one.pushes == PUSHES * WALKS
-    for number in range(NEW * EPISODES):
-        one.note(number % NEW, success=False, length=60)
-    assert one.pushes == 2 * PUSHES * WALKS
+    assert one.pushes == PUSHES_PER_WALK * WALKS
+    for number in range(NEW_STARTS * EPISODES_PER_START):
+        one.record_episode(number % NEW_STARTS, success=False, length=60)
+    assert one.pushes == 2 * PUSHES_PER_WALK * WALKS
 
 
 def test_starts_are_drawn_in_turn_and_as_often_as_asked() -> None:
     every = Curriculum(CONFIG, 1.0, seed=1)
-    assert [every.draw()[0] for _ in range(2 * NEW)] == [*range(NEW), *range(NEW)]
+    numbers = [every.draw()[0] for _ in range(2 * NEW_STARTS)]
+    assert numbers == [*range(NEW_STARTS), *range(NEW_STARTS)]
     some = Curriculum(CONFIG, 0.25, seed=1)
     drawn = [some.draw() for _ in range(4000)]
-    share = np.mean([number != ELSEWHERE for number, _ in drawn])
+    share = np.mean([number != NOT_FROM_CURRICULUM for number, _ in drawn])
     assert abs(share - 0.25) < 4 * np.sqrt(0.25 * 0.75 / 4000)  # four sigma
-    assert all((number == ELSEWHERE) == (start is None) for number, start in drawn)
+    assert all((number == NOT_FROM_CURRICULUM) == (start is None) for number, start in drawn)
 
 
 def test_starts_that_are_solved_now_and_then_are_kept_and_seed_the_next() -> None:
     one = Curriculum(CONFIG, 1.0, seed=1)
-    kept = list(range(3, 3 + FEWEST))
-    pool = play_round(one, {**{k: 1 + k % 2 for k in kept}, 31: EPISODES})
+    kept = list(range(3, 3 + MIN_GOOD_STARTS))
+    pool = play_round(one, {**{k: 1 + k % 2 for k in kept}, 31: EPISODES_PER_START})
     good = pool[kept]
     np.testing.assert_array_equal(one.state()["good"], good)
     np.testing.assert_array_equal(one.state()["seeds"], good)
     assert near(one.pool, good).mean() > 0.8
     far = pool[~near(pool, good)]
     assert len(far) > 15 and not near(one.pool, far).any()
-    assert len(one.pool) == NEW, "no good ones of earlier rounds yet"
+    assert len(one.pool) == NEW_STARTS, "no good ones of earlier rounds yet"
 
 
 def test_old_good_starts_are_played_again() -> None:
     one = Curriculum(CONFIG, 1.0, seed=1)
-    good = play_round(one, {k: 1 for k in range(OLD + 10)})[: OLD + 10]
+    good = play_round(one, {k: 1 for k in range(OLD_STARTS + 10)})[: OLD_STARTS + 10]
     play_round(one, {0: 1})
-    assert len(one.pool) == NEW + OLD
-    replayed = one.pool[NEW:]
+    assert len(one.pool) == NEW_STARTS + OLD_STARTS
+    replayed = one.pool[NEW_STARTS:]
     known = {start.tobytes() for start in good}
-    assert len({start.tobytes() for start in replayed} & known) == OLD
+    assert len({start.tobytes() for start in replayed} & known) == OLD_STARTS
 
 
 def test_with_few_good_starts_those_mastered_with_most_pushes_seed_too() -> None:
     one = Curriculum(CONFIG, 1.0, seed=1)
-    mastered = {k: EPISODES for k in (5, 9, 20, 30, 31)}
+    mastered = {k: EPISODES_PER_START for k in (5, 9, 20, 30, 31)}
     pool = play_round(one, {2: 1, **mastered})
     np.testing.assert_array_equal(one.state()["seeds"], pool[[2, 31, 30, 20]])
     np.testing.assert_array_equal(one.state()["good"], pool[[2]])
@@ -114,11 +124,12 @@ def test_with_few_good_starts_those_mastered_with_most_pushes_seed_too() -> None
 
 def test_mastered_starts_that_are_played_again_seed_nothing() -> None:
     one = Curriculum(CONFIG, 1.0, seed=1)
-    play_round(one, {k: 1 for k in range(OLD)})
-    assert len(play_round(one, {})) == NEW
-    assert len(one.pool) == NEW + OLD
-    pool = play_round(one, {4: EPISODES, 6: EPISODES, NEW + 1: EPISODES, NEW + 2: 1})
-    np.testing.assert_array_equal(one.state()["seeds"], pool[[NEW + 2, 6]])
+    play_round(one, {k: 1 for k in range(OLD_STARTS)})
+    assert len(play_round(one, {})) == NEW_STARTS
+    assert len(one.pool) == NEW_STARTS + OLD_STARTS
+    always = dict.fromkeys((4, 6, NEW_STARTS + 1), EPISODES_PER_START)
+    pool = play_round(one, {**always, NEW_STARTS + 2: 1})
+    np.testing.assert_array_equal(one.state()["seeds"], pool[[NEW_STARTS + 2, 6]])
 
 
 def test_without_a_solved_start_walks_begin_again_where_the_last_ones_did() -> None:
@@ -143,7 +154,7 @@ def test_the_pool_moves_outwards_with_a_learner_that_masters_more_and_more(seed:
             number, _ = one.draw()
             beyond = way[number - first] - reach
             success = beyond < rng.choice((0.0, 1.0))
-            one.note(number, success, length=int(way[number - first]) if success else 60)
+            one.record_episode(number, success, length=int(way[number - first]) if success else 60)
         ways.append(np.median(way))
         reach += 0.5
     nominal = np.maximum(np.linalg.norm(TASK.start[1:, :2], axis=1) - 2.0, 0.0).sum()
@@ -153,10 +164,10 @@ def test_the_pool_moves_outwards_with_a_learner_that_masters_more_and_more(seed:
 
 def test_half_of_the_walks_pushes_seek_contact(monkeypatch: pytest.MonkeyPatch) -> None:
     """All boxes lie on one side of the robot: no push that seeks contact heads for the other."""
-    assert curriculum.SEEKING == 0.5
+    assert curriculum.CONTACT_SHARE == 0.5
     away = {}
     for share in (0.0, 0.5, 1.0):
-        monkeypatch.setattr(curriculum, "SEEKING", share)
+        monkeypatch.setattr(curriculum, "CONTACT_SHARE", share)
         states = np.repeat(TASK.start[None], 4000, axis=0)
         headings = Curriculum(CONFIG, 1.0, seed=1)._headings(states)
         away[share] = np.bincount(headings, minlength=48)[30:42].sum() / 4000
@@ -172,18 +183,18 @@ def test_starts_have_all_objects_within_the_arena() -> None:
     seeds[2, 3, :2] = 5.0, -5.0  # within
     one.restore({**one.state(), "seeds": seeds})
     play_round(one, {})
-    assert len(one.pool) == NEW and (np.abs(one.pool[:, 1:, :2]) <= 8.0).all()
+    assert len(one.pool) == NEW_STARTS and (np.abs(one.pool[:, 1:, :2]) <= 8.0).all()
     assert (one.pool[:, 3, 0] > 3.0).all()
 
 
 def test_episodes_of_an_earlier_round_no_longer_count() -> None:
     one = Curriculum(CONFIG, 1.0, seed=1)
     late, _ = one.draw()
-    for number in [late, *(one.draw()[0] for _ in range(EPISODES * NEW - 1))]:
-        one.note(number, success=False, length=60)
+    for number in [late, *(one.draw()[0] for _ in range(EPISODES_PER_START * NEW_STARTS - 1))]:
+        one.record_episode(number, success=False, length=60)
     before = one.state()["tries"].copy()
-    one.note(late, success=True, length=1)
-    one.note(ELSEWHERE, success=True, length=1)
+    one.record_episode(late, success=True, length=1)
+    one.record_episode(NOT_FROM_CURRICULUM, success=True, length=1)
     np.testing.assert_array_equal(one.state()["tries"], before)
     assert not one.state()["wins"].any()
 
@@ -216,10 +227,10 @@ def test_a_restored_curriculum_goes_on_with_the_same_starts() -> None:
 
     def starts(some: Curriculum) -> list[bytes]:
         seen = []
-        for _ in range(2 * EPISODES * NEW):
+        for _ in range(2 * EPISODES_PER_START * NEW_STARTS):
             number, start = some.draw()
             seen.append(b"" if start is None else start.tobytes())
-            some.note(number, success=bool(number % 3 == 0), length=number % 7)
+            some.record_episode(number, success=bool(number % 3 == 0), length=number % 7)
         return seen
 
     starts(one)

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 from rtg import _core
 from rtg.envs.vector_env import PushVecEnv
-from rtg.learn.evaluation import FINAL, held_out_starts
+from rtg.learn.evaluation import FINAL_SEED, held_out_starts
 from training_runs import TINY
 
 COUNT = 300
@@ -34,7 +34,7 @@ def test_starts_of_search_training_and_evaluations_are_all_different() -> None:
     of = {f"search {seed}": of_search(seed) for seed in (1, 2)}
     of |= {f"training {seed}": of_training(seed) for seed in (1, 2)}
     of["evaluations"] = held_out_starts(task, COUNT)
-    of["the final one"] = held_out_starts(task, COUNT, FINAL)
+    of["the final one"] = held_out_starts(task, COUNT, FINAL_SEED)
     places = {name: {start[1:, :2].tobytes() for start in starts} for name, starts in of.items()}
     for name, found in places.items():
         assert len(found) == COUNT, name

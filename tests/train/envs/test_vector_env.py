@@ -2,7 +2,7 @@ from collections import Counter
 
 import numpy as np
 from rtg import _core, paths
-from rtg.envs.curriculum import ELSEWHERE
+from rtg.envs.curriculum import NOT_FROM_CURRICULUM
 from rtg.envs.push_env import PushEnv
 from rtg.envs.vector_env import PushVecEnv
 
@@ -106,9 +106,9 @@ class Turns:
 
     def draw(self):
         self.drawn += 1
-        return (0, TASK.start) if self.drawn % 2 else (ELSEWHERE, None)
+        return (0, TASK.start) if self.drawn % 2 else (NOT_FROM_CURRICULUM, None)
 
-    def note(self, origin, success, length):
+    def record_episode(self, origin, success, length):
         self.noted.append((origin, success, length))
 
 
@@ -118,7 +118,7 @@ def test_only_episodes_from_the_starts_of_the_task_count() -> None:
     env.reset()
     for _ in range(60):
         _, _, done, infos = env.step(np.array([36, 36]))
-    assert done.all() and curriculum.noted == [(0, False, 60), (ELSEWHERE, False, 60)]
+    assert done.all() and curriculum.noted == [(0, False, 60), (NOT_FROM_CURRICULUM, False, 60)]
     assert ["is_success" in info for info in infos] == [False, True]
     assert ["episode" in info for info in infos] == [False, True]
 

@@ -1,7 +1,7 @@
 from typing import Any
 
 import numpy as np
-from rtg.learn.exploration import LOOP, Exploration
+from rtg.learn.exploration import REVISIT_WINDOW, Exploration
 from samples import train_settings
 
 
@@ -80,11 +80,11 @@ def test_environments_have_loops_of_their_own() -> None:
 
 
 def test_what_was_long_ago_is_forgotten() -> None:
-    steps = [float(k) for k in range(LOOP)]
+    steps = [float(k) for k in range(REVISIT_WINDOW)]
     one = exploration(leave_loops=True, nearby_share=1.0)
     assert explored(one, [*steps, 0.0])[-1]
     one = exploration(leave_loops=True, nearby_share=1.0)
-    assert not explored(one, [*steps, float(LOOP), 0.0])[-1]
+    assert not explored(one, [*steps, float(REVISIT_WINDOW), 0.0])[-1]
 
 
 def test_goes_on_from_its_state() -> None:

@@ -16,10 +16,10 @@ def test_targets_of_a_network_that_says_less_than_0_count_as_clipped(value_bound
         for net in (one.q_net, one.q_net_target):
             net.head.weight.zero_()
             net.head.bias.fill_(-1.0)
-    one.statistics.take()
+    one.statistics.pop()
     data = one.replay_buffer.sample(256)
     one._gradient_step(data)
-    shares, goes_on = one.statistics.take(), data.terminated == 0
+    shares, goes_on = one.statistics.pop(), data.terminated == 0
     assert shares["clipped_share"] == float(goes_on.float().mean()) > 0.5
     assert shares["bound_share"] == float((goes_on & (data.bounds > 0)).float().mean())
     assert (shares["bound_share"] > 0) == value_bounds
@@ -46,14 +46,14 @@ def test_a_gradient_step_learns_what_the_settings_say_of_the_next_state(
     one.learn(400)
     constant(one.q_net, *online)
     constant(one.q_net_target, *target)
-    one.statistics.take()
+    one.statistics.pop()
     data = one.replay_buffer.sample(256)
     q = th.full((8,), -9.0)
     q[:2] = th.tensor(online)
     y = data.rewards + 0.9 * (1 - data.terminated) * value
     one._gradient_step(data)
     error = (q[data.actions] - y).square().mean().sqrt()
-    assert one.statistics.take()["td_error"] == pytest.approx(float(error), rel=1e-5)
+    assert one.statistics.pop()["td_error"] == pytest.approx(float(error), rel=1e-5)
 
 
 @pytest.mark.parametrize("scale", [1.0, 1e4])

@@ -11,8 +11,8 @@ from rtg.envs.vector_env import PushVecEnv
 from rtg.learn import hindsight
 from rtg.learn.ddqn import DoubleDqn
 from rtg.learn.hindsight import (
-    FEW,
-    LAYOUTS,
+    MAX_LAYOUTS,
+    SUBSET_DIVISOR,
     TOLERANCE,
     HindsightReplayBuffer,
     Layouts,
@@ -96,7 +96,7 @@ def test_the_network_sees_how_far_objects_are_from_what_is_asked_for() -> None:
     state = CHAIN_TASK.goal_state(1)
     seen = CHAIN_TASK.observation(state[None])
     goal = moved(state, x=(2, 0.8), y=(3, -1.6), theta=(4, 0.3))
-    asked = CHAIN.asked(seen, goal[None])
+    asked = CHAIN.network_input(seen, goal[None])
     assert asked.dtype == np.float32 and asked.shape == (1, CHAIN_TASK.observation_size + 16)
     np.testing.assert_array_equal(asked[:, :-16], seen)
     turn = [1, 0, 1, 0, 1, 0, np.cos(0.3), np.sin(0.3)]
@@ -106,22 +106,22 @@ def test_the_network_sees_how_far_objects_are_from_what_is_asked_for() -> None:
 def test_layouts_of_the_task_stay_goals_where_all_objects_are_a_little_off() -> None:
     """The disc's radius is 2.0 m; within it are most draws, but few layouts stay within by 0.5."""
     radius = np.linalg.norm(8.0 * BOXES.of_task.reshape(-1, 3, 2), axis=2)
-    assert 300 < len(BOXES.of_task) <= LAYOUTS and radius.max() < 1.6
-    assert 300 < len(CHAIN.of_task) <= LAYOUTS
+    assert 300 < len(BOXES.of_task) <= MAX_LAYOUTS and radius.max() < 1.6
+    assert 300 < len(CHAIN.of_task) <= MAX_LAYOUTS
     centre = 8.0 * CHAIN.of_task[:, :8].reshape(-1, 4, 2).mean(axis=1)
     assert np.linalg.norm(centre - (0.0, 3.0), axis=1).max() < 0.6
     turns = np.diff(np.arctan2(CHAIN.of_task[:, 9::2], CHAIN.of_task[:, 8::2]), axis=1)
     off = np.abs(np.abs(np.angle(np.exp(1j * turns))) - np.pi / 2)
-    assert off.max() < 0.263 - 2 * hindsight.TURN  # joints may be 15 degrees off
+    assert off.max() < 0.263 - 2 * hindsight.ANGLE_TOLERANCE  # joints may be 15 degrees off
     np.testing.assert_array_equal(Layouts(TASK).of_task, BOXES.of_task)
 
 
 def test_where_no_goal_state_lasts_all_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     states = np.stack([TASK.goal_state(1, k) for k in range(50)])
-    few = hindsight.lasting(TASK, states)
+    few = hindsight.robust_goal_states(TASK, states)
     assert 0 < len(few) < 50
     monkeypatch.setattr(hindsight, "TOLERANCE", 4.0)
-    np.testing.assert_array_equal(hindsight.lasting(TASK, states), states)
+    np.testing.assert_array_equal(hindsight.robust_goal_states(TASK, states), states)
 
 
 def test_the_nearest_layout_has_the_shortest_way_of_all_objects() -> None:
@@ -257,9 +257,9 @@ def test_a_batch_asks_for_what_was_reached_and_rewards_it(reward: float) -> None
 def test_running_episodes_keep_what_they_were_asked_for() -> None:
     replay = buffer()
     row = observed(EPISODE[0])[None]
-    asked = replay.asked_of(row)
+    asked = replay.desired_layouts(row)
     replay.add(row, row, np.array([0]), np.zeros(1), np.array([False]), [{}])
-    np.testing.assert_array_equal(replay.asked_of(observed(ALL)[None]), asked)
+    np.testing.assert_array_equal(replay.desired_layouts(observed(ALL)[None]), asked)
     assert is_one_of(asked_for(replay.sample(50).observations.numpy()), asked).all()
 
 
@@ -268,12 +268,12 @@ def test_each_episode_is_asked_for_the_nearest_of_a_few_layouts() -> None:
     replay, asked = buffer(), []
     row = observed(np.float32(TASK.start[1:, :2].ravel() / 8))[None]
     for _ in range(60):
-        asked.append(replay.asked_of(row)[0])
+        asked.append(replay.desired_layouts(row)[0])
         replay.add(row, row, np.array([0]), np.zeros(1), np.array([True]), [{}])
     way = np.hypot(*(8.0 * (BOXES.of_task - BOXES.of(row))).reshape(-1, 3, 2).T).sum(axis=0)
     rank = [int((way < way[(BOXES.of_task == goal).all(axis=1)][0]).sum()) for goal in asked]
-    assert len(set(rank)) > 8 and min(rank) == 0 and max(rank) < 10 * FEW
-    assert np.mean(rank) == pytest.approx(FEW - 1, abs=4.5)
+    assert len(set(rank)) > 8 and min(rank) == 0 and max(rank) < 10 * SUBSET_DIVISOR
+    assert np.mean(rank) == pytest.approx(SUBSET_DIVISOR - 1, abs=4.5)
 
 
 def learner(seed: int = 0, **changes: Any) -> DoubleDqn:
@@ -287,10 +287,10 @@ def test_a_learner_acts_as_its_episodes_ask_and_is_judged_by_the_nearest_layouts
     th.nn.init.normal_(one.q_net.head.weight)
     th.nn.init.normal_(one.mean_net.head.weight)
     seen = TASK.observation(np.stack([TASK.jittered_start(0.5, 1, k) for k in range(2)]))
-    asked = one.replay_buffer.asked_of(seen)
+    asked = one.replay_buffer.desired_layouts(seen)
     with th.no_grad():
-        acting = one.q_net(th.from_numpy(BOXES.asked(seen, asked))).argmax(dim=1).numpy()
-        nearest = BOXES.asked(seen, BOXES.nearest(seen))
+        acting = one.q_net(th.from_numpy(BOXES.network_input(seen, asked))).argmax(dim=1).numpy()
+        nearest = BOXES.network_input(seen, BOXES.nearest(seen))
         judged = one.mean_net(th.from_numpy(nearest)).numpy()
     np.testing.assert_array_equal(one.predict(seen, deterministic=False)[0], acting)
     np.testing.assert_array_equal(one.values(seen), judged)

@@ -88,9 +88,9 @@ def next_value(**changes: Any) -> float:
     batch = one.replay_buffer.sample(256)
     kept = batch.rewards[:, 0] == 0
     batch = batch._replace(**{f: getattr(batch, f)[kept] for f in batch._fields[:-1]})
-    one.statistics.take()
+    one.statistics.pop()
     y = []
-    one.statistics.note = lambda batch, q, target, bootstrap: y.append(target)
+    one.statistics.add = lambda batch, q, target, bootstrap: y.append(target)
     one._gradient_step(batch)
     return round(float(y[0].mean()) / one.gamma, 4)
 
@@ -101,7 +101,7 @@ def least_target(**changes: Any) -> float:
     constant(one.q_net, *[-1.0] * 8)
     constant(one.q_net_target, *[-1.0] * 8)
     y = []
-    one.statistics.note = lambda batch, q, target, bootstrap: y.append(target)
+    one.statistics.add = lambda batch, q, target, bootstrap: y.append(target)
     one._gradient_step(one.replay_buffer.sample(256))
     return round(float(y[0].min()) / one.gamma, 4)
 

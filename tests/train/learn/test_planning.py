@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from rtg import _core
 from rtg.learn import planning, trainer
-from rtg.learn.evaluation import FINAL, held_out_starts
+from rtg.learn.evaluation import FINAL_SEED, held_out_starts
 from rtg.learn.offline_data import NoSource
-from rtg.learn.planning import Plan, Planning, judged
+from rtg.learn.planning import Plan, Planning, evaluate_plans
 from rtg.processes.interrupts import Interrupts
 from training_runs import TINY, run_folder, training
 
@@ -54,7 +54,7 @@ def test_plans_are_judged_as_episodes_are() -> None:
         (1, goal),
     ]
     plans = [Plan(np.stack([end] * states), 9, 0.0, 0.0) for states, end in ends]
-    found = judged(task, plans, discount=0.5)
+    found = evaluate_plans(task, plans, discount=0.5)
     assert found.success.tolist() == [False, True, True, False, False]
     assert found.length.tolist() == [task.horizon, 3] + [task.horizon] * 3
     assert found.discounted.tolist() == [0.0, 0.25, 0.5 ** (task.horizon - 1), 0.0, 0.0]
@@ -65,7 +65,7 @@ def test_the_result_is_that_of_a_search_from_each_final_start(tmp_path: Path) ->
     folder = run_folder(tmp_path / "run", None, *NEAR)
     assert trainer.main([str(folder), "--no-stream"]) == 0
     config = _core.Config.from_file(folder / "config.yaml")
-    starts = held_out_starts(config.task, 8, FINAL)
+    starts = held_out_starts(config.task, 8, FINAL_SEED)
     states, pushes = zip(*(_core.plan(config, one[None]) for one in starts), strict=True)
     success = np.array([len(one) == 2 for one in states])  # a layer finds one action, or none
     assert 0 < success.sum() < 8
@@ -143,7 +143,7 @@ def test_a_signal_stops_it_between_starts_and_it_goes_on(
     assert len(asked) == 3 and not (cut / "training.json").exists()
     assert not json.loads((cut / "training_state.json").read_text())["done"]
     assert trainer.main([str(cut), "--no-stream", "--resume"]) == 0
-    starts = held_out_starts(_core.Config.from_file(cut / "config.yaml").task, 8, FINAL)
+    starts = held_out_starts(_core.Config.from_file(cut / "config.yaml").task, 8, FINAL_SEED)
     np.testing.assert_array_equal(asked, starts)
     assert result(cut) == result(whole)
     files = [(folder / "best_episode.npz").read_bytes() for folder in (whole, cut)]

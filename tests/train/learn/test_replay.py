@@ -95,7 +95,7 @@ def test_batches_are_offline_until_a_batch_of_online_data_exists() -> None:
 
 @pytest.mark.parametrize("capacity", [3000, 1200])  # the ring not yet full, and full
 def test_a_share_of_the_online_rows_is_recent(capacity: int, monkeypatch) -> None:
-    monkeypatch.setattr("rtg.learn.replay.RECENT", 100)
+    monkeypatch.setattr("rtg.learn.replay.RECENT_COUNT", 100)
     replay = buffer(capacity=capacity, recent_share=0.25)
     for tag in range(2000):
         add_online(replay, float(tag))
@@ -252,7 +252,7 @@ def test_episodes_side_by_side_are_relabelled_each_by_its_own() -> None:
             {"rejected": rejected, "TimeLimit.truncated": rejected or last},
         ]
         done = np.array([last, rejected or last])
-        asked.append(replay.asked_of(rows))
+        asked.append(replay.desired_layouts(rows))
         replay.add(rows, after, np.array([t, 10 + t]), np.zeros(2), done, infos)
     store = replay.online
     n = store.count

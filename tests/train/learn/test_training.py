@@ -14,7 +14,7 @@ from rtg.files import checkpoint, dataset
 from rtg.files.dataset import Rows
 from rtg.files.recorder import Recorder
 from rtg.learn import policy_file, trainer
-from rtg.learn.evaluation import FINAL, HELD_OUT, evaluate, held_out_starts
+from rtg.learn.evaluation import FINAL_SEED, HELD_OUT_SEED, evaluate, held_out_starts
 from rtg.learn.offline_data import FileSource
 from rtg.learn.training_log import COLUMNS, TrainingLog
 from training_runs import TINY, Stream, after_polls, flat, run_folder, training
@@ -101,7 +101,7 @@ def test_learning_begins_before_all_transitions_are_in(tmp_path: Path, rows: Row
 
 def test_people_are_told_how_well_the_learner_does(tmp_path: Path, rows: Rows) -> None:
     one, told = training(run_folder(tmp_path / "run", None)), set[str]()
-    one.tell = lambda state, done: told.add(state)
+    one.publish_status = lambda state, done: told.add(state)
     assert one.run(Stream(rows, one.data, piece=333), lambda: False, record=False)
     evaluated = {f"learning, success {row['success_rate']:.2f}" for row in one.log.rows[:-1]}
     assert told == {"waiting", "learning", *evaluated}
@@ -206,8 +206,8 @@ def test_held_out_starts_are_legal_distinct_and_no_training_starts() -> None:
     starts = held_out_starts(task, 50)
     assert len(np.unique(starts[:, 1, 0])) == 50
     assert np.abs(starts - task.start).max() <= task.start_jitter + 1e-6
-    assert HELD_OUT > 2**31 - 1  # the largest legal run.seed
-    final = held_out_starts(task, 50, FINAL)
+    assert HELD_OUT_SEED > 2**31 - 1  # the largest legal run.seed
+    final = held_out_starts(task, 50, FINAL_SEED)
     assert not set(starts[:, 1, 0]) & set(final[:, 1, 0])
 
 

@@ -8,7 +8,7 @@ from rtg.files import dataset
 from rtg.files.dataset import Rows
 from rtg.learn import networks
 from rtg.learn.offline_data import FileSource, NoSource
-from rtg.learn.value_check import STATES, check_values, stored_states
+from rtg.learn.value_check import MAX_STATES, check_values, stored_states
 from training_runs import run_folder, training
 
 
@@ -41,7 +41,7 @@ def test_the_result_says_how_well_q_ranks_the_headings_of_stored_states(
     one.finish(lost=0)
     written = json.loads((folder / "training.json").read_text())
     seen = dataset.read(folder / "transitions.npz")
-    states = stored_states(seen, STATES, seed=1)
+    states = stored_states(seen, MAX_STATES, seed=1)
     assert len(states) == 300
     found = check_values(one.config, one.model.values, 0.95, states).summary()
     assert {name: written[name] for name in found} == pytest.approx(found)

@@ -26,7 +26,7 @@ def test_learner_bounds_and_evaluation_have_one_discount(
         return evaluate(config, policy, starts, discount)
 
     monkeypatch.setattr("rtg.learn.training.evaluate", watched)
-    trees = Stream(rows.after(0, 350), one.data, piece=300)  # at 350 complete, but hardly grown
+    trees = Stream(rows.slice(0, 350), one.data, piece=300)  # at 350 complete, but hardly grown
     assert one.run(trees, lambda: False, record=False)
     assert one.task.discount == 0.8
     assert one.model.gamma == discount and used == {discount}
@@ -73,7 +73,7 @@ def test_the_least_legal_buffer_takes_a_step_of_all_environments(
         _core.Config.from_file(TINY, [f"train.buffer={MAX_ENVIRONMENTS - 1}"])
     one = training(run_folder(tmp_path / "run", None, "search.transitions=4", "train.buffer=4"))
     assert one.env.num_envs == MAX_ENVIRONMENTS
-    assert one.run(Stream(rows.after(0, 4), one.data, piece=4), lambda: False, record=False)
+    assert one.run(Stream(rows.slice(0, 4), one.data, piece=4), lambda: False, record=False)
     assert one.interactions == 240
 
 

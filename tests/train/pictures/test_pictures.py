@@ -11,7 +11,7 @@ from rtg.pictures import plots
 from rtg.pictures.draw import (
     FAINT,
     GOAL,
-    KINDS,
+    KIND_PALETTE,
     PAPER,
     ROBOT,
     WALL,
@@ -22,7 +22,7 @@ from rtg.pictures.draw import (
     outline,
     state_image,
 )
-from rtg.pictures.episode_pictures import between, film, strip
+from rtg.pictures.episode_pictures import film, interpolate, strip
 
 TASK = _core.Config.from_file(paths.CONFIG / "gathering.yaml").task
 START = TASK.start[None]
@@ -43,7 +43,7 @@ def test_every_body_stands_where_its_pose_says(window):
     picture = state_image(TASK, START, canvas=Canvas(window))
     for body, (x, y, _) in enumerate(TASK.start):
         beside = (x + 0.3, y)  # the centre of an object is marked
-        assert pixel(picture, *beside, window) == (ROBOT if body == 0 else KINDS[0])
+        assert pixel(picture, *beside, window) == (ROBOT if body == 0 else KIND_PALETTE[0])
     assert pixel(picture, 4.5, 4.0, arena_window(TASK)) == PAPER
 
 
@@ -52,7 +52,7 @@ def test_walls_have_a_colour_of_their_own():
     task = _core.Config.from_file(paths.CONFIG / "examples" / "door.yaml").task
     assert task.names[1:] == ["wall", "door", "crate"] and task.fixed == [False, True, False, False]
     picture, window = state_image(task, task.start[None]), arena_window(task)
-    for body, colour in zip((1, 2, 3), (WALL, KINDS[0], KINDS[1]), strict=True):
+    for body, colour in zip((1, 2, 3), (WALL, KIND_PALETTE[0], KIND_PALETTE[1]), strict=True):
         x, y, _ = task.start[body]
         assert pixel(picture, x - 0.3, y, window) == colour
 
@@ -109,17 +109,17 @@ FREE = SimpleNamespace(joints=[])
 def test_what_joints_connect_moves_together():
     before, after = np.zeros((3, 3)), np.array([[2.0, 0, 0], [0.5, 0, 0], [0.0, 0, 0.4]])
     chain = SimpleNamespace(joints=[(1, 2, np.zeros(2))])
-    assert between(chain, before, after, 0.5)[2].tolist() == [0.0, 0.0, 0.0]
-    assert np.allclose(between(chain, before, after, 0.875)[2], [0.0, 0.0, 0.2])
+    assert interpolate(chain, before, after, 0.5)[2].tolist() == [0.0, 0.0, 0.0]
+    assert np.allclose(interpolate(chain, before, after, 0.875)[2], [0.0, 0.0, 0.2])
 
 
 def test_an_object_waits_for_the_robot_and_then_goes_along():
     before, after = np.zeros((2, 3)), np.array([[2.0, 0.0, 0.0], [0.5, 0.0, 0.4]])
-    early = between(FREE, before, after, 0.5)
+    early = interpolate(FREE, before, after, 0.5)
     assert early.tolist() == [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
-    late = between(FREE, before, after, 0.875)
+    late = interpolate(FREE, before, after, 0.875)
     assert np.allclose(late, [[1.75, 0.0, 0.0], [0.25, 0.0, 0.2]])
-    assert np.allclose(between(FREE, before, after, 1.0), after)
+    assert np.allclose(interpolate(FREE, before, after, 1.0), after)
 
 
 def test_a_strip_has_ten_states_at_most_the_first_and_the_last_among_them(tmp_path):

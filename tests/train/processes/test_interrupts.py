@@ -13,7 +13,7 @@ from rtg.processes.interrupts import Interrupts
 TWO_SIGNALS = """
 import os, signal
 from rtg.processes.interrupts import Interrupts
-with Interrupts(on_demand=lambda: print("at once", flush=True)) as interrupts:
+with Interrupts(on_second_signal=lambda: print("at once", flush=True)) as interrupts:
     os.kill(os.getpid(), signal.SIGINT)
     print("asked", interrupts.requested(), flush=True)
     os.kill(os.getpid(), signal.SIGTERM)
@@ -23,7 +23,7 @@ with Interrupts(on_demand=lambda: print("at once", flush=True)) as interrupts:
 
 def test_the_first_signal_only_asks():
     before = signal.getsignal(signal.SIGTERM)
-    with Interrupts(on_demand=lambda: pytest.fail("too early")) as interrupts:
+    with Interrupts(on_second_signal=lambda: pytest.fail("too early")) as interrupts:
         interrupts.raise_if_requested()
         os.kill(os.getpid(), signal.SIGTERM)
         assert interrupts.requested() and interrupts.number == signal.SIGTERM

@@ -69,11 +69,11 @@ def test_stop_ends_even_the_deaf_and_their_children(tmp_path):
 def test_a_dead_helper_is_started_again_and_counted(graph):
     graph.add("coordinator", SLEEP)
     graph.add("worker", SLEEP, helper=True)
-    assert graph.tend() == []
+    assert graph.check_and_restart() == []
     worker = graph.pids()["worker"]
     os.kill(worker, signal.SIGKILL)
     wait_for(lambda: not is_alive(worker))
-    assert graph.tend() == ["worker was killed by SIGKILL, started again"]
+    assert graph.check_and_restart() == ["worker was killed by SIGKILL, started again"]
     assert graph.restarts == 1
     assert graph.pids()["worker"] != worker
 
@@ -83,10 +83,10 @@ def test_a_helper_that_says_good_bye_is_let_go_only_at_the_end(graph):
     graph.add("worker", ["true"], helper=True)
     worker = graph.pids()["worker"]
     wait_for(lambda: not is_alive(worker))
-    assert graph.tend(leaving=True) == []
-    assert graph.tend() == []  # the news may still be on their way
+    assert graph.check_and_restart(leaving=True) == []
+    assert graph.check_and_restart() == []  # the news may still be on their way
     notes = []
-    wait_for(lambda: notes.extend(graph.tend()) or notes)
+    wait_for(lambda: notes.extend(graph.check_and_restart()) or notes)
     assert notes == ["worker ended with exit status 0, started again"]
 
 
@@ -95,7 +95,7 @@ def test_any_other_dead_program_ends_the_run_with_its_last_words(graph):
     while graph.wait(60.0):
         pass
     with pytest.raises(RunError) as error:
-        graph.tend()
+        graph.check_and_restart()
     assert "trainer ended with exit status 3" in str(error.value)
     assert str(error.value).endswith("out of memory")
 
@@ -106,7 +106,7 @@ def test_bad_input_of_a_program_is_bad_input_of_the_run(graph):
     while graph.wait(60.0):
         pass
     with pytest.raises(UserError, match=r"^trainer: model\.pt: damaged$"):
-        graph.tend()
+        graph.check_and_restart()
 
 
 def test_a_program_that_is_spared_may_fail_and_is_reported(graph):
@@ -114,10 +114,10 @@ def test_a_program_that_is_spared_may_fail_and_is_reported(graph):
         "coordinator", [sys.executable, "-c", "print('one was skipped'); raise SystemExit(1)"]
     )
     graph.add("trainer", ["true"])
-    graph.spare("coordinator")
+    graph.ignore_failure("coordinator")
     while graph.wait(60.0):
-        assert graph.tend() == []
-    assert graph.tend() == []
+        assert graph.check_and_restart() == []
+    assert graph.check_and_restart() == []
     (words,) = graph.failures()
     assert words.startswith("coordinator ended with exit status 1")
     assert words.endswith("one was skipped")
@@ -130,7 +130,7 @@ def test_a_helper_that_cannot_even_start_ends_the_run(graph):
         while True:
             worker = graph.pids()["worker"]
             wait_for(lambda pid=worker: not is_alive(pid))
-            graph.tend()
+            graph.check_and_restart()
 
 
 def test_a_killed_parent_takes_its_children_along(tmp_path):

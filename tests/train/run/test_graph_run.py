@@ -70,7 +70,7 @@ def test_a_resumed_run_still_tells_what_its_generation_gave_up(plan, monkeypatch
     plan.transitions_file.touch()
     measured = {}
     monkeypatch.setattr(results, "finish", lambda plan, found: measured.update(found))
-    monkeypatch.setattr(results, "words", lambda plan, summary: "done")
+    monkeypatch.setattr(results, "summary_text", lambda plan, summary: "done")
     config = effective_config.load(TINY)
     monkeypatch.setattr(run, "make_plan", lambda args: replace(plan, config=config, resume=True))
     assert run.run(parse(["--no-train"])) == 1

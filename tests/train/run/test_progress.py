@@ -91,7 +91,7 @@ def test_without_training_there_is_one_bar():
 
 
 def test_the_rate_is_that_of_the_last_stretch():
-    meter = RateMeter(stretch=10.0)
+    meter = RateMeter(window=10.0)
     assert meter.rate(0, 0.0) == 0.0
     assert meter.rate(100, 1.0) == 100.0
     for second in range(2, 30):
@@ -100,7 +100,7 @@ def test_the_rate_is_that_of_the_last_stretch():
 
 
 def test_a_rate_is_never_negative_when_the_count_falls_back_to_a_checkpoint():
-    meter = RateMeter(stretch=10.0)
+    meter = RateMeter(window=10.0)
     meter.rate(12_000, 0.0)
     assert meter.rate(10_000, 1.0) == 0.0
     assert meter.rate(10_500, 2.0) == 500.0

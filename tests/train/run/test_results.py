@@ -86,10 +86,11 @@ SUMMARY = {
 
 def test_of_the_data_and_of_q_the_words_say_what_predicts_learning():
     plan = RunPlan(Path("runs/x"), "x", config("run.method=cql_rtg"), True, False, ())
-    said = results.words(plan, SUMMARY).splitlines()
+    said = results.summary_text(plan, SUMMARY).splitlines()
     assert said[0] == "2,000 transitions in 3 s, contact share 0.30, 4.9 headings per state"
     assert said[2] == "rank correlation of Q with the simulator, over all headings: 0.76"
-    assert len(results.words(plan, {**SUMMARY, "q_rank_correlation": None}).splitlines()) == 3
+    without_rank = {**SUMMARY, "q_rank_correlation": None}
+    assert len(results.summary_text(plan, without_rank).splitlines()) == 3
 
 
 @pytest.mark.parametrize(
@@ -103,7 +104,7 @@ def test_of_the_data_and_of_q_the_words_say_what_predicts_learning():
 def test_an_early_end_of_training_is_explained(interactions, count, bar, words):
     stops = config(f"train.stop_at_success={bar}", f"train.stop_evaluations={count}")
     plan = RunPlan(Path("runs/x"), "x", stops, train=True, resume=False, notes=())
-    said = results.words(plan, {**SUMMARY, "interactions": interactions})
+    said = results.summary_text(plan, {**SUMMARY, "interactions": interactions})
     assert ("not needed" in said) == (words is not None)
     assert words is None or f"350,000 interactions were not needed: {words}" in said
 
@@ -112,4 +113,4 @@ def test_learning_without_interactions_did_not_end_early_for_want_of_them():
     plan = RunPlan(
         Path("runs/x"), "x", config("run.method=cql_rtg"), train=True, resume=False, notes=()
     )
-    assert "not needed" not in results.words(plan, {**SUMMARY, "interactions": 0})
+    assert "not needed" not in results.summary_text(plan, {**SUMMARY, "interactions": 0})

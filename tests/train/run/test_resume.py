@@ -46,7 +46,7 @@ def test_a_change_of_the_transitions_is_refused_and_leaves_the_run_alone(name, f
 
 def test_a_run_at_work_is_refused_and_left_alone(folder, capsys):
     before = (folder / "config.yaml").read_bytes()
-    with run_folder.alone(folder, "nobody"):
+    with run_folder.exclusive_lock(folder, "nobody"):
         assert cli.main(["--resume", "--out", str(folder), "--interactions", "9"]) == 2
     assert (
         capsys.readouterr().err == f"rtg: --out: {folder}: another run works there; wait for it\n"
@@ -64,7 +64,7 @@ def test_a_run_of_another_version_is_refused_and_left_alone(folder, capsys):
     assert file.read_bytes() == before
 
 
-OF_CHECKPOINT = {
+CHECKPOINT_SETTINGS = {
     "learner": "cloning",
     "interact": "False",
     "offline": "False",
@@ -78,7 +78,7 @@ OF_CHECKPOINT = {
 }
 
 
-@pytest.mark.parametrize("name", OF_CHECKPOINT)
+@pytest.mark.parametrize("name", CHECKPOINT_SETTINGS)
 @pytest.mark.parametrize("more", [[], ["--no-train"]])
 def test_what_a_checkpoint_is_bound_to_is_refused_and_leaves_the_run_alone(
     name, more, folder, capsys
@@ -89,7 +89,7 @@ def test_what_a_checkpoint_is_bound_to_is_refused_and_leaves_the_run_alone(
     (folder / "checkpoint").mkdir()
     (folder / "checkpoint" / "state.pt").write_bytes(b"of a learner")
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-    words = ["--set", f"train.{name}={OF_CHECKPOINT[name].lower()}", *more]
+    words = ["--set", f"train.{name}={CHECKPOINT_SETTINGS[name].lower()}", *more]
     assert cli.main([*words, "--resume", "--out", str(folder)]) == 2
     words = capsys.readouterr().err
     assert words.startswith(f"rtg: --resume: train.{name} must stay ")
@@ -103,7 +103,7 @@ def test_without_a_checkpoint_the_learner_may_become_another(folder):
 
 
 def test_the_settings_a_checkpoint_is_bound_to_are_those_of_the_test():
-    assert set(settings.OF_CHECKPOINT) == set(OF_CHECKPOINT)
+    assert set(settings.CHECKPOINT_SETTINGS) == set(CHECKPOINT_SETTINGS)
 
 
 def test_the_learner_and_the_processes_may_change_and_equal_values_are_no_change(folder):

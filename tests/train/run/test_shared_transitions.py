@@ -7,7 +7,7 @@ from rtg.files import versions
 from rtg.run import effective_config, run_args
 from rtg.run.plan import make_plan
 from rtg.run.run_args import Override
-from rtg.run.shared_transitions import are_there, find, kind, take_over
+from rtg.run.shared_transitions import are_there, find, generation_key, take_over
 from training_runs import TINY
 
 CONFIG = effective_config.load(TINY)
@@ -26,7 +26,7 @@ def made(tmp_path):
     run = tmp_path / "ddqn_naive" / "seed-1"
     run.mkdir(parents=True)
     (run / "config.yaml").write_text(effective_config.load(TINY).yaml)
-    versions.note(run)
+    versions.write(run)
     for name in ("transitions.npz", "generation.json"):
         (run / name).write_text(name)
     return run
@@ -44,7 +44,7 @@ def made(tmp_path):
     ],
 )
 def test_what_changes_the_transitions_changes_their_kind(section, key, value):
-    assert kind(changed(section, key, value)) != kind(CONFIG)
+    assert generation_key(changed(section, key, value)) != generation_key(CONFIG)
 
 
 @pytest.mark.parametrize(
@@ -52,23 +52,23 @@ def test_what_changes_the_transitions_changes_their_kind(section, key, value):
     [("train", "batch", 7), ("train", "interact", False), ("run", "workers", 7)],
 )
 def test_what_changes_how_they_are_learned_from_does_not(section, key, value):
-    assert kind(changed(section, key, value)) == kind(CONFIG)
+    assert generation_key(changed(section, key, value)) == generation_key(CONFIG)
 
 
 def test_methods_with_the_same_data_share_them():
     methods = [
         [Override("", f"run.method={name}")] for name in ("ddqn_rtg", "cql_rtg", "ddqn_naive")
     ]
-    rtg, cql, naive = (kind(effective_config.load(TINY, method)) for method in methods)
+    rtg, cql, naive = (generation_key(effective_config.load(TINY, method)) for method in methods)
     assert rtg == cql != naive
 
 
 def test_without_offline_data_there_is_none():
-    assert kind(changed("train", "offline", False)) is None
+    assert generation_key(changed("train", "offline", False)) is None
 
 
 def test_a_run_of_the_same_kind_is_found_and_taken_over(made, tmp_path):
-    assert find(kind(CONFIG), tmp_path, "seed-1") == made
+    assert find(generation_key(CONFIG), tmp_path, "seed-1") == made
     new = tmp_path / "other" / "seed-1"
     new.mkdir(parents=True)
     take_over(made, new)
@@ -79,8 +79,8 @@ def test_a_run_of_the_same_kind_is_found_and_taken_over(made, tmp_path):
 
 
 def test_another_kind_or_seed_is_not_found(made, tmp_path):
-    assert find(kind(changed("search", "generator", "rrbs")), tmp_path, "seed-1") is None
-    assert find(kind(CONFIG), tmp_path, "seed-2") is None
+    assert find(generation_key(changed("search", "generator", "rrbs")), tmp_path, "seed-1") is None
+    assert find(generation_key(CONFIG), tmp_path, "seed-2") is None
 
 
 DEFECTS = {
@@ -97,16 +97,16 @@ def test_what_another_program_made_or_is_not_whole_is_not_found(made, tmp_path, 
         (made / name).unlink()
     else:
         (made / name).write_text(DEFECTS[name])
-    assert find(kind(CONFIG), tmp_path, "seed-1") is None
+    assert find(generation_key(CONFIG), tmp_path, "seed-1") is None
 
 
 def test_what_another_program_made_stays_that_of_the_other(made, tmp_path):
     """Also when this one goes on with the run."""
     other = {"git_revision": "another", "core_sha256": "another"}
-    versions.note(made, other)
+    versions.write(made, other)
     make_plan(run_args.parse(["--resume", "--out", str(made)]))
     assert versions.generator(made) == other
-    assert find(kind(CONFIG), tmp_path, "seed-1") is None
+    assert find(generation_key(CONFIG), tmp_path, "seed-1") is None
     (made / "generation.json").unlink()  # to be generated again
     make_plan(run_args.parse(["--resume", "--out", str(made)]))
     assert versions.generator(made)["core_sha256"] == versions.core_digest()
@@ -117,4 +117,4 @@ def test_a_version_without_one_of_the_settings_is_not_found(made, tmp_path):
     kept = [line for line in lines if not line.startswith("  softenings:")]
     assert len(kept) == len(lines) - 1
     (made / "config.yaml").write_text("".join(kept))
-    assert find(kind(CONFIG), tmp_path, "seed-1") is None
+    assert find(generation_key(CONFIG), tmp_path, "seed-1") is None

@@ -11,13 +11,14 @@ from rtg.bus.bus import decoded
 from rtg.bus.messages import type_of
 from rtg.bus.node_status import ENDED
 
-STRETCH = 4.0  # [s], period of time that rates cover
-SILENT = 3.0  # [s] without a status after which a node counts as silent
-_OF_LCM = "LCM_SELF_TEST"  # channel on which LCM tests whether a process receives its own messages
+RATE_WINDOW = 4.0  # [s], period of time that rates cover
+SILENCE_LIMIT = 3.0  # [s] without a status after which a node counts as silent
+# Channel on which LCM tests whether a process receives its own messages.
+_SELF_TEST_CHANNEL = "LCM_SELF_TEST"
 
 
 class Rates:
-    """The rates of several counts [1/s] over the last STRETCH seconds."""
+    """The rates of several counts [1/s] over the last RATE_WINDOW seconds."""
 
     def __init__(self, size: int) -> None:
         self._samples: deque[tuple[float, tuple[float, ...]]] = deque()
@@ -28,7 +29,7 @@ class Rates:
         if self._samples and now <= self._samples[-1][0]:
             return
         self._samples.append((now, counts))
-        while len(self._samples) > 2 and now - self._samples[1][0] >= STRETCH:
+        while len(self._samples) > 2 and now - self._samples[1][0] >= RATE_WINDOW:
             self._samples.popleft()
         first_time, first = self._samples[0]
         if now > first_time:
@@ -49,7 +50,7 @@ class _Channel:
 @dataclass
 class _Node:
     status: Any  # the last node_status_t
-    heard: float  # [s], when `status` arrived
+    arrived_at: float  # [s], when `status` arrived
     rates: Rates = field(default_factory=lambda: Rates(2))
 
 
@@ -83,7 +84,7 @@ class ChannelMonitor:
         self._channels: dict[str, _Channel] = {}
         self._nodes: dict[tuple[int, str, int], _Node] = {}
         self._progress: Any = None
-        self._over: set[int] = set()  # runs whose generation is over
+        self._finished_runs: set[int] = set()  # runs whose generation is over
         self._handlers: dict[str, Callable[[Any, float], None]] = {
             "node_status_t": self._on_status,
             "search_progress_t": self._on_progress,
@@ -91,7 +92,7 @@ class ChannelMonitor:
 
     def on_message(self, channel: str, data: bytes, now: float) -> None:
         """Counts a message that arrived at time `now` [s]."""
-        if channel == _OF_LCM:
+        if channel == _SELF_TEST_CHANNEL:
             return
         stats = self._channels.setdefault(channel, _Channel())
         stats.messages += 1
@@ -110,7 +111,7 @@ class ChannelMonitor:
         for stats in self._channels.values():
             stats.rates.sample(now, stats.messages, stats.size)
         for node in self._nodes.values():
-            node.rates.sample(node.heard, node.status.done, node.status.cpu_s)
+            node.rates.sample(node.arrived_at, node.status.done, node.status.cpu_s)
 
     def channels(self) -> list[ChannelRow]:
         """Returns all channels, sorted by name."""
@@ -119,7 +120,7 @@ class ChannelMonitor:
     def nodes(self, now: float) -> list[NodeRow]:
         """Returns all nodes that have sent a status, sorted by run and name. now [s]"""
         return [
-            _node_row(node, now - node.heard, run in self._over and name != "trainer")
+            _node_row(node, now - node.arrived_at, run in self._finished_runs and name != "trainer")
             for (run, name, _), node in sorted(self._nodes.items())
         ]
 
@@ -142,14 +143,14 @@ class ChannelMonitor:
         node = self._nodes.get(key)
         if node is None or node.status.header.sender != message.header.sender:
             node = self._nodes[key] = _Node(message, now)  # a restarted node counts from 0
-        node.status, node.heard = message, now
+        node.status, node.arrived_at = message, now
 
     def _on_progress(self, message: Any, _: float) -> None:
         self._progress = message
         if message.leaving:
-            self._over.add(message.header.run)
+            self._finished_runs.add(message.header.run)
         else:  # a resumed run
-            self._over.discard(message.header.run)
+            self._finished_runs.discard(message.header.run)
 
 
 def _channel_row(name: str, stats: _Channel) -> ChannelRow:
@@ -161,9 +162,9 @@ def _channel_row(name: str, stats: _Channel) -> ChannelRow:
 def _node_row(node: _Node, silence: float, over: bool) -> NodeRow:
     status = node.status
     state, (rate, cpu) = status.state, node.rates.per_second
-    if state != ENDED and silence >= SILENT:
+    if state != ENDED and silence >= SILENCE_LIMIT:
         state = ENDED if over else f"silent {silence:.0f} s"
-    if state == ENDED or silence >= SILENT:
+    if state == ENDED or silence >= SILENCE_LIMIT:
         rate = cpu = 0.0
     counters = zip(status.counter_name, status.counter_value, strict=True)
     return NodeRow(

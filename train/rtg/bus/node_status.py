@@ -16,14 +16,14 @@ class NodeStatus:
 
     def __init__(self, bus: Bus, node: str, number: int = 0) -> None:
         self._bus, self._node, self._number = bus, node, number
-        self._said, self._said_at = "", -1e9
+        self._published, self._published_at = "", -1e9
 
     def tick(self, state: str, done: int) -> None:
         """Publishes a new state at once, else every INTERVAL; may be called at any rate."""
         now = time.monotonic()
-        if state == self._said and now - self._said_at < INTERVAL:
+        if state == self._published and now - self._published_at < INTERVAL:
             return
-        self._said, self._said_at = state, now
+        self._published, self._published_at = state, now
         message = message_type("node_status_t")()
         message.node, message.number = self._node, self._number
         message.state, message.done = state, done

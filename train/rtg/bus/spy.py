@@ -25,7 +25,7 @@ _POLL = 0.05  # [s]
 _PRINT = 2.0  # [s] between two plain tables
 _WIDTH = 200  # maximum width of plain tables in characters
 _STATE_STYLES = {"busy": "green", "idle": "dim", ENDED: "dim"}
-_NOTHING = (
+_NO_MESSAGES = (
     "no message heard: no run is on this bus, or it sends nothing (with --in-process, or where "
     "--resume finds the transitions finished)"
 )
@@ -86,7 +86,7 @@ def picture(monitor: ChannelMonitor, now: float) -> RenderableType:
     """Returns a view of all data of the monitor at time `now` [s]."""
     channels, nodes = monitor.channels(), monitor.nodes(now)
     if not channels:
-        return Text(_NOTHING)
+        return Text(_NO_MESSAGES)
     parts: list[RenderableType] = [channel_table(channels)]
     if nodes:
         parts += ["", node_table(nodes)]

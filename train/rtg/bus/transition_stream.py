@@ -20,7 +20,7 @@ MIN_INTERVAL = 0.01  # [s], between any two acknowledgements
 MAX_RANGES = 32  # maximum number of ranges in one acknowledgement
 # Number of acknowledgements of the complete stream sent at once: a consumer may then exit, so they
 # must survive message loss.
-FAREWELLS = 10
+FINAL_ACKS = 10
 
 
 class Ack(NamedTuple):
@@ -45,10 +45,10 @@ class StreamCursor:
         self._held: dict[int, tuple[int, Any]] = {}  # first row -> (end, rows), may overlap
         self._acked_at = -1e9
         self._acked_cursor = 0
-        self._asked_at = -1e9
-        self._asked_end = 0
+        self._requested_at = -1e9
+        self._requested_end = 0
         self._arrived_at = -1e9
-        self._farewells = FAREWELLS
+        self._final_acks_left = FINAL_ACKS
 
     def on_rows(self, first: int, rows: Any, size: int, now: float) -> list[tuple[Any, int]]:
         """Takes rows first ... first + size - 1; ignores them if they exceed the credit.
@@ -71,28 +71,28 @@ class StreamCursor:
     def ack_due(self, now: float) -> Ack | None:
         """Returns the next message to the server; to be called until it returns None."""
         if self.complete:
-            return self._farewell(now)
+            return self._final_ack(now)
         missing = self._missing()
-        ask = bool(missing) and (
-            self.cursor >= self._asked_end  # all requested rows have arrived
-            or now - self._asked_at >= RETRY_INTERVAL
+        request = bool(missing) and (
+            self.cursor >= self._requested_end  # all requested rows have arrived
+            or now - self._requested_at >= RETRY_INTERVAL
         )
         # If no later row has arrived, the missing rows are probably still in transit.
-        if ask and not self._held and now - self._arrived_at < RETRY_INTERVAL / 2:
-            ask = False
+        if request and not self._held and now - self._arrived_at < RETRY_INTERVAL / 2:
+            request = False
         moved = self.cursor - self._acked_cursor >= self.credit // 4
         idle = now - self._acked_at >= ACK_INTERVAL
-        if not (ask or moved or idle) or now - self._acked_at < MIN_INTERVAL:
+        if not (request or moved or idle) or now - self._acked_at < MIN_INTERVAL:
             return None
         self._acked_at, self._acked_cursor = now, self.cursor
-        if not ask:
+        if not request:
             return Ack(self.cursor, self.credit, [])
-        self._asked_at, self._asked_end = now, missing[-1][1] + 1
+        self._requested_at, self._requested_end = now, missing[-1][1] + 1
         return Ack(self.cursor, self.credit, missing)
 
-    def _farewell(self, now: float) -> Ack | None:
-        if self._farewells > 0:
-            self._farewells -= 1
+    def _final_ack(self, now: float) -> Ack | None:
+        if self._final_acks_left > 0:
+            self._final_acks_left -= 1
         elif now - self._acked_at < ACK_INTERVAL:
             return None
         self._acked_at = now
@@ -211,7 +211,7 @@ class TransitionStream:
         self._check_stream(message.stream)
         now = time.monotonic()
         for piece, skip in self._cursor.on_rows(message.first, rows, message.n, now):
-            self._sink(piece.after(skip))
+            self._sink(piece.slice(skip))
         self._acknowledge()
 
     def _on_tail(self, message: Any) -> None:

@@ -10,17 +10,17 @@ from typing import Any
 from rtg.run import effective_config
 from rtg.run.run_args import Override
 
-PAPER = "train.preset=paper"
+PAPER_PRESET = "train.preset=paper"
 # Keys of `train` that are equal in all cells, so that the figures of the cells can be compared.
-_ALIKE = ("eval_every", "stop_at_success")
+_EVALUATION_KEYS = ("eval_every", "stop_at_success")
 # Values of `search` that switch a part of it off or stand at the other end of its range: they show
-# how much the part contributes. OF_TREES applies only to generators that grow trees.
-OF_BRANCHES: dict[str, tuple[Any, ...]] = {
+# how much the part contributes. TREE_ABLATIONS applies only to generators that grow trees.
+BRANCH_ABLATIONS: dict[str, tuple[Any, ...]] = {
     "branches": (0,),
     "near_branches": (0,),
     "near_headings": (24,),  # of 48, to either side: all headings count as near
 }
-OF_TREES: dict[str, tuple[Any, ...]] = {
+TREE_ABLATIONS: dict[str, tuple[Any, ...]] = {
     "followed": (1,),
     "plans": (0, 1),
     "contact_quota": (0,),
@@ -32,11 +32,11 @@ OF_TREES: dict[str, tuple[Any, ...]] = {
     "patience": (1000,),  # no limit
 }
 # Keys of `search` without an ablation: sizes, and keys that the method decides.
-SIZES = ("transitions", "breadth", "depth")
-DECIDED = ("generator", "randomise")
-_TREES = ("rrbs", "naive")  # generators that grow trees
+SIZE_KEYS = ("transitions", "breadth", "depth")
+SET_BY_METHOD = ("generator", "randomise")
+_TREE_GENERATORS = ("rrbs", "naive")  # generators that grow trees
 # Keys of `train` that have a meaning only together.
-_TOGETHER = (
+_KEY_GROUPS = (
     ("target_sync", "target_rate"),
     ("epsilon_start", "epsilon_end", "epsilon_share"),
 )
@@ -55,38 +55,42 @@ def ablations(file: Path, common: Sequence[Override]) -> list[Settings]:
     `common` holds the overrides that all cells share. Raises UserError.
     """
     values = effective_config.values(effective_config.load(file, common))
-    ours = values["train"]
-    as_paper = effective_config.load(file, [Override(f"--set {PAPER}", PAPER), *common])
+    current = values["train"]
+    as_paper = effective_config.load(
+        file, [Override(f"--set {PAPER_PRESET}", PAPER_PRESET), *common]
+    )
     paper = effective_config.values(as_paper)["train"]
-    alike = _settings(_ALIKE, ours)
-    data = parts_of_search(values["search"]) if ours["offline"] else []
-    whole = [] if ours["preset"] == "paper" else [(PAPER, *alike)]
-    return [(), *data, *departures(ours, paper), *whole]
+    evaluation = _settings(_EVALUATION_KEYS, current)
+    of_search = search_ablations(values["search"]) if current["offline"] else []
+    whole_preset = [] if current["preset"] == "paper" else [(PAPER_PRESET, *evaluation)]
+    return [(), *of_search, *departures(current, paper), *whole_preset]
 
 
-def parts_of_search(search: dict[str, Any]) -> list[Settings]:
+def search_ablations(search: dict[str, Any]) -> list[Settings]:
     """Returns, for each part of the search, the settings that take it away or change it.
 
     Skips values that `search` has already.
     """
-    tried = OF_BRANCHES | (OF_TREES if search["generator"] in _TREES else {})
+    alternatives = BRANCH_ABLATIONS | (
+        TREE_ABLATIONS if search["generator"] in _TREE_GENERATORS else {}
+    )
     return [
         (f"search.{key}={json.dumps(value)}",)
-        for key, values in tried.items()
+        for key, values in alternatives.items()
         for value in values
         if search[key] != value
     ]
 
 
-def departures(ours: dict[str, Any], paper: dict[str, Any]) -> list[Settings]:
-    """Returns, for each difference of `ours` from `paper`, the settings that take `paper`'s value.
+def departures(current: dict[str, Any], paper: dict[str, Any]) -> list[Settings]:
+    """Returns, for each difference from `paper`, the settings that take the value of `paper`.
 
-    Keys of one group of _TOGETHER count as one difference.
+    Keys of one group of _KEY_GROUPS count as one difference.
     """
     found = dict[tuple[str, ...], Settings]()
-    for key in ours:
-        if ours[key] != paper[key] and key not in ("preset", *_ALIKE):
-            group = next((keys for keys in _TOGETHER if key in keys), (key,))
+    for key in current:
+        if current[key] != paper[key] and key not in ("preset", *_EVALUATION_KEYS):
+            group = next((keys for keys in _KEY_GROUPS if key in keys), (key,))
             found[group] = _settings(group, paper)
     return list(found.values())
 

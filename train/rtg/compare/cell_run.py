@@ -10,7 +10,7 @@ from typing import Any
 
 from rtg import _core
 from rtg.compare.cells import Cell
-from rtg.compare.methods import run_words
+from rtg.compare.methods import method_flags
 from rtg.compare.reproduce_args import ReproduceArgs
 from rtg.errors import UserError
 from rtg.files import run_folder
@@ -20,7 +20,13 @@ from rtg.run.effective_config import Values
 from rtg.run.run_args import Override
 
 # Keys of `train` that runs of different methods must have in common.
-_ALIKE = ("interactions", "eval_every", "eval_episodes", "stop_at_success", "stop_evaluations")
+_SHARED_KEYS = (
+    "interactions",
+    "eval_every",
+    "eval_episodes",
+    "stop_at_success",
+    "stop_evaluations",
+)
 # Limits to one thread the libraries that would start a thread per core.
 _ONE_THREAD = [f"{name}_NUM_THREADS=1" for name in ("OMP", "OPENBLAS", "MKL")]
 
@@ -31,8 +37,8 @@ class CellRun:
 
     cell: Cell
     folder: Path
-    words: tuple[str, ...]  # arguments of `rtg run`, without --out
-    kind: str | None = None  # of its transitions, as from shared_transitions.kind()
+    arguments: tuple[str, ...]  # of `rtg run`, without --out
+    generation_key: str | None = None  # as from shared_transitions.generation_key()
     device: str = "auto"  # train.device
 
     @property
@@ -55,31 +61,31 @@ class CellRun:
         return (self.folder / "config.yaml").is_file()
 
     @property
-    def generates(self) -> str | None:
-        """The kind of transitions that the run has yet to generate; None if there are none."""
-        return None if shared_transitions.are_there(self.folder) else self.kind
+    def pending_generation_key(self) -> str | None:
+        """The key of the transitions that the run has yet to generate; None if there are none."""
+        return None if shared_transitions.are_there(self.folder) else self.generation_key
 
     def begin(self) -> None:
         """Makes the run folder without starting `rtg run`. Raises UserError."""
-        _remove_drafts(self.folder)
-        run_plan.make_plan(run_args.parse([*self.words, "--out", str(self.folder)]))
+        _remove_partial_configs(self.folder)
+        run_plan.make_plan(run_args.parse([*self.arguments, "--out", str(self.folder)]))
 
     def command(self) -> list[str]:
         """Returns the command that begins or resumes the run.
 
-        First takes over the transitions of another run if they are of the same kind, and removes
-        the drafts of a killed run. Raises UserError.
+        First takes over the transitions of another run if they have the same key, and removes the
+        partial configurations of a killed run. Raises UserError.
         """
-        if self.generates:
+        if self.pending_generation_key:
             place = self.folder.parents[1], self.folder.name
-            if source := shared_transitions.find(self.generates, *place):
+            if source := shared_transitions.find(self.pending_generation_key, *place):
                 if not self.begun:
                     self.begin()
                 shared_transitions.take_over(source, self.folder)
         if not self.begun:
-            _remove_drafts(self.folder)
-        words = ["--resume"] if self.begun else self.words
-        return program("rtg", "run", *words, "--out", str(self.folder))
+            _remove_partial_configs(self.folder)
+        arguments = ["--resume"] if self.begun else self.arguments
+        return module_command("rtg", "run", *arguments, "--out", str(self.folder))
 
     def outcome(self) -> str:
         """Returns the result of a finished run in words."""
@@ -87,12 +93,12 @@ class CellRun:
         return f"success {found['success_rate']:.2f} after {found['interactions']:,} interactions"
 
 
-def program(module: str, *words: str) -> list[str]:
+def module_command(module: str, *words: str) -> list[str]:
     """Returns the command that runs a Python module of RTG on one core."""
     return ["env", *_ONE_THREAD, sys.executable, "-m", module, *words]
 
 
-def make_ready(args: ReproduceArgs) -> list[CellRun]:
+def prepare_runs(args: ReproduceArgs) -> list[CellRun]:
     """Returns the runs of all cells.
 
     Raises UserError, before any run has started, if the configuration of a cell is illegal, cannot
@@ -111,23 +117,23 @@ def make_ready(args: ReproduceArgs) -> list[CellRun]:
             _check_seeds(folder.parent, config)
             _check_methods(folder, config)
             checked.add(folder.parent)
-        kind, device = shared_transitions.kind(config), config.train.device
-        runs.append(CellRun(cell, folder, _words(args, cell), kind, device))
+        key, device = shared_transitions.generation_key(config), config.train.device
+        runs.append(CellRun(cell, folder, _arguments(args, cell), key, device))
     return runs
 
 
 def _flags(cell: Cell) -> list[str]:
     flags = ["--in-process", "--workers", "1", "--seed", str(cell.seed)]
-    return [*flags, *run_words(cell.method)]
+    return [*flags, *method_flags(cell.method)]
 
 
-def _words(args: ReproduceArgs, cell: Cell) -> tuple[str, ...]:
+def _arguments(args: ReproduceArgs, cell: Cell) -> tuple[str, ...]:
     settings = [word for s in (*args.settings, *cell.settings) for word in ("--set", s)]
     return (str(args.files[cell.task]), *_flags(cell), *settings)
 
 
 def _overrides(args: ReproduceArgs, cell: Cell) -> list[Override]:
-    """Returns the overrides that _words() contains, each with the flag that the user typed."""
+    """Returns the overrides that _arguments() contains, each with the flag that the user typed."""
     overrides = [Override(f"--set {setting}", setting) for setting in args.settings]
     overrides += [Override(f"--sweep {setting}", setting) for setting in cell.settings]
     return [*overrides, *run_args.parse(_flags(cell)).overrides]
@@ -137,18 +143,18 @@ def _check_folder(folder: Path) -> None:
     """Raises UserError unless the folder holds a run, is empty or does not exist."""
     if (folder / "config.yaml").is_file():
         return
-    if folder.exists() and not (folder.is_dir() and all(map(_is_draft, folder.iterdir()))):
+    if folder.exists() and not (folder.is_dir() and all(map(_is_partial_config, folder.iterdir()))):
         raise UserError(f"{folder}: holds no run; legal: an empty --out, or none")
 
 
-def _is_draft(file: Path) -> bool:
+def _is_partial_config(file: Path) -> bool:
     """Returns whether `file` is an unfinished config.yaml, left by a run killed at its start."""
     return file.name.startswith(".config.yaml.")
 
 
-def _remove_drafts(folder: Path) -> None:
+def _remove_partial_configs(folder: Path) -> None:
     if folder.is_dir():
-        for file in filter(_is_draft, folder.iterdir()):
+        for file in filter(_is_partial_config, folder.iterdir()):
             file.unlink()
 
 
@@ -175,7 +181,7 @@ def _check_same(folder: Path, asked: Values) -> None:
             what = _difference(section, old, new)
             remedy = f"another --out, or rm -r {shlex.quote(str(folder))}"
             raise UserError(f"{folder}: was made with {what}; legal: the same, {remedy}")
-    effective_config.written(found)  # raises UserError if another version wrote it
+    effective_config.load_written(found)  # raises UserError if another version wrote it
 
 
 def _check_methods(folder: Path, config: _core.Config) -> None:
@@ -203,7 +209,7 @@ def _swept(label: str) -> set[str]:
     """Returns the keys `section.name` that a label sets, directly or through `train.preset`."""
     paths = (setting.partition("=")[0] for setting in label.split("@")[1:])
     found = {".".join(path.split(".")[:2]) for path in paths}
-    of_preset = {f"train.{key}" for key in _ALIKE} if "train.preset" in found else set()
+    of_preset = {f"train.{key}" for key in _SHARED_KEYS} if "train.preset" in found else set()
     return found | of_preset
 
 
@@ -214,7 +220,7 @@ def _compared(config: _core.Config, swept: set[str]) -> Values:
         "task": tuple(values["task"]),
         "physics": tuple(values["physics"]),
         "search": ("transitions",),
-        "train": _ALIKE,
+        "train": _SHARED_KEYS,
     }
     return {
         section: {name: values[section][name] for name in names if f"{section}.{name}" not in swept}

@@ -35,25 +35,25 @@ class Cell:
 class Grid:
     """All cells that were ever requested in one comparison folder."""
 
-    cells: dict[Cell, str]  # cell -> the last command that requested it; all give the same run
-    failed: dict[str, str]  # name of the cell -> how its run failed, with the end of its log
+    commands_by_cell: dict[Cell, str]  # the last command that requested it; all give the same run
+    failure_by_name: dict[str, str]  # by name of the cell; with the end of the log of the run
 
     @property
     def commands(self) -> list[str]:
         """The commands that were the last to request at least one cell."""
-        return list(dict.fromkeys(self.cells.values()))
+        return list(dict.fromkeys(self.commands_by_cell.values()))
 
     def add(self, command: str, cells: Iterable[Cell]) -> None:
         """Adds cells. A cell that is there already keeps its place and gets the new command."""
-        self.cells.update(dict.fromkeys(cells, command))
+        self.commands_by_cell.update(dict.fromkeys(cells, command))
 
     def write(self, folder: Path) -> None:
         """Replaces grid.json in `folder`."""
         cells = [
             {**vars(cell), "settings": list(cell.settings), "command": command}
-            for cell, command in self.cells.items()
+            for cell, command in self.commands_by_cell.items()
         ]
-        write_json(_file(folder), {"cells": cells, "failed": self.failed})
+        write_json(_file(folder), {"cells": cells, "failed": self.failure_by_name})
 
 
 def _file(folder: Path) -> Path:
@@ -80,8 +80,8 @@ def read_grid(folder: Path) -> Grid:
         cells = value.get("cells", [])
         commands = _texts([cell["command"] for cell in cells])
         return Grid(
-            cells=dict(zip(map(_cell, cells), commands, strict=True)),
-            failed=dict(zip(failed, _texts(list(failed.values())), strict=True)),
+            commands_by_cell=dict(zip(map(_cell, cells), commands, strict=True)),
+            failure_by_name=dict(zip(failed, _texts(list(failed.values())), strict=True)),
         )
     except (AttributeError, KeyError, TypeError, ValueError):
         raise UserError(f"{_file(folder)}: damaged; legal: as `reproduce` left it") from None

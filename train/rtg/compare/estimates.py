@@ -75,12 +75,12 @@ def improvement_interval(scores: Scores, others: Scores) -> tuple[float, float] 
     )
 
 
-def first_reach(interactions: Floats, success: Floats, bar: float) -> int | None:
-    """Returns the interactions at the first evaluation with a success of at least `bar`.
+def first_reach(interactions: Floats, success: Floats, threshold: float) -> int | None:
+    """Returns the interactions at the first evaluation with a success of at least `threshold`.
 
     Returns None if there is none. [N] each
     """
-    reached = np.flatnonzero(success >= bar)
+    reached = np.flatnonzero(success >= threshold)
     return int(interactions[reached[0]]) if len(reached) else None
 
 

@@ -17,7 +17,7 @@ from rtg.run.progress import Shown, TimedLines
 _REDRAW = 0.5  # [s]
 _MARKS = {"waiting": " ", "running": "▸", "done": "✓", "failed": "✗"}
 _STYLES = {"waiting": "dim", "running": "", "done": "green", "failed": "red"}
-_URGENT = ("running", "failed", "waiting", "done")  # phases by priority on a small terminal
+_PRIORITY = ("running", "failed", "waiting", "done")  # phases by priority on a small terminal
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class LiveGrid:
 
 def visible(rows: Sequence[Row], room: int) -> list[Row]:
     """Selects the `room` most urgent rows, at least one, and returns them in their order."""
-    ranked = sorted(range(len(rows)), key=lambda k: _URGENT.index(rows[k].phase))
+    ranked = sorted(range(len(rows)), key=lambda k: _PRIORITY.index(rows[k].phase))
     return [rows[k] for k in sorted(ranked[: max(room, 1)])]
 
 

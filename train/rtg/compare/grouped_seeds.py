@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from rtg.compare.cell_run import CellRun, program
+from rtg.compare.cell_run import CellRun, module_command
 from rtg.run import shared_transitions
 
 
@@ -34,8 +34,8 @@ class Generation:
         return shared_transitions.are_there(self.run.folder)
 
     @property
-    def generates(self) -> str | None:
-        return self.run.generates
+    def pending_generation_key(self) -> str | None:
+        return self.run.pending_generation_key
 
     def command(self) -> list[str]:
         return [*self.run.command(), "--no-train"]
@@ -63,7 +63,7 @@ class Learning:
         return all((run.folder / "training.json").is_file() for run in self.runs)
 
     @property
-    def generates(self) -> str | None:
+    def pending_generation_key(self) -> str | None:
         return None
 
     def command(self) -> list[str]:
@@ -71,7 +71,7 @@ class Learning:
             if not run.begun:  # no Generation has made its folder
                 run.begin()
         folders = [str(run.folder) for run in self.runs]
-        return program("rtg.learn.trainer", *folders, "--no-stream", "--resume")
+        return module_command("rtg.learn.trainer", *folders, "--no-stream", "--resume")
 
     def outcome(self) -> str:
         return "learned"
@@ -81,18 +81,18 @@ class Learning:
         return self.runs[0].folder.parent
 
 
-def stages(runs: Sequence[CellRun], wanted: bool) -> tuple[list[Generation], list[Learning]]:
+def stages(runs: Sequence[CellRun], together: bool) -> tuple[list[Generation], list[Learning]]:
     """Returns the jobs of the two stages before the runs: all generation, then all learning.
 
     The jobs are for labels with several unfinished runs. Only runs whose networks are on a GPU
-    count, unless `wanted`.
+    count, unless `together`.
     """
     groups: dict[Path, list[CellRun]] = {}
     for run in runs:
-        if not run.done and (wanted or _on_gpu(run)):
+        if not run.done and (together or _on_gpu(run)):
             groups.setdefault(run.folder.parent, []).append(run)
     several = [tuple(group) for group in groups.values() if len(group) > 1]
-    generations = [Generation(run) for group in several for run in group if run.kind]
+    generations = [Generation(run) for group in several for run in group if run.generation_key]
     return generations, [Learning(group) for group in several]
 
 

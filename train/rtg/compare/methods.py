@@ -7,9 +7,9 @@ from rtg import _core
 TASKS = ("gathering", "sorting", "art_manip")
 METHODS = _core.METHODS
 REFERENCE = "ddqn_rtg"  # the method with which the others are compared
-WIDER = "ddqn_rtg_dr"  # starts in a wider region, so its success is not comparable
+RANDOMISED = "ddqn_rtg_dr"  # starts in a wider region, so its success is not comparable
 
 
-def run_words(method: str) -> tuple[str, ...]:
+def method_flags(method: str) -> tuple[str, ...]:
     """Returns the flags of `rtg run` that select the method."""
     return ("--method", method)

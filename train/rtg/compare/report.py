@@ -11,7 +11,7 @@ from rtg.compare import report_sources as sources
 from rtg.compare import report_tables as tables
 from rtg.compare.cells import Grid
 from rtg.compare.estimates import RESAMPLES
-from rtg.compare.methods import REFERENCE, WIDER
+from rtg.compare.methods import RANDOMISED, REFERENCE
 from rtg.compare.run_results import Comparison, RunResult
 from rtg.errors import UserError
 
@@ -37,7 +37,7 @@ IQM: mean of the middle half of all final successes, with a 95 % interval by str
 run on. Last column: the probability that a run of the method does better than one of `{REFERENCE}`
 on the same task, mean over the tasks, equal ones counted half. Single seeds have no interval, and
 of few it is too narrow. Methods with fewer tasks are not comparable with those with more, nor is
-`{WIDER}` with any: its starts, also those it is measured from, lie all over a wider region."""
+`{RANDOMISED}` with any: its starts, also those it is measured from, lie all over a wider region."""
 REMARKS = "remarks.md"  # beside grid.json
 _QUICK = (
     "**Small budgets (`--quick`): these figures show that everything works and are no results.**"
@@ -79,7 +79,7 @@ def _commits(done: Sequence[RunResult]) -> str:
         found.setdefault(run.commits, []).append(run)
     if len(found) < 2:
         return "- commit: " + (next(iter(found), "unknown"))
-    lines = [f"  - {words}: {tables.named(runs)}" for words, runs in found.items()]
+    lines = [f"  - {words}: {tables.run_names(runs)}" for words, runs in found.items()]
     return "\n".join(["- commits, whose runs may differ by more than the method:", *lines])
 
 
@@ -125,13 +125,15 @@ def _brief(name: str, words: str) -> str:
     return f"{how}: {log[-1]}" if log else how
 
 
-def _troubles(grid: Grid, runs: Sequence[RunResult]) -> list[str]:
+def _trouble_section(grid: Grid, runs: Sequence[RunResult]) -> list[str]:
     """Returns the section on failed runs and defects, run by run; empty if there are none."""
     lines = []
     for run in runs:
         name = f"`{run.cell.name}`"
         if run.state == "failed":
-            lines.append(f"- {name} failed: {_brief(run.cell.name, grid.failed[run.cell.name])}")
+            lines.append(
+                f"- {name} failed: {_brief(run.cell.name, grid.failure_by_name[run.cell.name])}"
+            )
         lines += [f"- {name}: {defect}" for defect in run.summary.get("defects", [])]
     return ["## Trouble", "\n".join(lines)] if lines else []
 
@@ -140,11 +142,11 @@ def _picture(folder: Path, name: str, words: str) -> list[str]:
     return [f"![{words}]({name})"] if (folder / name).is_file() else []
 
 
-def _of_task(folder: Path, comparison: Comparison, task: str) -> list[str]:
+def _task_section(folder: Path, comparison: Comparison, task: str) -> list[str]:
     return [
         f"## {task}",
-        tables.learned(comparison, task),
-        tables.spent(comparison, task),
+        tables.results_table(comparison, task),
+        tables.cost_table(comparison, task),
         *_picture(folder, f"costs_{task}.png", f"Success against cost on {task}"),
         *_picture(folder, f"curves_{task}.png", f"Learning curves on {task}"),
         *_picture(folder, f"sweep_{task}.png", f"What the swept values do on {task}"),
@@ -176,21 +178,21 @@ def report(folder: Path, grid: Grid, comparison: Comparison, remarks: str) -> st
         *([_QUICK] if any("--quick" in command.split() for command in grid.commands) else []),
         _origin(grid, comparison),
         _LEGEND + (f" Not run: {missing}." if missing else ""),
-        *(part for task in comparison.tasks for part in _of_task(folder, comparison, task)),
+        *(part for task in comparison.tasks for part in _task_section(folder, comparison, task)),
         "## All tasks together",
-        tables.pooled(comparison),
+        tables.pooled_table(comparison),
         _POOLED,
         "## Where reverse simulation is the better source",
         sources.better_source(comparison),
         sources.NOTE,
         "## Run time",
-        tables.runtime(comparison),
+        tables.runtime_table(comparison),
         _RUNTIME,
         "## Data",
-        tables.data(comparison),
+        tables.data_table(comparison),
         _DATA,
         *_picture(folder, "replay_gap.png", "Histogram of the replay gap"),
         *(["## Remarks", remarks] if remarks else []),
-        *_troubles(grid, comparison.results),
+        *_trouble_section(grid, comparison.results),
     ]
     return "\n\n".join(parts) + "\n"

@@ -24,18 +24,18 @@ from rtg.files import run_folder
 from rtg.pictures import episode_pictures
 from rtg.run.results import episode_title
 
-_OF_TASKS = ("costs_*.png", "curves_*.png", "sweep_*.png", "strip_*.png", "film_*.gif")
-_PICTURES = (*_OF_TASKS, "replay_gap.png")
+_TASK_PICTURES = ("costs_*.png", "curves_*.png", "sweep_*.png", "strip_*.png", "film_*.gif")
+_PICTURES = (*_TASK_PICTURES, "replay_gap.png")
 
 
 def write_report(runs: Path, out: Path) -> Path:
     """Replaces the files of the report in `out`; returns the path of the page. Raises UserError."""
     grid = read_grid(runs)
-    if not grid.cells:
+    if not grid.commands_by_cell:
         raise UserError(f"{runs}: holds no comparison (no grid.json); legal: DIR of `reproduce`")
     comparison, remarks = read_comparison(runs, grid), read_remarks(runs)
     episodes = {task: _best_episode(comparison, task) for task in comparison.tasks}
-    with run_folder.writing_to(out):
+    with run_folder.write_errors_as_user_errors(out):
         out.mkdir(parents=True, exist_ok=True)
         _draw(out, comparison, episodes)
         _write_numbers(out, comparison)
@@ -44,7 +44,7 @@ def write_report(runs: Path, out: Path) -> Path:
 
 
 def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | None]) -> None:
-    _remove_pictures(out)
+    _remove_old_pictures(out)
     gaps = {}
     for task in comparison.tasks:
         done = [run for run in comparison.all_done() if run.cell.task == task]
@@ -54,14 +54,14 @@ def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | No
         if any(run.cell.settings for run in done):
             report_plots.sweep(out / f"sweep_{task}.png", comparison, task)
         _draw_episode(out, task, episodes[task])
-        replayed = _of_best_method([run for run in done if "replay_gap_counts" in run.summary])
+        replayed = _runs_of_reference([run for run in done if "replay_gap_counts" in run.summary])
         if replayed:
             gaps[task] = replayed
     if gaps:
         report_plots.replay_gaps(out / "replay_gap.png", gaps)
 
 
-def _remove_pictures(out: Path) -> None:
+def _remove_old_pictures(out: Path) -> None:
     """Removes all pictures that the existing page shows, also those of former tasks and sweeps."""
     page = out / "report.md"
     text = page.read_text(errors="replace") if page.is_file() else ""
@@ -70,7 +70,7 @@ def _remove_pictures(out: Path) -> None:
             picture.unlink()
 
 
-def _of_best_method(done: Sequence[RunResult]) -> list[RunResult]:
+def _runs_of_reference(done: Sequence[RunResult]) -> list[RunResult]:
     """Returns the runs of the reference method; if there are none, those of the first label."""
     labels = {run.cell.label for run in done}
     label = REFERENCE if REFERENCE in labels else next((run.cell.label for run in done), "")
@@ -121,10 +121,10 @@ def _best_episode(comparison: Comparison, task: str) -> Episode | None:
     )
 
 
-def _draw_episode(out: Path, task: str, one: Episode | None) -> None:
-    if one is not None:
-        words = episode_title(task, len(one.poses) - 1, one.success, one.label)
-        what = one.task, one.poses, one.success, words
+def _draw_episode(out: Path, task: str, episode: Episode | None) -> None:
+    if episode is not None:
+        words = episode_title(task, len(episode.poses) - 1, episode.success, episode.label)
+        what = episode.task, episode.poses, episode.success, words
         episode_pictures.strip(out / f"strip_{task}.png", *what)
         episode_pictures.film(out / f"film_{task}.gif", *what)
 
@@ -134,17 +134,17 @@ def _write_numbers(out: Path, comparison: Comparison) -> None:
     for run in comparison.all_done():
         tasks[run.cell.task].setdefault(run.cell.label, []).append(run.figures())
     run_folder.write_json(out / "report.json", tasks)
-    _write_csv(out / "runs.csv", _rows(comparison))
+    _write_csv(out / "runs.csv", _run_rows(comparison))
     _write_csv(
         out / "curves.csv", [row for run in comparison.all_done() for row in _curve_rows(run)]
     )
 
 
-def _name(run: RunResult) -> dict[str, Any]:
+def _run_keys(run: RunResult) -> dict[str, Any]:
     return {"task": run.cell.task, "method": run.cell.label, "seed": run.cell.seed}
 
 
-def _rows(comparison: Comparison) -> list[dict[str, Any]]:
+def _run_rows(comparison: Comparison) -> list[dict[str, Any]]:
     """Returns a row per run, with all its figures that are single numbers or words."""
     more = [
         name
@@ -156,7 +156,7 @@ def _rows(comparison: Comparison) -> list[dict[str, Any]]:
     return [
         {
             **{name: run.summary.get(name) for name in names},
-            **_name(run),
+            **_run_keys(run),
             "state": run.state,
             **run.figures(),
         }
@@ -171,7 +171,7 @@ def _curve_rows(run: RunResult) -> list[dict[str, Any]]:
     columns = {name: costs(run.curve, name) for name in COSTS}
     columns |= {name: run.curve[name].tolist() for name in CURVES}
     return [
-        {**_name(run), **dict(zip(columns, values, strict=True))}
+        {**_run_keys(run), **dict(zip(columns, values, strict=True))}
         for values in zip(*columns.values(), strict=True)
     ]
 
@@ -182,11 +182,11 @@ def _write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     table = csv.DictWriter(text, list(rows[0]) if rows else [], lineterminator="\n")
     table.writeheader()
     for row in rows:
-        table.writerow({name: _short(value) for name, value in row.items()})
+        table.writerow({name: _csv_value(value) for name, value in row.items()})
     run_folder.write_text(path, text.getvalue())
 
 
-def _short(value: Any) -> Any:
+def _csv_value(value: Any) -> Any:
     if isinstance(value, float):
         return "" if np.isnan(value) else f"{value:.6g}"
     return value

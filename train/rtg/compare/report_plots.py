@@ -41,7 +41,7 @@ _PALETTE = {
     "bc_rtg": ("#00707a", "-."),
     "planner": ("#a50026", "-."),
 }
-_DASHES = ("-", "--", "-.", ":")
+_LINE_STYLES = ("-", "--", "-.", ":")
 _COSTS = {
     "interactions": "interactions (dash-dotted: rounds of learning)",
     "pushes": "simulator pushes, generation included",
@@ -53,10 +53,10 @@ _PANELS = (
     ("episode length, greedy [actions]", "episode_length_mean"),
     ("return, greedy, discounted as in learning", "episode_return_mean"),
 )
-_SHARES = ("success_rate", "rollout_success")
-_MOST_CURVES = len(METHODS)
-_BAR, _BAR_COLOUR = 0.95, "#8a8d93"
-_RIGHT: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8}
+_SHARE_COLUMNS = ("success_rate", "rollout_success")
+_MAX_CURVES = len(METHODS)
+_THRESHOLD, _THRESHOLD_COLOUR = 0.95, "#8a8d93"
+_RIGHT_ALIGNED: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8}
 
 
 def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
@@ -68,7 +68,9 @@ def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
         return {label: _PALETTE.get(label.split("@")[0], ("#000000", "-")) for label in labels}
     shades = plt.get_cmap("viridis")(np.linspace(0.0, 0.9, len(labels)))
     colours = [to_hex(shade) for shade in shades]
-    return {label: (colours[k], _DASHES[k % len(_DASHES)]) for k, label in enumerate(labels)}
+    return {
+        label: (colours[k], _LINE_STYLES[k % len(_LINE_STYLES)]) for k, label in enumerate(labels)
+    }
 
 
 def split_names(labels: Sequence[str]) -> tuple[str, list[str]]:
@@ -81,7 +83,7 @@ def split_names(labels: Sequence[str]) -> tuple[str, list[str]]:
     return shared[:end].rstrip("@=").replace("@", ", "), [label[end:] for label in labels]
 
 
-def _course(runs: Sequence[RunResult], column: str) -> tuple[Floats, Floats]:
+def _aligned_curves(runs: Sequence[RunResult], column: str) -> tuple[Floats, Floats]:
     """Returns the interactions [N] and the values [runs, N] of a column at these interactions.
 
     A run that ended early keeps its last value.
@@ -91,18 +93,18 @@ def _course(runs: Sequence[RunResult], column: str) -> tuple[Floats, Floats]:
     return grid, np.array(values)
 
 
-def _draw_course(
-    axis: Axes, course: tuple[Floats, Floats], is_share: bool, style: tuple[str, str]
+def _draw_curve(
+    axis: Axes, curve: tuple[Floats, Floats], is_share: bool, style: tuple[str, str]
 ) -> None:
     """Draws mean and standard deviation over the seeds, at points where all seeds have a value."""
-    grid, values = course
+    grid, values = curve
     known = np.isfinite(values).all(axis=0)
     if not known.any():
         return
     grid, values = grid[known], values[:, known]
     mean = values.mean(axis=0)
-    colour, dashes = style
-    axis.plot(grid, mean, color=colour, ls=dashes, lw=2.0)
+    colour, line_style = style
+    axis.plot(grid, mean, color=colour, ls=line_style, lw=2.0)
     axis.plot(grid[-1:], mean[-1:], color=colour, marker="o", ms=4)
     if len(values) > 1:
         spread = values.std(axis=0, ddof=1)
@@ -122,28 +124,29 @@ def curve_labels(comparison: Comparison, task: str) -> list[str]:
         for label in comparison.labels
         if any(run.curve for run in comparison.done(task, label))
     ]
-    few = len(found) <= _MOST_CURVES
+    few = len(found) <= _MAX_CURVES
     return found if few else [label for label in found if "@" not in label]
 
 
-Drawn = Mapping[str, Sequence[RunResult]]  # by label
+RunsByLabel = Mapping[str, Sequence[RunResult]]  # by label
 
 
-def _drawn(comparison: Comparison, task: str) -> Drawn:
+def _runs_with_curves(comparison: Comparison, task: str) -> RunsByLabel:
     labels = curve_labels(comparison, task)
     return {label: [r for r in comparison.done(task, label) if r.curve] for label in labels}
 
 
-def _name_lines(figure: Figure, drawn: Drawn, title: str, columns: int = 4) -> None:
+def _add_legend(figure: Figure, runs_by_label: RunsByLabel, title: str, columns: int = 4) -> None:
     """Adds the legend, with the final success of each label, below the panels, the title above."""
-    styles = _styles(list(drawn))
+    styles = _styles(list(runs_by_label))
     handles = [
-        plt.Line2D([], [], color=styles[label][0], ls=styles[label][1], lw=2) for label in drawn
+        plt.Line2D([], [], color=styles[label][0], ls=styles[label][1], lw=2)
+        for label in runs_by_label
     ]
-    shared, names = split_names(list(drawn))
+    shared, names = split_names(list(runs_by_label))
     words = [
         f"{name}: {mean_success(runs):.2f} ({len(runs)})"
-        for name, runs in zip(names, drawn.values(), strict=True)
+        for name, runs in zip(names, runs_by_label.values(), strict=True)
     ]
     figure.legend(
         handles,
@@ -162,16 +165,20 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
 
     Leaves out methods without interactions.
     """
-    drawn = {name: runs for name, runs in _drawn(comparison, task).items() if runs[0].interacts}
-    styles = _styles(list(drawn))
+    runs_by_label = {
+        name: runs
+        for name, runs in _runs_with_curves(comparison, task).items()
+        if runs[0].interacts
+    }
+    styles = _styles(list(runs_by_label))
     with plots.style():
         figure, axes = plt.subplots(2, 2, figsize=(9.6, 6.8), layout="constrained", sharex=True)
         for axis, (name, column) in zip(axes.flat, _PANELS, strict=True):
-            for label, runs in drawn.items():
-                grid, values = _course(runs, column)
-                _draw_course(axis, (grid / 1000.0, values), column in _SHARES, styles[label])
+            for label, runs in runs_by_label.items():
+                grid, values = _aligned_curves(runs, column)
+                _draw_curve(axis, (grid / 1000.0, values), column in _SHARE_COLUMNS, styles[label])
             axis.set_title(name)
-            if column in _SHARES:
+            if column in _SHARE_COLUMNS:
                 axis.set_ylim(-0.03, 1.03)
             else:
                 axis.set_ylim(bottom=0.0)
@@ -179,7 +186,7 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
             axis.set_xlabel("interactions / 1000")
             axis.set_xlim(left=0.0)
         title = f"{task}: mean ± standard deviation of the seeds, a dot where the last one stopped"
-        _name_lines(figure, drawn, title)
+        _add_legend(figure, runs_by_label, title)
         plots.save(figure, path)
 
 
@@ -188,22 +195,22 @@ def costs(path: Path, comparison: Comparison, task: str) -> None:
 
     Success and cost are means over the seeds after the same number of interactions.
     """
-    drawn = _drawn(comparison, task)
-    styles = _styles(list(drawn))
+    runs_by_label = _runs_with_curves(comparison, task)
+    styles = _styles(list(runs_by_label))
     with plots.style():
         figure, axes = plt.subplots(1, 3, figsize=(12.6, 5.0), layout="constrained", sharey=True)
         for axis, (cost, name) in zip(axes, _COSTS.items(), strict=True):
-            for label, runs in drawn.items():
-                spent = _course(runs, cost)[1].mean(axis=0)
-                values = _course(runs, "success_rate")[1]
-                shown = spent > 0.0
-                _draw_course(axis, (spent[shown], values[:, shown]), True, styles[label])
-            axis.axhline(_BAR, color=_BAR_COLOUR, lw=0.8, zorder=0)
+            for label, runs in runs_by_label.items():
+                mean_cost = _aligned_curves(runs, cost)[1].mean(axis=0)
+                values = _aligned_curves(runs, "success_rate")[1]
+                shown = mean_cost > 0.0
+                _draw_curve(axis, (mean_cost[shown], values[:, shown]), True, styles[label])
+            axis.axhline(_THRESHOLD, color=_THRESHOLD_COLOUR, lw=0.8, zorder=0)
             axis.set(xscale="log", xlabel=name, ylim=(-0.03, 1.03))
             axis.xaxis.set_major_formatter(EngFormatter(sep=""))
         axes[0].set_ylabel("greedy success, held-out starts")
         title = f"{task}: success against the mean cost, mean ± standard deviation of the seeds"
-        _name_lines(figure, drawn, title, columns=5)
+        _add_legend(figure, runs_by_label, title, columns=5)
         plots.save(figure, path)
 
 
@@ -254,7 +261,9 @@ def sweep(path: Path, comparison: Comparison, task: str) -> None:
                     axis.plot(values.mean(), at, "|", color="#0072b2", ms=14, mew=2.5)
                 if len(values) < len(found):
                     words = f"{len(found) - len(values)} never"
-                    axis.annotate(words, (0.99, at), xycoords=axis.get_yaxis_transform(), **_RIGHT)
+                    axis.annotate(
+                        words, (0.99, at), xycoords=axis.get_yaxis_transform(), **_RIGHT_ALIGNED
+                    )
             axis.grid(axis="y", alpha=0.3)
         axes[0].set_yticks(range(len(rows)), list(rows), fontsize=8)
         axes[0].set(title="greedy success at the end", xlim=(-0.03, 1.03))

@@ -8,23 +8,23 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rtg.compare.methods import METHODS, REFERENCE, WIDER
-from rtg.compare.report_tables import NOTHING, spread, table, thousands
+from rtg.compare.methods import METHODS, RANDOMISED, REFERENCE
+from rtg.compare.report_tables import NO_VALUE, spread, table, thousands
 from rtg.compare.run_results import COSTS, Comparison
 
 Floats = NDArray[np.float64]
 
-BAR = 0.95  # greedy success to reach
+THRESHOLD = 0.95  # greedy success to reach
 # Methods that learn from data of a source other than reverse simulation.
 SOURCES = ("ddqn_random", "ddqn_scatter", "ddqn_naive", "ddqn_forward")
 # Methods whose costs are shown as multiples of those of the reference.
-RIVALS = ("ddqn_forward", "ddqn_naive", "planner")
-_WORDS = {"interactions": "interactions", "pushes": "pushes", "cpu_s": "CPU seconds"}
-_HEADS = {"interactions": "interactions [1000]", "pushes": "pushes [1000]", "cpu_s": "CPU [s]"}
+COMPARED_METHODS = ("ddqn_forward", "ddqn_naive", "planner")
+_COST_NAMES = {"interactions": "interactions", "pushes": "pushes", "cpu_s": "CPU seconds"}
+_COST_HEADS = {"interactions": "interactions [1000]", "pushes": "pushes [1000]", "cpu_s": "CPU [s]"}
 NOTE = f"""\
-Costs up to the first evaluation with a greedy success of {BAR} or more: interactions of the
+Costs up to the first evaluation with a greedy success of {THRESHOLD} or more: interactions of the
 learner; pushes and CPU seconds of the whole run, generation included. **fewest**: of all
-methods whose every seed gets there (`{WIDER}` aside, whose starts are others; interactions are
+methods whose every seed gets there (`{RANDOMISED}` aside, whose starts are others; interactions are
 compared among those that make any). Other columns: multiples of what `{REFERENCE}` needs, or how
 many seeds get there. `planner` needs as much again for every further start: its costs are those of
 one evaluation. Reverse simulation is the source of `{REFERENCE}`, whose backward steps a solver
@@ -38,17 +38,21 @@ seed of `{REFERENCE}`, too."""
 
 
 def _costs(comparison: Comparison, task: str, method: str, cost: str) -> Floats:
-    """Returns the cost of each seed until its greedy success reaches BAR. [seeds]
+    """Returns the cost of each seed until its greedy success reaches THRESHOLD. [seeds]
 
-    The cost is infinite if a seed never reaches BAR. For the cost `interactions`, runs without
-    interactions are left out. The array is empty if there are no runs.
+    The cost is infinite if a seed never reaches THRESHOLD. For the cost `interactions`, runs
+    without interactions are left out. The array is empty if there are no runs.
     """
     runs = comparison.done(task, method)
-    needed = [run.reached(BAR, cost) for run in runs if run.interacts or cost != "interactions"]
+    needed = [
+        run.cost_to_reach(THRESHOLD, cost)
+        for run in runs
+        if run.interacts or cost != "interactions"
+    ]
     return np.array([np.inf if value is None else value for value in needed])
 
 
-def _all_get_there(costs: Floats) -> bool:
+def _all_reach_threshold(costs: Floats) -> bool:
     return len(costs) > 0 and bool(np.isfinite(costs).all())
 
 
@@ -62,22 +66,23 @@ def _fewest(comparison: Comparison, task: str, cost: str) -> str:
     found = {
         method: costs
         for method in METHODS
-        if method != WIDER and _all_get_there(costs := _costs(comparison, task, method, cost))
+        if method != RANDOMISED
+        and _all_reach_threshold(costs := _costs(comparison, task, method, cost))
     }
     if not found:
-        return NOTHING
+        return NO_VALUE
     best = min(found, key=lambda method: float(found[method].mean()))
     return f"`{best}`: {_mean_cost(found[best], cost)}"
 
 
-def _multiple(reference: Floats, costs: Floats) -> str:
+def _cost_ratio(reference: Floats, costs: Floats) -> str:
     """Returns the ratio of the mean costs to those of the reference, as text.
 
-    If a seed of either method never reaches BAR, returns how many seeds of the method do.
+    If a seed of either method never reaches THRESHOLD, returns how many seeds of the method do.
     """
     if len(costs) == 0:
-        return NOTHING
-    if _all_get_there(costs) and _all_get_there(reference):
+        return NO_VALUE
+    if _all_reach_threshold(costs) and _all_reach_threshold(reference):
         return f"{costs.mean() / reference.mean():.2f} ×"
     return f"{np.isfinite(costs).sum()} of {len(costs)}"
 
@@ -85,57 +90,59 @@ def _multiple(reference: Floats, costs: Floats) -> str:
 class _Verdict(NamedTuple):
     """The result of comparing the reference with the other sources on one task, by one cost."""
 
-    kind: str  # key of _SAID; empty if there is nothing to compare
+    kind: str  # key of _VERDICT_TEXTS; empty if there is nothing to compare
     methods: Sequence[str] = ()  # the sources that the verdict names
 
     def __str__(self) -> str:
-        of_methods = _SAID.get(self.kind, NOTHING).format(costs="", methods=_named(self.methods))
+        of_methods = _VERDICT_TEXTS.get(self.kind, NO_VALUE).format(
+            costs="", methods=_method_list(self.methods)
+        )
         return " ".join(of_methods.split())
 
 
-_SAID = {
+_VERDICT_TEXTS = {
     "better": "better {costs} than {methods}",
     "not": "not better {costs} than {methods}",
     "level": "level {costs} with {methods}",
-    "none": f"no more than {{methods}} enough for {BAR} {{costs}}",
+    "none": f"no more than {{methods}} enough for {THRESHOLD} {{costs}}",
 }
 
 
 def _verdict(comparison: Comparison, task: str, cost: str) -> _Verdict:
-    own = _costs(comparison, task, REFERENCE, cost)
+    reference_costs = _costs(comparison, task, REFERENCE, cost)
     found = {source: _costs(comparison, task, source, cost) for source in SOURCES}
     others = {source: costs for source, costs in found.items() if len(costs)}
-    if len(own) == 0 or not others:
+    if len(reference_costs) == 0 or not others:
         return _Verdict("")
-    if not np.isfinite([*own, *np.concatenate(list(others.values()))]).any():
+    if not np.isfinite([*reference_costs, *np.concatenate(list(others.values()))]).any():
         return _Verdict("none", list(others))
-    if less := [source for source, costs in others.items() if max(costs) < min(own)]:
+    if less := [source for source, costs in others.items() if max(costs) < min(reference_costs)]:
         return _Verdict("not", less)
     level = [
         source
         for source, costs in others.items()
-        if np.isfinite(costs).any() and max(own) >= min(costs)
+        if np.isfinite(costs).any() and max(reference_costs) >= min(costs)
     ]
     return _Verdict("level", level) if level else _Verdict("better", list(others))
 
 
-def _named(methods: Sequence[str]) -> str:
+def _method_list(methods: Sequence[str]) -> str:
     return ", ".join(f"`{method}`" for method in methods)
 
 
-def _listed(costs: Sequence[str]) -> str:
-    words = [_WORDS[cost] for cost in costs]
+def _cost_list(costs: Sequence[str]) -> str:
+    words = [_COST_NAMES[cost] for cost in costs]
     return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
 def _sentence(task: str, verdicts: dict[str, _Verdict]) -> str:
     parts = []
-    for kind, words in _SAID.items():
+    for kind, words in _VERDICT_TEXTS.items():
         costs = [cost for cost, verdict in verdicts.items() if verdict.kind == kind]
         named = {method for cost in costs for method in verdicts[cost].methods}
-        methods = _named([source for source in SOURCES if source in named])
+        methods = _method_list([source for source in SOURCES if source in named])
         if costs:
-            parts.append(words.format(costs=f"by {_listed(costs)}", methods=methods))
+            parts.append(words.format(costs=f"by {_cost_list(costs)}", methods=methods))
     if not parts:
         return f"- **{task}**: not known, as `{REFERENCE}` or any other source is missing."
     return f"- **{task}**: reverse simulation is {'; '.join(parts)}."
@@ -148,10 +155,27 @@ def better_source(comparison: Comparison) -> str:
         verdicts = {cost: _verdict(comparison, task, cost) for cost in COSTS}
         sentences.append(_sentence(task, verdicts))
         for cost, verdict in verdicts.items():
-            own = _costs(comparison, task, REFERENCE, cost)
-            ratios = [_multiple(own, _costs(comparison, task, rival, cost)) for rival in RIVALS]
+            reference_costs = _costs(comparison, task, REFERENCE, cost)
+            ratios = [
+                _cost_ratio(reference_costs, _costs(comparison, task, method, cost))
+                for method in COMPARED_METHODS
+            ]
             least = _fewest(comparison, task, cost)
-            rows.append([task, _HEADS[cost], least, _mean_cost(own, cost), *ratios, str(verdict)])
-    head = ["task", f"to {BAR}", "fewest", *(f"`{method}`" for method in (REFERENCE, *RIVALS))]
+            rows.append(
+                [
+                    task,
+                    _COST_HEADS[cost],
+                    least,
+                    _mean_cost(reference_costs, cost),
+                    *ratios,
+                    str(verdict),
+                ]
+            )
+    head = [
+        "task",
+        f"to {THRESHOLD}",
+        "fewest",
+        *(f"`{method}`" for method in (REFERENCE, *COMPARED_METHODS)),
+    ]
     shown = table([*head, "reverse simulation"], rows, left=3)
     return "\n".join(sentences) + "\n\n" + shown

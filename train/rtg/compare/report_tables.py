@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg.compare import estimates
-from rtg.compare.methods import METHODS, REFERENCE, WIDER
+from rtg.compare.methods import METHODS, RANDOMISED, REFERENCE
 from rtg.compare.run_results import Comparison, RunResult
 
 Floats = NDArray[np.float64]
-NOTHING = "–"
+NO_VALUE = "–"
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> str:
@@ -29,7 +29,7 @@ def spread(values: Sequence[float | None], form: str) -> str:
     """
     known = [value for value in values if value is not None]
     if not known:
-        return NOTHING
+        return NO_VALUE
     mean, std = estimates.mean_std(known)
     if form == "count":
         form = ".1f" if 0.0 < mean < 10.0 else ".0f"
@@ -37,7 +37,7 @@ def spread(values: Sequence[float | None], form: str) -> str:
     return words if len(known) == len(values) else f"{words} ({len(known)} of {len(values)})"
 
 
-def seeds(numbers: Sequence[int]) -> str:
+def seed_ranges(numbers: Sequence[int]) -> str:
     """Writes seeds as ranges: 1, 2, 3, 5 -> 1-3, 5."""
     parts: list[list[int]] = []
     for number in sorted(numbers):
@@ -48,53 +48,55 @@ def seeds(numbers: Sequence[int]) -> str:
     return ", ".join(f"{p[0]}-{p[-1]}" if len(p) > 1 else f"{p[0]}" for p in parts)
 
 
-def states(runs: Sequence[RunResult]) -> str:
+def seeds_by_state(runs: Sequence[RunResult]) -> str:
     """Returns the seeds, grouped by the state of their runs."""
     found = []
     for state in dict.fromkeys(run.state for run in runs):
-        numbers = seeds([run.cell.seed for run in runs if run.state == state])
+        numbers = seed_ranges([run.cell.seed for run in runs if run.state == state])
         found.append(numbers if state == "done" else f"{numbers} {state}")
     return "; ".join(found) or "not run"
 
 
-def named(runs: Sequence[RunResult]) -> str:
+def run_names(runs: Sequence[RunResult]) -> str:
     """Returns tasks, labels and seeds of `runs` in words; `runs` are in the order of Comparison."""
     rows: dict[tuple[str, str], list[int]] = {}
     for run in runs:
         rows.setdefault((run.cell.task, run.cell.label), []).append(run.cell.seed)
-    return "; ".join(f"{task} `{label}` {seeds(of_row)}" for (task, label), of_row in rows.items())
+    return "; ".join(
+        f"{task} `{label}` {seed_ranges(of_row)}" for (task, label), of_row in rows.items()
+    )
 
 
 def thousands(value: float | None) -> float | None:
     return None if value is None else value / 1000.0
 
 
-def _same(value: float | None) -> float | None:
+def _unchanged(value: float | None) -> float | None:
     return value
 
 
 Column = tuple[str, str, str, Callable[[float | None], float | None]]
 # Head, key of RunResult.figures(), `form` of spread(), conversion to the unit of the column.
-_LEARNED: tuple[Column, ...] = (
-    ("success", "success_rate", ".2f", _same),
-    ("length", "episode_length_mean", ".1f", _same),
-    ("roll-outs", "rollout_success", ".2f", _same),
-    ("at ⅓", "success_at_third", ".2f", _same),
+_RESULT_COLUMNS: tuple[Column, ...] = (
+    ("success", "success_rate", ".2f", _unchanged),
+    ("length", "episode_length_mean", ".1f", _unchanged),
+    ("roll-outs", "rollout_success", ".2f", _unchanged),
+    ("at ⅓", "success_at_third", ".2f", _unchanged),
     ("to 0.70", "interactions_to_70", "count", thousands),
     ("to 0.95", "interactions_to_95", "count", thousands),
     ("pushes to 0.95", "pushes_to_95", "count", thousands),
-    ("CPU s to 0.95", "cpu_s_to_95", "count", _same),
+    ("CPU s to 0.95", "cpu_s_to_95", "count", _unchanged),
 )
-_SPENT: tuple[Column, ...] = (
+_COST_COLUMNS: tuple[Column, ...] = (
     ("transitions", "transitions", "count", thousands),
     ("generation: pushes", "replays", "count", thousands),
-    ("... CPU [s]", "generate_cpu_s", "count", _same),
-    ("... wall [s]", "generate_wall_s", "count", _same),
+    ("... CPU [s]", "generate_cpu_s", "count", _unchanged),
+    ("... wall [s]", "generate_wall_s", "count", _unchanged),
     ("learning: interactions", "interactions", "count", thousands),
-    ("... CPU [s]", "train_cpu_s", "count", _same),
-    ("... wall [s]", "train_wall_s", "count", _same),
+    ("... CPU [s]", "train_cpu_s", "count", _unchanged),
+    ("... wall [s]", "train_wall_s", "count", _unchanged),
     ("all: pushes", "whole_pushes", "count", thousands),
-    ("... CPU [s]", "whole_cpu_s", "count", _same),
+    ("... CPU [s]", "whole_cpu_s", "count", _unchanged),
 )
 
 
@@ -105,24 +107,26 @@ def _cell(done: Sequence[RunResult], column: Column) -> str:
     return "never" if never else spread(values, form)
 
 
-def _of_columns(comparison: Comparison, task: str, columns: Sequence[Column]) -> str:
+def _task_table(comparison: Comparison, task: str, columns: Sequence[Column]) -> str:
     """Returns a table with a row per label, also for labels without a result."""
     rows = []
     for label in comparison.labels:
         runs = comparison.row(task, label)
         done = [run for run in runs if run.done]
-        rows.append([f"`{label}`", states(runs), *(_cell(done, column) for column in columns)])
+        rows.append(
+            [f"`{label}`", seeds_by_state(runs), *(_cell(done, column) for column in columns)]
+        )
     return table(["method", "seeds", *(head for head, *_ in columns)], rows)
 
 
-def learned(comparison: Comparison, task: str) -> str:
+def results_table(comparison: Comparison, task: str) -> str:
     """Returns the table of the learning results of all labels on one task."""
-    return _of_columns(comparison, task, _LEARNED)
+    return _task_table(comparison, task, _RESULT_COLUMNS)
 
 
-def spent(comparison: Comparison, task: str) -> str:
+def cost_table(comparison: Comparison, task: str) -> str:
     """Returns the table of the costs of all labels on one task, in generation and learning."""
-    return _of_columns(comparison, task, _SPENT)
+    return _task_table(comparison, task, _COST_COLUMNS)
 
 
 def _shared_tasks(comparison: Comparison) -> list[str]:
@@ -148,11 +152,11 @@ def _with_interval(value: float, interval: tuple[float, float] | None) -> str:
     return f"{value:.2f}" + (f" [{interval[0]:.2f}, {interval[1]:.2f}]" if interval else "")
 
 
-def is_wider(label: str) -> bool:
-    return label.split("@")[0] == WIDER
+def is_randomised(label: str) -> bool:
+    return label.split("@")[0] == RANDOMISED
 
 
-def pooled(comparison: Comparison) -> str:
+def pooled_table(comparison: Comparison) -> str:
     """Returns the table of statistics over all shared tasks and all seeds."""
     head = [
         "method",
@@ -169,10 +173,10 @@ def pooled(comparison: Comparison) -> str:
             continue
         values = list(scores.values())
         iqm = estimates.interquartile_mean
-        alike = label != REFERENCE and not is_wider(label)
-        common = [task for task in scores if task in reference and alike]
+        comparable = label != REFERENCE and not is_randomised(label)
+        common = [task for task in scores if task in reference and comparable]
         pair = [scores[task] for task in common], [reference[task] for task in common]
-        better = NOTHING
+        better = NO_VALUE
         if common:
             chance = estimates.probability_of_improvement(*pair)
             better = _with_interval(chance, estimates.improvement_interval(*pair))
@@ -206,11 +210,11 @@ def _count(name: str) -> Callable[[RunResult], float]:
     return lambda run: float(run.summary.get(name) or 0)
 
 
-def _solves(run: RunResult) -> float:
+def _solve_count(run: RunResult) -> float:
     return _count("candidates")(run) - _count("pruned")(run)
 
 
-def _key(name: str) -> Callable[[RunResult], float | None]:
+def _summary_value(name: str) -> Callable[[RunResult], float | None]:
     return lambda run: run.summary.get(name)
 
 
@@ -226,34 +230,34 @@ def _speed(run: RunResult) -> float | None:
     return _per_second(run) if run.interacts else None
 
 
-_RUNTIME: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
-    ("backward action [ms]", _ratio("reverse_cpu_s", _solves, 1e3), ".2f"),
+_RUNTIME_COLUMNS: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
+    ("backward action [ms]", _ratio("reverse_cpu_s", _solve_count, 1e3), ".2f"),
     ("forward action [ms]", _ratio("replay_cpu_s", _count("replays"), 1e3), ".3f"),
-    ("solves [1000]", lambda run: _solves(run) / 1000.0, "count"),
+    ("solves [1000]", lambda run: _solve_count(run) / 1000.0, "count"),
     ("pushes [1000]", lambda run: thousands(run.summary.get("replays")), "count"),
-    ("converged", _ratio("converged", _solves, 1.0), ".3f"),
-    ("iterations, median", _key("pushing_iterations_median"), ".0f"),
-    ("90th percentile", _key("pushing_iterations_p90"), ".0f"),
+    ("converged", _ratio("converged", _solve_count, 1.0), ".3f"),
+    ("iterations, median", _summary_value("pushing_iterations_median"), ".0f"),
+    ("90th percentile", _summary_value("pushing_iterations_p90"), ".0f"),
     ("interactions per s", _speed, ".0f"),
 )
-_DATA: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
+_DATA_COLUMNS: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] = (
     ("transitions [1000]", lambda run: thousands(run.summary.get("transitions")), "count"),
     ("tree rows", lambda run: thousands(run.summary.get("tree_transitions")), "count"),
     ("branches", lambda run: thousands(run.summary.get("branch_transitions")), "count"),
-    ("headings per state", _key("headings_per_state"), ".1f"),
-    ("contact share", _key("contact_share"), ".2f"),
-    ("start region", _key("start_region_transitions"), "count"),
-    ("trees", _key("trees"), "count"),
+    ("headings per state", _summary_value("headings_per_state"), ".1f"),
+    ("contact share", _summary_value("contact_share"), ".2f"),
+    ("start region", _summary_value("start_region_transitions"), "count"),
+    ("trees", _summary_value("trees"), "count"),
     ("depth", _depth, ".0f"),
-    ("replay gap, median [m]", _key("replay_gap_median"), ".4f"),
-    ("90th percentile [m]", _key("replay_gap_p90"), ".4f"),
-    ("rank correlation of Q", _key("q_rank_correlation"), ".2f"),
-    ("error", _key("q_error"), ".3f"),
-    ("spread", _key("q_spread"), ".3f"),
+    ("replay gap, median [m]", _summary_value("replay_gap_median"), ".4f"),
+    ("90th percentile [m]", _summary_value("replay_gap_p90"), ".4f"),
+    ("rank correlation of Q", _summary_value("q_rank_correlation"), ".2f"),
+    ("error", _summary_value("q_error"), ".3f"),
+    ("spread", _summary_value("q_spread"), ".3f"),
 )
 
 
-def _per_method(
+def _method_table(
     comparison: Comparison,
     made: str,
     columns: Sequence[tuple[str, Callable[[RunResult], float | None], str]],
@@ -271,14 +275,14 @@ def _per_method(
     return table(["task", "method", *(name for name, _, _ in columns)], rows, left=2)
 
 
-def runtime(comparison: Comparison) -> str:
+def runtime_table(comparison: Comparison) -> str:
     """Returns the table of the run times of backward and forward actions (Appendix E)."""
-    return _per_method(comparison, "candidates", _RUNTIME)
+    return _method_table(comparison, "candidates", _RUNTIME_COLUMNS)
 
 
-def data(comparison: Comparison) -> str:
+def data_table(comparison: Comparison) -> str:
     """Returns the table on the data: amount, coverage, replay gap (Appendix F), accuracy of Q."""
-    return _per_method(comparison, "transitions", _DATA)
+    return _method_table(comparison, "transitions", _DATA_COLUMNS)
 
 
 def not_run(comparison: Comparison) -> list[str]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Protocol
 
 from rtg.compare import grouped_seeds
-from rtg.compare.cell_run import make_ready
+from rtg.compare.cell_run import prepare_runs
 from rtg.compare.cells import Grid, read_grid
 from rtg.compare.grid_display import GridDisplay, Row, counts, display
 from rtg.compare.reproduce_args import ReproduceArgs
@@ -20,7 +20,7 @@ from rtg.processes.interrupts import Interrupts
 
 _POLL = 0.2  # [s]
 _GRACE = 10.0  # [s] from SIGTERM to SIGKILL; a run allows its own processes less
-_STAMP = re.compile(r"^\[ *[\d.]+ s\] ")
+_TIMESTAMP = re.compile(r"^\[ *[\d.]+ s\] ")
 
 
 def reproduce(args: ReproduceArgs) -> int:
@@ -30,18 +30,18 @@ def reproduce(args: ReproduceArgs) -> int:
     and while it writes the report if a file of a run is damaged. Raises RunError if the user
     stopped the comparison.
     """
-    runs = make_ready(args)
-    with run_folder.writing_to(args.out):
+    runs = prepare_runs(args)
+    with run_folder.write_errors_as_user_errors(args.out):
         args.out.mkdir(parents=True, exist_ok=True)
-    with run_folder.alone(args.out, "another reproduce"):
+    with run_folder.exclusive_lock(args.out, "another reproduce"):
         grid = read_grid(args.out)
         grid.add(args.command, args.cells)
-        with run_folder.writing_to(args.out):
+        with run_folder.write_errors_as_user_errors(args.out):
             grid.write(args.out)
         # A run repeats the work of a job that fails in these stages.
         for stage in grouped_seeds.stages(runs, args.together):
-            _run_all(args, Crew(stage, args.jobs))
-        rows = _run_all(args, Crew(runs, args.jobs, Failures(grid, args.out)))
+            _run_all(args, JobPool(stage, args.jobs))
+        rows = _run_all(args, JobPool(runs, args.jobs, Failures(grid, args.out)))
         from rtg.compare.report_files import write_report  # imports matplotlib, which takes long
 
         report = write_report(args.out, args.out)
@@ -49,22 +49,22 @@ def reproduce(args: ReproduceArgs) -> int:
     return 1 if any(row.phase == "failed" for row in rows) else 0
 
 
-def _run_all(args: ReproduceArgs, crew: Crew) -> list[Row]:
+def _run_all(args: ReproduceArgs, pool: JobPool) -> list[Row]:
     """Runs all jobs and returns a row on how each ended. Raises RunError if the user stopped it."""
-    with display(sys.stdout) as shown, Interrupts(on_demand=crew.kill) as interrupts:
+    with display(sys.stdout) as shown, Interrupts(on_second_signal=pool.kill) as interrupts:
         try:
-            while crew.tend(shown):
-                crew.wait(_POLL)
+            while pool.poll(shown):
+                pool.wait(_POLL)
                 interrupts.raise_if_requested()
         except StoppedError:
-            raise RunError(f"stopped; to go on: {args.typed}") from None
+            raise RunError(f"stopped; to go on: {args.command_line}") from None
         finally:
-            crew.stop()
-    return crew.rows()
+            pool.stop()
+    return pool.rows()
 
 
 class Job(Protocol):
-    """Work that a crew does in one process; CellRun is an example."""
+    """Work that a pool does in one process; CellRun is an example."""
 
     @property
     def name(self) -> str: ...
@@ -78,10 +78,10 @@ class Job(Protocol):
         """Returns whether there is nothing left to do."""
 
     @property
-    def generates(self) -> str | None:
-        """The kind of transitions that the job has yet to generate; None if there are none.
+    def pending_generation_key(self) -> str | None:
+        """The key of the transitions that the job has yet to generate; None if there are none.
 
-        Other jobs that need the same kind wait for this job.
+        Other jobs that need the same transitions wait for this job.
         """
 
     def command(self) -> list[str]:
@@ -98,24 +98,26 @@ class Failures:
         self._grid, self._folder = grid, folder
 
     def add(self, name: str, words: str) -> None:
-        self._grid.failed[name] = words
+        self._grid.failure_by_name[name] = words
         self._grid.write(self._folder)
 
-    def drop(self, name: str) -> None:
+    def remove(self, name: str) -> None:
         """Removes the failure of a job that is about to start again."""
-        if self._grid.failed.pop(name, None) is not None:
+        if self._grid.failure_by_name.pop(name, None) is not None:
             self._grid.write(self._folder)
 
 
-class Crew:
-    """Runs jobs, at most `places` of them at the same time."""
+class JobPool:
+    """Runs jobs, at most `max_parallel` of them at the same time."""
 
-    def __init__(self, jobs: Sequence[Job], places: int, failures: Failures | None = None) -> None:
-        self._jobs, self._places, self._failures = list(jobs), places, failures
+    def __init__(
+        self, jobs: Sequence[Job], max_parallel: int, failures: Failures | None = None
+    ) -> None:
+        self._jobs, self._max_parallel, self._failures = list(jobs), max_parallel, failures
         self._nodes: dict[str, Node] = {}  # the running jobs, by name
         self._rows = {job.name: _first_row(job) for job in jobs}
 
-    def tend(self, shown: GridDisplay) -> bool:
+    def poll(self, shown: GridDisplay) -> bool:
         """Records the jobs that have ended, starts jobs while there is room and shows all rows.
 
         Returns whether any job is running.
@@ -123,10 +125,14 @@ class Crew:
         for job in self._jobs:
             node = self._nodes.get(job.name)
             if node is not None:
-                self._look_at(job, node)
+                self._update(job, node)
         for job in self._jobs:
-            idle = len(self._nodes) < self._places
-            if idle and self._rows[job.name].phase == "waiting" and not self._is_made(job):
+            has_room = len(self._nodes) < self._max_parallel
+            if (
+                has_room
+                and self._rows[job.name].phase == "waiting"
+                and not self._is_being_generated(job)
+            ):
                 self._start(job)
         shown.show(self.rows())
         return bool(self._nodes)
@@ -147,14 +153,14 @@ class Crew:
         """Kills all jobs at once."""
         kill_all(self._nodes.values())
 
-    def _is_made(self, job: Job) -> bool:
+    def _is_being_generated(self, job: Job) -> bool:
         """Returns whether a running job generates the transitions that `job` would generate."""
-        kinds = {other.generates for other in self._jobs if other.name in self._nodes}
-        return job.generates is not None and job.generates in kinds
+        keys = {other.pending_generation_key for other in self._jobs if other.name in self._nodes}
+        return job.pending_generation_key is not None and job.pending_generation_key in keys
 
     def _start(self, job: Job) -> None:
         if self._failures:
-            self._failures.drop(job.name)
+            self._failures.remove(job.name)
         try:
             job.log.parent.mkdir(parents=True, exist_ok=True)
             self._nodes[job.name] = Node(job.name, job.command(), job.log)
@@ -162,18 +168,18 @@ class Crew:
         except (UserError, OSError) as error:
             self._fail(job, str(error))
 
-    def _look_at(self, job: Job, node: Node) -> None:
+    def _update(self, job: Job, node: Node) -> None:
         if node.exit_status() is None:
-            words = _STAMP.sub("", node.last_words(lines=1))
+            words = _TIMESTAMP.sub("", node.log_tail(lines=1))
             self._rows[job.name] = Row(job.name, "running", words)
             return
         del self._nodes[job.name]
         if job.done:
             self._rows[job.name] = _first_row(job)
             return
-        words = node.last_words()
+        words = node.log_tail()
         self._fail(
-            job, f"{node.epitaph()}; the end of its log:\n{words}" if words else node.epitaph()
+            job, f"{node.exit_text()}; the end of its log:\n{words}" if words else node.exit_text()
         )
 
     def _fail(self, job: Job, words: str) -> None:

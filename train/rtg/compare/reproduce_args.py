@@ -13,14 +13,14 @@ from pathlib import Path
 from rtg import paths
 from rtg.compare.ablations import ablations
 from rtg.compare.cells import Cell
-from rtg.compare.methods import METHODS, REFERENCE, TASKS, run_words
+from rtg.compare.methods import METHODS, REFERENCE, TASKS, method_flags
 from rtg.errors import UserError
 from rtg.run.run_args import Override, Parser, task_file
 from rtg.run.run_args import parse as parse_run
 
-SEEDS = "5"
+DEFAULT_SEEDS = "5"
 # Settings of --quick: every part runs, but on budgets too small for results.
-QUICK = (
+QUICK_SETTINGS = (
     "search.transitions=30000",
     "train.interactions=30000",
     "train.start_at=10000",
@@ -30,7 +30,7 @@ QUICK = (
 )
 MAX_SEEDS = 1000
 # Keys that --set must leave to the cells -> the flag to use instead.
-DECIDED = {
+RESERVED_KEYS = {
     "run.seed": "--seeds",
     "run.method": "--methods",
     "run.in_process": "none, every run is in one process",
@@ -61,7 +61,7 @@ class ReproduceArgs:
     together: bool  # seeds of a method learn in one process even without a GPU
     out: Path
     command: str  # with all flags that affect the results, for the report
-    typed: str  # the command as the user typed it
+    command_line: str  # the command as the user typed it
 
 
 def parser() -> Parser:
@@ -75,7 +75,7 @@ def parser() -> Parser:
     p.add_argument("tasks", metavar="TASK", nargs="*", help=f"tasks or files ({' '.join(TASKS)})")
     what = "what to compare (all; of a sweep and ablations: ddqn_rtg)"
     p.add_argument("--methods", metavar="a,b", help=what)
-    p.add_argument("--seeds", metavar="N|1,2,3", help=f"how many, or which ({SEEDS})")
+    p.add_argument("--seeds", metavar="N|1,2,3", help=f"how many, or which ({DEFAULT_SEEDS})")
     p.add_argument("--jobs", metavar="N", help="runs at a time (one per core)")
     p.add_argument("--out", metavar="DIR", help="folder of the comparison (runs/reproduce)")
     p.add_argument("--quick", action="store_true", help="small budgets, one seed: minutes")
@@ -95,7 +95,7 @@ def parser() -> Parser:
     return p
 
 
-def _number(flag: str, word: str, least: int, most: int, legal: str = "") -> int:
+def _parse_number(flag: str, word: str, least: int, most: int, legal: str = "") -> int:
     if not (word.isascii() and word.isdigit() and least <= int(word) <= most):
         legal = legal or f"a number from {least} to {most}"
         raise UserError(f"{flag} {word or repr(word)}: legal: {legal}")
@@ -106,9 +106,9 @@ def parse_seeds(words: str) -> tuple[int, ...]:
     """Parses a number N (seeds 1 to N) or a list 1,2,3. Raises UserError."""
     if "," not in words:
         legal = f"a number from 1 to {MAX_SEEDS}, or a list 1,2,3"
-        return tuple(range(1, 1 + _number("--seeds", words, 1, MAX_SEEDS, legal)))
+        return tuple(range(1, 1 + _parse_number("--seeds", words, 1, MAX_SEEDS, legal)))
     seeds = [
-        _number("--seeds", word, 0, 2**31 - 1, "a list 1,2,3")
+        _parse_number("--seeds", word, 0, 2**31 - 1, "a list 1,2,3")
         for word in words.strip(",").split(",")
     ]
     return tuple(dict.fromkeys(seeds))
@@ -117,8 +117,8 @@ def parse_seeds(words: str) -> tuple[int, ...]:
 def _methods(args: argparse.Namespace) -> tuple[str, ...]:
     """Returns the methods to compare. Raises UserError for an unknown one."""
     if args.methods is None:
-        is_of_reference = args.sweep or args.ablations
-        return QUICK_METHODS if args.quick else (REFERENCE,) if is_of_reference else METHODS
+        reference_only = args.sweep or args.ablations
+        return QUICK_METHODS if args.quick else (REFERENCE,) if reference_only else METHODS
     found = tuple(dict.fromkeys(args.methods.split(",")))
     for method in found:
         if method not in METHODS:
@@ -130,7 +130,7 @@ def _methods(args: argparse.Namespace) -> tuple[str, ...]:
 
 def _seeds(args: argparse.Namespace) -> str:
     """Returns the value of --seeds, or its default, as the user types it."""
-    default = "1" if args.quick else SEEDS
+    default = "1" if args.quick else DEFAULT_SEEDS
     return default if args.seeds is None else str(args.seeds)
 
 
@@ -181,16 +181,16 @@ def _cells(args: argparse.Namespace, files: dict[str, Path]) -> tuple[Cell, ...]
 
 
 def _settings(args: argparse.Namespace) -> tuple[str, ...]:
-    """Returns the settings of all cells. Raises UserError if --set names a key of DECIDED."""
+    """Returns the settings of all cells. Raises UserError if --set names a key of RESERVED_KEYS."""
     for setting in args.set:
-        if (key := setting.partition("=")[0]) in DECIDED:
-            raise UserError(f"--set {setting}: reproduce decides it; legal: {DECIDED[key]}")
-    return (*(QUICK if args.quick else ()), *args.set)
+        if (key := setting.partition("=")[0]) in RESERVED_KEYS:
+            raise UserError(f"--set {setting}: reproduce decides it; legal: {RESERVED_KEYS[key]}")
+    return (*(QUICK_SETTINGS if args.quick else ()), *args.set)
 
 
 def _common(args: argparse.Namespace, method: str) -> list[Override]:
     """Returns the overrides that all cells of a method share."""
-    of_method = parse_run(run_words(method)).overrides
+    of_method = parse_run(method_flags(method)).overrides
     return [*of_method, *(Override(f"--set {setting}", setting) for setting in _settings(args))]
 
 
@@ -211,9 +211,9 @@ def parse(words: Sequence[str]) -> ReproduceArgs:
         files=files,
         cells=cells,
         settings=_settings(args),
-        jobs=_number("--jobs", jobs, 1, 1000),
+        jobs=_parse_number("--jobs", jobs, 1, 1000),
         together=args.together,
         out=Path(args.out or paths.RUNS / f"reproduce{'-quick' * args.quick}").absolute(),
         command=shlex.join(["./run.sh", "reproduce", *tasks, *flags]),
-        typed=shlex.join(["./run.sh", "reproduce", *words]),
+        command_line=shlex.join(["./run.sh", "reproduce", *words]),
     )

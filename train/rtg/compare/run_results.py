@@ -83,14 +83,14 @@ class RunResult:
             "seed": self.cell.seed,
             **{name: self.summary.get(name) for name in names},
             "success_at_third": self.success_at_third(),
-            "interactions_to_70": self.reached(0.70),
-            **{f"{cost}_to_95": self.reached(0.95, cost) for cost in COSTS},
+            "interactions_to_70": self.cost_to_reach(0.70),
+            **{f"{cost}_to_95": self.cost_to_reach(0.95, cost) for cost in COSTS},
             **{name: self.summary.get(name) for name in (*of_generation, *of_learner)},
-            **{f"whole_{cost}": self.spent(cost) for cost in COSTS[1:]},
+            **{f"whole_{cost}": self.total_cost(cost) for cost in COSTS[1:]},
             "commit": self.commit,
         }
 
-    def spent(self, cost: str) -> float | None:
+    def total_cost(self, cost: str) -> float | None:
         """Returns the total cost at the last evaluation; None if there are no evaluations."""
         return costs(self.curve, cost)[-1] if self.curve else None
 
@@ -110,15 +110,15 @@ class RunResult:
         known = self.curve["success_rate"][within]
         return float(known[-1]) if len(known) else None
 
-    def reached(self, bar: float, cost: str = COSTS[0]) -> float | None:
-        """Returns the cost at the first evaluation with a greedy success of at least `bar`.
+    def cost_to_reach(self, threshold: float, cost: str = COSTS[0]) -> float | None:
+        """Returns the cost at the first evaluation with a greedy success of at least `threshold`.
 
         Returns None if there is none.
         """
         if not self.curve:
             return None
         success = self.curve["success_rate"]
-        first = first_reach(np.arange(float(len(success))), success, bar)
+        first = first_reach(np.arange(float(len(success))), success, threshold)
         return None if first is None else costs(self.curve, cost)[first]
 
 
@@ -135,7 +135,7 @@ class Comparison:
     @property
     def labels(self) -> list[str]:
         """The labels of the cells (method with swept settings), in the order of the methods."""
-        cells = sorted((r.cell for r in self.results), key=_place)
+        cells = sorted((r.cell for r in self.results), key=_method_order)
         return list(dict.fromkeys(cell.label for cell in cells))
 
     def row(self, task: str, label: str) -> list[RunResult]:
@@ -159,7 +159,9 @@ def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
         train = effective_config.load(run / "config.yaml").train
         return RunResult(cell, run, "done", summary, made_with, curve, train)
     begun = "unfinished" if run.is_dir() else "not run"
-    return RunResult(cell, run, "failed" if cell.name in grid.failed else begun, {}, {}, {}, None)
+    return RunResult(
+        cell, run, "failed" if cell.name in grid.failure_by_name else begun, {}, {}, {}, None
+    )
 
 
 def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
@@ -172,11 +174,11 @@ def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
         return {}
     if not {*COSTS, *CURVES} <= curve.keys():
         raise UserError(f"{progress}: lacks columns; legal: as the run left it")
-    generated = {"pushes": summary.get("replays"), "cpu_s": summary.get("generate_cpu_s")}
-    return curve | {cost: curve[cost] + (spent or 0) for cost, spent in generated.items()}
+    generation_costs = {"pushes": summary.get("replays"), "cpu_s": summary.get("generate_cpu_s")}
+    return curve | {cost: curve[cost] + (extra or 0) for cost, extra in generation_costs.items()}
 
 
-def _place(cell: Cell) -> int:
+def _method_order(cell: Cell) -> int:
     return METHODS.index(cell.method) if cell.method in METHODS else len(METHODS)
 
 
@@ -186,10 +188,10 @@ def read_comparison(folder: Path, grid: Grid) -> Comparison:
     The runs are sorted by task, method, settings and seed. Tasks have the order of TASKS, methods
     that of METHODS; others follow. Other tasks and all settings have the order of the grid.
     """
-    tasks = list(dict.fromkeys((*TASKS, *(cell.task for cell in grid.cells))))
-    settings = list(dict.fromkeys(cell.settings for cell in grid.cells))
+    tasks = list(dict.fromkeys((*TASKS, *(cell.task for cell in grid.commands_by_cell))))
+    settings = list(dict.fromkeys(cell.settings for cell in grid.commands_by_cell))
     cells = sorted(
-        grid.cells,
-        key=lambda c: (tasks.index(c.task), _place(c), settings.index(c.settings), c.seed),
+        grid.commands_by_cell,
+        key=lambda c: (tasks.index(c.task), _method_order(c), settings.index(c.settings), c.seed),
     )
     return Comparison(tuple(_result(folder, cell, grid) for cell in cells))

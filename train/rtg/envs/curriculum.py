@@ -9,14 +9,15 @@ and 100 old starts would allow six rounds of full-length episodes within the int
 Table 2. The pools here allow 30 such rounds, and more if episodes are shorter.
 
 Choices that give the method its best chance:
-- The paper's walks of 50 small steps become walks of PUSHES whole pushes, half of which seek
-  contact. Only one in ten uniform pushes moves an object, so without contact the starts would
+- The paper's walks of 50 small steps become walks of PUSHES_PER_WALK whole pushes, half of which
+  seek contact. Only one in ten uniform pushes moves an object, so without contact the starts would
   differ only in the position of the robot.
-- If a round has fewer than FEWEST good starts, because it was too easy or too hard, the next walks
-  begin at mastered starts, too. Otherwise a learner that solves all starts would never leave them.
-  Only new starts of the round qualify, as old ones are closer to the goal. Of the mastered new
-  starts only the half with the longest episodes is used, as walks lead towards the goal as often as
-  away from it. Without good and mastered starts the walks begin where the previous ones began.
+- If a round has fewer than MIN_GOOD_STARTS good starts, because it was too easy or too hard, the
+  next walks begin at mastered starts, too. Otherwise a learner that solves all starts would never
+  leave them. Only new starts of the round qualify, as old ones are closer to the goal. Of the
+  mastered new starts only the half with the longest episodes is used, as walks lead towards the
+  goal as often as away from it. Without good and mastered starts the walks begin where the previous
+  ones began.
 - Starts with an object outside the arena are left out, because the robot cannot push it back.
 - A share of the episodes begins at the task's own starts, from which the learner is evaluated.
 """
@@ -33,19 +34,19 @@ from rtg.errors import UserError
 
 Floats = NDArray[np.float64]
 
-LEAST, MOST = 0.1, 0.9  # bounds of the success rate from a good start
-NEW, OLD = 40, 20  # numbers of new and old starts in a pool
-FEWEST = 10  # number of good starts below which mastered starts are used, too
-EPISODES = 3  # mean number of episodes per start and round
-GOALS = 100  # number of draws of the goal states where the first walks begin
-WALKS, PUSHES = 100, 3  # number of walks for the new starts; pushes per walk
-SEEKING = 0.5  # share of the walks' pushes that seek contact
-OF_GOALS = 1 << 62  # offset of the seeds of goal states, above the seeds of runs
+MIN_SUCCESS, MAX_SUCCESS = 0.1, 0.9  # bounds of the success rate from a good start
+NEW_STARTS, OLD_STARTS = 40, 20  # numbers of new and old starts in a pool
+MIN_GOOD_STARTS = 10  # number of good starts below which mastered starts are used, too
+EPISODES_PER_START = 3  # mean number of episodes per start and round
+GOAL_DRAWS = 100  # number of draws of the goal states where the first walks begin
+WALKS, PUSHES_PER_WALK = 100, 3  # number of walks for the new starts; pushes per walk
+CONTACT_SHARE = 0.5  # share of the walks' pushes that seek contact
+GOAL_SEED_OFFSET = 1 << 62  # offset of the seeds of goal states, above the seeds of runs
 
-ELSEWHERE = -1  # number of all starts that are not from the curriculum
+NOT_FROM_CURRICULUM = -1  # number of all starts that are not from the curriculum
 
 
-def goal_states(task: _core.Task, seed: int, count: int = GOALS) -> Floats:
+def goal_states(task: _core.Task, seed: int, count: int = GOAL_DRAWS) -> Floats:
     """Draws `count` goal states and leaves out failed draws. [goals, bodies, 3]
 
     Raises UserError if all draws fail.
@@ -64,12 +65,13 @@ class Curriculum:
         self._task, self._simulator = config.task, _core.Simulator(config)
         self._share = share
         self._rng = np.random.default_rng([seed, 2])
-        self._seeds: Floats = goal_states(self._task, OF_GOALS + seed)  # states where walks begin
-        self._good = self._seeds[:0]  # good starts of all rounds
+        # States where walks begin.
+        self._walk_starts: Floats = goal_states(self._task, GOAL_SEED_OFFSET + seed)
+        self._good = self._walk_starts[:0]  # good starts of all rounds
         self._first = 0  # number of the pool's first start
         self._drawn = 0  # number of starts drawn from this pool
         self.pushes = 0  # simulated pushes of walks, in addition to the learner's interactions
-        self._set_pool(self._nearby(), self._good)
+        self._set_pool(self._new_starts(), self._good)
 
     @property
     def pool(self) -> Floats:
@@ -79,42 +81,44 @@ class Curriculum:
     def draw(self) -> tuple[int, Floats | None]:
         """Returns the number and the start of the next episode.
 
-        They are ELSEWHERE and None if the episode shall begin at a start of the task.
+        They are NOT_FROM_CURRICULUM and None if the episode shall begin at a start of the task.
         """
         if self._rng.random() >= self._share:
-            return ELSEWHERE, None
+            return NOT_FROM_CURRICULUM, None
         k = self._drawn % len(self._pool)
         self._drawn += 1
         return self._first + k, self._pool[k]
 
-    def note(self, number: int, success: bool, length: int) -> None:
+    def record_episode(self, number: int, success: bool, length: int) -> None:
         """Records how an episode from start `number` ended after `length` pushes.
 
-        Ignores starts of earlier rounds and ELSEWHERE. Begins the next round if this one is over.
+        Ignores starts of earlier rounds and NOT_FROM_CURRICULUM. Begins the next round if this one
+        is over.
         """
         k = number - self._first
-        if k < 0:  # includes ELSEWHERE
+        if k < 0:  # includes NOT_FROM_CURRICULUM
             return
         self._tries[k] += 1
         self._wins[k] += success
         self._lengths[k] += length
-        if self._tries.sum() >= EPISODES * len(self._pool):
+        if self._tries.sum() >= EPISODES_PER_START * len(self._pool):
             self._next_round()
 
     def _next_round(self) -> None:
         rate = self._wins / np.maximum(self._tries, 1)
-        good = self._pool[(rate >= LEAST) & (rate <= MOST)]
-        seeds = good if len(good) >= FEWEST else np.concatenate((good, self._frontier(rate)))
-        if len(seeds):
-            self._seeds = seeds
-        old = self._some(self._good, OLD)
+        good = self._pool[(rate >= MIN_SUCCESS) & (rate <= MAX_SUCCESS)]
+        few = len(good) < MIN_GOOD_STARTS
+        walk_starts = np.concatenate((good, self._frontier(rate))) if few else good
+        if len(walk_starts):
+            self._walk_starts = walk_starts
+        old = self._random_subset(self._good, OLD_STARTS)
         self._good = np.concatenate((self._good, good))
         self._first += len(self._pool)
-        self._set_pool(self._nearby(), old)
+        self._set_pool(self._new_starts(), old)
 
     def _frontier(self, rate: Floats) -> Floats:
         """Returns the half of the mastered new starts that has the longest episodes."""
-        mastered = np.flatnonzero(rate[: self._new] > MOST)
+        mastered = np.flatnonzero(rate[: self._new] > MAX_SUCCESS)
         lengths = self._lengths[mastered] / self._tries[mastered]
         longest = np.argsort(-lengths, kind="stable")[: (len(mastered) + 1) // 2]
         return self._pool[mastered[longest]]
@@ -127,35 +131,35 @@ class Curriculum:
         self._wins = np.zeros(len(pool), np.int64)
         self._lengths = np.zeros(len(pool), np.int64)  # pushes in all tries
 
-    def _some(self, states: Floats, count: int) -> Floats:
+    def _random_subset(self, states: Floats, count: int) -> Floats:
         """Returns `count` of the states, or all if there are fewer, in random order."""
         return states[self._rng.permutation(len(states))[:count]]
 
-    def _nearby(self) -> Floats:
-        """Returns new starts: states on random walks from the seeds, else the task's start."""
-        states = self._seeds[self._rng.integers(len(self._seeds), size=WALKS)]
-        met = []
-        for _ in range(PUSHES):
+    def _new_starts(self) -> Floats:
+        """Returns new starts: states on random walks from `_walk_starts`, else the task's start."""
+        states = self._walk_starts[self._rng.integers(len(self._walk_starts), size=WALKS)]
+        visited = []
+        for _ in range(PUSHES_PER_WALK):
             after, ok = self._simulator.push(states, self._headings(states))
             self.pushes += WALKS
             states = np.where(ok[:, None, None], after, states)
-            met.append(states[ok])
-        found = np.concatenate(met)
+            visited.append(states[ok])
+        found = np.concatenate(visited)
         within = (np.abs(found[:, 1:, :2]) <= self._task.arena).all(axis=(1, 2))
-        found = self._some(found[within & ~self._task.succeeded(found)], NEW)
+        found = self._random_subset(found[within & ~self._task.succeeded(found)], NEW_STARTS)
         return found if len(found) else self._task.start[None]
 
     def _headings(self, states: Floats) -> NDArray[np.int64]:
         """Draws the heading of the next push of each walk. [walks]"""
         contact = self._task.contact_headings(states, int(self._rng.integers(1 << 62)))
         anywhere = self._rng.integers(self._task.headings, size=len(states))
-        return np.where(self._rng.random(len(states)) < SEEKING, contact, anywhere)
+        return np.where(self._rng.random(len(states)) < CONTACT_SHARE, contact, anywhere)
 
     def state(self) -> dict[str, Any]:
         """Returns everything that the next starts depend on."""
         return {
             "rng": self._rng.bit_generator.state,
-            "seeds": self._seeds,
+            "seeds": self._walk_starts,
             "good": self._good,
             "pool": self._pool,
             "new": self._new,
@@ -169,7 +173,7 @@ class Curriculum:
 
     def restore(self, state: dict[str, Any]) -> None:
         self._rng.bit_generator.state = state["rng"]
-        self._seeds, self._good = np.asarray(state["seeds"]), np.asarray(state["good"])
+        self._walk_starts, self._good = np.asarray(state["seeds"]), np.asarray(state["good"])
         pool, new = np.asarray(state["pool"]), state["new"]
         self._set_pool(pool[:new], pool[new:])
         self._tries = np.asarray(state["tries"]).copy()

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
 from rtg import _core
-from rtg.envs.curriculum import ELSEWHERE, Curriculum
+from rtg.envs.curriculum import NOT_FROM_CURRICULUM, Curriculum
 from rtg.envs.push_env import observation_space
 
 
@@ -36,7 +36,9 @@ class PushVecEnv(VecEnv):
         self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
         self.curriculum = curriculum
-        self._origins = [ELSEWHERE] * count  # curriculum's start numbers of the current episodes
+        self._origins = [
+            NOT_FROM_CURRICULUM
+        ] * count  # curriculum's start numbers of the current episodes
         self._starts = 0  # number of starts so far, without the curriculum's
         self.successes = 0  # number of successful episodes
         self._poses = np.zeros((count, task.bodies, 3))  # [count, bodies, 3]
@@ -67,11 +69,12 @@ class PushVecEnv(VecEnv):
         if done.any():
             for env in map(int, np.flatnonzero(done)):
                 infos[env]["terminal_observation"] = observation[env]
-                if self._origins[env] == ELSEWHERE:  # the task's own start, as in evaluations
+                # Only episodes from the task's own starts count, as in evaluations.
+                if self._origins[env] == NOT_FROM_CURRICULUM:
                     infos[env]["is_success"] = bool(success[env])
                     infos[env]["episode"] = {"r": float(success[env]), "l": int(self._steps[env])}
                 if self.curriculum:
-                    self.curriculum.note(
+                    self.curriculum.record_episode(
                         self._origins[env], bool(success[env]), int(self._steps[env])
                     )
                 self._begin(env)
@@ -83,7 +86,9 @@ class PushVecEnv(VecEnv):
         return self.task.contact_headings(self._poses, seed)
 
     def _begin(self, env: int) -> None:
-        self._origins[env], start = self.curriculum.draw() if self.curriculum else (ELSEWHERE, None)
+        self._origins[env], start = (
+            self.curriculum.draw() if self.curriculum else (NOT_FROM_CURRICULUM, None)
+        )
         if start is None:
             start = self.task.jittered_start(self._jitter, self._seed, self._starts)
             self._starts += 1

@@ -16,7 +16,7 @@ from rtg.errors import UserError
 Array = npt.NDArray[Any]
 
 SOURCES = _core.SOURCES  # names of the origins of transitions; the value of `source` is the index
-_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip entry can store
+_ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip entry can store
 
 
 class Rows(NamedTuple):
@@ -29,9 +29,9 @@ class Rows(NamedTuple):
     terminated: npt.NDArray[np.bool_]  # [n], True on success
     source: npt.NDArray[np.int8]  # [n], index into SOURCES
 
-    def after(self, skip: int, end: int | None = None) -> Rows:
-        """Returns the rows from index `skip` up to, but not including, index `end`."""
-        return Rows._make(column[skip:end] for column in self)
+    def slice(self, begin: int, end: int | None = None) -> Rows:
+        """Returns the rows from index `begin` up to, but not including, index `end`."""
+        return Rows._make(column[begin:end] for column in self)
 
 
 class Transitions(NamedTuple):
@@ -70,7 +70,14 @@ _COLUMNS = {
 
 
 # Errors that numpy and zipfile raise on damaged files.
-_NOT_NUMPYS = (ValueError, EOFError, KeyError, RuntimeError, MemoryError, zipfile.BadZipFile)
+_DAMAGED_FILE_ERRORS = (
+    ValueError,
+    EOFError,
+    KeyError,
+    RuntimeError,
+    MemoryError,
+    zipfile.BadZipFile,
+)
 
 
 class DatasetError(UserError, ValueError):
@@ -94,7 +101,7 @@ def write(path: Path, transitions: Transitions) -> None:
     with partial.open("wb") as file:
         with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
             for name, column in _COLUMNS.items():
-                entry = zipfile.ZipInfo(f"{name}.npy", _EPOCH)
+                entry = zipfile.ZipInfo(f"{name}.npy", _ZIP_EPOCH)
                 with archive.open(entry, "w", force_zip64=True) as member:
                     array: Array = np.ascontiguousarray(
                         getattr(transitions, name), dtype=column.dtype
@@ -116,7 +123,7 @@ def read(path: Path, bodies: int | None = None, headings: int | None = None) -> 
             arrays = {name: _member(path, archive, name) for name in _COLUMNS}
     except (DatasetError, FileNotFoundError):
         raise
-    except (*_NOT_NUMPYS, OSError) as error:
+    except (*_DAMAGED_FILE_ERRORS, OSError) as error:
         raise DatasetError(f"{path}: not a transition file ({error})") from error
     transitions = Transitions(**arrays)
     _check_shapes(path, transitions)

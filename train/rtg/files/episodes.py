@@ -11,11 +11,11 @@ from rtg.files.dataset import SOURCES, Transitions
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_GAP = 0.25  # [m], largest distance of a body from its place where the next step begins
-_REPLAYED = 50  # plans, at most
+_MAX_GAP = 0.25  # [m], largest distance of a body from its place where the next step begins
+_MAX_REPLAYS = 50  # plans, at most
 
 
-def _places(states: Floats) -> Floats:
+def _positions(states: Floats) -> Floats:
     """Returns the positions of all bodies [m]. [N, bodies, 3] -> [N, 2 bodies]"""
     return states[:, :, :2].reshape(len(states), -1)
 
@@ -25,9 +25,9 @@ def _nearest(states: Floats, among: Floats) -> Ints:
 
     [N, bodies, 3], [M, bodies, 3] -> [N]
     """
-    x = _places(among)
+    x = _positions(among)
     squares = (x * x).sum(axis=1)
-    parts = np.array_split(_places(states), 1 + len(states) // 500)
+    parts = np.array_split(_positions(states), 1 + len(states) // 500)
     return np.concatenate([(squares - 2.0 * part @ x.T).argmin(axis=1) for part in parts])
 
 
@@ -39,14 +39,14 @@ def _plans(steps: Transitions) -> tuple[Ints, Ints]:
     """
     following = _nearest(steps.next_poses, steps.poses)
     gaps = np.linalg.norm((steps.next_poses - steps.poses[following])[:, :, :2], axis=2)
-    joined = gaps.max(axis=1) <= _GAP
+    joined = gaps.max(axis=1) <= _MAX_GAP
     lengths = steps.terminated.astype(np.int64)
     while (found := (lengths == 0) & joined & (lengths[following] > 0)).any():
         lengths[found] = lengths[following[found]] + 1
     return lengths, following
 
 
-def _replayed(config: _core.Config, start: Floats, actions: Ints) -> Floats:
+def _simulated(config: _core.Config, start: Floats, actions: Ints) -> Floats:
     """Simulates `actions` from `start` and returns the states.
 
     Stops after a success and before a push that the simulator cannot finish.
@@ -76,14 +76,16 @@ def replayed_plan(config: _core.Config, transitions: Transitions) -> Floats | No
     if not steps.terminated.any():
         return None
     lengths, following = _plans(steps)
-    away = np.linalg.norm(_places(steps.poses) - _places(config.task.start[None]), axis=1)
+    distances = np.linalg.norm(
+        _positions(steps.poses) - _positions(config.task.start[None]), axis=1
+    )
     planned = np.flatnonzero(lengths)
     episodes = []
-    for step in planned[np.argsort(away[planned], kind="stable")][:_REPLAYED]:
+    for step in planned[np.argsort(distances[planned], kind="stable")][:_MAX_REPLAYS]:
         plan = [int(step)]
         while len(plan) < lengths[step]:
             plan.append(int(following[plan[-1]]))
-        episodes.append(_replayed(config, steps.poses[step], steps.action[plan]))
+        episodes.append(_simulated(config, steps.poses[step], steps.action[plan]))
         if config.task.succeeded(episodes[-1][-1:])[0]:
             return episodes[-1]
     return episodes[0]

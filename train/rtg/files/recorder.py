@@ -16,16 +16,16 @@ class Recorder:
 
     def __init__(self, task: _core.Task) -> None:
         self._task = task
-        self._parts = [self._seen(_no_rows(task.bodies))]
+        self._parts = [self._with_observations(_no_rows(task.bodies))]
         self.count = 0
 
     def add(self, rows: Rows) -> Transitions:
         """Appends the next rows of the sequence and returns them with their observations."""
-        self._parts.append(self._seen(rows))
+        self._parts.append(self._with_observations(rows))
         self.count += len(rows.action)
         return self._parts[-1]
 
-    def _seen(self, rows: Rows) -> Transitions:
+    def _with_observations(self, rows: Rows) -> Transitions:
         task = self._task
         return Transitions(
             **rows._asdict(),

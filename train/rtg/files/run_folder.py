@@ -56,11 +56,11 @@ SUMMARY_KEYS = (
     "lost_transitions",
 )
 # Keys of generation.json with the data of the pictures, which are too long for summary.json.
-_SAMPLES = ("replay_gaps", "nodes")
+_SAMPLE_KEYS = ("replay_gaps", "nodes")
 
 
 @contextlib.contextmanager
-def writing_to(folder: Path) -> Iterator[None]:
+def write_errors_as_user_errors(folder: Path) -> Iterator[None]:
     """Turns an OSError of its `with` block into a UserError about --out."""
     try:
         yield
@@ -69,18 +69,18 @@ def writing_to(folder: Path) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def alone(folder: Path, other: str) -> Iterator[None]:
+def exclusive_lock(folder: Path, holder: str) -> Iterator[None]:
     """Locks the folder, which must exist, against other processes during the `with` block.
 
-    Raises UserError if the folder is locked already; the message names the holder, `other`.
+    Raises UserError if the folder is locked already; the message names the `holder`.
     """
-    with writing_to(folder):
+    with write_errors_as_user_errors(folder):
         directory = os.open(folder, os.O_RDONLY)
     try:
         try:
             fcntl.flock(directory, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise UserError(f"--out: {folder}: {other} works there; wait for it") from None
+            raise UserError(f"--out: {folder}: {holder} works there; wait for it") from None
         yield
     finally:
         os.close(directory)
@@ -151,7 +151,7 @@ def summary(
     """
     generation = read_json(run / "generation.json") if config.train.offline else {}
     known: dict[str, Any] = {
-        **{key: value for key, value in generation.items() if key not in _SAMPLES},
+        **{key: value for key, value in generation.items() if key not in _SAMPLE_KEYS},
         **measured,
         **read_json(run / "training.json"),
         "task": config.task.name,

@@ -15,12 +15,12 @@ from rtg import _core, paths
 from rtg.files import run_folder
 
 FILE = "versions.json"
-_REVISION = ("git_revision", "git_modified")
-_PACKAGES = ("torch", "stable-baselines3", "gymnasium", "numpy", "lcm")
-_DEBIAN = ("g++", "libeigen3-dev", "libsuitesparse-dev", "libbox2d-dev", "libyaml-cpp-dev")
+_REVISION_KEYS = ("git_revision", "git_modified")
+_PYTHON_PACKAGES = ("torch", "stable-baselines3", "gymnasium", "numpy", "lcm")
+_DEBIAN_PACKAGES = ("g++", "libeigen3-dev", "libsuitesparse-dev", "libbox2d-dev", "libyaml-cpp-dev")
 
 
-def _output(*command: str) -> str | None:
+def _command_output(*command: str) -> str | None:
     if shutil.which(command[0]) is None:
         return None
     done = subprocess.run(command, cwd=paths.ROOT, capture_output=True, text=True, check=False)
@@ -28,7 +28,7 @@ def _output(*command: str) -> str | None:
 
 
 def _debian_version(package: str) -> str | None:
-    return _output("dpkg-query", "-W", "-f=${Version}", package)
+    return _command_output("dpkg-query", "-W", "-f=${Version}", package)
 
 
 def _processor() -> str | None:
@@ -41,10 +41,10 @@ def _processor() -> str | None:
 def _revision() -> tuple[str | None, bool | None]:
     """Returns the checked-out commit and whether files differ from it; None without git."""
     # results/ is left out: the runs of the committed report are made there.
-    changes = _output(
+    changes = _command_output(
         "git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!results"
     )
-    return _output("git", "rev-parse", "HEAD"), None if changes is None else bool(changes)
+    return _command_output("git", "rev-parse", "HEAD"), None if changes is None else bool(changes)
 
 
 def core_digest() -> str:
@@ -65,18 +65,18 @@ def generator(run: Path) -> dict[str, Any]:
 def versions() -> dict[str, Any]:
     """Returns the versions of this program and its machine; None where a value is unknown."""
     return {
-        **dict(zip(_REVISION, _revision(), strict=True)),
+        **dict(zip(_REVISION_KEYS, _revision(), strict=True)),
         "python": platform.python_version(),
         "system": platform.platform(),
         "processors": os.cpu_count(),
         "processor": _processor(),
         "memory_gib": round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30),
-        "packages": {name: importlib.metadata.version(name) for name in _PACKAGES},
-        "debian": {name: _debian_version(name) for name in _DEBIAN},
+        "packages": {name: importlib.metadata.version(name) for name in _PYTHON_PACKAGES},
+        "debian": {name: _debian_version(name) for name in _DEBIAN_PACKAGES},
     }
 
 
-def note(run: Path, made_by: dict[str, Any] | None = None) -> None:
+def write(run: Path, made_by: dict[str, Any] | None = None) -> None:
     """Writes versions.json of a run that this program begins or resumes.
 
     The file holds the versions of this program, the other commits that worked on the run before,
@@ -85,7 +85,7 @@ def note(run: Path, made_by: dict[str, Any] | None = None) -> None:
     """
     found, before = versions(), run_folder.read_json(run / FILE)
     if made_by is None:
-        made_by = {key: found[key] for key in _REVISION} | {"core_sha256": core_digest()}
+        made_by = {key: found[key] for key in _REVISION_KEYS} | {"core_sha256": core_digest()}
     begun_by, last = before.get("begun_by", []), commit(before)
     if last not in (None, commit(found)):
         begun_by = [*begun_by, last]

@@ -15,25 +15,28 @@ class Clock:
     """
 
     def __init__(self) -> None:
-        # [s], processor time at construction; None after the first start.
-        self._made: float | None = time.process_time()
-        self._before = (0.0, 0.0)  # [s], wall and processor time of the finished periods
-        self._since: tuple[float, float] | None = None
+        # [s]; None after the first start.
+        self._cpu_at_construction: float | None = time.process_time()
+        self._elapsed = (0.0, 0.0)  # [s], wall and processor time of the finished periods
+        # [s], wall and processor time of the start; None while the clock is stopped.
+        self._start_times: tuple[float, float] | None = None
         self._cpu: Callable[[], float] = time.process_time
 
     def start(self, alone: bool = True) -> None:
         """Starts the clock. `alone`: no other run shares the process."""
         self._cpu = time.process_time if alone else time.thread_time
         wall, cpu = self._now()
-        self._since = (wall, cpu if self._made is None or not alone else self._made)
-        self._made = None
+        if alone and self._cpu_at_construction is not None:
+            cpu = self._cpu_at_construction
+        self._start_times = (wall, cpu)
+        self._cpu_at_construction = None
 
     def stop(self) -> None:
-        self._before, self._since = self._total(), None
+        self._elapsed, self._start_times = self._total(), None
 
     @property
     def running(self) -> bool:
-        return self._since is not None
+        return self._start_times is not None
 
     def seconds(self) -> dict[str, float]:
         """Returns the times so far [s], by their column names in progress.csv."""
@@ -42,14 +45,15 @@ class Clock:
 
     def restore(self, seconds: Mapping[str, float]) -> None:
         """Continues from `seconds`, which holds at least the values of an earlier seconds()."""
-        self._before = (seconds["wall_s"], seconds["cpu_s"])
+        self._elapsed = (seconds["wall_s"], seconds["cpu_s"])
 
     def _now(self) -> tuple[float, float]:
         return time.monotonic(), self._cpu()
 
     def _total(self) -> tuple[float, float]:
-        if self._since is None:
-            return self._before
+        if self._start_times is None:
+            return self._elapsed
         now = self._now()
-        wall, cpu = (b + n - s for b, n, s in zip(self._before, now, self._since, strict=True))
+        times = zip(self._elapsed, now, self._start_times, strict=True)
+        wall, cpu = (elapsed + end - start for elapsed, end, start in times)
         return wall, cpu

@@ -9,12 +9,13 @@ from rtg.files.dataset import SOURCES, Transitions
 from rtg.learn.ddqn import DoubleDqn
 from rtg.learn.replay import Batch
 
-IMITATED = ("tree", "plan")  # sources of steps that lead towards the goal; a "branch" need not
+# Sources of steps that lead towards the goal; those of a "branch" need not.
+IMITATED_SOURCES = ("tree", "forward")
 
 
 def imitated(data: Transitions) -> Transitions:
-    """Returns the rows whose source is in IMITATED."""
-    kept = np.isin(data.source, [SOURCES.index(name) for name in IMITATED])
+    """Returns the rows whose source is in IMITATED_SOURCES."""
+    kept = np.isin(data.source, [SOURCES.index(name) for name in IMITATED_SOURCES])
     return Transitions(*(column[kept] for column in data))
 
 

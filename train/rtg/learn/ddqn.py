@@ -25,8 +25,8 @@ from rtg.learn.replay import Batch, MixedReplayBuffer, ReplayRules
 Array = npt.NDArray[Any]
 
 MAX_GRADIENT_NORM = 10.0
-# Sets the averaging rate of early gradient steps: the mean covers their last 1 / YOUTH.
-YOUTH = 5.0
+# In early training the mean weights cover the last 1 / AVERAGING_WARM_UP of the gradient steps.
+AVERAGING_WARM_UP = 5.0
 
 
 def next_values(online: th.Tensor, target: th.Tensor, cautious: bool) -> th.Tensor:
@@ -152,7 +152,8 @@ class DoubleDqn(DQN):
             self._average()
 
     def _average(self) -> None:
-        rate = max(self.settings.policy_rate, YOUTH / (YOUTH + self._n_updates))
+        early_rate = AVERAGING_WARM_UP / (AVERAGING_WARM_UP + self._n_updates)
+        rate = max(self.settings.policy_rate, early_rate)
         polyak_update(self.q_net.parameters(), self.mean_net.parameters(), rate)
 
     def _gradient_step(self, batch: Batch) -> None:
@@ -169,7 +170,7 @@ class DoubleDqn(DQN):
             gap = conservative_gap(all_q[: batch.offline], batch.actions[: batch.offline])
             loss = loss + self.settings.conservatism * gap.mean()
         self._descend(loss)
-        self.statistics.note(batch, q.detach(), y, bootstrap)
+        self.statistics.add(batch, q.detach(), y, bootstrap)
 
     def _descend(self, loss: th.Tensor) -> None:
         self.policy.optimizer.zero_grad()
@@ -199,7 +200,7 @@ class DoubleDqn(DQN):
         net = self.q_net_target if self.settings.target_acts else self.q_net
         seen, buffer = observation, self.replay_buffer
         if isinstance(buffer, HindsightReplayBuffer):
-            seen = buffer.layouts.asked(observation, buffer.asked_of(observation))
+            seen = buffer.layouts.network_input(observation, buffer.desired_layouts(observation))
         action = self._values_of(net, seen).argmax(axis=1)
         return self.exploration.actions(action, observation, self.exploration_rate), state
 
@@ -212,7 +213,7 @@ class DoubleDqn(DQN):
 
         [N, observation] float32 -> [N, actions] float32
         """
-        seen = self.layouts.asked_nearest(observation) if self.layouts else observation
+        seen = self.layouts.network_input_nearest(observation) if self.layouts else observation
         return self._values_of(self.mean_net, seen)
 
     def _values_of(self, net: th.nn.Module, observation: Array) -> Array:
@@ -277,7 +278,7 @@ class Statistics:
         self._counts: dict[str, float] = {}
         self._peaks: dict[str, float] = {}
 
-    def note(self, batch: Batch, q: th.Tensor, y: th.Tensor, bootstrap: th.Tensor) -> None:
+    def add(self, batch: Batch, q: th.Tensor, y: th.Tensor, bootstrap: th.Tensor) -> None:
         """Adds a gradient step: q = Q(s, a), its target y, and the bootstrap target. [B, 1] each
 
         y is `bootstrap` after raising to the bounds and clipping, see td_targets().
@@ -285,16 +286,16 @@ class Statistics:
         error, bounds = q - y, batch.bounds
         beyond = (bootstrap < 0.0) | (bootstrap > 1.0)
         raised = (bootstrap < bounds) & (bounds > 0.0)  # a bound of 0 proves nothing
-        self._add("td_error", float(error.square().mean().sqrt()))
-        self._add("clipped_share", float(beyond.float().mean()))
-        self._add("bound_share", float(raised.float().mean()))
+        self._accumulate("td_error", float(error.square().mean().sqrt()))
+        self._accumulate("clipped_share", float(beyond.float().mean()))
+        self._accumulate("bound_share", float(raised.float().mean()))
         for name, part in (("offline", q[: batch.offline]), ("online", q[batch.offline :])):
             if len(part):
-                self._add(f"q_{name}_mean", float(part.mean()))
+                self._accumulate(f"q_{name}_mean", float(part.mean()))
                 peak = f"q_{name}_max"
                 self._peaks[peak] = max(self._peaks.get(peak, -np.inf), float(part.max()))
 
-    def _add(self, name: str, value: float) -> None:
+    def _accumulate(self, name: str, value: float) -> None:
         self._sums[name] = self._sums.get(name, 0.0) + value
         self._counts[name] = self._counts.get(name, 0.0) + 1.0
 
@@ -305,7 +306,7 @@ class Statistics:
         self._sums, self._counts = dict(state["sums"]), dict(state["counts"])
         self._peaks = dict(state["peaks"])
 
-    def take(self) -> dict[str, float]:
+    def pop(self) -> dict[str, float]:
         """Returns the means and maxima so far and resets them."""
         means = {name: total / self._counts[name] for name, total in self._sums.items()}
         means.update(self._peaks)

@@ -14,8 +14,8 @@ Floats = NDArray[np.float64]
 Policy = Callable[[NDArray[np.float32]], NDArray[Any]]  # [N, observation] -> [N] actions
 
 # Seeds of the held-out starts. Seeds of runs are smaller, so no training start is held out.
-HELD_OUT = 1 << 63  # for evaluations during training, which decide when to stop
-FINAL = HELD_OUT + 1  # for the final result: no decision depended on these starts
+HELD_OUT_SEED = 1 << 63  # for evaluations during training, which decide when to stop
+FINAL_SEED = HELD_OUT_SEED + 1  # for the final result: no decision depended on these starts
 
 
 class Evaluation(NamedTuple):
@@ -43,7 +43,7 @@ class Evaluation(NamedTuple):
 
 
 def held_out_starts(
-    task: _core.Task, count: int, seed: int = HELD_OUT, randomise: bool = False
+    task: _core.Task, count: int, seed: int = HELD_OUT_SEED, randomise: bool = False
 ) -> Floats:
     """Returns starts that are the same for every run. [count, bodies, 3]
 

@@ -12,8 +12,8 @@ from rtg import _core
 
 Array = npt.NDArray[Any]
 
-LOOP = 8  # a state counts as revisited if it equals one of this many previous states
-SAME = 0.02  # ... with a difference below this in every entry of the observation (0.16 m)
+REVISIT_WINDOW = 8  # a state counts as revisited if it equals one of this many previous states
+REVISIT_TOLERANCE = 0.02  # ... with a difference below this in every observation entry (0.16 m)
 
 # Maps a seed to one heading per environment, towards a random object of its current state. [N]
 ContactHeadings = Callable[[int], Array]
@@ -44,7 +44,7 @@ class Exploration:
         self.headings = headings
         self.contact = contact
         self.rng = np.random.default_rng([seed, 1])
-        self.last: list[Array] = []  # previous observations, each [N, observation], oldest first
+        self.recent_observations: list[Array] = []  # each [N, observation], oldest first
 
     def epsilon(self, interactions: int) -> float:
         """Returns ε, linear from start to end over the first `epsilon_share` of interactions."""
@@ -60,7 +60,7 @@ class Exploration:
         n = len(greedy)
         explores = self.rng.random(n) < epsilon
         if self.settings.leave_loops:
-            explores |= self._came_back(observation)
+            explores |= self._is_revisited(observation)
         nearby = self.rng.random(n) < self.settings.nearby_share
         offset = self.rng.integers(1, self.settings.nearby_headings + 1, n)
         beside = (greedy + offset * self.rng.choice((-1, 1), n)) % self.headings
@@ -76,17 +76,23 @@ class Exploration:
         seeks = self.rng.random(len(noise)) < self.settings.contact_share
         return np.where(seeks, self.contact(int(self.rng.integers(1 << 62))), noise)
 
-    def _came_back(self, observation: Array) -> Array:
+    def _is_revisited(self, observation: Array) -> Array:
         """Returns which environments revisit a recent state; stores `observation`. [N] bool"""
         found = np.zeros(len(observation), np.bool_)
-        for earlier in self.last:
-            found |= (np.abs(observation - earlier) < SAME).all(axis=1)
-        self.last = [*self.last[-LOOP + 1 :], observation.copy()]
+        for earlier in self.recent_observations:
+            found |= (np.abs(observation - earlier) < REVISIT_TOLERANCE).all(axis=1)
+        self.recent_observations = [
+            *self.recent_observations[-REVISIT_WINDOW + 1 :],
+            observation.copy(),
+        ]
         return found
 
     def state(self) -> dict[str, Any]:
-        return {"rng": self.rng.bit_generator.state, "last": [seen.copy() for seen in self.last]}
+        return {
+            "rng": self.rng.bit_generator.state,
+            "last": [seen.copy() for seen in self.recent_observations],
+        }
 
     def restore(self, state: dict[str, Any]) -> None:
         self.rng.bit_generator.state = state["rng"]
-        self.last = [np.asarray(seen).copy() for seen in state["last"]]
+        self.recent_observations = [np.asarray(seen).copy() for seen in state["last"]]

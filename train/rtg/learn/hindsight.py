@@ -5,14 +5,15 @@ with a joint. The network receives the observation and the offset of each object
 layout. Each training episode has a desired layout, in which the task's goal holds. Of the online
 transitions in a batch, the share k / (k + 1) is relabelled with a layout that the episode reached
 later (the paper's strategy "future" with k goals drawn per transition). For these the reward is 1
-and the episode ends if the objects of s' are within TOLERANCE and TURN of the new layout. The other
-transitions keep the reward of the task, which does not depend on the desired layout.
+and the episode ends if the objects of s' are within TOLERANCE and ANGLE_TOLERANCE of the new
+layout. The other transitions keep the reward of the task, which does not depend on the desired
+layout.
 
 Choices that give the method its best chance:
 - The layouts of the task come from DRAWS goal states. Only those are used that remain goal states
   when their objects move by TOLERANCE in any direction and the two bodies of each joint turn by
-  TURN against each other; if there are none, all are used. At most LAYOUTS are kept. So reaching a
-  layout means success.
+  ANGLE_TOLERANCE against each other; if there are none, all are used. At most MAX_LAYOUTS are kept.
+  So reaching a layout means success.
 - Objects of one kind are interchangeable, and any goal state suffices. So the desired layout of a
   training episode is the one nearest to its start among a random tenth of the layouts. Training
   thus covers many layouts, which the paper finds to learn faster. The evaluated policy uses, in
@@ -39,12 +40,12 @@ from rtg.learn.replay import MixedReplayBuffer, Part, Store
 Array = npt.NDArray[Any]
 
 TOLERANCE = 0.5  # of each object [m]
-TURN = 0.05  # of each body with a joint [rad]
-DRAWS, LAYOUTS = 5000, 1000  # number of goal states drawn; maximum number of layouts
-FEW = 10  # a training episode gets the nearest of 1 / FEW of the layouts
-OF_LAYOUTS = 3 << 61  # fixed seed of the draws, so a policy file need not store it
-LENGTH = 8.0  # unit of lengths in an observation [m]
-OF_BODY = 6  # entries of an observation per movable object; two entries of the robot come first
+ANGLE_TOLERANCE = 0.05  # of each body with a joint [rad]
+DRAWS, MAX_LAYOUTS = 5000, 1000  # number of goal states drawn; maximum number of layouts
+SUBSET_DIVISOR = 10  # a training episode gets the nearest of 1 / SUBSET_DIVISOR of the layouts
+LAYOUT_SEED = 3 << 61  # fixed seed of the draws, so a policy file need not store it
+LENGTH_UNIT = 8.0  # unit of lengths in an observation [m]
+BODY_ENTRIES = 6  # entries of an observation per movable object, after two of the robot
 
 
 class Layouts:
@@ -57,14 +58,14 @@ class Layouts:
     def __init__(self, task: _core.Task) -> None:
         movable = [body for body in range(1, task.bodies) if not task.fixed[body]]
         jointed = {body for parent, child, _ in task.joints for body in (parent, child)}
-        at = [2 + OF_BODY * k for k in range(len(movable))]
+        at = [2 + BODY_ENTRIES * k for k in range(len(movable))]
         turned = [first for first, body in zip(at, movable, strict=True) if body in jointed]
         places = [column for first in at for column in (first, first + 1)]
         turns = [column for first in turned for column in (first + 2, first + 3)]
         self._columns = np.array(places + turns)  # columns of an observation
         self._places = len(places)
         self.size = len(self._columns)
-        goals = lasting(task, goal_states(task, OF_LAYOUTS, DRAWS))[:LAYOUTS]
+        goals = robust_goal_states(task, goal_states(task, LAYOUT_SEED, DRAWS))[:MAX_LAYOUTS]
         self.of_task = self.of(task.observation(goals))  # [layouts, size]
 
     def of(self, observation: Array) -> Array:
@@ -73,10 +74,10 @@ class Layouts:
         return layout
 
     def near(self, one: Array, other: Array) -> Array:
-        """Returns if all objects agree within TOLERANCE, TURN. [..., size] each -> [...] bool"""
+        """Returns if all objects agree within the tolerances. [..., size] each -> [...] bool"""
         places, turns = self._difference(one, other)
-        close = np.hypot(places[..., 0], places[..., 1]) * LENGTH <= TOLERANCE
-        alike = turns[..., 0] >= np.cos(TURN)
+        close = np.hypot(places[..., 0], places[..., 1]) * LENGTH_UNIT <= TOLERANCE
+        alike = turns[..., 0] >= np.cos(ANGLE_TOLERANCE)
         reached: Array = close.all(axis=-1) & alike.all(axis=-1)
         return reached
 
@@ -90,7 +91,7 @@ class Layouts:
         nearest: Array = goals[np.hypot(way[..., 0], way[..., 1]).sum(axis=2).argmin(axis=1)]
         return nearest
 
-    def asked(self, observation: Array, goal: Array) -> Array:
+    def network_input(self, observation: Array, goal: Array) -> Array:
         """Returns the input of the network for the desired layout `goal`.
 
         It holds the observation, the offsets dx, dy [8 m] from the objects to `goal`, and cos, sin
@@ -100,9 +101,9 @@ class Layouts:
         way = [part.reshape(len(part), part.shape[1] * 2) for part in parts]
         return np.concatenate((observation, *way), axis=1)
 
-    def asked_nearest(self, observation: Array) -> Array:
+    def network_input_nearest(self, observation: Array) -> Array:
         """Returns the input of the network for the nearest layout of the task."""
-        return self.asked(observation, self.nearest(observation))
+        return self.network_input(observation, self.nearest(observation))
 
     def _difference(self, here: Array, there: Array) -> tuple[Array, Array]:
         """Returns the differences from layout `here` to layout `there`.
@@ -125,17 +126,17 @@ def _sides(task: _core.Task) -> Array:
     return sides
 
 
-def lasting(task: _core.Task, states: Array) -> Array:
+def robust_goal_states(task: _core.Task, states: Array) -> Array:
     """Returns the states whose goal is robust, or all of them if there is none. [N, bodies, 3]
 
     Robust: it still holds with all objects moved by TOLERANCE in any of eight directions and the
-    two bodies of each joint turned by TURN against each other, in either sense.
+    two bodies of each joint turned by ANGLE_TOLERANCE against each other, in either sense.
     """
     angles = np.arange(8) * np.pi / 4
     moved = np.repeat(states[:, None], 2 * len(angles), axis=1)  # [N, 16, bodies, 3]
     moved[:, :, 1:, 0] += TOLERANCE * np.tile(np.cos(angles), 2)[:, None]
     moved[:, :, 1:, 1] += TOLERANCE * np.tile(np.sin(angles), 2)[:, None]
-    moved[:, :, :, 2] += TURN * np.repeat((1, -1), len(angles))[:, None] * _sides(task)
+    moved[:, :, :, 2] += ANGLE_TOLERANCE * np.repeat((1, -1), len(angles))[:, None] * _sides(task)
     holds = task.succeeded(moved.reshape(-1, *states.shape[1:])).reshape(len(states), -1)
     stays = holds.all(axis=1)
     return states[stays] if stays.any() else states
@@ -197,32 +198,34 @@ class HindsightReplayBuffer(MixedReplayBuffer):
         self.layouts, self.goals = layouts, goals
         shape = (self.buffer_size, self.obs_shape[0], layouts.size, goals)
         self.offline, self.online = GoalStore(*shape), GoalStore(*shape)
-        self._asked = np.zeros((self.n_envs, layouts.size), np.float32)
-        self._begins = np.ones(self.n_envs, np.bool_)  # True if the next step begins an episode
+        # The desired layout of each environment's episode.
+        self._desired = np.zeros((self.n_envs, layouts.size), np.float32)
+        # True if the next step begins an episode.
+        self._begins_episode = np.ones(self.n_envs, np.bool_)
 
-    def asked_of(self, observation: Array) -> Array:
+    def desired_layouts(self, observation: Array) -> Array:
         """Returns the desired layout of each environment's episode; draws it for a new episode.
 
         [environments, observation] -> [environments, size]
         """
         count = len(self.layouts.of_task)
-        for env in np.flatnonzero(self._begins):
-            among = self.rng.permutation(count)[: -(-count // FEW)]
-            self._asked[env] = self.layouts.nearest(observation[env : env + 1], among)[0]
-        self._begins[:] = False
-        return self._asked.copy()
+        for env in np.flatnonzero(self._begins_episode):
+            among = self.rng.permutation(count)[: -(-count // SUBSET_DIVISOR)]
+            self._desired[env] = self.layouts.nearest(observation[env : env + 1], among)[0]
+        self._begins_episode[:] = False
+        return self._desired.copy()
 
-    def _more_online(self, observation: Array) -> dict[str, Array]:
-        return {"asked": self.asked_of(observation)}
+    def _extra_online_columns(self, observation: Array) -> dict[str, Array]:
+        return {"asked": self.desired_layouts(observation)}
 
-    def _more_offline(self, observation: Array) -> dict[str, Array]:
+    def _extra_offline_columns(self, observation: Array) -> dict[str, Array]:
         pieces = np.array_split(observation, 1 + len(observation) // 1000)  # to limit memory
         return {"asked": np.concatenate([self.layouts.nearest(piece) for piece in pieces])}
 
     def _close_episode(self, env: int, success: bool) -> None:
         store, numbers = self.online, np.array(self._episodes[env], np.int64)
         super()._close_episode(env, success)
-        self._begins[env] = True
+        self._begins_episode[env] = True
         rows = numbers[numbers >= store.written - store.capacity] % store.capacity
         if len(rows) == 0:  # the simulator could not finish its first push
             return
@@ -238,7 +241,7 @@ class HindsightReplayBuffer(MixedReplayBuffer):
             if store is self.online:
                 self._relabel(columns, goal, rows)
         for name in ("observation", "next_observation"):
-            columns[name] = self.layouts.asked(columns[name], goal)
+            columns[name] = self.layouts.network_input(columns[name], goal)
         return columns
 
     def _relabel(self, columns: dict[str, Array], goal: Array, rows: Array) -> None:
@@ -259,9 +262,13 @@ class HindsightReplayBuffer(MixedReplayBuffer):
             columns["bound"][place] = store.goal_bounds[rows, pick]
 
     def state(self) -> dict[str, Any]:
-        return {**super().state(), "asked": self._asked.copy(), "begins": self._begins.copy()}
+        return {
+            **super().state(),
+            "asked": self._desired.copy(),
+            "begins": self._begins_episode.copy(),
+        }
 
     def restore(self, state: dict[str, Any]) -> None:
         super().restore(state)
-        self._asked = np.asarray(state["asked"]).copy()
-        self._begins = np.asarray(state["begins"]).copy()
+        self._desired = np.asarray(state["asked"]).copy()
+        self._begins_episode = np.asarray(state["begins"]).copy()

@@ -13,7 +13,7 @@ from stable_baselines3.common.type_aliases import PyTorchObs
 from stable_baselines3.dqn.policies import DQNPolicy, QNetwork
 from torch import nn
 
-LAYERS = (512, 512, 128)  # Table 2
+LAYER_SIZES = (512, 512, 128)  # Table 2
 
 
 @cache
@@ -98,7 +98,7 @@ class ValuePolicy(DQNPolicy):
         **kwargs: Any,
     ) -> None:
         self.network = network or {}
-        kwargs.setdefault("net_arch", list(LAYERS))
+        kwargs.setdefault("net_arch", list(LAYER_SIZES))
         kwargs.setdefault("optimizer_kwargs", {"fused": True})
         kwargs.setdefault("features_extractor_class", FlattenExtractor)
         super().__init__(observation_space, action_space, lr_schedule, **kwargs)

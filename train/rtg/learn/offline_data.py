@@ -17,7 +17,7 @@ from rtg.files.recorder import Recorder
 from rtg.learn.replay import MixedReplayBuffer
 
 # numpy parses array headers with `ast`, which fails in Python 3.11 if two threads use it at once.
-_READING = threading.Lock()
+_READ_LOCK = threading.Lock()
 REFRESH_GROWTH = 1.25  # value bounds are recomputed when the data has grown by this factor
 
 
@@ -41,44 +41,44 @@ class Source(Protocol):
 
 def read_rows(path: Path, task: _core.Task) -> Rows:
     """Reads the rows of a transition file. Raises dataset.DatasetError or FileNotFoundError."""
-    with _READING:
+    with _READ_LOCK:
         transitions = dataset.read(path, bodies=task.bodies, headings=task.headings)
     return Rows(*(getattr(transitions, name) for name in Rows._fields))
 
 
 class OfflineData:
-    """Records all received transitions in sequence order; adds those that `chosen` selects to the
+    """Records all received transitions in sequence order; adds those that `select` returns to the
     replay buffer."""
 
     def __init__(
         self,
         task: _core.Task,
         buffer: MixedReplayBuffer,
-        chosen: Callable[[Transitions], Transitions] = lambda all_rows: all_rows,
+        select: Callable[[Transitions], Transitions] = lambda all_rows: all_rows,
     ) -> None:
-        self._buffer, self._chosen = buffer, chosen
+        self._buffer, self._select = buffer, select
         self.record = Recorder(task)
         # Rows of the checkpoint until the source, which starts again, has repeated all of them.
-        self._known: Rows | None = None
-        self._repeated = 0  # rows that the source has sent again so far
-        self._refreshed = 0  # number of rows when the bounds were last computed
+        self._checkpoint_rows: Rows | None = None
+        self._repeated_count = 0  # rows that the source has sent again so far
+        self._count_at_refresh = 0  # number of rows when the bounds were last computed
 
     @property
     def count(self) -> int:
         return self.record.count
 
-    def take(self, rows: Rows) -> None:
-        """Takes the next rows of the source.
+    def add(self, rows: Rows) -> None:
+        """Adds the next rows of the source.
 
         Raises RunError if repeated rows differ from those of the checkpoint.
         """
-        if self._known is not None:
-            rows = rows.after(self._check_repeated(rows, self._known))
+        if self._checkpoint_rows is not None:
+            rows = rows.slice(self._check_repeated(rows, self._checkpoint_rows))
         if len(rows.action):
-            self._buffer.add_offline(self._chosen(self.record.add(rows)))
+            self._buffer.add_offline(self._select(self.record.add(rows)))
 
     def _check_repeated(self, rows: Rows, known: Rows) -> int:
-        begin = self._repeated
+        begin = self._repeated_count
         again = min(len(rows.action), len(known.action) - begin)
         same = (
             np.array_equal(getattr(rows, name)[:again], getattr(known, name)[begin : begin + again])
@@ -86,21 +86,21 @@ class OfflineData:
         )
         if not all(same):
             raise RunError("the transitions are not those that the checkpoint was made with")
-        self._repeated += again
-        if self._repeated == len(known.action):
-            self._known = None
+        self._repeated_count += again
+        if self._repeated_count == len(known.action):
+            self._checkpoint_rows = None
         return again
 
     def prove_bounds(self, complete: bool) -> None:
         """Recomputes the value bounds if enough rows are new, or any are new and all are in."""
-        grown = self.count >= REFRESH_GROWTH * self._refreshed
-        if self.count > self._refreshed and (grown or complete):
-            self._refreshed = self.count
+        grown = self.count >= REFRESH_GROWTH * self._count_at_refresh
+        if self.count > self._count_at_refresh and (grown or complete):
+            self._count_at_refresh = self.count
             self._buffer.refresh_bounds()
 
     def state(self) -> dict[str, int]:
         """Returns the counts; the rows themselves are in a transition file."""
-        return {"count": self.count, "refreshed": self._refreshed}
+        return {"count": self.count, "refreshed": self._count_at_refresh}
 
     def restore(self, state: dict[str, int], rows: Rows) -> None:
         """Restores the counts and adds the rows of the checkpoint to the replay buffer.
@@ -113,11 +113,11 @@ class OfflineData:
             found = len(rows.action)
             raise RunError(f"the transition file has {found} rows, the checkpoint saw {count}")
         if refreshed:
-            self.take(rows.after(0, refreshed))
+            self.add(rows.slice(0, refreshed))
             self.prove_bounds(complete=True)
         if count > refreshed:
-            self.take(rows.after(refreshed, count))
-        self._known = rows.after(0, count)
+            self.add(rows.slice(refreshed, count))
+        self._checkpoint_rows = rows.slice(0, count)
 
 
 class NoSource:
@@ -152,7 +152,7 @@ class FileSource:
         rows, self._rows = self._rows, None
         if rows is None:
             return 0
-        self._data.take(rows)
+        self._data.add(rows)
         return len(rows.action)
 
     def close(self) -> None:

@@ -14,13 +14,13 @@ import numpy as np
 from rtg import _core
 from rtg.files import checkpoint, run_folder
 from rtg.learn import policy_file
-from rtg.learn.evaluation import FINAL, Evaluation, Floats, held_out_starts
+from rtg.learn.evaluation import FINAL_SEED, Evaluation, Floats, held_out_starts
 from rtg.learn.offline_data import Source
 from rtg.learn.training_log import TrainingLog
 
 _FORMAT = 2  # version of the checkpoint format
 # One search at a time: it uses all workers, and its cpu_s is the processor time of the process.
-_TURN = threading.Lock()
+_SEARCH_LOCK = threading.Lock()
 
 
 class Plan(NamedTuple):
@@ -34,13 +34,13 @@ class Plan(NamedTuple):
 
 def plan(config: _core.Config, start: Floats) -> Plan:
     """Plans from `start` [bodies, 3]. Equal arguments give equal plans, except for their times."""
-    with _TURN:
+    with _SEARCH_LOCK:
         began, cpu = time.monotonic(), time.process_time()
         states, pushes = _core.plan(config, start[None])
         return Plan(states, pushes, time.monotonic() - began, time.process_time() - cpu)
 
 
-def judged(task: _core.Task, plans: list[Plan], discount: float) -> Evaluation:
+def evaluate_plans(task: _core.Task, plans: list[Plan], discount: float) -> Evaluation:
     """Evaluates the plans, at least one, as episodes of a policy with the plans as paths.
 
     A plan without success, or longer than the horizon, counts as a failure of horizon length.
@@ -63,12 +63,13 @@ class Planning:
         self.config, self.task = config, config.task
         self.settings = s = config.train
         self.discount = s.discount or self.task.discount
-        self.starts = held_out_starts(self.task, s.eval_episodes, FINAL, s.randomise)
+        self.starts = held_out_starts(self.task, s.eval_episodes, FINAL_SEED, s.randomise)
         self.plans: list[Plan] = []  # of the first len(plans) starts
         self.log = TrainingLog(folder)
         self.runs = 1  # number of runs in this process
         self.scheduled = 0  # interactions: none
-        self.tell: Callable[[str, int], None] = lambda state, done: None  # NodeStatus.tick
+        # NodeStatus.tick, if there is a bus.
+        self.publish_status: Callable[[str, int], None] = lambda state, done: None
         self._checkpoint = run_folder.checkpoint_file(folder)
         self._identity = {"learner": "planning", "format": _FORMAT}
 
@@ -92,7 +93,7 @@ class Planning:
 
     def finish(self, lost: int) -> None:
         """Writes progress.csv with one row, the best plan and training.json."""
-        final = judged(self.task, self.plans, self.discount)
+        final = evaluate_plans(self.task, self.plans, self.discount)
         wall, cpu = sum(one.wall_s for one in self.plans), sum(one.cpu_s for one in self.plans)
         pushes = sum(one.pushes for one in self.plans)
         figures = {
@@ -115,7 +116,7 @@ class Planning:
 
     def _display(self) -> None:
         """Writes training_state.json with the success rate so far."""
-        found = judged(self.task, self.plans, self.discount) if self.plans else None
+        found = evaluate_plans(self.task, self.plans, self.discount) if self.plans else None
         state = {
             "interactions": 0,
             "budget": self.settings.interactions,

@@ -77,7 +77,7 @@ def read(path: Path, task: _core.Task) -> Policy:
         if observation.ndim != 2 or observation.shape[1] != task.observation_size:
             shape = list(observation.shape)
             raise ValueError(f"observations {shape}; legal: [N, {task.observation_size}]")
-        seen = layouts.asked_nearest(observation) if layouts else observation
+        seen = layouts.network_input_nearest(observation) if layouts else observation
         with th.no_grad():
             return policy.q_net(th.from_numpy(seen)).argmax(dim=1).numpy()
 

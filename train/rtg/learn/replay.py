@@ -19,7 +19,7 @@ Array = npt.NDArray[Any]
 Infos = list[dict[str, Any]]
 Part = tuple["Store", Array]  # a store and indices of some of its rows
 
-RECENT = 10_000  # number of latest online transitions that count as recent
+RECENT_COUNT = 10_000  # number of latest online transitions that count as recent
 
 
 class Batch(NamedTuple):
@@ -111,7 +111,7 @@ class ReplayRules:
     """The settings that determine how a batch is drawn."""
 
     offline_share: float  # of a batch, once a batch of online ones exists; negative: uniform
-    recent_share: float  # share of the online rows that the RECENT latest provide
+    recent_share: float  # share of the online rows that the RECENT_COUNT latest provide
     discount: float  # γ of the value bounds
     use_bounds: bool
     seed: int
@@ -123,8 +123,8 @@ class MixedReplayBuffer(BaseBuffer):
     The share `offline_share` of every batch is drawn from the offline transitions once the buffer
     holds a batch of online transitions; before that, the whole batch is offline. A negative share
     draws uniformly from both stores. The share `recent_share` of the online rows is drawn from the
-    RECENT latest ones. Those contain the mistakes of the current policy, which uniform sampling of
-    all stored transitions would draw too rarely to correct them soon.
+    RECENT_COUNT latest ones. Those contain the mistakes of the current policy, which uniform
+    sampling of all stored transitions would draw too rarely to correct them soon.
     """
 
     def __init__(
@@ -167,7 +167,7 @@ class MixedReplayBuffer(BaseBuffer):
             action=batch.action,
             reward=batch.reward,
             terminated=batch.terminated,
-            **self._more_offline(batch.observation),
+            **self._extra_offline_columns(batch.observation),
         )
 
     def refresh_bounds(self) -> None:
@@ -188,7 +188,7 @@ class MixedReplayBuffer(BaseBuffer):
         """
         timeout = np.array([info.get("TimeLimit.truncated", False) for info in infos])
         kept = np.flatnonzero([not info.get("rejected", False) for info in infos])
-        more = self._more_online(obs)
+        more = self._extra_online_columns(obs)
         numbers = self.online.append(
             observation=obs[kept],
             next_observation=next_obs[kept],
@@ -203,12 +203,12 @@ class MixedReplayBuffer(BaseBuffer):
         for env in np.flatnonzero(done):
             self._close_episode(int(env), success=bool(reward[env] > 0))
 
-    def _more_online(self, observation: Array) -> dict[str, Array]:
+    def _extra_online_columns(self, observation: Array) -> dict[str, Array]:
         """Returns further columns for the online store. observation [environments, observation]"""
         del observation
         return {}
 
-    def _more_offline(self, observation: Array) -> dict[str, Array]:
+    def _extra_offline_columns(self, observation: Array) -> dict[str, Array]:
         """Returns further columns for the offline store. observation [N, observation]"""
         del observation
         return {}
@@ -256,7 +256,8 @@ class MixedReplayBuffer(BaseBuffer):
         """Returns row numbers of the online store; the first `recent_share` of them are recent."""
         store = self.online
         rows = self.rng.integers(store.count, size=count)
-        back = self.rng.integers(min(store.count, RECENT), size=round(self.recent_share * count))
+        recent = min(store.count, RECENT_COUNT)
+        back = self.rng.integers(recent, size=round(self.recent_share * count))
         rows[: len(back)] = (store.written - 1 - back) % store.capacity
         return rows
 

@@ -1,7 +1,7 @@
 """The settings of the learner that must not change after a checkpoint; see TrainConfig."""
 
 # They determine the shapes of network and buffer, and the returns and counts in the checkpoint.
-OF_CHECKPOINT = (
+CHECKPOINT_SETTINGS = (
     "learner",
     "interact",
     "offline",

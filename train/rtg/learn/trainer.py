@@ -56,9 +56,9 @@ def _source(training: Training | Planning, args: argparse.Namespace) -> Source:
     if args.no_stream:
         return FileSource(training.folder / "transitions.npz", training.task, training.data)
     bus = Bus(training.config.run.bus, args.run_name or training.folder.resolve().name)
-    training.tell = NodeStatus(bus, "trainer").tick
+    training.publish_status = NodeStatus(bus, "trainer").tick
     task = training.task
-    stream = TransitionStream(bus, task.bodies, task.headings, training.data.take)
+    stream = TransitionStream(bus, task.bodies, task.headings, training.data.add)
     if bus.warning:
         print(bus.warning, file=sys.stderr)
     return stream
@@ -81,7 +81,7 @@ def _learn(training: Training | Planning, args: argparse.Namespace, interrupts: 
                 return 128 + interrupts.number
             training.finish(source.lost)
         finally:
-            training.tell(ENDED, training.scheduled)
+            training.publish_status(ENDED, training.scheduled)
     return 0
 
 

@@ -16,14 +16,14 @@ from rtg.learn import device, networks, policy_file, training_result
 from rtg.learn.clock import Clock
 from rtg.learn.cloning import Cloning, imitated
 from rtg.learn.ddqn import DoubleDqn
-from rtg.learn.evaluation import FINAL, Evaluation, Floats, evaluate, held_out_starts
+from rtg.learn.evaluation import FINAL_SEED, Evaluation, Floats, evaluate, held_out_starts
 from rtg.learn.offline_data import OfflineData, Source, read_rows
-from rtg.learn.settings import OF_CHECKPOINT
+from rtg.learn.settings import CHECKPOINT_SETTINGS
 from rtg.learn.training_log import TrainingLog
 
 MAX_ENVIRONMENTS = 4  # environments stepped together; train.buffer must not be smaller
 _FORMAT = 6  # version of the checkpoint format; other versions are rejected
-WAIT = 0.1  # [s], how long a poll waits for transitions while not learning
+POLL_TIMEOUT = 0.1  # [s], how long a poll waits for transitions while not learning
 
 Stop = Callable[[], bool]
 
@@ -53,10 +53,10 @@ class Training:
         self.env = PushVecEnv(config, count, jitter, seed, curriculum)
         clones = s.learner == "cloning"
         self.model = (Cloning if clones else DoubleDqn)(self.env, s, self.discount, seed)
-        chosen = {"chosen": imitated} if clones else {}
-        self.data = OfflineData(self.task, self.model.replay_buffer, **chosen)
+        selection = {"select": imitated} if clones else {}
+        self.data = OfflineData(self.task, self.model.replay_buffer, **selection)
         self.log = TrainingLog(folder)
-        fixed = {name: getattr(s, name) for name in OF_CHECKPOINT}
+        fixed = {name: getattr(s, name) for name in CHECKPOINT_SETTINGS}
         self._identity = {
             "format": _FORMAT,
             "seed": seed,
@@ -65,8 +65,10 @@ class Training:
         }
         self.starts = held_out_starts(self.task, s.eval_episodes, randomise=s.randomise)
         self.runs = 1  # number of runs that learn in this process
-        self.place: dict[str, Any] = {}  # device and precision of the last learning, see _here()
-        self.tell: Callable[[str, int], None] = lambda state, done: None  # NodeStatus.tick
+        # Device and precision of the last learning, see _current_device_info().
+        self.device_info: dict[str, Any] = {}
+        # NodeStatus.tick, if there is a bus.
+        self.publish_status: Callable[[str, int], None] = lambda state, done: None
         self._checkpoint = run_folder.checkpoint_file(folder)
         self._saved_at = 0  # `scheduled` at the last save
         self._saved_rows = 0  # offline transitions at the last save
@@ -104,17 +106,17 @@ class Training:
         transitions.npz once all transitions are in.
         """
         while not (stop() or source.complete or self._may_begin()):
-            self._take_in(source, record, WAIT)
+            self._receive(source, record, POLL_TIMEOUT)
         if not self.done:
-            self.place = self._here()
+            self.device_info = self._current_device_info()
         self.clock.start(alone=self.runs == 1)
         while not (stop() or self.done):
-            self._take_in(source, record, 0.0)
+            self._receive(source, record, 0.0)
             self._learn()
-            self._write_down()
+            self._evaluate_and_save()
         self.clock.stop()
         while not (stop() or source.complete):
-            self._take_in(source, record, WAIT)
+            self._receive(source, record, POLL_TIMEOUT)
         self.save()
         return self.done and source.complete
 
@@ -131,7 +133,7 @@ class Training:
         else:
             raise RunError(f"{self.folder}: none of {self.data.count} transitions to learn from")
 
-    def _here(self) -> dict[str, Any]:
+    def _current_device_info(self) -> dict[str, Any]:
         kind = self.model.device.type
         return {
             "device": device.name(kind),
@@ -139,15 +141,15 @@ class Training:
             "runs_in_process": self.runs,
         }
 
-    def _take_in(self, source: Source, record: bool, timeout: float) -> None:
+    def _receive(self, source: Source, record: bool, timeout: float) -> None:
         news = not source.complete
         source.poll(timeout)  # also when complete, to repeat the final acknowledgement
         if news:
             self.data.prove_bounds(source.complete)
             if source.complete and record:
                 self.data.record.write(self._transition_files()[0])
-        self.log.display(self._state())
-        self.tell(self._activity(), self.scheduled)
+        self.log.display(self._display_state())
+        self.publish_status(self._activity(), self.scheduled)
 
     def _activity(self) -> str:
         """Describes the current activity and the last success rate, for people."""
@@ -156,7 +158,7 @@ class Training:
         rows = self.log.rows
         return f"learning, success {rows[-1]['success_rate']:.2f}" if rows else "learning"
 
-    def _write_down(self) -> None:
+    def _evaluate_and_save(self) -> None:
         """Evaluates and writes a checkpoint if either is due."""
         evaluated_at = self.log.rows[-1]["interactions"] if self.log.rows else 0
         over = self.scheduled >= self.settings.interactions > evaluated_at
@@ -185,13 +187,13 @@ class Training:
                 "online_successes": self.env.successes,
                 **({"epsilon": self.model.exploration_rate} if self.settings.interact else {}),
                 **self._values_at_start(),
-                **self.model.statistics.take(),
+                **self.model.statistics.pop(),
                 "offline_transitions": self.data.count,
                 "pushes": self.pushes,
                 **self.clock.seconds(),
             }
         )
-        self.log.display(self._state(), force=True)
+        self.log.display(self._display_state(), force=True)
 
     def _values_at_start(self) -> dict[str, float]:
         if self.settings.learner != "q_learning":
@@ -199,7 +201,7 @@ class Training:
         nominal = self.task.observation(self.task.start[None])
         return {"q_start_max": float(self.model.values(nominal).max())}
 
-    def _state(self) -> dict[str, Any]:
+    def _display_state(self) -> dict[str, Any]:
         """Returns the figures for displays; "interactions" are those that schedules count."""
         rows = self.log.rows
         return {
@@ -231,7 +233,7 @@ class Training:
             "data": self.data.state(),
             "rows": self.log.rows,
             "seconds": self.clock.seconds(),
-            "learner": self.place,
+            "learner": self.device_info,
         }
         checkpoint.write(self._checkpoint, state)
         self._saved_at = self.scheduled
@@ -252,7 +254,7 @@ class Training:
         self.log.rows = state["rows"]
         self.log.write()
         self.clock.restore(state["seconds"])
-        self.place = state["learner"]
+        self.device_info = state["learner"]
         self._saved_at, self._saved_rows = self.scheduled, self.data.count
 
     def _transition_files(self) -> tuple[Path, Path]:
@@ -278,9 +280,9 @@ class Training:
         successful by chance may have stopped training. `lost`: number of lost transitions.
         """
         s = self.settings
-        starts = held_out_starts(self.task, s.eval_episodes, FINAL, s.randomise)
+        starts = held_out_starts(self.task, s.eval_episodes, FINAL_SEED, s.randomise)
         final = self._evaluate(starts)
         weights = self.model.mean_net.state_dict()
         policy_file.write(self.folder / "model.pt", self.task, s, weights)
         self.log.write_result(final, training_result.figures(self, final, lost))
-        self.log.display(self._state(), force=True)
+        self.log.display(self._display_state(), force=True)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtg.learn.evaluation import Evaluation
-from rtg.learn.value_check import STATES, check_values, stored_states
+from rtg.learn.value_check import MAX_STATES, check_values, stored_states
 
 if TYPE_CHECKING:
     from rtg.learn.training import Training
 
-_VALUES = ("q_rank_correlation", "q_error", "q_spread")  # of ValueCheck.summary()
+_VALUE_CHECK_COLUMNS = ("q_rank_correlation", "q_error", "q_spread")  # of ValueCheck.summary()
 
 
 def figures(run: Training, final: Evaluation, lost: int) -> dict[str, Any]:
@@ -25,7 +25,7 @@ def figures(run: Training, final: Evaluation, lost: int) -> dict[str, Any]:
         "offline_transitions": run.data.count,
         "lost_transitions": lost,
         "learning_pushes": run.pushes,
-        **run.place,
+        **run.device_info,
         **_counts(run),
         **_value_check(run),
     }
@@ -45,6 +45,6 @@ def _value_check(run: Training) -> dict[str, float | None]:
     """Returns the figures of check_values(); empty without a Q or stored states."""
     if run.settings.learner != "q_learning" or not run.data.count:
         return {}
-    states = stored_states(run.data.record.transitions(), STATES, run.seed)
+    states = stored_states(run.data.record.transitions(), MAX_STATES, run.seed)
     found = check_values(run.config, run.model.values, run.discount, states)
-    return {**dict.fromkeys(_VALUES), **(found.summary() if found else {})}
+    return {**dict.fromkeys(_VALUE_CHECK_COLUMNS), **(found.summary() if found else {})}

@@ -19,7 +19,7 @@ from rtg.files.dataset import Transitions
 Array = NDArray[Any]
 Values = Callable[[Array], Array]  # [N, observation] -> [N, headings]
 
-STATES = 300
+MAX_STATES = 300
 
 
 class ValueCheck(NamedTuple):
@@ -74,14 +74,14 @@ def check_values(
     after, ok = simulator.push(
         np.repeat(states, len(headings), axis=0), np.tile(headings, len(states))
     )
-    worth = discount * values(task.observation(after)).max(axis=1)
-    worth = np.where(task.succeeded(after), 1.0, worth).reshape(len(states), -1)
-    known = ok.reshape(worth.shape).all(axis=1) & (np.ptp(worth, axis=1) > 0.0)
+    action_values = discount * values(task.observation(after)).max(axis=1)
+    action_values = np.where(task.succeeded(after), 1.0, action_values).reshape(len(states), -1)
+    known = ok.reshape(action_values.shape).all(axis=1) & (np.ptp(action_values, axis=1) > 0.0)
     if not known.any():
         return None
-    q, worth = values(task.observation(states[known])), worth[known]
+    q, action_values = values(task.observation(states[known])), action_values[known]
     return ValueCheck(
-        rank_correlation=float(_spearman(q, worth).mean()),
-        error=float(np.sqrt(np.square(q - worth).mean())),
-        spread=float(worth.std(axis=1).mean()),
+        rank_correlation=float(_spearman(q, action_values).mean()),
+        error=float(np.sqrt(np.square(q - action_values).mean())),
+        spread=float(action_values.std(axis=1).mean()),
     )

@@ -19,14 +19,14 @@ WALL: Colour = (178, 176, 170)
 ROBOT: Colour = (62, 70, 86)
 GOAL: Colour = (92, 160, 112)
 TRAIL: Colour = (150, 156, 168)
-KINDS: tuple[Colour, ...] = (
+KIND_PALETTE: tuple[Colour, ...] = (
     (226, 149, 72),
     (74, 126, 187),
     (158, 106, 178),
     (200, 92, 92),
     (96, 160, 160),
 )
-SMOOTH = 3  # pictures are drawn this many times larger, then reduced
+OVERSAMPLING = 3  # pictures are drawn this many times larger, then reduced
 
 
 class GoalLike(Protocol):
@@ -91,11 +91,11 @@ def kind_colours(task: TaskLike) -> dict[str, Colour]:
     colours: dict[str, Colour] = {}
     for kind in (task.kinds[body] for body in objects(task)):
         if kind not in colours:
-            colours[kind] = KINDS[len(colours) % len(KINDS)]
+            colours[kind] = KIND_PALETTE[len(colours) % len(KIND_PALETTE)]
     return colours
 
 
-def on_paper(colour: Colour, share: float) -> Colour:
+def blend_with_paper(colour: Colour, share: float) -> Colour:
     """Mixes `share` of the colour with PAPER."""
     red, green, blue = (
         round(share * c + (1.0 - share) * p) for c, p in zip(colour, PAPER, strict=True)
@@ -149,7 +149,7 @@ class Canvas:
 
     def __init__(self, window: Window, pixels: int = 360) -> None:
         self.window = window
-        self._side = pixels * SMOOTH
+        self._side = pixels * OVERSAMPLING
         self._scale = self._side / (2.0 * window.half)  # [pixel/m]
         self._image = Image.new("RGB", (self._side, self._side), PAPER)
 
@@ -181,7 +181,7 @@ class Canvas:
 
     def pixels(self) -> NDArray[np.uint8]:
         """Returns the reduced picture. [height, width, 3]"""
-        return np.asarray(self._image.reduce(SMOOTH))
+        return np.asarray(self._image.reduce(OVERSAMPLING))
 
 
 def circle(centre: Any, radius: float, corners: int = 96) -> Floats:
@@ -211,7 +211,7 @@ def draw_goal(canvas: Canvas, task: TaskLike, reached: bool = False) -> None:
             shape = circle(term.centre, term.radius)
         else:
             shape = _half_plane(term, task.arena)
-        canvas.polygon(shape, on_paper(colour, 0.38 if reached else 0.18), edge=colour)
+        canvas.polygon(shape, blend_with_paper(colour, 0.38 if reached else 0.18), edge=colour)
 
 
 def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
@@ -246,7 +246,7 @@ def draw_joints(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
         canvas.line([(x, y - 0.25), (x, y + 0.25)], INK, 0.09)
 
 
-def draw_ghosts(canvas: Canvas, task: TaskLike, before: Floats, poses: Floats) -> None:
+def draw_former_outlines(canvas: Canvas, task: TaskLike, before: Floats, poses: Floats) -> None:
     """Draws the outlines at `before` of the objects that have moved since. [bodies, 3] each"""
     colours = kind_colours(task)
     for body in objects(task):
@@ -274,7 +274,7 @@ def state_image(
     draw_goal(canvas, task, reached)
     canvas.line([(-a, -a), (a, -a), (a, a), (-a, a), (-a, -a)], FAINT, 0.06)
     if len(path) > 1:
-        draw_ghosts(canvas, task, path[0], path[-1])
+        draw_former_outlines(canvas, task, path[0], path[-1])
         canvas.line(path[:, 0, :2], TRAIL, 0.1)
     draw_bodies(canvas, task, path[-1])
     draw_joints(canvas, task, path[-1])

@@ -11,8 +11,8 @@ from PIL import Image, ImageDraw, ImageFont
 from rtg.pictures.draw import (
     FAINT,
     INK,
+    OVERSAMPLING,
     PAPER,
-    SMOOTH,
     Canvas,
     TaskLike,
     episode_window,
@@ -30,34 +30,34 @@ _FRAME_MS = 45
 _HOLD_MS = 1200  # at the start; twice as long at the end
 
 
-def between(task: TaskLike, before: Floats, after: Floats, share: float) -> Floats:
+def interpolate(task: TaskLike, before: Floats, after: Floats, share: float) -> Floats:
     """Interpolates the state after a `share` of a push. [bodies, 3]
 
     The robot moves at constant speed. An object rests until the remaining push is as long as the
     path of the object, then moves as fast as the robot; bodies connected by joints move
     during the same time. Exact for straight drags, an approximation otherwise.
     """
-    way = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)  # [bodies]
+    path_lengths = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)  # [bodies]
     for _ in task.joints:  # the longest path spreads along every chain of joints
         for parent, child, _ in task.joints:
-            way[[parent, child]] = max(way[parent], way[child])
-    stride = max(float(way[0]), 1e-9)
-    rest = np.clip(way / stride, 1e-9, 1.0)  # final share of the push, in which a body moves
-    moved = np.clip((share - (1.0 - rest)) / rest, 0.0, 1.0)
-    moved[0] = share
-    return before + (after - before) * moved[:, None]
+            path_lengths[[parent, child]] = max(path_lengths[parent], path_lengths[child])
+    push_length = max(float(path_lengths[0]), 1e-9)
+    moving_share = np.clip(path_lengths / push_length, 1e-9, 1.0)  # at the end of the push
+    progress = np.clip((share - (1.0 - moving_share)) / moving_share, 0.0, 1.0)
+    progress[0] = share
+    return before + (after - before) * progress[:, None]
 
 
 def _heading(title: str, width: int) -> Picture:
     """Draws a line of words across `width` pixels, as large as fits. [height, width, 3]"""
-    largest = 18.0 * SMOOTH  # [pixel]
+    largest = 18.0 * OVERSAMPLING  # [pixel]
     length = ImageFont.load_default(size=largest).getlength(title)
-    size = min(largest, largest * 0.95 * width * SMOOTH / length)
-    band = Image.new("RGB", (width * SMOOTH, round(1.5 * largest)), PAPER)
+    size = min(largest, largest * 0.95 * width * OVERSAMPLING / length)
+    band = Image.new("RGB", (width * OVERSAMPLING, round(1.5 * largest)), PAPER)
     font = ImageFont.load_default(size=size)
     place = (0.4 * size, 0.75 * largest)
     ImageDraw.Draw(band).text(place, title, fill=INK, font=font, anchor="lm")
-    return np.asarray(band.reduce(SMOOTH))
+    return np.asarray(band.reduce(OVERSAMPLING))
 
 
 def strip(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -> None:
@@ -106,17 +106,17 @@ def film(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -
     per_push = min(_FRAMES_PER_PUSH, max(2, _FRAMES // max(1, last)))
 
     def add(state: Floats, step: int, milliseconds: int, reached: bool = False) -> None:
-        way = np.concatenate([poses[max(0, step - 3) : step + 1], state[None]])
-        way[:-1, 1:] = state[1:]  # no outlines of earlier places: the film shows the motion
+        shown = np.concatenate([poses[max(0, step - 3) : step + 1], state[None]])
+        shown[:-1, 1:] = state[1:]  # no outlines of earlier places: the film shows the motion
         canvas = Canvas(window, _FILM_SIDE)
-        picture = state_image(task, way, canvas=canvas, caption=f"{step}", reached=reached)
+        picture = state_image(task, shown, canvas=canvas, caption=f"{step}", reached=reached)
         frames.append(Image.fromarray(np.concatenate([heading, picture])))
         durations.append(milliseconds)
 
     add(poses[0], 0, _HOLD_MS)
     for step in range(last):
         for frame in range(1, per_push + 1):
-            state = between(task, poses[step], poses[step + 1], frame / per_push)
+            state = interpolate(task, poses[step], poses[step + 1], frame / per_push)
             add(state, step, _FRAME_MS)
     add(poses[last], last, 2 * _HOLD_MS, reached=success)
     pair = _side_by_side(frames[len(frames) // 2], frames[-1])  # has all colours of the film

@@ -123,9 +123,9 @@ def gap_histogram(axis: Axes, counts: Sequence[int], median: float, p90: float) 
     axis.set_xlim(bounds[0] / 1.1, bounds[top] * 1.1)
     axis.set_ylabel("replayed candidates")
     marks = (("median", median, "-", 0.99), ("90th percentile", p90, "--", 0.9))
-    for words, gap, dashes, height in marks:
+    for words, gap, line_style, height in marks:
         at = max(gap, float(bounds[0]))
-        axis.axvline(at, color=_ORANGE, lw=1.5, ls=dashes)
+        axis.axvline(at, color=_ORANGE, lw=1.5, ls=line_style)
         axis.annotate(
             f" {words} {_metres(gap)}",
             (at, height),
@@ -148,7 +148,7 @@ def replay_gap(path: Path, title: str, report: Mapping[str, Any]) -> None:
         save(figure, path)
 
 
-def _scene(axis: Axes, task: TaskLike, body: int) -> None:
+def _draw_scene(axis: Axes, task: TaskLike, body: int) -> None:
     """Draws the arena, the start layout and the goal regions that concern a body.
 
     These are the regions for its own centre and for the mean centres that it is part of. The start
@@ -194,7 +194,7 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
         for axis in axes.flat[len(bodies) :]:
             axis.set_visible(False)
         for axis, body in zip(axes.flat, bodies, strict=False):
-            _scene(axis, task, body)
+            _draw_scene(axis, task, body)
             dots = axis.scatter(
                 poses[order, body, 0],
                 poses[order, body, 1],

@@ -42,9 +42,9 @@ class Node:
     def start(self) -> None:
         """Starts or restarts the program."""
         self.started = time.monotonic()
-        self._gone = False
+        self._reaped = False
         with self.log.open("ab") as output:
-            self._said_before = output.tell()
+            self._log_start = output.tell()
             self._process = subprocess.Popen(
                 self.command,
                 stdin=subprocess.DEVNULL,
@@ -65,14 +65,14 @@ class Node:
         If the program has ended, kills the rest of its process group.
         """
         status = self._process.poll()
-        if status is not None and not self._gone:
+        if status is not None and not self._reaped:
             self.signal_group(signal.SIGKILL)
-            self._gone = True  # from now on the kernel may reuse the id
+            self._reaped = True  # from now on the kernel may reuse the id
         return status
 
     def signal_group(self, number: int) -> None:
         """Sends signal `number` to the process group: the program and its descendants."""
-        if not self._gone:
+        if not self._reaped:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self.pid, number)
 
@@ -84,12 +84,12 @@ class Node:
             return False
         return self.exit_status() is not None
 
-    def last_words(self, lines: int = 8) -> str:
+    def log_tail(self, lines: int = 8) -> str:
         """Returns the last lines that the program has logged since its last start."""
-        said = self.log.read_bytes()[self._said_before :] if self.log.exists() else b""
-        return "\n".join(said.decode(errors="replace").splitlines()[-lines:])
+        logged = self.log.read_bytes()[self._log_start :] if self.log.exists() else b""
+        return "\n".join(logged.decode(errors="replace").splitlines()[-lines:])
 
-    def epitaph(self) -> str:
+    def exit_text(self) -> str:
         """Describes how the program ended."""
         status = self.exit_status()
         if status is not None and status < 0:

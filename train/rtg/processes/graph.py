@@ -10,10 +10,10 @@ from pathlib import Path
 from rtg.errors import RunError, UserError
 from rtg.processes.children import Node, kill_all, stop_all
 
-_QUICK = 5.0  # [s]; a death this soon after the start may recur at every start
-_QUICK_DEATHS = 10  # consecutive, of one worker; one job alone may cause three
+_QUICK_DEATH_AGE = 5.0  # [s]; a death this soon after the start may recur at every start
+_MAX_QUICK_DEATHS = 10  # consecutive, of one worker; one job alone may cause three
 # [s]; a helper with exit status 0 may have received the end of the run before this process did.
-_GOOD_BYE = 1.0
+_EXIT_GRACE = 1.0
 
 
 @dataclass
@@ -21,13 +21,13 @@ class _Member:
     node: Node
     helper: bool
     quick_deaths: int = 0
-    left: float | None = None  # [s], when exit status 0 was first seen
+    exit_seen_at: float | None = None  # [s], when exit status 0 was first seen
 
     def has_left_early(self) -> bool:
-        """Returns whether exit status 0 was first seen more than _GOOD_BYE s ago."""
+        """Returns whether exit status 0 was first seen more than _EXIT_GRACE s ago."""
         now = time.monotonic()
-        self.left = now if self.left is None else self.left
-        return now - self.left > _GOOD_BYE
+        self.exit_seen_at = now if self.exit_seen_at is None else self.exit_seen_at
+        return now - self.exit_seen_at > _EXIT_GRACE
 
 
 class ProcessGraph:
@@ -37,15 +37,15 @@ class ProcessGraph:
         logs.mkdir(parents=True, exist_ok=True)
         self._logs = logs
         self._members: list[_Member] = []
-        self._spared: set[str] = set()
+        self._ignored_failures: set[str] = set()
         self.restarts = 0
 
     def add(self, name: str, command: Sequence[str | Path], helper: bool = False) -> None:
-        """Starts a program. tend() restarts a `helper` that has died."""
+        """Starts a program. check_and_restart() restarts a `helper` that has died."""
         node = Node(name, command, self._logs / f"{name}.log")
         self._members.append(_Member(node, helper))
 
-    def tend(self, leaving: bool = False) -> list[str]:
+    def check_and_restart(self, leaving: bool = False) -> list[str]:
         """Restarts dead helpers, unless the run is `leaving`; returns a message for each of them.
 
         Raises RunError with the end of its log if another program has failed, UserError if bad
@@ -57,31 +57,33 @@ class ProcessGraph:
             if status is None or (status == 0 and not member.helper):
                 continue
             if not member.helper:
-                if member.node.name not in self._spared:
+                if member.node.name not in self._ignored_failures:
                     raise _failure(member.node, status)
                 continue
             if leaving or (status == 0 and not member.has_left_early()):
                 continue
-            notes.append(f"{member.node.epitaph()}, started again")
+            notes.append(f"{member.node.exit_text()}, started again")
             self._replace(member)
         return notes
 
-    def spare(self, name: str) -> None:
-        """Makes tend() ignore a failure of program `name` from now on."""
-        self._spared.add(name)
+    def ignore_failure(self, name: str) -> None:
+        """Makes check_and_restart() ignore a failure of program `name` from now on."""
+        self._ignored_failures.add(name)
 
     def failures(self) -> list[str]:
-        """Returns the obituaries of all programs, except helpers, that ended with an error."""
+        """Returns the failure reports of all programs, except helpers, that ended with an error."""
         essential = [member.node for member in self._members if not member.helper]
-        return [obituary(node) for node in essential if node.exit_status() not in (None, 0)]
+        return [failure_report(node) for node in essential if node.exit_status() not in (None, 0)]
 
     def _replace(self, member: _Member) -> None:
-        quick = time.monotonic() - member.node.started < _QUICK
+        quick = time.monotonic() - member.node.started < _QUICK_DEATH_AGE
         member.quick_deaths = member.quick_deaths + 1 if quick else 0
-        if member.quick_deaths >= _QUICK_DEATHS:
-            raise RunError(f"{obituary(member.node)}\n(died {_QUICK_DEATHS} times in a row)")
+        if member.quick_deaths >= _MAX_QUICK_DEATHS:
+            raise RunError(
+                f"{failure_report(member.node)}\n(died {_MAX_QUICK_DEATHS} times in a row)"
+            )
         member.node.start()
-        member.left = None
+        member.exit_seen_at = None
         self.restarts += 1
 
     def pids(self) -> dict[str, int]:
@@ -116,11 +118,11 @@ def _failure(node: Node, status: int) -> Exception:
 
     It is a UserError for exit status 2, which all programs of RTG use for bad input.
     """
-    words = node.last_words(lines=1)
-    return UserError(words) if status == 2 and words else RunError(obituary(node))
+    words = node.log_tail(lines=1)
+    return UserError(words) if status == 2 and words else RunError(failure_report(node))
 
 
-def obituary(node: Node) -> str:
+def failure_report(node: Node) -> str:
     """Describes how a program ended, with the end of its log."""
-    words = node.last_words()
-    return f"{node.epitaph()}; the end of {node.log}:\n{words}" if words else node.epitaph()
+    words = node.log_tail()
+    return f"{node.exit_text()}; the end of {node.log}:\n{words}" if words else node.exit_text()

@@ -16,20 +16,22 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 class Interrupts:
     """A context manager that handles SIGINT, SIGTERM and SIGHUP.
 
-    It stores the number of the first signal in `number`. At a second signal it calls `on_demand`
-    and ends this process at once, with exit status 128 + signal number. It ignores SIGHUP if the
-    process ignored it before, as under nohup. Main thread only.
+    It stores the number of the first signal in `number`. At a second signal it calls
+    `on_second_signal` and ends this process at once, with exit status 128 + signal number. It
+    ignores SIGHUP if the process ignored it before, as under nohup. Main thread only.
     """
 
-    def __init__(self, on_demand: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, on_second_signal: Callable[[], None] = lambda: None) -> None:
         self.number = 0  # number of the first signal; 0: none yet
-        self._on_demand = on_demand
-        self._before: dict[int, Any] = {}
+        self._on_second_signal = on_second_signal
+        self._previous_handlers: dict[int, Any] = {}
 
     def __enter__(self) -> Self:
-        spared = [signal.SIGHUP] * (signal.getsignal(signal.SIGHUP) is signal.SIG_IGN)
-        heard = [number for number in _SIGNALS if number not in spared]
-        self._before = {number: signal.signal(number, self._handle) for number in heard}
+        ignored = [signal.SIGHUP] * (signal.getsignal(signal.SIGHUP) is signal.SIG_IGN)
+        handled = [number for number in _SIGNALS if number not in ignored]
+        self._previous_handlers = {
+            number: signal.signal(number, self._handle) for number in handled
+        }
         return self
 
     def __exit__(
@@ -38,7 +40,7 @@ class Interrupts:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        for number, handler in self._before.items():
+        for number, handler in self._previous_handlers.items():
             signal.signal(number, handler)
 
     def requested(self) -> bool:
@@ -52,6 +54,6 @@ class Interrupts:
 
     def _handle(self, number: int, frame: FrameType | None) -> None:
         if self.requested():
-            self._on_demand()
+            self._on_second_signal()
             os._exit(128 + number)
         self.number = number

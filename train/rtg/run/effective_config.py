@@ -31,7 +31,7 @@ def values(config: _core.Config) -> Values:
     return result
 
 
-def written(file: Path) -> _core.Config:
+def load_written(file: Path) -> _core.Config:
     """Loads a configuration that this version of RTG wrote to `file`.
 
     Raises UserError if `file` lacks a line that this version would write: another version may lack

@@ -18,12 +18,12 @@ from rtg.processes.graph import ProcessGraph
 from rtg.processes.interrupts import Interrupts
 from rtg.run.plan import RunPlan
 from rtg.run.progress import Display, RunState
+from rtg.run.run_watch import RunWatch
 from rtg.run.train_run import trainer_command
 from rtg.run.training_watch import TrainingWatch
-from rtg.run.watch import RunWatch
 
 _POLL = 0.1  # [s]
-_GOOD_BYE = 5.0  # [s] that the coordinator may take to end after all rows were consumed
+_EXIT_GRACE = 5.0  # [s] that the coordinator may take to end after all rows were consumed
 
 
 class _Recording:
@@ -85,13 +85,13 @@ class GraphRun:
 
         Raises RunError if transitions are missing, StoppedError on a signal.
         """
-        with Interrupts(on_demand=self._graph.kill) as interrupts:
+        with Interrupts(on_second_signal=self._graph.kill) as interrupts:
             try:
                 self._start_programs()
                 while self._graph.working() and not self._is_over():
                     self._step()
                     interrupts.raise_if_requested()
-                self._graph.tend(leaving=True)
+                self._graph.check_and_restart(leaving=True)
                 self._listen(0.0)  # messages that arrived since the last step
                 defects = self._graph.failures()
             finally:
@@ -134,7 +134,7 @@ class GraphRun:
         self._listen(_POLL)
         if self._watch.state.phase == "sealed" and not self._sealed:
             self._on_sealed()
-        for note in self._graph.tend(leaving=self._watch.leaving):
+        for note in self._graph.check_and_restart(leaving=self._watch.leaving):
             self._display.note(note)
         self._display.show(self._training.update(self._watch.state))
 
@@ -149,12 +149,12 @@ class GraphRun:
             return False
         now = time.monotonic()
         self._consumed = min(self._consumed, now)
-        return now - self._consumed > _GOOD_BYE
+        return now - self._consumed > _EXIT_GRACE
 
     def _on_sealed(self) -> None:
         """Tolerates failures of the coordinator from now on: all transitions are stored."""
         self._sealed = True
-        self._graph.spare("beam_coordinator")
+        self._graph.ignore_failure("beam_coordinator")
 
 
 def run(plan: RunPlan, display: Display) -> dict[str, Any]:

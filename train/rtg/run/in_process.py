@@ -20,7 +20,7 @@ from rtg.run.plan import RunPlan
 from rtg.run.progress import Display, RunState
 
 _POLL = 0.1  # [s]
-_PATIENCE = 4.0  # [s] that stop() waits for the end of a layer
+_STOP_TIMEOUT = 4.0  # [s] that stop() waits for the end of a layer
 
 
 class Generation:
@@ -46,10 +46,10 @@ class Generation:
     def stop(self) -> None:
         """Stops the generation at the end of the layer.
 
-        If this takes longer than _PATIENCE, the process will end with os._exit(1).
+        If this takes longer than _STOP_TIMEOUT, the process will end with os._exit(1).
         """
         self._stop = True
-        self._thread.join(_PATIENCE)
+        self._thread.join(_STOP_TIMEOUT)
         if self._thread.is_alive():
             # Its threads still run: exit before the interpreter finalises while they use it.
             atexit.register(os._exit, 1)
@@ -65,15 +65,15 @@ class Generation:
 
     def _generate(self) -> None:
         try:
-            self._report = _core.generate(self._config, self._store, self._note)
+            self._report = _core.generate(self._config, self._on_rows, self._on_progress)
         except BaseException as error:
             self._failure = error
 
-    def _store(self, poses: Any, action: Any, next_poses: Any, success: Any, source: Any) -> None:
+    def _on_rows(self, poses: Any, action: Any, next_poses: Any, success: Any, source: Any) -> None:
         reward = success.astype(np.float32)
         self._recorder.add(Rows(poses, action, next_poses, reward, success, source))
 
-    def _note(self, progress: dict[str, Any]) -> None:
+    def _on_progress(self, progress: dict[str, Any]) -> None:
         self._progress = progress
         if self._stop:
             raise StoppedError

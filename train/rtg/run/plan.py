@@ -12,7 +12,7 @@ from rtg import _core
 from rtg.bus import multicast
 from rtg.errors import UserError
 from rtg.files import run_folder, versions
-from rtg.learn.settings import OF_CHECKPOINT
+from rtg.learn.settings import CHECKPOINT_SETTINGS
 from rtg.run import effective_config, shared_transitions
 from rtg.run.run_args import Override, RunArgs
 
@@ -99,7 +99,7 @@ def _fixed_values(config: _core.Config, has_checkpoint: bool) -> dict[str, Any]:
         found.update({f"{section}.{name}": value for name, value in sections[section].items()})
     if has_checkpoint:
         found["run.method"] = config.run.method
-        found.update({f"train.{name}": sections["train"][name] for name in OF_CHECKPOINT})
+        found.update({f"train.{name}": sections["train"][name] for name in CHECKPOINT_SETTINGS})
     return found
 
 
@@ -110,7 +110,7 @@ def _check_resumed(file: Path, config: _core.Config) -> None:
     the checkpoint there.
     """
     has_checkpoint = run_folder.checkpoint_file(file.parent).exists()
-    before = _fixed_values(effective_config.written(file), has_checkpoint)
+    before = _fixed_values(effective_config.load_written(file), has_checkpoint)
     after = _fixed_values(config, has_checkpoint)
     for name in sorted({*before, *after}):
         old, new = before.get(name), after.get(name)
@@ -119,7 +119,7 @@ def _check_resumed(file: Path, config: _core.Config) -> None:
             raise UserError(
                 f"--resume: {name} must stay {kept} as in {file}; legal are changes of train and "
                 "run, but for run.seed and, with a checkpoint, run.method and "
-                f"train.{{{','.join(OF_CHECKPOINT)}}}"
+                f"train.{{{','.join(CHECKPOINT_SETTINGS)}}}"
             )
 
 
@@ -141,10 +141,10 @@ def make_plan(args: RunArgs) -> RunPlan:
             overrides = (*overrides, Override("--in-process", "run.record=false"))
         config = effective_config.load(args.file, overrides)
     folder = args.out or run_folder.default_path(config.task.name)
-    with run_folder.writing_to(folder):
+    with run_folder.write_errors_as_user_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
         run_folder.write_text(folder / "config.yaml", config.yaml)
     name = f"{folder.name}-{secrets.token_hex(4)}"
     plan = RunPlan(folder, name, config, args.train, args.resume, tuple(notes))
-    versions.note(folder, versions.generator(folder) if plan.is_generated() else None)
+    versions.write(folder, versions.generator(folder) if plan.is_generated() else None)
     return plan

@@ -173,17 +173,17 @@ class LiveDisplay:
         generate.update(only, completed=state.transitions, total=state.target or None)
         rows: list[RenderableType] = []
         if state.generates:
-            rows += [generate, _under(generation_text(state))]
+            rows += [generate, _indented(generation_text(state))]
         if state.budget:
             train.update(only, completed=state.interactions, total=state.budget)
-            rows += [train, _under(training_text(state))]
+            rows += [train, _indented(training_text(state))]
         now = time.monotonic()
         refresh = now - self._drawn >= _REDRAW
         self._drawn = now if refresh else self._drawn
         self._live.update(Group(*rows), refresh=refresh)
 
 
-def _under(words: str) -> Text:
+def _indented(words: str) -> Text:
     return Text(f"         {words}", style="dim", no_wrap=True, overflow="ellipsis")
 
 
@@ -194,10 +194,10 @@ def display(out: TextIO) -> Display:
 
 
 class RateMeter:
-    """The rate of a count [1/s] over the last `stretch` seconds."""
+    """The rate of a count [1/s] over the last `window` seconds."""
 
-    def __init__(self, stretch: float = 10.0) -> None:
-        self._stretch = stretch
+    def __init__(self, window: float = 10.0) -> None:
+        self._window = window
         self._samples: list[tuple[float, int]] = []
 
     def rate(self, count: int, now: float) -> float:
@@ -206,7 +206,7 @@ class RateMeter:
             self._samples.clear()
         if not self._samples or count != self._samples[-1][1]:
             self._samples.append((now, count))
-        while len(self._samples) > 2 and now - self._samples[0][0] > self._stretch:
+        while len(self._samples) > 2 and now - self._samples[0][0] > self._window:
             self._samples.pop(0)
         (first_time, first), (_, last) = self._samples[0], self._samples[-1]
         return (last - first) / (now - first_time) if now > first_time else 0.0

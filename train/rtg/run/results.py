@@ -114,14 +114,14 @@ def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
     return summary
 
 
-def _words_of_generation(s: dict[str, Any]) -> str:
+def _generation_text(s: dict[str, Any]) -> str:
     return (
         f"{s['transitions']:,} transitions in {s['generate_wall_s']:.0f} s, contact share "
         f"{s['contact_share']:.2f}, {s['headings_per_state']:.1f} headings per state"
     )
 
 
-def _words_of_learning(plan: RunPlan, s: dict[str, Any]) -> list[str]:
+def _learning_text(plan: RunPlan, s: dict[str, Any]) -> list[str]:
     lines = [
         f"success rate {s['success_rate']:.2f} after {s['interactions']:,} interactions in "
         f"{s['train_wall_s']:.0f} s, {s['episode_length_mean']:.1f} actions per episode"
@@ -140,9 +140,9 @@ def _words_of_learning(plan: RunPlan, s: dict[str, Any]) -> list[str]:
     return lines
 
 
-def words(plan: RunPlan, summary: dict[str, Any]) -> str:
+def summary_text(plan: RunPlan, summary: dict[str, Any]) -> str:
     """Returns the results of the run in human-readable text."""
     generated = summary["transitions"] is not None
-    lines = [_words_of_generation(summary)] if generated else []
-    learned = _words_of_learning(plan, summary) if plan.train else []
+    lines = [_generation_text(summary)] if generated else []
+    learned = _learning_text(plan, summary) if plan.train else []
     return "\n".join([*lines, *learned, f"results: {plan.folder}"])

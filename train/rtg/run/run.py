@@ -23,14 +23,14 @@ def run(args: RunArgs) -> int:
         print(effective_config.load(args.file, args.overrides).yaml, end="")
         return 0
     if args.resume:
-        with run_folder.alone(args.file.parent, "another run"):
-            return _work(make_plan(args))
+        with run_folder.exclusive_lock(args.file.parent, "another run"):
+            return _carry_out(make_plan(args))
     plan = make_plan(args)
-    with run_folder.alone(plan.folder, "another run"):
-        return _work(plan)
+    with run_folder.exclusive_lock(plan.folder, "another run"):
+        return _carry_out(plan)
 
 
-def _work(plan: RunPlan) -> int:
+def _carry_out(plan: RunPlan) -> int:
     """Generates, trains and writes the results; returns the exit status."""
     from rtg.run import results  # slow to import
 
@@ -44,7 +44,7 @@ def _work(plan: RunPlan) -> int:
             command = f"./run.sh {flags} --out {shlex.quote(str(plan.folder))}"
             raise RunError(f"stopped; to go on: {command}") from None
         summary = results.finish(plan, measured)
-    print(results.words(plan, summary))
+    print(results.summary_text(plan, summary))
     for defect in measured["defects"]:
         print(f"rtg: {defect}", file=sys.stderr)
     return 1 if measured["defects"] else 0

@@ -15,7 +15,7 @@ from rtg.run import effective_config
 _FILES = ("transitions.npz", "generation.json")
 
 
-def kind(config: _core.Config) -> str | None:
+def generation_key(config: _core.Config) -> str | None:
     """Returns all values that determine the generated transitions, as a key.
 
     Runs with equal keys have equal transitions. Returns None if the run generates nothing.
@@ -32,19 +32,19 @@ def are_there(run: Path) -> bool:
     return all((run / name).is_file() for name in _FILES)
 
 
-def find(wanted: str, folder: Path, name: str) -> Path | None:
-    """Returns a run folder/*/name with complete transitions of the kind `wanted`; None if none.
+def find(key: str, folder: Path, name: str) -> Path | None:
+    """Returns a run folder/*/name with complete transitions of generation key `key`, or None.
 
     This version of the program must have generated them.
     """
     for run in sorted(folder.glob(f"*/{name}")):
-        if are_there(run) and _made_kind(run) == wanted:
+        if are_there(run) and _stored_key(run) == key:
             return run
     return None
 
 
-def _made_kind(run: Path) -> str | None:
-    """Returns the kind of the transitions of `run`.
+def _stored_key(run: Path) -> str | None:
+    """Returns the key of the transitions of `run`.
 
     Returns None if another version of the program made them, or if the folder cannot be read:
     they are not used then, but this is no error.
@@ -53,14 +53,14 @@ def _made_kind(run: Path) -> str | None:
     try:
         if versions.generator(run).get("core_sha256") != versions.core_digest():
             return None
-        return kind(effective_config.written(config))
+        return generation_key(effective_config.load_written(config))
     except (UserError, OSError):
         return None
 
 
 def take_over(source: Path, run: Path) -> None:
     """Puts the transitions of `source` into `run`, which exists: as hard links, else as copies."""
-    versions.note(run, versions.generator(source))
+    versions.write(run, versions.generator(source))
     for name in _FILES:
         draft = run / f".{name}.{os.getpid()}"
         try:

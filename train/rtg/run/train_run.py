@@ -22,7 +22,7 @@ def trainer_command(plan: RunPlan, *flags: str) -> Sequence[str | Path]:
     return [sys.executable, "-m", "rtg.learn.trainer", plan.folder, *resume, *flags]
 
 
-def _begun(plan: RunPlan) -> RunState:
+def _initial_state(plan: RunPlan) -> RunState:
     """Returns the state for displays before training, with the figures of the generation."""
     if not plan.offline:
         return RunState(generates=False, budget=plan.interactions)
@@ -41,14 +41,14 @@ def run(plan: RunPlan, display: Display) -> None:
     """Trains in a separate process, so that training can be stopped at any time."""
     graph = ProcessGraph(plan.folder / "logs")
     watch = TrainingWatch(plan.folder)
-    state = _begun(plan)
-    with Interrupts(on_demand=graph.kill) as interrupts:
+    state = _initial_state(plan)
+    with Interrupts(on_second_signal=graph.kill) as interrupts:
         try:
             graph.add("trainer", trainer_command(plan, "--no-stream"))
             while graph.wait(_POLL):
-                graph.tend()
+                graph.check_and_restart()
                 display.show(watch.update(state))
                 interrupts.raise_if_requested()
         finally:
             graph.stop()
-    graph.tend()
+    graph.check_and_restart()

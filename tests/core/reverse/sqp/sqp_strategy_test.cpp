@@ -209,7 +209,7 @@ TEST(SqpStrategyAttempts, EndWithASolution) {
   const ReverseConfig config = without_softening();
   SqpStrategy strategy(config);
   end_attempt(strategy, true);
-  EXPECT_TRUE(strategy.counts(SolveStatus::kConverged));
+  EXPECT_TRUE(strategy.replaces_result(SolveStatus::kConverged));
   EXPECT_FALSE(strategy.try_again(SolveStatus::kConverged));
   EXPECT_EQ(strategy.attempts(), 1);
 }
@@ -220,7 +220,8 @@ TEST(SqpStrategyAttempts, AreThreeAtMostEachWithALargerFirstProximalTerm) {
   for (const double scale : {1.0, 4.0, 16.0}) {
     EXPECT_EQ(strategy.proximal(), scale * config.proximal_start);
     end_attempt(strategy, false);
-    EXPECT_TRUE(strategy.counts(strategy.status()));  // a later failure replaces an earlier
+    EXPECT_TRUE(
+        strategy.replaces_result(strategy.status()));  // a later failure replaces an earlier
     EXPECT_EQ(strategy.try_again(strategy.status()), scale < 16.0);
   }
   EXPECT_EQ(strategy.attempts(), 3);
@@ -230,11 +231,11 @@ TEST(SqpStrategyAttempts, OfSolutionsThatMissTheFinalStateTheFirstCounts) {
   const ReverseConfig config = without_softening();
   SqpStrategy strategy(config);
   end_attempt(strategy, true);
-  EXPECT_TRUE(strategy.counts(SolveStatus::kInfeasible));
+  EXPECT_TRUE(strategy.replaces_result(SolveStatus::kInfeasible));
   ASSERT_TRUE(strategy.try_again(SolveStatus::kInfeasible));
-  EXPECT_FALSE(strategy.counts(SolveStatus::kInfeasible));
-  EXPECT_FALSE(strategy.counts(SolveStatus::kLineSearchFailed));
-  EXPECT_TRUE(strategy.counts(SolveStatus::kConverged));
+  EXPECT_FALSE(strategy.replaces_result(SolveStatus::kInfeasible));
+  EXPECT_FALSE(strategy.replaces_result(SolveStatus::kLineSearchFailed));
+  EXPECT_TRUE(strategy.replaces_result(SolveStatus::kConverged));
   EXPECT_FALSE(strategy.try_again(SolveStatus::kInfeasible));
 }
 
@@ -243,7 +244,7 @@ TEST(SqpStrategyAttempts, AFailureBetweenMissesDoesNotHideTheFirst) {
   SqpStrategy strategy(config);
   ASSERT_TRUE(strategy.try_again(SolveStatus::kInfeasible));
   ASSERT_TRUE(strategy.try_again(SolveStatus::kLineSearchFailed));
-  EXPECT_FALSE(strategy.counts(SolveStatus::kInfeasible));
+  EXPECT_FALSE(strategy.replaces_result(SolveStatus::kInfeasible));
 }
 
 TEST(SqpStrategyAttempts, WhereASofteningFailedTheNextBeginsWithTheSameProximalTerm) {

@@ -1,4 +1,4 @@
-#include "nodes/beam_coordinator/whole_file.hpp"
+#include "nodes/beam_coordinator/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -20,7 +20,7 @@ bool is_on_disk(const std::filesystem::path& path) {
 
 }  // namespace
 
-void write_whole_file(const std::filesystem::path& path, const std::string& text) {
+void write_atomically(const std::filesystem::path& path, const std::string& text) {
   std::filesystem::path part = path;
   part += ".part";
   std::ofstream file(part, std::ios::binary);
