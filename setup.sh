@@ -125,19 +125,20 @@ build_progress() {
   if [[ -t 2 ]]; then printf '\r\033[K' >&2; fi
 }
 
-# build_preset PRESET TARGET [CMAKE_OPTION...]: configures once, builds what changed, quiet unless it fails.
+# build_preset PRESET TARGET [CMAKE_OPTION...]: configures where presets are newer, builds what changed, quiet unless it fails.
 build_preset() {
   local preset=$1 target=$2
   shift 2
   local folder=$ROOT/build/$preset log=$ROOT/build/$preset.log
   export PATH=$VENV/bin:$PATH
   : >"$log"
-  if [[ ! -f $folder/build.ninja ]]; then
+  if [[ ! -f $folder/build.ninja || $ROOT/CMakePresets.json -nt $folder/build.ninja ]]; then
     say "configuring build/$preset"
     if ! (cd "$ROOT" && cmake --preset "$preset" "$@") >"$log" 2>&1 9>&-; then
       tail -n 30 "$log" >&2
       fail "cmake could not configure (whole log: build/$preset.log)"
     fi
+    touch "$folder/build.ninja" # CMake leaves it as old as it was where nothing changed
   fi
   local todo steps cores estimate=
   todo=$(ninja -C "$folder" -n "$target" 2>/dev/null 9>&-) || todo=

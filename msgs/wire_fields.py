@@ -35,6 +35,7 @@ TAIL = """
 """
 NUMBERS = {"int8_t", "int16_t", "int32_t", "int64_t", "float", "double"}
 STRUCT = re.compile(r"struct\s+(\w+)\s*\{(.*)\}", re.DOTALL)
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 FIELD = re.compile(r"(\w+)\s+(\w+)(?:\[(\w+)\])?")
 
 
@@ -48,7 +49,9 @@ def visit(name: str, field: str, lengths: set[str]) -> str:
     if not match:
         return refuse(name, field)
     kind, key, length = match.groups()
-    if kind not in NUMBERS | {"string", "header_t"} or (kind == "header_t" and length):
+    if kind not in NUMBERS | {"string", "header_t"} or (
+        kind == "header_t" and field != "header_t header"
+    ):
         return refuse(name, field)
     if kind == "header_t":
         return f"fields(v, m.{key});"
@@ -61,10 +64,12 @@ def visit(name: str, field: str, lengths: set[str]) -> str:
 
 def function(name: str, text: str) -> str:
     """The visit of the message called `name`, from the text of its file."""
-    struct = STRUCT.search(re.sub(r"//[^\n]*", "", text))
+    struct = STRUCT.search(COMMENT.sub("", text))
     if not struct or struct[1] != name:
         raise SystemExit(f"{name}.lcm: no struct {name}")
     found = [" ".join(field.split()) for field in struct[2].split(";") if field.strip()]
+    if name != "header_t" and found[:1] != ["header_t header"]:
+        refuse(name, found[0] if found else "")
     lengths = {match[3] for field in found if (match := FIELD.fullmatch(field)) and match[3]}
     seen: set[str] = set()
     for field in found:

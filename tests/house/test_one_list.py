@@ -115,12 +115,23 @@ def test_a_field_of_a_message_is_a_change_of_one_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "field", ["double x[2]", "boolean x", "double x[3][n]", "int64_t x[later]; int32_t later"]
+    "field",
+    ["double x[2]", "boolean x", "double x[3][n]", "int64_t x[later]; int32_t later", "header_t x"],
 )
 def test_a_field_that_the_bus_cannot_check_is_refused(tmp_path: Path, field: str) -> None:
     file = tmp_path / "odd_t.lcm"
-    file.write_text(f"package rtg_msgs;\nstruct odd_t\n{{\n    {field};\n}}\n")
+    file.write_text(
+        f"package rtg_msgs;\nstruct odd_t\n{{\n    header_t header;\n    {field};\n}}\n"
+    )
     words = [sys.executable, SCRIPT, tmp_path / "wire_fields.hpp", file]
     done = subprocess.run(words, capture_output=True, text=True)
     assert done.returncode == 1 and not (tmp_path / "wire_fields.hpp").exists()
-    assert done.stderr.startswith("odd_t.lcm: '")
+    assert done.stderr.startswith(f"odd_t.lcm: '{field.split(';')[0]}'")
+
+
+def test_a_message_without_a_header_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "odd_t.lcm"
+    file.write_text("package rtg_msgs;\nstruct odd_t\n{\n    int32_t x; /* no; header */\n}\n")
+    words = [sys.executable, SCRIPT, tmp_path / "wire_fields.hpp", file]
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert (done.returncode, done.stderr[:20]) == (1, "odd_t.lcm: 'int32_t ")

@@ -1,6 +1,7 @@
 #include "core/reverse/sqp/filter_sqp.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/reverse/problem/trial_point.hpp"
