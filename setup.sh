@@ -106,6 +106,7 @@ setup_python() {
   local python
   python=$(find_python) || exit 1
   if [[ ! -f $MADE_FROM || $(<"$MADE_FROM") != "$ROOT "* ]] || ! "$VENV/bin/python" -c '' 2>/dev/null; then
+    [[ ! -L $VENV ]] || fail ".venv is a link to $(readlink "$VENV"), whose content would go; remove the link"
     say "creating .venv with $("$python" --version)"
     "$python" -m venv --clear "$VENV" 9>&- || fail "$python -m venv failed"
   fi

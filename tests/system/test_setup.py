@@ -50,3 +50,19 @@ def test_the_first_call_says_that_it_is_the_first(tmp_path):
     assert set_up(tmp_path, "lock_setup").startswith("rtg: first call: sets everything up, ")
     (tmp_path / ".venv" / ".made-from").touch()
     assert set_up(tmp_path, "lock_setup") == ""
+
+
+def test_a_linked_environment_is_not_emptied(tmp_path):
+    (tmp_path / "train").mkdir()
+    for name in ("requirements.txt", "pyproject.toml"):
+        shutil.copy(paths.ROOT / "train" / name, tmp_path / "train")
+    shutil.copy(paths.ROOT / "setup.sh", tmp_path)
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "kept").touch()
+    (tmp_path / ".venv").symlink_to(other)
+    command = ["bash", "-euc", "source setup.sh; setup_python"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 1
+    assert f".venv is a link to {other}, whose content would go; remove the link" in done.stderr
+    assert (other / "kept").exists()
