@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t kLanes = static_cast<std::size_t>(kWidth<Lanes>);
 
-/// Returns the ends of the slices into which the jobs are cut, in order. Each slice is half a
+/// Cuts the jobs into slices and returns the ends of the slices in order. Each slice is half a
 /// thread's share of the remaining jobs (guided self-scheduling [Polychronopoulos & Kuck 1987]), so
-/// that all threads finish at about the same time, but large enough to keep the lanes busy.
+/// that all threads finish at about the same time. No slice is too small to keep the lanes busy.
 std::vector<std::size_t> slice_ends(std::size_t jobs, int threads) {
   if (threads <= 1) return {jobs};
   const auto workers = static_cast<std::size_t>(threads);

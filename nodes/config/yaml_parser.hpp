@@ -11,7 +11,7 @@ namespace rtg::config {
 /// ConfigError with the line for wrong syntax, a duplicate key or YAML that is not accepted.
 ConfigNode parse_yaml(const std::string& text, const std::string& file);
 
-/// Returns the tree of the value of a flag; all its nodes have the origin `flag`.
+/// Parses `text`, the value of the flag `flag`, into a tree; all its nodes have the origin `flag`.
 ConfigNode parse_yaml_value(const std::string& text, const std::string& flag);
 
 }  // namespace rtg::config

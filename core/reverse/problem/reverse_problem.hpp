@@ -60,7 +60,8 @@ Violation violation(const ReverseProblem& problem, const Iterate& x);
 /// the tolerance, otherwise kConverged.
 SolveStatus status_of_converged(const ReverseProblem& problem, const Iterate& x);
 
-/// Returns the largest distance of a movable body from its position in the final state [m].
+/// Returns the largest distance of a movable body at the end of `x` from its position in the given
+/// final state [m].
 double terminal_miss(const ReverseProblem& problem, const Iterate& x);
 
 }  // namespace rtg::reverse

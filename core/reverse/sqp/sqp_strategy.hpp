@@ -51,7 +51,8 @@ class SqpStrategy {
   /// iteration if it orders a step, unless that step repeats an iteration (reject_ascent()).
   Order judge(const Figures& at);
   /// To be called if the system is singular or the model is not convex along the step. The
-  /// iteration is repeated with the Hessian of the objective; if it used that one, δ grows.
+  /// iteration is repeated with the Hessian of the objective, or, if it was made with that Hessian
+  /// already, with a larger δ.
   Order reject_ascent();
   /// To be called if no trial point was accepted: δ grows.
   Order reject_line_search();

@@ -40,7 +40,7 @@ class Grid:
 
     @property
     def commands(self) -> list[str]:
-        """The commands that were the last to request at least one cell."""
+        """For each cell the last command that requested it, without duplicates."""
         return list(dict.fromkeys(self.commands_by_cell.values()))
 
     def add(self, command: str, cells: Iterable[Cell]) -> None:

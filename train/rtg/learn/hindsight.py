@@ -94,8 +94,9 @@ class Layouts:
     def network_input(self, observation: Array, goal: Array) -> Array:
         """Returns the input of the network for the desired layout `goal`.
 
-        It holds the observation, the offsets dx, dy [8 m] from the objects to `goal`, and cos, sin
-        of the angles to it. [N, observation], [N, size] -> [N, observation + size]
+        It holds the observation, the offsets dx, dy from the objects to their places in `goal`, in
+        units of 8 m, and cos, sin of the angles from the objects to their headings there.
+        [N, observation], [N, size] -> [N, observation + size]
         """
         parts = self._difference(self.of(observation), goal)
         way = [part.reshape(len(part), part.shape[1] * 2) for part in parts]

@@ -70,10 +70,11 @@ def save(figure: Figure, path: Path) -> None:
 
 
 def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: str) -> None:
-    """Plots success, episode length and return over interactions; `unit` labels their axis.
+    """Plots success, episode length and return against interactions; `unit` labels the x-axis.
 
     curve: the columns `interactions`, `success_rate`, `episode_length_mean`, `episode_return_mean`
-    and, if known, `rollout_success`, a value per evaluation; all [N], NaN where not measured.
+    and, if known, `rollout_success`. Each column has one value per evaluation, NaN where it was
+    not measured, [N].
     """
     panels = [
         ("success rate", "success_rate", "rollout_success", (-0.03, 1.03)),
