@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import sys
 from pathlib import Path
+from typing import NoReturn
 
 HEAD = """// Made by msgs/wire_fields.py from the .lcm files.
 #pragma once
@@ -39,27 +40,34 @@ COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 FIELD = re.compile(r"(\w+)\s+(\w+)(?:\[(\w+)\])?")
 
 
-def refuse(name: str, field: str) -> str:
+def refuse(name: str, field: str) -> NoReturn:
     raise SystemExit(f"{name}.lcm: '{field}': no field that the bus can check; see {__file__}")
 
 
-def visit(name: str, field: str, lengths: set[str]) -> str:
-    """The call that shows a visitor the field."""
-    match = FIELD.fullmatch(field)
-    if not match:
-        return refuse(name, field)
-    kind, key, length = match.groups()
-    if kind not in NUMBERS | {"string", "header_t"} or (
-        kind == "header_t" and field != "header_t header"
-    ):
-        return refuse(name, field)
-    if kind == "header_t":
-        return f"fields(v, m.{key});"
-    if length:
-        return f"v.{'texts' if kind == 'string' else 'array'}(m.{key}, m.{length});"
-    if key in lengths:
-        return f"v.count(m.{key});" if kind == "int32_t" else refuse(name, field)
-    return f"v.{'text' if kind == 'string' else 'scalar'}(m.{key});"
+def visits(name: str, fields: list[str]) -> list[str]:
+    """The calls that show a visitor the fields, in order."""
+    matches = [FIELD.fullmatch(field) for field in fields]
+    lengths = {match[3] for match in matches if match and match[3]}
+    calls: list[str] = []
+    seen: set[str] = set()
+    for field, match in zip(fields, matches, strict=True):
+        if not match:
+            refuse(name, field)
+        kind, key, length = match.groups()
+        if field == "header_t header":
+            calls.append("fields(v, m.header);")
+        elif kind not in {*NUMBERS, "string"} or (length and length not in seen):
+            refuse(name, field)
+        elif length:
+            calls.append(f"v.{'texts' if kind == 'string' else 'array'}(m.{key}, m.{length});")
+        elif key in lengths and kind != "int32_t":
+            refuse(name, field)
+        elif key in lengths:
+            calls.append(f"v.count(m.{key});")
+        else:
+            calls.append(f"v.{'text' if kind == 'string' else 'scalar'}(m.{key});")
+        seen.add(key)
+    return calls
 
 
 def function(name: str, text: str) -> str:
@@ -70,16 +78,7 @@ def function(name: str, text: str) -> str:
     found = [" ".join(field.split()) for field in struct[2].split(";") if field.strip()]
     if name != "header_t" and found[:1] != ["header_t header"]:
         refuse(name, found[0] if found else "")
-    lengths = {match[3] for field in found if (match := FIELD.fullmatch(field)) and match[3]}
-    seen: set[str] = set()
-    for field in found:
-        match = FIELD.fullmatch(field)
-        if match and match[3] and match[3] not in seen:
-            refuse(name, field)
-        seen.add(field.split()[-1])
-    return FUNCTION.format(
-        name=name, lines="\n".join(f"  {visit(name, field, lengths)}" for field in found)
-    )
+    return FUNCTION.format(name=name, lines="\n".join(f"  {call}" for call in visits(name, found)))
 
 
 def header(files: dict[str, str]) -> str:
