@@ -28,16 +28,16 @@ bool objects_differ(const VectorXd& p, const VectorXd& other) {
 /// Returns the start of a quasi-static push p_0 ... p_h and further starts from which the push
 /// leads to the same end. Until the robot meets the objects, nothing else moves. So at the start,
 /// the objects may as well have the poses that they have after a later sub-step k, with the robot
-/// at its own start. With inertia, `releases` must be 0.
+/// at its own start. With inertia, `late_contacts` must be 0.
 ///
-///   start_j = (robot of p_0, objects of p_k),  k = h·j/(releases + 1),  j = 0 ... releases
-std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int releases) {
+///   start_j = (robot of p_0, objects of p_k),  k = h·j/(J + 1),  j = 0 ... J = late_contacts
+std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int late_contacts) {
   std::vector<VectorXd> out{p[0]};
   if (!objects_differ(p[0], p.back())) return out;
   std::size_t last = 0;
-  for (int j = 1; j <= releases; ++j) {
+  for (int j = 1; j <= late_contacts; ++j) {
     const std::size_t k =
-        (p.size() - 1) * static_cast<std::size_t>(j) / static_cast<std::size_t>(releases + 1);
+        (p.size() - 1) * static_cast<std::size_t>(j) / static_cast<std::size_t>(late_contacts + 1);
     if (k == std::exchange(last, k)) continue;  // fewer sub-steps than starts
     VectorXd start = p[k];
     start.head(3) = p[0].head(3);
@@ -85,8 +85,8 @@ ReverseResult ReverseSimulator::answer(const ReverseJob& job, const Candidate& c
                                        const SqpResult& solved) const {
   ReverseResult result{solved.status, solved.iterations};
   if (result.status != SolveStatus::kConverged) return result;
-  const int releases = physics_.inertia ? 0 : config_.releases;
-  for (const VectorXd& start : predecessors(solved.x.p, releases))
+  const int late_contacts = physics_.inertia ? 0 : config_.late_contacts;
+  for (const VectorXd& start : predecessors(solved.x.p, late_contacts))
     result.starts.push_back(merged(job.end, energy::unstacked(start), candidate.bodies()));
   return result;
 }

@@ -63,7 +63,7 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
 }
 
 /// Returns the steps to replay: per node the best config.free_moves of the steps that move no
-/// object, and per solve the best config.starts of the steps that move one.
+/// object, and per solve the best config.predecessors_per_solve of the steps that move one.
 std::vector<Predecessor> BeamSearch::best_to_replay(std::vector<Predecessor> all) const {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -75,9 +75,9 @@ std::vector<Predecessor> BeamSearch::best_to_replay(std::vector<Predecessor> all
   std::vector<bool> dropped(all.size(), false);
   for (const auto& [value, k] : order) {
     const Predecessor& p = all[k];
-    dropped[k] = p.moved == 0
-                     ? ++idle[p.parent] > config_.free_moves
-                     : ++pushing[p.parent * task_.push.headings + p.action] > config_.starts;
+    dropped[k] = p.moved == 0 ? ++idle[p.parent] > config_.free_moves
+                              : ++pushing[p.parent * task_.push.headings + p.action] >
+                                    config_.predecessors_per_solve;
   }
   std::vector<Predecessor> out;
   for (std::size_t k = 0; k < all.size(); ++k)
@@ -135,7 +135,7 @@ std::vector<std::optional<std::vector<Transition>>> BeamSearch::follow(
 std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed,
                                          const ReplayBatch& replay) {
   std::unordered_set<std::uint64_t> seen = seen_;
-  std::vector<Predecessor> tried = best_of(std::move(replayed), config_.followed, seen);
+  std::vector<Predecessor> tried = best_of(std::move(replayed), config_.verified_plans, seen);
   auto outcomes = follow(tried, replay);
   std::vector<Predecessor> good;
   std::vector<Transition> steps;
@@ -147,7 +147,7 @@ std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed,
     p.left = distance_left(p.start);
     if (!followed.empty()) p.moved = objects_moved(p.start, followed.front().next);
     good.push_back(std::move(p));
-    if (!followed.empty() && rng_.uniform(0.0, 1.0) >= config_.plans) followed.resize(1);
+    if (!followed.empty() && rng_.uniform(0.0, 1.0) >= config_.whole_plan_share) followed.resize(1);
     steps.insert(steps.end(), followed.begin(), followed.end());
   }
   beam_.clear();

@@ -34,13 +34,13 @@ class BeamSearch {
 
   /// Grows a layer and returns the transitions to store. Solves for every action of every node of
   /// the beam, replays the best of the converged steps and ranks those that replay within the gap
-  /// tolerance. The best config.followed steps per place in the beam are tried: bodies that are in
-  /// place in the start of a step are moved to their poses in a start like the target (placed()),
-  /// and from there the step and the plan of its parent node are carried out. If no plan succeeds,
-  /// all are carried out from the unchanged starts instead.
-  /// Of each plan that succeeds, the first transition is returned and, for the share config.plans
-  /// of the plans, all later ones as well. The best of the successful steps become the next beam.
-  /// No transition begins where the goal holds, as that ends an episode.
+  /// tolerance. The best config.verified_plans steps per place in the beam are tried: bodies that
+  /// are in place in the start of a step are moved to their poses in a start like the target
+  /// (placed()), and from there the step and the plan of its parent node are carried out. If no
+  /// plan succeeds, all are carried out from the unchanged starts instead. Of each plan that
+  /// succeeds, the first transition is returned and, for the share config.whole_plan_share of the
+  /// plans, all later ones as well. The best of the successful steps become the next beam. No
+  /// transition begins where the goal holds, as that ends an episode.
   std::vector<Transition> grow(const SolveBatch& solve, const ReplayBatch& replay,
                                SearchStats& stats);
 

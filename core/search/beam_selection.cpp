@@ -10,8 +10,8 @@ namespace rtg::search {
 namespace {
 
 /// Returns the indices of distinct entries in order of (score, index): the best entry of each cell
-/// that is not in `seen`, and of these at most the best `per_layout` of each layout.
-std::vector<std::size_t> distinct(std::span<const BeamEntry> entries, int per_layout,
+/// that is not in `seen`, and of these at most the best `nodes_per_layout` of each layout.
+std::vector<std::size_t> distinct(std::span<const BeamEntry> entries, int nodes_per_layout,
                                   std::unordered_set<std::uint64_t> seen) {
   std::vector<std::size_t> order(entries.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -21,7 +21,7 @@ std::vector<std::size_t> distinct(std::span<const BeamEntry> entries, int per_la
   std::unordered_map<std::uint64_t, int> layouts;
   std::erase_if(order, [&](std::size_t k) {
     int& alike = layouts[entries[k].layout];
-    if (alike == per_layout || !seen.insert(entries[k].cell).second) return true;
+    if (alike == nodes_per_layout || !seen.insert(entries[k].cell).second) return true;
     ++alike;
     return false;
   });
@@ -43,7 +43,7 @@ void take(std::vector<std::size_t>& from, std::vector<std::size_t>& to, int coun
 
 std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
                                      std::unordered_set<std::uint64_t>& seen, int times) {
-  std::vector<std::size_t> rest = distinct(entries, times * config.per_layout, seen), beam;
+  std::vector<std::size_t> rest = distinct(entries, times * config.nodes_per_layout, seen), beam;
   const int breadth = times * config.breadth;
   const auto quota = static_cast<int>(std::lround(config.contact_quota * breadth));
   take(rest, beam, quota, [&](std::size_t k) { return entries[k].contact; });

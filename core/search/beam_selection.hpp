@@ -20,8 +20,9 @@ struct BeamEntry {
 /// Returns the indices of the next beam, at most `times` · config.breadth, in (score, index) order.
 /// First the contact quota is filled with the best entries that have `contact`, then the rest with
 /// the best of all. There is at most one entry per cell, none of a cell in `seen`, and at most
-/// `times` · config.per_layout per layout; the selected cells are added to `seen`. The selection is
-/// a pure function of the complete set, so the order in which results arrived does not matter.
+/// `times` · config.nodes_per_layout per layout; the selected cells are added to `seen`. The
+/// selection is a pure function of the complete set, so the order in which results arrived does not
+/// matter.
 std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
                                      std::unordered_set<std::uint64_t>& seen, int times = 1);
 

@@ -19,22 +19,22 @@ inline constexpr std::array<std::string_view, 5> kGenerators{"rrbs", "naive", "f
 /// Parameters of the beam search and of the stored data set.
 struct SearchConfig {
   Generator generator = Generator::kRrbs;
-  int transitions = 60000;      // stored in all, branches included
-  int branches = 4;             // other headings simulated from the start of each stored step
-  int near_branches = 1;        // branches at most near_headings away from the step's own heading
-  int near_headings = 3;        // in either direction
-  int breadth = 100;            // B, nodes kept per layer
-  int followed = 2;             // steps per place in the beam whose plans are carried out
-  double plans = 0.05;          // share of steps stored with all later steps of their plans
-  int depth = 40;               // D, layers per tree at most
+  int transitions = 60000;  // stored in all, branches included
+  int branches = 4;         // other headings simulated from the start of each stored step
+  int near_branches = 1;    // branches at most near_headings away from the step's own heading
+  int near_headings = 3;    // in either direction
+  int breadth = 100;        // B, nodes kept per layer
+  int verified_plans = 2;   // steps per place in the beam whose plans are carried out to the goal
+  double whole_plan_share = 0.05;  // share of steps stored with all later steps of their plans
+  int depth = 40;                  // D, layers per tree at most
   double contact_quota = 0.4;   // share of the beam reserved for nodes whose step moved an object
   double gap_tolerance = 0.25;  // largest miss of a body in a step that is kept [m]
-  int starts = 2;               // predecessors replayed per solve, the best ones
-  int free_moves = 6;           // steps that move no object, replayed per node, the best ones
-  int per_layout = 18;          // most nodes of a beam that differ in the robot only
-  int root_draws = 4;           // goal states drawn per root kept
-  int patience = 4;             // consecutive layers without a better node that end a tree
-  bool randomise = false;       // starts are jittered by up to task.randomisation
+  int predecessors_per_solve = 2;  // predecessors replayed per solve, the best ones
+  int free_moves = 6;              // steps that move no object, replayed per node, the best ones
+  int nodes_per_layout = 18;       // most nodes of a beam that differ in the robot only
+  int root_draws = 4;              // goal states drawn per root kept
+  int patience = 4;                // consecutive layers without a better node that end a tree
+  bool randomise = false;          // starts are jittered by up to task.randomisation
 
   template <class Visitor>
   void visit(Visitor& v) {
@@ -44,14 +44,18 @@ struct SearchConfig {
     v.integer("near_branches", near_branches, 0, 359, "of them near the step's own");
     v.integer("near_headings", near_headings, 1, 180, "how many headings away, at most");
     v.integer("breadth", breadth, 1, 100000, "nodes kept per layer");
-    v.integer("followed", followed, 1, 1000, "steps tried to the end per place in the beam");
-    v.number("plans", plans, 0.0, 1.0, "share of steps stored with all that follows them");
+    v.integer("verified_plans", verified_plans, 1, 1000,
+              "plans carried out to the goal per place in the beam");
+    v.number("whole_plan_share", whole_plan_share, 0.0, 1.0,
+             "share of steps stored with all that follows them");
     v.integer("depth", depth, 1, 1000, "layers per tree at most");
     v.number("contact_quota", contact_quota, 0.0, 1.0, "share of the beam that moved an object");
     v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest miss of a body kept [m]");
-    v.integer("starts", starts, 1, 100, "predecessors replayed per solve");
+    v.integer("predecessors_per_solve", predecessors_per_solve, 1, 100,
+              "predecessors replayed per solve, the best");
     v.integer("free_moves", free_moves, 0, 360, "steps without contact replayed per node");
-    v.integer("per_layout", per_layout, 1, 100000, "nodes of a beam with objects alike");
+    v.integer("nodes_per_layout", nodes_per_layout, 1, 100000,
+              "nodes of a beam with objects alike");
     v.integer("root_draws", root_draws, 1, 1000, "goal states drawn per root kept");
     v.integer("patience", patience, 1, 1000, "layers without a better node that end a tree");
     v.flag("randomise", randomise, "starts lie all over task.randomisation");

@@ -43,7 +43,7 @@ const std::array<Settings, kMethods.size()>& table() {
       online({{"train", "double_q", "true"}, {"train", "curriculum", "0.9"}}),
       Settings{{"search", "generator", "rrbs"},
                {"train", "interact", "false"},
-               {"train", "conservatism", "1.0"}},
+               {"train", "cql_weight", "1.0"}},
       Settings{{"search", "generator", "rrbs"},
                {"train", "interact", "false"},
                {"train", "learner", "cloning"}},

@@ -20,40 +20,40 @@ inline constexpr std::array<std::string_view, 3> kLearners{"q_learning", "clonin
 /// the fields that are given.
 ///
 /// Reasons for some defaults: With a hard copy every 500 steps instead of target_rate, the success
-/// rate oscillates between 0.7 and 1. Without recent_share and cautious, the success rate of a
-/// policy of ArtManip fell from 0.95 to 0.01 for 20,000 interactions. On the same transitions
+/// rate oscillates between 0.7 and 1. Without recent_share and clipped_double_q, the success rate
+/// of a policy of ArtManip fell from 0.95 to 0.01 for 20,000 interactions. On the same transitions
 /// (ArtManip, mean over 85,000 to 110,000 interactions) the policy of the target network has
 /// success rate 0.85, that of the averaged weights 0.97. The latter falls to 0.90 if the averaged
 /// weights also act in training, because their mistakes are then seen too late.
 struct TrainConfig {
   TrainPreset preset = TrainPreset::kDefault;
   Learner learner = Learner::kQLearning;
-  int interactions = 350000;    // Table 2
-  bool interact = true;         // false: only generated transitions, same number of rounds
-  bool offline = true;          // learn from generated transitions, too
-  int start_at = 40000;         // transitions that must have arrived before learning starts
-  int buffer = 1500000;         // transitions in each of the two replay buffers, Table 2
-  int batch = 256;              // half of Table 2's: a third less time per step, learns as fast
-  double learning_rate = 3e-4;  // of Adam
-  int train_frequency = 4;      // interactions per training round, Table 2
-  int gradient_steps = 1;       // per training round, Table 2
-  int target_sync = 1;          // gradient steps between updates of the target network
-  double target_rate = 0.005;   // τ: step of an update towards the online network; 1: a copy
-  bool target_acts = true;      // the target network acts in training, not the online network
-  double policy_rate = 1.5e-4;  // least rate per gradient step at which the policy averages weights
-  double discount = 0.95;       // γ; 0: the task's
-  double offline_share = 0.5;   // share of a batch; negative: uniform over all transitions
-  double recent_share = 0.5;    // share of a batch's online part from the 10,000 latest
-  double conservatism = 0.0;    // α of CQL, which lowers values of headings not in the data
-  bool double_q = true;         // van Hasselt et al. 2016
-  bool cautious = true;         // use the smaller of both networks' values of the chosen action
-  bool dueling = true;          // Wang et al. 2016
-  bool layer_norm = true;       // after each hidden layer
-  bool small_head = true;       // last layer starts near 0
-  bool clip_targets = true;     // to [0, 1], the range of the values
-  bool value_bounds = true;     // raise targets to lower bounds proven by stored trajectories
-  double epsilon_start = 0.3;   // ε at the first interaction
-  double epsilon_end = 0.02;    // ε from epsilon_share of the interactions on
+  int interactions = 350000;       // Table 2
+  bool interact = true;            // false: only generated transitions, same number of rounds
+  bool offline = true;             // learn from generated transitions, too
+  int learning_starts = 40000;     // transitions that must have arrived before learning starts
+  int buffer = 1500000;            // transitions in each of the two replay buffers, Table 2
+  int batch = 256;                 // half of Table 2's: a third less time per step, learns as fast
+  double learning_rate = 3e-4;     // of Adam
+  int train_frequency = 4;         // interactions per training round, Table 2
+  int gradient_steps = 1;          // per training round, Table 2
+  int target_sync = 1;             // gradient steps between updates of the target network
+  double target_rate = 0.005;      // τ: step of an update towards the online network; 1: a copy
+  bool target_acts = true;         // the target network acts in training, not the online network
+  double averaging_rate = 1.5e-4;  // least rate of the averaged weights per gradient step
+  double discount = 0.95;          // γ; 0: the task's
+  double offline_share = 0.5;      // share of a batch; negative: uniform over all transitions
+  double recent_share = 0.5;       // share of a batch's online part from the 10,000 latest
+  double cql_weight = 0.0;         // α of CQL, which lowers values of headings not in the data
+  bool double_q = true;            // van Hasselt et al. 2016
+  bool clipped_double_q = true;    // use the smaller of both networks' values of the chosen action
+  bool dueling = true;             // Wang et al. 2016
+  bool layer_norm = true;          // after each hidden layer
+  bool small_head = true;          // last layer starts near 0
+  bool clip_targets = true;        // to [0, 1], the range of the values
+  bool value_bounds = true;        // raise targets to lower bounds proven by stored trajectories
+  double epsilon_start = 0.3;      // ε at the first interaction
+  double epsilon_end = 0.02;       // ε from epsilon_share of the interactions on
   double epsilon_share = 0.2;
   double nearby_share = 0.5;   // exploring actions not towards objects: share near the greedy one
   int nearby_headings = 2;     // largest distance from the greedy heading, in headings
@@ -98,7 +98,8 @@ struct TrainConfig {
     v.flag("interact", interact, "act in the environment, or learn from generated data alone");
     v.integer("interactions", interactions, 1, kMany, "environment steps of the learner");
     v.flag("offline", offline, "generate transitions and learn from them, too");
-    v.integer("start_at", start_at, 0, kMany, "transitions that must be in before learning starts");
+    v.integer("learning_starts", learning_starts, 0, kMany,
+              "transitions that must be in before learning starts");
     v.integer("buffer", buffer, kTogether, kMany, "capacity of each replay buffer");
     v.integer("batch", batch, 1, 1000000, "transitions per gradient step");
     v.number("learning_rate", learning_rate, 1e-9, 1.0, "of Adam");
@@ -107,14 +108,15 @@ struct TrainConfig {
     v.integer("target_sync", target_sync, 1, kMany, "gradient steps between target updates");
     v.number("target_rate", target_rate, 1e-6, 1.0, "how far the target network moves; 1: a copy");
     v.flag("target_acts", target_acts, "the target network acts in training, not the learner's");
-    v.number("policy_rate", policy_rate, 1e-6, 1.0,
-             "least move of the policy's mean weights, per gradient step; 1: the learner's own");
+    v.number("averaging_rate", averaging_rate, 1e-6, 1.0,
+             "least rate of the policy's averaged weights, per gradient step; 1: no averaging");
     v.number("discount", discount, 0.0, 0.9999, "of the learner; 0: the task's");
     v.number("offline_share", offline_share, -1.0, 1.0, "of a batch; negative: uniform over all");
     v.number("recent_share", recent_share, 0.0, 1.0, "of its online part: from the latest 10,000");
-    v.number("conservatism", conservatism, 0.0, 100.0, "weight of CQL's term; 0: none");
+    v.number("cql_weight", cql_weight, 0.0, 100.0, "weight of CQL's term; 0: none");
     v.flag("double_q", double_q, "Double-Q targets");
-    v.flag("cautious", cautious, "... valued by the network that thinks less of it");
+    v.flag("clipped_double_q", clipped_double_q,
+           "... valued by the network with the smaller value");
     v.flag("dueling", dueling, "dueling head");
     v.flag("layer_norm", layer_norm, "layer normalisation");
     v.flag("small_head", small_head, "last layer starts near 0");

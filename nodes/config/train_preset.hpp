@@ -19,11 +19,11 @@ inline TrainConfig train_preset(TrainPreset preset) {
   config.target_sync = 250;
   config.target_rate = 1.0;
   config.target_acts = false;
-  config.policy_rate = 1.0;
+  config.averaging_rate = 1.0;
   config.discount = 0.0;
   config.offline_share = -1.0;
   config.recent_share = 0.0;
-  config.cautious = false;
+  config.clipped_double_q = false;
   config.dueling = config.layer_norm = config.small_head = false;
   config.clip_targets = config.value_bounds = false;
   config.epsilon_start = 1.0;

@@ -32,7 +32,7 @@ struct ReverseConfig {
   double plain_barrier = 0.0;        // μ of the paper's -μ log g [J]; 0: the barrier of `physics`
   double proximal_start = 1.0;       // δ of the first iteration
   int softenings = 2;                // how often the spring is softened, against poor minima
-  int releases = 7;                  // predecessors besides the start of the whole push
+  int late_contacts = 7;             // predecessors whose objects are met later in the push
 
   template <class Visitor>
   void visit(Visitor& v) {
@@ -52,7 +52,8 @@ struct ReverseConfig {
     v.number("plain_barrier", plain_barrier, 0.0, 1e6, "weight of -mu log g; 0: physics' barrier");
     v.number("proximal_start", proximal_start, 1e-4, 1e9, "regularisation of the first step");
     v.integer("softenings", softenings, 0, 1000, "times the hold on the final state is softened");
-    v.integer("releases", releases, 0, kMaxStarts - 1, "starts whose objects are met on the way");
+    v.integer("late_contacts", late_contacts, 0, kMaxStarts - 1,
+              "predecessors whose objects are met later");
   }
 };
 
@@ -66,7 +67,7 @@ inline ReverseConfig reverse_preset(ReversePreset preset) {
   if (preset == ReversePreset::kDefault) return config;
   config.preset = ReversePreset::kPaper;
   config.max_iterations = 1000;
-  config.releases = 0;
+  config.late_contacts = 0;
   config.plain_barrier = 0.02;
   config.path_weight = config.heading_weight = 0.0;
   config.speed_weight = config.terminal_weight = 0.0;

@@ -159,7 +159,7 @@ TEST(ReverseSimulator, APushFromAnyOfTheStartsLeadsToTheEnd) {
 TEST(ReverseSimulator, ReleasesStandBetweenTheStartOfTheWholePushAndTheEnd) {
   const ReverseJob job = touching_job();
   ReverseConfig config;
-  config.releases = 4;
+  config.late_contacts = 4;
   const ReverseResult result = solve(robot_and_boxes(2), job, config);
   ASSERT_EQ(result.starts.size(), 5U);
   for (std::size_t k = 1; k < 5; ++k) {

@@ -19,7 +19,7 @@ struct BeamSearchStartTest : ::testing::Test, testing::DraggingWorld {
 
   BeamSearchStartTest() {
     config.breadth = 12;
-    config.plans = 0.0;
+    config.whole_plan_share = 0.0;
   }
 
   /// Whether nothing is in the way of what is in place.

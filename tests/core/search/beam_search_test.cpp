@@ -24,8 +24,8 @@ struct BeamSearchTest : ::testing::Test, testing::DraggingWorld {
 
   BeamSearchTest() {
     config.breadth = 6;
-    config.followed = 3;
-    config.plans = 0.0;
+    config.verified_plans = 3;
+    config.whole_plan_share = 0.0;
   }
 
   BeamSearch planted(std::uint64_t seed = 1) {
@@ -134,7 +134,7 @@ std::vector<int> plans_of(const tasks::Task& task, const std::vector<Transition>
 
 TEST_F(BeamSearchTest, StoresStepsWithWhatFollowsThemToSuccess) {
   over = 0.05;  // so that no plan goes as it was found
-  config.plans = 1.0;
+  config.whole_plan_share = 1.0;
   BeamSearch search = planted();
   int longest = 0;
   for (int layer = 1; layer <= 5; ++layer) {
@@ -205,7 +205,7 @@ using Distances = std::map<std::pair<int, int>, std::vector<double>>;
 struct WorthReplayingTest : BeamSearchTest {
   WorthReplayingTest() {
     config.free_moves = 5;
-    config.starts = 2;
+    config.predecessors_per_solve = 2;
     config.gap_tolerance = 100.0;  // what is replayed comes back
     drags = {0.2, 0.6, 0.35, testing::kDrag};
   }

@@ -104,7 +104,7 @@ TEST(BeamSelection, KeepsTheBestOfEachLayout) {
   std::vector<BeamEntry> entries = ranked(10);
   for (std::size_t k = 0; k < 7; ++k) entries[k].layout = 5;
   SearchConfig c = config(10, 0.0);
-  c.per_layout = 2;
+  c.nodes_per_layout = 2;
   EXPECT_EQ(select(entries, c), (Indices{0, 1, 7, 8, 9}));
 }
 
@@ -113,7 +113,7 @@ TEST(BeamSelection, WhatItsLayoutHasNoRoomForLeavesItsCellToOthers) {
   entries[1].layout = entries[0].layout;
   entries[2].cell = entries[1].cell;
   SearchConfig c = config(10, 0.0);
-  c.per_layout = 1;
+  c.nodes_per_layout = 1;
   EXPECT_EQ(select(entries, c), (Indices{0, 2, 3}));
 }
 
@@ -121,8 +121,8 @@ TEST(BeamSelection, AWiderChoiceIsThatOfAsManyTimesTheLimits) {
   Rng rng(22);
   const std::vector<BeamEntry> entries = random_entries(rng, 300);
   SearchConfig narrow = config(10, 0.4), wide = config(30, 0.4);
-  narrow.per_layout = 2;
-  wide.per_layout = 6;
+  narrow.nodes_per_layout = 2;
+  wide.nodes_per_layout = 6;
   Cells seen, as_wide;
   EXPECT_EQ(select_beam(entries, narrow, seen, 3), select_beam(entries, wide, as_wide));
   EXPECT_EQ(seen, as_wide);
@@ -134,7 +134,7 @@ TEST(BeamSelection, HoldsAllItsPromisesOnRandomLayers) {
     const std::vector<BeamEntry> entries = random_entries(rng, 300);
     Cells seen{3, 17, 80}, before = seen;
     SearchConfig c = config(20, 0.6);
-    c.per_layout = 3;
+    c.nodes_per_layout = 3;
     const Indices beam = select_beam(entries, c, seen);
     ASSERT_EQ(beam.size(), 20U);
     std::set<std::uint64_t> cells;

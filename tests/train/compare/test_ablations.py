@@ -61,11 +61,14 @@ def test_the_loader_takes_every_part_of_the_search_away():
 
 
 def test_what_the_search_is_without_is_not_taken_away():
-    search = effective_config.values(effective_config.load(FILE, [Override("", "search.plans=0")]))[
-        "search"
-    ]
+    search = effective_config.values(
+        effective_config.load(FILE, [Override("", "search.whole_plan_share=0")])
+    )["search"]
     alternatives = {words[0] for words in search_ablations(search)}
-    assert "search.plans=1" in alternatives and "search.plans=0" not in alternatives
+    assert (
+        "search.whole_plan_share=1" in alternatives
+        and "search.whole_plan_share=0" not in alternatives
+    )
 
 
 def test_only_trees_lose_parts_of_trees_and_only_data_any():

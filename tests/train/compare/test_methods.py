@@ -43,7 +43,7 @@ def test_methods_differ_in_these_values_alone() -> None:
         "ddqn_rtg_dr": {**rtg, "randomise": True},
         "her": {**vanilla, "hindsight": 4},
         "rcg": {**vanilla, "curriculum": 0.9},
-        "cql_rtg": {**alone, "conservatism": 1.0},
+        "cql_rtg": {**alone, "cql_weight": 1.0},
         "bc_rtg": {**alone, "learner": "cloning"},
         "planner": {**alone, "learner": "planning", "offline": False},
     }

@@ -18,8 +18,8 @@ def test_values_of_headings_that_are_not_in_the_data_are_held_down() -> None:
     """All of the line's data go right. What else could be done is thought less of by far more than
     values can differ: 1."""
     gaps = []
-    for conservatism in (0.0, 1.0):
-        one = model(conservatism=conservatism, learning_rate=1e-3)
+    for cql_weight in (0.0, 1.0):
+        one = model(cql_weight=cql_weight, learning_rate=1e-3)
         x = np.array([[k / 4, 1, 0] for k in range(5)], np.float32)
         reward = np.array([0, 0, 0, 1], np.float32)
         one.replay_buffer.offline.append(

@@ -14,7 +14,7 @@ SETTINGS = dict(
     target_sync=10,
     target_rate=1.0,
     target_acts=False,
-    policy_rate=1.0,
+    averaging_rate=1.0,
     buffer=10_000,
     reduced_precision=False,
 )
@@ -65,10 +65,10 @@ def test_double_q_agrees_with_a_plain_loop() -> None:
         double[i] = target[i, int(np.argmax(online[i]))]
         lesser[i] = min(double[i], max(online[i]))
     seen, held = th.from_numpy(online), th.from_numpy(target)
-    for cautious in (False, True):  # plain Q: one network does both
-        np.testing.assert_array_equal(next_values(held, held, cautious), single)
-    np.testing.assert_array_equal(next_values(seen, held, cautious=False), double)
-    np.testing.assert_array_equal(next_values(seen, held, cautious=True), lesser)
+    for clipped_double_q in (False, True):  # plain Q: one network does both
+        np.testing.assert_array_equal(next_values(held, held, clipped_double_q), single)
+    np.testing.assert_array_equal(next_values(seen, held, clipped_double_q=False), double)
+    np.testing.assert_array_equal(next_values(seen, held, clipped_double_q=True), lesser)
     assert (double <= single).all() and (double < single).any()
     assert (lesser <= double).all() and (lesser < double).any()
 
@@ -127,7 +127,7 @@ def test_target_network_moves_by_the_target_rate() -> None:
 
 def test_the_policy_is_of_a_mean_over_weights() -> None:
     """At first over the last fifth of them, then as the rate says; with 1 it is the learner's."""
-    one = model(policy_rate=0.25)
+    one = model(averaging_rate=0.25)
     mean = weights(one.mean_net).clone()
     one.learn(4, reset_num_timesteps=False)
     for step in range(1, 60):
@@ -136,11 +136,11 @@ def test_the_policy_is_of_a_mean_over_weights() -> None:
         th.testing.assert_close(weights(one.mean_net), mean)
         one.train(1, 32)
     assert rate == 0.25
-    for policy_rate in (0.25, 1.0):
-        other = model(policy_rate=policy_rate)
+    for averaging_rate in (0.25, 1.0):
+        other = model(averaging_rate=averaging_rate)
         other.learn(400, reset_num_timesteps=False)
         learned = weights(other.q_net)
-        assert th.equal(learned, weights(other.mean_net)) == (policy_rate == 1.0)
+        assert th.equal(learned, weights(other.mean_net)) == (averaging_rate == 1.0)
 
 
 def test_target_network_follows_every_target_sync_gradient_steps() -> None:

@@ -29,8 +29,8 @@ def test_targets_of_a_network_that_says_less_than_0_count_as_clipped(value_bound
     ("changes", "online", "target", "value"),
     [
         ({"double_q": False}, (0.5, 0.2), (0.7, 0.9), 0.9),
-        ({"double_q": False, "cautious": False}, (0.5, 0.2), (0.7, 0.9), 0.9),
-        ({"cautious": False}, (0.5, 0.2), (0.7, 0.9), 0.7),
+        ({"double_q": False, "clipped_double_q": False}, (0.5, 0.2), (0.7, 0.9), 0.9),
+        ({"clipped_double_q": False}, (0.5, 0.2), (0.7, 0.9), 0.7),
         ({}, (0.5, 0.2), (0.7, 0.9), 0.5),
         ({}, (-0.5, -0.6), (-0.3, -0.1), 0.0),
         ({"clip_targets": False}, (-0.5, -0.6), (-0.3, -0.1), -0.5),
@@ -72,15 +72,15 @@ def test_a_gradient_is_cut_to_the_largest_norm(scale: float) -> None:
     assert (whole > 1e3) == (scale > 1.0) and whole > 0.9
 
 
-@pytest.mark.parametrize("conservatism", [0.0, 0.5])
+@pytest.mark.parametrize("cql_weight", [0.0, 0.5])
 @pytest.mark.parametrize("offline", [0, 2, 3])
 def test_the_loss_of_a_gradient_step_by_hand(
-    conservatism: float, offline: int, monkeypatch: pytest.MonkeyPatch
+    cql_weight: float, offline: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Values are held down of offline rows alone. Q is 0.5, 0.2 and six times 0; targets are what
     is given, as all rows are final; smooth L1 is half the square of an error up to 1, and
     goes straight from there on."""
-    one = model(dueling=False, value_bounds=False, clip_targets=False, conservatism=conservatism)
+    one = model(dueling=False, value_bounds=False, clip_targets=False, cql_weight=cql_weight)
     told = []
     q = th.tensor([0.5, 0.2, *[0.0] * 6])
     constant(one.q_net, *q.tolist())
@@ -90,5 +90,5 @@ def test_the_loss_of_a_gradient_step_by_hand(
     one._gradient_step(Batch(seen, actions, seen, y, column(1, 1, 1), column(0, 0, 0), offline))
     td = (0.5**2 / 2 + 0.2**2 / 2 + 4.0 - 0.5) / 3
     gaps = np.log(np.exp(0.5) + np.exp(0.2) + 6) - np.array([0.5, 0.2, 0.0])[:offline]
-    held_down = conservatism * gaps.mean() if offline else 0.0
+    held_down = cql_weight * gaps.mean() if offline else 0.0
     assert told[0].item() == pytest.approx(td + held_down, rel=1e-5)

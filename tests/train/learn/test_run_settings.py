@@ -38,7 +38,7 @@ def course(one: Training, rows: Rows, success: list[bool]) -> dict[str, Any]:
 
 USUAL = {
     "interactions": 240,
-    "start_at": 0,
+    "learning_starts": 0,
     "eval_every": 80,
     "checkpoint_every": 100,
     "stop_at_success": 0.0,
@@ -47,7 +47,11 @@ USUAL = {
 OF_THE_COURSE: dict[str, tuple[Any, str, Any]] = {
     # field: its value, what it changes of the course, to what
     "interactions": (400, "end", 400),
-    "start_at": (250, "first", 400),  # 300 are in when learning may begin; another 100 come first
+    "learning_starts": (
+        250,
+        "first",
+        400,
+    ),  # 300 are in when learning may begin; another 100 come first
     "eval_every": (120, "evaluated", [120, 240]),
     "checkpoint_every": (60, "saved", [60, 120, 180, 240]),
     "stop_at_success": (0.5, "end", 160),

@@ -21,13 +21,13 @@ BRANCH_ABLATIONS: dict[str, tuple[Any, ...]] = {
     "near_headings": (24,),  # of 48, to either side: all headings count as near
 }
 TREE_ABLATIONS: dict[str, tuple[Any, ...]] = {
-    "followed": (1,),
-    "plans": (0, 1),
+    "verified_plans": (1,),
+    "whole_plan_share": (0, 1),
     "contact_quota": (0,),
     "gap_tolerance": (0.05, 100),  # keeps only steps with hardly any miss, keeps all
-    "starts": (1,),
+    "predecessors_per_solve": (1,),
     "free_moves": (0, 48),  # none, all of them
-    "per_layout": (100000,),  # no limit
+    "nodes_per_layout": (100000,),  # no limit
     "root_draws": (1,),
     "patience": (1000,),  # no limit
 }

@@ -29,17 +29,17 @@ MAX_GRADIENT_NORM = 10.0
 AVERAGING_WARM_UP = 5.0
 
 
-def next_values(online: th.Tensor, target: th.Tensor, cautious: bool) -> th.Tensor:
+def next_values(online: th.Tensor, target: th.Tensor, clipped_double_q: bool) -> th.Tensor:
     """Returns the value of s' from the Q of both networks. [B, actions] each -> [B, 1]
 
     Double Q: the online network chooses the action, and the target network evaluates it [van
-    Hasselt et al. 2016]. `cautious` takes the smaller of the two networks' values of that action
-    [cf. Fujimoto et al. 2018], so that an error of one network alone cannot raise it. If the target
-    network is passed as both, this is plain Q-learning.
+    Hasselt et al. 2016]. `clipped_double_q` takes the smaller of the two networks' values of that
+    action [cf. Fujimoto et al. 2018], so that an error of one network alone cannot raise it. If the
+    target network is passed as both, this is plain Q-learning.
     """
     choice = online.argmax(dim=1, keepdim=True)
     value = target.gather(1, choice)
-    return th.minimum(value, online.gather(1, choice)) if cautious else value
+    return th.minimum(value, online.gather(1, choice)) if clipped_double_q else value
 
 
 def bootstrap_targets(batch: Batch, next_value: th.Tensor, discount: float) -> th.Tensor:
@@ -85,9 +85,9 @@ class DoubleDqn(DQN):
       (`target_acts`). It averages over few steps, so it is steadier, and still its mistakes are
       soon visited and corrected. The policy that is evaluated and saved averages over many steps
       [Polyak and Juditsky 1992]: after gradient step t its weights move by
-      max(`policy_rate`, 5 / (5 + t)) towards those of the online network. So it averages over
-      about the last fifth of the steps, at most over the last 1 / `policy_rate`; with
-      `policy_rate` 1 it equals the online network.
+      max(`averaging_rate`, 5 / (5 + t)) towards those of the online network. So it averages over
+      about the last fifth of the steps, at most over the last 1 / `averaging_rate`; with
+      `averaging_rate` 1 it equals the online network.
     """
 
     replay_buffer: MixedReplayBuffer  # type: ignore[assignment]
@@ -153,22 +153,22 @@ class DoubleDqn(DQN):
 
     def _average(self) -> None:
         early_rate = AVERAGING_WARM_UP / (AVERAGING_WARM_UP + self._n_updates)
-        rate = max(self.settings.policy_rate, early_rate)
+        rate = max(self.settings.averaging_rate, early_rate)
         polyak_update(self.q_net.parameters(), self.mean_net.parameters(), rate)
 
     def _gradient_step(self, batch: Batch) -> None:
         with th.no_grad():
             target = self.q_net_target(batch.next_observations)
             online = self.q_net(batch.next_observations) if self.settings.double_q else target
-            value = next_values(online, target, self.settings.cautious)
+            value = next_values(online, target, self.settings.clipped_double_q)
             bootstrap = bootstrap_targets(batch, value, self.gamma)
             y = td_targets(bootstrap, batch.bounds, self.settings.clip_targets)
         all_q = self.q_net(batch.observations)
         q = all_q.gather(1, batch.actions)
         loss = functional.smooth_l1_loss(q, y)
-        if self.settings.conservatism and batch.offline:
+        if self.settings.cql_weight and batch.offline:
             gap = conservative_gap(all_q[: batch.offline], batch.actions[: batch.offline])
-            loss = loss + self.settings.conservatism * gap.mean()
+            loss = loss + self.settings.cql_weight * gap.mean()
         self._descend(loss)
         self.statistics.add(batch, q.detach(), y, bootstrap)
 

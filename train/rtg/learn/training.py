@@ -122,7 +122,7 @@ class Training:
 
     def _may_begin(self) -> bool:
         """Returns whether learning can begin before all transitions are in."""
-        return self.settings.interact and self.data.count >= self.settings.start_at
+        return self.settings.interact and self.data.count >= self.settings.learning_starts
 
     def _learn(self) -> None:
         """Performs one round of learning. Raises RunError if there is nothing to learn from."""

@@ -50,7 +50,7 @@ TEST(ReverseConfig, ThePaperHasItsOwnObjectiveAndIterations) {
   EXPECT_EQ(paper.heading_weight, 0.0);
   EXPECT_EQ(paper.terminal_weight, 0.0) << "the final state is fixed";
   EXPECT_GT(paper.plain_barrier, 0.0);
-  EXPECT_EQ(paper.releases, 0);
+  EXPECT_EQ(paper.late_contacts, 0);
 }
 
 /// What the solver makes of pushes that end with a box against the robot, turned a little, and
@@ -88,7 +88,7 @@ TEST(ReverseConfig, EachFieldChangesTheSolutions) {
       {"plain_barrier", 0.02},
       {"proximal_start", 10},
       {"softenings", 0},
-      {"releases", 2},
+      {"late_contacts", 2},
   };
   testing::expect_each_field_matters(ReverseConfig{}, others, {}, solutions);
 }
