@@ -1,7 +1,8 @@
-"""python wire_fields.py HEADER FILE.lcm...: writes the fields of each message, for C++ visitors.
+"""python wire_fields.py HEADER FILE.lcm...: writes a C++ header that lists the fields of messages.
 
-A message is a struct of scalars, texts, `header_t header` first, and arrays of one dimension whose
-length is an int32_t field before them. Anything else is refused with exit status 1.
+A message is a struct of scalars, texts and arrays of one dimension. Its first field is `header_t
+header`. The length of an array is an int32_t field before the array. Other messages are refused
+with exit status 1.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ def refuse(name: str, field: str) -> NoReturn:
 
 
 def visits(name: str, fields: list[str]) -> list[str]:
-    """The calls that show a visitor the fields, in order."""
+    """Returns the C++ calls by which a visitor visits `fields` of message `name`, in order."""
     matches = [FIELD.fullmatch(field) for field in fields]
     lengths = {match[3] for match in matches if match and match[3]}
     calls: list[str] = []
@@ -71,7 +72,7 @@ def visits(name: str, fields: list[str]) -> list[str]:
 
 
 def function(name: str, text: str) -> str:
-    """The visit of the message called `name`, from the text of its file."""
+    """Returns the C++ function fields() of message `name`; `text`: its .lcm file."""
     struct = STRUCT.search(COMMENT.sub("", text))
     if not struct or struct[1] != name:
         raise SystemExit(f"{name}.lcm: no struct {name}")
@@ -82,9 +83,9 @@ def function(name: str, text: str) -> str:
 
 
 def header(files: dict[str, str]) -> str:
-    """The C++ header for .lcm files, a map of message name to text."""
+    """Returns the C++ header; `files` maps the names of messages to the texts of .lcm files."""
     names = sorted(files)
-    ordered = sorted(names, key=lambda name: name != "header_t")  # the others contain it
+    ordered = sorted(names, key=lambda name: name != "header_t")  # the other messages contain it
     head = HEAD.format(
         includes="\n".join(f"#include <rtg_msgs/{name}.hpp>" for name in names),
         types=", ".join(name for name in names if name != "header_t"),

@@ -8,7 +8,8 @@
 
 namespace rtg::energy {
 
-/// A revolute joint, t_i + R_i a = t_j + R_j b with the angle φ = θ_j - θ_i within its limits.
+/// A revolute joint between a parent body i and a child body j: t_i + R_i a = t_j + R_j b. t and R
+/// are the position and the rotation of a body. The joint angle is φ = θ_j - θ_i.
 template <class T>
 struct Hinge {
   int parent = 0, child = 0;  // i, j
@@ -17,40 +18,43 @@ struct Hinge {
   T reach;                    // largest distance of a child's vertex from the pin [m]
 };
 
-/// The reduced coordinates q of scenes with joints: the poses of the root bodies and the angles of
-/// all other bodies. They are entries of the poses p. In reduced coordinates joints never open.
-/// p(q) is computed hinge by hinge, from the roots to the leaves,
+/// Reduced coordinates q of a scene with joints, in which joints cannot open. q consists of the
+/// poses of the root bodies, which are no joint's child, and of the angles of all other bodies. The
+/// poses p(q) follow hinge by hinge, from the roots to the leaves:
 ///
-///   t_j = t_i + R_i a - R_j b,   ∂t_j/∂θ_i = E R_i a,   ∂t_j/∂θ_j = -E R_j b,
+///   t_j = t_i + R_i a - R_j b,   ∂t_j/∂θ_i = E R_i a,   ∂t_j/∂θ_j = -E R_j b.
 ///
-/// and J = ∂p/∂q is the product of these steps. Forces and rows of matrices are transformed from
-/// the leaves to the roots. The entries x, y of a child's block belong to no coordinate; they are
-/// zero in vectors over q.
+/// J = ∂p/∂q is the product of these steps. Forces and rows of matrices are transformed by Jᵀ, from
+/// the leaves to the roots.
+///
+/// Vectors over q have the layout of p [3·movable]. A child's entries for x and y belong to no
+/// coordinate and are zero.
 template <class T>
 class Articulation {
  public:
   Articulation() = default;
   /// `scene` must list its movable bodies first.
   explicit Articulation(const Scene& scene);
-  /// Returns an articulation with the hinges of `like` but without their geometry, which load()
-  /// fills in.
+  /// Returns an articulation with the same hinges as `like`. load() then sets their geometry, lane
+  /// by lane (core/math/lanes.hpp).
   template <class U>
   static Articulation room_for(const Articulation<U>& like);
+  /// Copies the geometry of `one` into this lane.
   void load(int lane, const Articulation<double>& one);
   /// Removes all limits in this lane.
   void unload(int lane);
 
   bool empty() const { return hinges_.empty(); }
-  /// Parents before children.
+  /// Returns the hinges in an order from the roots to the leaves.
   const std::vector<Hinge<T>>& hinges() const { return hinges_; }
   bool movable(int body) const { return body < movable_; }
 
-  /// p ← p(q).
+  /// p ← p(q): moves each child to where its hinge closes.
   void close(Placement<T>& at) const;
-  /// y ← J y [3·movable]: converts motions (or multipliers) of the coordinates to those of all
-  /// bodies.
+  /// y ← J y [3·movable]: converts a motion in the coordinates q to the motion of all bodies.
+  /// Multipliers transform in the same way.
   void spread(const Placement<T>& at, T* y) const;
-  /// g ← Jᵀ g [3·movable]: converts forces on the bodies to those on the coordinates.
+  /// g ← Jᵀ g [3·movable]: converts forces on the bodies to generalised forces on q.
   void gather(const Placement<T>& at, T* g) const;
 
  private:
@@ -61,13 +65,13 @@ class Articulation {
   std::vector<Hinge<T>> hinges_;
 };
 
-/// R v.
+/// Returns R v, with `turn` the rotation R.
 template <class T>
 Vec2<T> turned_by(const Turn<T>& turn, const Vec2<T>& v) {
   return {turn.c * v.x() - turn.s * v.y(), turn.s * v.x() + turn.c * v.y()};
 }
 
-/// The vectors from the centres of the two bodies to the pin of their hinge, in the world frame.
+/// The vectors from the two bodies' centres to the pin of their hinge, in the world frame.
 template <class T>
 struct Arms {
   Vec2<T> a, b;  // R_i a, R_j b [m]

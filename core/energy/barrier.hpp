@@ -6,12 +6,12 @@
 
 namespace rtg::energy {
 
-/// Contact barrier of weight μ̃ over the gap g,
+/// Barrier potential b of the gap g of a contact, with the weight μ̃ and the finite range ĝ:
 ///
 ///   b'(g) = -μ̃ w(y)/g,   y = g/ĝ,   w = (1 - y)³ for y < 1, 0 beyond,
-///   b(g)  = μ̃ (-ln y - 3(1 - y) + 3/2 (1 - y²) - 1/3 (1 - y³)),
+///   b(g)  = μ̃ (-ln y - 3(1 - y) + 3/2 (1 - y²) - 1/3 (1 - y³)).
 ///
-/// C³ at ĝ. The contact force λ = -b'(g) satisfies the relaxed complementarity λ g = μ̃ w(g).
+/// b is C³ at ĝ. The contact force λ = -b'(g) satisfies the relaxed complementarity λ g = μ̃ w(g).
 ///
 /// Departs from the paper: its -μ̃ ln g has infinite range and moves bodies that nothing touches.
 /// `plain` selects the paper's barrier: w = 1.
@@ -20,7 +20,7 @@ struct Barrier {
   double range = 1.0;   // ĝ [m]
   bool plain = false;
 
-  /// Returns b(g) [kg m²]; +∞ for g ≤ 0, so that line searches shorten their step.
+  /// Returns b(g) [kg m²]. The value is +∞ for g ≤ 0, so that a line search rejects the point.
   template <class T>
   T value(const T& g) const {
     const T open = select(g > T(0.0), g, T(1.0));
@@ -35,7 +35,7 @@ struct Barrier {
     return select(g > T(0.0), b, T(INFINITY));
   }
 
-  /// w and its derivatives with respect to g.
+  /// The window w(g) and its first two derivatives with respect to g.
   template <class T>
   struct Window {
     T w, d1, d2;
@@ -47,12 +47,12 @@ struct Barrier {
     return {rest * rest * rest, T(-3.0 / range) * rest * rest, T(6.0 / (range * range)) * rest};
   }
 
-  /// λ(g) = -b'(g) ≥ 0 [kg m].
+  /// Returns the contact force λ(g) = -b'(g) ≥ 0 [kg m].
   template <class T>
   T force(const T& g) const {
     return T(weight) * window(g).w / g;
   }
-  /// λ'(g) [kg].
+  /// Returns λ'(g) [kg].
   template <class T>
   T force_slope(const T& g) const {
     const Window<T> w = window(g);

@@ -4,13 +4,15 @@
 
 namespace rtg::energy {
 
-/// A vertex v of body i in the frame of body j: x = offset + a with the arm a = R(θ_i - θ_j) v. As
-/// a function of the pair's coordinates u (PairFrame) it has the derivatives
+/// A vertex v of body i, seen in the frame of body j:
 ///
-///   ∂x/∂u = X = [ I₂ | E a | -E x ].
+///   x = offset + a,   a = R(θ_i - θ_j) v  (the arm),   ∂x/∂u = X = [ I₂ | E a | -E x ].
 ///
-/// Its second derivatives are zero except for those that involve the angles. The derivatives (ẋ, ȧ)
-/// along a motion y have the form of a ContactPoint, too; see along().
+/// `offset` and the coordinates u of the pair are those of PairFrame. The second derivatives of x
+/// are zero except for those that involve an angle.
+///
+/// A ContactPoint can also hold the rates (ẋ, ȧ) along a motion y, as returned by along(). The
+/// member functions pulled_rate() and add_curvature_rate() are meant for such an object.
 template <class T>
 struct ContactPoint {
   Vec2<T> x, a;  // [m]
@@ -22,7 +24,7 @@ struct ContactPoint {
     x = pair.offset + a;
   }
 
-  /// Returns (ẋ, ȧ) along y.
+  /// Returns the rates (ẋ, ȧ) along the motion `y` in u.
   ContactPoint along(const Vec4<T>& y) const {
     ContactPoint rate;
     rate.a = turned(a) * (y[2] - y[3]);
@@ -30,22 +32,23 @@ struct ContactPoint {
     return rate;
   }
 
-  /// X y.
+  /// Returns X y.
   Vec2<T> pushed(const Vec4<T>& y) const {
     return {y[0] - a.y() * y[2] + x.y() * y[3], y[1] + a.x() * y[2] - x.x() * y[3]};
   }
-  /// Xᵀ w.
+  /// Returns Xᵀ w.
   Vec4<T> pulled(const Vec2<T>& w) const {
     return {w.x(), w.y(), a.x() * w.y() - a.y() * w.x(), x.y() * w.x() - x.x() * w.y()};
   }
-  /// Ẋᵀ w, if this is (ẋ, ȧ): as Xᵀ w, but without the part of I₂, which is constant.
+  /// Returns Ẋᵀ w if this is (ẋ, ȧ). Unlike in Xᵀ w, the first two entries are zero, because I₂ is
+  /// constant.
   Vec4<T> pulled_rate(const Vec2<T>& w) const {
     Vec4<T> out = pulled(w);
     out[0] = out[1] = T(0.0);
     return out;
   }
 
-  /// Xᵀ D Y, with Y the matrix X of another point.
+  /// Returns Xᵀ D Y, with Y the matrix X of `other`.
   Mat4<T> pulled(const Mat2<T>& D, const ContactPoint& other) const {
     Mat4<T> out;
     const Vec4<T> top = other.pulled(Vec2<T>(D(0, 0), D(0, 1)));
@@ -58,14 +61,14 @@ struct ContactPoint {
     }
     return out;
   }
-  /// Ẋᵀ D Y, if this is (ẋ, ȧ).
+  /// Returns Ẋᵀ D Y if this is (ẋ, ȧ).
   Mat4<T> pulled_rate(const Mat2<T>& D, const ContactPoint& other) const {
     Mat4<T> out = pulled(D, other);
     out.row(0).setConstant(T(0.0));
     out.row(1).setConstant(T(0.0));
     return out;
   }
-  /// Adds the second derivatives of x with respect to q, contracted with w and expressed in u.
+  /// Adds Σ_m w_m ∂²x_m/∂q² to `H`, expressed in u. q are the poses of both bodies.
   void add_curvature(const Vec2<T>& w, Mat4<T>& H) const {
     add_curvature_rate(w, H);
     H(0, 3) -= w.y();
@@ -73,7 +76,7 @@ struct ContactPoint {
     H(1, 3) += w.x();
     H(3, 1) += w.x();
   }
-  /// Does the same if this is (ẋ, ȧ): without the part mixed with the offset, which is constant.
+  /// Adds the rate of the same sum if this is (ẋ, ȧ). Its terms mixed with the offset are zero.
   void add_curvature_rate(const Vec2<T>& w, Mat4<T>& H) const {
     const T arm = w.dot(a);
     H(2, 2) -= arm;

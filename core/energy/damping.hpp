@@ -4,14 +4,16 @@
 
 namespace rtg::energy {
 
-/// Damping of one body over a sub-step in units of k_D/Δt². It takes the place of inertia in
-/// quasi-static mode:
+/// Damping potential of one body over a sub-step in units of k_D/Δt²: the term I_D of eq. (8). With
+/// the translation t₊ - t and the rotation a = θ₊ - θ it is
 ///
-///   ½ m |Δt|² + ½ J (Δθ)²     (quadratic), or
-///   ½ m |Δt|² + J (1 - cos Δθ)  (periodic: the area integral of eq. (8)).
+///   ½ m |t₊ - t|² + ½ J a²         (quadratic), or
+///   ½ m |t₊ - t|² + J (1 - cos a)  (periodic: the area integral of eq. (8)).
+///
+/// The member functions return the rotational part and its derivatives with respect to a.
 ///
 /// Departs from the paper: quadratic is the default, because the periodic form has spurious roots
-/// at whole turns. The member functions return the rotational part and its derivatives.
+/// at whole turns.
 template <class T>
 struct Damping {
   T mass;    // m [kg]

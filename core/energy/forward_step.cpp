@@ -41,7 +41,8 @@ ForwardStep<T>::ForwardStep(const SceneModel<T>& scene, double tolerance)
       gaps_(static_cast<std::size_t>(scene.contacts())),
       trial_gaps_(gaps_) {}
 
-/// Returns Ψ including the drive, and `legal` as StepPotential::value does. Sets trial_gaps_.
+/// Returns Ψ including the potential of the drive. Sets `legal` as StepPotential::value() does, and
+/// trial_gaps_.
 template <class T>
 T ForwardStep<T>::value(const Placement<T>& at, const Drive<T>& drive, Mask<T>& legal) {
   T sum = potential_.value(at, gaps_.data(), trial_gaps_.data(), legal);
@@ -104,7 +105,7 @@ Mask<T> ForwardStep<T>::find_direction(Mask<T> wanted) {
   return wanted;
 }
 
-/// p ← trial_ and gaps_ ← trial_gaps_ in the lanes `better`.
+/// Copies trial_ to `p` and trial_gaps_ to gaps_ in the lanes `better`.
 template <class T>
 void ForwardStep<T>::accept(const Mask<T>& better, Placement<T>& p) {
   p.assign(better, trial_);
@@ -112,7 +113,8 @@ void ForwardStep<T>::accept(const Mask<T>& better, Placement<T>& p) {
     gaps_[c] = select(better, trial_gaps_[c], gaps_[c]);
 }
 
-/// p ← p + guess in the lanes where that is legal and has a lower value.
+/// Adds `guess` to `p` in the lanes where the sum is legal and has a lower Ψ than `value`. Updates
+/// `value`.
 template <class T>
 void ForwardStep<T>::take_guess(const Drive<T>& drive, const T* guess, Placement<T>& p, T& value) {
   trial_ = p;
@@ -125,8 +127,8 @@ void ForwardStep<T>::take_guess(const Drive<T>& drive, const T* guess, Placement
   value = select(better, after, value);
 }
 
-/// Moves p along direction_ in the lanes `wanted`, by a backtracking line search. Returns those in
-/// which it found an acceptable trial point.
+/// Moves `p` along direction_ in the lanes `wanted` by a backtracking line search. Returns the
+/// lanes in which the search found an acceptable point.
 template <class T>
 Mask<T> ForwardStep<T>::line_search(const Drive<T>& drive, const Mask<T>& wanted, Placement<T>& p,
                                     T& value) {
@@ -151,8 +153,8 @@ Mask<T> ForwardStep<T>::line_search(const Drive<T>& drive, const Mask<T>& wanted
   return wanted && !searching;
 }
 
-/// Returns the pending lanes whose gradient is below the tolerance. Removes lanes whose gradient is
-/// not finite from `pending`.
+/// Returns the lanes of `pending` whose gradient is below the tolerance. Removes lanes with a
+/// non-finite gradient from `pending`.
 template <class T>
 Mask<T> ForwardStep<T>::converged(Mask<T>& pending) const {
   T top(0.0), sum(0.0);

@@ -5,13 +5,13 @@
 
 namespace rtg::energy {
 
-/// Returns the scale s of the servo's error for a sub-step's stride [m]; the same number in [m] for
-/// x and y and in [rad] for θ.
+/// Returns the error scale s of the robot's servo (Drive) for the `stride` of a sub-step [m]. The
+/// same number serves as [m] for x and y and as [rad] for θ.
 inline double servo_scale(double stride) { return 0.05 * stride; }
 
-/// The drive of the robot in a sub-step: given controls, or a bounded servo towards a target pose.
-/// The servo has the potential B s ln cosh(e/s) of the error e = target - p₊₀. Its force
-/// B tanh(e/s) equals that of the control c = e/s.
+/// Actuation of the robot in a sub-step: a given control c, or a bounded servo towards a target
+/// pose. The servo's potential is B s ln cosh(e/s). Its error e = target - p₊₀ is measured from the
+/// robot's pose p₊₀ after the sub-step. Its force B tanh(e/s) is that of the control c = e/s.
 template <class T>
 struct Drive {
   bool servo = false;
@@ -20,7 +20,7 @@ struct Drive {
   static Drive controls(const Vec3<T>& c) { return {false, c}; }
   static Drive towards(const Vec3<T>& target) { return {true, target}; }
 
-  /// Returns c at the robot's pose; `scale` is s.
+  /// Returns the control c when the robot is at its pose in `at`. `scale` is s.
   Vec3<T> control_at(const Placement<T>& at, double scale) const {
     if (!servo) return control;
     Vec3<T> c;
@@ -29,7 +29,7 @@ struct Drive {
   }
 };
 
-/// Start of a sub-step.
+/// Initial data of a sub-step.
 template <class T>
 struct StepStart {
   const Placement<T>& now;               // poses, with positive gaps
@@ -38,16 +38,17 @@ struct StepStart {
   const Placement<T>* before = nullptr;  // poses one sub-step earlier, for inertia; null: at rest
 };
 
-/// Solver of a sub-step, eq. (5): p₊ = argmin Ψ(·, p) under a drive, by Newton's method with line
+/// Solves a sub-step, eq. (5): p₊ = argmin Ψ(·, p) under a drive. Uses Newton's method with line
 /// search.
 template <class T>
 class ForwardStep {
  public:
-  /// solve() has converged if ‖∂Ψ/∂p₊‖∞ < tolerance [kg m]. `scene` must outlive this object.
+  /// solve() iterates until ‖∂Ψ/∂p₊‖∞ < `tolerance` [kg m]; with joints, until the same holds in
+  /// reduced coordinates (Articulation). `scene` must outlive this object.
   ForwardStep(const SceneModel<T>& scene, double tolerance);
 
-  /// Returns the lanes of `wanted` in which Newton's method converged. `next` is p₊ in these lanes
-  /// and undefined in the others.
+  /// Solves the sub-step in the lanes `wanted` and writes p₊ to `next`. Returns the lanes in which
+  /// Newton's method converged; `next` is undefined in the others.
   Mask<T> solve(const StepStart<T>& start, const Drive<T>& drive, const Mask<T>& wanted,
                 Placement<T>& next);
 

@@ -5,7 +5,8 @@
 
 namespace rtg::energy {
 
-/// Derivatives of the gap g = d(x) - d₀ of a contact in the pair's coordinates.
+/// Gradient and Hessian of a contact's gap g = d(x) - d₀ in the coordinates u of its pair
+/// (PairFrame).
 template <class T>
 struct GapTerms {
   Vec4<T> gradient;
@@ -17,8 +18,8 @@ struct GapTerms {
   }
 };
 
-/// The derivatives of GapTerms along a motion y, with the turn of the frame: y·∇ of the gradient
-/// and of the Hessian in q.
+/// Rates of GapTerms along a motion y of the pair, including the rotation of its frame. In the
+/// notation of PairFrame they are ġ + Ωᵀ g for the gradient and Ḣ + Ωᵀ H + H Ω for the Hessian.
 template <class T>
 struct GapRates {
   Vec4<T> gradient;

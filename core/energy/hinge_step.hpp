@@ -5,13 +5,14 @@
 
 namespace rtg::energy {
 
-/// The change of coordinates at one hinge. In the old coordinates the child has a pose of its own;
-/// in the new ones its position follows the parent. T = ∂(old)/∂(new) is the identity except for
+/// Change of coordinates at one hinge. In the old coordinates the child has a pose of its own. In
+/// the new ones its position follows from the parent's pose and the child's angle. Hence
 ///
 ///   dt_j = dt_i + E A dθ_i - E B dθ_j,   A = R_i a, B = R_j b.
 ///
-/// Forces become Tᵀ g, Hessians Tᵀ H T + Σ g ∂²(old)/∂(new)². The steps must be applied hinge by
-/// hinge, from the leaves to the roots.
+/// T = ∂(old)/∂(new) is the identity except for these rows. A force g becomes Tᵀ g. A Hessian H
+/// becomes Tᵀ H T + Σ g ∂²(old)/∂(new)². Apply the steps hinge by hinge, from the leaves to the
+/// roots.
 template <class T>
 class HingeStep {
  public:
@@ -62,8 +63,8 @@ class HingeStep {
     }
   }
 
-  /// H ← Tᵀ H T, for both halves of H. The rows and columns of the child's x and y, which are no
-  /// longer coordinates, become those of the identity.
+  /// H ← Tᵀ H T, for both halves of H. The child's x and y are no longer coordinates: their rows
+  /// and columns become those of the identity.
   void gather_both(BlockMatrix<T>& H) const {
     gather_rows(H);
     gather_columns(H);
@@ -71,7 +72,8 @@ class HingeStep {
     own(0, 0) = own(1, 1) = T(1.0);
   }
 
-  /// Adds weight Σ g ∂²(old)/∂(new)², with g before gather().
+  /// Adds `weight` · Σ g ∂²(old)/∂(new)² to `H`. `g` is the force in the old coordinates, before
+  /// gather().
   void add_curvature(const T* g, const T& weight, BlockMatrix<T>& H) const {
     const T x = g[3 * j_], y = g[3 * j_ + 1];
     H.at(j_, j_)(2, 2) += weight * (arms_.b.x() * x + arms_.b.y() * y);

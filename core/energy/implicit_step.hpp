@@ -7,14 +7,14 @@
 
 namespace rtg::energy {
 
-/// Result of a sub-step of one scene, eq. (5): p₊ = argmin Ψ(·, p, p₋) under the drive.
+/// Solution of a sub-step, eq. (5): p₊ = argmin Ψ(·, p, p₋) under a drive.
 struct ImplicitStep {
   VectorXd next;     // p₊ [3·bodies]
   Vector3d control;  // c, the control equivalent to the drive at p₊
 };
 
-/// Solves a sub-step to ‖∂Ψ/∂p₊‖∞ < 1e-10 kg m; returns nothing if Newton's method does not
-/// converge. All gaps at the start must be positive.
+/// Solves the sub-step that starts at `from` to a tolerance of 1e-10 kg m (ForwardStep). Returns
+/// nothing if Newton's method does not converge. All gaps at the start must be positive.
 std::optional<ImplicitStep> implicit_step(const StepEnergy& energy, const StepFrom& from,
                                           const Drive<double>& drive);
 

@@ -4,15 +4,16 @@
 
 namespace rtg::energy {
 
-/// Inertia of one body over two sub-steps in units of k_D/Δt²: the term I of eq. (8), with
-/// ι = 1/k_D and the rotations a = θ₊ - θ, b = θ - θ₋:
+/// Inertia of one body over two sub-steps in units of k_D/Δt²: the term I of eq. (8),
 ///
-///   ½ ι m |t₊ - 2t + t₋|² + ½ ι J (a - b)²                             (quadratic), or
-///   ½ ι m |t₊ - 2t + t₋|² + ι J (3 - 2 cos a - 2 cos b + cos(a + b))  (periodic: the area
-///   integral)
+///   ½ ι m |t₊ - 2t + t₋|² + ½ ι J (a - b)²                            (quadratic), or
+///   ½ ι m |t₊ - 2t + t₋|² + ι J (3 - 2 cos a - 2 cos b + cos(a + b))  (periodic).
 ///
-/// The member functions return the rotational part and its derivatives. Departs from the paper as
-/// Damping does. The periodic form also slows a free spin, by b³ per sub-step.
+/// The weight is ι = 1/k_D. The successive rotations are b = θ - θ₋ and a = θ₊ - θ. The member
+/// functions return the rotational part and its derivatives.
+///
+/// Departs from the paper: quadratic is the default, as in Damping. The periodic form, the paper's
+/// area integral, also slows a free spin by b³ per sub-step.
 template <class T>
 struct Inertia {
   T mass;    // ι m [kg]
@@ -24,8 +25,8 @@ struct Inertia {
     return moment * (T(3.0) - T(2.0) * (turn_of(a).c + turn_of(b).c) + turn_of(a + b).c);
   }
 
-  /// The derivative with respect to θ₊, and its own first and second derivatives with respect to a
-  /// and b.
+  /// Derivative of the rotational part with respect to θ₊ (`value`), and the first and second
+  /// derivatives of `value` with respect to a and b.
   struct Slope {
     T value, a, b, aa, ab, bb;
   };

@@ -6,13 +6,13 @@
 
 namespace rtg::energy {
 
-/// A limit of a hinge as a contact without friction. The tip of the child meets a stop; the gap is
+/// A limit of a hinge, treated as a contact without friction: the tip of the child meets a stop.
+/// With the reach r of the child from the pin, the gap is linear in the joint angle φ:
 ///
-///   g = r (φ - φ_min) + g₀  or  r (φ_max - φ) + g₀,
+///   g = r (φ - φ_min) + g₀  or  r (φ_max - φ) + g₀.
 ///
-/// linear in the angles, with r the reach of the child from the pin. g₀ is the distance that Box2D
-/// keeps between bodies in contact, to which the barrier is matched. The offset d₀ of other
-/// contacts does not apply.
+/// g₀ is the distance that Box2D keeps between bodies in contact; the barrier's parameters are
+/// matched to it. The offset d₀ of other contacts does not apply.
 template <class T>
 struct JointLimit {
   int parent, child;
@@ -26,12 +26,12 @@ struct JointLimit {
     slope = select(gap < T(kFar), slope, T(0.0));
   }
 
-  /// Adds f ∇g to `into` [3·movable].
+  /// Adds f ∇g to `into` [3·movable]; `movable` is the number of movable bodies.
   void add_gradient(const T& f, int movable, T* into) const {
     into[3 * child + 2] = into[3 * child + 2] + f * slope;
     if (parent < movable) into[3 * parent + 2] = into[3 * parent + 2] - f * slope;
   }
-  /// ∇g·y.
+  /// Returns ∇g·y, the rate of the gap along a motion `y` [3·movable].
   T along(const T* y, int movable) const {
     return slope * (parent < movable ? y[3 * child + 2] - y[3 * parent + 2] : y[3 * child + 2]);
   }
@@ -50,8 +50,8 @@ struct JointLimit {
   static constexpr double kSlack = 0.02, kFar = 1e6;  // g₀ [m]
 };
 
-/// Calls f(index, limit) for the limits of all hinges: in the order of the hinges, each lower limit
-/// before the upper one.
+/// Calls f(index, limit) for each limit of each hinge. A hinge's lower limit comes before its upper
+/// one.
 template <class T, class F>
 void for_each_limit(const Articulation<T>& articulation, const Placement<T>& at, F f) {
   int index = 0;

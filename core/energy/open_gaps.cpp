@@ -10,10 +10,10 @@ namespace rtg::energy {
 namespace {
 
 constexpr int kRounds = 50;
-constexpr double kLeastShare = 0.01;  // of |∇g|², which the joints must leave
+constexpr double kLeastShare = 0.01;  // least |Jᵀ∇g|²/|∇g|²; below it the joints hold the gap
 
-/// Moves the bodies along ∇g [3·movable] until the gap is larger by `amount`, to first order. Does
-/// nothing if the joints permit almost no motion that opens the gap.
+/// Moves the bodies so that a gap grows by `amount`, to first order. `gradient` is ∇g [3·movable].
+/// Does nothing if the joints permit almost no motion that opens the gap.
 void open_by(const SceneModel<double>& scene, double amount, VectorXd gradient,
              Placement<double>& at) {
   const double free = gradient.squaredNorm();
@@ -25,8 +25,8 @@ void open_by(const SceneModel<double>& scene, double amount, VectorXd gradient,
   scene.place(at);
 }
 
-/// Moves the bodies of a pair apart where gaps are below `floor`. Returns whether there was such a
-/// gap.
+/// Moves the bodies of pair `n` apart where a gap is below `floor`. Returns whether there was such
+/// a gap.
 bool open_pair(const SceneModel<double>& scene, int n, double floor, Placement<double>& at) {
   bool opened = false;
   for (int v = 0; v < scene.corners(n); ++v) {
@@ -44,7 +44,7 @@ bool open_pair(const SceneModel<double>& scene, int n, double floor, Placement<d
   return opened;
 }
 
-/// Does the same for the limits of joints.
+/// Opens the gaps of joint limits that are below `floor`. Returns whether there was such a gap.
 bool open_limits(const SceneModel<double>& scene, double floor, Placement<double>& at) {
   bool opened = false;
   const Placement<double> was = at;

@@ -18,14 +18,18 @@ Vec2<T> product(const Mat2<T>& D, const Vec2<T>& a) {
   return {D(0, 0) * a.x() + D(0, 1) * a.y(), D(1, 0) * a.x() + D(1, 1) * a.y()};
 }
 
-/// The pose of body i relative to body j. Functions of this relative pose alone (distances, slips)
-/// are differentiated with respect to four coordinates u instead of six,
+/// The pose of body i relative to body j. Distances and slips depend on this relative pose alone.
+/// They are differentiated with respect to four coordinates u of the pair instead of the six in q:
 ///
-///   du = (R(θ_j)ᵀ (dt_i - dt_j), dθ_i, dθ_j) = V dq,   q = (p_i, p_j):
+///   du = (R(θ_j)ᵀ (dt_i - dt_j), dθ_i, dθ_j) = V dq,   q = (p_i, p_j).
 ///
-/// With gradient g and Hessian H in u, those in q are Vᵀ g and Vᵀ H V. V turns with body j. Along a
-/// motion with dθ_j = ω the derivatives of Vᵀ g and Vᵀ H V are therefore Vᵀ (ġ + Ωᵀ g) and
-/// Vᵀ (Ḣ + Ωᵀ H + H Ω), with Ω = -ω E on the first two coordinates.
+/// A gradient g and a Hessian H in u become Vᵀ g and Vᵀ H V in q. V rotates with body j. Along a
+/// motion with dθ_j = ω the rates are therefore
+///
+///   of Vᵀ g:    Vᵀ (ġ + Ωᵀ g),
+///   of Vᵀ H V:  Vᵀ (Ḣ + Ωᵀ H + H Ω) V,
+///
+/// with Ω = -ω E on the first two coordinates and zero elsewhere.
 template <class T>
 struct PairFrame {
   Turn<T> frame;   // θ_j
@@ -38,7 +42,7 @@ struct PairFrame {
     offset = {j.c * x + j.s * y, j.c * y - j.s * x};
   }
 
-  /// Returns V y for y = (yi, yj) in the coordinates q; null for a fixed body.
+  /// Returns V y for a motion y = (`yi`, `yj`) in q. The pointer of a fixed body is null.
   Vec4<T> pushed(const T* yi, const T* yj) const {
     T x = yi ? yi[0] : T(0.0), y = yi ? yi[1] : T(0.0);
     if (yj) {
@@ -49,7 +53,7 @@ struct PairFrame {
             yj ? yj[2] : T(0.0)};
   }
 
-  /// Adds Vᵀ g to (into_i, into_j); null for a fixed body.
+  /// Adds Vᵀ g to (`into_i`, `into_j`). The pointer of a fixed body is null.
   void pull(const Vec4<T>& g, T* into_i, T* into_j) const {
     const T x = frame.c * g[0] - frame.s * g[1], y = frame.s * g[0] + frame.c * g[1];
     if (into_i) {
@@ -65,9 +69,9 @@ struct PairFrame {
   }
 };
 
-/// The blocks of Vᵀ H W for bodies (i, j), with V the matrix of `rows` and W that of `columns`.
-/// `rows` and `columns` may be frames of different times: for mixed derivatives, after a sub-step
-/// and before it.
+/// The four 3 × 3 blocks of Vᵀ H W for bodies i and j. V is the matrix of the frame `rows`, W that
+/// of the frame `columns`. In mixed derivatives `rows` is the frame after a sub-step, `columns` the
+/// frame before it.
 template <class T>
 struct PulledBlocks {
   Block<T> ii, ij, ji, jj;
@@ -97,7 +101,8 @@ template <class T>
 Vec4<T> frame_turn(const T& rate, const Vec4<T>& g) {
   return {-rate * g[1], rate * g[0], T(0.0), T(0.0)};
 }
-/// Returns Ωᵀ H of a frame that turns at `rate` ω. For a symmetric H, H Ω is its transpose.
+/// Returns Ωᵀ H of a frame that turns at `rate` ω. For a symmetric H, the transpose of the result
+/// is H Ω.
 template <class T>
 Mat4<T> row_turn(const T& rate, const Mat4<T>& H) {
   Mat4<T> out = Mat4<T>::Constant(T(0.0));

@@ -20,7 +20,7 @@ struct Placement {
   T* body(int i) { return p.data() + 3 * i; }
   const T* body(int i) const { return p.data() + 3 * i; }
 
-  /// Copies `other` in the lanes of `where`.
+  /// Copies `other` in the lanes `where`.
   void assign(const Mask<T>& where, const Placement& other) {
     for (std::size_t m = 0; m < p.size(); ++m) p[m] = select(where, other.p[m], p[m]);
     for (std::size_t i = 0; i < turns.size(); ++i) {
@@ -33,7 +33,7 @@ struct Placement {
   std::vector<Turn<T>> turns;
 };
 
-/// Returns the motion (Δt, Δθ) of a body from one placement to another.
+/// Returns the displacement (Δx, Δy, Δθ) of a body from one placement to another.
 template <class T>
 Vec3<T> way(const Placement<T>& from, const Placement<T>& to, int body) {
   const T *a = from.body(body), *b = to.body(body);

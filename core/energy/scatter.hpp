@@ -4,20 +4,20 @@
 
 namespace rtg::energy {
 
-/// Returns the entries of a body in a stacked vector; null for a fixed body.
+/// Returns a pointer to the three entries of `body` in a stacked vector; null if the body is fixed.
 template <class T, class V>
 V* entries(const SceneModel<T>& scene, V* stacked, int body) {
   return scene.movable(body) ? stacked + 3 * body : nullptr;
 }
 
-/// Returns V y of a pair for y [3·movable].
+/// Returns V y (PairFrame) of a pair for a motion `y` of all bodies [3·movable].
 template <class T>
 Vec4<T> pushed(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame, const T* y) {
   const auto [i, j] = scene.pairs()[pair];
   return frame.pushed(entries(scene, y, i), entries(scene, y, j));
 }
 
-/// Adds Vᵀ g of a pair to `into` [3·movable].
+/// Adds Vᵀ g (PairFrame) of a pair to `into` [3·movable].
 template <class T>
 void pull(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame, const Vec4<T>& g,
           T* into) {
@@ -37,7 +37,8 @@ void scatter(const SceneModel<T>& scene, int pair, const PulledBlocks<T>& blocks
   into.add(j, i, blocks.ji);
 }
 
-/// Adds Vᵀ H V of a pair to the lower half of a symmetric matrix, except blocks of fixed bodies.
+/// Adds Vᵀ H V (PairFrame) of a pair to the lower half of a symmetric matrix, except blocks of
+/// fixed bodies.
 template <class T>
 void scatter_lower(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame,
                    const Mat4<T>& H, BlockMatrix<T>& into) {

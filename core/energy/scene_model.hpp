@@ -16,38 +16,42 @@
 
 namespace rtg::energy {
 
-/// Ordered pair of bodies: vertices of `body` against the planes of `other`.
+/// Ordered pair of bodies. Its contacts are vertices of `body` against the edges of `other`.
 struct BodyPair {
   int body = 0, other = 0;
 };
 
-/// Returns the index of a contact. Pair n has the contacts n kMaxVertices, n kMaxVertices + 1, ...,
-/// one per vertex. The limits of joints follow the contacts of all pairs.
+/// Returns the index of the contact of `vertex` in `pair`. Each pair owns kMaxVertices successive
+/// indices. Those of the joint limits follow after all pairs.
 inline int contact_of(int pair, int vertex) {
   return pair * static_cast<int>(kMaxVertices) + vertex;
 }
 
-/// The constants from which energies and contacts are computed, in units of k_D/Δt²
-/// (core/NOTATION.md), for one scene per lane. All scenes have the same number of bodies and of
-/// movable bodies. The shapes may differ between lanes.
+/// The constants of a scene that energies and contacts depend on: shapes, masses, friction,
+/// barrier. Energies are in units of k_D/Δt² (core/NOTATION.md).
+///
+/// Each lane (core/math/lanes.hpp) holds a scene of its own. All have the same number of bodies and
+/// of movable bodies; the shapes may differ.
 template <class T>
 class SceneModel {
  public:
-  /// Loads `scene` into every lane. `scene` lists its movable bodies first; body 0 is the robot.
+  /// Loads `scene` into every lane. `scene` must list its movable bodies first; body 0 is the
+  /// robot.
   SceneModel(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push);
-  /// Returns a model for scenes with as many bodies and the same constants as `like`. All of its
-  /// lanes are empty.
+  /// Returns a model with empty lanes for scenes with as many bodies as `like`. It has the same
+  /// pairs, joints and physics constants as `like`.
   static SceneModel room_for(const SceneModel<double>& like) { return {like, Room{}}; }
 
+  /// Copies the scene of `one` into this lane.
   void load(int lane, const SceneModel<double>& one);
-  /// Empties this lane: nothing in it touches anything.
+  /// Empties this lane: its bodies have no contacts.
   void unload(int lane);
 
   int bodies() const { return bodies_; }
   int movable() const { return movable_; }
   bool movable(int body) const { return body < movable_; }
-  /// For even n, pair n + 1 is pair n reversed. Two fixed bodies, or two bodies that a joint
-  /// connects, form no pair.
+  /// Returns all ordered pairs of bodies that can touch. For even n, pair n + 1 is pair n reversed.
+  /// Two fixed bodies form no pair, nor do two bodies connected by a joint.
   const std::vector<BodyPair>& pairs() const { return pairs_; }
   int pair_count() const { return static_cast<int>(pairs_.size()); }
   int contacts() const {
@@ -63,15 +67,15 @@ class SceneModel {
   const Damping<T>& damping(int body) const { return damping_[body]; }
   /// Returns whether a sub-step depends on the one before it.
   bool inertial() const { return inertia_weight_ > 0.0; }
-  /// Returns the distance v Δt/k_D that a body coasts from push speed v, in strides of a sub-step;
-  /// 0 without inertia.
+  /// Returns how far a free body coasts from push speed v: v Δt/k_D, in strides of a sub-step.
+  /// Returns 0 without inertia.
   double coasting() const { return inertia_weight_; }
   Inertia<T> inertia(int body) const {
     const Damping<T>& d = damping_[body];
     return {d.mass * T(inertia_weight_), d.moment * T(inertia_weight_), d.periodic};
   }
-  /// Returns what damping and inertia contribute to Φ for a body that moves by a = (Δt, Δθ) after a
-  /// motion by b in the sub-step before.
+  /// Returns the contribution of damping and inertia to Φ = ∂Ψ/∂p₊ for one body. `a` is the body's
+  /// displacement (Δx, Δy, Δθ) in this sub-step, `b` that in the sub-step before.
   Vec3<T> motion_force(int body, const Vec3<T>& a, const Vec3<T>& b) const {
     const Damping<T>& d = damping_[body];
     Vec3<T> force(d.mass * a[0], d.mass * a[1], d.turn_slope(a[2]));
@@ -84,9 +88,10 @@ class SceneModel {
   const Vec3<T>& control_bound() const { return control_bound_; }
   const T& friction(int pair) const { return friction_[pair]; }
 
-  /// Returns whether the bodies are close enough for any contact of the pair, or of the reversed
-  /// pair, to act. A vertex whose gap is below the range lies in the offset_polygon() of the other
-  /// body, so the test compares the distance of the centres with bounding radii.
+  /// Returns the lanes in which a contact of the pair, or of the reversed pair, may act. It
+  /// compares the distance of the bodies' centres with the sum of two bounding radii: that of one
+  /// shape, and that of the other's offset_polygon(), which contains every vertex within the
+  /// barrier's range.
   Mask<T> near(int pair, const Placement<T>& at) const {
     const auto [i, j] = pairs_[pair];
     const T x = at.body(i)[0] - at.body(j)[0], y = at.body(i)[1] - at.body(j)[1];
@@ -110,17 +115,18 @@ class SceneModel {
     return {planes(pair), corner_count_[pairs_[pair].other]};
   }
 
-  /// Updates `at` after a change of its poses and moves jointed bodies to where their joints close.
+  /// Makes `at` consistent after a change of its poses: updates the cached turns and closes all
+  /// joints.
   void place(Placement<T>& at) const {
     at.update();
     articulation_.close(at);
   }
 
-  /// Computes λ(g(p)) of every contact [contacts].
+  /// Writes the normal force λ(g(p)) of every contact to `lambda` [contacts].
   void forces(const Placement<T>& at, T* lambda) const;
-  /// Returns the least gap of all contacts, at most ĝ [m].
+  /// Returns the least gap of all contacts, but at most ĝ [m].
   T least_gap(const Placement<T>& at) const;
-  /// Returns whether all pairs pass the separating-axis test; see SeparatingEdges.
+  /// Returns the lanes in which all pairs pass the separating-axis test (SeparatingEdges).
   Mask<T> separated(const Placement<T>& at) const;
 
  private:

@@ -6,29 +6,31 @@
 
 namespace rtg::energy {
 
-/// A direction of the separating-axis test: the edges of one body against the vertices of another.
-/// It uses the same distances to the planes as the gaps.
+/// Half of a separating-axis test: the edges of one body against the vertices of another. It uses
+/// the same distances to the edge lines ("planes") as the gaps.
 ///
-/// The test permits an overlap of 4 ln 2/α. The first 2 ln 2/α are for corners, which the smoothed
-/// distance cuts. The rest is for acute tips, which can pass each other with no vertex inside the
-/// other body: there no contact force grows before the test fails, and this would stop every
-/// solver.
+/// The test permits an overlap of 4 ln 2/α:
+///
+/// - 2 ln 2/α for corners, which the smoothed distance cuts off;
+/// - 2 ln 2/α for acute tips. Two tips can overlap although no vertex is inside the other body. No
+///   contact force then grows before the test fails, and solvers would get stuck.
 template <class T>
 class SeparatingEdges {
  public:
-  /// `edges` is the number of edges of the polygon in each lane; further planes are unused.
+  /// `edges` is the number of edges of the polygon in each lane. Further entries of `planes` are
+  /// unused.
   SeparatingEdges(const Planes<T>& planes, const T& edges) : planes_(planes), edges_(edges) {
     for (int k = 0; k < planes.count; ++k) least_[k] = T(INFINITY);
   }
 
-  /// Takes the plane distances of a vertex into account in the lanes `real`, those that have it.
+  /// Records the `distances` of a vertex to the planes, in the lanes `real` that have this vertex.
   void note(const T* distances, const Mask<T>& real) {
     for (int k = 0; k < planes_.count; ++k)
       least_[k] = select(real, lesser(least_[k], distances[k]), least_[k]);
   }
 
-  /// Returns whether one of the planes separates the two bodies. Call note() for all vertices
-  /// first.
+  /// Returns the lanes in which an edge separates the two bodies. Call note() for all vertices
+  /// first. `sharpness` is α.
   Mask<T> separate(double sharpness) const {
     T best(-INFINITY);
     for (int k = 0; k < planes_.count; ++k)

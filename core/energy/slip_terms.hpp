@@ -4,12 +4,13 @@
 
 namespace rtg::energy {
 
-/// Lagged friction of one contact for unit μ_f λ: the potential of the slip u over a sub-step,
+/// Friction potential φ of one contact over a sub-step, per unit of μ_f λ, and its derivatives. The
+/// friction is lagged: λ is the normal force before the sub-step. With the slip u of the contact,
 ///
-///   φ(u) = √(u² + ε²) - ε,   u = t·(x₊ - x),   t = E ∇d(x),
+///   φ(u) = √(u² + ε²) - ε,   u = t·(x₊ - x),   t = E ∇d(x).
 ///
-/// and its derivatives. In these, u₊ and u are the pair's coordinates (PairFrame) after and before
-/// the sub-step.
+/// In derivatives of φ, u₊ and u denote the coordinates of the pair (PairFrame) instead: after and
+/// before the sub-step.
 template <class T>
 struct SlipTerms {
   Vec2<T> tangent;      // t = ∂u/∂x₊
@@ -18,7 +19,7 @@ struct SlipTerms {
   T slip;               // u
   Vec4<T> ahead;        // X₊ᵀ t
 
-  /// `normal` is ∇d(x), `x` the point before the sub-step, `scale` ε.
+  /// `normal` is ∇d(x), `next` the point after the sub-step, `x` the point before it, `scale` ε.
   SlipTerms(const Vec2<T>& normal, const ContactPoint<T>& next, const Vec2<T>& x, double scale)
       : tangent(turned(normal)) {
     const Vec2<T> moved = next.x - x;
@@ -33,9 +34,9 @@ struct SlipTerms {
   }
 
   T value(double scale) const { return root - T(scale); }
-  /// ∂φ/∂u₊.
+  /// Returns ∂φ/∂u₊.
   Vec4<T> gradient() const { return ahead * slope; }
-  /// ∂²φ/∂u₊².
+  /// Returns ∂²φ/∂u₊².
   Mat4<T> hessian(const ContactPoint<T>& next) const {
     Mat4<T> H = Mat4<T>::Constant(T(0.0));
     next.add_curvature(tangent, H);
@@ -45,8 +46,8 @@ struct SlipTerms {
   }
 };
 
-/// The geometry of a slipping contact: its points after and before a sub-step, and the distance d
-/// at the latter.
+/// Geometry of a slipping contact: its point after and before a sub-step. d and its derivatives are
+/// taken at the point before.
 template <class T>
 struct SlipPlace {
   const SignedDistance<T>& d;  // at the point before
@@ -54,8 +55,9 @@ struct SlipPlace {
   const ContactPoint<T>&after, &before;
 };
 
-/// The mixed second derivatives of φ, and the derivatives of its gradient and Hessian along a
-/// motion y of the poses after the sub-step: x₊ moves, x stays. They include the turn of the frame.
+/// Mixed second derivatives of φ, and the rates of its gradient and Hessian along a motion y of the
+/// poses after the sub-step (x₊ moves, x stays). The rates include the rotation of the frame of u₊
+/// (PairFrame).
 template <class T>
 class SlipRates {
  public:
@@ -78,8 +80,8 @@ class SlipRates {
   }
 
   Mat4<T> cross;                         // ∂²φ/∂u₊∂u
-  Vec4<T> next, now;                     // y·∇₊ of the gradient, after and before
-  Mat4<T> next_next, next_now, now_now;  // y·∇₊ of the Hessian
+  Vec4<T> next, now;                     // y·∇₊ of ∂φ/∂u₊, ∂φ/∂u
+  Mat4<T> next_next, next_now, now_now;  // y·∇₊ of ∂²φ/∂u₊², ∂²φ/∂u₊∂u, ∂²φ/∂u²
 
  private:
   void set_next_next(const Mat4<T>& turn) {

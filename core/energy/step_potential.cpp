@@ -26,7 +26,7 @@ void StepPotential<T>::begin(const Placement<T>& now, const T* lag, const Placem
   }
 }
 
-/// Returns the motion of a body in the sub-step before; 0 if it is at rest.
+/// Returns the displacement of a body in the sub-step before this one; 0 if the body was at rest.
 template <class T>
 Vec3<T> StepPotential<T>::way_before(int body) const {
   return before_ ? way(*before_, *now_, body) : Vec3<T>(T(0.0), T(0.0), T(0.0));

@@ -15,17 +15,21 @@ class StepPotential {
         lagged_(static_cast<std::size_t>(scene.contacts())),
         drags_(scene.pairs().size()) {}
 
-  /// Begins a sub-step at poses `now` with normal forces `lag`. Inertia also uses `before`, the
-  /// poses one sub-step earlier; null means that everything is at rest. The placements must outlive
-  /// all calls of value() and model().
+  /// Begins a sub-step at poses `now` with normal forces `lag` [contacts]. `before` are the poses
+  /// one sub-step earlier, which only inertia uses; null if everything is at rest. The placements
+  /// must outlive all calls of value() and model().
   void begin(const Placement<T>& now, const T* lag, const Placement<T>* before = nullptr);
 
-  /// Returns Ψ without actuation, infinite in lanes where a gap is not positive. Sets `gaps`
-  /// [contacts], and `legal` to the lanes in which keeps_gap() holds for each gap and its previous
-  /// value in `were` [contacts] and all bodies are separated.
+  /// Returns Ψ without actuation at poses `next`; +∞ in lanes where a gap is not positive. Writes
+  /// the gaps to `gaps` [contacts].
+  ///
+  /// Sets `legal` to the lanes in which a line search may accept `next`. There all bodies are
+  /// separated, and keeps_gap() holds for each gap. `were` [contacts] are the gaps at the previous
+  /// iterate.
   T value(const Placement<T>& next, const T* were, T* gaps, Mask<T>& legal) const;
 
-  /// Adds the gradient of value() [3·movable] and the lower half of its Hessian.
+  /// Adds the gradient of value() to `gradient` [3·movable]. Adds its Hessian to the lower half of
+  /// `hessian`.
   void model(const Placement<T>& next, T* gradient, BlockMatrix<T>& hessian) const;
 
  private:
@@ -33,7 +37,7 @@ class StepPotential {
   struct Lagged {
     Vec2<T> x, normal;   // point and normal at the start of the sub-step
     T load;              // μ_f λ
-    bool drags = false;  // λ ≠ 0 in some lane; else the members above are not set
+    bool drags = false;  // λ ≠ 0 in some lane; otherwise the members above are unset
   };
   T motion(const Placement<T>& next) const;
   void add_motion(const Placement<T>& next, T* gradient, BlockMatrix<T>& hessian) const;

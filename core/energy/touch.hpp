@@ -4,22 +4,22 @@
 
 namespace rtg::energy {
 
-/// Limit to the decrease of small gaps, as a share both of the barrier's range and of the gap's
-/// previous value; see keeps_gap().
+/// Least ratio of a small gap to its previous value that a line search accepts. A gap is small
+/// below this fraction of the barrier's range ĝ. See keeps_gap().
 inline constexpr double kKeptGap = 0.1;
 
-/// Returns whether a trial point has a legal gap: positive, and at least kKeptGap times the
-/// barrier's range or kKeptGap times the previous value `was`.
+/// Returns whether a line search may accept `gap`. It must be positive, and at least the smaller of
+/// kKeptGap ĝ and kKeptGap times the previous value `was`.
 template <class T>
 Mask<T> keeps_gap(const T& gap, const T& was, const Barrier& barrier) {
   return gap > T(0.0) && !(gap < T(kKeptGap * barrier.range) && gap < T(kKeptGap) * was);
 }
 
-/// A vertex of one body and its distances to the planes of another body.
+/// A vertex of the first body of a pair, with its distances to the edge lines of the second.
 template <class T>
 struct Touch {
   ContactPoint<T> point;
-  Mask<T> within;  // where the gap may be less than the barrier's range
+  Mask<T> within;  // lanes in which the gap may be below the barrier's range
 
   Touch(const SceneModel<T>& scene, int pair, int vertex, const PairFrame<T>& frame,
         const Mask<T>& near)
@@ -29,16 +29,17 @@ struct Touch {
     if (!scene.barrier().plain) within = within && top_ < T(scene.barrier().range + scene.skin());
   }
 
-  /// Returns the signed distance of the vertex, which is costly: skip it if no lane is within.
+  /// Computes the signed distance of the vertex. This is costly: call it only if any(within).
   SignedDistance<T> distance() const { return {planes_, scene_.sharpness(), distances, top_}; }
-  /// Returns the gap in the lanes `where`, 2 ĝ in the others.
+  /// Returns the gap in the lanes `where`, and far() in the others.
   T gap(const SignedDistance<T>& d, const Mask<T>& where) const {
     return select(where, d.value - T(scene_.skin()), far(scene_));
   }
+  /// Returns 2 ĝ, the gap that stands for "beyond the barrier's range" [m].
   static T far(const SceneModel<T>& scene) { return T(2.0 * scene.barrier().range); }
   T gap() const { return any(within) ? gap(distance(), within) : far(scene_); }
 
-  T distances[kMaxVertices];  // to the planes [m]
+  T distances[kMaxVertices];  // to the edge lines [m]
 
  private:
   const SceneModel<T>& scene_;

@@ -12,17 +12,17 @@
 namespace rtg::forward {
 namespace {
 
-// Largest coordinate [m] and angle [rad]: there the spacing of single-precision numbers is still
-// well below Box2D's linear and angular slop.
+// Largest coordinate [m] and angle [rad] of a start. At these values the spacing of
+// single-precision numbers is still well below Box2D's linear and angular slop.
 constexpr double kMaxCoordinate = 1000.0;
 constexpr double kMaxAngle = 1e4;
 constexpr double kCatchUp = 1.5;  // largest servo speed / push speed
-constexpr int kCatchUpSteps = 2;  // extra steps after the path: first contacts delay the robot
-constexpr double kClear = 0.1;    // bodies farther apart do not touch in the next steps [m]
+constexpr int kCatchUpSteps = 2;  // extra steps after the path, because contacts delay the robot
+constexpr double kClear = 0.1;    // bodies farther apart cannot touch within the next steps [m]
 constexpr int kRestSteps = 400;
 constexpr double kRestSpeed = 1e-4;  // speed of a body at rest [m/s] and [rad/s]
 constexpr double kSlowSpeed = 1e-2;  // speed that is accepted after the last step, same units
-// Box2D has moved overlapping contacts apart when no step moves a body by more [m] and [rad].
+// Largest displacement of a body per step once Box2D has moved overlapping bodies apart [m], [rad].
 constexpr double kRestShift = 1e-5;
 
 b2Vec2 to_b2(const Vector2d& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
@@ -37,12 +37,12 @@ struct Servo {
   double advance = 0.0;  // motion of the robot per Box2D step [m]
   double radius = 0.0;   // r₀ [m]
   double max_force = 0.0, max_torque = 0.0;
-  int rest_steps = 0;  // number of steps in which all bodies must come to rest
+  int rest_steps = 0;  // largest number of steps of come_to_rest()
 };
 
-// Box2D damps an applied force in its own step, but not the impulse of a joint: for the same motion
-// a joint needs only 1/(1 + h d) of the force, with h the Box2D step and d the damping. With its
-// bounds scaled by this factor, the servo stops the robot where it would stop in Ψ.
+// Box2D damps an applied force within its step, but not the impulse of a joint. For the same motion
+// a joint therefore needs only 1/(1 + h d) of the force, with the step h and the damping d. The
+// bounds are scaled by this factor: the servo then stops the robot where it would stop in Ψ.
 Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& physics) {
   const double damping = physics.damping / physics.time_step;
   const double speed = push.stride / (physics.sub_steps * physics.time_step);
@@ -60,7 +60,7 @@ Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& 
           kRestSteps + static_cast<int>(std::clamp(coasting, 0.0, 1e6))};
 }
 
-/// Returns whether the bounding circle of body `i` is kClear or more away from all others.
+/// Returns whether the bounding circle of body `i` is at least kClear away from all others.
 bool is_alone(const Scene& scene, const Poses& poses, std::size_t i) {
   const double radius = bounding_radius(scene.bodies[i].shape) + kClear;
   for (std::size_t j = 0; j < scene.size(); ++j)
@@ -87,7 +87,7 @@ class World {
   }
 
   /// Makes a Box2D step in which the servo moves the robot towards `target`. Returns false if a
-  /// pose is not finite; poses() then stay those before the step.
+  /// pose is not finite afterwards; poses() then remain those before the step.
   bool step_towards(const Pose& target) {
     const Pose robot = pose_of(*bodies_[0]);
     const double reach = kCatchUp * servo_.advance;
@@ -102,8 +102,8 @@ class World {
     return observe();
   }
 
-  /// Makes steps with the robot held at its pose until nothing moves. Returns false if a body still
-  /// moves after the last step or a pose is not finite.
+  /// Makes steps with the robot held at its pose until all bodies are at rest. Returns false if a
+  /// pose is not finite or a body still moves after the last step.
   bool come_to_rest() {
     const Pose hold = pose_of(*bodies_[0]);
     for (int k = 0; k < servo_.rest_steps; ++k) {
@@ -113,13 +113,14 @@ class World {
     return fastest_ < kSlowSpeed;
   }
 
-  /// Gives the robot push speed towards `target`.
+  /// Sets the velocity of the robot to push speed towards `target`.
   void set_speed(const Pose& target) {
     const Vector2d way = target.position() - pose_of(*bodies_[0]).position();
     bodies_[0]->SetLinearVelocity(to_b2(servo_.advance / servo_.step_s * way.normalized()));
   }
 
-  /// Counts every body as touched, so that overlaps at the start are resolved and not restored.
+  /// Marks every body as touched. poses() then include the motion by which Box2D resolves overlaps
+  /// of the start; otherwise bodies without velocity keep their start.
   void touch_all() { touched_.assign(touched_.size(), true); }
 
   const Poses& poses() const { return good_; }
@@ -143,8 +144,8 @@ class World {
     fixture.friction = static_cast<float>(body.friction);
     added->CreateFixture(&fixture);
     if (!body.fixed) {
-      // Box2D stores the centre of mass, not the origin of a body. A centre of exactly zero keeps
-      // poses free of rounding.
+      // Box2D stores the position of the centre of mass, not of the body origin. A centre of
+      // exactly zero avoids rounding of poses.
       const Mass mass = mass_of(body);
       const b2MassData data{
           static_cast<float>(mass.mass), {0.0f, 0.0f}, static_cast<float>(mass.moment)};
@@ -180,7 +181,8 @@ class World {
     servo_joint_ = static_cast<b2MotorJoint*>(world_.CreateJoint(&def));
   }
 
-  /// Updates the state below after a step. Returns false, with no update, if a pose is not finite.
+  /// Updates good_, touched_, fastest_ and shift_ after a step. Returns false, without an update,
+  /// if a pose is not finite.
   bool observe() {
     for (const b2Body* body : bodies_)
       if (!is_finite(pose_of(*body))) return false;
@@ -188,8 +190,8 @@ class World {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const double speed = bodies_[i]->GetLinearVelocity().Length();
       const double spin = std::abs(bodies_[i]->GetAngularVelocity());
-      // Contacts at rest exchange exactly zero impulse. If a body without speed still moves, this
-      // is Box2D's position correction.
+      // Contacts at rest exchange exactly zero impulse. A body that moves at zero speed is
+      // therefore moved by Box2D's position correction only.
       if (speed > 0.0 || spin > 0.0) touched_[i] = true;
       if (!touched_[i]) continue;
       const Pose now = pose_of(*bodies_[i]);
@@ -212,7 +214,7 @@ class World {
   double shift_ = 0.0;         // largest displacement in the last step [m] or [rad]
 };
 
-/// The robot's straight path at push speed.
+/// The robot's straight path, divided into steps at push speed.
 struct Path {
   Pose from, to;
   double advance;  // motion per step [m]
@@ -233,8 +235,8 @@ struct Path {
   }
 };
 
-/// Drives the robot along the rest of its path, after the first `done` steps. Returns false if a
-/// step was not finite.
+/// Drives the robot along its path, of which the first `done` steps are already made. Returns false
+/// if a pose was not finite.
 bool drive(World& table, const Path& path, int done) {
   for (int k = done + 1; k <= path.steps + kCatchUpSteps; ++k)
     if (!table.step_towards(path.at(k))) return false;
@@ -284,9 +286,10 @@ PushOutcome Box2dSimulator::settle(const Poses& start) const {
 
 }  // namespace rtg::forward
 
-// b2World::Step reads the clock about ten times for a profile that is not used here. This costs an
-// eighth of the time of a generation and cannot be switched off. The dynamic linker resolves the
-// library's timer to these empty functions instead. The members are those of Linux and macOS.
+// Replaces the library's timer by empty functions. b2World::Step reads the clock about ten times
+// for a profile that is not used here, which costs an eighth of the time of a generation. Box2D has
+// no switch for this, but the dynamic linker prefers these definitions. The members are those of
+// Linux and macOS.
 b2Timer::b2Timer() : m_start_sec(0), m_start_usec(0) {}
 void b2Timer::Reset() {}
 float b2Timer::GetMilliseconds() const { return 0.0f; }

@@ -6,35 +6,41 @@ namespace rtg::forward {
 
 /// The true dynamics for replay and learning: Box2D 2.4 (Catto), single precision.
 ///
-/// Each push has a new Box2D world, so no state passes from one push to the next. The world is
-/// matched to the step energy Ψ: no gravity, no restitution, linear and angular damping k_D/Δt; a
-/// Box2D step lasts Δt/box2d_steps. The robot is a dynamic body that a servo drives. In each Box2D
-/// step the servo applies the force and the torque that bring the robot to the next point of its
-/// straight path with the heading held, bounded by B_f and B_ω,
+/// Each push runs in a new Box2D world, so no state passes from one push to the next. The world is
+/// matched to the step energy Ψ: no gravity, no restitution, linear and angular damping k_D/Δt. A
+/// Box2D step lasts Δt/box2d_steps.
+///
+/// The robot is a dynamic body. A servo drives it along its straight path and holds its angle. In
+/// each Box2D step the servo applies the force and the torque that take the robot to the next point
+/// of the path. They are bounded by
 ///
 ///   B_f = force_factor · F [N],   B_ω = torque_factor · F r₀ [N·m],
-///   F = m₀ k_D/Δt · stride/(hΔt),
+///   F = m₀ k_D/Δt · stride/(hΔt).
 ///
-/// with r₀ the robot's bounding radius and F its own drag at push speed. In dynamic mode
-/// (1 + 1/k_D) F replaces F: it also accelerates the robot to push speed within a sub-step. If the
-/// bounded force does not suffice, the robot stops before its target. The robot never moves faster
-/// than 1.5 times the push speed, so that it does not jump when an obstacle gives way.
+/// m₀ is the robot's mass, r₀ its bounding radius and F its own drag at push speed. In dynamic mode
+/// (1 + 1/k_D) F replaces F, to accelerate the robot to push speed within a sub-step. If the
+/// bounded force does not suffice, the robot stops before its target. Its speed is at most 1.5
+/// times the push speed, so that it does not jump when an obstacle gives way.
 ///
 /// Joints are Box2D's revolute joints. Box2D lets a loaded joint exceed its limits by its angular
-/// slop; the limits are tightened by as much.
+/// slop. The limits given to Box2D are therefore tighter by this slop.
 ///
-/// Poses of bodies that moved are single-precision values widened to double, so that a push from
-/// them starts without rounding and reproduces its result exactly. A body that received no impulse
-/// keeps its pose bit for bit. The part of the robot's path before the first body near it is not
-/// simulated; a push that meets no body ends at its target.
+/// Poses of moved bodies are single-precision values, widened to double. A push from them starts
+/// without rounding and reproduces its result exactly. A body that received no impulse keeps its
+/// pose bit for bit.
+///
+/// The simulation starts where the robot's path first comes near a body. A push that meets no body
+/// ends at its target.
 class Box2dSimulator final : public Simulator {
  public:
-  /// All shapes of `scene` must be legal (polygon_defect() empty) and bodies[0] movable.
+  /// All shapes of `scene` must be legal (polygon_defect() returns nothing), and bodies[0] movable.
   Box2dSimulator(Scene scene, PushConfig push, PhysicsConfig physics);
 
-  /// See Simulator::push. `ok` is false if `start` has the wrong size, a pose in `start` is not
-  /// finite, beyond 1000 m or beyond 1e4 rad, a step was not finite, or the bodies did not come to
-  /// rest.
+  /// See Simulator::push. `ok` is false in each of these cases:
+  ///
+  /// - `start` has the wrong size, or a pose that is not finite, beyond 1000 m or beyond 1e4 rad;
+  /// - a pose was not finite after a step;
+  /// - the bodies did not come to rest.
   [[nodiscard]] PushOutcome push(const Poses& start, int action) const override;
 
   /// See Simulator::settle. Moves overlapping bodies apart until they rest in contact.

@@ -8,12 +8,12 @@
 namespace rtg::forward {
 namespace {
 
-constexpr double kNear = 0.05;         // gap that the robot keeps to all bodies [m]
-constexpr double kNearEnough = 0.055;  // gap that ends the search: strides shrink towards kNear [m]
+constexpr double kNear = 0.05;         // least gap between the robot and other bodies [m]
+constexpr double kNearEnough = 0.055;  // the search ends here: strides vanish towards kNear [m]
 
 }  // namespace
 
-/// Advances by the longest strides that the separation permits (conservative advancement).
+/// Conservative advancement: each stride is the longest that the separation from the body permits.
 double clear_way(const Scene& scene, const Poses& poses, const Pose& to) {
   const Vector2d from = poses[0].position();
   const double length = (to.position() - from).norm();

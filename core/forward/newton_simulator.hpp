@@ -7,26 +7,29 @@
 
 namespace rtg::forward {
 
-/// Forward simulation, eq. (5): each sub-step minimises Ψ while a bounded servo drives the robot
-/// along its straight path. In dynamic mode (PhysicsConfig::inertia) all bodies start at rest, and
-/// further sub-steps let moving bodies come to rest. The reverse simulator inverts this model; the
-/// true dynamics are those of Box2dSimulator.
+/// Forward simulation with the step energy Ψ, eq. (5): the model that the reverse simulator
+/// inverts. The true dynamics are those of Box2dSimulator. Each sub-step minimises Ψ while a
+/// bounded servo drives the robot along its straight path.
+///
+/// In dynamic mode (PhysicsConfig::inertia) all bodies start at rest. Further sub-steps then follow
+/// the push, in which moving bodies come to rest.
 class NewtonSimulator final : public Simulator {
  public:
-  /// All shapes of `scene` must be legal (polygon_defect() empty) and bodies[0] movable.
+  /// All shapes of `scene` must be legal (polygon_defect() returns nothing), and bodies[0] movable.
   NewtonSimulator(Scene scene, const PushConfig& push, const PhysicsConfig& physics);
 
   /// See Simulator::push. Without inertia everything is at rest after the last sub-step. With
-  /// inertia, the speeds of free bodies are then at most a hundredth of those when the robot
-  /// stopped. `ok` is false if `start` has the wrong size, is not finite or overlaps, or if a
-  /// sub-step failed; `end` is then `start`.
+  /// inertia the sub-steps after the robot's stop reduce the speed of a free body to 1 % or less.
+  ///
+  /// `ok` is false if `start` has the wrong size, is not finite or overlaps deeply, or if a
+  /// sub-step failed. `end` is then `start`.
   [[nodiscard]] PushOutcome push(const Poses& start, int action) const override;
 
-  /// See Simulator::settle. Simulates the duration of one push.
+  /// See Simulator::settle. Simulates as many sub-steps as a push has.
   [[nodiscard]] PushOutcome settle(const Poses& start) const override;
 
  private:
-  /// Simulates one sub-step for each target pose of the servo.
+  /// Simulates one sub-step for each element of `targets`, the target poses (x, y, θ) of the servo.
   PushOutcome follow(const Poses& start, const std::vector<Vector3d>& targets) const;
 
   Scene scene_;

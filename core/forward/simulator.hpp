@@ -6,22 +6,22 @@
 
 namespace rtg::forward {
 
-/// The outcome of a push. `ok` is false if the start is not usable, a state is not finite or the
-/// simulator reached an iteration limit. `end` is then the start or the last good state, and must
-/// not be used as a transition.
+/// Outcome of a push: `end` is the state after it. `ok` is false if the start is not usable, a
+/// state is not finite or the simulator reached an iteration limit. `end` is then the start or the
+/// last good state, and must not be used as a transition.
 struct PushOutcome {
   Poses end;
   bool ok = true;
 };
 
-/// Forward dynamics of a scene at rest. Equal arguments give bit-equal results, whatever the order
-/// of the calls and the number of threads: implementations hold no mutable state.
+/// Forward dynamics of a scene that is at rest before and after a push. Equal arguments give
+/// bit-equal results. Thread-safe: implementations hold no mutable state.
 class Simulator {
  public:
   virtual ~Simulator() = default;
 
-  /// Simulates a pushing action: the robot moves straight to push_target(), with the heading held
-  /// and bounded force and torque. Then everything settles. `start` has one pose per body.
+  /// Simulates a push: the robot moves straight to push_target() with bounded force and torque,
+  /// without turning. Then everything comes to rest. `start` has one pose per body.
   [[nodiscard]] virtual PushOutcome push(const Poses& start, int action) const = 0;
 
   /// Lets the scene come to rest with the robot held.

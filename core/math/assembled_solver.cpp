@@ -6,7 +6,7 @@
 namespace rtg {
 namespace {
 
-// Subtracted from the diagonal of the multipliers, so that a singular E does not make K singular.
+// Subtracted from the diagonal of the multipliers' rows, so that K stays regular if E is singular.
 constexpr double kMultiplierShift = 1e-9;
 
 void write(const BlockColumn<double>& from, double sign, VectorXd& to, Eigen::Index at) {
@@ -93,8 +93,8 @@ void Assembled::add_stage(const StageSystem<double>::Stage& stage, int k) {
   write(stage.e, -1.0, r_[y.block], y.row);
 }
 
-/// Returns the entry of K at (row, column), or at (column, row) if that is the one on or below the
-/// diagonal.
+/// Returns the entry of the symmetric K at (row, column). Only entries on or below the diagonal are
+/// stored; for others it returns the one at (column, row).
 double& Assembled::entry(const Place& row, const Place& column) {
   if (row.block < column.block || (row.block == column.block && row.row < column.row))
     return entry(column, row);
@@ -102,7 +102,7 @@ double& Assembled::entry(const Place& row, const Place& column) {
                                    : K_.B[row.block](row.row, column.row);
 }
 
-/// Adds M to K at (row, column), off the diagonal of K.
+/// Adds M to K with the upper left corner at (row, column), off the diagonal of K.
 void Assembled::add(const BlockMatrix<double>& M, const Place& row, const Place& column) {
   for (int i = 0; i < M_; ++i)
     for (const int j : Bits(M.pattern[i]))
@@ -112,8 +112,8 @@ void Assembled::add(const BlockMatrix<double>& M, const Place& row, const Place&
               M.at(i, j)(a, b);
 }
 
-/// Adds a symmetric M, given by its lower half, to K at (row, column). On the diagonal of K adds
-/// the lower half alone.
+/// Adds the symmetric M to K with the upper left corner at (row, column). Reads the lower half of M
+/// only. If the block lies on the diagonal of K, writes its lower half only.
 void Assembled::add_symmetric(const BlockMatrix<double>& M, const Place& row, const Place& column) {
   const bool own = row.block == column.block && row.row == column.row;
   for (int i = 0; i < n_; ++i)

@@ -7,33 +7,34 @@
 
 namespace rtg {
 
-/// A StageSystem as a symmetric block-tridiagonal matrix and a right-hand side, with the centred
-/// pairing. Block k holds the poses after sub-step k, its control and the multipliers of its
-/// residual,
+/// A StageSystem assembled as K ζ = r, with K symmetric and block-tridiagonal. Block k pairs the
+/// poses after sub-step k with the control and the multipliers of the same sub-step ("centred
+/// pairing"):
 ///
 ///   ζ_k = (Δp_k, Δc_k, Δy_k), k = 1 ... h;  ζ_0 = Δp_0.
 ///
-/// If the final state is fixed (Δp_h = 0), block h would have no poses. Then block k holds the
-/// control and the multipliers of the next sub-step,
+/// If the final state is fixed (Δp_h = 0), block h would have no poses. Then the poses are paired
+/// with the next sub-step instead:
 ///
 ///   ζ_k = (Δp_k, Δc_{k+1}, Δy_{k+1}), k = 0 ... h-1.
 ///
-/// Inertia couples three successive states, so that a block holds two sub-steps: the blocks are
-/// ζ_0, (ζ_1, ζ_2), (ζ_3, ζ_4), ... With inertia the final state must not be fixed.
+/// Inertia couples three successive states. Then a block holds two sub-steps: the blocks are ζ_0,
+/// (ζ_1, ζ_2), (ζ_3, ζ_4), ... With inertia the final state must not be fixed.
 ///
-/// Departs from the paper: its printed pairing is pentadiagonal.
+/// Departs from the paper: its printed pairing gives a pentadiagonal matrix.
 class Assembled {
  public:
   Assembled(const StageSystem<double>& system, bool fixed_end);
 
   const BlockTridiagonal& matrix() const { return K_; }
   const BlockVector& right_hand_side() const { return r_; }
-  /// Convert a vector of the system to a step, and back.
+  /// Copies the vector `x` of the system into `step`. written() does the reverse.
   void read(const BlockVector& x, StageStep<double>& step) const;
   BlockVector written(const StageStep<double>& step) const;
 
  private:
-  /// Position of the first row of a variable: its block, and the row within this block.
+  /// Position of the first row of a variable: its block of the system, and the row within the
+  /// block.
   struct Place {
     int block, row;
   };
@@ -53,8 +54,8 @@ class Assembled {
   BlockVector r_;
 };
 
-/// Solves the assembled system by any KktMethod, which includes the paper's method and the
-/// reference methods for the others.
+/// Assembles a StageSystem and solves it by any KktMethod: the paper's cyclic reduction or one of
+/// the methods that it is compared with.
 class AssembledSolver final : public StageSolver<double> {
  public:
   AssembledSolver(KktMethod method, bool fixed_end)

@@ -4,17 +4,16 @@
 
 namespace rtg {
 
-/// Factorisation A = L D Lᵀ of a symmetric block matrix. It keeps the order of the bodies: the
-/// pivots are the 3 × 3 blocks of D. L has a unit diagonal and the pattern of A's lower half with
-/// its fill.
+/// Factorisation A = L D Lᵀ of a symmetric block matrix, without pivoting. D consists of 3 × 3
+/// blocks, one per body, in the order of the bodies. L has a unit diagonal. Its pattern is that of
+/// A's lower half plus fill-in.
 template <class T>
 class BlockLdl {
  public:
   explicit BlockLdl(int count = 0)
       : L_(count), inverse_(static_cast<std::size_t>(count)), row_(inverse_) {}
 
-  /// Factorises A, of which it reads the lower half. Returns the lanes in which A is positive
-  /// definite.
+  /// Factorises A, reading its lower half only. Returns the lanes in which A is positive definite.
   Mask<T> factorize(const BlockMatrix<T>& A);
   /// Returns the lanes in which no block of D is singular.
   const Mask<T>& regular() const { return regular_; }
@@ -22,9 +21,9 @@ class BlockLdl {
   /// x ← A⁻¹ x.
   void solve(Vec3<T>* x) const;
 
-  /// out ← r A⁻¹ for a row r of M blocks. `load`(i) returns block r_i as a RegisterSum; it is
-  /// called for i ≥ `first` only, the blocks before count as zero. The result is complete from
-  /// block `from` on; the blocks of `out` before `from` are arbitrary.
+  /// out ← r A⁻¹ for a row r of M blocks. `load(i)` returns the block r_i as a RegisterSum. The
+  /// blocks r_i with i < `first` are zero and not loaded. Of the result, only the blocks `out[i]`
+  /// with i ≥ `from` are computed; the others are arbitrary.
   template <class Load>
   void solve_row(const Load& load, int first, int from, Block<T>* out) const;
 
@@ -64,7 +63,7 @@ Mask<T> BlockLdl<T>::factorize(const BlockMatrix<T>& A) {
   return positive;
 }
 
-/// Computes row i of L D left of the diagonal, and its pattern.
+/// Computes row `i` of L D left of the diagonal, and its sparsity pattern.
 template <class T>
 void BlockLdl<T>::eliminate_row(const BlockMatrix<T>& A, int i) {
   for (int j = 0; j < i; ++j) {

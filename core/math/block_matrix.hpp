@@ -14,12 +14,12 @@ namespace rtg {
 template <class T>
 using Block = Eigen::Matrix<T, 3, 3>;
 
-/// Sparsity pattern: bit j of entry i is set if block (i, j) may differ from zero in some lane. At
-/// most 64 bodies.
+/// Sparsity pattern of a matrix of at most 64 × 64 blocks. Bit j of entry i is set if block (i, j)
+/// may be non-zero in some lane.
 using BlockPattern = std::vector<std::uint64_t>;
 
-/// Square matrix of M × M blocks of 3 × 3, stored row by row, with a block row and a block column
-/// per body. Blocks outside the pattern count as zero and are never read.
+/// Square matrix of M × M blocks of size 3 × 3, stored row by row. It has a block row and a block
+/// column per body. Blocks outside the pattern count as zero and are never read.
 template <class T>
 struct BlockMatrix {
   explicit BlockMatrix(int count = 0)
@@ -33,7 +33,7 @@ struct BlockMatrix {
   const Block<T>& at(int i, int j) const { return blocks[index(i, j)]; }
   bool has(int i, int j) const { return (pattern[static_cast<std::size_t>(i)] >> j & 1U) != 0; }
 
-  /// Adds X to block (i, j) and the block to the pattern.
+  /// Adds X to block (i, j). Extends the pattern by this block if necessary.
   template <class Summand>
   void add(int i, int j, const Summand& X) {
     if (has(i, j)) {
@@ -43,7 +43,7 @@ struct BlockMatrix {
       at(i, j) = X;
     }
   }
-  /// Returns the pattern of column j: bit i is set for block (i, j).
+  /// Returns the pattern of column `j`: bit i is set if block (i, j) is in the pattern.
   std::uint64_t column(int j) const {
     std::uint64_t rows = 0;
     for (int i = 0; i < M; ++i) rows |= std::uint64_t{has(i, j)} << i;
@@ -68,8 +68,8 @@ struct BlockMatrix {
 template <class T>
 using BlockColumn = std::vector<Vec3<T>>;
 
-/// Range over the set bits of a pattern's row, in ascending order: for (const int j : Bits(row))
-/// ...
+/// Range over the indices of the set bits of a word, in ascending order:
+///   for (const int j : Bits(pattern[i])) ...
 class Bits {
  public:
   explicit Bits(std::uint64_t bits) : bits_(bits) {}
@@ -96,8 +96,8 @@ Block<T> diagonal(const Vec3<T>& entries) {
   return D;
 }
 
-/// Returns the inverse of a symmetric block, by cofactors, and sets `determinant`. Reads the lower
-/// half of A.
+/// Returns the inverse of a symmetric block by cofactors and sets `determinant` to that of A. Reads
+/// the lower half of A only.
 template <class T>
 Block<T> symmetric_inverse(const Block<T>& A, T& determinant) {
   const T c00 = A(1, 1) * A(2, 2) - A(2, 1) * A(2, 1);
@@ -114,7 +114,8 @@ Block<T> symmetric_inverse(const Block<T>& A, T& determinant) {
   return out;
 }
 
-/// Returns whether A, with this determinant, is regular: the determinant exceeds rounding errors.
+/// Returns the lanes in which A is regular: its `determinant` exceeds rounding errors. Reads the
+/// lower half of A only.
 template <class T>
 Mask<T> is_regular(const Block<T>& A, const T& determinant) {
   constexpr double kRounding = 1e-14;

@@ -4,14 +4,14 @@
 
 namespace rtg {
 
-/// Returns block (i, j) of Aᵀ; 0 outside the pattern.
+/// Returns block (i, j) of Aᵀ; zero if it is outside the pattern.
 template <class T>
 RegisterSum<Block<T>> transposed(const BlockMatrix<T>& A, int i, int j) {
   return A.has(j, i) ? RegisterSum<Block<T>>(A.at(j, i).transpose()) : RegisterSum<Block<T>>();
 }
 
-/// Returns use(block (i, j)) of a symmetric matrix X of M × M blocks, stored row by row, of which
-/// only the upper half is read.
+/// Calls `use` with block (i, j) of a symmetric matrix X and returns the result. X has M × M
+/// blocks, stored row by row; only the upper half is read.
 template <class T, class Use>
 decltype(auto) with_upper(const std::vector<Block<T>>& X, int M, int i, int j, const Use& use) {
   return i <= j ? use(X[i * M + j]) : use(X[j * M + i].transpose());
@@ -30,7 +30,7 @@ void add_column(RegisterSum<Vec3<T>>& sum, const BlockMatrix<T>& A, int i,
   for (const int j : Bits(A.column(i))) sum.add(A.at(j, i).transpose(), x[j]);
 }
 
-/// sum ← sum + (A x)_i for a symmetric A, of which only the lower half is read.
+/// sum ← sum + (A x)_i for a symmetric A. Reads the lower half of A only.
 template <class T>
 void add_symmetric_row(RegisterSum<Vec3<T>>& sum, const BlockMatrix<T>& A, int i,
                        const BlockColumn<T>& x) {

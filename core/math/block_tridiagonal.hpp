@@ -26,6 +26,7 @@ using BlockVector = std::vector<VectorXd>;
 /// Returns K x.
 BlockVector product(const BlockTridiagonal& K, const BlockVector& x);
 
+/// Concatenates the blocks of `x`. split_like() does the reverse, with the block sizes of `K`.
 VectorXd joined(const BlockVector& x);
 BlockVector split_like(const BlockTridiagonal& K, const VectorXd& x);
 

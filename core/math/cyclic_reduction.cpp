@@ -2,8 +2,8 @@
 
 namespace rtg {
 
-/// Eliminates blocks 1, 3, ... of K by the equation below; K becomes the system of blocks
-/// 0, 2, ... Returns false if a pivot block is singular.
+/// Reduces K to the system of its blocks 0, 2, ... Returns false if a pivot block is singular. The
+/// other blocks are eliminated by
 ///   x_j = P_j⁻¹ (r_j - B_j x_{j-1} - B_{j+1}ᵀ x_{j+1}),  j odd.
 bool CyclicReduction::halve(BlockTridiagonal& K) {
   Level level;

@@ -9,8 +9,8 @@
 
 namespace rtg {
 
-/// Returns `count` elements of `from`, or all if there are fewer, drawn at random without
-/// replacement and in random order.
+/// Draws `count` elements of `from` at random, without replacement and in random order. Returns all
+/// elements, in random order, if there are fewer.
 template <class T>
 std::vector<T> drawn(std::vector<T> from, int count, Rng& rng) {
   const int size = static_cast<int>(from.size());

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kWide = kWidth<Lanes>;
 
-/// Calls f on the doubles of x[0], ..., x[count - 1], which f replaces in place.
+/// Calls f on an array of all doubles in x[0], ..., x[count - 1]. f replaces them in place.
 template <class F>
 void as_numbers(Lanes* x, int count, F&& f) {
   assert(count <= kMostNumbers);

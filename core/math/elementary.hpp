@@ -4,11 +4,11 @@
 
 namespace rtg {
 
-/// Largest `count` of exponentials() of Lanes.
+/// Largest `count` that exponentials() accepts for Lanes.
 inline constexpr int kMostNumbers = 8;
 
-/// Elementary functions. Those of Lanes agree with those of double to a few units in the last
-/// place. exponentials() replaces each of `count` numbers x by e^x.
+/// Replaces each of the `count` numbers in `x` by its exponential. The Lanes version of each
+/// function in this file agrees with the double version to a few units in the last place.
 void exponentials(double* x, int count);
 void exponentials(Lanes* x, int count);
 

@@ -7,8 +7,8 @@
 
 namespace rtg {
 
-/// LU factorisation of a pivot block. factorize() returns false for a singular block: one that is
-/// not finite or whose largest pivot is 1e14 times the least or more.
+/// LU factorisation of a pivot block. factorize() returns false if the block is not finite or
+/// singular: its largest pivot is at least 1e14 times the least.
 class PivotBlock {
  public:
   [[nodiscard]] bool factorize(const MatrixXd& A);
@@ -39,7 +39,7 @@ class CyclicReduction final : public KktSolver {
   [[nodiscard]] BlockVector solve(const BlockVector& r) const override;
 
  private:
-  /// A reduction step, which eliminates the odd blocks of the system and keeps the even ones.
+  /// A reduction step. It eliminates the odd blocks of the system and keeps the even ones.
   struct Level {
     std::size_t blocks = 0;
     std::vector<PivotBlock> pivots;     // of the odd blocks

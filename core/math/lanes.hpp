@@ -7,12 +7,14 @@
 
 namespace rtg {
 
-/// As many doubles as a vector register holds: the same quantity of as many candidates. Kernels are
-/// templates over a scalar T, which is double (one candidate) or Lanes. No operation mixes lanes,
-/// so the results of a candidate do not depend on the candidates in the other lanes.
+/// A SIMD vector of doubles. Each lane holds the same quantity of another candidate, an independent
+/// problem that is solved at the same time.
+///
+/// Templates over a scalar T are compiled for double (one candidate) and for Lanes. No operation
+/// mixes lanes, so the results of a candidate do not depend on those in the other lanes.
 using Lanes = std::experimental::native_simd<double>;
 
-/// A truth value per lane; bool for double.
+/// Mask<T> is one truth value per lane: bool for double.
 template <class T>
 struct MaskOf {
   using type = bool;
@@ -49,7 +51,8 @@ inline Lanes magnitude(const Lanes& x) { return std::experimental::abs(x); }
 inline double root(double x) { return std::sqrt(x); }
 inline Lanes root(const Lanes& x) { return std::experimental::sqrt(x); }
 
-/// lane() returns lane l of x, set_lane() sets it. A double or bool has a single lane.
+/// lane() returns the value in lane `l` of x; set_lane() sets it. A double or bool has a single
+/// lane.
 inline double lane(double x, int) { return x; }
 inline double lane(const Lanes& x, int l) { return x[static_cast<std::size_t>(l)]; }
 inline bool lane(bool x, int) { return x; }

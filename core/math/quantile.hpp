@@ -6,8 +6,8 @@
 
 namespace rtg {
 
-/// Returns the quantile of `values` at `share` ∈ [0, 1]: the value of the nearest rank, without
-/// interpolation. Returns 0 if there are no values.
+/// Returns the quantile of `values` at the fraction `share` ∈ [0, 1]: the value of the nearest
+/// rank, without interpolation. Returns 0 if there are no values.
 template <class Number>
 double quantile(std::vector<Number> values, double share) {
   if (values.empty()) return 0.0;

@@ -4,9 +4,11 @@
 
 namespace rtg {
 
-/// A sum of blocks X and of products A B of blocks. Each entry is a member of its own, so that the
-/// sum stays in registers; the compiler keeps an Eigen matrix, even a local one, in memory. A is
-/// 3 × 3; B, X and the sum are all 3 × 3 or all 3 × 1. 3 × 3 arguments may be transposes.
+/// Accumulator for a sum of blocks X and of products A B of blocks. Each entry is a member of its
+/// own, so that the compiler keeps the sum in registers. It would keep a local Eigen matrix in
+/// memory.
+///
+/// A is 3 × 3. B, X and the sum are all 3 × 3 or all 3 × 1. Arguments of 3 × 3 may be transposes.
 template <class Entry>
 class RegisterSum;
 

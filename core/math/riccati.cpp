@@ -51,7 +51,7 @@ void Riccati<T>::set_end(const Stage& stage) {
   carries_ = false;
 }
 
-/// P ← W = S P S.
+/// Overwrites P with W = S P S.
 template <class T>
 void Riccati<T>::sandwich(const BlockLdl<T>& E) {
   const auto loaded = [](const auto& block) { return RegisterSum<Block<T>>(block); };
@@ -62,7 +62,8 @@ void Riccati<T>::sandwich(const BlockLdl<T>& E) {
                 &P_[i * M_]);
 }
 
-/// Computes row i of X, C and N̂ᵀ S e, and of A: the first block, or all blocks if the stage has G.
+/// Computes row `i` of X, A, C and N̂ᵀ S e. Of the row of A it stores all blocks if the stage has
+/// G, otherwise only the first.
 template <class T>
 void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E, int i) {
   find_NS(stage, E, i);
@@ -118,7 +119,7 @@ void Riccati<T>::eliminate(const Stage& stage, const Stage& before, int k) {
   if (carries_) carry(stage, gain_[k]);
 }
 
-/// Computes w. Expects S v in v_.
+/// Computes w. v_ must hold S v.
 template <class T>
 void Riccati<T>::find_w(const Stage& stage) {
   for (int i = 0; i < M_; ++i) {
@@ -154,7 +155,7 @@ Block<T> Riccati<T>::find_gain(const Stage& stage, Gain& gain) {
   return inverse;
 }
 
-/// Computes P of the stage before.
+/// Computes P of the stage `before` the current one.
 template <class T>
 void Riccati<T>::fold_hessian(const Stage& before, const Stage& stage, const Gain& gain) {
   for (int i = 0; i < M_; ++i)
@@ -169,7 +170,7 @@ void Riccati<T>::fold_hessian(const Stage& before, const Stage& stage, const Gai
     }
 }
 
-/// Computes v of the stage before.
+/// Computes v of the stage `before` the current one.
 template <class T>
 void Riccati<T>::fold_gradient(const Stage& before, const Stage& stage, const Gain& gain) {
   for (int i = 0; i < M_; ++i) {
@@ -208,7 +209,8 @@ void Riccati<T>::roll_forward(const StageSystem<T>& system, StageStep<T>& step) 
   }
 }
 
-/// Computes the multipliers from stationarity in Δp_k, from the last sub-step to the first:
+/// Computes the multipliers Δy_k, from the last sub-step to the first. Each follows from
+/// stationarity in Δp_k:
 ///   Q Δp_k + q + N_k Δp_{k-1} + U_k Δp_{k-2} + N_{k+1}ᵀ Δp_{k+1} + U_{k+2}ᵀ Δp_{k+2}
 ///     + E Δy_k + F_{k+1}ᵀ Δy_{k+1} + G_{k+2}ᵀ Δy_{k+2} = 0.
 template <class T>

@@ -4,11 +4,12 @@
 
 namespace rtg {
 
-/// Solves a StageSystem by block elimination in time, from the last sub-step to the first, O(h).
-/// The cost of the sub-steps from k on is a quadratic function of (Δp_k, Δp_{k-1}) with the Hessian
-/// (P Y; Yᵀ Z) and the gradient (v, z). Y, Z and z are zero without inertia. With S = E⁻¹ (sparse
-/// LDLᵀ, whose pattern follows the graph of the bodies in contact) and N̂ = N + Y,
+/// Solves a StageSystem by a Riccati recursion, O(h): block elimination from the last sub-step to
+/// the first. The cost-to-go after sub-step k is a quadratic function of (Δp_k, Δp_{k-1}). It has
+/// the Hessian (P Y; Yᵀ Z) and the gradient (v, z). Y, Z and z are zero without inertia. The
+/// recursion backward in time is
 ///
+///   S = E⁻¹,  N̂ = N + Y
 ///   W = S P S,  A = Fᵀ W - N̂ᵀ S,  X = A - ½ Fᵀ W,  V = W G - S U,  w = W e - S v
 ///   R' = R + B W₀₀ B,  C = B (Aᵀ)₀,  D = B V₀,  r' = r + B w₀
 ///   P ← Q + X F + (X F)ᵀ + Z - Cᵀ R'⁻¹ C
@@ -17,15 +18,21 @@ namespace rtg {
 ///   v ← q + z + Fᵀ w - N̂ᵀ S e - Cᵀ R'⁻¹ r'
 ///   z ← Gᵀ w - Uᵀ S e - Dᵀ R'⁻¹ r'
 ///
-/// and forward in time Δc = -R'⁻¹ (C Δp_{k-1} + D Δp_{k-2} + r'),
-/// Δp_k = -S (F Δp_{k-1} + G Δp_{k-2} + B Δc + e). Q, E, F, G, N and U have the pattern of the
-/// graph; P, W, A, X, V, Y and Z are dense. Only the constructor allocates memory.
+/// and then forward in time
+///
+///   Δc = -R'⁻¹ (C Δp_{k-1} + D Δp_{k-2} + r'),
+///   Δp_k = -S (F Δp_{k-1} + G Δp_{k-2} + B Δc + e).
+///
+/// S is applied by a sparse LDLᵀ factorisation of E. Q, E, F, G, N and U have the sparsity of the
+/// graph of bodies in contact; P, W, A, X, V, Y and Z are dense. Only the constructor allocates
+/// memory.
 template <class T>
 class Riccati final : public StageSolver<T> {
  public:
   Riccati(int count, int sub_steps);
 
-  /// Returns the lanes in which no pivot block is singular.
+  /// Writes the solution of `system` to `step`. Returns the lanes in which no pivot block is
+  /// singular; `step` is arbitrary in the others.
   Mask<T> solve(const StageSystem<T>& system, StageStep<T>& step) override;
 
  private:
@@ -53,8 +60,8 @@ class Riccati final : public StageSolver<T> {
   std::vector<BlockLdl<T>> E_;
   BlockLdl<T> start_;
   std::vector<Gain> gain_;
-  // Matrices of [M × M] blocks, row by row. P_ holds the upper half of P, then that of W in the
-  // same place, because the fastest cache is small.
+  // Matrices of [M × M] blocks, row by row. P_ holds the upper half of P and later that of W. They
+  // share the memory because the fastest cache is small.
   std::vector<Block<T>> P_;
   std::vector<Block<T>> X_;  // P S, then X
   std::vector<Block<T>> A_;  // only the first column if the stage has no G

@@ -1,11 +1,11 @@
-// The terms of the recursion that couple a sub-step with the second one before it.
+// Terms of the recursion in Riccati that inertia adds: they couple sub-step k with sub-step k-2.
 
 #include "core/math/block_products.hpp"
 #include "core/math/riccati.hpp"
 
 namespace rtg {
 
-/// Computes V, D and R'⁻¹ D; `inverse` is R'⁻¹. Expects W in P_.
+/// Computes V, D and R'⁻¹ D. `inverse` is R'⁻¹; P_ must hold W.
 template <class T>
 void Riccati<T>::find_V(const Stage& stage, const BlockLdl<T>& E, const Block<T>& inverse,
                         Gain& gain) {
@@ -29,7 +29,7 @@ void Riccati<T>::find_V(const Stage& stage, const BlockLdl<T>& E, const Block<T>
   }
 }
 
-/// Computes Y, Z and z of the stage before.
+/// Computes Y, Z and z of the stage before the current one.
 template <class T>
 void Riccati<T>::carry(const Stage& stage, const Gain& gain) {
   const bool bends = !stage.U.empty();

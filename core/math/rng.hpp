@@ -7,13 +7,14 @@ namespace rtg {
 
 /// Deterministic random stream: the same seed gives the same numbers in every process.
 ///
-/// The standard fixes std::mt19937_64 but not std::uniform_real_distribution, so this class maps
-/// the bits to reals itself.
+/// The standard specifies the bits of std::mt19937_64, but not how std::uniform_real_distribution
+/// maps them to reals. This class therefore maps them itself.
 class Rng {
  public:
   explicit Rng(std::uint64_t seed) : engine_(mix(seed)) {}
 
-  /// Makes an independent stream for a sub-task, which depends on (seed, key) alone.
+  /// Makes the stream of a sub-task, which depends on (`seed`, `key`) alone. Streams of different
+  /// keys are independent.
   Rng(std::uint64_t seed, std::uint64_t key)
       : engine_(mix(mix(seed) ^ (key + 0x9e3779b97f4a7c15))) {}
 

@@ -6,15 +6,17 @@
 
 namespace rtg {
 
-/// Newton system of an optimal control problem with implicit dynamics over h sub-steps, M bodies:
+/// Newton system of an optimal control problem with implicit dynamics. It is written here as a
+/// quadratic programme over h sub-steps of M bodies:
 ///
 ///   min  Σ_k ½ Δp_kᵀ Q_k Δp_k + q_k·Δp_k + Δp_kᵀ (N_k Δp_{k-1} + U_k Δp_{k-2})
 ///            + ½ Δc_kᵀ R_k Δc_k + r_k·Δc_k
 ///   s.t. E_k Δp_k + F_k Δp_{k-1} + G_k Δp_{k-2} + B_k Δc_k + e_k = 0,  k = 1 ... h
 ///
-/// with multipliers Δy_k. Each of Δp_0 ... Δp_h has M blocks; Δc_k [3] acts on body 0 alone. Q_k
-/// and E_k are symmetric and given by their lower halves; R_k and B_k are diagonal. G_k and U_k
-/// couple by inertia, from k = 2 on; without inertia they are empty.
+/// with multipliers Δy_k of the constraints. Each of Δp_0 ... Δp_h has M blocks of 3 entries. Δc_k
+/// [3] acts on body 0 alone. Q_k and E_k are symmetric and given by their lower halves; R_k and B_k
+/// are diagonal. G_k and U_k are the couplings by inertia, for k ≥ 2; without inertia they are
+/// empty.
 template <class T>
 struct StageSystem {
   struct Stage {
@@ -60,8 +62,8 @@ class StageSolver {
  public:
   virtual ~StageSolver() = default;
 
-  /// Returns the lanes in which the system was found to be regular; elsewhere the step is
-  /// arbitrary.
+  /// Writes the solution of `system` to `step`. Returns the lanes in which the system is regular;
+  /// `step` is arbitrary in the others.
   virtual Mask<T> solve(const StageSystem<T>& system, StageStep<T>& step) = 0;
 };
 

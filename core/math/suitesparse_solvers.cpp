@@ -54,8 +54,8 @@ class Umfpack final : public KktSolver {
     const int n = static_cast<int>(K.order());
     double control[UMFPACK_CONTROL];
     umfpack_di_defaults(control);
-    // Keeps the order of the band: fill then grows linearly with the number of blocks; with AMD it
-    // grows quadratically.
+    // Keeps the band order of the unknowns, in which fill-in grows linearly with the number of
+    // blocks. In an AMD ordering it grows quadratically.
     control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
     control[UMFPACK_ORDERING] = UMFPACK_ORDERING_NONE;
     void* symbolic = nullptr;
@@ -104,7 +104,7 @@ class Klu final : public KktSolver {
     SparseColumns S = sparse(K);
     if (!all_finite(S.value)) return false;
     const int n = static_cast<int>(K.order());
-    // Keeps the order of the band, for the same reason as Umfpack does.
+    // Keeps the band order of the unknowns, for the same reason as Umfpack.
     symbolic_ = klu_analyze_given(n, S.start.data(), S.row.data(), nullptr, nullptr, &common_);
     if (!symbolic_) return false;
     numeric_ = klu_factor(S.start.data(), S.row.data(), S.value.data(), symbolic_, &common_);

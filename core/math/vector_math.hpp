@@ -2,11 +2,12 @@
 
 namespace rtg::vector_math {
 
-/// Elementary functions of `count` numbers, in place. vector_math.cpp is the only file compiled
-/// with -ffast-math, which permits the compiler to call the vector versions of the C library
-/// (libmvec, errors of at most 4 units in the last place). vector_math.cpp must not include any
-/// other header of this repository: the linker could use its -ffast-math copy of an inline function
-/// everywhere.
+/// Elementary functions, which replace `count` numbers `x` in place. Errors are at most 4 units in
+/// the last place.
+///
+/// Only vector_math.cpp is compiled with -ffast-math. This permits the compiler to call the vector
+/// versions of the C library (libmvec). vector_math.cpp must not include other headers of this
+/// repository: the linker might use its -ffast-math copy of their inline functions everywhere.
 void exponentials(double* x, int count);
 void sines(double* x, int count);
 void cosines(double* x, int count);

@@ -23,7 +23,8 @@ double reach(const PhysicsConfig& physics) {
                                : physics.range + physics.skin;
 }
 
-/// Runs FilterSqp on problems of equal structure, in lanes if the configuration allows lanes.
+/// Runs FilterSqp on problems of equal structure (structure_of()). Solves several in parallel, one
+/// per SIMD lane, if `kkt` is kBlockElimination and the final state is not fixed.
 std::vector<SqpResult> filter_sqp(std::span<const ReverseProblem* const> problems) {
   const ReverseProblem& like = *problems[0];
   const ReverseConfig& config = like.config;
@@ -36,8 +37,8 @@ std::vector<SqpResult> filter_sqp(std::span<const ReverseProblem* const> problem
       .solve(problems);
 }
 
-/// Returns the structure of a candidate: its numbers of coordinates and bodies, and its joints.
-/// The candidates in the lanes of one solver have equal structures.
+/// Returns the numbers of coordinates and bodies of a scene, followed by its joints. Only
+/// candidates for which these are equal can share a solver.
 std::vector<int> structure_of(const energy::StepEnergy& energy) {
   std::vector<int> structure{energy.dofs(), energy.bodies()};
   for (const energy::Hinge<double>& hinge : energy.scene().articulation().hinges())
@@ -45,7 +46,7 @@ std::vector<int> structure_of(const energy::StepEnergy& energy) {
   return structure;
 }
 
-/// Runs FilterSqp on candidates of any structures, once per structure.
+/// Groups candidates by structure and runs FilterSqp once per group.
 std::vector<SqpResult> filter_sqp_of_all(std::span<const Candidate* const> candidates) {
   std::map<std::vector<int>, std::vector<std::size_t>> alike;
   for (std::size_t k = 0; k < candidates.size(); ++k)

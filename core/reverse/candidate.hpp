@@ -9,10 +9,11 @@
 
 namespace rtg::reverse {
 
-/// A reverse job as an optimisation problem over the bodies that can take part in the push.
+/// The optimisation problem of one ReverseJob. It covers only the bodies that can take part in the
+/// push.
 class Candidate {
  public:
-  /// `config` must outlive the candidate; `job.end` is finite and has one pose per body.
+  /// `job.end` must be finite and have one pose per body. `config` must outlive the candidate.
   Candidate(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push,
             const ReverseConfig& config, const ReverseJob& job);
   Candidate(const Candidate&) = delete;
@@ -29,9 +30,9 @@ class Candidate {
   ReverseProblem problem_;
 };
 
-/// Solves candidates with the SQP that their common configuration selects. The results are in the
-/// order of the candidates and do not depend on which candidates are solved together. The status
-/// is kInfeasible also if a solution misses the given final state by more than the tolerance.
+/// Solves candidates with the SQP that their common `config.preset` selects. Returns one result per
+/// candidate, in the same order. No result depends on the other candidates. A solution that misses
+/// the final state by more than `config.terminal_tolerance` gets the status kInfeasible.
 std::vector<SqpResult> solve_together(std::span<const Candidate* const> candidates);
 
 }  // namespace rtg::reverse

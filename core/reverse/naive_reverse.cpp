@@ -8,7 +8,7 @@
 namespace rtg::reverse {
 namespace {
 
-constexpr double kTouch = 0.2;      // an object closer than this ahead of the robot was pushed [m]
+constexpr double kTouch = 0.2;      // gap below which an object ahead counts as touched [m]
 constexpr double kLeastPull = 0.2;  // least L, as a share of the stride
 constexpr double kSweepStep = 0.1;  // largest distance between tested robot positions [m]
 
@@ -19,8 +19,8 @@ Pose moved(const Pose& p, const Vector2d& by) { return {p.x + by.x(), p.y + by.y
 NaiveReverse::NaiveReverse(Scene scene, PushConfig push)
     : scene_(std::move(scene)), push_(push), roots_(roots_of(scene_)) {}
 
-/// Returns the movable object nearest to the robot among those less than kTouch ahead of it; 0 if
-/// there is none.
+/// Returns the object that the robot touches in the direction `ahead`: the nearest movable one
+/// whose gap is below kTouch. Returns 0 if there is none.
 std::size_t NaiveReverse::touched_object(const Poses& end, const Vector2d& ahead) const {
   std::size_t best = 0;
   double nearest = kTouch;
@@ -67,8 +67,8 @@ ReverseResult NaiveReverse::solve(const ReverseJob& job) const {
   return {SolveStatus::kConverged, 0, std::move(starts)};
 }
 
-/// Returns copies of `start`, one per draw of L, in which `object` and the bodies that joints
-/// connect with it are pulled back by L. Returns none if `object` is fixed.
+/// Returns one copy of `start` per draw of L, with `object` pulled back by L. Bodies that joints
+/// connect with `object` follow. Returns nothing if `object` is fixed.
 std::vector<Poses> NaiveReverse::pulled(const ReverseJob& job, std::size_t object,
                                         const Poses& start) const {
   std::vector<Poses> out;

@@ -6,17 +6,18 @@
 
 namespace rtg::reverse {
 
-/// Guesses predecessors kinematically, without any physics. The robot moves back by one stride
-/// against its heading. The one object that the robot touches in front, if any, is pulled back
-/// without turning, together with the bodies that joints connect with it. NaiveReverse is the
-/// baseline that the reverse simulator must beat.
+/// Baseline that the reverse simulator must beat: guesses predecessors of a state without physics.
+/// The robot moves back by one stride against the push direction d. An object that it touches in
+/// front is pulled back by a length L without turning. Bodies that joints connect with the object
+/// follow.
 ///
 ///   start(robot) = end(robot) - stride·d,   start(object) = end(object) - L·d
 ///
-/// The robot may have met the object anywhere on its way, so L is drawn kMaxStarts times from
-/// [0.2, 1]·stride. The draws are a function of the job. The status is kPruned if the robot would
-/// start outside the arena or if its way back is blocked. The status is kInfeasible if bodies would
-/// overlap with every L, or if joints connect the object with a fixed root.
+/// The robot may have met the object anywhere on its way. So solve() draws kMaxStarts values of L
+/// from [0.2, 1]·stride; equal jobs give equal values. The status is
+///
+///   kPruned      if the robot would start outside the arena or a body blocks its way back,
+///   kInfeasible  if bodies overlap for every L or if joints connect the object with a fixed root.
 class NaiveReverse {
  public:
   NaiveReverse(Scene scene, PushConfig push);

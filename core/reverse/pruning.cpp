@@ -8,8 +8,8 @@ namespace rtg::reverse {
 namespace {
 
 constexpr double kOverlap = 0.01;  // largest overlap of sweep and body that counts as touching [m]
-// Largest allowed overlap of a sweep and a link, which may have swung in behind the robot [m]. It
-// is a little more than 0.71, the maximum over 24,000 pushes that moved ArtManip's chain.
+// Largest allowed overlap of the robot's sweep and a movable body with a joint [m]. The body may
+// have swung in behind the robot: by up to 0.71 in 24,000 pushes that moved ArtManip's chain.
 constexpr double kSwing = 0.75;
 constexpr double kClearance = 0.1;  // added to the range, as objects turn on their way [m]
 

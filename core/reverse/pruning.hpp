@@ -8,19 +8,22 @@
 
 namespace rtg::reverse {
 
-/// Returns the area that a body sweeps over on a straight way: the convex hull of `shape` and of
-/// `shape` moved by `by` (world frame), in the body's frame at heading `theta`.
+/// Returns the area that `shape` sweeps over while it moves by `by` (world frame): the convex hull
+/// of its first and last position. The area is in the body frame, which is turned by `theta`.
 Polygon swept(const Polygon& shape, double theta, const Vector2d& by);
 
-/// Returns whether the action cannot have been the last one, as the robot's straight way back
-/// leaves the arena or passes through a body behind the robot. A link may lie on the way as far as
-/// it can have swung in since. The test is very cheap compared with a solve.
+/// Returns whether `job.action` cannot have led to `job.end`. This is so if the robot's straight
+/// way back leaves the arena or passes through a body. A movable body with a joint may reach 0.75 m
+/// into the way, as it may have swung in behind the robot. The test is very cheap compared with a
+/// solve.
 bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job);
 
-/// Returns the bodies that can take part in the push: the robot first, movable bodies before fixed
-/// ones. They are the bodies within about `range` [m] of the robot's way one stride back, those
-/// within that distance of the equal way of another movable body found, and those that joints
-/// connect with one.
+/// Returns the indices of the bodies that can take part in the push: the robot first, movable
+/// bodies before fixed ones. The set begins with the robot. Each movable body in it adds
+///
+///   - the bodies within `range` [m] (plus a margin for turns) of the area that it sweeps in one
+///     stride back,
+///   - the bodies that joints connect with it.
 std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, const ReverseJob& job,
                                  double range);
 

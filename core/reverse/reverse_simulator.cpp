@@ -10,13 +10,13 @@
 namespace rtg::reverse {
 namespace {
 
-// A push has a single predecessor if it moves every object by less than kDragged along either axis
-// and turns it by less than kTurned.
+// Least motion of an object, along x or y, and least turn for which predecessors() returns more
+// than one start.
 constexpr double kDragged = 0.05;  // [m]
 constexpr double kTurned = 0.05;   // [rad]
 
-/// Returns whether the pose of an object (any body but the first) differs between `p` and `other`
-/// by kDragged or kTurned at least.
+/// Returns whether `p` and `other` differ in the pose of any object, by at least kDragged in x or y
+/// or by at least kTurned.
 bool objects_differ(const VectorXd& p, const VectorXd& other) {
   for (Eigen::Index i = 3; i < p.size(); i += 3) {
     const Vector3d by = (other - p).segment<3>(i).cwiseAbs();
@@ -25,12 +25,13 @@ bool objects_differ(const VectorXd& p, const VectorXd& other) {
   return false;
 }
 
-/// Returns the start of a quasi-static push p_0 ... p_h and further starts from which the push
-/// leads to the same end. Until the robot meets the objects, nothing else moves. So at the start,
-/// the objects may as well have the poses that they have after a later sub-step k, with the robot
-/// at its own start. With inertia, `late_contacts` must be 0.
+/// Returns the start of a quasi-static push p_0 ... p_h, and further starts from which the push
+/// leads to the same end. In a further start the objects already have the poses that they have
+/// after sub-step k. They rest there until the robot meets them, later in the push.
 ///
 ///   start_j = (robot of p_0, objects of p_k),  k = h·j/(J + 1),  j = 0 ... J = late_contacts
+///
+/// With inertia, `late_contacts` must be 0.
 std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int late_contacts) {
   std::vector<VectorXd> out{p[0]};
   if (!objects_differ(p[0], p.back())) return out;

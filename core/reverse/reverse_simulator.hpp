@@ -13,20 +13,22 @@
 namespace rtg::reverse {
 
 /// The reverse rigid-body simulator, eq. (6) and (7): finds the states from which a push leads to a
-/// given state. It has no mutable state, so equal jobs give bit-equal results on any thread.
+/// given state. Equal jobs give bit-equal results on any thread, as the simulator has no mutable
+/// state.
 class ReverseSimulator {
  public:
-  /// `scene` must have legal shapes only (polygon_defect() empty) and a movable bodies[0].
+  /// Every shape of `scene` must be legal (polygon_defect() is empty). bodies[0], the robot, must
+  /// be movable.
   ReverseSimulator(Scene scene, const PhysicsConfig& physics, const PushConfig& push,
                    const ReverseConfig& config);
 
-  /// Solves one job. `job.end` is a state at rest with one pose per body. Bodies that the push
-  /// cannot reach keep their poses; with the plain barrier, whose range is infinite, the push
-  /// reaches all bodies. Never throws. The status is kNonFinite also if `job.end` has the wrong
-  /// size or a pose that is not finite.
+  /// Finds states from which `job.action` leads to `job.end`, a state at rest with one pose per
+  /// body. Bodies that the push cannot reach keep their poses. With the plain barrier the push
+  /// reaches all bodies, as contact forces have infinite range. Never throws. The status is
+  /// kNonFinite if `job.end` has the wrong size or is not finite.
   [[nodiscard]] ReverseResult solve(const ReverseJob& job) const;
-  /// Solves many jobs together, which takes much less time than one after the other. The results
-  /// do not depend, to the bit, on which jobs are solved together.
+  /// Solves many jobs together, in much less time than one by one. Each result is bit-equal to that
+  /// of solve(job).
   [[nodiscard]] std::vector<ReverseResult> solve(std::span<const ReverseJob> jobs) const;
 
  private:

@@ -13,9 +13,10 @@ namespace {
 
 constexpr std::size_t kLanes = static_cast<std::size_t>(kWidth<Lanes>);
 
-/// Cuts the jobs into slices and returns the ends of the slices in order. Each slice is half a
-/// thread's share of the remaining jobs (guided self-scheduling [Polychronopoulos & Kuck 1987]), so
-/// that all threads finish at about the same time. No slice is too small to keep the lanes busy.
+/// Splits `jobs` jobs into slices and returns the end index of each slice. Idle threads take the
+/// next slice. Each slice is 1 / (2 · threads) of the remaining jobs (guided self-scheduling
+/// [Polychronopoulos & Kuck 1987]). All threads thus finish at about the same time. A slice has at
+/// least enough jobs to fill the SIMD lanes.
 std::vector<std::size_t> slice_ends(std::size_t jobs, int threads) {
   if (threads <= 1) return {jobs};
   const auto workers = static_cast<std::size_t>(threads);

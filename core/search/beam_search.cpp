@@ -43,8 +43,8 @@ std::vector<Transition> BeamSearch::grow(const SolveBatch& solve, const ReplayBa
   return keep(std::move(found), replay);
 }
 
-/// Returns the predecessors of every node of the beam for every action. Predecessor::parent is the
-/// index of the node.
+/// Solves for the predecessors of every node of the beam under every action. Sets
+/// Predecessor::parent to the index of the node.
 std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
                                                    SearchStats& stats) const {
   std::vector<reverse::ReverseJob> jobs;
@@ -62,8 +62,10 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
   return found;
 }
 
-/// Returns the steps to replay: per node the best config.free_moves of the steps that move no
-/// object, and per solve the best config.predecessors_per_solve of the steps that move one.
+/// Returns the steps to replay, those whose start is nearest to the target:
+///
+///  - of the steps that move no object, the best config.free_moves per node;
+///  - of the others, the best config.predecessors_per_solve per node and action.
 std::vector<Predecessor> BeamSearch::best_to_replay(std::vector<Predecessor> all) const {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -85,7 +87,7 @@ std::vector<Predecessor> BeamSearch::best_to_replay(std::vector<Predecessor> all
   return out;
 }
 
-/// Returns the best steps in order, by select_beam(): at most `times` · config.breadth.
+/// Returns at most `times` · config.breadth of the steps, best first, as select_beam() selects.
 std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int times,
                                              std::unordered_set<std::uint64_t>& seen) {
   std::vector<BeamEntry> entries;
@@ -105,19 +107,19 @@ std::vector<int> BeamSearch::plan(const Predecessor& step) const {
   return actions;
 }
 
-/// Draws a start like the target and returns `poses` with the bodies that are in place moved to
-/// their poses in that start (placed()). Returns `poses` unchanged if the result is not legal.
+/// Moves the objects of `poses` that are near their start poses into a random start (placed()).
+/// Returns `poses` unchanged if the result is not legal.
 Poses BeamSearch::with_drawn_start(const Poses& poses) {
-  constexpr double kAround = 0.25;  // largest jitter of the drawn start [m]
+  constexpr double kAround = 0.25;  // largest random displacement of an object [m]
   const double around = std::min(task_.start_jitter, kAround);
   const std::optional<Poses> start = jittered(task_, target_, around, rng_);
   const Poses at_start = placed(task_, metric_, poses, target_, start.value_or(target_));
   return legal_state(task_, at_start) ? at_start : poses;
 }
 
-/// Carries out the plans of the steps after replacing the steps' starts by with_drawn_start(). If
-/// no plan succeeds, for example where a goal lies in an object's own place, restores the starts
-/// and carries out the plans from these.
+/// Replaces the start of each step by with_drawn_start() and simulates the plans from there. If no
+/// plan succeeds, restores the starts and simulates the plans from these. That can happen if a goal
+/// region contains the start position of an object. Returns as carry_out().
 std::vector<std::optional<std::vector<Transition>>> BeamSearch::follow(
     std::vector<Predecessor>& steps, const ReplayBatch& replay) {
   std::vector<Poses> own;

@@ -14,37 +14,43 @@
 
 namespace rtg::search {
 
-/// A state from which `action` and then the actions of the node `parent` lead to success.
+/// A state and the first of its actions to success. The node `parent` has the actions that follow.
 struct Node {
   Poses poses;
-  int action = -1;  // -1: the goal holds
-  int parent = -1;  // index of a node
+  int action = -1;  // -1: a goal state
+  int parent = -1;  // index of the node that `action` leads to
   int depth = 0;    // actions until success
 };
 
-/// A tree of reverse steps, grown layer by layer from goal states towards a layout (Algorithm 1).
+/// A beam search backwards in time, from goal states towards a start state (Algorithm 1). Its nodes
+/// form a tree. A node's parent is one push nearer to the goal.
 class BeamSearch {
  public:
-  /// `task` and `config` must outlive the search; `target`: the layout.
+  /// `target`: the start state to reach. `task` and `config` must outlive the search.
   BeamSearch(const tasks::Task& task, const SearchConfig& config, Poses target, std::uint64_t seed);
 
-  /// Makes the first beam of goal states near the target (goal_roots()), brought to rest by
-  /// `replay`.
+  /// Makes the first beam of goal states near the target (goal_roots()). Lets each state come to
+  /// rest by `replay`. Drops states in which the goal then does not hold.
   void plant(const ReplayBatch& replay, SearchStats& stats);
 
-  /// Grows a layer and returns the transitions to store. Solves for every action of every node of
-  /// the beam, replays the best of the converged steps and ranks those that replay within the gap
-  /// tolerance. The best config.verified_plans steps per place in the beam are tried: bodies that
-  /// are in place in the start of a step are moved to their poses in a start like the target
-  /// (placed()), and from there the step and the plan of its parent node are carried out. If no
-  /// plan succeeds, all are carried out from the unchanged starts instead. Of each plan that
-  /// succeeds, the first transition is returned and, for the share config.whole_plan_share of the
-  /// plans, all later ones as well. The best of the successful steps become the next beam. No
-  /// transition begins where the goal holds, as that ends an episode.
+  /// Grows a layer of the tree and returns the transitions to store:
+  ///
+  ///  1. Solve for the predecessors of every node of the beam under every action.
+  ///  2. Replay the best of them in the simulator. Drop those with `miss` above
+  ///     config.gap_tolerance.
+  ///  3. Select the best config.verified_plans · config.breadth of the rest. A plan is such a step
+  ///     followed by the actions of its parent node.
+  ///  4. Simulate each plan. Objects that are near their start poses first move into a random start
+  ///     (placed()). If no plan then succeeds, simulate all plans from the unchanged states.
+  ///  5. Return the first transition of each plan that succeeds. For the share
+  ///     config.whole_plan_share of these plans, return all transitions.
+  ///  6. Make the best states from which a plan succeeds the next beam.
+  ///
+  /// No transition begins in a goal state, because episodes end there.
   std::vector<Transition> grow(const SolveBatch& solve, const ReplayBatch& replay,
                                SearchStats& stats);
 
-  /// Returns the least start_distance() of the beam to the target; infinity if the beam is empty.
+  /// Returns the smallest start_distance() of the beam's nodes; infinity if the beam is empty.
   double best() const;
 
   std::span<const Node> nodes() const { return nodes_; }
@@ -70,7 +76,7 @@ class BeamSearch {
   Rng rng_;
   std::vector<Node> nodes_;
   std::vector<int> beam_;
-  std::unordered_set<std::uint64_t> seen_;  // cells of nodes
+  std::unordered_set<std::uint64_t> seen_;  // StateMetric::cell() of each node
 };
 
 }  // namespace rtg::search

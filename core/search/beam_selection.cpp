@@ -9,8 +9,8 @@
 namespace rtg::search {
 namespace {
 
-/// Returns the indices of distinct entries in order of (score, index): the best entry of each cell
-/// that is not in `seen`, and of these at most the best `nodes_per_layout` of each layout.
+/// Returns the indices of distinct entries, best first. Keeps the best entry of each cell that is
+/// not in `seen`, and at most `nodes_per_layout` entries of each layout.
 std::vector<std::size_t> distinct(std::span<const BeamEntry> entries, int nodes_per_layout,
                                   std::unordered_set<std::uint64_t> seen) {
   std::vector<std::size_t> order(entries.size());

@@ -9,20 +9,23 @@
 
 namespace rtg::search {
 
-/// Figures of a candidate by which the next beam is selected.
+/// A candidate for the next beam, as select_beam() sees it.
 struct BeamEntry {
   double score = 0.0;        // lower is better
-  std::uint64_t cell = 0;    // StateMetric::cell(); candidates of one cell count as the same
-  std::uint64_t layout = 0;  // StateMetric::layout_cell()
-  bool contact = false;      // its push moved an object
+  std::uint64_t cell = 0;    // StateMetric::cell(); equal cells: the same state
+  std::uint64_t layout = 0;  // StateMetric::layout_cell(); equal: all objects lie alike
+  bool contact = false;      // the push moved an object
 };
 
-/// Returns the indices of the next beam, at most `times` · config.breadth, in (score, index) order.
-/// First the contact quota is filled with the best entries that have `contact`, then the rest with
-/// the best of all. There is at most one entry per cell, none of a cell in `seen`, and at most
-/// `times` · config.nodes_per_layout per layout; the selected cells are added to `seen`. The
-/// selection is a pure function of the complete set, so the order in which results arrived does not
-/// matter.
+/// Selects the next beam and returns its indices in `entries`, best score first:
+///
+///  1. Keep the best entry of each cell. Drop entries whose cell is in `seen`.
+///  2. Keep the best `times` · config.nodes_per_layout entries of each layout.
+///  3. Take the best entries with `contact` for the share config.contact_quota of the beam.
+///  4. Fill the beam with the best other entries, up to `times` · config.breadth in all.
+///  5. Add the cells of the selected entries to `seen`.
+///
+/// Of equal scores, the lower index is better.
 std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
                                      std::unordered_set<std::uint64_t>& seen, int times = 1);
 

@@ -12,16 +12,15 @@
 
 namespace rtg::search {
 
-/// Draws config.branches different headings other than `action`: config.near_branches of them at
-/// most config.near_headings away from `action`, the rest anywhere. Returns fewer only if there are
-/// no more.
+/// Draws config.branches distinct headings other than `action`, of `headings` in all.
+/// config.near_branches of them lie at most config.near_headings away from `action`. The rest are
+/// uniform. Returns fewer if there are not enough headings.
 std::vector<int> other_headings(int action, int headings, const SearchConfig& config, Rng& rng);
 
-/// Returns each step followed by its branches: the true outcomes of other headings in the state in
-/// which the step begins. A reverse step shows the outcome of one heading only, which nearly always
-/// leads towards the goal. To choose among headings, a learner needs the outcomes of others as
-/// well. The headings are a function of the step and `seed`. Pushes that the simulator rejects are
-/// left out.
+/// Returns each step followed by its branches: simulated pushes in other directions from the same
+/// state. A reverse step shows one heading only, which nearly always leads towards the goal. A
+/// learner that chooses among headings must know the outcomes of others, too. The headings of the
+/// branches depend on the step and `seed` only. Pushes that the simulator rejects are left out.
 std::vector<Transition> with_branches(const tasks::Task& task, std::span<const Transition> steps,
                                       const SearchConfig& config, std::uint64_t seed,
                                       const ReplayBatch& replay);

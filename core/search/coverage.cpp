@@ -16,7 +16,7 @@ double share(long part, long whole) {
 Coverage::Coverage(const tasks::Task& task)
     : task_(task), metric_(task.scene), movers_(movers_of(task.scene)) {}
 
-/// Returns whether two objects moved that no joint connects.
+/// Returns whether `t` moves two objects that are not connected by joints.
 bool Coverage::moves_several(const Transition& t) const {
   std::size_t first = 0;
   for (std::size_t k = 1; k < t.poses.size(); ++k) {

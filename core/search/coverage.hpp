@@ -11,7 +11,7 @@
 
 namespace rtg::search {
 
-/// Computes coverage statistics of a stream of transitions.
+/// Statistics of a stream of transitions.
 class Coverage {
  public:
   explicit Coverage(const tasks::Task& task);
@@ -20,17 +20,19 @@ class Coverage {
 
   long transitions() const { return transitions_; }
   long of(Source source) const { return by_source_[static_cast<std::size_t>(source)]; }
-  double contact_share() const;       // share that moved an object by more than kMoved
-  double multi_body_share() const;    // share that moved two or more that no joint connects
-  double headings_per_state() const;  // mean over distinct states; assumes no duplicate transitions
-  long start_region() const { return start_region_; }  // number that begin with all in_place()
+  double contact_share() const;       // share that moves an object by more than kMoved
+  double multi_body_share() const;    // share that moves several objects not connected by joints
+  double headings_per_state() const;  // transitions per distinct state
+  /// Returns the number of transitions that begin with all objects near their start poses,
+  /// in_place().
+  long start_region() const { return start_region_; }
 
  private:
   bool moves_several(const Transition& t) const;
 
   const tasks::Task& task_;
   StateMetric metric_;
-  std::vector<std::size_t> movers_;  // as movers_of()
+  std::vector<std::size_t> movers_;  // movers_of() the scene
   long transitions_ = 0, contacts_ = 0, multi_body_ = 0, start_region_ = 0;
   std::array<long, kSources.size()> by_source_{};
   std::unordered_set<std::uint64_t> states_;  // key_of() of each

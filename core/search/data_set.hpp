@@ -12,8 +12,8 @@
 
 namespace rtg::search {
 
-/// Stores transitions as they are generated: steps, each followed by its branches, until
-/// config.transitions are stored.
+/// The data set of a run: generated steps, each followed by its branches (with_branches()). It is
+/// full when it has config.transitions transitions. It passes them on to a sink.
 class DataSet {
  public:
   /// All arguments must outlive the DataSet. `sink` receives the transitions.
@@ -21,7 +21,7 @@ class DataSet {
           const TransitionSink& sink)
       : task_(task), config_(config), seed_(seed), sink_(sink), coverage_(task) {}
 
-  /// Stores `steps` in order, each with its branches, as long as there is room. Skips a transition
+  /// Stores each step, followed by its branches, until the data set is full. Skips a transition
   /// whose state and action are stored already. `replay` simulates the branches.
   void store(std::span<const Transition> steps, const ReplayBatch& replay);
 
@@ -34,7 +34,7 @@ class DataSet {
   std::uint64_t seed_;
   const TransitionSink& sink_;
   Coverage coverage_;
-  std::unordered_set<std::uint64_t> known_;  // key_of() of state and action
+  std::unordered_set<std::uint64_t> known_;  // key_of() of each stored state and action
 };
 
 }  // namespace rtg::search

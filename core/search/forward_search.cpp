@@ -39,7 +39,7 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
   return keep(std::move(found), entries);
 }
 
-/// Makes the best of `found` the next beam. Returns their steps.
+/// Makes the best of `found` the next beam. Returns the steps to these nodes.
 std::vector<Transition> ForwardSearch::keep(std::vector<Node> found,
                                             std::span<const BeamEntry> entries) {
   std::vector<Transition> steps;

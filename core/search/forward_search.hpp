@@ -13,19 +13,21 @@
 
 namespace rtg::search {
 
-/// Plans without reverse steps: a forward beam search from one start, over all headings, in the
-/// simulator. States are ranked by goal_distance(); the beam is selected as in BeamSearch.
+/// A beam search forwards from one start, in the simulator, without reverse steps. It tries every
+/// heading in every state of the beam. States are ranked by goal_distance(). The beam is selected
+/// by select_beam(), as in BeamSearch.
 class ForwardSearch {
  public:
   /// `task` and `config` must outlive the search.
   ForwardSearch(const tasks::Task& task, const SearchConfig& config, Poses start);
 
-  /// Grows a layer: replays every heading in every state of the beam and keeps the best steps.
-  /// Returns the steps that were kept; none if the search has ended.
+  /// Simulates every heading in every state of the beam and makes the best new states the next
+  /// beam. Returns the steps to these states. Returns none after the first success, or if all new
+  /// states are known.
   std::vector<Transition> grow(const ReplayBatch& replay);
 
-  /// Returns the outcome of a push that the last layer replayed. Throws std::out_of_range for any
-  /// other push.
+  /// Returns the outcome of a push that the latest grow() simulated. Throws std::out_of_range for
+  /// any other push.
   const ReplayResult& outcome(const ReplayJob& push) const;
 
   /// Returns the steps from the start to the first success found; none if there is no success.
@@ -34,7 +36,7 @@ class ForwardSearch {
  private:
   struct Node {
     Transition step;
-    std::size_t parent;  // the node in whose state the step begins; the first has none
+    std::size_t parent;  // index of the node in whose state the step begins
   };
   std::vector<Transition> keep(std::vector<Node> found, std::span<const BeamEntry> entries);
 
@@ -48,13 +50,13 @@ class ForwardSearch {
   std::unordered_map<std::uint64_t, ReplayResult> outcomes_;  // by key_of() of state and action
 };
 
-/// Runs a whole search, of at most config.depth and task.horizon actions, and returns its plan. A
-/// pure function of the arguments.
+/// Searches from `start` and returns the plan; empty if none is found. A plan has at most
+/// min(config.depth, task.horizon) actions. A pure function of the arguments.
 std::vector<Transition> plan_forward(const tasks::Task& task, const SearchConfig& config,
                                      const Poses& start, const ReplayBatch& replay);
 
-/// Runs search number `number` from a start (run.draw_start()) and stores the steps that it keeps.
-/// Their branches are outcomes that the search has simulated anyway.
+/// Runs forward search number `number` from a random start, run.draw_start(). Stores the steps to
+/// the states of each beam. Their branches cost nothing: the search has simulated all headings.
 void search_forward(Generation& run, int number);
 
 }  // namespace rtg::search

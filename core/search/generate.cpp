@@ -13,8 +13,9 @@
 namespace rtg::search {
 namespace {
 
-/// Runs Algorithm 1 once: grows a tree from goal states towards a start that is drawn for it. Ends
-/// after config.depth layers, or after config.patience layers in a row that come no nearer.
+/// Runs Algorithm 1 once: draws a start and grows a tree from goal states towards it. Ends after
+/// config.depth layers. Ends earlier if config.patience layers in a row come no nearer to the
+/// start.
 void grow_tree(Generation& run, int number) {
   Rng rng = run.stream(number);
   const Poses target = run.draw_start(rng);

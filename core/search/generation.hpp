@@ -13,7 +13,7 @@
 
 namespace rtg::search {
 
-/// State of one call of generate(), on which all generators work.
+/// State of one call of generate(), shared by the generators.
 struct Generation {
   const tasks::Task& task;
   const SearchConfig& config;
@@ -24,12 +24,12 @@ struct Generation {
   ReplayBatch replay = counted(seams.replay, stats);
   DataSet data{task, config, seed, seams.store};
 
-  /// Returns the random numbers of attempt `number`. No training start uses the same ones.
+  /// Returns the random number generator of attempt `number`. Training starts never use its
+  /// numbers.
   Rng stream(int number) const { return Rng(Rng(seed).word(), static_cast<std::uint64_t>(number)); }
 
-  /// Draws a start, towards which a tree grows or from which a forward search or a walk begins.
-  /// Objects are moved by up to ± task.start_jitter or, with config.randomise, by up to ± the
-  /// larger of task.start_jitter and task.randomisation.
+  /// Draws a random start state. Each object moves by up to ± task.start_jitter in x and y. With
+  /// config.randomise the limit is task.randomisation, if that is larger.
   Poses draw_start(Rng& rng) const {
     const double least = config.randomise ? task.randomisation : 0.0;
     return jittered_start(task, std::max(least, task.start_jitter), rng);
@@ -37,11 +37,11 @@ struct Generation {
 
   bool cancelled() const { return seams.cancelled && seams.cancelled(); }
 
-  /// Calls attempt(0), attempt(1), ... until the data set is full, the run is cancelled, or eight
-  /// attempts in a row have stored nothing.
+  /// Calls attempt(0), attempt(1), ...: each runs one tree, forward search or wave of walks. Ends
+  /// when the data set is full, the run is cancelled, or eight attempts in a row store nothing.
   void repeat(const std::function<void(int)>& attempt);
 
-  /// Sends a line to the progress display: layer `layer` of `depth` in phase `phase`.
+  /// Reports to the progress display that layer `layer` of `depth` is done in phase `phase`.
   void show(std::string phase, int layer, int depth) const;
 };
 

@@ -9,15 +9,15 @@
 
 namespace rtg::search {
 
-/// Returns `poses` after exchanging the poses of bodies that look the same, so that the layout is
-/// as near as possible to `target` (pairwise exchanges until none helps). Bodies look the same if
-/// their kind, shape, density and friction are equal and they can move and have no joint. Whether a
-/// goal holds does not depend on such an exchange.
+/// Swaps the poses of interchangeable bodies until no swap reduces the layout_distance() to
+/// `target`. Returns the result. Bodies are interchangeable if they can move, have no joint, and
+/// have equal kind, shape, density and friction. Such swaps do not change whether a goal holds.
 Poses relabelled(const tasks::Task& task, const Poses& poses, const Poses& target);
 
-/// Returns up to config.breadth distinct goal states, relabelled() and not yet at rest: of
-/// config.breadth · config.root_draws draws of sample_goal() those of least start_distance() to
-/// `target`.
+/// Draws goal states and returns up to config.breadth distinct ones, the nearest to `target` by
+/// start_distance(). Makes at most config.breadth · config.root_draws draws by sample_goal() and
+/// applies relabelled() to each state. The states are not yet at rest. Counts failed draws in
+/// `stats`.
 std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& config,
                               const Poses& target, Rng& rng, SearchStats& stats);
 

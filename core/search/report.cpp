@@ -66,7 +66,7 @@ nlohmann::ordered_json to_json(std::span<const ReportNode> nodes) {
 }  // namespace
 
 std::string to_json(const GenerationReport& r) {
-  // The value, or null without reverse steps.
+  // Returns the value, or null if the run solved for no reverse steps.
   const auto searched = [&r](double value) {
     return r.candidates > 0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
   };

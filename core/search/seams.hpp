@@ -10,7 +10,7 @@
 
 namespace rtg::search {
 
-/// Action that stands for no push: the scene comes to rest with the robot held.
+/// Pseudo-action without a push: the bodies come to rest while the robot is held.
 inline constexpr int kSettle = -1;
 
 /// A request to simulate the push `action` from the state `start`.
@@ -24,12 +24,12 @@ struct ReplayJob {
 struct ReplayResult {
   Poses end;
   bool ok = false;     // as PushOutcome::ok
-  double cpu_s = 0.0;  // thread CPU time; the one field that is not a function of the job
+  double cpu_s = 0.0;  // thread CPU time [s]; not a function of the job, unlike the rest
 };
 
-/// Interfaces by which the search has jobs computed; the results are in job order. Implementations
-/// are a loop, a thread pool, processes behind a message bus, or a lambda in a test. All give the
-/// same results to the bit.
+/// Interfaces for reverse solves (SolveBatch) and forward simulation (ReplayBatch) of many jobs.
+/// They return one result per job, in job order. Implementations may use threads or worker
+/// processes. All must give bitwise the same results.
 using SolveBatch =
     std::function<std::vector<reverse::ReverseResult>(std::span<const reverse::ReverseJob>)>;
 using ReplayBatch = std::function<std::vector<ReplayResult>(std::span<const ReplayJob>)>;
@@ -51,12 +51,12 @@ struct Progress {
   long start_region = 0;  // transitions so far that begin in the start region
 };
 
-/// The functions that the search receives from its caller.
+/// The functions that generate() receives from its caller.
 struct GenerationSeams {
   SolveBatch solve;
   ReplayBatch replay;
   TransitionSink store;  // receives every transition, in order
-  // `progress` is called and `cancelled` is polled after each layer or wave; both may be empty.
+  // Both may be empty. They are called for each layer of a search or wave of walks.
   std::function<void(const Progress&)> progress = {};
   std::function<bool()> cancelled = {};
 };

@@ -5,7 +5,7 @@
 
 namespace rtg::search {
 
-/// Source of the stored steps; branches are added to all of them.
+/// Methods that generate the stored steps. Branches are added to the steps of all of them.
 enum class Generator {
   kRrbs,     // trees of reverse steps of the reverse simulator
   kNaive,    // trees of kinematic reverse steps, NaiveReverse
@@ -19,20 +19,20 @@ inline constexpr std::array<std::string_view, 5> kGenerators{"rrbs", "naive", "f
 /// Parameters of the beam search and of the stored data set.
 struct SearchConfig {
   Generator generator = Generator::kRrbs;
-  int transitions = 60000;  // stored in all, branches included
-  int branches = 4;         // other headings simulated from the start of each stored step
-  int near_branches = 1;    // branches at most near_headings away from the step's own heading
-  int near_headings = 3;    // in either direction
-  int breadth = 100;        // B, nodes kept per layer
-  int verified_plans = 2;   // steps per place in the beam whose plans are carried out to the goal
-  double whole_plan_share = 0.05;  // share of steps stored with all later steps of their plans
+  int transitions = 60000;         // stored in all, branches included
+  int branches = 4;                // other headings simulated in the state of each stored step
+  int near_branches = 1;           // how many of them lie near the heading of the step
+  int near_headings = 3;           // largest distance at which a branch is near, in headings
+  int breadth = 100;               // B, nodes kept per layer
+  int verified_plans = 2;          // plans simulated per layer, as a multiple of breadth
+  double whole_plan_share = 0.05;  // share of plans stored whole; of the rest, the first step
   int depth = 40;                  // D, layers per tree at most
   double contact_quota = 0.4;   // share of the beam reserved for nodes whose step moved an object
-  double gap_tolerance = 0.25;  // largest miss of a body in a step that is kept [m]
-  int predecessors_per_solve = 2;  // predecessors replayed per solve, the best ones
+  double gap_tolerance = 0.25;  // largest replay error of a body in a step that is used [m]
+  int predecessors_per_solve = 2;  // predecessors replayed per node and action, the best ones
   int free_moves = 6;              // steps that move no object, replayed per node, the best ones
-  int nodes_per_layout = 18;       // most nodes of a beam that differ in the robot only
-  int root_draws = 4;              // goal states drawn per root kept
+  int nodes_per_layout = 18;       // most nodes of a beam that differ only in the robot's position
+  int root_draws = 4;              // goal states drawn per root of a tree
   int patience = 4;                // consecutive layers without a better node that end a tree
   bool randomise = false;          // starts are jittered by up to task.randomisation
 
@@ -47,7 +47,7 @@ struct SearchConfig {
     v.integer("verified_plans", verified_plans, 1, 1000,
               "plans carried out to the goal per place in the beam");
     v.number("whole_plan_share", whole_plan_share, 0.0, 1.0,
-             "share of steps stored with all that follows them");
+             "share of successful plans stored whole");
     v.integer("depth", depth, 1, 1000, "layers per tree at most");
     v.number("contact_quota", contact_quota, 0.0, 1.0, "share of the beam that moved an object");
     v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest miss of a body kept [m]");

@@ -9,19 +9,19 @@
 
 namespace rtg::search {
 
-/// Counts of a run's reverse solves and replays, and of their failures. A candidate that the search
-/// merely chooses not to replay or not to expand does not count as a failure.
+/// Counts of a run's reverse solves, its replays, and their failures. A candidate that the search
+/// does not select is not a failure.
 struct SearchStats {
   long candidates = 0;                                      // reverse jobs answered
   std::array<long, reverse::kSolveStatusCount> statuses{};  // of them, by SolveStatus
   std::vector<int> iterations;                              // of converged solves
   std::vector<int> pushing_iterations;  // of converged solves that moved an object
-  long illegal_starts = 0;   // starts of converged solves with overlaps or outside the arena
-  long undrawn_goals = 0;    // failed draws of a goal state
-  long unsettled_goals = 0;  // drawn goals that did not come to rest as legal goal states
-  long replays = 0;          // requests to the simulator, kSettle included
-  long rejected_pushes = 0;  // replays that the simulator could not finish
-  std::vector<float> gaps;   // replay gaps of replayed candidates [m]
+  long illegal_starts = 0;              // solved starts that are no legal_state()
+  long undrawn_goals = 0;               // failed draws of a goal state
+  long unsettled_goals = 0;             // drawn goals that are no legal goal states once at rest
+  long replays = 0;                     // requests to the simulator, kSettle included
+  long rejected_pushes = 0;             // replays that the simulator could not finish
+  std::vector<float> gaps;              // replay gaps of replayed candidates [m]
   double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
 
   void count(const reverse::ReverseResult& answer, bool moved_object) {
@@ -41,8 +41,7 @@ struct SearchStats {
   }
 };
 
-/// Returns a copy of `replay` that also counts all its results in `stats`, which must outlive the
-/// copy.
+/// Returns a copy of `replay` that also counts its results in `stats`. `stats` must outlive it.
 inline ReplayBatch counted(ReplayBatch replay, SearchStats& stats) {
   return [replay = std::move(replay), &stats](std::span<const ReplayJob> jobs) {
     std::vector<ReplayResult> results = replay(jobs);

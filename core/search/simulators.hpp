@@ -8,16 +8,16 @@
 
 namespace rtg::search {
 
-/// Returns the reverse simulator for `generator`: NaiveReverse for kNaive, otherwise
-/// ReverseSimulator. It is pure and safe to call from several threads at once.
+/// Returns the reverse simulator of `generator`: NaiveReverse for kNaive, else ReverseSimulator. It
+/// is pure and safe to call from several threads at once.
 SolveBatch reverse_solver(const tasks::Task& task, const PhysicsConfig& physics,
                           const reverse::ReverseConfig& reverse, Generator generator);
 
-/// Returns the simulator of the true dynamics, Box2D; it also answers kSettle.
+/// Returns the simulator of the true dynamics, Box2D. It also answers jobs with action kSettle.
 ReplayOne forward_replay(const tasks::Task& task, const PhysicsConfig& physics);
 
-/// Returns seams that run all simulators on `threads` threads of this process. The caller sets
-/// store, progress and cancelled.
+/// Returns seams whose `solve` and `replay` use `threads` threads of this process. The caller sets
+/// `store`, `progress` and `cancelled`.
 GenerationSeams in_process_seams(SolveBatch solve, ReplayOne replay, int threads);
 
 }  // namespace rtg::search

@@ -11,19 +11,19 @@ namespace rtg::search {
 namespace {
 
 constexpr double kWalk = 2.0;      // approximate pushes to get from one object to the next
-constexpr double kInPlace = 0.4;   // an object this near to its place needs no pull [m]
-constexpr double kPullCone = 0.5;  // largest angle between the robot and the pull, seen from the
-                                   // object [rad]
+constexpr double kInPlace = 0.4;   // largest distance of an object in place from its place [m]
+constexpr double kPullCone = 0.5;  // largest angle at the object between robot and pull [rad]
 constexpr double kReach = 0.15;    // largest gap over which the robot can pull an object [m]
 constexpr double kTouching = 0.8;  // approximate distance of touching bodies / sum of their radii
 
-/// Returns the distance of the centres beyond which the robot cannot pull `body` [m].
+/// Returns the largest distance between the centres at which the robot can pull `body` [m].
 double farthest_pull(const tasks::Task& task, std::size_t body) {
   return bounding_radius(task.scene.bodies[0].shape) +
          bounding_radius(task.scene.bodies[body].shape) + kReach;
 }
 
-/// Returns whether a robot at `robot` touches an object on the side to which `way` points.
+/// Returns whether the robot at pose `robot` touches `body` at pose `object` on the side to which
+/// `way` points.
 bool can_pull(const tasks::Task& task, const Pose& robot, const Pose& object, std::size_t body,
               const Vector2d& way) {
   const Polygon& hand = task.scene.bodies[0].shape;
@@ -36,8 +36,9 @@ bool can_pull(const tasks::Task& task, const Pose& robot, const Pose& object, st
   return gap >= 0.0 && gap <= kReach;
 }
 
-/// Estimates the number of pushes until the robot can pull an object along `way`: 0, 1, or at least
-/// 2, as two pushes cover any distance of up to two strides.
+/// Estimates the number of pushes until the robot can pull `body` along `way`. Returns 0, 1, or the
+/// distance in strides. The last is at least 2, because two pushes reach any distance of up to two
+/// strides.
 double walk(const tasks::Task& task, const Poses& poses, std::size_t body, const Vector2d& way) {
   const Pose& robot = poses[0];
   const Pose& object = poses[body];
@@ -54,16 +55,16 @@ double walk(const tasks::Task& task, const Poses& poses, std::size_t body, const
   return std::max(2.0, (robot.position() - spot).norm() / task.push.stride);
 }
 
-/// Returns whether an object is in place. A body with a joint must have the right angle as well,
-/// since a pin can hold its centre in place at any angle.
+/// Returns whether object `o` is in place. With a joint the angle counts, too, because a pin can
+/// hold the centre in place at any angle.
 bool in_place(const StateMetric& metric, const StateMetric::Object& o, const Poses& poses,
               const Poses& target) {
   return (o.jointed ? metric.distance(o, poses, target)
                     : (poses[o.body].position() - target[o.body].position()).norm()) <= kInPlace;
 }
 
-/// Estimates the number of pushes until the robot can pull the next object that is out of place or,
-/// if all are in place, until the robot is in its own place.
+/// Estimates the number of pushes until the robot can pull an object that is not in place. If all
+/// are in place, estimates the number until the robot is in its own place.
 double next_walk(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
                  const Poses& target) {
   double best = std::numeric_limits<double>::infinity();

@@ -9,8 +9,8 @@
 namespace rtg::search {
 namespace {
 
-constexpr double kRobotCell = 0.8;    // [m]
-constexpr double kObjectCell = 0.4;   // [m], [rad]
+constexpr double kRobotCell = 0.8;    // side of a cell [m]
+constexpr double kObjectCell = 0.4;   // side of a cell [m], [rad]
 constexpr double kAngleRadius = 0.5;  // r [m], about the radius of gyration of a 1.2 m box
 
 bool maps_onto_itself(const Polygon& shape, std::size_t shift, double tolerance) {

@@ -8,15 +8,16 @@
 
 namespace rtg::search {
 
-/// Returns the largest k such that turning the shape about its origin by 2π/k maps it onto itself.
+/// Returns the largest k such that turning `shape` about its origin by 2π/k maps it onto itself.
 int symmetry_order(const Polygon& shape);
 
-/// Returns a - b modulo the period 2π/order, in [-π/order, π/order] [rad].
+/// Returns a - b [rad] modulo 2π/order, in [-π/order, π/order].
 double angle_difference(double a, double b, int order);
 
-/// Compares states of a scene modulo the symmetry of each object (order 1 with a joint), so that
-/// poses that look the same count as equal. The robot's heading does not count, as every push holds
-/// it; nor do fixed bodies.
+/// Distances between states, and a grid that groups similar states. Poses of an object that look
+/// the same are equal here: angles count modulo the symmetry of its shape. An object with a joint
+/// has symmetry order 1. The robot's angle is ignored, because no push changes it. So are fixed
+/// bodies.
 class StateMetric {
  public:
   explicit StateMetric(const Scene& scene);
@@ -25,22 +26,21 @@ class StateMetric {
   struct Object {
     std::size_t body;
     bool jointed;
-    int order;
+    int order;  // symmetry_order(); 1 with a joint
   };
   std::span<const Object> objects() const { return objects_; }
 
-  /// Returns the distance between an object's positions plus r · its angle difference [m].
+  /// Returns |x_a - x_b| + r|θ_a - θ_b| of `object` [m], with r = 0.5 m.
   double distance(const Object& object, const Poses& a, const Poses& b) const;
 
   /// Returns the sum of distance() over all objects.
   double layout_distance(const Poses& a, const Poses& b) const;
 
-  /// Returns the key of the cell in which a state lies. A cell measures 0.8 m in the robot's x and
-  /// y, 0.4 m in an object's x and y, and about 0.4 rad in an object's angle (a whole number of
-  /// cells per period).
+  /// Returns the key of the grid cell of `poses`. A cell measures 0.8 m in the robot's x and y. It
+  /// measures 0.4 m in each object's x and y, and about 0.4 rad in each object's angle.
   std::uint64_t cell(const Poses& poses) const;
 
-  /// Returns the key of the cell without the robot's coordinates.
+  /// Returns the key of the grid cell of the objects alone, without the robot.
   std::uint64_t layout_cell(const Poses& poses) const;
 
  private:

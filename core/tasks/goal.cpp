@@ -5,9 +5,9 @@
 namespace rtg::tasks {
 namespace {
 
-/// Calls visit(holds) once per atom of the term. There is one atom per body (kEvery) or joint
-/// (kJoint) to which the term applies, or a single atom (kCentroid). Allocates no memory, as
-/// searches test goals very often.
+/// Calls visit(holds) for each single condition of `term`: one per body (kEvery), one per joint
+/// (kJoint), or one for the mean (kCentroid). `holds` is true if the point or angle lies in the
+/// shrunk region. Allocates no memory, as searches test goals very often.
 template <class Visit>
 void for_each_atom(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten,
                    Visit visit) {

@@ -7,8 +7,8 @@
 
 namespace rtg::tasks {
 
-/// A condition on a state; a goal is the conjunction of its terms. A term holds if its subject lies
-/// in its region. The subjects are:
+/// A condition on a state: the subject of the term must lie in its region. A goal is a list of
+/// terms, all of which must hold. The subjects are:
 ///
 ///   kEvery     the centre of every body of the kind ("*": of every movable body but the robot)
 ///   kCentroid  the mean of these centres
@@ -16,7 +16,7 @@ namespace rtg::tasks {
 struct GoalTerm {
   enum class Subject { kEvery, kCentroid, kJoint };
   enum class Region { kDisc, kHalfPlane, kAngles };
-  std::string kind = "*";  // or the name of a joint's child
+  std::string kind = "*";  // kind of body; for kJoint, name of the joint's child
   Region region = Region::kDisc;
   Vector2d centre = Vector2d::Zero();   // kDisc: |x - centre| ≤ radius
   double radius = 0.0;                  // [m]
@@ -28,18 +28,19 @@ struct GoalTerm {
   bool operator==(const GoalTerm&) const = default;
 };
 
-/// Returns whether `term` applies to the centre of `body`, alone (kEvery) or as a part of the mean
-/// (kCentroid). Returns false for kJoint and for the robot.
+/// Returns whether `term` is about the position of `body`, alone (kEvery) or in a mean (kCentroid).
+/// Always false for the robot.
 bool concerns(const GoalTerm& term, const Scene& scene, std::size_t body);
 /// Returns whether `term` applies to the angle of `joint`.
 bool concerns(const GoalTerm& term, const Scene& scene, const Joint& joint);
 
-/// Returns how far a point [m] or an angle [rad] lies outside the region of `term`: ≤ 0 inside.
+/// Returns how far a point [m] or an angle [rad] lies outside the region of `term`. The result is
+/// negative or zero inside.
 double outside(const GoalTerm& term, const Vector2d& x);
 double outside(const GoalTerm& term, double angle);
 
-/// Returns whether a point or an angle lies in the region of `term`, shrunk by `tighten` [m],
-/// [rad].
+/// Returns whether a point or an angle lies in the region of `term`, shrunk by `tighten` ([m] or
+/// [rad]).
 inline bool contains(const GoalTerm& term, const Vector2d& x, double tighten) {
   return outside(term, x) <= -tighten;
 }
@@ -47,10 +48,10 @@ inline bool contains(const GoalTerm& term, double angle, double tighten) {
   return outside(term, angle) <= -tighten;
 }
 
-/// Returns the mean of the centres to which `term` applies.
+/// Returns the mean centre of the bodies to which `term` applies.
 Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& poses);
 
-/// Returns whether `term` holds with its region shrunk by `tighten` [m], [rad].
+/// Returns whether `term` holds with its region shrunk by `tighten` ([m] or [rad]).
 bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten);
 
 }  // namespace rtg::tasks

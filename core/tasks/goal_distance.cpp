@@ -6,18 +6,20 @@
 namespace rtg::tasks {
 namespace {
 
-constexpr double kWay = 0.2;  // w
+constexpr double kWay = 0.2;  // w of goal_distance()
 
-/// Accumulates the parts of goal_distance().
+/// Accumulates the two parts of goal_distance(): the sum and the minimum.
 struct Distance {
   const Poses& poses;
   double violation = 0.0;
   double way = std::numeric_limits<double>::infinity();
 
-  /// Adds the violation of an atom that lies `off` outside its region (≤ 0: inside).
+  /// Adds the violation of a condition whose point or angle lies `off` outside its region (≤ 0:
+  /// inside).
   void violate(double off) { violation += std::max(0.0, off); }
 
-  /// Updates the least distance from the robot with `body`, if its atom lies outside its region.
+  /// Takes the distance from the robot to `body` into the minimum, if a condition on `body` does
+  /// not hold (`off` > 0).
   void reach(std::size_t body, double off) {
     if (off > 0.0) way = std::min(way, (poses[body].position() - poses[0].position()).norm());
   }

@@ -4,12 +4,13 @@
 
 namespace rtg::tasks {
 
-/// Estimates how far a state is from success [m], [rad]; 0 where the goal holds:
+/// Estimates how far a state is from success; 0 where the goal holds:
 ///
-///   Σ_atoms v + w · min_b |x_robot - x_b|,
+///   Σ_i v_i + w · min_b |x_robot - x_b|,   w = 0.2
 ///
-/// where v is how far the point or angle of an atom of the goal lies outside its region (0 inside),
-/// b runs over the bodies of the atoms that do not hold (both bodies of a joint), and w = 0.2.
+/// i runs over the single conditions of the goal, one per body, joint or mean centre. v_i ≥ 0 is
+/// how far the point [m] or angle [rad] of a condition lies outside its region. b runs over the
+/// bodies of conditions that do not hold. A joint contributes both of its bodies.
 double goal_distance(const Task& task, const Poses& poses);
 
 }  // namespace rtg::tasks

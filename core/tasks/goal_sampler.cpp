@@ -11,18 +11,19 @@ namespace rtg::tasks {
 namespace {
 
 constexpr int kAttempts = 1000;
-constexpr int kProposals = 50;         // per body and attempt
+constexpr int kProposals = 50;         // tries to place a body (or a tree of joints) in one attempt
 constexpr double kBesideShare = 0.5;   // share of proposals that put a body beside another one
-constexpr double kBesideGap = 0.1;     // largest gap to that other body [m]
-constexpr double kBehindShare = 0.75;  // share of robots that stand as after a push
-constexpr double kBehindGap = 0.03;    // largest gap to the pushed object, beyond kClearance [m]
-constexpr double kFreeRange = 3.0;     // largest offset of other robots from a body, x and y [m]
+constexpr double kBesideGap = 0.1;     // largest gap to that body [m]
+constexpr double kBehindShare = 0.75;  // probability that the robot stands as after a push
+constexpr double kBehindGap = 0.03;    // robot as after a push: largest gap above kClearance [m]
+constexpr double kFreeRange = 3.0;     // otherwise: largest offset from a body in x and in y [m]
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 Vector2d unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
-/// Moves x into the region of a term: to a uniform point of a disc, or behind the line of a
-/// half-plane, no farther from it than x was, so that points close to the line are likelier.
+/// Moves `x` into the region of `term`, shrunk by kGoalSpare. In a disc the result is uniform and
+/// does not depend on `x`. For a half-plane, `x` moves along the normal to a random distance behind
+/// the line, at most its old distance. So points close to the line are likelier.
 Vector2d moved_into(const GoalTerm& term, const Vector2d& x, Rng& rng) {
   if (term.region == GoalTerm::Region::kDisc) {
     const double r = (term.radius - kGoalSpare) * std::sqrt(rng.uniform(0.0, 1.0));
@@ -38,8 +39,7 @@ Vector2d point_in_arena(const Task& task, Rng& rng) {
   return {x, rng.uniform(-a, a)};
 }
 
-/// Returns whether x lies in every region that must contain the centre of `body`, with margin
-/// kGoalSpare.
+/// Returns whether `x` lies in all goal regions for the centre of `body`, shrunk by kGoalSpare.
 bool in_target(const Task& task, std::size_t body, const Vector2d& x) {
   return std::ranges::all_of(task.goal, [&](const GoalTerm& term) {
     return term.subject != GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||
@@ -47,8 +47,8 @@ bool in_target(const Task& task, std::size_t body, const Vector2d& x) {
   });
 }
 
-/// Draws a uniform point of the arena and moves it into the regions that must contain the centre of
-/// body `i`.
+/// Draws a uniform point of the arena and moves it into the goal regions for the centre of body
+/// `i`.
 Vector2d point_in_goal(const Task& task, std::size_t i, Rng& rng) {
   Vector2d x = point_in_arena(task, rng);
   for (const GoalTerm& term : task.goal)
@@ -63,8 +63,9 @@ double normal_angle(const Polygon& shape, std::size_t k) {
   return std::atan2(-edge.x(), edge.y());
 }
 
-/// Draws another body and, if it is placed, slides body `i` towards it from a random side: with
-/// equal odds face to face or at a random angle. Returns the pose at contact, or nothing.
+/// Proposes a pose of body `i` beside a random other body. Body `i` slides towards that body from a
+/// random side, face to face or at a random angle with equal odds. Returns nothing if that body is
+/// not placed yet or if slide() fails.
 std::optional<Pose> beside(const Task& task, const Layout& layout, std::size_t i, Rng& rng) {
   const auto j = static_cast<std::size_t>(1 + rng.below(static_cast<int>(task.scene.size()) - 1));
   if (j == i || !layout.placed[j]) return std::nullopt;
@@ -101,8 +102,8 @@ void move(Group& group, const Vector2d& by) {
   }
 }
 
-/// Returns whether the place of the group determines the mean centre of a term: the term applies to
-/// bodies of the group, and all other bodies to which it applies are placed.
+/// Returns whether the position of `group` decides if `term`, a kCentroid term, holds. It does if
+/// `term` applies to a body of the group and all its other bodies are placed already.
 bool decides(const Group& group, const GoalTerm& term, const Task& task, const Layout& layout) {
   const auto concerned = [&](std::size_t i) { return concerns(term, task.scene, i); };
   if (term.subject != GoalTerm::Subject::kCentroid) return false;
@@ -111,7 +112,8 @@ bool decides(const Group& group, const GoalTerm& term, const Task& task, const L
   return std::ranges::any_of(group.members, concerned);
 }
 
-/// Moves the group so that the mean centres that it determines (decides()) come into their regions.
+/// For each term that the group decides (decides()), moves the group so that the mean centre lies
+/// in the region.
 void aim_at_centroids(const Task& task, const Layout& layout, Group& group, Rng& rng) {
   for (const GoalTerm& term : task.goal) {
     if (!decides(group, term, task, layout)) continue;
@@ -125,8 +127,9 @@ void aim_at_centroids(const Task& task, const Layout& layout, Group& group, Rng&
   }
 }
 
-/// Adds the bodies of a group to the layout if all its movable bodies are in their regions and in
-/// the arena, clear of placed bodies and of each other. Returns whether it did.
+/// Adds the bodies of `group` to `layout` if their poses are legal; returns whether they are. Each
+/// movable body must lie in its goal regions and in the arena. It must be clear of the bodies
+/// placed before and of the rest of the group.
 bool stand(const Task& task, Layout& layout, const Group& group) {
   Layout trial = layout;
   for (const std::size_t i : group.members) {
@@ -159,7 +162,8 @@ bool place_object(const Task& task, Layout& layout, std::size_t i, Rng& rng) {
   return false;
 }
 
-/// Returns the range of the joint's angles within its limits and the goal; nothing if it is empty.
+/// Returns the least and the largest angle that the limits of `joint` and the goal allow [rad].
+/// Returns nothing if there is no such angle.
 std::optional<std::pair<double, double>> angles_in_goal(const Task& task, const Joint& joint) {
   double least = std::isfinite(joint.lower) ? joint.lower : -std::numbers::pi;
   double most = std::isfinite(joint.upper) ? joint.upper : std::numbers::pi;
@@ -172,8 +176,8 @@ std::optional<std::pair<double, double>> angles_in_goal(const Task& task, const 
   return std::pair{least, most};
 }
 
-/// Returns the member that is moved into its own region: the first that has one, otherwise the
-/// root.
+/// Returns the member by whose centre place_tree() positions the group: the first that has a goal
+/// region of its own, otherwise the root.
 std::size_t aimed_member(const Task& task, const Group& group) {
   for (const std::size_t i : group.members)
     for (const GoalTerm& term : task.goal)
@@ -181,8 +185,8 @@ std::size_t aimed_member(const Task& task, const Group& group) {
   return group.root;
 }
 
-/// Turns the children of joints to random angles. Returns false if a joint has no angle within its
-/// limits and the goal.
+/// Gives each joint of the group a random angle that its limits and the goal allow. Returns false
+/// if a joint has no such angle.
 bool turn(const Task& task, Group& group, Rng& rng) {
   for (const std::size_t n : root_first(task.scene)) {
     const Joint& joint = task.scene.joints[n];
@@ -197,9 +201,8 @@ bool turn(const Task& task, Group& group, Rng& rng) {
   return true;
 }
 
-/// Places bodies that joints connect as one group: turns them to random angles, then moves the
-/// group so that a member, or a mean centre of the goal, is in its region. A fixed root stays.
-/// Returns whether a proposal succeeded.
+/// Places a tree of jointed bodies: draws the joint angles, then moves the tree into its goal
+/// regions. A fixed root stays. Returns whether one of kProposals tries succeeded.
 bool place_tree(const Task& task, Layout& layout, const Group& tree, Rng& rng) {
   for (int k = 0; k < kProposals; ++k) {
     Group group = tree;
@@ -216,8 +219,8 @@ bool place_tree(const Task& task, Layout& layout, const Group& tree, Rng& rng) {
   return false;
 }
 
-/// Draws the robot's pose at the end of a push along a random heading d(a) towards a random body;
-/// nothing if the robot meets no body.
+/// Draws a pose of the robot as after a push: it slides along a random heading towards a random
+/// body until it meets a body. Returns nothing if it meets none.
 std::optional<Pose> robot_behind(const Task& task, const Layout& layout, Rng& rng) {
   const auto j = static_cast<std::size_t>(1 + rng.below(static_cast<int>(task.scene.size()) - 1));
   const Vector2d d = direction(rng.below(task.push.headings), task.push);
@@ -272,7 +275,7 @@ std::optional<Poses> attempt(const Task& task, Rng& rng) {
   for (std::size_t i = 1; i < task.scene.size(); ++i) layout.placed[i] = task.scene.bodies[i].fixed;
   if (!place_objects(task, layout, rng)) return std::nullopt;
   if (task.scene.size() > 1 && !place_robot(task, layout, rng)) return std::nullopt;
-  for (const GoalTerm& term : task.goal)  // kEvery holds since stand()
+  for (const GoalTerm& term : task.goal)  // stand() has checked the kEvery terms
     if (term.subject != GoalTerm::Subject::kEvery &&
         !holds(term, task.scene, layout.poses, kGoalSpare))
       return std::nullopt;

@@ -7,7 +7,7 @@
 namespace rtg::tasks {
 namespace {
 
-constexpr double kSlideError = 1e-3;  // [m]
+constexpr double kSlideError = 1e-3;  // largest error of a gap after slide() [m]
 
 /// Returns the least separation of body `i` at `pose` from all placed bodies, except those that a
 /// joint connects with it.
@@ -26,7 +26,7 @@ bool is_clear(const Task& task, const Layout& layout, std::size_t i, const Pose&
   return clearance(task, layout, i, pose) >= kClearance - kSlideError;
 }
 
-/// Moves in steps of the separating-axis gap, which never exceeds the distance, so that no step
+/// Each step is as long as the separating-axis gap. That gap never exceeds the distance, so no step
 /// passes through a body.
 std::optional<Pose> slide(const Task& task, const Layout& layout, std::size_t i,
                           const Approach& way) {

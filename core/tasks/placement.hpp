@@ -7,11 +7,11 @@
 
 namespace rtg::tasks {
 
-/// Distance that sample_goal() keeps between bodies [m]. For Box2D, bodies closer than 0.02 m are
+/// Distance that sample_goal() keeps between bodies [m]. Box2D treats bodies closer than 0.02 m as
 /// in contact.
 inline constexpr double kClearance = 0.0215;
 
-/// Bodies placed so far: `poses[i]` is valid if `placed[i]`.
+/// A state that is being sampled. `poses[i]` is valid once body i is placed, that is `placed[i]`.
 struct Layout {
   Poses poses;
   std::vector<bool> placed;
@@ -21,16 +21,16 @@ struct Layout {
 /// joint connects with it.
 bool is_clear(const Task& task, const Layout& layout, std::size_t i, const Pose& pose);
 
-/// A straight motion of a body towards the placed bodies.
+/// A straight motion of a body from `from` towards the placed bodies.
 struct Approach {
   Pose from;
-  Vector2d heading;
-  double gap = 0.0;    // left to the first placed body [m]
+  Vector2d heading;    // unit vector
+  double gap = 0.0;    // distance kept to the first placed body [m]
   double range = 0.0;  // greatest length of the motion [m]
 };
 
-/// Returns the pose of body `i` at the end of its approach, `gap` away from the first placed body;
-/// nothing if it meets none within `range` or begins closer than `gap`.
+/// Slides body `i` along `way` until it is `gap` away from a placed body, and returns its pose
+/// there. Returns nothing if it meets no body within `range` or starts closer than `gap` to one.
 std::optional<Pose> slide(const Task& task, const Layout& layout, std::size_t i,
                           const Approach& way);
 

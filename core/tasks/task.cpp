@@ -11,8 +11,8 @@
 namespace rtg::tasks {
 namespace {
 
-constexpr double kLengthScale = 8.0;  // of the observation [m]
-constexpr int kAttempts = 1000;
+constexpr double kLengthScale = 8.0;  // observations divide lengths by this [m]
+constexpr int kAttempts = 1000;       // draws of jittered_start()
 
 bool movable_object(const Task& task, std::size_t body) {
   return body > 0 && !task.scene.bodies[body].fixed;

@@ -10,19 +10,20 @@
 
 namespace rtg::tasks {
 
-/// A sparse-reward task: reward +1 and termination when the goal holds, nothing otherwise.
+/// A sparse-reward task: the reward is 1 and the episode terminates when the goal holds; otherwise
+/// the reward is 0.
 struct Task {
   std::string name;
   Scene scene;
   Poses start;                 // nominal start state
   std::vector<GoalTerm> goal;  // all must hold
   PushConfig push;
-  int horizon = 60;            // episode length, a truncation
+  int horizon = 60;            // pushes after which an episode is truncated
   double discount = 0.8;       // γ
-  double start_jitter = 0.1;   // evaluation starts: object positions ± this [m]
-  double randomisation = 0.0;  // domain randomisation: object positions ± this [m]
+  double start_jitter = 0.1;   // largest shift of objects in evaluation starts, x and y [m]
+  double randomisation = 0.0;  // the same for domain randomisation [m]
 
-  /// Visits the plain numbers alone.
+  /// Shows the numeric settings to `v`, with their bounds and help texts.
   template <class Visitor>
   void visit(Visitor& v) {
     v.integer("horizon", horizon, 1, 100000, "pushes of an episode at most");
@@ -34,42 +35,48 @@ struct Task {
   }
 };
 
-/// Distance that start states keep between bodies [m]. For Box2D, closer bodies are in contact.
+/// Distance that start states keep between bodies [m]. Box2D treats closer bodies as in contact.
 inline constexpr double kStartClearance = 0.02;
 
-/// Returns whether the goal holds in `poses`, with every region shrunk by `tighten` [m], [rad].
+/// Returns whether the goal holds in `poses`, with every region shrunk by `tighten` ([m] or [rad]).
 bool succeeded(const Task& task, const Poses& poses, double tighten = 0.0);
 
-/// Returns the learner's observation, float32, with lengths divided by 8 m: robot x, y; per movable
-/// object x, y, cos θ, sin θ, x - x_robot, y - y_robot; per joint sin, cos of its angle. The order
-/// of bodies is fixed and so identifies their classes.
+/// Returns the learner's observation [observation_size], with lengths divided by 8 m:
+///
+///   x, y of the robot,
+///   x, y, cos θ, sin θ, x - x_robot, y - y_robot of each movable object,
+///   sin φ, cos φ of each joint angle φ.
+///
+/// Bodies and joints are in the order of the scene, so an entry always belongs to the same object.
 std::vector<float> observation(const Task& task, const Poses& poses);
 int observation_size(const Task& task);
 
-/// Returns `start` with every movable object moved by ± amplitude in x and y (uniform). Bodies that
-/// joints connect move as one; those on a fixed body stay. Poses are to_single(). Returns nothing
-/// if bodies then come closer than kStartClearance, objects lie outside the arena, or the goal
-/// holds. With amplitude 0, returns `start` as it is.
+/// Returns `start` with the movable objects shifted at random, by at most `amplitude` [m] in x and
+/// in y (uniform). Jointed bodies are shifted as one; those on a fixed root stay. The poses are
+/// rounded by to_single(). Returns nothing if bodies are then closer than kStartClearance, an
+/// object is outside the arena, or the goal holds. With amplitude 0, returns `start` unchanged.
 std::optional<Poses> jittered(const Task& task, const Poses& start, double amplitude, Rng& rng);
 
-/// Returns the task's start, jittered(). Throws std::invalid_argument if none of 1000 draws is
-/// legal; see allows_jitter().
+/// Returns jittered() of the task's start. Throws std::invalid_argument if 1000 draws in a row are
+/// illegal; allows_jitter() tests for that in advance.
 Poses jittered_start(const Task& task, double amplitude, Rng& rng);
 
-/// Returns whether at least 5 of 250 draws of jittered() are legal. If one in 50 draws is legal,
-/// the probability that 1000 in a row are not is 2e-9.
+/// Returns whether jittered_start() will find a legal start: at least 5 of 250 test draws are
+/// legal. If 1 draw in 50 is legal, 1000 in a row are illegal with probability 2e-9.
 bool allows_jitter(const Task& task, double amplitude);
 
-/// Margin by which a state of sample_goal() satisfies the goal [m], [rad].
+/// Margin by which states of sample_goal() satisfy the goal [m], [rad].
 inline constexpr double kGoalSpare = 0.05;
 
-/// Draws a layout that satisfies the goal with margin kGoalSpare. Each body is placed somewhere in
-/// its region at a random angle, or beside a placed body, with a corner or a face towards it.
-/// Bodies that joints connect are placed as one. If a term applies to the mean of several bodies,
-/// the last of them is placed so that the mean lies in the region. The robot, heading as at the
-/// start, stands just behind a body as after a push (3 of 4) or near one but clear of all. Fixed
-/// bodies stay, the others are in the arena. Poses are to_single() and only nearly at rest, so they
-/// must be settled. Returns nothing if 1000 attempts fail.
+/// Draws a state that satisfies the goal with margin kGoalSpare. It places, in this order:
+///
+///   - each object in its goal region at a random angle, or beside a placed body. Jointed bodies
+///     move as one. The last body of a kCentroid term goes where the mean fits.
+///   - the robot, with its angle of `task.start`: just behind a body as after a push (3 of 4
+///     draws), or near a body but clear of all.
+///
+/// Fixed bodies stay; all others are in the arena. Poses are rounded by to_single(). The state is
+/// only nearly at rest, so callers must let it settle. Returns nothing if 1000 attempts fail.
 std::optional<Poses> sample_goal(const Task& task, Rng& rng);
 
 }  // namespace rtg::tasks

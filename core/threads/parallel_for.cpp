@@ -11,7 +11,7 @@
 namespace rtg::threads {
 namespace {
 
-/// The exception of the least index among those thrown. record() is thread-safe.
+/// Keeps the exception of the least index. record() is thread-safe.
 class FirstError {
  public:
   void record(std::size_t index, std::exception_ptr error) {
@@ -37,8 +37,8 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
   std::atomic<bool> stop{false};
   FirstError error;
   const auto run = [&] {
-    // Threads take the indices in order and process each index that they take. So when a call
-    // fails, all lesser indices are processed, too, and the least failing index is known.
+    // Threads take the indices in ascending order and finish each index that they take. So if index
+    // k fails, all lesser indices are processed, too. The least failing index is therefore known.
     while (!stop) {
       const std::size_t k = next++;
       if (k >= count) return;

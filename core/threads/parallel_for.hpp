@@ -5,9 +5,9 @@
 
 namespace rtg::threads {
 
-/// Calls work(0), ..., work(count-1), once each, on up to `threads` threads (≥ 1). If a call
-/// throws, indices that have not begun by then may be skipped. After all threads have stopped,
-/// parallel_for() rethrows the exception of the least index.
+/// Calls work(0), ..., work(count-1), once each, on up to `threads` threads (≥ 1). Rethrows the
+/// exception of the least index whose call threw, after all threads have stopped. Calls that have
+/// not begun when one throws may be skipped.
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
 
 }  // namespace rtg::threads

@@ -4,21 +4,20 @@
 
 namespace rtg {
 
-/// Least k_D in dynamic mode. With a smaller k_D, bodies coast for about a hundred sub-steps or
-/// more.
+/// Least damping k_D in dynamic mode. Below it, bodies coast for about a hundred sub-steps or more.
 inline constexpr double kLeastInertialDamping = 0.05;
 
 /// Constants of the step energy Ψ and of the Box2D world matched to it.
 struct PhysicsConfig {
-  double time_step = 0.05;  // Δt of a sub-step [s]
-  int sub_steps = 10;       // h, sub-steps of one push
-  double damping = 20.0;    // k_D; Box2D gets linearDamping = angularDamping = k_D/Δt
-  double barrier = 24.0;    // μ, weight of the contact barrier [J]
-  double range = 0.15;      // ĝ, gap beyond which there is no contact force [m]
-  double skin = 0.0;  // d₀, offset of the gap [m]; μ and ĝ set the gap of resting contacts
-  double sharpness = 50.0;      // α of the log-sum-exp signed distance [1/m]
-  double slip = 0.025;          // ε_u, displacement over which friction builds up [m]
-  double force_factor = 6.0;    // B_f in units of the robot's own drag at push speed
+  double time_step = 0.05;    // Δt of a sub-step [s]
+  int sub_steps = 10;         // h, sub-steps of one push
+  double damping = 20.0;      // k_D; Box2D gets linearDamping = angularDamping = k_D/Δt
+  double barrier = 24.0;      // μ, weight of the contact barrier [J]
+  double range = 0.15;        // ĝ, gap beyond which there is no contact force [m]
+  double skin = 0.0;          // d₀, gap = distance - d₀ [m]; resting gaps follow from μ and ĝ
+  double sharpness = 50.0;    // α of the log-sum-exp signed distance [1/m]
+  double slip = 0.025;        // ε_u, displacement over which friction builds up [m]
+  double force_factor = 6.0;  // B_f in units of the robot's own drag at push speed
   double torque_factor = 6.0;   // B_ω in units of that drag times the robot's radius
   bool plain_barrier = false;   // the paper's -μ log g, of infinite range
   bool inertia = false;         // dynamic mode: bodies keep their speed and coast after a push
@@ -30,8 +29,9 @@ struct PhysicsConfig {
   /// Returns the weight of inertia relative to damping: ι = 1/k_D in dynamic mode, else 0.
   double inertia_weight() const { return inertia ? 1.0 / damping : 0.0; }
 
-  /// Returns the number of sub-steps with the robot held after a push. In each, the speed of a free
-  /// body is divided by 1 + k_D; in all, by a hundred or more. 0 without inertia.
+  /// Returns the number of sub-steps for which the robot is held after a push, until bodies come to
+  /// rest. Each divides the speed of a free body by 1 + k_D, all together by 100 or more. 0 without
+  /// inertia.
   int settling_steps() const {
     return inertia ? static_cast<int>(std::ceil(std::log(100.0) / std::log1p(damping))) : 0;
   }

@@ -9,7 +9,7 @@
 
 namespace rtg {
 
-/// Convex polygon, vertices counter-clockwise [m].
+/// Convex polygon with counter-clockwise vertices [m].
 struct Polygon {
   std::vector<Vector2d> vertices;
 
@@ -29,8 +29,8 @@ struct Moments {
 
 Moments moments(const Polygon& shape);
 
-/// Returns why `vertices` is not a legal shape (too few or many, not finite, clockwise, not convex,
-/// degenerate), as a message that a user can act on; nothing if it is legal.
+/// Returns nothing if `vertices` is a legal shape, otherwise a message to the user that says why
+/// not. Reasons: too few or too many vertices, not finite, clockwise, not convex, degenerate.
 std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices);
 
 /// Returns the same shape with its centroid at the origin.
@@ -42,8 +42,8 @@ double bounding_radius(const Polygon& shape);
 Polygon box(double width, double height);
 Polygon regular_polygon(int sides, double circumradius);
 
-/// Returns the polygon with all edges moved outwards by `by` [m] and mitred corners: the points
-/// whose signed distance from each edge line is at most `by`. Sharp corners extend far.
+/// Returns the polygon with all edges moved outwards by `by` [m]. Corners are mitred: edges are
+/// extended until they meet, so that sharp corners extend far.
 Polygon offset_polygon(const Polygon& polygon, double by);
 
 }  // namespace rtg

@@ -7,7 +7,8 @@
 
 namespace rtg {
 
-/// Planar pose p = (x, y, θ) of a body: X(v, p) = R(θ) v + (x, y), with v in the centroid frame.
+/// Planar pose p = (x, y, θ) of a body. A point v in the body frame, whose origin is the centroid,
+/// has the world position X(v, p) = R(θ) v + (x, y).
 struct Pose {
   double x = 0.0;      // [m]
   double y = 0.0;      // [m]
@@ -31,13 +32,13 @@ inline Vector2d to_world(const Pose& p, const Vector2d& v) {
   return p.position() + rotate(p.theta, v);
 }
 
-/// Returns the body-frame position of a point x in the world frame: the inverse of to_world().
+/// Returns the body-frame position of a world point `x`: the inverse of to_world().
 inline Vector2d to_local(const Pose& p, const Vector2d& x) {
   return rotate(-p.theta, x - p.position());
 }
 
-/// Returns the pose rounded to single precision and widened to double again. Box2D computes in
-/// single precision, so that a state of such poses enters a simulator without rounding.
+/// Returns the pose rounded to single precision, in which Box2D computes. Such poses enter Box2D
+/// without further rounding.
 inline Pose to_single(const Pose& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.theta)};
 }

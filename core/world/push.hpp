@@ -4,8 +4,10 @@
 
 namespace rtg {
 
-/// The discrete action set: action a pushes straight along d(a) = (cos 2πa/n, sin 2πa/n) with the
-/// heading held.
+/// Parameters of the discrete action set. Action a pushes straight along the unit vector d(a),
+/// while the robot's angle is held:
+///
+///   d(a) = (cos 2πa/n, sin 2πa/n).
 struct PushConfig {
   int headings = 48;    // n
   double stride = 2.0;  // length of one push [m]
@@ -22,8 +24,8 @@ struct PushConfig {
 /// Returns d(a), the unit vector of action a ∈ {0, ..., headings-1}.
 Vector2d direction(int action, const PushConfig& config);
 
-/// Returns the target pose of the robot for `action` from pose `robot`: one stride along d(a), with
-/// each coordinate clipped to the arena and the heading held.
+/// Returns the robot's target pose for `action` from the pose `robot`: one stride along d(a), with
+/// the same angle. Each coordinate is clipped to the arena.
 Pose push_target(const Pose& robot, int action, const PushConfig& config);
 
 /// Returns whether a robot pose lies in the arena.

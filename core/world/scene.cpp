@@ -65,8 +65,8 @@ std::vector<std::size_t> root_first(const Scene& scene) {
 
 namespace {
 
-/// Returns for each body the farthest ancestor that binding joints alone connect it with, or the
-/// body itself. A joint binds if binds(parent) is true.
+/// Returns for each body its farthest ancestor along binding joints; the body itself if it has
+/// none. A joint is binding if binds(parent) is true.
 template <class Binds>
 std::vector<std::size_t> first_of(const Scene& scene, Binds binds) {
   std::vector<std::size_t> first(scene.size());

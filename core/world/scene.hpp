@@ -34,7 +34,7 @@ struct Joint {
 };
 
 /// The bodies of a task and their joints. bodies[0] is the robot, which has no joint. The joints
-/// connect the other bodies to trees: no body is the child of two joints, no child is fixed.
+/// connect the other bodies to trees. Hence no body is the child of two joints. No child is fixed.
 struct Scene {
   std::vector<Body> bodies;
   std::vector<Joint> joints = {};
@@ -54,27 +54,27 @@ double joint_gap(const Joint& joint, const Poses& poses);
 /// Returns θ_child - θ_parent [rad].
 double joint_angle(const Joint& joint, const Poses& poses);
 
-/// Returns the indices of all joints in an order from the roots of the trees to the leaves.
+/// Returns the indices of all joints, in an order from the roots of the trees to the leaves.
 std::vector<std::size_t> root_first(const Scene& scene);
 
-/// Returns for each body the root of its tree of joints. A body without a joint is its own root.
+/// Returns for each body the root of its tree of joints. A body without joints is its own root.
 std::vector<std::size_t> roots_of(const Scene& scene);
 
-/// Returns for each body the body that represents all bodies that move with it: its root, as in
-/// roots_of(), except that a child of a fixed body counts as a root.
+/// Returns for each body its root as in roots_of(), except that a child of a fixed body counts as a
+/// root. Bodies with the same result move together.
 std::vector<std::size_t> movers_of(const Scene& scene);
 
-/// Returns `poses` with all joints closed: each child is translated so that its pin meets that of
-/// the parent, and keeps its angle.
+/// Returns `poses` with all joints closed. Each child is translated until its pin meets that of the
+/// parent; angles stay.
 Poses with_closed_joints(const Scene& scene, Poses poses);
 
-/// m and J (about the centroid) of a body [kg], [kg·m²].
+/// Mass m [kg] and moment of inertia J about the centroid [kg·m²] of a body.
 struct Mass {
   double mass = 0.0, moment = 0.0;
 };
 Mass mass_of(const Body& body);
 
-/// Returns μ_f of a pair.
+/// Returns the friction coefficient μ_f of a pair of bodies.
 double pair_friction(const Body& a, const Body& b);
 
 }  // namespace rtg

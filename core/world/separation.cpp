@@ -6,11 +6,11 @@
 namespace rtg {
 namespace {
 
-/// Vertices as columns: up to 2 kMaxVertices, because the area that a shape sweeps has more
+/// Vertices as columns, at most 2 kMaxVertices. The area that a moving shape sweeps has more
 /// vertices than the shape.
 using Points = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 2 * kMaxVertices>;
 
-/// Returns the vertices of b in the frame of a.
+/// Returns the vertices of `b` in the frame of a body with the pose `pose_a`.
 Points local_points(const Pose& pose_a, const Polygon& b, const Pose& pose_b) {
   const Vector2d offset = to_local(pose_a, pose_b.position());
   const double c = std::cos(pose_b.theta - pose_a.theta), s = std::sin(pose_b.theta - pose_a.theta);
@@ -23,8 +23,8 @@ Points local_points(const Pose& pose_a, const Polygon& b, const Pose& pose_b) {
   return out;
 }
 
-/// Returns the largest gap between an edge of a and the vertices of b, or any gap of at least
-/// `enough`.
+/// Returns the largest gap between an edge line of `a` and all vertices of `b`. May stop early and
+/// return a smaller gap that is at least `enough`.
 double one_sided(const Polygon& a, const Pose& pose_a, const Polygon& b, const Pose& pose_b,
                  double enough = INFINITY) {
   const Points points = local_points(pose_a, b, pose_b);

@@ -8,9 +8,9 @@
 
 namespace rtg {
 
-/// A convex polygon as the intersection of its half planes n_k·x ≤ b_k, with n_k the outward unit
-/// normals, in the body frame; one polygon per lane. If the polygon of a lane has fewer than
-/// `count` edges, its unused planes are far from everything.
+/// A convex polygon as the intersection of half planes n_k·x ≤ b_k, in the body frame. n_k are the
+/// outward unit normals of the edges. Each lane (core/math/lanes.hpp) has its own polygon. If it
+/// has fewer than `count` edges, its unused planes are far from everything.
 template <class T>
 struct Planes {
   int count = 0;
@@ -21,7 +21,8 @@ using HalfPlanes = Planes<double>;
 
 HalfPlanes half_planes(const Polygon& shape);
 
-/// Sets `distances` to n_k·x - b_k of each plane. Returns the largest, which is at most d(x).
+/// Writes the distance n_k·x - b_k of `x` from each plane to `distances`. Returns the largest,
+/// which is a lower bound of d(x) (SignedDistance).
 template <class T>
 T plane_distances(const Planes<T>& planes, const Vec2<T>& x, T* distances) {
   T top = distances[0] = planes.normal[0].dot(x) - planes.offset[0];
@@ -32,19 +33,19 @@ T plane_distances(const Planes<T>& planes, const Vec2<T>& x, T* distances) {
   return top;
 }
 
-/// Smoothed signed distance of a point x to a convex polygon and its derivatives,
+/// Smoothed signed distance d of a point x to a convex polygon and its derivatives,
 ///
 ///   d(x) = 1/α ln Σ_k exp(α (n_k·x - b_k)),   w = softmax(α (n_k·x - b_k)),
 ///   ∇d = n̄ = Σ w n,   ∇²d = α (Σ w n nᵀ - n̄ n̄ᵀ),   ∇³d = α² Σ w (n - n̄)^⊗3,
 ///
-/// all in the polygon's frame. d is exact on faces, away from corners. It cuts right-angled corners
-/// by at most √2 ln 2/α.
+/// all in the polygon's frame. Far from corners d is exact at the edges. The contour d = 0 cuts
+/// right-angled corners by at most √2 ln 2/α.
 template <class T>
 class SignedDistance {
  public:
   static_assert(kMaxVertices <= static_cast<std::size_t>(kMostNumbers));
 
-  /// `distances` and `top` are those that plane_distances() sets and returns at x.
+  /// `distances` and `top` are what plane_distances() writes and returns for x. `alpha` is α.
   SignedDistance(const Planes<T>& planes, double alpha, const T* distances, const T& top)
       : planes_(planes), alpha_(alpha) {
     T exponent[kMaxVertices];
@@ -67,11 +68,11 @@ class SignedDistance {
     value = top + logarithm(sum) * T(1.0 / alpha);
   }
 
-  /// ∇²d [1/m].
+  /// Returns ∇²d [1/m].
   Mat2<T> hessian() const {
     return moments([](const T& weight, const Vec2<T>&) { return weight; }, alpha_);
   }
-  /// ∇³d contracted with `a`: the derivative of ∇²d along a, [1/m²] times the unit of a.
+  /// Returns ∇³d contracted with `a`, the derivative of ∇²d along a. Unit: [1/m²] times that of a.
   Mat2<T> third(const Vec2<T>& a) const {
     return moments([&a](const T& weight, const Vec2<T>& m) { return weight * m.dot(a); },
                    alpha_ * alpha_);
@@ -81,9 +82,9 @@ class SignedDistance {
   Vec2<T> gradient;  // ∇d, |∇d| ≤ 1
 
  private:
-  static constexpr double kNothing = -100.0;  // weights with a logarithm up to this one are zero
+  static constexpr double kNothing = -100.0;  // weights of at most e^-100 are set to zero
 
-  /// scale Σ weight(w, n - n̄) (n - n̄)(n - n̄)ᵀ.
+  /// Returns `scale` · Σ weight(w, n - n̄) (n - n̄)(n - n̄)ᵀ.
   template <class Weight>
   Mat2<T> moments(Weight&& weight, double scale) const {
     T xx(0.0), xy(0.0), yy(0.0);
@@ -104,7 +105,7 @@ class SignedDistance {
   T weight_[kMaxVertices];
 };
 
-/// Returns the SignedDistance of a point x to one polygon.
+/// Returns the smoothed signed distance of `x` to one polygon. `alpha` is α.
 inline SignedDistance<double> signed_distance(const HalfPlanes& planes, double alpha,
                                               const Vector2d& x) {
   double distances[kMaxVertices];

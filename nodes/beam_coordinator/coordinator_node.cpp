@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kWait = 50ms;        // longest wait for a message before timers are checked
-constexpr auto kBacklogWait = 5ms;  // the same while the stream has rows left to send
+constexpr auto kBacklogWait = 5ms;  // the same while rows of the stream wait to be sent
 constexpr int kFarewells = 5;       // messages with `leaving` set; a worker ends at the first one
 constexpr auto kFarewellWait = 40ms;
 

@@ -12,18 +12,18 @@
 
 namespace rtg::beam_coordinator {
 
-/// The coordinator process of a generation. It sends jobs to workers and server, serves the
-/// transition stream and publishes the progress.
+/// The coordinator process of a generation. It runs the search, sends jobs to workers and server,
+/// serves the transition stream and publishes the progress.
 ///
-/// The search runs on its own thread and blocks in its seams until the results are there. The bus
-/// is served meanwhile.
+/// The search has a thread of its own. It waits in its seams for the results of jobs, while run()
+/// serves the bus.
 class CoordinatorNode {
  public:
   struct Options {
     jobs::TaskShape shape;
     std::int64_t config = 0;        // hash of the configuration
-    long target = 0;                // transitions to be stored, for the display
-    std::function<bool()> stopped;  // polled; true asks the node to end as soon as possible
+    long target = 0;                // number of transitions to store, for the display
+    std::function<bool()> stopped;  // polled; true: end as soon as possible
   };
 
   CoordinatorNode(bus::Bus& bus, Options options);
@@ -34,15 +34,15 @@ class CoordinatorNode {
 
   using Search = std::function<search::GenerationReport(const search::GenerationSeams&)>;
 
-  /// Runs `search` to its end and serves the bus meanwhile. Returns nothing if the node was
+  /// Runs `search` on its thread and serves the bus until it ends. Returns nothing if the node was
   /// stopped. Rethrows an exception of the search or of a handler.
   std::optional<search::GenerationReport> run(const Search& search);
 
-  /// Seals the stream and serves it until at least `consumers` consumers and all living ones have
-  /// all of it, or until the node is stopped.
+  /// Marks the transition stream as complete. Serves it until all living consumers, and at least
+  /// `consumers`, have all of it. Returns early if the node is stopped.
   void drain(int consumers);
 
-  /// Returns the number of units given up because every worker that held them was lost.
+  /// Returns the number of units given up because several workers that had them were lost.
   long given_up() const { return reverse_.state().given_up + replay_.state().given_up; }
 
  private:

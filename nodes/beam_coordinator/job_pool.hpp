@@ -23,9 +23,9 @@ struct PoolState {
   long resent = 0, reissued = 0, given_up = 0;
 };
 
-/// Has worker processes compute one kind of work. answers() serves as SolveBatch or ReplayBatch and
-/// hides ids, units, retries and order. The search calls answers() on its own thread; the thread
-/// that spins the bus calls tick().
+/// Has worker processes compute jobs of one kind, Service. answers() serves as SolveBatch or
+/// ReplayBatch. The pool hides ids, units, retries and the order of answers. The search calls
+/// answers() on its own thread; the thread that spins the bus calls tick().
 template <class Service>
 class JobPool {
  public:
@@ -40,8 +40,8 @@ class JobPool {
                                   [this](const ResultMessage& m) { on_result(m); });
   }
 
-  /// Returns the results in job order, even if workers die and messages are lost. Blocks until
-  /// every unit is answered or given up. Throws Interrupted once stop() has been called.
+  /// Returns the results of `jobs` in job order, even if workers die and messages are lost. Blocks
+  /// until every unit is answered or given up. Throws Interrupted once stop() has been called.
   std::vector<Result> answers(std::span<const Job> jobs) {
     std::unique_lock lock(mutex_);
     dispatcher_.submit(units_.deal(jobs, shape_, config_));
@@ -54,7 +54,7 @@ class JobPool {
     return results;
   }
 
-  /// Hands out again the units of lost workers and those whose messages were lost.
+  /// Sends the units that are due, for example again after the loss of a worker or a message.
   void tick() {
     const std::scoped_lock lock(mutex_);
     send_due();

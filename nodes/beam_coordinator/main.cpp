@@ -1,8 +1,8 @@
 // rtg_beam_coordinator CONFIG.yaml RUN FOLDER [CONSUMERS]
 //
-// Generates the transitions of the run named RUN with the workers and the server that it finds on
-// the bus, and writes FOLDER/generation.json. Ends when at least CONSUMERS consumers (default 1) of
-// the transition stream have all of it. CONFIG.yaml is the resolved configuration of the run.
+// Generates the transitions of the run named RUN with the workers and the server on the bus. Writes
+// FOLDER/generation.json. Ends when all living consumers of the transition stream, and at least
+// CONSUMERS (default 1), have all of it. CONFIG.yaml is the resolved configuration of the run.
 
 #include <cstdio>
 

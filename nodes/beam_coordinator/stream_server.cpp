@@ -67,7 +67,7 @@ bool StreamServer::drained(int consumers, bus::Seconds now) const {
   return sealed_ && live_ == count() && complete >= consumers;
 }
 
-/// Merges `range` into the requested ranges, so that a repeated request costs nothing.
+/// Adds `range` to the requested ranges. Merges overlaps, so that a repeated request costs nothing.
 void StreamServer::ask(RowRange range) {
   auto it = asked_.upper_bound(range.begin);
   if (it != asked_.begin() && std::prev(it)->second >= range.begin) --it;
@@ -78,8 +78,8 @@ void StreamServer::ask(RowRange range) {
   asked_[range.begin] = range.end;
 }
 
-/// Returns the rows of the next message, requested rows first. Returns an empty range if there is
-/// nothing to send.
+/// Returns the rows of the next message; rows requested again come first. Returns an empty range if
+/// there is nothing to send.
 RowRange StreamServer::next(bus::Seconds now) {
   if (!asked_.empty()) {
     const auto [begin, end] = *asked_.begin();
@@ -94,7 +94,7 @@ RowRange StreamServer::next(bus::Seconds now) {
   return range;
 }
 
-/// Returns the first new row that may not be sent yet.
+/// Returns the first row that may not be sent yet, by the credit of the living consumers.
 std::int64_t StreamServer::live_limit(bus::Seconds now) const {
   std::int64_t limit = count();
   for (const auto& [id, consumer] : consumers_)

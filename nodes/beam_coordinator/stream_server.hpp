@@ -10,32 +10,33 @@
 
 namespace rtg::beam_coordinator {
 
-/// Half-open range of sequence numbers.
+/// Half-open range of rows. A row is one transition of the stream; rows are numbered from 0.
 struct RowRange {
   std::int64_t begin = 0, end = 0;
 
   bool operator==(const RowRange&) const = default;
 };
 
-/// The sending end of the transition stream, a sequence of rows without gaps that is kept in
-/// memory. Every consumer gets every row, however many messages the network loses. The class does
-/// no I/O: the caller passes in events and the time, and sends the row ranges that due() returns.
+/// The sending end of the transition stream, which keeps all rows in memory. Every consumer gets
+/// every row, however many messages the network loses. The class does no I/O: the caller passes in
+/// events and the time, and sends the row ranges that due() returns.
 ///
-/// New rows are sent once, at a rate that receive buffers can take, and not beyond the credit of
-/// any living consumer. After that a row is sent again only when a consumer requests it.
+/// New rows are sent once, no faster than receive buffers can take. They stay within the credit of
+/// every living consumer, the number of rows that it accepts. Rows are sent again only when a
+/// consumer requests them.
 class StreamServer {
  public:
   struct Limits {
     double rate = 10e6;                // [bytes/s]
-    double burst = 64e3;               // [bytes] at once; a default receive buffer holds 208 kB
+    double burst = 64e3;               // sent at once [bytes]; a default receive buffer has 208 kB
     std::int64_t chunk_bytes = 16000;  // rows of one message [bytes]
-    bus::Seconds silence = 2.0;        // a consumer silent for longer is no longer waited for
+    bus::Seconds silence = 2.0;        // nobody waits for a consumer silent for longer [s]
     std::int64_t max_nacked = 65536;   // rows that one acknowledgement may request
   };
   struct Ack {
     std::int64_t consumer = 0;
-    std::int64_t cursor = 0;
-    std::int64_t credit = 0;  // rows beyond the cursor; 0: the consumer has the sealed stream
+    std::int64_t cursor = 0;  // rows below it have been received
+    std::int64_t credit = 0;  // rows accepted beyond the cursor; 0: has the whole sealed stream
     std::span<const RowRange> missing;
   };
 
@@ -45,11 +46,11 @@ class StreamServer {
   void append(std::span<const search::Transition> rows);
   void seal() { sealed_ = true; }
 
-  /// Applies `ack`. Returns false and ignores `ack` if it contradicts the stream: negative numbers,
-  /// a cursor beyond the end.
+  /// Takes note of `ack`. Returns false and ignores it if it contradicts the stream: negative
+  /// numbers, a cursor beyond the end.
   bool on_ack(const Ack& ack, bus::Seconds now);
 
-  /// Returns the messages to send now, each a range of at most rows_per_message() rows.
+  /// Returns the row ranges to send now, one per message.
   std::vector<RowRange> due(bus::Seconds now);
 
   std::span<const search::Transition> rows(RowRange range) const;
@@ -60,11 +61,11 @@ class StreamServer {
   std::int64_t slowest_cursor() const;
   long resent() const { return resent_; }  // rows sent again on request
 
-  /// Returns whether due() will have more to send without new events.
+  /// Returns whether due() will return more ranges later without new events.
   bool backlog(bus::Seconds now) const { return !asked_.empty() || live_ < live_limit(now); }
 
-  /// Returns whether the whole sealed stream has been sent, and at least `consumers` consumers and
-  /// all living ones have confirmed that they have it.
+  /// Returns whether the stream is sealed and sent, and its consumers have all of it. All living
+  /// consumers must have confirmed that, and at least `consumers` of them in all.
   bool drained(int consumers, bus::Seconds now) const;
 
  private:

@@ -13,8 +13,8 @@
 
 namespace rtg::beam_coordinator {
 
-/// Publishes the transition stream on the bus. The search calls store() on its own thread; the
-/// thread that spins the bus calls all other functions.
+/// Publishes the transition stream on the bus, by StreamServer. The search calls store() on its own
+/// thread; the thread that spins the bus calls all other functions.
 class TransitionPublisher {
  public:
   TransitionPublisher(bus::Bus& bus, const jobs::TaskShape& shape);
@@ -22,10 +22,10 @@ class TransitionPublisher {
   void store(std::span<const search::Transition> rows);
   void seal();
 
-  /// Sends the rows that are due, and five times a second the length of the stream (RTG_TAIL).
+  /// Sends the rows that are due. Sends the length of the stream (RTG_TAIL) five times a second.
   void tick(bus::Seconds now);
 
-  /// Returns whether tick() will have more rows to send without new events.
+  /// Returns whether tick() will send more rows later without new events.
   bool backlog(bus::Seconds now) const;
 
   /// See StreamServer::drained().

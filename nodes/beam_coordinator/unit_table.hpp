@@ -12,16 +12,16 @@
 
 namespace rtg::beam_coordinator {
 
-/// Splits a batch of jobs into units and collects the results in job order. Refers to the jobs of
-/// the caller, which must outlive their use.
+/// Splits a batch of jobs into units, one message each, and collects the results in job order.
+/// Refers to the caller's jobs, which must outlive the use of the table.
 template <class Service>
 class UnitTable {
  public:
   using Job = typename Service::Job;
   using Result = typename Service::Result;
 
-  /// Splits a new batch into units. Returns the ids of the units in order; equal units have equal
-  /// ids.
+  /// Splits `jobs` into units and returns their ids in order. Equal units have equal ids. Drops the
+  /// units of the previous batch.
   std::vector<jobs::JobId> deal(std::span<const Job> jobs, const jobs::TaskShape& shape,
                                 std::int64_t config) {
     units_.clear();

@@ -20,8 +20,8 @@ namespace {
 constexpr int kQueueCapacity = 1000;  // messages; LCM silently drops more, by default beyond 30
 constexpr int kMaxPerSpin = 1000;     // messages; a flood of messages must not block the caller
 
-/// Returns the receive buffer size of the UDP socket bound to `port` [bytes], 0 if there is no such
-/// socket. Searches all file descriptors, because LCM does not expose the one that it uses.
+/// Returns the receive buffer size of the UDP socket bound to `port` [bytes]; 0 if there is none.
+/// Searches the file descriptors, because LCM does not expose its own.
 int receive_buffer(int port) {
   for (int fd = 3; fd < 256; ++fd) {
     sockaddr_in address{};

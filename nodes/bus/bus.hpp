@@ -17,15 +17,18 @@ inline constexpr std::int32_t kProtocol = 1;
 
 /// A connection to the message bus; the only C++ class that uses LCM.
 ///
-/// LCM loses, duplicates and reorders messages, and any process may send them. Handlers therefore
-/// receive only messages of the expected type, run and protocol with finite values. The Bus drops
-/// all other messages and counts them ("bus.malformed", "bus.foreign_run", ...). publish() may be
-/// called from any thread; all other functions must be called from one thread.
+/// LCM loses, duplicates and reorders messages, and any process may send them. The Bus therefore
+/// checks each message. Handlers receive only messages of the expected type, run and protocol whose
+/// numbers are finite. The Bus drops all others and counts them ("bus.malformed",
+/// "bus.foreign_run", ...).
+///
+/// publish() may be called from any thread, all other functions from one thread only.
 class Bus {
  public:
-  /// `url`: "udpm://GROUP:PORT[?ttl=N]" or "memq://" (one process, for tests). The default ttl of 0
-  /// keeps messages on this machine. Handlers receive only messages of the run named `run`. Throws
-  /// std::invalid_argument for an illegal URL, std::runtime_error if the network cannot be opened.
+  /// `url`: "udpm://GROUP:PORT[?ttl=N]", or "memq://" within one process, for tests. The default
+  /// ttl of 0 keeps messages on this machine. `run`: name of the run; messages of other runs are
+  /// dropped. Throws std::invalid_argument for an illegal URL, std::runtime_error if the network
+  /// cannot be opened.
   Bus(const std::string& url, const std::string& run);
   ~Bus();
   Bus(const Bus&) = delete;
@@ -50,8 +53,8 @@ class Bus {
     });
   }
 
-  /// Waits up to `timeout` for a message, then handles all messages that have arrived, at most
-  /// 1000. Returns the number of handled messages. Rethrows the first exception of a handler.
+  /// Waits up to `timeout` for a message. Then handles all messages that have arrived, at most
+  /// 1000, and returns their number. Rethrows the first exception of a handler.
   int spin(std::chrono::milliseconds timeout);
 
   /// Sends `bytes` unchanged; public for tests with malformed or foreign messages.

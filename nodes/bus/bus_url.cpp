@@ -15,7 +15,7 @@ bool take(std::string_view& text, std::string_view word) {
 }
 
 /// Removes a decimal number in [low, high] from the beginning of `text`. Returns whether `text`
-/// began with one. Rejects leading zeros, since inet_aton() would read the number as octal.
+/// began with one. Rejects leading zeros, because inet_aton() reads such numbers as octal.
 bool take_number(std::string_view& text, int low, int high) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

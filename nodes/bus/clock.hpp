@@ -13,7 +13,7 @@ inline Seconds monotonic_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Timer that is due() once every `interval` seconds, the first time at once.
+/// Timer that is due() every `interval` seconds, the first time at once.
 class Ticker {
  public:
   explicit Ticker(Seconds interval) : interval_(interval) {}
@@ -29,7 +29,7 @@ class Ticker {
   Seconds next_ = 0.0;
 };
 
-/// Returns a random 64-bit number that identifies, for example, one start of a process.
+/// Returns a random 64-bit number, for example as the identity of a process start.
 inline std::int64_t random_identity() {
   std::random_device device;
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(device()) << 32 | device());

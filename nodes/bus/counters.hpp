@@ -6,8 +6,8 @@
 
 namespace rtg::bus {
 
-/// Named event counters of one process, published in node_status_t, so that every dropped message
-/// leaves a trace. Thread-safe.
+/// Named event counters of one process, for example of dropped messages. NodeStatus publishes them.
+/// Thread-safe.
 class Counters {
  public:
   void add(const std::string& name, long n = 1) {

@@ -9,16 +9,17 @@
 
 namespace rtg::bus {
 
-/// Publishes the state and the counters of a process on channel RTG_STATUS, for people.
+/// Publishes the state and counters of a process on channel RTG_STATUS, for people to read.
 class NodeStatus {
  public:
   NodeStatus(Bus& bus, std::string node, int number)
       : bus_(bus), node_(std::move(node)), number_(number) {}
 
-  /// Returns whether publish() is due, which is twice a second.
+  /// Returns whether it is time to call publish(), twice a second.
   bool due(Seconds now) { return ticker_.due(now); }
 
-  /// Publishes `counts` in addition to the counters of the bus. `done`: see node_status_t.
+  /// Publishes `state`, the work done so far (`done`, see node_status_t), `counts` and the counters
+  /// of the bus.
   void publish(const std::string& state, std::int64_t done,
                const std::map<std::string, long>& counts = {});
 
@@ -29,7 +30,8 @@ class NodeStatus {
   Ticker ticker_{0.5};
 };
 
-/// Monitors the coordinator by its messages on channel RTG_PROGRESS; used by workers and server.
+/// Watches the coordinator by its messages on channel RTG_PROGRESS. Workers and the simulation
+/// server use it to know when to end.
 class CoordinatorWatch {
  public:
   static constexpr Seconds kSilence = 30.0;

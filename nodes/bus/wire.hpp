@@ -13,11 +13,11 @@
 
 namespace rtg::bus {
 
-/// Maximum size of an encoded message, without LCM's packet header [bytes]. LCM fragments messages
+/// Maximum size of an encoded message without LCM's packet header [bytes]. LCM would split messages
 /// beyond 65,499 bytes, and its reassembly loses and corrupts messages.
 inline constexpr std::size_t kMaxMessageBytes = 60000;
 
-/// Reasons to reject received bytes as a message of the expected type.
+/// Reasons to reject received bytes.
 enum class WireDefect { kTooLong, kWrongType, kMalformed, kNotFinite };
 
 /// Returns the name of the counter of `defect`.
@@ -26,8 +26,8 @@ std::string_view counter_name(WireDefect defect);
 namespace wire {
 
 /// Visitor that checks the layout of an encoded message without allocating memory. The generated
-/// decoder trusts every count that it reads, so a payload of 31 bytes could make it allocate
-/// gigabytes or abort.
+/// decoder trusts every array length that it reads. A forged message of 31 bytes could make it
+/// allocate gigabytes.
 class LayoutCheck {
  public:
   explicit LayoutCheck(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
@@ -52,7 +52,7 @@ class LayoutCheck {
  private:
   std::int32_t length();  // reads a big-endian count, 0 ... kMaxMessageBytes
   void skip(std::int32_t n, std::size_t size);
-  void skip_text();  // skips a length that includes the final NUL, then the bytes
+  void skip_text();  // skips the length, which counts the final NUL, and the bytes
 
   std::span<const std::uint8_t> rest_;
   bool ok_ = true;
@@ -75,8 +75,8 @@ struct FiniteCheck {
   void texts(std::vector<std::string>&, std::int32_t) {}
 };
 
-/// Visitor that checks whether the sizes of the vectors of an outgoing message equal its counts.
-/// The generated encoder reads past the end of a vector that is too short.
+/// Visitor that checks whether the arrays of an outgoing message have the announced lengths. The
+/// generated encoder reads past the end of an array that is too short.
 struct CountCheck {
   bool ok = true;
 
@@ -95,8 +95,8 @@ bool has_fingerprint(std::span<const std::uint8_t> bytes, std::int64_t fingerpri
 
 }  // namespace wire
 
-/// Returns the encoded message. Throws std::logic_error if the counts are inconsistent or the
-/// message is longer than kMaxMessageBytes.
+/// Returns the encoded message. Throws std::logic_error if an array does not have the announced
+/// length or the message exceeds kMaxMessageBytes.
 template <class Msg>
 std::vector<std::uint8_t> encode(Msg& msg) {
   wire::CountCheck consistent;
@@ -110,8 +110,8 @@ std::vector<std::uint8_t> encode(Msg& msg) {
   return bytes;
 }
 
-/// Decodes `bytes` into `msg`. Returns the defect if `bytes` are not a valid message of this type.
-/// Safe for arbitrary bytes.
+/// Decodes `bytes` into `msg`. Returns the defect if `bytes` is no valid message of this type, else
+/// nothing. Safe for arbitrary bytes.
 template <class Msg>
 [[nodiscard]] std::optional<WireDefect> decode(std::span<const std::uint8_t> bytes, Msg& msg) {
   if (bytes.size() > kMaxMessageBytes) return WireDefect::kTooLong;

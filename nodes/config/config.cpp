@@ -49,7 +49,7 @@ ConfigNode parse_root(const std::string& text, const std::string& name) {
   return root;
 }
 
-/// Replaces a section `task` that is a path by the section `task` of the file at that path.
+/// If the section `task` is a path, replaces it by the section `task` of the file at that path.
 void fetch_task(ConfigNode& root, const std::filesystem::path& folder) {
   for (ConfigEntry& entry : root.entries) {
     if (entry.key != "task" || entry.value.kind != Kind::kScalar) continue;
@@ -63,8 +63,8 @@ void fetch_task(ConfigNode& root, const std::filesystem::path& folder) {
   }
 }
 
-/// Removes the file's values of those keys in which the presets of `section` differ, because a
-/// preset on the command line takes precedence over them.
+/// Removes the file's values of the keys in which the presets of `section` differ. A preset on the
+/// command line takes precedence over these values.
 template <class Section, class Preset>
 void clear_for_preset(ConfigNode& root, const std::string& section, Section (*values)(Preset)) {
   const ConfigNode a = fields_of(values(Preset::kDefault)), b = fields_of(values(Preset::kPaper));
@@ -77,8 +77,8 @@ void clear_for_preset(ConfigNode& root, const std::string& section, Section (*va
   }
 }
 
-/// Removes the file's values of the keys that methods set, because a method on the command line
-/// takes precedence over them.
+/// Removes the file's values of all keys that methods set. A method on the command line takes
+/// precedence over these values.
 void clear_for_method(ConfigNode& root) {
   for (std::size_t k = 0; k < kMethods.size(); ++k)
     for (const MethodSetting& setting : settings_of(static_cast<Method>(k)))
@@ -98,7 +98,7 @@ void apply_overrides(ConfigNode& root, std::span<const std::string> overrides) {
   for (const std::string& setting : overrides) apply_override(root, setting);
 }
 
-/// Returns the mapping of section `name`; creates it if it is missing.
+/// Returns the section `name` of `root`. Creates an empty one with `origin` if it is missing.
 ConfigNode& section_of(ConfigNode& root, std::string_view name, const std::string& origin) {
   for (ConfigEntry& entry : root.entries)
     if (entry.key == name) return entry.value;
@@ -125,7 +125,7 @@ void apply_method(ConfigNode& root) {
   }
 }
 
-/// Reads a section whose field `preset` determines the values of the fields that are not given.
+/// Reads section `name`. Its field `preset` determines the values of the fields that are not given.
 template <class Section, class Preset>
 void read_preset_section(const ConfigNode& root, const std::string& name, Section (*values)(Preset),
                          Section& config) {
@@ -143,7 +143,8 @@ void check_physics(const ConfigNode& root, const PhysicsConfig& physics) {
                     "less than " + number_text(physics.range));
 }
 
-/// Throws ConfigError if dynamic mode (physics.inertia) is on and another field forbids it.
+/// Throws ConfigError if physics.inertia (dynamic mode) is true and the value of another field
+/// forbids it.
 void check_inertia(const ConfigNode& root, const Config& config) {
   if (!config.physics.inertia) return;
   const ConfigEntry *flag = find(root, "physics", "inertia"),
@@ -188,7 +189,7 @@ ConfigNode tree_of(const Config& config) {
   return root;
 }
 
-/// Throws ConfigError for a key at the root that belongs in a section, as `breadth` for
+/// Throws ConfigError for a key at the root that belongs in a section, for example `breadth` for
 /// `search.breadth`.
 void check_sections(const ConfigNode& root) {
   const ConfigNode known = tree_of({});
@@ -221,8 +222,8 @@ Config read_config(const ConfigNode& root) {
   return config;
 }
 
-/// Reads `file` with `overrides`. An error in several values at once may name a line of the file
-/// although an override causes it. The message then also names the override that causes it.
+/// Reads `file` with `overrides`. An override may make another value of the file illegal. The error
+/// then names the override as well as the line of the file.
 Config read_config(const ConfigNode& file, std::span<const std::string> overrides) {
   try {
     ConfigNode root = file;

@@ -25,28 +25,33 @@ struct Config {
   RunConfig run;
 };
 
-/// Reads and checks a configuration file. Only the section `task` is required: a mapping, or the
-/// path, relative to `file`, of another file that holds the section.
+/// Reads and checks a configuration file. Throws ConfigError if it is not legal. Only the section
+/// `task` is required. It is a mapping, or the path of another file with that section, relative to
+/// `file`.
 ///
-/// `overrides` have the form section.key=value. They take precedence over the file, later ones over
-/// earlier ones. A preset among them also takes precedence over the file's values of those keys in
-/// which presets differ, and a method over the file's values of the keys that methods set. The
-/// values of a method take precedence over those of a preset. Throws ConfigError.
+/// `overrides` have the form section.key=value. The value of a key is the first of these that
+/// exists:
+///
+///  1. the last override of the key;
+///  2. the value in the file, unless an override hides it. An override of run.method hides the keys
+///     that methods set. An override of a preset hides the keys in which the presets differ;
+///  3. the value that the method (run.method) sets;
+///  4. the value of the section's preset, or the default.
 Config load_config(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
-/// Reads and checks the text of a configuration file as load_config() does. `name` is the name of
-/// the file: messages contain it, and paths in the text are relative to its folder.
+/// Reads and checks the text of a configuration file as load_config() does. `name` is the path of
+/// the file: it appears in messages, and paths in the text are relative to its folder.
 Config parse_config(const std::string& text, const std::filesystem::path& name,
                     std::span<const std::string> overrides = {});
 
-/// Returns all values as YAML, with the legal values in comments. Reading the text gives the same
-/// configuration, and its canonical text is the same.
+/// Returns all values as YAML, with the legal values in comments. parse_config() reads the text
+/// back as an equal configuration with the same text.
 std::string canonical_yaml(const Config& config);
 
 /// Returns the same values as JSON, for Python.
 std::string config_json(const Config& config);
 
-/// Returns the hash of canonical_yaml(), which identifies the configuration in messages and run
+/// Returns the hash of canonical_yaml(). It identifies the configuration in messages and run
 /// folders.
 std::int64_t config_hash(const Config& config);
 

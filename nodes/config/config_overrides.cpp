@@ -23,7 +23,7 @@ ConfigNode& item_at(ConfigNode& list, const std::string& key, const std::string&
   return list.items[index];
 }
 
-/// Returns the value of `key` in `node`. Creates a missing key of a mapping; throws ConfigError for
+/// Returns the value of `key` in `node`. Creates a missing key of a mapping. Throws ConfigError for
 /// a missing entry of a list.
 ConfigNode& child(ConfigNode& node, const std::string& key, const std::string& flag,
                   const std::string& path) {

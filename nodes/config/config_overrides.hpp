@@ -6,9 +6,9 @@
 
 namespace rtg::config {
 
-/// Sets the value of `setting`, "KEY=VALUE" of a flag `--set`, in the tree. KEY is a dotted path;
-/// a list entry is selected by its number, counted from 0. Missing mappings and keys on the path
-/// are created; the readers of the sections then report unknown keys. Throws ConfigError.
+/// Applies a flag `--set KEY=VALUE` to the tree `root`; `setting` is "KEY=VALUE". KEY is a dotted
+/// path that names list entries by number, from 0. Creates missing mappings and keys; unknown keys
+/// are found when a section is read. Throws ConfigError for a `setting` that is not legal.
 void apply_override(ConfigNode& root, const std::string& setting);
 
 }  // namespace rtg::config

@@ -8,8 +8,8 @@ namespace rtg::config {
 
 struct ConfigEntry;
 
-/// A node of the tree of a configuration text: a mapping, list or scalar, with the place that it
-/// was read from. Mappings keep the order of their entries.
+/// A value in a configuration text, with the place where it was given: a mapping, a list or a
+/// scalar. Mappings keep the order of their entries.
 struct ConfigNode {
   enum class Kind { kNull, kScalar, kList, kMap };
   Kind kind = Kind::kNull;
@@ -24,35 +24,35 @@ struct ConfigEntry {
   std::string key;
   std::string origin;
   ConfigNode value;
-  std::string comment = {};  // printed behind or above the value
+  std::string comment = {};  // printed after the value, or above it if it is a block
 };
 
-/// Returns the entry of `map` with key `key`, or nullptr.
+/// Returns the entry of `map` with key `key`; nullptr if there is none.
 inline const ConfigEntry* find(const ConfigNode& map, std::string_view key) {
   for (const ConfigEntry& entry : map.entries)
     if (entry.key == key) return &entry;
   return nullptr;
 }
 
-/// Returns the entry with key `key` of section `section`, or nullptr.
+/// Returns the entry with key `key` of section `section`; nullptr if there is none.
 inline const ConfigEntry* find(const ConfigNode& root, std::string_view section,
                                std::string_view key) {
   const ConfigEntry* found = find(root, section);
   return found ? find(found->value, key) : nullptr;
 }
 
-/// These functions make a text (which YAML reads back as text), a number or flag, a list, and an
-/// empty mapping. Only map_node() sets an origin.
+/// Make a node: a text (which YAML reads back as text), a number or flag, a list, an empty mapping.
+/// Only map_node() sets an origin.
 ConfigNode text_node(std::string text);
 ConfigNode token_node(std::string token);
 ConfigNode list_node(std::vector<ConfigNode> items);
 ConfigNode map_node(std::string origin = {});
 
-/// Returns a description of `node` for messages: "'3x'", "a list", "a mapping", "nothing".
+/// Returns `node` in words for messages: "'3x'", "a list", "a mapping", "nothing".
 std::string in_words(const ConfigNode& node);
 
-/// Returns the tree as YAML text. Mappings with comments, lists of mappings and all mappings around
-/// them are in block style, the rest is in flow style.
+/// Returns the tree as YAML text. Block style is used for mappings with comments, lists of
+/// mappings, and mappings that contain one of these. The rest is in flow style.
 std::string yaml_text(const ConfigNode& root);
 
 /// Returns the tree as indented JSON text without the comments.

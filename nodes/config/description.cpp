@@ -99,7 +99,7 @@ std::string term_in_words(const tasks::GoalTerm& term) {
          '\n';
 }
 
-/// Largest random displacements of objects, in x and in y, in the starts of episodes [m].
+/// Largest random displacements of objects in x and y at the start of an episode [m].
 struct Amplitudes {
   double evaluation = 0.0, training = 0.0;
 };

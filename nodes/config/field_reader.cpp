@@ -43,8 +43,8 @@ std::string range_text(const char* what, const std::string& least, const std::st
   return std::string(what) + " from " + least + " to " + most;
 }
 
-/// Returns the number that an unquoted scalar holds, or nothing if the scalar holds any other
-/// character. Sets `error` if the number is out of range.
+/// Returns the number that an unquoted scalar holds. Returns nothing if the scalar is not a number.
+/// Sets `error` if the number is out of range.
 template <class Number>
 std::optional<Number> spelled(const ConfigNode& node, std::errc& error) {
   if (node.kind != Kind::kScalar || node.quoted) return std::nullopt;

@@ -11,13 +11,12 @@
 
 namespace rtg::config {
 
-/// Visitor that reads a mapping of a configuration into a struct. Fields whose key is given get the
-/// value of the mapping; the other fields keep their values. All functions throw ConfigError for
-/// illegal values.
+/// Visitor that reads a mapping of a configuration into the fields of a struct. Fields whose key is
+/// not given keep their values. All functions throw ConfigError for illegal values.
 class FieldReader {
  public:
-  /// `section`: the mapping. `path`: its dotted key, "" at the root. `keys`: all its legal keys;
-  /// other keys throw ConfigError.
+  /// `section`: the mapping. `path`: its dotted key, "" at the root. `keys`: all legal keys. Any
+  /// other key throws ConfigError.
   FieldReader(const ConfigNode& section, std::string path, std::span<const std::string> keys);
 
   void number(const char* key, double& value, double least, double most, const char* doc = "");
@@ -32,10 +31,12 @@ class FieldReader {
       value = static_cast<Enum>(index_of(*entry, names));
   }
 
-  /// Returns the entry of `key`, which must be given.
+  /// Returns the entry of `key`. Throws ConfigError that states `legal`, the legal values, if it is
+  /// missing.
   const ConfigEntry& required(const char* key, const std::string& legal) const;
 
-  /// Returns the numbers of the list `key`, which must have `count` entries.
+  /// Returns the list of numbers at `key`. Throws ConfigError that states `legal` if it does not
+  /// have `count` entries in [least, most].
   std::vector<double> numbers(const char* key, std::size_t count, double least, double most,
                               const std::string& legal) const;
 
@@ -49,14 +50,14 @@ class FieldReader {
   std::string path_;
 };
 
-/// Returns the number that a scalar holds. Throws ConfigError if the scalar holds anything else or
-/// the number is not in [least, most].
+/// Returns the number that the scalar `node` holds. `path`: its dotted key, for messages. Throws
+/// ConfigError if `node` is no number in [least, most].
 double read_number(const ConfigNode& node, const std::string& path, double least, double most);
 
-/// Returns the shortest text with a decimal point that reads back to `number`.
+/// Returns the shortest text with a decimal point that is read back as `number`.
 std::string number_text(double number);
 
-/// Returns the shortest text with a decimal point that reads back to `number` in single precision.
+/// Returns the shortest text with a decimal point that single precision reads back as `number`.
 std::string single_text(float number);
 
 /// Returns the words joined by commas: "a, b, c".

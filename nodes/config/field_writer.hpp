@@ -32,7 +32,7 @@ class FieldWriter {
   void add(const char* key, std::string value, bool quoted, std::string comment);
 };
 
-/// Returns a mapping of the fields that config.visit() lists.
+/// Returns the fields of `config`, as listed by config.visit(), as a mapping.
 template <class Section>
 ConfigNode fields_of(Section config) {
   FieldWriter writer;
@@ -40,8 +40,8 @@ ConfigNode fields_of(Section config) {
   return std::move(writer.section);
 }
 
-/// Reads the fields that config.visit() lists from `section`. Fields that are not given keep their
-/// values.
+/// Reads the fields of `config`, as listed by config.visit(), from `section`. `path`: dotted key of
+/// the section. Fields that are not given keep their values.
 template <class Section>
 void read_fields(const ConfigNode& section, const std::string& path, Section& config) {
   std::vector<std::string> keys;

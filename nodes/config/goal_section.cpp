@@ -41,7 +41,7 @@ void read_half_plane(const ConfigNode& section, const std::string& path, tasks::
   reader.number("offset", term.offset, -kMaxPlace, kMaxPlace);
 }
 
-/// Reads the subject of a term: kind (the default), centroid or joint.
+/// Reads what the term is about: key `kind` (the default), `centroid` or `joint`.
 void read_subject(const FieldReader& reader, const std::string& path, tasks::GoalTerm& term) {
   const ConfigNode& section = reader.section();
   const bool of_joint = find(section, "joint"), of_centroid = find(section, "centroid");

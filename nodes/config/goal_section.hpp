@@ -5,10 +5,11 @@
 
 namespace rtg::config {
 
-/// Returns the goal term that `section` describes. Throws ConfigError if it describes none.
+/// Converts `section`, whose dotted key is `path`, to a goal term. Throws ConfigError if it is not
+/// legal.
 tasks::GoalTerm read_term(const ConfigNode& section, const std::string& path);
 
-/// Returns the section from which read_term() reads `term`.
+/// Converts `term` to a section, from which read_term() reads it back.
 ConfigNode term_node(const tasks::GoalTerm& term);
 
 }  // namespace rtg::config

@@ -33,7 +33,7 @@ int read_body_name(const FieldReader& reader, const char* key, const Scene& scen
           legal);
 }
 
-/// Throws ConfigError if a child is fixed, the child of two joints, or its own ancestor.
+/// Throws ConfigError if a child is fixed, is the child of two joints, or is its own ancestor.
 void check_tree(const Scene& scene, const ConfigNode& section) {
   for (std::size_t k = 0; k < scene.joints.size(); ++k) {
     const int child = scene.joints[k].child;
@@ -55,7 +55,7 @@ void check_tree(const Scene& scene, const ConfigNode& section) {
   }
 }
 
-/// Throws ConfigError if a joint of the start state is open or has an angle beyond its limits.
+/// Throws ConfigError if a joint is open in the start state or has an angle beyond its limits.
 void check_start(const tasks::Task& task, const ConfigNode& section) {
   for (std::size_t k = 0; k < task.scene.joints.size(); ++k) {
     const Joint& joint = task.scene.joints[k];

@@ -5,16 +5,18 @@
 
 namespace rtg::config {
 
-/// Returns the joint between bodies of `scene` that `section` describes. Throws ConfigError if it
-/// describes none.
+/// Converts `section`, whose dotted key is `path`, to a joint between bodies of `scene`. Throws
+/// ConfigError if it is not legal.
 Joint read_joint(const ConfigNode& section, const std::string& path, const Scene& scene);
 
-/// Returns the section from which read_joint() reads `joint`.
+/// Converts `joint` to a section, from which read_joint() reads it back.
 ConfigNode joint_node(const Joint& joint, const Scene& scene);
 
-/// Moves every child of the start state to its pin, in single precision. Throws ConfigError if the
-/// joints do not form trees, a child is fixed, or a joint of the start state is open by more than
-/// 1 mm or has an angle beyond its limits. `section`: the section `task`.
+/// Moves the children of all joints in task.start so that the joints close in single precision.
+/// `section`: the section `task`, for messages. Throws ConfigError if
+///
+///  - the joints do not form trees, or a child is fixed;
+///  - a joint in task.start is open by more than 1 mm, or its angle is beyond its limits.
 void close_joints(tasks::Task& task, const ConfigNode& section);
 
 }  // namespace rtg::config

@@ -8,8 +8,8 @@ namespace {
 
 using Settings = std::vector<MethodSetting>;
 
-/// Adds the exploration settings of a learner whose offline data, if any, come from random walks:
-/// it has to find successes by its own exploration.
+/// Adds the exploration settings of a learner without data of a search. It has to find successes by
+/// its own exploration.
 Settings unguided(Settings more) {
   const Settings exploration{{"train", "epsilon_start", "1.0"},
                              {"train", "epsilon_end", "0.05"},
@@ -30,7 +30,7 @@ const std::array<Settings, kMethods.size()>& table() {
   static const std::array<Settings, kMethods.size()> kTable{
       online({{"train", "double_q", "false"}}),
       online({{"train", "double_q", "true"}}),
-      // Uniform: with the default share half of every batch would be data without any success.
+      // Uniform mixing: otherwise half of every batch would be data without any success.
       unguided({{"search", "generator", "random"}, {"train", "offline_share", "-1.0"}}),
       unguided({{"search", "generator", "scatter"}}),
       Settings{{"search", "generator", "naive"}},

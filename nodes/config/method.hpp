@@ -6,8 +6,8 @@
 
 namespace rtg::config {
 
-/// The methods of the comparison: learners that differ in the source of their experience and in
-/// little else.
+/// The methods that are compared. Nearly all differ only in where the learner's experience comes
+/// from.
 enum class Method {
   kDqn,
   kDdqn,
@@ -27,13 +27,13 @@ inline constexpr std::array<std::string_view, 13> kMethods{
     "dqn",         "ddqn", "ddqn_random", "ddqn_scatter", "ddqn_naive", "ddqn_forward", "ddqn_rtg",
     "ddqn_rtg_dr", "her",  "rcg",         "cql_rtg",      "bc_rtg",     "planner"};
 
-/// A value that a method sets in another section of the configuration.
+/// A value that a method gives to a key of another section of the configuration.
 struct MethodSetting {
   std::string_view section, key, value;
 };
 
-/// Returns the settings of `method`. Methods differ in nothing else: a loader uses these values for
-/// the keys that are not given.
+/// Returns the settings of `method`. They are all that distinguishes it from other methods. A
+/// loader uses them for keys that are not given.
 ///
 ///   dqn           no offline data, targets of one network  [Mnih et al. 2015]
 ///   ddqn          no offline data, Double-Q targets  [van Hasselt et al. 2016]
@@ -47,12 +47,12 @@ struct MethodSetting {
 ///   rcg           as ddqn, with starts grown back from goal states  [Florensa et al. 2017]
 ///   cql_rtg       the data of ddqn_rtg without interaction; a penalty lowers the values of
 ///                 headings that are not in the data  [Kumar et al. 2020]
-///   bc_rtg        the data of ddqn_rtg without interaction; imitates the actions of the kept steps
+///   bc_rtg        the data of ddqn_rtg without interaction; imitates the steps of the trees
 ///   planner       no learning: a forward beam search from each start of the evaluation
 ///
-/// Without offline data, and with data of random walks, ε starts at 1. Half of the exploring
-/// actions then seek contact, and the others are uniform over all headings instead of near the
-/// greedy one, because the greedy heading means nothing yet.
+/// Methods without offline data or with data of random walks explore more. Their ε starts at 1.
+/// Half of the exploring actions seek contact; the others are uniform, not near the greedy heading,
+/// which means nothing yet.
 std::span<const MethodSetting> settings_of(Method method);
 
 }  // namespace rtg::config

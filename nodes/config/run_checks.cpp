@@ -15,7 +15,7 @@ struct Field {
 };
 
 /// Returns the origin of the first of `fields` that a file or a flag gives, else that of the root.
-/// Defaults and the values of a method cannot be the cause: they are consistent with each other.
+/// Skips defaults and values of a method, which are consistent with each other.
 std::string place(const ConfigNode& root, std::initializer_list<Field> fields) {
   for (const auto& [section, key] : fields) {
     const ConfigEntry* value = find(root, section, key);

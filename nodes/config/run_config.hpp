@@ -6,9 +6,8 @@
 
 namespace rtg::config {
 
-/// Settings for the execution of a run. Only `seed`, and `method` through its settings, affect the
-/// generated transitions. Over LCM the result of learning also depends on the arrival times of the
-/// transitions.
+/// Settings for the execution of a run. Of these, only `seed` and the settings of `method` affect
+/// the generated transitions. Over LCM, learning also depends on when the transitions arrive.
 struct RunConfig {
   Method method = Method::kDdqnRtg;
   int seed = 1;

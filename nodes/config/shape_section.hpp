@@ -7,11 +7,12 @@
 
 namespace rtg::config {
 
-/// Returns the shape that `section` describes, with its centroid at the origin: {box: [w, h]},
-/// {regular: {sides: n, radius: r}} or {vertices: [[x, y], ...]}. Throws ConfigError.
+/// Converts `section`, whose dotted key is `path`, to a shape with its centroid at the origin.
+/// Legal are {box: [w, h]}, {regular: {sides: n, radius: r}} and {vertices: [[x, y], ...]}. Throws
+/// ConfigError for anything else.
 Polygon read_shape(const ConfigNode& section, const std::string& path);
 
-/// Returns the shortest section from which read_shape() reads `shape`.
+/// Converts `shape` to the shortest section from which read_shape() reads it back.
 ConfigNode shape_node(const Polygon& shape);
 
 }  // namespace rtg::config

@@ -21,8 +21,8 @@ double legal_amplitude(const tasks::Task& task, double amplitude) {
   return 0.0;
 }
 
-/// Returns the origin of the value. If the value is a default, the bodies are the cause, so their
-/// origin is returned.
+/// Returns the place where the value was given. For a default, returns that of the bodies, which
+/// then are the cause of the error.
 const std::string& origin_of(const ConfigNode& root, const char* section, const char* key) {
   if (const ConfigEntry* value = find(root, section, key)) return value->value.origin;
   return find(root, "task", "bodies")->value.origin;

@@ -5,8 +5,9 @@
 
 namespace rtg::config {
 
-/// Throws ConfigError, with the place in `root`, if too few random starts are legal for one of the
-/// jitter amplitudes of `config`; see allows_jitter().
+/// Checks the random displacements of objects in starts, such as task.start_jitter. Throws
+/// ConfigError if too few starts with such displacements are legal, see allows_jitter(). `root`:
+/// the configuration tree, for the place in the message.
 void check_jitters(const Config& config, const ConfigNode& root);
 
 }  // namespace rtg::config

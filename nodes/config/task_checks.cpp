@@ -88,8 +88,8 @@ bool concerns_something(const tasks::GoalTerm& term, const Scene& scene) {
                              [&](const Joint& joint) { return concerns(term, scene, joint); });
 }
 
-/// Throws ConfigError unless the limits of the joint allow an angle that lies kGoalSpare inside the
-/// range of the term.
+/// Throws ConfigError if the term concerns `joint` and cannot be met by it. The limits must allow
+/// an angle at least kGoalSpare inside the term's range. They must be less than a full turn apart.
 void check_angles(const tasks::GoalTerm& term, const Joint& joint, const tasks::Task& task,
                   const ConfigEntry& angles, const std::string& path) {
   if (!concerns(term, task.scene, joint)) return;
@@ -128,7 +128,7 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
         "regions with points of x and y from -" + arena + " to " + arena + " (task.push.arena)");
 }
 
-/// Returns whether the position of a fixed body meets all goal terms that concern the body.
+/// Returns whether fixed body `body` meets all goal terms that concern it.
 bool stands_right(const tasks::Task& task, std::size_t body) {
   return std::ranges::all_of(task.goal, [&](const tasks::GoalTerm& term) {
     return term.subject != tasks::GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||

@@ -52,7 +52,7 @@ const ConfigNode& list_at(const FieldReader& reader, const char* key, std::size_
   return list;
 }
 
-/// Returns a node with the shortest number that rounds to `single` in single precision.
+/// Returns a node with the shortest number that single precision reads back as `single`.
 ConfigNode single_node(double single) {
   return token_node(single_text(static_cast<float>(single)));
 }

@@ -5,12 +5,12 @@
 
 namespace rtg::config {
 
-/// Returns the task that the section `task` describes. Throws ConfigError if the task is not legal:
-/// shapes, names, overlaps, a goal that no layout meets. The vertices of a polygon may be given in
-/// any frame with the body's orientation; start positions are those of the centroids.
+/// Reads the section `task`. Throws ConfigError if the task is not legal: shapes, names, overlaps,
+/// a goal that no layout meets. Vertices of a polygon may have any origin. The origin of the body
+/// is its centroid, to which start positions refer.
 tasks::Task read_task(const ConfigNode& section);
 
-/// Returns the section from which read_task() reads `task`.
+/// Converts `task` to a section, from which read_task() reads it back.
 ConfigNode task_node(tasks::Task task);
 
 }  // namespace rtg::config

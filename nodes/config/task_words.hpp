@@ -7,7 +7,7 @@
 
 namespace rtg::config {
 
-// Helpers of all readers of a task's sections. The functions with a reader throw ConfigError.
+// Helpers for reading the sections of a task. Functions with a `reader` throw ConfigError.
 
 inline constexpr double kMaxPlace = 1000.0;  // largest coordinate, length [m], start angle [rad]
 inline constexpr double kMaxAngle = 100.0;   // largest bound of an angle range [rad]
@@ -23,8 +23,8 @@ Vector2d point_at(const FieldReader& reader, const char* key);
 /// Reads a range of angles [least, most] in rad.
 Vector2d angles_at(const FieldReader& reader, const char* key);
 
-/// Throws ConfigError about `key` of `entry`, which is an entry of a list of the task. The error
-/// names the place of the key if the key is given, else the place of the entry.
+/// Throws ConfigError about `key` of `entry`, a mapping in a list of the task. `path`: the dotted
+/// key of `entry`. The error names the place of the key, or of `entry` if the key is missing.
 [[noreturn]] void fail_at(const ConfigNode& entry, const std::string& path, const char* key,
                           const std::string& wrong, const std::string& legal);
 

@@ -11,7 +11,7 @@ inline constexpr std::array<std::string_view, 2> kTrainPresets{"default", "paper
 enum class Device { kAuto, kCpu, kCuda };
 inline constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"};
 
-/// kCloning imitates stored steps; kPlanning searches forwards from each start, without learning.
+/// kCloning imitates stored steps. kPlanning searches forwards from each start and does not learn.
 enum class Learner { kQLearning, kCloning, kPlanning };
 inline constexpr std::array<std::string_view, 3> kLearners{"q_learning", "cloning", "planning"};
 
@@ -19,51 +19,58 @@ inline constexpr std::array<std::string_view, 3> kLearners{"q_learning", "clonin
 /// within Table 2's interaction budget. A loader starts with train_preset(preset) and then reads
 /// the fields that are given.
 ///
-/// Reasons for some defaults: With a hard copy every 500 steps instead of target_rate, the success
-/// rate oscillates between 0.7 and 1. Without recent_share and clipped_double_q, the success rate
-/// of a policy of ArtManip fell from 0.95 to 0.01 for 20,000 interactions. On the same transitions
-/// (ArtManip, mean over 85,000 to 110,000 interactions) the policy of the target network has
-/// success rate 0.85, that of the averaged weights 0.97. The latter falls to 0.90 if the averaged
-/// weights also act in training, because their mistakes are then seen too late.
+/// Experiments behind some defaults:
+///
+///  - `target_rate`: with a hard copy every 500 steps instead, the success rate oscillates between
+///    0.7 and 1.
+///  - `recent_share`, `clipped_double_q`: without them, the success rate of a policy of ArtManip
+///    fell from 0.95 to 0.01 for 20,000 interactions.
+///  - `averaging_rate`: on the same transitions of ArtManip (mean over 85,000 to 110,000
+///    interactions), the policy of the averaged weights has success rate 0.97, that of the target
+///    network 0.85.
+///  - `target_acts`: if the averaged weights act in training, their own success rate falls to 0.90.
+///    Their mistakes are then seen too late.
 struct TrainConfig {
   TrainPreset preset = TrainPreset::kDefault;
   Learner learner = Learner::kQLearning;
-  int interactions = 350000;       // Table 2
-  bool interact = true;            // false: only generated transitions, same number of rounds
-  bool offline = true;             // learn from generated transitions, too
-  int learning_starts = 40000;     // transitions that must have arrived before learning starts
-  int buffer = 1500000;            // transitions in each of the two replay buffers, Table 2
-  int batch = 256;                 // half of Table 2's: a third less time per step, learns as fast
-  double learning_rate = 3e-4;     // of Adam
-  int train_frequency = 4;         // interactions per training round, Table 2
-  int gradient_steps = 1;          // per training round, Table 2
-  int target_sync = 1;             // gradient steps between updates of the target network
-  double target_rate = 0.005;      // τ: step of an update towards the online network; 1: a copy
-  bool target_acts = true;         // the target network acts in training, not the online network
+  int interactions = 350000;    // Table 2
+  bool interact = true;         // act in the environment; false: learn from generated data only
+  bool offline = true;          // generate transitions and learn from them
+  int learning_starts = 40000;  // offline transitions that must arrive before learning starts
+  int buffer = 1500000;         // transitions in each of the two replay buffers, Table 2
+  int batch = 256;              // transitions per gradient step; half of Table 2's, learns as fast
+  double learning_rate = 3e-4;  // of Adam
+  int train_frequency = 4;      // interactions per training round, Table 2
+  int gradient_steps = 1;       // per training round, Table 2
+  int target_sync = 1;          // gradient steps between updates of the target network
+  double target_rate = 0.005;   // τ of a target update towards the online network; 1: a copy
+  bool target_acts = true;      // the target network acts in training, not the online one
   double averaging_rate = 1.5e-4;  // least rate of the averaged weights per gradient step
   double discount = 0.95;          // γ; 0: the task's
-  double offline_share = 0.5;      // share of a batch; negative: uniform over all transitions
-  double recent_share = 0.5;       // share of a batch's online part from the 10,000 latest
+  double offline_share = 0.5;      // share of offline data in a batch; negative: uniform mixing
+  double recent_share = 0.5;       // share of the online data in a batch from the latest 10,000
   double cql_weight = 0.0;         // α of CQL, which lowers values of headings not in the data
   bool double_q = true;            // van Hasselt et al. 2016
-  bool clipped_double_q = true;    // use the smaller of both networks' values of the chosen action
+  bool clipped_double_q = true;    // Double-Q value: the smaller of the two networks'
   bool dueling = true;             // Wang et al. 2016
   bool layer_norm = true;          // after each hidden layer
   bool small_head = true;          // last layer starts near 0
   bool clip_targets = true;        // to [0, 1], the range of the values
-  bool value_bounds = true;        // raise targets to lower bounds proven by stored trajectories
+  bool value_bounds = true;        // raise targets to lower bounds that stored trajectories prove
   double epsilon_start = 0.3;      // ε at the first interaction
   double epsilon_end = 0.02;       // ε from epsilon_share of the interactions on
   double epsilon_share = 0.2;
-  double nearby_share = 0.5;   // exploring actions not towards objects: share near the greedy one
-  int nearby_headings = 2;     // largest distance from the greedy heading, in headings
-  double contact_share = 0.0;  // share of the exploring actions towards an object
-  bool leave_loops = true;     // also explore where the episode returns to a recent state
-  double start_jitter = 0.1;   // training starts: object positions ± this [m]
-  bool randomise = false;      // all starts: object positions ± task.randomisation
-  int hindsight = 0;           // k, goals of later states per online transition; 0: none
-  double curriculum = 0.0;     // share of episodes that start from the reverse curriculum
-  int eval_every = 5000;       // interactions
+  // Exploring actions: the share contact_share heads towards an object. Of the others, the share
+  // nearby_share lies near the greedy heading. The rest is uniform.
+  double nearby_share = 0.5;
+  int nearby_headings = 2;  // largest distance from the greedy heading, in headings
+  double contact_share = 0.0;
+  bool leave_loops = true;    // also explore where the episode returns to a recent state
+  double start_jitter = 0.1;  // training starts: object positions ± this [m]
+  bool randomise = false;     // all starts: object positions ± task.randomisation
+  int hindsight = 0;          // k, hindsight goals per online transition; 0: none
+  double curriculum = 0.0;    // share of episodes whose start a reverse curriculum draws
+  int eval_every = 5000;      // interactions
   int eval_episodes = 100;
   int checkpoint_every = 20000;   // interactions
   double stop_at_success = 0.95;  // end early at this success rate; 0: use all interactions

@@ -4,12 +4,13 @@
 
 namespace rtg::config {
 
-/// Returns the values of `preset`. `paper` is Table 2 with uniform mixing of offline and online
-/// transitions. Table 2 does not state how often the target network is copied and how exploration
-/// decays. Each copy propagates the value of success back by about one push, and plans have 20
-/// pushes. A copy every 250 gradient steps (1,000 interactions) gives 350 copies within the budget;
-/// the 2,500 gradient steps of Stable-Baselines3's default would give 35. Exploration decays as in
-/// the default of Stable-Baselines3.
+/// Returns the values of `preset`. `paper` is Table 2, with uniform mixing of offline and online
+/// transitions. Table 2 leaves two values open:
+///
+///  - The decay of exploration is the default of Stable-Baselines3.
+///  - The target network is copied every 250 gradient steps (1,000 interactions). One copy carries
+///    the value of success back by about one push, and plans have 20 pushes. This gives 350 copies
+///    within the budget. The default of Stable-Baselines3, 2,500 gradient steps, would give 35.
 inline TrainConfig train_preset(TrainPreset preset) {
   TrainConfig config;
   if (preset == TrainPreset::kDefault) return config;

@@ -20,7 +20,8 @@ constexpr std::size_t kMaxDepth = 16;
 
 using OriginOfLine = std::function<std::string(int)>;  // lines count from 0
 
-/// Builds the tree from the parser's events. Throws ConfigError for YAML that is not accepted.
+/// Builds a ConfigNode tree from the parser's events. Throws ConfigError for YAML that is not
+/// accepted.
 class TreeBuilder : public YAML::EventHandler {
  public:
   explicit TreeBuilder(OriginOfLine origin) : origin_(std::move(origin)) {}

@@ -6,12 +6,12 @@
 
 namespace rtg::config {
 
-/// Returns the tree of a YAML text; the origins are "file:line". Accepts one document in UTF-8 of
-/// mappings with scalar keys, lists and scalars. Anchors, aliases and tags are not accepted. Throws
-/// ConfigError with the line for wrong syntax, a duplicate key or YAML that is not accepted.
+/// Parses a YAML text into a tree with the origins "file:line". Accepts one document in UTF-8 of
+/// mappings with scalar keys, lists and scalars. Throws ConfigError with the line for wrong syntax,
+/// duplicate keys, anchors, aliases and tags.
 ConfigNode parse_yaml(const std::string& text, const std::string& file);
 
-/// Parses `text`, the value of the flag `flag`, into a tree; all its nodes have the origin `flag`.
+/// Parses `text`, the value of the flag `flag`, into a tree. All its nodes have the origin `flag`.
 ConfigNode parse_yaml_value(const std::string& text, const std::string& flag);
 
 }  // namespace rtg::config

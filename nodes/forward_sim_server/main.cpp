@@ -1,8 +1,8 @@
 // rtg_forward_sim_server CONFIG.yaml RUN
 //
-// Answers replay jobs of the run named RUN with the true dynamics, Box2D, until the coordinator
-// leaves. CONFIG.yaml is the resolved configuration of the run. The server answers as many units
-// concurrently as the run has reverse workers, because these are idle during replays.
+// Simulates the pushes of replay jobs in Box2D (the true dynamics) for the run named RUN, until the
+// coordinator leaves. CONFIG.yaml is the resolved configuration of the run. The server uses as many
+// threads as the run has reverse workers, because these are idle during replays.
 
 #include "core/search/batches_on_threads.hpp"
 #include "core/search/simulators.hpp"

@@ -75,7 +75,7 @@ void JobDispatcher::give_up_stuck_workers(bus::Seconds now) {
     const auto has_run_out = [&](JobId id) { return now - jobs_.at(id).leased > limits_.lease; };
     if (std::ranges::none_of(worker.leases, has_run_out)) continue;
     for (const JobId id : worker.leases) {
-      // A job that the worker does not hold never reached it, so the worker is not its victim.
+      // A job that the worker does not hold never reached it and cannot have stopped it.
       if (worker.held.contains(id) && has_run_out(id)) worker.stuck.insert(id);
       take_back(id, worker.held.contains(id));
     }
@@ -100,7 +100,7 @@ void JobDispatcher::resend_unheard(bus::Seconds now, std::vector<Send>& sends) {
   for (auto& [worker_id, worker] : workers_)
     for (const JobId id : worker.leases) {
       Job& job = jobs_.at(id);
-      // Only a beat sent well after the job should have arrived proves that it did not arrive.
+      // An earlier beat may have crossed the job on the way, so it proves nothing.
       if (worker.held.contains(id) || worker.beat - job.sent < limits_.resend) continue;
       job.sent = now;
       ++resent_;
@@ -108,8 +108,8 @@ void JobDispatcher::resend_unheard(bus::Seconds now, std::vector<Send>& sends) {
     }
 }
 
-/// Returns the number of jobs that `worker` can take now. `suspect`: lost workers held the job that
-/// is to be handed out. A suspect job must be the only job of its worker.
+/// Returns how many more jobs `worker` can take. `suspect`: lost workers had the job to be assigned
+/// next. A suspect job must be the only job of its worker.
 int JobDispatcher::room(const Worker& worker, bool suspect) const {
   if (!worker.stuck.empty()) return 0;
   const int leases = static_cast<int>(worker.leases.size());

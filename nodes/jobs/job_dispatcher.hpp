@@ -12,28 +12,33 @@
 
 namespace rtg::jobs {
 
-/// Id of a unit of work: a hash of its content, so that equal units have equal ids.
+/// Id of a job: a hash of its content, so that equal jobs have equal ids.
 using JobId = std::int64_t;
 /// Id of one start of a worker process.
 using WorkerId = std::int64_t;
 
-/// Assigns jobs to workers that may die, over a network that loses, duplicates and reorders
-/// messages. The states of a job are NEW -> LEASED -> DONE or POISON. The class does no I/O: the
+/// Assigns jobs to worker processes that may die. The network between them loses, duplicates and
+/// reorders messages. A job here is one unit of work, as in UnitLimit. The class does no I/O: the
 /// caller passes in events and the time, and sends the messages that due() returns.
 ///
-/// Workers announce their capacity and the jobs that they hold. due() resends a leased job that its
-/// worker does not hold. A worker is lost when it falls silent, or when a lease expires. A worker
-/// that is alive and still holds a job with an expired lease is stuck: it gets no more jobs until
-/// it releases that job. The leases of a lost worker go to other workers. A job that may have
-/// killed a worker is then the only job of its new worker, so that one deadly job does not make
-/// other jobs look deadly. A job that `poison` lost workers held is poison and is given up. A
-/// result is accepted by its job id, whichever worker and attempt it comes from.
+/// A job is NEW, then LEASED (assigned to one worker), then DONE or POISON (given up):
+///
+///  - Each worker announces in beats its capacity and the jobs that it holds.
+///  - due() sends a leased job again if its worker does not announce it.
+///  - A worker is lost if it sends no beat for `silence`, or no result within the `lease` of a job.
+///    Its jobs go to other workers.
+///  - A worker that still holds a job after the lease is stuck. It gets no more jobs until it
+///    releases that job.
+///  - A job of a lost worker may have killed it. The next worker gets that job alone, so that no
+///    other job comes under suspicion.
+///  - A job is POISON once `poison` workers that had it were lost.
+///  - A result counts by its job id, whichever worker and attempt it comes from.
 class JobDispatcher {
  public:
   struct Limits {
-    bus::Seconds silence = 2.0;  // a worker without a beat for this long is lost
-    bus::Seconds resend = 0.1;   // a beat this long after sending should list the job
-    bus::Seconds lease = 300.0;  // limit from lease to result, some hundred times the usual time
+    bus::Seconds silence = 2.0;  // a worker without a beat for this long is lost [s]
+    bus::Seconds resend = 0.1;   // a beat this long after sending a job should list it [s]
+    bus::Seconds lease = 300.0;  // longest legal time to a result; about 100 times the usual [s]
     int poison = 3;              // number of lost workers after which a job is given up
   };
   struct Send {
@@ -53,15 +58,15 @@ class JobDispatcher {
   JobDispatcher() = default;
   explicit JobDispatcher(const Limits& limits) : limits_(limits) {}
 
-  /// Replaces the set of jobs. `jobs` are handed out in this order; equal ids are one job.
+  /// Replaces all jobs by `jobs`, which are assigned in this order. Equal ids count as one job.
   void submit(std::span<const JobId> jobs);
 
   void on_beat(const Beat& beat, bus::Seconds now);
   Verdict on_result(JobId job);
 
-  /// Returns the messages that have to be sent now. Must be called after every event and a few
-  /// times a second. If more than `silence` / 2 passed without a call, this process was suspended
-  /// and received nothing; the dispatcher then excludes that time from all timeouts.
+  /// Returns the messages to send now. Must be called after every event and a few times a second. A
+  /// longer pause than `silence` / 2 between calls means that this process was suspended. Timeouts
+  /// do not count such a pause.
   std::vector<Send> due(bus::Seconds now);
 
   bool finished() const { return open_ == 0; }
@@ -82,9 +87,9 @@ class JobDispatcher {
   struct Worker {
     bus::Seconds beat = 0.0;
     int capacity = 0;
-    std::set<JobId> held;    // as of its last beat
+    std::set<JobId> held;    // jobs that its last beat announced
     std::set<JobId> leases;  // jobs leased to it
-    std::set<JobId> stuck;   // jobs that it holds although their lease has expired
+    std::set<JobId> stuck;   // jobs that it holds beyond their lease
   };
 
   void leave_out_sleep(bus::Seconds now);
@@ -97,7 +102,7 @@ class JobDispatcher {
 
   Limits limits_;
   std::map<JobId, Job> jobs_;
-  std::deque<JobId> queue_;  // jobs in state NEW, and ids that have since been answered
+  std::deque<JobId> queue_;  // NEW jobs; may also contain jobs answered since
   std::map<WorkerId, Worker> workers_;
   long open_ = 0, reissued_ = 0, resent_ = 0;
   bus::Seconds last_due_ = std::numeric_limits<bus::Seconds>::infinity();

@@ -11,23 +11,23 @@
 
 namespace rtg::jobs {
 
-/// The jobs of one worker: those that wait, those in work, and the last answers. A job that arrives
-/// again is not queued again; if its answer is remembered, receive() returns the answer. The class
-/// does no I/O.
+/// The jobs of one worker that wait or are in work, and its latest answers. A repeated job is not
+/// queued again. If its answer is still known, receive() returns the answer. The class does no I/O.
 template <class Job, class Answer>
 class JobInbox {
  public:
-  /// `remembered`: number of answers kept for jobs that arrive again.
+  /// `remembered`: number of latest answers kept.
   explicit JobInbox(std::size_t remembered) : remembered_(remembered) {}
 
-  /// Returns the answer if it is remembered. Otherwise queues the job, unless it is already held.
+  /// Returns the answer to job `id` if it is still known. Otherwise queues `job`, unless it waits
+  /// or is in work already.
   std::optional<Answer> receive(JobId id, Job job) {
     if (const auto found = answers_.find(id); found != answers_.end()) return found->second;
     if (held_.insert(id).second) waiting_.emplace_back(id, std::move(job));
     return std::nullopt;
   }
 
-  /// Removes the next job from the queue and returns it, if any. The job is held until finish().
+  /// Removes the next job from the queue and returns it, if any. It is in work until finish().
   std::optional<std::pair<JobId, Job>> take() {
     if (waiting_.empty()) return std::nullopt;
     std::pair<JobId, Job> next = std::move(waiting_.front());

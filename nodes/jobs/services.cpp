@@ -28,8 +28,8 @@ bool has_shape(const Message& message, const TaskShape& shape) {
   return message.n >= 1 && message.n_poses == std::int64_t{3} * message.n * shape.bodies;
 }
 
-/// Returns whether the number of poses matches the counts of starts, and whether a result has
-/// starts (1 to kMaxStarts) exactly if its solve has converged.
+/// Returns whether the counts of `message` are consistent. A converged solve must have 1 to
+/// kMaxStarts starts, any other solve none. n_poses must match the sum of the starts.
 bool has_starts(const rtg_msgs::reverse_result_t& message, const TaskShape& shape) {
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < message.starts.size(); ++i) {

@@ -14,21 +14,21 @@
 
 namespace rtg::jobs {
 
-/// The sizes of a task that its messages are checked against.
+/// Numbers of bodies and actions of a task, for checks of messages.
 struct TaskShape {
   int bodies = 0;
   int headings = 0;
 };
 
-/// Upper limits of a unit, which is the set of jobs in one message.
+/// Upper limits of a unit. A unit is the list of jobs that one message carries.
 struct UnitLimit {
   std::size_t jobs;
   std::size_t states;  // in one job or its result
 };
 
-/// ReverseService and ReplayService describe the two kinds of work that cross the bus: names,
-/// messages, and conversions between messages and the core's types. parse() returns nothing for a
-/// message that is illegal for the task (counts, range of actions, statuses).
+/// ReverseService and ReplayService describe the two kinds of work that workers do. They hold the
+/// channel names, the message types, and conversions between messages and types of core/. parse()
+/// returns nothing for a message that is illegal for the task (counts, range of actions, statuses).
 struct ReverseService {
   using Job = reverse::ReverseJob;
   using Result = reverse::ReverseResult;
@@ -45,7 +45,7 @@ struct ReverseService {
   static std::optional<std::vector<Job>> parse(const JobMessage& message, const TaskShape& shape);
   static std::optional<std::vector<Result>> parse(const ResultMessage& message,
                                                   const TaskShape& shape);
-  /// Returns the result that stands in for a job that was given up.
+  /// Returns the result used in place of the missing one of a job that was given up.
   static Result given_up(const Job& job);
 };
 
@@ -68,12 +68,13 @@ struct ReplayService {
   static Result given_up(const Job& job);
 };
 
-/// Returns the sizes of the units for `jobs` jobs: as few units as the message size and `limit`
-/// allow, with sizes as equal as possible.
+/// Splits `jobs` jobs into units and returns the number of jobs in each. There are as few units as
+/// `limit` and the message size allow, of nearly equal size.
 std::vector<std::size_t> unit_sizes(std::size_t jobs, const UnitLimit& limit,
                                     const TaskShape& shape);
 
-/// Returns the id of a unit: a hash of the configuration and of all states and actions of `jobs`.
+/// Returns the id of the unit of `jobs`: a hash of `config` (the configuration's hash) and of all
+/// states and actions.
 std::int64_t unit_id(std::span<const reverse::ReverseJob> jobs, std::int64_t config);
 std::int64_t unit_id(std::span<const search::ReplayJob> jobs, std::int64_t config);
 

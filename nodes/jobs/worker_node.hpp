@@ -20,8 +20,9 @@
 
 namespace rtg::jobs {
 
-/// A worker process for one kind of work. The thread that spins the bus receives jobs and sends
-/// beats. The node's own threads compute the answers, so beats continue during a long solve.
+/// A worker process for one kind of work, Service. The thread that spins the bus receives units and
+/// sends beats. Other threads of the node compute the answers, so that beats continue during a long
+/// solve.
 template <class Service>
 class WorkerNode {
  public:
@@ -33,10 +34,10 @@ class WorkerNode {
     int number = 0;           // tells several workers apart, for people
     int threads = 1;
     bus::Seconds patience =
-        JobDispatcher::Limits{}.lease;  // a process that works longer on one unit is stuck
+        JobDispatcher::Limits{}.lease;  // longest legal time of work on one unit
   };
 
-  /// `answer` computes the results of a unit in job order; `threads` threads call it concurrently.
+  /// `answer` computes the results of a unit in job order. Several threads call it concurrently.
   WorkerNode(bus::Bus& bus, const Options& options, Answer answer)
       : bus_(bus),
         options_(options),
@@ -48,7 +49,7 @@ class WorkerNode {
       threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
   }
 
-  /// Sends a beat and the status when they are due. Must be called after every spin of the bus.
+  /// Sends a beat and the status when they are due. Must be called after every Bus::spin().
   /// Rethrows an exception of `answer`.
   void tick(bus::Seconds now) {
     std::unique_lock lock(mutex_);
@@ -60,8 +61,8 @@ class WorkerNode {
     if (status_.due(now)) status_.publish(held.empty() ? "idle" : "busy", done);
   }
 
-  /// Returns whether a unit has been in work for longer than `patience`. Its thread cannot be
-  /// stopped; the process has to end so that another process can replace it.
+  /// Returns whether a unit has been in work for longer than `patience`. The process then has to
+  /// end, because its thread cannot be stopped.
   bool stuck(bus::Seconds now) const {
     const std::scoped_lock lock(mutex_);
     return std::ranges::any_of(
@@ -75,7 +76,7 @@ class WorkerNode {
   using JobMessage = typename Service::JobMessage;
   using ResultMessage = typename Service::ResultMessage;
   using Jobs = std::vector<typename Service::Job>;
-  static constexpr std::size_t kMostHeld = 3000;  // units, more than any beat announces as capacity
+  static constexpr std::size_t kMostHeld = 3000;  // units; above every announced capacity
 
   void receive(const JobMessage& message) {
     if (message.to != incarnation_) return;
@@ -141,7 +142,7 @@ class WorkerNode {
   std::map<JobId, bus::Seconds> begun_;  // units in work and their start times
   long done_ = 0;
   std::exception_ptr failure_;
-  std::vector<std::jthread> threads_;  // last: joined before the members that it uses end
+  std::vector<std::jthread> threads_;  // last, so joined before the other members are destroyed
 };
 
 }  // namespace rtg::jobs

@@ -10,10 +10,9 @@
 
 namespace rtg::program {
 
-/// Serves the bus until the coordinator leaves or a signal arrives. Returns the exit status of the
-/// process. Ends the process with status 1 if the node is stuck with a unit; the coordinator then
-/// counts the worker as lost. Throws std::runtime_error if the coordinator falls silent, and
-/// rethrows exceptions of the node.
+/// Runs `node` until the coordinator leaves or a signal arrives. Returns the exit status of the
+/// process. If the node is stuck with a unit, ends the process at once with status 1. Throws
+/// std::runtime_error if the coordinator falls silent. Rethrows exceptions of the node.
 template <class Service>
 int serve(bus::Bus& bus, jobs::WorkerNode<Service>& node) {
   int status = 0;

@@ -1,7 +1,7 @@
 // rtg_reverse_worker CONFIG.yaml RUN [NUMBER]
 //
 // Solves reverse jobs of the run named RUN until the coordinator leaves. CONFIG.yaml is the
-// resolved configuration of the run. NUMBER tells workers apart, for people.
+// resolved configuration of the run. NUMBER distinguishes workers in displays.
 
 #include "core/search/batches_on_threads.hpp"
 #include "core/search/simulators.hpp"

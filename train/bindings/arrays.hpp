@@ -19,14 +19,14 @@ namespace nb = nanobind;
 using StateArray = nb::ndarray<const double, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
 using ActionArray = nb::ndarray<const std::int64_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
-/// The memory of a future numpy array. OwnedArray owns the memory until release().
+/// Memory that becomes a numpy array. OwnedArray owns it until release().
 template <class T>
 struct OwnedArray {
   std::unique_ptr<T[]> data;
 
   explicit OwnedArray(std::size_t count) : data(new T[count]()) {}
 
-  /// Returns a numpy array, which then owns the memory.
+  /// Hands the memory over to a numpy array of the given shape and returns the array.
   nb::ndarray<nb::numpy, T> release(std::initializer_list<std::size_t> shape) {
     T* memory = data.release();
     nb::capsule owner(memory, [](void* p) noexcept { delete[] static_cast<T*>(p); });
@@ -50,7 +50,7 @@ inline Poses state_at(const StateArray& states, std::size_t row) {
   return poses;
 }
 
-/// Writes x, y, θ of every body to `out`, 3·bodies numbers.
+/// Writes x, y, θ of each body to `out`, which has room for 3·bodies numbers.
 inline void write_state(const Poses& poses, double* out) {
   for (const Pose& p : poses) {
     *out++ = p.x;

@@ -4,7 +4,7 @@
 
 namespace rtg::bindings {
 
-/// Each of these functions adds its part to the module rtg._core.
+/// Each of these functions binds one part of the core to the Python module rtg._core.
 void bind_config(nanobind::module_& module);
 void bind_generation(nanobind::module_& module);
 void bind_task(nanobind::module_& module);

@@ -9,9 +9,9 @@
 
 namespace rtg::bindings {
 
-/// Visitor that binds the fields that Section::visit() lists as read-only properties of the same
-/// names. A choice is bound as the name of its value. The list of names must have static storage
-/// duration, because the property keeps a reference to it.
+/// Visitor for Section::visit() that binds each field as a read-only Python property of the same
+/// name. A choice becomes the name of its value. The `names` of a choice must have static storage
+/// duration, because the property keeps a reference to them.
 template <class Section>
 class FieldBinder {
  public:
@@ -58,7 +58,7 @@ class FieldBinder {
   const Section& like_;
 };
 
-/// Returns the names of an enumeration as a tuple, in the order of the values.
+/// Returns the names of the values of an enumeration as a Python tuple, in the order of the values.
 template <class Names>
 nanobind::tuple names_of(const Names& names) {
   nanobind::list found;

@@ -16,7 +16,8 @@
 namespace rtg::bindings {
 namespace {
 
-/// Calls store(poses, action, next_poses, success, source); each argument is an array over `rows`.
+/// Passes `rows` to Python: calls store(poses, action, next_poses, success, source) with one array
+/// per argument.
 void hand_over(const nb::object& store, std::span<const search::Transition> rows) {
   const nb::gil_scoped_acquire acquire;
   const std::size_t count = rows.size(), bodies = count ? rows[0].poses.size() : 0;
@@ -48,8 +49,9 @@ void report_progress(const nb::object& progress, const search::Progress& p) {
   progress(line);
 }
 
-/// Runs the generation in this process and returns its report as JSON. An exception of a callback,
-/// including KeyboardInterrupt, ends the generation and propagates to the caller.
+/// Generates transitions in this process and returns the report as JSON. Calls `store` with
+/// transitions and `progress` with the state of the search. An exception of a callback, including
+/// KeyboardInterrupt, ends the generation and propagates to the caller.
 std::string generate_in_process(const config::Config& config, const nb::object& store,
                                 const nb::object& progress) {
   const nb::gil_scoped_release release;
@@ -62,9 +64,9 @@ std::string generate_in_process(const config::Config& config, const nb::object& 
   return to_json(generate(config.task, config.search, seed, seams));
 }
 
-/// Searches forwards for a plan from `start`, [1, bodies, 3]. Returns the states of the plan,
-/// [T + 1, bodies, 3] (the start alone if the search finds no plan), and the number of pushes that
-/// the search simulated. Throws ValueError unless `start` is one state.
+/// Searches forwards for a plan from `start` [1, bodies, 3] to the goal. Returns the states of the
+/// plan [T + 1, bodies, 3] and the number of pushes that the search simulated. If the search finds
+/// no plan, the start is the only state. Throws ValueError unless `start` is one state.
 std::pair<nb::ndarray<nb::numpy, double>, long> plan(const config::Config& config,
                                                      const StateArray& start) {
   const tasks::Task& task = config.task;

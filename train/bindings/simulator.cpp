@@ -8,7 +8,7 @@
 namespace rtg::bindings {
 namespace {
 
-/// The simulator of the true dynamics of one task.
+/// Box2D simulator of one task. Box2D defines the true dynamics.
 struct TaskSimulator {
   std::size_t bodies;
   int headings;

@@ -65,7 +65,7 @@ nb::ndarray<nb::numpy, bool> successes(const tasks::Task& task, const StateArray
   return out.release({states.shape(0)});
 }
 
-/// Returns one heading per state that seeks contact. Row k uses random stream k of `seed`.
+/// Returns one contact_heading() per state. Row k draws from random stream k of `seed`.
 nb::ndarray<nb::numpy, std::int64_t> contact_headings(const tasks::Task& task,
                                                       const StateArray& states,
                                                       std::uint64_t seed) {
@@ -102,14 +102,15 @@ std::vector<std::tuple<int, int, Vector2d>> joints(const tasks::Task& task) {
   return out;
 }
 
-/// Returns the state in an array of one state. Throws std::invalid_argument for any other number.
+/// Returns the only state in `states`. Throws std::invalid_argument if there is not exactly one.
 Poses only_state(const tasks::Task& task, const StateArray& states) {
   check_bodies(states, task.scene.size());
   if (states.shape(0) != 1) throw std::invalid_argument("one state is wanted, [1, bodies, 3]");
   return state_at(states, 0);
 }
 
-/// Returns, per joint, whether goal terms concern its angle and the angle meets all of them.
+/// Returns for each joint whether its angle meets all goal terms on it. The result is false for
+/// joints without a goal term.
 std::vector<bool> joints_reached(const tasks::Task& task, const StateArray& states) {
   const Poses poses = only_state(task, states);
   std::vector<bool> out;
@@ -125,7 +126,7 @@ std::vector<bool> joints_reached(const tasks::Task& task, const StateArray& stat
   return out;
 }
 
-/// Returns the mean centre of the bodies of each centroid term of the goal.
+/// Returns one mean centre per kCentroid term of the goal: that of the bodies to which it applies.
 std::vector<Vector2d> centroids(const tasks::Task& task, const StateArray& states) {
   const Poses poses = only_state(task, states);
   std::vector<Vector2d> out;

@@ -1,4 +1,4 @@
-"""The C++ core of RTG: configuration, tasks, the true dynamics, generation, planning.
+"""The C++ core of RTG: configuration, tasks, the simulator, data generation and planning.
 
 Poses are x [m], y [m], θ [rad]; body 0 is the robot.
 """
@@ -11,50 +11,58 @@ import numpy as np
 from numpy.typing import NDArray
 
 METHODS: tuple[str, ...]
-"""The names of the methods to compare, see nodes/config/method.hpp."""
+"""The values of run.method: the learning methods, see nodes/config/method.hpp."""
 SOURCES: tuple[str, ...]
-"""The names of the sources of transitions; an index here is a `source` value. See
-core/search/transition.hpp."""
+"""The sources of transitions, such as "tree"; see core/search/transition.hpp.
+
+The `source` of a transition is an index into this tuple.
+"""
 
 class GoalTerm:
-    """A condition on a state: the subject lies in the region."""
+    """A condition on a state: the quantity `subject` lies in the set `region`."""
 
     @property
     def subject(self) -> str:
-        """The quantity that must lie in the region.
+        """The quantity x that must lie in the region.
 
-        "every": the centre of each body of class `kind` ("*": of each object); "centroid": the mean
-        of these centres; "joint": the angle of the joint whose child is named `kind` ("*": of each
-        joint).
+        - "every": the centre of each body of class `kind`;
+        - "centroid": the mean of these centres;
+        - "joint": the angle of the joint whose child is named `kind`.
+
+        The `kind` "*" stands for all objects or all joints.
         """
     @property
     def kind(self) -> str: ...
     @property
     def region(self) -> str:
-        """ "disc": |x - centre| <= radius; "half_plane": normal·x <= offset; "angles": an interval
-        of the joint angle."""
+        """The set that must contain the subject x.
+
+        - "disc": |x - centre| <= radius;
+        - "half_plane": normal·x <= offset;
+        - "angles": an interval of the joint angle.
+        """
     @property
     def centre(self) -> NDArray[np.float64]:
-        """[2], m"""
+        """The centre of a disc, [2], m."""
     @property
     def radius(self) -> float: ...
     @property
     def normal(self) -> NDArray[np.float64]:
-        """[2], a unit vector"""
+        """The unit normal of a half-plane, [2]."""
     @property
     def offset(self) -> float: ...
 
 class Task:
-    """A sparse-reward task: the reward is 1 when the goal holds, which ends the episode, else 0.
+    """A task with sparse reward. Body 0 is the robot.
 
-    Body 0 is the robot.
+    The reward is 1 when the goal holds, else 0. Success ends the episode.
     """
 
     @property
     def name(self) -> str: ...
     @property
     def shapes(self) -> Sequence[NDArray[np.float64]]:
-        """Per body [vertices, 2], counter-clockwise, centroid at the origin [m]."""
+        """The polygon of each body: [vertices, 2] in m, counter-clockwise, centroid at 0."""
     @property
     def names(self) -> list[str]:
         """The unique names of the bodies."""
@@ -63,13 +71,13 @@ class Task:
         """The class of each body."""
     @property
     def fixed(self) -> list[bool]:
-        """Per body, True if it never moves."""
+        """True for each body that never moves."""
     @property
     def joints(self) -> list[tuple[int, int, NDArray[np.float64]]]:
-        """Per joint (parent, child, pin in the frame of the parent [2], m)."""
+        """The joints: (parent body, child body, pin in the frame of the parent [2], m)."""
     @property
     def goal(self) -> list[GoalTerm]:
-        """The terms of the goal; all must hold."""
+        """The conditions of the goal; all must hold."""
     @property
     def arena(self) -> float:
         """Half width of the square that the robot stays in [m]."""
@@ -86,10 +94,10 @@ class Task:
     def discount(self) -> float: ...
     @property
     def start_jitter(self) -> float:
-        """Evaluation starts: object positions ± this [m]."""
+        """Largest random offset of an object's x and y in starts of evaluations [m]."""
     @property
     def randomisation(self) -> float:
-        """Amplitude of domain randomisation: object positions ± this [m]."""
+        """Largest random offset of an object's x and y in domain randomisation [m]."""
     @property
     def bodies(self) -> int: ...
     @property
@@ -97,31 +105,34 @@ class Task:
     def observation(self, states: NDArray[np.float64]) -> NDArray[np.float32]:
         """Returns the observations of the states. [N, bodies, 3] -> [N, observation_size]"""
     def joints_reached(self, states: NDArray[np.float64]) -> list[bool]:
-        """Returns per joint whether goal terms concern its angle and all of them hold.
+        """Returns, for each joint, whether the goal constrains its angle and the angle complies.
 
-        [1, bodies, 3]
+        `states`: a single state, [1, bodies, 3].
         """
     def centroids(self, states: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-        """Returns the centroid of each goal term with that subject. [1, bodies, 3] -> each [2]"""
-    def contact_headings(self, states: NDArray[np.float64], seed: int) -> NDArray[np.int64]:
-        """Returns per state a heading towards a random movable object.
+        """Returns the mean centre for each goal term with subject "centroid", each [2].
 
-        Row k is a function of the state, `seed` and k. [N, bodies, 3] -> [N]
+        `states`: a single state, [1, bodies, 3].
+        """
+    def contact_headings(self, states: NDArray[np.float64], seed: int) -> NDArray[np.int64]:
+        """Draws, for each state, a heading towards a random movable object.
+
+        Entry k depends only on state k, `seed` and k. [N, bodies, 3] -> [N]
         """
     def goal_state(self, seed: int, index: int = 0) -> NDArray[np.float64] | None:
-        """Returns sample number `index` of random stream `seed` of the goal states. [bodies, 3]
+        """Samples a state in which the goal holds and the bodies are nearly at rest. [bodies, 3]
 
-        The bodies are nearly at rest in it. Returns None if 1,000 attempts find none.
+        It is sample `index` of random stream `seed`. Returns None if 1,000 attempts fail.
         """
     def succeeded(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Returns whether the goal holds. [N, bodies, 3] -> [N]"""
+        """Returns whether the goal holds in each state. [N, bodies, 3] -> [N]"""
     def jittered_start(self, amplitude: float, seed: int, index: int = 0) -> NDArray[np.float64]:
-        """Returns start number `index` of random stream `seed`. [bodies, 3]
+        """Samples a start: the nominal one, objects moved by up to ± `amplitude` [m] in x and y.
 
-        Its objects are moved by ± amplitude [m].
+        It is sample `index` of random stream `seed`. [bodies, 3]
 
-        Raises ValueError if 1000 consecutive draws overlap, or for an amplitude outside
-        [0, 10] m.
+        Raises ValueError if 1000 draws in a row are illegal (bodies overlap, an object is outside
+        the arena, or the goal holds). Raises ValueError if `amplitude` is outside [0, 10] m.
         """
 
 class ConfigError(ValueError):
@@ -130,8 +141,8 @@ class ConfigError(ValueError):
 class _Section:
     """A section of the configuration.
 
-    Its fields are those of the C++ struct of the same name, which documents them. Choices are
-    strings.
+    The C++ struct of the same name documents the fields. A field with a fixed set of values is a
+    string.
     """
 
     def __getattr__(self, name: str) -> Any: ...
@@ -147,12 +158,12 @@ class Config:
 
     @staticmethod
     def from_file(file: str | PathLike[str], overrides: Sequence[str] = ()) -> Config:
-        """Loads a file. `overrides`: each "section.key=value". Raises ConfigError."""
+        """Loads a YAML file. `overrides`: each "section.key=value". Raises ConfigError."""
     @staticmethod
     def from_text(text: str, name: str = "text", overrides: Sequence[str] = ()) -> Config:
-        """Loads a text. Raises ConfigError.
+        """Loads a YAML text. Raises ConfigError.
 
-        `name` is used in messages as the name of the file; paths in the text are relative to it.
+        Error messages use `name` as the name of the file. Paths in the text are relative to it.
         """
     @property
     def task(self) -> Task: ...
@@ -177,16 +188,19 @@ class Config:
         """The values as JSON."""
 
 class Simulator:
-    """The true dynamics of a task: Box2D. Holds no state; equal arguments give equal bits."""
+    """Simulates a task in Box2D: the dynamics of training and evaluation.
+
+    It holds no state; equal arguments give bitwise equal results.
+    """
 
     def __init__(self, config: Config) -> None: ...
     def push(
         self, states: NDArray[np.float64], actions: NDArray[np.int64]
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """Simulates one action in each state. [N, bodies, 3], [N] -> [N, bodies, 3], [N]
+        """Simulates one push per state. [N, bodies, 3], [N] -> [N, bodies, 3], [N]
 
-        The second array is False where the bodies did not come to rest: there the row is not a
-        legal transition.
+        Returns the states after the pushes, and whether each push is a legal transition. It is
+        illegal if the simulator cannot finish it, for instance if the bodies do not come to rest.
         Raises ValueError for arrays that do not fit the task.
         """
 
@@ -204,16 +218,17 @@ def generate(
     ],
     progress: Callable[[dict[str, Any]], Any],
 ) -> str:
-    """Runs the whole generation in this process, on run.workers threads; returns the report, JSON.
+    """Generates transitions in this process, on run.workers threads. Returns the report as JSON.
 
-    Calls store(poses, action, next_poses, success, source) with the transitions in sequence order,
-    and after each layer progress({"phase", "layer", "depth", "transitions", "target",
-    "contact_share", "start_region"}). An exception of either ends the generation and is raised.
+    Calls store(poses, action, next_poses, success, source) with the transitions in sequence order.
+    Calls progress() after each layer of the search, with a dictionary of "phase", "layer", "depth",
+    "transitions", "target", "contact_share" and "start_region". An exception of either function
+    ends the generation and is raised.
     """
 
 def plan(config: Config, start: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
-    """Searches forwards for a plan from one start, [1, bodies, 3], by beam search.
+    """Searches for a plan from `start`, [1, bodies, 3], by forward beam search.
 
-    Returns the states of the plan, [T + 1, bodies, 3], or only the start if there is none, and the
-    number of simulated pushes. Raises ValueError for arrays that do not fit the task.
+    Returns the states of the plan, [T + 1, bodies, 3], and the number of simulated pushes. Without
+    a plan, the states are only the start. Raises ValueError if `start` does not fit the task.
     """

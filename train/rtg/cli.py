@@ -11,7 +11,7 @@ from pathlib import Path
 from rtg.errors import RunError, UserError
 from rtg.run import run_args
 
-# Modules that load slowly are imported where they are used: --help and errors appear at once.
+# Functions import modules that load slowly, so that --help and errors appear at once.
 
 
 def _run(words: Sequence[str]) -> int:

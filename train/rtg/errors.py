@@ -15,4 +15,4 @@ class RunError(Exception):
 
 
 class StoppedError(Exception):
-    """The user stopped the run. The command turns it into a RunError: exit status 1."""
+    """The user stopped the run. The command turns this error into a RunError: exit status 1."""

@@ -24,5 +24,5 @@ def program(name: str) -> Path:
 
 
 def task_names() -> list[str]:
-    """Returns the names of the tasks in config/, which need no path on the command line."""
+    """Returns the names of the tasks in config/. The command line takes them without a path."""
     return sorted(path.stem for path in CONFIG.glob("*.yaml"))

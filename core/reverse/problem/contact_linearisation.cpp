@@ -109,8 +109,8 @@ void ContactLinearisation<T>::add_friction(Contact& c, const energy::ContactPoin
   c.force_gradient = c.force_gradient + drag.dot(y_next_);
 }
 
-/// Eliminates the force and the multiplier of its complementarity row from the system. `s` is the
-/// slope of the row, `bend` is μ̃ w''.
+/// Eliminates the force and the multiplier of its complementarity row. `s` is the slope λ - μ̃ w'
+/// of the row, `bend` is μ̃ w''.
 template <class T>
 void ContactLinearisation<T>::add_complementarity(const Contact& c, const T& s, const T& bend) {
   own.gradient += c.b * c.force_gradient;

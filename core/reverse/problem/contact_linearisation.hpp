@@ -10,43 +10,48 @@ namespace rtg::reverse {
 
 inline constexpr double kForceProximal = 0.01;  // proximal weight of the forces, as a share of δ
 
-/// Selects per lane how second derivatives are formed.
+/// Selects the Hessian of the Newton system and its proximal term, per lane.
 template <class T>
 struct Curvature {
   T exact;     // 1: Hessian of the Lagrangian; 0: of the objective alone
   T proximal;  // δ, weight on poses and controls; kForceProximal δ on forces
 };
 
-/// A force eliminated from the system: Δλ = a + b·V Δp.
+/// The step of a normal force that was eliminated from the Newton system: Δλ = a + b·V Δp. V maps
+/// poses to the coordinates of the pair of bodies (PairFrame).
 template <class T>
 struct Eliminated {
   T a = T(0.0);
   Vec4<T> b = Vec4<T>::Constant(T(0.0));
 };
 
-/// Terms that the contacts of a pair at one level add to one stage of the Newton system, in the
-/// coordinates of the pair at that stage (PairFrame).
+/// The sum of the terms that the contacts of a pair of bodies add to one stage (sub-step) of the
+/// Newton system. All are in the coordinates of the pair (PairFrame).
 template <class T>
 struct PairTerms {
   Mat4<T> Q = Mat4<T>::Constant(T(0.0)), E = Q;  // Hessian of the Lagrangian, ∂Φ/∂p
   Vec4<T> gradient = Vec4<T>::Constant(T(0.0));  // of the Lagrangian
   Vec4<T> residual = gradient;                   // Φ
-  Vec4<T> q = gradient, e = gradient;            // of the stage, without gradient and residual
+  Vec4<T> q = gradient, e = gradient;            // q without the gradient, e without the residual
 };
 
-/// Linearises the contacts of a pair of bodies at level k: the normal forces in Φ_k, the friction
-/// in Φ_{k+1}, the complementarity rows and, at the start (k = 0), the barrier of the objective.
+/// Linearises the contacts of a pair of bodies at level k: the poses after sub-step k, or the start
+/// if k = 0. The terms are
+///
+///   - the normal forces in Φ_k and the friction in Φ_{k+1},
+///   - the complementarity rows of level k,
+///   - at the start, the barrier in the objective.
 template <class T>
 class ContactLinearisation {
  public:
   ContactLinearisation(const ProblemLanes<T>& problem, const Trajectory<T>& x,
                        const Curvature<T>& curvature, int level, int pair);
 
-  /// Returns whether any of the contacts may act. If none may, there is nothing to add.
+  /// Returns whether any contact of the pair may act. Otherwise add() has nothing to add.
   bool relevant() const { return relevant_; }
 
-  /// Adds the terms of contact `vertex` and writes its eliminated force to `eliminated`. Returns
-  /// whether the contact acts.
+  /// Adds the terms of the contact of `vertex` and writes its force step to `eliminated`. Returns
+  /// whether the contact acts in any lane.
   bool add(int vertex, Eliminated<T>& eliminated);
 
   const energy::PairFrame<T>& frame() const { return here_; }
@@ -76,7 +81,7 @@ class ContactLinearisation {
   const energy::SceneModel<T>& scene_;
   const Curvature<T>& curvature_;
   int pair_;
-  bool first_, last_, held_;  // held: the poses of the level are fixed
+  bool first_, last_, held_;  // held_: the poses of this level are fixed
   const T* forces_;
   Mask<T> close_;
   bool relevant_;

@@ -45,8 +45,8 @@ T free_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x) {
 
 }  // namespace
 
-/// One evaluation of a trajectory, level by level. A contact at level k contributes to the
-/// residuals Φ_k and Φ_{k+1}.
+/// An evaluation of a trajectory, level by level. The contacts at level k enter Φ_k by their normal
+/// force and Φ_{k+1} by their friction.
 template <class T>
 struct Evaluator<T>::Pass {
   Evaluator& into;
@@ -90,8 +90,9 @@ struct Evaluator<T>::Pass {
     return any(found);
   }
 
-  /// Adds the contacts of pair n at level k. Returns the lanes in which an edge of the pair's
-  /// second body separates the two bodies.
+  /// Adds the contacts of pair n at level k. `close` are the lanes in which the bodies are near()
+  /// each other. Returns the lanes in which an edge of the second body of the pair separates the
+  /// two bodies.
   Mask<T> add_pair(int k, int n, const Mask<T>& close) {
     const bool last = k == problem.sub_steps;
     const energy::PairFrame<T> here = scene.frame(n, x.p[k]);
@@ -116,8 +117,8 @@ struct Evaluator<T>::Pass {
     return edges.separate(scene.sharpness());
   }
 
-  /// Stores the gap of a contact, updates `legal`, and adds the complementarity residual λ g - μ̃ w
-  /// to the measures. `window` is w(g).
+  /// Stores the gap `g` of a contact and updates `legal`. Adds the complementarity residual
+  /// λ g - μ̃ w to the measures. `window` is w(g).
   void note_gap(int k, int contact, const T& g, const T& window) {
     gaps[k][contact] = g;
     legal = legal && keeps_gap(g, were[k][contact], scene.barrier());
@@ -127,7 +128,7 @@ struct Evaluator<T>::Pass {
     sum.infeasibility = greater(sum.infeasibility, magnitude(off));
   }
 
-  /// Stores the gap of a contact as note_gap() does and, at the start, adds the barrier to the
+  /// Calls note_gap() for the contact of a vertex. At level 0, also adds its barrier to the
   /// objective.
   void add_contact(int k, int contact, const energy::Touch<T>& touch, const SignedDistance<T>& d) {
     const energy::Barrier& barrier = scene.barrier();

@@ -4,7 +4,7 @@
 
 namespace rtg::reverse {
 
-/// The figures by which line searches judge trajectories.
+/// Objective and constraint violation of a trajectory, by which line searches judge it.
 template <class T>
 struct Measures {
   T objective = T(0.0);
@@ -12,24 +12,29 @@ struct Measures {
   T infeasibility = T(0.0);  // ‖C‖∞
 };
 
-/// Evaluates objective, constraints and legality of trajectories.
+/// Evaluates objective, constraints and legality of trajectories. Level k of a trajectory is its
+/// state after sub-step k, level 0 the start.
 template <class T>
 class Evaluator {
  public:
-  /// `to_the_end`: evaluate() goes through all levels, even if no lane is legal any more.
+  /// If `to_the_end`, evaluate() always computes all levels. Otherwise it stops when no lane is
+  /// legal any more.
   explicit Evaluator(const ProblemLanes<T>& problem, bool to_the_end = false);
 
-  /// Evaluates the trial point x and writes its gaps to `gaps`; `were` holds the gaps of the
-  /// iterate that it was made from. On entry, `legal` marks the lanes to evaluate; on return, those
-  /// in which x is a legal iterate. There every gap is open, every gap below a tenth of the
-  /// barrier's range is at least a tenth of its value in `were`, and no two bodies overlap by the
-  /// separating-axis test. In other lanes all results may be wrong.
+  /// Evaluates the trial point `x` and writes its gaps to `gaps`. `were` holds the gaps of the
+  /// iterate from which `x` was made. The lanes to evaluate are passed in `legal`. On return,
+  /// `legal` marks those of them in which
+  ///
+  ///   - keeps_gap() accepts every gap: it is positive and has not shrunk too much,
+  ///   - no two bodies overlap by the separating-axis test.
+  ///
+  /// In all other lanes the results may be wrong.
   Measures<T> evaluate(const ProblemLanes<T>& problem, const Trajectory<T>& x,
                        const PerContact<T>& were, PerContact<T>& gaps, Mask<T>& legal);
 
-  /// Return the residuals of the last trajectory: Φ_k [h + 1][dofs], entry 0 unused, and λ g - μ̃ w
-  /// [h + 1][contacts].
+  /// Returns Φ_k of the last trajectory [h + 1][dofs]; entry 0 is unused.
   const std::vector<std::vector<T>>& residuals() const { return residuals_; }
+  /// Returns λ g - μ̃ w of the last trajectory [h + 1][contacts].
   const PerContact<T>& complementarity() const { return complementarity_; }
 
  private:

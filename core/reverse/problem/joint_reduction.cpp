@@ -5,7 +5,7 @@
 namespace rtg::reverse {
 namespace {
 
-/// The part of reduce_joints() that concerns one hinge at one level k.
+/// A step of reduce_joints(): applies one hinge at one level k (the poses after sub-step k).
 template <class T>
 class HingeReduction {
  public:
@@ -14,7 +14,7 @@ class HingeReduction {
   HingeReduction(const PoseSystem<T>& poses, const energy::HingeStep<T>& step, int k)
       : poses_(poses), step_(step), stage_(poses.system.stages[k]), k_(k) {}
 
-  /// Applies the hinge to the system. `y`: multipliers of the level [3·movable].
+  /// Applies the hinge to the system. `y` holds the multipliers of the level [3·movable].
   void apply(const T* y) {
     if (k_ > 0) add_rates(y);
     step_.gather_both(stage_.Q);
@@ -30,7 +30,7 @@ class HingeReduction {
   }
 
  private:
-  /// Adds the terms in D = ∂w/∂q. The child's w depends on its own angle and on the parent's,
+  /// Adds the terms in D = ∂w/∂q. For a parent i and child j, w_j depends on the angles of both,
   ///   ∂w_j/∂θ_i = -A y_θi, ∂w_j/∂θ_j = B y_θj.
   void add_rates(const T* y) {
     by_child_ = step_.arms().b * y[3 * step_.child() + 2];
@@ -45,7 +45,8 @@ class HingeReduction {
     if (step_.roots()) add_rate(step_.parent(), by_parent_, phi, e);
   }
 
-  /// Adds the contribution of one angle to Dᵀ Φ, Dᵀ e and Σ Φ ∂²w/∂θ². The last is Φ·(E ∂w/∂θ).
+  /// Adds the contribution of the angle θ of `body` to Dᵀ Φ, Dᵀ e and Σ Φ ∂²w/∂θ². `rate` is
+  /// ∂w_j/∂θ. The last term equals Φ·(E ∂w/∂θ), where E turns by +90°.
   void add_rate(int body, const Vec2<T>& rate, const Vec3<T>& phi, const Vec3<T>& e) {
     const T slope = rate.x() * phi[0] + rate.y() * phi[1];
     poses_.gradient[k_][body][2] += slope;
@@ -82,7 +83,7 @@ class HingeReduction {
     return Z;
   }
 
-  /// Applies the hinge to the columns of this level in the stages of later sub-steps.
+  /// Applies the hinge to the columns of p_k in the stages of sub-steps k + 1 and k + 2.
   void gather_later_columns() {
     auto& stages = poses_.system.stages;
     if (k_ + 1 <= poses_.system.h) {

@@ -5,9 +5,9 @@
 
 namespace rtg::reverse {
 
-/// Terms that one joint limit adds to the Newton system at one level. Vectors are multiples of the
-/// limit's ∇g, matrices are multiples of ∇g ∇gᵀ. The terms are those of ContactLinearisation
-/// without friction, for a gap whose Hessian is zero.
+/// Terms that one joint limit adds to the Newton system at one level (the poses after a sub-step).
+/// The limit acts like a contact without friction whose gap g is linear in p
+/// (ContactLinearisation). Vectors are stored as factors of ∇g, matrices as factors of ∇g ∇gᵀ.
 template <class T>
 struct LimitLinearisation {
   T a = T(0.0), b = T(0.0);  // Δλ = a + b ∇g·Δp
@@ -15,7 +15,7 @@ struct LimitLinearisation {
   T gradient = a;
   T q = a, e = a, residual = a;
 
-  /// The kind of the level: the start, a fixed end (kHeld), or any other level (kWithin).
+  /// Kind of level: the start, a fixed final state (kHeld), or any other (kWithin).
   enum class Level { kStart, kWithin, kHeld };
   /// Gap and force of the limit, and ∇g·y.
   struct State {

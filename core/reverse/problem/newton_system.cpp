@@ -6,8 +6,8 @@
 namespace rtg::reverse {
 namespace {
 
-/// Number of stages by which the pairs of a level are added later than the objective and motion: by
-/// then motion and inertia have contributed to stages k and k + 1, and both are still in the cache.
+/// linearise() adds the contacts of level k this many levels after the other terms of level k. By
+/// then stages k and k + 1 hold all their other terms and are still in the cache.
 constexpr int kReach = 3;
 
 }  // namespace
@@ -70,7 +70,7 @@ void NewtonSystem<T>::add_pair(const ProblemLanes<T>& problem, const Trajectory<
   scatter(scene, n, energy::PulledBlocks<T>(ahead, contacts.N, here), next.N);
 }
 
-/// Adds the terms of a pair to stage k.
+/// Adds `terms` of a pair of bodies to stage k.
 template <class T>
 void NewtonSystem<T>::add_own(const energy::SceneModel<T>& scene, int pair,
                               const energy::PairFrame<T>& frame, const PairTerms<T>& terms, int k) {
@@ -84,7 +84,7 @@ void NewtonSystem<T>::add_own(const energy::SceneModel<T>& scene, int pair,
   scatter_lower(scene, pair, frame, terms.E, stage.E);
 }
 
-/// Adds the joint limits at level k, over the poses of all bodies.
+/// Adds the joint limits at level k to the system over poses, before reduce_joints().
 template <class T>
 void NewtonSystem<T>::add_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   using Terms = LimitLinearisation<T>;
@@ -141,7 +141,7 @@ void NewtonSystem<T>::force_steps(const ProblemLanes<T>& problem, const Trajecto
   }
 }
 
-/// Writes the changes of the forces at level k to `out`. `moved` is the step of the poses of all
+/// Writes the steps Δλ of the forces at level k to `out`. `moved` is the step of the poses of all
 /// bodies [3·movable].
 template <class T>
 void NewtonSystem<T>::find_force_steps(const energy::SceneModel<T>& scene,
@@ -165,7 +165,8 @@ void NewtonSystem<T>::find_force_steps(const energy::SceneModel<T>& scene,
   });
 }
 
-/// Uses sᵀ H s = -g·s - y·A s and A s = -e.
+/// Uses sᵀ H s = -g·s - y·A s and A s = -e. g is the linear term of the model, A the Jacobian of
+/// the constraints, y the step of the multipliers.
 template <class T>
 T NewtonSystem<T>::model_curvature(const StageStep<T>& step) const {
   T sum(0.0);
@@ -179,7 +180,8 @@ T NewtonSystem<T>::model_curvature(const StageStep<T>& step) const {
   return sum;
 }
 
-/// Uses ∇J·s = ∇L·s - y·A s and A s = -e.
+/// Uses ∇J·s = ∇L·s - y·A s and A s = -e. A is the Jacobian of the constraints, y the multipliers
+/// at `x`.
 template <class T>
 T NewtonSystem<T>::objective_slope(const Trajectory<T>& x, const StageStep<T>& step) const {
   T sum(0.0);

@@ -5,13 +5,13 @@
 
 namespace rtg::reverse {
 
-/// The Newton system of the first-order conditions, eq. (9) and (10), one stage per sub-step. Each
-/// force is eliminated by its own complementarity row,
+/// The Newton system of the first-order conditions, eq. (9) and (10), with one stage per sub-step.
+/// It contains no normal forces. The complementarity row of a contact,
 ///
 ///   g Δλ + s ∇g·Δp = -(λ g - μ̃ w),  s = λ - μ̃ w'   =>   Δλ = a + b·Δp,
 ///
-/// and the multiplier z of that row by stationarity in λ, z = -L_λ/g. The contacts of a pair are
-/// summed in the pair's coordinates (PairFrame).
+/// eliminates the step of its force. Stationarity in λ gives the multiplier of the row, z = -L_λ/g.
+/// The contacts of a pair of bodies are summed in the coordinates of the pair (PairFrame).
 template <class T>
 class NewtonSystem {
  public:
@@ -21,19 +21,20 @@ class NewtonSystem {
                  const Curvature<T>& curvature);
 
   const StageSystem<T>& system() const { return system_; }
-  /// Returns the gradient of the Lagrangian with forces eliminated [h + 1][movable], over the poses
-  /// or, with joints, over the coordinates (Articulation).
+  /// Returns the gradient of the Lagrangian after elimination of the forces [h + 1][movable]. With
+  /// joints it is over the reduced coordinates (Articulation), otherwise over the poses.
   const std::vector<BlockColumn<T>>& gradient() const { return gradient_; }
-  /// Returns ‖∇L‖∞ over poses and controls; NaN in lanes in which ∇L is not finite.
+  /// Returns ‖∇L‖∞ over poses and controls. It is NaN in lanes in which ∇L is not finite.
   T stationarity() const;
 
-  /// Writes the changes of the forces along `step` to `out` [h + 1][contacts].
+  /// Computes the steps Δλ of the forces that belong to `step`, into `out` [h + 1][contacts].
   void force_steps(const ProblemLanes<T>& problem, const Trajectory<T>& x, const StageStep<T>& step,
                    PerContact<T>& out) const;
 
-  /// Return the curvature of the model and the slope of the objective along `step`, which must be
-  /// the solution of the system.
+  /// Returns sᵀ H s, the curvature of the quadratic model along s = `step`. `step` must solve the
+  /// system.
   T model_curvature(const StageStep<T>& step) const;
+  /// Returns ∇J·s, the slope of the objective along s = `step`. `step` must solve the system.
   T objective_slope(const Trajectory<T>& x, const StageStep<T>& step) const;
 
  private:

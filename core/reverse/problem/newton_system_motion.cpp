@@ -1,5 +1,5 @@
-// The terms of the Newton system from the objective, motion and controls: all but contacts and
-// joints.
+// The terms of the Newton system from the objective, motion and controls. newton_system.cpp has
+// those from contacts and joints.
 
 #include "core/reverse/problem/control_force.hpp"
 #include "core/reverse/problem/newton_system.hpp"
@@ -27,8 +27,8 @@ Vec3<T> way_before(const Trajectory<T>& x, int k, int body) {
 
 }  // namespace
 
-/// Initialises stage k with the terms of level k in the objective, except the barrier, and with the
-/// proximal term.
+/// Initialises stage k with the proximal term and the objective of p_k: the pull on the start, the
+/// spring to the final state and the path penalty.
 template <class T>
 void NewtonSystem<T>::set_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   Stage& stage = system_.stages[k];
@@ -48,7 +48,8 @@ void NewtonSystem<T>::set_objective(const ProblemLanes<T>& problem, const Trajec
   stage.Q.add(0, 0, diagonal<T>(path.hessian));
 }
 
-/// Adds the damping and the speed penalty of sub-step k, and the force of inertia in Φ_k.
+/// Adds the damping and the speed penalty of sub-step k. Also adds the inertial force to Φ_k;
+/// add_inertia() adds its derivatives.
 template <class T>
 void NewtonSystem<T>::add_motion(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   Stage &stage = system_.stages[k], &before = system_.stages[k - 1];
@@ -75,8 +76,8 @@ void NewtonSystem<T>::add_motion(const ProblemLanes<T>& problem, const Trajector
   }
 }
 
-/// Adds the derivatives of the force of inertia in Φ_k, which depends on sub-steps k - 1 and k. All
-/// bodies are at rest before the first sub-step.
+/// Adds the derivatives of the inertial force in Φ_k. The force depends on the motions in sub-steps
+/// k - 1 and k. All bodies are at rest before the first sub-step.
 template <class T>
 void NewtonSystem<T>::add_inertia(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   const bool first = k == 1;
@@ -102,7 +103,7 @@ void NewtonSystem<T>::add_inertia(const ProblemLanes<T>& problem, const Trajecto
   }
 }
 
-/// Adds the second derivatives of y·Φ_k in the angles of body i.
+/// Adds the second derivatives of y·Φ_k with respect to the angles of body i.
 template <class T>
 void NewtonSystem<T>::add_turn_curvature(const typename energy::Inertia<T>::Slope& s, const T& y,
                                          int k, int i) {

@@ -7,7 +7,8 @@ namespace rtg::reverse {
 // The terms of the objective J of eq. (6), each with its derivatives. The two other terms are
 // SpeedPenalty and, at the start, Barrier.
 
-/// The term w_i d·(t_i - t̄_i), which pulls body i against the push at the start, p_0.
+/// The term w_i d·(t_i - t̄_i), which pulls the start of body i against the push. t_i is its
+/// position in p_0, t̄_i that in the final state.
 template <class T>
 struct StartTerm {
   T value;
@@ -36,8 +37,9 @@ struct ControlPenalty {
   }
 };
 
-/// The terms κ_x |t₀ - t̄₀|² and κ_θ (θ₀ - θ̄₀)² of the robot after sub-step k: action consistency.
-/// Departs from the paper: these terms make the controls those of the discrete action.
+/// The terms κ_x |t₀ - t̄₀|² and κ_θ (θ₀ - θ̄₀)². They hold the robot on its straight path
+/// (t̄₀, θ̄₀) after sub-step k. Departs from the paper: this action consistency makes the controls
+/// those of the discrete action.
 template <class T>
 struct PathPenalty {
   T position, heading;        // values of the two terms
@@ -56,9 +58,9 @@ struct PathPenalty {
   }
 };
 
-/// The term K/2 |p_k - p̄|² over all movable bodies, where the final state prescribes p_k
-/// (ProblemLanes::ends()). Departs from the paper: a stiff spring replaces the constraint, so that
-/// every forward simulation is feasible.
+/// The term K/2 |p_k - p̄|² over all movable bodies: a spring to the final state p̄. It acts on the
+/// poses p_k for which ProblemLanes::ends(k). Departs from the paper: a stiff spring replaces the
+/// constraint, so that every forward simulation is feasible.
 template <class T>
 class EndSpring {
  public:
@@ -77,7 +79,7 @@ class EndSpring {
   }
   T gradient(int i, int m) const { return hessian * (at_.body(i)[m] - problem_.end[3 * i + m]); }
 
-  T hessian;  // K, the same for each coordinate; 0 where p_k is not prescribed
+  T hessian;  // K, the same for each coordinate; 0 where the spring does not act
 
  private:
   const ProblemLanes<T>& problem_;

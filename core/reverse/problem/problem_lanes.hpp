@@ -8,18 +8,20 @@ namespace rtg::reverse {
 template <class T>
 struct Trajectory;
 
-/// Reverse problems of as many candidates as T has lanes, all with the same numbers of bodies.
+/// Reverse problems of several candidates, one per SIMD lane of T. All have the same numbers of
+/// bodies.
 template <class T>
 struct ProblemLanes {
-  /// Allocates lanes for problems with the structure and configuration of `like`; loads none.
+  /// Allocates empty lanes. Problems to be loaded must have the numbers of bodies, the joints and
+  /// the settings of `like`.
   explicit ProblemLanes(const ReverseProblem& like);
   void load(int lane, const ReverseProblem& one);
 
   bool fixed_end() const { return config.terminal_weight == 0.0; }
-  /// Returns whether the final state prescribes the poses after sub-step k: those after the last
-  /// sub-step and, with inertia, those one sub-step before.
+  /// Returns whether p_k has to match the final state. This holds for p_h and, with inertia, for
+  /// p_{h-1}, as bodies must come to rest.
   bool ends(int k) const { return k >= sub_steps - (energy.inertial() ? 1 : 0); }
-  /// Returns (t̄₀, θ̄₀), the robot's pose on its straight path, after sub-step k.
+  /// Returns the robot's pose (t̄₀, θ̄₀) after sub-step k on its straight path to the final state.
   Vec3<T> robot_path(int k) const;
   /// Returns the speed penalty of object i in sub-step k.
   SpeedPenalty<T> speed(const Trajectory<T>& x, int k, int i) const;
@@ -32,9 +34,9 @@ struct ProblemLanes {
   int sub_steps, settling;
 };
 
-/// Trajectories with their forces and multipliers, an Iterate per lane. Contacts are numbered as in
-/// energy::SceneModel. Where bodies are jointed, the multipliers are those of all poses, w = J y; y
-/// is part of w.
+/// Iterates of several candidates, one per lane; see Iterate for the members. Contacts are numbered
+/// as in energy::SceneModel. With joints, the multipliers are those of all poses, w = J y
+/// (Articulation). They contain y.
 template <class T>
 struct Trajectory {
   Trajectory(const energy::SceneModel<T>& energy, int sub_steps);

@@ -13,26 +13,26 @@ inline constexpr std::array<std::string_view, 2> kReversePresets{"default", "pap
 
 /// Parameters of the reverse problem (eq. 6, 7) and its SQP (A.2). The default values are those of
 /// the preset `default`. A loader begins with reverse_preset(preset) and overwrites the fields that
-/// are given. Energies are in units of k_D/Δt², see core/NOTATION.md.
+/// the user gives. Energies are in units of k_D/Δt², see core/NOTATION.md.
 struct ReverseConfig {
   ReversePreset preset = ReversePreset::kDefault;
   KktMethod kkt = KktMethod::kBlockElimination;
   int max_iterations = 200;
-  double feasibility_tol = 1e-6;     // ‖C‖∞
-  double stationarity_tol = 1e-4;    // ‖∇L‖∞
-  double robot_weight = 0.2;         // w₀ of eq. (6)
-  double object_weight = 1.0;        // w_i, i > 0
-  double control_weight = 1e-3;      // ε of eq. (6)
-  double path_weight = 100.0;        // κ_x, action consistency; 0: the paper's objective
-  double heading_weight = 100.0;     // κ_θ
-  double speed_weight = 0.2;         // χ, limits the speed of objects to about the robot's
-  double terminal_weight = 300.0;    // K of the spring to the final state; 0: that state is fixed,
-                                     // and few rest states of Box2D have a predecessor then
-  double terminal_tolerance = 0.05;  // a solution that misses the final state by more fails [m]
+  double feasibility_tol = 1e-6;   // ‖C‖∞
+  double stationarity_tol = 1e-4;  // ‖∇L‖∞
+  double robot_weight = 0.2;       // w₀ of eq. (6)
+  double object_weight = 1.0;      // w_i, i > 0
+  double control_weight = 1e-3;    // ε of eq. (6)
+  double path_weight = 100.0;      // κ_x, action consistency; 0: the paper's objective
+  double heading_weight = 100.0;   // κ_θ
+  double speed_weight = 0.2;       // χ, limits the speed of objects to about the robot's
+  double terminal_weight = 300.0;  // K of the spring to the final state; 0: the state is fixed, but
+                                   // then few rest states of Box2D have a predecessor
+  double terminal_tolerance = 0.05;  // largest miss of the final state in a valid solution [m]
   double plain_barrier = 0.0;        // μ of the paper's -μ log g [J]; 0: the barrier of `physics`
   double proximal_start = 1.0;       // δ of the first iteration
-  int softenings = 2;                // how often the spring is softened, against poor minima
-  int late_contacts = 7;             // predecessors whose objects are met later in the push
+  int softenings = 2;                // how often the spring is softened, to leave poor minima
+  int late_contacts = 7;             // further predecessors: the robot meets objects later
 
   template <class Visitor>
   void visit(Visitor& v) {
@@ -57,11 +57,11 @@ struct ReverseConfig {
   }
 };
 
-/// Returns the values of `preset`. `paper` is App. E: the objective as printed, l1 merit, Hessian
-/// of the objective only, static start, 1000 iterations, fixed final state, plain barrier. The
-/// weight of the barrier is one at which the SQP converges at all: for 78 % of the candidates of
-/// Gathering's goal states that survive pruning, in a median of 147 iterations (`action48/paper` of
-/// the benchmarks).
+/// Returns the configuration of `preset`. The preset `paper` is App. E: the objective as printed,
+/// l1 merit, Hessian of the objective only, static start, 1000 iterations, fixed final state, plain
+/// barrier. Its barrier weight is chosen so that the SQP converges at all. It converges for 78 % of
+/// the unpruned candidates from Gathering's goal states, in a median of 147 iterations
+/// (`action48/paper` of the benchmarks).
 inline ReverseConfig reverse_preset(ReversePreset preset) {
   ReverseConfig config;
   if (preset == ReversePreset::kDefault) return config;

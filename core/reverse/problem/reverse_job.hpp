@@ -10,7 +10,8 @@
 
 namespace rtg::reverse {
 
-/// A request for the states from which the push `action` leads to `end`.
+/// A request for the predecessors of a state: the states from which the push `action` leads to
+/// `end`.
 struct ReverseJob {
   Poses end;
   int action = 0;
@@ -18,8 +19,8 @@ struct ReverseJob {
   bool operator==(const ReverseJob&) const = default;
 };
 
-/// Returns a hash of a state and an action. The hashes of two different pairs are equal with
-/// probability 2⁻⁶⁴.
+/// Returns a hash of a state and an action. Two different pairs have equal hashes with probability
+/// 2⁻⁶⁴.
 inline std::uint64_t key_of(const Poses& state, int action) {
   std::uint64_t key = hashed(0, static_cast<std::uint64_t>(action));
   for (const Pose& p : state)
@@ -31,9 +32,8 @@ inline std::uint64_t key_of(const ReverseJob& job) { return key_of(job.end, job.
 /// Largest number of predecessors in the answer to one job.
 inline constexpr int kMaxStarts = 8;
 
-/// Answer to a ReverseJob. If `status` is kConverged, `starts` holds 1 to kMaxStarts predecessors,
-/// all finite; those of ReverseSimulator begin with the start of the whole push. Otherwise `starts`
-/// is empty.
+/// Answer to a ReverseJob. If `status` is kConverged, `starts` holds 1 to kMaxStarts finite
+/// predecessors. Otherwise it is empty. ReverseSimulator puts the start of the whole push first.
 struct ReverseResult {
   SolveStatus status = SolveStatus::kNonFinite;
   int iterations = 0;

@@ -7,7 +7,7 @@
 namespace rtg::reverse {
 namespace {
 
-/// Evaluates one iterate of a candidate with the kernels.
+/// Evaluates one iterate with the Evaluator of the solvers.
 struct Evaluation {
   ProblemLanes<double> problem;
   Evaluator<double> evaluator;

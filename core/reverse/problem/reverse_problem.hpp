@@ -14,35 +14,39 @@ namespace rtg::reverse {
 ///        + κ_θ Σ_k (θ₀ - θ̄₀)²_k + χ Σ_k Σ_{i>0} q³_{k,i} + K/2 |p_h - p̄|² [+ K/2 |p_{h-1} - p̄|²]
 ///   s.t. Φ_k = ∂Ψ/∂p₊(p_k, p_{k-1}, p_{k-2}, c_k) = 0,   λ_k g(p_k) = μ̃ w(g(p_k)),   g > 0.
 ///
-/// p̄ is the given final state, (t̄₀, θ̄₀)_k is the straight path of the robot that ends in p̄, and
-/// q is half the squared speed of an object (SpeedPenalty). In dynamic mode, which has the term in
-/// brackets, the push begins at rest, p_{-1} = p_0, and ends at rest, in the state
-/// s_h = (p_h, p_{h-1}), after sub-steps in which the robot is held.
+/// p̄ is the given final state. (t̄₀, θ̄₀)_k is the straight path of the robot that ends in p̄.
+/// q_{k,i} is half the squared speed of object i, in units of the robot's speed (SpeedPenalty). The
+/// term in brackets belongs to dynamic mode. In this mode bodies are at rest before the push,
+/// p_{-1} = p_0. They also come to rest at its end, p_{h-1} = p_h, in `settling` sub-steps in which
+/// the robot is held.
 ///
-/// Departs from the paper: action consistency (κ) makes the controls those of the discrete action.
-/// The speed penalty (χ) keeps objects from outrunning the push by much. The normal forces λ are
-/// unknowns (relaxed complementarity), so the constraints are bilinear instead of containing 1/g. A
-/// stiff spring K holds the final state, so that every forward simulation is feasible. With the
-/// preset `paper`, κ = χ = 0, λ = μ̃ w/g throughout, w = 1 at any gap, and the final state is fixed.
+/// Departs from the paper: in four points, which the preset `paper` takes back.
+///
+///   - Action consistency (κ) makes the controls those of the discrete action. `paper`: κ = 0.
+///   - The speed penalty (χ) keeps objects from outrunning the push by much. `paper`: χ = 0.
+///   - The normal forces λ are unknowns (relaxed complementarity), so that the constraints are
+///     bilinear and contain no 1/g. `paper`: λ = μ̃ w/g, and w = 1 at any gap.
+///   - A stiff spring K holds the final state, so that every forward simulation is feasible.
+///     `paper`: the final state is fixed.
 struct ReverseProblem {
   const energy::StepEnergy& energy;
   const ReverseConfig& config;
   VectorXd end;        // p̄ [3·bodies]
   Vector2d direction;  // d(a)
   int sub_steps = 1;   // h
-  int settling = 0;    // number of last sub-steps, in which the robot is held
+  int settling = 0;    // sub-steps at the end in which the robot is held
 };
 
-/// A trajectory with its forces and multipliers; entry k belongs to the end of sub-step k, entry 0
-/// to the start. controls[0] and multipliers[0] are unused.
+/// An iterate of the SQP: a trajectory with its forces and multipliers. Entry k belongs to the end
+/// of sub-step k, entry 0 to the start. controls[0] and multipliers[0] are unused.
 struct Iterate {
   std::vector<VectorXd> p;            // p_k [3·bodies]
   std::vector<VectorXd> forces;       // λ_k [contacts]
   std::vector<Vector3d> controls;     // c_k
-  std::vector<VectorXd> multipliers;  // of Φ_k = 0 [dofs]; of jointed bodies J y, see Articulation
+  std::vector<VectorXd> multipliers;  // of Φ_k = 0 [dofs]; with joints J y, see Articulation
 };
 
-/// Returns the iterate at rest in the final state: λ = λ(g), c = 0.
+/// Returns the iterate that stays in the final state in all sub-steps: λ = λ(g), c = 0.
 Iterate static_iterate(const ReverseProblem& problem);
 
 double objective(const ReverseProblem& problem, const Iterate& x);

@@ -8,8 +8,8 @@ namespace rtg::reverse {
 /// Outcome of a reverse solve.
 enum class SolveStatus : std::int8_t {
   kConverged,         // constraints and stationarity below their tolerances
-  kPruned,            // the action cannot have been the last one; nothing was solved
-  kInfeasible,        // the solution misses the final state, or bodies overlap in it
+  kPruned,            // the action cannot have led to the final state; nothing was solved
+  kInfeasible,        // the solution misses the final state, or bodies overlap
   kIterationLimit,    // max_iterations reached
   kLineSearchFailed,  // no acceptable step, even with the largest regularisation
   kSingular,          // no descent step, or a KKT system that could not be factorised

@@ -5,14 +5,14 @@
 
 namespace rtg::reverse {
 
-/// The penalty on the motion (Δt, Δθ) of an object in one sub-step, relative to the robot's own way
-/// s = stride/h:
+/// The penalty on the motion (Δt, Δθ) of an object in one sub-step. It compares the motion with the
+/// distance s = stride/h that the robot moves:
 ///
 ///   χ q³,   q = (|Δt|² + (J/m) Δθ²) / (2 s²)
 ///
 /// The penalty is convex, negligible up to the robot's speed (q = ½), and steep beyond twice that
-/// speed. Departs from the paper: contact acts only at the ends of sub-steps, so without the
-/// penalty the optimiser finds trajectories on which a thin body jumps over the robot.
+/// speed. Departs from the paper: contact acts only at the ends of sub-steps. Without the penalty
+/// the optimiser finds trajectories on which a thin body jumps over the robot.
 template <class T>
 struct SpeedPenalty {
   T value;

@@ -5,11 +5,11 @@
 
 namespace rtg::reverse {
 
-/// Returns the lanes in which α step moves no pose by more than 1 m or 0.5 rad.
+/// Returns the lanes in which `alpha` times `step` moves no body by more than 1 m or 0.5 rad.
 template <class T>
 Mask<T> bounded(const StageStep<T>& step, const T& alpha);
 
-/// The fraction α of a Newton step, with the steps of the forces.
+/// A Newton step, with its force steps `forces`, scaled by `alpha`.
 template <class T>
 struct Move {
   const StageStep<T>& step;
@@ -17,8 +17,9 @@ struct Move {
   const T& alpha;
 };
 
-/// Sets `trial` to x + α step. The poses and multipliers of jointed bodies follow from the
-/// coordinates. The poses of fixed bodies in `trial` stay as they are.
+/// Sets `trial` to `x` plus the scaled step `move`. With joints, the step is one of the reduced
+/// coordinates, from which all poses and multipliers follow. Poses of fixed bodies in `trial` stay
+/// as they are.
 template <class T>
 void make_trial(const energy::SceneModel<T>& scene, const Trajectory<T>& x, const Move<T>& move,
                 Trajectory<T>& trial);

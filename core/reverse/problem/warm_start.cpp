@@ -33,8 +33,8 @@ WarmStart<T>::WarmStart(const ProblemLanes<T>& problem)
       lag_(static_cast<std::size_t>(scene_.contacts()), T(0.0)),
       moved_(start_.p) {}
 
-/// Returns the servo's target in sub-step k: the pose of the straight path after sub-step k, moved
-/// ahead, while the robot moves, by the servo's lag in steady motion.
+/// Returns the target of the robot's servo in sub-step k. It is the pose on the straight path after
+/// sub-step k. While the robot moves, the target leads by the lag of the servo in steady motion.
 template <class T>
 Vec3<T> WarmStart<T>::straight_target(int k) const {
   const T share = scene_.damping(0).mass * T(scene_.stride()) / scene_.control_bound()[0];
@@ -47,8 +47,8 @@ Vec3<T> WarmStart<T>::straight_target(int k) const {
   return pose;
 }
 
-/// Computes the forward step `to` = F(from) and stores its displacement in moved_. Returns the
-/// lanes in which it succeeded.
+/// Computes the forward step `to` = F(from) with the servo at `target`. Stores the displacement in
+/// moved_. Returns the lanes in which it succeeded.
 template <class T>
 Mask<T> WarmStart<T>::push(const energy::StepStart<T>& from, const Vec3<T>& target,
                            const Mask<T>& wanted, energy::Placement<T>& to) {
@@ -58,9 +58,9 @@ Mask<T> WarmStart<T>::push(const energy::StepStart<T>& from, const Vec3<T>& targ
   return found;
 }
 
-/// Sets `out` to `p` with the objects moved by -share·by_, for the largest share in 1, ½, ... that
-/// leaves the gaps open. Leaves `out` as it is where no share does. Ignores the robot's part of
-/// by_.
+/// Sets `out` to `p` with the objects moved by -share·by_. Takes the largest share of 1, ½, ¼, ...
+/// that leaves all gaps open. Lanes without such a share keep their `out`. The robot stays as in
+/// `p`.
 template <class T>
 void WarmStart<T>::move_back(const energy::Placement<T>& p, const Mask<T>& wanted,
                              energy::Placement<T>& out) {
@@ -76,8 +76,9 @@ void WarmStart<T>::move_back(const energy::Placement<T>& p, const Mask<T>& wante
   }
 }
 
-/// Sets start_ to the state before sub-step k, with objects from a mirrored forward step and the
-/// robot at mirrored_path(k - 1). Returns the lanes in which the forward steps succeeded.
+/// Changes start_ from the state after sub-step k to the state before it. The robot goes to
+/// mirrored_path(k - 1), the objects move by a mirrored forward step. Returns the lanes in which
+/// the forward steps succeeded.
 template <class T>
 Mask<T> WarmStart<T>::mirror(int k, const Mask<T>& wanted) {
   const T stride(scene_.stride());
@@ -111,7 +112,7 @@ Mask<T> WarmStart<T>::roll_out(const Mask<T>& wanted, Trajectory<T>& x) {
   return going;
 }
 
-/// Returns the robot's pose after sub-step k on the straight path, which here continues beyond its
+/// Returns the robot's pose after sub-step k on the straight path. Here the path goes on beyond its
 /// end as far as objects coast.
 template <class T>
 Vec3<T> WarmStart<T>::mirrored_path(int k) const {
@@ -123,8 +124,8 @@ Vec3<T> WarmStart<T>::mirrored_path(int k) const {
   return pose;
 }
 
-/// Puts the robot of start_ at mirrored_path(k) in those of the lanes `wanted` in which that is
-/// legal. Returns these lanes.
+/// Puts the robot of start_ at mirrored_path(k) in the lanes of `wanted` in which no body is in its
+/// way. Returns these lanes.
 template <class T>
 Mask<T> WarmStart<T>::begin_at(int k, const Mask<T>& wanted) {
   robot_back_ = start_;
@@ -140,8 +141,8 @@ Mask<T> WarmStart<T>::find(const Mask<T>& wanted, Trajectory<T>& x) {
   std::ranges::fill(moved_, T(0.0));
   start_.p = problem_.end;
   start_.update();
-  // Objects that have coasted move as if pushed by a robot that went on beyond the end of its path.
-  // Mirroring begins at the poses of such a robot.
+  // Objects coast as if a robot that goes on beyond the end of its path pushed them. So mirroring
+  // begins with the robot on that longer path.
   const int stop = problem_.sub_steps - problem_.settling;
   Mask<T> going = wanted, begun(false);
   for (int k = stop + static_cast<int>(std::ceil(scene_.coasting())); k > 0 && any(going); --k) {

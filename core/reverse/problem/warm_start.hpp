@@ -7,17 +7,21 @@
 
 namespace rtg::reverse {
 
-/// Computes feasible starts of the SQP.
+/// Computes feasible initial iterates of the SQP.
 template <class T>
 class WarmStart {
  public:
   /// `problem` must outlive the WarmStart.
   explicit WarmStart(const ProblemLanes<T>& problem);
 
-  /// Sets x to a forward simulation that ends near the final state. Its start results from mirrored
-  /// forward steps, p_{k-1} = p_k - (F(p_k) - p_k): against the push, contacts drag the objects.
-  /// Corrections towards F(p_{k-1}) = p_k would end nearer to the final state, but in worse minima.
-  /// Returns the lanes in which it succeeded.
+  /// Sets `x`, in the lanes `wanted`, to a push that ends near the final state. Returns the lanes
+  /// in which it succeeded. With F, the map of a forward step,
+  ///
+  ///   - mirrored steps p_{k-1} = p_k - (F(p_k) - p_k) go back from the final state to a start p_0,
+  ///   - a forward simulation from p_0 gives `x`.
+  ///
+  /// In a mirrored step, contacts drag the objects back against the push. Solving F(p_{k-1}) = p_k
+  /// instead would end nearer to the final state, but in worse minima of the SQP.
   Mask<T> find(const Mask<T>& wanted, Trajectory<T>& x);
 
  private:
@@ -34,10 +38,10 @@ class WarmStart {
   const energy::SceneModel<T>& scene_;
   energy::ForwardStep<T> step_;
   energy::Placement<T> start_, pushed_, still_, robot_back_, trial_;
-  std::vector<T> by_, lag_, moved_;  // moved_: displacement of the last push, guess for the next
+  std::vector<T> by_, lag_, moved_;  // moved_: displacement in the last step, guess for the next
 };
 
-/// Returns the warm start of one candidate, or nothing if a forward step fails.
+/// Returns the warm start of one problem, or nothing if a forward step fails.
 std::optional<Iterate> warm_start(const ReverseProblem& problem);
 
 }  // namespace rtg::reverse

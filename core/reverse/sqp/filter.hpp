@@ -5,7 +5,7 @@
 namespace rtg::reverse {
 
 /// Filter of [Fletcher & Leyffer 2002]: a set of pairs (θ, J) of constraint violation and
-/// objective. A trial point must be better than every pair of the set in θ or in J.
+/// objective. It accepts a trial point that is better than each pair in θ or in J.
 class Filter {
  public:
   struct Entry {
@@ -13,7 +13,8 @@ class Filter {
     double objective = 0.0;  // J
   };
 
-  /// Returns whether `trial` is better than every entry in violation or objective, by the margin.
+  /// Returns whether `trial` is better than each entry, in violation or in objective, by the
+  /// margin.
   bool accepts(const Entry& trial) const {
     for (const Entry& e : entries_)
       if (trial.violation >= (1.0 - kMargin) * e.violation &&

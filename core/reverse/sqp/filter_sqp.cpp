@@ -44,8 +44,7 @@ std::vector<SqpResult> FilterSqp<T>::solve(std::span<const ReverseProblem* const
   return std::move(results_);
 }
 
-/// Gives each lane without a candidate the next candidate of the queue. Returns whether any lane
-/// has a candidate then.
+/// Gives each idle lane the next candidate of the queue. Returns whether any lane is busy then.
 template <class T>
 bool FilterSqp<T>::refill() {
   for (int l = 0; l < kWidth<T>; ++l) {
@@ -74,7 +73,8 @@ void FilterSqp<T>::begin_phase(int l) {
   set_lane(beginning_, l, true);
 }
 
-/// Carries out `order`. Returns whether lane l continues with its iterate.
+/// Carries out `order` in lane l. Returns whether the lane is to take a step from its present
+/// iterate.
 template <class T>
 bool FilterSqp<T>::carry_out(int l, SqpStrategy::Order order) {
   if (order == SqpStrategy::Order::kBeginPhase) begin_phase(l);
@@ -100,7 +100,7 @@ void FilterSqp<T>::end_attempt(int l) {
     own.job = -1;
 }
 
-/// Evaluates the measures and gaps of x_ in the lanes that begin an attempt or a phase.
+/// Evaluates x_ in the lanes that begin an attempt or a phase, and stores the measures and gaps.
 template <class T>
 void FilterSqp<T>::evaluate_beginning() {
   for (std::vector<T>& level : trial_gaps_) std::ranges::fill(level, T(0.0));
@@ -111,7 +111,7 @@ void FilterSqp<T>::evaluate_beginning() {
   beginning_ = Mask<T>(false);
 }
 
-/// Takes `found` and trial_gaps_ as the measures and gaps of x_ in the lanes `where`.
+/// Stores `found` and trial_gaps_ as the measures and gaps of x_ in the lanes `where`.
 template <class T>
 void FilterSqp<T>::adopt(const Mask<T>& where, const Measures<T>& found) {
   now_ = {select(where, found.objective, now_.objective),
@@ -179,7 +179,8 @@ void FilterSqp<T>::line_search() {
     if (lane(searching, l)) carry_out(l, lanes_[l].strategy.reject_line_search());
 }
 
-/// Returns the lanes that accept the trial point.
+/// Returns the lanes of `legal` that accept the trial point with measures `then` and step length
+/// `alpha`.
 template <class T>
 Mask<T> FilterSqp<T>::accept(const Mask<T>& legal, const Measures<T>& then, double alpha) {
   Mask<T> accepted(false);

@@ -13,22 +13,23 @@
 namespace rtg::reverse {
 
 /// The SQP of the preset `default`, with the Hessian of the Lagrangian, a proximal term δ and a
-/// filter line search. Where the model is not convex along the step, the Hessian of the objective
-/// replaces that of the Lagrangian. Each lane of T solves one candidate at a time and then takes
-/// the next one. An SqpStrategy per lane controls the iterations.
+/// filter line search. Where the model is not convex along the step, it uses the Hessian of the
+/// objective instead. Each SIMD lane of T solves one candidate and then takes the next one from a
+/// queue. An SqpStrategy per lane controls the iterations.
 template <class T>
 class FilterSqp {
  public:
-  /// All problems must have the same numbers of bodies, joints and configuration as `like`.
+  /// All problems must have the numbers of bodies, the joints and the settings of `like`. `kkt`
+  /// solves the Newton systems.
   FilterSqp(const ReverseProblem& like, std::unique_ptr<StageSolver<T>> kkt);
 
-  /// Solves `problems` from the given starts, one per problem, or from warm starts if `starts` is
-  /// empty. The status is kNonFinite where a given start is not legal, as its barrier is infinite.
-  /// With warm starts the status is kInfeasible where bodies overlap in the final state.
+  /// Solves `problems` from `starts`, one per problem. If `starts` is empty, computes warm starts.
+  /// The status is kNonFinite if bodies overlap in a given start, as its objective is infinite.
+  /// With warm starts, the status is kInfeasible if bodies overlap in the final state.
   std::vector<SqpResult> solve(std::span<const ReverseProblem* const> problems,
                                std::span<const Iterate> starts = {});
 
-  /// Returns the share of busy lanes over all iterations so far.
+  /// Returns the share of busy lanes, averaged over all iterations so far.
   double occupancy() const {
     return static_cast<double>(busy_) / static_cast<double>(lane_iterations_);
   }

@@ -4,10 +4,10 @@
 
 namespace rtg::reverse {
 
-/// l1 merit function M = J + ν ‖C‖₁, eq. (9), exact once ν exceeds every multiplier.
+/// The l1 merit function M = J + ν ‖C‖₁, eq. (9). It is exact once ν exceeds every multiplier.
 class Merit {
  public:
-  /// Raises ν, if necessary, above the largest multiplier `multiplier` = ‖y‖∞, with a margin.
+  /// Raises ν, if necessary, above `multiplier` = ‖y‖∞ by a margin.
   void raise_weight_above(double multiplier) {
     weight_ = std::max(weight_, kMargin * multiplier + kLeast);
   }

@@ -16,7 +16,7 @@ namespace {
 constexpr double kArmijo = 1e-4;
 constexpr double kLeastStep = 1e-12;
 constexpr double kProximal = 1e-6;  // keeps the Hessian over the poses regular
-constexpr double kSafeguard = 1.0;  // ε_c [kg m]; far below it even free pushes converge slowly
+constexpr double kSafeguard = 1.0;  // ε_c [kg m]; if much smaller, even free pushes converge slowly
 
 class MeritSqp {
  public:
@@ -72,8 +72,8 @@ class MeritSqp {
     return top;
   }
 
-  /// Backtracks on the merit function, eq. (11), subject to the safeguard. Returns whether a trial
-  /// point was accepted.
+  /// Halves the step until the merit function decreases enough, eq. (11), and the safeguard agrees.
+  /// Returns whether a trial point was accepted.
   bool line_search() {
     const double before = merit_.value(now_.objective, now_.violation);
     const double slope = merit_.slope(newton_.objective_slope(x_, step_), now_.violation);

@@ -4,10 +4,10 @@
 
 namespace rtg::reverse {
 
-/// Solves `problem` with the paper's SQP, A.2: quadratic model with the Hessian of the objective,
-/// l1 merit function with a weight above the multipliers, Armijo line search, eq. (11), and the
-/// feasibility safeguard. The safeguard rejects a step that raises ‖C‖₁ to a value above ε_c. This
-/// SQP is the baseline of every comparison.
+/// Solves `problem` with the SQP of the paper (A.2), the baseline of every comparison. It uses the
+/// Hessian of the objective, an l1 merit function with a weight above the multipliers, and an
+/// Armijo line search, eq. (11). The feasibility safeguard rejects a step that raises ‖C‖₁ to a
+/// value above ε_c.
 SqpResult merit_sqp(const ReverseProblem& problem, const Iterate& start);
 
 }  // namespace rtg::reverse

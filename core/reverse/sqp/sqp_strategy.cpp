@@ -7,18 +7,15 @@ namespace rtg::reverse {
 namespace {
 
 constexpr double kLeastProximal = 1e-8, kMostProximal = 1e6;
-constexpr double kMaxViolation = 0.3;              // a step must not raise θ above this
-constexpr double kShortStep = 0.2;                 // step length up to which δ grows
+constexpr double kMaxViolation = 0.3;  // a step must not raise θ = ‖C‖₁ above this
+constexpr double kShortStep = 0.2;     // δ grows after steps that are this short
 constexpr double kGrowth = 4.0, kShrinkage = 0.1;  // factors of δ
 constexpr int kAttempts = 3;
 constexpr double kProximalGrowth = 4.0;  // factor of the first δ, per attempt
-// Softening. kIterationsBeforeSoftening: most iterations before the first softening; an attempt
-// whose iterate is not near a solution by then continues without softening. kSoftIterations,
-// kStiffIterations: most iterations with the soft spring, and between two softenings. kSoftness:
-// weight of the soft spring, as a share of K. kNearFeasible, kNearStationary: ‖C‖∞ and ‖∇L‖∞ below
-// which an iterate is near a solution.
+// Most iterations before the first softening, in a soft phase, and in a stiff phase between two.
 constexpr int kIterationsBeforeSoftening = 12, kSoftIterations = 6, kStiffIterations = 4;
-constexpr double kSoftness = 0.2;
+constexpr double kSoftness = 0.2;  // weight of the soft spring, as a share of K
+// An iterate is near a solution if its ‖C‖∞ and ‖∇L‖∞ are below these.
 constexpr double kNearFeasible = 1e-2, kNearStationary = 1e-1;
 
 }  // namespace
@@ -83,7 +80,7 @@ bool SqpStrategy::try_again(SolveStatus ended) {
   if (ended == SolveStatus::kConverged || (missed && missed_final_state_) ||
       attempts() == kAttempts || iterations_ == config_->max_iterations)
     return false;
-  // If the first attempt failed after softening, the same small δ may still suffice without it.
+  // If the first attempt failed after softening, the same small δ may suffice without softening.
   if (missed || attempt_ > 0 || !softened_) first_proximal_ *= kProximalGrowth;
   missed_final_state_ = missed_final_state_ || missed;
   ++attempt_;

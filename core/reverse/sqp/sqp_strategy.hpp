@@ -6,20 +6,26 @@
 
 namespace rtg::reverse {
 
-/// The control flow of one candidate's SQP. From the figures of the iterates alone it decides which
-/// Hessian and which δ the next step uses, whether a trial point is accepted, and how phases and
-/// attempts follow each other. It depends neither on lanes nor on trajectories.
+/// Controls the SQP of one candidate. It decides which Hessian and which δ the next step uses,
+/// whether a trial point is accepted, and when a phase ends. It also decides whether another
+/// attempt from the same start follows. It knows only a few figures of each iterate.
 ///
-/// The first attempt softens the spring K to the final state ReverseConfig::softenings times, for a
-/// few iterations each. The first softening begins when the iterate is near a solution; if it is
-/// not after a few iterations, the attempt continues without softening. Each later softening begins
-/// when the iterate is near a solution again, or after a few iterations in any case. Softening
-/// mostly leads out of poor minima, in which the push loses an object that it could drag along; now
-/// and then it leads into one.
+/// In the first attempt, phases with a soft spring K to the final state alternate with stiff
+/// phases. There are ReverseConfig::softenings soft phases, with a stiff phase before and after
+/// each.
 ///
-/// An attempt that fails or misses the final state is followed by another, up to three in all,
-/// without softening and mostly with a larger first δ. A solution that misses the final state is
-/// replaced only by a converged one. After a second solution that misses it, no attempt follows.
+///   - The first phase ends when the iterate is near a solution. If it is not after a few
+///     iterations, the attempt goes on without soft phases.
+///   - Each phase between the first and the last ends when the iterate is near a solution, or after
+///     a few iterations.
+///
+/// Softening mostly leads out of poor minima, in which the push loses an object that it could drag
+/// along. Now and then it leads into one.
+///
+/// A solution that misses the final state counts as a failure. After a failed attempt another one
+/// begins, up to three in all, without softening and mostly with a larger first δ. After a second
+/// solution that misses the final state, no attempt follows. The first such solution is the result,
+/// unless a later attempt converges.
 class SqpStrategy {
  public:
   enum class Order {
@@ -28,7 +34,7 @@ class SqpStrategy {
     kEndAttempt,  // with status()
   };
 
-  /// Figures of an iterate on which the decisions depend.
+  /// The figures of an iterate on which decisions depend.
   struct Figures {
     double objective = 0.0;
     double infeasibility = 0.0;  // ‖C‖∞
@@ -38,7 +44,7 @@ class SqpStrategy {
   explicit SqpStrategy(const ReverseConfig& config);
 
   double proximal() const { return proximal_; }  // δ
-  /// Returns whether the next step uses the Hessian of the Lagrangian; otherwise it uses that of
+  /// Returns whether the next step uses the Hessian of the Lagrangian. Otherwise it uses that of
   /// the objective.
   bool exact() const { return exact_; }
   /// Returns the present weight of the spring to the final state: K, or less in a soft phase.
@@ -47,24 +53,24 @@ class SqpStrategy {
   int attempts() const { return attempt_ + 1; }
   SolveStatus status() const { return status_; }
 
-  /// Decides how to continue at a linearised iterate; to be called at each of them. Counts an
-  /// iteration if it orders a step, unless that step repeats an iteration (reject_ascent()).
+  /// Decides how to continue at an iterate with the figures `at`. To be called after each
+  /// linearisation. If the order is kGoOn, counts an iteration, unless reject_ascent() has asked
+  /// for a repetition.
   Order judge(const Figures& at);
-  /// To be called if the system is singular or the model is not convex along the step. The
-  /// iteration is repeated with the Hessian of the objective, or, if it was made with that Hessian
-  /// already, with a larger δ.
+  /// Repeats the iteration with the Hessian of the objective or, if that was used already, with a
+  /// larger δ. To be called if the system is singular or the model is not convex along the step.
   Order reject_ascent();
-  /// To be called if no trial point was accepted: δ grows.
+  /// Repeats the iteration with a larger δ. To be called if the line search accepts no trial point.
   Order reject_line_search();
-  /// Decides whether to accept the trial point `next`, reached from `now` with step length `alpha`.
+  /// Returns whether to accept the trial point `next`, reached from `now` with step length `alpha`.
   /// If so, updates the filter and δ.
   bool accept(const Filter::Entry& now, const Filter::Entry& next, double alpha);
 
-  /// Returns whether the solution of the attempt that ended with status `ended` replaces those of
-  /// earlier attempts.
+  /// Returns whether the result of an attempt with status `ended` replaces those of earlier
+  /// attempts.
   bool replaces_result(SolveStatus ended) const;
-  /// Begins another attempt after one that ended with status `ended`. Returns false if no further
-  /// attempt follows.
+  /// Begins another attempt after one with status `ended`. Returns false if no further attempt
+  /// follows.
   bool try_again(SolveStatus ended);
 
  private:
@@ -78,8 +84,8 @@ class SqpStrategy {
   int attempt_ = 0, iterations_ = 0;
   double proximal_ = 1.0, first_proximal_;  // δ; δ of a phase's first iteration
   bool exact_ = true;
-  int phases_left_ = 0;              // of this attempt; odd: the spring is soft
-  int iterations_left_ = 0;          // of this phase, if others follow
+  int phases_left_ = 0;              // phases to come in this attempt; odd: the spring is soft
+  int iterations_left_ = 0;          // in this phase, if others follow
   bool softened_ = false;            // whether any attempt has had a soft phase
   bool missed_final_state_ = false;  // whether an earlier attempt missed the final state
   SolveStatus status_ = SolveStatus::kNonFinite;

@@ -60,7 +60,7 @@ void StartQueue<T>::find_starts(const Mask<T>& wanted) {
   const Mask<T> open = energy.least_gap(x_.p[0]) > T(0.0) && energy.separated(x_.p[0]);
   warm_x_ = x_;
   const Mask<T> found = warm_.find(wanted, warm_x_);
-  if (problem_.fixed_end()) {  // a forward simulation only ends near the final state
+  if (problem_.fixed_end()) {  // a forward simulation ends near the final state, not in it
     warm_x_.p.back() = x_.p.back();
     warm_x_.forces.back() = x_.forces.back();
   }

@@ -7,8 +7,8 @@
 
 namespace rtg::reverse {
 
-/// Queue of the candidates of a batch, with the trajectories at which their SQP begins. The
-/// trajectories of as many candidates as T has lanes are computed together.
+/// Queue of candidates with the trajectories from which their SQP starts. It computes the
+/// trajectories of several candidates together, one per SIMD lane of T.
 template <class T>
 class StartQueue {
  public:
@@ -16,13 +16,13 @@ class StartQueue {
   StartQueue(const StartQueue&) = delete;  // members refer to each other
   StartQueue& operator=(const StartQueue&) = delete;
 
-  /// Begins a batch. `starts` has one entry per problem or is empty. If it is empty, the queue
-  /// computes warm starts and, where that fails, uses the static iterate.
+  /// Fills the queue with `problems`. `starts` has one trajectory per problem or is empty. If it is
+  /// empty, the queue computes warm starts. Where that fails, it uses the static iterate.
   void begin(std::span<const ReverseProblem* const> problems, std::span<const Iterate> starts);
 
-  /// Copies the trajectory of the next candidate to lane l of `x`. Returns the candidate's index,
-  /// or -1 if no candidate is left. Without given starts, skips candidates in whose final state
-  /// bodies overlap, as they have no warm start.
+  /// Takes the next candidate from the queue and copies its trajectory to lane l of `x`. Returns
+  /// the index of the candidate, or -1 if none is left. If no starts were given, skips candidates
+  /// with overlapping bodies in the final state, as they have no warm start.
   int take(int l, Trajectory<T>& x);
 
  private:

@@ -1,8 +1,7 @@
 """The only Python module that uses the LCM library.
 
-LCM may lose, duplicate and reorder messages, and any program may send. So a message reaches a
-handler only if it has the right type and run and finite numbers. Other messages are dropped and
-counted.
+LCM may lose, duplicate and reorder messages. Any program may send messages on the same channels. So
+a Bus checks type, run and finite numbers of each message. It drops and counts all others.
 """
 
 from __future__ import annotations
@@ -24,13 +23,16 @@ from rtg.errors import RunError
 PROTOCOL = 1  # version of the rules in msgs/CHANNELS.md
 MAX_MESSAGE_BYTES = 60_000
 RECEIVE_BUFFER = 4 << 20  # [bytes]; the kernel's default of 208 kB loses messages in every burst
-QUEUE_CAPACITY = 1000  # messages; LCM's default of 30 silently drops new messages
+QUEUE_CAPACITY = 1000  # waiting messages; LCM silently drops further ones, by default from 30 on
 
 Message = TypeVar("Message")
 
 
 def run_key(run: str) -> int:
-    """Returns `header.run` for a run name: its 64-bit FNV-1a hash as a signed number."""
+    """Returns the value of `header.run` for the run named `run`.
+
+    It is the 64-bit FNV-1a hash of the name, as a signed number.
+    """
     key = 0xCBF29CE484222325
     for byte in run.encode():
         key = (key ^ byte) * 0x100000001B3 % 2**64
@@ -49,7 +51,10 @@ def _is_finite(message: Any) -> bool:
 
 
 def decoded(message_type: Any, data: bytes) -> Any:
-    """Decodes a message of any run; returns the name of the error counter if it is invalid."""
+    """Decodes `data` as a message of any run.
+
+    Returns the name of the error counter to increase if the message is invalid.
+    """
     if len(data) > MAX_MESSAGE_BYTES:
         return "bus.too_long"
     try:
@@ -63,9 +68,9 @@ def decoded(message_type: Any, data: bytes) -> Any:
 
 
 def _receive_buffer(port: int) -> int:
-    """Returns the receive buffer size [bytes] of this process's UDP socket on `port`, 0 if none.
+    """Returns the receive buffer size [bytes] of LCM's socket on UDP port `port`; 0 if none.
 
-    Searches all open descriptors, because LCM does not expose that of its socket.
+    Searches all open file descriptors of this process, because LCM does not expose its socket.
     """
     for number in map(int, os.listdir("/proc/self/fd")):
         try:
@@ -95,11 +100,14 @@ def _small_buffer(url: str) -> str | None:
 class Bus:
     """Publishes and receives the messages of one run.
 
-    `url`: "udpm://GROUP:PORT[?ttl=N]" or "memq://" (one process, for tests); the C++ configuration
-    loader checks it. ttl defaults to 0, which restricts messages to this machine. The constructor
-    raises RunError if the network cannot be opened; subscribe() and watch() raise it if sent
-    messages do not come back. `warning` is set by the first subscription: a text that the owner of
-    the bus should show to the user, or None.
+    `url`: "udpm://GROUP:PORT[?ttl=N]", or "memq://" (one process, for tests). The C++ configuration
+    loader checks it. The default ttl of 0 keeps messages on this machine.
+
+    `warning`: a text that the owner should show to the user, or None. The first subscription sets
+    it.
+
+    The constructor raises RunError if the network cannot be opened. subscribe() and watch() raise
+    RunError if this process does not receive its own messages.
     """
 
     def __init__(self, url: str, run: str) -> None:
@@ -117,9 +125,10 @@ class Bus:
         self._failure: BaseException | None = None
 
     def publish(self, channel: str, message: Any) -> None:
-        """Fills in the header and sends. A datagram that the kernel refuses is lost.
+        """Fills in the header of `message` and sends it on `channel`.
 
-        Raises ValueError if the message is longer than MAX_MESSAGE_BYTES.
+        A message that the kernel refuses to send is lost and counted. Raises ValueError if the
+        message is longer than MAX_MESSAGE_BYTES.
         """
         message.header.protocol = PROTOCOL
         message.header.run = self._run
@@ -130,7 +139,7 @@ class Bus:
         self.send(channel, data)
 
     def send(self, channel: str, data: bytes) -> None:
-        """Sends `data` unchanged; tests use it for messages of unknown senders."""
+        """Sends `data` without filling in a header. Tests use it to imitate other programs."""
         try:
             self._lcm.publish(channel, data)
         except OSError:
@@ -149,13 +158,14 @@ class Bus:
     def watch(self, pattern: str, handler: Callable[[str, bytes], None]) -> None:
         """Passes the undecoded messages of all channels that match `pattern` to `handler`.
 
-        `pattern` is a regular expression. Raises RunError if sent messages do not come back.
+        `pattern` is a regular expression. Raises RunError if this process does not receive its own
+        messages.
         """
 
         def receive(channel: str, data: bytes) -> None:
             try:
                 handler(channel, data)
-            except BaseException as error:  # cannot pass LCM's C frames; spin() raises it
+            except BaseException as error:  # cannot pass through LCM's C code; spin() raises it
                 self._failure = self._failure or error
 
         subscription = self._lcm.subscribe(pattern, receive)
@@ -167,13 +177,13 @@ class Bus:
         self._subscriptions.append(subscription)
 
     def close(self) -> None:
-        """Ends all subscriptions and releases the handlers, which LCM would keep until exit."""
+        """Ends all subscriptions. LCM would otherwise keep the handlers until the process ends."""
         for subscription in self._subscriptions:
             self._lcm.unsubscribe(subscription)
         self._subscriptions.clear()
 
     def decode(self, message_type: type[Message], data: bytes) -> Message | None:
-        """Decodes a message of this run. Returns None for any other and counts the reason."""
+        """Decodes a message of this run. Drops any other: counts the reason and returns None."""
         message = decoded(message_type, data)
         if isinstance(message, str):
             self.counters[message] += 1
@@ -187,16 +197,17 @@ class Bus:
         return None
 
     def spin(self, timeout: float) -> int:
-        """Waits at most `timeout` s for a message, handles all that arrived, returns their number.
+        """Handles all messages that have arrived and returns their number.
 
-        Raises the first exception of a handler. A signal ends the wait early.
+        Waits at most `timeout` s for the first one; a signal ends the wait early. Raises the first
+        exception of a handler.
         """
         handled, wait_ms = 0, int(timeout * 1000)
         while handled < QUEUE_CAPACITY:
             try:
                 if self._lcm.handle_timeout(wait_ms) <= 0:
                     break
-            except OSError:  # LCM reports an interrupting signal, and any other error, so
+            except OSError:  # LCM's report of an interrupting signal or any other error
                 self.counters["bus.interrupted"] += 1
                 break
             handled, wait_ms = handled + 1, 0

@@ -1,4 +1,7 @@
-"""The traffic on the channels: counts, rates, node states. Does no I/O; the caller passes times."""
+"""Statistics of all channels: message counts, rates, and states of nodes (processes of a run).
+
+Does no I/O; the caller passes messages and times.
+"""
 
 from __future__ import annotations
 
@@ -18,14 +21,17 @@ _SELF_TEST_CHANNEL = "LCM_SELF_TEST"
 
 
 class Rates:
-    """The rates of several counts [1/s] over the last RATE_WINDOW seconds."""
+    """The rates of change of several counters [1/s] over the last RATE_WINDOW seconds."""
 
     def __init__(self, size: int) -> None:
         self._samples: deque[tuple[float, tuple[float, ...]]] = deque()
         self.per_second = (0.0,) * size
 
     def sample(self, now: float, *counts: float) -> None:
-        """Adds the counts at time `now` [s]; ignores a time that is not later than the last."""
+        """Adds the values `counts` of the counters at time `now` [s].
+
+        Ignores them if `now` is not later than the previous time.
+        """
         if self._samples and now <= self._samples[-1][0]:
             return
         self._samples.append((now, counts))
@@ -55,7 +61,7 @@ class _Node:
 
 
 class ChannelRow(NamedTuple):
-    """The display values of a channel."""
+    """The values that a display shows for a channel."""
 
     channel: str
     type_name: str
@@ -66,7 +72,7 @@ class ChannelRow(NamedTuple):
 
 
 class NodeRow(NamedTuple):
-    """The display values of a process."""
+    """The values that a display shows for a process."""
 
     name: str
     pid: int
@@ -78,13 +84,13 @@ class NodeRow(NamedTuple):
 
 
 class ChannelMonitor:
-    """Counts the messages per channel and keeps the last status of every node, for all runs."""
+    """Counts the messages on each channel and keeps the last status of each node, of all runs."""
 
     def __init__(self) -> None:
         self._channels: dict[str, _Channel] = {}
         self._nodes: dict[tuple[int, str, int], _Node] = {}
         self._progress: Any = None
-        self._finished_runs: set[int] = set()  # runs whose generation is over
+        self._finished_runs: set[int] = set()  # run_key() of the runs whose data generation is over
         self._handlers: dict[str, Callable[[Any, float], None]] = {
             "node_status_t": self._on_status,
             "search_progress_t": self._on_progress,
@@ -118,14 +124,14 @@ class ChannelMonitor:
         return [_channel_row(name, stats) for name, stats in sorted(self._channels.items())]
 
     def nodes(self, now: float) -> list[NodeRow]:
-        """Returns all nodes that have sent a status, sorted by run and name. now [s]"""
+        """Returns the states of all nodes at time `now` [s], sorted by run and name."""
         return [
             _node_row(node, now - node.arrived_at, run in self._finished_runs and name != "trainer")
             for (run, name, _), node in sorted(self._nodes.items())
         ]
 
     def progress(self) -> str:
-        """Describes the progress of the generation in one line; empty before a progress message."""
+        """Describes the progress of data generation in one line; "" before any message on it."""
         p = self._progress
         if p is None:
             return ""

@@ -16,9 +16,9 @@ _TYPES_JAR = paths.BUILD / "msgs" / "rtg_msgs.jar"
 
 
 def lcm_program(name: str) -> Path:
-    """Returns the path of the binary `name`. Raises RunError if the package lcm is missing.
+    """Returns the path of LCM's binary `name`. Raises RunError if the package lcm is missing.
 
-    The script of the same name in .venv/bin would only start the binary as a child process.
+    It is not the script of that name in .venv/bin, which would start the binary as a child process.
     """
     spec = importlib.util.find_spec("lcm")
     if spec is None or spec.origin is None:
@@ -32,7 +32,10 @@ def logger_command(url: str, log: Path) -> list[str | Path]:
 
 
 def _build_types_jar() -> None:
-    """Builds the jar, which the main build leaves out if it finds no JDK. Raises RunError."""
+    """Builds the message types for Java. The main build skips them without a JDK.
+
+    Raises RunError if the build fails.
+    """
     for command in (
         ["cmake", "--preset", "release"],
         ["cmake", "--build", "--preset", "release", "--target", "rtg_msgs_jar"],

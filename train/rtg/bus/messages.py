@@ -27,7 +27,10 @@ def message_type(name: str) -> Any:
 
 
 def type_of(data: bytes) -> Any | None:
-    """Returns the class of an encoded message, by LCM's fingerprint; None if it is not of RTG."""
+    """Returns the class of the encoded message `data`, or None if it is no message of RTG.
+
+    The first 8 bytes, LCM's fingerprint, identify the class.
+    """
     return _BY_FINGERPRINT.get(data[:8])
 
 

@@ -31,10 +31,11 @@ def _echo(group: str, wait: float) -> str | None:
 
 
 def defect(url: str, wait: float = 1.0) -> str | None:
-    """Returns why messages on the bus at `url` do not arrive, with a remedy; None if they arrive.
+    """Tests multicast: returns why messages on the bus at `url` do not arrive, and a remedy.
 
-    Sends one datagram to the multicast group of `url`, at a free port. It uses ttl 0 and the
-    interface that the routing table selects, as LCM does. `wait`: time limit [s].
+    Returns None if they arrive. The test sends one datagram to the multicast group of `url`, at a
+    free port. Like LCM, it uses ttl 0 and the interface from the routing table.
+    `wait`: time limit [s].
     """
     match = re.match(r"udpm://([\d.]+):\d+", url)
     if match is None:

@@ -1,4 +1,4 @@
-"""Publishes the state and the counters of a process, for displays, on RTG_STATUS."""
+"""Publishes state and counters of a process on the channel RTG_STATUS, for displays."""
 
 from __future__ import annotations
 
@@ -12,14 +12,17 @@ ENDED = "ended"  # the last state that a process publishes before it exits
 
 
 class NodeStatus:
-    """Publishes the status of one process of the graph."""
+    """Publishes the status of this process, which `node` and `number` identify in the run."""
 
     def __init__(self, bus: Bus, node: str, number: int = 0) -> None:
         self._bus, self._node, self._number = bus, node, number
         self._published, self._published_at = "", -1e9
 
     def tick(self, state: str, done: int) -> None:
-        """Publishes a new state at once, else every INTERVAL; may be called at any rate."""
+        """Publishes the status: at once if `state` is new, else at most every INTERVAL.
+
+        `done`: number of completed items of work. May be called at any rate.
+        """
         now = time.monotonic()
         if state == self._published and now - self._published_at < INTERVAL:
             return

@@ -41,7 +41,7 @@ def bandwidth(bytes_per_second: float) -> str:
 
 
 def _table(*columns: str) -> Table:
-    """Returns an empty table. A leading ">" in a column name means: align to the right."""
+    """Returns an empty table with `columns`. A ">" before a name aligns the column to the right."""
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
     for column in columns:
         right = column.startswith(">")
@@ -83,7 +83,7 @@ def node_table(rows: list[NodeRow]) -> Table:
 
 
 def picture(monitor: ChannelMonitor, now: float) -> RenderableType:
-    """Returns a view of all data of the monitor at time `now` [s]."""
+    """Returns the display of all data of `monitor` at time `now` [s]."""
     channels, nodes = monitor.channels(), monitor.nodes(now)
     if not channels:
         return Text(_NO_MESSAGES)
@@ -136,7 +136,7 @@ class SpyApp(App[None]):
 
 
 def watch_plainly(bus: Bus, monitor: ChannelMonitor, seconds: float | None, out: TextIO) -> None:
-    """Prints one picture after `seconds`, or one every 2 s without end if None."""
+    """Prints one picture() after `seconds`. If None, prints one every 2 s without end."""
     console = Console(file=out, width=_WIDTH, highlight=False)
     start = sampled = printed = time.monotonic()
     while seconds is None or time.monotonic() - start < seconds:

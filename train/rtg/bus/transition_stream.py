@@ -1,4 +1,7 @@
-"""The consumer of the transition stream: gets every row once, in order, despite message loss."""
+"""The consumer of the transition stream: gets each row once, in order, despite message loss.
+
+A row is a transition. Rows are numbered from 0 in the order of generation.
+"""
 
 from __future__ import annotations
 
@@ -18,28 +21,29 @@ ACK_INTERVAL = 0.5  # [s], between acknowledgements without progress
 RETRY_INTERVAL = 0.1  # [s], between two requests for the same rows
 MIN_INTERVAL = 0.01  # [s], between any two acknowledgements
 MAX_RANGES = 32  # maximum number of ranges in one acknowledgement
-# Number of acknowledgements of the complete stream sent at once: a consumer may then exit, so they
-# must survive message loss.
+# Number of acknowledgements sent at once when the stream is complete. The consumer may then exit,
+# so one of them must survive message loss.
 FINAL_ACKS = 10
 
 
 class Ack(NamedTuple):
-    """An acknowledgement, the message of a consumer to the server."""
+    """An acknowledgement: the message of a consumer to the sender of the rows."""
 
-    cursor: int  # rows below have been consumed
-    credit: int  # number of rows accepted beyond the cursor; 0: has the complete stream
-    missing: list[tuple[int, int]]  # requested ranges, first and last row
+    cursor: int  # number of the next row to consume
+    credit: int  # number of rows accepted from the cursor on; 0: the consumer has all rows
+    missing: list[tuple[int, int]]  # ranges of rows to send again, first and last row
 
 
 class StreamCursor:
-    """The protocol of a consumer, without I/O: takes messages, returns ordered rows and Acks.
+    """The protocol of a consumer, without I/O.
 
-    Holds at most `credit` rows beyond the cursor. `now` is any monotonic clock [s].
+    It takes received messages, and returns rows in order and Acks to send. It holds at most
+    `credit` rows beyond the cursor. `now` is the time of a monotonic clock [s].
     """
 
     def __init__(self, credit: int) -> None:
         self.credit = credit
-        self.cursor = 0  # rows below have been returned
+        self.cursor = 0  # number of the next row to return
         self.count = 0  # number of rows known to exist
         self.sealed = False  # True if `count` is final
         self._held: dict[int, tuple[int, Any]] = {}  # first row -> (end, rows), may overlap
@@ -51,9 +55,10 @@ class StreamCursor:
         self._final_acks_left = FINAL_ACKS
 
     def on_rows(self, first: int, rows: Any, size: int, now: float) -> list[tuple[Any, int]]:
-        """Takes rows first ... first + size - 1; ignores them if they exceed the credit.
+        """Takes the received rows `first` ... `first` + `size` - 1.
 
-        Returns the pieces that are next in order, each with the number of leading rows to skip.
+        Returns the batches of `rows` that are next in order, each with the number of leading rows
+        to skip. Ignores rows beyond the credit.
         """
         self._arrived_at = now
         end = first + size
@@ -69,7 +74,7 @@ class StreamCursor:
         self.sealed = self.sealed or sealed
 
     def ack_due(self, now: float) -> Ack | None:
-        """Returns the next message to the server; to be called until it returns None."""
+        """Returns the next Ack to send, or None. To be called until it returns None."""
         if self.complete:
             return self._final_ack(now)
         missing = self._missing()
@@ -100,7 +105,7 @@ class StreamCursor:
 
     @property
     def complete(self) -> bool:
-        """True if the stream is sealed and every row has been returned."""
+        """True if the number of rows is final and every row has been returned."""
         return self.sealed and self.cursor == self.count
 
     def _in_order(self) -> list[tuple[Any, int]]:
@@ -115,7 +120,7 @@ class StreamCursor:
         return pieces
 
     def _missing(self) -> list[tuple[int, int]]:
-        """Returns the missing ranges within the credit, at most MAX_RANGES, as (first, last)."""
+        """Returns at most MAX_RANGES ranges (first, last) of missing rows within the credit."""
         gaps, at = [], self.cursor
         for first in sorted(self._held):
             if first > at:
@@ -128,7 +133,10 @@ class StreamCursor:
 
 
 def to_rows(message: Any, bodies: int, headings: int) -> Rows | None:
-    """Returns the rows of a transition_batch_t, or None if they are invalid for this task."""
+    """Returns the rows of a transition_batch_t, or None if they are invalid.
+
+    `bodies` and `headings`: the task's numbers of bodies and of actions.
+    """
     n = message.n
     if n < 1 or message.first < 0 or message.n_poses != n * bodies * 3:
         return None
@@ -150,7 +158,9 @@ def to_rows(message: Any, bodies: int, headings: int) -> Rows | None:
 
 
 class TransitionStream:
-    """Passes every transition of the run to `sink`, once and in sequence order.
+    """Passes every transition of the run to `sink`, once and in order.
+
+    `credit`: largest number of rows that the sender may send in advance.
 
     stream = TransitionStream(bus, bodies=7, headings=48, sink=buffer.add)
     while not stream.complete:
@@ -177,7 +187,7 @@ class TransitionStream:
     def poll(self, timeout: float) -> int:
         """Waits at most `timeout` s for messages; returns the number of rows passed to the sink.
 
-        Raises RunError if the coordinator was restarted.
+        Raises RunError if the coordinator, which sends the rows, was restarted.
         """
         before = self._cursor.cursor
         self._bus.spin(timeout)
@@ -195,12 +205,12 @@ class TransitionStream:
 
     @property
     def lost(self) -> int:
-        """Number of rows known to exist and not received; 0 when the stream is complete."""
+        """Number of rows that exist but have not been received; 0 once the stream is complete."""
         return self._cursor.count - self._cursor.cursor
 
     @property
     def complete(self) -> bool:
-        """True if the stream is sealed and every row has been passed to the sink."""
+        """True if the number of rows is final and the sink has received every row."""
         return self._cursor.complete
 
     def _on_batch(self, message: Any) -> None:

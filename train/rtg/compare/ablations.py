@@ -11,31 +11,31 @@ from rtg.run import effective_config
 from rtg.run.run_args import Override
 
 PAPER_PRESET = "train.preset=paper"
-# Keys of `train` that are equal in all cells, so that the figures of the cells can be compared.
+# Keys of `train` that are equal in all ablations, so that their figures can be compared.
 _EVALUATION_KEYS = ("eval_every", "stop_at_success")
-# Values of `search` that switch a part of it off or stand at the other end of its range: they show
-# how much the part contributes. TREE_ABLATIONS applies only to generators that grow trees.
+# Values of `search` that switch one part of it off, or set it to the other end of its range. They
+# show how much the part contributes. TREE_ABLATIONS applies only to generators that grow trees.
 BRANCH_ABLATIONS: dict[str, tuple[Any, ...]] = {
     "branches": (0,),
     "near_branches": (0,),
-    "near_headings": (24,),  # of 48, to either side: all headings count as near
+    "near_headings": (24,),  # of 48, in either direction: all headings count as near
 }
 TREE_ABLATIONS: dict[str, tuple[Any, ...]] = {
     "verified_plans": (1,),
     "whole_plan_share": (0, 1),
     "contact_quota": (0,),
-    "gap_tolerance": (0.05, 100),  # keeps only steps with hardly any miss, keeps all
+    "gap_tolerance": (0.05, 100),  # [m]; keeps only steps that replay almost exactly; keeps all
     "predecessors_per_solve": (1,),
     "free_moves": (0, 48),  # none, all of them
     "nodes_per_layout": (100000,),  # no limit
     "root_draws": (1,),
     "patience": (1000,),  # no limit
 }
-# Keys of `search` without an ablation: sizes, and keys that the method decides.
+# Keys of `search` without an ablation: sizes, and keys that the method sets.
 SIZE_KEYS = ("transitions", "breadth", "depth")
 SET_BY_METHOD = ("generator", "randomise")
 _TREE_GENERATORS = ("rrbs", "naive")  # generators that grow trees
-# Keys of `train` that have a meaning only together.
+# Groups of keys of `train` that only have a meaning together.
 _KEY_GROUPS = (
     ("target_sync", "target_rate"),
     ("epsilon_start", "epsilon_end", "epsilon_share"),
@@ -45,14 +45,14 @@ Settings = tuple[str, ...]
 
 
 def ablations(file: Path, common: Sequence[Override]) -> list[Settings]:
-    """Returns the settings of each cell of a task, in this order:
+    """Returns the settings of each ablation of the task in `file`, in this order:
 
     - no change;
-    - each part of the search taken away, if transitions are generated;
+    - each part of the search switched off, if transitions are generated;
     - each value of `train` that differs from the preset `paper`, set to the value of `paper`;
     - the whole preset `paper`, unless it is in use already.
 
-    `common` holds the overrides that all cells share. Raises UserError.
+    `common` holds the overrides that all ablations share. Raises UserError.
     """
     values = effective_config.values(effective_config.load(file, common))
     current = values["train"]
@@ -67,7 +67,7 @@ def ablations(file: Path, common: Sequence[Override]) -> list[Settings]:
 
 
 def search_ablations(search: dict[str, Any]) -> list[Settings]:
-    """Returns, for each part of the search, the settings that take it away or change it.
+    """Returns the settings that switch off or change one part of the search each.
 
     Skips values that `search` has already.
     """
@@ -83,7 +83,7 @@ def search_ablations(search: dict[str, Any]) -> list[Settings]:
 
 
 def departures(current: dict[str, Any], paper: dict[str, Any]) -> list[Settings]:
-    """Returns, for each difference from `paper`, the settings that take the value of `paper`.
+    """Returns, for each difference of `current` from `paper`, the settings that undo it.
 
     Keys of one group of _KEY_GROUPS count as one difference.
     """

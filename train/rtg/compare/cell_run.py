@@ -1,4 +1,7 @@
-"""The run of one cell of a comparison: its command, its folder and its state."""
+"""The run of one cell of a comparison: its command, its folder and its state.
+
+A cell is a combination of task, method, settings and seed.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ from rtg.run import plan as run_plan
 from rtg.run.effective_config import Values
 from rtg.run.run_args import Override
 
-# Keys of `train` that runs of different methods must have in common.
+# Keys of `train` that must be equal in runs of different methods.
 _SHARED_KEYS = (
     "interactions",
     "eval_every",
@@ -27,7 +30,7 @@ _SHARED_KEYS = (
     "stop_at_success",
     "stop_evaluations",
 )
-# Limits to one thread the libraries that would start a thread per core.
+# Environment variables that limit numerical libraries to one thread.
 _ONE_THREAD = [f"{name}_NUM_THREADS=1" for name in ("OMP", "OPENBLAS", "MKL")]
 
 
@@ -38,7 +41,7 @@ class CellRun:
     cell: Cell
     folder: Path
     arguments: tuple[str, ...]  # of `rtg run`, without --out
-    generation_key: str | None = None  # as from shared_transitions.generation_key()
+    generation_key: str | None = None  # see shared_transitions.generation_key()
     device: str = "auto"  # train.device
 
     @property
@@ -47,7 +50,7 @@ class CellRun:
 
     @property
     def log(self) -> Path:
-        """The log file. It lies beside the folder, because the run itself makes the folder."""
+        """The log file. It lies beside the run folder, because the run makes that folder."""
         return self.folder.with_name(f"{self.folder.name}.log")
 
     @property
@@ -62,7 +65,7 @@ class CellRun:
 
     @property
     def pending_generation_key(self) -> str | None:
-        """The key of the transitions that the run has yet to generate; None if there are none."""
+        """The key of the transitions that the run must still generate; None if none."""
         return None if shared_transitions.are_there(self.folder) else self.generation_key
 
     def begin(self) -> None:
@@ -71,10 +74,10 @@ class CellRun:
         run_plan.make_plan(run_args.parse([*self.arguments, "--out", str(self.folder)]))
 
     def command(self) -> list[str]:
-        """Returns the command that begins or resumes the run.
+        """Returns the command that begins or resumes the run, after preparing the run folder.
 
-        First takes over the transitions of another run if they have the same key, and removes the
-        partial configurations of a killed run. Raises UserError.
+        Takes over transitions with the same key from another run. Removes partial configurations
+        that a killed run has left. Raises UserError.
         """
         if self.pending_generation_key:
             place = self.folder.parents[1], self.folder.name
@@ -99,10 +102,13 @@ def module_command(module: str, *words: str) -> list[str]:
 
 
 def prepare_runs(args: ReproduceArgs) -> list[CellRun]:
-    """Returns the runs of all cells.
+    """Returns the runs of all cells, without starting them.
 
-    Raises UserError, before any run has started, if the configuration of a cell is illegal, cannot
-    run on this machine, equals that of another cell or does not fit the runs in the folder.
+    Raises UserError if the configuration of a cell
+    - is illegal,
+    - cannot run on this machine,
+    - equals that of another cell, or
+    - does not fit the runs in the comparison folder.
     """
     runs, seen, checked = [], dict[str, str](), set[Path]()
     for cell in args.cells:
@@ -133,7 +139,7 @@ def _arguments(args: ReproduceArgs, cell: Cell) -> tuple[str, ...]:
 
 
 def _overrides(args: ReproduceArgs, cell: Cell) -> list[Override]:
-    """Returns the overrides that _arguments() contains, each with the flag that the user typed."""
+    """Returns the overrides in _arguments(), each with the flag that the user typed."""
     overrides = [Override(f"--set {setting}", setting) for setting in args.settings]
     overrides += [Override(f"--sweep {setting}", setting) for setting in cell.settings]
     return [*overrides, *run_args.parse(_flags(cell)).overrides]
@@ -159,9 +165,9 @@ def _remove_partial_configs(folder: Path) -> None:
 
 
 def _check_seeds(label: Path, config: _core.Config) -> None:
-    """Raises UserError unless all runs in the folder have this configuration, except for the seed.
+    """Raises UserError unless all runs in folder `label` differ from `config` only in the seed.
 
-    Runs of seeds that are not requested now are checked too: tables show means over all runs.
+    Also checks seeds that are not requested now, because tables show means over all runs.
     """
     for found in sorted(label.glob("seed-*/config.yaml")):
         seed = found.parent.name.removeprefix("seed-")
@@ -172,7 +178,7 @@ def _check_seeds(label: Path, config: _core.Config) -> None:
 
 
 def _check_same(folder: Path, asked: Values) -> None:
-    """Raises UserError unless this version of RTG made the run, with these values."""
+    """Raises UserError unless this version of RTG made the run, with the values `asked`."""
     found = folder / "config.yaml"
     before = effective_config.values(effective_config.load(found))
     for section, new in sorted(asked.items()):
@@ -185,11 +191,11 @@ def _check_same(folder: Path, asked: Values) -> None:
 
 
 def _check_methods(folder: Path, config: _core.Config) -> None:
-    """Raises UserError unless all runs of the task agree in the values that _compared() returns.
+    """Raises UserError unless tables can compare all runs of the task with the run in `folder`.
 
-    These are task, physics, budget and evaluation, except for swept keys: tables compare the runs.
-    The number of transitions counts only between runs that generate them. `folder` is the run
-    folder of one cell, `config` its configuration.
+    They must agree with `config` in the values of _compared(): task, physics, budget and
+    evaluation, swept keys excluded. The number of transitions must agree only among runs that
+    generate transitions. `config`: the configuration of the run in `folder`.
     """
     for found in sorted(folder.parents[1].glob("*/seed-*/config.yaml")):
         swept = _swept(found.parts[-3]) | _swept(folder.parts[-2])
@@ -206,7 +212,10 @@ def _check_methods(folder: Path, config: _core.Config) -> None:
 
 
 def _swept(label: str) -> set[str]:
-    """Returns the keys `section.name` that a label sets, directly or through `train.preset`."""
+    """Returns the keys "section.name" that `label` sets, see Cell.label.
+
+    A label with train.preset also sets all _SHARED_KEYS.
+    """
     paths = (setting.partition("=")[0] for setting in label.split("@")[1:])
     found = {".".join(path.split(".")[:2]) for path in paths}
     of_preset = {f"train.{key}" for key in _SHARED_KEYS} if "train.preset" in found else set()
@@ -214,7 +223,7 @@ def _swept(label: str) -> set[str]:
 
 
 def _compared(config: _core.Config, swept: set[str]) -> Values:
-    """Returns the values, by section, that all runs in one table must share; omits swept keys."""
+    """Returns, by section, the values that all runs in a table must share; omits `swept`."""
     values = effective_config.values(config)
     keys = {
         "task": tuple(values["task"]),

@@ -1,4 +1,4 @@
-"""The cells of a comparison, each of which is one run, and the file that lists them."""
+"""The cells (single runs) of a comparison, and the file that lists them."""
 
 from __future__ import annotations
 
@@ -13,21 +13,24 @@ from rtg.files.run_folder import read_json, write_json
 
 @dataclass(frozen=True)
 class Cell:
-    """A run of a comparison: its task, method, swept settings and seed."""
+    """A run of a comparison: its task, method, swept settings and seed.
+
+    A swept setting is one that --sweep or --ablations varies.
+    """
 
     task: str
     method: str
-    settings: tuple[str, ...]  # KEY=VALUE for each swept key
+    settings: tuple[str, ...]  # KEY=VALUE for each swept setting
     seed: int
 
     @property
     def label(self) -> str:
-        """The method with its swept settings; it names a row of the tables."""
+        """The method with its swept settings, METHOD@KEY=VALUE...: a row of the tables."""
         return "@".join((self.method, *self.settings))
 
     @property
     def name(self) -> str:
-        """TASK/LABEL/seed-N: also the path of the run folder within the comparison folder."""
+        """TASK/LABEL/seed-N, also the path of the run folder within the comparison folder."""
         return f"{self.task}/{self.label}/seed-{self.seed}"
 
 
@@ -35,16 +38,16 @@ class Cell:
 class Grid:
     """All cells that were ever requested in one comparison folder."""
 
-    commands_by_cell: dict[Cell, str]  # the last command that requested it; all give the same run
-    failure_by_name: dict[str, str]  # by name of the cell; with the end of the log of the run
+    commands_by_cell: dict[Cell, str]  # last command that requested the cell; all are equivalent
+    failure_by_name: dict[str, str]  # Cell.name -> how its run failed, with the end of the log
 
     @property
     def commands(self) -> list[str]:
-        """For each cell the last command that requested it, without duplicates."""
+        """The distinct commands in `commands_by_cell`."""
         return list(dict.fromkeys(self.commands_by_cell.values()))
 
     def add(self, command: str, cells: Iterable[Cell]) -> None:
-        """Adds cells. A cell that is there already keeps its place and gets the new command."""
+        """Adds cells. A known cell keeps its position and gets the new command."""
         self.commands_by_cell.update(dict.fromkeys(cells, command))
 
     def write(self, folder: Path) -> None:

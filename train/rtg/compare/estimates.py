@@ -19,7 +19,7 @@ _LEVEL = 0.95
 
 
 def mean_std(values: Sequence[float]) -> tuple[float, float | None]:
-    """Returns mean and sample standard deviation; the latter is None for a single value."""
+    """Returns mean and sample standard deviation. The deviation of a single value is None."""
     return float(np.mean(values)), float(np.std(values, ddof=1)) if len(values) > 1 else None
 
 
@@ -34,9 +34,9 @@ def interquartile_mean(scores: Scores) -> float:
 
 
 def probability_of_improvement(scores: Scores, others: Scores) -> float:
-    """Returns the probability that a run scores above a run of the other method on the same task.
+    """Returns the probability that a run of `scores` beats a run of `others` on the same task.
 
-    The result is the mean over the tasks. Equal scores count half: the Mann-Whitney statistic.
+    It is the mean of the Mann-Whitney statistic over the tasks: equal scores count half.
     """
     wins = [np.sign(x[:, None] - y[None, :]).mean() for x, y in zip(scores, others, strict=True)]
     return 0.5 + 0.5 * float(np.mean(wins))
@@ -49,7 +49,7 @@ def _are_single(scores: Scores) -> bool:
 def interval(estimate: Callable[[Scores], float], scores: Scores) -> tuple[float, float] | None:
     """Returns the 95 % percentile interval of `estimate` by stratified bootstrap.
 
-    Seeds are drawn within a task. Returns None if every task has a single seed.
+    Resamples the seeds of each task. Returns None if every task has a single seed.
     """
     if _are_single(scores):
         return None
@@ -63,9 +63,9 @@ def interval(estimate: Callable[[Scores], float], scores: Scores) -> tuple[float
 
 
 def improvement_interval(scores: Scores, others: Scores) -> tuple[float, float] | None:
-    """Returns the interval, as interval() does, of the probability of improvement.
+    """Returns the interval() of probability_of_improvement().
 
-    Seeds of both methods are drawn. Returns None if either method has a single seed on every task.
+    Resamples the seeds of both methods. Returns None if a method has a single seed on every task.
     """
     if _are_single(scores) or _are_single(others):
         return None
@@ -76,18 +76,19 @@ def improvement_interval(scores: Scores, others: Scores) -> tuple[float, float] 
 
 
 def first_reach(interactions: Floats, success: Floats, threshold: float) -> int | None:
-    """Returns the interactions at the first evaluation with a success of at least `threshold`.
+    """Returns the interactions at the first evaluation with `success` >= `threshold`.
 
-    Returns None if there is none. [N] each
+    Returns None if there is none. `interactions` and `success`: [evaluations].
     """
     reached = np.flatnonzero(success >= threshold)
     return int(interactions[reached[0]]) if len(reached) else None
 
 
 def carried_forward(interactions: Floats, values: Floats, grid: Floats) -> Floats:
-    """Returns a curve on another grid: at each point, the last finite value up to that point.
+    """Resamples the curve `values` over `interactions` at the points `grid`. [grid]
 
-    The last value of the curve holds beyond its end; NaN before the first value. [grid]
+    Each point gets the last finite value up to it, NaN if there is none. Beyond the end of the
+    curve its last value holds.
     """
     known = np.isfinite(values)
     at = np.searchsorted(interactions[known], grid, side="right") - 1

@@ -1,4 +1,4 @@
-"""Displays of a comparison: a row per run on a terminal, a line per change anywhere else."""
+"""Displays of a comparison: a row for each run on a terminal, else a line for each change."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _PRIORITY = ("running", "failed", "waiting", "done")  # phases by priority on a 
 
 @dataclass(frozen=True)
 class Row:
-    """The state of a run in the display."""
+    """The display of one run: its name, phase and further words."""
 
     name: str
     phase: str = "waiting"  # or running, done, failed
@@ -37,7 +37,7 @@ def counts(rows: Sequence[Row]) -> str:
 
 
 class GridDisplay(Shown, Protocol):
-    """A display of rows."""
+    """A display of all runs of a comparison, one Row each."""
 
     def show(self, rows: Sequence[Row]) -> None:
         """Shows the newest state of all runs; may be called at any rate."""
@@ -59,7 +59,7 @@ class PlainGrid(TimedLines):
 
 
 class LiveGrid:
-    """Shows rows that change in place; the most urgent ones if they do not all fit."""
+    """Shows rows that change in place. If not all of them fit, it shows the most urgent ones."""
 
     def __init__(self, console: Console) -> None:
         self._console = console

@@ -1,7 +1,9 @@
 """Jobs in which several seeds learn in one process, so that they share one GPU context.
 
-A comparison does these jobs before it starts the runs themselves. First each run generates its
-transitions in a process of its own; then the seeds of each method learn together in one process.
+A comparison does these jobs before it starts the runs themselves:
+1. Each run generates its transitions in a process of its own.
+2. The seeds of each method learn together in one process.
+
 The runs find this work done, or continue with what is left.
 """
 
@@ -82,10 +84,10 @@ class Learning:
 
 
 def stages(runs: Sequence[CellRun], together: bool) -> tuple[list[Generation], list[Learning]]:
-    """Returns the jobs of the two stages before the runs: all generation, then all learning.
+    """Returns the jobs to do before `runs`: all generation, then all learning.
 
-    The jobs are for labels with several unfinished runs. Only runs whose networks are on a GPU
-    count, unless `together`.
+    A job of learning is for at least two unfinished seeds of the same task, method and settings.
+    Unless `together`, only runs with networks on a GPU have such jobs.
     """
     groups: dict[Path, list[CellRun]] = {}
     for run in runs:

@@ -61,7 +61,7 @@ method, not methods against each other."""
 
 
 def _listed(found: Iterable[str]) -> str:
-    """Returns the distinct values, with the number of runs of each if there are several values."""
+    """Returns the distinct values in `found`. If they differ, adds the number of runs of each."""
     counts = Counter(found).most_common()
     if len(counts) == 1:
         return counts[0][0]
@@ -70,9 +70,9 @@ def _listed(found: Iterable[str]) -> str:
 
 
 def _commits(done: Sequence[RunResult]) -> str:
-    """Returns the commit of the runs, or each commit with its runs if they differ.
+    """Returns the line on the commit of the runs. If commits differ, adds the runs of each.
 
-    Rows of runs of different commits are no clean comparison.
+    The difference between runs of different commits may not come from the methods.
     """
     found: dict[str, list[RunResult]] = {}
     for run in done:
@@ -119,14 +119,17 @@ def _origin(grid: Grid, comparison: Comparison) -> str:
 
 
 def _brief(name: str, words: str) -> str:
-    """Returns the first line of a failure message and the last line of the log that it quotes."""
+    """Shortens the failure message `words` of run `name` to its first and its last line.
+
+    The last line is that of the quoted log.
+    """
     how, *log = words.splitlines()
     how = how.removeprefix(f"{name} ").removesuffix("; the end of its log:")
     return f"{how}: {log[-1]}" if log else how
 
 
 def _trouble_section(grid: Grid, runs: Sequence[RunResult]) -> list[str]:
-    """Returns the section on failed runs and defects, run by run; empty if there are none."""
+    """Returns the section on failures and defects of `runs`; [] if there are none."""
     lines = []
     for run in runs:
         name = f"`{run.cell.name}`"
@@ -156,7 +159,7 @@ def _task_section(folder: Path, comparison: Comparison, task: str) -> list[str]:
 
 
 def read_remarks(runs: Path) -> str:
-    """Returns the text that people wrote in remarks.md; empty if there is no file.
+    """Returns the text that people wrote in remarks.md; "" if there is no file.
 
     Raises UserError if the file cannot be read.
     """
@@ -170,7 +173,7 @@ def read_remarks(runs: Path) -> str:
 
 
 def report(folder: Path, grid: Grid, comparison: Comparison, remarks: str) -> str:
-    """Returns the page for `folder`, with the pictures that are in `folder` already."""
+    """Returns the Markdown page of the report. It shows the pictures that exist in `folder`."""
     missing = ", ".join(f"`{method}`" for method in tables.not_run(comparison))
     parts = [
         "# Results",

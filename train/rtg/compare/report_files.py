@@ -29,7 +29,10 @@ _PICTURES = (*_TASK_PICTURES, "replay_gap.png")
 
 
 def write_report(runs: Path, out: Path) -> Path:
-    """Replaces the files of the report in `out`; returns the path of the page. Raises UserError."""
+    """Writes the report on the comparison `runs` to `out`; returns the path of its page.
+
+    Raises UserError.
+    """
     grid = read_grid(runs)
     if not grid.commands_by_cell:
         raise UserError(f"{runs}: holds no comparison (no grid.json); legal: DIR of `reproduce`")
@@ -62,7 +65,7 @@ def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | No
 
 
 def _remove_old_pictures(out: Path) -> None:
-    """Removes all pictures that the existing page shows, also those of former tasks and sweeps."""
+    """Removes all pictures that the existing page shows, even if no new picture replaces them."""
     page = out / "report.md"
     text = page.read_text(errors="replace") if page.is_file() else ""
     for picture in (path for pattern in _PICTURES for path in out.glob(pattern)):
@@ -71,7 +74,7 @@ def _remove_old_pictures(out: Path) -> None:
 
 
 def _runs_of_reference(done: Sequence[RunResult]) -> list[RunResult]:
-    """Returns the runs of the reference method; if there are none, those of the first label."""
+    """Returns the runs of the reference method, or those of the first method if there are none."""
     labels = {run.cell.label for run in done}
     label = REFERENCE if REFERENCE in labels else next((run.cell.label for run in done), "")
     return [run for run in done if run.cell.label == label]
@@ -79,7 +82,7 @@ def _runs_of_reference(done: Sequence[RunResult]) -> list[RunResult]:
 
 @dataclass(frozen=True)
 class Episode:
-    """An episode to show."""
+    """An episode to show in the report."""
 
     task: _core.Task
     label: str  # method and swept settings of the run
@@ -107,10 +110,9 @@ def _read_episode(run: RunResult) -> Episode | None:
 
 
 def _best_episode(comparison: Comparison, task: str) -> Episode | None:
-    """Returns the best episode of the final evaluations of a task; None if there are no episodes.
+    """Returns the best episode of the final evaluations of a task; None if there is none.
 
-    Successes come before failures, then the reference method before others, then short episodes
-    before long ones.
+    The criteria, in this order: success, reference method, small length.
     """
     runs = [run for run in comparison.all_done() if run.cell.task == task]
     found = [episode for run in runs if (episode := _read_episode(run))]
@@ -145,7 +147,7 @@ def _run_keys(run: RunResult) -> dict[str, Any]:
 
 
 def _run_rows(comparison: Comparison) -> list[dict[str, Any]]:
-    """Returns a row per run, with all its figures that are single numbers or words."""
+    """Returns a row for each run, with all its figures that are single numbers or words."""
     more = [
         name
         for run in comparison.all_done()
@@ -165,7 +167,7 @@ def _run_rows(comparison: Comparison) -> list[dict[str, Any]]:
 
 
 def _curve_rows(run: RunResult) -> list[dict[str, Any]]:
-    """Returns a row per evaluation of the run."""
+    """Returns a row for each evaluation of the run."""
     if not run.curve:
         return []
     columns = {name: costs(run.curve, name) for name in COSTS}
@@ -177,7 +179,7 @@ def _curve_rows(run: RunResult) -> list[dict[str, Any]]:
 
 
 def _write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Writes rows with fractions to six digits; cells without a measurement stay empty."""
+    """Writes `rows` as CSV, with fractions to six digits. Missing values stay empty."""
     text = io.StringIO()
     table = csv.DictWriter(text, list(rows[0]) if rows else [], lineterminator="\n")
     table.writeheader()

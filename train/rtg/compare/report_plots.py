@@ -23,9 +23,9 @@ from rtg.pictures import plots
 
 Floats = NDArray[np.float64]
 
-# Colour and line style per method. Most colours are those of Okabe and Ito, which colour-blind
-# people can distinguish; the others are no closer to any colour with the same line style. Dashed:
-# without generated data; dash-dotted: without interactions.
+# Colour and line style of each method. Most colours are those of Okabe and Ito, which colour-blind
+# people can distinguish. The others differ as clearly from all colours with the same line style.
+# Dashed: methods without generated data; dash-dotted: methods without interactions.
 _PALETTE = {
     "dqn": ("#b0b0b0", "--"),
     "ddqn": ("#000000", "--"),
@@ -60,9 +60,9 @@ _RIGHT_ALIGNED: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8}
 
 
 def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
-    """Returns colour and line style of each label.
+    """Returns colour and line style of each label (method with swept settings).
 
-    Each method has its colour. If any method has several labels, every label has a shade instead.
+    Each method has its colour. If a method has several labels, all labels get shades instead.
     """
     if len({label.split("@")[0] for label in labels}) == len(labels):
         return {label: _PALETTE.get(label.split("@")[0], ("#000000", "-")) for label in labels}
@@ -74,7 +74,7 @@ def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
 
 
 def split_names(labels: Sequence[str]) -> tuple[str, list[str]]:
-    """Returns the common beginning of all labels and the rest of each label.
+    """Splits all labels into their common beginning and the rest of each label.
 
     The beginning ends with a method or a key.
     """
@@ -84,7 +84,7 @@ def split_names(labels: Sequence[str]) -> tuple[str, list[str]]:
 
 
 def _aligned_curves(runs: Sequence[RunResult], column: str) -> tuple[Floats, Floats]:
-    """Returns the interactions [N] and the values [runs, N] of a column at these interactions.
+    """Returns the interactions of all evaluations [N] and the values there [runs, N].
 
     A run that ended early keeps its last value.
     """
@@ -115,9 +115,9 @@ def _draw_curve(
 
 
 def curve_labels(comparison: Comparison, task: str) -> list[str]:
-    """Returns the labels with learning curves.
+    """Returns the labels (methods with swept settings) that have learning curves.
 
-    Leaves out labels with swept settings if there are too many labels to tell apart.
+    If there are too many to tell apart, leaves out labels with swept settings.
     """
     found = [
         label
@@ -191,7 +191,7 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
 
 
 def costs(path: Path, comparison: Comparison, task: str) -> None:
-    """Plots greedy success over each cost, on logarithmic axes of cost, a line per label.
+    """Plots greedy success over each cost, on a logarithmic axis, with a line per label.
 
     Success and cost are means over the seeds after the same number of interactions.
     """
@@ -215,9 +215,9 @@ def costs(path: Path, comparison: Comparison, task: str) -> None:
 
 
 def replay_gaps(path: Path, of_tasks: Mapping[str, Sequence[RunResult]]) -> None:
-    """Plots a histogram of the replay gap per task, over all runs that are given for it.
+    """Plots a histogram of the replay gap for each task, over its runs in `of_tasks`.
 
-    Median and 90th percentile are means over the runs, as in the table.
+    The marked median and 90th percentile are means over the runs.
     """
     with plots.style():
         size = (6.4, 3.0 * len(of_tasks) + 0.3)
@@ -235,7 +235,7 @@ def replay_gaps(path: Path, of_tasks: Mapping[str, Sequence[RunResult]]) -> None
 
 
 def _swept(comparison: Comparison, task: str) -> dict[str, Sequence[RunResult]]:
-    """Returns the runs of each swept value, and of the same methods unchanged, by short names."""
+    """Returns, by short name, the runs of methods with swept settings and without them."""
     labels = [label for label in comparison.labels if comparison.row(task, label)]
     methods = {label.split("@")[0] for label in labels if "@" in label}
     shown = [label for label in labels if label.split("@")[0] in methods]
@@ -246,7 +246,10 @@ def _swept(comparison: Comparison, task: str) -> dict[str, Sequence[RunResult]]:
 
 
 def sweep(path: Path, comparison: Comparison, task: str) -> None:
-    """Plots final greedy success and interactions to 0.95 of each swept value, a dot per run."""
+    """Plots the final success and the interactions to success 0.95 for each swept setting.
+
+    A dot is a run, a bar the mean.
+    """
     rows = _swept(comparison, task)
     with plots.style():
         size = (9.6, 1.2 + 0.16 * sum(2 + name.count("\n") for name in rows))

@@ -40,8 +40,8 @@ seed of `{REFERENCE}`, too."""
 def _costs(comparison: Comparison, task: str, method: str, cost: str) -> Floats:
     """Returns the cost of each seed until its greedy success reaches THRESHOLD. [seeds]
 
-    The cost is infinite if a seed never reaches THRESHOLD. For the cost `interactions`, runs
-    without interactions are left out. The array is empty if there are no runs.
+    The cost is infinite if a seed never reaches THRESHOLD. The cost "interactions" leaves out runs
+    without interactions.
     """
     runs = comparison.done(task, method)
     needed = [
@@ -76,9 +76,9 @@ def _fewest(comparison: Comparison, task: str, cost: str) -> str:
 
 
 def _cost_ratio(reference: Floats, costs: Floats) -> str:
-    """Returns the ratio of the mean costs to those of the reference, as text.
+    """Returns mean(`costs`) / mean(`reference`) as text.
 
-    If a seed of either method never reaches THRESHOLD, returns how many seeds of the method do.
+    If a seed of either method never reaches THRESHOLD, returns how many of `costs` do.
     """
     if len(costs) == 0:
         return NO_VALUE
@@ -88,7 +88,7 @@ def _cost_ratio(reference: Floats, costs: Floats) -> str:
 
 
 class _Verdict(NamedTuple):
-    """The result of comparing the reference with the other sources on one task, by one cost."""
+    """The result of comparing REFERENCE with the methods SOURCES on one task, by one cost."""
 
     kind: str  # key of _VERDICT_TEXTS; empty if there is nothing to compare
     methods: Sequence[str] = ()  # the sources that the verdict names
@@ -149,7 +149,7 @@ def _sentence(task: str, verdicts: dict[str, _Verdict]) -> str:
 
 
 def better_source(comparison: Comparison) -> str:
-    """Returns a sentence per task, followed by the table of the figures behind the sentences."""
+    """Returns a sentence for each task, and the table of the figures behind the sentences."""
     sentences, rows = [], []
     for task in comparison.tasks:
         verdicts = {cost: _verdict(comparison, task, cost) for cost in COSTS}

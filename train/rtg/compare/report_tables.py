@@ -24,8 +24,8 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> 
 def spread(values: Sequence[float | None], form: str) -> str:
     """Returns mean ± standard deviation of the values that are not None, as text.
 
-    If some are None, the text ends with "(k of n)". `form` is a format specification, or "count":
-    one decimal for means between 0 and 10, none for others.
+    If some are None, the text ends with "(k of n)". `form` is a format specification or "count".
+    The form "count" has one decimal for means between 0 and 10, else none.
     """
     known = [value for value in values if value is not None]
     if not known:
@@ -58,7 +58,10 @@ def seeds_by_state(runs: Sequence[RunResult]) -> str:
 
 
 def run_names(runs: Sequence[RunResult]) -> str:
-    """Returns tasks, labels and seeds of `runs` in words; `runs` are in the order of Comparison."""
+    """Returns tasks, labels and seeds of `runs` in words.
+
+    `runs` must be in the order of Comparison.
+    """
     rows: dict[tuple[str, str], list[int]] = {}
     for run in runs:
         rows.setdefault((run.cell.task, run.cell.label), []).append(run.cell.seed)
@@ -108,7 +111,7 @@ def _cell(done: Sequence[RunResult], column: Column) -> str:
 
 
 def _task_table(comparison: Comparison, task: str, columns: Sequence[Column]) -> str:
-    """Returns a table with a row per label, also for labels without a result."""
+    """Returns a table with a row for each label, even without a result."""
     rows = []
     for label in comparison.labels:
         runs = comparison.row(task, label)
@@ -139,7 +142,7 @@ def _shared_tasks(comparison: Comparison) -> list[str]:
 
 
 def _scores(comparison: Comparison, tasks: Sequence[str], label: str) -> dict[str, Floats]:
-    """Returns the final success of each seed, [seeds] per task that has results."""
+    """Returns the final success of each seed by task, [seeds], for tasks with results."""
     found = {task: comparison.done(task, label) for task in tasks}
     return {
         task: np.array([run.summary["success_rate"] for run in runs])
@@ -157,7 +160,7 @@ def is_randomised(label: str) -> bool:
 
 
 def pooled_table(comparison: Comparison) -> str:
-    """Returns the table of statistics over all shared tasks and all seeds."""
+    """Returns the table of statistics over all seeds of the _shared_tasks()."""
     head = [
         "method",
         "tasks",
@@ -194,9 +197,9 @@ def mean_success(runs: Sequence[RunResult]) -> float:
 def _ratio(
     above: str, below: Callable[[RunResult], float], scale: float
 ) -> Callable[[RunResult], float | None]:
-    """Returns a function of a run: scale * summary[above] / below(run).
+    """Returns the function run -> `scale` * summary[`above`] / `below`(run).
 
-    That function returns None if the summary lacks `above` or the count `below` is 0.
+    The function returns None if the summary lacks `above` or if `below`(run) is 0.
     """
 
     def of(run: RunResult) -> float | None:
@@ -262,9 +265,9 @@ def _method_table(
     made: str,
     columns: Sequence[tuple[str, Callable[[RunResult], float | None], str]],
 ) -> str:
-    """Returns a table with a row per task and label.
+    """Returns a table with a row for each task and label.
 
-    Only finished runs count whose summary has a count `made` above 0.
+    Only finished runs count, and only if their summary has a count `made` above 0.
     """
     rows = []
     for task in comparison.tasks:
@@ -276,7 +279,7 @@ def _method_table(
 
 
 def runtime_table(comparison: Comparison) -> str:
-    """Returns the table of the run times of backward and forward actions (Appendix E)."""
+    """Returns the table of computing times per reverse solve and per push (Appendix E)."""
     return _method_table(comparison, "candidates", _RUNTIME_COLUMNS)
 
 
@@ -286,6 +289,6 @@ def data_table(comparison: Comparison) -> str:
 
 
 def not_run(comparison: Comparison) -> list[str]:
-    """Returns the methods of which the comparison has no cell."""
+    """Returns the methods that are not part of the comparison."""
     asked = {run.cell.method for run in comparison.results}
     return [method for method in METHODS if method not in asked]

@@ -1,4 +1,4 @@
-"""Runs the unfinished runs of a comparison (methods x seeds x tasks) in parallel and reports."""
+"""Performs the runs of a comparison (methods x seeds x tasks) in parallel and writes its report."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ _TIMESTAMP = re.compile(r"^\[ *[\d.]+ s\] ")
 def reproduce(args: ReproduceArgs) -> int:
     """Runs the comparison, writes its report and returns the exit status.
 
-    Raises UserError before any job starts if the arguments are illegal or do not fit the folder,
-    and while it writes the report if a file of a run is damaged. Raises RunError if the user
+    Raises UserError before the first run if the arguments are illegal or do not fit the folder.
+    Raises UserError after the last run if a file of a run is damaged. Raises RunError if the user
     stopped the comparison.
     """
     runs = prepare_runs(args)
@@ -38,7 +38,7 @@ def reproduce(args: ReproduceArgs) -> int:
         grid.add(args.command, args.cells)
         with run_folder.write_errors_as_user_errors(args.out):
             grid.write(args.out)
-        # A run repeats the work of a job that fails in these stages.
+        # If a job of these stages fails, the run itself does the work again.
         for stage in grouped_seeds.stages(runs, args.together):
             _run_all(args, JobPool(stage, args.jobs))
         rows = _run_all(args, JobPool(runs, args.jobs, Failures(grid, args.out)))
@@ -50,7 +50,7 @@ def reproduce(args: ReproduceArgs) -> int:
 
 
 def _run_all(args: ReproduceArgs, pool: JobPool) -> list[Row]:
-    """Runs all jobs and returns a row on how each ended. Raises RunError if the user stopped it."""
+    """Does all jobs and returns the final row of each. Raises RunError if the user stopped them."""
     with display(sys.stdout) as shown, Interrupts(on_second_signal=pool.kill) as interrupts:
         try:
             while pool.poll(shown):
@@ -79,13 +79,13 @@ class Job(Protocol):
 
     @property
     def pending_generation_key(self) -> str | None:
-        """The key of the transitions that the job has yet to generate; None if there are none.
+        """The key of the transitions that the job must still generate; None if none.
 
         Other jobs that need the same transitions wait for this job.
         """
 
     def command(self) -> list[str]:
-        """Returns the command that begins or resumes the job, after preparing its folder."""
+        """Returns the command that begins or resumes the job; prepares its folder before."""
 
     def outcome(self) -> str:
         """Returns the result of a finished job in words."""
@@ -108,7 +108,7 @@ class Failures:
 
 
 class JobPool:
-    """Runs jobs, at most `max_parallel` of them at the same time."""
+    """Does `jobs`, at most `max_parallel` of them at the same time."""
 
     def __init__(
         self, jobs: Sequence[Job], max_parallel: int, failures: Failures | None = None
@@ -118,7 +118,7 @@ class JobPool:
         self._rows = {job.name: _first_row(job) for job in jobs}
 
     def poll(self, shown: GridDisplay) -> bool:
-        """Records the jobs that have ended, starts jobs while there is room and shows all rows.
+        """Updates the states of all jobs, starts further jobs if possible and shows all states.
 
         Returns whether any job is running.
         """
@@ -142,7 +142,7 @@ class JobPool:
         return list(self._rows.values())
 
     def wait(self, seconds: float) -> None:
-        """Waits until the running job that started first has ended, or for at most `seconds`."""
+        """Waits at most `seconds` for the end of the running job that started first."""
         next(iter(self._nodes.values())).wait(seconds)
 
     def stop(self) -> None:

@@ -29,7 +29,7 @@ QUICK_SETTINGS = (
     "train.checkpoint_every=5000",
 )
 MAX_SEEDS = 1000
-# Keys that --set must leave to the cells -> the flag to use instead.
+# Keys that --set must not change -> the flag to use instead.
 RESERVED_KEYS = {
     "run.seed": "--seeds",
     "run.method": "--methods",
@@ -129,7 +129,7 @@ def _methods(args: argparse.Namespace) -> tuple[str, ...]:
 
 
 def _seeds(args: argparse.Namespace) -> str:
-    """Returns the value of --seeds, or its default, as the user types it."""
+    """Returns the value of --seeds as typed, or its default."""
     default = "1" if args.quick else DEFAULT_SEEDS
     return default if args.seeds is None else str(args.seeds)
 
@@ -189,7 +189,7 @@ def _settings(args: argparse.Namespace) -> tuple[str, ...]:
 
 
 def _common(args: argparse.Namespace, method: str) -> list[Override]:
-    """Returns the overrides that all cells of a method share."""
+    """Returns the overrides that all runs of a method share."""
     of_method = parse_run(method_flags(method)).overrides
     return [*of_method, *(Override(f"--set {setting}", setting) for setting in _settings(args))]
 

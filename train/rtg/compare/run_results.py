@@ -26,7 +26,7 @@ CURVES = ("success_rate", "rollout_success", "episode_length_mean", "episode_ret
 
 
 def costs(curve: dict[str, Floats], cost: str) -> list[float]:
-    """Returns the column `cost` of a curve; the values are whole numbers except for seconds. [N]"""
+    """Returns the column `cost` of `curve`: seconds, or else whole numbers. [N]"""
     return (curve[cost] if cost == "cpu_s" else curve[cost].astype(int)).tolist()
 
 
@@ -37,7 +37,7 @@ class RunResult:
     cell: Cell
     folder: Path
     state: str  # done, failed, unfinished, not run
-    summary: dict[str, Any]  # summary.json; empty, as the next two, unless the run is done
+    summary: dict[str, Any]  # summary.json; this and the next two are {} unless done
     versions: dict[str, Any]
     # Columns of progress.csv [N]; `pushes` and `cpu_s` include those of the generation.
     curve: dict[str, Floats]
@@ -51,8 +51,8 @@ class RunResult:
     def interacts(self) -> bool:
         """Returns whether the learner interacts with the environment.
 
-        If not, `interactions` of the curve stands for rounds of learning: it is the number of
-        interactions that would have brought as many rounds.
+        If not, `interactions` of the curve stands for rounds of learning. It is the number of
+        interactions of as many rounds with interactions.
         """
         return self.train is not None and self.train.interact
 
@@ -63,10 +63,11 @@ class RunResult:
 
     @property
     def commits(self) -> str:
-        """All commits of the run in words.
+        """All commits of the run in words:
 
-        Names `commit`, the other commits that worked on the run before it was resumed, and the
-        commit that generated the transitions if it is another one.
+        - `commit`;
+        - other commits that worked on the run before it was resumed;
+        - the commit that generated the transitions, if it is another one.
         """
         generator = versions.commit(self.versions.get("generator", {}))
         is_other = generator not in (None, self.commit) and self.summary.get("transitions")
@@ -91,15 +92,14 @@ class RunResult:
         }
 
     def total_cost(self, cost: str) -> float | None:
-        """Returns the total cost at the last evaluation; None if there are no evaluations."""
+        """Returns the cost of the run until its last evaluation; None without evaluations."""
         return costs(self.curve, cost)[-1] if self.curve else None
 
     def success_at_third(self) -> float | None:
-        """Returns the success in the last evaluation within a third of the budget.
+        """Returns the success of the last evaluation within the first third of the budget.
 
-        For a run that had ended by then, returns the success of the final evaluation instead: the
-        run may have ended because evaluations during learning succeeded by chance. Returns None if
-        there is no such evaluation.
+        Returns None if there is none. If the run ended within that third, returns the success of
+        the final evaluation, because chance success may have ended the run.
         """
         if not self.curve or self.train is None:
             return None
@@ -167,7 +167,7 @@ def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
 def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
     """Reads progress.csv and adds the costs of the generation to those of the learner.
 
-    Empty without evaluations. Raises UserError if the file is damaged.
+    Returns {} without evaluations. Raises UserError if the file is damaged.
     """
     curve = learning_curve(progress) if progress.is_file() else {}
     if not curve:
@@ -185,8 +185,8 @@ def _method_order(cell: Cell) -> int:
 def read_comparison(folder: Path, grid: Grid) -> Comparison:
     """Reads the results of all cells of the grid. Raises UserError if a file is damaged.
 
-    The runs are sorted by task, method, settings and seed. Tasks have the order of TASKS, methods
-    that of METHODS; others follow. Other tasks and all settings have the order of the grid.
+    The runs are sorted by task, method, settings and seed. Tasks are in the order of TASKS, methods
+    in the order of METHODS. Other tasks follow; they and all settings keep the order of the grid.
     """
     tasks = list(dict.fromkeys((*TASKS, *(cell.task for cell in grid.commands_by_cell))))
     settings = list(dict.fromkeys(cell.settings for cell in grid.commands_by_cell))

@@ -1,25 +1,27 @@
-"""Reverse curriculum generation [Florensa et al. 2017]: starts that grow back from goal states.
+"""Reverse curriculum generation [Florensa et al. 2017]: starts that move back from goal states.
 
-A round trains from a pool of starts. A start is good if the learner solves it sometimes but not
-always. Most of the next pool comes from short walks of random pushes that begin at good starts; the
-rest are good starts of earlier rounds. The first walks begin at states in which the goal holds.
+Each round trains from a pool of starts. A start is good if the learner solves it sometimes but not
+always. Most starts of the next pool are new: they lie on short random walks from good starts. The
+rest are old: good starts of earlier rounds. The first walks begin at states in which the goal
+holds.
 
-The paper's bounds of a good start and its ratio of new to old starts are kept. Its pools of 200 new
-and 100 old starts would allow six rounds of full-length episodes within the interactions of
-Table 2. The pools here allow 30 such rounds, and more if episodes are shorter.
+The bounds of a good start and the ratio of new to old starts are those of Florensa et al. Their
+pools of 200 new and 100 old starts would allow only six rounds of full-length episodes within the
+interactions of Table 2. The smaller pools here allow 30 rounds.
 
 Choices that give the method its best chance:
-- The paper's walks of 50 small steps become walks of PUSHES_PER_WALK whole pushes, half of which
-  seek contact. Only one in ten uniform pushes moves an object, so without contact the starts would
-  differ only in the position of the robot.
-- If a round has fewer than MIN_GOOD_STARTS good starts, because it was too easy or too hard, the
-  next walks begin at mastered starts, too. Otherwise a learner that solves all starts would never
-  leave them. Only new starts of the round qualify, as old ones are closer to the goal. Of the
-  mastered new starts only the half with the longest episodes is used, as walks lead towards the
-  goal as often as away from it. Without good and mastered starts the walks begin where the previous
-  ones began.
+- A walk has PUSHES_PER_WALK whole pushes, instead of 50 small steps. Half of the pushes seek
+  contact. Only one in ten uniform pushes moves an object, so most starts would otherwise differ
+  only in the position of the robot.
+- If a round has fewer than MIN_GOOD_STARTS good starts, the next walks also begin at starts that
+  the learner nearly always solves (mastered starts). A learner that solves all starts would
+  otherwise never leave them.
+  - Only new starts qualify, because old ones are closer to the goal.
+  - Only the half with the longest episodes is used, because walks lead towards the goal as often as
+    away from it.
+  - Without good and mastered starts, the walks begin where the previous walks began.
 - Starts with an object outside the arena are left out, because the robot cannot push it back.
-- A share of the episodes begins at the task's own starts, from which the learner is evaluated.
+- A share of the episodes begins at the task's own starts, which evaluations use.
 """
 
 from __future__ import annotations
@@ -41,15 +43,15 @@ EPISODES_PER_START = 3  # mean number of episodes per start and round
 GOAL_DRAWS = 100  # number of draws of the goal states where the first walks begin
 WALKS, PUSHES_PER_WALK = 100, 3  # number of walks for the new starts; pushes per walk
 CONTACT_SHARE = 0.5  # share of the walks' pushes that seek contact
-GOAL_SEED_OFFSET = 1 << 62  # offset of the seeds of goal states, above the seeds of runs
+GOAL_SEED_OFFSET = 1 << 62  # added to the seed of a run for its goal states; above all such seeds
 
-NOT_FROM_CURRICULUM = -1  # number of all starts that are not from the curriculum
+NOT_FROM_CURRICULUM = -1  # marks an episode that begins at a start of the task
 
 
 def goal_states(task: _core.Task, seed: int, count: int = GOAL_DRAWS) -> Floats:
-    """Draws `count` goal states and leaves out failed draws. [goals, bodies, 3]
+    """Samples states in which the goal holds. [goals, bodies, 3]
 
-    Raises UserError if all draws fail.
+    Makes `count` draws and leaves out failed ones. Raises UserError if all draws fail.
     """
     draws = [task.goal_state(seed, k) for k in range(count)]
     found = [state for state in draws if state is not None]
@@ -59,7 +61,7 @@ def goal_states(task: _core.Task, seed: int, count: int = GOAL_DRAWS) -> Floats:
 
 
 class Curriculum:
-    """Provides starts for a share of the training episodes and adapts them to the results."""
+    """Provides the starts for a `share` of the training episodes and adapts them to success."""
 
     def __init__(self, config: _core.Config, share: float, seed: int) -> None:
         self._task, self._simulator = config.task, _core.Simulator(config)
@@ -68,9 +70,9 @@ class Curriculum:
         # States where walks begin.
         self._walk_starts: Floats = goal_states(self._task, GOAL_SEED_OFFSET + seed)
         self._good = self._walk_starts[:0]  # good starts of all rounds
-        self._first = 0  # number of the pool's first start
-        self._drawn = 0  # number of starts drawn from this pool
-        self.pushes = 0  # simulated pushes of walks, in addition to the learner's interactions
+        self._first = 0  # number of the pool's first start, counted over all rounds
+        self._drawn = 0  # number of draws from this pool
+        self.pushes = 0  # simulated pushes of the walks; not among the learner's interactions
         self._set_pool(self._new_starts(), self._good)
 
     @property
@@ -79,9 +81,9 @@ class Curriculum:
         return self._pool
 
     def draw(self) -> tuple[int, Floats | None]:
-        """Returns the number and the start of the next episode.
+        """Returns the start of the next episode: its number and its state [bodies, 3].
 
-        They are NOT_FROM_CURRICULUM and None if the episode shall begin at a start of the task.
+        Returns (NOT_FROM_CURRICULUM, None) if the episode must begin at a start of the task.
         """
         if self._rng.random() >= self._share:
             return NOT_FROM_CURRICULUM, None
@@ -90,10 +92,10 @@ class Curriculum:
         return self._first + k, self._pool[k]
 
     def record_episode(self, number: int, success: bool, length: int) -> None:
-        """Records how an episode from start `number` ended after `length` pushes.
+        """Records the result of an episode from start `number` with `length` pushes.
 
-        Ignores starts of earlier rounds and NOT_FROM_CURRICULUM. Begins the next round if this one
-        is over.
+        Begins the next round after the last episode of a round. Ignores starts of earlier rounds
+        and NOT_FROM_CURRICULUM.
         """
         k = number - self._first
         if k < 0:  # includes NOT_FROM_CURRICULUM
@@ -117,7 +119,10 @@ class Curriculum:
         self._set_pool(self._new_starts(), old)
 
     def _frontier(self, rate: Floats) -> Floats:
-        """Returns the half of the mastered new starts that has the longest episodes."""
+        """Returns the half of the mastered new starts that has the longest episodes.
+
+        `rate`: success rate of each start in the pool.
+        """
         mastered = np.flatnonzero(rate[: self._new] > MAX_SUCCESS)
         lengths = self._lengths[mastered] / self._tries[mastered]
         longest = np.argsort(-lengths, kind="stable")[: (len(mastered) + 1) // 2]
@@ -136,7 +141,10 @@ class Curriculum:
         return states[self._rng.permutation(len(states))[:count]]
 
     def _new_starts(self) -> Floats:
-        """Returns new starts: states on random walks from `_walk_starts`, else the task's start."""
+        """Returns at most NEW_STARTS states on random walks from `_walk_starts`.
+
+        Returns the task's start if no visited state is usable.
+        """
         states = self._walk_starts[self._rng.integers(len(self._walk_starts), size=WALKS)]
         visited = []
         for _ in range(PUSHES_PER_WALK):
@@ -156,7 +164,7 @@ class Curriculum:
         return np.where(self._rng.random(len(states)) < CONTACT_SHARE, contact, anywhere)
 
     def state(self) -> dict[str, Any]:
-        """Returns everything that the next starts depend on."""
+        """Returns the state for a checkpoint: all that later starts depend on."""
         return {
             "rng": self._rng.bit_generator.state,
             "seeds": self._walk_starts,

@@ -1,4 +1,4 @@
-"""The task as a Gymnasium environment, for other learners, notebooks and pictures."""
+"""A task as a Gymnasium environment, for other learners, notebooks and pictures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rtg import _core, paths
 from rtg.pictures.draw import state_image
 
-OBSERVATION_LIMIT = 200.0  # a body 1 km away gives 125; no body gets that far
+OBSERVATION_LIMIT = 200.0  # bound of all entries; 125 is 1 km, and no body gets that far
 
 
 def observation_space(task: _core.Task) -> spaces.Box:
@@ -22,14 +22,18 @@ def observation_space(task: _core.Task) -> spaces.Box:
 
 
 class PushEnv(gymnasium.Env[Any, Any]):
-    """The task of pushing bodies until the goal holds.
+    """The environment of a task in which a robot pushes objects until the goal holds.
 
-    The reward is 1 when the goal holds, which ends the episode, else 0. `config`: the configuration
-    with the task and the physics, or its file; Gathering's if None. Action a moves the robot one
-    stride along 2πa/headings. An episode is truncated after task.horizon actions. `jitter`: the
-    objects of the start are moved by ± this [m]; None: by the task's own amount. The seed
-    determines all random numbers. `info`: "poses" [bodies, 3], "is_success", and "rejected", True
-    for a push that the simulator could not finish (it truncates the episode and leaves the state).
+    Action a moves the robot one stride along 2πa/headings. The reward is 1 when the goal holds,
+    else 0. Success ends the episode. An episode is truncated after task.horizon actions. The seed
+    determines all random numbers.
+
+    - `config`: the configuration with the task and the physics, or its file; Gathering's if None.
+    - `jitter`: largest random offset of an object's x and y at the start [m]; the task's if None.
+    - `info` has the keys "poses" [bodies, 3], "is_success" and "rejected".
+
+    "rejected" means that the simulator could not finish the push. The episode is then truncated and
+    the state is unchanged.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012  (gymnasium's own way)
@@ -60,7 +64,7 @@ class PushEnv(gymnasium.Env[Any, Any]):
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Begins an episode. Raises ValueError for unknown options.
 
-        `options`: "poses", the start [bodies, 3]; "jitter" [m], used instead of self.jitter.
+        `options`: "poses", the start [bodies, 3]; "jitter" [m], which replaces self.jitter.
         """
         super().reset(seed=seed)
         options = options or {}

@@ -1,4 +1,4 @@
-"""Many environments of a task for the learner, with one call of the core per step."""
+"""The environments of the learner. One call of the C++ core steps all of them."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ from rtg.envs.push_env import observation_space
 
 
 class PushVecEnv(VecEnv):
-    """A vector of PushEnv environments for SB3; a finished environment starts again at once.
+    """A vector of `count` environments like PushEnv, for Stable-Baselines3 (SB3).
 
-    The k-th start of the run is start k of the random stream `seed`, in whichever environment.
-    With a curriculum, some episodes begin at its starts instead; k does not count these.
+    A finished environment begins a new episode at once. The k-th episode of all environments begins
+    at start k of random stream `seed`. The count k leaves out episodes that begin at starts of the
+    `curriculum`.
     """
 
     def __init__(
@@ -36,10 +37,9 @@ class PushVecEnv(VecEnv):
         self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
         self.curriculum = curriculum
-        self._origins = [
-            NOT_FROM_CURRICULUM
-        ] * count  # curriculum's start numbers of the current episodes
-        self._starts = 0  # number of starts so far, without the curriculum's
+        # Number in the curriculum of the start of each current episode.
+        self._origins = [NOT_FROM_CURRICULUM] * count
+        self._starts = 0  # number of starts so far that are not from the curriculum
         self.successes = 0  # number of successful episodes
         self._poses = np.zeros((count, task.bodies, 3))  # [count, bodies, 3]
         self._steps = np.zeros(count, np.int64)  # number of actions in the current episodes
@@ -82,7 +82,7 @@ class PushVecEnv(VecEnv):
         return observation, success.astype(np.float32), done, infos
 
     def contact_headings(self, seed: int) -> NDArray[np.int64]:
-        """Draws per environment a heading towards a random object of its current state. [count]"""
+        """Draws, for each environment, a heading towards a random object. [count]"""
         return self.task.contact_headings(self._poses, seed)
 
     def _begin(self, env: int) -> None:
@@ -96,7 +96,7 @@ class PushVecEnv(VecEnv):
         self._steps[env] = 0
 
     def state(self) -> dict[str, Any]:
-        """Returns everything that the next steps depend on."""
+        """Returns the state for a checkpoint: all that later steps depend on."""
         return {
             "poses": self._poses.copy(),
             "steps": self._steps.copy(),

@@ -13,7 +13,7 @@ from rtg.errors import UserError
 
 
 def write(path: Path, state: dict[str, Any]) -> None:
-    """Replaces the file atomically, even if the machine crashes."""
+    """Writes `state` to `path`, atomically even if the machine crashes."""
     draft = path.with_name(path.name + ".part")
     with draft.open("wb") as file:
         th.save(_portable(state), file)
@@ -23,7 +23,7 @@ def write(path: Path, state: dict[str, Any]) -> None:
 
 
 def read(path: Path) -> dict[str, Any]:
-    """Reads a file of write(); arrays become tensors. Executes no code from the file.
+    """Reads a file that write() wrote; arrays become tensors. Executes no code from the file.
 
     Raises UserError if the file is missing, unreadable or damaged.
     """

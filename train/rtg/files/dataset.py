@@ -15,12 +15,12 @@ from rtg.errors import UserError
 
 Array = npt.NDArray[Any]
 
-SOURCES = _core.SOURCES  # names of the origins of transitions; the value of `source` is the index
+SOURCES = _core.SOURCES  # names of the sources; `source` of a transition is an index
 _ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip entry can store
 
 
 class Rows(NamedTuple):
-    """Consecutive transitions as a search emits them, without observations."""
+    """Consecutive transitions without observations, as a search produces them."""
 
     poses: npt.NDArray[np.float64]  # [n, bodies, 3]: x [m], y [m], theta [rad]
     action: npt.NDArray[np.int32]  # [n]
@@ -35,7 +35,7 @@ class Rows(NamedTuple):
 
 
 class Transitions(NamedTuple):
-    """N transitions of the true dynamics, in sequence order."""
+    """N simulated transitions with observations, in the order of generation."""
 
     poses: Array  # [N, bodies, 3] float64, x [m], y [m], θ [rad]; body 0 is the robot
     action: Array  # [N] int32
@@ -81,21 +81,21 @@ _DAMAGED_FILE_ERRORS = (
 
 
 class DatasetError(UserError, ValueError):
-    """Bad input: a file that is no transition set.
+    """An error for a file that is no legal transition set.
 
     The message names the file, the array and the legal values.
     """
 
 
 def concatenate(parts: list[Transitions]) -> Transitions:
-    """Returns the parts joined in their order; needs at least one part."""
+    """Returns the transitions of all `parts`, at least one, in their order."""
     return Transitions(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
 
 
 def write(path: Path, transitions: Transitions) -> None:
-    """Replaces `path` atomically, even if the machine crashes.
+    """Writes `transitions` to `path`, atomically even if the machine crashes.
 
-    Equal transitions give equal bytes.
+    Equal transitions give bitwise equal files.
     """
     partial = path.with_name(path.name + ".part")
     with partial.open("wb") as file:
@@ -115,8 +115,8 @@ def write(path: Path, transitions: Transitions) -> None:
 def read(path: Path, bodies: int | None = None, headings: int | None = None) -> Transitions:
     """Reads and checks a transition set.
 
-    If `bodies` and `headings` of a task are given, the transitions must fit them. Raises
-    FileNotFoundError if there is no file, DatasetError if it is no legal transition set.
+    If given, `bodies` and `headings` are the numbers of the task that it must fit. Raises
+    FileNotFoundError if there is no file. Raises DatasetError if it is no legal transition set.
     """
     try:
         with np.load(path, allow_pickle=False) as archive:

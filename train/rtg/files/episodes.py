@@ -1,4 +1,4 @@
-"""Replays a plan of a transition set in the simulator."""
+"""Finds a plan in a transition set and replays it in the simulator."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from rtg.files.dataset import SOURCES, Transitions
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_MAX_GAP = 0.25  # [m], largest distance of a body from its place where the next step begins
-_MAX_REPLAYS = 50  # plans, at most
+_MAX_GAP = 0.25  # [m], largest jump of a body between the end of a step and the next one's start
+_MAX_REPLAYS = 50  # largest number of plans to simulate
 
 
 def _positions(states: Floats) -> Floats:
@@ -32,10 +32,10 @@ def _nearest(states: Floats, among: Floats) -> Ints:
 
 
 def _plans(steps: Transitions) -> tuple[Ints, Ints]:
-    """Returns, for each step, the length of its plan and the index of the following step.
+    """Finds plans: chains of steps that end in a success. Returns two arrays [steps].
 
-    The length counts the steps to a success, the step itself included; it is 0 if the following
-    steps lead to no success. [steps] each
+    - lengths: number of steps from each step to success, itself included; 0 if there is no plan;
+    - following: index of the next step after each step.
     """
     following = _nearest(steps.next_poses, steps.poses)
     gaps = np.linalg.norm((steps.next_poses - steps.poses[following])[:, :, :2], axis=2)
@@ -47,9 +47,9 @@ def _plans(steps: Transitions) -> tuple[Ints, Ints]:
 
 
 def _simulated(config: _core.Config, start: Floats, actions: Ints) -> Floats:
-    """Simulates `actions` from `start` and returns the states.
+    """Simulates `actions` from `start` and returns the visited states.
 
-    Stops after a success and before a push that the simulator cannot finish.
+    Stops after a success, or before a push that the simulator cannot finish.
     [bodies, 3], [actions] -> [T+1, bodies, 3]
     """
     simulator, states = _core.Simulator(config), [start]
@@ -64,12 +64,14 @@ def _simulated(config: _core.Config, start: Floats, actions: Ints) -> Floats:
 
 
 def replayed_plan(config: _core.Config, transitions: Transitions) -> Floats | None:
-    """Returns the states of a true episode: the actions of a plan, simulated one after the other.
+    """Simulates a plan from the stored transitions and returns its states. [T+1, bodies, 3]
 
-    A plan is a chain of steps, branches excluded, that ends in a success; each step begins within
-    0.25 m of the end of the step before it. Up to 50 plans, those that begin nearest to the start
-    of the task, are simulated in order of that distance until one succeeds. If none succeeds, the
-    episode of the nearest plan is returned. [T+1, bodies, 3]; None if there is no plan.
+    A plan is a chain of stored transitions that ends in a success. Each one begins within 0.25 m of
+    the end of the previous one. Branches (outcomes of other headings) are left out.
+
+    Plans are simulated until one succeeds, at most 50 of them. Those that begin nearest to the
+    start of the task come first. If all fail, the states of the first one are returned. Returns
+    None if there is no plan.
     """
     chosen = transitions.source != SOURCES.index("branch")
     steps = Transitions(*(column[chosen] for column in transitions))

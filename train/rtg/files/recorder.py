@@ -12,7 +12,10 @@ from rtg.files.dataset import Rows, Transitions
 
 
 class Recorder:
-    """Collects rows. The file that it writes depends on the rows alone."""
+    """Collects transitions and writes them to a file.
+
+    The file does not depend on how the transitions are divided among calls of add().
+    """
 
     def __init__(self, task: _core.Task) -> None:
         self._task = task
@@ -20,7 +23,7 @@ class Recorder:
         self.count = 0
 
     def add(self, rows: Rows) -> Transitions:
-        """Appends the next rows of the sequence and returns them with their observations."""
+        """Appends the next transitions of the run and returns them with their observations."""
         self._parts.append(self._with_observations(rows))
         self.count += len(rows.action)
         return self._parts[-1]
@@ -39,7 +42,7 @@ class Recorder:
         return self._parts[0]
 
     def write(self, path: Path) -> None:
-        """Replaces the file atomically."""
+        """Writes all transitions so far to `path`, atomically."""
         dataset.write(path, self.transitions())
 
 

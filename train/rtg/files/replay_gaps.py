@@ -1,4 +1,8 @@
-"""Histograms of the replay gap over fixed bins: short, and those of several runs can be added."""
+"""Histograms of the replay gap. The bins are fixed, so that histograms of runs can be added.
+
+The replay gap of a reverse step [m] tells how far its forward replay ends from its given final
+state. It is the mean distance of the bodies.
+"""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from rtg import _core, paths
 from rtg.errors import UserError
 from rtg.files import replay_gaps
 
-# Keys of every summary.json, null where a part did not run; train/SUMMARY.md explains them.
+# Keys of every summary.json; train/SUMMARY.md explains them. A value that was not measured is null.
 SUMMARY_KEYS = (
     "task",
     "method",
@@ -55,13 +55,13 @@ SUMMARY_KEYS = (
     "q_spread",
     "lost_transitions",
 )
-# Keys of generation.json with the data of the pictures, which are too long for summary.json.
+# Keys of generation.json that hold the data of pictures. These are too long for summary.json.
 _SAMPLE_KEYS = ("replay_gaps", "nodes")
 
 
 @contextlib.contextmanager
 def write_errors_as_user_errors(folder: Path) -> Iterator[None]:
-    """Turns an OSError of its `with` block into a UserError about --out."""
+    """Turns an OSError in the `with` block into a UserError about `folder` and --out."""
     try:
         yield
     except OSError as error:
@@ -70,9 +70,9 @@ def write_errors_as_user_errors(folder: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def exclusive_lock(folder: Path, holder: str) -> Iterator[None]:
-    """Locks the folder, which must exist, against other processes during the `with` block.
+    """Locks the existing `folder` against other processes during the `with` block.
 
-    Raises UserError if the folder is locked already; the message names the `holder`.
+    Raises UserError if another process has locked it. The message calls that process `holder`.
     """
     with write_errors_as_user_errors(folder):
         directory = os.open(folder, os.O_RDONLY)
@@ -92,7 +92,7 @@ def checkpoint_file(run: Path) -> Path:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Replaces the file atomically, even if the machine crashes."""
+    """Writes `text` to `path`, atomically even if the machine crashes."""
     draft = path.with_name(f".{path.name}.{os.getpid()}")
     with draft.open("w") as file:
         file.write(text)
@@ -102,12 +102,12 @@ def write_text(path: Path, text: str) -> None:
 
 
 def write_json(path: Path, value: Any) -> None:
-    """Replaces the file atomically by `value` as indented JSON, keys in their given order."""
+    """Writes `value` to `path` as indented JSON, atomically. Keys keep their order."""
     write_text(path, json.dumps(value, indent=2, ensure_ascii=False) + "\n")
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    """Reads a JSON object; empty if there is no file. Raises UserError if the file is damaged."""
+    """Reads a JSON object; {} if there is no file. Raises UserError if the file is damaged."""
     if not path.is_file():
         return {}
     try:
@@ -120,7 +120,7 @@ def read_json(path: Path) -> dict[str, Any]:
 
 
 def result(run: Path) -> dict[str, Any]:
-    """Returns the content of summary.json; empty unless the run has finished learning.
+    """Returns the content of summary.json, or {} if the run has not finished learning.
 
     Raises UserError if the file is damaged.
     """
@@ -145,9 +145,11 @@ def default_path(task: str) -> Path:
 def summary(
     run: Path, config: _core.Config, mode: str | None, measured: dict[str, Any]
 ) -> dict[str, Any]:
-    """Merges the figures of generation and training: first SUMMARY_KEYS, then all other keys.
+    """Returns the content of summary.json: all figures of generation and training.
 
-    `measured` holds further figures by key. Raises UserError if a file of the run is damaged.
+    SUMMARY_KEYS come first, then all other keys. `measured` adds further figures by key. `mode`:
+    "in_process", "lcm", or None without generation. Raises UserError if a file of the run is
+    damaged.
     """
     generation = read_json(run / "generation.json") if config.train.offline else {}
     known: dict[str, Any] = {

@@ -56,7 +56,7 @@ def core_digest() -> str:
 def generator(run: Path) -> dict[str, Any]:
     """Returns the versions of the program that generated the transitions of the run.
 
-    Empty if versions.json lacks them. Raises UserError if versions.json is damaged.
+    Returns {} if versions.json lacks them. Raises UserError if versions.json is damaged.
     """
     found = run_folder.read_json(run / FILE).get("generator")
     return found if isinstance(found, dict) else {}
@@ -77,11 +77,13 @@ def versions() -> dict[str, Any]:
 
 
 def write(run: Path, made_by: dict[str, Any] | None = None) -> None:
-    """Writes versions.json of a run that this program begins or resumes.
+    """Writes versions.json of a run that this program begins or resumes. The file holds:
 
-    The file holds the versions of this program, the other commits that worked on the run before,
-    and the generator of its transitions: `made_by`, or this program if `made_by` is None. Raises
-    UserError if the previous versions.json is damaged.
+    - the versions of this program;
+    - the other commits that worked on the run before;
+    - the versions of the generator of its transitions: `made_by`, or this program if None.
+
+    Raises UserError if the previous versions.json is damaged.
     """
     found, before = versions(), run_folder.read_json(run / FILE)
     if made_by is None:
@@ -93,6 +95,9 @@ def write(run: Path, made_by: dict[str, Any] | None = None) -> None:
 
 
 def commit(made_with: dict[str, Any]) -> str | None:
-    """Returns the commit, with the suffix -modified if files differed from it; None if unknown."""
+    """Returns the commit in `made_with`, the content of a versions.json; None if unknown.
+
+    It has the suffix -modified if files differed from the commit.
+    """
     revision = made_with.get("git_revision")
     return f"{revision}-modified" if made_with.get("git_modified") else revision

@@ -1,4 +1,4 @@
-"""The time spent on learning, summed over all processes of a resumed run."""
+"""Measures the time spent on learning, over all processes of a resumed run."""
 
 from __future__ import annotations
 
@@ -7,15 +7,17 @@ from collections.abc import Callable, Mapping
 
 
 class Clock:
-    """Measures wall time while the clock runs, and processor time since its construction.
+    """Measures wall time and processor time while it runs.
 
-    Processor time is that of the whole process, so it includes the preparation before learning. If
-    several runs share the process, it is that of the calling thread while the clock runs; work that
-    a run leaves to other threads (the gradients on a GPU) is then not counted.
+    Processor time is that of the whole process. It also includes the time from construction to the
+    first start, the preparation of learning.
+
+    If several runs share the process, processor time is that of the calling thread. It then leaves
+    out preparation, and work on other threads such as gradients on a GPU.
     """
 
     def __init__(self) -> None:
-        # [s]; None after the first start.
+        # Processor time [s]; None after the first start.
         self._cpu_at_construction: float | None = time.process_time()
         self._elapsed = (0.0, 0.0)  # [s], wall and processor time of the finished periods
         # [s], wall and processor time of the start; None while the clock is stopped.
@@ -23,7 +25,7 @@ class Clock:
         self._cpu: Callable[[], float] = time.process_time
 
     def start(self, alone: bool = True) -> None:
-        """Starts the clock. `alone`: no other run shares the process."""
+        """Starts the clock. `alone`: True if no other run shares the process."""
         self._cpu = time.process_time if alone else time.thread_time
         wall, cpu = self._now()
         if alone and self._cpu_at_construction is not None:
@@ -39,12 +41,12 @@ class Clock:
         return self._start_times is not None
 
     def seconds(self) -> dict[str, float]:
-        """Returns the times so far [s], by their column names in progress.csv."""
+        """Returns the times so far [s], by their names in progress.csv."""
         wall, cpu = self._total()
         return {"wall_s": wall, "cpu_s": cpu}
 
     def restore(self, seconds: Mapping[str, float]) -> None:
-        """Continues from `seconds`, which holds at least the values of an earlier seconds()."""
+        """Continues from the times that seconds() returned earlier."""
         self._elapsed = (seconds["wall_s"], seconds["cpu_s"])
 
     def _now(self) -> tuple[float, float]:

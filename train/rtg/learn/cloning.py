@@ -9,23 +9,23 @@ from rtg.files.dataset import SOURCES, Transitions
 from rtg.learn.ddqn import DoubleDqn
 from rtg.learn.replay import Batch
 
-# Sources of steps that lead towards the goal; those of a "branch" need not.
+# Sources of transitions that lead towards the goal. Those of a "branch" or a "walk" need not.
 IMITATED_SOURCES = ("tree", "forward")
 
 
 def imitated(data: Transitions) -> Transitions:
-    """Returns the rows whose source is in IMITATED_SOURCES."""
+    """Returns the transitions to imitate, those with a source in IMITATED_SOURCES."""
     kept = np.isin(data.source, [SOURCES.index(name) for name in IMITATED_SOURCES])
     return Transitions(*(column[kept] for column in data))
 
 
 class Cloning(DoubleDqn):
-    """Trains the network of DoubleDqn with its outputs f(s, ·) as the logits of the actions:
+    """Behaviour cloning with the network of DoubleDqn. Its outputs f(s, ·) are action logits:
 
-        loss = -mean log softmax(f(s, ·))_a
+        loss = -mean log softmax(f(s, ·))_a,
 
-    over batches of steps to imitate. The policy chooses the most likely action according to the
-    network with the averaged weights.
+    where the mean is over a batch of transitions to imitate. The policy takes the most likely
+    action of the network with averaged weights.
     """
 
     def _gradient_step(self, batch: Batch) -> None:

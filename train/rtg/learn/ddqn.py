@@ -25,17 +25,18 @@ from rtg.learn.replay import Batch, MixedReplayBuffer, ReplayRules
 Array = npt.NDArray[Any]
 
 MAX_GRADIENT_NORM = 10.0
-# In early training the mean weights cover the last 1 / AVERAGING_WARM_UP of the gradient steps.
+# In early training the averaged weights cover the last 1 / AVERAGING_WARM_UP of the gradient steps.
 AVERAGING_WARM_UP = 5.0
 
 
 def next_values(online: th.Tensor, target: th.Tensor, clipped_double_q: bool) -> th.Tensor:
-    """Returns the value of s' from the Q of both networks. [B, actions] each -> [B, 1]
+    """Returns the values of the next states s'. [B, actions] each -> [B, 1]
 
-    Double Q: the online network chooses the action, and the target network evaluates it [van
-    Hasselt et al. 2016]. `clipped_double_q` takes the smaller of the two networks' values of that
-    action [cf. Fujimoto et al. 2018], so that an error of one network alone cannot raise it. If the
-    target network is passed as both, this is plain Q-learning.
+    `online` and `target` are Q(s', ·) of the two networks. In Double Q-learning the online network
+    chooses the action and the target network evaluates it [van Hasselt et al. 2016]. With
+    `clipped_double_q`, the value is the smaller one of both networks [cf. Fujimoto et al. 2018].
+    Then an error of one network alone cannot raise it. If both arguments are of the target network,
+    this is plain Q-learning.
     """
     choice = online.argmax(dim=1, keepdim=True)
     value = target.gather(1, choice)
@@ -43,18 +44,18 @@ def next_values(online: th.Tensor, target: th.Tensor, clipped_double_q: bool) ->
 
 
 def bootstrap_targets(batch: Batch, next_value: th.Tensor, discount: float) -> th.Tensor:
-    """Returns r + γ (1 - terminated) Q(s'). [B, 1]"""
+    """Returns the one-step targets r + γ (1 - terminated) V, V = `next_value`. [B, 1]"""
     return batch.rewards + discount * (1.0 - batch.terminated) * next_value
 
 
 def td_targets(bootstrap: th.Tensor, bounds: th.Tensor, clip: bool) -> th.Tensor:
-    """Returns the bootstrap targets, raised to the bounds, clipped to [0, 1] if `clip`. [B, 1]"""
+    """Returns the TD targets max(`bootstrap`, `bounds`), clipped to [0, 1] if `clip`. [B, 1]"""
     y = th.maximum(bootstrap, bounds)
     return y.clamp(0.0, 1.0) if clip else y
 
 
 def conservative_gap(q: th.Tensor, actions: th.Tensor) -> th.Tensor:
-    """Returns log Σ_b exp Q(s, b) - Q(s, a), the term of CQL(H) [Kumar et al. 2020, eq. 4].
+    """Returns the penalty of CQL(H), log Σ_b exp Q(s, b) - Q(s, a) [Kumar et al. 2020, eq. 4].
 
     Minimising it lowers Q(s, b) of the other actions b relative to Q(s, a).
     q [B, actions], actions [B, 1] -> [B, 1]
@@ -73,21 +74,22 @@ def _rules(settings: _core.TrainConfig, discount: float, seed: int) -> ReplayRul
 
 
 class DoubleDqn(DQN):
-    """SB3's DQN with the batch of MixedReplayBuffer.
+    """Double DQN: the DQN of Stable-Baselines3 (SB3) with batches of MixedReplayBuffer.
 
-    Departs from SB3:
+    Departs from SB3 (names in backquotes are settings):
     - It uses Double Q-learning.
     - It counts target updates in gradient steps (`target_sync`).
-    - Exploration is class Exploration. Its schedule uses the absolute number of interactions, so
-      learning in rounds and resuming do not change it.
-    - There are three policies. That of the online network varies from step to step, and a single
-      wrong action breaks a long plan. In training episodes the target network acts
-      (`target_acts`). It averages over few steps, so it is steadier, and still its mistakes are
-      soon visited and corrected. The policy that is evaluated and saved averages over many steps
-      [Polyak and Juditsky 1992]: after gradient step t its weights move by
-      max(`averaging_rate`, 5 / (5 + t)) towards those of the online network. So it averages over
-      about the last fifth of the steps, at most over the last 1 / `averaging_rate`; with
-      `averaging_rate` 1 it equals the online network.
+    - Class Exploration decides on exploration. Its schedule depends on the total number of
+      interactions, so learning in rounds and resuming do not change it.
+    - The target network acts in training episodes (`target_acts`). The online network would vary
+      from step to step, and a single wrong action breaks a long plan. The target network averages
+      over few steps, so it is steadier, but its mistakes are still visited and corrected soon.
+    - A third network is evaluated and saved. Its weights are averages over many steps [Polyak and
+      Juditsky 1992].
+
+    After gradient step t the averaged weights move by max(`averaging_rate`, 5 / (5 + t)) towards
+    those of the online network. So they average about the last fifth of the steps, at most the last
+    1 / `averaging_rate`. With `averaging_rate` 1 they equal the online weights.
     """
 
     replay_buffer: MixedReplayBuffer  # type: ignore[assignment]
@@ -133,9 +135,9 @@ class DoubleDqn(DQN):
         self.update_exploration()
 
     def learn_offline(self) -> None:
-        """Performs the gradient steps of one round without its interactions.
+        """Performs one round of learning: the gradient steps without the interactions.
 
-        Counts the interactions all the same, so that schedules advance.
+        It counts the interactions all the same, so that schedules advance.
         """
         self.num_timesteps += self.settings.train_frequency
         self.train(self.settings.gradient_steps, self.settings.batch)
@@ -191,9 +193,9 @@ class DoubleDqn(DQN):
         episode_start: Any = None,
         deterministic: bool = False,
     ) -> tuple[Array, Any]:
-        """Returns the greedy actions of the policy if `deterministic`, else those for training.
+        """Returns greedy() actions if `deterministic`, else actions for training episodes.
 
-        SB3 calls it in training episodes. It passes `state` through.
+        SB3 calls it in training episodes. Returns `state` unchanged.
         """
         if deterministic:
             return self.greedy(observation), state
@@ -205,11 +207,11 @@ class DoubleDqn(DQN):
         return self.exploration.actions(action, observation, self.exploration_rate), state
 
     def greedy(self, observation: Array) -> Array:
-        """Returns the greedy actions of the policy. [N, observation] float32 -> [N] int"""
+        """Returns the greedy actions of values(). [N, observation] float32 -> [N] int"""
         return self.values(observation).argmax(axis=1)
 
     def values(self, observation: Array) -> Array:
-        """Returns Q of all actions, by the mean weights.
+        """Returns Q of all actions by the network with averaged weights.
 
         [N, observation] float32 -> [N, actions] float32
         """
@@ -224,7 +226,7 @@ class DoubleDqn(DQN):
         return q
 
     def state(self) -> dict[str, Any]:
-        """Returns all state for resuming except that of the replay buffer and the environments."""
+        """Returns the state for a checkpoint, without replay buffer and environments."""
         return {
             "q_net": self.q_net.state_dict(),
             "q_net_target": self.q_net_target.state_dict(),
@@ -257,7 +259,7 @@ class DoubleDqn(DQN):
         self.update_exploration()
 
     def recent_episodes(self) -> dict[str, float]:
-        """Returns success rate and mean length of the last 100 training episodes, {} before any."""
+        """Returns success rate and mean length of the last 100 training episodes; {} if none."""
         if not self.ep_success_buffer or not self.ep_info_buffer:
             return {}
         return {
@@ -271,7 +273,7 @@ class DoubleDqn(DQN):
 
 
 class Statistics:
-    """Means and maxima over the gradient steps since the last row of the log."""
+    """Collects means and maxima over the gradient steps since the last row of the log."""
 
     def __init__(self) -> None:
         self._sums: dict[str, float] = {}
@@ -279,13 +281,13 @@ class Statistics:
         self._peaks: dict[str, float] = {}
 
     def add(self, batch: Batch, q: th.Tensor, y: th.Tensor, bootstrap: th.Tensor) -> None:
-        """Adds a gradient step: q = Q(s, a), its target y, and the bootstrap target. [B, 1] each
+        """Adds a gradient step on `batch`. [B, 1] each
 
-        y is `bootstrap` after raising to the bounds and clipping, see td_targets().
+        `q` = Q(s, a), `bootstrap` its bootstrap_targets(), and `y` its td_targets().
         """
         error, bounds = q - y, batch.bounds
         beyond = (bootstrap < 0.0) | (bootstrap > 1.0)
-        raised = (bootstrap < bounds) & (bounds > 0.0)  # a bound of 0 proves nothing
+        raised = (bootstrap < bounds) & (bounds > 0.0)  # a bound of 0 says nothing: Q* ≥ 0
         self._accumulate("td_error", float(error.square().mean().sqrt()))
         self._accumulate("clipped_share", float(beyond.float().mean()))
         self._accumulate("bound_share", float(raised.float().mean()))

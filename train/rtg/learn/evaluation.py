@@ -1,4 +1,4 @@
-"""Evaluation of a policy by episodes from held-out starts, simulated side by side."""
+"""Evaluates a policy by episodes from held-out starts, simulated side by side."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rtg import _core
 Floats = NDArray[np.float64]
 Policy = Callable[[NDArray[np.float32]], NDArray[Any]]  # [N, observation] -> [N] actions
 
-# Seeds of the held-out starts. Seeds of runs are smaller, so no training start is held out.
+# Seeds of the held-out starts. They exceed all seeds of runs, so no training start is among them.
 HELD_OUT_SEED = 1 << 63  # for evaluations during training, which decide when to stop
 FINAL_SEED = HELD_OUT_SEED + 1  # for the final result: no decision depended on these starts
 
@@ -27,9 +27,9 @@ class Evaluation(NamedTuple):
     paths: list[Floats]  # per episode [length + 1, bodies, 3]
 
     def best(self) -> int:
-        """Returns the index of the shortest successful episode, without success of the longest one.
+        """Returns the index of the shortest successful episode.
 
-        The first of several equally long episodes counts.
+        Returns that of the longest episode if none succeeds. Of equal lengths, the first counts.
         """
         return int(np.argmin(np.where(self.success, self.length, 10**9 - self.length)))
 
@@ -45,18 +45,18 @@ class Evaluation(NamedTuple):
 def held_out_starts(
     task: _core.Task, count: int, seed: int = HELD_OUT_SEED, randomise: bool = False
 ) -> Floats:
-    """Returns starts that are the same for every run. [count, bodies, 3]
+    """Returns the starts of random stream `seed`, the same for every run. [count, bodies, 3]
 
-    Their objects are moved by ± task.start_jitter, or by ± task.randomisation if `randomise`.
+    Objects are moved by up to ± task.start_jitter, or ± task.randomisation if `randomise`.
     """
     amplitude = task.randomisation if randomise else task.start_jitter
     return np.stack([task.jittered_start(amplitude, seed, k) for k in range(count)])
 
 
 def evaluate(config: _core.Config, policy: Policy, starts: Floats, discount: float) -> Evaluation:
-    """Plays an episode from each start, up to task.horizon actions. starts [N, bodies, 3]
+    """Simulates an episode of `policy` from each start, [N, bodies, 3].
 
-    An episode ends as a failure if the simulator cannot finish one of its pushes.
+    An episode fails after task.horizon actions, or if the simulator cannot finish a push.
     """
     task, simulator = config.task, _core.Simulator(config)
     success = np.zeros(len(starts), np.bool_)

@@ -12,24 +12,26 @@ from rtg import _core
 
 Array = npt.NDArray[Any]
 
-REVISIT_WINDOW = 8  # a state counts as revisited if it equals one of this many previous states
-REVISIT_TOLERANCE = 0.02  # ... with a difference below this in every observation entry (0.16 m)
+REVISIT_WINDOW = 8  # number of previous states with which a state is compared
+REVISIT_TOLERANCE = 0.02  # states are equal if each entry of the observation differs less (0.16 m)
 
-# Maps a seed to one heading per environment, towards a random object of its current state. [N]
+# Maps a seed to a heading towards a random object for each environment. [N]
 ContactHeadings = Callable[[int], Array]
 
 
 class Exploration:
     """ε-greedy exploration that prefers some headings and leaves loops.
 
-    The share `contact_share` of the exploring actions heads towards an object, because only one in
-    ten uniform pushes touches an object. Of the other exploring actions, the share `nearby_share`
-    is near the greedy heading and the rest is uniform.
+    An exploring action is drawn in this order (names in backquotes are settings):
+    - with probability `contact_share`: towards an object, because only one in ten uniform pushes
+      moves an object;
+    - else with probability `nearby_share`: near the greedy heading;
+    - else: uniform.
 
-    When a greedy policy in a deterministic simulator returns to an earlier state, it repeats that
-    loop until the episode ends, and the repetitions teach it little. With `leave_loops`, every
-    revisited state makes the policy explore. (The last states of an episode are also compared with
-    the first states of the next episode; the effect is negligible.)
+    A greedy policy that returns to an earlier state repeats this loop until the episode ends. The
+    repetitions teach it little. With `leave_loops`, the policy explores in every revisited state.
+    The last states of an episode are also compared with the first ones of the next episode, with
+    negligible effect.
     """
 
     def __init__(
@@ -39,7 +41,7 @@ class Exploration:
         seed: int,
         contact: ContactHeadings | None = None,
     ) -> None:
-        """`contact`: contact headings of the environments; needed if contact_share is above 0."""
+        """`contact` draws headings towards objects; needed if contact_share is above 0."""
         self.settings = settings
         self.headings = headings
         self.contact = contact
@@ -47,13 +49,17 @@ class Exploration:
         self.recent_observations: list[Array] = []  # each [N, observation], oldest first
 
     def epsilon(self, interactions: int) -> float:
-        """Returns ε, linear from start to end over the first `epsilon_share` of interactions."""
+        """Returns ε after `interactions` interactions.
+
+        It changes linearly from epsilon_start to epsilon_end over the first share epsilon_share of
+        all interactions.
+        """
         s = self.settings
         done = min(1.0, interactions / max(1.0, s.epsilon_share * s.interactions))
         return s.epsilon_start + done * (s.epsilon_end - s.epsilon_start)
 
     def actions(self, greedy: Array, observation: Array, epsilon: float) -> Array:
-        """Returns the actions to take: those of `greedy`, some replaced by exploration.
+        """Returns the actions to take: `greedy`, some of them replaced by exploring actions.
 
         greedy [N], observation [N, observation] -> [N]
         """
@@ -69,7 +75,7 @@ class Exploration:
         return np.where(explores, noise, greedy)
 
     def _towards_objects(self, noise: Array) -> Array:
-        """Replaces the share `contact_share` of the headings by headings towards an object. [N]"""
+        """Replaces a share contact_share of the headings `noise` by ones towards objects. [N]"""
         if self.settings.contact_share == 0.0:
             return noise
         assert self.contact is not None
@@ -77,7 +83,10 @@ class Exploration:
         return np.where(seeks, self.contact(int(self.rng.integers(1 << 62))), noise)
 
     def _is_revisited(self, observation: Array) -> Array:
-        """Returns which environments revisit a recent state; stores `observation`. [N] bool"""
+        """Returns which environments have returned to a recent state. [N] bool
+
+        Stores `observation` for later calls.
+        """
         found = np.zeros(len(observation), np.bool_)
         for earlier in self.recent_observations:
             found |= (np.abs(observation - earlier) < REVISIT_TOLERANCE).all(axis=1)

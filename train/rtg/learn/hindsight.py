@@ -1,29 +1,29 @@
 """Hindsight experience replay [Andrychowicz et al. 2017] on the poses of the objects.
 
-A goal is a layout: the desired position of every movable object and the desired angle of every body
-with a joint. The network receives the observation and the offset of each object from the desired
-layout. Each training episode has a desired layout, in which the task's goal holds. Of the online
-transitions in a batch, the share k / (k + 1) is relabelled with a layout that the episode reached
-later (the paper's strategy "future" with k goals drawn per transition). For these the reward is 1
-and the episode ends if the objects of s' are within TOLERANCE and ANGLE_TOLERANCE of the new
-layout. The other transitions keep the reward of the task, which does not depend on the desired
-layout.
+A layout consists of the positions of all movable objects and the angles of all bodies with a joint.
+It serves as the goal. Each training episode has a desired layout, in which the task's goal holds.
+The network receives the observation and the offset of each object from the desired layout.
+
+With k = train.hindsight, the share k / (k + 1) of the online transitions in a batch is relabelled:
+the desired layout becomes one that the episode reached later (the strategy "future"). A relabelled
+transition has reward 1 and ends the episode if s' is near the new layout. Near means that all
+objects are within TOLERANCE and ANGLE_TOLERANCE. The other transitions keep the reward of the task,
+which does not depend on the desired layout.
 
 Choices that give the method its best chance:
-- The layouts of the task come from DRAWS goal states. Only those are used that remain goal states
-  when their objects move by TOLERANCE in any direction and the two bodies of each joint turn by
-  ANGLE_TOLERANCE against each other; if there are none, all are used. At most MAX_LAYOUTS are kept.
-  So reaching a layout means success.
+- Desired layouts come from goal states that remain goal states if their objects move a little, see
+  robust_goal_states(). So reaching a layout means success.
 - Objects of one kind are interchangeable, and any goal state suffices. So the desired layout of a
   training episode is the one nearest to its start among a random tenth of the layouts. Training
-  thus covers many layouts, which the paper finds to learn faster. The evaluated policy uses, in
-  each state, the nearest of all layouts.
-- A layout that s has reached already teaches nothing, because an episode with that desired layout
-  ends before s. So hindsight goals are drawn from the later states that s is not near to. Without
-  such a state the transition keeps the desired layout of its episode.
+  thus covers many layouts, which makes learning faster [Andrychowicz et al. 2017]. The evaluated
+  policy uses the nearest of all layouts in each state.
+- Hindsight goals are drawn only from later states that s is not near to. A layout near s teaches
+  nothing, because an episode that desires it ends before s. Without such a later state the
+  transition keeps the desired layout of its episode.
 
-TOLERANCE is 0.5 m: one push of 2 m, in one of 48 headings, seldom places a box more precisely, and
-goal regions such as a disc of 2 m or a half-plane contain layouts that far from their edge.
+TOLERANCE is 0.5 m, because one push of 2 m in one of 48 headings seldom places a box more
+precisely. Goal regions, such as a disc of 2 m or a half-plane, contain layouts that far from their
+edge.
 """
 
 from __future__ import annotations
@@ -39,20 +39,20 @@ from rtg.learn.replay import MixedReplayBuffer, Part, Store
 
 Array = npt.NDArray[Any]
 
-TOLERANCE = 0.5  # of each object [m]
-ANGLE_TOLERANCE = 0.05  # of each body with a joint [rad]
+TOLERANCE = 0.5  # [m], largest distance of each object from a reached layout
+ANGLE_TOLERANCE = 0.05  # [rad], largest angle of each body with a joint from a reached layout
 DRAWS, MAX_LAYOUTS = 5000, 1000  # number of goal states drawn; maximum number of layouts
 SUBSET_DIVISOR = 10  # a training episode gets the nearest of 1 / SUBSET_DIVISOR of the layouts
 LAYOUT_SEED = 3 << 61  # fixed seed of the draws, so a policy file need not store it
 LENGTH_UNIT = 8.0  # unit of lengths in an observation [m]
-BODY_ENTRIES = 6  # entries of an observation per movable object, after two of the robot
+BODY_ENTRIES = 6  # entries of an observation per movable object; two of the robot come first
 
 
 class Layouts:
-    """The layouts of a task: extracted from observations, as goals, and as network inputs.
+    """The desired layouts of a task, and functions that compare layouts with observations.
 
-    A layout is a float32 vector: x, y of each movable object [8 m], then cos θ, sin θ of each
-    movable object with a joint.
+    A layout is a float32 vector: x, y of each movable object in units of 8 m, then cos θ, sin θ of
+    each movable object with a joint.
     """
 
     def __init__(self, task: _core.Task) -> None:
@@ -74,7 +74,7 @@ class Layouts:
         return layout
 
     def near(self, one: Array, other: Array) -> Array:
-        """Returns if all objects agree within the tolerances. [..., size] each -> [...] bool"""
+        """Returns whether two layouts agree within the tolerances. [..., size] -> [...] bool"""
         places, turns = self._difference(one, other)
         close = np.hypot(places[..., 0], places[..., 1]) * LENGTH_UNIT <= TOLERANCE
         alike = turns[..., 0] >= np.cos(ANGLE_TOLERANCE)
@@ -82,9 +82,10 @@ class Layouts:
         return reached
 
     def nearest(self, observation: Array, among: Array | None = None) -> Array:
-        """Returns the layout of the task with the smallest sum of distances to the objects.
+        """Returns, for each observation, the task's layout with the smallest sum of distances.
 
-        `among`: row numbers of `of_task` to choose from, or None. [N, observation] -> [N, size]
+        The sum is over the objects. `among`: indices in `of_task` of the layouts to choose from;
+        all if None. [N, observation] -> [N, size]
         """
         goals = self.of_task if among is None else self.of_task[among]
         way, _ = self._difference(self.of(observation)[:, None], goals)
@@ -92,10 +93,12 @@ class Layouts:
         return nearest
 
     def network_input(self, observation: Array, goal: Array) -> Array:
-        """Returns the input of the network for the desired layout `goal`.
+        """Returns the input of the network for the desired layout `goal`. It consists of:
 
-        It holds the observation, the offsets dx, dy from the objects to their places in `goal`, in
-        units of 8 m, and cos, sin of the angles from the objects to their headings there.
+        - the observation;
+        - dx, dy from each object to its position in `goal`, in units of 8 m;
+        - cos, sin of the angle from each body with a joint to its angle in `goal`.
+
         [N, observation], [N, size] -> [N, observation + size]
         """
         parts = self._difference(self.of(observation), goal)
@@ -103,13 +106,14 @@ class Layouts:
         return np.concatenate((observation, *way), axis=1)
 
     def network_input_nearest(self, observation: Array) -> Array:
-        """Returns the input of the network for the nearest layout of the task."""
+        """Returns network_input() for the task's layout nearest to each observation."""
         return self.network_input(observation, self.nearest(observation))
 
     def _difference(self, here: Array, there: Array) -> tuple[Array, Array]:
-        """Returns the differences from layout `here` to layout `there`.
+        """Returns the differences of positions and of angles from layout `here` to `there`.
 
-        They are dx, dy [8 m], [..., objects, 2], and cos, sin of the angles, [..., jointed, 2].
+        Positions: dx, dy in units of 8 m, [..., objects, 2]. Angles: cos, sin of the difference for
+        each body with a joint, [..., jointed, 2].
         """
         places = there[..., : self._places] - here[..., : self._places]
         c, s = here[..., self._places :: 2], here[..., self._places + 1 :: 2]
@@ -128,10 +132,12 @@ def _sides(task: _core.Task) -> Array:
 
 
 def robust_goal_states(task: _core.Task, states: Array) -> Array:
-    """Returns the states whose goal is robust, or all of them if there is none. [N, bodies, 3]
+    """Returns those `states` in which the goal is robust, or all if there is none. [N, bodies, 3]
 
-    Robust: it still holds with all objects moved by TOLERANCE in any of eight directions and the
-    two bodies of each joint turned by ANGLE_TOLERANCE against each other, in either sense.
+    The goal is robust if it still holds after each of these displacements:
+    - all objects move by TOLERANCE, in one of eight directions;
+    - at the same time, one body of each joint turns by ANGLE_TOLERANCE and the other by
+      -ANGLE_TOLERANCE, or the other way round.
     """
     angles = np.arange(8) * np.pi / 4
     moved = np.repeat(states[:, None], 2 * len(angles), axis=1)  # [N, 16, bodies, 3]
@@ -150,11 +156,12 @@ def future_goals(
     discount: float,
     rng: np.random.Generator,
 ) -> tuple[Array, Array, Array]:
-    """Draws for each transition `count` later layouts of its episode that s is not near to.
+    """Draws `count` hindsight goals for each transition of an episode. Returns three arrays:
 
-    Returns these layouts, [T, count, size]; the lower bounds γ^n of their values, [T, count]
-    float32, where n is the number of actions from s' to the first state near the layout; and
-    whether such layouts exist, [T] bool.
+    - the goals, [T, count, size]: layouts of later states that s is not near to;
+    - lower bounds of their values, [T, count] float32: γ^n for n actions from s' to the first state
+      near the goal;
+    - whether such goals exist, [T] bool.
     """
     steps = len(path) - 1
     goals = np.zeros((steps, count, layouts.size), np.float32)
@@ -171,7 +178,10 @@ def future_goals(
 
 
 class GoalStore(Store):
-    """Transitions with the desired layout of their episode and their hindsight goals."""
+    """A store of transitions with their desired layouts and hindsight goals.
+
+    `size`: entries of a layout; `goals`: hindsight goals per transition.
+    """
 
     columns = (*Store.columns, "asked", "goals", "goal_bounds", "has_goals")
 
@@ -184,10 +194,10 @@ class GoalStore(Store):
 
 
 class HindsightReplayBuffer(MixedReplayBuffer):
-    """A replay buffer whose observations end with the offsets to a desired layout.
+    """A replay buffer whose batches hold network inputs: observations with desired layouts.
 
     Transitions of running episodes keep the desired layout of their episode. Offline transitions
-    get the layout that is nearest to their s.
+    get the task's layout nearest to s.
     """
 
     offline: GoalStore
@@ -205,7 +215,7 @@ class HindsightReplayBuffer(MixedReplayBuffer):
         self._begins_episode = np.ones(self.n_envs, np.bool_)
 
     def desired_layouts(self, observation: Array) -> Array:
-        """Returns the desired layout of each environment's episode; draws it for a new episode.
+        """Returns the desired layout of each environment; draws one for each new episode.
 
         [environments, observation] -> [environments, size]
         """
@@ -246,11 +256,10 @@ class HindsightReplayBuffer(MixedReplayBuffer):
         return columns
 
     def _relabel(self, columns: dict[str, Array], goal: Array, rows: Array) -> None:
-        """Replaces desired layouts of online transitions by hindsight goals; adapts `columns`.
+        """Replaces desired layouts in `goal` by hindsight goals; adapts rewards in `columns`.
 
-        Draws a hindsight goal with probability k / (k + 1) where the transition has any.
-
-        `rows`: rows of the online transitions, which are last in `columns` and `goal`.
+        Each online transition with hindsight goals gets one with probability k / (k + 1). `rows`:
+        their rows in the online store. They are the last ones in `columns` and `goal`.
         """
         store, place = self.online, np.arange(len(goal) - len(rows), len(goal))
         pick = self.rng.integers(self.goals + 1, size=len(rows))  # the last number: no relabelling

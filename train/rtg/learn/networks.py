@@ -25,22 +25,28 @@ def has_fast_bfloat16(device: str = "cpu") -> bool:
 
 
 def precision(reduced: bool, device: str) -> str:
-    """Returns the precision in which the inner layers are trained."""
+    """Returns "bfloat16" or "float32": the precision in which the inner layers are trained.
+
+    `reduced`: bfloat16 is wanted. It is used if `device` has fast hardware for it.
+    """
     return "bfloat16" if reduced and has_fast_bfloat16(device) else "float32"
 
 
 class ValueNetwork(QNetwork):
-    """Q(s, ·): three hidden layers, optionally with LayerNorm and the dueling head
+    """The value network Q(s, ·) with three hidden layers.
 
-        Q(s, a) = V(s) + A(s, a) - mean_b A(s, b)  [Wang et al. 2016].
+    `dueling` adds the dueling head [Wang et al. 2016]:
 
-    `goal_size`: number of inputs after the observation that describe the desired goal, see
+        Q(s, a) = V(s) + A(s, a) - mean_b A(s, b).
+
+    `layer_norm` adds LayerNorm after each hidden layer. `small_head` makes the initial Q small.
+    `goal_size` is the number of inputs after the observation that describe the desired goal, see
     rtg.learn.hindsight.
 
     `reduced_precision` computes the two inner layers in bfloat16 during training, which is 2.4
     times faster. It has no effect without hardware support or when actions are chosen. Weights and
-    sums stay in float32. So do the last layer and the first one, whose inputs are positions, which
-    8 bits resolve to 2 cm.
+    sums stay in float32, and so do the first and the last layer. The inputs of the first layer are
+    positions, which bfloat16 resolves only to 2 cm.
     """
 
     def __init__(
@@ -61,7 +67,7 @@ class ValueNetwork(QNetwork):
         self.first = _layer(self.features_dim + goal_size, widths[0], layer_norm)
         self.inner = nn.Sequential(*(_layer(a, b, layer_norm) for a, b in pairwise(widths)))
         self.head = nn.Linear(widths[-1], actions + 1 if dueling else actions)
-        if small_head:  # |Q| starts below 0.01; by default it is as large as γ^(T-1) of a long plan
+        if small_head:  # |Q| starts below 0.01; by default it is as large as Q* far from the goal
             with th.no_grad():
                 self.head.weight.mul_(0.01)
                 self.head.bias.zero_()

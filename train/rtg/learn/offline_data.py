@@ -1,4 +1,4 @@
-"""The offline transitions of a run: added to the replay buffer on arrival, kept for their file."""
+"""Receives the offline transitions of a run and adds them to the replay buffer."""
 
 from __future__ import annotations
 
@@ -16,27 +16,30 @@ from rtg.files.dataset import Rows, Transitions
 from rtg.files.recorder import Recorder
 from rtg.learn.replay import MixedReplayBuffer
 
-# numpy parses array headers with `ast`, which fails in Python 3.11 if two threads use it at once.
+# numpy parses array headers with `ast`. In Python 3.11 this fails if two threads do it at once.
 _READ_LOCK = threading.Lock()
 REFRESH_GROWTH = 1.25  # value bounds are recomputed when the data has grown by this factor
 
 
 class Source(Protocol):
-    """A source of transitions, such as rtg.bus.transition_stream.TransitionStream."""
+    """A source of transitions (rows), such as rtg.bus.transition_stream.TransitionStream.
+
+    It passes the rows to a receiver, usually OfflineData.add().
+    """
 
     def poll(self, timeout: float) -> int:
-        """Waits at most `timeout` s for rows, hands them over and returns their number."""
+        """Waits at most `timeout` s for rows, passes them on and returns their number."""
 
     def close(self) -> None:
         """Ends the reception of rows."""
 
     @property
     def complete(self) -> bool:
-        """True if all rows have been handed over."""
+        """True if all rows have been passed on."""
 
     @property
     def lost(self) -> int:
-        """Number of rows that are known to exist and have not been handed over."""
+        """Number of rows that are known to exist but have not been passed on."""
 
 
 def read_rows(path: Path, task: _core.Task) -> Rows:
@@ -47,8 +50,7 @@ def read_rows(path: Path, task: _core.Task) -> Rows:
 
 
 class OfflineData:
-    """Records all received transitions in sequence order; adds those that `select` returns to the
-    replay buffer."""
+    """Records all received transitions, and adds those that `select` returns to `buffer`."""
 
     def __init__(
         self,
@@ -58,7 +60,7 @@ class OfflineData:
     ) -> None:
         self._buffer, self._select = buffer, select
         self.record = Recorder(task)
-        # Rows of the checkpoint until the source, which starts again, has repeated all of them.
+        # Rows known from the checkpoint. A restarted source repeats them; None once it has done so.
         self._checkpoint_rows: Rows | None = None
         self._repeated_count = 0  # rows that the source has sent again so far
         self._count_at_refresh = 0  # number of rows when the bounds were last computed
@@ -68,7 +70,7 @@ class OfflineData:
         return self.record.count
 
     def add(self, rows: Rows) -> None:
-        """Adds the next rows of the source.
+        """Adds the next rows of the source. Skips rows that a restarted source repeats.
 
         Raises RunError if repeated rows differ from those of the checkpoint.
         """
@@ -92,7 +94,10 @@ class OfflineData:
         return again
 
     def prove_bounds(self, complete: bool) -> None:
-        """Recomputes the value bounds if enough rows are new, or any are new and all are in."""
+        """Recomputes the value bounds if the data has grown by the factor REFRESH_GROWTH.
+
+        If `complete`, the data is complete, and any new row is reason enough.
+        """
         grown = self.count >= REFRESH_GROWTH * self._count_at_refresh
         if self.count > self._count_at_refresh and (grown or complete):
             self._count_at_refresh = self.count
@@ -105,8 +110,8 @@ class OfflineData:
     def restore(self, state: dict[str, int], rows: Rows) -> None:
         """Restores the counts and adds the rows of the checkpoint to the replay buffer.
 
-        `rows`: all rows of the transition file, which may include some from after the checkpoint.
-        Raises RunError if it has fewer rows than the checkpoint.
+        `rows`: all rows of the transition file. It may hold more rows than the checkpoint. Raises
+        RunError if it holds fewer.
         """
         count, refreshed = state["count"], state["refreshed"]
         if len(rows.action) < count:
@@ -135,7 +140,7 @@ class NoSource:
 
 
 class FileSource:
-    """A source that hands over all transitions of a file at the first poll."""
+    """A source that passes all transitions of a file to `data` at the first poll."""
 
     lost = 0
 

@@ -1,4 +1,4 @@
-"""The baseline that learns nothing: a forward beam search from each start of the evaluation."""
+"""The baseline without learning: a forward beam search from each start of the evaluation."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rtg.learn.offline_data import Source
 from rtg.learn.training_log import TrainingLog
 
 _FORMAT = 2  # version of the checkpoint format
-# One search at a time: it uses all workers, and its cpu_s is the processor time of the process.
+# Allows one search at a time: it uses all workers, and cpu_s measures the whole process.
 _SEARCH_LOCK = threading.Lock()
 
 
@@ -33,7 +33,10 @@ class Plan(NamedTuple):
 
 
 def plan(config: _core.Config, start: Floats) -> Plan:
-    """Plans from `start` [bodies, 3]. Equal arguments give equal plans, except for their times."""
+    """Searches for a plan from `start` [bodies, 3] and measures its cost.
+
+    Equal arguments give equal plans, except for the times.
+    """
     with _SEARCH_LOCK:
         began, cpu = time.monotonic(), time.process_time()
         states, pushes = _core.plan(config, start[None])
@@ -41,9 +44,9 @@ def plan(config: _core.Config, start: Floats) -> Plan:
 
 
 def evaluate_plans(task: _core.Task, plans: list[Plan], discount: float) -> Evaluation:
-    """Evaluates the plans, at least one, as episodes of a policy with the plans as paths.
+    """Evaluates `plans`, at least one, as if they were episodes of a policy.
 
-    A plan without success, or longer than the horizon, counts as a failure of horizon length.
+    A plan that fails, or is longer than the horizon, is a failure with the length of the horizon.
     """
     actions = np.array([len(one.states) - 1 for one in plans])
     success = task.succeeded(np.stack([one.states[-1] for one in plans]))
@@ -54,7 +57,7 @@ def evaluate_plans(task: _core.Task, plans: list[Plan], discount: float) -> Eval
 
 
 class Planning:
-    """Plans from the final held-out starts and writes to a run folder as Training does.
+    """Plans from the held-out starts of the final evaluation. Takes the place of class Training.
 
     A resumed run continues with the next start.
     """
@@ -64,17 +67,17 @@ class Planning:
         self.settings = s = config.train
         self.discount = s.discount or self.task.discount
         self.starts = held_out_starts(self.task, s.eval_episodes, FINAL_SEED, s.randomise)
-        self.plans: list[Plan] = []  # of the first len(plans) starts
+        self.plans: list[Plan] = []  # one for each start so far
         self.log = TrainingLog(folder)
         self.runs = 1  # number of runs in this process
-        self.scheduled = 0  # interactions: none
+        self.scheduled = 0  # number of interactions, as in Training
         # NodeStatus.tick, if there is a bus.
         self.publish_status: Callable[[str, int], None] = lambda state, done: None
         self._checkpoint = run_folder.checkpoint_file(folder)
         self._identity = {"learner": "planning", "format": _FORMAT}
 
     def run(self, source: Source, stop: Callable[[], bool], record: bool) -> bool:
-        """Plans until all starts are done or `stop` returns True; returns whether all are done.
+        """Plans from the remaining starts until `stop` returns True; returns whether all are done.
 
         Writes a checkpoint after each start. Ignores `source` and `record`.
         """
@@ -88,7 +91,7 @@ class Planning:
 
     @property
     def done(self) -> bool:
-        """True if the search from each start has ended, with or without a plan."""
+        """True if a search from each start has ended, with or without a plan."""
         return len(self.plans) == len(self.starts)
 
     def finish(self, lost: int) -> None:
@@ -136,7 +139,7 @@ class Planning:
         return self._checkpoint.exists()
 
     def restore(self) -> None:
-        """Restores the plans of the checkpoint up to the first whose start differs from this run's.
+        """Restores the plans of the checkpoint, up to the first with a start that differs now.
 
         Raises UserError if another learner wrote the checkpoint.
         """

@@ -1,4 +1,7 @@
-"""The file of a trained policy: the weights of the value network and the values they must fit."""
+"""The file of a trained policy: the weights of the value network, and their identity.
+
+The identity holds the values of task and settings that determine the shapes of the weights.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ from rtg.learn.networks import ValuePolicy
 
 
 def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
-    """Returns the values of task and settings that the weights must fit."""
+    """Returns the values of task and settings that determine the shapes of the weights."""
     return {
         "observation_size": task.observation_size,
         "headings": task.headings,
@@ -31,7 +34,7 @@ def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
 
 
 def check_identity(path: Path, found: Any, wanted: dict[str, Any]) -> None:
-    """Raises UserError with the first value that differs."""
+    """Raises UserError if a value of `wanted` differs in `found`, the identity in file `path`."""
     if not isinstance(found, dict):
         raise UserError(f"{path}: of another kind: it does not say what made it")
     for name, value in wanted.items():

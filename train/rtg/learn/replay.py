@@ -1,4 +1,7 @@
-"""A replay buffer with two stores: offline transitions, never evicted, and online ones, a ring."""
+"""A replay buffer with two stores, for offline and for online transitions.
+
+Offline transitions are never evicted. Online transitions form a ring buffer.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,7 @@ class Batch(NamedTuple):
     next_observations: th.Tensor  # [B, observation] float32
     rewards: th.Tensor  # [B, 1] float32
     terminated: th.Tensor  # [B, 1] float32, 1: no bootstrap from s'; 0 after a time-out
-    bounds: th.Tensor  # [B, 1] float32, proven lower bounds of Q*(s, a); -inf if unused
+    bounds: th.Tensor  # [B, 1] float32, lower bounds of Q*(s, a) as in value_bounds.py, or -inf
     offline: int
 
 
@@ -81,7 +84,7 @@ class Store:
         return numbers
 
     def set_bounds(self, numbers: Array, bounds: Array) -> None:
-        """Sets the bounds of the transitions with these numbers; skips overwritten transitions."""
+        """Sets the value bounds of transitions by their numbers; skips overwritten ones."""
         kept = numbers >= self.written - self.capacity
         self.bound[numbers[kept] % self.capacity] = bounds[kept]
 
@@ -108,10 +111,10 @@ class Store:
 
 @dataclass(frozen=True)
 class ReplayRules:
-    """The settings that determine how a batch is drawn."""
+    """The settings that determine how a batch is drawn, see MixedReplayBuffer."""
 
-    offline_share: float  # of a batch, once a batch of online ones exists; negative: uniform
-    recent_share: float  # share of the online rows that the RECENT_COUNT latest provide
+    offline_share: float  # share of a batch from the offline store; negative: uniform
+    recent_share: float  # share of the online rows from the RECENT_COUNT latest ones
     discount: float  # γ of the value bounds
     use_bounds: bool
     seed: int
@@ -120,11 +123,11 @@ class ReplayRules:
 class MixedReplayBuffer(BaseBuffer):
     """The replay buffer that SB3's DQN samples from.
 
-    The share `offline_share` of every batch is drawn from the offline transitions once the buffer
-    holds a batch of online transitions; before that, the whole batch is offline. A negative share
-    draws uniformly from both stores. The share `recent_share` of the online rows is drawn from the
-    RECENT_COUNT latest ones. Those contain the mistakes of the current policy, which uniform
-    sampling of all stored transitions would draw too rarely to correct them soon.
+    - A share `offline_share` of each batch comes from the offline store. Before the online store
+      holds enough transitions for a batch, the whole batch is offline.
+    - A negative `offline_share` means uniform sampling from all stored transitions.
+    - A share `recent_share` of the online rows comes from the RECENT_COUNT latest ones. They
+      contain the mistakes of the current policy. Uniform sampling would draw these too rarely.
     """
 
     def __init__(
@@ -171,7 +174,7 @@ class MixedReplayBuffer(BaseBuffer):
         )
 
     def refresh_bounds(self) -> None:
-        """Recomputes the lower bounds of all offline transitions; to be called after new data."""
+        """Recomputes the value bounds of all offline transitions. To be called after new data."""
         store, n = self.offline, self.offline.count
         if self.use_bounds and n:
             store.bound[:n] = value_bounds(
@@ -183,8 +186,8 @@ class MixedReplayBuffer(BaseBuffer):
     ) -> None:
         """Adds one online transition per environment; SB3 calls it after each step.
 
-        An episode that ends by a time-out keeps the bootstrap. A push that the simulator could not
-        finish is not a transition, so its row is left out.
+        A time-out does not count as termination, so its target still bootstraps. A push that the
+        simulator could not finish is no transition and is left out.
         """
         timeout = np.array([info.get("TimeLimit.truncated", False) for info in infos])
         kept = np.flatnonzero([not info.get("rejected", False) for info in infos])
@@ -243,7 +246,7 @@ class MixedReplayBuffer(BaseBuffer):
         )
 
     def _columns(self, parts: list[Part]) -> dict[str, Array]:
-        """Returns the rows of a batch by column, as the tensors of the batch hold them."""
+        """Returns the columns of a batch, which joins the rows in `parts`."""
         columns = {
             name: np.concatenate([getattr(store, name)[rows] for store, rows in parts])
             for name in Store.columns
@@ -253,7 +256,7 @@ class MixedReplayBuffer(BaseBuffer):
         return columns
 
     def _online_rows(self, count: int) -> Array:
-        """Returns row numbers of the online store; the first `recent_share` of them are recent."""
+        """Draws `count` rows of the online store; the first of them are recent (recent_share)."""
         store = self.online
         rows = self.rng.integers(store.count, size=count)
         recent = min(store.count, RECENT_COUNT)
@@ -275,10 +278,10 @@ class MixedReplayBuffer(BaseBuffer):
         raise NotImplementedError("rows belong to two stores; use sample()")
 
     def state(self) -> dict[str, Any]:
-        """Returns the state that sampling depends on, except the offline transitions.
+        """Returns the state for a checkpoint, without offline transitions.
 
-        These have their own file. restore() continues bit for bit if the same offline transitions
-        were added again, with their bounds refreshed at the same counts.
+        These have their own file. To continue bit for bit, the caller adds them again, and
+        refreshes their bounds at the same numbers of transitions as before.
         """
         return {
             "online": self.online.state(),

@@ -1,6 +1,7 @@
-"""The settings of the learner that must not change after a checkpoint; see TrainConfig."""
+"""The settings of the learner that must not change when a run continues from a checkpoint."""
 
-# They determine the shapes of network and buffer, and the returns and counts in the checkpoint.
+# Fields of TrainConfig. They determine the shapes of network and buffer, and the returns and counts
+# in the checkpoint.
 CHECKPOINT_SETTINGS = (
     "learner",
     "interact",

@@ -4,9 +4,11 @@
 RUN_FOLDER/config.yaml and receives the transitions of the run while it learns. It writes
 transitions.npz, progress.csv, training_state.json (for displays), checkpoint/, model.pt,
 best_episode.npz and training.json to the same folder. With `train.learner: planning` it learns
-nothing and writes no model.pt. Several runs learn side by side, each on its own thread, with
-results that are bitwise equal to those of separate runs. On SIGINT, SIGTERM or SIGHUP it writes a
-checkpoint and exits with status 128 + signal number; a second signal ends it at once.
+nothing and writes no model.pt.
+
+Several runs learn side by side, each on its own thread. Their results are bitwise equal to those of
+separate runs. On SIGINT, SIGTERM or SIGHUP the process writes a checkpoint and exits with status
+128 + signal number. A second signal ends it at once.
 """
 
 from __future__ import annotations
@@ -74,7 +76,7 @@ def _begin(folder: Path, args: argparse.Namespace) -> Training | Planning:
 
 
 def _learn(training: Training | Planning, args: argparse.Namespace, interrupts: Interrupts) -> int:
-    """Learns from start to end; returns the exit status. Raises UserError or RunError."""
+    """Performs one training run; returns the exit status. Raises UserError or RunError."""
     with contextlib.closing(_source(training, args)) as source:
         try:
             if not training.run(source, interrupts.requested, record=not args.no_stream):
@@ -86,9 +88,9 @@ def _learn(training: Training | Planning, args: argparse.Namespace, interrupts: 
 
 
 def train(args: argparse.Namespace, interrupts: Interrupts) -> int:
-    """Learns all runs; returns their highest exit status. Raises UserError or RunError.
+    """Performs all training runs side by side; returns their highest exit status.
 
-    If runs fail, it raises the error of the first of them after all runs have ended.
+    Raises UserError or RunError after all runs have ended, that of the first folder that failed.
     """
     # Sequentially, because the initial weights come from the random generator of the process.
     trainings = [_begin(folder, args) for folder in args.folders]
@@ -100,7 +102,7 @@ def train(args: argparse.Namespace, interrupts: Interrupts) -> int:
 def _keep_to_one_thread() -> None:
     """Limits PyTorch to one thread.
 
-    With networks this small more threads are slower, up to a hundred times on a busy core.
+    Networks this small are slower on more threads, up to a hundred times on a busy machine.
     """
     th.set_num_threads(1)
 

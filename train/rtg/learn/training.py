@@ -21,7 +21,7 @@ from rtg.learn.offline_data import OfflineData, Source, read_rows
 from rtg.learn.settings import CHECKPOINT_SETTINGS
 from rtg.learn.training_log import TrainingLog
 
-MAX_ENVIRONMENTS = 4  # environments stepped together; train.buffer must not be smaller
+MAX_ENVIRONMENTS = 4  # stepped together at most; train.buffer must not be smaller
 _FORMAT = 6  # version of the checkpoint format; other versions are rejected
 POLL_TIMEOUT = 0.1  # [s], how long a poll waits for transitions while not learning
 
@@ -29,16 +29,15 @@ Stop = Callable[[], bool]
 
 
 class Training:
-    """Runs the learner with its environments and data, and writes to a run folder.
+    """A training run: the learner with its environments and its data. Writes to a run folder.
 
-    Once learning has begun it does not wait for transitions that are still to come. It depends on
-    its checkpoint, on the transitions, and on the step at which each of them arrives. So a resumed
-    run continues bit for bit with a finished transition set, or with a stream that delivers rows at
-    the same steps. LCM does not deliver them so: over LCM two runs with one seed may differ.
+    Once learning has begun, it does not wait for further transitions. Its course depends on the
+    step at which each transition arrives. So a resumed run continues bit for bit if the transition
+    set is finished. Over LCM arrival times vary, so two runs with one seed may differ.
 
     Without `train.interact`, learning waits for all transitions, and its rounds have no
-    interactions. Schedules and progress.csv count the interactions all the same; training.json
-    counts the real ones, 0.
+    interactions. Schedules and progress.csv count the interactions all the same. training.json
+    holds their true number, 0.
     """
 
     def __init__(self, config: _core.Config, folder: Path) -> None:
@@ -65,7 +64,7 @@ class Training:
         }
         self.starts = held_out_starts(self.task, s.eval_episodes, randomise=s.randomise)
         self.runs = 1  # number of runs that learn in this process
-        # Device and precision of the last learning, see _current_device_info().
+        # Device and precision of the last period of learning, see _current_device_info().
         self.device_info: dict[str, Any] = {}
         # NodeStatus.tick, if there is a bus.
         self.publish_status: Callable[[str, int], None] = lambda state, done: None
@@ -75,7 +74,7 @@ class Training:
 
     @property
     def scheduled(self) -> int:
-        """Number of interactions so far that schedules count."""
+        """Number of interactions so far as schedules count them, also without `train.interact`."""
         return self.model.num_timesteps
 
     @property
@@ -102,8 +101,8 @@ class Training:
     def run(self, source: Source, stop: Stop, record: bool) -> bool:
         """Learns and receives transitions until both are complete or `stop` returns True.
 
-        Returns whether both are complete, and writes a checkpoint in either case. `record`: writes
-        transitions.npz once all transitions are in.
+        Writes a checkpoint at the end and returns whether both are complete. If `record`, writes
+        transitions.npz when all transitions have arrived.
         """
         while not (stop() or source.complete or self._may_begin()):
             self._receive(source, record, POLL_TIMEOUT)
@@ -121,7 +120,7 @@ class Training:
         return self.done and source.complete
 
     def _may_begin(self) -> bool:
-        """Returns whether learning can begin before all transitions are in."""
+        """Returns whether learning can begin before all transitions have arrived."""
         return self.settings.interact and self.data.count >= self.settings.learning_starts
 
     def _learn(self) -> None:
@@ -159,7 +158,7 @@ class Training:
         return f"learning, success {rows[-1]['success_rate']:.2f}" if rows else "learning"
 
     def _evaluate_and_save(self) -> None:
-        """Evaluates and writes a checkpoint if either is due."""
+        """Evaluates if an evaluation is due; writes a checkpoint if a checkpoint is due."""
         evaluated_at = self.log.rows[-1]["interactions"] if self.log.rows else 0
         over = self.scheduled >= self.settings.interactions > evaluated_at
         if over or self._is_due(self.settings.eval_every, evaluated_at):
@@ -202,7 +201,7 @@ class Training:
         return {"q_start_max": float(self.model.values(nominal).max())}
 
     def _display_state(self) -> dict[str, Any]:
-        """Returns the figures for displays; "interactions" are those that schedules count."""
+        """Returns the figures for displays; "interactions" is `scheduled`."""
         rows = self.log.rows
         return {
             "interactions": self.scheduled,
@@ -258,9 +257,9 @@ class Training:
         self._saved_at, self._saved_rows = self.scheduled, self.data.count
 
     def _transition_files(self) -> tuple[Path, Path]:
-        """Returns the file of all transitions, and that of the transitions at the checkpoint.
+        """Returns the path for all transitions, and the path for those at the checkpoint.
 
-        The second one exists only until the first one does.
+        save() removes the second file once the first one exists.
         """
         return self.folder / "transitions.npz", self._checkpoint.parent / "transitions.npz"
 
@@ -276,8 +275,9 @@ class Training:
     def finish(self, lost: int) -> None:
         """Writes the model, the best final episode and training.json.
 
-        The final figures use starts of no earlier evaluation, because an evaluation that was
-        successful by chance may have stopped training. `lost`: number of lost transitions.
+        The final evaluation has starts of its own. Those of earlier evaluations would be biased: an
+        evaluation with chance success may have stopped training. `lost`: number of lost
+        transitions.
         """
         s = self.settings
         starts = held_out_starts(self.task, s.eval_episodes, FINAL_SEED, s.randomise)

@@ -15,7 +15,7 @@ from rtg.files.run_folder import write_json, write_text
 from rtg.learn.evaluation import Evaluation
 
 COLUMNS = (
-    "interactions",  # without train.interact: those that the rounds of learning stand for
+    "interactions",  # as schedules count them, see Training.scheduled
     "gradient_steps",
     "success_rate",  # of the greedy policy from the held-out starts
     "episode_length_mean",
@@ -31,7 +31,7 @@ COLUMNS = (
     "q_online_max",
     "td_error",
     "clipped_share",  # share of the bootstrap targets outside [0, 1]
-    "bound_share",  # share of the targets raised to the bounds that stored trajectories prove
+    "bound_share",  # share of the targets raised to the bounds of value_bounds.py
     "offline_transitions",
     "pushes",  # simulated for learning: by interactions, a curriculum or planning
     "wall_s",

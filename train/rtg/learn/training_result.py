@@ -42,7 +42,7 @@ def _counts(run: Training) -> dict[str, int]:
 
 
 def _value_check(run: Training) -> dict[str, float | None]:
-    """Returns the figures of check_values(); empty without a Q or stored states."""
+    """Returns the figures of check_values(); {} without Q-learning or without stored states."""
     if run.settings.learner != "q_learning" or not run.data.count:
         return {}
     states = stored_states(run.data.record.transitions(), MAX_STATES, run.seed)

@@ -1,8 +1,7 @@
-"""Lower bounds of Q* that follow from a set of true transitions.
+"""Lower bounds of Q* that follow from a set of simulated transitions.
 
-The dynamics are deterministic. If the stored transitions lead from (s, a) to a success in k
-actions, then Q*(s, a) ≥ γ^(k-1), independently of the network. Two states count as equal if their
-observations are bitwise equal.
+The dynamics are deterministic. So if stored transitions lead from (s, a) to a success in k actions,
+then Q*(s, a) ≥ γ^(k-1). Two states count as equal if their observations are bitwise equal.
 """
 
 from __future__ import annotations
@@ -21,7 +20,10 @@ def value_bounds(
     reward: Array,  # [N] float32, 1 is a success and ends the episode
     discount: float,
 ) -> Array:
-    """Returns the bound of each transition, 0 if the set leads to no success. [N] float32"""
+    """Returns a lower bound of Q*(s, a) for each transition. [N] float32
+
+    It is 0 if no chain of stored transitions leads to success.
+    """
     here, there = _state_ids(observation, next_observation)
     order = np.argsort(here, kind="stable")
     first = np.flatnonzero(np.diff(here[order], prepend=-1))  # first index of each state's group

@@ -1,8 +1,8 @@
-"""Checks by simulation how well Q ranks the headings of a state, an indicator of useful data.
+"""Checks in the simulator how well Q(s, ·) ranks the headings of a state.
 
-It simulates every heading in some hundred stored states. The value of a heading is 1 if it
-succeeds, else γ max_b Q(s', b), with Q's own value of the next state. The policy chooses headings
-by Q(s, ·), so Q(s, ·) should rank them as their values do.
+The policy chooses headings by Q(s, ·), so a good ranking indicates useful data. The check simulates
+every heading in some hundred stored states. The value of a heading is 1 if it succeeds, else
+γ max_b Q(s', b). Q(s, ·) should rank the headings as these values do.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ MAX_STATES = 300
 
 
 class ValueCheck(NamedTuple):
-    """The agreement of Q(s, ·) with the values of the headings, from one simulated push each."""
+    """The agreement of Q(s, ·) with the simulated values of the headings."""
 
     rank_correlation: float  # Spearman's, over the headings of a state; mean over the states
     error: float  # root mean square of Q(s, a) - the value of a in s
@@ -39,9 +39,9 @@ class ValueCheck(NamedTuple):
 
 
 def stored_states(data: Transitions, count: int, seed: int) -> Array:
-    """Draws `count` distinct states in which stored transitions begin; returns all if fewer exist.
+    """Draws `count` distinct states in which stored transitions begin. [states, bodies, 3]
 
-    [states, bodies, 3]
+    Returns all such states if there are fewer.
     """
     states = np.unique(data.poses, axis=0)
     chosen = np.random.default_rng(seed).permutation(len(states))[:count]
@@ -49,7 +49,7 @@ def stored_states(data: Transitions, count: int, seed: int) -> Array:
 
 
 def _centred_ranks(values: Array) -> Array:
-    """Returns centred ranks within each row, times 2; equal values share one. [N, M] -> [N, M]"""
+    """Returns twice the centred ranks within each row; ties share a rank. [N, M] -> [N, M]"""
     return np.sign(values[:, :, None] - values[:, None, :]).sum(axis=2)
 
 
@@ -64,10 +64,10 @@ def _spearman(a: Array, b: Array) -> Array:
 def check_values(
     config: _core.Config, values: Values, discount: float, states: Array
 ) -> ValueCheck | None:
-    """Compares `values` with the simulated values of all headings. states [N, bodies, 3]
+    """Compares Q(s, ·), from `values`, with the simulated values of all headings.
 
-    Leaves out states in which the simulator cannot finish a push, or whose headings have equal
-    values. Returns None if no state is left.
+    Leaves out states in which the simulator cannot finish a push, or in which all headings have
+    equal values. Returns None if no state is left. states [N, bodies, 3]
     """
     task, simulator = config.task, _core.Simulator(config)
     headings = np.arange(task.headings)

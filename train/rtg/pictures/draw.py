@@ -1,4 +1,4 @@
-"""Draws one state of a task, from the same data as the goal predicate uses."""
+"""Draws one state of a task: bodies, joints and the regions of the goal."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class TaskLike(Protocol):
 
     @property
     def shapes(self) -> Sequence[Floats]:
-        """Per body [V, 2]."""
+        """The vertices of each body, [V, 2]."""
 
     @property
     def names(self) -> Sequence[str]: ...
@@ -67,13 +67,13 @@ class TaskLike(Protocol):
     def fixed(self) -> Sequence[bool]: ...
     @property
     def joints(self) -> Sequence[tuple[int, int, Floats]]:
-        """(parent, child, pin in the frame of the parent)."""
+        """The joints: (parent, child, pin in the frame of the parent)."""
 
     @property
     def goal(self) -> Sequence[GoalLike]: ...
     @property
     def start(self) -> Floats:
-        """[bodies, 3]."""
+        """The nominal start, [bodies, 3]."""
 
     @property
     def arena(self) -> float: ...
@@ -96,7 +96,7 @@ def kind_colours(task: TaskLike) -> dict[str, Colour]:
 
 
 def blend_with_paper(colour: Colour, share: float) -> Colour:
-    """Mixes `share` of the colour with PAPER."""
+    """Mixes `colour`, with weight `share`, and PAPER."""
     red, green, blue = (
         round(share * c + (1.0 - share) * p) for c, p in zip(colour, PAPER, strict=True)
     )
@@ -104,7 +104,7 @@ def blend_with_paper(colour: Colour, share: float) -> Colour:
 
 
 def outline(shape: Floats, pose: Floats) -> Floats:
-    """Returns the vertices of a body in world coordinates. shape [V, 2], pose [3] -> [V, 2]."""
+    """Transforms the vertices of a body to world coordinates. shape [V, 2], pose [3] -> [V, 2]."""
     c, s = np.cos(pose[2]), np.sin(pose[2])
     return np.asarray(shape) @ np.array([[c, s], [-s, c]]) + pose[:2]
 
@@ -117,7 +117,10 @@ class Window(NamedTuple):
     half: float  # half the side
 
     def at(self, right: float, up: float) -> tuple[float, float]:
-        """Returns the point at `right` and `up` from the centre; -1 and 1 are the edges."""
+        """Returns the world coordinates of the point (`right`, `up`) of the window.
+
+        (0, 0) is its centre; -1 and 1 are the edges.
+        """
         return self.x + right * self.half, self.y + up * self.half
 
 
@@ -127,9 +130,9 @@ def arena_window(task: TaskLike) -> Window:
 
 
 def episode_window(task: TaskLike, poses: Floats) -> Window:
-    """Returns the window that shows all bodies at all times and the goal discs of an episode.
+    """Returns the window that shows all states of an episode and the discs of the goal.
 
-    The window is at most that of arena_window(). poses [T, bodies, 3]
+    It is not larger than arena_window(). poses [T, bodies, 3]
     """
     marks = [term for term in task.goal if term.region == "disc"]
     corners = [circle(term.centre, term.radius) for term in marks]
@@ -145,7 +148,7 @@ def episode_window(task: TaskLike, poses: Floats) -> Window:
 
 
 class Canvas:
-    """A square picture of a window, with y upwards."""
+    """A square picture of `window`, with y upwards. Coordinates are in the world frame [m]."""
 
     def __init__(self, window: Window, pixels: int = 360) -> None:
         self.window = window
@@ -175,12 +178,12 @@ class Canvas:
         ImageDraw.Draw(self._image).ellipse((x - r, y - r, x + r, y + r), fill=colour)
 
     def text(self, xy: Any, words: str, size: float = 0.75, colour: Colour = INK) -> None:
-        """Draws words with their upper left corner at `xy`; the font size is `size` [m]."""
+        """Draws `words` with their upper left corner at `xy`. `size`: font size [m]."""
         font = ImageFont.load_default(size=size * self._scale)
         ImageDraw.Draw(self._image).text(self._points(xy)[0], words, fill=colour, font=font)
 
     def pixels(self) -> NDArray[np.uint8]:
-        """Returns the reduced picture. [height, width, 3]"""
+        """Returns the picture in its final size. [height, width, 3]"""
         return np.asarray(self._image.reduce(OVERSAMPLING))
 
 
@@ -192,7 +195,10 @@ def circle(centre: Any, radius: float, corners: int = 96) -> Floats:
 
 
 def _half_plane(term: GoalLike, reach: float) -> Floats:
-    """Returns a rectangle that covers normal·x <= offset wherever a window can show it. [4, 2]"""
+    """Returns a rectangle that covers the half-plane of `term` in every window. [4, 2]
+
+    `reach`: half width of the arena [m].
+    """
     normal = np.asarray(term.normal, dtype=float).reshape(2)
     along = np.array([-normal[1], normal[0]])
     edge = normal * term.offset
@@ -202,7 +208,7 @@ def _half_plane(term: GoalLike, reach: float) -> Floats:
 
 
 def draw_goal(canvas: Canvas, task: TaskLike, reached: bool = False) -> None:
-    """Draws the regions of the goal, darker if `reached`; discs lie on top of half-planes."""
+    """Draws the regions of the goal, darker if `reached`. Discs lie on top of half-planes."""
     colours = kind_colours(task)
     regions = [term for term in task.goal if term.region != "angles"]
     for term in sorted(regions, key=lambda term: term.region == "disc"):
@@ -231,10 +237,10 @@ def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
 
 
 def draw_joints(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
-    """Draws a pin per joint and a cross at each mean centre that the goal constrains.
+    """Draws a pin at each joint, and a cross at each mean centre that the goal constrains.
 
-    A pin has the colour of the goal if the goal constrains the joint angle and the angle meets the
-    constraint. poses [bodies, 3]
+    A pin has the colour GOAL if the goal constrains the joint angle and the angle complies.
+    poses [bodies, 3]
     """
     reached = task.joints_reached(poses[None])
     for (parent, _, pin), right in zip(task.joints, reached, strict=True):
@@ -247,7 +253,10 @@ def draw_joints(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
 
 
 def draw_former_outlines(canvas: Canvas, task: TaskLike, before: Floats, poses: Floats) -> None:
-    """Draws the outlines at `before` of the objects that have moved since. [bodies, 3] each"""
+    """Draws the outlines in state `before` of objects that have moved. [bodies, 3] each
+
+    `poses`: the current state.
+    """
     colours = kind_colours(task)
     for body in objects(task):
         if np.abs(poses[body] - before[body]).max() > 0.02:
@@ -263,10 +272,11 @@ def state_image(
     caption: str = "",
     reached: bool = False,
 ) -> NDArray[np.uint8]:
-    """Draws the last state of a path as an RGB picture [pixels, pixels, 3].
+    """Draws the last state of `path` as an RGB picture [pixels, pixels, 3].
 
-    path [T, bodies, 3]: the picture also shows the path of the robot and the first places of the
-    objects. `reached` marks a success. Without `canvas`, the picture shows the whole arena.
+    The picture also shows the way of the robot along `path` [T, bodies, 3] and the outlines of the
+    objects in its first state. `reached` marks a success. Without `canvas`, the picture shows the
+    whole arena.
     """
     canvas = canvas or Canvas(arena_window(task))
     path = np.asarray(path, dtype=float)

@@ -1,4 +1,4 @@
-"""Pictures of one episode: a strip of its states and a film."""
+"""Pictures of one episode: a strip (a sequence of its states) and a film."""
 
 from __future__ import annotations
 
@@ -22,20 +22,21 @@ from rtg.pictures.draw import (
 Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]  # [height, width, 3]
 
-_COLUMNS = 5  # of a strip, at most
-_FRAMES_PER_PUSH = 8  # at most; fewer in long episodes
-_FRAMES = 160  # of a film, about
+_COLUMNS = 5  # largest number of columns of a strip
+_FRAMES_PER_PUSH = 8  # largest number; long episodes have fewer
+_FRAMES = 160  # approximate length of a film
 _FILM_SIDE = 360  # [pixel]
 _FRAME_MS = 45
 _HOLD_MS = 1200  # at the start; twice as long at the end
 
 
 def interpolate(task: TaskLike, before: Floats, after: Floats, share: float) -> Floats:
-    """Interpolates the state after a `share` of a push. [bodies, 3]
+    """Interpolates between the states `before` and `after` a push. [bodies, 3]
 
-    The robot moves at constant speed. An object rests until the remaining push is as long as the
-    path of the object, then moves as fast as the robot; bodies connected by joints move
-    during the same time. Exact for straight drags, an approximation otherwise.
+    `share`: elapsed share of the push. The robot moves at constant speed. An object rests until the
+    remaining push is as long as the path of the object. Then it moves as fast as the robot. Bodies
+    connected by joints begin to move together. This is exact if the robot pushes objects straight
+    ahead, else an approximation.
     """
     path_lengths = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)  # [bodies]
     for _ in task.joints:  # the longest path spreads along every chain of joints
@@ -49,7 +50,7 @@ def interpolate(task: TaskLike, before: Floats, after: Floats, share: float) -> 
 
 
 def _heading(title: str, width: int) -> Picture:
-    """Draws a line of words across `width` pixels, as large as fits. [height, width, 3]"""
+    """Draws `title` as a line of text, as large as fits into `width` pixels."""
     largest = 18.0 * OVERSAMPLING  # [pixel]
     length = ImageFont.load_default(size=largest).getlength(title)
     size = min(largest, largest * 0.95 * width * OVERSAMPLING / length)
@@ -61,7 +62,7 @@ def _heading(title: str, width: int) -> Picture:
 
 
 def strip(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -> None:
-    """Writes a picture of states from the first to the last, in at most two rows.
+    """Writes a picture of up to ten states of an episode, from the first to the last.
 
     poses [T+1, bodies, 3]
     """
@@ -98,7 +99,7 @@ def _sheet(tiles: list[Picture], columns: int) -> Picture:
 
 
 def film(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -> None:
-    """Writes an animated GIF of the pushes. poses [T+1, bodies, 3]."""
+    """Writes an animated GIF of an episode. poses [T+1, bodies, 3]."""
     last = len(poses) - 1
     window = episode_window(task, poses)
     heading = _heading(title, _FILM_SIDE)

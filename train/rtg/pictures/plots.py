@@ -70,11 +70,11 @@ def save(figure: Figure, path: Path) -> None:
 
 
 def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: str) -> None:
-    """Plots success, episode length and return against interactions; `unit` labels the x-axis.
+    """Plots success, episode length and return against interactions.
 
-    curve: the columns `interactions`, `success_rate`, `episode_length_mean`, `episode_return_mean`
-    and, if known, `rollout_success`. Each column has one value per evaluation, NaN where it was
-    not measured, [N].
+    `curve` has the columns `interactions`, `success_rate`, `episode_length_mean`,
+    `episode_return_mean` and, if known, `rollout_success`. Each has one value per evaluation [N],
+    NaN if not measured. `unit` labels the x-axis.
     """
     panels = [
         ("success rate", "success_rate", "rollout_success", (-0.03, 1.03)),
@@ -114,9 +114,9 @@ def _metres(value: float) -> str:
 
 
 def gap_histogram(axis: Axes, counts: Sequence[int], median: float, p90: float) -> None:
-    """Draws the bins of replay_gaps as bars and marks median and 90th percentile [m].
+    """Draws a histogram of the replay gap. Marks `median` and 90th percentile `p90` [m].
 
-    counts [bins]
+    `counts`: number of gaps in each bin of rtg.files.replay_gaps. [bins]
     """
     bounds, top = replay_gaps.EDGES, int(np.flatnonzero(counts).max(initial=0)) + 1
     axis.bar(bounds[:-1], counts, np.diff(bounds), align="edge", color=_BLUE, alpha=0.85)
@@ -139,7 +139,7 @@ def gap_histogram(axis: Axes, counts: Sequence[int], median: float, p90: float) 
 
 
 def replay_gap(path: Path, title: str, report: Mapping[str, Any]) -> None:
-    """Plots the histogram of the replay gap of one run. report: the content of generation.json."""
+    """Plots the replay gaps of one run. `report`: the content of generation.json."""
     with style():
         figure, axis = plt.subplots(figsize=(6.4, 3.4), layout="constrained")
         counts = replay_gaps.counts(report["replay_gaps"])
@@ -150,10 +150,10 @@ def replay_gap(path: Path, title: str, report: Mapping[str, Any]) -> None:
 
 
 def _draw_scene(axis: Axes, task: TaskLike, body: int) -> None:
-    """Draws the arena, the start layout and the goal regions that concern a body.
+    """Draws the arena, the outlines of all bodies at the start, and the goal of `body`.
 
-    These are the regions for its own centre and for the mean centres that it is part of. The start
-    layout is drawn in outline, with the outline of the body in bold.
+    The outline of `body` is bold. Its goal consists of the regions for its own centre and for means
+    of centres that include it.
     """
     colours = kind_colours(task)
     a = task.arena
@@ -178,10 +178,10 @@ def _draw_scene(axis: Axes, task: TaskLike, body: int) -> None:
 
 
 def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Floats) -> None:
-    """Plots the places to which the search brought each object.
+    """Plots, for each object, its positions in all states that the tree search reached.
 
-    The colour of a place is the number of actions from there to success. `poses` [N, bodies, 3] and
-    `depth` [N] are those of the stored nodes.
+    poses [N, bodies, 3]: the states. depth [N]: number of actions from each to success, shown as
+    colour.
     """
     bodies = objects(task)
     columns = min(4, len(bodies))

@@ -16,9 +16,10 @@ _libc = ctypes.CDLL(None)
 
 
 def _die_with(parent: int) -> Callable[[], None]:
-    """Returns a function for the child process to call before it starts its program.
+    """Returns a function that the child process calls before it starts its program.
 
-    It makes the kernel kill the child when the thread that started the child ends.
+    The kernel then kills the child when the thread that started it ends. `parent`: the id of this
+    process.
     """
 
     def die_with_parent() -> None:
@@ -30,10 +31,10 @@ def _die_with(parent: int) -> Callable[[], None]:
 
 
 class Node:
-    """A program of the process graph. It has its own process group and writes to a log file."""
+    """A program of a run, as a child process with its own process group and log file."""
 
     def __init__(self, name: str, command: Sequence[str | Path], log: Path) -> None:
-        """Starts the program. Main thread only: the child dies when its starting thread ends."""
+        """Starts the program. Main thread only, because the child dies with its starting thread."""
         self.name = name
         self.command = [str(part) for part in command]
         self.log = log
@@ -60,7 +61,7 @@ class Node:
         return self._process.pid
 
     def exit_status(self) -> int | None:
-        """Returns the exit status of the program, None while it runs.
+        """Returns the exit status of the program; None while it runs.
 
         If the program has ended, kills the rest of its process group.
         """
@@ -85,7 +86,7 @@ class Node:
         return self.exit_status() is not None
 
     def log_tail(self, lines: int = 8) -> str:
-        """Returns the last lines that the program has logged since its last start."""
+        """Returns the last `lines` lines of the log since the last start of the program."""
         logged = self.log.read_bytes()[self._log_start :] if self.log.exists() else b""
         return "\n".join(logged.decode(errors="replace").splitlines()[-lines:])
 
@@ -98,7 +99,7 @@ class Node:
 
 
 def stop_all(nodes: Iterable[Node], grace: float = 4.0) -> None:
-    """Sends SIGTERM to all process groups, after `grace` s SIGKILL to those that still run."""
+    """Stops all nodes: sends SIGTERM, and after `grace` s SIGKILL to those that still run."""
     nodes = list(nodes)
     for node in nodes:
         if node.exit_status() is None:

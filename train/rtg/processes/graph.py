@@ -1,4 +1,7 @@
-"""The processes of a run: dead helpers are restarted; the death of another one ends the run."""
+"""Starts and monitors the processes of a run.
+
+A helper is a process that is restarted when it dies. The failure of any other process ends the run.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,8 @@ from rtg.errors import RunError, UserError
 from rtg.processes.children import Node, kill_all, stop_all
 
 _QUICK_DEATH_AGE = 5.0  # [s]; a death this soon after the start may recur at every start
-_MAX_QUICK_DEATHS = 10  # consecutive, of one worker; one job alone may cause three
-# [s]; a helper with exit status 0 may have received the end of the run before this process did.
+_MAX_QUICK_DEATHS = 10  # in a row, of one helper; a single bad job may cause three
+# [s]; a helper that ends with status 0 may know of the end of the run before this process does.
 _EXIT_GRACE = 1.0
 
 
@@ -31,7 +34,7 @@ class _Member:
 
 
 class ProcessGraph:
-    """Starts, monitors and stops programs, whose output goes to `logs`/NAME.log."""
+    """Starts, monitors and stops the programs of a run. Their output goes to `logs`/NAME.log."""
 
     def __init__(self, logs: Path) -> None:
         logs.mkdir(parents=True, exist_ok=True)
@@ -41,15 +44,16 @@ class ProcessGraph:
         self.restarts = 0
 
     def add(self, name: str, command: Sequence[str | Path], helper: bool = False) -> None:
-        """Starts a program. check_and_restart() restarts a `helper` that has died."""
+        """Starts program `name`. check_and_restart() restarts it after its death if `helper`."""
         node = Node(name, command, self._logs / f"{name}.log")
         self._members.append(_Member(node, helper))
 
     def check_and_restart(self, leaving: bool = False) -> list[str]:
-        """Restarts dead helpers, unless the run is `leaving`; returns a message for each of them.
+        """Restarts dead helpers and returns a message for each. Restarts none if `leaving`.
 
-        Raises RunError with the end of its log if another program has failed, UserError if bad
-        input was the cause. Raises RunError for a helper with too many quick deaths.
+        `leaving`: the run is about to end. Raises RunError if any other program has failed, or
+        UserError if it reported bad input. Raises RunError if a helper keeps dying soon after its
+        start.
         """
         notes = []
         for member in self._members:
@@ -71,7 +75,7 @@ class ProcessGraph:
         self._ignored_failures.add(name)
 
     def failures(self) -> list[str]:
-        """Returns the failure reports of all programs, except helpers, that ended with an error."""
+        """Returns a failure_report() for each program that failed, helpers excluded."""
         essential = [member.node for member in self._members if not member.helper]
         return [failure_report(node) for node in essential if node.exit_status() not in (None, 0)]
 
@@ -91,11 +95,14 @@ class ProcessGraph:
         return {member.node.name: member.node.pid for member in self._members}
 
     def working(self, name: str | None = None) -> bool:
-        """Returns whether any program that is no helper still runs, or the one called `name`."""
+        """Returns whether program `name` runs, or any program if None. Helpers do not count."""
         return any(name in (None, node.name) for node in self._running(helpers=False))
 
     def wait(self, seconds: float) -> bool:
-        """Waits at most `seconds` for the first running program, no helper; returns working()."""
+        """Waits at most `seconds` for the end of the first running program; returns working().
+
+        Helpers do not count.
+        """
         for node in self._running(helpers=False)[:1]:
             node.wait(seconds)
         return self.working()

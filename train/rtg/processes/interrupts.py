@@ -17,8 +17,8 @@ class Interrupts:
     """A context manager that handles SIGINT, SIGTERM and SIGHUP.
 
     It stores the number of the first signal in `number`. At a second signal it calls
-    `on_second_signal` and ends this process at once, with exit status 128 + signal number. It
-    ignores SIGHUP if the process ignored it before, as under nohup. Main thread only.
+    `on_second_signal` and ends this process at once, with exit status 128 + signal number. SIGHUP
+    stays ignored if the process ignored it before, as under nohup. Main thread only.
     """
 
     def __init__(self, on_second_signal: Callable[[], None] = lambda: None) -> None:

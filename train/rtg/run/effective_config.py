@@ -1,4 +1,4 @@
-"""The configuration as the C++ loader resolves it; no Python code parses YAML."""
+"""Loads configurations through the C++ loader. No Python code parses YAML."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Values = dict[str, dict[str, Any]]  # section -> key -> value
 
 
 def load(file: Path, overrides: Sequence[Override] = ()) -> _core.Config:
-    """Loads `file`. Raises UserError for a mistake; it names the flags as the user typed them."""
+    """Loads `file` with `overrides`. Raises UserError for a mistake; it quotes the typed flags."""
     try:
         return _core.Config.from_file(file, [override.setting for override in overrides])
     except _core.ConfigError as error:
@@ -26,16 +26,16 @@ def load(file: Path, overrides: Sequence[Override] = ()) -> _core.Config:
 
 
 def values(config: _core.Config) -> Values:
-    """Returns all values, for comparison with those of another configuration."""
+    """Returns all values of `config`, to compare them with those of another configuration."""
     result: Values = json.loads(config.json)
     return result
 
 
 def load_written(file: Path) -> _core.Config:
-    """Loads a configuration that this version of RTG wrote to `file`.
+    """Loads `file`, a configuration that this version of RTG must have written.
 
-    Raises UserError if `file` lacks a line that this version would write: another version may lack
-    a setting whose default was different.
+    Raises UserError if `file` lacks a line that this version would write. The version that wrote it
+    may have had another default for that setting.
     """
     config, found = load(file), _settings(file.read_text())
     missing = [line for line in _settings(config.yaml) if line not in found]

@@ -27,7 +27,7 @@ _EXIT_GRACE = 5.0  # [s] that the coordinator may take to end after all rows wer
 
 
 class _Recording:
-    """The consumer of the stream in a run without a trainer: this process records the rows."""
+    """Receives and records the transitions (rows) of a run without a trainer."""
 
     def __init__(self, plan: RunPlan, bus: Bus) -> None:
         task = plan.config.task
@@ -50,7 +50,7 @@ class _Recording:
 
 
 def generation_defects(plan: RunPlan) -> list[str]:
-    """Describes the defects of the finished generation; empty without defects or generation."""
+    """Describes the defects of the finished generation; [] without defects or generation."""
     report = run_folder.read_json(plan.report_file)
     wanted = plan.config.search.transitions
     given_up, found = report.get("units_given_up", 0), report.get("transitions", wanted)
@@ -66,7 +66,7 @@ def generation_defects(plan: RunPlan) -> list[str]:
 
 
 class GraphRun:
-    """Starts the programs of a run, watches them and replaces dead workers."""
+    """Starts the programs of a run, watches them and restarts dead workers."""
 
     def __init__(self, plan: RunPlan, display: Display) -> None:
         self._plan, self._display = plan, display
@@ -76,12 +76,12 @@ class GraphRun:
         self._recording = None if plan.train else _Recording(plan, self._bus)
         self._graph = ProcessGraph(plan.folder / "logs")
         self._sealed = False
-        self._consumed = math.inf  # [s], when the consumer was first seen to have all rows
+        self._consumed = math.inf  # [s], when the consumer was first seen to be finished
         if self._bus.warning:
             display.note(self._bus.warning)
 
     def run(self) -> dict[str, Any]:
-        """Starts all programs, waits for their end and returns the measurements for summary.json.
+        """Starts all programs, waits for their end and returns further figures for summary.json.
 
         Raises RunError if transitions are missing, StoppedError on a signal.
         """
@@ -141,7 +141,7 @@ class GraphRun:
     def _is_over(self) -> bool:
         """Returns whether the run is over although the coordinator has not ended.
 
-        The final acknowledgements of consumers may be lost, and the coordinator waits for them.
+        The coordinator waits for the final acknowledgements of consumers, which may be lost.
         """
         if not self._sealed or (self._plan.train and self._graph.working("trainer")):
             return False
@@ -152,11 +152,11 @@ class GraphRun:
         return now - self._consumed > _EXIT_GRACE
 
     def _on_sealed(self) -> None:
-        """Tolerates failures of the coordinator from now on: all transitions are stored."""
+        """Tolerates failures of the coordinator from now on, because its search is over."""
         self._sealed = True
         self._graph.ignore_failure("beam_coordinator")
 
 
 def run(plan: RunPlan, display: Display) -> dict[str, Any]:
-    """Generates and trains at the same time; returns the measurements for summary.json."""
+    """Generates and trains at the same time; returns further figures for summary.json."""
     return GraphRun(plan, display).run()

@@ -1,4 +1,4 @@
-"""Generation without LCM, on threads of this process."""
+"""Generates transitions without LCM, on threads of this process."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ class Generation:
         return not self._thread.is_alive()
 
     def stop(self) -> None:
-        """Stops the generation at the end of the layer.
+        """Stops the generation at the end of the current layer of the search.
 
-        If this takes longer than _STOP_TIMEOUT, the process will end with os._exit(1).
+        If that takes longer than _STOP_TIMEOUT, this process will end by os._exit(1).
         """
         self._stop = True
         self._thread.join(_STOP_TIMEOUT)
         if self._thread.is_alive():
-            # Its threads still run: exit before the interpreter finalises while they use it.
+            # Its threads still use the interpreter, which therefore must not be finalised.
             atexit.register(os._exit, 1)
 
     def state(self) -> RunState:
@@ -59,7 +59,7 @@ class Generation:
         return replace(RunState(), **self._progress, workers=self._workers)
 
     def report(self) -> str:
-        """Returns the content of generation.json; to be called after the end only."""
+        """Returns the content of generation.json. To be called only after the end."""
         assert self._report is not None
         return self._report
 
@@ -80,7 +80,10 @@ class Generation:
 
 
 def generate(plan: RunPlan, display: Display) -> None:
-    """Generates; writes generation.json and transitions.npz. Raises StoppedError on a signal."""
+    """Generates the transitions; writes generation.json and transitions.npz.
+
+    Raises StoppedError on a signal.
+    """
     recorder = Recorder(plan.config.task)
     with Interrupts() as interrupts:
         generation = Generation(plan.config, recorder)

@@ -1,4 +1,4 @@
-"""The plan of a run, resolved and written to the run folder before any process starts."""
+"""The plan of a run: resolved settings and a run folder, made before any process starts."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from rtg.run.run_args import Override, RunArgs
 
 @dataclass(frozen=True)
 class RunPlan:
-    """A run; its folder exists and contains config.yaml and versions.json."""
+    """The resolved settings of a run. Its folder holds config.yaml and versions.json."""
 
     folder: Path
-    name: str  # of the run on the bus; unique
+    name: str  # unique name of the run on the bus
     config: _core.Config
     train: bool
     resume: bool
@@ -35,7 +35,7 @@ class RunPlan:
 
     @property
     def config_file(self) -> Path:
-        """The file of the canonical configuration."""
+        """The file with all settings."""
         return self.folder / "config.yaml"
 
     @property
@@ -78,7 +78,7 @@ def _check_device(config: _core.Config) -> None:
 
 
 def check(config: _core.Config, train: bool) -> None:
-    """Raises UserError without the configured CUDA device, or if there is nothing to do."""
+    """Raises UserError if the run needs a missing CUDA device or has nothing to do."""
     if train:
         _check_device(config)
     elif not config.train.offline:
@@ -89,9 +89,9 @@ def check(config: _core.Config, train: bool) -> None:
 
 
 def _fixed_values(config: _core.Config, has_checkpoint: bool) -> dict[str, Any]:
-    """Returns, by dotted name, the values that must not change when the run is resumed.
+    """Returns, by "section.key", the values that must not change when the run is resumed.
 
-    These determine the transitions and, if there is a checkpoint, the learner it belongs to.
+    These determine the transitions. If there is a checkpoint, they also determine its learner.
     """
     sections = effective_config.values(config)
     found: dict[str, Any] = {"run.seed": config.run.seed}
@@ -106,8 +106,8 @@ def _fixed_values(config: _core.Config, has_checkpoint: bool) -> dict[str, Any]:
 def _check_resumed(file: Path, config: _core.Config) -> None:
     """Raises UserError if `config` cannot continue the run whose configuration is `file`.
 
-    It checks the learner also without training, because the configuration in the folder must fit
-    the checkpoint there.
+    It checks the learner even without training, because the new configuration replaces `file` and
+    must fit the checkpoint.
     """
     has_checkpoint = run_folder.checkpoint_file(file.parent).exists()
     before = _fixed_values(effective_config.load_written(file), has_checkpoint)
@@ -124,7 +124,10 @@ def _check_resumed(file: Path, config: _core.Config) -> None:
 
 
 def make_plan(args: RunArgs) -> RunPlan:
-    """Resolves the configuration and creates the run folder. Raises UserError."""
+    """Resolves the configuration and creates the run folder. Raises UserError.
+
+    Plans a run in one process if multicast does not work.
+    """
     overrides = args.overrides
     config = effective_config.load(args.file, overrides)
     if args.resume:

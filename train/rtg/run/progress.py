@@ -1,4 +1,4 @@
-"""The display of a run: progress bars on a terminal, otherwise a line per change."""
+"""The display of a run: progress bars on a terminal, else a line of text for each change."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ _REDRAW = 0.2  # [s]
 class RunState:
     """The progress of a run."""
 
-    generates: bool = True  # False without generation
+    generates: bool = True  # False if the run generates no transitions
     phase: str = ""  # phase of the generation, such as "tree 1", "plan 3", "random walks"
-    layer: int = 0  # current layer, of `depth` layers
+    layer: int = 0  # current layer of the search, of `depth` layers
     depth: int = 0
     transitions: int = 0
     target: int = 0
@@ -64,7 +64,7 @@ def training_text(state: RunState) -> str:
 
 
 class Shown(Protocol):
-    """A context manager that shows something on the screen while it is entered."""
+    """A context manager that shows something on the screen until its exit."""
 
     def __enter__(self) -> Self: ...
 
@@ -77,7 +77,7 @@ class Shown(Protocol):
 
 
 class Display(Shown, Protocol):
-    """Shows the states of a run and notes."""
+    """A display of the state of a run, with notes."""
 
     def show(self, state: RunState) -> None:
         """Shows the newest state; may be called at any rate."""
@@ -104,7 +104,7 @@ class TimedLines:
 
 
 class PlainDisplay(TimedLines):
-    """Prints a line per change."""
+    """Prints a line when the state of the run changes."""
 
     def __init__(self, out: TextIO) -> None:
         super().__init__(out)
@@ -126,7 +126,7 @@ class PlainDisplay(TimedLines):
 
 
 class _Counts(ProgressColumn):
-    """The column "completed of total"."""
+    """The column of a progress bar with the text "COMPLETED of TOTAL"."""
 
     def render(self, task: Task) -> Text:
         total = "?" if task.total is None else f"{task.total:,.0f}"
@@ -134,7 +134,7 @@ class _Counts(ProgressColumn):
 
 
 class LiveDisplay:
-    """Shows two progress bars that are updated in place, each with a line of text below."""
+    """Shows two progress bars that change in place, each with a line of text below."""
 
     def __init__(self, console: Console) -> None:
         self._console = console
@@ -188,7 +188,7 @@ def _indented(words: str) -> Text:
 
 
 def display(out: TextIO) -> Display:
-    """Returns the display that suits `out`: live on a terminal, else plain."""
+    """Returns a LiveDisplay if `out` is a terminal, else a PlainDisplay."""
     console = Console(file=out)
     return LiveDisplay(console) if console.is_terminal else PlainDisplay(out)
 

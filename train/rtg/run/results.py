@@ -21,7 +21,7 @@ _REVERSE = ("rrbs", "naive")  # generators that search backwards
 
 
 def learning_curve(path: Path) -> dict[str, Floats]:
-    """Reads the columns of progress.csv, [N] each, with NaN for an empty cell.
+    """Reads the columns of progress.csv, [N] each. Empty entries become NaN.
 
     Raises UserError if the file is damaged.
     """
@@ -48,15 +48,15 @@ def _draw_generation(plan: RunPlan) -> None:
 
 
 def _trained(plan: RunPlan) -> bool:
-    """Returns whether this process or, with `--resume --no-train`, an earlier one has trained."""
+    """Returns whether the run has trained, in this process or before `--resume --no-train`."""
     return plan.train or (plan.folder / "training.json").is_file()
 
 
 def _episode(plan: RunPlan) -> Floats | None:
-    """Returns the states of the learner's best evaluation episode.
+    """Returns the states of the learner's best episode in the final evaluation.
 
-    Without a learner, replays a plan from the data, if there is any, returns its states and writes
-    them to best_episode.npz.
+    Without a learner, replays a plan from the data and writes it to best_episode.npz. Returns None
+    if the data has no plan.
     """
     path, task = plan.folder / "best_episode.npz", plan.config.task
     if _trained(plan):

@@ -17,7 +17,8 @@ from rtg.run.run_args import RunArgs
 def run(args: RunArgs) -> int:
     """Carries out `rtg run`; returns the exit status.
 
-    Raises UserError for bad input, RunError if a part of the run failed or it was stopped.
+    Raises UserError for bad input. Raises RunError if a part of the run failed or the user stopped
+    the run.
     """
     if args.print_config:
         print(effective_config.load(args.file, args.overrides).yaml, end="")

@@ -60,7 +60,7 @@ class RunArgs:
 
 
 class Parser(argparse.ArgumentParser):
-    """Accepts no abbreviated flags. Raises UserError with the legal usage for a mistake."""
+    """An argument parser without abbreviations. Raises UserError with the usage for a mistake."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(allow_abbrev=False, **options)
@@ -131,7 +131,7 @@ def _overrides(args: argparse.Namespace) -> tuple[Override, ...]:
 def parse(argv: Sequence[str]) -> RunArgs:
     """Parses and checks the arguments. Raises UserError, or SystemExit(0) after --help."""
     if argv and not argv[0].startswith("-"):
-        _task_file(argv[0])  # reports a misspelt tool before the words after it
+        _task_file(argv[0])  # reports a misspelt tool before mistakes in its arguments
     args = parser().parse_args(argv)
     if args.out == "":
         raise UserError("--out: '' is no folder; legal: the path of one")

@@ -1,4 +1,4 @@
-"""The progress of a run, from the messages of its processes."""
+"""Follows the progress of a run by the messages of its processes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rtg.run.progress import RunState
 
 
 class RunWatch:
-    """Receives the newest state of the run and the counters of every node."""
+    """Receives the newest state of the run and the counters of all its processes."""
 
     def __init__(self, bus: Bus, state: RunState) -> None:
         self.state = state

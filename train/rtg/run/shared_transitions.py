@@ -1,4 +1,4 @@
-"""Transitions shared by runs that differ only in their learner."""
+"""Shares transitions among runs that differ only in their learner."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _FILES = ("transitions.npz", "generation.json")
 
 
 def generation_key(config: _core.Config) -> str | None:
-    """Returns all values that determine the generated transitions, as a key.
+    """Returns a key of the generated transitions: all values that determine them.
 
-    Runs with equal keys have equal transitions. Returns None if the run generates nothing.
+    Runs with equal keys generate equal transitions. Returns None if the run generates none.
     """
     if not config.train.offline:
         return None
@@ -33,9 +33,9 @@ def are_there(run: Path) -> bool:
 
 
 def find(key: str, folder: Path, name: str) -> Path | None:
-    """Returns a run folder/*/name with complete transitions of generation key `key`, or None.
+    """Finds a run `folder`/*/`name` with complete transitions whose generation_key() is `key`.
 
-    This version of the program must have generated them.
+    Only transitions of this version of the program count. Returns None if there is no such run.
     """
     for run in sorted(folder.glob(f"*/{name}")):
         if are_there(run) and _stored_key(run) == key:
@@ -44,10 +44,9 @@ def find(key: str, folder: Path, name: str) -> Path | None:
 
 
 def _stored_key(run: Path) -> str | None:
-    """Returns the key of the transitions of `run`.
+    """Returns the generation_key() of the transitions of `run`.
 
-    Returns None if another version of the program made them, or if the folder cannot be read:
-    they are not used then, but this is no error.
+    Returns None if another version of the program made them, or if the folder cannot be read.
     """
     config = run / "config.yaml"
     try:
@@ -59,7 +58,7 @@ def _stored_key(run: Path) -> str | None:
 
 
 def take_over(source: Path, run: Path) -> None:
-    """Puts the transitions of `source` into `run`, which exists: as hard links, else as copies."""
+    """Links the transitions of run `source` into the existing run `run`, or copies them."""
     versions.write(run, versions.generator(source))
     for name in _FILES:
         draft = run / f".{name}.{os.getpid()}"

@@ -23,7 +23,7 @@ def trainer_command(plan: RunPlan, *flags: str) -> Sequence[str | Path]:
 
 
 def _initial_state(plan: RunPlan) -> RunState:
-    """Returns the state for displays before training, with the figures of the generation."""
+    """Returns the state to display before training, with the figures of the generation."""
     if not plan.offline:
         return RunState(generates=False, budget=plan.interactions)
     report = read_json(plan.report_file)

@@ -1,4 +1,4 @@
-"""The progress of the learner, from the file that the learner writes for displays."""
+"""Follows the progress of the learner by the file that the learner writes for displays."""
 
 from __future__ import annotations
 
