@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/touching_scene.hpp"
+#include "core/energy/joint_limit.hpp"
+#include "tests/support/chain_scene.hpp"
 
 namespace rtg::energy {
 namespace {
@@ -18,6 +19,17 @@ TEST(OpenGaps, LeastGapIsThatOfTheClosestFaces) {
     EXPECT_NEAR(least_gap(scene.energy, boxes_apart(gap)), gap, 2e-4) << gap;
   }
   EXPECT_EQ(least_gap(scene.energy, boxes_apart(3.0)), scene.energy.barrier().range);
+}
+
+// The door is close to its limit, and without the robot no two bodies are so close to each other.
+TEST(OpenGaps, LeastGapCanBeThatOfALimitOfAJoint) {
+  testing::ChainScene scene;
+  scene.poses[0].x -= 3.0;
+  double least = INFINITY;
+  for_each_limit(scene.energy.scene().articulation(), placed(stacked(scene.poses)),
+                 [&](int, const JointLimit<double>& limit) { least = std::min(least, limit.gap); });
+  EXPECT_LT(least, scene.energy.barrier().range);
+  EXPECT_EQ(least_gap(scene.energy, stacked(scene.poses)), least);
 }
 
 TEST(OpenGaps, OverlapBySlopIsOpenedByMovingBothBodiesAlike) {

@@ -163,6 +163,22 @@ TEST(StepEnergy, InertiaIsMeasuredFromTheMotionBefore) {
   EXPECT_NEAR(scene.energy.value(next, {now, lag}), 3.0 * damping, 1e-15);  // from rest
 }
 
+// ... the paper's form: J (1 - cos a) and ι J (3 - 2 cos a - 2 cos b + cos(a + b)).
+TEST(StepEnergy, PeriodicTurnsAreThoseOfDampingAndOfInertia) {
+  testing::CoastingScene scene;
+  scene.physics.damping = 0.5;
+  scene.physics.periodic_turns = true;
+  scene.update();
+  const VectorXd now = stacked({{0, 0, 0}, {5, 0, 0}, {0, 5, 0}});
+  VectorXd next = now, before = now;
+  next[5] += 0.2;
+  before[5] -= 0.3;
+  const double turn = 3.0 - 2.0 * std::cos(0.2) - 2.0 * std::cos(0.3) + std::cos(0.5);
+  const double expected =
+      (1.0 - std::cos(0.2) + 2.0 * turn) * mass_of(scene.scene.bodies[1]).moment;
+  EXPECT_NEAR(scene.energy.value(next, {now, scene.energy.forces(now), &before}), expected, 1e-15);
+}
+
 TEST(StepEnergy, EveryVertexMayTouchEveryOtherBody) {
   const TouchingScene scene;  // a hexagon and two boxes
   EXPECT_EQ(scene.energy.contacts().size(), 2u * 6u + 4u * 4u);
@@ -183,6 +199,15 @@ TEST(StepEnergy, ConvertsUnitsAndBoundsOnce) {
   EXPECT_NEAR(scene.energy.control_bound()[0], physics.force_factor * drag, 1e-12);
   EXPECT_NEAR(scene.energy.control_bound()[1], physics.force_factor * drag, 1e-12);
   EXPECT_NEAR(scene.energy.control_bound()[2], physics.torque_factor * drag * 0.8, 1e-12);
+}
+
+// A body that a force brings from rest to push speed in one sub-step needs 1/k_D more of it.
+TEST(StepEnergy, BoundsAllowForInertia) {
+  const TouchingScene slow;
+  const testing::CoastingScene scene;
+  const double share = 1.0 + 1.0 / scene.physics.damping;
+  for (int m = 0; m < 3; ++m)
+    EXPECT_NEAR(scene.energy.control_bound()[m], share * slow.energy.control_bound()[m], 1e-12);
 }
 
 TEST(StepEnergy, ForcesAreThoseOfTheBarrierAtTheGap) {

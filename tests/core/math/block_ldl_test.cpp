@@ -46,6 +46,24 @@ TEST(BlockLdl, SolvesSparseAndDenseSystems) {
     }
 }
 
+// Whatever the number of negative eigenvalues, and in whichever block: also an even number, which
+// leaves determinants positive.
+TEST(BlockLdl, IsPositiveDefiniteWithPositiveEigenvaluesOnly) {
+  Rng rng(4);
+  int positive = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const int M = 1 + trial % 3;
+    BlockMatrix<double> A = random_matrix(M, 2, 0.0, rng);
+    for (int i = 0; i < M; ++i)
+      for (int m = 0; m < 3; ++m) A.at(i, i)(m, m) += 2.0 * M * (rng.below(8) == 0 ? -1.0 : 1.0);
+    const bool expected = Eigen::SelfAdjointEigenSolver<MatrixXd>(dense(A)).eigenvalues()[0] > 0.0;
+    EXPECT_EQ(BlockLdl<double>(M).factorize(A), expected) << trial;
+    positive += expected;
+  }
+  EXPECT_GT(positive, 50);
+  EXPECT_LT(positive, 150);
+}
+
 /// A row of blocks.
 MatrixXd dense(const std::vector<Block<double>>& row) {
   MatrixXd out(3, 3 * static_cast<Eigen::Index>(row.size()));

@@ -131,6 +131,17 @@ TEST(Pruning, TheActionThatLedToAStateIsNeverPruned) {
   }
 }
 
+// A link may have swung in behind the robot; a post that links hang on has not.
+TEST(Pruning, OnlyWhatMovesOnAJointMayHaveSwungInBehindTheRobot) {
+  Scene scene = robot_and_box();
+  scene.bodies.push_back({"link", "link", box(1.2, 1.2), 1.0, 0.5, false});
+  scene.joints.push_back({1, 2, {0.6, 0.0}, {-0.6, 0.0}, -1.0, 1.0});
+  const Poses end{{0, 0, 0}, {-2.8, 0, 0}, {-4.0, 0, 0}};  // 0.6 m into the way
+  EXPECT_FALSE(is_pruned(scene, kPush, {end, 0}));
+  scene.bodies[1].fixed = true;
+  EXPECT_TRUE(is_pruned(scene, kPush, {end, 0}));
+}
+
 /// Robot and four boxes.
 Scene five_bodies() {
   Scene scene = robot_and_box();

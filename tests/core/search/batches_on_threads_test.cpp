@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/math/lanes.hpp"
+#include "core/threads/cpu_clock.hpp"
 
 namespace rtg::search {
 namespace {
@@ -61,6 +62,36 @@ TEST(BatchesOnThreads, ReplaysInJobOrderForAnyNumberOfThreads) {
     }
     EXPECT_TRUE(replay({}).empty());
   }
+}
+
+/// Works for 2 ms of the thread's CPU time.
+void work() {
+  for (const double begin = threads::thread_cpu_s(); threads::thread_cpu_s() < begin + 0.002;) {
+  }
+}
+
+// A single thread is the caller's own, whose clock also runs between the jobs.
+TEST(BatchesOnThreads, JobsShareTheCpuTimeThatTheyTook) {
+  const double begin = threads::thread_cpu_s();
+  double solves = 0.0, replays = 0.0;
+  const SolveBatch solve = solve_on_threads(
+      [](std::span<const reverse::ReverseJob> some) {
+        work();
+        return std::vector<reverse::ReverseResult>(some.size());
+      },
+      1);
+  for (const reverse::ReverseResult& result : solve(numbered<reverse::ReverseJob>(100)))
+    solves += result.cpu_s;
+  const ReplayBatch replay = replay_on_threads(
+      [](const ReplayJob&) {
+        work();
+        return ReplayResult{};
+      },
+      1);
+  for (const ReplayResult& result : replay(numbered<ReplayJob>(3))) replays += result.cpu_s;
+  EXPECT_GE(solves, 0.00199);
+  EXPECT_GE(replays, 0.00599);
+  EXPECT_LE(solves + replays, threads::thread_cpu_s() - begin);
 }
 
 TEST(BatchesOnThreads, PassesExceptionsOnToTheCaller) {

@@ -52,6 +52,19 @@ TEST(Goal, ACentroidIsTheMeanOfTheCentres) {
   EXPECT_FALSE(holds(mean, task.scene, poses, 0.21));
 }
 
+TEST(Goal, AStarMeansAllBodiesThatMayMove) {
+  Task task = testing::gathering();
+  task.scene.bodies[2].fixed = true;
+  const Poses poses{{0, -5, 0}, {-3, 1, 0}, {30, 1, 0}, {1, -2, 0}};
+  GoalTerm term = task.goal[0];
+  term.kind = "*";
+  term.radius = 4.0;
+  EXPECT_TRUE(holds(term, task.scene, poses, 0.0));
+  term.subject = GoalTerm::Subject::kCentroid;
+  EXPECT_TRUE(centroid_of(term, task.scene, poses).isApprox(Vector2d(-1.0, -0.5)));
+  EXPECT_TRUE(holds(term, task.scene, poses, 0.0));
+}
+
 TEST(Goal, TheObservationEndsWithTheJointAngles) {
   const Task task = art_manip();
   ASSERT_EQ(observation_size(task), 32);

@@ -112,6 +112,22 @@ TEST(ReverseProblem, ObjectiveIsTheSumOfItsTerms) {
   EXPECT_NEAR(terminal_miss(problem, x), 0.3, 1e-15);
 }
 
+// Where bodies coast, the final state prescribes their speed as well, so two levels.
+TEST(ReverseProblem, InDynamicModeTheSpringHoldsTheLastTwoLevels) {
+  const testing::CoastingScene scene;
+  ReverseConfig config;
+  config.speed_weight = 0.0;
+  const ReverseProblem problem = scene.problem(config);
+  const Iterate rest = static_iterate(problem);
+  const std::size_t last = rest.p.size() - 1;
+  for (const std::size_t k : {last, last - 1, last - 2}) {
+    Iterate x = rest;
+    x.p[k][7] += 0.3;
+    const double expected = k < last - 1 ? 0.0 : 0.5 * config.terminal_weight * 0.09;
+    EXPECT_NEAR(objective(problem, x) - objective(problem, rest), expected, 1e-12) << last - k;
+  }
+}
+
 TEST(ReverseProblem, ObjectsPayForTheirSpeedTheRobotDoesNot) {
   const TouchingScene scene;
   ReverseConfig config;
