@@ -76,7 +76,7 @@ void Articulation<T>::close(Placement<T>& at) const {
 }
 
 template <class T>
-void Articulation<T>::spread(const Placement<T>& at, T* y) const {
+void Articulation<T>::apply_jacobian(const Placement<T>& at, T* y) const {
   for (const Hinge<T>& hinge : hinges_) {
     const Arms<T> arms(hinge, at);
     T* child = y + 3 * hinge.child;
@@ -90,7 +90,7 @@ void Articulation<T>::spread(const Placement<T>& at, T* y) const {
 }
 
 template <class T>
-void Articulation<T>::gather(const Placement<T>& at, T* g) const {
+void Articulation<T>::apply_jacobian_transposed(const Placement<T>& at, T* g) const {
   for (auto hinge = hinges_.rbegin(); hinge != hinges_.rend(); ++hinge)
     HingeStep<T>(*this, *hinge, at).gather(g);
 }

@@ -53,9 +53,9 @@ class Articulation {
   void close(Placement<T>& at) const;
   /// y ← J y [3·movable]: converts a motion in the coordinates q to the motion of all bodies.
   /// Multipliers transform in the same way.
-  void spread(const Placement<T>& at, T* y) const;
+  void apply_jacobian(const Placement<T>& at, T* y) const;
   /// g ← Jᵀ g [3·movable]: converts forces on the bodies to generalised forces on q.
-  void gather(const Placement<T>& at, T* g) const;
+  void apply_jacobian_transposed(const Placement<T>& at, T* g) const;
 
  private:
   template <class U>

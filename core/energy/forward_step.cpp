@@ -171,7 +171,7 @@ template <class T>
 Mask<T> ForwardStep<T>::solve(const StepStart<T>& start, const Drive<T>& drive,
                               const Mask<T>& wanted, Placement<T>& next) {
   next = start.now;
-  potential_.begin(start.now, start.lag, start.before);
+  potential_.begin(start.now, start.previous_forces, start.before);
   std::fill(gaps_.begin(), gaps_.end(), T(0.0));
   Mask<T> legal, there(false);
   T value = this->value(next, drive, legal);

@@ -33,7 +33,7 @@ struct Drive {
 template <class T>
 struct StepStart {
   const Placement<T>& now;               // poses, with positive gaps
-  const T* lag;                          // normal forces at `now` [contacts]
+  const T* previous_forces;              // normal forces at `now` [contacts]
   const T* guess = nullptr;              // expected motion [3·movable]; null if there is none
   const Placement<T>* before = nullptr;  // poses one sub-step earlier, for inertia; null: at rest
 };

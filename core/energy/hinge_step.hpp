@@ -17,7 +17,10 @@ template <class T>
 class HingeStep {
  public:
   HingeStep(const Articulation<T>& of, const Hinge<T>& hinge, const Placement<T>& at)
-      : i_(hinge.parent), j_(hinge.child), roots_(of.movable(hinge.parent)), arms_(hinge, at) {}
+      : i_(hinge.parent),
+        j_(hinge.child),
+        parent_is_movable_(of.movable(hinge.parent)),
+        arms_(hinge, at) {}
 
   /// g ← Tᵀ g.
   void gather(T* g) const {
@@ -25,7 +28,7 @@ class HingeStep {
     const T x = child[0], y = child[1];
     child[0] = child[1] = T(0.0);
     child[2] = child[2] + arms_.b.y() * x - arms_.b.x() * y;
-    if (!roots_) return;
+    if (!parent_is_movable_) return;
     T* parent = g + 3 * i_;
     parent[0] = parent[0] + x;
     parent[1] = parent[1] + y;
@@ -43,7 +46,7 @@ class HingeStep {
         child(0, m) = child(1, m) = T(0.0);
         child(2, m) += arms_.b.y() * x - arms_.b.x() * y;
       }
-      if (roots_) M.add(i_, k, parent);
+      if (parent_is_movable_) M.add(i_, k, parent);
     }
   }
 
@@ -59,7 +62,7 @@ class HingeStep {
         child(m, 0) = child(m, 1) = T(0.0);
         child(m, 2) += arms_.b.y() * x - arms_.b.x() * y;
       }
-      if (roots_) M.add(k, i_, parent);
+      if (parent_is_movable_) M.add(k, i_, parent);
     }
   }
 
@@ -77,17 +80,18 @@ class HingeStep {
   void add_curvature(const T* g, const T& weight, BlockMatrix<T>& H) const {
     const T x = g[3 * j_], y = g[3 * j_ + 1];
     H.at(j_, j_)(2, 2) += weight * (arms_.b.x() * x + arms_.b.y() * y);
-    if (roots_) H.at(i_, i_)(2, 2) -= weight * (arms_.a.x() * x + arms_.a.y() * y);
+    if (parent_is_movable_) H.at(i_, i_)(2, 2) -= weight * (arms_.a.x() * x + arms_.a.y() * y);
   }
 
   const Arms<T>& arms() const { return arms_; }
   int parent() const { return i_; }
   int child() const { return j_; }
-  bool roots() const { return roots_; }  // whether the parent is movable and so has coordinates
+  /// Returns whether the parent has coordinates.
+  bool parent_is_movable() const { return parent_is_movable_; }
 
  private:
   int i_, j_;
-  bool roots_;
+  bool parent_is_movable_;
   Arms<T> arms_;
 };
 

@@ -12,7 +12,7 @@ std::optional<ImplicitStep> implicit_step(const StepEnergy& energy, const StepFr
   ForwardStep<double> step(energy.scene(), kTolerance);
   const Placement<double> now = placed(from.now);
   const Placement<double> before = placed(from.before ? *from.before : from.now);
-  const std::vector<double> forces = energy.spread(from.lag);
+  const std::vector<double> forces = energy.to_contact_index(from.previous_forces);
   Placement<double> next;
   if (!step.solve({now, forces.data(), nullptr, &before}, drive, true, next)) return std::nullopt;
   const Eigen::Map<const VectorXd> end(next.p.data(), from.now.size());

@@ -4,7 +4,7 @@
 
 #include "core/energy/joint_limit.hpp"
 #include "core/energy/scatter.hpp"
-#include "core/energy/touch.hpp"
+#include "core/energy/vertex_contact.hpp"
 
 namespace rtg::energy {
 namespace {
@@ -17,7 +17,7 @@ constexpr double kLeastShare = 0.01;  // least |Jᵀ∇g|²/|∇g|²; below it t
 void open_by(const SceneModel<double>& scene, double amount, VectorXd gradient,
              Placement<double>& at) {
   const double free = gradient.squaredNorm();
-  scene.articulation().gather(at, gradient.data());
+  scene.articulation().apply_jacobian_transposed(at, gradient.data());
   const double size = gradient.squaredNorm();
   if (size < kLeastShare * free) return;
   for (Eigen::Index m = 0; m < gradient.size(); ++m)
@@ -31,13 +31,13 @@ bool open_pair(const SceneModel<double>& scene, int n, double floor, Placement<d
   bool opened = false;
   for (int v = 0; v < scene.corners(n); ++v) {
     const PairFrame<double> frame = scene.frame(n, at);
-    const Touch<double> touch(scene, n, v, frame, true);
-    if (!touch.within) continue;
-    const SignedDistance<double> d = touch.distance();
+    const VertexContact<double> contact(scene, n, v, frame, true);
+    if (!contact.within) continue;
+    const SignedDistance<double> d = contact.distance();
     const double gap = d.value - scene.skin();
     if (gap >= floor) continue;
     VectorXd slope = VectorXd::Zero(3 * scene.movable());
-    pull(scene, n, frame, touch.point.pulled(d.gradient), slope.data());
+    pull(scene, n, frame, contact.point.pulled(d.gradient), slope.data());
     open_by(scene, 1.1 * floor - gap, std::move(slope), at);
     opened = true;
   }

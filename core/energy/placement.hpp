@@ -35,7 +35,7 @@ struct Placement {
 
 /// Returns the displacement (Δx, Δy, Δθ) of a body from one placement to another.
 template <class T>
-Vec3<T> way(const Placement<T>& from, const Placement<T>& to, int body) {
+Vec3<T> displacement(const Placement<T>& from, const Placement<T>& to, int body) {
   const T *a = from.body(body), *b = to.body(body);
   return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
 }

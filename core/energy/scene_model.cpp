@@ -4,7 +4,7 @@
 #include <cassert>
 
 #include "core/energy/joint_limit.hpp"
-#include "core/energy/touch.hpp"
+#include "core/energy/vertex_contact.hpp"
 
 namespace rtg::energy {
 namespace {
@@ -51,7 +51,8 @@ SceneModel<T>::SceneModel(const Scene& scene, const PhysicsConfig& physics, cons
     const Mass mass = mass_of(body);
     damping_.push_back({T(mass.mass), T(mass.moment), physics.periodic_turns});
     radius_.push_back(T(bounding_radius(body.shape)));
-    reach_.push_back(T(bounding_radius(offset_polygon(body.shape, physics.range + physics.skin))));
+    offset_radius_.push_back(
+        T(bounding_radius(offset_polygon(body.shape, physics.range + physics.skin))));
     corners_.push_back(static_cast<int>(body.shape.size()));
     corner_count_.push_back(T(corners_.back()));
     planes_.push_back(all_planes<T>(body.shape));
@@ -87,7 +88,7 @@ SceneModel<T>::SceneModel(const SceneModel<double>& like, Room)
       corner_count_(vertices_.size(), T(0.0)),
       planes_(vertices_.size()),
       radius_(corner_count_),
-      reach_(corner_count_),
+      offset_radius_(corner_count_),
       damping_(vertices_.size(), {T(1.0), T(1.0), like.damping_[0].periodic}),
       control_bound_(Vec3<T>::Constant(T(1.0))),
       barrier_(like.barrier_),
@@ -111,7 +112,7 @@ void SceneModel<T>::load(int lane, const SceneModel<double>& one) {
     set_lane(damping_[i].mass, lane, one.damping_[i].mass);
     set_lane(damping_[i].moment, lane, one.damping_[i].moment);
     set_lane(radius_[i], lane, one.radius_[i]);
-    set_lane(reach_[i], lane, one.reach_[i]);
+    set_lane(offset_radius_[i], lane, one.offset_radius_[i]);
     set_lane(corner_count_[i], lane, one.corner_count_[i]);
     corners_[i] = std::max(corners_[i], one.corners_[i]);
     planes_[i].count = std::max(planes_[i].count, one.planes_[i].count);
@@ -136,8 +137,9 @@ void SceneModel<T>::forces(const Placement<T>& at, T* lambda) const {
     if (!any(close)) continue;
     const PairFrame<T> pair = frame(n, at);
     for (int v = 0; v < corners(n); ++v) {
-      const Touch<T> touch(*this, n, v, pair, close);
-      if (any(touch.within)) of[v] = select(touch.within, barrier_.force(touch.gap()), T(0.0));
+      const VertexContact<T> contact(*this, n, v, pair, close);
+      if (any(contact.within))
+        of[v] = select(contact.within, barrier_.force(contact.gap()), T(0.0));
     }
   }
   for_each_limit(articulation_, at, [&](int l, const JointLimit<T>& limit) {
@@ -153,7 +155,7 @@ T SceneModel<T>::least_gap(const Placement<T>& at) const {
     if (!any(close)) continue;
     const PairFrame<T> pair = frame(n, at);
     for (int v = 0; v < corners(n); ++v)
-      least = lesser(least, Touch<T>(*this, n, v, pair, close).gap());
+      least = lesser(least, VertexContact<T>(*this, n, v, pair, close).gap());
   }
   for_each_limit(articulation_, at,
                  [&](int, const JointLimit<T>& limit) { least = lesser(least, limit.gap); });
@@ -170,7 +172,7 @@ Mask<T> SceneModel<T>::separated(const Placement<T>& at) const {
       SeparatingEdges<T> sides = edges(n);
       const PairFrame<T> pair = frame(n, at);
       for (int v = 0; v < corners(n); ++v)
-        sides.note(Touch<T>(*this, n, v, pair, close).distances, real(n, v));
+        sides.note(VertexContact<T>(*this, n, v, pair, close).distances, real(n, v));
       apart = apart || sides.separate(sharpness_);
     }
     if (n % 2 == 1) all = all && apart;

@@ -95,7 +95,7 @@ class SceneModel {
   Mask<T> near(int pair, const Placement<T>& at) const {
     const auto [i, j] = pairs_[pair];
     const T x = at.body(i)[0] - at.body(j)[0], y = at.body(i)[1] - at.body(j)[1];
-    const T reach = greater(radius_[i] + reach_[j], radius_[j] + reach_[i]);
+    const T reach = greater(radius_[i] + offset_radius_[j], radius_[j] + offset_radius_[i]);
     const Mask<T> real = corner_count_[i] > T(0.0);
     return barrier_.plain ? real : real && x * x + y * y < reach * reach;
   }
@@ -143,7 +143,7 @@ class SceneModel {
   std::vector<int> corners_;     // per body, the largest number in any lane
   std::vector<T> corner_count_;  // per body; 0 in an empty lane
   std::vector<Planes<T>> planes_;
-  std::vector<T> radius_, reach_;  // bounding radii of the shape and of its offset polygon [m]
+  std::vector<T> radius_, offset_radius_;  // bounding radii of shape and offset polygon [m]
   std::vector<Damping<T>> damping_;
   Vec3<T> control_bound_;
   Barrier barrier_;

@@ -13,18 +13,18 @@ namespace rtg::energy {
 /// before the sub-step.
 template <class T>
 struct SlipTerms {
-  Vec2<T> tangent;      // t = ∂u/∂x₊
-  Vec2<T> way;          // Eᵀ (x₊ - x); slip u = ∇d·way
-  T root, slope, bend;  // √(u² + ε²), φ', φ''
-  T slip;               // u
-  Vec4<T> ahead;        // X₊ᵀ t
+  Vec2<T> tangent;               // t = ∂u/∂x₊
+  Vec2<T> rotated_displacement;  // Eᵀ (x₊ - x); slip u = ∇d·rotated_displacement
+  T root, slope, bend;           // √(u² + ε²), φ', φ''
+  T slip;                        // u
+  Vec4<T> ahead;                 // X₊ᵀ t
 
   /// `normal` is ∇d(x), `next` the point after the sub-step, `x` the point before it, `scale` ε.
   SlipTerms(const Vec2<T>& normal, const ContactPoint<T>& next, const Vec2<T>& x, double scale)
       : tangent(turned(normal)) {
     const Vec2<T> moved = next.x - x;
-    way = {moved.y(), -moved.x()};
-    slip = normal.dot(way);
+    rotated_displacement = {moved.y(), -moved.x()};
+    slip = normal.dot(rotated_displacement);
     const T e2(scale * scale);
     root = rtg::root(slip * slip + e2);
     const T inverse = T(1.0) / root;
@@ -49,7 +49,7 @@ struct SlipTerms {
 /// Geometry of a slipping contact: its point after and before a sub-step. d and its derivatives are
 /// taken at the point before.
 template <class T>
-struct SlipPlace {
+struct SlipGeometry {
   const SignedDistance<T>& d;  // at the point before
   const Mat2<T>& D;            // ∇²d
   const ContactPoint<T>&after, &before;
@@ -62,16 +62,17 @@ template <class T>
 class SlipRates {
  public:
   /// `hessian` is ∂²φ/∂u₊².
-  SlipRates(const SlipTerms<T>& s, const SlipPlace<T>& at, const Mat4<T>& hessian, const Vec4<T>& y)
-      : s_(s), at_(at), rate_(at.after.along(y)), way_(rate_.x.y(), -rate_.x.x()) {
+  SlipRates(const SlipTerms<T>& s, const SlipGeometry<T>& at, const Mat4<T>& hessian,
+            const Vec4<T>& y)
+      : s_(s), at_(at), rate_(at.after.along(y)), displacement_rate_(rate_.x.y(), -rate_.x.x()) {
     tangent_slope_ << -at.D(1, 0), -at.D(1, 1), at.D(0, 0), at.D(0, 1);
-    u_x_ = product(at.D, s.way) - s.tangent;
+    u_x_ = product(at.D, s.rotated_displacement) - s.tangent;
     const T slip = s.tangent.dot(rate_.x);
     slope_ = s.bend * slip;
     bend_ = T(-3.0) * s.slip * s.bend * slip / (s.root * s.root);
     ahead_ = rate_.pulled_rate(s.tangent);
     behind_ = at.before.pulled(u_x_);
-    behind_rate_ = at.before.pulled(product(at.D, way_));
+    behind_rate_ = at.before.pulled(product(at.D, displacement_rate_));
     next = s.ahead * slope_ + ahead_ * s.slope + frame_turn(y[3], s.gradient());
     now = behind_ * slope_ + behind_rate_ * s.slope;
     set_next_next(row_turn(y[3], hessian));
@@ -105,27 +106,27 @@ class SlipRates {
   }
 
   void set_now_now() {
-    Mat2<T> u_xx = at_.d.third(s_.way);
+    Mat2<T> u_xx = at_.d.third(s_.rotated_displacement);
     u_xx -= tangent_slope_;
     u_xx -= tangent_slope_.transpose();
     Mat4<T> own = at_.before.pulled(u_xx, at_.before);
     at_.before.add_curvature(u_x_, own);
-    Mat4<T> own_rate = at_.before.pulled(at_.d.third(way_), at_.before);
-    at_.before.add_curvature(product(at_.D, way_), own_rate);
+    Mat4<T> own_rate = at_.before.pulled(at_.d.third(displacement_rate_), at_.before);
+    at_.before.add_curvature(product(at_.D, displacement_rate_), own_rate);
     const Mat4<T> half = (behind_rate_ * s_.bend) * behind_.transpose();
     now_now = (behind_ * bend_) * behind_.transpose() + half + half.transpose() + own * slope_ +
               own_rate * s_.slope;
   }
 
   const SlipTerms<T>& s_;
-  const SlipPlace<T>& at_;
-  ContactPoint<T> rate_;   // (ẋ₊, ȧ₊)
-  Vec2<T> way_;            // rate of Eᵀ (x₊ - x)
-  Mat2<T> tangent_slope_;  // ∂t/∂x = E D
-  Vec2<T> u_x_;            // ∂u/∂x
-  T slope_, bend_;         // rates of φ', φ''
-  Vec4<T> ahead_;          // rate of X₊ᵀ t
-  Vec4<T> behind_;         // Xᵀ ∂u/∂x
+  const SlipGeometry<T>& at_;
+  ContactPoint<T> rate_;       // (ẋ₊, ȧ₊)
+  Vec2<T> displacement_rate_;  // rate of Eᵀ (x₊ - x)
+  Mat2<T> tangent_slope_;      // ∂t/∂x = E D
+  Vec2<T> u_x_;                // ∂u/∂x
+  T slope_, bend_;             // rates of φ', φ''
+  Vec4<T> ahead_;              // rate of X₊ᵀ t
+  Vec4<T> behind_;             // Xᵀ ∂u/∂x
   Vec4<T> behind_rate_;
 };
 

@@ -27,14 +27,15 @@ double StepEnergy::gap_value(const Contact& c, const VectorXd& p) const {
     });
     return gap;
   }
-  return Touch<double>(scene_, c.pair, c.vertex, scene_.frame(c.pair, at), scene_.near(c.pair, at))
+  return VertexContact<double>(scene_, c.pair, c.vertex, scene_.frame(c.pair, at),
+                               scene_.near(c.pair, at))
       .gap();
 }
 
 VectorXd StepEnergy::forces(const VectorXd& p) const {
   std::vector<double> lambda(static_cast<std::size_t>(scene_.contacts()));
   scene_.forces(placed(p), lambda.data());
-  return gathered(lambda);
+  return from_contact_index(lambda);
 }
 
 namespace {
@@ -48,7 +49,8 @@ struct Begun {
       : now(placed(from.now)),
         before(from.before ? placed(*from.before) : Placement<double>()),
         potential(energy.scene()) {
-    potential.begin(now, energy.spread(from.lag).data(), from.before ? &before : nullptr);
+    potential.begin(now, energy.to_contact_index(from.previous_forces).data(),
+                    from.before ? &before : nullptr);
   }
 };
 
@@ -76,7 +78,7 @@ StepEnergy::Model StepEnergy::model(const VectorXd& next, const StepFrom& from) 
 
 bool StepEnergy::separated(const VectorXd& p) const { return scene_.separated(placed(p)); }
 
-std::vector<double> StepEnergy::spread(const VectorXd& per_contact) const {
+std::vector<double> StepEnergy::to_contact_index(const VectorXd& per_contact) const {
   std::vector<double> out(static_cast<std::size_t>(scene_.contacts()), 0.0);
   for (std::size_t k = 0; k < contacts_.size(); ++k)
     out[static_cast<std::size_t>(contact_of(contacts_[k].pair, contacts_[k].vertex))] =
@@ -84,11 +86,11 @@ std::vector<double> StepEnergy::spread(const VectorXd& per_contact) const {
   return out;
 }
 
-VectorXd StepEnergy::gathered(const std::vector<double>& spread) const {
+VectorXd StepEnergy::from_contact_index(const std::vector<double>& by_index) const {
   VectorXd out(static_cast<Eigen::Index>(contacts_.size()));
   for (std::size_t k = 0; k < contacts_.size(); ++k)
     out[static_cast<Eigen::Index>(k)] =
-        spread[static_cast<std::size_t>(contact_of(contacts_[k].pair, contacts_[k].vertex))];
+        by_index[static_cast<std::size_t>(contact_of(contacts_[k].pair, contacts_[k].vertex))];
   return out;
 }
 

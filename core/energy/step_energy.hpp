@@ -16,12 +16,12 @@ struct Contact {
   int pair = 0, vertex = 0;
 };
 
-/// Initial data of a sub-step: the poses p (`now` [3·bodies]) and the normal forces at p (`lag`
-/// [contacts]). `before` are the poses p₋ one sub-step earlier, which only inertia uses; null if
-/// everything is at rest.
+/// Initial data of a sub-step: the poses p (`now` [3·bodies]) and the normal forces at p
+/// (`previous_forces` [contacts]). `before` are the poses p₋ one sub-step earlier, which only
+/// inertia uses; null if everything is at rest.
 struct StepFrom {
   const VectorXd& now;
-  const VectorXd& lag;
+  const VectorXd& previous_forces;
   const VectorXd* before = nullptr;
 };
 
@@ -74,10 +74,10 @@ class StepEnergy {
   /// Returns whether all pairs of bodies pass the separating-axis test; see SeparatingEdges.
   bool separated(const VectorXd& p) const;
 
-  /// Reorders a vector over contacts() to the numbering of contact_of(). gathered() does the
-  /// reverse. Unused entries of the result are zero.
-  std::vector<double> spread(const VectorXd& per_contact) const;
-  VectorXd gathered(const std::vector<double>& spread) const;
+  /// Reorders a vector over contacts() to the numbering of contact_of(). from_contact_index() does
+  /// the reverse. Unused entries of the result are zero.
+  std::vector<double> to_contact_index(const VectorXd& per_contact) const;
+  VectorXd from_contact_index(const std::vector<double>& by_index) const;
 
  private:
   SceneModel<double> scene_;

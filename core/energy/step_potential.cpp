@@ -6,30 +6,31 @@
 namespace rtg::energy {
 
 template <class T>
-void StepPotential<T>::begin(const Placement<T>& now, const T* lag, const Placement<T>* before) {
+void StepPotential<T>::begin(const Placement<T>& now, const T* previous_forces,
+                             const Placement<T>* before) {
   now_ = &now;
   before_ = before;
   for (int n = 0; n < scene_.pair_count(); ++n) {
     drags_[n] = 0;
     const PairFrame<T> frame = scene_.frame(n, now);
     for (int v = 0; v < scene_.corners(n); ++v) {
-      Lagged& contact = lagged_[contact_of(n, v)];
-      const T& force = lag[contact_of(n, v)];
-      contact.drags = any(force != T(0.0));
-      if (!contact.drags) continue;
+      Lagged& lagged = lagged_[contact_of(n, v)];
+      const T& force = previous_forces[contact_of(n, v)];
+      lagged.drags = any(force != T(0.0));
+      if (!lagged.drags) continue;
       drags_[n] = 1;
-      const Touch<T> touch(scene_, n, v, frame, Mask<T>(true));
-      contact.x = touch.point.x;
-      contact.normal = touch.distance().gradient;
-      contact.load = scene_.friction(n) * force;
+      const VertexContact<T> contact(scene_, n, v, frame, Mask<T>(true));
+      lagged.x = contact.point.x;
+      lagged.normal = contact.distance().gradient;
+      lagged.load = scene_.friction(n) * force;
     }
   }
 }
 
 /// Returns the displacement of a body in the sub-step before this one; 0 if the body was at rest.
 template <class T>
-Vec3<T> StepPotential<T>::way_before(int body) const {
-  return before_ ? way(*before_, *now_, body) : Vec3<T>(T(0.0), T(0.0), T(0.0));
+Vec3<T> StepPotential<T>::previous_displacement(int body) const {
+  return before_ ? displacement(*before_, *now_, body) : Vec3<T>(T(0.0), T(0.0), T(0.0));
 }
 
 /// Returns the potential of damping and inertia.
@@ -37,11 +38,11 @@ template <class T>
 T StepPotential<T>::motion(const Placement<T>& next) const {
   T sum(0.0);
   for (int i = 0; i < scene_.movable(); ++i) {
-    const Vec3<T> a = way(*now_, next, i);
+    const Vec3<T> a = displacement(*now_, next, i);
     const Damping<T>& body = scene_.damping(i);
     sum = sum + T(0.5) * body.mass * (a[0] * a[0] + a[1] * a[1]) + body.turn_value(a[2]);
     if (!scene_.inertial()) continue;
-    const Vec3<T> b = way_before(i), gain = a - b;
+    const Vec3<T> b = previous_displacement(i), gain = a - b;
     const Inertia<T> inertia = scene_.inertia(i);
     sum = sum + T(0.5) * inertia.mass * (gain[0] * gain[0] + gain[1] * gain[1]) +
           inertia.turn_value(a[2], b[2]);
@@ -50,7 +51,8 @@ T StepPotential<T>::motion(const Placement<T>& next) const {
 }
 
 template <class T>
-T StepPotential<T>::value(const Placement<T>& next, const T* were, T* gaps, Mask<T>& legal) const {
+T StepPotential<T>::value(const Placement<T>& next, const T* previous_gaps, T* gaps,
+                          Mask<T>& legal) const {
   T sum = motion(next);
   legal = Mask<T>(true);
   Mask<T> apart(true);
@@ -58,22 +60,23 @@ T StepPotential<T>::value(const Placement<T>& next, const T* were, T* gaps, Mask
     const Mask<T> close = scene_.near(n, next);
     if (n % 2 == 0) apart = !close;
     if (!any(close) && !drags_[n]) {
-      for (int v = 0; v < scene_.corners(n); ++v) gaps[contact_of(n, v)] = Touch<T>::far(scene_);
+      for (int v = 0; v < scene_.corners(n); ++v)
+        gaps[contact_of(n, v)] = VertexContact<T>::far(scene_);
       continue;
     }
     const PairFrame<T> frame = scene_.frame(n, next);
     SeparatingEdges<T> edges = scene_.edges(n);
     for (int v = 0; v < scene_.corners(n); ++v) {
       const int c = contact_of(n, v);
-      const Touch<T> touch(scene_, n, v, frame, close);
-      edges.note(touch.distances, scene_.real(n, v));
-      gaps[c] = touch.gap();
-      if (any(touch.within)) {
-        legal = legal && keeps_gap(gaps[c], were[c], scene_.barrier());
-        sum = sum + select(touch.within, scene_.barrier().value(gaps[c]), T(0.0));
+      const VertexContact<T> contact(scene_, n, v, frame, close);
+      edges.note(contact.distances, scene_.real(n, v));
+      gaps[c] = contact.gap();
+      if (any(contact.within)) {
+        legal = legal && is_gap_acceptable(gaps[c], previous_gaps[c], scene_.barrier());
+        sum = sum + select(contact.within, scene_.barrier().value(gaps[c]), T(0.0));
       }
       if (!lagged_[c].drags) continue;
-      const SlipTerms<T> s(lagged_[c].normal, touch.point, lagged_[c].x, scene_.slip());
+      const SlipTerms<T> s(lagged_[c].normal, contact.point, lagged_[c].x, scene_.slip());
       sum = sum + lagged_[c].load * s.value(scene_.slip());
     }
     apart = apart || edges.separate(scene_.sharpness());  // an edge of either body suffices
@@ -82,7 +85,7 @@ T StepPotential<T>::value(const Placement<T>& next, const T* were, T* gaps, Mask
   for_each_limit(scene_.articulation(), next, [&](int l, const JointLimit<T>& limit) {
     const int c = scene_.limit_contact(l);
     gaps[c] = limit.gap;
-    legal = legal && keeps_gap(limit.gap, were[c], scene_.barrier());
+    legal = legal && is_gap_acceptable(limit.gap, previous_gaps[c], scene_.barrier());
     sum = sum + scene_.barrier().value(limit.gap);
   });
   return sum;
@@ -92,7 +95,7 @@ template <class T>
 void StepPotential<T>::add_motion(const Placement<T>& next, T* gradient,
                                   BlockMatrix<T>& hessian) const {
   for (int i = 0; i < scene_.movable(); ++i) {
-    const Vec3<T> a = way(*now_, next, i), b = way_before(i);
+    const Vec3<T> a = displacement(*now_, next, i), b = previous_displacement(i);
     const Vec3<T> slope = scene_.motion_force(i, a, b);
     const Damping<T>& body = scene_.damping(i);
     Vec3<T> curvature(body.mass, body.mass, body.turn_curvature(a[2]));
@@ -106,23 +109,23 @@ void StepPotential<T>::add_motion(const Placement<T>& next, T* gradient,
 }
 
 template <class T>
-void StepPotential<T>::add_contact(const Touch<T>& touch, const Lagged& lagged, Vec4<T>& slope,
-                                   Mat4<T>& H) const {
-  if (any(touch.within)) {
+void StepPotential<T>::add_contact(const VertexContact<T>& contact, const Lagged& lagged,
+                                   Vec4<T>& slope, Mat4<T>& H) const {
+  if (any(contact.within)) {
     const Barrier& barrier = scene_.barrier();
-    const SignedDistance<T> d = touch.distance();
-    const GapTerms<T> terms(d, d.hessian(), touch.point);
-    const T g = touch.gap(d, touch.within);
-    const T force = select(touch.within, barrier.force(g), T(0.0));
-    const T bend = select(touch.within, barrier.force_slope(g), T(0.0));
+    const SignedDistance<T> d = contact.distance();
+    const GapTerms<T> terms(d, d.hessian(), contact.point);
+    const T g = contact.gap(d, contact.within);
+    const T force = select(contact.within, barrier.force(g), T(0.0));
+    const T bend = select(contact.within, barrier.force_slope(g), T(0.0));
     slope -= terms.gradient * force;
     H -= (terms.gradient * bend) * terms.gradient.transpose();
     H -= terms.hessian * force;
   }
   if (!lagged.drags) return;
-  const SlipTerms<T> s(lagged.normal, touch.point, lagged.x, scene_.slip());
+  const SlipTerms<T> s(lagged.normal, contact.point, lagged.x, scene_.slip());
   slope += s.gradient() * lagged.load;
-  H += s.hessian(touch.point) * lagged.load;
+  H += s.hessian(contact.point) * lagged.load;
 }
 
 template <class T>
@@ -136,11 +139,11 @@ void StepPotential<T>::model(const Placement<T>& next, T* gradient, BlockMatrix<
     Mat4<T> H = Mat4<T>::Constant(T(0.0));
     bool touched = false;
     for (int v = 0; v < scene_.corners(n); ++v) {
-      const Touch<T> touch(scene_, n, v, frame, close);
+      const VertexContact<T> contact(scene_, n, v, frame, close);
       const Lagged& lagged = lagged_[contact_of(n, v)];
-      if (!any(touch.within) && !lagged.drags) continue;
+      if (!any(contact.within) && !lagged.drags) continue;
       touched = true;
-      add_contact(touch, lagged, slope, H);
+      add_contact(contact, lagged, slope, H);
     }
     if (!touched) continue;
     pull(scene_, n, frame, slope, gradient);

@@ -2,7 +2,7 @@
 
 #include "core/energy/scatter.hpp"
 #include "core/energy/slip_terms.hpp"
-#include "core/energy/touch.hpp"
+#include "core/energy/vertex_contact.hpp"
 
 namespace rtg::energy {
 
@@ -15,18 +15,19 @@ class StepPotential {
         lagged_(static_cast<std::size_t>(scene.contacts())),
         drags_(scene.pairs().size()) {}
 
-  /// Begins a sub-step at poses `now` with normal forces `lag` [contacts]. `before` are the poses
-  /// one sub-step earlier, which only inertia uses; null if everything is at rest. The placements
-  /// must outlive all calls of value() and model().
-  void begin(const Placement<T>& now, const T* lag, const Placement<T>* before = nullptr);
+  /// Begins a sub-step at poses `now` with normal forces `previous_forces` [contacts]. `before` are
+  /// the poses one sub-step earlier, which only inertia uses; null if everything is at rest. The
+  /// placements must outlive all calls of value() and model().
+  void begin(const Placement<T>& now, const T* previous_forces,
+             const Placement<T>* before = nullptr);
 
   /// Returns Ψ without actuation at poses `next`; +∞ in lanes where a gap is not positive. Writes
   /// the gaps to `gaps` [contacts].
   ///
   /// Sets `legal` to the lanes in which a line search may accept `next`. There all bodies are
-  /// separated, and keeps_gap() holds for each gap. `were` [contacts] are the gaps at the previous
-  /// iterate.
-  T value(const Placement<T>& next, const T* were, T* gaps, Mask<T>& legal) const;
+  /// separated, and is_gap_acceptable() holds for each gap. `previous_gaps` [contacts] are the gaps
+  /// at the previous iterate.
+  T value(const Placement<T>& next, const T* previous_gaps, T* gaps, Mask<T>& legal) const;
 
   /// Adds the gradient of value() to `gradient` [3·movable]. Adds its Hessian to the lower half of
   /// `hessian`.
@@ -41,8 +42,9 @@ class StepPotential {
   };
   T motion(const Placement<T>& next) const;
   void add_motion(const Placement<T>& next, T* gradient, BlockMatrix<T>& hessian) const;
-  Vec3<T> way_before(int body) const;
-  void add_contact(const Touch<T>& touch, const Lagged& lagged, Vec4<T>& slope, Mat4<T>& H) const;
+  Vec3<T> previous_displacement(int body) const;
+  void add_contact(const VertexContact<T>& contact, const Lagged& lagged, Vec4<T>& slope,
+                   Mat4<T>& H) const;
 
   const SceneModel<T>& scene_;
   const Placement<T>*now_ = nullptr, *before_ = nullptr;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/forward/clear_way.hpp"
+#include "core/forward/free_path.hpp"
 
 namespace rtg::forward {
 namespace {
@@ -61,7 +61,7 @@ Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& 
 }
 
 /// Returns whether the bounding circle of body `i` is at least kClear away from all others.
-bool is_alone(const Scene& scene, const Poses& poses, std::size_t i) {
+bool is_isolated(const Scene& scene, const Poses& poses, std::size_t i) {
   const double radius = bounding_radius(scene.bodies[i].shape) + kClear;
   for (std::size_t j = 0; j < scene.size(); ++j)
     if (j != i && (poses[j].position() - poses[i].position()).norm() <
@@ -74,12 +74,12 @@ bool is_alone(const Scene& scene, const Poses& poses, std::size_t i) {
 class World {
  public:
   World(const Scene& scene, const PhysicsConfig& physics, const Servo& servo, const Poses& start)
-      : physics_(physics), servo_(servo), good_(start), touched_(start.size(), false) {
+      : physics_(physics), servo_(servo), last_finite_poses_(start), touched_(start.size(), false) {
     world_.SetAllowSleeping(false);
     world_.SetContinuousPhysics(false);  // a Box2D step moves bodies by far less than their size
     for (std::size_t i = 0; i < scene.size(); ++i) {
       // An isolated body sleeps until another body hits it, which saves the cost of its island.
-      add(scene.bodies[i], start[i], i == 0 || !is_alone(scene, start, i));
+      add(scene.bodies[i], start[i], i == 0 || !is_isolated(scene, start, i));
     }
     touched_[0] = true;
     add_servo();
@@ -123,7 +123,7 @@ class World {
   /// of the start; otherwise bodies without velocity keep their start.
   void touch_all() { touched_.assign(touched_.size(), true); }
 
-  const Poses& poses() const { return good_; }
+  const Poses& poses() const { return last_finite_poses_; }
 
  private:
   void add(const Body& body, const Pose& pose, bool awake) {
@@ -181,8 +181,8 @@ class World {
     servo_joint_ = static_cast<b2MotorJoint*>(world_.CreateJoint(&def));
   }
 
-  /// Updates good_, touched_, fastest_ and shift_ after a step. Returns false, without an update,
-  /// if a pose is not finite.
+  /// Updates last_finite_poses_, touched_, fastest_ and shift_ after a step. Returns false, without
+  /// an update, if a pose is not finite.
   bool observe() {
     for (const b2Body* body : bodies_)
       if (!is_finite(pose_of(*body))) return false;
@@ -196,9 +196,9 @@ class World {
       if (!touched_[i]) continue;
       const Pose now = pose_of(*bodies_[i]);
       fastest_ = std::max({fastest_, speed, spin});
-      shift_ = std::max({shift_, (now.position() - good_[i].position()).norm(),
-                         std::abs(now.theta - good_[i].theta)});
-      good_[i] = now;
+      shift_ = std::max({shift_, (now.position() - last_finite_poses_[i].position()).norm(),
+                         std::abs(now.theta - last_finite_poses_[i].theta)});
+      last_finite_poses_[i] = now;
     }
     return true;
   }
@@ -208,7 +208,7 @@ class World {
   b2World world_{b2Vec2(0.0f, 0.0f)};
   std::vector<b2Body*> bodies_;
   b2MotorJoint* servo_joint_ = nullptr;
-  Poses good_;                 // after the last finite step
+  Poses last_finite_poses_;    // the start before the first step
   std::vector<bool> touched_;  // per body: whether it has had a velocity
   double fastest_ = 0.0;       // largest speed of a touched body [m/s] or [rad/s]
   double shift_ = 0.0;         // largest displacement in the last step [m] or [rad]
@@ -261,7 +261,7 @@ PushOutcome Box2dSimulator::push(const Poses& start, int action) const {
   const Servo servo = servo_of(scene_, push_, physics_);
   const Path path(start[0], push_target(start[0], action, push_), servo.advance,
                   physics_.sub_steps * physics_.box2d_steps);
-  const double clear = clear_way(scene_, start, path.to);
+  const double clear = free_path_length(scene_, start, path.to);
   Poses begun = start;
   if (clear >= path.length()) {  // no body is near the path
     begun[0] = to_single(path.to);

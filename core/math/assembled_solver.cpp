@@ -37,18 +37,18 @@ Assembled::Assembled(const StageSystem<double>& system, bool fixed_end)
   for (MatrixXd& A : K_.A) A = MatrixXd(A.selfadjointView<Eigen::Lower>());
 }
 
-Assembled::Place Assembled::pose(int level) const {
+Assembled::RowPosition Assembled::pose(int level) const {
   if (fixed_end_ || level == 0) return {level, 0};
   return {(level - 1) / per_block_ + 1, (level - 1) % per_block_ * (2 * n_ + 3)};
 }
 
-Assembled::Place Assembled::control(int step) const {
-  const Place at = pose(fixed_end_ ? step - 1 : step);
+Assembled::RowPosition Assembled::control(int step) const {
+  const RowPosition at = pose(fixed_end_ ? step - 1 : step);
   return {at.block, at.row + n_};
 }
 
-Assembled::Place Assembled::multiplier(int step) const {
-  const Place at = control(step);
+Assembled::RowPosition Assembled::multiplier(int step) const {
+  const RowPosition at = control(step);
   return {at.block, at.row + 3};
 }
 
@@ -70,7 +70,7 @@ void Assembled::add_stage(const StageSystem<double>::Stage& stage, int k) {
     write(stage.q, -1.0, r_[pose(k).block], pose(k).row);
   }
   if (k == 0) return;
-  const Place c = control(k), y = multiplier(k);
+  const RowPosition c = control(k), y = multiplier(k);
   if (has_pose(k)) {
     add_symmetric(stage.E, y, pose(k));
     add(stage.N, pose(k), pose(k - 1));
@@ -81,13 +81,13 @@ void Assembled::add_stage(const StageSystem<double>::Stage& stage, int k) {
     add(stage.G, y, pose(k - 2));
   }
   for (int m = 0; m < 3; ++m) {
-    const Place own{c.block, c.row + m};
+    const RowPosition own{c.block, c.row + m};
     entry(own, own) += stage.R[m];
     entry({y.block, y.row + m}, own) += stage.B[m];
     r_[c.block][own.row] = -stage.r[m];
   }
   for (int m = 0; m < n_; ++m) {
-    const Place own{y.block, y.row + m};
+    const RowPosition own{y.block, y.row + m};
     entry(own, own) -= kMultiplierShift;
   }
   write(stage.e, -1.0, r_[y.block], y.row);
@@ -95,7 +95,7 @@ void Assembled::add_stage(const StageSystem<double>::Stage& stage, int k) {
 
 /// Returns the entry of the symmetric K at (row, column). Only entries on or below the diagonal are
 /// stored; for others it returns the one at (column, row).
-double& Assembled::entry(const Place& row, const Place& column) {
+double& Assembled::entry(const RowPosition& row, const RowPosition& column) {
   if (row.block < column.block || (row.block == column.block && row.row < column.row))
     return entry(column, row);
   return row.block == column.block ? K_.A[row.block](row.row, column.row)
@@ -103,7 +103,8 @@ double& Assembled::entry(const Place& row, const Place& column) {
 }
 
 /// Adds M to K with the upper left corner at (row, column), off the diagonal of K.
-void Assembled::add(const BlockMatrix<double>& M, const Place& row, const Place& column) {
+void Assembled::add(const BlockMatrix<double>& M, const RowPosition& row,
+                    const RowPosition& column) {
   for (int i = 0; i < M_; ++i)
     for (const int j : Bits(M.pattern[i]))
       for (int a = 0; a < 3; ++a)
@@ -114,7 +115,8 @@ void Assembled::add(const BlockMatrix<double>& M, const Place& row, const Place&
 
 /// Adds the symmetric M to K with the upper left corner at (row, column). Reads the lower half of M
 /// only. If the block lies on the diagonal of K, writes its lower half only.
-void Assembled::add_symmetric(const BlockMatrix<double>& M, const Place& row, const Place& column) {
+void Assembled::add_symmetric(const BlockMatrix<double>& M, const RowPosition& row,
+                              const RowPosition& column) {
   const bool own = row.block == column.block && row.row == column.row;
   for (int i = 0; i < n_; ++i)
     for (int j = 0; j <= i; ++j) {

@@ -35,18 +35,19 @@ class Assembled {
  private:
   /// Position of the first row of a variable: its block of the system, and the row within the
   /// block.
-  struct Place {
+  struct RowPosition {
     int block, row;
   };
   bool has_pose(int level) const { return level < h_ || !fixed_end_; }
-  Place pose(int level) const;
-  Place control(int step) const;
-  Place multiplier(int step) const;
+  RowPosition pose(int level) const;
+  RowPosition control(int step) const;
+  RowPosition multiplier(int step) const;
   void set_sizes();
   void add_stage(const StageSystem<double>::Stage& stage, int k);
-  double& entry(const Place& row, const Place& column);
-  void add(const BlockMatrix<double>& M, const Place& row, const Place& column);
-  void add_symmetric(const BlockMatrix<double>& M, const Place& row, const Place& column);
+  double& entry(const RowPosition& row, const RowPosition& column);
+  void add(const BlockMatrix<double>& M, const RowPosition& row, const RowPosition& column);
+  void add_symmetric(const BlockMatrix<double>& M, const RowPosition& row,
+                     const RowPosition& column);
 
   int M_, n_, h_, per_block_;  // bodies, entries of Δp_k, sub-steps, sub-steps per block
   bool fixed_end_;

@@ -12,8 +12,8 @@ constexpr int kWide = kWidth<Lanes>;
 /// Calls f on an array of all doubles in x[0], ..., x[count - 1]. f replaces them in place.
 template <class F>
 void as_numbers(Lanes* x, int count, F&& f) {
-  assert(count <= kMostNumbers);
-  double buffer[kMostNumbers * kWide];
+  assert(count <= kMaxExponentials);
+  double buffer[kMaxExponentials * kWide];
   for (int k = 0; k < count; ++k)
     x[k].copy_to(buffer + k * kWide, std::experimental::element_aligned);
   f(buffer, count * kWide);
@@ -39,7 +39,7 @@ Turn<Lanes> turn_of(const Lanes& angle) {
 double hyperbolic_tangent(double x) { return std::tanh(x); }
 Lanes hyperbolic_tangent(const Lanes& x) {
   Lanes out = x;
-  as_numbers(&out, 1, vector_math::tangents);
+  as_numbers(&out, 1, vector_math::hyperbolic_tangents);
   return out;
 }
 double logarithm(double x) { return std::log(x); }

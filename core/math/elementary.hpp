@@ -5,7 +5,7 @@
 namespace rtg {
 
 /// Largest `count` that exponentials() accepts for Lanes.
-inline constexpr int kMostNumbers = 8;
+inline constexpr int kMaxExponentials = 8;
 
 /// Replaces each of the `count` numbers in `x` by its exponential. The Lanes version of each
 /// function in this file agrees with the double version to a few units in the last place.

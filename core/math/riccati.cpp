@@ -48,7 +48,7 @@ void Riccati<T>::set_end(const Stage& stage) {
   for (int i = 0; i < M_; ++i)
     for (int j = i; j < M_; ++j) transposed(stage.Q, i, j).store(P_[i * M_ + j]);
   v_ = stage.q;
-  carries_ = false;
+  has_Y_ = false;
 }
 
 /// Overwrites P with W = S P S.
@@ -73,7 +73,7 @@ void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E, int i) {
     RegisterSum<Block<T>> sum;
     for (const int k : Bits(columns_[i]))
       with_upper(P_, M_, k, j, [&](const auto& W) { sum.add(stage.F.at(k, i).transpose(), W); });
-    if (j == 0 || reaches_) {
+    if (j == 0 || has_G_) {
       RegisterSum<Block<T>> whole = sum;
       whole.subtract(row_[j]);
       whole.store(A_[i * M_ + j]);
@@ -91,10 +91,10 @@ void Riccati<T>::couple(const Stage& stage, const BlockLdl<T>& E, int i) {
 template <class T>
 void Riccati<T>::find_NS(const Stage& stage, const BlockLdl<T>& E, int i) {
   const std::uint64_t column = stage.N.column(i);
-  const int first = carries_ ? 0 : std::min(std::countr_zero(column), M_);
+  const int first = has_Y_ ? 0 : std::min(std::countr_zero(column), M_);
   const auto load = [&](int k) {
     RegisterSum<Block<T>> sum = transposed(stage.N, i, k);
-    if (carries_) sum.add(Y_[k * M_ + i].transpose());
+    if (has_Y_) sum.add(Y_[k * M_ + i].transpose());
     return sum;
   };
   E.solve_row(load, first, 0, row_.data());
@@ -106,17 +106,17 @@ void Riccati<T>::eliminate(const Stage& stage, const Stage& before, int k) {
   E.factorize(stage.E);
   regular_ = regular_ && E.regular();
   for (int j = 0; j < M_; ++j) columns_[j] = stage.F.column(j);
-  reaches_ = !stage.G.empty();
+  has_G_ = !stage.G.empty();
   sandwich(E);
   E.solve(v_.data());  // S v
   for (int i = 0; i < M_; ++i) couple(stage, E, i);
   find_w(stage);
   const Block<T> inverse = find_gain(stage, gain_[k]);
   fold_gradient(before, stage, gain_[k]);
-  if (reaches_) find_V(stage, E, inverse, gain_[k]);
+  if (has_G_) find_V(stage, E, inverse, gain_[k]);
   fold_hessian(before, stage, gain_[k]);
-  carries_ = reaches_;
-  if (carries_) carry(stage, gain_[k]);
+  has_Y_ = has_G_;
+  if (has_Y_) carry(stage, gain_[k]);
 }
 
 /// Computes w. v_ must hold S v.
@@ -161,7 +161,7 @@ void Riccati<T>::fold_hessian(const Stage& before, const Stage& stage, const Gai
   for (int i = 0; i < M_; ++i)
     for (int j = i; j < M_; ++j) {
       RegisterSum<Block<T>> sum = transposed(before.Q, i, j);
-      if (carries_) sum.add(Z_[i * M_ + j]);
+      if (has_Y_) sum.add(Z_[i * M_ + j]);
       for (const int k : Bits(columns_[j])) sum.add(X_[i * M_ + k], stage.F.at(k, j));
       for (const int k : Bits(columns_[i]))
         sum.add(stage.F.at(k, i).transpose(), X_[j * M_ + k].transpose());
@@ -178,7 +178,7 @@ void Riccati<T>::fold_gradient(const Stage& before, const Stage& stage, const Ga
     for (const int m : Bits(columns_[i])) sum.add(stage.F.at(m, i).transpose(), w_[m]);
     sum.subtract(C_[i].transpose(), gain.r);
     sum.subtract(Ne_[i]);
-    if (carries_) sum.add(z_[i]);
+    if (has_Y_) sum.add(z_[i]);
     sum.store(v_[i]);
   }
 }
@@ -192,15 +192,15 @@ void Riccati<T>::roll_forward(const StageSystem<T>& system, StageStep<T>& step) 
     const BlockColumn<T>& before = step.poses[k - 1];
     RegisterSum<Vec3<T>> control(-gain_[k].r);
     for (int j = 0; j < M_; ++j) control.subtract(gain_[k].C[j], before[j]);
-    const bool reaches = !stage.G.empty();
-    for (int j = 0; j < M_ && reaches; ++j) control.subtract(gain_[k].D[j], step.poses[k - 2][j]);
+    const bool has_G = !stage.G.empty();
+    for (int j = 0; j < M_ && has_G; ++j) control.subtract(gain_[k].D[j], step.poses[k - 2][j]);
     Vec3<T>& c = step.controls[k];
     control.store(c);
     BlockColumn<T>& p = step.poses[k];
     for (int i = 0; i < M_; ++i) {
       RegisterSum<Vec3<T>> sum(stage.e[i]);
       add_row(sum, stage.F, i, before);
-      if (reaches) add_row(sum, stage.G, i, step.poses[k - 2]);
+      if (has_G) add_row(sum, stage.G, i, step.poses[k - 2]);
       sum.store(p[i]);
     }
     for (int a = 0; a < 3; ++a) p[0][a] = p[0][a] + stage.B[a] * c[a];

@@ -67,8 +67,8 @@ class Riccati final : public StageSolver<T> {
   std::vector<Block<T>> A_;  // only the first column if the stage has no G
   std::vector<Block<T>> Y_, Z_, V_;
   std::vector<Block<T>> US_;  // Uᵀ S
-  bool reaches_ = false;      // the current stage has G
-  bool carries_ = false;      // Y, Z and z are not zero
+  bool has_G_ = false;        // the current stage has G
+  bool has_Y_ = false;        // Y, Z and z are not zero
   BlockPattern columns_;      // pattern of F by columns
   std::vector<Block<T>> C_, D_;
   BlockColumn<T> v_, w_, z_;

@@ -13,7 +13,7 @@ void sines(double* x, int count) {
 void cosines(double* x, int count) {
   for (int k = 0; k < count; ++k) x[k] = std::cos(x[k]);
 }
-void tangents(double* x, int count) {
+void hyperbolic_tangents(double* x, int count) {
   for (int k = 0; k < count; ++k) x[k] = std::tanh(x[k]);
 }
 void logarithms(double* x, int count) {

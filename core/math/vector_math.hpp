@@ -11,7 +11,7 @@ namespace rtg::vector_math {
 void exponentials(double* x, int count);
 void sines(double* x, int count);
 void cosines(double* x, int count);
-void tangents(double* x, int count);  // hyperbolic
+void hyperbolic_tangents(double* x, int count);
 void logarithms(double* x, int count);
 
 }  // namespace rtg::vector_math

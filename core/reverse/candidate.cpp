@@ -68,11 +68,11 @@ Candidate::Candidate(const Scene& scene, const PhysicsConfig& physics, const Pus
     : bodies_(relevant_bodies(
           scene, push, job,
           reach(physics) + physics.inertia_weight() * push.stride / physics.sub_steps)),
-      part_(select(scene, job.end, bodies_)),
-      energy_(part_.scene, physics, push),
+      subscene_(select(scene, job.end, bodies_)),
+      energy_(subscene_.scene, physics, push),
       problem_{energy_,
                config,
-               with_open_gaps(energy_, energy::stacked(part_.poses)),
+               with_open_gaps(energy_, energy::stacked(subscene_.poses)),
                direction(job.action, push),
                physics.sub_steps + physics.settling_steps(),
                physics.settling_steps()} {}

@@ -21,11 +21,11 @@ class Candidate {
 
   const ReverseProblem& problem() const { return problem_; }
   const std::vector<int>& bodies() const { return bodies_; }  // scene indices, in problem order
-  const Scene& scene() const { return part_.scene; }          // of these bodies alone
+  const Scene& scene() const { return subscene_.scene; }      // of these bodies alone
 
  private:
   std::vector<int> bodies_;
-  Selection part_;
+  Selection subscene_;
   energy::StepEnergy energy_;
   ReverseProblem problem_;
 };

@@ -60,11 +60,12 @@ ReverseResult NaiveReverse::solve(const ReverseJob& job) const {
   start[0] = moved(job.end[0], -push_.stride * ahead);
   if (!in_arena(start[0], push_) || blocked(job.end, touched, -push_.stride * ahead))
     return {SolveStatus::kPruned};
-  std::vector<Poses> starts{start};
-  if (touched != 0) starts = pulled(job, roots_[touched], start);
-  std::erase_if(starts, [this](const Poses& s) { return first_overlap(scene_, s).has_value(); });
-  if (starts.empty()) return {SolveStatus::kInfeasible};
-  return {SolveStatus::kConverged, 0, std::move(starts)};
+  std::vector<Poses> predecessors{start};
+  if (touched != 0) predecessors = pulled(job, roots_[touched], start);
+  std::erase_if(predecessors,
+                [this](const Poses& s) { return first_overlap(scene_, s).has_value(); });
+  if (predecessors.empty()) return {SolveStatus::kInfeasible};
+  return {SolveStatus::kConverged, 0, std::move(predecessors)};
 }
 
 /// Returns one copy of `start` per draw of L, with `object` pulled back by L. Bodies that joints
@@ -75,7 +76,7 @@ std::vector<Poses> NaiveReverse::pulled(const ReverseJob& job, std::size_t objec
   if (scene_.bodies[object].fixed) return out;
   const Vector2d ahead = direction(job.action, push_);
   Rng rng(key_of(job));
-  for (int draw = 0; draw < kMaxStarts; ++draw) {
+  for (int draw = 0; draw < kMaxPredecessors; ++draw) {
     const double pull = rng.uniform(kLeastPull, 1.0) * push_.stride;
     Poses one = start;
     one[object] = moved(job.end[object], -pull * ahead);

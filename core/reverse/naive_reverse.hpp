@@ -13,8 +13,8 @@ namespace rtg::reverse {
 ///
 ///   start(robot) = end(robot) - stride·d,   start(object) = end(object) - L·d
 ///
-/// The robot may have met the object anywhere on its way. So solve() draws kMaxStarts values of L
-/// from [0.2, 1]·stride; equal jobs give equal values. The status is
+/// The robot may have met the object anywhere on its way. So solve() draws kMaxPredecessors values
+/// of L from [0.2, 1]·stride; equal jobs give equal values. The status is
 ///
 ///   kPruned      if the robot would start outside the arena or a body blocks its way back,
 ///   kInfeasible  if bodies overlap for every L or if joints connect the object with a fixed root.

@@ -88,7 +88,7 @@ ReverseResult ReverseSimulator::answer(const ReverseJob& job, const Candidate& c
   if (result.status != SolveStatus::kConverged) return result;
   const int late_contacts = physics_.inertia ? 0 : config_.late_contacts;
   for (const VectorXd& start : predecessors(solved.x.p, late_contacts))
-    result.starts.push_back(merged(job.end, energy::unstacked(start), candidate.bodies()));
+    result.predecessors.push_back(merged(job.end, energy::unstacked(start), candidate.bodies()));
   return result;
 }
 

@@ -17,7 +17,7 @@ BeamSearch::BeamSearch(const tasks::Task& task, const SearchConfig& config, Pose
                        std::uint64_t seed)
     : task_(task), config_(config), metric_(task.scene), target_(std::move(target)), rng_(seed) {}
 
-void BeamSearch::plant(const ReplayBatch& replay, SearchStats& stats) {
+void BeamSearch::seed_roots(const ReplayBatch& replay, SearchStats& stats) {
   std::vector<ReplayJob> goals;
   for (Poses& goal : goal_roots(task_, config_, target_, rng_, stats))
     goals.push_back({std::move(goal), kSettle});
@@ -38,9 +38,10 @@ std::vector<Transition> BeamSearch::grow(const SolveBatch& solve, const ReplayBa
                                          SearchStats& stats) {
   std::vector<Predecessor> found = best_to_replay(reverse_layer(solve, stats));
   found = replay_predecessors(std::move(found), replay);
-  for (const Predecessor& p : found) stats.gaps.push_back(static_cast<float>(p.gap));
-  std::erase_if(found, [this](const Predecessor& p) { return p.miss > config_.gap_tolerance; });
-  return keep(std::move(found), replay);
+  for (const Predecessor& p : found) stats.gaps.push_back(static_cast<float>(p.mean_error));
+  std::erase_if(found,
+                [this](const Predecessor& p) { return p.max_error > config_.gap_tolerance; });
+  return verify_and_select(std::move(found), replay);
 }
 
 /// Solves for the predecessors of every node of the beam under every action. Sets
@@ -53,7 +54,7 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
       jobs.push_back({node(k).poses, action});
   const std::vector<reverse::ReverseResult> answers = solve(jobs);
   for (std::size_t k = 0; k < jobs.size(); ++k) {
-    const std::vector<Poses>& starts = answers[k].starts;
+    const std::vector<Poses>& starts = answers[k].predecessors;
     stats.count(answers[k], !starts.empty() && objects_moved(starts[0], jobs[k].end) > 0);
   }
   std::vector<Predecessor> found = proposals(task_, jobs, answers, stats);
@@ -69,8 +70,8 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
 std::vector<Predecessor> BeamSearch::best_to_replay(std::vector<Predecessor> all) const {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    all[k].left = distance_left(all[k].start);
-    order.emplace_back(all[k].left, k);
+    all[k].start_distance = distance_to_target(all[k].start);
+    order.emplace_back(all[k].start_distance, k);
   }
   std::sort(order.begin(), order.end());
   std::unordered_map<int, int> idle, pushing;  // counts per node and per solve
@@ -92,7 +93,8 @@ std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int
                                              std::unordered_set<std::uint64_t>& seen) {
   std::vector<BeamEntry> entries;
   for (const Predecessor& p : steps)
-    entries.push_back({p.left, metric_.cell(p.start), metric_.layout_cell(p.start), p.moved > 0});
+    entries.push_back(
+        {p.start_distance, metric_.cell(p.start), metric_.layout_cell(p.start), p.moved > 0});
   std::vector<Predecessor> best;
   for (const std::size_t k : select_beam(entries, config_, seen, times))
     best.push_back(std::move(steps[k]));
@@ -107,20 +109,20 @@ std::vector<int> BeamSearch::plan(const Predecessor& step) const {
   return actions;
 }
 
-/// Moves the objects of `poses` that are near their start poses into a random start (placed()).
-/// Returns `poses` unchanged if the result is not legal.
+/// Moves the objects of `poses` that are near their start poses into a random start
+/// (snapped_to_start()). Returns `poses` unchanged if the result is not legal.
 Poses BeamSearch::with_drawn_start(const Poses& poses) {
   constexpr double kAround = 0.25;  // largest random displacement of an object [m]
   const double around = std::min(task_.start_jitter, kAround);
   const std::optional<Poses> start = jittered(task_, target_, around, rng_);
-  const Poses at_start = placed(task_, metric_, poses, target_, start.value_or(target_));
+  const Poses at_start = snapped_to_start(task_, metric_, poses, target_, start.value_or(target_));
   return legal_state(task_, at_start) ? at_start : poses;
 }
 
 /// Replaces the start of each step by with_drawn_start() and simulates the plans from there. If no
 /// plan succeeds, restores the starts and simulates the plans from these. That can happen if a goal
 /// region contains the start position of an object. Returns as carry_out().
-std::vector<std::optional<std::vector<Transition>>> BeamSearch::follow(
+std::vector<std::optional<std::vector<Transition>>> BeamSearch::simulate_plans(
     std::vector<Predecessor>& steps, const ReplayBatch& replay) {
   std::vector<Poses> own;
   std::vector<Plan> plans;
@@ -134,11 +136,11 @@ std::vector<std::optional<std::vector<Transition>>> BeamSearch::follow(
   return carry_out(task_, plans, replay);
 }
 
-std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed,
-                                         const ReplayBatch& replay) {
+std::vector<Transition> BeamSearch::verify_and_select(std::vector<Predecessor> replayed,
+                                                      const ReplayBatch& replay) {
   std::unordered_set<std::uint64_t> seen = seen_;
   std::vector<Predecessor> tried = best_of(std::move(replayed), config_.verified_plans, seen);
-  auto outcomes = follow(tried, replay);
+  auto outcomes = simulate_plans(tried, replay);
   std::vector<Predecessor> good;
   std::vector<Transition> steps;
   for (std::size_t k = 0; k < tried.size(); ++k) {
@@ -146,7 +148,7 @@ std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed,
     std::vector<Transition>& followed = *outcomes[k];
     Predecessor& p = tried[k];
     p.depth = static_cast<int>(followed.size());
-    p.left = distance_left(p.start);
+    p.start_distance = distance_to_target(p.start);
     if (!followed.empty()) p.moved = objects_moved(p.start, followed.front().next);
     good.push_back(std::move(p));
     if (!followed.empty() && rng_.uniform(0.0, 1.0) >= config_.whole_plan_share) followed.resize(1);
@@ -161,13 +163,13 @@ std::vector<Transition> BeamSearch::keep(std::vector<Predecessor> replayed,
   return steps;
 }
 
-double BeamSearch::distance_left(const Poses& poses) const {
+double BeamSearch::distance_to_target(const Poses& poses) const {
   return start_distance(task_, metric_, poses, target_);
 }
 
-double BeamSearch::best() const {
+double BeamSearch::min_start_distance() const {
   double best = std::numeric_limits<double>::infinity();
-  for (const int k : beam_) best = std::min(best, distance_left(node(k).poses));
+  for (const int k : beam_) best = std::min(best, distance_to_target(node(k).poses));
   return best;
 }
 

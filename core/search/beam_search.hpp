@@ -31,17 +31,18 @@ class BeamSearch {
 
   /// Makes the first beam of goal states near the target (goal_roots()). Lets each state come to
   /// rest by `replay`. Drops states in which the goal then does not hold.
-  void plant(const ReplayBatch& replay, SearchStats& stats);
+  void seed_roots(const ReplayBatch& replay, SearchStats& stats);
 
   /// Grows a layer of the tree and returns the transitions to store:
   ///
   ///  1. Solve for the predecessors of every node of the beam under every action.
-  ///  2. Replay the best of them in the simulator. Drop those with `miss` above
+  ///  2. Replay the best of them in the simulator. Drop those with `max_error` above
   ///     config.gap_tolerance.
   ///  3. Select the best config.verified_plans · config.breadth of the rest. A plan is such a step
   ///     followed by the actions of its parent node.
   ///  4. Simulate each plan. Objects that are near their start poses first move into a random start
-  ///     (placed()). If no plan then succeeds, simulate all plans from the unchanged states.
+  ///     (snapped_to_start()). If no plan then succeeds, simulate all plans from the unchanged
+  ///     states.
   ///  5. Return the first transition of each plan that succeeds. For the share
   ///     config.whole_plan_share of these plans, return all transitions.
   ///  6. Make the best states from which a plan succeeds the next beam.
@@ -51,7 +52,7 @@ class BeamSearch {
                                SearchStats& stats);
 
   /// Returns the smallest start_distance() of the beam's nodes; infinity if the beam is empty.
-  double best() const;
+  double min_start_distance() const;
 
   std::span<const Node> nodes() const { return nodes_; }
   std::span<const int> beam() const { return beam_; }  // indices into nodes()
@@ -59,14 +60,15 @@ class BeamSearch {
  private:
   std::vector<Predecessor> reverse_layer(const SolveBatch& solve, SearchStats& stats) const;
   std::vector<Predecessor> best_to_replay(std::vector<Predecessor> all) const;
-  std::vector<Transition> keep(std::vector<Predecessor> replayed, const ReplayBatch& replay);
+  std::vector<Transition> verify_and_select(std::vector<Predecessor> replayed,
+                                            const ReplayBatch& replay);
   std::vector<Predecessor> best_of(std::vector<Predecessor> steps, int times,
                                    std::unordered_set<std::uint64_t>& seen);
   std::vector<int> plan(const Predecessor& step) const;
-  std::vector<std::optional<std::vector<Transition>>> follow(std::vector<Predecessor>& steps,
-                                                             const ReplayBatch& replay);
+  std::vector<std::optional<std::vector<Transition>>> simulate_plans(
+      std::vector<Predecessor>& steps, const ReplayBatch& replay);
   Poses with_drawn_start(const Poses& poses);
-  double distance_left(const Poses& poses) const;
+  double distance_to_target(const Poses& poses) const;
   const Node& node(int k) const { return nodes_[static_cast<std::size_t>(k)]; }
 
   const tasks::Task& task_;

@@ -14,15 +14,15 @@ double share(long part, long whole) {
 }  // namespace
 
 Coverage::Coverage(const tasks::Task& task)
-    : task_(task), metric_(task.scene), movers_(movers_of(task.scene)) {}
+    : task_(task), metric_(task.scene), group_roots_(moving_group_roots(task.scene)) {}
 
 /// Returns whether `t` moves two objects that are not connected by joints.
 bool Coverage::moves_several(const Transition& t) const {
   std::size_t first = 0;
   for (std::size_t k = 1; k < t.poses.size(); ++k) {
     if ((t.poses[k].position() - t.next[k].position()).norm() <= kMoved) continue;
-    if (first != 0 && movers_[k] != first) return true;
-    first = movers_[k];
+    if (first != 0 && group_roots_[k] != first) return true;
+    first = group_roots_[k];
   }
   return false;
 }

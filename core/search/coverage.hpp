@@ -32,7 +32,7 @@ class Coverage {
 
   const tasks::Task& task_;
   StateMetric metric_;
-  std::vector<std::size_t> movers_;  // movers_of() the scene
+  std::vector<std::size_t> group_roots_;  // moving_group_roots() of the scene
   long transitions_ = 0, contacts_ = 0, multi_body_ = 0, start_region_ = 0;
   std::array<long, kSources.size()> by_source_{};
   std::unordered_set<std::uint64_t> states_;  // key_of() of each

@@ -73,7 +73,7 @@ std::vector<Transition> plan_forward(const tasks::Task& task, const SearchConfig
 }
 
 void search_forward(Generation& run, int number) {
-  Rng rng = run.stream(number);
+  Rng rng = run.attempt_rng(number);
   ForwardSearch search(run.task, run.config, run.draw_start(rng));
   const ReplayBatch known = [&search](std::span<const ReplayJob> pushes) {
     std::vector<ReplayResult> results;

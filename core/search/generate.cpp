@@ -17,17 +17,17 @@ namespace {
 /// config.depth layers. Ends earlier if config.patience layers in a row come no nearer to the
 /// start.
 void grow_tree(Generation& run, int number) {
-  Rng rng = run.stream(number);
+  Rng rng = run.attempt_rng(number);
   const Poses target = run.draw_start(rng);
   BeamSearch search(run.task, run.config, target, rng.word());
-  search.plant(run.replay, run.stats);
-  double best = search.best();
+  search.seed_roots(run.replay, run.stats);
+  double best = search.min_start_distance();
   int patience = run.config.patience;
   for (int layer = 1; layer <= run.config.depth && patience > 0; ++layer) {
     if (search.beam().empty() || run.data.full() || run.cancelled()) break;
     run.data.store(search.grow(run.seams.solve, run.replay, run.stats), run.replay);
     run.show("tree " + std::to_string(number + 1), layer, run.config.depth);
-    const double nearest = search.best();
+    const double nearest = search.min_start_distance();
     patience = nearest < best ? run.config.patience : patience - 1;
     best = std::min(best, nearest);
   }

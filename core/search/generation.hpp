@@ -26,7 +26,9 @@ struct Generation {
 
   /// Returns the random number generator of attempt `number`. Training starts never use its
   /// numbers.
-  Rng stream(int number) const { return Rng(Rng(seed).word(), static_cast<std::uint64_t>(number)); }
+  Rng attempt_rng(int number) const {
+    return Rng(Rng(seed).word(), static_cast<std::uint64_t>(number));
+  }
 
   /// Draws a random start state. Each object moves by up to ± task.start_jitter in x and y. With
   /// config.randomise the limit is task.randomisation, if that is larger.

@@ -21,7 +21,7 @@ bool look_the_same(const Scene& scene, std::size_t i, std::size_t j) {
 
 }  // namespace
 
-Poses relabelled(const tasks::Task& task, const Poses& poses, const Poses& target) {
+Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Poses& target) {
   const StateMetric metric(task.scene);
   Poses best = poses;
   double least = metric.layout_distance(best, target);
@@ -53,7 +53,7 @@ std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& confi
     failures = goal ? 0 : failures + 1;
     if (failures == kMaxFailures) break;
     if (!goal) continue;
-    Poses root = relabelled(task, *goal, target);
+    Poses root = with_swapped_twins(task, *goal, target);
     if (!seen.insert(metric.cell(root)).second) continue;
     drawn.emplace_back(start_distance(task, metric, root, target), std::move(root));
   }

@@ -12,12 +12,12 @@ namespace rtg::search {
 /// Swaps the poses of interchangeable bodies until no swap reduces the layout_distance() to
 /// `target`. Returns the result. Bodies are interchangeable if they can move, have no joint, and
 /// have equal kind, shape, density and friction. Such swaps do not change whether a goal holds.
-Poses relabelled(const tasks::Task& task, const Poses& poses, const Poses& target);
+Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Poses& target);
 
 /// Draws goal states and returns up to config.breadth distinct ones, the nearest to `target` by
 /// start_distance(). Makes at most config.breadth · config.root_draws draws by sample_goal() and
-/// applies relabelled() to each state. The states are not yet at rest. Counts failed draws in
-/// `stats`.
+/// applies with_swapped_twins() to each state. The states are not yet at rest. Counts failed draws
+/// in `stats`.
 std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& config,
                               const Poses& target, Rng& rng, SearchStats& stats);
 

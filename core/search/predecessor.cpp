@@ -39,7 +39,7 @@ std::vector<Predecessor> proposals(const tasks::Task& task,
                                    SearchStats& stats) {
   std::vector<Predecessor> out;
   for (std::size_t k = 0; k < jobs.size(); ++k) {
-    for (const Poses& exact : answers[k].starts) {
+    for (const Poses& exact : answers[k].predecessors) {
       Poses start = float_rounded(exact);
       if (!legal_state(task, start)) {
         ++stats.illegal_starts;
@@ -61,9 +61,10 @@ std::vector<Predecessor> replay_predecessors(std::vector<Predecessor> predecesso
   for (std::size_t k = 0; k < results.size(); ++k) {
     if (!results[k].ok) continue;
     Predecessor& p = predecessors[k];
-    p.gap = replay_gap(p.end, results[k].end);
+    p.mean_error = replay_gap(p.end, results[k].end);
     for (std::size_t body = 0; body < p.end.size(); ++body)
-      p.miss = std::max(p.miss, (p.end[body].position() - results[k].end[body].position()).norm());
+      p.max_error =
+          std::max(p.max_error, (p.end[body].position() - results[k].end[body].position()).norm());
     p.end = results[k].end;
     p.moved = objects_moved(p.start, p.end);
     out.push_back(std::move(p));

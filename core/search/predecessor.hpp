@@ -17,11 +17,11 @@ struct Predecessor {
   int action = 0;
   Poses start;
   Poses end;
-  int moved = 0;      // number of objects that the push moves, objects_moved()
-  double gap = 0.0;   // mean replay error over the bodies, replay_gap() [m]
-  double miss = 0.0;  // largest replay error of a body [m]
-  double left = 0.0;  // start_distance() of `start`, set by the search
-  int depth = 0;      // actions until success, set by the search
+  int moved = 0;                // number of objects that the push moves, objects_moved()
+  double mean_error = 0.0;      // mean replay error over the bodies, replay_gap() [m]
+  double max_error = 0.0;       // largest replay error of a body [m]
+  double start_distance = 0.0;  // start_distance() of `start`, set by the search
+  int depth = 0;                // actions until success, set by the search
 };
 
 /// Displacement above which an object counts as moved [m].
@@ -49,8 +49,9 @@ std::vector<Predecessor> proposals(const tasks::Task& task,
                                    std::span<const reverse::ReverseResult> answers,
                                    SearchStats& stats);
 
-/// Simulates the push of each predecessor. Sets `end` to the true outcome, and `moved`, `gap` and
-/// `miss` accordingly. Leaves out predecessors whose push the simulator rejects.
+/// Simulates the push of each predecessor. Sets `end` to the true outcome, and `moved`,
+/// `mean_error` and `max_error` accordingly. Leaves out predecessors whose push the simulator
+/// rejects.
 std::vector<Predecessor> replay_predecessors(std::vector<Predecessor> predecessors,
                                              const ReplayBatch& replay);
 

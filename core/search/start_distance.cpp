@@ -10,7 +10,7 @@
 namespace rtg::search {
 namespace {
 
-constexpr double kWalk = 2.0;      // approximate pushes to get from one object to the next
+constexpr double kPushesBetweenObjects = 2.0;  // approximate
 constexpr double kInPlace = 0.4;   // largest distance of an object in place from its place [m]
 constexpr double kPullCone = 0.5;  // largest angle at the object between robot and pull [rad]
 constexpr double kReach = 0.15;    // largest gap over which the robot can pull an object [m]
@@ -39,7 +39,8 @@ bool can_pull(const tasks::Task& task, const Pose& robot, const Pose& object, st
 /// Estimates the number of pushes until the robot can pull `body` along `way`. Returns 0, 1, or the
 /// distance in strides. The last is at least 2, because two pushes reach any distance of up to two
 /// strides.
-double walk(const tasks::Task& task, const Poses& poses, std::size_t body, const Vector2d& way) {
+double approach_pushes(const tasks::Task& task, const Poses& poses, std::size_t body,
+                       const Vector2d& way) {
   const Pose& robot = poses[0];
   const Pose& object = poses[body];
   if (can_pull(task, robot, object, body, way)) return 0.0;
@@ -65,12 +66,13 @@ bool in_place(const StateMetric& metric, const StateMetric::Object& o, const Pos
 
 /// Estimates the number of pushes until the robot can pull an object that is not in place. If all
 /// are in place, estimates the number until the robot is in its own place.
-double next_walk(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
-                 const Poses& target) {
+double next_approach_pushes(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
+                            const Poses& target) {
   double best = std::numeric_limits<double>::infinity();
   for (const auto& o : metric.objects()) {
     const Vector2d way = target[o.body].position() - poses[o.body].position();
-    if (!in_place(metric, o, poses, target)) best = std::min(best, walk(task, poses, o.body, way));
+    if (!in_place(metric, o, poses, target))
+      best = std::min(best, approach_pushes(task, poses, o.body, way));
   }
   if (std::isfinite(best)) return best;
   const double home = (target[0].position() - poses[0].position()).norm();
@@ -83,10 +85,10 @@ double next_walk(const tasks::Task& task, const StateMetric& metric, const Poses
 
 double start_distance(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
                       const Poses& target) {
-  double sum = next_walk(task, metric, poses, target);
+  double sum = next_approach_pushes(task, metric, poses, target);
   for (const auto& o : metric.objects())
     if (!in_place(metric, o, poses, target))
-      sum += kWalk + metric.distance(o, poses, target) / task.push.stride;
+      sum += kPushesBetweenObjects + metric.distance(o, poses, target) / task.push.stride;
   return sum;
 }
 
@@ -95,16 +97,16 @@ bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target
                              [&](const auto& o) { return in_place(metric, o, poses, target); });
 }
 
-Poses placed(const tasks::Task& task, const StateMetric& metric, Poses poses, const Poses& target,
-             const Poses& start) {
+Poses snapped_to_start(const tasks::Task& task, const StateMetric& metric, Poses poses,
+                       const Poses& target, const Poses& start) {
   const double from_home = (poses[0].position() - target[0].position()).norm();
   if (from_home <= kInPlace && in_place(metric, poses, target)) poses[0] = start[0];
-  const std::vector<std::size_t> movers = movers_of(task.scene);
-  std::vector<bool> stays(poses.size(), false);  // by mover
+  const std::vector<std::size_t> group_roots = moving_group_roots(task.scene);
+  std::vector<bool> stays(poses.size(), false);  // by group root
   for (const auto& o : metric.objects())
-    if (!in_place(metric, o, poses, target)) stays[movers[o.body]] = true;
+    if (!in_place(metric, o, poses, target)) stays[group_roots[o.body]] = true;
   for (const auto& o : metric.objects())
-    if (!stays[movers[o.body]]) poses[o.body] = start[o.body];
+    if (!stays[group_roots[o.body]]) poses[o.body] = start[o.body];
   return poses;
 }
 

@@ -7,18 +7,19 @@ namespace rtg::search {
 
 /// Estimates the number of pushes between `poses` and the start state `target`:
 ///
-///   Σ_objects out of place [(|x - x*| + r|θ - θ*|) / stride + 2] + walk
+///   Σ_objects out of place [(|x - x*| + r|θ - θ*|) / stride + 2] + approach_pushes
 ///
 /// The place of an object is its pose x*, θ* in `target`; r is that of StateMetric. The object is
 /// in place if |x - x*| ≤ 0.4 m or, with a joint, if |x - x*| + r|θ - θ*| ≤ 0.4 m. The 2 is about
 /// the number of pushes from one object to the next.
 ///
-/// `walk` is the number of pushes until the robot can pull an object that is out of place. (Seen
-/// backwards in time, a push pulls.) The robot can pull an object if it touches the object on the
-/// side towards the place. If all objects are in place, `walk` is the number of pushes until the
-/// robot is within 0.4 m of its own place. `walk` is 0, 1, or the distance in strides, at least 2.
+/// `approach_pushes` is the number of pushes until the robot can pull an object that is out of
+/// place. (Seen backwards in time, a push pulls.) The robot can pull an object if it touches the
+/// object on the side towards the place. If all objects are in place, `approach_pushes` is the
+/// number of pushes until the robot is within 0.4 m of its own place. `approach_pushes` is 0, 1, or
+/// the distance in strides, at least 2.
 ///
-/// At distance 0, placed() returns the whole state `start`.
+/// At distance 0, snapped_to_start() returns the whole state `start`.
 double start_distance(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
                       const Poses& target);
 
@@ -29,7 +30,7 @@ bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target
 /// Moves each object that is in place (start_distance()) to its pose in `start`. Returns the
 /// result. `start` is a start near `target`. Bodies connected by joints move only if all of them
 /// are in place. The robot moves only if it and all objects are in place.
-Poses placed(const tasks::Task& task, const StateMetric& metric, Poses poses, const Poses& target,
-             const Poses& start);
+Poses snapped_to_start(const tasks::Task& task, const StateMetric& metric, Poses poses,
+                       const Poses& target, const Poses& start);
 
 }  // namespace rtg::search

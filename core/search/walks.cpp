@@ -20,7 +20,7 @@ int heading(const Generation& run, const Poses& state, Rng& rng) {
 }  // namespace
 
 void walk(Generation& run, int number) {
-  Rng rng = run.stream(number);
+  Rng rng = run.attempt_rng(number);
   const bool from_goals = run.config.generator == Generator::kScatter;
   std::vector<Poses> states;
   for (int k = 0; k < kWave; ++k)

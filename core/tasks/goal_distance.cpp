@@ -6,13 +6,13 @@
 namespace rtg::tasks {
 namespace {
 
-constexpr double kWay = 0.2;  // w of goal_distance()
+constexpr double kRobotWeight = 0.2;  // w of goal_distance()
 
 /// Accumulates the two parts of goal_distance(): the sum and the minimum.
 struct Distance {
   const Poses& poses;
   double violation = 0.0;
-  double way = std::numeric_limits<double>::infinity();
+  double least_robot_distance = std::numeric_limits<double>::infinity();
 
   /// Adds the violation of a condition whose point or angle lies `off` outside its region (≤ 0:
   /// inside).
@@ -20,8 +20,10 @@ struct Distance {
 
   /// Takes the distance from the robot to `body` into the minimum, if a condition on `body` does
   /// not hold (`off` > 0).
-  void reach(std::size_t body, double off) {
-    if (off > 0.0) way = std::min(way, (poses[body].position() - poses[0].position()).norm());
+  void note_robot_distance(std::size_t body, double off) {
+    if (off > 0.0)
+      least_robot_distance =
+          std::min(least_robot_distance, (poses[body].position() - poses[0].position()).norm());
   }
 };
 
@@ -29,21 +31,21 @@ void add(Distance& d, const GoalTerm& term, const Scene& scene) {
   if (term.subject == GoalTerm::Subject::kJoint) {
     for (const Joint& joint : scene.joints) {
       if (!concerns(term, scene, joint)) continue;
-      const double off = outside(term, joint_angle(joint, d.poses));
+      const double off = violation(term, joint_angle(joint, d.poses));
       d.violate(off);
-      d.reach(static_cast<std::size_t>(joint.parent), off);
-      d.reach(static_cast<std::size_t>(joint.child), off);
+      d.note_robot_distance(static_cast<std::size_t>(joint.parent), off);
+      d.note_robot_distance(static_cast<std::size_t>(joint.child), off);
     }
     return;
   }
   const bool together = term.subject == GoalTerm::Subject::kCentroid;
-  const double of_mean = together ? outside(term, centroid_of(term, scene, d.poses)) : 0.0;
+  const double of_mean = together ? violation(term, centroid_of(term, scene, d.poses)) : 0.0;
   d.violate(of_mean);
   for (std::size_t k = 1; k < d.poses.size(); ++k) {
     if (!concerns(term, scene, k)) continue;
-    const double off = together ? of_mean : outside(term, d.poses[k].position());
+    const double off = together ? of_mean : violation(term, d.poses[k].position());
     if (!together) d.violate(off);
-    d.reach(k, off);
+    d.note_robot_distance(k, off);
   }
 }
 
@@ -52,7 +54,7 @@ void add(Distance& d, const GoalTerm& term, const Scene& scene) {
 double goal_distance(const Task& task, const Poses& poses) {
   Distance d{poses};
   for (const GoalTerm& term : task.goal) add(d, term, task.scene);
-  return d.violation > 0.0 ? d.violation + kWay * d.way : 0.0;
+  return d.violation > 0.0 ? d.violation + kRobotWeight * d.least_robot_distance : 0.0;
 }
 
 }  // namespace rtg::tasks

@@ -66,22 +66,22 @@ double normal_angle(const Polygon& shape, std::size_t k) {
 /// Proposes a pose of body `i` beside a random other body. Body `i` slides towards that body from a
 /// random side, face to face or at a random angle with equal odds. Returns nothing if that body is
 /// not placed yet or if slide() fails.
-std::optional<Pose> beside(const Task& task, const Layout& layout, std::size_t i, Rng& rng) {
+std::optional<Pose> beside(const Task& task, const PartialState& state, std::size_t i, Rng& rng) {
   const auto j = static_cast<std::size_t>(1 + rng.below(static_cast<int>(task.scene.size()) - 1));
-  if (j == i || !layout.placed[j]) return std::nullopt;
+  if (j == i || !state.placed[j]) return std::nullopt;
   const Polygon &mine = task.scene.bodies[i].shape, &other = task.scene.bodies[j].shape;
   double side = rng.uniform(0.0, kTwoPi), theta = rng.uniform(-std::numbers::pi, std::numbers::pi);
   if (rng.uniform(0.0, 1.0) < 0.5) {
     const auto theirs = static_cast<std::size_t>(rng.below(static_cast<int>(other.size())));
     const auto ours = static_cast<std::size_t>(rng.below(static_cast<int>(mine.size())));
-    side = layout.poses[j].theta + normal_angle(other, theirs);
+    side = state.poses[j].theta + normal_angle(other, theirs);
     theta = std::remainder(side + std::numbers::pi - normal_angle(mine, ours), kTwoPi);
   }
   const double reach = bounding_radius(mine) + bounding_radius(other) + kBesideGap;
   const double shift = rng.uniform(-0.5, 0.5) * bounding_radius(other);
   const Vector2d from =
-      layout.poses[j].position() + reach * unit(side) + shift * unit(side + kTwoPi / 4.0);
-  return slide(task, layout, i,
+      state.poses[j].position() + reach * unit(side) + shift * unit(side + kTwoPi / 4.0);
+  return slide(task, state, i,
                {.from = {from.x(), from.y(), theta},
                 .heading = -unit(side),
                 .gap = rng.uniform(kClearance, kBesideGap),
@@ -104,19 +104,20 @@ void move(Group& group, const Vector2d& by) {
 
 /// Returns whether the position of `group` decides if `term`, a kCentroid term, holds. It does if
 /// `term` applies to a body of the group and all its other bodies are placed already.
-bool decides(const Group& group, const GoalTerm& term, const Task& task, const Layout& layout) {
+bool determines_mean(const Group& group, const GoalTerm& term, const Task& task,
+                     const PartialState& state) {
   const auto concerned = [&](std::size_t i) { return concerns(term, task.scene, i); };
   if (term.subject != GoalTerm::Subject::kCentroid) return false;
   for (std::size_t i = 1; i < task.scene.size(); ++i)
-    if (concerned(i) && !layout.placed[i] && !std::ranges::count(group.members, i)) return false;
+    if (concerned(i) && !state.placed[i] && !std::ranges::count(group.members, i)) return false;
   return std::ranges::any_of(group.members, concerned);
 }
 
-/// For each term that the group decides (decides()), moves the group so that the mean centre lies
-/// in the region.
-void aim_at_centroids(const Task& task, const Layout& layout, Group& group, Rng& rng) {
+/// For each term whose mean the group determines (determines_mean()), moves the group so that the
+/// mean centre lies in the region.
+void aim_at_centroids(const Task& task, const PartialState& state, Group& group, Rng& rng) {
   for (const GoalTerm& term : task.goal) {
-    if (!decides(group, term, task, layout)) continue;
+    if (!determines_mean(group, term, task, state)) continue;
     const auto concerned = [&](std::size_t i) { return concerns(term, task.scene, i); };
     std::size_t all = 0;
     for (std::size_t i = 1; i < task.scene.size(); ++i) all += concerned(i);
@@ -127,11 +128,11 @@ void aim_at_centroids(const Task& task, const Layout& layout, Group& group, Rng&
   }
 }
 
-/// Adds the bodies of `group` to `layout` if their poses are legal; returns whether they are. Each
+/// Adds the bodies of `group` to `state` if their poses are legal; returns whether they are. Each
 /// movable body must lie in its goal regions and in the arena. It must be clear of the bodies
 /// placed before and of the rest of the group.
-bool stand(const Task& task, Layout& layout, const Group& group) {
-  Layout trial = layout;
+bool try_add(const Task& task, PartialState& state, const Group& group) {
+  PartialState trial = state;
   for (const std::size_t i : group.members) {
     const Pose& pose = group.poses[i];
     if (!task.scene.bodies[i].fixed &&
@@ -141,23 +142,23 @@ bool stand(const Task& task, Layout& layout, const Group& group) {
     trial.poses[i] = pose;
     trial.placed[i] = true;
   }
-  layout = std::move(trial);
+  state = std::move(trial);
   return true;
 }
 
-bool place_object(const Task& task, Layout& layout, std::size_t i, Rng& rng) {
+bool place_object(const Task& task, PartialState& state, std::size_t i, Rng& rng) {
   for (int k = 0; k < kProposals; ++k) {
-    Group group{i, {i}, layout.poses};
+    Group group{i, {i}, state.poses};
     if (rng.uniform(0.0, 1.0) < kBesideShare) {
-      const std::optional<Pose> pose = beside(task, layout, i, rng);
+      const std::optional<Pose> pose = beside(task, state, i, rng);
       if (!pose) continue;
       group.poses[i] = *pose;
     } else {
       const Vector2d x = point_in_goal(task, i, rng);
       group.poses[i] = {x.x(), x.y(), rng.uniform(-std::numbers::pi, std::numbers::pi)};
-      aim_at_centroids(task, layout, group, rng);
+      aim_at_centroids(task, state, group, rng);
     }
-    if (stand(task, layout, group)) return true;
+    if (try_add(task, state, group)) return true;
   }
   return false;
 }
@@ -178,7 +179,7 @@ std::optional<std::pair<double, double>> angles_in_goal(const Task& task, const 
 
 /// Returns the member by whose centre place_tree() positions the group: the first that has a goal
 /// region of its own, otherwise the root.
-std::size_t aimed_member(const Task& task, const Group& group) {
+std::size_t positioned_member(const Task& task, const Group& group) {
   for (const std::size_t i : group.members)
     for (const GoalTerm& term : task.goal)
       if (term.subject == GoalTerm::Subject::kEvery && concerns(term, task.scene, i)) return i;
@@ -187,7 +188,7 @@ std::size_t aimed_member(const Task& task, const Group& group) {
 
 /// Gives each joint of the group a random angle that its limits and the goal allow. Returns false
 /// if a joint has no such angle.
-bool turn(const Task& task, Group& group, Rng& rng) {
+bool draw_joint_angles(const Task& task, Group& group, Rng& rng) {
   for (const std::size_t n : root_first(task.scene)) {
     const Joint& joint = task.scene.joints[n];
     const auto child = static_cast<std::size_t>(joint.child);
@@ -203,84 +204,84 @@ bool turn(const Task& task, Group& group, Rng& rng) {
 
 /// Places a tree of jointed bodies: draws the joint angles, then moves the tree into its goal
 /// regions. A fixed root stays. Returns whether one of kProposals tries succeeded.
-bool place_tree(const Task& task, Layout& layout, const Group& tree, Rng& rng) {
+bool place_tree(const Task& task, PartialState& state, const Group& tree, Rng& rng) {
   for (int k = 0; k < kProposals; ++k) {
     Group group = tree;
     const bool fixed = task.scene.bodies[group.root].fixed;
     if (!fixed) group.poses[group.root].theta = rng.uniform(-std::numbers::pi, std::numbers::pi);
-    if (!turn(task, group, rng)) return false;
+    if (!draw_joint_angles(task, group, rng)) return false;
     if (!fixed) {
-      const std::size_t aimed = aimed_member(task, group);
-      move(group, point_in_goal(task, aimed, rng) - group.poses[aimed].position());
-      aim_at_centroids(task, layout, group, rng);
+      const std::size_t positioned = positioned_member(task, group);
+      move(group, point_in_goal(task, positioned, rng) - group.poses[positioned].position());
+      aim_at_centroids(task, state, group, rng);
     }
-    if (stand(task, layout, group)) return true;
+    if (try_add(task, state, group)) return true;
   }
   return false;
 }
 
 /// Draws a pose of the robot as after a push: it slides along a random heading towards a random
 /// body until it meets a body. Returns nothing if it meets none.
-std::optional<Pose> robot_behind(const Task& task, const Layout& layout, Rng& rng) {
+std::optional<Pose> robot_behind(const Task& task, const PartialState& state, Rng& rng) {
   const auto j = static_cast<std::size_t>(1 + rng.below(static_cast<int>(task.scene.size()) - 1));
   const Vector2d d = direction(rng.below(task.push.headings), task.push);
   const double span =
       bounding_radius(task.scene.bodies[0].shape) + bounding_radius(task.scene.bodies[j].shape);
-  const Vector2d from = layout.poses[j].position() - (span + task.push.stride) * d +
+  const Vector2d from = state.poses[j].position() - (span + task.push.stride) * d +
                         rng.uniform(-0.8, 0.8) * span * Vector2d(-d.y(), d.x());
-  return slide(task, layout, 0,
+  return slide(task, state, 0,
                {.from = {from.x(), from.y(), task.start[0].theta},
                 .heading = d,
                 .gap = kClearance + rng.uniform(0.0, kBehindGap),
                 .range = 2.0 * (span + task.push.stride)});
 }
 
-bool place_robot(const Task& task, Layout& layout, Rng& rng) {
+bool place_robot(const Task& task, PartialState& state, Rng& rng) {
   const bool behind = rng.uniform(0.0, 1.0) < kBehindShare;
   for (int k = 0; k < kProposals; ++k) {
     std::optional<Pose> pose;
     if (behind) {
-      pose = robot_behind(task, layout, rng);
+      pose = robot_behind(task, state, rng);
     } else {
       const auto j =
           static_cast<std::size_t>(1 + rng.below(static_cast<int>(task.scene.size()) - 1));
-      pose = Pose{layout.poses[j].x + rng.uniform(-kFreeRange, kFreeRange),
-                  layout.poses[j].y + rng.uniform(-kFreeRange, kFreeRange), task.start[0].theta};
+      pose = Pose{state.poses[j].x + rng.uniform(-kFreeRange, kFreeRange),
+                  state.poses[j].y + rng.uniform(-kFreeRange, kFreeRange), task.start[0].theta};
     }
     if (!pose || !in_arena(*pose, task.push)) continue;
-    if (!is_clear(task, layout, 0, *pose)) continue;
-    layout.poses[0] = *pose;
+    if (!is_clear(task, state, 0, *pose)) continue;
+    state.poses[0] = *pose;
     return true;
   }
   return false;
 }
 
-bool place_objects(const Task& task, Layout& layout, Rng& rng) {
+bool place_objects(const Task& task, PartialState& state, Rng& rng) {
   const std::vector<std::size_t> roots = roots_of(task.scene);
   for (std::size_t i = 1; i < task.scene.size(); ++i) {
     if (roots[i] != i) continue;
-    Group group{i, {}, layout.poses};
+    Group group{i, {}, state.poses};
     for (std::size_t j = 1; j < task.scene.size(); ++j)
       if (roots[j] == i) group.members.push_back(j);
     const bool alone = group.members.size() == 1;
     if (alone && task.scene.bodies[i].fixed) continue;
-    if (alone ? !place_object(task, layout, i, rng) : !place_tree(task, layout, group, rng))
+    if (alone ? !place_object(task, state, i, rng) : !place_tree(task, state, group, rng))
       return false;
   }
   return true;
 }
 
 std::optional<Poses> attempt(const Task& task, Rng& rng) {
-  Layout layout{task.start, std::vector<bool>(task.scene.size(), false)};
-  for (std::size_t i = 1; i < task.scene.size(); ++i) layout.placed[i] = task.scene.bodies[i].fixed;
-  if (!place_objects(task, layout, rng)) return std::nullopt;
-  if (task.scene.size() > 1 && !place_robot(task, layout, rng)) return std::nullopt;
-  for (const GoalTerm& term : task.goal)  // stand() has checked the kEvery terms
+  PartialState state{task.start, std::vector<bool>(task.scene.size(), false)};
+  for (std::size_t i = 1; i < task.scene.size(); ++i) state.placed[i] = task.scene.bodies[i].fixed;
+  if (!place_objects(task, state, rng)) return std::nullopt;
+  if (task.scene.size() > 1 && !place_robot(task, state, rng)) return std::nullopt;
+  for (const GoalTerm& term : task.goal)  // try_add() has checked the kEvery terms
     if (term.subject != GoalTerm::Subject::kEvery &&
-        !holds(term, task.scene, layout.poses, kGoalSpare))
+        !holds(term, task.scene, state.poses, kGoalSpare))
       return std::nullopt;
-  std::transform(layout.poses.begin(), layout.poses.end(), layout.poses.begin(), to_single);
-  return layout.poses;
+  std::transform(state.poses.begin(), state.poses.end(), state.poses.begin(), to_single);
+  return state.poses;
 }
 
 }  // namespace

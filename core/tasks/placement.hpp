@@ -12,14 +12,14 @@ namespace rtg::tasks {
 inline constexpr double kClearance = 0.0215;
 
 /// A state that is being sampled. `poses[i]` is valid once body i is placed, that is `placed[i]`.
-struct Layout {
+struct PartialState {
   Poses poses;
   std::vector<bool> placed;
 };
 
 /// Returns whether body `i` at `pose` keeps kClearance from all placed bodies, except those that a
 /// joint connects with it.
-bool is_clear(const Task& task, const Layout& layout, std::size_t i, const Pose& pose);
+bool is_clear(const Task& task, const PartialState& state, std::size_t i, const Pose& pose);
 
 /// A straight motion of a body from `from` towards the placed bodies.
 struct Approach {
@@ -29,9 +29,9 @@ struct Approach {
   double range = 0.0;  // greatest length of the motion [m]
 };
 
-/// Slides body `i` along `way` until it is `gap` away from a placed body, and returns its pose
+/// Slides body `i` along `approach` until it is `gap` away from a placed body, and returns its pose
 /// there. Returns nothing if it meets no body within `range` or starts closer than `gap` to one.
-std::optional<Pose> slide(const Task& task, const Layout& layout, std::size_t i,
-                          const Approach& way);
+std::optional<Pose> slide(const Task& task, const PartialState& state, std::size_t i,
+                          const Approach& approach);
 
 }  // namespace rtg::tasks

@@ -84,7 +84,7 @@ std::vector<std::size_t> roots_of(const Scene& scene) {
   return first_of(scene, [](std::size_t) { return true; });
 }
 
-std::vector<std::size_t> movers_of(const Scene& scene) {
+std::vector<std::size_t> moving_group_roots(const Scene& scene) {
   return first_of(scene, [&](std::size_t parent) { return !scene.bodies[parent].fixed; });
 }
 

@@ -62,7 +62,7 @@ std::vector<std::size_t> roots_of(const Scene& scene);
 
 /// Returns for each body its root as in roots_of(), except that a child of a fixed body counts as a
 /// root. Bodies with the same result move together.
-std::vector<std::size_t> movers_of(const Scene& scene);
+std::vector<std::size_t> moving_group_roots(const Scene& scene);
 
 /// Returns `poses` with all joints closed. Each child is translated until its pin meets that of the
 /// parent; angles stay.

@@ -43,7 +43,7 @@ T plane_distances(const Planes<T>& planes, const Vec2<T>& x, T* distances) {
 template <class T>
 class SignedDistance {
  public:
-  static_assert(kMaxVertices <= static_cast<std::size_t>(kMostNumbers));
+  static_assert(kMaxVertices <= static_cast<std::size_t>(kMaxExponentials));
 
   /// `distances` and `top` are what plane_distances() writes and returns for x. `alpha` is α.
   SignedDistance(const Planes<T>& planes, double alpha, const T* distances, const T& top)

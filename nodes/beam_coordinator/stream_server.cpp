@@ -23,8 +23,8 @@ bool StreamServer::on_ack(const Ack& ack, bus::Seconds now) {
   consumer.complete = consumer.complete || (sealed_ && ack.cursor == count() && ack.credit == 0);
   std::int64_t budget = limits_.max_nacked;
   for (const RowRange& range : ack.missing) {
-    const std::int64_t begin = std::clamp<std::int64_t>(range.begin, 0, live_);
-    const RowRange known{begin, std::min({range.end, live_, begin + budget})};
+    const std::int64_t begin = std::clamp<std::int64_t>(range.begin, 0, first_unsent_);
+    const RowRange known{begin, std::min({range.end, first_unsent_, begin + budget})};
     if (known.begin >= known.end) continue;
     budget -= known.end - known.begin;
     ask(known);
@@ -64,33 +64,34 @@ bool StreamServer::drained(int consumers, bus::Seconds now) const {
     else if (now - consumer.heard <= limits_.silence)
       return false;
   }
-  return sealed_ && live_ == count() && complete >= consumers;
+  return sealed_ && first_unsent_ == count() && complete >= consumers;
 }
 
 /// Adds `range` to the requested ranges. Merges overlaps, so that a repeated request costs nothing.
 void StreamServer::ask(RowRange range) {
-  auto it = asked_.upper_bound(range.begin);
-  if (it != asked_.begin() && std::prev(it)->second >= range.begin) --it;
-  while (it != asked_.end() && it->first <= range.end) {
+  auto it = requested_.upper_bound(range.begin);
+  if (it != requested_.begin() && std::prev(it)->second >= range.begin) --it;
+  while (it != requested_.end() && it->first <= range.end) {
     range = {std::min(range.begin, it->first), std::max(range.end, it->second)};
-    it = asked_.erase(it);
+    it = requested_.erase(it);
   }
-  asked_[range.begin] = range.end;
+  requested_[range.begin] = range.end;
 }
 
 /// Returns the rows of the next message; rows requested again come first. Returns an empty range if
 /// there is nothing to send.
 RowRange StreamServer::next(bus::Seconds now) {
-  if (!asked_.empty()) {
-    const auto [begin, end] = *asked_.begin();
+  if (!requested_.empty()) {
+    const auto [begin, end] = *requested_.begin();
     const RowRange range{begin, std::min(end, begin + rows_per_message_)};
-    asked_.erase(asked_.begin());
-    if (range.end < end) asked_[range.end] = end;
+    requested_.erase(requested_.begin());
+    if (range.end < end) requested_[range.end] = end;
     resent_ += range.end - range.begin;
     return range;
   }
-  const RowRange range{live_, std::clamp(live_limit(now), live_, live_ + rows_per_message_)};
-  live_ = range.end;
+  const RowRange range{
+      first_unsent_, std::clamp(live_limit(now), first_unsent_, first_unsent_ + rows_per_message_)};
+  first_unsent_ = range.end;
   return range;
 }
 

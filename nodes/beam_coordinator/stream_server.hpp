@@ -62,7 +62,9 @@ class StreamServer {
   long resent() const { return resent_; }  // rows sent again on request
 
   /// Returns whether due() will return more ranges later without new events.
-  bool backlog(bus::Seconds now) const { return !asked_.empty() || live_ < live_limit(now); }
+  bool backlog(bus::Seconds now) const {
+    return !requested_.empty() || first_unsent_ < live_limit(now);
+  }
 
   /// Returns whether the stream is sealed and sent, and its consumers have all of it. All living
   /// consumers must have confirmed that, and at least `consumers` of them in all.
@@ -84,8 +86,8 @@ class StreamServer {
   double row_bytes_;
   std::vector<search::Transition> rows_;
   bool sealed_ = false;
-  std::int64_t live_ = 0;                       // rows below live_ have been sent once
-  std::map<std::int64_t, std::int64_t> asked_;  // requested ranges, begin -> end, disjoint
+  std::int64_t first_unsent_ = 0;                   // rows below first_unsent_ have been sent once
+  std::map<std::int64_t, std::int64_t> requested_;  // requested ranges, begin -> end, disjoint
   std::map<std::int64_t, Consumer> consumers_;
   double tokens_ = 0.0;  // [bytes]
   bus::Seconds refilled_ = 0.0;

@@ -83,11 +83,11 @@ void JobDispatcher::give_up_stuck_workers(bus::Seconds now) {
   }
 }
 
-void JobDispatcher::take_back(JobId id, bool victim) {
+void JobDispatcher::take_back(JobId id, bool worker_lost) {
   Job& job = jobs_.at(id);
   ++reissued_;
-  job.victims += victim;
-  if (job.victims >= limits_.poison) {
+  job.lost_workers += worker_lost;
+  if (job.lost_workers >= limits_.poison) {
     job.state = State::kPoison;
     --open_;
   } else {
@@ -114,7 +114,7 @@ int JobDispatcher::room(const Worker& worker, bool suspect) const {
   if (!worker.stuck.empty()) return 0;
   const int leases = static_cast<int>(worker.leases.size());
   if (suspect) return leases == 0 ? worker.capacity : 0;
-  if (leases == 1 && jobs_.at(*worker.leases.begin()).victims > 0) return 0;
+  if (leases == 1 && jobs_.at(*worker.leases.begin()).lost_workers > 0) return 0;
   return worker.capacity - leases;
 }
 
@@ -129,13 +129,13 @@ void JobDispatcher::hand_out(bus::Seconds now, std::vector<Send>& sends) {
     auto freest = workers_.end();
     int most = 0;
     for (auto it = workers_.begin(); it != workers_.end(); ++it) {
-      const int free = room(it->second, job.victims > 0);
+      const int free = room(it->second, job.lost_workers > 0);
       if (free > most) freest = it, most = free;
     }
     if (freest == workers_.end()) return;
     queue_.pop_front();
     freest->second.leases.insert(id);
-    job = {State::kLeased, freest->first, now, now, job.attempt + 1, job.victims};
+    job = {State::kLeased, freest->first, now, now, job.attempt + 1, job.lost_workers};
     sends.push_back({freest->first, id, job.attempt});
   }
 }

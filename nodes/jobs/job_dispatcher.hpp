@@ -82,7 +82,7 @@ class JobDispatcher {
     State state = State::kNew;
     WorkerId worker = 0;
     bus::Seconds leased = 0.0, sent = 0.0;
-    int attempt = 0, victims = 0;
+    int attempt = 0, lost_workers = 0;
   };
   struct Worker {
     bus::Seconds beat = 0.0;
@@ -95,7 +95,7 @@ class JobDispatcher {
   void leave_out_sleep(bus::Seconds now);
   void drop_silent_workers(bus::Seconds now);
   void give_up_stuck_workers(bus::Seconds now);
-  void take_back(JobId id, bool victim);
+  void take_back(JobId id, bool worker_lost);
   void resend_unheard(bus::Seconds now, std::vector<Send>& sends);
   int room(const Worker& worker, bool suspect) const;
   void hand_out(bus::Seconds now, std::vector<Send>& sends);

@@ -29,13 +29,13 @@ bool has_shape(const Message& message, const TaskShape& shape) {
 }
 
 /// Returns whether the counts of `message` are consistent. A converged solve must have 1 to
-/// kMaxStarts starts, any other solve none. n_poses must match the sum of the starts.
+/// kMaxPredecessors predecessors, any other solve none. n_poses must match the sum of `starts`.
 bool has_starts(const rtg_msgs::reverse_result_t& message, const TaskShape& shape) {
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < message.starts.size(); ++i) {
     const bool converged = message.status[i] == static_cast<int>(reverse::SolveStatus::kConverged);
     if (message.starts[i] < (converged ? 1 : 0) ||
-        message.starts[i] > (converged ? reverse::kMaxStarts : 0))
+        message.starts[i] > (converged ? reverse::kMaxPredecessors : 0))
       return false;
     sum += message.starts[i];
   }
@@ -84,8 +84,8 @@ ReverseService::ResultMessage ReverseService::message(std::span<const Result> re
     out.status.push_back(static_cast<std::int8_t>(r.status));
     out.iterations.push_back(r.iterations);
     out.cpu_s.push_back(r.cpu_s);
-    out.starts.push_back(static_cast<std::int8_t>(r.starts.size()));
-    for (const Poses& start : r.starts) append_poses(start, out.start);
+    out.starts.push_back(static_cast<std::int8_t>(r.predecessors.size()));
+    for (const Poses& start : r.predecessors) append_poses(start, out.start);
   }
   set_counts(out, results.size(), out.start);
   return out;
@@ -115,7 +115,7 @@ std::optional<std::vector<reverse::ReverseResult>> ReverseService::parse(
              {},
              message.cpu_s[i]};
     for (int k = 0; k < message.starts[i]; ++k)
-      r.starts.push_back(poses_at(message.start, at++, shape.bodies));
+      r.predecessors.push_back(poses_at(message.start, at++, shape.bodies));
     results.push_back(std::move(r));
   }
   return results;

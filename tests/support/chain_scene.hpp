@@ -69,8 +69,8 @@ inline VectorXd closed(const energy::StepEnergy& energy, const VectorXd& p) {
 }
 
 /// J y of a motion of the coordinates at p.
-inline VectorXd spread(const energy::StepEnergy& energy, const VectorXd& p, VectorXd y) {
-  energy.scene().articulation().spread(energy::placed(p), y.data());
+inline VectorXd apply_jacobian(const energy::StepEnergy& energy, const VectorXd& p, VectorXd y) {
+  energy.scene().articulation().apply_jacobian(energy::placed(p), y.data());
   return y;
 }
 

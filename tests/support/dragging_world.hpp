@@ -57,7 +57,7 @@ struct DraggingWorld {
     const std::size_t object = dragged(job.action);
     if (object == 0) return {reverse::SolveStatus::kConverged, 1, {back}};
     reverse::ReverseResult out{reverse::SolveStatus::kConverged, 1};
-    for (const double drag : drags) out.starts.push_back(moved(back, object, -drag * d));
+    for (const double drag : drags) out.predecessors.push_back(moved(back, object, -drag * d));
     return out;
   }
 

@@ -16,7 +16,7 @@ inline reverse::Iterate moved(const reverse::ReverseProblem& problem, reverse::I
     x.controls[k] += t * d.controls[k];
     x.multipliers[k] += t * d.multipliers[k];
     x.p[k] = closed(problem.energy, x.p[k]);
-    x.multipliers[k] = spread(problem.energy, x.p[k], x.multipliers[k]);
+    x.multipliers[k] = apply_jacobian(problem.energy, x.p[k], x.multipliers[k]);
   }
   return x;
 }

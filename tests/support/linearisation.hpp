@@ -17,7 +17,7 @@ struct Direction {
 
 /// reverse::Curvature of one candidate.
 struct Curvature {
-  bool exact = false;
+  bool lagrangian = false;
   double proximal = 1.0;
 };
 
@@ -31,7 +31,7 @@ class Linearisation {
         x_(loaded(problem, x)),
         newton_(problem_),
         violation_(reverse::violation(problem, x)) {
-    newton_.linearise(problem_, x_, {curvature.exact ? 1.0 : 0.0, curvature.proximal});
+    newton_.linearise(problem_, x_, {curvature.lagrangian ? 1.0 : 0.0, curvature.proximal});
   }
 
   const reverse::ReverseProblem& problem() const { return one_; }
@@ -77,8 +77,8 @@ class Linearisation {
       d.p.push_back(flat(s.poses[k]));
       d.controls.push_back(k > 0 ? Vector3d(s.controls[k]) : Vector3d::Zero());
       d.multipliers.push_back(k > 0 ? flat(s.multipliers[k]) : VectorXd::Zero(d.p[0].size()));
-      d.forces.push_back(one_.energy.gathered(forces[k]));
-      if (!closing) d.forces.back() -= one_.energy.gathered(rest[k]);
+      d.forces.push_back(one_.energy.from_contact_index(forces[k]));
+      if (!closing) d.forces.back() -= one_.energy.from_contact_index(rest[k]);
     }
     return d;
   }

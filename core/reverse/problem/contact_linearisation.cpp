@@ -19,7 +19,7 @@ ContactLinearisation<T>::ContactLinearisation(const ProblemLanes<T>& problem,
       pair_(pair),
       first_(level == 0),
       last_(level == problem.sub_steps),
-      held_(last_ && problem.fixed_end()),
+      poses_fixed_(last_ && problem.fixed_end()),
       forces_(x.forces[level].data() + energy::contact_of(pair, 0)),
       close_(scene_.near(pair, x.p[level])),
       here_(scene_.frame(pair, x.p[level])),
@@ -35,20 +35,20 @@ ContactLinearisation<T>::ContactLinearisation(const ProblemLanes<T>& problem,
 template <class T>
 bool ContactLinearisation<T>::add(int vertex, Eliminated<T>& eliminated) {
   eliminated = {};
-  const energy::Touch<T> touch(scene_, pair_, vertex, here_, close_);
+  const energy::VertexContact<T> contact(scene_, pair_, vertex, here_, close_);
   const T force = forces_[vertex];
-  const Mask<T> acts = touch.within || force != T(0.0);
+  const Mask<T> acts = contact.within || force != T(0.0);
   if (!any(acts)) return false;
-  const SignedDistance<T> d = touch.distance();
+  const SignedDistance<T> d = contact.distance();
   const Mat2<T> D = d.hessian();
-  const energy::GapTerms<T> gap(d, D, touch.point);
-  const T g = touch.gap(d, acts), inverse = T(1.0) / g;
+  const energy::GapTerms<T> gap(d, D, contact.point);
+  const T g = contact.gap(d, acts), inverse = T(1.0) / g;
   const energy::Barrier::Window<T> window = scene_.barrier().window(g);
   const T weight = select(acts, T(scene_.barrier().weight), T(0.0));
   const T s = force - weight * window.d1;
   eliminated.a = (weight * window.w - force * g) * inverse;
-  if (!held_) eliminated.b = gap.gradient * (-s * inverse);
-  Contact c{touch, d, D, gap, g, force, eliminated.b, eliminated.a};
+  if (!poses_fixed_) eliminated.b = gap.gradient * (-s * inverse);
+  Contact c{contact, d, D, gap, g, force, eliminated.b, eliminated.a};
   if (first_)
     add_start_barrier(c);
   else
@@ -62,23 +62,23 @@ bool ContactLinearisation<T>::add(int vertex, Eliminated<T>& eliminated) {
 template <class T>
 void ContactLinearisation<T>::add_start_barrier(const Contact& c) {
   const energy::Barrier& barrier = scene_.barrier();
-  const T pressure = select(c.touch.within, barrier.force(c.g), T(0.0));
-  const T stiffness = select(c.touch.within, barrier.force_slope(c.g), T(0.0));
+  const T pressure = select(c.vertex.within, barrier.force(c.g), T(0.0));
+  const T stiffness = select(c.vertex.within, barrier.force_slope(c.g), T(0.0));
   own.gradient -= c.gap.gradient * pressure;
   own.Q -= (c.gap.gradient * stiffness) * c.gap.gradient.transpose();
-  own.Q -= c.gap.hessian * (curvature_.exact * pressure);
+  own.Q -= c.gap.hessian * (curvature_.lagrangian * pressure);
 }
 
 /// Adds the normal force, -λ ∇g(p_k) in Φ_k.
 template <class T>
 void ContactLinearisation<T>::add_normal_force(Contact& c) {
-  const energy::GapRates<T> rates(c.d, c.D, c.touch.point, c.gap, y_);
+  const energy::GapRates<T> rates(c.d, c.D, c.vertex.point, c.gap, y_);
   own.E -= c.gap.hessian * c.force;
   own.E -= c.gap.gradient * c.b.transpose();
   own.e -= c.gap.gradient * c.a;
   own.residual -= c.gap.gradient * c.force;
   own.gradient -= rates.gradient * c.force;
-  own.Q -= rates.hessian * (curvature_.exact * c.force);
+  own.Q -= rates.hessian * (curvature_.lagrangian * c.force);
   c.now -= rates.gradient;
   c.force_gradient = c.force_gradient - c.gap.gradient.dot(y_);
 }
@@ -86,11 +86,11 @@ void ContactLinearisation<T>::add_normal_force(Contact& c) {
 /// Adds the friction, μ_f λ ∂φ/∂q₊ in Φ_{k+1}.
 template <class T>
 void ContactLinearisation<T>::add_friction(Contact& c, const energy::ContactPoint<T>& after) {
-  const energy::SlipTerms<T> slip(c.d.gradient, after, c.touch.point.x, scene_.slip());
+  const energy::SlipTerms<T> slip(c.d.gradient, after, c.vertex.point.x, scene_.slip());
   const Mat4<T> hessian = slip.hessian(after);
-  const energy::SlipPlace<T> at{c.d, c.D, after, c.touch.point};
+  const energy::SlipGeometry<T> at{c.d, c.D, after, c.vertex.point};
   const energy::SlipRates<T> rates(slip, at, hessian, y_next_);
-  const T mu = scene_.friction(pair_), load = mu * c.force, bent = curvature_.exact * load;
+  const T mu = scene_.friction(pair_), load = mu * c.force, bent = curvature_.lagrangian * load;
   const Vec4<T> drag = slip.gradient() * mu;
   next.E += hessian * load;
   next.e += drag * c.a;
@@ -102,7 +102,7 @@ void ContactLinearisation<T>::add_friction(Contact& c, const energy::ContactPoin
   next.Q += rates.next_next * bent;
   own.Q += rates.now_now * bent;
   N += rates.next_now * bent;
-  const Vec4<T> by_force = rates.next * (curvature_.exact * mu);  // ∂²L/∂λ∂p_{k+1}
+  const Vec4<T> by_force = rates.next * (curvature_.lagrangian * mu);  // ∂²L/∂λ∂p_{k+1}
   N += by_force * c.b.transpose();
   next.q += by_force * c.a;
   c.now += rates.now * mu;
@@ -114,10 +114,10 @@ void ContactLinearisation<T>::add_friction(Contact& c, const energy::ContactPoin
 template <class T>
 void ContactLinearisation<T>::add_complementarity(const Contact& c, const T& s, const T& bend) {
   own.gradient += c.b * c.force_gradient;
-  const T z = -c.force_gradient / c.g * curvature_.exact;
+  const T z = -c.force_gradient / c.g * curvature_.lagrangian;
   own.Q += c.gap.hessian * (z * s);
   own.Q -= (c.gap.gradient * (z * bend)) * c.gap.gradient.transpose();
-  const Vec4<T> now = c.now * curvature_.exact + c.gap.gradient * z;
+  const Vec4<T> now = c.now * curvature_.lagrangian + c.gap.gradient * z;
   const T proximal = T(kForceProximal) * curvature_.proximal;
   const Mat4<T> half = (now + c.b * (T(0.5) * proximal)) * c.b.transpose();
   own.Q += half;

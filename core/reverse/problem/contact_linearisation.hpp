@@ -3,7 +3,7 @@
 #include "core/energy/gap_terms.hpp"
 #include "core/energy/scatter.hpp"
 #include "core/energy/slip_terms.hpp"
-#include "core/energy/touch.hpp"
+#include "core/energy/vertex_contact.hpp"
 #include "core/reverse/problem/problem_lanes.hpp"
 
 namespace rtg::reverse {
@@ -13,8 +13,8 @@ inline constexpr double kForceProximal = 0.01;  // proximal weight of the forces
 /// Selects the Hessian of the Newton system and its proximal term, per lane.
 template <class T>
 struct Curvature {
-  T exact;     // 1: Hessian of the Lagrangian; 0: of the objective alone
-  T proximal;  // δ, weight on poses and controls; kForceProximal δ on forces
+  T lagrangian;  // 1: Hessian of the Lagrangian; 0: of the objective alone
+  T proximal;    // δ, weight on poses and controls; kForceProximal δ on forces
 };
 
 /// The step of a normal force that was eliminated from the Newton system: Δλ = a + b·V Δp. V maps
@@ -63,7 +63,7 @@ class ContactLinearisation {
  private:
   /// The contact that add() is adding.
   struct Contact {
-    const energy::Touch<T>& touch;
+    const energy::VertexContact<T>& vertex;
     const SignedDistance<T>& d;
     const Mat2<T>& D;
     const energy::GapTerms<T>& gap;
@@ -81,7 +81,7 @@ class ContactLinearisation {
   const energy::SceneModel<T>& scene_;
   const Curvature<T>& curvature_;
   int pair_;
-  bool first_, last_, held_;  // held_: the poses of this level are fixed
+  bool first_, last_, poses_fixed_;  // of this level
   const T* forces_;
   Mask<T> close_;
   bool relevant_;

@@ -5,7 +5,7 @@
 #include "core/energy/joint_limit.hpp"
 #include "core/energy/scatter.hpp"
 #include "core/energy/slip_terms.hpp"
-#include "core/energy/touch.hpp"
+#include "core/energy/vertex_contact.hpp"
 #include "core/reverse/problem/control_force.hpp"
 #include "core/reverse/problem/objective_terms.hpp"
 
@@ -17,8 +17,8 @@ template <class T>
 void set_free_residual(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k, T* e) {
   const energy::SceneModel<T>& energy = problem.energy;
   for (int i = 0; i < energy.movable(); ++i) {
-    const Vec3<T> force = energy.motion_force(i, way(x.p[k - 1], x.p[k], i),
-                                              way(x.p[std::max(k - 2, 0)], x.p[k - 1], i));
+    const Vec3<T> force = energy.motion_force(i, displacement(x.p[k - 1], x.p[k], i),
+                                              displacement(x.p[std::max(k - 2, 0)], x.p[k - 1], i));
     for (int m = 0; m < 3; ++m) e[3 * i + m] = force[m];
   }
   for (int m = 0; m < 3; ++m)
@@ -38,7 +38,7 @@ T free_objective(const ProblemLanes<T>& problem, const Trajectory<T>& x) {
   }
   for (int k = 1; k <= h; ++k)
     for (int i = 1; i < movable; ++i) sum = sum + problem.speed(x, k, i).value;
-  for (int k = h; k > 0 && problem.ends(k); --k)
+  for (int k = h; k > 0 && problem.is_terminal(k); --k)
     sum = sum + EndSpring<T>(problem, x.p[k], k).value();
   return sum;
 }
@@ -52,7 +52,7 @@ struct Evaluator<T>::Pass {
   Evaluator& into;
   const ProblemLanes<T>& problem;
   const Trajectory<T>& x;
-  const PerContact<T>& were;
+  const PerContact<T>& previous_gaps;
   PerContact<T>& gaps;
   Mask<T>& legal;
   Measures<T> sum = {};
@@ -64,7 +64,7 @@ struct Evaluator<T>::Pass {
       const Mask<T> close = scene.near(n, x.p[k]);
       if (n % 2 == 0) apart = !close;
       for (int v = 0; v < scene.corners(n); ++v) {
-        gaps[k][energy::contact_of(n, v)] = energy::Touch<T>::far(scene);
+        gaps[k][energy::contact_of(n, v)] = energy::VertexContact<T>::far(scene);
         into.complementarity_[k][energy::contact_of(n, v)] = T(0.0);
       }
       if (any(close) || has_force(k, n)) apart = add_pair(k, n, close) || apart;
@@ -101,14 +101,14 @@ struct Evaluator<T>::Pass {
     energy::SeparatingEdges<T> edges = scene.edges(n);
     for (int v = 0; v < scene.corners(n); ++v) {
       const T force = x.forces[k][energy::contact_of(n, v)];
-      const energy::Touch<T> touch(scene, n, v, here, close);
-      edges.note(touch.distances, scene.real(n, v));
-      if (!any(touch.within || force != T(0.0))) continue;
-      const SignedDistance<T> d = touch.distance();
-      add_contact(k, energy::contact_of(n, v), touch, d);
-      own -= touch.point.pulled(d.gradient) * force;
+      const energy::VertexContact<T> contact(scene, n, v, here, close);
+      edges.note(contact.distances, scene.real(n, v));
+      if (!any(contact.within || force != T(0.0))) continue;
+      const SignedDistance<T> d = contact.distance();
+      add_contact(k, energy::contact_of(n, v), contact, d);
+      own -= contact.point.pulled(d.gradient) * force;
       if (last || !any(force != T(0.0))) continue;
-      const energy::SlipTerms<T> s(d.gradient, scene.point(n, v, ahead), touch.point.x,
+      const energy::SlipTerms<T> s(d.gradient, scene.point(n, v, ahead), contact.point.x,
                                    scene.slip());
       next += s.gradient() * (scene.friction(n) * force);
     }
@@ -121,7 +121,7 @@ struct Evaluator<T>::Pass {
   /// λ g - μ̃ w to the measures. `window` is w(g).
   void note_gap(int k, int contact, const T& g, const T& window) {
     gaps[k][contact] = g;
-    legal = legal && keeps_gap(g, were[k][contact], scene.barrier());
+    legal = legal && is_gap_acceptable(g, previous_gaps[k][contact], scene.barrier());
     const T off = x.forces[k][contact] * g - T(scene.barrier().weight) * window;
     into.complementarity_[k][contact] = off;
     sum.violation = sum.violation + magnitude(off);
@@ -130,18 +130,19 @@ struct Evaluator<T>::Pass {
 
   /// Calls note_gap() for the contact of a vertex. At level 0, also adds its barrier to the
   /// objective.
-  void add_contact(int k, int contact, const energy::Touch<T>& touch, const SignedDistance<T>& d) {
+  void add_contact(int k, int index, const energy::VertexContact<T>& contact,
+                   const SignedDistance<T>& d) {
     const energy::Barrier& barrier = scene.barrier();
-    const Mask<T> acts = touch.within || x.forces[k][contact] != T(0.0);
-    const T g = touch.gap(d, acts);
-    note_gap(k, contact, g, select(acts, barrier.window(g).w, T(0.0)));
-    if (k == 0) sum.objective = sum.objective + select(touch.within, barrier.value(g), T(0.0));
+    const Mask<T> acts = contact.within || x.forces[k][index] != T(0.0);
+    const T g = contact.gap(d, acts);
+    note_gap(k, index, g, select(acts, barrier.window(g).w, T(0.0)));
+    if (k == 0) sum.objective = sum.objective + select(contact.within, barrier.value(g), T(0.0));
   }
 };
 
 template <class T>
-Evaluator<T>::Evaluator(const ProblemLanes<T>& problem, bool to_the_end)
-    : to_the_end_(to_the_end),
+Evaluator<T>::Evaluator(const ProblemLanes<T>& problem, bool all_levels)
+    : all_levels_(all_levels),
       residuals_(static_cast<std::size_t>(problem.sub_steps) + 1,
                  std::vector<T>(3 * static_cast<std::size_t>(problem.energy.movable()), T(0.0))),
       complementarity_(
@@ -150,14 +151,15 @@ Evaluator<T>::Evaluator(const ProblemLanes<T>& problem, bool to_the_end)
 
 template <class T>
 Measures<T> Evaluator<T>::evaluate(const ProblemLanes<T>& problem, const Trajectory<T>& x,
-                                   const PerContact<T>& were, PerContact<T>& gaps, Mask<T>& legal) {
-  Pass pass{*this, problem, x, were, gaps, legal};
+                                   const PerContact<T>& previous_gaps, PerContact<T>& gaps,
+                                   Mask<T>& legal) {
+  Pass pass{*this, problem, x, previous_gaps, gaps, legal};
   pass.sum.objective = free_objective(problem, x);
-  for (int k = 0; k <= problem.sub_steps && (to_the_end_ || any(legal)); ++k) {
+  for (int k = 0; k <= problem.sub_steps && (all_levels_ || any(legal)); ++k) {
     if (k < problem.sub_steps) set_free_residual(problem, x, k + 1, residuals_[k + 1].data());
     pass.add_level(k);
     if (k == 0) continue;
-    problem.energy.articulation().gather(x.p[k], residuals_[k].data());
+    problem.energy.articulation().apply_jacobian_transposed(x.p[k], residuals_[k].data());
     for (const T& r : residuals_[k]) {
       pass.sum.violation = pass.sum.violation + magnitude(r);
       pass.sum.infeasibility = greater(pass.sum.infeasibility, magnitude(r));

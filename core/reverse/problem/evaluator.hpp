@@ -17,20 +17,20 @@ struct Measures {
 template <class T>
 class Evaluator {
  public:
-  /// If `to_the_end`, evaluate() always computes all levels. Otherwise it stops when no lane is
+  /// If `all_levels`, evaluate() always computes all levels. Otherwise it stops when no lane is
   /// legal any more.
-  explicit Evaluator(const ProblemLanes<T>& problem, bool to_the_end = false);
+  explicit Evaluator(const ProblemLanes<T>& problem, bool all_levels = false);
 
-  /// Evaluates the trial point `x` and writes its gaps to `gaps`. `were` holds the gaps of the
-  /// iterate from which `x` was made. The lanes to evaluate are passed in `legal`. On return,
+  /// Evaluates the trial point `x` and writes its gaps to `gaps`. `previous_gaps` holds the gaps of
+  /// the iterate from which `x` was made. The lanes to evaluate are passed in `legal`. On return,
   /// `legal` marks those of them in which
   ///
-  ///   - keeps_gap() accepts every gap: it is positive and has not shrunk too much,
+  ///   - is_gap_acceptable() accepts every gap: it is positive and has not shrunk too much,
   ///   - no two bodies overlap by the separating-axis test.
   ///
   /// In all other lanes the results may be wrong.
   Measures<T> evaluate(const ProblemLanes<T>& problem, const Trajectory<T>& x,
-                       const PerContact<T>& were, PerContact<T>& gaps, Mask<T>& legal);
+                       const PerContact<T>& previous_gaps, PerContact<T>& gaps, Mask<T>& legal);
 
   /// Returns Φ_k of the last trajectory [h + 1][dofs]; entry 0 is unused.
   const std::vector<std::vector<T>>& residuals() const { return residuals_; }
@@ -40,7 +40,7 @@ class Evaluator {
  private:
   struct Pass;
 
-  bool to_the_end_;
+  bool all_levels_;
   std::vector<std::vector<T>> residuals_;
   PerContact<T> complementarity_;
 };

@@ -18,7 +18,7 @@ class HingeReduction {
   void apply(const T* y) {
     if (k_ > 0) add_rates(y);
     step_.gather_both(stage_.Q);
-    step_.add_curvature(poses_.gradient[k_][0].data(), poses_.exact, stage_.Q);
+    step_.add_curvature(poses_.gradient[k_][0].data(), poses_.lagrangian, stage_.Q);
     if (k_ > 0) {
       step_.gather_both(stage_.E);
       step_.add_curvature(poses_.residual[k_][0].data(), T(1.0), stage_.E);
@@ -34,15 +34,15 @@ class HingeReduction {
   ///   ∂w_j/∂θ_i = -A y_θi, ∂w_j/∂θ_j = B y_θj.
   void add_rates(const T* y) {
     by_child_ = step_.arms().b * y[3 * step_.child() + 2];
-    by_parent_ = step_.roots() ? Vec2<T>(step_.arms().a * -y[3 * step_.parent() + 2])
-                               : Vec2<T>(T(0.0), T(0.0));
+    by_parent_ = step_.parent_is_movable() ? Vec2<T>(step_.arms().a * -y[3 * step_.parent() + 2])
+                                           : Vec2<T>(T(0.0), T(0.0));
     const Vec3<T> phi = poses_.residual[k_][step_.child()];
     const Vec3<T> e = stage_.e[step_.child()];
     add_symmetric_rate_rows();
     add_rate_rows(stage_.F, stage_.N);
     add_rate_rows(stage_.G, stage_.U);
     add_rate(step_.child(), by_child_, phi, e);
-    if (step_.roots()) add_rate(step_.parent(), by_parent_, phi, e);
+    if (step_.parent_is_movable()) add_rate(step_.parent(), by_parent_, phi, e);
   }
 
   /// Adds the contribution of the angle θ of `body` to Dᵀ Φ, Dᵀ e and Σ Φ ∂²w/∂θ². `rate` is
@@ -50,15 +50,15 @@ class HingeReduction {
   void add_rate(int body, const Vec2<T>& rate, const Vec3<T>& phi, const Vec3<T>& e) {
     const T slope = rate.x() * phi[0] + rate.y() * phi[1];
     poses_.gradient[k_][body][2] += slope;
-    stage_.q[body][2] += poses_.exact * (rate.x() * e[0] + rate.y() * e[1]);
-    stage_.Q.at(body, body)(2, 2) += poses_.exact * (rate.x() * phi[1] - rate.y() * phi[0]);
+    stage_.q[body][2] += poses_.lagrangian * (rate.x() * e[0] + rate.y() * e[1]);
+    stage_.Q.at(body, body)(2, 2) += poses_.lagrangian * (rate.x() * phi[1] - rate.y() * phi[0]);
   }
 
   /// into ← into + Dᵀ from.
   void add_rate_rows(const BlockMatrix<T>& from, BlockMatrix<T>& into) {
     for (const int m : Bits(from.pattern[static_cast<std::size_t>(step_.child())])) {
       into.add(step_.child(), m, rate_row(from.at(step_.child(), m), by_child_));
-      if (step_.roots())
+      if (step_.parent_is_movable())
         into.add(step_.parent(), m, rate_row(from.at(step_.child(), m), by_parent_));
     }
   }
@@ -72,14 +72,14 @@ class HingeReduction {
     for (const int m : Bits(stage_.E.pattern[static_cast<std::size_t>(step_.child())])) {
       const Block<T>& from = stage_.E.at(step_.child(), m);
       add(step_.child(), m, rate_row(from, by_child_));
-      if (step_.roots()) add(step_.parent(), m, rate_row(from, by_parent_));
+      if (step_.parent_is_movable()) add(step_.parent(), m, rate_row(from, by_parent_));
     }
   }
 
   Block<T> rate_row(const Block<T>& from, const Vec2<T>& rate) const {
     Block<T> Z = Block<T>::Constant(T(0.0));
     for (int m = 0; m < 3; ++m)
-      Z(2, m) = poses_.exact * (rate.x() * from(0, m) + rate.y() * from(1, m));
+      Z(2, m) = poses_.lagrangian * (rate.x() * from(0, m) + rate.y() * from(1, m));
     return Z;
   }
 

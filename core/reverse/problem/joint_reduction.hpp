@@ -11,7 +11,7 @@ struct PoseSystem {
   StageSystem<T>& system;                 // its q lacks `gradient`, its e lacks `residual`
   std::vector<BlockColumn<T>>& gradient;  // of the Lagrangian [h + 1][bodies]
   std::vector<BlockColumn<T>>& residual;  // Φ_k [h + 1][bodies]
-  T exact;                                // as in Curvature
+  T lagrangian;                           // as in Curvature
 };
 
 /// Turns a Newton system over poses p into one over reduced coordinates q (Articulation), in place.

@@ -15,11 +15,11 @@ struct LimitLinearisation {
   T gradient = a;
   T q = a, e = a, residual = a;
 
-  /// Kind of level: the start, a fixed final state (kHeld), or any other (kWithin).
-  enum class Level { kStart, kWithin, kHeld };
+  /// Kind of level: the start, a fixed final state (kFixed), or any other (kWithin).
+  enum class Level { kStart, kWithin, kFixed };
   /// Gap and force of the limit, and ∇g·y.
   struct State {
-    T gap, force, along;
+    T gap, force, gradient_dot_y;
   };
 
   LimitLinearisation(const State& at, const energy::Barrier& barrier, const Curvature<T>& curvature,
@@ -28,7 +28,7 @@ struct LimitLinearisation {
     const energy::Barrier::Window<T> window = barrier.window(at.gap);
     const T slope = at.force - mu * window.d1;
     a = (mu * window.w - at.force * at.gap) * inverse;
-    if (level != Level::kHeld) b = -slope * inverse;
+    if (level != Level::kFixed) b = -slope * inverse;
     T by_force(0.0);  // ∂L/∂λ without the complementarity row
     if (level == Level::kStart) {
       gradient = -barrier.force(at.gap);
@@ -37,10 +37,10 @@ struct LimitLinearisation {
       E = -b;
       residual = -at.force;
       e = -a;
-      by_force = -at.along;
+      by_force = -at.gradient_dot_y;
     }
     gradient = gradient + b * by_force;
-    const T z = -by_force * inverse * curvature.exact;
+    const T z = -by_force * inverse * curvature.lagrangian;
     const T proximal = T(kForceProximal) * curvature.proximal;
     Q = Q - z * mu * window.d2 + T(2.0) * z * b + proximal * b * b;
     q = (z + b * proximal) * a;

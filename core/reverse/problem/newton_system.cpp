@@ -8,7 +8,7 @@ namespace {
 
 /// linearise() adds the contacts of level k this many levels after the other terms of level k. By
 /// then stages k and k + 1 hold all their other terms and are still in the cache.
-constexpr int kReach = 3;
+constexpr int kContactDelay = 3;
 
 }  // namespace
 
@@ -29,20 +29,20 @@ void NewtonSystem<T>::linearise(const ProblemLanes<T>& problem, const Trajectory
                                 const Curvature<T>& curvature) {
   curvature_ = curvature;
   const int h = problem.sub_steps;
-  for (int k = 0; k <= h + kReach; ++k) {
+  for (int k = 0; k <= h + kContactDelay; ++k) {
     if (k <= h) set_objective(problem, x, k);
     if (k > 0 && k <= h) {
       add_motion(problem, x, k);
       if (problem.energy.inertial()) add_inertia(problem, x, k);
       add_control(problem, x, k);
     }
-    const int behind = k - kReach;
+    const int behind = k - kContactDelay;
     for (int n = 0; n < problem.energy.pair_count() && behind >= 0; ++n)
       add_pair(problem, x, behind, n);
   }
   if (!problem.energy.articulation().empty()) {
     for (int k = 0; k <= h; ++k) add_limits(problem, x, k);
-    reduce_joints(problem, x, {system_, gradient_, residual_, curvature_.exact});
+    reduce_joints(problem, x, {system_, gradient_, residual_, curvature_.lagrangian});
   }
   for (int k = 0; k <= h; ++k)
     for (int i = 0; i < system_.M; ++i) {
@@ -92,12 +92,12 @@ void NewtonSystem<T>::add_limits(const ProblemLanes<T>& problem, const Trajector
   Stage& stage = system_.stages[k];
   const typename Terms::Level level = k == 0 ? Terms::Level::kStart
                                       : k == problem.sub_steps && fixed_end_
-                                          ? Terms::Level::kHeld
+                                          ? Terms::Level::kFixed
                                           : Terms::Level::kWithin;
   for_each_limit(scene.articulation(), x.p[k], [&](int l, const energy::JointLimit<T>& limit) {
-    const T along = limit.along(x.multipliers[k].data(), system_.M);
-    const Terms terms({limit.gap, x.forces[k][scene.limit_contact(l)], along}, scene.barrier(),
-                      curvature_, level);
+    const T gradient_dot_y = limit.along(x.multipliers[k].data(), system_.M);
+    const Terms terms({limit.gap, x.forces[k][scene.limit_contact(l)], gradient_dot_y},
+                      scene.barrier(), curvature_, level);
     eliminated_[k][scene.limit_contact(l)].a = terms.a;
     eliminated_[k][scene.limit_contact(l)].b[0] = terms.b;
     limit.add_gradient(terms.gradient, system_.M, gradient_[k][0].data());
@@ -134,7 +134,7 @@ void NewtonSystem<T>::force_steps(const ProblemLanes<T>& problem, const Trajecto
     const T* moved = step.poses[k][0].data();
     if (!problem.energy.articulation().empty()) {
       moved_ = step.poses[k];
-      problem.energy.articulation().spread(x.p[k], moved_[0].data());
+      problem.energy.articulation().apply_jacobian(x.p[k], moved_[0].data());
       moved = moved_[0].data();
     }
     find_force_steps(problem.energy, x.p[k], k, moved, out[k].data());

@@ -21,8 +21,8 @@ Vec3<T> multipliers_of(const Trajectory<T>& x, int k, int body) {
 
 /// Returns how far `body` moved in sub-step k - 1; zero if k = 1, as all bodies begin at rest.
 template <class T>
-Vec3<T> way_before(const Trajectory<T>& x, int k, int body) {
-  return k == 1 ? nothing<T>() : way(x.p[k - 2], x.p[k - 1], body);
+Vec3<T> previous_displacement(const Trajectory<T>& x, int k, int body) {
+  return k == 1 ? nothing<T>() : displacement(x.p[k - 2], x.p[k - 1], body);
 }
 
 }  // namespace
@@ -54,14 +54,14 @@ template <class T>
 void NewtonSystem<T>::add_motion(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   Stage &stage = system_.stages[k], &before = system_.stages[k - 1];
   for (int i = 0; i < system_.M; ++i) {
-    const Vec3<T> moved = way(x.p[k - 1], x.p[k], i), y = multipliers_of(x, k, i);
+    const Vec3<T> moved = displacement(x.p[k - 1], x.p[k], i), y = multipliers_of(x, k, i);
     const energy::Damping<T>& body = problem.energy.damping(i);
     const Vec3<T> slope(body.mass, body.mass, body.turn_curvature(moved[2]));
-    residual_[k][i] += problem.energy.motion_force(i, moved, way_before(x, k, i));
+    residual_[k][i] += problem.energy.motion_force(i, moved, previous_displacement(x, k, i));
     gradient_[k][i] += slope.cwiseProduct(y);
     gradient_[k - 1][i] -= slope.cwiseProduct(y);
-    Block<T> H =
-        diagonal<T>(Vec3<T>(T(0.0), T(0.0), curvature_.exact * body.turn_third(moved[2]) * y[2]));
+    Block<T> H = diagonal<T>(
+        Vec3<T>(T(0.0), T(0.0), curvature_.lagrangian * body.turn_third(moved[2]) * y[2]));
     if (i > 0) {
       const SpeedPenalty<T> speed = problem.speed(x, k, i);
       H += speed.hessian;
@@ -83,8 +83,8 @@ void NewtonSystem<T>::add_inertia(const ProblemLanes<T>& problem, const Trajecto
   const bool first = k == 1;
   for (int i = 0; i < system_.M; ++i) {
     const energy::Inertia<T> body = problem.energy.inertia(i);
-    const Vec3<T> a = way(x.p[k - 1], x.p[k], i);
-    const Vec3<T> b = way_before(x, k, i);
+    const Vec3<T> a = displacement(x.p[k - 1], x.p[k], i);
+    const Vec3<T> b = previous_displacement(x, k, i);
     const Vec3<T> y = multipliers_of(x, k, i);
     auto turn = body.turn_slope(a[2], b[2]);
     if (first) turn.b = turn.ab = turn.bb = T(0.0);
@@ -99,7 +99,7 @@ void NewtonSystem<T>::add_inertia(const ProblemLanes<T>& problem, const Trajecto
       stage.G.add(i, i, diagonal<T>(-by_b));
       gradient_[k - 2][i] -= by_b.cwiseProduct(y);
     }
-    if (body.periodic) add_turn_curvature(turn, curvature_.exact * y[2], k, i);
+    if (body.periodic) add_turn_curvature(turn, curvature_.lagrangian * y[2], k, i);
   }
 }
 
@@ -127,7 +127,7 @@ void NewtonSystem<T>::add_control(const ProblemLanes<T>& problem, const Trajecto
     const T y = x.multipliers[k][m];
     residual_[k][0][m] -= force.value;
     stage.B[m] = -force.slope;
-    stage.R[m] = price.hessian + curvature_.proximal - curvature_.exact * force.curvature * y;
+    stage.R[m] = price.hessian + curvature_.proximal - curvature_.lagrangian * force.curvature * y;
     stage.r[m] = control_gradient_[k][m] = price.gradient[m] - force.slope * y;
   }
 }

@@ -59,13 +59,13 @@ struct PathPenalty {
 };
 
 /// The term K/2 |p_k - p̄|² over all movable bodies: a spring to the final state p̄. It acts on the
-/// poses p_k for which ProblemLanes::ends(k). Departs from the paper: a stiff spring replaces the
-/// constraint, so that every forward simulation is feasible.
+/// poses p_k for which ProblemLanes::is_terminal(k). Departs from the paper: a stiff spring
+/// replaces the constraint, so that every forward simulation is feasible.
 template <class T>
 class EndSpring {
  public:
   EndSpring(const ProblemLanes<T>& problem, const energy::Placement<T>& at, int k)
-      : hessian(k > 0 && problem.ends(k) ? problem.terminal_weight : T(0.0)),
+      : hessian(k > 0 && problem.is_terminal(k) ? problem.terminal_weight : T(0.0)),
         problem_(problem),
         at_(at) {}
 

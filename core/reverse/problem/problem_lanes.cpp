@@ -51,7 +51,7 @@ void Trajectory<T>::load(int lane, const ReverseProblem& problem, const Iterate&
     for (std::size_t m = 0; m < p[k].p.size(); ++m)
       set_lane(p[k].p[m], lane, x.p[k][static_cast<Eigen::Index>(m)]);
     p[k].update();
-    const std::vector<double> lambda = problem.energy.spread(x.forces[k]);
+    const std::vector<double> lambda = problem.energy.to_contact_index(x.forces[k]);
     for (std::size_t c = 0; c < lambda.size(); ++c) set_lane(forces[k][c], lane, lambda[c]);
     for (int m = 0; m < 3; ++m) set_lane(controls[k][m], lane, x.controls[k][m]);
     for (std::size_t m = 0; m < multipliers[k].size(); ++m)
@@ -67,7 +67,7 @@ Iterate Trajectory<T>::unload(int lane, const ReverseProblem& problem) const {
     for (std::size_t m = 0; m < p[k].p.size(); ++m)
       x.p[k][static_cast<Eigen::Index>(m)] = rtg::lane(p[k].p[m], lane);
     for (std::size_t c = 0; c < lambda.size(); ++c) lambda[c] = rtg::lane(forces[k][c], lane);
-    x.forces[k] = problem.energy.gathered(lambda);
+    x.forces[k] = problem.energy.from_contact_index(lambda);
     for (int m = 0; m < 3; ++m) x.controls[k][m] = rtg::lane(controls[k][m], lane);
     for (std::size_t m = 0; m < multipliers[k].size(); ++m)
       x.multipliers[k][static_cast<Eigen::Index>(m)] = rtg::lane(multipliers[k][m], lane);

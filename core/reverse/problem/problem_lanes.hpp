@@ -20,7 +20,7 @@ struct ProblemLanes {
   bool fixed_end() const { return config.terminal_weight == 0.0; }
   /// Returns whether p_k has to match the final state. This holds for p_h and, with inertia, for
   /// p_{h-1}, as bodies must come to rest.
-  bool ends(int k) const { return k >= sub_steps - (energy.inertial() ? 1 : 0); }
+  bool is_terminal(int k) const { return k >= sub_steps - (energy.inertial() ? 1 : 0); }
   /// Returns the robot's pose (t̄₀, θ̄₀) after sub-step k on its straight path to the final state.
   Vec3<T> robot_path(int k) const;
   /// Returns the speed penalty of object i in sub-step k.

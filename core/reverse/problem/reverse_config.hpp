@@ -52,7 +52,7 @@ struct ReverseConfig {
     v.number("plain_barrier", plain_barrier, 0.0, 1e6, "weight of -mu log g; 0: physics' barrier");
     v.number("proximal_start", proximal_start, 1e-4, 1e9, "regularisation of the first step");
     v.integer("softenings", softenings, 0, 1000, "times the hold on the final state is softened");
-    v.integer("late_contacts", late_contacts, 0, kMaxStarts - 1,
+    v.integer("late_contacts", late_contacts, 0, kMaxPredecessors - 1,
               "predecessors whose objects are met later");
   }
 };

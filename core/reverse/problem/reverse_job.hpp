@@ -30,14 +30,15 @@ inline std::uint64_t key_of(const Poses& state, int action) {
 inline std::uint64_t key_of(const ReverseJob& job) { return key_of(job.end, job.action); }
 
 /// Largest number of predecessors in the answer to one job.
-inline constexpr int kMaxStarts = 8;
+inline constexpr int kMaxPredecessors = 8;
 
-/// Answer to a ReverseJob. If `status` is kConverged, `starts` holds 1 to kMaxStarts finite
-/// predecessors. Otherwise it is empty. ReverseSimulator puts the start of the whole push first.
+/// Answer to a ReverseJob. If `status` is kConverged, `predecessors` holds 1 to kMaxPredecessors
+/// finite predecessors. Otherwise it is empty. ReverseSimulator puts the start of the whole push
+/// first.
 struct ReverseResult {
   SolveStatus status = SolveStatus::kNonFinite;
   int iterations = 0;
-  std::vector<Poses> starts = {};
+  std::vector<Poses> predecessors = {};
   double cpu_s = 0.0;  // thread CPU time; the one field that is not a function of the job
 };
 

@@ -59,7 +59,7 @@ Violation violation(const ReverseProblem& problem, const Iterate& x) {
   for (const std::vector<double>& r : at.evaluator.residuals())
     v.residuals.push_back(Eigen::Map<const VectorXd>(r.data(), problem.energy.dofs()));
   for (const std::vector<double>& c : at.evaluator.complementarity())
-    v.complementarity.push_back(problem.energy.gathered(c));
+    v.complementarity.push_back(problem.energy.from_contact_index(c));
   return v;
 }
 

@@ -19,12 +19,13 @@ struct SpeedPenalty {
   Vec3<T> gradient;  // with respect to (Δt, Δθ)
   Block<T> hessian;
 
-  SpeedPenalty(double weight, double stride, const energy::Damping<T>& body, const Vec3<T>& way) {
+  SpeedPenalty(double weight, double stride, const energy::Damping<T>& body,
+               const Vec3<T>& displacement) {
     const T scale(1.0 / (2.0 * stride * stride)), w(weight);
     const Vec3<T> metric(scale, scale, scale * body.moment / body.mass);
     Vec3<T> slope;  // ½ ∂q
-    for (int m = 0; m < 3; ++m) slope[m] = metric[m] * way[m];
-    const T q = way.dot(slope);
+    for (int m = 0; m < 3; ++m) slope[m] = metric[m] * displacement[m];
+    const T q = displacement.dot(slope);
     value = w * q * q * q;
     gradient = slope * (T(6.0) * w * q * q);
     hessian = (slope * (T(24.0) * w * q)) * slope.transpose();

@@ -33,7 +33,7 @@ void make_trial(const energy::SceneModel<T>& scene, const Trajectory<T>& x, cons
         trial.multipliers[k][m] = x.multipliers[k][m] + alpha * move.step.multipliers[k][body][row];
     }
     scene.place(trial.p[k]);
-    scene.articulation().spread(trial.p[k], trial.multipliers[k].data());
+    scene.articulation().apply_jacobian(trial.p[k], trial.multipliers[k].data());
     if (k > 0) trial.controls[k] = x.controls[k] + move.step.controls[k] * alpha;
     for (std::size_t c = 0; c < trial.forces[k].size(); ++c) {
       const T force = x.forces[k][c] + alpha * move.forces[k][c];

@@ -26,12 +26,12 @@ WarmStart<T>::WarmStart(const ProblemLanes<T>& problem)
       step_(scene_, kTolerance),
       start_(scene_.bodies()),
       pushed_(start_),
-      still_(start_),
+      unpushed_(start_),
       robot_back_(start_),
       trial_(start_),
-      by_(start_.p),
-      lag_(static_cast<std::size_t>(scene_.contacts()), T(0.0)),
-      moved_(start_.p) {}
+      mirrored_displacement_(start_.p),
+      forces_(static_cast<std::size_t>(scene_.contacts()), T(0.0)),
+      last_displacement_(start_.p) {}
 
 /// Returns the target of the robot's servo in sub-step k. It is the pose on the straight path after
 /// sub-step k. While the robot moves, the target leads by the lag of the servo in steady motion.
@@ -48,19 +48,19 @@ Vec3<T> WarmStart<T>::straight_target(int k) const {
 }
 
 /// Computes the forward step `to` = F(from) with the servo at `target`. Stores the displacement in
-/// moved_. Returns the lanes in which it succeeded.
+/// last_displacement_. Returns the lanes in which it succeeded.
 template <class T>
 Mask<T> WarmStart<T>::push(const energy::StepStart<T>& from, const Vec3<T>& target,
                            const Mask<T>& wanted, energy::Placement<T>& to) {
   const Mask<T> found = step_.solve(from, energy::Drive<T>::towards(target), wanted, to);
-  for (std::size_t m = 0; m < moved_.size(); ++m)
-    moved_[m] = select(found, to.p[m] - from.now.p[m], moved_[m]);
+  for (std::size_t m = 0; m < last_displacement_.size(); ++m)
+    last_displacement_[m] = select(found, to.p[m] - from.now.p[m], last_displacement_[m]);
   return found;
 }
 
-/// Sets `out` to `p` with the objects moved by -share·by_. Takes the largest share of 1, ½, ¼, ...
-/// that leaves all gaps open. Lanes without such a share keep their `out`. The robot stays as in
-/// `p`.
+/// Sets `out` to `p` with the objects moved by -share·mirrored_displacement_. Takes the largest
+/// share of 1, ½, ¼, ... that leaves all gaps open. Lanes without such a share keep their `out`.
+/// The robot stays as in `p`.
 template <class T>
 void WarmStart<T>::move_back(const energy::Placement<T>& p, const Mask<T>& wanted,
                              energy::Placement<T>& out) {
@@ -68,7 +68,8 @@ void WarmStart<T>::move_back(const energy::Placement<T>& p, const Mask<T>& wante
   Mask<T> searching = wanted;
   for (double share = 1.0; share > kLeastShare && any(searching); share *= 0.5) {
     trial_ = p;
-    for (int m = 3; m < 3 * scene_.movable(); ++m) trial_.p[m] = p.p[m] - T(share) * by_[m];
+    for (int m = 3; m < 3 * scene_.movable(); ++m)
+      trial_.p[m] = p.p[m] - T(share) * mirrored_displacement_[m];
     scene_.place(trial_);
     const Mask<T> open = searching && scene_.least_gap(trial_) >= floor && scene_.separated(trial_);
     out.assign(open, trial_);
@@ -85,10 +86,11 @@ Mask<T> WarmStart<T>::mirror(int k, const Mask<T>& wanted) {
   const Vec3<T> ahead(start_.p[0] + stride * problem_.direction.x(),
                       start_.p[1] + stride * problem_.direction.y(), start_.p[2]);
   const Vec3<T> here(start_.p[0], start_.p[1], start_.p[2]);
-  scene_.forces(start_, lag_.data());
-  Mask<T> going = push({start_, lag_.data(), moved_.data()}, ahead, wanted, pushed_);
-  going = step_.solve({start_, lag_.data()}, energy::Drive<T>::towards(here), going, still_);
-  for (std::size_t m = 0; m < by_.size(); ++m) by_[m] = pushed_.p[m] - still_.p[m];
+  scene_.forces(start_, forces_.data());
+  Mask<T> going = push({start_, forces_.data(), last_displacement_.data()}, ahead, wanted, pushed_);
+  going = step_.solve({start_, forces_.data()}, energy::Drive<T>::towards(here), going, unpushed_);
+  for (std::size_t m = 0; m < mirrored_displacement_.size(); ++m)
+    mirrored_displacement_[m] = pushed_.p[m] - unpushed_.p[m];
   robot_back_ = start_;
   put_robot(mirrored_path(k - 1), robot_back_);
   start_.assign(going, robot_back_);
@@ -102,7 +104,7 @@ Mask<T> WarmStart<T>::roll_out(const Mask<T>& wanted, Trajectory<T>& x) {
   Mask<T> going = wanted;
   for (int k = 1; k <= problem_.sub_steps; ++k) {
     const Vec3<T> target = straight_target(k);
-    const energy::StepStart<T> from{x.p[k - 1], x.forces[k - 1].data(), moved_.data(),
+    const energy::StepStart<T> from{x.p[k - 1], x.forces[k - 1].data(), last_displacement_.data(),
                                     &x.p[std::max(k - 2, 0)]};
     going = push(from, target, going, x.p[k]);
     x.controls[k] =
@@ -138,7 +140,7 @@ Mask<T> WarmStart<T>::begin_at(int k, const Mask<T>& wanted) {
 
 template <class T>
 Mask<T> WarmStart<T>::find(const Mask<T>& wanted, Trajectory<T>& x) {
-  std::ranges::fill(moved_, T(0.0));
+  std::ranges::fill(last_displacement_, T(0.0));
   start_.p = problem_.end;
   start_.update();
   // Objects coast as if a robot that goes on beyond the end of its path pushed them. So mirroring

@@ -37,8 +37,10 @@ class WarmStart {
   const ProblemLanes<T>& problem_;
   const energy::SceneModel<T>& scene_;
   energy::ForwardStep<T> step_;
-  energy::Placement<T> start_, pushed_, still_, robot_back_, trial_;
-  std::vector<T> by_, lag_, moved_;  // moved_: displacement in the last step, guess for the next
+  energy::Placement<T> start_, pushed_, unpushed_, robot_back_, trial_;
+  std::vector<T> mirrored_displacement_;  // move_back() moves the objects by its negative
+  std::vector<T> forces_;                 // at start_
+  std::vector<T> last_displacement_;      // in the last step; guess for the next
 };
 
 /// Returns the warm start of one problem, or nothing if a forward step fails.

@@ -124,14 +124,14 @@ void FilterSqp<T>::adopt(const Mask<T>& where, const Measures<T>& found) {
 
 template <class T>
 void FilterSqp<T>::iterate() {
-  T exact(0.0), proximal(1.0);
+  T lagrangian(0.0), proximal(1.0);
   for (int l = 0; l < kWidth<T>; ++l) {
-    set_lane(exact, l, lanes_[l].strategy.exact() ? 1.0 : 0.0);
+    set_lane(lagrangian, l, lanes_[l].strategy.uses_lagrangian() ? 1.0 : 0.0);
     set_lane(proximal, l, lanes_[l].strategy.proximal());
     busy_ += lanes_[l].job >= 0 ? 1 : 0;
   }
   lane_iterations_ += kWidth<T>;
-  newton_.linearise(problem_, x_, {exact, proximal});
+  newton_.linearise(problem_, x_, {lagrangian, proximal});
   stationarity_ = newton_.stationarity();
   stepping_ = Mask<T>(false);
   for (int l = 0; l < kWidth<T>; ++l)

@@ -42,7 +42,7 @@ SqpStrategy::Order SqpStrategy::judge(const Figures& at) {
   }
   if (at.infeasibility < config_->feasibility_tol && at.stationarity < config_->stationarity_tol)
     return end_attempt(SolveStatus::kConverged);
-  if (!exact_) return Order::kGoOn;  // repeats the same iteration
+  if (!uses_lagrangian_) return Order::kGoOn;  // repeats the same iteration
   if (iterations_ == config_->max_iterations) return end_attempt(SolveStatus::kIterationLimit);
   ++iterations_;
   if (phases_left_ > 0) --iterations_left_;
@@ -50,8 +50,8 @@ SqpStrategy::Order SqpStrategy::judge(const Figures& at) {
 }
 
 SqpStrategy::Order SqpStrategy::reject_ascent() {
-  if (!exact_) return regularise(SolveStatus::kSingular);
-  exact_ = false;
+  if (!uses_lagrangian_) return regularise(SolveStatus::kSingular);
+  uses_lagrangian_ = false;
   return Order::kGoOn;
 }
 
@@ -65,7 +65,7 @@ bool SqpStrategy::accept(const Filter::Entry& now, const Filter::Entry& next, do
       !Filter::improves(next, now))
     return false;
   filter_.add(now);
-  exact_ = true;
+  uses_lagrangian_ = true;
   if (alpha <= kShortStep) proximal_ *= kGrowth;
   if (alpha > 0.5) proximal_ = std::max(kShrinkage * proximal_, kLeastProximal);
   return true;
@@ -99,7 +99,7 @@ SqpStrategy::Order SqpStrategy::begin_phase(int phases_left) {
   softened_ = softened_ || soft();
   iterations_left_ = soft() ? kSoftIterations : kStiffIterations;
   proximal_ = first_proximal_;
-  exact_ = true;
+  uses_lagrangian_ = true;
   filter_ = Filter{};
   return Order::kBeginPhase;
 }
@@ -111,7 +111,7 @@ SqpStrategy::Order SqpStrategy::end_attempt(SolveStatus status) {
 
 SqpStrategy::Order SqpStrategy::regularise(SolveStatus if_hopeless) {
   proximal_ *= kGrowth;
-  exact_ = true;
+  uses_lagrangian_ = true;
   if (proximal_ <= kMostProximal) return Order::kGoOn;
   const bool softening = phases_left_ > 0 && phases_left_ < 2 * config_->softenings;
   return softening ? begin_phase(phases_left_ - 1) : end_attempt(if_hopeless);

@@ -46,7 +46,7 @@ class SqpStrategy {
   double proximal() const { return proximal_; }  // δ
   /// Returns whether the next step uses the Hessian of the Lagrangian. Otherwise it uses that of
   /// the objective.
-  bool exact() const { return exact_; }
+  bool uses_lagrangian() const { return uses_lagrangian_; }
   /// Returns the present weight of the spring to the final state: K, or less in a soft phase.
   double terminal_weight() const;
   int iterations() const { return iterations_; }  // over all attempts
@@ -83,7 +83,7 @@ class SqpStrategy {
   const ReverseConfig* config_;
   int attempt_ = 0, iterations_ = 0;
   double proximal_ = 1.0, first_proximal_;  // δ; δ of a phase's first iteration
-  bool exact_ = true;
+  bool uses_lagrangian_ = true;
   int phases_left_ = 0;              // phases to come in this attempt; odd: the spring is soft
   int iterations_left_ = 0;          // in this phase, if others follow
   bool softened_ = false;            // whether any attempt has had a soft phase

@@ -8,11 +8,11 @@
 namespace rtg::energy {
 namespace {
 
+using testing::apply_jacobian;
 using testing::ChainScene;
 using testing::closed;
 using testing::noise;
 using testing::of_coordinates;
-using testing::spread;
 
 /// Poses of the chain moved at random, jointed bodies off their pins.
 VectorXd scattered(const ChainScene& scene, std::uint64_t seed) {
@@ -34,7 +34,7 @@ TEST(Articulation, PlacingClosesEveryJointAndKeepsRootsAndAngles) {
   EXPECT_LT((other - after).norm(), 1e-15);
 }
 
-TEST(Articulation, SpreadIsTheDerivativeOfThePoses) {
+TEST(Articulation, JacobianIsTheDerivativeOfThePoses) {
   const ChainScene scene;
   const int n = scene.energy.dofs();
   const VectorXd p = closed(scene.energy, scattered(scene, 2));
@@ -46,22 +46,22 @@ TEST(Articulation, SpreadIsTheDerivativeOfThePoses) {
     up.head(n) += t * y;
     down.head(n) -= t * y;
     const VectorXd slope = (closed(scene.energy, up) - closed(scene.energy, down)) / (2.0 * t);
-    EXPECT_LT((slope.head(n) - spread(scene.energy, p, y)).norm(), 1e-8);
+    EXPECT_LT((slope.head(n) - apply_jacobian(scene.energy, p, y)).norm(), 1e-8);
   }
 }
 
-TEST(Articulation, GatherIsTheTransposeOfSpread) {
+TEST(Articulation, TransposedJacobianIsTheTranspose) {
   const ChainScene scene;
   const int n = scene.energy.dofs();
   const VectorXd p = closed(scene.energy, scattered(scene, 4));
   Rng rng(5);
   const VectorXd force = noise(n, 1.0, rng);
-  VectorXd gathered = force;
-  scene.energy.scene().articulation().gather(placed(p), gathered.data());
-  EXPECT_EQ(gathered, of_coordinates(scene.energy, gathered));
+  VectorXd reduced = force;
+  scene.energy.scene().articulation().apply_jacobian_transposed(placed(p), reduced.data());
+  EXPECT_EQ(reduced, of_coordinates(scene.energy, reduced));
   for (int m = 0; m < n; ++m) {
     const VectorXd unit = of_coordinates(scene.energy, VectorXd::Unit(n, m));
-    EXPECT_NEAR(force.dot(spread(scene.energy, p, unit)), gathered.dot(unit), 1e-14);
+    EXPECT_NEAR(force.dot(apply_jacobian(scene.energy, p, unit)), reduced.dot(unit), 1e-14);
   }
 }
 

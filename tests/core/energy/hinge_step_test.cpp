@@ -37,9 +37,9 @@ StepEnergy::Model reduced(const StepEnergy& energy, const VectorXd& p, StepEnerg
 TEST(HingeStep, GradientAndHessianOfTheStepEnergyMatchDifferences) {
   const ChainScene scene;
   const StepEnergy& energy = scene.energy;
-  const VectorXd now = stacked(scene.poses), lag = energy.forces(now);
-  ASSERT_GT(lag.head(lag.size() - 6).maxCoeff(), 0.0);
-  ASSERT_GT(lag.tail(6).maxCoeff(), 0.0);
+  const VectorXd now = stacked(scene.poses), previous_forces = energy.forces(now);
+  ASSERT_GT(previous_forces.head(previous_forces.size() - 6).maxCoeff(), 0.0);
+  ASSERT_GT(previous_forces.tail(6).maxCoeff(), 0.0);
   Rng rng(1);
   const auto at = [&](const VectorXd& d) {
     VectorXd p = now;
@@ -48,12 +48,13 @@ TEST(HingeStep, GradientAndHessianOfTheStepEnergyMatchDifferences) {
   };
   const VectorXd d = testing::noise(energy.dofs(), 3e-3, rng);
   const auto value = [&](const VectorXd& x) {
-    return VectorXd::Constant(1, energy.value(at(x), {now, lag}));
+    return VectorXd::Constant(1, energy.value(at(x), {now, previous_forces}));
   };
   const auto gradient = [&](const VectorXd& x) {
-    return reduced(energy, at(x), energy.model(at(x), {now, lag})).gradient;
+    return reduced(energy, at(x), energy.model(at(x), {now, previous_forces})).gradient;
   };
-  const StepEnergy::Model model = reduced(energy, at(d), energy.model(at(d), {now, lag}));
+  const StepEnergy::Model model =
+      reduced(energy, at(d), energy.model(at(d), {now, previous_forces}));
   EXPECT_EQ(model.gradient, of_coordinates(energy, model.gradient));
   std::vector<VectorXd> directions = testing::test_directions(model.gradient, rng);
   for (VectorXd& along : directions) along = of_coordinates(energy, along);

@@ -86,17 +86,17 @@ TEST(ImplicitStep, TheServosControlsLeadToTheSameEnd) {
 
 TEST(ImplicitStep, EndsWhereTheGradientVanishesAndEnergyIsLeast) {
   const TouchingScene scene;
-  const VectorXd now = stacked(scene.poses), lag = scene.energy.forces(now);
+  const VectorXd now = stacked(scene.poses), previous_forces = scene.energy.forces(now);
   const Vector3d bound = scene.energy.control_bound();
   const auto total = [&](const VectorXd& p) {
-    return scene.energy.value(p, {now, lag}) -
+    return scene.energy.value(p, {now, previous_forces}) -
            bound.dot(kControl.array().tanh().matrix().cwiseProduct(p.head<3>()));
   };
   const VectorXd end = step(scene.energy, now, Drive<double>::controls(kControl));
   EXPECT_GT((end - now).segment<3>(3).norm(), 1e-3);  // the box was pushed
   Rng rng(1);
   for (int trial = 0; trial < 20; ++trial) EXPECT_GT(total(end + noise(9, 1e-3, rng)), total(end));
-  VectorXd residual = scene.energy.model(end, {now, lag}).gradient;
+  VectorXd residual = scene.energy.model(end, {now, previous_forces}).gradient;
   residual.head<3>() -= bound.cwiseProduct(kControl.array().tanh().matrix());
   EXPECT_LT(residual.lpNorm<Eigen::Infinity>(), 1e-10);
 }

@@ -20,8 +20,8 @@ using testing::TouchingScene;
 /// Poses before and after a sub-step in contact, with the normal forces before it and the poses one
 /// sub-step earlier.
 struct Step {
-  VectorXd next, now, lag, before;
-  StepFrom from() const { return {now, lag, &before}; }
+  VectorXd next, now, previous_forces, before;
+  StepFrom from() const { return {now, previous_forces, &before}; }
 };
 
 /// p with its unknowns moved by d [dofs].
@@ -45,7 +45,7 @@ void expect_exact_derivatives(const StepEnergy& energy, const Poses& poses) {
   const VectorXd origin = VectorXd::Zero(energy.dofs());
   for (int trial = 0; trial < 5; ++trial) {
     const Step s = random_step(energy, poses, rng);
-    ASSERT_GT(s.lag.maxCoeff(), 0.0);
+    ASSERT_GT(s.previous_forces.maxCoeff(), 0.0);
     const auto value = [&](const VectorXd& d) {
       return VectorXd::Constant(1, energy.value(moved(s.next, d), s.from()));
     };
@@ -94,7 +94,7 @@ TEST(StepEnergy, ContactForcesAreActionAndReaction) {
   const TouchingScene scene;
   Rng rng(2);
   const Step s = random_step(scene.energy, scene.poses, rng);
-  VectorXd contact = scene.energy.model(s.next, {s.now, s.lag}).gradient;
+  VectorXd contact = scene.energy.model(s.next, {s.now, s.previous_forces}).gradient;
   for (int i = 0; i < scene.energy.bodies(); ++i) {  // less damping
     const Damping<double>& body = scene.energy.damping(i);
     const Vector3d moved = (s.next - s.now).segment<3>(3 * i);
@@ -118,11 +118,11 @@ TEST(StepEnergy, DoesNotChangeWithARigidMotionOfTheScene) {
   const Step s = random_step(scene.energy, scene.poses, rng);
   const Vector2d shift(4.0, -3.0);
   const VectorXd next = rigidly_moved(s.next, 2.2, shift), now = rigidly_moved(s.now, 2.2, shift);
-  EXPECT_LT((scene.energy.forces(now) - s.lag).norm(), 1e-12);
-  EXPECT_NEAR(scene.energy.value(next, {now, s.lag}), scene.energy.value(s.next, {s.now, s.lag}),
-              1e-14);
-  const VectorXd gradient = scene.energy.model(s.next, {s.now, s.lag}).gradient;
-  EXPECT_LT((scene.energy.model(next, {now, s.lag}).gradient -
+  EXPECT_LT((scene.energy.forces(now) - s.previous_forces).norm(), 1e-12);
+  EXPECT_NEAR(scene.energy.value(next, {now, s.previous_forces}),
+              scene.energy.value(s.next, {s.now, s.previous_forces}), 1e-14);
+  const VectorXd gradient = scene.energy.model(s.next, {s.now, s.previous_forces}).gradient;
+  EXPECT_LT((scene.energy.model(next, {now, s.previous_forces}).gradient -
              rigidly_moved(gradient, 2.2, Vector2d::Zero()) +
              VectorXd::NullaryExpr(9, [](Eigen::Index m) { return m % 3 == 2 ? 2.2 : 0.0; }))
                 .norm(),
@@ -136,11 +136,11 @@ TEST(StepEnergy, FreeBodiesAreDampedAlone) {
   VectorXd next = now;
   next.segment<3>(3) += Vector3d(0.3, -0.4, 0.2);
   const Mass box = mass_of(scene.scene.bodies[1]);
-  const VectorXd lag = scene.energy.forces(now);
-  EXPECT_EQ(lag, VectorXd::Zero(lag.size()));
-  EXPECT_NEAR(scene.energy.value(next, {now, lag}), 0.5 * box.mass * 0.25 + 0.5 * box.moment * 0.04,
-              1e-15);
-  const VectorXd gradient = scene.energy.model(next, {now, lag}).gradient;
+  const VectorXd previous_forces = scene.energy.forces(now);
+  EXPECT_EQ(previous_forces, VectorXd::Zero(previous_forces.size()));
+  EXPECT_NEAR(scene.energy.value(next, {now, previous_forces}),
+              0.5 * box.mass * 0.25 + 0.5 * box.moment * 0.04, 1e-15);
+  const VectorXd gradient = scene.energy.model(next, {now, previous_forces}).gradient;
   EXPECT_LT(
       (gradient.segment<3>(3) - Vector3d(0.3 * box.mass, -0.4 * box.mass, 0.2 * box.moment)).norm(),
       1e-15);
@@ -156,11 +156,11 @@ TEST(StepEnergy, InertiaIsMeasuredFromTheMotionBefore) {
   next.segment<3>(3) += Vector3d(0.3, -0.4, 0.2);
   before.segment<3>(3) -= Vector3d(0.2, 0.1, 0.3);
   const Mass box = mass_of(scene.scene.bodies[1]);
-  const VectorXd lag = scene.energy.forces(now);
+  const VectorXd previous_forces = scene.energy.forces(now);
   const double damping = 0.5 * box.mass * 0.25 + 0.5 * box.moment * 0.04;
-  EXPECT_NEAR(scene.energy.value(next, {now, lag, &before}),
+  EXPECT_NEAR(scene.energy.value(next, {now, previous_forces, &before}),
               damping + 2.0 * (0.5 * box.mass * 0.26 + 0.5 * box.moment * 0.01), 1e-15);
-  EXPECT_NEAR(scene.energy.value(next, {now, lag}), 3.0 * damping, 1e-15);  // from rest
+  EXPECT_NEAR(scene.energy.value(next, {now, previous_forces}), 3.0 * damping, 1e-15);  // from rest
 }
 
 // ... the paper's form: J (1 - cos a) and ι J (3 - 2 cos a - 2 cos b + cos(a + b)).
@@ -214,10 +214,10 @@ TEST(StepEnergy, ForcesAreThoseOfTheBarrierAtTheGap) {
   const TouchingScene scene;
   // Face to face 0.05 apart, the upper box shifted by 0.4: two vertices of each above the other.
   const VectorXd p = stacked({{-5, 0, 0}, {0, 0, 0}, {0.4, 1.25, 0}});
-  const VectorXd lag = scene.energy.forces(p);
+  const VectorXd forces = scene.energy.forces(p);
   int acting = 0;
   for (std::size_t k = 0; k < scene.energy.contacts().size(); ++k) {
-    const double force = lag[static_cast<Eigen::Index>(k)];
+    const double force = forces[static_cast<Eigen::Index>(k)];
     if (force == 0.0) continue;
     ++acting;
     EXPECT_NEAR(force, scene.energy.barrier().force(0.05), 1e-8);
@@ -267,10 +267,10 @@ TEST(StepEnergy, PlainBarrierActsAtAnyDistance) {
   scene.physics.plain_barrier = true;
   const StepEnergy energy(scene.scene, scene.physics, scene.task.push);
   const VectorXd far = stacked({{0, 0, 0}, {50, 0, 0}, {0, 80, 0}});
-  const VectorXd lag = energy.forces(far);
-  EXPECT_GT(lag.minCoeff(), 0.0);
+  const VectorXd forces = energy.forces(far);
+  EXPECT_GT(forces.minCoeff(), 0.0);
   const double gap = energy.gap_value(energy.contacts()[0], far);
-  EXPECT_DOUBLE_EQ(lag[0], energy.barrier().weight / gap);
+  EXPECT_DOUBLE_EQ(forces[0], energy.barrier().weight / gap);
 }
 
 TEST(StepEnergy, FixedBodiesTakePartWithoutCoordinates) {
@@ -282,10 +282,10 @@ TEST(StepEnergy, FixedBodiesTakePartWithoutCoordinates) {
   EXPECT_FALSE(energy.movable(2));
   expect_exact_derivatives(energy, scene.poses);
   // What the movable bodies feel is what they would feel from a movable one.
-  const VectorXd p = stacked(scene.poses), lag = scene.energy.forces(p);
-  EXPECT_EQ(energy.forces(p), lag);
-  EXPECT_EQ(energy.model(p, {p, lag}).gradient,
-            VectorXd(scene.energy.model(p, {p, lag}).gradient.head(6)));
+  const VectorXd p = stacked(scene.poses), forces = scene.energy.forces(p);
+  EXPECT_EQ(energy.forces(p), forces);
+  EXPECT_EQ(energy.model(p, {p, forces}).gradient,
+            VectorXd(scene.energy.model(p, {p, forces}).gradient.head(6)));
 }
 
 TEST(StepEnergy, TwoFixedBodiesDoNotTouch) {

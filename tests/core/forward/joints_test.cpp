@@ -99,13 +99,14 @@ TEST(Joints, ALimitStopsADoorAndTheRobotThatPushesIt) {
 TEST(Joints, AStepEndsWhereTheEnergyOverTheCoordinatesIsLeast) {
   const ChainScene scene;
   const energy::StepEnergy& energy = scene.energy;
-  const VectorXd now = energy::stacked(scene.poses), lag = energy.forces(now);
+  const VectorXd now = energy::stacked(scene.poses), previous_forces = energy.forces(now);
   const Vector3d control(0.4, 0.3, 0.1);
   const auto total = [&](const VectorXd& p) {
-    return energy.value(p, {now, lag}) -
+    return energy.value(p, {now, previous_forces}) -
            energy.control_bound().dot(control.array().tanh().matrix().cwiseProduct(p.head<3>()));
   };
-  const auto step = implicit_step(energy, {now, lag}, energy::Drive<double>::controls(control));
+  const auto step =
+      implicit_step(energy, {now, previous_forces}, energy::Drive<double>::controls(control));
   ASSERT_TRUE(step);
   EXPECT_LT(widest_joint(scene.scene, energy::unstacked(step->next)), 1e-14);
   EXPECT_GT((step->next - now).segment<3>(6).norm(), 1e-3);  // a link was pushed

@@ -134,11 +134,11 @@ TEST(NewtonDynamics, WithLittleDampingItIsNearerToBox2dThanQuasiStaticSteps) {
 
 TEST(NewtonDynamics, QuasiStaticStepsDoNotDependOnTheMotionBefore) {
   const TouchingScene scene;
-  const VectorXd now = energy::stacked(scene.poses), lag = scene.energy.forces(now);
+  const VectorXd now = energy::stacked(scene.poses), previous_forces = scene.energy.forces(now);
   const VectorXd before = now - VectorXd::Constant(9, 0.1);
   const auto drive = energy::Drive<double>::towards({0.2, 0, 0});
-  EXPECT_EQ(implicit_step(scene.energy, {now, lag, &before}, drive)->next,
-            implicit_step(scene.energy, {now, lag}, drive)->next);
+  EXPECT_EQ(implicit_step(scene.energy, {now, previous_forces, &before}, drive)->next,
+            implicit_step(scene.energy, {now, previous_forces}, drive)->next);
 }
 
 }  // namespace

@@ -43,10 +43,10 @@ TEST(Elementary, ALanesBitsDoNotDependOnTheOthers) {
   Rng rng(2);
   for (int trial = 0; trial < 200; ++trial) {
     const Lanes x = numbers(-90.0, 3.0, rng);
-    Lanes all[kMostNumbers];
+    Lanes all[kMaxExponentials];
     for (Lanes& one : all) one = x;
     set_lane(all[0], 0, NAN);
-    exponentials(all, 1 + trial % kMostNumbers);
+    exponentials(all, 1 + trial % kMaxExponentials);
     for (int l = 1; l < kWidth<Lanes>; ++l) {
       const Lanes same(lane(x, l)), positive(std::abs(lane(x, l)));
       Lanes alone = same;

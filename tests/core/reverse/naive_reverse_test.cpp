@@ -12,7 +12,7 @@
 namespace rtg::reverse {
 namespace {
 
-constexpr auto kDraws = static_cast<std::size_t>(kMaxStarts);
+constexpr auto kDraws = static_cast<std::size_t>(kMaxPredecessors);
 constexpr int kRight = 0;  // of 4 actions; the robot comes from the left
 
 /// A square robot of 1 m and objects of the given shapes; pushes of 2 m in an arena of ±8 m.
@@ -33,8 +33,8 @@ struct NaiveReverseTest : ::testing::Test {
   void expect_pulled(std::size_t body) const {
     const ReverseResult result = solve();
     ASSERT_EQ(result.status, SolveStatus::kConverged);
-    ASSERT_EQ(result.starts.size(), body == 0 ? 1U : kDraws);
-    for (const Poses& start : result.starts) expect_pulled(body, start);
+    ASSERT_EQ(result.predecessors.size(), body == 0 ? 1U : kDraws);
+    for (const Poses& start : result.predecessors) expect_pulled(body, start);
   }
 
   void expect_pulled(std::size_t body, const Poses& start) const {
@@ -61,10 +61,10 @@ TEST_F(NaiveReverseTest, FreeRobotStepsBackOneStride) {
     const ReverseResult result = solve(action);
     EXPECT_EQ(result.status, SolveStatus::kConverged);
     EXPECT_EQ(result.iterations, 0);
-    const Vector2d moved = result.starts[0][0].position() - end[0].position();
+    const Vector2d moved = result.predecessors[0][0].position() - end[0].position();
     EXPECT_LT((moved - back[static_cast<std::size_t>(action)]).norm(), 1e-14);
-    EXPECT_EQ(result.starts[0][0].theta, end[0].theta);
-    EXPECT_EQ(result.starts[0][1], end[1]);
+    EXPECT_EQ(result.predecessors[0][0].theta, end[0].theta);
+    EXPECT_EQ(result.predecessors[0][1], end[1]);
   }
 }
 
@@ -107,8 +107,8 @@ TEST_F(NaiveReverseTest, ThePullIsAFunctionOfTheJobSpreadOverItsRange) {
   for (int k = 0; k < 125; ++k) {
     end[1].theta = 1e-4 * k;
     const ReverseResult result = solve();
-    ASSERT_EQ(result.starts, solve().starts);
-    for (const Poses& start : result.starts) {
+    ASSERT_EQ(result.predecessors, solve().predecessors);
+    for (const Poses& start : result.predecessors) {
       const double pull = end[1].x - start[1].x;
       least = std::min(least, pull);
       most = std::max(most, pull);
@@ -161,8 +161,8 @@ TEST_F(NaiveReverseTest, PullsThatOverlapAreLeftOut) {
   add(box(0.1, 4.0), {0.7, 3.2, 0.0});  // beside the robot's way, but not the object's
   const ReverseResult result = solve();
   ASSERT_EQ(result.status, SolveStatus::kConverged);
-  EXPECT_LT(result.starts.size(), kDraws);
-  for (const Poses& start : result.starts) EXPECT_FALSE(first_overlap(scene, start));
+  EXPECT_LT(result.predecessors.size(), kDraws);
+  for (const Poses& start : result.predecessors) EXPECT_FALSE(first_overlap(scene, start));
 }
 
 TEST_F(NaiveReverseTest, WhatJointsConnectIsPulledAsOne) {
@@ -171,7 +171,7 @@ TEST_F(NaiveReverseTest, WhatJointsConnectIsPulledAsOne) {
   scene.joints.push_back({1, 2, {0.6, 0.0}, {-0.6, 0.0}});
   const ReverseResult result = solve();
   ASSERT_EQ(result.status, SolveStatus::kConverged);
-  for (const Poses& start : result.starts)
+  for (const Poses& start : result.predecessors)
     EXPECT_NEAR(end[1].x - start[1].x, end[2].x - start[2].x, 1e-12);
 }
 
@@ -189,9 +189,9 @@ TEST_F(NaiveReverseTest, AnswersWithFiniteStartsOfAllBodiesOrNone) {
   for (int trial = 0; trial < 300; ++trial) {
     for (Pose& p : end) p = {rng.uniform(-9, 9), rng.uniform(-9, 9), rng.uniform(-9, 9)};
     const ReverseResult result = solve(rng.below(4));
-    ASSERT_EQ(!result.starts.empty(), result.status == SolveStatus::kConverged);
-    ASSERT_LE(result.starts.size(), kDraws);
-    for (const Poses& start : result.starts) {
+    ASSERT_EQ(!result.predecessors.empty(), result.status == SolveStatus::kConverged);
+    ASSERT_LE(result.predecessors.size(), kDraws);
+    for (const Poses& start : result.predecessors) {
       ASSERT_EQ(start.size(), 3U);
       ASSERT_TRUE(is_finite(start));
     }

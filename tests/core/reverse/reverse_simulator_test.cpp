@@ -40,11 +40,11 @@ TEST(ReverseSimulator, AFreeRobotStepsBackOneStrideAndTheOthersStay) {
     ASSERT_EQ(result.status, SolveStatus::kConverged);
     const Vector2d back = end[0].position() - kPush.stride * direction(action, kPush);
     // The pull on the robot against the push and the price of control shift it a little.
-    EXPECT_LT((result.starts[0][0].position() - back).norm(), 0.01);
-    EXPECT_NEAR(result.starts[0][0].theta, 0.3, 1e-6);
-    EXPECT_EQ(result.starts[0][1], end[1]);
-    EXPECT_EQ(result.starts[0][2], end[2]);
-    EXPECT_EQ(result.starts.size(), 1U);
+    EXPECT_LT((result.predecessors[0][0].position() - back).norm(), 0.01);
+    EXPECT_NEAR(result.predecessors[0][0].theta, 0.3, 1e-6);
+    EXPECT_EQ(result.predecessors[0][1], end[1]);
+    EXPECT_EQ(result.predecessors[0][2], end[2]);
+    EXPECT_EQ(result.predecessors.size(), 1U);
   }
 }
 
@@ -64,8 +64,8 @@ TEST(ReverseSimulator, WithThePapersPresetAFreeRobotFollowsTheClosedForm) {
     return reach * std::tanh(testing::closed_form_control(problem, along));
   };
   // A stationarity of 1e-4 over the curvature 2ε of the controls' price, times dx/dc.
-  EXPECT_NEAR(result.starts[0][0].x, end[0].x - moved(d.x()), 0.02);
-  EXPECT_NEAR(result.starts[0][0].y, end[0].y - moved(d.y()), 0.02);
+  EXPECT_NEAR(result.predecessors[0][0].x, end[0].x - moved(d.x()), 0.02);
+  EXPECT_NEAR(result.predecessors[0][0].y, end[0].y - moved(d.y()), 0.02);
 }
 
 // The first box is 6 m off the robot's way, the second one beyond.
@@ -79,8 +79,8 @@ TEST(ReverseSimulator, WithThePlainBarrierBodiesFarAwayAreMovedToo) {
   const ReverseResult near = solve(scene, job);
   ASSERT_EQ(near.status, SolveStatus::kConverged);
   for (std::size_t k : {1U, 2U}) {
-    EXPECT_GT((far.starts[0][k].position() - job.end[k].position()).norm(), 1e-3);
-    EXPECT_EQ(near.starts[0][k], job.end[k]);
+    EXPECT_GT((far.predecessors[0][k].position() - job.end[k].position()).norm(), 1e-3);
+    EXPECT_EQ(near.predecessors[0][k], job.end[k]);
   }
 }
 
@@ -91,7 +91,7 @@ TEST(ReverseSimulator, WithThePapersPresetAMoveWithoutContactConverges) {
   const ReverseConfig paper = reverse_preset(ReversePreset::kPaper);
   const ReverseResult result = solve(robot_and_boxes(1), job, paper);
   ASSERT_EQ(result.status, SolveStatus::kConverged);
-  EXPECT_LT(result.starts[0][0].x, -2.0);
+  EXPECT_LT(result.predecessors[0][0].x, -2.0);
   ReverseConfig heavy = paper;
   heavy.plain_barrier = kPhysics.barrier;
   heavy.max_iterations = 100;
@@ -104,7 +104,7 @@ TEST(ReverseSimulator, WithThePapersPresetThereIsNoStartAtTheIterationLimit) {
   const ReverseResult result = solve(robot_and_boxes(1), {{{0, 0, 0}, {1.54, 0.1, 0}}, 0}, config);
   EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
   EXPECT_EQ(result.iterations, 5);
-  EXPECT_TRUE(result.starts.empty());
+  EXPECT_TRUE(result.predecessors.empty());
 }
 
 // The pull on the robot against the push, 0.2 against a spring of 300, and what the contact
@@ -121,7 +121,7 @@ TEST(ReverseSimulator, ASolutionThatMissesTheGivenEndIsNoneInEitherPreset) {
     const Scene scene = robot_and_boxes(boxes);
     const ReverseResult missed = solve(scene, job, strict);
     EXPECT_EQ(missed.status, SolveStatus::kInfeasible);
-    EXPECT_TRUE(missed.starts.empty());
+    EXPECT_TRUE(missed.predecessors.empty());
     EXPECT_EQ(solve(scene, job, lax).status, SolveStatus::kConverged);
   }
 }
@@ -135,7 +135,7 @@ std::vector<double> model_gaps(int scenes) {
     const forward::NewtonSimulator model(drawn.scene, kPush, kPhysics);
     const Poses end = model.push(drawn.start, drawn.action).end;
     const ReverseResult result = solve(drawn.scene, {end, drawn.action});
-    for (const Poses& start : result.starts) {
+    for (const Poses& start : result.predecessors) {
       const Poses reached = model.push(start, drawn.action).end;
       double sum = 0.0;
       for (std::size_t k = 0; k < end.size(); ++k)
@@ -161,9 +161,9 @@ TEST(ReverseSimulator, ReleasesStandBetweenTheStartOfTheWholePushAndTheEnd) {
   ReverseConfig config;
   config.late_contacts = 4;
   const ReverseResult result = solve(robot_and_boxes(2), job, config);
-  ASSERT_EQ(result.starts.size(), 5U);
+  ASSERT_EQ(result.predecessors.size(), 5U);
   for (std::size_t k = 1; k < 5; ++k) {
-    const Poses &start = result.starts[k], &before = result.starts[k - 1];
+    const Poses &start = result.predecessors[k], &before = result.predecessors[k - 1];
     EXPECT_EQ(start[0], before[0]);
     EXPECT_GT(start[1].x, before[1].x + 0.2);  // a fifth of the stride is 0.4 m
     EXPECT_LT(start[1].x, job.end[1].x);
@@ -177,7 +177,7 @@ TEST(ReverseSimulator, PrunedJobsComeBackUnsolved) {
   const ReverseResult result = solve(robot_and_boxes(2), job);
   EXPECT_EQ(result.status, SolveStatus::kPruned);
   EXPECT_EQ(result.iterations, 0);
-  EXPECT_TRUE(result.starts.empty());
+  EXPECT_TRUE(result.predecessors.empty());
 }
 
 TEST(ReverseSimulator, BadEndsAreNotFiniteAndHaveNoStart) {
@@ -190,7 +190,7 @@ TEST(ReverseSimulator, BadEndsAreNotFiniteAndHaveNoStart) {
   for (const ReverseJob& job : bad) {
     const ReverseResult result = solve(scene, job);
     EXPECT_EQ(result.status, SolveStatus::kNonFinite);
-    EXPECT_TRUE(result.starts.empty());
+    EXPECT_TRUE(result.predecessors.empty());
   }
 }
 
@@ -209,9 +209,9 @@ TEST(ReverseSimulator, TheSceneMayStandElsewhereAndByAQuarterTurn) {
   const ReverseResult result = solve(scene, there);
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   for (std::size_t k = 0; k < job.end.size(); ++k) {
-    const Pose expected = moved(here.starts[0][k]);
-    EXPECT_LT((result.starts[0][k].position() - expected.position()).norm(), 1e-5);
-    EXPECT_NEAR(result.starts[0][k].theta, expected.theta, 1e-5);
+    const Pose expected = moved(here.predecessors[0][k]);
+    EXPECT_LT((result.predecessors[0][k].position() - expected.position()).norm(), 1e-5);
+    EXPECT_NEAR(result.predecessors[0][k].theta, expected.theta, 1e-5);
   }
 }
 
@@ -224,7 +224,7 @@ TEST(ReverseSimulator, FixedBodiesMayStandAnywhereInTheOrder) {
   ASSERT_EQ(a.status, SolveStatus::kConverged);
   EXPECT_EQ(b.status, a.status);
   EXPECT_EQ(b.iterations, a.iterations);
-  const Poses &p = a.starts[0], &q = b.starts[0];
+  const Poses &p = a.predecessors[0], &q = b.predecessors[0];
   EXPECT_EQ(q, (Poses{p[0], p[3], p[1], p[2]}));
   EXPECT_EQ(p[3], wall);
 }
@@ -244,8 +244,8 @@ TEST(ReverseSimulator, AnswersAnyLayoutWithFiniteStarts) {
     ReverseJob job{Poses(3), rng.below(48)};  // many of them overlap
     for (Pose& p : job.end) p = {rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-9, 9)};
     const ReverseResult result = solve(scene, job);
-    ASSERT_EQ(!result.starts.empty(), result.status == SolveStatus::kConverged);
-    for (const Poses& start : result.starts) {
+    ASSERT_EQ(!result.predecessors.empty(), result.status == SolveStatus::kConverged);
+    for (const Poses& start : result.predecessors) {
       ASSERT_EQ(start.size(), 3U);
       ASSERT_TRUE(is_finite(start));
     }

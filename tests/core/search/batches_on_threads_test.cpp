@@ -37,7 +37,7 @@ TEST(BatchesOnThreads, SolvesInJobOrderForAnyNumberOfThreads) {
     ASSERT_EQ(results.size(), jobs.size());
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       ASSERT_EQ(results[k].iterations, 2 * jobs[k].action);
-      ASSERT_EQ(results[k].starts.at(0), jobs[k].end);
+      ASSERT_EQ(results[k].predecessors.at(0), jobs[k].end);
       ASSERT_EQ(results[k].status, reverse::SolveStatus::kInfeasible);
       ASSERT_GE(results[k].cpu_s, 0.0);  // filled in
     }

@@ -26,13 +26,14 @@ struct BeamSearchStartTest : ::testing::Test, testing::DraggingWorld {
   bool has_room(const Poses& poses) const {
     for (const std::size_t k : {0U, 1U, 2U})
       if ((poses[k].position() - task.start[3].position()).norm() < 2.0) return false;
-    return legal_state(task, placed(task, StateMetric(task.scene), poses, task.start, task.start));
+    return legal_state(
+        task, snapped_to_start(task, StateMetric(task.scene), poses, task.start, task.start));
   }
 
   /// The nodes in which box 3 is within 0.4 m of its place.
   std::vector<Poses> nodes_in_place() {
     BeamSearch search(task, config, task.start, 1);
-    search.plant(replay, stats);
+    search.seed_roots(replay, stats);
     for (int layer = 0; layer < 12; ++layer) search.grow(solve, replay, stats);
     std::vector<Poses> found;
     for (const Node& n : search.nodes())

@@ -43,10 +43,10 @@ struct NotingWorld : testing::DraggingWorld {
         answer = {reverse::SolveStatus::kIterationLimit, answer.iterations + 50};
       } else {
         iterations.push_back(answer.iterations);
-        if (moves(answer.starts[0], jobs[k].end)) pushing.push_back(answer.iterations);
+        if (moves(answer.predecessors[0], jobs[k].end)) pushing.push_back(answer.iterations);
       }
       if (k % static_cast<std::size_t>(task.push.headings) == 0) expanded.push_back(jobs[k].end);
-      for (const Poses& start : answer.starts)
+      for (const Poses& start : answer.predecessors)
         wanted_[reverse::key_of(float_rounded(start), jobs[k].action)] = jobs[k].end;
     }
     to_come_ = true;

@@ -45,29 +45,29 @@ double least_distance(const tasks::Task& task, const Poses& poses, const Poses& 
   return least;
 }
 
-TEST(Relabelled, LeavesBodiesWithJointsAlone) {
+TEST(WithSwappedTwins, LeavesBodiesWithJointsAlone) {
   const tasks::Task task = testing::art_manip();
   const Poses mixed = exchanged(task.start, 1, 4);
-  EXPECT_EQ(relabelled(task, mixed, task.start), mixed);
+  EXPECT_EQ(with_swapped_twins(task, mixed, task.start), mixed);
 }
 
-TEST(Relabelled, UndoesEveryExchangeOfThreeAlike) {
+TEST(WithSwappedTwins, UndoesEveryExchangeOfThreeAlike) {
   const tasks::Task task = gathering();
   std::vector<std::size_t> order{1, 2, 3};
   do {
     const Poses mixed{task.start[0], task.start[order[0]], task.start[order[1]],
                       task.start[order[2]]};
-    EXPECT_EQ(relabelled(task, mixed, task.start), task.start);
+    EXPECT_EQ(with_swapped_twins(task, mixed, task.start), task.start);
   } while (std::ranges::next_permutation(order).found);
 }
 
-TEST(Relabelled, IsNoFartherThanBeforeNorThanAfterAnyFurtherExchange) {
+TEST(WithSwappedTwins, IsNoFartherThanBeforeNorThanAfterAnyFurtherExchange) {
   const tasks::Task task = gathering_hard();
   Rng rng(61);
   int nearer = 0;
   for (int k = 0; k < kStates; ++k) {
     const Poses poses = random_poses(task, rng), target = random_poses(task, rng);
-    const Poses out = relabelled(task, poses, target);
+    const Poses out = with_swapped_twins(task, poses, target);
     const double least = distance(task, out, target);
     EXPECT_LE(least, distance(task, poses, target));
     nearer += least < distance(task, poses, target);
@@ -79,28 +79,28 @@ TEST(Relabelled, IsNoFartherThanBeforeNorThanAfterAnyFurtherExchange) {
 }
 
 // A cycle of three may be nearer where no exchange of two is: in 6 of these 500.
-TEST(Relabelled, IsTheNearestLabellingOfThreeAlmostAlways) {
+TEST(WithSwappedTwins, IsTheNearestLabellingOfThreeAlmostAlways) {
   const tasks::Task task = gathering();
   Rng rng(62);
   int nearest = 0;
   for (int k = 0; k < kStates; ++k) {
     const Poses poses = random_poses(task, rng), target = random_poses(task, rng);
     const double least = least_distance(task, poses, target);
-    const double found = distance(task, relabelled(task, poses, target), target);
+    const double found = distance(task, with_swapped_twins(task, poses, target), target);
     EXPECT_GE(found, least - 1e-9);  // sums in another order
     nearest += found <= least + 1e-9;
   }
   EXPECT_GT(nearest, kStates * 97 / 100);
 }
 
-TEST(Relabelled, ExchangesOnlyWhatLooksTheSame) {
+TEST(WithSwappedTwins, ExchangesOnlyWhatLooksTheSame) {
   tasks::Task task = gathering_hard();
   task.scene.bodies[3].kind = "other";
   task.scene.bodies[4].kind = "other";
   Rng rng(63);
   for (int k = 0; k < kStates; ++k) {
     const Poses poses = random_poses(task, rng);
-    const Poses out = relabelled(task, poses, random_poses(task, rng));
+    const Poses out = with_swapped_twins(task, poses, random_poses(task, rng));
     EXPECT_EQ(out[0], poses[0]);
     for (const std::size_t i : {1U, 3U})
       EXPECT_TRUE((out[i] == poses[i] && out[i + 1] == poses[i + 1]) ||
@@ -108,12 +108,12 @@ TEST(Relabelled, ExchangesOnlyWhatLooksTheSame) {
   }
 }
 
-TEST(Relabelled, EveryDifferenceOfLooksCounts) {
+TEST(WithSwappedTwins, EveryDifferenceOfLooksCounts) {
   const auto stays = [](auto change) {
     tasks::Task task = gathering();
     change(task.scene.bodies[1]);
     const Poses crossed = exchanged(task.start, 1, 2);
-    return relabelled(task, crossed, task.start) == crossed;
+    return with_swapped_twins(task, crossed, task.start) == crossed;
   };
   EXPECT_FALSE(stays([](Body& b) { b.name = "another"; }));
   EXPECT_TRUE(stays([](Body& b) { b.kind = "other"; }));
@@ -123,11 +123,11 @@ TEST(Relabelled, EveryDifferenceOfLooksCounts) {
   EXPECT_TRUE(stays([](Body& b) { b.fixed = true; }));
 }
 
-TEST(Relabelled, TheRobotStaysWhateverLooksLikeIt) {
+TEST(WithSwappedTwins, TheRobotStaysWhateverLooksLikeIt) {
   tasks::Task task = gathering();
   task.scene.bodies[1] = task.scene.bodies[0];
   const Poses crossed = exchanged(task.start, 0, 1);
-  EXPECT_EQ(relabelled(task, crossed, task.start), crossed);
+  EXPECT_EQ(with_swapped_twins(task, crossed, task.start), crossed);
 }
 
 SearchConfig of(int breadth, int root_draws) {
@@ -161,7 +161,7 @@ TEST(GoalRoots, AreDistinctGoalsNearestFirst) {
   double before = 0.0;
   for (const Poses& root : found) {
     EXPECT_TRUE(succeeded(task, root));
-    EXPECT_EQ(relabelled(task, root, task.start), root);
+    EXPECT_EQ(with_swapped_twins(task, root, task.start), root);
     EXPECT_TRUE(cells.insert(metric.cell(root)).second);
     const double left = start_distance(task, metric, root, task.start);
     EXPECT_GE(left, before);

@@ -124,12 +124,12 @@ TEST(ReplayPredecessors, FillInWhatThePushTrulyLedTo) {
   EXPECT_EQ(out[0].action, 10);
   EXPECT_EQ(out[0].start, all_zero());
   EXPECT_EQ(out[0].end, shifted(all_zero(), 10 * kStep));
-  EXPECT_NEAR(out[0].gap, 0.3 / 4.0, 1e-15);
-  EXPECT_NEAR(out[0].miss, 0.3, 1e-15);
+  EXPECT_NEAR(out[0].mean_error, 0.3 / 4.0, 1e-15);
+  EXPECT_NEAR(out[0].max_error, 0.3, 1e-15);
   EXPECT_EQ(out[0].moved, 3);
   EXPECT_EQ(out[1].parent, 5);
-  EXPECT_EQ(out[1].gap, kStep);
-  EXPECT_EQ(out[1].miss, kStep);
+  EXPECT_EQ(out[1].mean_error, kStep);
+  EXPECT_EQ(out[1].max_error, kStep);
   EXPECT_EQ(out[1].moved, 0);
   EXPECT_EQ(stats.rejected_pushes, 0);
   EXPECT_EQ(stats.replay_cpu_s, 0.5);

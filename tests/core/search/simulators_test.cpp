@@ -48,7 +48,7 @@ TEST(Simulators, ALayerOfReverseSolvesHasTheSameBitsOn1To16Threads) {
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       ASSERT_EQ(results[k].status, reference[k].status);
       ASSERT_EQ(results[k].iterations, reference[k].iterations);
-      ASSERT_EQ(results[k].starts, reference[k].starts);
+      ASSERT_EQ(results[k].predecessors, reference[k].predecessors);
     }
   }
 }
@@ -75,7 +75,7 @@ TEST(Simulators, NaiveGeneratorIsTheNaiveReverse) {
   ASSERT_EQ(results.size(), jobs.size());
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     EXPECT_EQ(results[k].status, naive.solve(jobs[k]).status);
-    EXPECT_EQ(results[k].starts, naive.solve(jobs[k]).starts);
+    EXPECT_EQ(results[k].predecessors, naive.solve(jobs[k]).predecessors);
   }
 }
 

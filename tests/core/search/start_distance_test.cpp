@@ -90,16 +90,16 @@ TEST_F(StartDistanceTest, WhatIsInPlaceIsPutWhereAStartHasIt) {
   poses[0] = {0.1, -4.8, 0.0};  // of no account as long as an object is out of place
   Poses expected = poses;
   expected[2] = start[2];
-  EXPECT_EQ(placed(task, metric, poses, task.start, start), expected);
+  EXPECT_EQ(snapped_to_start(task, metric, poses, task.start, start), expected);
   poses[1] = start[1];
-  EXPECT_EQ(placed(task, metric, poses, task.start, start), start);
+  EXPECT_EQ(snapped_to_start(task, metric, poses, task.start, start), start);
   poses[0].y += 0.3;
   expected = start;
   expected[0] = poses[0];
-  EXPECT_EQ(placed(task, metric, poses, task.start, start), expected);
+  EXPECT_EQ(snapped_to_start(task, metric, poses, task.start, start), expected);
 }
 
-TEST(Placed, WhatTurnsOnAPinIsInPlaceOnlyIfItIsTurnedRight) {
+TEST(SnappedToStart, WhatTurnsOnAPinIsInPlaceOnlyIfItIsTurnedRight) {
   tasks::Task task = gathering();
   task.scene.bodies[1].fixed = true;
   task.start[2] = task.start[1];
@@ -111,18 +111,18 @@ TEST(Placed, WhatTurnsOnAPinIsInPlaceOnlyIfItIsTurnedRight) {
   EXPECT_FALSE(in_place(metric, turned, task.start));
   EXPECT_TRUE(in_place(metric, nearly, task.start));
   EXPECT_GT(start_distance(task, metric, turned, task.start), 2.0);
-  EXPECT_EQ(placed(task, metric, turned, task.start, task.start), turned);
-  EXPECT_EQ(placed(task, metric, nearly, task.start, task.start), task.start);
+  EXPECT_EQ(snapped_to_start(task, metric, turned, task.start, task.start), turned);
+  EXPECT_EQ(snapped_to_start(task, metric, nearly, task.start, task.start), task.start);
 }
 
-TEST(Placed, WhatJointsConnectIsPutThereTogether) {
+TEST(SnappedToStart, WhatJointsConnectIsPutThereTogether) {
   const tasks::Task task = testing::art_manip();
   const StateMetric metric(task.scene);
   Poses poses = task.start;
   for (std::size_t i = 1; i < poses.size(); ++i) poses[i].y += 0.3;
-  EXPECT_EQ(placed(task, metric, poses, task.start, task.start), task.start);
+  EXPECT_EQ(snapped_to_start(task, metric, poses, task.start, task.start), task.start);
   poses.back().y += 0.3;
-  EXPECT_EQ(placed(task, metric, poses, task.start, task.start), poses);
+  EXPECT_EQ(snapped_to_start(task, metric, poses, task.start, task.start), poses);
 }
 
 }  // namespace

@@ -11,13 +11,13 @@
 namespace rtg::tasks {
 namespace {
 
-constexpr double kWay = 0.2;
+constexpr double kRobotWeight = 0.2;
 
-TEST(GoalDistance, IsHowFarTheObjectsAreFromTheirDiscAndTheWayToTheNearestOfThese) {
+TEST(GoalDistance, IsHowFarTheObjectsAreFromTheirDiscAndTheDistanceToTheNearestOfThese) {
   const Task task = testing::gathering();  // centres within 2 m of the origin
   const Poses poses{{0.0, -5.0, 0.0}, {3.0, 0.0, 0.0}, {0.0, 4.0, 0.0}, {0.0, -1.0, 0.0}};
-  const double way = std::hypot(3.0, 5.0);  // to the first: the third is in its place
-  EXPECT_NEAR(goal_distance(task, poses), 1.0 + 2.0 + kWay * way, 1e-12);
+  const double robot_distance = std::hypot(3.0, 5.0);  // to the first: the third is in its place
+  EXPECT_NEAR(goal_distance(task, poses), 1.0 + 2.0 + kRobotWeight * robot_distance, 1e-12);
 }
 
 TEST(GoalDistance, IsZeroWhereTheGoalHolds) {
@@ -31,16 +31,18 @@ TEST(GoalDistance, OfAHalfPlaneIsThatFromItsLine) {
   task.goal[0].normal = {0.0, 1.0};
   task.goal[0].offset = -1.0;
   const Poses poses{{0, 0, 0}, {0, 1, 0}, {4, -1, 0}, {4, -2, 0}};
-  EXPECT_NEAR(goal_distance(task, poses), 2.0 + kWay * 1.0, 1e-12);
+  EXPECT_NEAR(goal_distance(task, poses), 2.0 + kRobotWeight * 1.0, 1e-12);
 }
 
 TEST(GoalDistance, OfJointsAndAMeanCentreIsOfAnglesAndOfTheMean) {
   const Task task = testing::art_manip();  // 75 to 105 degrees, within 1 m of (0, 3)
   const double least = 1.309, off = 3.0 - 1.0;
-  double way = 1e9;
+  double robot_distance = 1e9;
   for (std::size_t k = 1; k < task.start.size(); ++k)
-    way = std::min(way, (task.start[k].position() - task.start[0].position()).norm());
-  EXPECT_NEAR(goal_distance(task, task.start), 3.0 * least + off + kWay * way, 1e-9);
+    robot_distance =
+        std::min(robot_distance, (task.start[k].position() - task.start[0].position()).norm());
+  EXPECT_NEAR(goal_distance(task, task.start), 3.0 * least + off + kRobotWeight * robot_distance,
+              1e-9);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ TEST(Scene, WhatHangsOnAFixedBodyMovesAlone) {
   for (const auto& [parent, child] : {std::pair{2, 4}, {1, 2}, {1, 3}})
     scene.joints.push_back({parent, child});
   EXPECT_EQ(roots_of(scene), (std::vector<std::size_t>{0, 1, 1, 1, 1}));
-  EXPECT_EQ(movers_of(scene), (std::vector<std::size_t>{0, 1, 2, 3, 2}));
+  EXPECT_EQ(moving_group_roots(scene), (std::vector<std::size_t>{0, 1, 2, 3, 2}));
 }
 
 TEST(Scene, JointsConnectTheirTwoBodies) {

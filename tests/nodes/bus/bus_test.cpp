@@ -66,5 +66,16 @@ TEST(Bus, CountsWhatItRejects) {
   EXPECT_EQ(counters_after(bytes), (Counts{{"bus.too_long", 1}}));
 }
 
+TEST(Bus, RejectsAnotherVersionOfTheProtocol) {
+  Bus bus("memq://", "test");
+  stream_tail_t tail;
+  bus.subscribe<stream_tail_t>("TAIL", [&](const stream_tail_t& received) { tail = received; });
+  bus.publish("TAIL", testing::filled<stream_tail_t>());
+  while (bus.spin(0ms) > 0) {
+  }
+  ++tail.header.protocol;  // all else is of the run "test"
+  EXPECT_EQ(counters_after(encode(tail)), (Counts{{"bus.foreign_protocol", 1}}));
+}
+
 }  // namespace
 }  // namespace rtg::bus

@@ -60,6 +60,14 @@ TEST(Config, EveryFileOfOursIsLegalAndItsCanonicalTextReadsBackToItself) {
   }
 }
 
+TEST(Config, TheNormalOfAHalfPlaneGetsUnitLength) {
+  const Config config =
+      parsed("", {"task.goal=[{kind: box, half_plane: {normal: [0.6, 0.805], offset: -1.5}}]"});
+  EXPECT_NEAR(config.task.goal.at(0).normal.norm(), 1.0, 1e-15);
+  EXPECT_NEAR(config.task.goal.at(0).normal.x() * 0.805, config.task.goal.at(0).normal.y() * 0.6,
+              1e-15);
+}
+
 TEST(Config, TheLayoutsOfTheFilesAreThoseOfTheTests) {
   expect_same_task(load_config(kConfig / "gathering.yaml").task, gathering());
   expect_same_task(load_config(kConfig / "gathering_hard.yaml").task, gathering_hard());

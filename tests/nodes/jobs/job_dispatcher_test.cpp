@@ -142,7 +142,7 @@ TEST(JobDispatcher, AJobThatThreeLivingWorkersGetStuckWithIsPoison) {
   EXPECT_EQ(jobs.reissued(), 3);
 }
 
-TEST(JobDispatcher, AJobThatNeverReachedItsWorkerMakesItNoVictim) {
+TEST(JobDispatcher, AJobThatNeverReachedItsWorkerCountsNoLostWorker) {
   JobDispatcher jobs({.poison = 1});
   jobs.submit(Ids{10});
   beat(jobs, kAnn, 0.0);

@@ -48,7 +48,7 @@ TEST(Service, JobsAndResultsSurviveTheWireBitForBit) {
     const reverse::ReverseResult &got = (*solved)[k], wanted = reverse_results()[k];
     EXPECT_EQ(got.status, wanted.status);
     EXPECT_EQ(got.iterations, wanted.iterations);
-    EXPECT_EQ(got.starts, wanted.starts);
+    EXPECT_EQ(got.predecessors, wanted.predecessors);
     EXPECT_EQ(got.cpu_s, wanted.cpu_s);
   }
   const auto replayed =
@@ -114,7 +114,7 @@ TEST(Service, UnitsAreAsEqualAsCanBeAndFitIntoMessages) {
     const std::vector<reverse::ReverseResult> results(
         *std::max_element(sizes.begin(), sizes.end()),
         {reverse::SolveStatus::kConverged, 1,
-         std::vector<Poses>(reverse::kMaxStarts, Poses(static_cast<std::size_t>(bodies)))});
+         std::vector<Poses>(reverse::kMaxPredecessors, Poses(static_cast<std::size_t>(bodies)))});
     auto message = ReverseService::message(results);
     EXPECT_NO_THROW(bus::encode(message)) << bodies;
   }

@@ -78,7 +78,7 @@ TEST(WorkerNode, AnswersAsTheDirectCallDoes) {
   const auto results = ReverseService::parse(pair.results[0], kShape);
   ASSERT_TRUE(results && results->size() == 2);
   for (std::size_t k = 0; k < 2; ++k) {
-    EXPECT_EQ((*results)[k].starts, solved(kJobs[k]).starts);
+    EXPECT_EQ((*results)[k].predecessors, solved(kJobs[k]).predecessors);
     EXPECT_EQ((*results)[k].iterations, kJobs[k].action);
   }
 }

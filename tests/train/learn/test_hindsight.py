@@ -105,15 +105,15 @@ def test_the_network_sees_how_far_objects_are_from_what_is_asked_for() -> None:
 
 def test_layouts_of_the_task_stay_goals_where_all_objects_are_a_little_off() -> None:
     """The disc's radius is 2.0 m; within it are most draws, but few layouts stay within by 0.5."""
-    radius = np.linalg.norm(8.0 * BOXES.of_task.reshape(-1, 3, 2), axis=2)
-    assert 300 < len(BOXES.of_task) <= MAX_LAYOUTS and radius.max() < 1.6
-    assert 300 < len(CHAIN.of_task) <= MAX_LAYOUTS
-    centre = 8.0 * CHAIN.of_task[:, :8].reshape(-1, 4, 2).mean(axis=1)
+    radius = np.linalg.norm(8.0 * BOXES.goal_layouts.reshape(-1, 3, 2), axis=2)
+    assert 300 < len(BOXES.goal_layouts) <= MAX_LAYOUTS and radius.max() < 1.6
+    assert 300 < len(CHAIN.goal_layouts) <= MAX_LAYOUTS
+    centre = 8.0 * CHAIN.goal_layouts[:, :8].reshape(-1, 4, 2).mean(axis=1)
     assert np.linalg.norm(centre - (0.0, 3.0), axis=1).max() < 0.6
-    turns = np.diff(np.arctan2(CHAIN.of_task[:, 9::2], CHAIN.of_task[:, 8::2]), axis=1)
+    turns = np.diff(np.arctan2(CHAIN.goal_layouts[:, 9::2], CHAIN.goal_layouts[:, 8::2]), axis=1)
     off = np.abs(np.abs(np.angle(np.exp(1j * turns))) - np.pi / 2)
     assert off.max() < 0.263 - 2 * hindsight.ANGLE_TOLERANCE  # joints may be 15 degrees off
-    np.testing.assert_array_equal(Layouts(TASK).of_task, BOXES.of_task)
+    np.testing.assert_array_equal(Layouts(TASK).goal_layouts, BOXES.goal_layouts)
 
 
 def test_where_no_goal_state_lasts_all_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -132,11 +132,11 @@ def test_the_nearest_layout_has_the_shortest_way_of_all_objects() -> None:
     for start, one, other in zip(starts, found, of_few, strict=True):
         ways = [
             sum(np.hypot(*(8.0 * goal[2 * k : 2 * k + 2] - start[k + 1, :2])) for k in range(3))
-            for goal in BOXES.of_task
+            for goal in BOXES.goal_layouts
         ]
-        np.testing.assert_array_equal(one, BOXES.of_task[np.argmin(ways)])
+        np.testing.assert_array_equal(one, BOXES.goal_layouts[np.argmin(ways)])
         k = among[np.argmin([ways[k] for k in among])]
-        np.testing.assert_array_equal(other, BOXES.of_task[k])
+        np.testing.assert_array_equal(other, BOXES.goal_layouts[k])
 
 
 def goals_by_hand(count: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -233,7 +233,7 @@ def test_a_batch_asks_for_what_was_reached_and_rewards_it(reward: float) -> None
     batches = [replay.sample(4) for _ in range(1000)]  # as many rows as the buffer has
     offline = asked_for(np.concatenate([batch.observations[:1].numpy() for batch in batches]))
     assert all(batch.offline == 1 for batch in batches)
-    assert is_one_of(offline, BOXES.of_task).all() and not is_one_of(offline, EPISODE).any()
+    assert is_one_of(offline, BOXES.goal_layouts).all() and not is_one_of(offline, EPISODE).any()
     seen, after, got, terminated, bound = (
         np.concatenate([getattr(batch, name)[1:].numpy() for batch in batches])
         for name in ("observations", "next_observations", "rewards", "terminated", "bounds")
@@ -243,7 +243,7 @@ def test_a_batch_asks_for_what_was_reached_and_rewards_it(reward: float) -> None
     np.testing.assert_allclose(asked_for(after), goal, atol=1e-6)
     relabelled = is_one_of(goal, EPISODE)
     assert abs(relabelled.mean() - 0.8) < 4 * np.sqrt(0.16 / 3000)  # k / (k + 1), four sigma
-    assert is_one_of(goal[~relabelled], BOXES.of_task).all()
+    assert is_one_of(goal[~relabelled], BOXES.goal_layouts).all()
     assert len(np.unique(goal[~relabelled].round(5), axis=0)) == 1, "one layout for the episode"
     reached = np.abs(EPISODE[step + 1] - goal).max(axis=1) < 1e-6
     expected = np.where(relabelled, reached, reward * (step == 3))
@@ -270,8 +270,8 @@ def test_each_episode_is_asked_for_the_nearest_of_a_few_layouts() -> None:
     for _ in range(60):
         asked.append(replay.desired_layouts(row)[0])
         replay.add(row, row, np.array([0]), np.zeros(1), np.array([True]), [{}])
-    way = np.hypot(*(8.0 * (BOXES.of_task - BOXES.of(row))).reshape(-1, 3, 2).T).sum(axis=0)
-    rank = [int((way < way[(BOXES.of_task == goal).all(axis=1)][0]).sum()) for goal in asked]
+    way = np.hypot(*(8.0 * (BOXES.goal_layouts - BOXES.of(row))).reshape(-1, 3, 2).T).sum(axis=0)
+    rank = [int((way < way[(BOXES.goal_layouts == goal).all(axis=1)][0]).sum()) for goal in asked]
     assert len(set(rank)) > 8 and min(rank) == 0 and max(rank) < 10 * SUBSET_DIVISOR
     assert np.mean(rank) == pytest.approx(SUBSET_DIVISOR - 1, abs=4.5)
 

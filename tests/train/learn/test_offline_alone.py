@@ -85,6 +85,6 @@ def test_a_resumed_run_ends_with_the_same_bits(
             if one.has_checkpoint():
                 one.restore()
             finished = one.run(Stream(rows, one.data, piece=60), stop, record=True)
-        assert finished and one.scheduled == 240
+        assert finished and one.scheduled_interactions == 240
         ends.append(state(one))
     assert len(ends[0]) > 50 and ends[0] == ends[1]

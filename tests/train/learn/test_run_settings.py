@@ -30,10 +30,17 @@ def course(one: Training, rows: Rows, success: list[bool]) -> dict[str, Any]:
         return Evaluation(found, np.ones(len(found), int), found * 1.0, [])
 
     one.model.learn, one.evaluate = learn, evaluate
-    one.save = lambda: saved.append(one.scheduled) or setattr(one, "_saved_at", one.scheduled)
+    one.save = lambda: saved.append(one.scheduled_interactions) or setattr(
+        one, "_saved_at", one.scheduled_interactions
+    )
     assert one.run(Stream(rows, one.data, piece=100), lambda: False, record=False)
     evaluated = [row["interactions"] for row in one.log.rows]
-    return {"end": one.scheduled, "first": seen[0], "evaluated": evaluated, "saved": saved[:-1]}
+    return {
+        "end": one.scheduled_interactions,
+        "first": seen[0],
+        "evaluated": evaluated,
+        "saved": saved[:-1],
+    }
 
 
 USUAL = {

@@ -7,7 +7,7 @@ from rtg.files import versions
 from rtg.run import effective_config, run_args
 from rtg.run.plan import make_plan
 from rtg.run.run_args import Override
-from rtg.run.shared_transitions import are_there, find, generation_key, take_over
+from rtg.run.shared_transitions import find, generation_key, is_generated, take_over
 from training_runs import TINY
 
 CONFIG = effective_config.load(TINY)
@@ -72,7 +72,7 @@ def test_a_run_of_the_same_kind_is_found_and_taken_over(made, tmp_path):
     new = tmp_path / "other" / "seed-1"
     new.mkdir(parents=True)
     take_over(made, new)
-    assert are_there(new) and (new / "transitions.npz").read_text() == "transitions.npz"
+    assert is_generated(new) and (new / "transitions.npz").read_text() == "transitions.npz"
     names = ["generation.json", "transitions.npz", "versions.json"]
     assert sorted(path.name for path in new.iterdir()) == names
     assert versions.generator(new) == versions.generator(made) != {}

@@ -45,8 +45,8 @@ class StreamCursor:
         self.credit = credit
         self.cursor = 0  # number of the next row to return
         self.count = 0  # number of rows known to exist
-        self.sealed = False  # True if `count` is final
-        self._held: dict[int, tuple[int, Any]] = {}  # first row -> (end, rows), may overlap
+        self.count_is_final = False
+        self._out_of_order: dict[int, tuple[int, Any]] = {}  # first row -> (end, rows), may overlap
         self._acked_at = -1e9
         self._acked_cursor = 0
         self._requested_at = -1e9
@@ -65,13 +65,13 @@ class StreamCursor:
         self.count = max(self.count, end)
         if end <= self.cursor or end > self.cursor + self.credit:
             return []
-        if end > self._held.get(first, (0, None))[0]:
-            self._held[first] = (end, rows)
+        if end > self._out_of_order.get(first, (0, None))[0]:
+            self._out_of_order[first] = (end, rows)
         return self._in_order()
 
-    def on_tail(self, count: int, sealed: bool) -> None:
+    def on_tail(self, count: int, count_is_final: bool) -> None:
         self.count = max(self.count, count)
-        self.sealed = self.sealed or sealed
+        self.count_is_final = self.count_is_final or count_is_final
 
     def ack_due(self, now: float) -> Ack | None:
         """Returns the next Ack to send, or None. To be called until it returns None."""
@@ -83,7 +83,7 @@ class StreamCursor:
             or now - self._requested_at >= RETRY_INTERVAL
         )
         # If no later row has arrived, the missing rows are probably still in transit.
-        if request and not self._held and now - self._arrived_at < RETRY_INTERVAL / 2:
+        if request and not self._out_of_order and now - self._arrived_at < RETRY_INTERVAL / 2:
             request = False
         moved = self.cursor - self._acked_cursor >= self.credit // 4
         idle = now - self._acked_at >= ACK_INTERVAL
@@ -106,14 +106,14 @@ class StreamCursor:
     @property
     def complete(self) -> bool:
         """True if the number of rows is final and every row has been returned."""
-        return self.sealed and self.cursor == self.count
+        return self.count_is_final and self.cursor == self.count
 
     def _in_order(self) -> list[tuple[Any, int]]:
         pieces = []
-        for first in sorted(self._held):
+        for first in sorted(self._out_of_order):
             if first > self.cursor:
                 break
-            end, rows = self._held.pop(first)
+            end, rows = self._out_of_order.pop(first)
             if end > self.cursor:
                 pieces.append((rows, self.cursor - first))
                 self.cursor = end
@@ -122,10 +122,10 @@ class StreamCursor:
     def _missing(self) -> list[tuple[int, int]]:
         """Returns at most MAX_RANGES ranges (first, last) of missing rows within the credit."""
         gaps, at = [], self.cursor
-        for first in sorted(self._held):
+        for first in sorted(self._out_of_order):
             if first > at:
                 gaps.append((at, first - 1))
-            at = max(at, self._held[first][0])
+            at = max(at, self._out_of_order[first][0])
         end = min(self.count, self.cursor + self.credit)
         if at < end:
             gaps.append((at, end - 1))

@@ -66,7 +66,7 @@ class CellRun:
     @property
     def pending_generation_key(self) -> str | None:
         """The key of the transitions that the run must still generate; None if none."""
-        return None if shared_transitions.are_there(self.folder) else self.generation_key
+        return None if shared_transitions.is_generated(self.folder) else self.generation_key
 
     def begin(self) -> None:
         """Makes the run folder without starting `rtg run`. Raises UserError."""
@@ -121,7 +121,7 @@ def prepare_runs(args: ReproduceArgs) -> list[CellRun]:
         _check_folder(folder)
         if folder.parent not in checked:
             _check_seeds(folder.parent, config)
-            _check_methods(folder, config)
+            _check_comparable(folder, config)
             checked.add(folder.parent)
         key, device = shared_transitions.generation_key(config), config.train.device
         runs.append(CellRun(cell, folder, _arguments(args, cell), key, device))
@@ -164,12 +164,12 @@ def _remove_partial_configs(folder: Path) -> None:
             file.unlink()
 
 
-def _check_seeds(label: Path, config: _core.Config) -> None:
-    """Raises UserError unless all runs in folder `label` differ from `config` only in the seed.
+def _check_seeds(label_folder: Path, config: _core.Config) -> None:
+    """Raises UserError unless all runs in `label_folder` differ from `config` only in the seed.
 
     Also checks seeds that are not requested now, because tables show means over all runs.
     """
-    for found in sorted(label.glob("seed-*/config.yaml")):
+    for found in sorted(label_folder.glob("seed-*/config.yaml")):
         seed = found.parent.name.removeprefix("seed-")
         if seed.isdigit():
             asked = effective_config.values(config)
@@ -190,7 +190,7 @@ def _check_same(folder: Path, asked: Values) -> None:
     effective_config.load_written(found)  # raises UserError if another version wrote it
 
 
-def _check_methods(folder: Path, config: _core.Config) -> None:
+def _check_comparable(folder: Path, config: _core.Config) -> None:
     """Raises UserError unless tables can compare all runs of the task with the run in `folder`.
 
     They must agree with `config` in the values of _compared(): task, physics, budget and

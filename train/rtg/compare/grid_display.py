@@ -12,7 +12,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from rtg.run.progress import Shown, TimedLines
+from rtg.run.progress import ScreenContext, TimedLines
 
 _REDRAW = 0.5  # [s]
 _MARKS = {"waiting": " ", "running": "▸", "done": "✓", "failed": "✗"}
@@ -36,7 +36,7 @@ def counts(rows: Sequence[Row]) -> str:
     return f"{total['done']} of {len(rows)} runs done{failed}, {total['running']} running"
 
 
-class GridDisplay(Shown, Protocol):
+class GridDisplay(ScreenContext, Protocol):
     """A display of all runs of a comparison, one Row each."""
 
     def show(self, rows: Sequence[Row]) -> None:

@@ -33,7 +33,7 @@ class Generation:
 
     @property
     def done(self) -> bool:
-        return shared_transitions.are_there(self.run.folder)
+        return shared_transitions.is_generated(self.run.folder)
 
     @property
     def pending_generation_key(self) -> str | None:

@@ -18,7 +18,14 @@ from rtg.compare import report_plots
 from rtg.compare.cells import read_grid
 from rtg.compare.methods import REFERENCE
 from rtg.compare.report import read_remarks, report
-from rtg.compare.run_results import COSTS, CURVES, Comparison, RunResult, costs, read_comparison
+from rtg.compare.run_results import (
+    COSTS,
+    CURVE_COLUMNS,
+    Comparison,
+    RunResult,
+    costs,
+    read_comparison,
+)
 from rtg.errors import UserError
 from rtg.files import run_folder
 from rtg.pictures import episode_pictures
@@ -171,7 +178,7 @@ def _curve_rows(run: RunResult) -> list[dict[str, Any]]:
     if not run.curve:
         return []
     columns = {name: costs(run.curve, name) for name in COSTS}
-    columns |= {name: run.curve[name].tolist() for name in CURVES}
+    columns |= {name: run.curve[name].tolist() for name in CURVE_COLUMNS}
     return [
         {**_run_keys(run), **dict(zip(columns, values, strict=True))}
         for values in zip(*columns.values(), strict=True)

@@ -22,7 +22,7 @@ from rtg.run.results import learning_curve
 Floats = NDArray[np.float64]
 
 COSTS = ("interactions", "pushes", "cpu_s")  # [1], [1], [s]; columns of a curve
-CURVES = ("success_rate", "rollout_success", "episode_length_mean", "episode_return_mean")
+CURVE_COLUMNS = ("success_rate", "rollout_success", "episode_length_mean", "episode_return_mean")
 
 
 def costs(curve: dict[str, Floats], cost: str) -> list[float]:
@@ -172,7 +172,7 @@ def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
     curve = learning_curve(progress) if progress.is_file() else {}
     if not curve:
         return {}
-    if not {*COSTS, *CURVES} <= curve.keys():
+    if not {*COSTS, *CURVE_COLUMNS} <= curve.keys():
         raise UserError(f"{progress}: lacks columns; legal: as the run left it")
     generation_costs = {"pushes": summary.get("replays"), "cpu_s": summary.get("generate_cpu_s")}
     return curve | {cost: curve[cost] + (extra or 0) for cost, extra in generation_costs.items()}

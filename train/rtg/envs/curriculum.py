@@ -70,7 +70,7 @@ class Curriculum:
         # States where walks begin.
         self._walk_starts: Floats = goal_states(self._task, GOAL_SEED_OFFSET + seed)
         self._good = self._walk_starts[:0]  # good starts of all rounds
-        self._first = 0  # number of the pool's first start, counted over all rounds
+        self._first_number = 0  # number of the pool's first start, counted over all rounds
         self._drawn = 0  # number of draws from this pool
         self.pushes = 0  # simulated pushes of the walks; not among the learner's interactions
         self._set_pool(self._new_starts(), self._good)
@@ -89,7 +89,7 @@ class Curriculum:
             return NOT_FROM_CURRICULUM, None
         k = self._drawn % len(self._pool)
         self._drawn += 1
-        return self._first + k, self._pool[k]
+        return self._first_number + k, self._pool[k]
 
     def record_episode(self, number: int, success: bool, length: int) -> None:
         """Records the result of an episode from start `number` with `length` pushes.
@@ -97,7 +97,7 @@ class Curriculum:
         Begins the next round after the last episode of a round. Ignores starts of earlier rounds
         and NOT_FROM_CURRICULUM.
         """
-        k = number - self._first
+        k = number - self._first_number
         if k < 0:  # includes NOT_FROM_CURRICULUM
             return
         self._tries[k] += 1
@@ -110,27 +110,27 @@ class Curriculum:
         rate = self._wins / np.maximum(self._tries, 1)
         good = self._pool[(rate >= MIN_SUCCESS) & (rate <= MAX_SUCCESS)]
         few = len(good) < MIN_GOOD_STARTS
-        walk_starts = np.concatenate((good, self._frontier(rate))) if few else good
+        walk_starts = np.concatenate((good, self._longest_mastered(rate))) if few else good
         if len(walk_starts):
             self._walk_starts = walk_starts
         old = self._random_subset(self._good, OLD_STARTS)
         self._good = np.concatenate((self._good, good))
-        self._first += len(self._pool)
+        self._first_number += len(self._pool)
         self._set_pool(self._new_starts(), old)
 
-    def _frontier(self, rate: Floats) -> Floats:
+    def _longest_mastered(self, rate: Floats) -> Floats:
         """Returns the half of the mastered new starts that has the longest episodes.
 
         `rate`: success rate of each start in the pool.
         """
-        mastered = np.flatnonzero(rate[: self._new] > MAX_SUCCESS)
+        mastered = np.flatnonzero(rate[: self._new_count] > MAX_SUCCESS)
         lengths = self._lengths[mastered] / self._tries[mastered]
         longest = np.argsort(-lengths, kind="stable")[: (len(mastered) + 1) // 2]
         return self._pool[mastered[longest]]
 
     def _set_pool(self, new: Floats, old: Floats) -> None:
         pool = np.concatenate((new, old))
-        self._pool, self._new = pool, len(new)
+        self._pool, self._new_count = pool, len(new)
         self._drawn = 0
         self._tries = np.zeros(len(pool), np.int64)
         self._wins = np.zeros(len(pool), np.int64)
@@ -170,11 +170,11 @@ class Curriculum:
             "seeds": self._walk_starts,
             "good": self._good,
             "pool": self._pool,
-            "new": self._new,
+            "new": self._new_count,
             "tries": self._tries,
             "wins": self._wins,
             "lengths": self._lengths,
-            "first": self._first,
+            "first": self._first_number,
             "drawn": self._drawn,
             "pushes": self.pushes,
         }
@@ -187,5 +187,5 @@ class Curriculum:
         self._tries = np.asarray(state["tries"]).copy()
         self._wins = np.asarray(state["wins"]).copy()
         self._lengths = np.asarray(state["lengths"]).copy()
-        self._first, self._drawn = state["first"], state["drawn"]
+        self._first_number, self._drawn = state["first"], state["drawn"]
         self.pushes = state["pushes"]

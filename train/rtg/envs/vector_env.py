@@ -38,7 +38,7 @@ class PushVecEnv(VecEnv):
         self._jitter, self._seed = jitter, seed
         self.curriculum = curriculum
         # Number in the curriculum of the start of each current episode.
-        self._origins = [NOT_FROM_CURRICULUM] * count
+        self._start_numbers = [NOT_FROM_CURRICULUM] * count
         self._starts = 0  # number of starts so far that are not from the curriculum
         self.successes = 0  # number of successful episodes
         self._poses = np.zeros((count, task.bodies, 3))  # [count, bodies, 3]
@@ -70,12 +70,12 @@ class PushVecEnv(VecEnv):
             for env in map(int, np.flatnonzero(done)):
                 infos[env]["terminal_observation"] = observation[env]
                 # Only episodes from the task's own starts count, as in evaluations.
-                if self._origins[env] == NOT_FROM_CURRICULUM:
+                if self._start_numbers[env] == NOT_FROM_CURRICULUM:
                     infos[env]["is_success"] = bool(success[env])
                     infos[env]["episode"] = {"r": float(success[env]), "l": int(self._steps[env])}
                 if self.curriculum:
                     self.curriculum.record_episode(
-                        self._origins[env], bool(success[env]), int(self._steps[env])
+                        self._start_numbers[env], bool(success[env]), int(self._steps[env])
                     )
                 self._begin(env)
             observation = self.task.observation(self._poses)
@@ -86,7 +86,7 @@ class PushVecEnv(VecEnv):
         return self.task.contact_headings(self._poses, seed)
 
     def _begin(self, env: int) -> None:
-        self._origins[env], start = (
+        self._start_numbers[env], start = (
             self.curriculum.draw() if self.curriculum else (NOT_FROM_CURRICULUM, None)
         )
         if start is None:
@@ -102,7 +102,7 @@ class PushVecEnv(VecEnv):
             "steps": self._steps.copy(),
             "starts": self._starts,
             "successes": self.successes,
-            "origins": list(self._origins),
+            "origins": list(self._start_numbers),
             "curriculum": self.curriculum.state() if self.curriculum else None,
         }
 
@@ -111,7 +111,7 @@ class PushVecEnv(VecEnv):
         self._steps = np.asarray(state["steps"]).copy()
         self._starts = state["starts"]
         self.successes = state["successes"]
-        self._origins = list(state["origins"])
+        self._start_numbers = list(state["origins"])
         if self.curriculum:
             self.curriculum.restore(state["curriculum"])
 

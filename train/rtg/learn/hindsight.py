@@ -60,13 +60,13 @@ class Layouts:
         jointed = {body for parent, child, _ in task.joints for body in (parent, child)}
         at = [2 + BODY_ENTRIES * k for k in range(len(movable))]
         turned = [first for first, body in zip(at, movable, strict=True) if body in jointed]
-        places = [column for first in at for column in (first, first + 1)]
-        turns = [column for first in turned for column in (first + 2, first + 3)]
-        self._columns = np.array(places + turns)  # columns of an observation
-        self._places = len(places)
+        positions = [column for first in at for column in (first, first + 1)]
+        angles = [column for first in turned for column in (first + 2, first + 3)]
+        self._columns = np.array(positions + angles)  # columns of an observation
+        self._position_entries = len(positions)
         self.size = len(self._columns)
         goals = robust_goal_states(task, goal_states(task, LAYOUT_SEED, DRAWS))[:MAX_LAYOUTS]
-        self.of_task = self.of(task.observation(goals))  # [layouts, size]
+        self.goal_layouts = self.of(task.observation(goals))  # [layouts, size]
 
     def of(self, observation: Array) -> Array:
         """Returns the layouts of the observations. [N, observation] -> [N, size]"""
@@ -75,19 +75,19 @@ class Layouts:
 
     def near(self, one: Array, other: Array) -> Array:
         """Returns whether two layouts agree within the tolerances. [..., size] -> [...] bool"""
-        places, turns = self._difference(one, other)
-        close = np.hypot(places[..., 0], places[..., 1]) * LENGTH_UNIT <= TOLERANCE
-        alike = turns[..., 0] >= np.cos(ANGLE_TOLERANCE)
+        positions, angles = self._difference(one, other)
+        close = np.hypot(positions[..., 0], positions[..., 1]) * LENGTH_UNIT <= TOLERANCE
+        alike = angles[..., 0] >= np.cos(ANGLE_TOLERANCE)
         reached: Array = close.all(axis=-1) & alike.all(axis=-1)
         return reached
 
     def nearest(self, observation: Array, among: Array | None = None) -> Array:
         """Returns, for each observation, the task's layout with the smallest sum of distances.
 
-        The sum is over the objects. `among`: indices in `of_task` of the layouts to choose from;
-        all if None. [N, observation] -> [N, size]
+        The sum is over the objects. `among`: indices in `goal_layouts` of the layouts to choose
+        from; all if None. [N, observation] -> [N, size]
         """
-        goals = self.of_task if among is None else self.of_task[among]
+        goals = self.goal_layouts if among is None else self.goal_layouts[among]
         way, _ = self._difference(self.of(observation)[:, None], goals)
         nearest: Array = goals[np.hypot(way[..., 0], way[..., 1]).sum(axis=2).argmin(axis=1)]
         return nearest
@@ -115,11 +115,11 @@ class Layouts:
         Positions: dx, dy in units of 8 m, [..., objects, 2]. Angles: cos, sin of the difference for
         each body with a joint, [..., jointed, 2].
         """
-        places = there[..., : self._places] - here[..., : self._places]
-        c, s = here[..., self._places :: 2], here[..., self._places + 1 :: 2]
-        d, t = there[..., self._places :: 2], there[..., self._places + 1 :: 2]
-        turns = np.stack((c * d + s * t, c * t - s * d), axis=-1)
-        return places.reshape(*places.shape[:-1], self._places // 2, 2), turns
+        positions = there[..., : self._position_entries] - here[..., : self._position_entries]
+        c, s = here[..., self._position_entries :: 2], here[..., self._position_entries + 1 :: 2]
+        d, t = there[..., self._position_entries :: 2], there[..., self._position_entries + 1 :: 2]
+        angles = np.stack((c * d + s * t, c * t - s * d), axis=-1)
+        return positions.reshape(*positions.shape[:-1], self._position_entries // 2, 2), angles
 
 
 def _sides(task: _core.Task) -> Array:
@@ -219,7 +219,7 @@ class HindsightReplayBuffer(MixedReplayBuffer):
 
         [environments, observation] -> [environments, size]
         """
-        count = len(self.layouts.of_task)
+        count = len(self.layouts.goal_layouts)
         for env in np.flatnonzero(self._begins_episode):
             among = self.rng.permutation(count)[: -(-count // SUBSET_DIVISOR)]
             self._desired[env] = self.layouts.nearest(observation[env : env + 1], among)[0]

@@ -93,7 +93,7 @@ class OfflineData:
             self._checkpoint_rows = None
         return again
 
-    def prove_bounds(self, complete: bool) -> None:
+    def refresh_bounds_if_grown(self, complete: bool) -> None:
         """Recomputes the value bounds if the data has grown by the factor REFRESH_GROWTH.
 
         If `complete`, the data is complete, and any new row is reason enough.
@@ -119,7 +119,7 @@ class OfflineData:
             raise RunError(f"the transition file has {found} rows, the checkpoint saw {count}")
         if refreshed:
             self.add(rows.slice(0, refreshed))
-            self.prove_bounds(complete=True)
+            self.refresh_bounds_if_grown(complete=True)
         if count > refreshed:
             self.add(rows.slice(refreshed, count))
         self._checkpoint_rows = rows.slice(0, count)

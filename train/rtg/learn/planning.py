@@ -70,7 +70,7 @@ class Planning:
         self.plans: list[Plan] = []  # one for each start so far
         self.log = TrainingLog(folder)
         self.runs = 1  # number of runs in this process
-        self.scheduled = 0  # number of interactions, as in Training
+        self.scheduled_interactions = 0  # number of interactions, as in Training
         # NodeStatus.tick, if there is a bus.
         self.publish_status: Callable[[str, int], None] = lambda state, done: None
         self._checkpoint = run_folder.checkpoint_file(folder)

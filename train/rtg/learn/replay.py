@@ -223,7 +223,7 @@ class MixedReplayBuffer(BaseBuffer):
             self.online.set_bounds(numbers, self.discount ** np.arange(len(numbers) - 1, -1, -1))
 
     def sample(self, batch_size: int, env: VecNormalize | None = None) -> Batch:
-        offline = self._offline_rows(batch_size)
+        offline = self._offline_count(batch_size)
         parts: list[Part] = []
         if offline:
             parts.append((self.offline, self.rng.integers(self.offline.count, size=offline)))
@@ -264,7 +264,7 @@ class MixedReplayBuffer(BaseBuffer):
         rows[: len(back)] = (store.written - 1 - back) % store.capacity
         return rows
 
-    def _offline_rows(self, batch_size: int) -> int:
+    def _offline_count(self, batch_size: int) -> int:
         offline, online = self.offline.count, self.online.count
         if offline + online == 0:
             raise ValueError("nothing to sample from: the replay buffer is empty")

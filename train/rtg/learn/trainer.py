@@ -83,7 +83,7 @@ def _learn(training: Training | Planning, args: argparse.Namespace, interrupts: 
                 return 128 + interrupts.number
             training.finish(source.lost)
         finally:
-            training.publish_status(ENDED, training.scheduled)
+            training.publish_status(ENDED, training.scheduled_interactions)
     return 0
 
 

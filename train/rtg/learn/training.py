@@ -69,18 +69,18 @@ class Training:
         # NodeStatus.tick, if there is a bus.
         self.publish_status: Callable[[str, int], None] = lambda state, done: None
         self._checkpoint = run_folder.checkpoint_file(folder)
-        self._saved_at = 0  # `scheduled` at the last save
+        self._saved_at = 0  # `scheduled_interactions` at the last save
         self._saved_rows = 0  # offline transitions at the last save
 
     @property
-    def scheduled(self) -> int:
+    def scheduled_interactions(self) -> int:
         """Number of interactions so far as schedules count them, also without `train.interact`."""
         return self.model.num_timesteps
 
     @property
     def interactions(self) -> int:
         """Number of interactions with the environment so far; 0 without `train.interact`."""
-        return self.scheduled if self.settings.interact else 0
+        return self.scheduled_interactions if self.settings.interact else 0
 
     @property
     def pushes(self) -> int:
@@ -91,9 +91,11 @@ class Training:
     @property
     def done(self) -> bool:
         """True if the budget is used up or the last evaluations reached `stop_at_success`."""
-        return self.scheduled >= self.settings.interactions or self._is_good()
+        return (
+            self.scheduled_interactions >= self.settings.interactions or self._has_reached_target()
+        )
 
-    def _is_good(self) -> bool:
+    def _has_reached_target(self) -> bool:
         bar, count = self.settings.stop_at_success, self.settings.stop_evaluations
         last = [row["success_rate"] for row in self.log.rows[-count:]]
         return bar > 0.0 and len(last) == count and min(last) >= bar
@@ -144,11 +146,11 @@ class Training:
         news = not source.complete
         source.poll(timeout)  # also when complete, to repeat the final acknowledgement
         if news:
-            self.data.prove_bounds(source.complete)
+            self.data.refresh_bounds_if_grown(source.complete)
             if source.complete and record:
                 self.data.record.write(self._transition_files()[0])
         self.log.display(self._display_state())
-        self.publish_status(self._activity(), self.scheduled)
+        self.publish_status(self._activity(), self.scheduled_interactions)
 
     def _activity(self) -> str:
         """Describes the current activity and the last success rate, for people."""
@@ -160,14 +162,14 @@ class Training:
     def _evaluate_and_save(self) -> None:
         """Evaluates if an evaluation is due; writes a checkpoint if a checkpoint is due."""
         evaluated_at = self.log.rows[-1]["interactions"] if self.log.rows else 0
-        over = self.scheduled >= self.settings.interactions > evaluated_at
+        over = self.scheduled_interactions >= self.settings.interactions > evaluated_at
         if over or self._is_due(self.settings.eval_every, evaluated_at):
             self._log_row(self.evaluate())
         if self._is_due(self.settings.checkpoint_every, self._saved_at):
             self.save()
 
     def _is_due(self, every: int, last: int) -> bool:
-        return self.scheduled // every > last // every
+        return self.scheduled_interactions // every > last // every
 
     def evaluate(self) -> Evaluation:
         """Evaluates the greedy policy on the held-out starts; changes no state of the learner."""
@@ -179,7 +181,7 @@ class Training:
     def _log_row(self, evaluation: Evaluation) -> None:
         self.log.add(
             {
-                "interactions": self.scheduled,
+                "interactions": self.scheduled_interactions,
                 "gradient_steps": self.model.gradient_steps_done,
                 **evaluation.summary(),
                 **self.model.recent_episodes(),
@@ -201,10 +203,10 @@ class Training:
         return {"q_start_max": float(self.model.values(nominal).max())}
 
     def _display_state(self) -> dict[str, Any]:
-        """Returns the figures for displays; "interactions" is `scheduled`."""
+        """Returns the figures for displays; "interactions" is `scheduled_interactions`."""
         rows = self.log.rows
         return {
-            "interactions": self.scheduled,
+            "interactions": self.scheduled_interactions,
             "budget": self.settings.interactions,
             "transitions": self.data.count,
             "online_successes": self.env.successes,
@@ -235,7 +237,7 @@ class Training:
             "learner": self.device_info,
         }
         checkpoint.write(self._checkpoint, state)
-        self._saved_at = self.scheduled
+        self._saved_at = self.scheduled_interactions
 
     def has_checkpoint(self) -> bool:
         return self._checkpoint.exists()
@@ -254,7 +256,7 @@ class Training:
         self.log.write()
         self.clock.restore(state["seconds"])
         self.device_info = state["learner"]
-        self._saved_at, self._saved_rows = self.scheduled, self.data.count
+        self._saved_at, self._saved_rows = self.scheduled_interactions, self.data.count
 
     def _transition_files(self) -> tuple[Path, Path]:
         """Returns the path for all transitions, and the path for those at the checkpoint.

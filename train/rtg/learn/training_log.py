@@ -15,7 +15,7 @@ from rtg.files.run_folder import write_json, write_text
 from rtg.learn.evaluation import Evaluation
 
 COLUMNS = (
-    "interactions",  # as schedules count them, see Training.scheduled
+    "interactions",  # as schedules count them, see Training.scheduled_interactions
     "gradient_steps",
     "success_rate",  # of the greedy policy from the held-out starts
     "episode_length_mean",

@@ -67,7 +67,7 @@ class RunPlan:
 
     def is_generated(self) -> bool:
         """Returns whether an earlier process of this run has finished the generation."""
-        return self.resume and shared_transitions.are_there(self.folder)
+        return self.resume and shared_transitions.is_generated(self.folder)
 
 
 def _check_device(config: _core.Config) -> None:

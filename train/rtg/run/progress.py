@@ -63,7 +63,7 @@ def training_text(state: RunState) -> str:
     return f"success {success}, {rate} interactions/s"
 
 
-class Shown(Protocol):
+class ScreenContext(Protocol):
     """A context manager that shows something on the screen until its exit."""
 
     def __enter__(self) -> Self: ...
@@ -76,7 +76,7 @@ class Shown(Protocol):
     ) -> None: ...
 
 
-class Display(Shown, Protocol):
+class Display(ScreenContext, Protocol):
     """A display of the state of a run, with notes."""
 
     def show(self, state: RunState) -> None:

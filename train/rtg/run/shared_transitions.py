@@ -27,7 +27,7 @@ def generation_key(config: _core.Config) -> str | None:
     return json.dumps([*parts, config.run.seed])
 
 
-def are_there(run: Path) -> bool:
+def is_generated(run: Path) -> bool:
     """Returns whether the generation of the run is complete."""
     return all((run / name).is_file() for name in _FILES)
 
@@ -38,7 +38,7 @@ def find(key: str, folder: Path, name: str) -> Path | None:
     Only transitions of this version of the program count. Returns None if there is no such run.
     """
     for run in sorted(folder.glob(f"*/{name}")):
-        if are_there(run) and _stored_key(run) == key:
+        if is_generated(run) and _stored_key(run) == key:
             return run
     return None
 

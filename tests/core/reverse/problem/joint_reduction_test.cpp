@@ -61,7 +61,7 @@ TEST(JointReduction, MatrixIsDerivativeWithFixedEnd) {
   at.config.terminal_weight = 0.0;
   at.x.p.back() = at.problem.end;
   at.x.multipliers.back() =
-      testing::spread(at.scene.energy, at.problem.end, at.x.multipliers.back());
+      testing::apply_jacobian(at.scene.energy, at.problem.end, at.x.multipliers.back());
   expect_matrix_is_derivative(at.problem, at.x);
 }
 

@@ -36,13 +36,14 @@ struct InLanes {
   }
 };
 
-// Each lane against the one lane of double: exact in the odd ones, not in the even ones.
+// Each lane against the one lane of double: the Hessian is that of the Lagrangian in the odd ones,
+// that of the objective in the even ones.
 TEST(NewtonSystemLanes, LanesAgreeWithDouble) {
   const InLanes in;
-  Lanes exact(0.0);
-  for (int l = 1; l < kWidth<Lanes>; l += 2) set_lane(exact, l, 1.0);
+  Lanes lagrangian(0.0);
+  for (int l = 1; l < kWidth<Lanes>; l += 2) set_lane(lagrangian, l, 1.0);
   NewtonSystem<Lanes> newton(in.lanes);
-  newton.linearise(in.lanes, in.x, {exact, Lanes(0.3)});
+  newton.linearise(in.lanes, in.x, {lagrangian, Lanes(0.3)});
   StageStep<Lanes> step(3, 10);
   Riccati<Lanes> riccati(3, 10);
   const Mask<Lanes> regular = riccati.solve(newton.system(), step);
@@ -61,7 +62,7 @@ TEST(NewtonSystemLanes, LanesAgreeWithDouble) {
       }
       std::vector<double> lambda;
       for (const Lanes& force : forces[k]) lambda.push_back(lane(force, l));
-      error = std::max(error, (in.scene.energy.gathered(lambda) - d.forces[k]).norm());
+      error = std::max(error, (in.scene.energy.from_contact_index(lambda) - d.forces[k]).norm());
     }
     EXPECT_LT(error, 1e-6) << "lane " << l;
   }

@@ -145,9 +145,9 @@ double step_size(const Linearisation& lin, BlockVector s, const BlockVector& u, 
 TEST(NewtonSystem, ProximalTermIsTheGradientOfTheSquaredStep) {
   const Disturbed at(10);
   const double proximal = 0.7;
-  for (const bool exact : {false, true}) {
-    const Linearisation with(at.problem, at.x, {exact, proximal});
-    const Linearisation without(at.problem, at.x, {exact, 0.0});
+  for (const bool lagrangian : {false, true}) {
+    const Linearisation with(at.problem, at.x, {lagrangian, proximal});
+    const Linearisation without(at.problem, at.x, {lagrangian, 0.0});
     const auto left = [](const Linearisation& lin, const BlockVector& s) {
       return VectorXd(joined(product(lin.matrix(), s)) - joined(lin.right_hand_side()));
     };
@@ -172,8 +172,8 @@ double curvature(const Linearisation& lin, const BlockVector& solution) {
 
 TEST(NewtonSystem, ModelCurvatureIsThatAlongTheStep) {
   const Disturbed at(9);
-  for (const bool exact : {false, true}) {
-    const Linearisation lin(at.problem, at.x, {exact, 0.3});
+  for (const bool lagrangian : {false, true}) {
+    const Linearisation lin(at.problem, at.x, {lagrangian, 0.3});
     const BlockVector s = solution_of(lin);
     const double expected = curvature(lin, s);
     EXPECT_NEAR(lin.newton().model_curvature(lin.step(s)), expected,

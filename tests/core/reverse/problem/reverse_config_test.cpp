@@ -66,7 +66,7 @@ std::vector<std::tuple<SolveStatus, int, std::vector<Poses>>> solutions(
     jobs.push_back({{{0, 0, 0}, {1.45, 0.2, 0.05}, {2.9, 0.5, 0.3}}, action});
   std::vector<std::tuple<SolveStatus, int, std::vector<Poses>>> found;
   for (const ReverseResult& r : ReverseSimulator(scene, {}, push, config).solve(jobs))
-    found.emplace_back(r.status, r.iterations, r.starts);
+    found.emplace_back(r.status, r.iterations, r.predecessors);
   return found;
 }
 

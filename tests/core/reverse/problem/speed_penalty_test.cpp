@@ -12,7 +12,9 @@ namespace {
 constexpr double kWeight = 0.3, kStride = 0.2;
 const energy::Damping<double> kBody{2.0, 0.5, false};
 
-SpeedPenalty<double> at(const Vector3d& way) { return {kWeight, kStride, kBody, way}; }
+SpeedPenalty<double> at(const Vector3d& displacement) {
+  return {kWeight, kStride, kBody, displacement};
+}
 
 TEST(SpeedPenalty, IsTheCubeOfTheSquaredSpeed) {
   EXPECT_EQ(at(Vector3d::Zero()).value, 0.0);
@@ -24,10 +26,10 @@ TEST(SpeedPenalty, IsTheCubeOfTheSquaredSpeed) {
 TEST(SpeedPenalty, DerivativesMatchDifferences) {
   Rng rng(3);
   for (int trial = 0; trial < 20; ++trial) {
-    const Vector3d way = testing::noise(3, 0.3, rng), along = testing::noise(3, 1.0, rng);
+    const Vector3d displacement = testing::noise(3, 0.3, rng), along = testing::noise(3, 1.0, rng);
     const double t = 1e-5;
-    const SpeedPenalty<double> here = at(way), ahead = at(way + t * along),
-                               behind = at(way - t * along);
+    const SpeedPenalty<double> here = at(displacement), ahead = at(displacement + t * along),
+                               behind = at(displacement - t * along);
     EXPECT_NEAR((ahead.value - behind.value) / (2.0 * t), here.gradient.dot(along), 1e-6);
     EXPECT_LT(((ahead.gradient - behind.gradient) / (2.0 * t) - here.hessian * along).norm(), 1e-5);
   }

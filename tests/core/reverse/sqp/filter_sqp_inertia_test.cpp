@@ -109,9 +109,9 @@ TEST(FilterSqpInertia, PushesOfRandomScenesAreFoundBack) {
         ReverseSimulator(drawn.scene, physics, push, {}).solve({end.end, drawn.action});
     if (result.status != SolveStatus::kConverged) continue;
     ++converged;
-    EXPECT_EQ(result.starts.size(), 1u);
+    EXPECT_EQ(result.predecessors.size(), 1u);
     for (std::size_t i = 1; i < end.end.size(); ++i)
-      if ((result.starts[0][i].position() - end.end[i].position()).norm() > 0.5) {
+      if ((result.predecessors[0][i].position() - end.end[i].position()).norm() > 0.5) {
         ++moved;
         break;
       }

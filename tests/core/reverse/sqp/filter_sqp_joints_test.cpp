@@ -81,7 +81,7 @@ TEST(FilterSqpJoints, PushesOfAChainAreFoundBackAndReplay) {
     ++solved;
     if (results[k].status != SolveStatus::kConverged) continue;
     ++converged;
-    const Poses &start = results[k].starts[0], &end = jobs[k].end;
+    const Poses &start = results[k].predecessors[0], &end = jobs[k].end;
     EXPECT_LT(widest_joint(scene, start), 1e-14);
     if ((start[2].position() - end[2].position()).norm() < 0.1) continue;
     ++dragged;
@@ -110,7 +110,7 @@ TEST(FilterSqpJoints, LanesFindWhatEachFindsAlone) {
     const ReverseResult alone = simulator.solve(jobs[k]);
     EXPECT_EQ(together[k].status, alone.status);
     EXPECT_EQ(together[k].iterations, alone.iterations);
-    EXPECT_EQ(together[k].starts, alone.starts);
+    EXPECT_EQ(together[k].predecessors, alone.predecessors);
   }
 }
 

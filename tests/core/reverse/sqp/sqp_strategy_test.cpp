@@ -138,12 +138,12 @@ TEST(SqpStrategy, ATurnToTheObjectivesHessianIsTheSameIteration) {
   SqpStrategy strategy(config);
   step(strategy, 1);
   EXPECT_EQ(strategy.reject_ascent(), Order::kGoOn);
-  EXPECT_FALSE(strategy.exact());
+  EXPECT_FALSE(strategy.uses_lagrangian());
   EXPECT_EQ(strategy.proximal(), config.proximal_start);
   step(strategy, 1);
   EXPECT_EQ(strategy.iterations(), 1);
   EXPECT_EQ(strategy.reject_ascent(), Order::kGoOn);  // not convex even so
-  EXPECT_TRUE(strategy.exact());
+  EXPECT_TRUE(strategy.uses_lagrangian());
   EXPECT_EQ(strategy.proximal(), 4.0 * config.proximal_start);
 }
 
@@ -179,9 +179,9 @@ TEST(SqpStrategy, AStepThatIsTakenBringsTheExactHessianBack) {
   const ReverseConfig config = without_softening();
   SqpStrategy strategy(config);
   strategy.reject_ascent();
-  ASSERT_FALSE(strategy.exact());
+  ASSERT_FALSE(strategy.uses_lagrangian());
   EXPECT_TRUE(strategy.accept({1.0, 0.0}, {0.5, 0.0}, 1.0));
-  EXPECT_TRUE(strategy.exact());
+  EXPECT_TRUE(strategy.uses_lagrangian());
 }
 
 TEST(SqpStrategy, ATrialPointMustImproveAndBeNewToTheFilter) {

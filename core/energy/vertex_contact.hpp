@@ -5,24 +5,25 @@
 namespace rtg::energy {
 
 /// Least ratio of a small gap to its previous value that a line search accepts. A gap is small
-/// below this fraction of the barrier's range ĝ. See keeps_gap().
-inline constexpr double kKeptGap = 0.1;
+/// below this fraction of the barrier's range ĝ. See is_gap_acceptable().
+inline constexpr double kMinGapRatio = 0.1;
 
 /// Returns whether a line search may accept `gap`. It must be positive, and at least the smaller of
-/// kKeptGap ĝ and kKeptGap times the previous value `was`.
+/// kMinGapRatio ĝ and kMinGapRatio times `previous_gap`.
 template <class T>
-Mask<T> keeps_gap(const T& gap, const T& was, const Barrier& barrier) {
-  return gap > T(0.0) && !(gap < T(kKeptGap * barrier.range) && gap < T(kKeptGap) * was);
+Mask<T> is_gap_acceptable(const T& gap, const T& previous_gap, const Barrier& barrier) {
+  return gap > T(0.0) &&
+         !(gap < T(kMinGapRatio * barrier.range) && gap < T(kMinGapRatio) * previous_gap);
 }
 
 /// A vertex of the first body of a pair, with its distances to the edge lines of the second.
 template <class T>
-struct Touch {
+struct VertexContact {
   ContactPoint<T> point;
   Mask<T> within;  // lanes in which the gap may be below the barrier's range
 
-  Touch(const SceneModel<T>& scene, int pair, int vertex, const PairFrame<T>& frame,
-        const Mask<T>& near)
+  VertexContact(const SceneModel<T>& scene, int pair, int vertex, const PairFrame<T>& frame,
+                const Mask<T>& near)
       : point(scene.point(pair, vertex, frame)), scene_(scene), planes_(scene.planes(pair)) {
     top_ = plane_distances(planes_, point.x, distances);
     within = near && scene.real(pair, vertex);

@@ -1,4 +1,4 @@
-#include "core/forward/clear_way.hpp"
+#include "core/forward/free_path.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr double kNearEnough = 0.055;  // the search ends here: strides vanish t
 }  // namespace
 
 /// Conservative advancement: each stride is the longest that the separation from the body permits.
-double clear_way(const Scene& scene, const Poses& poses, const Pose& to) {
+double free_path_length(const Scene& scene, const Poses& poses, const Pose& to) {
   const Vector2d from = poses[0].position();
   const double length = (to.position() - from).norm();
   const Polygon& robot = scene.bodies[0].shape;
@@ -25,15 +25,15 @@ double clear_way(const Scene& scene, const Poses& poses, const Pose& to) {
     if (distance_to_segment(poses[j].position(), from, to.position()) >
         radius + bounding_radius(shape))
       continue;
-    double way = 0.0;
-    for (double gap = INFINITY; way < clear && gap > kNearEnough;
-         way += std::max(gap - kNear, 0.0)) {
+    double travelled = 0.0;
+    for (double gap = INFINITY; travelled < clear && gap > kNearEnough;
+         travelled += std::max(gap - kNear, 0.0)) {
       Pose at = poses[0];
-      at.x += way / length * (to.x - from.x());
-      at.y += way / length * (to.y - from.y());
+      at.x += travelled / length * (to.x - from.x());
+      at.y += travelled / length * (to.y - from.y());
       gap = separation(robot, at, shape, poses[j]);
     }
-    clear = std::min(clear, way);
+    clear = std::min(clear, travelled);
   }
   return clear;
 }

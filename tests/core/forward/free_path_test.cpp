@@ -1,4 +1,4 @@
-#include "core/forward/clear_way.hpp"
+#include "core/forward/free_path.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,36 +16,36 @@ Scene two_boxes() {
            {"box", "box", box(1.0, 1.0), 1.0, 0.5, false}}};
 }
 
-double way_past(const Pose& box, const Pose& to) {
-  return clear_way(two_boxes(), {{0, 0, 0}, box}, to);
+double free_length(const Pose& box, const Pose& to) {
+  return free_path_length(two_boxes(), {{0, 0, 0}, box}, to);
 }
 
-TEST(ClearWay, EndsWhereABodyIsNear) {
-  EXPECT_NEAR(way_past({3, 0, 0}, {4, 0, 0}), 2.0 - kNear, 0.006);
-  EXPECT_NEAR(way_past({3, 0.9, 0}, {4, 0, 0}), 2.0 - kNear, 0.006);
-  EXPECT_EQ(way_past({1.02, 0, 0}, {2, 0, 0}), 0.0);
+TEST(FreePath, EndsWhereABodyIsNear) {
+  EXPECT_NEAR(free_length({3, 0, 0}, {4, 0, 0}), 2.0 - kNear, 0.006);
+  EXPECT_NEAR(free_length({3, 0.9, 0}, {4, 0, 0}), 2.0 - kNear, 0.006);
+  EXPECT_EQ(free_length({1.02, 0, 0}, {2, 0, 0}), 0.0);
 }
 
-TEST(ClearWay, IsTheWholeWayPastBodiesBesideAndBehind) {
-  EXPECT_EQ(way_past({3, 1.2, 0}, {4, 0, 0}), 4.0);
-  EXPECT_EQ(way_past({-1.2, 0, 0}, {4, 0, 0}), 4.0);
-  EXPECT_EQ(way_past({9, 0, 0}, {4, 0, 0}), 4.0);
-  EXPECT_EQ(way_past({3, 0, 0}, {0, 0, 0}), 0.0);  // no way at all
+TEST(FreePath, IsTheWholePathPastBodiesBesideAndBehind) {
+  EXPECT_EQ(free_length({3, 1.2, 0}, {4, 0, 0}), 4.0);
+  EXPECT_EQ(free_length({-1.2, 0, 0}, {4, 0, 0}), 4.0);
+  EXPECT_EQ(free_length({9, 0, 0}, {4, 0, 0}), 4.0);
+  EXPECT_EQ(free_length({3, 0, 0}, {0, 0, 0}), 0.0);  // no path at all
 }
 
 // Against steps of 1 mm.
-TEST(ClearWay, NoBodyIsNearBeforeItsEnd) {
+TEST(FreePath, NoBodyIsNearBeforeItsEnd) {
   const PushConfig push;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const testing::RandomPush drawn = testing::random_push(seed, push);
     const Pose to = push_target(drawn.start[0], drawn.action, push);
-    const double clear = clear_way(drawn.scene, drawn.start, to);
+    const double clear = free_path_length(drawn.scene, drawn.start, to);
     const double length = (to.position() - drawn.start[0].position()).norm();
     double least = INFINITY, at_end = INFINITY;
-    for (double way = 0.0; way < clear; way += 1e-3) {
+    for (double travelled = 0.0; travelled < clear; travelled += 1e-3) {
       Poses poses = drawn.start;
-      poses[0].x += way / length * (to.x - poses[0].x);
-      poses[0].y += way / length * (to.y - drawn.start[0].y);
+      poses[0].x += travelled / length * (to.x - poses[0].x);
+      poses[0].y += travelled / length * (to.y - drawn.start[0].y);
       at_end = INFINITY;
       for (std::size_t j = 1; j < poses.size(); ++j)
         at_end = std::min(at_end, separation(drawn.scene.bodies[0].shape, poses[0],
