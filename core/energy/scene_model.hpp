@@ -38,8 +38,8 @@ class SceneModel {
   /// Loads `scene` into every lane. `scene` must list its movable bodies first; body 0 is the
   /// robot.
   SceneModel(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push);
-  /// Returns a model with empty lanes for scenes with as many bodies as `like`. It has the same
-  /// pairs, joints and physics constants as `like`.
+  /// Returns a model with empty lanes and the physics constants of `like`. It is for scenes with as
+  /// many bodies, and movable bodies, as `like` and with joints between the same bodies.
   static SceneModel room_for(const SceneModel<double>& like) { return {like, Room{}}; }
 
   /// Copies the scene of `one` into this lane.

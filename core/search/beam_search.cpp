@@ -88,7 +88,8 @@ std::vector<Predecessor> BeamSearch::best_to_replay(std::vector<Predecessor> all
   return out;
 }
 
-/// Returns at most `times` · config.breadth of the steps, best first, as select_beam() selects.
+/// Returns the steps that select_beam() selects, best first: at most `times` · config.breadth.
+/// Leaves out steps whose start is in a cell of `seen` and adds the cells of the others.
 std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int times,
                                              std::unordered_set<std::uint64_t>& seen) {
   std::vector<BeamEntry> entries;

@@ -9,8 +9,8 @@
 
 namespace rtg::search {
 
-/// Swaps the poses of interchangeable bodies until no swap reduces the layout_distance() to
-/// `target`. Returns the result. Bodies are interchangeable if they can move, have no joint, and
+/// Swaps the poses of interchangeable objects until no swap reduces the layout_distance() to
+/// `target`. Returns the result. Objects are interchangeable if they can move, have no joint, and
 /// have equal kind, shape, density and friction. Such swaps do not change whether a goal holds.
 Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Poses& target);
 

@@ -11,7 +11,8 @@
 namespace rtg::search {
 
 /// A reverse step: by the push `action`, the state `start` should lead to the state `end`. Before
-/// the replay in the simulator, `end` is the state solved for; afterwards it is the true outcome.
+/// the replay in the simulator, `end` is the final state that the reverse solver was given;
+/// afterwards it is the true outcome.
 struct Predecessor {
   int parent = 0;  // index of the reverse job; in BeamSearch, of the node it leads to
   int action = 0;

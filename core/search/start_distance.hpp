@@ -27,9 +27,10 @@ double start_distance(const tasks::Task& task, const StateMetric& metric, const 
 /// place". The robot may be anywhere.
 bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target);
 
-/// Moves each object that is in place (start_distance()) to its pose in `start`. Returns the
-/// result. `start` is a start near `target`. Bodies connected by joints move only if all of them
-/// are in place. The robot moves only if it and all objects are in place.
+/// Returns `poses` with each object that is near its pose in `target` (in place, start_distance())
+/// moved to its pose in `start`, a start state near `target`. Bodies connected by joints, except
+/// through a fixed body, move only if all of them are in place. The robot moves only if it and all
+/// objects are in place.
 Poses snapped_to_start(const tasks::Task& task, const StateMetric& metric, Poses poses,
                        const Poses& target, const Poses& start);
 

@@ -67,7 +67,8 @@ bool StreamServer::drained(int consumers, bus::Seconds now) const {
   return sealed_ && first_unsent_ == count() && complete >= consumers;
 }
 
-/// Adds `range` to the requested ranges. Merges overlaps, so that a repeated request costs nothing.
+/// Adds `range` to the requested ranges and merges it with those that it overlaps or touches. So
+/// rows that are requested twice before they are sent are sent once.
 void StreamServer::ask(RowRange range) {
   auto it = requested_.upper_bound(range.begin);
   if (it != requested_.begin() && std::prev(it)->second >= range.begin) --it;

@@ -78,7 +78,7 @@ struct TrainConfig {
   bool reduced_precision = true;  // inner layers in bfloat16 where the processor supports it
   Device device = Device::kAuto;  // device of the networks; auto: a GPU if PyTorch finds one
 
-  /// Visits the fields that control how online transitions are made.
+  /// Visits the fields of exploration, of the starts of episodes and of hindsight goals.
   template <class Visitor>
   void visit_experience(Visitor& v) {
     v.number("epsilon_start", epsilon_start, 0.0, 1.0, "exploration at the first interaction");

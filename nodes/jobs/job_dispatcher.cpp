@@ -108,8 +108,9 @@ void JobDispatcher::resend_unheard(bus::Seconds now, std::vector<Send>& sends) {
     }
 }
 
-/// Returns how many more jobs `worker` can take. `suspect`: lost workers had the job to be assigned
-/// next. A suspect job must be the only job of its worker.
+/// Returns how much room `worker` has for the next job. 0: it must not get that job. `suspect`: a
+/// worker that had the job was lost. A suspect job must be the only job of its worker, so only an
+/// idle worker has room for it, its whole capacity.
 int JobDispatcher::room(const Worker& worker, bool suspect) const {
   if (!worker.stuck.empty()) return 0;
   const int leases = static_cast<int>(worker.leases.size());

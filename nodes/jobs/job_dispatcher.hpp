@@ -14,7 +14,7 @@ namespace rtg::jobs {
 
 /// Id of a job: a hash of its content, so that equal jobs have equal ids.
 using JobId = std::int64_t;
-/// Id of one start of a worker process.
+/// Id of a worker process, drawn at random when it starts. A restarted worker has a new one.
 using WorkerId = std::int64_t;
 
 /// Assigns jobs to worker processes that may die. The network between them loses, duplicates and

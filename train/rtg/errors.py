@@ -1,4 +1,4 @@
-"""Errors that end a command early, each with the exit status of the command."""
+"""Errors that end a command early. The docstring of each names the exit status that follows."""
 
 from __future__ import annotations
 

@@ -25,14 +25,14 @@ struct Eliminated {
   Vec4<T> b = Vec4<T>::Constant(T(0.0));
 };
 
-/// The sum of the terms that the contacts of a pair of bodies add to one stage (sub-step) of the
-/// Newton system. All are in the coordinates of the pair (PairFrame).
+/// The terms that the contacts of a pair of bodies add to Q, E, q and e of one stage of the Newton
+/// system. All are in the coordinates of the pair (PairFrame).
 template <class T>
 struct PairTerms {
   Mat4<T> Q = Mat4<T>::Constant(T(0.0)), E = Q;  // Hessian of the Lagrangian, ∂Φ/∂p
   Vec4<T> gradient = Vec4<T>::Constant(T(0.0));  // of the Lagrangian
   Vec4<T> residual = gradient;                   // Φ
-  Vec4<T> q = gradient, e = gradient;            // q without the gradient, e without the residual
+  Vec4<T> q = gradient, e = gradient;  // without gradient and residual, which NewtonSystem adds
 };
 
 /// Linearises the contacts of a pair of bodies at level k: the poses after sub-step k, or the start

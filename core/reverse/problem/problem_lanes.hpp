@@ -12,8 +12,8 @@ struct Trajectory;
 /// bodies.
 template <class T>
 struct ProblemLanes {
-  /// Allocates empty lanes. Problems to be loaded must have the numbers of bodies, the joints and
-  /// the settings of `like`.
+  /// Allocates empty lanes for problems with as many bodies, and movable bodies, as `like`, joints
+  /// between the same bodies, and the same physics constants, `config`, `sub_steps` and `settling`.
   explicit ProblemLanes(const ReverseProblem& like);
   void load(int lane, const ReverseProblem& one);
 
@@ -53,7 +53,8 @@ struct Trajectory {
   std::vector<std::vector<T>> multipliers;
 };
 
-/// Numbers per level and contact [h + 1][contacts].
+/// A number for each contact at each level. Level 0 is the start, level k the end of sub-step k.
+/// [h + 1][contacts]
 template <class T>
 using PerContact = std::vector<std::vector<T>>;
 

@@ -183,7 +183,7 @@ class Bus:
         self._subscriptions.clear()
 
     def decode(self, message_type: type[Message], data: bytes) -> Message | None:
-        """Decodes a message of this run. Drops any other: counts the reason and returns None."""
+        """Decodes a message. If it is not a valid one of this run, counts why and returns None."""
         message = decoded(message_type, data)
         if isinstance(message, str):
             self.counters[message] += 1

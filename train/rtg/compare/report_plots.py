@@ -137,7 +137,10 @@ def _runs_with_curves(comparison: Comparison, task: str) -> RunsByLabel:
 
 
 def _add_legend(figure: Figure, runs_by_label: RunsByLabel, title: str, columns: int = 4) -> None:
-    """Adds the legend, with the final success of each label, below the panels, the title above."""
+    """Adds the title above the panels and the legend below them.
+
+    The legend shows the mean final success and the number of seeds of each label.
+    """
     styles = _styles(list(runs_by_label))
     handles = [
         plt.Line2D([], [], color=styles[label][0], ls=styles[label][1], lw=2)

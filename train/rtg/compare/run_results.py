@@ -186,7 +186,8 @@ def read_comparison(folder: Path, grid: Grid) -> Comparison:
     """Reads the results of all cells of the grid. Raises UserError if a file is damaged.
 
     The runs are sorted by task, method, settings and seed. Tasks are in the order of TASKS, methods
-    in the order of METHODS. Other tasks follow; they and all settings keep the order of the grid.
+    in the order of METHODS. Other tasks follow. Other tasks, and the settings, are in the order of
+    the grid.
     """
     tasks = list(dict.fromkeys((*TASKS, *(cell.task for cell in grid.commands_by_cell))))
     settings = list(dict.fromkeys(cell.settings for cell in grid.commands_by_cell))

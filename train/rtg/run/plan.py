@@ -124,9 +124,10 @@ def _check_resumed(file: Path, config: _core.Config) -> None:
 
 
 def make_plan(args: RunArgs) -> RunPlan:
-    """Resolves the configuration and creates the run folder. Raises UserError.
+    """Resolves the configuration and writes it to the run folder, which it creates.
 
-    Plans a run in one process if multicast does not work.
+    Plans the generation in this process if it needs multicast and that does not work. Raises
+    UserError for bad input.
     """
     overrides = args.overrides
     config = effective_config.load(args.file, overrides)
