@@ -64,7 +64,10 @@ class SlipRates {
   /// `hessian` is ∂²φ/∂u₊².
   SlipRates(const SlipTerms<T>& s, const SlipGeometry<T>& at, const Mat4<T>& hessian,
             const Vec4<T>& y)
-      : s_(s), at_(at), rate_(at.after.along(y)), displacement_rate_(rate_.x.y(), -rate_.x.x()) {
+      : s_(s),
+        at_(at),
+        rate_(at.after.along(y)),
+        rotated_displacement_rate_(rate_.x.y(), -rate_.x.x()) {
     tangent_slope_ << -at.D(1, 0), -at.D(1, 1), at.D(0, 0), at.D(0, 1);
     u_x_ = product(at.D, s.rotated_displacement) - s.tangent;
     const T slip = s.tangent.dot(rate_.x);
@@ -72,7 +75,7 @@ class SlipRates {
     bend_ = T(-3.0) * s.slip * s.bend * slip / (s.root * s.root);
     ahead_ = rate_.pulled_rate(s.tangent);
     behind_ = at.before.pulled(u_x_);
-    behind_rate_ = at.before.pulled(product(at.D, displacement_rate_));
+    behind_rate_ = at.before.pulled(product(at.D, rotated_displacement_rate_));
     next = s.ahead * slope_ + ahead_ * s.slope + frame_turn(y[3], s.gradient());
     now = behind_ * slope_ + behind_rate_ * s.slope;
     set_next_next(row_turn(y[3], hessian));
@@ -111,8 +114,8 @@ class SlipRates {
     u_xx -= tangent_slope_.transpose();
     Mat4<T> own = at_.before.pulled(u_xx, at_.before);
     at_.before.add_curvature(u_x_, own);
-    Mat4<T> own_rate = at_.before.pulled(at_.d.third(displacement_rate_), at_.before);
-    at_.before.add_curvature(product(at_.D, displacement_rate_), own_rate);
+    Mat4<T> own_rate = at_.before.pulled(at_.d.third(rotated_displacement_rate_), at_.before);
+    at_.before.add_curvature(product(at_.D, rotated_displacement_rate_), own_rate);
     const Mat4<T> half = (behind_rate_ * s_.bend) * behind_.transpose();
     now_now = (behind_ * bend_) * behind_.transpose() + half + half.transpose() + own * slope_ +
               own_rate * s_.slope;
@@ -120,13 +123,13 @@ class SlipRates {
 
   const SlipTerms<T>& s_;
   const SlipGeometry<T>& at_;
-  ContactPoint<T> rate_;       // (ẋ₊, ȧ₊)
-  Vec2<T> displacement_rate_;  // rate of Eᵀ (x₊ - x)
-  Mat2<T> tangent_slope_;      // ∂t/∂x = E D
-  Vec2<T> u_x_;                // ∂u/∂x
-  T slope_, bend_;             // rates of φ', φ''
-  Vec4<T> ahead_;              // rate of X₊ᵀ t
-  Vec4<T> behind_;             // Xᵀ ∂u/∂x
+  ContactPoint<T> rate_;               // (ẋ₊, ȧ₊)
+  Vec2<T> rotated_displacement_rate_;  // rate of Eᵀ (x₊ - x)
+  Mat2<T> tangent_slope_;              // ∂t/∂x = E D
+  Vec2<T> u_x_;                        // ∂u/∂x
+  T slope_, bend_;                     // rates of φ', φ''
+  Vec4<T> ahead_;                      // rate of X₊ᵀ t
+  Vec4<T> behind_;                     // Xᵀ ∂u/∂x
   Vec4<T> behind_rate_;
 };
 

@@ -208,7 +208,7 @@ class World {
   b2World world_{b2Vec2(0.0f, 0.0f)};
   std::vector<b2Body*> bodies_;
   b2MotorJoint* servo_joint_ = nullptr;
-  Poses last_finite_poses_;    // the start before the first step
+  Poses last_finite_poses_;    // initially the start
   std::vector<bool> touched_;  // per body: whether it has had a velocity
   double fastest_ = 0.0;       // largest speed of a touched body [m/s] or [rad/s]
   double shift_ = 0.0;         // largest displacement in the last step [m] or [rad]

@@ -21,9 +21,9 @@ bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job
 /// Returns the indices of the bodies that can take part in the push: the robot first, movable
 /// bodies before fixed ones. The set begins with the robot. Each movable body in it adds
 ///
-///   - the bodies within `range` [m] (plus a margin for turns) of the area that it sweeps in one
-///     stride back,
-///   - the bodies that joints connect with it.
+///   - The bodies within `range` [m] of the area that it sweeps in one stride back. An object also
+///     gets a margin for turns, and a body with a joint one stride, because links swing.
+///   - The bodies that joints connect with it.
 std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, const ReverseJob& job,
                                  double range);
 

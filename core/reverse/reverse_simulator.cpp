@@ -29,7 +29,7 @@ bool objects_differ(const VectorXd& p, const VectorXd& other) {
 /// leads to the same end. In a further start the objects already have the poses that they have
 /// after sub-step k. They rest there until the robot meets them, later in the push.
 ///
-///   start_j = (robot of p_0, objects of p_k),  k = h·j/(J + 1),  j = 0 ... J = late_contacts
+///   start_j = (robot of p_0, objects of p_k),  k = h·j/(n + 1),  j = 0 ... n = late_contacts
 ///
 /// With inertia, `late_contacts` must be 0.
 std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int late_contacts) {

@@ -17,7 +17,7 @@ BeamSearch::BeamSearch(const tasks::Task& task, const SearchConfig& config, Pose
                        std::uint64_t seed)
     : task_(task), config_(config), metric_(task.scene), target_(std::move(target)), rng_(seed) {}
 
-void BeamSearch::seed_roots(const ReplayBatch& replay, SearchStats& stats) {
+void BeamSearch::make_roots(const ReplayBatch& replay, SearchStats& stats) {
   std::vector<ReplayJob> goals;
   for (Poses& goal : goal_roots(task_, config_, target_, rng_, stats))
     goals.push_back({std::move(goal), kSettle});
@@ -140,7 +140,7 @@ std::vector<std::optional<std::vector<Transition>>> BeamSearch::simulate_plans(
 std::vector<Transition> BeamSearch::verify_and_select(std::vector<Predecessor> replayed,
                                                       const ReplayBatch& replay) {
   std::unordered_set<std::uint64_t> seen = seen_;
-  std::vector<Predecessor> tried = best_of(std::move(replayed), config_.verified_plans, seen);
+  std::vector<Predecessor> tried = best_of(std::move(replayed), config_.plans_per_node, seen);
   auto outcomes = simulate_plans(tried, replay);
   std::vector<Predecessor> good;
   std::vector<Transition> steps;

@@ -30,15 +30,16 @@ class BeamSearch {
   BeamSearch(const tasks::Task& task, const SearchConfig& config, Poses target, std::uint64_t seed);
 
   /// Makes the first beam of goal states near the target (goal_roots()). Lets each state come to
-  /// rest by `replay`. Drops states in which the goal then does not hold.
-  void seed_roots(const ReplayBatch& replay, SearchStats& stats);
+  /// rest by `replay`. Drops states that then are not legal, or no goal states, or in the
+  /// cell of another root.
+  void make_roots(const ReplayBatch& replay, SearchStats& stats);
 
   /// Grows a layer of the tree and returns the transitions to store:
   ///
   ///  1. Solve for the predecessors of every node of the beam under every action.
   ///  2. Replay the best of them in the simulator. Drop those with `max_error` above
   ///     config.gap_tolerance.
-  ///  3. Select the best config.verified_plans · config.breadth of the rest. A plan is such a step
+  ///  3. Select the best config.plans_per_node · config.breadth of the rest. A plan is such a step
   ///     followed by the actions of its parent node.
   ///  4. Simulate each plan. Objects that are near their start poses first move into a random start
   ///     (snapped_to_start()). If no plan then succeeds, simulate all plans from the unchanged

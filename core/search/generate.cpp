@@ -20,7 +20,7 @@ void grow_tree(Generation& run, int number) {
   Rng rng = run.attempt_rng(number);
   const Poses target = run.draw_start(rng);
   BeamSearch search(run.task, run.config, target, rng.word());
-  search.seed_roots(run.replay, run.stats);
+  search.make_roots(run.replay, run.stats);
   double best = search.min_start_distance();
   int patience = run.config.patience;
   for (int layer = 1; layer <= run.config.depth && patience > 0; ++layer) {

@@ -24,12 +24,12 @@ struct SearchConfig {
   int near_branches = 1;           // how many of them lie near the heading of the step
   int near_headings = 3;           // largest distance at which a branch is near, in headings
   int breadth = 100;               // B, nodes kept per layer
-  int verified_plans = 2;          // plans simulated per layer, as a multiple of breadth
+  int plans_per_node = 2;          // plans simulated per layer, as a multiple of breadth
   double whole_plan_share = 0.05;  // share of plans stored whole; of the rest, the first step
   int depth = 40;                  // D, layers per tree at most
   double contact_quota = 0.4;   // share of the beam reserved for nodes whose step moved an object
   double gap_tolerance = 0.25;  // largest replay error of a body in a step that is used [m]
-  int predecessors_per_solve = 2;  // predecessors replayed per node and action, the best ones
+  int predecessors_per_solve = 2;  // that move an object, replayed per node and action
   int free_moves = 6;              // steps that move no object, replayed per node, the best ones
   int nodes_per_layout = 18;       // most nodes of a beam that differ only in the robot's position
   int root_draws = 4;              // goal states drawn per root of a tree
@@ -44,7 +44,7 @@ struct SearchConfig {
     v.integer("near_branches", near_branches, 0, 359, "of them near the step's own");
     v.integer("near_headings", near_headings, 1, 180, "how many headings away, at most");
     v.integer("breadth", breadth, 1, 100000, "nodes kept per layer");
-    v.integer("verified_plans", verified_plans, 1, 1000,
+    v.integer("plans_per_node", plans_per_node, 1, 1000,
               "plans carried out to the goal per place in the beam");
     v.number("whole_plan_share", whole_plan_share, 0.0, 1.0,
              "share of successful plans stored whole");
@@ -52,7 +52,7 @@ struct SearchConfig {
     v.number("contact_quota", contact_quota, 0.0, 1.0, "share of the beam that moved an object");
     v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest miss of a body kept [m]");
     v.integer("predecessors_per_solve", predecessors_per_solve, 1, 100,
-              "predecessors replayed per solve, the best");
+              "predecessors that move an object, replayed per solve");
     v.integer("free_moves", free_moves, 0, 360, "steps without contact replayed per node");
     v.integer("nodes_per_layout", nodes_per_layout, 1, 100000,
               "nodes of a beam with objects alike");

@@ -19,7 +19,7 @@ namespace rtg::search {
 /// number of pushes until the robot is within 0.4 m of its own place. `approach_pushes` is 0, 1, or
 /// the distance in strides, at least 2.
 ///
-/// At distance 0, snapped_to_start() returns the whole state `start`.
+/// At distance 0, snapped_to_start() returns its argument `start`.
 double start_distance(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
                       const Poses& target);
 

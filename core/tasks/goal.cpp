@@ -39,12 +39,12 @@ bool concerns(const GoalTerm& term, const Scene& scene, const Joint& joint) {
   return term.kind == "*" || term.kind == scene.bodies[static_cast<std::size_t>(joint.child)].name;
 }
 
-double violation(const GoalTerm& term, const Vector2d& x) {
+double excess(const GoalTerm& term, const Vector2d& x) {
   if (term.region == GoalTerm::Region::kDisc) return (x - term.centre).norm() - term.radius;
   return term.normal.dot(x) - term.offset;
 }
 
-double violation(const GoalTerm& term, double angle) {
+double excess(const GoalTerm& term, double angle) {
   return std::max(term.least - angle, angle - term.most);
 }
 

@@ -36,16 +36,16 @@ bool concerns(const GoalTerm& term, const Scene& scene, const Joint& joint);
 
 /// Returns how far a point [m] or an angle [rad] lies outside the region of `term`. The result is
 /// negative or zero inside.
-double violation(const GoalTerm& term, const Vector2d& x);
-double violation(const GoalTerm& term, double angle);
+double excess(const GoalTerm& term, const Vector2d& x);
+double excess(const GoalTerm& term, double angle);
 
 /// Returns whether a point or an angle lies in the region of `term`, shrunk by `tighten` ([m] or
 /// [rad]).
 inline bool contains(const GoalTerm& term, const Vector2d& x, double tighten) {
-  return violation(term, x) <= -tighten;
+  return excess(term, x) <= -tighten;
 }
 inline bool contains(const GoalTerm& term, double angle, double tighten) {
-  return violation(term, angle) <= -tighten;
+  return excess(term, angle) <= -tighten;
 }
 
 /// Returns the mean centre of the bodies to which `term` applies.

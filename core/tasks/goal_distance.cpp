@@ -31,7 +31,7 @@ void add(Distance& d, const GoalTerm& term, const Scene& scene) {
   if (term.subject == GoalTerm::Subject::kJoint) {
     for (const Joint& joint : scene.joints) {
       if (!concerns(term, scene, joint)) continue;
-      const double off = violation(term, joint_angle(joint, d.poses));
+      const double off = excess(term, joint_angle(joint, d.poses));
       d.violate(off);
       d.note_robot_distance(static_cast<std::size_t>(joint.parent), off);
       d.note_robot_distance(static_cast<std::size_t>(joint.child), off);
@@ -39,11 +39,11 @@ void add(Distance& d, const GoalTerm& term, const Scene& scene) {
     return;
   }
   const bool together = term.subject == GoalTerm::Subject::kCentroid;
-  const double of_mean = together ? violation(term, centroid_of(term, scene, d.poses)) : 0.0;
+  const double of_mean = together ? excess(term, centroid_of(term, scene, d.poses)) : 0.0;
   d.violate(of_mean);
   for (std::size_t k = 1; k < d.poses.size(); ++k) {
     if (!concerns(term, scene, k)) continue;
-    const double off = together ? of_mean : violation(term, d.poses[k].position());
+    const double off = together ? of_mean : excess(term, d.poses[k].position());
     if (!together) d.violate(off);
     d.note_robot_distance(k, off);
   }

@@ -61,8 +61,8 @@ std::optional<Poses> jittered(const Task& task, const Poses& start, double ampli
 /// illegal; allows_jitter() tests for that in advance.
 Poses jittered_start(const Task& task, double amplitude, Rng& rng);
 
-/// Returns whether jittered_start() will find a legal start: at least 5 of 250 test draws are
-/// legal. If 1 draw in 50 is legal, 1000 in a row are illegal with probability 2e-9.
+/// Returns whether jittered_start() can be relied on to find a legal start: at least 5 of 250 test
+/// draws are legal. If 1 draw in 50 is legal, 1000 in a row are illegal with probability 2e-9.
 bool allows_jitter(const Task& task, double amplitude);
 
 /// Margin by which states of sample_goal() satisfy the goal [m], [rad].

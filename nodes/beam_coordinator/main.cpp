@@ -34,8 +34,8 @@ int run(const program::Words& words) {
   if (program::stop_signal()) return 128 + program::stop_signal();
   if (node.given_up() == 0) return 0;
   std::fprintf(stderr,
-               "rtg_beam_coordinator: %ld units of work were skipped, because several workers died "
-               "or fell silent at each of them\n",
+               "rtg_beam_coordinator: %ld units of work were skipped, because each of them killed "
+               "or stalled several workers\n",
                node.given_up());
   return 1;
 }

@@ -67,7 +67,7 @@ class StreamServer {
   }
 
   /// Returns whether the stream is sealed and sent, and its consumers have all of it. All living
-  /// consumers must have confirmed that, and at least `consumers` of them in all.
+  /// consumers must have confirmed that, and at least `consumers` in all, living or not.
   bool drained(int consumers, bus::Seconds now) const;
 
  private:

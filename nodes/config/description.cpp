@@ -130,10 +130,10 @@ std::string task_in_words(const tasks::Task& task, const Amplitudes& starts) {
 std::string training_in_words(const Config& config) {
   const TrainConfig& train = config.train;
   if (train.learner == Learner::kPlanning) return "  search forwards from each start\n";
-  const std::string from = train.offline
-                               ? print("from %d transitions on",
-                                       std::min(train.learning_starts, config.search.transitions))
-                               : "without offline data";
+  const std::string from =
+      train.offline ? print("from %d transitions on",
+                            std::min(train.transitions_before_learning, config.search.transitions))
+                    : "without offline data";
   return print("  train for %d interactions, preset %s, discount %.4g, %s\n", train.interactions,
                kTrainPresets[static_cast<std::size_t>(train.preset)].data(),
                train.discount > 0.0 ? train.discount : config.task.discount, from.c_str());

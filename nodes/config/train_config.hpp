@@ -33,10 +33,11 @@ inline constexpr std::array<std::string_view, 3> kLearners{"q_learning", "clonin
 struct TrainConfig {
   TrainPreset preset = TrainPreset::kDefault;
   Learner learner = Learner::kQLearning;
-  int interactions = 350000;    // Table 2
-  bool interact = true;         // act in the environment; false: learn from generated data only
-  bool offline = true;          // generate transitions and learn from them
-  int learning_starts = 40000;  // offline transitions that must arrive before learning starts
+  int interactions = 350000;  // Table 2
+  bool interact = true;       // act in the environment; false: learn from generated data only
+  bool offline = true;        // generate transitions and learn from them
+  int transitions_before_learning =
+      40000;                    // offline transitions that must arrive before learning starts
   int buffer = 1500000;         // transitions in each of the two replay buffers, Table 2
   int batch = 256;              // transitions per gradient step; half of Table 2's, learns as fast
   double learning_rate = 3e-4;  // of Adam
@@ -105,7 +106,7 @@ struct TrainConfig {
     v.flag("interact", interact, "act in the environment, or learn from generated data alone");
     v.integer("interactions", interactions, 1, kMany, "environment steps of the learner");
     v.flag("offline", offline, "generate transitions and learn from them, too");
-    v.integer("learning_starts", learning_starts, 0, kMany,
+    v.integer("transitions_before_learning", transitions_before_learning, 0, kMany,
               "transitions that must be in before learning starts");
     v.integer("buffer", buffer, kTogether, kMany, "capacity of each replay buffer");
     v.integer("batch", batch, 1, 1000000, "transitions per gradient step");

@@ -38,7 +38,7 @@ class JobDispatcher {
   struct Limits {
     bus::Seconds silence = 2.0;  // a worker without a beat for this long is lost [s]
     bus::Seconds resend = 0.1;   // a beat this long after sending a job should list it [s]
-    bus::Seconds lease = 300.0;  // longest legal time to a result; about 100 times the usual [s]
+    bus::Seconds lease = 300.0;  // longest legal time to a result; some hundred times the usual [s]
     int poison = 3;              // number of lost workers after which a job is given up
   };
   struct Send {

@@ -30,7 +30,7 @@ bool has_shape(const Message& message, const TaskShape& shape) {
 
 /// Returns whether the counts of `message` are consistent. A converged solve must have 1 to
 /// kMaxPredecessors predecessors, any other solve none. n_poses must match the sum of `starts`.
-bool has_starts(const rtg_msgs::reverse_result_t& message, const TaskShape& shape) {
+bool has_predecessors(const rtg_msgs::reverse_result_t& message, const TaskShape& shape) {
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < message.starts.size(); ++i) {
     const bool converged = message.status[i] == static_cast<int>(reverse::SolveStatus::kConverged);
@@ -105,7 +105,7 @@ std::optional<std::vector<reverse::ReverseResult>> ReverseService::parse(
     const ResultMessage& message, const TaskShape& shape) {
   if (!all_between(message.status, 0, reverse::kSolveStatusCount - 1) ||
       !all_between(message.iterations, 0, 1000000000) || !all_between(message.cpu_s, 0.0, 1e9) ||
-      !has_starts(message, shape))
+      !has_predecessors(message, shape))
     return std::nullopt;
   std::vector<Result> results;
   std::size_t at = 0;

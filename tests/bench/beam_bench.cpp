@@ -59,7 +59,7 @@ void beam(benchmark::State& state, const Size& size) {
   for (auto _ : state) {  // trees differ in how soon they meet objects
     search::SearchStats stats;
     search::BeamSearch search(task, config, task.start, ++seed);
-    search.seed_roots(seams.replay, stats);
+    search.make_roots(seams.replay, stats);
     for (int layer = 0; layer < size.depth; ++layer, ++layers) {
       nodes += static_cast<long>(search.beam().size());
       if (search.grow(seams.solve, seams.replay, stats).empty())

@@ -62,8 +62,8 @@ bool ContactLinearisation<T>::add(int vertex, Eliminated<T>& eliminated) {
 template <class T>
 void ContactLinearisation<T>::add_start_barrier(const Contact& c) {
   const energy::Barrier& barrier = scene_.barrier();
-  const T pressure = select(c.vertex.within, barrier.force(c.g), T(0.0));
-  const T stiffness = select(c.vertex.within, barrier.force_slope(c.g), T(0.0));
+  const T pressure = select(c.geometry.within, barrier.force(c.g), T(0.0));
+  const T stiffness = select(c.geometry.within, barrier.force_slope(c.g), T(0.0));
   own.gradient -= c.gap.gradient * pressure;
   own.Q -= (c.gap.gradient * stiffness) * c.gap.gradient.transpose();
   own.Q -= c.gap.hessian * (curvature_.lagrangian * pressure);
@@ -72,7 +72,7 @@ void ContactLinearisation<T>::add_start_barrier(const Contact& c) {
 /// Adds the normal force, -λ ∇g(p_k) in Φ_k.
 template <class T>
 void ContactLinearisation<T>::add_normal_force(Contact& c) {
-  const energy::GapRates<T> rates(c.d, c.D, c.vertex.point, c.gap, y_);
+  const energy::GapRates<T> rates(c.d, c.D, c.geometry.point, c.gap, y_);
   own.E -= c.gap.hessian * c.force;
   own.E -= c.gap.gradient * c.b.transpose();
   own.e -= c.gap.gradient * c.a;
@@ -86,9 +86,9 @@ void ContactLinearisation<T>::add_normal_force(Contact& c) {
 /// Adds the friction, μ_f λ ∂φ/∂q₊ in Φ_{k+1}.
 template <class T>
 void ContactLinearisation<T>::add_friction(Contact& c, const energy::ContactPoint<T>& after) {
-  const energy::SlipTerms<T> slip(c.d.gradient, after, c.vertex.point.x, scene_.slip());
+  const energy::SlipTerms<T> slip(c.d.gradient, after, c.geometry.point.x, scene_.slip());
   const Mat4<T> hessian = slip.hessian(after);
-  const energy::SlipGeometry<T> at{c.d, c.D, after, c.vertex.point};
+  const energy::SlipGeometry<T> at{c.d, c.D, after, c.geometry.point};
   const energy::SlipRates<T> rates(slip, at, hessian, y_next_);
   const T mu = scene_.friction(pair_), load = mu * c.force, bent = curvature_.lagrangian * load;
   const Vec4<T> drag = slip.gradient() * mu;

@@ -63,7 +63,7 @@ class ContactLinearisation {
  private:
   /// The contact that add() is adding.
   struct Contact {
-    const energy::VertexContact<T>& vertex;
+    const energy::VertexContact<T>& geometry;
     const SignedDistance<T>& d;
     const Mat2<T>& D;
     const energy::GapTerms<T>& gap;

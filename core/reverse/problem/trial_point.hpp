@@ -5,7 +5,8 @@
 
 namespace rtg::reverse {
 
-/// Returns the lanes in which `alpha` times `step` moves no body by more than 1 m or 0.5 rad.
+/// Returns the lanes in which no coordinate of `alpha` times `step` exceeds 1 m or 0.5 rad. With
+/// joints, these are the reduced coordinates.
 template <class T>
 Mask<T> bounded(const StageStep<T>& step, const T& alpha);
 

@@ -29,7 +29,7 @@ WarmStart<T>::WarmStart(const ProblemLanes<T>& problem)
       unpushed_(start_),
       robot_back_(start_),
       trial_(start_),
-      mirrored_displacement_(start_.p),
+      forward_displacement_(start_.p),
       forces_(static_cast<std::size_t>(scene_.contacts()), T(0.0)),
       last_displacement_(start_.p) {}
 
@@ -58,7 +58,7 @@ Mask<T> WarmStart<T>::push(const energy::StepStart<T>& from, const Vec3<T>& targ
   return found;
 }
 
-/// Sets `out` to `p` with the objects moved by -share·mirrored_displacement_. Takes the largest
+/// Sets `out` to `p` with the objects moved by -share·forward_displacement_. Takes the largest
 /// share of 1, ½, ¼, ... that leaves all gaps open. Lanes without such a share keep their `out`.
 /// The robot stays as in `p`.
 template <class T>
@@ -69,7 +69,7 @@ void WarmStart<T>::move_back(const energy::Placement<T>& p, const Mask<T>& wante
   for (double share = 1.0; share > kLeastShare && any(searching); share *= 0.5) {
     trial_ = p;
     for (int m = 3; m < 3 * scene_.movable(); ++m)
-      trial_.p[m] = p.p[m] - T(share) * mirrored_displacement_[m];
+      trial_.p[m] = p.p[m] - T(share) * forward_displacement_[m];
     scene_.place(trial_);
     const Mask<T> open = searching && scene_.least_gap(trial_) >= floor && scene_.separated(trial_);
     out.assign(open, trial_);
@@ -89,8 +89,8 @@ Mask<T> WarmStart<T>::mirror(int k, const Mask<T>& wanted) {
   scene_.forces(start_, forces_.data());
   Mask<T> going = push({start_, forces_.data(), last_displacement_.data()}, ahead, wanted, pushed_);
   going = step_.solve({start_, forces_.data()}, energy::Drive<T>::towards(here), going, unpushed_);
-  for (std::size_t m = 0; m < mirrored_displacement_.size(); ++m)
-    mirrored_displacement_[m] = pushed_.p[m] - unpushed_.p[m];
+  for (std::size_t m = 0; m < forward_displacement_.size(); ++m)
+    forward_displacement_[m] = pushed_.p[m] - unpushed_.p[m];
   robot_back_ = start_;
   put_robot(mirrored_path(k - 1), robot_back_);
   start_.assign(going, robot_back_);

@@ -38,9 +38,9 @@ class WarmStart {
   const energy::SceneModel<T>& scene_;
   energy::ForwardStep<T> step_;
   energy::Placement<T> start_, pushed_, unpushed_, robot_back_, trial_;
-  std::vector<T> mirrored_displacement_;  // move_back() moves the objects by its negative
-  std::vector<T> forces_;                 // at start_
-  std::vector<T> last_displacement_;      // in the last step; guess for the next
+  std::vector<T> forward_displacement_;  // move_back() moves the objects by its negative
+  std::vector<T> forces_;                // at start_
+  std::vector<T> last_displacement_;     // in the last step; guess for the next
 };
 
 /// Returns the warm start of one problem, or nothing if a forward step fails.

@@ -19,13 +19,12 @@ namespace rtg::reverse {
 template <class T>
 class FilterSqp {
  public:
-  /// All problems must have the numbers of bodies, the joints and the settings of `like`. `kkt`
-  /// solves the Newton systems.
+  /// The problems must be such as ProblemLanes(like) can load. `kkt` solves the Newton systems.
   FilterSqp(const ReverseProblem& like, std::unique_ptr<StageSolver<T>> kkt);
 
   /// Solves `problems` from `starts`, one per problem. If `starts` is empty, computes warm starts.
-  /// The status is kNonFinite if bodies overlap in a given start, as its objective is infinite.
-  /// With warm starts, the status is kInfeasible if bodies overlap in the final state.
+  /// The status is kNonFinite if bodies overlap anywhere in a given start, as its objective is
+  /// infinite. With warm starts, the status is kInfeasible if bodies overlap in the final state.
   std::vector<SqpResult> solve(std::span<const ReverseProblem* const> problems,
                                std::span<const Iterate> starts = {});
 

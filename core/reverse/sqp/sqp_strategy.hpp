@@ -54,13 +54,14 @@ class SqpStrategy {
   SolveStatus status() const { return status_; }
 
   /// Decides how to continue at an iterate with the figures `at`. To be called after each
-  /// linearisation. If the order is kGoOn, counts an iteration, unless reject_ascent() has asked
-  /// for a repetition.
+  /// linearisation. If the order is kGoOn, counts an iteration, unless it repeats one with the
+  /// Hessian of the objective.
   Order judge(const Figures& at);
   /// Repeats the iteration with the Hessian of the objective or, if that was used already, with a
   /// larger δ. To be called if the system is singular or the model is not convex along the step.
   Order reject_ascent();
-  /// Repeats the iteration with a larger δ. To be called if the line search accepts no trial point.
+  /// Repeats the iteration with a larger δ, which counts as another one. To be called if the line
+  /// search accepts no trial point.
   Order reject_line_search();
   /// Returns whether to accept the trial point `next`, reached from `now` with step length `alpha`.
   /// If so, updates the filter and δ.

@@ -156,7 +156,7 @@ TEST(ReverseSimulator, APushFromAnyOfTheStartsLeadsToTheEnd) {
 }
 
 // The robot begins where it does for the whole push, the objects part of the way.
-TEST(ReverseSimulator, ReleasesStandBetweenTheStartOfTheWholePushAndTheEnd) {
+TEST(ReverseSimulator, LateContactsStandBetweenTheStartOfTheWholePushAndTheEnd) {
   const ReverseJob job = touching_job();
   ReverseConfig config;
   config.late_contacts = 4;

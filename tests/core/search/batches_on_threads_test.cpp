@@ -80,8 +80,11 @@ TEST(BatchesOnThreads, JobsShareTheCpuTimeThatTheyTook) {
         return std::vector<reverse::ReverseResult>(some.size());
       },
       1);
-  for (const reverse::ReverseResult& result : solve(numbered<reverse::ReverseJob>(100)))
+  const std::vector<reverse::ReverseResult> solved = solve(numbered<reverse::ReverseJob>(100));
+  for (const reverse::ReverseResult& result : solved) {
+    EXPECT_EQ(result.cpu_s, solved[0].cpu_s);  // they were solved together
     solves += result.cpu_s;
+  }
   const ReplayBatch replay = replay_on_threads(
       [](const ReplayJob&) {
         work();

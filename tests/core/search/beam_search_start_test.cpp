@@ -33,7 +33,7 @@ struct BeamSearchStartTest : ::testing::Test, testing::DraggingWorld {
   /// The nodes in which box 3 is within 0.4 m of its place.
   std::vector<Poses> nodes_in_place() {
     BeamSearch search(task, config, task.start, 1);
-    search.seed_roots(replay, stats);
+    search.make_roots(replay, stats);
     for (int layer = 0; layer < 12; ++layer) search.grow(solve, replay, stats);
     std::vector<Poses> found;
     for (const Node& n : search.nodes())

@@ -24,13 +24,13 @@ struct BeamSearchTest : ::testing::Test, testing::DraggingWorld {
 
   BeamSearchTest() {
     config.breadth = 6;
-    config.verified_plans = 3;
+    config.plans_per_node = 3;
     config.whole_plan_share = 0.0;
   }
 
-  BeamSearch seeded(std::uint64_t seed = 1) {
+  BeamSearch with_roots(std::uint64_t seed = 1) {
     BeamSearch search(task, config, task.start, seed);
-    search.seed_roots(replay, stats);
+    search.make_roots(replay, stats);
     return search;
   }
 
@@ -44,7 +44,7 @@ struct BeamSearchTest : ::testing::Test, testing::DraggingWorld {
 };
 
 TEST_F(BeamSearchTest, BeginsAtGoalStatesAtRest) {
-  const BeamSearch search = seeded();
+  const BeamSearch search = with_roots();
   EXPECT_EQ(search.nodes().size(), 6U);
   EXPECT_EQ(search.beam().size(), 6U);
   for (const Node& n : search.nodes()) {
@@ -61,7 +61,7 @@ TEST_F(BeamSearchTest, GoalsThatComeToRestElsewhereAreCountedNotSeeded) {
     return results;
   };
   BeamSearch search(task, config, task.start, 1);
-  search.seed_roots(scattering, stats);
+  search.make_roots(scattering, stats);
   EXPECT_TRUE(search.nodes().empty() && search.beam().empty());
   EXPECT_EQ(stats.unsettled_goals, 6);
   EXPECT_EQ(search.min_start_distance(), std::numeric_limits<double>::infinity());
@@ -69,7 +69,7 @@ TEST_F(BeamSearchTest, GoalsThatComeToRestElsewhereAreCountedNotSeeded) {
 }
 
 TEST_F(BeamSearchTest, SolvesForEveryActionOfEveryNodeOfTheBeam) {
-  BeamSearch search = seeded();
+  BeamSearch search = with_roots();
   for (int layer = 0; layer < 2; ++layer) {
     std::vector<reverse::ReverseJob> expected;
     for (const int node : search.beam())
@@ -90,7 +90,7 @@ int node_of(const BeamSearch& search, std::span<const int> among, const Poses& p
 
 TEST_F(BeamSearchTest, ReturnsTrueStepsThatLeadToAboutANodeOfTheBeam) {
   over = 0.1;  // misses within the tolerance
-  BeamSearch search = seeded();
+  BeamSearch search = with_roots();
   std::size_t returned = 0;
   for (int layer = 0; layer < 3; ++layer) {
     const std::vector<int> parents(search.beam().begin(), search.beam().end());
@@ -135,7 +135,7 @@ std::vector<int> plans_of(const tasks::Task& task, const std::vector<Transition>
 TEST_F(BeamSearchTest, StoresStepsWithWhatFollowsThemToSuccess) {
   over = 0.05;  // so that no plan goes as it was found
   config.whole_plan_share = 1.0;
-  BeamSearch search = seeded();
+  BeamSearch search = with_roots();
   int longest = 0;
   for (int layer = 1; layer <= 5; ++layer) {
     const std::vector<int> lengths = plans_of(task, search.grow(solve, replay, stats));
@@ -150,7 +150,7 @@ TEST_F(BeamSearchTest, StoresStepsWithWhatFollowsThemToSuccess) {
 }
 
 TEST_F(BeamSearchTest, AStepWhosePlanDoesNotSucceedIsNeitherKeptNorStored) {
-  BeamSearch search = seeded();
+  BeamSearch search = with_roots();
   search.grow(solve, replay, stats);
   // From now on no push brings about what a plan needs.
   bool first = true;
@@ -167,7 +167,7 @@ TEST_F(BeamSearchTest, AStepWhosePlanDoesNotSucceedIsNeitherKeptNorStored) {
 }
 
 TEST_F(BeamSearchTest, DepthIsThatOfTheLayerUnlessTheGoalHoldsBeforeOrAfterTheStep) {
-  BeamSearch search = seeded();
+  BeamSearch search = with_roots();
   int deepest = 0;
   for (int layer = 1; layer <= 5; ++layer) {
     const std::vector<Transition> steps = search.grow(solve, replay, stats);
@@ -189,7 +189,7 @@ TEST_F(BeamSearchTest, WhatMissesByMoreThanTheToleranceIsNeitherKeptNorStored) {
   for (const double off : {0.2, 0.3}) {  // of the robot alone: a gap of a quarter of that
     aside = off;
     config.gap_tolerance = 0.25;
-    BeamSearch search = seeded();
+    BeamSearch search = with_roots();
     long missed = 0;
     for (int layer = 0; layer < 3; ++layer)
       missed += std::ranges::count_if(search.grow(solve, replay, stats),
@@ -228,7 +228,7 @@ struct WorthReplayingTest : BeamSearchTest {
 };
 
 TEST_F(WorthReplayingTest, OfAllStartsTheBestPerNodeAndPerSolveAreReplayed) {
-  BeamSearch search = seeded();
+  BeamSearch search = with_roots();
   int left_out = 0;
   for (int layer = 0; layer < 3; ++layer) {
     const std::vector<int> parents(search.beam().begin(), search.beam().end());
@@ -259,14 +259,14 @@ TEST_F(WorthReplayingTest, OfAllStartsTheBestPerNodeAndPerSolveAreReplayed) {
 
 TEST_F(WorthReplayingTest, NoFreeMoveIsReplayedWhereNoneIsAllowed) {
   config.free_moves = 0;
-  BeamSearch search = seeded();
+  BeamSearch search = with_roots();
   const std::vector<Transition> steps = search.grow(solve, replay, stats);
   EXPECT_FALSE(steps.empty());
   for (const Transition& t : steps) EXPECT_GT(objects_moved(t.poses, t.next), 0);
 }
 
 TEST_F(BeamSearchTest, ATreeWithoutPredecessorsHasNoBeam) {
-  BeamSearch search = seeded();
+  BeamSearch search = with_roots();
   const SolveBatch none = [](std::span<const reverse::ReverseJob> jobs) {
     return std::vector<reverse::ReverseResult>(jobs.size(), {reverse::SolveStatus::kPruned, 0});
   };
@@ -275,7 +275,7 @@ TEST_F(BeamSearchTest, ATreeWithoutPredecessorsHasNoBeam) {
 }
 
 TEST_F(BeamSearchTest, MinStartDistanceIsThatOfTheBeamAndFallsOnTheWay) {
-  BeamSearch search = seeded();
+  BeamSearch search = with_roots();
   const double at_first = search.min_start_distance();
   for (int layer = 0; layer < 6; ++layer) {
     EXPECT_EQ(search.min_start_distance(), distances(search)[0]);
@@ -287,7 +287,7 @@ TEST_F(BeamSearchTest, MinStartDistanceIsThatOfTheBeamAndFallsOnTheWay) {
 TEST_F(BeamSearchTest, NodesAreAFunctionOfTheSeed) {
   const auto nodes = [&](std::uint64_t seed) {
     std::vector<Poses> out;
-    BeamSearch search = seeded(seed);
+    BeamSearch search = with_roots(seed);
     for (int layer = 0; layer < 3; ++layer) search.grow(solve, replay, stats);
     std::ranges::transform(search.nodes(), std::back_inserter(out), &Node::poses);
     return out;

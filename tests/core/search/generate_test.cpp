@@ -115,7 +115,7 @@ TEST(Generate, EachTreeGrowsFromGoalStatesToAStartOfItsOwn) {
   config.transitions = 800;
   config.breadth = 20;
   config.branches = 0;
-  config.verified_plans = 1;
+  config.plans_per_node = 1;
   config.whole_plan_share = 0.0;
   config.depth = 24;
   const GenerationReport report = run_naive(task, config, 7, 1).report;

@@ -36,7 +36,7 @@ TEST(SearchConfig, EachFieldChangesTheStoredTransitions) {
       {"near_branches", 2},
       {"near_headings", 1},
       {"breadth", 7},
-      {"verified_plans", 3},
+      {"plans_per_node", 3},
       {"whole_plan_share", 0.5},
       {"depth", 3},
       {"contact_quota", 1},

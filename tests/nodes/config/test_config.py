@@ -173,7 +173,7 @@ def test_a_wrong_path_of_a_task_is_named(name: str, message: str, tmp_path: Path
 
 def test_check_says_what_it_understood(file: Path) -> None:
     settings = ["search.transitions=500", "search.depth=6", "run.workers=3"]
-    settings += ["train.interactions=900", "train.learning_starts=400"]
+    settings += ["train.interactions=900", "train.transitions_before_learning=400"]
     said = _core.Config.from_file(file, settings).description
     assert said == Path(__file__).with_name("understood.txt").read_text()
 

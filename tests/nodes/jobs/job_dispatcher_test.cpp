@@ -157,8 +157,8 @@ TEST(JobDispatcher, AJobThatTakesThreeWorkersDownIsPoison) {
   JobDispatcher jobs;
   jobs.submit(Ids{10});
   bus::Seconds now = 0.0;
-  for (const WorkerId victim : {kAnn, kBob, kCat}) {
-    beat(jobs, victim, now);
+  for (const WorkerId lost : {kAnn, kBob, kCat}) {
+    beat(jobs, lost, now);
     EXPECT_EQ(sent_between(jobs, now, now + 2.5).size(), 1u);
     now += 3.0;
   }

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace rtg::jobs {
 namespace {
@@ -20,6 +23,7 @@ TEST(JobInbox, AJobIsWorkedOnOnceHoweverOftenItArrives) {
   EXPECT_EQ(inbox.take(), std::nullopt);
   inbox.finish(7, "seven");
   EXPECT_EQ(inbox.held(), Ids{});
+  inbox.finish(7, "another");  // of a second worker thread: the first answer stays
   EXPECT_EQ(inbox.receive(7, 70), "seven");
   EXPECT_EQ(inbox.take(), std::nullopt);
 }

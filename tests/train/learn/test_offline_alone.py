@@ -53,7 +53,9 @@ def test_learning_waits_for_all_transitions(
     """So a stream teaches the same bits as a file."""
     ends = []
     for name in ("stream", "file"):
-        there = run_folder(tmp_path / name, rows, f"run.method={method}", "train.learning_starts=0")
+        there = run_folder(
+            tmp_path / name, rows, f"run.method={method}", "train.transitions_before_learning=0"
+        )
         one, seen = training(there), set[int]()
         learn = one.model.learn_offline
 

@@ -45,7 +45,7 @@ def course(one: Training, rows: Rows, success: list[bool]) -> dict[str, Any]:
 
 USUAL = {
     "interactions": 240,
-    "learning_starts": 0,
+    "transitions_before_learning": 0,
     "eval_every": 80,
     "checkpoint_every": 100,
     "stop_at_success": 0.0,
@@ -54,11 +54,8 @@ USUAL = {
 OF_THE_COURSE: dict[str, tuple[Any, str, Any]] = {
     # field: its value, what it changes of the course, to what
     "interactions": (400, "end", 400),
-    "learning_starts": (
-        250,
-        "first",
-        400,
-    ),  # 300 are in when learning may begin; another 100 come first
+    # 300 are in when learning may begin; another 100 come first
+    "transitions_before_learning": (250, "first", 400),
     "eval_every": (120, "evaluated", [120, 240]),
     "checkpoint_every": (60, "saved", [60, 120, 180, 240]),
     "stop_at_success": (0.5, "end", 160),

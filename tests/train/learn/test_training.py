@@ -89,7 +89,7 @@ def test_transitions_file_holds_the_stream_in_order(tmp_path: Path, rows: Rows) 
 
 
 def test_learning_begins_before_all_transitions_are_in(tmp_path: Path, rows: Rows) -> None:
-    folder = run_folder(tmp_path / "run", None, "train.learning_starts=500")
+    folder = run_folder(tmp_path / "run", None, "train.transitions_before_learning=500")
     one = training(folder)
     seen = []
     stream = Stream(rows, one.data, piece=50)

@@ -197,7 +197,7 @@ class Bus:
         return None
 
     def spin(self, timeout: float) -> int:
-        """Handles all messages that have arrived and returns their number.
+        """Handles the messages that have arrived, at most QUEUE_CAPACITY; returns their number.
 
         Waits at most `timeout` s for the first one; a signal ends the wait early. Raises the first
         exception of a handler.

@@ -45,7 +45,7 @@ class StreamCursor:
         self.credit = credit
         self.cursor = 0  # number of the next row to return
         self.count = 0  # number of rows known to exist
-        self.count_is_final = False
+        self.sealed = False
         self._out_of_order: dict[int, tuple[int, Any]] = {}  # first row -> (end, rows), may overlap
         self._acked_at = -1e9
         self._acked_cursor = 0
@@ -69,9 +69,9 @@ class StreamCursor:
             self._out_of_order[first] = (end, rows)
         return self._in_order()
 
-    def on_tail(self, count: int, count_is_final: bool) -> None:
+    def on_tail(self, count: int, sealed: bool) -> None:
         self.count = max(self.count, count)
-        self.count_is_final = self.count_is_final or count_is_final
+        self.sealed = self.sealed or sealed
 
     def ack_due(self, now: float) -> Ack | None:
         """Returns the next Ack to send, or None. To be called until it returns None."""
@@ -106,7 +106,7 @@ class StreamCursor:
     @property
     def complete(self) -> bool:
         """True if the number of rows is final and every row has been returned."""
-        return self.count_is_final and self.cursor == self.count
+        return self.sealed and self.cursor == self.count
 
     def _in_order(self) -> list[tuple[Any, int]]:
         pieces = []

@@ -21,7 +21,7 @@ BRANCH_ABLATIONS: dict[str, tuple[Any, ...]] = {
     "near_headings": (24,),  # of 48, in either direction: all headings count as near
 }
 TREE_ABLATIONS: dict[str, tuple[Any, ...]] = {
-    "verified_plans": (1,),
+    "plans_per_node": (1,),
     "whole_plan_share": (0, 1),
     "contact_quota": (0,),
     "gap_tolerance": (0.05, 100),  # [m]; keeps only steps that replay almost exactly; keeps all

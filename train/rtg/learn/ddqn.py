@@ -108,7 +108,7 @@ class DoubleDqn(DQN):
             env,
             learning_rate=settings.learning_rate,
             buffer_size=settings.buffer,
-            learning_starts=0,
+            learning_starts=0,  # of SB3, in interactions; Training decides when learning starts
             batch_size=settings.batch,
             gamma=discount,
             train_freq=max(1, settings.train_frequency // env.num_envs),

@@ -256,7 +256,7 @@ class HindsightReplayBuffer(MixedReplayBuffer):
         return columns
 
     def _relabel(self, columns: dict[str, Array], goal: Array, rows: Array) -> None:
-        """Replaces desired layouts in `goal` by hindsight goals; adapts rewards in `columns`.
+        """Replaces desired layouts in `goal` by hindsight goals and adapts `columns` to them.
 
         Each online transition with hindsight goals gets one with probability k / (k + 1). `rows`:
         their rows in the online store. They are the last ones in `columns` and `goal`.

@@ -92,10 +92,10 @@ class Training:
     def done(self) -> bool:
         """True if the budget is used up or the last evaluations reached `stop_at_success`."""
         return (
-            self.scheduled_interactions >= self.settings.interactions or self._has_reached_target()
+            self.scheduled_interactions >= self.settings.interactions or self._has_lasting_success()
         )
 
-    def _has_reached_target(self) -> bool:
+    def _has_lasting_success(self) -> bool:
         bar, count = self.settings.stop_at_success, self.settings.stop_evaluations
         last = [row["success_rate"] for row in self.log.rows[-count:]]
         return bar > 0.0 and len(last) == count and min(last) >= bar
@@ -123,7 +123,9 @@ class Training:
 
     def _may_begin(self) -> bool:
         """Returns whether learning can begin before all transitions have arrived."""
-        return self.settings.interact and self.data.count >= self.settings.learning_starts
+        return (
+            self.settings.interact and self.data.count >= self.settings.transitions_before_learning
+        )
 
     def _learn(self) -> None:
         """Performs one round of learning. Raises RunError if there is nothing to learn from."""

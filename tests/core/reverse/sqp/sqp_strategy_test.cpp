@@ -175,7 +175,7 @@ TEST(SqpStrategy, ProximalTermFollowsTheStepLength) {
   EXPECT_DOUBLE_EQ(strategy.proximal(), 1e-8);
 }
 
-TEST(SqpStrategy, AStepThatIsTakenBringsTheExactHessianBack) {
+TEST(SqpStrategy, AStepThatIsTakenBringsTheHessianOfTheLagrangianBack) {
   const ReverseConfig config = without_softening();
   SqpStrategy strategy(config);
   strategy.reject_ascent();
