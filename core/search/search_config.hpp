@@ -44,8 +44,7 @@ struct SearchConfig {
     v.integer("near_branches", near_branches, 0, 359, "of them near the step's own");
     v.integer("near_headings", near_headings, 1, 180, "how many headings away, at most");
     v.integer("breadth", breadth, 1, 100000, "nodes kept per layer");
-    v.integer("plans_per_node", plans_per_node, 1, 1000,
-              "plans carried out to the goal per place in the beam");
+    v.integer("plans_per_node", plans_per_node, 1, 1000, "plans simulated per place in the beam");
     v.number("whole_plan_share", whole_plan_share, 0.0, 1.0,
              "share of successful plans stored whole");
     v.integer("depth", depth, 1, 1000, "layers per tree at most");

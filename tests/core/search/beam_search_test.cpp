@@ -54,7 +54,7 @@ TEST_F(BeamSearchTest, BeginsAtGoalStatesAtRest) {
   }
 }
 
-TEST_F(BeamSearchTest, GoalsThatComeToRestElsewhereAreCountedNotSeeded) {
+TEST_F(BeamSearchTest, GoalsThatComeToRestElsewhereAreCountedAndNoRoots) {
   const ReplayBatch scattering = [](std::span<const ReplayJob> jobs) {
     std::vector<ReplayResult> results;
     for (const ReplayJob& job : jobs) results.push_back({moved(job.start, 1, {9.0, 0.0}), true});

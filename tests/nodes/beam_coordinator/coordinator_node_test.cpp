@@ -10,6 +10,7 @@
 
 #include "core/search/batches_on_threads.hpp"
 #include "nodes/jobs/worker_node.hpp"
+#include "tests/nodes/bus/handle_all.hpp"
 #include "tests/support/gathering.hpp"
 #include "tests/support/generation_run.hpp"
 
@@ -60,8 +61,7 @@ class Graph {
       return generate(task, small(), kSeed, seams);
     });
     if (report) coordinator.drain(0);
-    while (bus.spin(std::chrono::milliseconds(0)) > 0) {
-    }  // what was sent last has yet to be received
+    testing::handle_all(bus);  // what was sent last has yet to be received
     return report;
   }
 
@@ -171,8 +171,7 @@ TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
     EXPECT_TRUE(report.has_value());
     coordinator.drain(0);
   }
-  while (bus.spin(std::chrono::milliseconds(0)) > 0) {
-  }
+  testing::handle_all(bus);
   ASSERT_FALSE(heard.empty());
   EXPECT_EQ(heard[0].phase, "round 1");
   EXPECT_EQ(heard[0].layer, 3);

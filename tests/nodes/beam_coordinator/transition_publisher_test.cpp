@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/nodes/bus/handle_all.hpp"
+
 namespace rtg::beam_coordinator {
 namespace {
 
@@ -41,10 +43,7 @@ struct TransitionPublisherTest : ::testing::Test {
     bus.subscribe<stream_tail_t>("RTG_TAIL", [this](const auto& m) { tails.push_back(m); });
   }
 
-  void deliver() {
-    while (bus.spin(0ms) > 0) {
-    }
-  }
+  void deliver() { testing::handle_all(bus); }
 
   /// What goes out a second later.
   void tick() {

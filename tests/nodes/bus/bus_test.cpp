@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/nodes/bus/filled_message.hpp"
+#include "tests/nodes/bus/handle_all.hpp"
 
 namespace rtg::bus {
 namespace {
@@ -20,8 +21,7 @@ TEST(Bus, DeliversWhatWasPublished) {
     tail.count = n;
     bus.publish("TAIL", tail);
   }
-  while (bus.spin(0ms) > 0) {
-  }
+  testing::handle_all(bus);
   EXPECT_EQ(counts, (std::vector<std::int64_t>{1, 2, 3}));
 }
 
@@ -34,8 +34,7 @@ TEST(Bus, ExceptionsOfHandlersSurfaceInSpinAndLoseNothing) {
   bus.publish("TAIL", stream_tail_t{});
   bus.publish("TAIL", stream_tail_t{});
   EXPECT_THROW(bus.spin(0ms), std::range_error);
-  while (bus.spin(0ms) > 0) {
-  }
+  testing::handle_all(bus);
   EXPECT_EQ(handled, 2);
 }
 
@@ -44,8 +43,7 @@ std::map<std::string, long> counters_after(std::span<const std::uint8_t> bytes) 
   Bus bus("memq://", "test");
   bus.subscribe<stream_tail_t>("TAIL", [](const stream_tail_t&) { FAIL(); });
   bus.send("TAIL", bytes);
-  while (bus.spin(0ms) > 0) {
-  }
+  testing::handle_all(bus);
   return bus.counters().all();
 }
 
@@ -71,8 +69,7 @@ TEST(Bus, RejectsAnotherVersionOfTheProtocol) {
   stream_tail_t tail;
   bus.subscribe<stream_tail_t>("TAIL", [&](const stream_tail_t& received) { tail = received; });
   bus.publish("TAIL", testing::filled<stream_tail_t>());
-  while (bus.spin(0ms) > 0) {
-  }
+  testing::handle_all(bus);
   ++tail.header.protocol;  // all else is of the run "test"
   EXPECT_EQ(counters_after(encode(tail)), (Counts{{"bus.foreign_protocol", 1}}));
 }
