@@ -11,7 +11,7 @@ PACKAGES=(
   libeigen3-dev libsuitesparse-dev libbox2d-dev libyaml-cpp-dev libutfcpp-dev nlohmann-json3-dev
   libgtest-dev libbenchmark-dev # one configuration of the build serves both commands
 )
-TEST_PACKAGES=(iproute2 nftables util-linux)
+TEST_PACKAGES=(ccache iproute2 nftables util-linux)
 
 say() { printf 'rtg: %s\n' "$*" >&2; }
 
