@@ -166,6 +166,15 @@ TEST(RelevantBodies, AreAlsoThoseOnTheWaysOfOthers) {
             (std::vector<int>{0, 1, 2, 3}));
 }
 
+// A link ahead of the robot was pushed, and swung past a box that is not on its straight way.
+TEST(RelevantBodies, AreAlsoThoseThatALinkMaySwingPast) {
+  Scene scene = five_bodies();
+  const Poses end{{0, 0, 0}, {1.5, 0, 0}, {1.5, 2.4, 0}, {-6, -6, 0}, {6, 6, 0}};
+  EXPECT_EQ(relevant_bodies(scene, kPush, {end, 0}, kRange), (std::vector<int>{0, 1}));
+  scene.joints.push_back({3, 1, {0.6, 0.0}, {-0.6, 0.0}});
+  EXPECT_EQ(relevant_bodies(scene, kPush, {end, 0}, kRange), (std::vector<int>{0, 1, 2, 3}));
+}
+
 TEST(RelevantBodies, FixedOnesComeLastAndPassNothingOn) {
   Scene scene = five_bodies();
   scene.bodies[1].fixed = true;

@@ -84,6 +84,19 @@ TEST(ReverseSimulator, WithThePlainBarrierBodiesFarAwayAreMovedToo) {
   }
 }
 
+// The skin is the gap at which bodies touch; forces reach beyond it by the range.
+TEST(ReverseSimulator, ContactForcesReachByTheRangeBeyondTheSkin) {
+  const ReverseJob job{{{0, 0, 0}, {1.41 + 0.25, 0.2, 0.05}}, 0};
+  PhysicsConfig skinned;
+  skinned.skin = 0.2;
+  for (const auto& [physics, moved] : {std::pair(kPhysics, false), std::pair(skinned, true)}) {
+    const ReverseResult result =
+        ReverseSimulator(robot_and_boxes(1), physics, kPush, {}).solve(job);
+    ASSERT_EQ(result.status, SolveStatus::kConverged);
+    EXPECT_EQ(result.predecessors[0][1].x < job.end[1].x - 0.1, moved);
+  }
+}
+
 // A box stands 3 m beside the robot's way; with the weight of the other barrier a hundred
 // iterations do not suffice.
 TEST(ReverseSimulator, WithThePapersPresetAMoveWithoutContactConverges) {
@@ -169,6 +182,21 @@ TEST(ReverseSimulator, LateContactsStandBetweenTheStartOfTheWholePushAndTheEnd) 
     EXPECT_LT(start[1].x, job.end[1].x);
     EXPECT_EQ(start[2], job.end[2]);
   }
+}
+
+// The robot has turned a bar that is pinned at its centre; nothing else moves.
+TEST(ReverseSimulator, ATurnAloneHasLateContactsToo) {
+  Scene scene = robot_and_boxes(0);
+  scene.bodies.push_back({"post", "post", box(0.2, 0.2), 1.0, 0.5, true});
+  scene.bodies.push_back({"bar", "bar", box(4.0, 0.6), 1.0, 0.5, false});
+  scene.joints.push_back({1, 2, {0.0, 0.0}, {0.0, 0.0}});
+  const Poses start{{-1.5, -1.5, 0}, {0, 0, 0}, {0, 0, 0}};
+  const Poses end = forward::NewtonSimulator(scene, kPush, kPhysics).push(start, 12).end;
+  ASSERT_LT(end[2].theta, -0.3);
+  const ReverseResult result = solve(scene, {end, 12});
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_LT((result.predecessors[0][2].position() - end[2].position()).norm(), 1e-6);
+  EXPECT_GT(result.predecessors.size(), 1U);
 }
 
 TEST(ReverseSimulator, PrunedJobsComeBackUnsolved) {

@@ -117,6 +117,15 @@ TEST(BeamSelection, WhatItsLayoutHasNoRoomForLeavesItsCellToOthers) {
   EXPECT_EQ(select(entries, c), (Indices{0, 2, 3}));
 }
 
+TEST(BeamSelection, WhatItsCellHasNoRoomForLeavesItsLayoutToOthers) {
+  std::vector<BeamEntry> entries = ranked(3);
+  for (BeamEntry& e : entries) e.layout = 5;
+  entries[1].cell = entries[0].cell;
+  SearchConfig c = config(10, 0.0);
+  c.nodes_per_layout = 2;
+  EXPECT_EQ(select(entries, c), (Indices{0, 2}));
+}
+
 TEST(BeamSelection, AWiderChoiceIsThatOfAsManyTimesTheLimits) {
   Rng rng(22);
   const std::vector<BeamEntry> entries = random_entries(rng, 300);

@@ -174,11 +174,11 @@ TEST(StateMetricCell, LinesOfTheRobotAreItsOwn) {
 TEST(StateMetricCell, AnglesGoRoundWithThePeriodOfTheShape) {
   const StateMetric metric(mixed_scene());
   Rng rng(8);
-  Poses a(5, {0.1, 0.1, 0.05});
+  Poses a(5, {0.1, 0.1, 0.6});
   for (int trial = 0; trial < 50; ++trial)
     EXPECT_EQ(metric.cell(look_alike(a, rng)), metric.cell(a));
   Poses below = a;
-  below[1].theta = -0.05;  // across the line at 0
+  below[1].theta = 0.3;  // across the line at π/8
   EXPECT_NE(metric.cell(below), metric.cell(a));
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
@@ -43,6 +44,18 @@ TEST(GoalDistance, OfJointsAndAMeanCentreIsOfAnglesAndOfTheMean) {
         std::min(robot_distance, (task.start[k].position() - task.start[0].position()).norm());
   EXPECT_NEAR(goal_distance(task, task.start), 3.0 * least + off + kRobotWeight * robot_distance,
               1e-9);
+}
+
+TEST(GoalDistance, OfAJointIsTheDistanceToTheNearerOfItsTwoBodies) {
+  Task task = testing::art_manip();  // 75 to 105 degrees at each joint
+  std::erase_if(task.goal,
+                [](const GoalTerm& t) { return t.subject != GoalTerm::Subject::kJoint; });
+  Poses poses{{0, 0, 0}, {1, 0, 0.0}, {3, 0, 0.0}, {9, 9, 1.5}, {9, 9, 3.0}};
+  const double expected = 75.0 * std::numbers::pi / 180.0 + kRobotWeight * 1.0;
+  for (int order = 0; order < 2; ++order) {
+    EXPECT_NEAR(goal_distance(task, poses), expected, 1e-3);
+    std::swap(poses[1].x, poses[2].x);
+  }
 }
 
 }  // namespace

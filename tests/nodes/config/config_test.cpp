@@ -68,6 +68,12 @@ TEST(Config, TheNormalOfAHalfPlaneGetsUnitLength) {
               1e-15);
 }
 
+TEST(Config, AHalfPlaneMayReachACornerOfTheArenaAlone) {
+  const std::string term = "{kind: box, half_plane: {normal: [0.7071, 0.7071], offset: ";
+  EXPECT_NO_THROW(parsed("", {"task.goal=[" + term + "-9}}]"}));
+  EXPECT_THROW(parsed("", {"task.goal=[" + term + "-12}}]"}), ConfigError);
+}
+
 TEST(Config, TheLayoutsOfTheFilesAreThoseOfTheTests) {
   expect_same_task(load_config(kConfig / "gathering.yaml").task, gathering());
   expect_same_task(load_config(kConfig / "gathering_hard.yaml").task, gathering_hard());

@@ -1,0 +1,29 @@
+#include "nodes/bus/node_status.hpp"
+
+#include <gtest/gtest.h>
+
+#include <rtg_msgs/search_progress_t.hpp>
+
+#include "tests/nodes/bus/handle_all.hpp"
+
+namespace rtg::bus {
+namespace {
+
+// Datagrams may arrive in another order than they were sent in.
+TEST(CoordinatorWatch, ACoordinatorThatSaidItLeavesDoesSoWhateverArrivesLater) {
+  Bus bus("memq://", "test");
+  const CoordinatorWatch watch(bus);
+  const auto leaves_after = [&](bool leaving) {
+    rtg_msgs::search_progress_t progress{};
+    progress.leaving = leaving;
+    bus.publish("RTG_PROGRESS", progress);
+    testing::handle_all(bus);
+    return watch.leaving();
+  };
+  EXPECT_FALSE(leaves_after(false));
+  EXPECT_TRUE(leaves_after(true));
+  EXPECT_TRUE(leaves_after(false));
+}
+
+}  // namespace
+}  // namespace rtg::bus
