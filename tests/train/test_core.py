@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 from rtg import _core, paths
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
@@ -76,6 +77,22 @@ def test_pushes_of_a_batch_do_not_depend_on_each_other() -> None:
     for k in order:
         apart[k] = simulator.push(states[k : k + 1], actions[k : k + 1])[0][0]
     np.testing.assert_array_equal(apart, together)
+
+
+@pytest.mark.parametrize(
+    ("bodies", "actions", "wrong"),
+    [
+        (4, [-1], "legal: 0 to 47"),
+        (4, [48], "legal: 0 to 47"),
+        (4, [0, 47], "number"),
+        (3, [0], "3 bodies"),
+    ],
+)
+def test_pushes_that_do_not_fit_the_task_are_refused(
+    bodies: int, actions: list[int], wrong: str
+) -> None:
+    with pytest.raises(ValueError, match=wrong):
+        _core.Simulator(CONFIG).push(TASK.start[None, :bodies], np.array(actions))
 
 
 def test_arrays_outlive_the_call() -> None:
