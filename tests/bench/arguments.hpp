@@ -1,8 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <charconv>
+#include <span>
 #include <string_view>
 #include <system_error>
+
+#include "core/reverse/problem/reverse_config.hpp"
+#include "core/world/physics_config.hpp"
 
 namespace rtg::bench {
 
@@ -32,5 +37,30 @@ struct Setter {
   template <class Enum, class Names>
   void choice(std::string_view, Enum&, const Names&, const char*) {}
 };
+
+/// The solver's settings.
+struct SolverOptions {
+  reverse::ReverseConfig reverse;
+  PhysicsConfig physics;
+};
+
+/// Applies `--preset default|paper` or `--set NAME NUMBER` at the beginning of `words`. NAME is one
+/// of the sections reverse and physics. A preset stands above what was set before it. Returns how
+/// many words it took: 0 if they are neither or wrong.
+inline std::size_t apply(std::span<char* const> words, SolverOptions& options) {
+  const std::string_view flag = words[0];
+  if (flag == "--preset" && words.size() >= 2) {
+    const auto preset = std::ranges::find(reverse::kReversePresets, std::string_view(words[1]));
+    if (preset == reverse::kReversePresets.end()) return 0;
+    options.reverse = reverse_preset(
+        static_cast<reverse::ReversePreset>(preset - reverse::kReversePresets.begin()));
+    return 2;
+  }
+  if (flag != "--set" || words.size() < 3) return 0;
+  Setter setter{words[1], words[2]};
+  options.reverse.visit(setter);
+  options.physics.visit(setter);
+  return setter.done ? 3 : 0;
+}
 
 }  // namespace rtg::bench

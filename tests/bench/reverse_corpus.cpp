@@ -24,8 +24,7 @@ namespace rtg::bench {
 namespace {
 
 struct Options {
-  reverse::ReverseConfig reverse;
-  PhysicsConfig physics;
+  SolverOptions solver;
   std::size_t every = 1;
   bool failures = false;
 };
@@ -61,8 +60,8 @@ std::vector<Outcome> solve(const Corpus& corpus, const Options& options) {
   std::vector<Outcome> outcomes;
   for (const auto& [kind, lines] : alike) {
     const tasks::Task& task = corpus.tasks.at(kind.first);
-    const reverse::ReverseSimulator simulator(task.scene, options.physics, task.push,
-                                              options.reverse);
+    const reverse::ReverseSimulator simulator(task.scene, options.solver.physics, task.push,
+                                              options.solver.reverse);
     for (std::size_t first = 0; first < lines.size(); first += kTogether) {
       std::vector<reverse::ReverseJob> jobs;
       for (std::size_t k = first; k < std::min(first + kTogether, lines.size()); ++k)
@@ -147,36 +146,31 @@ bool gates(std::span<const Outcome> outcomes) {
   return std::ranges::all_of(all, [](bool passed) { return passed; });
 }
 
-bool apply(Options& options, std::span<char* const> words) {
+/// Applies the flag at the beginning of `words`. Returns how many words it took: 0 if it is wrong.
+std::size_t apply(std::span<char* const> words, Options& options) {
   const std::string_view flag = words[0];
-  if (flag == "--failures") return options.failures = true;
-  if (words.size() < 2) return false;
-  if (flag == "--every")
-    return read_number(words[1], std::size_t{1}, std::size_t{100000}, options.every);
-  if (flag == "--preset") {
-    const auto preset = std::ranges::find(reverse::kReversePresets, std::string_view(words[1]));
-    if (preset == reverse::kReversePresets.end()) return false;
-    options.reverse = reverse_preset(
-        static_cast<reverse::ReversePreset>(preset - reverse::kReversePresets.begin()));
-    return true;
+  if (flag == "--failures") {
+    options.failures = true;
+    return 1;
   }
-  if (flag != "--set" || words.size() < 3) return false;
-  Setter setter{words[1], words[2]};
-  options.reverse.visit(setter);
-  options.physics.visit(setter);
-  return setter.done;
+  if (flag == "--every")
+    return words.size() >= 2 &&
+                   read_number(words[1], std::size_t{1}, std::size_t{100000}, options.every)
+               ? 2
+               : 0;
+  return apply(words, options.solver);
 }
 
 std::optional<Options> parsed(std::span<char* const> words) {
   Options options;
   while (!words.empty()) {
-    const std::string_view flag = words[0];
-    if (!apply(options, words)) {
+    const std::size_t taken = apply(words, options);
+    if (taken == 0) {
       std::fprintf(stderr, "reverse_corpus: %s %s: no such argument, or its value is wrong\n",
                    words[0], words.size() > 1 ? words[1] : "");
       return std::nullopt;
     }
-    words = words.subspan(flag == "--failures" ? 1 : flag == "--set" ? 3 : 2);
+    words = words.subspan(taken);
   }
   return options;
 }
