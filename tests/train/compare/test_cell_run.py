@@ -166,6 +166,13 @@ def test_methods_that_cannot_be_compared_are_refused(words, more, what):
     assert not rtg.begun
 
 
+def test_runs_without_data_may_stand_beside_any_number_of_transitions(words):
+    without, _ = prepare_runs(parse([word.replace("ddqn_naive", "dqn") for word in words]))
+    begin(without)
+    alone = [word.replace("ddqn_naive,", "") for word in words]
+    prepare_runs(parse([*alone, "--set", "search.transitions=9999"]))
+
+
 @pytest.mark.parametrize(
     "sweep", ["task.push.stride=1.5,2.0", "task.goal.0.disc.radius=2.0,2.5", "task.horizon=30,60"]
 )
