@@ -79,7 +79,9 @@ def test_a_disc_on_a_half_plane_is_seen_in_any_order():
     ]
     assert np.array_equal(*pictures)
     window = arena_window(TASK)
-    assert pixel(pictures[0], 4.0, 4.0, window) != pixel(pictures[0], 7.0, 4.0, window)
+    on_plane = pixel(pictures[0], 7.0, 4.0, window)  # -x <= 0
+    assert pixel(pictures[0], 4.0, 4.0, window) != on_plane != PAPER
+    assert pixel(pictures[0], -7.0, 4.0, window) == PAPER
 
 
 def test_a_pin_shows_whether_its_angle_is_as_asked():

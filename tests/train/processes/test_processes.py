@@ -133,6 +133,27 @@ def test_a_helper_that_cannot_even_start_ends_the_run(graph):
             graph.check_and_restart()
 
 
+def test_deaths_after_a_long_life_do_not_add_up(graph, monkeypatch):
+    graph.add("coordinator", SLEEP)
+    graph.add("worker", ["false"], helper=True)
+    for death in range(1, 13):
+        monkeypatch.setattr("rtg.processes.graph._QUICK_DEATH_AGE", 0.0 if death == 6 else 1e9)
+        worker = graph.pids()["worker"]
+        wait_for(lambda pid=worker: not is_alive(pid))
+        graph.check_and_restart()
+    assert graph.restarts == 12
+
+
+def test_the_end_of_a_log_is_that_of_the_last_start(tmp_path):
+    node = Node("one", [sys.executable, "-c", "print('first')"], tmp_path / "log")
+    assert node.wait(60.0)
+    node.command = ["true"]
+    node.start()
+    assert node.wait(60.0)
+    assert node.log_tail() == ""
+    assert node.log.read_text() == "first\n"
+
+
 def test_a_killed_parent_takes_its_children_along(tmp_path):
     program = f"""
 import signal

@@ -1,0 +1,19 @@
+"""What is known of a run by the messages of its processes."""
+
+from rtg.bus.bus import Bus
+from rtg.bus.messages import message_type
+from rtg.run.progress import RunState
+from rtg.run.run_watch import RunWatch
+
+
+def test_counters_of_a_process_and_of_its_successor_add_up(monkeypatch):
+    bus = Bus("memq://", "test")
+    watch = RunWatch(bus, RunState())
+    for sender, count in ((1, 3), (1, 5), (2, 4)):  # a process, later, and its successor
+        status = message_type("node_status_t")()
+        status.node, status.n = "reverse_worker", 1
+        status.counter_name, status.counter_value = ["jobs"], [count]
+        monkeypatch.setattr("os.getpid", lambda sender=sender: sender)
+        bus.publish("RTG_STATUS", status)
+        bus.spin(0.0)
+    assert watch.counters() == {"jobs": 9}
