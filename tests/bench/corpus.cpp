@@ -58,7 +58,7 @@ Difficulty difficulty_of(const tasks::Task& task, const PhysicsConfig& physics,
   for (std::size_t i = 0; i < bodies.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const double gap = separation(bodies[i].shape, part.poses[i], bodies[j].shape, part.poses[j]);
-      if (gap >= range || bodies[j].fixed) continue;
+      if (gap >= range || bodies[j].fixed || jointed(part.scene, i, j)) continue;
       ++touching;
       corner |= vertices_meet(bodies[i], part.poses[i], bodies[j], part.poses[j]);
       wall |= bodies[i].fixed;
