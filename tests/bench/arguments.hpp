@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -61,6 +63,23 @@ inline std::size_t apply(std::span<char* const> words, SolverOptions& options) {
   options.reverse.visit(setter);
   options.physics.visit(setter);
   return setter.done ? 3 : 0;
+}
+
+/// Reads all `words` by apply(words, Options&), which returns how many words it took. Says on
+/// stderr which one is wrong and returns nothing then.
+template <class Options>
+std::optional<Options> read_options(const char* program, std::span<char* const> words) {
+  Options options;
+  while (!words.empty()) {
+    const std::size_t taken = apply(words, options);
+    if (taken == 0) {
+      std::fprintf(stderr, "%s: %s %s: no such argument, or its value is wrong\n", program,
+                   words[0], words.size() > 1 ? words[1] : "");
+      return std::nullopt;
+    }
+    words = words.subspan(taken);
+  }
+  return options;
 }
 
 }  // namespace rtg::bench

@@ -161,20 +161,6 @@ std::size_t apply(std::span<char* const> words, Options& options) {
   return apply(words, options.solver);
 }
 
-std::optional<Options> parsed(std::span<char* const> words) {
-  Options options;
-  while (!words.empty()) {
-    const std::size_t taken = apply(words, options);
-    if (taken == 0) {
-      std::fprintf(stderr, "reverse_corpus: %s %s: no such argument, or its value is wrong\n",
-                   words[0], words.size() > 1 ? words[1] : "");
-      return std::nullopt;
-    }
-    words = words.subspan(taken);
-  }
-  return options;
-}
-
 int run(const std::filesystem::path& folder, const Options& options) {
   const Corpus corpus = read_corpus(folder);
   const std::vector<Outcome> outcomes = solve(corpus, options);
@@ -192,7 +178,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "reverse_corpus: name the folder of the corpus, tests/bench/corpus\n");
     return 2;
   }
-  const auto options = rtg::bench::parsed({argv + 2, argv + argc});
+  const auto options =
+      rtg::bench::read_options<rtg::bench::Options>("reverse_corpus", {argv + 2, argv + argc});
   if (!options) return 2;
   try {
     return rtg::bench::run(argv[1], *options);

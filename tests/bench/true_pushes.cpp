@@ -97,8 +97,9 @@ void count(const TruePush& push, const reverse::ReverseResult& result,
     return largest_displacement(start, end) >= kDragged;
   };
   const auto replays = [&](const Poses& start) {
+    if (!drags(start)) return false;
     const forward::PushOutcome replayed = box2d.push(start, push.job.action);
-    return drags(start) && replayed.ok && search::replay_gap(end, replayed.end) <= kMiss;
+    return replayed.ok && search::replay_gap(end, replayed.end) <= kMiss;
   };
   tally.drags += std::ranges::any_of(result.predecessors, drags);
   tally.found += std::ranges::any_of(result.predecessors, replays);
@@ -152,17 +153,8 @@ std::size_t apply(std::span<char* const> words, Options& options) {
 }
 
 std::optional<Options> parsed(std::span<char* const> words) {
-  Options options;
-  while (!words.empty()) {
-    const std::size_t taken = apply(words, options);
-    if (taken == 0) {
-      std::fprintf(stderr, "true_pushes: %s %s: no such argument, or its value is wrong\n",
-                   words[0], words.size() > 1 ? words[1] : "");
-      return std::nullopt;
-    }
-    words = words.subspan(taken);
-  }
-  if (!options.files.empty()) return options;
+  const auto options = read_options<Options>("true_pushes", words);
+  if (!options || !options->files.empty()) return options;
   std::fprintf(stderr, "true_pushes: name the files of tasks, config/gathering.yaml\n");
   return std::nullopt;
 }
