@@ -49,14 +49,9 @@ std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int late_contact
 
 }  // namespace
 
-ReverseSimulator::ReverseSimulator(Scene scene, const PhysicsConfig& physics,
+ReverseSimulator::ReverseSimulator(const Scene& scene, const PhysicsConfig& physics,
                                    const PushConfig& push, const ReverseConfig& config)
-    : scene_(std::move(scene)), physics_(physics), push_(push), config_(config) {
-  if (config.plain_barrier > 0.0) {
-    physics_.plain_barrier = true;
-    physics_.barrier = config.plain_barrier;
-  }
-}
+    : model_(reverse_model(scene, physics, config)), push_(push), config_(config) {}
 
 ReverseResult ReverseSimulator::solve(const ReverseJob& job) const {
   return std::move(solve(std::span(&job, 1)).front());
@@ -67,12 +62,12 @@ std::vector<ReverseResult> ReverseSimulator::solve(std::span<const ReverseJob> j
   std::vector<std::unique_ptr<Candidate>> candidates(jobs.size());
   std::vector<const Candidate*> legal;
   for (std::size_t k = 0; k < jobs.size(); ++k) {
-    if (jobs[k].end.size() != scene_.size() || !is_finite(jobs[k].end)) continue;
-    if (is_pruned(scene_, push_, jobs[k])) {
+    if (jobs[k].end.size() != model_.scene.size() || !is_finite(jobs[k].end)) continue;
+    if (is_pruned(model_.scene, push_, jobs[k])) {
       results[k].status = SolveStatus::kPruned;
       continue;
     }
-    candidates[k] = std::make_unique<Candidate>(scene_, physics_, push_, config_, jobs[k]);
+    candidates[k] = std::make_unique<Candidate>(model_.scene, model_.physics, push_, config_, jobs[k]);
     legal.push_back(candidates[k].get());
   }
   const std::vector<SqpResult> solved = solve_together(legal);
@@ -86,7 +81,7 @@ ReverseResult ReverseSimulator::answer(const ReverseJob& job, const Candidate& c
                                        const SqpResult& solved) const {
   ReverseResult result{solved.status, solved.iterations};
   if (result.status != SolveStatus::kConverged) return result;
-  const int late_contacts = physics_.inertia ? 0 : config_.late_contacts;
+  const int late_contacts = model_.physics.inertia ? 0 : config_.late_contacts;
   for (const VectorXd& start : predecessors(solved.x.p, late_contacts))
     result.predecessors.push_back(merged(job.end, energy::unstacked(start), candidate.bodies()));
   return result;

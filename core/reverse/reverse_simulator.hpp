@@ -6,6 +6,7 @@
 #include "core/reverse/candidate.hpp"
 #include "core/reverse/problem/reverse_config.hpp"
 #include "core/reverse/problem/reverse_job.hpp"
+#include "core/reverse/problem/reverse_model.hpp"
 #include "core/world/physics_config.hpp"
 #include "core/world/push.hpp"
 #include "core/world/scene.hpp"
@@ -19,7 +20,7 @@ class ReverseSimulator {
  public:
   /// Every shape of `scene` must be legal (polygon_defect() is empty). bodies[0], the robot, must
   /// be movable.
-  ReverseSimulator(Scene scene, const PhysicsConfig& physics, const PushConfig& push,
+  ReverseSimulator(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push,
                    const ReverseConfig& config);
 
   /// Finds states from which `job.action` leads to `job.end`, a state at rest with one pose per
@@ -35,8 +36,7 @@ class ReverseSimulator {
   ReverseResult answer(const ReverseJob& job, const Candidate& candidate,
                        const SqpResult& solved) const;
 
-  Scene scene_;
-  PhysicsConfig physics_;
+  ReverseModel model_;
   PushConfig push_;
   ReverseConfig config_;
 };

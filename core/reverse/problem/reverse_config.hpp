@@ -30,6 +30,10 @@ struct ReverseConfig {
                                    // then few rest states of Box2D have a predecessor
   double terminal_tolerance = 0.05;  // largest miss of the final state in a valid solution [m]
   double plain_barrier = 0.0;        // μ of the paper's -μ log g [J]; 0: the barrier of `physics`
+  double sharpness = 0.0;            // α in the reverse problem [1/m]; 0: that of `physics`
+  double torque_factor = 0.0;        // B_ω in the reverse problem; 0: that of `physics`
+  double robot_density = 1.0;        // density of the robot in the reverse problem / its true one
+  bool periodic_turns = false;       // the paper's 1 - cos Δθ, in the reverse problem alone
   double proximal_start = 1.0;       // δ of the first iteration
   int softenings = 2;                // how often the spring is softened, to leave poor minima
   int late_contacts = 7;             // further predecessors: the robot meets objects later
@@ -50,6 +54,10 @@ struct ReverseConfig {
     v.number("terminal_weight", terminal_weight, 0.0, 1e9, "holds the final state; 0: fixes it");
     v.number("terminal_tolerance", terminal_tolerance, 0.0, 100.0, "largest miss of it [m]");
     v.number("plain_barrier", plain_barrier, 0.0, 1e6, "weight of -mu log g; 0: physics' barrier");
+    v.number("sharpness", sharpness, 0.0, 1e5, "of the reverse problem [1/m]; 0: that of physics");
+    v.number("torque_factor", torque_factor, 0.0, 1e6, "of the reverse problem; 0: that of physics");
+    v.number("robot_density", robot_density, 0.01, 100.0, "in the reverse problem / its true one");
+    v.flag("periodic_turns", periodic_turns, "1 - cos instead of the square of turns");
     v.number("proximal_start", proximal_start, 1e-4, 1e9, "regularisation of the first step");
     v.integer("softenings", softenings, 0, 1000, "times the hold on the final state is softened");
     v.integer("late_contacts", late_contacts, 0, kMaxPredecessors - 1,
@@ -57,20 +65,26 @@ struct ReverseConfig {
   }
 };
 
-/// Returns the configuration of `preset`. The preset `paper` is App. E: the objective as printed,
-/// l1 merit, Hessian of the objective only, static start, 1000 iterations, fixed final state, plain
-/// barrier. Its barrier weight is chosen so that the SQP converges at all. It converges for 78 % of
-/// the unpruned candidates from Gathering's goal states, in a median of 147 iterations
-/// (`action48/paper` of the benchmarks).
+/// Returns the configuration of `preset`. The preset `paper` is App. A and E as printed: objective,
+/// l1 merit, QP with the Hessian of the objective only, static start, fixed final state, plain
+/// barrier, periodic turns, cyclic reduction, 1000 iterations. What the paper leaves open is chosen
+/// so that it drags objects: μ, ε, B_ω, α and the robot's mass.
 inline ReverseConfig reverse_preset(ReversePreset preset) {
   ReverseConfig config;
   if (preset == ReversePreset::kDefault) return config;
   config.preset = ReversePreset::kPaper;
+  config.kkt = KktMethod::kCyclicReduction;
   config.max_iterations = 1000;
-  config.late_contacts = 0;
-  config.plain_barrier = 0.02;
+  config.robot_weight = 1.0;
+  config.control_weight = 5.1;
   config.path_weight = config.heading_weight = 0.0;
   config.speed_weight = config.terminal_weight = 0.0;
+  config.plain_barrier = 6.0;
+  config.sharpness = 20.0;
+  config.torque_factor = 1.0;
+  config.robot_density = 8.0;
+  config.periodic_turns = true;
+  config.softenings = config.late_contacts = 0;
   return config;
 }
 

@@ -51,21 +51,21 @@ TEST(ReverseSimulator, AFreeRobotStepsBackOneStrideAndTheOthersStay) {
 // Alone: the plain barrier has no end.
 TEST(ReverseSimulator, WithThePapersPresetAFreeRobotFollowsTheClosedForm) {
   const Scene scene = robot_and_boxes(0);
-  const energy::StepEnergy energy(scene, kPhysics, kPush);
   const ReverseConfig config = reverse_preset(ReversePreset::kPaper);
+  const ReverseModel model = reverse_model(scene, kPhysics, config);
+  const energy::StepEnergy energy(model.scene, model.physics, kPush);
   const Poses end{{1, -2, 0.3}};
   const ReverseResult result = solve(scene, {end, 5}, config);
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   const Vector2d d = direction(5, kPush);
   const ReverseProblem problem{energy, config, energy::stacked(end), d, kPhysics.sub_steps};
   const double reach =
-      kPhysics.sub_steps * energy.control_bound()[0] / mass_of(scene.bodies[0]).mass;
+      kPhysics.sub_steps * energy.control_bound()[0] / mass_of(model.scene.bodies[0]).mass;
   const auto moved = [&](double along) {
     return reach * std::tanh(testing::closed_form_control(problem, along));
   };
-  // A stationarity of 1e-4 over the curvature 2ε of the controls' price, times dx/dc.
-  EXPECT_NEAR(result.predecessors[0][0].x, end[0].x - moved(d.x()), 0.02);
-  EXPECT_NEAR(result.predecessors[0][0].y, end[0].y - moved(d.y()), 0.02);
+  EXPECT_NEAR(result.predecessors[0][0].x, end[0].x - moved(d.x()), 1e-3);
+  EXPECT_NEAR(result.predecessors[0][0].y, end[0].y - moved(d.y()), 1e-3);
 }
 
 // The first box is 6 m off the robot's way, the second one beyond.
@@ -97,26 +97,27 @@ TEST(ReverseSimulator, ContactForcesReachByTheRangeBeyondTheSkin) {
   }
 }
 
-// A box stands 3 m beside the robot's way; with the weight of the other barrier a hundred
-// iterations do not suffice.
-TEST(ReverseSimulator, WithThePapersPresetAMoveWithoutContactConverges) {
-  const ReverseJob job{{{0, 0, 0}, {-2, 3, 0.3}}, 0};
-  const ReverseConfig paper = reverse_preset(ReversePreset::kPaper);
-  const ReverseResult result = solve(robot_and_boxes(1), job, paper);
-  ASSERT_EQ(result.status, SolveStatus::kConverged);
-  EXPECT_LT(result.predecessors[0][0].x, -2.0);
-  ReverseConfig heavy = paper;
-  heavy.plain_barrier = kPhysics.barrier;
-  heavy.max_iterations = 100;
-  EXPECT_EQ(solve(robot_and_boxes(1), job, heavy).status, SolveStatus::kIterationLimit);
+// With the constants that eq. (6) leaves open as in the preset, the box that the robot touches goes
+// back with it; with a weak barrier the robot lets go of it.
+TEST(ReverseSimulator, ThePapersPresetDragsTheBoxThatTheRobotTouches) {
+  ReverseConfig paper = reverse_preset(ReversePreset::kPaper);
+  const ReverseJob job{{{0, 0, 0}, {1.46, 0.1, 0.0}}, 0};
+  for (const auto& [barrier, dragged] : {std::pair(paper.plain_barrier, true), {0.02, false}}) {
+    paper.plain_barrier = barrier;
+    const ReverseResult result = solve(robot_and_boxes(1), job, paper);
+    ASSERT_EQ(result.status, SolveStatus::kConverged) << barrier;
+    EXPECT_LT(result.predecessors[0][0].x, -1.0);
+    EXPECT_EQ(result.predecessors[0][1].x < job.end[1].x - 1.0, dragged) << barrier;
+  }
 }
+
 
 TEST(ReverseSimulator, WithThePapersPresetThereIsNoStartAtTheIterationLimit) {
   ReverseConfig config = reverse_preset(ReversePreset::kPaper);
-  config.max_iterations = 5;
+  config.max_iterations = 3;
   const ReverseResult result = solve(robot_and_boxes(1), {{{0, 0, 0}, {1.54, 0.1, 0}}, 0}, config);
   EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
-  EXPECT_EQ(result.iterations, 5);
+  EXPECT_EQ(result.iterations, 3);
   EXPECT_TRUE(result.predecessors.empty());
 }
 

@@ -26,6 +26,7 @@ struct RangeCheck {
   void integer(const char* name, int value, int least, int most, const char* doc) {
     number(name, value, least, most, doc);
   }
+  void flag(const char* name, bool, const char*) { EXPECT_TRUE(names.insert(name).second) << name; }
   template <class Enum, class Names>
   void choice(const char* name, Enum value, const Names& legal, const char*) {
     EXPECT_LT(static_cast<std::size_t>(value), legal.size()) << name;
@@ -86,6 +87,10 @@ TEST(ReverseConfig, EachFieldChangesTheSolutions) {
       {"terminal_weight", 100},
       {"terminal_tolerance", 1e-6},
       {"plain_barrier", 0.02},
+      {"sharpness", 20},
+      {"torque_factor", 1},
+      {"robot_density", 8},
+      {"periodic_turns", 1},
       {"proximal_start", 10},
       {"softenings", 0},
       {"late_contacts", 2},

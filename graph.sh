@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# Runs the programs of one run over LCM, until its transitions are where they are wanted:
+#
+#   ./graph.sh FOLDER [trainer [--resume] | recorder]
+#
+# FOLDER/config.yaml is the resolved configuration (./run.sh TASK --print-config). The run is named like FOLDER, which
+# gets generation.json, logs/PROGRAM.log, and what the trainer writes or, of the recorder, transitions.npz alone.
+# Workers, server and logger are started again when they die. Where another program fails, all end with its status.
+set -uo pipefail
+root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
+nodes=${RTG_NODES:-$root/build/release/nodes} python=${RTG_PYTHON:-$root/.venv/bin/python}
+folder=$(cd -- "${1:?a run folder}" && pwd) || exit 2
+consumer=${2:-trainer} flags=("${@:3}") config=$folder/config.yaml run=${RTG_RUN:-${folder##*/}} logs=$folder/logs
+
+program() { # NAME: becomes that program; by hand they can be started in any order
+  local be=(exec setsid setpriv --pdeathsig KILL) # out of the terminal's reach, but not longer than this script
+  case $1 in
+    forward_sim_server) "${be[@]}" "$nodes/rtg_forward_sim_server" "$config" "$run" ;;
+    reverse_worker_*) "${be[@]}" "$nodes/rtg_reverse_worker" "$config" "$run" "${1##*_}" ;;
+    beam_coordinator) "${be[@]}" "$nodes/rtg_beam_coordinator" "$config" "$run" "$folder" ;;
+    trainer) "${be[@]}" "$python" -m rtg.learn.trainer "$folder" --run-name "$run" "${flags[@]}" ;;
+    recorder) "${be[@]}" "$python" -m rtg.bus.record "$config" "$run" "$folder/transitions.npz" ;;
+    lcm_logger) "${be[@]}" "$python" -m rtg.bus.lcm_tools "$config" "$folder/lcm.log" ;;
+    *) echo "no program '$1'; legal: trainer, recorder" && exit 2 ;;
+  esac
+}
+
+declare -A running=() started=() deaths=() # name by pid; by name: when, and how often in a row soon after
+
+start() { # NAME
+  program "$1" </dev/null >>"$logs/$1.log" 2>&1 &
+  running[$!]=$1 started[$1]=$SECONDS
+}
+
+stop() { # STATUS: ends all programs, at once on a further signal, and this script
+  trap 'kill -KILL "${!running[@]}"' INT TERM
+  kill "${!running[@]}" 2>/dev/null
+  wait
+  exit "$1"
+}
+
+on_failure() { # NAME STATUS
+  local how="ended with exit status $2"
+  if (($2 > 128)); then how="was killed by SIG$(kill -l $(($2 - 128)))"; fi
+  deaths[$1]=$((SECONDS - started[$1] < 5 ? ${deaths[$1]:-0} + 1 : 0))
+  if [[ $1 == "$consumer" || $1 == beam_coordinator || $2 == 2 ]] || ((deaths[$1] == 10)); then
+    echo "$1 $how; the end of $logs/$1.log:"
+    tail -n 8 "$logs/$1.log"
+    stop "$2"
+  fi
+  echo "$1 $how, started again"
+  start "$1"
+}
+
+setting() { sed -n "/^run:/,\$ s/^  $1: \([^ ]*\).*/\1/p" "$config"; } # KEY: its value in the section run
+is_running() { [[ " ${running[*]} " == *" $1 "* ]]; }                   # NAME
+
+mkdir -p "$logs" && rm -f "$folder/generation.json"
+trap 'stop 130' INT
+trap 'stop 143' TERM
+if [[ $(setting record) == true ]]; then start lcm_logger; fi
+for ((k = 0; k < $(setting workers); ++k)); do start "reverse_worker_$k"; done
+start forward_sim_server
+start beam_coordinator
+start "$consumer"
+while is_running "$consumer" || is_running beam_coordinator; do
+  wait -n -p pid "${!running[@]}" ${timer:+"$timer"}
+  status=$?
+  if [[ $pid == "${timer:-}" ]]; then break; fi
+  name=${running[$pid]}
+  unset "running[$pid]"
+  case $name:$status in
+    *:0) ;;
+    beam_coordinator:1) [[ -f $folder/generation.json ]] || on_failure "$name" 1 ;; # tells what was given up
+    *) on_failure "$name" "$status" ;;
+  esac
+  # The consumer's last acknowledgements may be lost. The coordinator then waits in vain.
+  if ! is_running "$consumer" && [[ -z ${timer:-} ]]; then sleep 5 & timer=$!; fi
+done
+stop 0

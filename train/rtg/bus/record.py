@@ -1,0 +1,56 @@
+"""Records the transitions of a run, if there is no trainer: the recorder of graph.sh.
+
+`python -m rtg.bus.record CONFIG.yaml RUN FILE.npz` receives all transitions of the run named RUN
+and writes them to FILE.npz. Prints how many it has when some have arrived.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from rtg import _core
+from rtg.bus.bus import Bus
+from rtg.bus.transition_stream import TransitionStream
+from rtg.errors import RunError
+from rtg.files.recorder import Recorder
+
+_POLL = 0.1  # [s]
+
+
+def record(config: _core.Config, run: str, file: Path) -> None:
+    """Waits for the end of the run's transitions and writes them to `file`.
+
+    Raises RunError if the coordinator was restarted.
+    """
+    bus = Bus(config.run.bus, run)
+    if bus.warning:
+        print(bus.warning, flush=True)
+    print(f"run {run}: waits for transitions", flush=True)
+    recorder = Recorder(config.task)
+    stream = TransitionStream(bus, config.task.bodies, config.task.headings, recorder.add)
+    while not stream.complete:
+        if stream.poll(_POLL):
+            print(stream.received, flush=True)
+    recorder.write(file)
+    stream.close()
+    print(f"lost {stream.lost}", flush=True)
+
+
+def main(argv: list[str]) -> int:
+    if len(argv) != 3:
+        print("rtg.bus.record: legal words: CONFIG.yaml RUN FILE.npz", file=sys.stderr)
+        return 2
+    try:
+        record(_core.Config.from_file(Path(argv[0])), argv[1], Path(argv[2]))
+    except (_core.ConfigError, FileNotFoundError) as error:
+        print(f"rtg.bus.record: {error}", file=sys.stderr)
+        return 2
+    except RunError as error:
+        print(f"rtg.bus.record: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
