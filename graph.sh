@@ -21,7 +21,6 @@ program() { # NAME: becomes that program; by hand they can be started in any ord
     trainer) "${be[@]}" "$python" -m rtg.learn.trainer "$folder" --run-name "$run" "${flags[@]}" ;;
     recorder) "${be[@]}" "$python" -m rtg.bus.record "$config" "$run" "$folder/transitions.npz" ;;
     lcm_logger) "${be[@]}" "$python" -m rtg.bus.lcm_tools "$config" "$folder/lcm.log" ;;
-    *) echo "no program '$1'; legal: trainer, recorder" && exit 2 ;;
   esac
 }
 
@@ -55,7 +54,12 @@ on_failure() { # NAME STATUS
 setting() { sed -n "/^run:/,\$ s/^  $1: \([^ ]*\).*/\1/p" "$config"; } # KEY: its value in the section run
 is_running() { [[ " ${running[*]} " == *" $1 "* ]]; }                   # NAME
 
-mkdir -p "$logs" && rm -f "$folder/generation.json"
+if [[ $consumer != trainer && $consumer != recorder ]]; then
+  echo "graph.sh: no consumer '$consumer'; legal: trainer, recorder"
+  exit 2
+fi
+mkdir -p "$logs" && rm -f "$folder/generation.json" || exit 1
+exec 2>/dev/null # bash's own words about programs that have ended
 trap 'stop 130' INT
 trap 'stop 143' TERM
 if [[ $(setting record) == true ]]; then start lcm_logger; fi
@@ -63,18 +67,22 @@ for ((k = 0; k < $(setting workers); ++k)); do start "reverse_worker_$k"; done
 start forward_sim_server
 start beam_coordinator
 start "$consumer"
+deadline=
 while is_running "$consumer" || is_running beam_coordinator; do
-  wait -n -p pid "${!running[@]}" ${timer:+"$timer"}
-  status=$?
-  if [[ $pid == "${timer:-}" ]]; then break; fi
-  name=${running[$pid]}
-  unset "running[$pid]"
-  case $name:$status in
-    *:0) ;;
-    beam_coordinator:1) [[ -f $folder/generation.json ]] || on_failure "$name" 1 ;; # tells what was given up
-    *) on_failure "$name" "$status" ;;
-  esac
+  sleep 0.2
+  for pid in "${!running[@]}"; do
+    if kill -0 "$pid"; then continue; fi
+    wait "$pid"
+    status=$? name=${running[$pid]}
+    unset "running[$pid]"
+    case $name:$status in
+      *:0) ;;
+      beam_coordinator:1) [[ -f $folder/generation.json ]] || on_failure "$name" 1 ;; # tells what was given up
+      *) on_failure "$name" "$status" ;;
+    esac
+  done
+  if is_running "$consumer"; then continue; fi
   # The consumer's last acknowledgements may be lost. The coordinator then waits in vain.
-  if ! is_running "$consumer" && [[ -z ${timer:-} ]]; then sleep 5 & timer=$!; fi
+  if ((SECONDS > ${deadline:=$((SECONDS + 5))})); then break; fi
 done
 stop 0

@@ -67,7 +67,8 @@ std::vector<ReverseResult> ReverseSimulator::solve(std::span<const ReverseJob> j
       results[k].status = SolveStatus::kPruned;
       continue;
     }
-    candidates[k] = std::make_unique<Candidate>(model_.scene, model_.physics, push_, config_, jobs[k]);
+    candidates[k] =
+        std::make_unique<Candidate>(model_.scene, model_.physics, push_, config_, jobs[k]);
     legal.push_back(candidates[k].get());
   }
   const std::vector<SqpResult> solved = solve_together(legal);

@@ -6,6 +6,8 @@
 #include <thread>
 #include <utility>
 
+#include "nodes/program/program.hpp"
+
 namespace rtg::beam_coordinator {
 namespace {
 
@@ -92,6 +94,10 @@ void CoordinatorNode::serve() {
   replay_.tick();
   const bus::Seconds now = bus::monotonic_now();
   transitions_.tick(now);
+  if (!served_ && reverse_.state().workers + replay_.state().workers > 0) {
+    program::say("works");
+    served_ = true;
+  }
   if (progress_ticker_.due(now)) publish_progress();
   if (status_.due(now)) publish_status();
 }

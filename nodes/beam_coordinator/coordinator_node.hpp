@@ -59,6 +59,7 @@ class CoordinatorNode {
   TransitionPublisher transitions_;
   bus::NodeStatus status_;
   bus::Ticker progress_ticker_{0.5};
+  bool served_ = false;  // a worker or the server has been heard
   bool leaving_ = false;
   mutable std::mutex mutex_;  // guards the members below
   search::Progress progress_{.phase = "starting"};

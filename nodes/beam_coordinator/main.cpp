@@ -22,6 +22,7 @@ int run(const program::Words& words) {
   CoordinatorNode node(
       bus, {program::shape_of(config.task), config_hash(config), config.search.transitions,
             [] { return program::stop_signal() != 0; }});
+  program::say("waits for the workers and the server of run " + words[1]);
   auto report = node.run([&](const search::GenerationSeams& seams) {
     const auto seed = static_cast<std::uint64_t>(config.run.seed);
     return generate(config.task, config.search, seed, seams);
@@ -29,8 +30,11 @@ int run(const program::Words& words) {
   if (report) {
     report->units_given_up = node.given_up();
     write_atomically(std::filesystem::path(words[2]) / "generation.json", to_json(*report));
+    program::say("has found " + std::to_string(report->transitions) +
+                 " transitions, waits until all consumers have them");
     node.drain(consumers);
   }
+  program::say("ends");
   if (program::stop_signal()) return 128 + program::stop_signal();
   if (node.given_up() == 0) return 0;
   std::fprintf(stderr,

@@ -20,7 +20,7 @@ int run(const program::Words& words) {
   jobs::WorkerNode<jobs::ReplayService> node(
       bus, {program::shape_of(config.task), config_hash(config), 0, config.run.workers},
       replay_on_threads(replay, 1));
-  return program::serve(bus, node);
+  return program::serve(bus, node, words[1]);
 }
 
 }  // namespace

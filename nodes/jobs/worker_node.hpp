@@ -69,6 +69,16 @@ class WorkerNode {
         begun_, [&](const auto& unit) { return now - unit.second > options_.patience; });
   }
 
+  /// Returns whether the node has ever received a unit of work.
+  bool has_work() const {
+    const std::scoped_lock lock(mutex_);
+    return done_ > 0 || !inbox_.held().empty();
+  }
+  /// Returns the number of units answered so far.
+  long units_done() const {
+    const std::scoped_lock lock(mutex_);
+    return done_;
+  }
   const bus::CoordinatorWatch& coordinator() const { return watch_; }
   std::int64_t incarnation() const { return incarnation_; }
 

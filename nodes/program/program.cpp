@@ -1,5 +1,7 @@
 #include "nodes/program/program.hpp"
 
+#include <errno.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -40,6 +42,11 @@ int run(int argc, char** argv, const std::string& usage, int (*body)(const Words
   } catch (const std::exception& error) {
     return fail(program, error, 1);
   }
+}
+
+void say(const std::string& words) {
+  std::printf("%s: %s\n", program_invocation_short_name, words.c_str());
+  std::fflush(stdout);
 }
 
 int parse_number(const std::string& word, const std::string& name) {

@@ -17,6 +17,10 @@ using Words = std::vector<std::string>;
 /// optional ones in brackets, as in "CONFIG.yaml RUN [NUMBER]".
 int run(int argc, char** argv, const std::string& usage, int (*body)(const Words&));
 
+/// Prints a line on stdout that begins with the name of the program. A program says so when it
+/// starts, when it is needed first, and when it ends.
+void say(const std::string& words);
+
 /// Parses `word` as a whole number ≥ 0. Throws std::invalid_argument with `name` in the message if
 /// it is none.
 int parse_number(const std::string& word, const std::string& name);

@@ -21,7 +21,7 @@ int run(const program::Words& words) {
   jobs::WorkerNode<jobs::ReverseService> node(
       bus, {program::shape_of(config.task), config_hash(config), number, 1},
       search::solve_on_threads(solve, 1));
-  return program::serve(bus, node);
+  return program::serve(bus, node, words[1]);
 }
 
 }  // namespace

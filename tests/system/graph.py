@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -58,15 +59,20 @@ class Graph:
 def first_rows(consumer: Process) -> int:
     """Waits until the consumer has some; how many."""
     assert consumer.stdout is not None
-    return int(consumer.stdout.readline())
+    for line in consumer.stdout:
+        if found := re.fullmatch(r"recorder: has (\d+) transitions\n", line):
+            return int(found[1])
+    raise AssertionError("the consumer ended without a row")
 
 
-def rest(consumer: Process) -> str:
-    """Waits for its end; what it says last."""
+def lost(consumer: Process) -> int:
+    """Waits for its end; how many rows it lacks."""
     assert consumer.stdout is not None
     words = consumer.stdout.read().splitlines()
     assert consumer.wait(PATIENCE) == 0
-    return words[-1]
+    found = re.fullmatch(r"recorder: ends, (\d+) transitions lost", words[-1])
+    assert found is not None
+    return int(found[1])
 
 
 def generated_in_process(file: Path, *overrides: str) -> bytes:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import signal
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import network
 import pytest
-from graph import PATIENCE, Graph, Process, first_rows, generated_in_process, rest
+from graph import PATIENCE, Graph, Process, first_rows, generated_in_process, lost
+from rtg import paths
 
 LONG = ("search.transitions=12000", "run.seed=3")
 
@@ -51,9 +53,51 @@ def test_any_number_of_workers(
     graph = Graph(net, tmp_path, f"run.workers={workers}")
     helpers = [graph.server(), *(graph.worker(number) for number in range(workers))]
     consumer, coordinator = graph.consumer(), graph.coordinator()
-    assert rest(consumer) == "lost 0"
+    assert lost(consumer) == 0
     assert_all_left(coordinator, *helpers)
     assert graph.transitions() == tiny
+
+
+@pytest.mark.parametrize(
+    "order", ["consumer server coordinator worker", "coordinator worker consumer server"]
+)
+def test_any_order_of_starts(net: network.Network, tmp_path: Path, tiny: bytes, order: str) -> None:
+    graph = Graph(net, tmp_path)
+    programs = {
+        "server": graph.server,
+        "worker": lambda: graph.worker(1),
+        "consumer": graph.consumer,
+        "coordinator": graph.coordinator,
+    }
+    started = {}
+    for name in order.split():
+        started[name] = programs[name]()
+        time.sleep(0.5)
+    assert lost(started.pop("consumer")) == 0
+    assert_all_left(*started.values())
+    assert graph.transitions() == tiny
+
+
+def test_the_shell_script(net: network.Network, tmp_path: Path, tiny: bytes) -> None:
+    graph = Graph(net, tmp_path)
+    script = net.start([paths.ROOT / "graph.sh", tmp_path, "recorder"], RTG_RUN="by-the-script")
+    assert script.stdout is not None
+    assert script.stdout.read() == ""
+    assert script.wait(PATIENCE) == 0
+    assert graph.transitions() == tiny
+    said = {path.stem: path.read_text().splitlines() for path in (tmp_path / "logs").iterdir()}
+    assert said["reverse_worker_0"][:2] == [
+        "rtg_reverse_worker: waits for the coordinator of run by-the-script",
+        "rtg_reverse_worker: works",
+    ]
+    assert said["forward_sim_server"][-1].startswith("rtg_forward_sim_server: ends after ")
+    assert said["beam_coordinator"] == [
+        "rtg_beam_coordinator: waits for the workers and the server of run by-the-script",
+        "rtg_beam_coordinator: works",
+        "rtg_beam_coordinator: has found 2000 transitions, waits until all consumers have them",
+        "rtg_beam_coordinator: ends",
+    ]
+    assert said["recorder"][-1] == "recorder: ends, 0 transitions lost"
 
 
 @pytest.mark.parametrize("words", [RRBS, FORWARD, SCATTER], ids=["rrbs", "forward", "scatter"])
@@ -61,7 +105,7 @@ def test_other_searches(net: network.Network, tmp_path: Path, words: tuple[str, 
     graph = Graph(net, tmp_path, *words)
     helpers = [graph.server(), graph.worker(1), graph.worker(2)]
     consumer, coordinator = graph.consumer(), graph.coordinator()
-    assert rest(consumer) == "lost 0"
+    assert lost(consumer) == 0
     assert_all_left(coordinator, *helpers)
     assert graph.transitions() == generated_in_process(tmp_path / "direct.npz", *words)
 
@@ -75,7 +119,7 @@ def test_a_killed_worker(net: network.Network, tmp_path: Path, long: bytes) -> N
     assert worker.wait() == -signal.SIGKILL
     assert graph.is_generating()
     another = graph.worker(2)
-    assert rest(consumer) == "lost 0"
+    assert lost(consumer) == 0
     assert_all_left(coordinator, server, another)
     assert graph.transitions() == long
 
@@ -89,7 +133,7 @@ def test_a_killed_server(net: network.Network, tmp_path: Path, long: bytes) -> N
     assert server.wait() == -signal.SIGKILL
     assert graph.is_generating()
     another = graph.server()
-    assert rest(consumer) == "lost 0"
+    assert lost(consumer) == 0
     assert_all_left(coordinator, worker, another)
     assert graph.transitions() == long
 
@@ -99,7 +143,7 @@ def test_a_tenth_of_the_datagrams_lost(net: network.Network, tmp_path: Path, tin
     graph = Graph(net, tmp_path)
     helpers = [graph.server(), graph.worker(1), graph.worker(2)]
     consumer, coordinator = graph.consumer(), graph.coordinator()
-    assert rest(consumer) == "lost 0"
+    assert lost(consumer) == 0
     assert_all_left(coordinator, *helpers)
     assert net.lost() > 20
     assert graph.transitions() == tiny
@@ -114,10 +158,10 @@ def test_a_receive_buffer_too_small_for_a_burst(
     coordinator = graph.coordinator(2)
     assert 0 < first_rows(small) < 12000
     small.send_signal(signal.SIGSTOP)  # nobody empties the buffer
-    assert rest(usual) == "lost 0"
+    assert lost(usual) == 0
     assert net.dropped() > 0
     small.send_signal(signal.SIGCONT)
-    assert rest(small) == "lost 0"
+    assert lost(small) == 0
     assert_all_left(coordinator, *helpers)
     assert graph.transitions("small") == long
 
@@ -131,10 +175,10 @@ def test_consumers_that_come_late_or_again(
     assert first_rows(first) > 0
     first.kill()
     second = graph.consumer("second")
-    assert rest(second) == "lost 0"
+    assert lost(second) == 0
     assert not graph.is_generating()
     third = graph.consumer("third")
-    assert rest(third) == "lost 0"
+    assert lost(third) == 0
     assert_all_left(coordinator, *helpers)
     assert graph.transitions("second") == graph.transitions("third") == tiny
 

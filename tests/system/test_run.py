@@ -190,8 +190,8 @@ def test_killing_the_command_kills_all_of_its_processes(tmp_path):
     folder = tmp_path / "run"
     process = start(*ENDLESS, "--out", folder)
     wait_for_line(process, "tree ")
-    # the command, server, two workers, coordinator, trainer
-    assert len(processes_of(folder)) == 6
+    # the command, graph.sh, server, two workers, coordinator, trainer
+    assert len(processes_of(folder)) == 7
     process.kill()
     process.communicate(timeout=PATIENCE)
     wait_until_all_are_gone(folder, PATIENCE)

@@ -55,7 +55,8 @@ struct ReverseConfig {
     v.number("terminal_tolerance", terminal_tolerance, 0.0, 100.0, "largest miss of it [m]");
     v.number("plain_barrier", plain_barrier, 0.0, 1e6, "weight of -mu log g; 0: physics' barrier");
     v.number("sharpness", sharpness, 0.0, 1e5, "of the reverse problem [1/m]; 0: that of physics");
-    v.number("torque_factor", torque_factor, 0.0, 1e6, "of the reverse problem; 0: that of physics");
+    v.number("torque_factor", torque_factor, 0.0, 1e6,
+             "of the reverse problem; 0: that of physics");
     v.number("robot_density", robot_density, 0.01, 100.0, "in the reverse problem / its true one");
     v.flag("periodic_turns", periodic_turns, "1 - cos instead of the square of turns");
     v.number("proximal_start", proximal_start, 1e-4, 1e9, "regularisation of the first step");

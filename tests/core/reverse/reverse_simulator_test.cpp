@@ -111,7 +111,6 @@ TEST(ReverseSimulator, ThePapersPresetDragsTheBoxThatTheRobotTouches) {
   }
 }
 
-
 TEST(ReverseSimulator, WithThePapersPresetThereIsNoStartAtTheIterationLimit) {
   ReverseConfig config = reverse_preset(ReversePreset::kPaper);
   config.max_iterations = 3;

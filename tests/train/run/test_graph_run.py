@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 from rtg import paths
+from rtg.errors import RunError, UserError
 from rtg.run import effective_config, graph_run, results, run
 from rtg.run.plan import RunPlan
 from rtg.run.progress import display
@@ -18,6 +19,7 @@ PROGRAMS = {
     "rtg_forward_sim_server": "exec sleep infinity",
     "rtg_reverse_worker": "exec sleep infinity",
     "rtg_beam_coordinator": f"echo '{json.dumps(REPORT)}' > \"$3/generation.json\"",
+    "python": 'touch "$5"',  # the recorder
 }
 
 
@@ -31,13 +33,33 @@ def plan(tmp_path, monkeypatch):
         program = tmp_path / name
         program.write_text(f"#!/bin/sh\n{script}\n")
         program.chmod(0o755)
-    monkeypatch.setattr(paths, "program", lambda name: tmp_path / name)
+    monkeypatch.setenv("RTG_NODES", str(tmp_path))
+    monkeypatch.setenv("RTG_PYTHON", str(tmp_path / "python"))
     config = SimpleNamespace(  # with a bus that no file may have
         run=SimpleNamespace(bus="memq://", record=False, workers=1),
         search=SimpleNamespace(transitions=0, generator="rrbs"),
         task=effective_config.load(TINY).task,
     )
     return RunPlan(folder, "test", config, train=False, resume=False, notes=())
+
+
+def test_the_failure_of_a_program_is_that_of_the_run(plan, tmp_path):
+    coordinator = tmp_path / "rtg_beam_coordinator"
+    for status, error in ((1, RunError), (2, UserError)):
+        coordinator.write_text(f"#!/bin/sh\necho no such body; exit {status}\n")
+        with display(io.StringIO()) as shown, pytest.raises(error, match=r"no such body$"):
+            graph_run.run(plan, shown)
+
+
+def test_restarts_are_told_and_counted(plan, tmp_path):
+    worker, coordinator = tmp_path / "rtg_reverse_worker", tmp_path / "rtg_beam_coordinator"
+    coordinator.write_text(f"#!/bin/sh\nsleep 2\n{PROGRAMS['rtg_beam_coordinator']}\n")
+    once = f"mkdir {tmp_path}/died-$3 || exec sleep infinity; kill -KILL $$"
+    worker.write_text(f"#!/bin/sh\n{once}\n")
+    out = io.StringIO()
+    with display(out) as shown:
+        assert graph_run.run(plan, shown)["worker_restarts"] == 2
+    assert "] reverse_worker_1 was killed by SIGKILL, started again\n" in out.getvalue()
 
 
 def test_what_the_network_lacks_is_told(plan, monkeypatch):
@@ -48,10 +70,10 @@ def test_what_the_network_lacks_is_told(plan, monkeypatch):
     assert "a small buffer on memq://\n" in out.getvalue()
 
 
-def test_work_that_was_given_up_is_told_though_the_coordinator_was_not_waited_for(plan, tmp_path):
+def test_work_that_was_given_up_is_told(plan, tmp_path):
     report = json.dumps({**REPORT, "units_given_up": 2})
     coordinator = tmp_path / "rtg_beam_coordinator"
-    coordinator.write_text(f"#!/bin/sh\necho '{report}' > \"$3/generation.json\"\n")
+    coordinator.write_text(f"#!/bin/sh\necho '{report}' > \"$3/generation.json\"\nexit 1\n")
     with display(io.StringIO()) as shown:
         measured = graph_run.run(plan, shown)
     assert measured["defects"] == ["the coordinator gave up 2 units of work"]

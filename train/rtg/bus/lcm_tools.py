@@ -1,4 +1,8 @@
-"""LCM's own programs: lcm-spy with the message types of RTG, and lcm-logger."""
+"""LCM's own programs: lcm-spy with the message types of RTG, and lcm-logger.
+
+`python -m rtg.bus.lcm_tools CONFIG.yaml FILE` becomes lcm-logger, which appends all messages on the
+bus of that configuration to FILE.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from rtg import paths
+from rtg import _core, paths
 from rtg.errors import RunError
 
 _TYPES_JAR = paths.BUILD / "msgs" / "rtg_msgs.jar"
@@ -24,11 +28,6 @@ def lcm_program(name: str) -> Path:
     if spec is None or spec.origin is None:
         raise RunError("the Python package lcm is missing: start through ./run.sh")
     return Path(spec.origin).parents[1] / "bin" / name
-
-
-def logger_command(url: str, log: Path) -> list[str | Path]:
-    """Returns the command of lcm-logger that appends all messages on the bus at `url` to `log`."""
-    return [lcm_program("lcm-logger"), "--quiet", "--append", f"--lcm-url={url}", log]
 
 
 def _build_types_jar() -> None:
@@ -68,3 +67,16 @@ def lcm_spy(url: str) -> None:
     program = lcm_program("lcm-spy")
     environment = {**os.environ, "CLASSPATH": str(jar or "")}
     os.execve(program, [str(program), f"--lcm-url={url}"], environment)
+
+
+def main(argv: list[str]) -> int:
+    """Replaces this process by lcm-logger. Returns 2 for bad words."""
+    if len(argv) != 2:
+        print("rtg.bus.lcm_tools: legal words: CONFIG.yaml FILE", file=sys.stderr)
+        return 2
+    url, program = _core.Config.from_file(Path(argv[0])).run.bus, lcm_program("lcm-logger")
+    os.execv(program, [str(program), "--quiet", "--append", f"--lcm-url={url}", argv[1]])
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

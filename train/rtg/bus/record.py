@@ -18,6 +18,10 @@ from rtg.files.recorder import Recorder
 _POLL = 0.1  # [s]
 
 
+def _say(words: str) -> None:
+    print(f"recorder: {words}", flush=True)
+
+
 def record(config: _core.Config, run: str, file: Path) -> None:
     """Waits for the end of the run's transitions and writes them to `file`.
 
@@ -25,16 +29,16 @@ def record(config: _core.Config, run: str, file: Path) -> None:
     """
     bus = Bus(config.run.bus, run)
     if bus.warning:
-        print(bus.warning, flush=True)
-    print(f"run {run}: waits for transitions", flush=True)
+        _say(bus.warning)
+    _say(f"waits for the transitions of run {run}")
     recorder = Recorder(config.task)
     stream = TransitionStream(bus, config.task.bodies, config.task.headings, recorder.add)
     while not stream.complete:
         if stream.poll(_POLL):
-            print(stream.received, flush=True)
+            _say(f"has {stream.received} transitions")
     recorder.write(file)
     stream.close()
-    print(f"lost {stream.lost}", flush=True)
+    _say(f"ends, {stream.lost} transitions lost")
 
 
 def main(argv: list[str]) -> int:

@@ -27,6 +27,7 @@ from rtg.bus.bus import Bus
 from rtg.bus.node_status import ENDED, NodeStatus
 from rtg.bus.transition_stream import TransitionStream
 from rtg.errors import RunError, UserError
+from rtg.files.dataset import Rows
 from rtg.learn.offline_data import FileSource, NoSource, Source
 from rtg.learn.planning import Planning
 from rtg.learn.training import Training
@@ -57,13 +58,27 @@ def _source(training: Training | Planning, args: argparse.Namespace) -> Source:
         return NoSource()
     if args.no_stream:
         return FileSource(training.folder / "transitions.npz", training.task, training.data)
-    bus = Bus(training.config.run.bus, args.run_name or training.folder.resolve().name)
+    run = args.run_name or training.folder.resolve().name
+    bus = Bus(training.config.run.bus, run)
     training.publish_status = NodeStatus(bus, "trainer").tick
     task = training.task
-    stream = TransitionStream(bus, task.bodies, task.headings, training.data.add)
     if bus.warning:
         print(bus.warning, file=sys.stderr)
-    return stream
+    _say(f"waits for the transitions of run {run}")
+    begun = False
+
+    def add(rows: Rows) -> None:
+        nonlocal begun
+        if not begun:
+            _say("has the first transitions")
+        begun = True
+        training.data.add(rows)
+
+    return TransitionStream(bus, task.bodies, task.headings, add)
+
+
+def _say(words: str) -> None:
+    print(f"trainer: {words}", flush=True)
 
 
 def _begin(folder: Path, args: argparse.Namespace) -> Training | Planning:
@@ -83,6 +98,7 @@ def _learn(training: Training | Planning, args: argparse.Namespace, interrupts: 
                 return 128 + interrupts.number
             training.finish(source.lost)
         finally:
+            _say(f"ends after {training.scheduled_interactions:,} interactions")
             training.publish_status(ENDED, training.scheduled_interactions)
     return 0
 

@@ -11,6 +11,8 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
+from rtg.errors import RunError, UserError
+
 _PR_SET_PDEATHSIG = 1
 _libc = ctypes.CDLL(None)
 
@@ -45,7 +47,7 @@ class Node:
         self.started = time.monotonic()
         self._reaped = False
         with self.log.open("ab") as output:
-            self._log_start = output.tell()
+            self._log_start = self._log_read = output.tell()
             self._process = subprocess.Popen(
                 self.command,
                 stdin=subprocess.DEVNULL,
@@ -90,12 +92,33 @@ class Node:
         logged = self.log.read_bytes()[self._log_start :] if self.log.exists() else b""
         return "\n".join(logged.decode(errors="replace").splitlines()[-lines:])
 
+    def new_log_lines(self) -> list[str]:
+        """Returns the lines that the program has completed since the last call of this method."""
+        with self.log.open("rb") as log:
+            log.seek(self._log_read)
+            whole, end, _ = log.read().rpartition(b"\n")
+        self._log_read += len(whole) + len(end)
+        return whole.decode(errors="replace").splitlines()
+
     def exit_text(self) -> str:
-        """Describes how the program ended."""
-        status = self.exit_status()
+        """Describes how the program ended, with the end of its log."""
+        status, words = self.exit_status(), self.log_tail()
+        how = f"ended with exit status {status}"
         if status is not None and status < 0:
-            return f"{self.name} was killed by {signal.Signals(-status).name}"
-        return f"{self.name} ended with exit status {status}"
+            how = f"was killed by {signal.Signals(-status).name}"
+        text = f"{self.name} {how}"
+        return f"{text}; the end of {self.log}:\n{words}" if words else text
+
+    def raise_if_failed(self) -> None:
+        """Raises RunError if the program has failed, or UserError if it reported bad input.
+
+        Exit status 2 means bad input in all programs of RTG.
+        """
+        status = self.exit_status()
+        if status == 2 and (words := self.log_tail(lines=1)):
+            raise UserError(words)
+        if status:
+            raise RunError(self.exit_text())
 
 
 def stop_all(nodes: Iterable[Node], grace: float = 4.0) -> None:

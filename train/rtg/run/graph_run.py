@@ -1,52 +1,22 @@
-"""A run as a graph of processes over LCM."""
+"""A run as a graph of processes over LCM, which graph.sh starts."""
 
 from __future__ import annotations
 
-import math
-import time
-from pathlib import Path
 from typing import Any
 
 from rtg import paths
-from rtg.bus import lcm_tools
 from rtg.bus.bus import Bus
-from rtg.bus.transition_stream import TransitionStream
-from rtg.errors import RunError
+from rtg.errors import RunError, UserError
 from rtg.files import run_folder
-from rtg.files.recorder import Recorder
-from rtg.processes.graph import ProcessGraph
+from rtg.processes.children import Node, kill_all, stop_all
 from rtg.processes.interrupts import Interrupts
 from rtg.run.plan import RunPlan
 from rtg.run.progress import Display, RunState
 from rtg.run.run_watch import RunWatch
-from rtg.run.train_run import trainer_command
 from rtg.run.training_watch import TrainingWatch
 
 _POLL = 0.1  # [s]
-_EXIT_GRACE = 5.0  # [s] that the coordinator may take to end after all rows were consumed
-
-
-class _Recording:
-    """Receives and records the transitions (rows) of a run without a trainer."""
-
-    def __init__(self, plan: RunPlan, bus: Bus) -> None:
-        task = plan.config.task
-        self._recorder = Recorder(task)
-        self._stream = TransitionStream(bus, task.bodies, task.headings, self._recorder.add)
-
-    def poll(self, timeout: float) -> None:
-        self._stream.poll(timeout)
-
-    @property
-    def complete(self) -> bool:
-        return self._stream.complete
-
-    def write(self, plan: RunPlan) -> int:
-        """Writes transitions.npz if no row is missing; returns the number of missing rows."""
-        missing = int(run_folder.read_json(plan.report_file)["transitions"]) - self._recorder.count
-        if missing == 0:
-            self._recorder.write(plan.transitions_file)
-        return missing
+_RESTARTED = ", started again"  # the end of the lines in which graph.sh says so
 
 
 def generation_defects(plan: RunPlan) -> list[str]:
@@ -66,95 +36,71 @@ def generation_defects(plan: RunPlan) -> list[str]:
 
 
 class GraphRun:
-    """Starts the programs of a run, watches them and restarts dead workers."""
+    """Runs graph.sh and shows what its programs do."""
 
     def __init__(self, plan: RunPlan, display: Display) -> None:
         self._plan, self._display = plan, display
         self._bus = Bus(plan.config.run.bus, plan.name)
         self._watch = RunWatch(self._bus, RunState(budget=plan.interactions))
         self._training = TrainingWatch(plan.folder)
-        self._recording = None if plan.train else _Recording(plan, self._bus)
-        self._graph = ProcessGraph(plan.folder / "logs")
-        self._sealed = False
-        self._consumed = math.inf  # [s], when the consumer was first seen to be finished
+        self._nodes: list[Node] = []
+        self._restarts = 0
+        self._failure: list[str] = []  # lines of graph.sh that tell why it ended
         if self._bus.warning:
             display.note(self._bus.warning)
 
     def run(self) -> dict[str, Any]:
-        """Starts all programs, waits for their end and returns further figures for summary.json.
+        """Waits for the end of all programs and returns further figures for summary.json.
 
-        Raises RunError if transitions are missing, StoppedError on a signal.
+        Raises RunError if a program failed, UserError if it reported bad input, StoppedError on a
+        signal.
         """
-        with Interrupts(on_second_signal=self._graph.kill) as interrupts:
+        with Interrupts(on_second_signal=lambda: kill_all(self._nodes)) as interrupts:
             try:
-                self._start_programs()
-                while self._graph.working() and not self._is_over():
-                    self._step()
+                graph = self._start()
+                while graph.exit_status() is None:
+                    self._bus.spin(_POLL)
+                    self._read_log(graph)
+                    self._display.show(self._training.update(self._watch.state))
                     interrupts.raise_if_requested()
-                self._graph.check_and_restart(leaving=True)
-                self._listen(0.0)  # messages that arrived since the last step
-                defects = self._graph.failures()
+                self._bus.spin(0.0)  # messages that arrived since the last step
             finally:
-                self._graph.stop()
+                stop_all(self._nodes)
                 self._bus.close()
-        missing = self._recording.write(self._plan) if self._recording else 0
-        if missing:
-            raise RunError(f"the coordinator ended, {missing} transitions have not arrived")
+        self._read_log(graph)
+        if status := graph.exit_status():
+            raise self._error(status)
         return {
-            "lost_transitions": missing,
-            "worker_restarts": self._graph.restarts,
+            "lost_transitions": 0,
+            "worker_restarts": self._restarts,
             "counters": self._watch.counters(),
-            "defects": defects or generation_defects(self._plan),
+            "defects": generation_defects(self._plan),
         }
 
-    def _start_programs(self) -> None:
-        plan, graph = self._plan, self._graph
-        arguments: list[str | Path] = [plan.config_file, plan.name]
-        if plan.config.run.record:
-            url, log = plan.config.run.bus, plan.folder / "lcm.log"
-            graph.add("lcm_logger", lcm_tools.logger_command(url, log), helper=True)
-        server = paths.program("rtg_forward_sim_server")
-        graph.add("forward_sim_server", [server, *arguments], helper=True)
-        worker = paths.program("rtg_reverse_worker")
-        for number in range(plan.config.run.workers):
-            name = f"reverse_worker_{number}"
-            graph.add(name, [worker, *arguments, str(number)], helper=True)
-        coordinator = paths.program("rtg_beam_coordinator")
-        graph.add("beam_coordinator", [coordinator, *arguments, plan.folder])
-        if plan.train:
-            graph.add("trainer", trainer_command(plan, "--run-name", plan.name))
+    def _start(self) -> Node:
+        plan = self._plan
+        consumer = (
+            ["trainer", *(["--resume"] if plan.resume else [])] if plan.train else ["recorder"]
+        )
+        script = [str(paths.ROOT / "graph.sh"), str(plan.folder), *consumer]
+        logs = plan.folder / "logs"
+        logs.mkdir(parents=True, exist_ok=True)
+        command = ["env", f"RTG_RUN={plan.name}", *script]
+        self._nodes.append(Node("graph", command, logs / "graph.log"))
+        return self._nodes[0]
 
-    def _listen(self, seconds: float) -> None:
-        if self._recording:
-            self._recording.poll(seconds)
-        else:
-            self._bus.spin(seconds)
+    def _read_log(self, graph: Node) -> None:
+        for line in graph.new_log_lines():
+            if line.endswith(_RESTARTED):
+                self._restarts += 1
+                self._display.note(line)
+            else:
+                self._failure.append(line)
 
-    def _step(self) -> None:
-        self._listen(_POLL)
-        if self._watch.state.phase == "sealed" and not self._sealed:
-            self._on_sealed()
-        for note in self._graph.check_and_restart(leaving=self._watch.leaving):
-            self._display.note(note)
-        self._display.show(self._training.update(self._watch.state))
-
-    def _is_over(self) -> bool:
-        """Returns whether the run is over although the coordinator has not ended.
-
-        The coordinator waits for the final acknowledgements of consumers, which may be lost.
-        """
-        if not self._sealed or (self._plan.train and self._graph.working("trainer")):
-            return False
-        if self._recording and not self._recording.complete:
-            return False
-        now = time.monotonic()
-        self._consumed = min(self._consumed, now)
-        return now - self._consumed > _EXIT_GRACE
-
-    def _on_sealed(self) -> None:
-        """Tolerates failures of the coordinator from now on, because its search is over."""
-        self._sealed = True
-        self._graph.ignore_failure("beam_coordinator")
+    def _error(self, status: int) -> Exception:
+        if status == 2 and self._failure:
+            return UserError(self._failure[-1])
+        return RunError("\n".join(self._failure) or f"graph.sh ended with exit status {status}")
 
 
 def run(plan: RunPlan, display: Display) -> dict[str, Any]:

@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
-from pathlib import Path
 
 from rtg.files.run_folder import read_json
-from rtg.processes.graph import ProcessGraph
+from rtg.processes.children import Node, kill_all, stop_all
 from rtg.processes.interrupts import Interrupts
 from rtg.run.plan import RunPlan
 from rtg.run.progress import Display, RunState
 from rtg.run.training_watch import TrainingWatch
 
 _POLL = 0.1  # [s]
-
-
-def trainer_command(plan: RunPlan, *flags: str) -> Sequence[str | Path]:
-    """Returns the command that starts the learner."""
-    resume = ["--resume"] if plan.resume else []
-    return [sys.executable, "-m", "rtg.learn.trainer", plan.folder, *resume, *flags]
 
 
 def _initial_state(plan: RunPlan) -> RunState:
@@ -39,16 +31,18 @@ def _initial_state(plan: RunPlan) -> RunState:
 
 def run(plan: RunPlan, display: Display) -> None:
     """Trains in a separate process, so that training can be stopped at any time."""
-    graph = ProcessGraph(plan.folder / "logs")
-    watch = TrainingWatch(plan.folder)
-    state = _initial_state(plan)
-    with Interrupts(on_second_signal=graph.kill) as interrupts:
+    flags = ["--no-stream", *(["--resume"] if plan.resume else [])]
+    command = [sys.executable, "-m", "rtg.learn.trainer", str(plan.folder), *flags]
+    watch, state = TrainingWatch(plan.folder), _initial_state(plan)
+    logs = plan.folder / "logs"
+    logs.mkdir(parents=True, exist_ok=True)
+    nodes: list[Node] = []
+    with Interrupts(on_second_signal=lambda: kill_all(nodes)) as interrupts:
         try:
-            graph.add("trainer", trainer_command(plan, "--no-stream"))
-            while graph.wait(_POLL):
-                graph.check_and_restart()
+            nodes.append(Node("trainer", command, logs / "trainer.log"))
+            while not nodes[0].wait(_POLL):
                 display.show(watch.update(state))
                 interrupts.raise_if_requested()
         finally:
-            graph.stop()
-    graph.check_and_restart()
+            stop_all(nodes)
+    nodes[0].raise_if_failed()

@@ -1,0 +1,191 @@
+"""graph.sh, with programs that do as they are told."""
+
+import os
+import signal
+import subprocess
+import time
+
+import pytest
+from rtg import paths
+
+CONFIG = "search:\n  workers_: 9\nrun:\n  workers: 2  # reverse workers\n  record: false  # none\n"
+# By name: what a program does. The trainer and the recorder are modules of "python".
+PATIENT = "trap 'exit 143' TERM; while :; do sleep 0.05; done"
+DONE = 'echo "{}" > "$3/generation.json"'
+PROGRAMS = {
+    "rtg_forward_sim_server": PATIENT,
+    "rtg_reverse_worker": PATIENT,
+    "rtg_beam_coordinator": DONE,
+    "python": 'echo "$@"',
+}
+
+
+class Graph:
+    def __init__(self, folder):
+        self.run_folder = folder / "a run"
+        self.run_folder.mkdir()
+        (self.run_folder / "config.yaml").write_text(CONFIG)
+        self.bin = folder / "bin"
+        self.bin.mkdir()
+        for name, script in PROGRAMS.items():
+            self.let(name, script)
+
+    def let(self, name, script):
+        (self.bin / name).write_text(f"#!/usr/bin/env bash\n{script}\n")
+        (self.bin / name).chmod(0o755)
+
+    def start(self, *words):
+        return subprocess.Popen(
+            [paths.ROOT / "graph.sh", self.run_folder, *words],
+            env={**os.environ, "RTG_NODES": self.bin, "RTG_PYTHON": self.bin / "python"},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def run(self, *words):
+        process = self.start(*words)
+        out, _ = process.communicate(timeout=120.0)
+        return process.returncode, out
+
+    def log(self, name):
+        return (self.run_folder / "logs" / f"{name}.log").read_text()
+
+    def programs(self):
+        """Command lines of the programs that run."""
+        listed = subprocess.run(["pgrep", "-a", "-f", self.bin], stdout=subprocess.PIPE, text=True)
+        return listed.stdout.splitlines()
+
+
+@pytest.fixture
+def graph(tmp_path):
+    graph = Graph(tmp_path)
+    yield graph
+    subprocess.run(["pkill", "-KILL", "-f", graph.bin])
+
+
+def wait_for(condition):
+    deadline = time.monotonic() + 120.0
+    while not condition():
+        assert time.monotonic() < deadline, "never came true"
+        time.sleep(0.02)
+
+
+def test_all_programs_run_with_their_words_and_end_with_the_last_needed_one(graph):
+    graph.let("rtg_reverse_worker", f'echo "$@"; {PATIENT}')
+    assert graph.run("trainer", "--resume") == (0, "")
+    folder, config = graph.run_folder, graph.run_folder / "config.yaml"
+    assert graph.log("reverse_worker_0") == f"{config} a run 0\n"
+    assert graph.log("reverse_worker_1") == f"{config} a run 1\n"
+    words = f"-m rtg.learn.trainer {folder} --run-name a run --resume\n"
+    assert graph.log("trainer") == words
+    logs = {path.stem for path in (folder / "logs").iterdir()}
+    assert logs == {
+        "forward_sim_server",
+        "reverse_worker_0",
+        "reverse_worker_1",
+        "beam_coordinator",
+        "trainer",
+    }
+    assert graph.programs() == []
+
+
+def test_the_recorder_and_the_logger_run_if_asked(graph):
+    (graph.run_folder / "config.yaml").write_text(CONFIG.replace("record: false", "record: true"))
+    assert graph.run("recorder")[0] == 0
+    config = graph.run_folder / "config.yaml"
+    transitions = graph.run_folder / "transitions.npz"
+    assert graph.log("recorder") == f"-m rtg.bus.record {config} a run {transitions}\n"
+    assert graph.log("lcm_logger").startswith(f"-m rtg.bus.lcm_tools {config} ")
+
+
+def test_a_worker_that_dies_is_started_again(graph):
+    once = f'if mkdir "$(dirname "$1")/died-$3" 2>&-; then kill -KILL $$; fi; {PATIENT}'
+    graph.let("rtg_reverse_worker", once)
+    graph.let("rtg_beam_coordinator", f"sleep 2; {DONE}")
+    status, out = graph.run()
+    assert status == 0
+    assert sorted(out.splitlines()) == [
+        f"reverse_worker_{k} was killed by SIGKILL, started again" for k in (0, 1)
+    ]
+
+
+def test_a_worker_that_says_good_bye_is_let_go(graph):
+    graph.let("rtg_reverse_worker", "exit 0")
+    graph.let("rtg_beam_coordinator", f"sleep 1; {DONE}")
+    assert graph.run() == (0, "")
+
+
+def test_a_worker_that_cannot_even_start_ends_the_run(graph):
+    graph.let("rtg_reverse_worker", "echo no such library; exit 3")
+    graph.let("rtg_beam_coordinator", PATIENT)
+    status, out = graph.run()
+    assert status == 3
+    assert out.count("started again") >= 9
+    assert out.endswith("no such library\n")
+    assert graph.programs() == []
+
+
+def test_bad_input_of_a_worker_ends_the_run_at_once(graph):
+    graph.let("rtg_reverse_worker", "echo config.yaml:3: wrong; exit 2")
+    graph.let("rtg_beam_coordinator", PATIENT)
+    status, out = graph.run()
+    assert status == 2
+    assert "started again" not in out
+    assert out.endswith("config.yaml:3: wrong\n")
+
+
+@pytest.mark.parametrize("name", ["rtg_beam_coordinator", "python"])
+def test_a_failure_of_coordinator_or_trainer_ends_the_run_with_its_last_words(graph, name):
+    graph.let("rtg_beam_coordinator", PATIENT)
+    graph.let("python", PATIENT)
+    graph.let(name, "echo out of memory; exit 3")
+    status, out = graph.run()
+    assert status == 3
+    assert "ended with exit status 3; the end of " in out and out.endswith("out of memory\n")
+    assert graph.programs() == []
+
+
+def test_a_coordinator_that_gave_units_up_lets_the_trainer_finish(graph):
+    graph.let("rtg_beam_coordinator", f"{DONE}; exit 1")
+    graph.let("python", "sleep 1; echo learned")
+    assert graph.run() == (0, "")
+    assert graph.log("trainer") == "learned\n"
+
+
+def test_a_coordinator_that_waits_in_vain_is_not_waited_for(graph):
+    graph.let("rtg_beam_coordinator", f"{DONE}; {PATIENT}")
+    assert graph.run() == (0, "")
+    assert graph.programs() == []
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_ends_all_programs_in_order(graph, number, status):
+    orderly = "trap 'echo good-bye; exit 143' TERM; echo here; while :; do sleep 0.05; done"
+    graph.let("rtg_beam_coordinator", PATIENT)
+    graph.let("python", orderly)
+    process = graph.start()
+    log = graph.run_folder / "logs" / "trainer.log"
+    wait_for(lambda: log.exists() and log.read_text() == "here\n")
+    process.send_signal(number)
+    assert process.wait(120.0) == status
+    process.stdout.close()
+    assert log.read_text() == "here\ngood-bye\n"  # told once: a second signal would end it at once
+    assert graph.programs() == []
+
+
+def test_no_program_outlives_the_script(graph):
+    for name in PROGRAMS:
+        graph.let(name, "trap '' TERM INT; while :; do sleep 0.05; done")
+    process = graph.start()
+    wait_for(lambda: len(graph.programs()) >= 5)
+    process.kill()
+    process.wait()
+    process.stdout.close()
+    wait_for(lambda: graph.programs() == [])
+
+
+def test_a_consumer_that_does_not_exist_is_refused(graph):
+    status, out = graph.run("trainr")
+    assert status == 2
+    assert out == "graph.sh: no consumer 'trainr'; legal: trainer, recorder\n"
