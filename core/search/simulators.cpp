@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "core/forward/box2d_simulator.hpp"
+#include "core/forward/make_simulator.hpp"
 #include "core/reverse/naive_reverse.hpp"
 #include "core/reverse/reverse_simulator.hpp"
 #include "core/search/batches_on_threads.hpp"
@@ -25,11 +25,12 @@ SolveBatch reverse_solver(const tasks::Task& task, const PhysicsConfig& physics,
   };
 }
 
-ReplayOne forward_replay(const tasks::Task& task, const PhysicsConfig& physics) {
-  return [box2d = std::make_shared<const forward::Box2dSimulator>(task.scene, task.push, physics)](
+ReplayOne forward_replay(const tasks::Task& task, const PhysicsConfig& physics,
+                         const forward::ForwardConfig& forward) {
+  return [simulator = std::shared_ptr(make_simulator(forward, task.scene, task.push, physics))](
              const ReplayJob& job) {
-    forward::PushOutcome outcome =
-        job.action == kSettle ? box2d->settle(job.start) : box2d->push(job.start, job.action);
+    forward::PushOutcome outcome = job.action == kSettle ? simulator->settle(job.start)
+                                                         : simulator->push(job.start, job.action);
     return ReplayResult{std::move(outcome.end), outcome.ok, 0.0};
   };
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/forward/forward_config.hpp"
 #include "core/reverse/problem/reverse_config.hpp"
 #include "core/search/seams.hpp"
 #include "core/search/search_config.hpp"
@@ -13,8 +14,9 @@ namespace rtg::search {
 SolveBatch reverse_solver(const tasks::Task& task, const PhysicsConfig& physics,
                           const reverse::ReverseConfig& reverse, Generator generator);
 
-/// Returns the simulator of the true dynamics, Box2D. It also answers jobs with action kSettle.
-ReplayOne forward_replay(const tasks::Task& task, const PhysicsConfig& physics);
+/// Returns the simulator of the true dynamics. It also answers jobs with action kSettle.
+ReplayOne forward_replay(const tasks::Task& task, const PhysicsConfig& physics,
+                         const forward::ForwardConfig& forward = {});
 
 /// Returns seams whose `solve` and `replay` use `threads` threads of this process. The caller sets
 /// `store`, `progress` and `cancelled`.

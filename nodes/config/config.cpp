@@ -24,7 +24,8 @@ namespace {
 
 using Kind = ConfigNode::Kind;
 
-const std::vector<std::string> kSections{"task", "physics", "reverse", "search", "train", "run"};
+const std::vector<std::string> kSections{"task",   "physics", "forward", "reverse",
+                                         "search", "train",   "run"};
 const std::string kTaskLegal = "a mapping, or the path of a YAML file with one";
 
 std::string read_text(const std::filesystem::path& file, const std::string& origin) {
@@ -182,6 +183,7 @@ ConfigNode tree_of(const Config& config) {
   ConfigNode root = map_node();
   root.entries.push_back({"task", "", task_node(config.task)});
   root.entries.push_back({"physics", "", fields_of(config.physics)});
+  root.entries.push_back({"forward", "", fields_of(config.forward)});
   root.entries.push_back({"reverse", "", fields_of(config.reverse)});
   root.entries.push_back({"search", "", fields_of(config.search)});
   root.entries.push_back({"train", "", fields_of(config.train)});
@@ -207,6 +209,7 @@ Config read_config(const ConfigNode& root) {
   Config config;
   config.task = read_task(reader.required("task", kTaskLegal).value);
   read_section(root, "physics", config.physics);
+  read_section(root, "forward", config.forward);
   read_preset_section(root, "reverse", reverse::reverse_preset, config.reverse);
   read_section(root, "search", config.search);
   read_preset_section(root, "train", train_preset, config.train);

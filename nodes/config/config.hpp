@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "core/forward/forward_config.hpp"
 #include "core/reverse/problem/reverse_config.hpp"
 #include "core/search/search_config.hpp"
 #include "core/tasks/task.hpp"
@@ -19,6 +20,7 @@ namespace rtg::config {
 struct Config {
   tasks::Task task;
   PhysicsConfig physics;
+  forward::ForwardConfig forward;
   reverse::ReverseConfig reverse;
   search::SearchConfig search;
   TrainConfig train;

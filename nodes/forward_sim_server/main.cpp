@@ -1,6 +1,6 @@
 // rtg_forward_sim_server CONFIG.yaml RUN
 //
-// Simulates the pushes of replay jobs in Box2D (the true dynamics) for the run named RUN, until the
+// Simulates the pushes of replay jobs (the true dynamics) for the run named RUN, until the
 // coordinator leaves. CONFIG.yaml is the resolved configuration of the run. The server uses as many
 // threads as the run has reverse workers, because these are idle during replays.
 
@@ -15,7 +15,7 @@ namespace {
 
 int run(const program::Words& words) {
   const config::Config config = config::load_config(words[0]);
-  const search::ReplayOne replay = search::forward_replay(config.task, config.physics);
+  const search::ReplayOne replay = search::forward_replay(config.task, config.physics, config.forward);
   bus::Bus bus(config.run.bus, words[1]);
   jobs::WorkerNode<jobs::ReplayService> node(
       bus, {program::shape_of(config.task), config_hash(config), 0, config.run.workers},

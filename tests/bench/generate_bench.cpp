@@ -63,7 +63,7 @@ void run(const Options& options) {
   const config::Config config = config::load_config(options.file, options.overrides);
   search::GenerationSeams seams = search::in_process_seams(
       reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
-      search::forward_replay(config.task, config.physics), options.threads);
+      search::forward_replay(config.task, config.physics, config.forward), options.threads);
   seams.store = [](std::span<const search::Transition>) {};
   seams.progress = print_progress;
   search::GenerationReport report = generate(config.task, config.search, options.seed, seams);

@@ -35,7 +35,7 @@ def test_the_stub_lists_what_the_module_has() -> None:
 
 def test_sections_of_the_configuration_have_the_values_of_its_text() -> None:
     values = json.loads(CONFIG.json)
-    for name in ("physics", "reverse", "search", "train", "run"):
+    for name in ("physics", "forward", "reverse", "search", "train", "run"):
         section = getattr(CONFIG, name)
         found = {key: getattr(section, key) for key in dir(section) if not key.startswith("_")}
         assert found == values[name] and len(found) > 5

@@ -29,6 +29,7 @@ void bind_config(nb::module_& module) {
   module.attr("METHODS") = names_of(config::kMethods);
   nb::exception<config::ConfigError>(module, "ConfigError", PyExc_ValueError);
   bind_fields<PhysicsConfig>(module, "PhysicsConfig");
+  bind_fields<forward::ForwardConfig>(module, "ForwardConfig");
   bind_fields<reverse::ReverseConfig>(module, "ReverseConfig");
   bind_fields<search::SearchConfig>(module, "SearchConfig");
   bind_fields<config::TrainConfig>(module, "TrainConfig");
@@ -39,6 +40,7 @@ void bind_config(nb::module_& module) {
                   nb::arg("overrides") = Overrides{})
       .def_ro("task", &config::Config::task)
       .def_ro("physics", &config::Config::physics)
+      .def_ro("forward", &config::Config::forward)
       .def_ro("reverse", &config::Config::reverse)
       .def_ro("search", &config::Config::search)
       .def_ro("train", &config::Config::train)

@@ -57,7 +57,7 @@ std::string generate_in_process(const config::Config& config, const nb::object& 
   const nb::gil_scoped_release release;
   search::GenerationSeams seams = search::in_process_seams(
       reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
-      search::forward_replay(config.task, config.physics), config.run.workers);
+      search::forward_replay(config.task, config.physics, config.forward), config.run.workers);
   seams.store = [&](std::span<const search::Transition> rows) { hand_over(store, rows); };
   seams.progress = [&](const search::Progress& p) { report_progress(progress, p); };
   const auto seed = static_cast<std::uint64_t>(config.run.seed);
@@ -78,7 +78,8 @@ std::pair<nb::ndarray<nb::numpy, double>, long> plan(const config::Config& confi
   {
     const nb::gil_scoped_release release;
     const search::ReplayBatch replay = counted(
-        search::replay_on_threads(search::forward_replay(task, config.physics), config.run.workers),
+        search::replay_on_threads(search::forward_replay(task, config.physics, config.forward),
+                                  config.run.workers),
         stats);
     steps = plan_forward(task, config.search, from, replay);
   }

@@ -1,6 +1,6 @@
 #include <nanobind/stl/pair.h>
 
-#include "core/forward/box2d_simulator.hpp"
+#include "core/forward/make_simulator.hpp"
 #include "nodes/config/config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
@@ -8,16 +8,17 @@
 namespace rtg::bindings {
 namespace {
 
-/// Box2D simulator of one task. Box2D defines the true dynamics.
+/// The simulator of one task that defines its true dynamics.
 struct TaskSimulator {
   std::size_t bodies;
   int headings;
-  forward::Box2dSimulator box2d;
+  std::unique_ptr<const forward::Simulator> pushes;
 
   explicit TaskSimulator(const config::Config& config)
       : bodies(config.task.scene.size()),
         headings(config.task.push.headings),
-        box2d(config.task.scene, config.task.push, config.physics) {}
+        pushes(
+            make_simulator(config.forward, config.task.scene, config.task.push, config.physics)) {}
 };
 
 void check_actions(const TaskSimulator& simulator, const StateArray& states,
@@ -45,7 +46,7 @@ std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, bool>> push(
     const nb::gil_scoped_release release;
     for (std::size_t row = 0; row < count; ++row) {
       const int action = static_cast<int>(actions.data()[row]);
-      const forward::PushOutcome outcome = simulator.box2d.push(state_at(states, row), action);
+      const forward::PushOutcome outcome = simulator.pushes->push(state_at(states, row), action);
       write_state(outcome.end, next.data.get() + row * width);
       ok.data[row] = outcome.ok;
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/forward/box2d_simulator.hpp"
+#include "core/forward/newton_simulator.hpp"
 #include "core/reverse/naive_reverse.hpp"
 #include "core/search/batches_on_threads.hpp"
 #include "tests/support/gathering.hpp"
@@ -64,6 +65,22 @@ TEST(Simulators, ReplayIsBox2dsPushAndItsSettling) {
   EXPECT_NE(replay({close, kSettle}).end, replay({close, 12}).end);
   EXPECT_TRUE(replay({close, kSettle}).ok);
   EXPECT_FALSE(replay({{}, kSettle}).ok);
+}
+
+// After the push the box touches the robot; the two models differ in the gap that is left.
+TEST(Simulators, ReplayIsThePushOfTheEngineAskedFor) {
+  const tasks::Task task = gathering();
+  const forward::NewtonSimulator newton(task.scene, task.push, {});
+  const ReplayOne replay = forward_replay(task, {}, {forward::Engine::kNewton});
+  Poses start = task.start;
+  start[0] = {-3.0, -1.0, 0.0};
+  constexpr int kUp = 12;
+  EXPECT_EQ(replay({start, kUp}).end, newton.push(start, kUp).end);
+  EXPECT_EQ(replay({start, kSettle}).end, newton.settle(start).end);
+  const Poses other = forward_replay(task, {})({start, kUp}).end;
+  ASSERT_GT(other[1].y, start[1].y + 1.0);
+  EXPECT_NE(replay({start, kUp}).end, other);
+  EXPECT_NEAR(replay({start, kUp}).end[1].y, other[1].y, 0.05);
 }
 
 TEST(Simulators, NaiveGeneratorIsTheNaiveReverse) {

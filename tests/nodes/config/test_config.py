@@ -216,7 +216,7 @@ def test_sorting_is_laid_out_in_two_columns(name: str, bodies: dict[str, object]
 
 def test_json_holds_the_values_with_their_types(file: Path) -> None:
     config = json.loads(_core.Config.from_file(file, ["run.workers=3", "search.breadth=7"]).json)
-    assert list(config) == ["task", "physics", "reverse", "search", "train", "run"]
+    assert list(config) == ["task", "physics", "forward", "reverse", "search", "train", "run"]
     assert config["run"]["workers"] == 3
     assert config["run"]["in_process"] is False
     assert config["run"]["bus"] == "udpm://239.255.76.67:7667?ttl=0"

@@ -30,6 +30,20 @@ def test_transitions_are_true_and_as_many_as_asked() -> None:
     assert lines[-1]["transitions"] == lines[-1]["target"] == 2000
 
 
+@pytest.mark.parametrize("engine", ["box2d", "newton"])
+def test_the_engine_asked_for_is_that_of_replays_and_environments(engine: str) -> None:
+    config = _core.Config.from_file(FILE, [f"forward.engine={engine}", "search.transitions=300"])
+    other = _core.Config.from_file(FILE, ["forward.engine=newton"] if engine == "box2d" else [])
+    batches: list[tuple] = []
+    _core.generate(config, lambda *columns: batches.append(columns), lambda progress: None)
+    poses, action, after = (np.concatenate(part) for part in list(zip(*batches, strict=True))[:3])
+    replayed, ok = _core.Simulator(config).push(poses, action.astype(np.int64))
+    assert ok.all()
+    np.testing.assert_array_equal(replayed, after)
+    elsewhere, _ = _core.Simulator(other).push(poses, action.astype(np.int64))
+    assert (elsewhere != after).any()
+
+
 def test_the_report_of_the_search_itself_has_every_figure_of_the_summary(tmp_path) -> None:
     """So a run that is stopped between the last transition and its end lacks none of them."""
     _, _, report = generated()

@@ -86,6 +86,22 @@ def test_a_search_that_finds_less_than_it_should_is_a_defect(plan):
     assert defect.startswith("the search (rrbs) found 0 transitions of the 1,021 asked for and ")
 
 
+@pytest.mark.parametrize(
+    ("generator", "figures", "found"),
+    [
+        ("rrbs", {"pushing_converged": 0, "contact_share": 0.1}, False),
+        ("rrbs", {"pushing_converged": 1, "contact_share": 0.1}, True),
+        ("naive", {"pushing_converged": 0, "contact_share": 0.0}, False),
+        ("naive", {"pushing_converged": 0, "contact_share": 0.1}, True),
+    ],
+)
+def test_a_search_that_moves_no_object_is_a_defect(plan, generator, figures, found):
+    plan.config.search.generator = generator
+    plan.report_file.write_text(json.dumps({"transitions": 7, **figures}))
+    defect = f"the search ({generator}) found no step that moves an object, see generation.json"
+    assert graph_run.generation_defects(plan) == ([] if found else [defect])
+
+
 def test_a_resumed_run_still_tells_what_its_generation_gave_up(plan, monkeypatch):
     report = {**REPORT, "transitions": 2000, "units_given_up": 2}
     plan.report_file.write_text(json.dumps(report))

@@ -37,6 +37,7 @@ def made(tmp_path):
     [
         ("task", "horizon", 7),
         ("physics", "inertia", True),
+        ("forward", "engine", "newton"),
         ("reverse", "softenings", 99),
         ("search", "generator", "rrbs"),
         ("search", "transitions", 7),

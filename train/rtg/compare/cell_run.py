@@ -193,7 +193,7 @@ def _check_same(folder: Path, asked: Values) -> None:
 def _check_comparable(folder: Path, config: _core.Config) -> None:
     """Raises UserError unless tables can compare all runs of the task with the run in `folder`.
 
-    They must agree with `config` in the values of _compared(): task, physics, budget and
+    They must agree with `config` in the values of _compared(): task, physics, forward, budget and
     evaluation, swept keys excluded. The number of transitions must agree only among runs that
     generate transitions. `config`: the configuration of the run in `folder`.
     """
@@ -228,6 +228,7 @@ def _compared(config: _core.Config, swept: set[str]) -> Values:
     keys = {
         "task": tuple(values["task"]),
         "physics": tuple(values["physics"]),
+        "forward": tuple(values["forward"]),
         "search": ("transitions",),
         "train": _SHARED_KEYS,
     }

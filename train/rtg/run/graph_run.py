@@ -22,11 +22,14 @@ _RESTARTED = ", started again"  # the end of the lines in which graph.sh says so
 def generation_defects(plan: RunPlan) -> list[str]:
     """Describes the defects of the finished generation; [] without defects or generation."""
     report = run_folder.read_json(plan.report_file)
-    wanted = plan.config.search.transitions
+    what, wanted = plan.config.search.generator, plan.config.search.transitions
     given_up, found = report.get("units_given_up", 0), report.get("transitions", wanted)
     defects = [f"the coordinator gave up {given_up} units of work"] if given_up else []
+    if found and report.get("pushing_converged" if what == "rrbs" else "contact_share") == 0:
+        defects.append(
+            f"the search ({what}) found no step that moves an object, see generation.json"
+        )
     if found < wanted:
-        what = plan.config.search.generator
         defects.append(
             f"the search ({what}) found {found:,} transitions of the {wanted:,} asked for and then "
             "nothing more, see generation.json; a wider one may find more (search.breadth, "

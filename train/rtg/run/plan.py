@@ -95,7 +95,7 @@ def _fixed_values(config: _core.Config, has_checkpoint: bool) -> dict[str, Any]:
     """
     sections = effective_config.values(config)
     found: dict[str, Any] = {"run.seed": config.run.seed}
-    for section in ("task", "physics", "reverse", "search"):
+    for section in ("task", "physics", "forward", "reverse", "search"):
         found.update({f"{section}.{name}": value for name, value in sections[section].items()})
     if has_checkpoint:
         found["run.method"] = config.run.method

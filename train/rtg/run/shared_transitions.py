@@ -23,7 +23,7 @@ def generation_key(config: _core.Config) -> str | None:
     if not config.train.offline:
         return None
     values = effective_config.values(config)
-    parts = [values[section] for section in ("task", "physics", "reverse", "search")]
+    parts = [values[section] for section in ("task", "physics", "forward", "reverse", "search")]
     return json.dumps([*parts, config.run.seed])
 
 

@@ -1,0 +1,16 @@
+#include "core/forward/make_simulator.hpp"
+
+#include "core/forward/box2d_simulator.hpp"
+#include "core/forward/newton_simulator.hpp"
+
+namespace rtg::forward {
+
+std::unique_ptr<const Simulator> make_simulator(const ForwardConfig& config, const Scene& scene,
+                                                const PushConfig& push,
+                                                const PhysicsConfig& physics) {
+  if (config.engine == Engine::kNewton)
+    return std::make_unique<NewtonSimulator>(scene, push, physics);
+  return std::make_unique<Box2dSimulator>(scene, push, physics);
+}
+
+}  // namespace rtg::forward

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <memory>
+
+#include "core/forward/forward_config.hpp"
+#include "core/forward/simulator.hpp"
+
+namespace rtg::forward {
+
+/// Returns the simulator of `scene` that `config` names. All shapes of `scene` must be legal
+/// (polygon_defect() is empty), and bodies[0], the robot, movable.
+std::unique_ptr<const Simulator> make_simulator(const ForwardConfig& config, const Scene& scene,
+                                                const PushConfig& push,
+                                                const PhysicsConfig& physics);
+
+}  // namespace rtg::forward
