@@ -29,6 +29,9 @@ struct Hinge {
 ///
 /// Vectors over q have the layout of p [3·movable]. A child's entries for x and y belong to no
 /// coordinate and are zero.
+///
+/// Departs from the paper: it does not say how it holds joints together. Here no term is added to
+/// Ψ, joints never open, and the Newton systems get smaller.
 template <class T>
 class Articulation {
  public:

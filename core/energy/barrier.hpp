@@ -13,8 +13,10 @@ namespace rtg::energy {
 ///
 /// b is C³ at ĝ. The contact force λ = -b'(g) satisfies the relaxed complementarity λ g = μ̃ w(g).
 ///
-/// Departs from the paper: its -μ̃ ln g has infinite range and moves bodies that nothing touches.
 /// `plain` selects the paper's barrier: w = 1.
+///
+/// Departs from the paper: its -μ̃ ln g has infinite range and moves bodies that nothing touches, by
+/// 0.01 to 0.05 m in each push of the preset `paper`.
 struct Barrier {
   double weight = 1.0;  // μ̃ [kg m²]
   double range = 1.0;   // ĝ [m]

@@ -14,6 +14,8 @@ namespace rtg::energy {
 /// - 2 ln 2/α for corners, which the smoothed distance cuts off;
 /// - 2 ln 2/α for acute tips. Two tips can overlap although no vertex is inside the other body. No
 ///   contact force then grows before the test fails, and solvers would get stuck.
+///
+/// Departs from the paper: it tests vertices alone (P_⊥). Two crossed bars pass that.
 template <class T>
 class SeparatingEdges {
  public:

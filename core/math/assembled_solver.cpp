@@ -1,8 +1,5 @@
 #include "core/math/assembled_solver.hpp"
 
-#include <algorithm>
-#include <cassert>
-
 namespace rtg {
 namespace {
 
@@ -14,8 +11,13 @@ void write(const BlockColumn<double>& from, double sign, VectorXd& to, Eigen::In
     to.segment<3>(at + static_cast<Eigen::Index>(3 * i)) = sign * from[i];
 }
 
-bool has_inertia(const StageSystem<double>& system) {
-  return std::ranges::any_of(system.stages, [](const auto& stage) { return !stage.G.empty(); });
+/// Returns whether any U_k has an entry other than zero.
+bool couples_three_poses(const StageSystem<double>& system) {
+  for (const auto& stage : system.stages)
+    for (int i = 0; i < system.M; ++i)
+      for (const int j : Bits(stage.U.pattern[i]))
+        if (!stage.U.at(i, j).isZero(0.0)) return true;
+  return false;
 }
 
 void read_column(const VectorXd& from, Eigen::Index at, BlockColumn<double>& to) {
@@ -29,21 +31,19 @@ Assembled::Assembled(const StageSystem<double>& system, bool fixed_end)
     : M_(system.M),
       n_(3 * system.M),
       h_(system.h),
-      per_block_(has_inertia(system) ? 2 : 1),
-      fixed_end_(fixed_end) {
-  assert(!(fixed_end && per_block_ == 2));
+      last_(fixed_end ? h_ - 1 : h_),
+      per_block_(couples_three_poses(system) ? 2 : 1) {
   set_sizes();
   for (int k = 0; k <= h_; ++k) add_stage(system.stages[k], k);
   for (MatrixXd& A : K_.A) A = MatrixXd(A.selfadjointView<Eigen::Lower>());
 }
 
 Assembled::RowPosition Assembled::pose(int level) const {
-  if (fixed_end_ || level == 0) return {level, 0};
-  return {(level - 1) / per_block_ + 1, (level - 1) % per_block_ * (2 * n_ + 3)};
+  return {level / per_block_, level % per_block_ * (2 * n_ + 3)};
 }
 
 Assembled::RowPosition Assembled::control(int step) const {
-  const RowPosition at = pose(fixed_end_ ? step - 1 : step);
+  const RowPosition at = pose(step - 1);
   return {at.block, at.row + n_};
 }
 
@@ -53,14 +53,15 @@ Assembled::RowPosition Assembled::multiplier(int step) const {
 }
 
 void Assembled::set_sizes() {
-  const int last = multiplier(h_).block;
-  for (int block = 0; block <= last; ++block) {
-    const int rows = block == 0 && !fixed_end_ ? n_
-                     : block == last           ? multiplier(h_).row + n_
-                                               : per_block_ * (2 * n_ + 3);
+  for (int k = 0; k <= last_; ++k) {
+    const int rows = k < h_ ? 2 * n_ + 3 : n_;
+    if (k % per_block_ == 0) r_.emplace_back();
+    r_.back() = VectorXd::Zero(r_.back().size() + rows);
+  }
+  for (std::size_t block = 0; block < r_.size(); ++block) {
+    const Eigen::Index rows = r_[block].size();
     K_.A.push_back(MatrixXd::Zero(rows, rows));
-    K_.B.push_back(block == 0 ? MatrixXd() : MatrixXd::Zero(rows, K_.A[block - 1].cols()));
-    r_.push_back(VectorXd::Zero(rows));
+    K_.B.push_back(block == 0 ? MatrixXd() : MatrixXd::Zero(rows, r_[block - 1].size()));
   }
 }
 
@@ -74,12 +75,10 @@ void Assembled::add_stage(const StageSystem<double>::Stage& stage, int k) {
   if (has_pose(k)) {
     add_symmetric(stage.E, y, pose(k));
     add(stage.N, pose(k), pose(k - 1));
+    if (per_block_ == 2 && k > 1) add(stage.U, pose(k), pose(k - 2));
   }
   add(stage.F, y, pose(k - 1));
-  if (k > 1) {
-    add(stage.U, pose(k), pose(k - 2));
-    add(stage.G, y, pose(k - 2));
-  }
+  if (k > 1) add(stage.G, y, pose(k - 2));
   for (int m = 0; m < 3; ++m) {
     const RowPosition own{c.block, c.row + m};
     entry(own, own) += stage.R[m];

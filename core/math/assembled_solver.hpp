@@ -8,20 +8,17 @@
 namespace rtg {
 
 /// A StageSystem assembled as K ζ = r, with K symmetric and block-tridiagonal. Block k pairs the
-/// poses after sub-step k with the control and the multipliers of the same sub-step ("centred
-/// pairing"):
+/// poses after sub-step k with the control and the multipliers of the next one:
 ///
-///   ζ_k = (Δp_k, Δc_k, Δy_k), k = 1 ... h;  ζ_0 = Δp_0.
+///   ζ_k = (Δp_k, Δc_{k+1}, Δy_{k+1}), k = 0 ... h-1;  ζ_h = Δp_h, if the final state is not fixed.
 ///
-/// If the final state is fixed (Δp_h = 0), block h would have no poses. Then the poses are paired
-/// with the next sub-step instead:
+/// The constraint of sub-step k + 1 joins p_{k+1}, p_k and, with inertia, p_{k-1}: it is paired
+/// with the middle one of its three poses, so that a block is coupled with its neighbours alone.
+/// Only second derivatives U of the Lagrangian (periodic turns, joints) couple p_{k+1} and p_{k-1}.
+/// Where there are any, a block holds two sub-steps: (ζ_0, ζ_1), (ζ_2, ζ_3), ...
 ///
-///   ζ_k = (Δp_k, Δc_{k+1}, Δy_{k+1}), k = 0 ... h-1.
-///
-/// Inertia couples three successive states. Then a block holds two sub-steps: the blocks are ζ_0,
-/// (ζ_1, ζ_2), (ζ_3, ζ_4), ... With inertia the final state must not be fixed.
-///
-/// Departs from the paper: its printed pairing gives a pentadiagonal matrix.
+/// Departs from the paper: A.3 pairs a constraint with the first of its three poses, so that with
+/// inertia the matrix is block-pentadiagonal, not tridiagonal.
 class Assembled {
  public:
   Assembled(const StageSystem<double>& system, bool fixed_end);
@@ -38,7 +35,7 @@ class Assembled {
   struct RowPosition {
     int block, row;
   };
-  bool has_pose(int level) const { return level < h_ || !fixed_end_; }
+  bool has_pose(int level) const { return level <= last_; }
   RowPosition pose(int level) const;
   RowPosition control(int step) const;
   RowPosition multiplier(int step) const;
@@ -49,8 +46,7 @@ class Assembled {
   void add_symmetric(const BlockMatrix<double>& M, const RowPosition& row,
                      const RowPosition& column);
 
-  int M_, n_, h_, per_block_;  // bodies, entries of Δp_k, sub-steps, sub-steps per block
-  bool fixed_end_;
+  int M_, n_, h_, last_, per_block_;  // bodies, entries of Δp_k, h, last k with Δp_k, ζ_k per block
   BlockTridiagonal K_;
   BlockVector r_;
 };

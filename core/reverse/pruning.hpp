@@ -16,6 +16,9 @@ Polygon swept(const Polygon& shape, double theta, const Vector2d& by);
 /// way back leaves the arena or passes through a body. A movable body with a joint may reach 0.75 m
 /// into the way, as it may have swung in behind the robot. The test is very cheap compared with a
 /// solve.
+///
+/// Departs from the paper: it solves for all headings. Candidates like these never converge, and
+/// each of them would take all iterations that a solve may take.
 bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job);
 
 /// Returns the indices of the bodies that can take part in the push: the robot first, movable
@@ -24,6 +27,9 @@ bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job
 ///   - The bodies within `range` [m] of the area that it sweeps in one stride back. An object also
 ///     gets a margin for turns, and a body with a joint one stride, because links swing.
 ///   - The bodies that joints connect with it.
+///
+/// Departs from the paper: it solves for all bodies. With the finite range of the barrier the
+/// others stay where they are, to the bit.
 std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, const ReverseJob& job,
                                  double range);
 

@@ -32,6 +32,9 @@ bool objects_differ(const VectorXd& p, const VectorXd& other) {
 ///   start_j = (robot of p_0, objects of p_k),  k = h·j/(n + 1),  j = 0 ... n = late_contacts
 ///
 /// With inertia, `late_contacts` must be 0.
+///
+/// Departs from the paper: a solve has one start there, that of the whole push. Of 300 true pushes
+/// 266 are found with that one alone, 291 with seven more.
 std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int late_contacts) {
   std::vector<VectorXd> out{p[0]};
   if (!objects_differ(p[0], p.back())) return out;

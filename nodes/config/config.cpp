@@ -144,8 +144,7 @@ void check_physics(const ConfigNode& root, const PhysicsConfig& physics) {
                     "less than " + number_text(physics.range));
 }
 
-/// Throws ConfigError if physics.inertia (dynamic mode) is true and the value of another field
-/// forbids it.
+/// Throws ConfigError if physics.inertia (dynamic mode) is true and there is too little damping.
 void check_inertia(const ConfigNode& root, const Config& config) {
   if (!config.physics.inertia) return;
   const ConfigEntry *flag = find(root, "physics", "inertia"),
@@ -154,11 +153,6 @@ void check_inertia(const ConfigNode& root, const Config& config) {
     throw ConfigError((damping ? damping : flag)->value.origin, "physics.damping",
                       number_text(config.physics.damping) + " with physics.inertia",
                       number_text(kLeastInertialDamping) + " or more");
-  if (config.reverse.terminal_weight == 0.0)
-    throw ConfigError(
-        flag->value.origin, "physics.inertia",
-        "true with a fixed final state (reverse.terminal_weight is 0)",
-        "false, or reverse.terminal_weight above 0 (reverse.preset paper sets it to 0)");
 }
 
 /// Throws ConfigError if a field `randomise` is true but task.randomisation is 0.

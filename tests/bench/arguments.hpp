@@ -24,7 +24,7 @@ bool read_number(std::string_view text, Number least, Number most, Number& out) 
   return true;
 }
 
-/// Visitor of a configuration that sets the number called `name`.
+/// Visitor of a configuration that sets the number, the flag or the choice called `name`.
 struct Setter {
   std::string_view name, value;
   bool done = false;
@@ -35,9 +35,18 @@ struct Setter {
   void integer(std::string_view key, int& field, int least, int most, const char*) {
     if (key == name) done = read_number(value, least, most, field);
   }
-  void flag(std::string_view, bool&, const char*) {}
+  void flag(std::string_view key, bool& field, const char*) {
+    if (key != name || (value != "true" && value != "false")) return;
+    field = value == "true";
+    done = true;
+  }
   template <class Enum, class Names>
-  void choice(std::string_view, Enum&, const Names&, const char*) {}
+  void choice(std::string_view key, Enum& field, const Names& names, const char*) {
+    const auto found = std::ranges::find(names, value);
+    if (key != name || key == "preset" || found == names.end()) return;
+    field = static_cast<Enum>(found - names.begin());
+    done = true;
+  }
 };
 
 /// The solver's settings.
@@ -46,7 +55,7 @@ struct SolverOptions {
   PhysicsConfig physics;
 };
 
-/// Applies `--preset default|paper` or `--set NAME NUMBER` at the beginning of `words`. NAME is one
+/// Applies `--preset default|paper` or `--set NAME VALUE` at the beginning of `words`. NAME is one
 /// of the sections reverse and physics. A preset stands above what was set before it. Returns how
 /// many words it took: 0 if they are neither or wrong.
 inline std::size_t apply(std::span<char* const> words, SolverOptions& options) {

@@ -40,7 +40,7 @@ class Row {
     }
     linearise();
   }
-  void linearise() { newton_.linearise(lanes_, x_, {T(1.0), T(1.0)}); }
+  void linearise() { newton_.linearise(lanes_, x_, {T(1.0), T(1.0), T(1.0)}); }
 
   const reverse::ProblemLanes<T>& problem() const { return lanes_; }
   const reverse::Trajectory<T>& x() const { return x_; }

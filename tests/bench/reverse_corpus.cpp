@@ -1,9 +1,9 @@
 // Solves the committed reverse problems on one core and prints what became of them:
 //
-//   reverse_corpus FOLDER [--preset default|paper] [--every N] [--failures] [--set NAME NUMBER]...
+//   reverse_corpus FOLDER [--preset default|paper] [--every N] [--failures] [--set NAME VALUE]...
 //
 // --preset: stands above the --set before it; --every N: only each N-th problem; --failures: lists
-// the unsolved ones, by cause; --set takes numbers of the sections reverse and physics. Exit status
+// the unsolved ones, by cause; --set takes keys of the sections reverse and physics. Exit status
 // 1 if a gate fails, 2 for bad input.
 
 #include <algorithm>

@@ -1,13 +1,13 @@
 // Reverses pushes that the forward simulator has made, on one core, and prints how many it finds:
 //
-//   true_pushes CONFIG.yaml... [--count N] [--preset default|paper] [--set NAME NUMBER]...
+//   true_pushes CONFIG.yaml... [--count N] [--preset default|paper] [--set NAME VALUE]...
 //
 // For each task it draws N (200) pushes of Box2D that move an object by half a metre or more. From
 // the end of each it solves for the push that led there. A start *drags* if an object moves from it
 // by 0.05 m or more, and replays if Box2D leads from it back to the end, to 0.1 m in the mean over
 // the bodies. Columns: pushes that have a start that drags; that also replays (found); whose start
 // of the whole push does (whole); how far this start moves an object, as a share of the true push
-// (way, median); iterations; CPU time of all per push found. --set takes numbers of the sections
+// (way, median); iterations; CPU time of all per push found. --set takes keys of the sections
 // reverse and physics. Exit status 1 if a gate of the preset default fails, 2 for bad input.
 
 #include <algorithm>

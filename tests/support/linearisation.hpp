@@ -19,6 +19,7 @@ struct Direction {
 struct Curvature {
   bool lagrangian = false;
   double proximal = 1.0;
+  bool start = lagrangian;
 };
 
 /// One candidate's NewtonSystem as a matrix.
@@ -31,7 +32,9 @@ class Linearisation {
         x_(loaded(problem, x)),
         newton_(problem_),
         violation_(reverse::violation(problem, x)) {
-    newton_.linearise(problem_, x_, {curvature.lagrangian ? 1.0 : 0.0, curvature.proximal});
+    newton_.linearise(
+        problem_, x_,
+        {curvature.lagrangian ? 1.0 : 0.0, curvature.proximal, curvature.start ? 1.0 : 0.0});
   }
 
   const reverse::ReverseProblem& problem() const { return one_; }

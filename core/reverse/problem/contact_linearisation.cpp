@@ -66,7 +66,7 @@ void ContactLinearisation<T>::add_start_barrier(const Contact& c) {
   const T stiffness = select(c.geometry.within, barrier.force_slope(c.g), T(0.0));
   own.gradient -= c.gap.gradient * pressure;
   own.Q -= (c.gap.gradient * stiffness) * c.gap.gradient.transpose();
-  own.Q -= c.gap.hessian * (curvature_.lagrangian * pressure);
+  own.Q -= c.gap.hessian * (curvature_.start * pressure);
 }
 
 /// Adds the normal force, -λ ∇g(p_k) in Φ_k.

@@ -15,6 +15,7 @@ template <class T>
 struct Curvature {
   T lagrangian;  // 1: Hessian of the Lagrangian; 0: of the objective alone
   T proximal;    // δ, weight on poses and controls; kForceProximal δ on forces
+  T start;       // of the barrier at the start: 1: its Hessian; 0: the convex part of it alone
 };
 
 /// The step of a normal force that was eliminated from the Newton system: Δλ = a + b·V Δp. V maps

@@ -10,7 +10,6 @@ ProblemLanes<T>::ProblemLanes(const ReverseProblem& like)
       config(like.config),
       end(static_cast<std::size_t>(like.end.size()), T(0.0)),
       direction(T(0.0), T(0.0)),
-      terminal_weight(like.config.terminal_weight),
       sub_steps(like.sub_steps),
       settling(like.settling) {}
 

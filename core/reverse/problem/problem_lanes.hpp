@@ -30,7 +30,6 @@ struct ProblemLanes {
   const ReverseConfig& config;
   std::vector<T> end;  // p̄ [3·bodies]
   Vec2<T> direction;
-  T terminal_weight;  // K
   int sub_steps, settling;
 };
 

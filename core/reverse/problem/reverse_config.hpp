@@ -20,12 +20,12 @@ struct ReverseConfig {
   int max_iterations = 200;
   double feasibility_tol = 1e-6;   // ‖C‖∞
   double stationarity_tol = 1e-4;  // ‖∇L‖∞
-  double robot_weight = 0.2;       // w₀ of eq. (6)
+  double robot_weight = 1.0;       // w₀ of eq. (6)
   double object_weight = 1.0;      // w_i, i > 0
   double control_weight = 1e-3;    // ε of eq. (6)
   double path_weight = 100.0;      // κ_x, action consistency; 0: the paper's objective
   double heading_weight = 100.0;   // κ_θ
-  double speed_weight = 0.2;       // χ, limits the speed of objects to about the robot's
+  double speed_weight = 0.5;       // χ, limits the speed of objects to about the robot's
   double terminal_weight = 300.0;  // K of the spring to the final state; 0: the state is fixed, but
                                    // then few rest states of Box2D have a predecessor
   double terminal_tolerance = 0.05;  // largest miss of the final state in a valid solution [m]
@@ -35,7 +35,6 @@ struct ReverseConfig {
   double robot_density = 1.0;        // density of the robot in the reverse problem / its true one
   bool periodic_turns = false;       // the paper's 1 - cos Δθ, in the reverse problem alone
   double proximal_start = 1.0;       // δ of the first iteration
-  int softenings = 2;                // how often the spring is softened, to leave poor minima
   int late_contacts = 7;             // further predecessors: the robot meets objects later
 
   template <class Visitor>
@@ -60,7 +59,6 @@ struct ReverseConfig {
     v.number("robot_density", robot_density, 0.01, 100.0, "in the reverse problem / its true one");
     v.flag("periodic_turns", periodic_turns, "1 - cos instead of the square of turns");
     v.number("proximal_start", proximal_start, 1e-4, 1e9, "regularisation of the first step");
-    v.integer("softenings", softenings, 0, 1000, "times the hold on the final state is softened");
     v.integer("late_contacts", late_contacts, 0, kMaxPredecessors - 1,
               "predecessors whose objects are met later");
   }
@@ -76,7 +74,6 @@ inline ReverseConfig reverse_preset(ReversePreset preset) {
   config.preset = ReversePreset::kPaper;
   config.kkt = KktMethod::kCyclicReduction;
   config.max_iterations = 1000;
-  config.robot_weight = 1.0;
   config.control_weight = 5.1;
   config.path_weight = config.heading_weight = 0.0;
   config.speed_weight = config.terminal_weight = 0.0;
@@ -85,7 +82,7 @@ inline ReverseConfig reverse_preset(ReversePreset preset) {
   config.torque_factor = 1.0;
   config.robot_density = 8.0;
   config.periodic_turns = true;
-  config.softenings = config.late_contacts = 0;
+  config.late_contacts = 0;
   return config;
 }
 

@@ -20,14 +20,8 @@ namespace rtg::reverse {
 /// p_{-1} = p_0. They also come to rest at its end, p_{h-1} = p_h, in `settling` sub-steps in which
 /// the robot is held.
 ///
-/// Departs from the paper: in four points, which the preset `paper` takes back.
-///
-///   - Action consistency (κ) makes the controls those of the discrete action. `paper`: κ = 0.
-///   - The speed penalty (χ) keeps objects from outrunning the push by much. `paper`: χ = 0.
-///   - The normal forces λ are unknowns (relaxed complementarity), so that the constraints are
-///     bilinear and contain no 1/g. `paper`: λ = μ̃ w/g, and w = 1 at any gap.
-///   - A stiff spring K holds the final state, so that every forward simulation is feasible.
-///     `paper`: the final state is fixed.
+/// The preset `paper` has κ = 0 (PathPenalty), χ = 0 (SpeedPenalty), λ = μ̃/g (NewtonSystem,
+/// Barrier) and p_h fixed (EndSpring).
 struct ReverseProblem {
   const energy::StepEnergy& energy;
   const ReverseConfig& config;

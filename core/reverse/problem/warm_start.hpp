@@ -22,6 +22,8 @@ class WarmStart {
   ///
   /// In a mirrored step, contacts drag the objects back against the push. Solving F(p_{k-1}) = p_k
   /// instead would end nearer to the final state, but in worse minima of the SQP.
+  ///
+  /// Departs from the paper: its SQP starts with everything at rest in the final state, A.2.
   Mask<T> find(const Mask<T>& wanted, Trajectory<T>& x);
 
  private:

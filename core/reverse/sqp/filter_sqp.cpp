@@ -64,22 +64,7 @@ bool FilterSqp<T>::refill() {
 template <class T>
 void FilterSqp<T>::begin_attempt(int l) {
   x_.copy_lane(l, start_, l);
-  begin_phase(l);
-}
-
-template <class T>
-void FilterSqp<T>::begin_phase(int l) {
-  set_lane(problem_.terminal_weight, l, lanes_[l].strategy.terminal_weight());
   set_lane(beginning_, l, true);
-}
-
-/// Carries out `order` in lane l. Returns whether the lane is to take a step from its present
-/// iterate.
-template <class T>
-bool FilterSqp<T>::carry_out(int l, SqpStrategy::Order order) {
-  if (order == SqpStrategy::Order::kBeginPhase) begin_phase(l);
-  if (order == SqpStrategy::Order::kEndAttempt) end_attempt(l);
-  return order == SqpStrategy::Order::kGoOn;
 }
 
 template <class T>
@@ -100,7 +85,7 @@ void FilterSqp<T>::end_attempt(int l) {
     own.job = -1;
 }
 
-/// Evaluates x_ in the lanes that begin an attempt or a phase, and stores the measures and gaps.
+/// Evaluates x_ in the lanes that begin an attempt, and stores the measures and gaps.
 template <class T>
 void FilterSqp<T>::evaluate_beginning() {
   for (std::vector<T>& level : trial_gaps_) std::ranges::fill(level, T(0.0));
@@ -131,12 +116,15 @@ void FilterSqp<T>::iterate() {
     busy_ += lanes_[l].job >= 0 ? 1 : 0;
   }
   lane_iterations_ += kWidth<T>;
-  newton_.linearise(problem_, x_, {lagrangian, proximal});
+  newton_.linearise(problem_, x_, {lagrangian, proximal, lagrangian});
   stationarity_ = newton_.stationarity();
   stepping_ = Mask<T>(false);
-  for (int l = 0; l < kWidth<T>; ++l)
-    if (lanes_[l].job >= 0)
-      set_lane(stepping_, l, carry_out(l, lanes_[l].strategy.judge(figures(l))));
+  for (int l = 0; l < kWidth<T>; ++l) {
+    if (lanes_[l].job < 0) continue;
+    const bool goes_on = lanes_[l].strategy.goes_on(figures(l));
+    set_lane(stepping_, l, goes_on);
+    if (!goes_on) end_attempt(l);
+  }
   if (!any(stepping_)) return;
   const Mask<T> regular = kkt_->solve(newton_.system(), step_);
   reject_ascent(regular && newton_.model_curvature(step_) > T(0.0));
@@ -155,7 +143,7 @@ void FilterSqp<T>::reject_ascent(const Mask<T>& descends) {
   for (int l = 0; l < kWidth<T>; ++l) {
     if (!lane(stepping_, l) || lane(descends, l)) continue;
     set_lane(stepping_, l, false);
-    carry_out(l, lanes_[l].strategy.reject_ascent());
+    if (!lanes_[l].strategy.reject_ascent()) end_attempt(l);
   }
 }
 
@@ -176,7 +164,7 @@ void FilterSqp<T>::line_search() {
     searching = searching && !accepted;
   }
   for (int l = 0; l < kWidth<T>; ++l)
-    if (lane(searching, l)) carry_out(l, lanes_[l].strategy.reject_line_search());
+    if (lane(searching, l) && !lanes_[l].strategy.reject_line_search()) end_attempt(l);
 }
 
 /// Returns the lanes of `legal` that accept the trial point with measures `then` and step length

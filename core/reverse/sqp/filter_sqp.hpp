@@ -16,6 +16,11 @@ namespace rtg::reverse {
 /// filter line search. Where the model is not convex along the step, it uses the Hessian of the
 /// objective instead. Each SIMD lane of T solves one candidate and then takes the next one from a
 /// queue. An SqpStrategy per lane controls the iterations.
+///
+/// Departs from the paper: its SQP has the Hessian of the objective, eq. (9), and an l1 merit
+/// function, eq. (11). In trials on ten scenes of three objects these converged in 3 to 4 within
+/// 300 iterations, with a filter instead of the merit function in 6, with the Hessian of the
+/// Lagrangian as well in 9. `MeritSqp` is the printed one.
 template <class T>
 class FilterSqp {
  public:
@@ -41,8 +46,6 @@ class FilterSqp {
 
   bool refill();
   void begin_attempt(int l);
-  void begin_phase(int l);
-  bool carry_out(int l, SqpStrategy::Order order);
   void end_attempt(int l);
   void evaluate_beginning();
   void adopt(const Mask<T>& where, const Measures<T>& found);
@@ -66,7 +69,7 @@ class FilterSqp {
   Measures<T> now_;  // of x_
   T stationarity_;   // ‖∇L‖∞ of x_
   std::vector<Lane> lanes_;
-  Mask<T> beginning_, stepping_;  // lanes that begin a phase; lanes that take a step
+  Mask<T> beginning_, stepping_;  // lanes that begin an attempt; lanes that take a step
   long busy_ = 0, lane_iterations_ = 0;
 };
 

@@ -96,13 +96,11 @@ TEST_P(KktMethods, SingularAndNonFiniteSystemsAreReported) {
   }
 }
 
-/// Newton systems of a solve: at the solution, disturbed, with the objective's Hessian and the
-/// exact one, final state
-/// held by a spring and fixed.
-std::vector<BlockTridiagonal> newton_systems() {
-  const testing::TouchingScene scene;
+/// Appends Newton systems of a solve: at the solution, disturbed, with the objective's Hessian and
+/// the exact one, final state held by a spring and fixed.
+void add_newton_systems(const testing::TouchingScene& scene,
+                        std::vector<BlockTridiagonal>& systems) {
   Rng rng(4);
-  std::vector<BlockTridiagonal> systems;
   for (const double terminal_weight : {300.0, 0.0}) {
     reverse::ReverseConfig config;
     config.terminal_weight = terminal_weight;
@@ -112,6 +110,12 @@ std::vector<BlockTridiagonal> newton_systems() {
          {testing::Curvature{false, 1.0}, testing::Curvature{true, 1e-2}})
       systems.push_back(testing::Linearisation(problem, x, curvature).matrix());
   }
+}
+
+std::vector<BlockTridiagonal> newton_systems() {
+  std::vector<BlockTridiagonal> systems;
+  add_newton_systems(testing::TouchingScene(), systems);
+  add_newton_systems(testing::CoastingScene(), systems);
   return systems;
 }
 

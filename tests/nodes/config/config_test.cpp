@@ -210,15 +210,11 @@ std::string refusal(const std::string& more, const std::vector<std::string>& ove
   return "none";
 }
 
-TEST(Config, DynamicModeNeedsDampingAndAFreeFinalState) {
+TEST(Config, DynamicModeNeedsDamping) {
   EXPECT_TRUE(parsed("physics: {inertia: true, damping: 0.05}\n").physics.inertia);
   EXPECT_TRUE(
       refusal("physics: {inertia: true, damping: 0.04}\n")
           .ends_with(": key 'physics.damping': 0.04 with physics.inertia; legal: 0.05 or more"));
-  EXPECT_EQ(refusal("", {"physics.inertia=true", "reverse.preset=paper"}),
-            "--set physics.inertia=true: key 'physics.inertia': true with a fixed final state "
-            "(reverse.terminal_weight is 0); legal: false, or reverse.terminal_weight above 0 "
-            "(reverse.preset paper sets it to 0)");
 }
 
 TEST(Config, AMethodGivesTheValuesThatAreNotGiven) {

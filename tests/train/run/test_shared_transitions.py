@@ -38,7 +38,7 @@ def made(tmp_path):
         ("task", "horizon", 7),
         ("physics", "inertia", True),
         ("forward", "engine", "newton"),
-        ("reverse", "softenings", 99),
+        ("reverse", "late_contacts", 0),
         ("search", "generator", "rrbs"),
         ("search", "transitions", 7),
         ("run", "seed", 7),
@@ -115,7 +115,7 @@ def test_what_another_program_made_stays_that_of_the_other(made, tmp_path):
 
 def test_a_version_without_one_of_the_settings_is_not_found(made, tmp_path):
     lines = (made / "config.yaml").read_text().splitlines(keepends=True)
-    kept = [line for line in lines if not line.startswith("  softenings:")]
+    kept = [line for line in lines if not line.startswith("  late_contacts:")]
     assert len(kept) == len(lines) - 1
     (made / "config.yaml").write_text("".join(kept))
     assert find(generation_key(CONFIG), tmp_path, "seed-1") is None

@@ -43,7 +43,7 @@ TEST(NewtonSystemLanes, LanesAgreeWithDouble) {
   Lanes lagrangian(0.0);
   for (int l = 1; l < kWidth<Lanes>; l += 2) set_lane(lagrangian, l, 1.0);
   NewtonSystem<Lanes> newton(in.lanes);
-  newton.linearise(in.lanes, in.x, {lagrangian, Lanes(0.3)});
+  newton.linearise(in.lanes, in.x, {lagrangian, Lanes(0.3), lagrangian});
   StageStep<Lanes> step(3, 10);
   Riccati<Lanes> riccati(3, 10);
   const Mask<Lanes> regular = riccati.solve(newton.system(), step);

@@ -78,12 +78,12 @@ TEST(ReverseConfig, EachFieldChangesTheSolutions) {
       {"max_iterations", 5},
       {"feasibility_tol", 1e-2},
       {"stationarity_tol", 1e-2},
-      {"robot_weight", 0.4},
+      {"robot_weight", 0.5},
       {"object_weight", 0.5},
       {"control_weight", 1e-2},
       {"path_weight", 50},
       {"heading_weight", 50},
-      {"speed_weight", 0.4},
+      {"speed_weight", 1.0},
       {"terminal_weight", 100},
       {"terminal_tolerance", 1e-6},
       {"plain_barrier", 0.02},
@@ -92,7 +92,6 @@ TEST(ReverseConfig, EachFieldChangesTheSolutions) {
       {"robot_density", 8},
       {"periodic_turns", 1},
       {"proximal_start", 10},
-      {"softenings", 0},
       {"late_contacts", 2},
   };
   testing::expect_each_field_matters(ReverseConfig{}, others, {}, solutions);

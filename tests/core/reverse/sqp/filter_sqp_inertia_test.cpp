@@ -93,6 +93,26 @@ TEST(FilterSqpInertia, EveryKktMethodGivesTheSameSolution) {
                            {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu});
 }
 
+// Their Hessian couples the poses of three sub-steps.
+TEST(FilterSqpInertia, EveryKktMethodGivesTheSameSolutionWithPeriodicTurns) {
+  AfterAPush at;
+  at.scene.physics.periodic_turns = true;
+  at.scene.update();
+  expect_the_same_solution(at.problem, at.config,
+                           {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu});
+}
+
+// The box has come to rest in the final state but for a hundredth of its speed.
+TEST(FilterSqpInertia, AFixedFinalStateIsReachedExactly) {
+  AfterAPush at;
+  at.config.terminal_weight = 0.0;
+  const SqpResult result = solved(at.problem);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_EQ(result.x.p.back(), at.problem.end);
+  EXPECT_LT(violation(at.problem, result.x).max(), 1e-9);
+  EXPECT_LT(result.x.p[0][0] - at.problem.end[0], -1.0);
+}
+
 TEST(FilterSqpInertia, PushesOfRandomScenesAreFoundBack) {
   PhysicsConfig physics;
   physics.inertia = true;

@@ -42,14 +42,15 @@ TEST(FilterSqp, ATouchedBoxIsDraggedTheWholeStrideBack) {
   problem.end = energy::stacked({{0, 0, 0}, {1.4087, 0, 0}, {40, 0, 0}});
   const SqpResult result = solved(problem);
   ASSERT_EQ(result.status, SolveStatus::kConverged);
-  EXPECT_NEAR(result.x.p[0][3] - problem.end[3], -2.0, 0.02);
+  EXPECT_NEAR(result.x.p[0][3] - problem.end[3], -2.0, 0.05);
   EXPECT_NEAR(result.x.p[0][0], -2.0, 0.02);
   EXPECT_LT(terminal_miss(problem, result.x), 0.01);
 }
 
 TEST(FilterSqp, ForwardOfReverseWithTheSolversControlsIsTheEnd) {
   const TouchingScene scene;
-  const ReverseConfig config;
+  ReverseConfig config;
+  config.feasibility_tol = 1e-9;
   const ReverseProblem problem = scene.problem(config);
   const SqpResult result = solved(problem);
   ASSERT_EQ(result.status, SolveStatus::kConverged);
@@ -66,7 +67,7 @@ TEST(FilterSqp, ForwardOfReverseIsTheGivenStateWhereItIsFixed) {
   config.feasibility_tol = 1e-9;
   Rng rng(5);
   int posed = 0, converged = 0, held = 0;
-  for (int trial = 0; trial < 12; ++trial) {
+  for (int trial = 0; trial < 24; ++trial) {
     TouchingScene scene;
     for (std::size_t i = 1; i < scene.poses.size(); ++i) {
       scene.poses[i].y += rng.uniform(-0.1, 0.1);

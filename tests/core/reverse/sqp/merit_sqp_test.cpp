@@ -93,7 +93,7 @@ std::vector<Iterate> iterates(PaperScene& scene, int count) {
 
 /// Largest multiplier that the Newton step at `x` leads to.
 double next_multiplier(const ReverseProblem& problem, const Iterate& x) {
-  const testing::Linearisation lin(problem, x, {false, 1e-6});
+  const testing::Linearisation lin(problem, x, {false, 1e-6, true});
   const auto kkt = make_kkt_solver(KktMethod::kUmfpack);
   EXPECT_TRUE(kkt->factorize(lin.matrix()));
   const testing::Direction d = lin.direction(kkt->solve(lin.right_hand_side()), true);
