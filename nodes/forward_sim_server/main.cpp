@@ -15,7 +15,8 @@ namespace {
 
 int run(const program::Words& words) {
   const config::Config config = config::load_config(words[0]);
-  const search::ReplayOne replay = search::forward_replay(config.task, config.physics, config.forward);
+  const search::ReplayOne replay =
+      search::forward_replay(config.task, config.physics, config.forward);
   bus::Bus bus(config.run.bus, words[1]);
   jobs::WorkerNode<jobs::ReplayService> node(
       bus, {program::shape_of(config.task), config_hash(config), 0, config.run.workers},

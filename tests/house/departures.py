@@ -1,4 +1,4 @@
-"""Departures from the paper: reads the marks in the comments of core/ and writes docs/departures.md.
+"""Departures from the paper: reads their marks in the comments of core/, writes docs/departures.md.
 
 A mark begins with "Departs from the paper:" and ends with the comment. Run as a program, it writes
 the page.
@@ -17,9 +17,10 @@ _MARK = "Departs from the paper: "
 _INTRODUCTION = """\
 # Departures from the paper
 
-Made by `python tests/house/departures.py` from the comments that begin with "Departs from the paper:".
-Figures of pushes found are those of `true_pushes` (100 pushes each of Gathering, Sorting and ArtManip that Box2D has
-made). What the preset `paper` does, and with which constants, is in [paper_mode.md](paper_mode.md).
+Made by `python tests/house/departures.py` from the comments that begin with "Departs from the
+paper:". Figures of pushes found are those of `true_pushes` (100 pushes each of Gathering, Sorting
+and ArtManip that Box2D has made). What the preset `paper` does, and with which constants, is in
+[paper_mode.md](paper_mode.md).
 """
 
 

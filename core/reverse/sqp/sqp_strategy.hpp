@@ -15,7 +15,8 @@ namespace rtg::reverse {
 /// final state, no attempt follows. The first such solution is the result, unless a later attempt
 /// converges.
 ///
-/// Departs from the paper: it solves once.
+/// Departs from the paper: it solves once. Of the problems of real searches in tests/bench the
+/// further attempts solve 29 of 2,164 more, and 13 of 774 with joints.
 class SqpStrategy {
  public:
   /// The figures of an iterate on which decisions depend.

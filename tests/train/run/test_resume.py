@@ -5,6 +5,7 @@ import re
 import pytest
 from rtg import cli, paths
 from rtg.bus import multicast
+from rtg.errors import UserError
 from rtg.files import run_folder
 from rtg.learn import settings
 from rtg.run import effective_config
@@ -132,3 +133,20 @@ def test_a_run_that_goes_on_without_lcm_says_what_it_leaves_out_and_can_be_resum
     plan = make_plan(parse(words))
     assert plan.in_process and "lcm.log is not recorded: there are no messages" in plan.notes
     assert make_plan(parse(["--resume", "--out", str(folder)])).in_process
+
+
+def test_a_recorded_run_may_have_settings_that_are_gone(folder):
+    file = folder / "config.yaml"
+    lines = file.read_text().splitlines()
+    lines.insert(lines.index("reverse:") + 1, "  softenings: 2  # of an earlier version")
+    file.write_text("\n".join(lines))
+    with pytest.raises(UserError, match="softenings"):
+        effective_config.load(file)
+    assert effective_config.load_recorded(file).yaml == effective_config.load(TINY).yaml
+
+
+def test_a_recorded_run_must_be_legal_otherwise(folder):
+    file = folder / "config.yaml"
+    file.write_text(file.read_text().replace("  breadth: 16", "  breadth: many"))
+    with pytest.raises(UserError, match="breadth"):
+        effective_config.load_recorded(file)

@@ -29,6 +29,7 @@ from rtg.compare.run_results import (
 from rtg.errors import UserError
 from rtg.files import run_folder
 from rtg.pictures import episode_pictures
+from rtg.run import effective_config
 from rtg.run.results import episode_title
 
 _TASK_PICTURES = ("costs_*.png", "curves_*.png", "sweep_*.png", "strip_*.png", "film_*.gif")
@@ -105,7 +106,7 @@ def _read_episode(run: RunResult) -> Episode | None:
     path, config = run.folder / "best_episode.npz", run.folder / "config.yaml"
     if not path.is_file():
         return None
-    task = _core.Config.from_file(config).task
+    task = effective_config.load_recorded(config).task
     try:
         with np.load(path) as file:
             poses, success = file["poses"].astype(float), bool(file["success"])

@@ -156,7 +156,7 @@ def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
     if summary:
         curve = _curve(run / "progress.csv", summary)
         made_with = read_json(run / versions.FILE)
-        train = effective_config.load(run / "config.yaml").train
+        train = effective_config.load_recorded(run / "config.yaml").train
         return RunResult(cell, run, "done", summary, made_with, curve, train)
     begun = "unfinished" if run.is_dir() else "not run"
     return RunResult(

@@ -101,24 +101,23 @@ class Node:
         return whole.decode(errors="replace").splitlines()
 
     def exit_text(self) -> str:
-        """Describes how the program ended, with the end of its log."""
-        status, words = self.exit_status(), self.log_tail()
-        how = f"ended with exit status {status}"
+        """Describes how the program ended."""
+        status = self.exit_status()
         if status is not None and status < 0:
-            how = f"was killed by {signal.Signals(-status).name}"
-        text = f"{self.name} {how}"
-        return f"{text}; the end of {self.log}:\n{words}" if words else text
+            return f"{self.name} was killed by {signal.Signals(-status).name}"
+        return f"{self.name} ended with exit status {status}"
 
     def raise_if_failed(self) -> None:
         """Raises RunError if the program has failed, or UserError if it reported bad input.
 
         Exit status 2 means bad input in all programs of RTG.
         """
-        status = self.exit_status()
-        if status == 2 and (words := self.log_tail(lines=1)):
-            raise UserError(words)
+        status, words = self.exit_status(), self.log_tail()
+        if status == 2 and words:
+            raise UserError(words.splitlines()[-1])
         if status:
-            raise RunError(self.exit_text())
+            end = f"; the end of {self.log}:\n{words}" if words else ""
+            raise RunError(self.exit_text() + end)
 
 
 def stop_all(nodes: Iterable[Node], grace: float = 4.0) -> None:

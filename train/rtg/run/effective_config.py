@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -45,6 +46,22 @@ def load_written(file: Path) -> _core.Config:
             "version (git_revision in versions.json), or another --out"
         )
     return config
+
+
+def load_recorded(file: Path) -> _core.Config:
+    """Loads `file`, a configuration that some version of RTG wrote, for a report on its run.
+
+    Leaves out settings that this version no longer has. Raises UserError for other defects.
+    """
+    lines = file.read_text().splitlines()
+    while True:
+        try:
+            return _core.Config.from_text("\n".join(lines), str(file))
+        except _core.ConfigError as error:
+            gone = re.match(re.escape(str(file)) + r":(\d+): key '[\w.]+': no such key", str(error))
+            if not gone or not lines[int(gone[1]) - 1]:
+                raise UserError(str(error)) from None
+            lines[int(gone[1]) - 1] = ""
 
 
 def _settings(text: str) -> list[tuple[str, str]]:
