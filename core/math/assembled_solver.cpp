@@ -1,5 +1,7 @@
 #include "core/math/assembled_solver.hpp"
 
+#include <algorithm>
+
 namespace rtg {
 namespace {
 
@@ -11,8 +13,12 @@ void write(const BlockColumn<double>& from, double sign, VectorXd& to, Eigen::In
     to.segment<3>(at + static_cast<Eigen::Index>(3 * i)) = sign * from[i];
 }
 
+bool has_inertia(const StageSystem<double>& system) {
+  return std::ranges::any_of(system.stages, [](const auto& stage) { return !stage.G.empty(); });
+}
+
 /// Returns whether any U_k has an entry other than zero.
-bool couples_three_poses(const StageSystem<double>& system) {
+bool has_second_derivatives(const StageSystem<double>& system) {
   for (const auto& stage : system.stages)
     for (int i = 0; i < system.M; ++i)
       for (const int j : Bits(stage.U.pattern[i]))
@@ -31,19 +37,22 @@ Assembled::Assembled(const StageSystem<double>& system, bool fixed_end)
     : M_(system.M),
       n_(3 * system.M),
       h_(system.h),
-      last_(fixed_end ? h_ - 1 : h_),
-      per_block_(couples_three_poses(system) ? 2 : 1) {
+      fixed_end_(fixed_end),
+      couples_three_poses_(has_second_derivatives(system)),
+      per_block_((fixed_end ? couples_three_poses_ : has_inertia(system)) ? 2 : 1) {
   set_sizes();
   for (int k = 0; k <= h_; ++k) add_stage(system.stages[k], k);
   for (MatrixXd& A : K_.A) A = MatrixXd(A.selfadjointView<Eigen::Lower>());
 }
 
 Assembled::RowPosition Assembled::pose(int level) const {
-  return {level / per_block_, level % per_block_ * (2 * n_ + 3)};
+  if (fixed_end_) return {level / per_block_, level % per_block_ * (2 * n_ + 3)};
+  if (level == 0) return {0, 0};
+  return {(level - 1) / per_block_ + 1, (level - 1) % per_block_ * (2 * n_ + 3)};
 }
 
 Assembled::RowPosition Assembled::control(int step) const {
-  const RowPosition at = pose(step - 1);
+  const RowPosition at = pose(fixed_end_ ? step - 1 : step);
   return {at.block, at.row + n_};
 }
 
@@ -52,11 +61,17 @@ Assembled::RowPosition Assembled::multiplier(int step) const {
   return {at.block, at.row + 3};
 }
 
+/// Gives the block of a variable room for its `rows` rows.
+void Assembled::reserve(const RowPosition& at, int rows) {
+  const auto block = static_cast<std::size_t>(at.block);
+  if (r_.size() <= block) r_.resize(block + 1);
+  if (r_[block].size() < at.row + rows) r_[block] = VectorXd::Zero(at.row + rows);
+}
+
 void Assembled::set_sizes() {
-  for (int k = 0; k <= last_; ++k) {
-    const int rows = k < h_ ? 2 * n_ + 3 : n_;
-    if (k % per_block_ == 0) r_.emplace_back();
-    r_.back() = VectorXd::Zero(r_.back().size() + rows);
+  for (int k = 0; k <= h_; ++k) {
+    if (has_pose(k)) reserve(pose(k), n_);
+    if (k > 0) reserve(multiplier(k), n_);
   }
   for (std::size_t block = 0; block < r_.size(); ++block) {
     const Eigen::Index rows = r_[block].size();
@@ -75,7 +90,7 @@ void Assembled::add_stage(const StageSystem<double>::Stage& stage, int k) {
   if (has_pose(k)) {
     add_symmetric(stage.E, y, pose(k));
     add(stage.N, pose(k), pose(k - 1));
-    if (per_block_ == 2 && k > 1) add(stage.U, pose(k), pose(k - 2));
+    if (couples_three_poses_ && k > 1) add(stage.U, pose(k), pose(k - 2));
   }
   add(stage.F, y, pose(k - 1));
   if (k > 1) add(stage.G, y, pose(k - 2));

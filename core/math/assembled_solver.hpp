@@ -8,14 +8,22 @@
 namespace rtg {
 
 /// A StageSystem assembled as K ζ = r, with K symmetric and block-tridiagonal. Block k pairs the
-/// poses after sub-step k with the control and the multipliers of the next one:
+/// poses after sub-step k with the control and the multipliers of the same sub-step ("centred
+/// pairing"):
 ///
-///   ζ_k = (Δp_k, Δc_{k+1}, Δy_{k+1}), k = 0 ... h-1;  ζ_h = Δp_h, if the final state is not fixed.
+///   ζ_k = (Δp_k, Δc_k, Δy_k), k = 1 ... h;  ζ_0 = Δp_0.
 ///
-/// The constraint of sub-step k + 1 joins p_{k+1}, p_k and, with inertia, p_{k-1}: it is paired
-/// with the middle one of its three poses, so that a block is coupled with its neighbours alone.
-/// Only second derivatives U of the Lagrangian (periodic turns, joints) couple p_{k+1} and p_{k-1}.
-/// Where there are any, a block holds two sub-steps: (ζ_0, ζ_1), (ζ_2, ζ_3), ...
+/// Inertia couples three successive states. Then a block holds two sub-steps: the blocks are ζ_0,
+/// (ζ_1, ζ_2), (ζ_3, ζ_4), ...
+///
+/// If the final state is fixed (Δp_h = 0), block h would have no poses. Then the poses are paired
+/// with the next sub-step instead, the constraint with the middle one of its three poses:
+///
+///   ζ_k = (Δp_k, Δc_{k+1}, Δy_{k+1}), k = 0 ... h-1.
+///
+/// A block is then coupled with its neighbours alone even with inertia. Only second derivatives U
+/// of the Lagrangian (periodic turns, joints) couple p_{k+1} and p_{k-1}: where there are any, a
+/// block holds two sub-steps, (ζ_0, ζ_1), (ζ_2, ζ_3), ...
 ///
 /// Departs from the paper: A.3 pairs a constraint with the first of its three poses, so that with
 /// inertia the matrix is block-pentadiagonal, not tridiagonal.
@@ -35,7 +43,7 @@ class Assembled {
   struct RowPosition {
     int block, row;
   };
-  bool has_pose(int level) const { return level <= last_; }
+  bool has_pose(int level) const { return level < h_ || !fixed_end_; }
   RowPosition pose(int level) const;
   RowPosition control(int step) const;
   RowPosition multiplier(int step) const;
@@ -46,7 +54,11 @@ class Assembled {
   void add_symmetric(const BlockMatrix<double>& M, const RowPosition& row,
                      const RowPosition& column);
 
-  int M_, n_, h_, last_, per_block_;  // bodies, entries of Δp_k, h, last k with Δp_k, ζ_k per block
+  void reserve(const RowPosition& at, int rows);
+
+  int M_, n_, h_;  // bodies, entries of Δp_k, sub-steps
+  bool fixed_end_, couples_three_poses_;
+  int per_block_;  // ζ_k per block
   BlockTridiagonal K_;
   BlockVector r_;
 };

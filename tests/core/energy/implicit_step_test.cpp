@@ -122,8 +122,8 @@ ResidualJacobians residual_jacobians(const reverse::ReverseProblem& problem,
                                      const reverse::Iterate& x) {
   const int n = problem.energy.dofs();
   const BlockTridiagonal K = testing::Linearisation(problem, x, {false, 0.0}).matrix();
-  const MatrixXd rows = K.A[0].bottomRows(n);
-  return {K.B[1].rightCols(n).transpose(), rows.leftCols(n), rows.middleCols(n, 3)};
+  const MatrixXd rows = K.A[1].bottomRows(n);
+  return {rows.leftCols(n), K.B[1].bottomRows(n), rows.middleCols(n, 3)};
 }
 
 // ∂p₊/∂p = -Φ₊⁻¹ Φ_p and ∂p₊/∂c = -Φ₊⁻¹ Φ_c, against steps solved again. Φ_p holds the derivative
