@@ -1,1 +1,1 @@
-"""Child processes: a single one, the process graph, and stop signals."""
+"""Child processes that end with their parent, and stop signals."""

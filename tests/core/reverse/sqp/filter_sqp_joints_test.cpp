@@ -39,16 +39,20 @@ std::vector<ReverseJob> pushed_chains(const Scene& scene, const PushConfig& push
   return jobs;
 }
 
-/// The reverse problem of the first of those pushes.
+/// The reverse problem of one of those pushes.
 struct PushedChain {
   Scene scene = robot_and_chain();
   PushConfig push;
   PhysicsConfig physics;
   ReverseConfig config;
   energy::StepEnergy energy{scene, physics, push};
-  ReverseJob job = pushed_chains(scene, push, physics).front();
-  ReverseProblem problem{energy, config, with_open_gaps(energy, energy::stacked(job.end)),
-                         direction(job.action, push), physics.sub_steps};
+  ReverseJob job;
+  ReverseProblem problem;
+
+  explicit PushedChain(std::size_t which = 0)
+      : job(pushed_chains(scene, push, physics)[which]),
+        problem{energy, config, with_open_gaps(energy, energy::stacked(job.end)),
+                direction(job.action, push), physics.sub_steps} {}
 };
 
 TEST(FilterSqpJoints, ForwardOfReverseWithTheSolversControlsIsTheEnd) {
@@ -66,22 +70,14 @@ TEST(FilterSqpJoints, ForwardOfReverseWithTheSolversControlsIsTheEnd) {
 
 // Where a problem has several minima, rounding may decide between them.
 TEST(FilterSqpJoints, MostlyEveryKktMethodGivesTheSameSolution) {
-  const Scene scene = robot_and_chain();
-  const PushConfig push;
-  const PhysicsConfig physics;
-  const energy::StepEnergy energy(scene, physics, push);
-  const std::vector<ReverseJob> jobs = pushed_chains(scene, push, physics);
   int same = 0;
-  for (std::size_t k = 0; k < 8; ++k) {
-    ReverseConfig config;
-    const ReverseProblem problem{energy, config,
-                                 with_open_gaps(energy, energy::stacked(jobs[k].end)),
-                                 direction(jobs[k].action, push), physics.sub_steps};
+  for (std::size_t which = 0; which < 8; ++which) {
+    PushedChain chain(which);
     std::vector<VectorXd> starts;
     for (const KktMethod method : {KktMethod::kBlockElimination, KktMethod::kCyclicReduction,
                                    KktMethod::kUmfpack, KktMethod::kKlu}) {
-      config.kkt = method;
-      starts.push_back(solved(problem).x.p[0]);
+      chain.config.kkt = method;
+      starts.push_back(solved(chain.problem).x.p[0]);
     }
     same += std::ranges::all_of(
         starts, [&](const VectorXd& start) { return (start - starts[0]).norm() < 1e-5; });
