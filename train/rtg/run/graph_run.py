@@ -8,8 +8,8 @@ from rtg import paths
 from rtg.bus.bus import Bus
 from rtg.errors import RunError, UserError
 from rtg.files import run_folder
-from rtg.processes.children import Node, kill_all, stop_all
-from rtg.processes.interrupts import Interrupts
+from rtg.processes.child_run import run_child
+from rtg.processes.children import Node
 from rtg.run.plan import RunPlan
 from rtg.run.progress import Display, RunState
 from rtg.run.run_watch import RunWatch
@@ -46,7 +46,6 @@ class GraphRun:
         self._bus = Bus(plan.config.run.bus, plan.name)
         self._watch = RunWatch(self._bus, RunState(budget=plan.interactions))
         self._training = TrainingWatch(plan.folder)
-        self._nodes: list[Node] = []
         self._restarts = 0
         self._failure: list[str] = []  # lines of graph.sh that tell why it ended
         if self._bus.warning:
@@ -58,18 +57,12 @@ class GraphRun:
         Raises RunError if a program failed, UserError if it reported bad input, StoppedError on a
         signal.
         """
-        with Interrupts(on_second_signal=lambda: kill_all(self._nodes)) as interrupts:
-            try:
-                graph = self._start()
-                while graph.exit_status() is None:
-                    self._bus.spin(_POLL)
-                    self._read_log(graph)
-                    self._display.show(self._training.update(self._watch.state))
-                    interrupts.raise_if_requested()
-                self._bus.spin(0.0)  # messages that arrived since the last step
-            finally:
-                stop_all(self._nodes)
-                self._bus.close()
+        log = self._plan.folder / "logs" / "graph.log"
+        try:
+            graph = run_child("graph", self._command(), log, self._step)
+            self._bus.spin(0.0)  # messages that arrived since the last step
+        finally:
+            self._bus.close()
         self._read_log(graph)
         if status := graph.exit_status():
             raise self._error(status)
@@ -80,17 +73,18 @@ class GraphRun:
             "defects": generation_defects(self._plan),
         }
 
-    def _start(self) -> Node:
+    def _command(self) -> list[str]:
         plan = self._plan
         consumer = (
             ["trainer", *(["--resume"] if plan.resume else [])] if plan.train else ["recorder"]
         )
-        script = [str(paths.ROOT / "graph.sh"), str(plan.folder), *consumer]
-        logs = plan.folder / "logs"
-        logs.mkdir(parents=True, exist_ok=True)
-        command = ["env", f"RTG_RUN={plan.name}", *script]
-        self._nodes.append(Node("graph", command, logs / "graph.log"))
-        return self._nodes[0]
+        script = str(paths.ROOT / "graph.sh")
+        return ["env", f"RTG_RUN={plan.name}", script, str(plan.folder), *consumer]
+
+    def _step(self, graph: Node) -> None:
+        self._bus.spin(_POLL)
+        self._read_log(graph)
+        self._display.show(self._training.update(self._watch.state))
 
     def _read_log(self, graph: Node) -> None:
         for line in graph.new_log_lines():

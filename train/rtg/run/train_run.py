@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 
 from rtg.files.run_folder import read_json
-from rtg.processes.children import Node, kill_all, stop_all
-from rtg.processes.interrupts import Interrupts
+from rtg.processes.child_run import run_child
+from rtg.processes.children import Node
 from rtg.run.plan import RunPlan
 from rtg.run.progress import Display, RunState
 from rtg.run.training_watch import TrainingWatch
@@ -34,15 +34,9 @@ def run(plan: RunPlan, display: Display) -> None:
     flags = ["--no-stream", *(["--resume"] if plan.resume else [])]
     command = [sys.executable, "-m", "rtg.learn.trainer", str(plan.folder), *flags]
     watch, state = TrainingWatch(plan.folder), _initial_state(plan)
-    logs = plan.folder / "logs"
-    logs.mkdir(parents=True, exist_ok=True)
-    nodes: list[Node] = []
-    with Interrupts(on_second_signal=lambda: kill_all(nodes)) as interrupts:
-        try:
-            nodes.append(Node("trainer", command, logs / "trainer.log"))
-            while not nodes[0].wait(_POLL):
-                display.show(watch.update(state))
-                interrupts.raise_if_requested()
-        finally:
-            stop_all(nodes)
-    nodes[0].raise_if_failed()
+
+    def step(trainer: Node) -> None:
+        trainer.wait(_POLL)
+        display.show(watch.update(state))
+
+    run_child("trainer", command, plan.folder / "logs" / "trainer.log", step).raise_if_failed()
