@@ -38,21 +38,21 @@ Assembled::Assembled(const StageSystem<double>& system, bool fixed_end)
       n_(3 * system.M),
       h_(system.h),
       fixed_end_(fixed_end),
-      couples_three_poses_(has_second_derivatives(system)),
-      per_block_((fixed_end ? couples_three_poses_ : has_inertia(system)) ? 2 : 1) {
+      centred_(!fixed_end && !has_inertia(system)),
+      couples_outer_poses_(has_second_derivatives(system)),
+      per_block_(couples_outer_poses_ ? 2 : 1) {
   set_sizes();
   for (int k = 0; k <= h_; ++k) add_stage(system.stages[k], k);
   for (MatrixXd& A : K_.A) A = MatrixXd(A.selfadjointView<Eigen::Lower>());
 }
 
 Assembled::RowPosition Assembled::pose(int level) const {
-  if (fixed_end_) return {level / per_block_, level % per_block_ * (2 * n_ + 3)};
-  if (level == 0) return {0, 0};
-  return {(level - 1) / per_block_ + 1, (level - 1) % per_block_ * (2 * n_ + 3)};
+  if (centred_) return {level, 0};
+  return {level / per_block_, level % per_block_ * (2 * n_ + 3)};
 }
 
 Assembled::RowPosition Assembled::control(int step) const {
-  const RowPosition at = pose(fixed_end_ ? step - 1 : step);
+  const RowPosition at = pose(centred_ ? step : step - 1);
   return {at.block, at.row + n_};
 }
 
@@ -90,7 +90,7 @@ void Assembled::add_stage(const StageSystem<double>::Stage& stage, int k) {
   if (has_pose(k)) {
     add_symmetric(stage.E, y, pose(k));
     add(stage.N, pose(k), pose(k - 1));
-    if (couples_three_poses_ && k > 1) add(stage.U, pose(k), pose(k - 2));
+    if (couples_outer_poses_ && k > 1) add(stage.U, pose(k), pose(k - 2));
   }
   add(stage.F, y, pose(k - 1));
   if (k > 1) add(stage.G, y, pose(k - 2));

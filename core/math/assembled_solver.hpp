@@ -13,17 +13,14 @@ namespace rtg {
 ///
 ///   ζ_k = (Δp_k, Δc_k, Δy_k), k = 1 ... h;  ζ_0 = Δp_0.
 ///
-/// Inertia couples three successive states. Then a block holds two sub-steps: the blocks are ζ_0,
-/// (ζ_1, ζ_2), (ζ_3, ζ_4), ...
+/// Inertia couples three successive poses, and if the final state is fixed (Δp_h = 0), block h would
+/// have no poses. In both cases the poses are paired with the next sub-step instead, so that the
+/// middle one of its three poses is in its block:
 ///
-/// If the final state is fixed (Δp_h = 0), block h would have no poses. Then the poses are paired
-/// with the next sub-step instead, the constraint with the middle one of its three poses:
+///   ζ_k = (Δp_k, Δc_{k+1}, Δy_{k+1}), k = 0 ... h-1;  ζ_h = Δp_h unless it is fixed.
 ///
-///   ζ_k = (Δp_k, Δc_{k+1}, Δy_{k+1}), k = 0 ... h-1.
-///
-/// A block is then coupled with its neighbours alone even with inertia. Only second derivatives U
-/// of the Lagrangian (periodic turns, joints) couple p_{k+1} and p_{k-1}: where there are any, a
-/// block holds two sub-steps, (ζ_0, ζ_1), (ζ_2, ζ_3), ...
+/// Only second derivatives U of the Lagrangian (periodic turns, joints) couple p_{k+1} and p_{k-1}
+/// then: where there are any, a block holds two sub-steps, (ζ_0, ζ_1), (ζ_2, ζ_3), ...
 ///
 /// Departs from the paper: A.3 pairs a constraint with the first of its three poses, so that with
 /// inertia the matrix is block-pentadiagonal, not tridiagonal.
@@ -57,7 +54,9 @@ class Assembled {
   void reserve(const RowPosition& at, int rows);
 
   int M_, n_, h_;  // bodies, entries of Δp_k, sub-steps
-  bool fixed_end_, couples_three_poses_;
+  bool fixed_end_;
+  bool centred_;              // whether the pairing is
+  bool couples_outer_poses_;  // p_{k+1} and p_{k-1}
   int per_block_;  // ζ_k per block
   BlockTridiagonal K_;
   BlockVector r_;

@@ -1,6 +1,19 @@
+#include <algorithm>
+
 #include "core/math/kkt_solvers.hpp"
 
 namespace rtg {
+namespace {
+
+constexpr double kAccurate = 1e-12;  // residual / |x| from which on a solution is not refined
+
+double largest(const BlockVector& x) {
+  double most = 0.0;
+  for (const VectorXd& block : x) most = std::max(most, block.lpNorm<Eigen::Infinity>());
+  return most;
+}
+
+}  // namespace
 
 /// Reduces K to the system of its blocks 0, 2, ... Returns false if a pivot block is singular. The
 /// other blocks are eliminated by
@@ -33,6 +46,7 @@ bool CyclicReduction::halve(BlockTridiagonal& K) {
 
 bool CyclicReduction::factorize(const BlockTridiagonal& K) {
   levels_.clear();
+  K_ = K;
   BlockTridiagonal rest = K;
   while (rest.blocks() > 1)
     if (!halve(rest)) return false;
@@ -40,6 +54,17 @@ bool CyclicReduction::factorize(const BlockTridiagonal& K) {
 }
 
 BlockVector CyclicReduction::solve(const BlockVector& r) const {
+  BlockVector x = reduced_solution(r);
+  BlockVector residual = product(K_, x);
+  for (std::size_t k = 0; k < r.size(); ++k) residual[k] = r[k] - residual[k];
+  if (largest(residual) <= kAccurate * (largest(r) + largest(x))) return x;
+  const BlockVector correction = reduced_solution(residual);
+  for (std::size_t k = 0; k < r.size(); ++k) x[k] += correction[k];
+  return x;
+}
+
+/// Carries `r` down the levels and the solution back up.
+BlockVector CyclicReduction::reduced_solution(const BlockVector& r) const {
   std::vector<BlockVector> rhs{r};
   for (const Level& level : levels_) {
     const BlockVector& fine = rhs.back();

@@ -32,7 +32,9 @@ class BlockElimination final : public KktSolver {
   std::vector<MatrixXd> B_, gain_;  // gain_[k] = pivot_k⁻¹ B_k
 };
 
-/// Cyclic reduction [Hockney 1965]; see make_kkt_solver().
+/// Cyclic reduction [Hockney 1965]; see make_kkt_solver(). Each reduction eliminates its blocks
+/// without exchanging rows between them, so that roundings may grow. solve() then corrects x by one
+/// step of iterative refinement: on systems with inertia this brings residuals of 1e-7 to 1e-16.
 class CyclicReduction final : public KktSolver {
  public:
   [[nodiscard]] bool factorize(const BlockTridiagonal& K) override;
@@ -47,7 +49,9 @@ class CyclicReduction final : public KktSolver {
     std::vector<MatrixXd> left, right;  // pivot⁻¹ times the couplings to the even neighbours
   };
   [[nodiscard]] bool halve(BlockTridiagonal& K);
+  [[nodiscard]] BlockVector reduced_solution(const BlockVector& r) const;
 
+  BlockTridiagonal K_;
   std::vector<Level> levels_;
   PivotBlock last_;
 };
