@@ -49,7 +49,6 @@ def kkt(family: str, peer: str, bound: float) -> Gate:
 
 
 _GATES: tuple[Gate, ...] = (
-    ("action48.paper_by_default", ratio("action48/paper", "action48/default"), ">=", 200.0),
     kkt("kkt", "cyclic_reduction", 30.0),
     kkt("kkt", "umfpack", 120.0),
     kkt("kkt", "klu", 25.0),

@@ -1,11 +1,16 @@
-"""The reverse solver against CasADi and IPOPT: peer.py BUILD_FOLDER [EVERY]
+"""The reverse solver against CasADi and IPOPT: peer.py BUILD_FOLDER [EVERY] [PUSHES]
 
 Takes each EVERY-th (20) committed problem in which bodies may touch. Checks our objective and
-constraints at our solutions against CasADi's, solves the same problem with IPOPT from the same warm
+constraints at our solutions against CasADi's, solves the same problem with IPOPT from the same
 start to the same tolerances, and compares objectives and CPU times. Where our solution reaches the
 final state objectives are compared, whether IPOPT's does or not; where we say that none does, ours
-counts as worse if IPOPT's does. Needs casadi (tests/bench/requirements.txt). Exit status 1 if a
-gate fails.
+counts as worse if IPOPT's does.
+
+Then takes PUSHES (8) pushes of Box2D each of Gathering and Sorting and solves back from their
+ends, with the objective of the preset `default` and with the printed one of `paper`. Compares the
+CPU times per push found: its solution drags an object, and Box2D leads from it back to the end.
+
+Needs casadi (tests/bench/requirements.txt). Exit status 1 if a gate fails.
 """
 
 from __future__ import annotations
@@ -23,15 +28,20 @@ import casadi as ca
 import numpy as np
 from gates import gate
 from peer_problem import Floats, Json, PeerProblem
+from rtg import _core
 
 AGREEMENT = 1e-8  # of values
 NO_WORSE = 1e-3  # of objectives
 
 
-def dumped(build: Path, every: int) -> list[Json]:
-    """The problems with our solutions."""
-    corpus = Path(__file__).parent / "corpus"
-    command = [str(build / "tests" / "peer_dump"), str(corpus), str(every)]
+HERE = Path(__file__).parent
+DRAGGED = 0.05  # least way of an object from a start that drags [m]
+MISS = 0.1  # largest replay gap of a push that is found, mean over the bodies [m]
+
+
+def dumped(build: Path, *what: str) -> list[Json]:
+    """Problems with our solutions, of `peer_dump WHAT`."""
+    command = [str(build / "tests" / "peer_dump"), *what]
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
     if done.returncode != 0:
         sys.exit(done.returncode)
@@ -43,7 +53,9 @@ def disagreement(problem: PeerProblem) -> float:
     dump = problem.dump
     parts = [problem.objective, *problem.residuals, *problem.complementarity]
     values = ca.Function("values", [problem.x], parts)(problem.unknowns(dump["solution"]))
-    ours = [[dump["objective"]], *dump["residuals"][1:], *dump["complementarity"]]
+    ours = [[dump["objective"]], *dump["residuals"][1:]]
+    if problem.complementarity:
+        ours += dump["complementarity"]
     worst = 0.0
     for theirs, mine in zip(values, ours, strict=True):
         own = np.array(mine)
@@ -61,10 +73,11 @@ class Peer:
     objective: float
     cpu: float  # [s]
     iterations: int
+    x: Floats
 
 
 def solve(problem: PeerProblem) -> Peer:
-    """IPOPT from the warm start."""
+    """IPOPT from the start of our SQP."""
     tolerances = problem.dump["reverse"]
     constraints = ca.vertcat(*problem.residuals, *problem.complementarity, problem.gaps)
     equalities = constraints.shape[0] - problem.gaps.shape[0]
@@ -83,14 +96,13 @@ def solve(problem: PeerProblem) -> Peer:
     solver = ca.nlpsol("peer", "ipopt", nlp, options)
     upper = np.concatenate([np.zeros(equalities), np.full(problem.gaps.shape[0], np.inf)])
     begin = time.process_time()
-    found = solver(x0=problem.unknowns(problem.dump["warm"]), lbg=0.0, ubg=upper)
+    found = solver(x0=problem.unknowns(problem.dump["start"]), lbg=0.0, ubg=upper)
     cpu = time.process_time() - begin
     status: dict[str, Any] = solver.stats()
-    reaches_end = (
-        problem.terminal_miss(np.array(found["x"]).ravel()) <= tolerances["terminal_tolerance"]
-    )
+    x = np.array(found["x"]).ravel()
+    reaches_end = problem.terminal_miss(x) <= tolerances["terminal_tolerance"]
     objective, iterations = float(found["f"]), int(status["iter_count"])
-    return Peer(bool(status["success"]), reaches_end, objective, cpu, iterations)
+    return Peer(bool(status["success"]), reaches_end, objective, cpu, iterations, x)
 
 
 @dataclass(frozen=True)
@@ -99,7 +111,7 @@ class Row:
 
     dump: Json  # with ours
     disagreement: float
-    peer: Peer | None  # without a warm start IPOPT is not run
+    peer: Peer | None  # without a start IPOPT is not run
 
     @property
     def decided(self) -> bool:
@@ -113,10 +125,10 @@ class Row:
 
     def __str__(self) -> str:
         d, peer = self.dump, self.peer
-        words = f"{d['line']:5} {d['difficulty']:8} {self.disagreement:8.1e} | {d['status']:15}"
+        words = f"{d['number']:5} {d['kind']:9} {self.disagreement:8.1e} | {d['status']:15}"
         words += f"{d['iterations']:5} {d['cpu_s']:8.4f} {d['objective']:9.4f} | "
         if peer is None:
-            return words + "no warm start"
+            return words + "no start"
         end = "failed" if not peer.converged else "" if peer.reaches_end else "misses the end"
         return f"{words}{peer.iterations:5} {peer.cpu:8.3f} {peer.objective:9.4f} {end}"
 
@@ -124,7 +136,7 @@ class Row:
 def compared(dump: Json) -> Row:
     """Solves the problem with IPOPT."""
     problem = PeerProblem(dump)
-    return Row(dump, disagreement(problem), solve(problem) if dump["warm"] else None)
+    return Row(dump, disagreement(problem), solve(problem) if dump["start"] else None)
 
 
 def margin(row: Row) -> float | None:
@@ -134,11 +146,10 @@ def margin(row: Row) -> float | None:
     return -np.inf if row.peer.reaches_end else None  # we say that there is no solution
 
 
-def main(build: Path, every: int) -> int:
-    """Exit status."""
-    print(" line difficulty disagree | we: status     iterations CPU [s] J | IPOPT: the same")
+def over_the_corpus(build: Path, every: int) -> bool:
+    """Compares objectives and times; whether the gates hold."""
     rows = []
-    for dump in dumped(build, every):
+    for dump in dumped(build, "corpus", str(HERE / "corpus"), str(every)):
         rows.append(compared(dump))
         print(rows[-1], flush=True)
     both = [row for row in rows if row.both]
@@ -149,15 +160,74 @@ def main(build: Path, every: int) -> int:
     )
     print(f"\n{len(rows)} problems, decided by us {decided}, solved by IPOPT {solved}")
     print(f"objectives compared: {len(margins)}; ours less in {int((margins > NO_WORSE).sum())}")
-    passed = [
-        gate("peer.decided_by_us", decided / len(rows), ">=", 0.95),
-        gate("peer.disagreement", float(np.max([r.disagreement for r in rows])), "<=", AGREEMENT),
-        gate("peer.no_worse", float((margins >= -NO_WORSE).mean()), ">=", 0.95),
-        gate(
-            "peer.time_ratio", np.median([r.peer.cpu / r.dump["cpu_s"] for r in both]), ">=", 100.0
-        ),
-    ]
-    return int(not all(passed))
+    ratios = [row.peer.cpu / row.dump["cpu_s"] for row in both]
+    return all(
+        [
+            gate("peer.decided_by_us", decided / len(rows), ">=", 0.95),
+            gate("peer.disagreement", max(r.disagreement for r in rows), "<=", AGREEMENT),
+            gate("peer.no_worse", float((margins >= -NO_WORSE).mean()), ">=", 0.95),
+            gate("peer.time_ratio", float(np.median(ratios)), ">=", 100.0),
+        ]
+    )
+
+
+@dataclass
+class Pushes:
+    """Pushes that a solver finds, and the CPU time of all its solves [s]."""
+
+    found: int = 0
+    cpu: float = 0.0
+
+    def add(self, problem: PeerProblem, x: Floats, cpu: float, box2d: Any) -> None:
+        """Counts the solution `x`; none is empty."""
+        self.cpu += cpu
+        if x.size == 0:
+            return
+        start, end = problem.start_state(x), np.array(problem.dump["state"]).reshape(-1, 3)
+        drags = np.hypot(*(start - end)[1:, :2].T).max() >= DRAGGED
+        after, ok = box2d.push(start[None], np.array([problem.dump["action"]]))
+        gap = np.hypot(*(after[0] - end)[:, :2].T).mean()
+        self.found += bool(drags and ok[0] and gap <= MISS)
+
+    @property
+    def per_found(self) -> float:
+        """CPU time per push found [s]."""
+        return self.cpu / self.found if self.found else np.inf
+
+
+def over_true_pushes(build: Path, count: int) -> bool:
+    """Compares times per push found; whether the gates hold."""
+    print(f"\n{'':24} pushes  we: found  CPU/found [ms] | IPOPT: the same | disagree")
+    passed = True
+    ours: dict[str, Pushes] = {}
+    for preset in ("default", "paper"):
+        we, ipopt, worst = Pushes(), Pushes(), 0.0
+        for task in ("gathering", "sorting"):
+            config = HERE.parents[1] / "config" / f"{task}.yaml"
+            box2d = _core.Simulator(_core.Config.from_file(config))
+            for dump in dumped(build, "pushes", str(config), str(count), preset):
+                problem = PeerProblem(dump)
+                worst = max(worst, disagreement(problem))
+                x = problem.unknowns(dump["solution"])
+                we.add(problem, x if dump["status"] == "converged" else x[:0], dump["cpu_s"], box2d)
+                peer = solve(problem)
+                ipopt.add(problem, peer.x if peer.converged else peer.x[:0], peer.cpu, box2d)
+        ours[preset] = we
+        print(
+            f"{preset:24} {2 * count:6} {we.found:10} {1e3 * we.per_found:15.1f} |"
+            f" {ipopt.found:5} {1e3 * ipopt.per_found:10.0f} | {worst:.1e}",
+            flush=True,
+        )
+        ratio = ipopt.per_found / ours["default"].per_found
+        passed &= gate(f"peer.pushes_disagreement.{preset}", worst, "<=", AGREEMENT)
+        passed &= gate(f"peer.time_per_push_found.{preset}", ratio, ">=", 100.0)
+    return passed
+
+
+def main(build: Path, every: int, pushes: int) -> int:
+    """Exit status."""
+    print("   no kind      disagree | we: status     iterations CPU [s] J | IPOPT: the same")
+    return int(not all([over_the_corpus(build, every), over_true_pushes(build, pushes)]))
 
 
 def arguments() -> argparse.Namespace:
@@ -165,9 +235,10 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser("peer", description=__doc__.split(":")[0], allow_abbrev=False)
     parser.add_argument("build", metavar="BUILD_FOLDER", type=Path)
     parser.add_argument("every", metavar="EVERY", type=int, nargs="?", default=20)
+    parser.add_argument("pushes", metavar="PUSHES", type=int, nargs="?", default=8)
     return parser.parse_args()
 
 
 if __name__ == "__main__":
     given = arguments()
-    sys.exit(main(given.build, given.every))
+    sys.exit(main(given.build, given.every, given.pushes))

@@ -54,7 +54,11 @@ def _contacts(bodies: list[Json]) -> list[Contact]:
 
 
 class PeerProblem:
-    """Unknowns x = (p_0 ... p_h, λ_0 ... λ_h, c_1 ... c_h), poses of the movable bodies only."""
+    """Unknowns x = (p_0 ... p_h, λ_0 ... λ_h, c_1 ... c_h), poses of the movable bodies only.
+
+    With the plain barrier, as printed in the paper, forces are no unknowns but λ = μ̃/g; p_h is none
+    where the final state is fixed.
+    """
 
     def __init__(self, dump: Json) -> None:
         self.dump = dump
@@ -77,25 +81,45 @@ class PeerProblem:
     def _build(self) -> None:
         levels = range(self._steps + 1)
         self._p = [ca.SX.sym(f"p{k}", self._dofs) for k in levels]
-        self._forces = [ca.SX.sym(f"f{k}", len(self._contacts)) for k in levels]
         self._c = [ca.SX.sym(f"c{k}", 3) for k in levels[1:]]
-        self.x = ca.vertcat(*self._p, *self._forces, *self._c)
         points = [[self._point(c, self._full(p)) for c in self._contacts] for p in self._p]
         gaps = [
             [self._gap(c, x) for c, x in zip(self._contacts, level, strict=True)]
             for level in points
         ]
+        forces = [] if self._plain else [ca.SX.sym(f"f{k}", len(self._contacts)) for k in levels]
+        self._forces = forces or [[self._barrier / g for g in level] for level in gaps]
+        poses = self._p[:-1] if self._fixed_end else self._p
+        self.x = ca.vertcat(*poses, *forces, *self._c)
         self.objective = self._objective(gaps[0])
         self.residuals = [self._residual(k, gaps, points) for k in levels[1:]]
         self.complementarity = [
             ca.vertcat(*(f[n] * g - self._barrier * self._window(g) for n, g in enumerate(level)))
-            for f, level in zip(self._forces, gaps, strict=True)
+            for f, level in zip(forces, gaps if forces else [], strict=True)
         ]
         self.gaps = ca.vertcat(*(g for level in gaps for g in level))
+        if self._fixed_end:
+            self._put_end()
+
+    def _put_end(self) -> None:
+        """Puts the final state in the place of p_h."""
+        values = [self.objective, self.gaps, *self.residuals]
+        end = ca.DM(self._end[: self._dofs])
+        self.objective, self.gaps, *self.residuals = ca.substitute(
+            values, [self._p[-1]], [ca.SX(end)]
+        )
 
     @property
     def _barrier(self) -> float:
         return float(self._physics["barrier"] / self._unit)
+
+    @property
+    def _plain(self) -> bool:
+        return bool(self._physics["plain_barrier"])
+
+    @property
+    def _fixed_end(self) -> bool:
+        return bool(self._reverse["terminal_weight"] == 0.0)
 
     def _full(self, p: Any) -> Any:
         """With the poses of the fixed bodies."""
@@ -140,9 +164,11 @@ class PeerProblem:
         for body in range(self._dofs // 3):
             mass, moment = self._mass[body]
             way = after[3 * body : 3 * body + 3] - before[3 * body : 3 * body + 3]
-            energy += mass * ca.sumsqr(way[:2]) / 2 + moment * way[2] ** 2 / 2
+            turn = 1 - ca.cos(way[2]) if self._physics["periodic_turns"] else way[2] ** 2 / 2
+            energy += mass * ca.sumsqr(way[:2]) / 2 + moment * turn
         for n, c in enumerate(self._contacts):
-            energy -= self._forces[k][n] * gaps[k][n]
+            gap = gaps[k][n]
+            energy -= self._barrier * ca.log(gap) if self._plain else self._forces[k][n] * gap
             slip = self._slip_potential(c, points[k - 1][n], points[k][n])
             energy += c.friction * self._forces[k - 1][n] * slip
         drag = self._mass[0][0] * self._stride
@@ -160,9 +186,7 @@ class PeerProblem:
             moved = self._p[0][3 * body : 3 * body + 2] - self._end[3 * body : 3 * body + 2]
             total += weight * ca.dot(direction, moved)
         for gap in first_gaps:
-            y = ca.fmin(1.0, gap / self._physics["range"])
-            closed = -ca.log(y) - 3 * (1 - y) + 1.5 * (1 - y**2) - (1 - y**3) / 3
-            total += self._barrier * closed
+            total += self._barrier * self._closed(gap)
         for c in self._c:
             total += r["control_weight"] * ca.sumsqr(c)
         for k, p in enumerate(self._p):
@@ -174,6 +198,13 @@ class PeerProblem:
         miss = self._p[h] - self._end[: self._dofs]
         return total + r["terminal_weight"] * ca.sumsqr(miss) / 2
 
+    def _closed(self, gap: Any) -> Any:
+        """Barrier over its weight."""
+        if self._plain:
+            return -ca.log(gap)
+        y = ca.fmin(1.0, gap / self._physics["range"])
+        return -ca.log(y) - 3 * (1 - y) + 1.5 * (1 - y**2) - (1 - y**3) / 3
+
     def _haste(self, body: int, way: Any) -> Any:
         mass, moment = self._mass[body]
         x, y, turn = (way[3 * body + m] for m in range(3))
@@ -182,6 +213,8 @@ class PeerProblem:
 
     def terminal_miss(self, x: Floats) -> float:
         """Largest distance of a movable body from its final position [m]."""
+        if self._fixed_end:
+            return 0.0
         level = x[self._steps * self._dofs :][: self._dofs]
         off = (level - self._end[: self._dofs]).reshape(-1, 3)
         return float(np.hypot(off[:, 0], off[:, 1]).max())
@@ -189,4 +222,13 @@ class PeerProblem:
     def unknowns(self, iterate: Json) -> Floats:
         """x of an iterate as the solver dumps it."""
         poses = [level[: self._dofs] for level in iterate["p"]]
-        return np.concatenate([*poses, *iterate["forces"], *iterate["controls"][1:]])
+        forces = [] if self._plain else iterate["forces"]
+        poses = poses[:-1] if self._fixed_end else poses
+        return np.concatenate([*poses, *forces, *iterate["controls"][1:]])
+
+    def start_state(self, x: Floats) -> Floats:
+        """State of the whole scene [bodies, 3] before the push."""
+        state = np.array(self.dump["state"]).reshape(-1, 3)
+        for k, body in enumerate(self.dump["members"][: self._dofs // 3]):
+            state[body] = x[3 * k : 3 * k + 3]
+        return state

@@ -25,10 +25,10 @@ struct Tally {
   }
 };
 
-void candidates(benchmark::State& state, reverse::ReversePreset preset) {
+void candidates(benchmark::State& state) {
   const tasks::Task task = gathering();
   const std::vector<Poses> states = bench::goal_states(task);
-  const reverse::ReverseSimulator reverse(task.scene, {}, task.push, reverse_preset(preset));
+  const reverse::ReverseSimulator reverse(task.scene, {}, task.push, {});
   Tally tally;
   std::size_t k = 0;
   for (auto _ : state) {
@@ -37,9 +37,7 @@ void candidates(benchmark::State& state, reverse::ReversePreset preset) {
     for (int action = 0; action < task.push.headings; ++action) jobs.push_back({end, action});
     for (const reverse::ReverseResult& result : reverse.solve(jobs)) tally.add(result);
   }
-  // `paper` may fail throughout, that is its figure.
-  if (tally.converged == 0 && preset == reverse::ReversePreset::kDefault)
-    return state.SkipWithError("no candidate converged");
+  if (tally.converged == 0) return state.SkipWithError("no candidate converged");
   const auto solved = static_cast<double>(tally.candidates - tally.pruned);
   state.counters["pruned"] =
       static_cast<double>(tally.pruned) / static_cast<double>(tally.candidates);
@@ -47,14 +45,7 @@ void candidates(benchmark::State& state, reverse::ReversePreset preset) {
   state.counters["iterations_median"] = quantile(tally.iterations, 0.5);
 }
 
-BENCHMARK_CAPTURE(candidates, default, reverse::ReversePreset::kDefault)
-    ->Name("action48/default")
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(bench::kStates);
-BENCHMARK_CAPTURE(candidates, paper, reverse::ReversePreset::kPaper)
-    ->Name("action48/paper")
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(bench::kStates);
+BENCHMARK(candidates)->Name("action48")->Unit(benchmark::kMillisecond)->Iterations(bench::kStates);
 
 }  // namespace
 }  // namespace rtg::bench

@@ -19,6 +19,7 @@
 #include "core/threads/cpu_clock.hpp"
 #include "tests/bench/arguments.hpp"
 #include "tests/bench/corpus.hpp"
+#include "tests/bench/gate.hpp"
 
 namespace rtg::bench {
 namespace {
@@ -125,11 +126,6 @@ void print_failures(std::span<const Outcome> outcomes) {
                     kDifficulties[static_cast<std::size_t>(o.difficulty)].data(), o.iterations);
 }
 
-bool gate(const char* what, double value, const char* goal, bool passed) {
-  std::printf("gate %s %.4g %s %s\n", what, value, goal, passed ? "PASS" : "FAIL");
-  return passed;
-}
-
 bool gates(std::span<const Outcome> outcomes) {
   const auto decided = std::ranges::count_if(outcomes, &Outcome::decided);
   const double share = static_cast<double>(decided) / static_cast<double>(outcomes.size());
@@ -139,10 +135,10 @@ bool gates(std::span<const Outcome> outcomes) {
   const std::vector<int> iterations = iterations_of(outcomes, std::nullopt);
   const double median = quantile(iterations, 0.5), p90 = quantile(iterations, 0.9);
   std::printf("\n");
-  const bool all[] = {gate("corpus.decided", share, ">=0.99", share >= 0.99),
-                      gate("corpus.converged", converged, ">=0.9", converged >= 0.9),
-                      gate("corpus.iterations_median", median, "<=20", median <= 20),
-                      gate("corpus.iterations_p90", p90, "<=50", p90 <= 50)};
+  const bool all[] = {gate("corpus.decided", share, Bound::kAtLeast, 0.99),
+                      gate("corpus.converged", converged, Bound::kAtLeast, 0.9),
+                      gate("corpus.iterations_median", median, Bound::kAtMost, 20),
+                      gate("corpus.iterations_p90", p90, Bound::kAtMost, 50)};
   return std::ranges::all_of(all, [](bool passed) { return passed; });
 }
 

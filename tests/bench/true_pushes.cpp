@@ -1,6 +1,7 @@
 // Reverses pushes that the forward simulator has made, on one core, and prints how many it finds:
 //
-//   true_pushes CONFIG.yaml... [--count N] [--preset default|paper] [--set NAME VALUE]...
+//   true_pushes CONFIG.yaml... [--count N] [--compare]
+//               [--preset default|paper] [--set NAME VALUE]...
 //
 // For each task it draws N (200) pushes of Box2D that move an object by half a metre or more. From
 // the end of each it solves for the push that led there. A start *drags* if an object moves from it
@@ -8,7 +9,9 @@
 // the bodies. Columns: pushes that have a start that drags; that also replays (found); whose start
 // of the whole push does (whole); how far this start moves an object, as a share of the true push
 // (way, median); iterations; CPU time of all per push found. --set takes keys of the sections
-// reverse and physics. Exit status 1 if a gate of the preset default fails, 2 for bad input.
+// reverse and physics. --compare solves the same pushes with the preset paper as well and compares
+// the CPU times per push found, of all tasks together. Exit status 1 if a gate fails, of which the
+// preset paper alone has none, 2 for bad input.
 
 #include <algorithm>
 #include <array>
@@ -24,59 +27,27 @@
 #include "core/math/quantile.hpp"
 #include "core/reverse/reverse_simulator.hpp"
 #include "core/search/predecessor.hpp"
-#include "core/tasks/contact_heading.hpp"
 #include "core/threads/cpu_clock.hpp"
 #include "nodes/config/config.hpp"
 #include "tests/bench/arguments.hpp"
+#include "tests/bench/gate.hpp"
+#include "tests/bench/true_push.hpp"
 
 namespace rtg::bench {
 namespace {
 
-constexpr double kPushed = 0.5;    // least displacement of an object in the pushes drawn [m]
-constexpr double kDragged = 0.05;  // ... and in a solution that drags [m]
+constexpr double kDragged = 0.05;  // least displacement in a solution that drags [m]
 constexpr double kMiss = 0.1;      // largest replay gap of a solution that counts as found [m]
-constexpr int kWalk = 20;          // pushes from one start at most
 constexpr std::size_t kTogether = 48;
 constexpr double kFoundGate = 0.95;
+constexpr double kPaperGate = 200.0;
 
 struct Options {
   SolverOptions solver;
   std::size_t count = 200;
+  bool compare = false;
   std::vector<std::string> files;
 };
-
-/// Returns the largest displacement of an object [m].
-double largest_displacement(const Poses& a, const Poses& b) {
-  double most = 0.0;
-  for (std::size_t k = 1; k < a.size(); ++k)
-    most = std::max(most, (a[k].position() - b[k].position()).norm());
-  return most;
-}
-
-/// A push of Box2D.
-struct TruePush {
-  reverse::ReverseJob job;
-  double displacement = 0.0;  // largest_displacement() [m]
-};
-
-/// Draws pushes from contact-seeking walks.
-std::vector<TruePush> draw_pushes(const tasks::Task& task, const forward::Simulator& box2d,
-                                  std::size_t count) {
-  Rng rng(1);
-  std::vector<TruePush> pushes;
-  while (pushes.size() < count) {
-    Poses state = jittered_start(task, task.start_jitter, rng);
-    for (int step = 0; step < kWalk && pushes.size() < count; ++step) {
-      const int action = contact_heading(task, state, rng);
-      const forward::PushOutcome after = box2d.push(state, action);
-      if (!after.ok) break;
-      const double displacement = largest_displacement(state, after.end);
-      if (displacement >= kPushed) pushes.push_back({{after.end, action}, displacement});
-      state = after.end;
-    }
-  }
-  return pushes;
-}
 
 struct Tally {
   std::array<int, reverse::kSolveStatusCount> ends{};
@@ -107,14 +78,12 @@ void count(const TruePush& push, const reverse::ReverseResult& result,
   tally.ways.push_back(largest_displacement(result.predecessors[0], end) / push.displacement);
 }
 
-Tally solve(const tasks::Task& task, const Options& options) {
-  const auto& [reverse, physics] = options.solver;
-  const forward::Box2dSimulator box2d(task.scene, task.push, physics);
-  const std::vector<TruePush> pushes = draw_pushes(task, box2d, options.count);
-  const reverse::ReverseSimulator simulator(task.scene, physics, task.push, reverse);
+Tally solve(const tasks::Task& task, std::span<const TruePush> pushes,
+            const forward::Simulator& box2d, const SolverOptions& solver) {
+  const reverse::ReverseSimulator simulator(task.scene, solver.physics, task.push, solver.reverse);
   Tally tally;
   for (std::size_t first = 0; first < pushes.size(); first += kTogether) {
-    const auto some = std::span(pushes).subspan(first, std::min(kTogether, pushes.size() - first));
+    const auto some = pushes.subspan(first, std::min(kTogether, pushes.size() - first));
     std::vector<reverse::ReverseJob> jobs;
     for (const TruePush& push : some) jobs.push_back(push.job);
     const double begin = threads::thread_cpu_s();
@@ -125,14 +94,19 @@ Tally solve(const tasks::Task& task, const Options& options) {
   return tally;
 }
 
-void print(const std::string& task, const Tally& tally, std::size_t count) {
-  std::printf("%-16s %6zu %6d %6d %6d %6.2f %7.0f %7.0f %12.3g ", task.c_str(), count, tally.drags,
+/// CPU time per push found [s].
+double per_found(const Tally& tally) {
+  return tally.found > 0 ? tally.cpu_s / tally.found : INFINITY;
+}
+
+void print(const std::string& name, const Tally& tally, std::size_t count) {
+  std::printf("%-20s %6zu %6d %6d %6d %6.2f %7.0f %7.0f %12.3g ", name.c_str(), count, tally.drags,
               tally.found, tally.whole, quantile(tally.ways, 0.5), quantile(tally.iterations, 0.5),
-              quantile(tally.iterations, 0.9),
-              tally.found > 0 ? 1e3 * tally.cpu_s / tally.found : INFINITY);
+              quantile(tally.iterations, 0.9), 1e3 * per_found(tally));
   for (int status = 0; status < reverse::kSolveStatusCount; ++status)
     if (const int number = tally.ends[static_cast<std::size_t>(status)])
-      std::printf(" %s %d", name(static_cast<reverse::SolveStatus>(status)).data(), number);
+      std::printf(" %s %d", reverse::name(static_cast<reverse::SolveStatus>(status)).data(),
+                  number);
   std::printf("\n");
   std::fflush(stdout);
 }
@@ -142,6 +116,10 @@ std::size_t apply(std::span<char* const> words, Options& options) {
   const std::string_view word = words[0];
   if (!word.starts_with("--")) {
     options.files.emplace_back(word);
+    return 1;
+  }
+  if (word == "--compare") {
+    options.compare = true;
     return 1;
   }
   if (word == "--count")
@@ -160,17 +138,34 @@ std::optional<Options> parsed(std::span<char* const> words) {
 }
 
 int run(const Options& options) {
-  std::printf("%-16s %6s %6s %6s %6s %6s %7s %7s %12s\n", "", "pushes", "drag", "found", "whole",
+  std::printf("%-20s %6s %6s %6s %6s %6s %7s %7s %12s\n", "", "pushes", "drag", "found", "whole",
               "way", "median", "p90", "CPU/found ms");
-  bool passed = true;
+  SolverOptions paper{reverse_preset(reverse::ReversePreset::kPaper), options.solver.physics};
+  Tally ours, its;
+  double least = 1.0;  // share of the pushes found, over the tasks
   for (const std::string& file : options.files) {
     const tasks::Task task = config::load_config(file).task;
-    const Tally tally = solve(task, options);
-    print(task.name, tally, options.count);
-    passed = passed && tally.found >= kFoundGate * static_cast<double>(options.count);
+    const forward::Box2dSimulator box2d(task.scene, task.push, options.solver.physics);
+    const std::vector<TruePush> pushes = draw_pushes(task, box2d, options.count);
+    const auto row = [&](const char* words, const SolverOptions& solver, Tally& all) {
+      const Tally tally = solve(task, pushes, box2d, solver);
+      print(task.name + words, tally, options.count);
+      all.found += tally.found;
+      all.cpu_s += tally.cpu_s;
+      return tally.found;
+    };
+    const int found = row("", options.solver, ours);
+    least = std::min(least, found / static_cast<double>(options.count));
+    if (options.compare) row(", paper", paper, its);
   }
-  const bool gated = options.solver.reverse.preset == reverse::ReversePreset::kDefault;
-  return gated && !passed ? 1 : 0;
+  std::printf("\n");
+  bool passed = true;
+  if (options.solver.reverse.preset == reverse::ReversePreset::kDefault)
+    passed = gate("true_pushes.found", least, Bound::kAtLeast, kFoundGate);
+  if (options.compare)
+    passed &= gate("true_pushes.paper_by_default", per_found(its) / per_found(ours),
+                   Bound::kAtLeast, kPaperGate);
+  return passed ? 0 : 1;
 }
 
 }  // namespace

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdio>
+
+namespace rtg::bench {
+
+enum class Bound { kAtLeast, kAtMost };
+
+/// Prints the line of a gate. Returns whether it holds.
+inline bool gate(const char* name, double value, Bound relation, double bound) {
+  const bool least = relation == Bound::kAtLeast;
+  const bool passed = least ? value >= bound : value <= bound;
+  std::printf("gate %s %.4g %s%g %s\n", name, value, least ? ">=" : "<=", bound,
+              passed ? "PASS" : "FAIL");
+  return passed;
+}
+
+}  // namespace rtg::bench
