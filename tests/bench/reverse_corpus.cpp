@@ -12,6 +12,7 @@
 #include <exception>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "core/math/quantile.hpp"
@@ -126,19 +127,28 @@ void print_failures(std::span<const Outcome> outcomes) {
                     kDifficulties[static_cast<std::size_t>(o.difficulty)].data(), o.iterations);
 }
 
-bool gates(std::span<const Outcome> outcomes) {
+/// Goals of a corpus; jointed problems have their own.
+struct Goals {
+  const char* name;
+  double converged, iterations_median, iterations_p90;
+};
+constexpr Goals kGoals{"corpus", 0.9, 20, 50}, kJointedGoals{"corpus_joints", 0.85, 30, 60};
+
+bool gates(std::span<const Outcome> outcomes, const Goals& goals) {
   const auto decided = std::ranges::count_if(outcomes, &Outcome::decided);
   const double share = static_cast<double>(decided) / static_cast<double>(outcomes.size());
   const auto solved =
       std::ranges::count(outcomes, reverse::SolveStatus::kConverged, &Outcome::status);
   const double converged = static_cast<double>(solved) / static_cast<double>(outcomes.size());
   const std::vector<int> iterations = iterations_of(outcomes, std::nullopt);
-  const double median = quantile(iterations, 0.5), p90 = quantile(iterations, 0.9);
+  const std::string name = goals.name;
   std::printf("\n");
-  const bool all[] = {gate("corpus.decided", share, Bound::kAtLeast, 0.99),
-                      gate("corpus.converged", converged, Bound::kAtLeast, 0.9),
-                      gate("corpus.iterations_median", median, Bound::kAtMost, 20),
-                      gate("corpus.iterations_p90", p90, Bound::kAtMost, 50)};
+  const bool all[] = {gate(name + ".decided", share, Bound::kAtLeast, 0.99),
+                      gate(name + ".converged", converged, Bound::kAtLeast, goals.converged),
+                      gate(name + ".iterations_median", quantile(iterations, 0.5), Bound::kAtMost,
+                           goals.iterations_median),
+                      gate(name + ".iterations_p90", quantile(iterations, 0.9), Bound::kAtMost,
+                           goals.iterations_p90)};
   return std::ranges::all_of(all, [](bool passed) { return passed; });
 }
 
@@ -163,7 +173,9 @@ int run(const std::filesystem::path& folder, const Options& options) {
   print_by_difficulty(outcomes);
   print_profile(outcomes);
   if (options.failures) print_failures(outcomes);
-  return gates(outcomes) ? 0 : 1;
+  const bool jointed = std::ranges::any_of(
+      corpus.tasks, [](const auto& task) { return !task.second.scene.joints.empty(); });
+  return gates(outcomes, jointed ? kJointedGoals : kGoals) ? 0 : 1;
 }
 
 }  // namespace

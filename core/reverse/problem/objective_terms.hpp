@@ -41,8 +41,8 @@ struct ControlPenalty {
 /// (t̄₀, θ̄₀) after sub-step k.
 ///
 /// Departs from the paper: eq. (6) says nothing of how the robot moves, but the action is a
-/// straight push by one stride. Without these terms the solver drags objects in 266 of 300 states
-/// after true pushes, and in none does the push lead back (with them: in 297).
+/// straight push by one stride. Without these terms the solver drags objects in 256 of 300 states
+/// after true pushes, and in none does the push lead back (with them: in 299).
 template <class T>
 struct PathPenalty {
   T position, heading;        // values of the two terms
@@ -64,9 +64,9 @@ struct PathPenalty {
 /// The term K/2 |p_k - p̄|² over all movable bodies: a spring to the final state p̄. It acts on the
 /// poses p_k for which ProblemLanes::is_terminal(k).
 ///
-/// Departs from the paper: it fixes the final state. Few rest states of Box2D have a predecessor
-/// then: of 300 true pushes 242 are found (with the spring: 297). With it every forward simulation
-/// is feasible.
+/// Departs from the paper: it fixes the final state. Not all rest states of Box2D have a
+/// predecessor then: of 300 true pushes 280 are found (with the spring: 299). With it every forward
+/// simulation is feasible.
 template <class T>
 class EndSpring {
  public:

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kLeastShare = 0.05;  // smaller shares of a mirrored step are not tried
 constexpr double kTolerance = 1e-6;   // of a forward step [kg m]
+constexpr double kSlack = 2.5;        // largest ratio of the two displacements, see find()
 
 template <class T>
 void put_robot(const Vec3<T>& pose, energy::Placement<T>& at) {
@@ -31,19 +32,25 @@ WarmStart<T>::WarmStart(const ProblemLanes<T>& problem)
       trial_(start_),
       forward_displacement_(start_.p),
       forces_(static_cast<std::size_t>(scene_.contacts()), T(0.0)),
-      last_displacement_(start_.p) {}
+      last_displacement_(start_.p),
+      changed_(false) {}
 
-/// Returns the target of the robot's servo in sub-step k. It is the pose on the straight path after
-/// sub-step k. While the robot moves, the target leads by the lag of the servo in steady motion.
+/// Returns the lag of the robot's servo behind its target in steady motion [m].
 template <class T>
-Vec3<T> WarmStart<T>::straight_target(int k) const {
+T WarmStart<T>::servo_lead() const {
   const T share = scene_.damping(0).mass * T(scene_.stride()) / scene_.control_bound()[0];
   const T bounded = lesser(share, T(1.0 - 1e-12));
   const T artanh = T(0.5) * logarithm((T(1.0) + bounded) / (T(1.0) - bounded));
-  const T lead = select(share < T(1.0), artanh * T(energy::servo_scale(scene_.stride())), T(0.0));
+  return select(share < T(1.0), artanh * T(energy::servo_scale(scene_.stride())), T(0.0));
+}
+
+/// Returns the target of the robot's servo in sub-step k. It is the pose on the straight path after
+/// sub-step k. While the robot moves, the target leads by servo_lead().
+template <class T>
+Vec3<T> WarmStart<T>::straight_target(int k) const {
   Vec3<T> pose = problem_.robot_path(k);
   if (k > problem_.sub_steps - problem_.settling) return pose;
-  for (int m = 0; m < 2; ++m) pose[m] += lead * problem_.direction[m];
+  for (int m = 0; m < 2; ++m) pose[m] += servo_lead() * problem_.direction[m];
   return pose;
 }
 
@@ -58,43 +65,84 @@ Mask<T> WarmStart<T>::push(const energy::StepStart<T>& from, const Vec3<T>& targ
   return found;
 }
 
-/// Sets `out` to `p` with the objects moved by -share·forward_displacement_. Takes the largest
-/// share of 1, ½, ¼, ... that leaves all gaps open. Lanes without such a share keep their `out`.
-/// The robot stays as in `p`.
+/// Returns the lanes in which no gap of `at` is closed, or narrower than all of start_.
 template <class T>
-void WarmStart<T>::move_back(const energy::Placement<T>& p, const Mask<T>& wanted,
-                             energy::Placement<T>& out) {
-  const T floor = lesser(T(energy::kGapFloor * scene_.barrier().range), scene_.least_gap(p));
+Mask<T> WarmStart<T>::is_open(const energy::Placement<T>& at) const {
+  const T floor = lesser(T(energy::kGapFloor * scene_.barrier().range), scene_.least_gap(start_));
+  return scene_.least_gap(at) >= floor && scene_.separated(at);
+}
+
+/// Sets robot_back_ to start_ with the robot at `back`. In lanes of `wanted` in which an object
+/// stands there, a forward step towards `back` pushes it away.
+template <class T>
+void WarmStart<T>::clear_way(const Vec3<T>& back, const Mask<T>& wanted) {
+  robot_back_ = start_;
+  put_robot(back, robot_back_);
+  const Mask<T> blocked = wanted && !is_open(robot_back_);
+  if (!any(blocked)) return;
+  Vec3<T> target = back;
+  for (int m = 0; m < 2; ++m) target[m] -= servo_lead() * problem_.direction[m];
+  const Mask<T> cleared =
+      step_.solve({start_, forces_.data()}, energy::Drive<T>::towards(target), blocked, trial_);
+  robot_back_.assign(cleared, trial_);
+}
+
+/// Replaces displacements of forward_displacement_ by those of one push more, from pushed_ to
+/// `target`.
+template <class T>
+void WarmStart<T>::take_full_contact(const Vec3<T>& target, const Mask<T>& wanted) {
+  scene_.forces(pushed_, forces_.data());
+  const Mask<T> found = step_.solve({pushed_, forces_.data(), last_displacement_.data()},
+                                    energy::Drive<T>::towards(target), wanted, trial_);
+  for (int i = 1; i < scene_.movable(); ++i) {
+    T* next = &forward_displacement_[3 * i];
+    const Vec3<T> full(trial_.body(i)[0] - pushed_.body(i)[0],
+                       trial_.body(i)[1] - pushed_.body(i)[1],
+                       trial_.body(i)[2] - pushed_.body(i)[2]);
+    const Mask<T> engaged =
+        found && full[0] * full[0] + full[1] * full[1] <=
+                     T(kSlack * kSlack) * (next[0] * next[0] + next[1] * next[1]);
+    for (int m = 0; m < 3; ++m) {
+      changed_ = changed_ || (engaged && full[m] != next[m]);
+      next[m] = select(engaged, full[m], next[m]);
+    }
+  }
+}
+
+/// Sets start_ to robot_back_ with the objects moved by -share·forward_displacement_. Takes the
+/// largest share of 1, ½, ¼, ... that leaves all gaps open, or 0.
+template <class T>
+void WarmStart<T>::move_back(const Mask<T>& wanted) {
   Mask<T> searching = wanted;
   for (double share = 1.0; share > kLeastShare && any(searching); share *= 0.5) {
-    trial_ = p;
+    trial_ = robot_back_;
     for (int m = 3; m < 3 * scene_.movable(); ++m)
-      trial_.p[m] = p.p[m] - T(share) * forward_displacement_[m];
+      trial_.p[m] = robot_back_.p[m] - T(share) * forward_displacement_[m];
     scene_.place(trial_);
-    const Mask<T> open = searching && scene_.least_gap(trial_) >= floor && scene_.separated(trial_);
-    out.assign(open, trial_);
+    const Mask<T> open = searching && is_open(trial_);
+    start_.assign(open, trial_);
     searching = searching && !open;
   }
+  start_.assign(searching, robot_back_);
 }
 
 /// Changes start_ from the state after sub-step k to the state before it. The robot goes to
 /// mirrored_path(k - 1), the objects move by a mirrored forward step. Returns the lanes in which
 /// the forward steps succeeded.
 template <class T>
-Mask<T> WarmStart<T>::mirror(int k, const Mask<T>& wanted) {
-  const T stride(scene_.stride());
-  const Vec3<T> ahead(start_.p[0] + stride * problem_.direction.x(),
-                      start_.p[1] + stride * problem_.direction.y(), start_.p[2]);
+Mask<T> WarmStart<T>::step_back(int k, const Mask<T>& full_contact, const Mask<T>& wanted) {
   const Vec3<T> here(start_.p[0], start_.p[1], start_.p[2]);
+  const Vec3<T> stride(T(scene_.stride()) * problem_.direction.x(),
+                       T(scene_.stride()) * problem_.direction.y(), T(0.0));
   scene_.forces(start_, forces_.data());
-  Mask<T> going = push({start_, forces_.data(), last_displacement_.data()}, ahead, wanted, pushed_);
+  Mask<T> going =
+      push({start_, forces_.data(), last_displacement_.data()}, here + stride, wanted, pushed_);
   going = step_.solve({start_, forces_.data()}, energy::Drive<T>::towards(here), going, unpushed_);
   for (std::size_t m = 0; m < forward_displacement_.size(); ++m)
     forward_displacement_[m] = pushed_.p[m] - unpushed_.p[m];
-  robot_back_ = start_;
-  put_robot(mirrored_path(k - 1), robot_back_);
-  start_.assign(going, robot_back_);
-  move_back(robot_back_, going, start_);
+  clear_way(mirrored_path(k - 1), going);
+  if (any(full_contact)) take_full_contact(here + stride + stride, going && full_contact);
+  move_back(going);
   return going;
 }
 
@@ -139,7 +187,8 @@ Mask<T> WarmStart<T>::begin_at(int k, const Mask<T>& wanted) {
 }
 
 template <class T>
-Mask<T> WarmStart<T>::find(const Mask<T>& wanted, Trajectory<T>& x) {
+Mask<T> WarmStart<T>::find(const Mask<T>& wanted, const Mask<T>& full_contact, Trajectory<T>& x) {
+  changed_ = Mask<T>(false);
   std::ranges::fill(last_displacement_, T(0.0));
   start_.p = problem_.end;
   start_.update();
@@ -149,19 +198,19 @@ Mask<T> WarmStart<T>::find(const Mask<T>& wanted, Trajectory<T>& x) {
   Mask<T> going = wanted, begun(false);
   for (int k = stop + static_cast<int>(std::ceil(scene_.coasting())); k > 0 && any(going); --k) {
     begun = begun || (k <= stop ? going : begin_at(k, going && !begun));
-    going = going && (mirror(k, going && begun) || !begun);
+    going = going && (step_back(k, full_contact, going && begun) || !begun);
   }
   x.p[0] = start_;
   for (std::vector<T>& y : x.multipliers) std::ranges::fill(y, T(0.0));
   return roll_out(going, x);
 }
 
-std::optional<Iterate> warm_start(const ReverseProblem& problem) {
+std::optional<Iterate> warm_start(const ReverseProblem& problem, bool full_contact) {
   ProblemLanes<double> one(problem);
   one.load(0, problem);
   Trajectory<double> x(one.energy, one.sub_steps);
   x.load(0, problem, static_iterate(problem));
-  if (!WarmStart<double>(one).find(true, x)) return std::nullopt;
+  if (!WarmStart<double>(one).find(true, full_contact, x)) return std::nullopt;
   return x.unload(0, problem);
 }
 

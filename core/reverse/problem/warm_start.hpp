@@ -20,20 +20,37 @@ class WarmStart {
   ///   - mirrored steps p_{k-1} = p_k - (F(p_k) - p_k) go back from the final state to a start p_0,
   ///   - a forward simulation from p_0 gives `x`.
   ///
-  /// In a mirrored step, contacts drag the objects back against the push. Solving F(p_{k-1}) = p_k
-  /// instead would end nearer to the final state, but in worse minima of the SQP.
+  /// In a mirrored step, contacts drag the objects back against the push. An object that stands in
+  /// the robot's way back is pushed out of it. Solving F(p_{k-1}) = p_k instead would end nearer to
+  /// the final state, but in worse minima of the SQP.
+  ///
+  /// At rest a gap is often wider than one across which the robot pushes. F closes it first, so
+  /// that a mirrored step moves the object less than the robot, and the gap widens from step to
+  /// step until contact is lost. In the lanes `full_contact` the displacement is F(F(p_k)) - F(p_k)
+  /// instead, of the objects that this moves at most kSlack times as far. Such a start drags them
+  /// over the whole way, as the objective wants, so that the SQP needs half as many iterations for
+  /// a true push of Gathering. But it may end in a solution that misses the final state by the
+  /// slack.
   ///
   /// Departs from the paper: its SQP starts with everything at rest in the final state, A.2.
-  Mask<T> find(const Mask<T>& wanted, Trajectory<T>& x);
+  Mask<T> find(const Mask<T>& wanted, const Mask<T>& full_contact, Trajectory<T>& x);
+
+  /// Returns the lanes of the last find() in which the start would be another one without
+  /// `full_contact`.
+  const Mask<T>& changed_by_full_contact() const { return changed_; }
 
  private:
+  T servo_lead() const;
   Vec3<T> straight_target(int k) const;
   Mask<T> push(const energy::StepStart<T>& from, const Vec3<T>& target, const Mask<T>& wanted,
                energy::Placement<T>& to);
-  void move_back(const energy::Placement<T>& p, const Mask<T>& wanted, energy::Placement<T>& out);
+  Mask<T> is_open(const energy::Placement<T>& at) const;
+  void clear_way(const Vec3<T>& back, const Mask<T>& wanted);
+  void take_full_contact(const Vec3<T>& target, const Mask<T>& wanted);
+  void move_back(const Mask<T>& wanted);
   Vec3<T> mirrored_path(int k) const;
   Mask<T> begin_at(int k, const Mask<T>& wanted);
-  Mask<T> mirror(int k, const Mask<T>& wanted);
+  Mask<T> step_back(int k, const Mask<T>& full_contact, const Mask<T>& wanted);
   Mask<T> roll_out(const Mask<T>& wanted, Trajectory<T>& x);
 
   const ProblemLanes<T>& problem_;
@@ -43,9 +60,10 @@ class WarmStart {
   std::vector<T> forward_displacement_;  // move_back() moves the objects by its negative
   std::vector<T> forces_;                // at start_
   std::vector<T> last_displacement_;     // in the last step; guess for the next
+  Mask<T> changed_;
 };
 
 /// Returns the warm start of one problem, or nothing if a forward step fails.
-std::optional<Iterate> warm_start(const ReverseProblem& problem);
+std::optional<Iterate> warm_start(const ReverseProblem& problem, bool full_contact = true);
 
 }  // namespace rtg::reverse

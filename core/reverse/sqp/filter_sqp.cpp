@@ -20,15 +20,15 @@ FilterSqp<T>::FilterSqp(const ReverseProblem& like, std::unique_ptr<StageSolver<
       problem_(like),
       newton_(problem_),
       kkt_(std::move(kkt)),
+      pivoting_(problem_.fixed_end()),
       evaluator_(problem_),
       x_(problem_.energy, like.sub_steps),
       trial_(x_),
-      start_(x_),
       step_(problem_.energy.movable(), like.sub_steps),
       force_step_(x_.forces),
       gaps_(x_.forces),
       trial_gaps_(x_.forces),
-      lanes_(static_cast<std::size_t>(kWidth<T>), Lane{-1, SqpStrategy(like.config)}),
+      jobs_(static_cast<std::size_t>(kWidth<T>), -1),
       beginning_(false),
       stepping_(false) {}
 
@@ -37,6 +37,7 @@ std::vector<SqpResult> FilterSqp<T>::solve(std::span<const ReverseProblem* const
                                            std::span<const Iterate> starts) {
   problems_ = problems;
   results_.clear();
+  strategies_.assign(problems.size(), SqpStrategy(config_));
   for (const ReverseProblem* one : problems)
     results_.push_back({SolveStatus::kInfeasible, static_iterate(*one)});
   queue_.begin(problems, starts);
@@ -47,42 +48,36 @@ std::vector<SqpResult> FilterSqp<T>::solve(std::span<const ReverseProblem* const
 /// Gives each idle lane the next candidate of the queue. Returns whether any lane is busy then.
 template <class T>
 bool FilterSqp<T>::refill() {
+  bool busy = false;
   for (int l = 0; l < kWidth<T>; ++l) {
-    if (lanes_[l].job >= 0) continue;
-    lanes_[l] = {queue_.take(l, start_), SqpStrategy(config_)};
-    if (lanes_[l].job >= 0) {
-      problem_.load(l, *problems_[lanes_[l].job]);
-      begin_attempt(l);
-    } else {
-      problem_.energy.unload(l);
+    if (!is_busy(l)) {
+      jobs_[l] = queue_.take(l, x_);
+      set_lane(beginning_, l, is_busy(l));
+      if (is_busy(l))
+        problem_.load(l, *problems_[jobs_[l]]);
+      else
+        problem_.energy.unload(l);
     }
+    busy = busy || is_busy(l);
   }
   if (any(beginning_)) evaluate_beginning();
-  return std::ranges::any_of(lanes_, [](const Lane& lane) { return lane.job >= 0; });
-}
-
-template <class T>
-void FilterSqp<T>::begin_attempt(int l) {
-  x_.copy_lane(l, start_, l);
-  set_lane(beginning_, l, true);
+  return busy;
 }
 
 template <class T>
 void FilterSqp<T>::end_attempt(int l) {
-  Lane& own = lanes_[l];
-  const ReverseProblem& problem = *problems_[own.job];
-  SqpResult& result = results_[own.job];
+  const int job = std::exchange(jobs_[l], -1);
+  SqpStrategy& strategy = strategies_[job];
+  const ReverseProblem& problem = *problems_[job];
+  SqpResult& result = results_[job];
   Iterate x = x_.unload(l, problem);
-  SolveStatus status = own.strategy.status();
+  SolveStatus status = strategy.status();
   if (status == SolveStatus::kConverged) status = status_of_converged(problem, x);
-  if (own.strategy.replaces_result(status))
+  if (strategy.replaces_result(status))
     result = {status, std::move(x), 0, 0, lane(now_.infeasibility, l), lane(stationarity_, l)};
-  result.iterations = own.strategy.iterations();
-  result.attempts = own.strategy.attempts();
-  if (own.strategy.try_again(status))
-    begin_attempt(l);
-  else
-    own.job = -1;
+  result.iterations = strategy.iterations();
+  result.attempts = strategy.attempts();
+  if (strategy.wants_another(status) && queue_.put_back(job)) strategy.begin_second(status);
 }
 
 /// Evaluates x_ in the lanes that begin an attempt, and stores the measures and gaps.
@@ -111,26 +106,36 @@ template <class T>
 void FilterSqp<T>::iterate() {
   T lagrangian(0.0), proximal(1.0);
   for (int l = 0; l < kWidth<T>; ++l) {
-    set_lane(lagrangian, l, lanes_[l].strategy.uses_lagrangian() ? 1.0 : 0.0);
-    set_lane(proximal, l, lanes_[l].strategy.proximal());
-    busy_ += lanes_[l].job >= 0 ? 1 : 0;
+    if (!is_busy(l)) continue;
+    set_lane(lagrangian, l, strategy(l).uses_lagrangian() ? 1.0 : 0.0);
+    set_lane(proximal, l, strategy(l).proximal());
+    ++busy_;
   }
   lane_iterations_ += kWidth<T>;
   newton_.linearise(problem_, x_, {lagrangian, proximal, lagrangian});
   stationarity_ = newton_.stationarity();
   stepping_ = Mask<T>(false);
   for (int l = 0; l < kWidth<T>; ++l) {
-    if (lanes_[l].job < 0) continue;
-    const bool goes_on = lanes_[l].strategy.goes_on(figures(l));
+    if (!is_busy(l)) continue;
+    const bool goes_on = strategy(l).goes_on(figures(l));
     set_lane(stepping_, l, goes_on);
     if (!goes_on) end_attempt(l);
   }
   if (!any(stepping_)) return;
-  const Mask<T> regular = kkt_->solve(newton_.system(), step_);
-  reject_ascent(regular && newton_.model_curvature(step_) > T(0.0));
+  reject_ascent(find_step() && newton_.model_curvature(step_) > T(0.0));
   if (!any(stepping_)) return;
   newton_.force_steps(problem_, x_, step_, force_step_);
   line_search();
+}
+
+/// Solves the Newton systems. Returns the lanes of stepping_ in which they are regular.
+template <class T>
+Mask<T> FilterSqp<T>::find_step() {
+  Mask<T> regular = kkt_->solve(newton_.system(), step_) && stepping_;
+  for (int l = 0; l < kWidth<T>; ++l)
+    if (lane(stepping_ && !regular, l) && strategy(l).may_pivot())
+      set_lane(regular, l, pivoting_.solve(newton_.system(), l, step_));
+  return regular;
 }
 
 template <class T>
@@ -143,7 +148,7 @@ void FilterSqp<T>::reject_ascent(const Mask<T>& descends) {
   for (int l = 0; l < kWidth<T>; ++l) {
     if (!lane(stepping_, l) || lane(descends, l)) continue;
     set_lane(stepping_, l, false);
-    if (!lanes_[l].strategy.reject_ascent()) end_attempt(l);
+    if (!strategy(l).reject_ascent()) end_attempt(l);
   }
 }
 
@@ -164,7 +169,7 @@ void FilterSqp<T>::line_search() {
     searching = searching && !accepted;
   }
   for (int l = 0; l < kWidth<T>; ++l)
-    if (lane(searching, l) && !lanes_[l].strategy.reject_line_search()) end_attempt(l);
+    if (lane(searching, l) && !strategy(l).reject_line_search()) end_attempt(l);
 }
 
 /// Returns the lanes of `legal` that accept the trial point with measures `then` and step length
@@ -174,10 +179,9 @@ Mask<T> FilterSqp<T>::accept(const Mask<T>& legal, const Measures<T>& then, doub
   Mask<T> accepted(false);
   for (int l = 0; l < kWidth<T>; ++l)
     if (lane(legal, l))
-      set_lane(
-          accepted, l,
-          lanes_[l].strategy.accept({lane(now_.violation, l), lane(now_.objective, l)},
-                                    {lane(then.violation, l), lane(then.objective, l)}, alpha));
+      set_lane(accepted, l,
+               strategy(l).accept({lane(now_.violation, l), lane(now_.objective, l)},
+                                  {lane(then.violation, l), lane(then.objective, l)}, alpha));
   return accepted;
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/math/pivoting_solver.hpp"
 #include "core/reverse/problem/evaluator.hpp"
 #include "core/reverse/problem/newton_system.hpp"
 #include "core/reverse/sqp/sqp_result.hpp"
@@ -15,7 +16,7 @@ namespace rtg::reverse {
 /// The SQP of the preset `default`, with the Hessian of the Lagrangian, a proximal term δ and a
 /// filter line search. Where the model is not convex along the step, it uses the Hessian of the
 /// objective instead. Each SIMD lane of T solves one candidate and then takes the next one from a
-/// queue. An SqpStrategy per lane controls the iterations.
+/// queue. An SqpStrategy per candidate controls the iterations.
 ///
 /// Departs from the paper: its SQP has the Hessian of the objective, eq. (9), and an l1 merit
 /// function, eq. (11). In trials on ten scenes of three objects these converged in 3 to 4 within
@@ -39,13 +40,10 @@ class FilterSqp {
   }
 
  private:
-  struct Lane {
-    int job;  // -1: none
-    SqpStrategy strategy;
-  };
-
   bool refill();
-  void begin_attempt(int l);
+  Mask<T> find_step();
+  bool is_busy(int l) const { return jobs_[l] >= 0; }
+  SqpStrategy& strategy(int l) { return strategies_[static_cast<std::size_t>(jobs_[l])]; }
   void end_attempt(int l);
   void evaluate_beginning();
   void adopt(const Mask<T>& where, const Measures<T>& found);
@@ -58,17 +56,19 @@ class FilterSqp {
   const ReverseConfig& config_;
   std::span<const ReverseProblem* const> problems_;
   std::vector<SqpResult> results_;
+  std::vector<SqpStrategy> strategies_;  // by candidate
   StartQueue<T> queue_;
   ProblemLanes<T> problem_;
   NewtonSystem<T> newton_;
   std::unique_ptr<StageSolver<T>> kkt_;
+  PivotingSolver<T> pivoting_;  // where kkt_ reports a singular system
   Evaluator<T> evaluator_;
-  Trajectory<T> x_, trial_, start_;
+  Trajectory<T> x_, trial_;
   StageStep<T> step_;
   PerContact<T> force_step_, gaps_, trial_gaps_;
-  Measures<T> now_;  // of x_
-  T stationarity_;   // ‖∇L‖∞ of x_
-  std::vector<Lane> lanes_;
+  Measures<T> now_;               // of x_
+  T stationarity_;                // ‖∇L‖∞ of x_
+  std::vector<int> jobs_;         // candidates by lane; -1: none
   Mask<T> beginning_, stepping_;  // lanes that begin an attempt; lanes that take a step
   long busy_ = 0, lane_iterations_ = 0;
 };

@@ -9,16 +9,13 @@ namespace {
 constexpr double kLeastProximal = 1e-8, kMostProximal = 1e6;
 constexpr double kMaxViolation = 0.3;  // a step must not raise θ = ‖C‖₁ above this
 constexpr double kShortStep = 0.2;     // δ grows after steps that are this short
+constexpr int kMostPivoted = 10;       // systems per candidate that are solved again
 constexpr double kGrowth = 4.0, kShrinkage = 0.1;  // factors of δ
-constexpr int kAttempts = 3;
-constexpr double kProximalGrowth = 4.0;  // factor of the first δ, per attempt
 
 }  // namespace
 
 SqpStrategy::SqpStrategy(const ReverseConfig& config)
-    : config_(&config), first_proximal_(config.proximal_start) {
-  begin_attempt();
-}
+    : config_(&config), proximal_(config.proximal_start) {}
 
 bool SqpStrategy::goes_on(const Figures& at) {
   if (!std::isfinite(at.stationarity + at.infeasibility + at.objective))
@@ -30,6 +27,8 @@ bool SqpStrategy::goes_on(const Figures& at) {
   ++iterations_;
   return true;
 }
+
+bool SqpStrategy::may_pivot() { return ++pivoted_ <= kMostPivoted; }
 
 bool SqpStrategy::reject_ascent() {
   if (!uses_lagrangian_) return regularise(SolveStatus::kSingular);
@@ -55,20 +54,14 @@ bool SqpStrategy::replaces_result(SolveStatus ended) const {
   return ended == SolveStatus::kConverged || !missed_final_state_;
 }
 
-bool SqpStrategy::try_again(SolveStatus ended) {
-  const bool missed = ended == SolveStatus::kInfeasible;
-  if (ended == SolveStatus::kConverged || (missed && missed_final_state_) ||
-      attempts() == kAttempts || iterations_ == config_->max_iterations)
-    return false;
-  first_proximal_ *= kProximalGrowth;
-  missed_final_state_ = missed_final_state_ || missed;
-  ++attempt_;
-  begin_attempt();
-  return true;
+bool SqpStrategy::wants_another(SolveStatus ended) const {
+  return ended != SolveStatus::kConverged && iterations_ < config_->max_iterations;
 }
 
-void SqpStrategy::begin_attempt() {
-  proximal_ = first_proximal_;
+void SqpStrategy::begin_second(SolveStatus ended) {
+  ++attempts_;
+  missed_final_state_ = ended == SolveStatus::kInfeasible;
+  proximal_ = config_->proximal_start;
   uses_lagrangian_ = true;
   filter_ = Filter{};
 }

@@ -77,7 +77,7 @@ TEST(ReverseConfig, EachFieldChangesTheSolutions) {
       {"kkt", 1},
       {"max_iterations", 5},
       {"feasibility_tol", 1e-2},
-      {"stationarity_tol", 1e-2},
+      {"stationarity_tol", 1e-9},
       {"robot_weight", 0.5},
       {"object_weight", 0.5},
       {"control_weight", 1e-2},

@@ -72,7 +72,7 @@ TEST(FilterSqpLanes, LanesFindTheSolutionsOfDouble) {
     if (one.status != SolveStatus::kConverged || one.iterations > 25) continue;
     ++compared;
     EXPECT_EQ(lanes[k].iterations, one.iterations);
-    EXPECT_LT((one.x.p[0] - lanes[k].x.p[0]).norm(), 1e-9);
+    EXPECT_LT((one.x.p[0] - lanes[k].x.p[0]).norm(), 1e-6);
   }
   EXPECT_GE(compared, 15);
 }
@@ -85,15 +85,15 @@ TEST(FilterSqpLanes, LanesAreKeptBusy) {
   EXPECT_LE(sqp.occupancy(), 1.0);
 }
 
-/// Lines of tests/bench/corpus/problems.txt on which the first attempt gets stuck; on another
-/// processor, rounding may save one or the other.
-constexpr std::array<std::size_t, 10> kStuck{301, 343, 392, 430, 792, 975, 1006, 1489, 2056, 2090};
+/// Lines of tests/bench/corpus/problems.txt that the second attempt solves; on another processor,
+/// rounding may let the first one do it.
+constexpr std::array<std::size_t, 9> kSecond{129, 370, 512, 706, 1279, 1466, 1528, 1737, 1925};
 
-TEST(FilterSqpLanes, FurtherAttemptsGetOutWhereTheFirstIsStuckWithinTheSharedLimit) {
+TEST(FilterSqpLanes, TheSecondAttemptFindsSolutionsWithinTheSharedLimit) {
   const bench::Corpus corpus = bench::read_corpus(RTG_CORPUS);
   const PhysicsConfig physics;
-  int freed = 0;
-  for (const std::size_t line : kStuck) {
+  int found = 0;
+  for (const std::size_t line : kSecond) {
     const bench::Problem& problem = corpus.problems.at(line - 1);
     const tasks::Task& task = corpus.tasks.at(problem.task);
     ReverseConfig config;
@@ -103,13 +103,12 @@ TEST(FilterSqpLanes, FurtherAttemptsGetOutWhereTheFirstIsStuckWithinTheSharedLim
     if (whole.attempts == 1 || whole.status != SolveStatus::kConverged) continue;
     config.max_iterations = whole.iterations - 1;
     const SqpResult cut = solve_together({&one, 1}).front();
-    if (cut.status == SolveStatus::kInfeasible) continue;  // an attempt missed the final state
-    ++freed;
-    EXPECT_EQ(cut.status, SolveStatus::kIterationLimit);
+    ++found;
+    EXPECT_NE(cut.status, SolveStatus::kConverged);
     EXPECT_EQ(cut.iterations, config.max_iterations);
-    EXPECT_EQ(cut.attempts, whole.attempts);
+    EXPECT_EQ(cut.attempts, 2);
   }
-  EXPECT_GE(freed, 4);
+  EXPECT_GE(found, 4);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST(SqpStrategy, EndsAfterItsIterationsAndTriesNoMore) {
   EXPECT_FALSE(strategy.goes_on(kFar));
   EXPECT_EQ(strategy.status(), SolveStatus::kIterationLimit);
   EXPECT_EQ(strategy.iterations(), 5);
-  EXPECT_FALSE(strategy.try_again(strategy.status()));
+  EXPECT_FALSE(strategy.wants_another(strategy.status()));
 }
 
 TEST(SqpStrategy, ATurnToTheObjectivesHessianIsTheSameIteration) {
@@ -127,8 +127,15 @@ TEST(SqpStrategy, AnAttemptBeginsWithAnEmptyFilter) {
   SqpStrategy strategy(config);
   ASSERT_TRUE(strategy.accept({0.1, 1.0}, {0.05, 1.0}, 1.0));
   ASSERT_FALSE(strategy.accept({0.2, 1.0}, {0.1, 1.0}, 1.0));
-  ASSERT_TRUE(strategy.try_again(SolveStatus::kLineSearchFailed));
+  strategy.begin_second(SolveStatus::kLineSearchFailed);
   EXPECT_TRUE(strategy.accept({0.2, 1.0}, {0.1, 1.0}, 1.0));
+}
+
+TEST(SqpStrategy, SolvesTenSystemsAgainAtMost) {
+  const ReverseConfig config;
+  SqpStrategy strategy(config);
+  for (int k = 0; k < 10; ++k) EXPECT_TRUE(strategy.may_pivot()) << k;
+  EXPECT_FALSE(strategy.may_pivot());
 }
 
 TEST(SqpStrategyAttempts, EndWithASolution) {
@@ -136,21 +143,25 @@ TEST(SqpStrategyAttempts, EndWithASolution) {
   SqpStrategy strategy(config);
   end_attempt(strategy, true);
   EXPECT_TRUE(strategy.replaces_result(SolveStatus::kConverged));
-  EXPECT_FALSE(strategy.try_again(SolveStatus::kConverged));
+  EXPECT_FALSE(strategy.wants_another(SolveStatus::kConverged));
   EXPECT_EQ(strategy.attempts(), 1);
 }
 
-TEST(SqpStrategyAttempts, AreThreeAtMostEachWithALargerFirstProximalTerm) {
+TEST(SqpStrategyAttempts, TheSecondBeginsAsTheFirstAndCountsOn) {
   const ReverseConfig config;
   SqpStrategy strategy(config);
-  for (const double scale : {1.0, 4.0, 16.0}) {
-    EXPECT_EQ(strategy.proximal(), scale * config.proximal_start);
-    end_attempt(strategy, false);
-    EXPECT_TRUE(
-        strategy.replaces_result(strategy.status()));  // a later failure replaces an earlier
-    EXPECT_EQ(strategy.try_again(strategy.status()), scale < 16.0);
-  }
-  EXPECT_EQ(strategy.attempts(), 3);
+  step(strategy, 3);
+  end_attempt(strategy, false);
+  const int iterations = strategy.iterations();
+  ASSERT_GT(strategy.proximal(), config.proximal_start);
+  EXPECT_TRUE(strategy.replaces_result(strategy.status()));
+  ASSERT_TRUE(strategy.wants_another(strategy.status()));
+  strategy.begin_second(strategy.status());
+  EXPECT_EQ(strategy.proximal(), config.proximal_start);
+  EXPECT_TRUE(strategy.uses_lagrangian());
+  EXPECT_EQ(strategy.iterations(), iterations);
+  EXPECT_EQ(strategy.attempts(), 2);
+  EXPECT_TRUE(strategy.replaces_result(SolveStatus::kSingular));  // a later failure an earlier one
 }
 
 TEST(SqpStrategyAttempts, OfSolutionsThatMissTheFinalStateTheFirstCounts) {
@@ -158,19 +169,11 @@ TEST(SqpStrategyAttempts, OfSolutionsThatMissTheFinalStateTheFirstCounts) {
   SqpStrategy strategy(config);
   end_attempt(strategy, true);
   EXPECT_TRUE(strategy.replaces_result(SolveStatus::kInfeasible));
-  ASSERT_TRUE(strategy.try_again(SolveStatus::kInfeasible));
+  ASSERT_TRUE(strategy.wants_another(SolveStatus::kInfeasible));
+  strategy.begin_second(SolveStatus::kInfeasible);
   EXPECT_FALSE(strategy.replaces_result(SolveStatus::kInfeasible));
   EXPECT_FALSE(strategy.replaces_result(SolveStatus::kLineSearchFailed));
   EXPECT_TRUE(strategy.replaces_result(SolveStatus::kConverged));
-  EXPECT_FALSE(strategy.try_again(SolveStatus::kInfeasible));
-}
-
-TEST(SqpStrategyAttempts, AFailureBetweenMissesDoesNotHideTheFirst) {
-  const ReverseConfig config;
-  SqpStrategy strategy(config);
-  ASSERT_TRUE(strategy.try_again(SolveStatus::kInfeasible));
-  ASSERT_TRUE(strategy.try_again(SolveStatus::kLineSearchFailed));
-  EXPECT_FALSE(strategy.replaces_result(SolveStatus::kInfeasible));
 }
 
 }  // namespace
