@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLeastShare = 0.05;  // smaller shares of a mirrored step are not tried
 constexpr double kTolerance = 1e-6;   // of a forward step [kg m]
-constexpr double kSlack = 2.5;        // largest ratio of the two displacements, see find()
+constexpr double kSlack = 1.5;        // largest ratio of the two displacements, see find()
 
 template <class T>
 void put_robot(const Vec3<T>& pose, energy::Placement<T>& at) {

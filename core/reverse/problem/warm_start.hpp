@@ -28,9 +28,9 @@ class WarmStart {
   /// that a mirrored step moves the object less than the robot, and the gap widens from step to
   /// step until contact is lost. In the lanes `full_contact` the displacement is F(F(p_k)) - F(p_k)
   /// instead, of the objects that this moves at most kSlack times as far. Such a start drags them
-  /// over the whole way, as the objective wants, so that the SQP needs half as many iterations for
-  /// a true push of Gathering. But it may end in a solution that misses the final state by the
-  /// slack.
+  /// over the whole way, as the objective wants, so that the SQP needs fewer iterations. But it may
+  /// end in a solution that misses the final state by the slack: from 1.5 times on, more and more
+  /// solutions do.
   ///
   /// Departs from the paper: its SQP starts with everything at rest in the final state, A.2.
   Mask<T> find(const Mask<T>& wanted, const Mask<T>& full_contact, Trajectory<T>& x);

@@ -53,21 +53,5 @@ TEST_F(FilterSqpAttempts, OfSolutionsThatMissTheFinalStateTheFirstIsKept) {
   EXPECT_GE(kept, 5);
 }
 
-TEST_F(FilterSqpAttempts, TheSecondBeginsAtTheStartWithoutFullContact) {
-  const PhysicsConfig physics;
-  const ReverseConfig config;
-  int second = 0;
-  for (const ReverseJob& job : jobs_) {
-    const Candidate candidate(task_.scene, physics, task_.push, config, job);
-    const SqpResult both = testing::solved(candidate.problem());
-    if (both.attempts == 1 || both.status != SolveStatus::kConverged) continue;
-    const auto start = warm_start(candidate.problem(), false);
-    ASSERT_TRUE(start);
-    EXPECT_EQ(both.x.p[0], testing::solved_from(candidate.problem(), *start).x.p[0]);
-    ++second;
-  }
-  EXPECT_GE(second, 5);
-}
-
 }  // namespace
 }  // namespace rtg::reverse
