@@ -13,9 +13,9 @@ namespace rtg {
 ///
 ///   ζ_k = (Δp_k, Δc_k, Δy_k), k = 1 ... h;  ζ_0 = Δp_0.
 ///
-/// Inertia couples three successive poses, and if the final state is fixed (Δp_h = 0), block h would
-/// have no poses. In both cases the poses are paired with the next sub-step instead, so that the
-/// middle one of its three poses is in its block:
+/// Inertia couples three successive poses, and if the final state is fixed (Δp_h = 0), block h
+/// would have no poses. In both cases the poses are paired with the next sub-step instead, so that
+/// the middle one of its three poses is in its block:
 ///
 ///   ζ_k = (Δp_k, Δc_{k+1}, Δy_{k+1}), k = 0 ... h-1;  ζ_h = Δp_h unless it is fixed.
 ///
@@ -57,7 +57,7 @@ class Assembled {
   bool fixed_end_;
   bool centred_;              // whether the pairing is
   bool couples_outer_poses_;  // p_{k+1} and p_{k-1}
-  int per_block_;  // ζ_k per block
+  int per_block_;             // ζ_k per block
   BlockTridiagonal K_;
   BlockVector r_;
 };
