@@ -50,7 +50,8 @@ template <class T>
 Vec3<T> WarmStart<T>::straight_target(int k) const {
   Vec3<T> pose = problem_.robot_path(k);
   if (k > problem_.sub_steps - problem_.settling) return pose;
-  for (int m = 0; m < 2; ++m) pose[m] += servo_lead() * problem_.direction[m];
+  const T lead = servo_lead();
+  for (int m = 0; m < 2; ++m) pose[m] += lead * problem_.direction[m];
   return pose;
 }
 
@@ -65,23 +66,23 @@ Mask<T> WarmStart<T>::push(const energy::StepStart<T>& from, const Vec3<T>& targ
   return found;
 }
 
-/// Returns the lanes in which no gap of `at` is closed, or narrower than all of start_.
+/// Returns the lanes in which no gap of `at` is narrower than `floor`, and no bodies overlap.
 template <class T>
-Mask<T> WarmStart<T>::is_open(const energy::Placement<T>& at) const {
-  const T floor = lesser(T(energy::kGapFloor * scene_.barrier().range), scene_.least_gap(start_));
+Mask<T> WarmStart<T>::is_open(const energy::Placement<T>& at, const T& floor) const {
   return scene_.least_gap(at) >= floor && scene_.separated(at);
 }
 
 /// Sets robot_back_ to start_ with the robot at `back`. In lanes of `wanted` in which an object
 /// stands there, a forward step towards `back` pushes it away.
 template <class T>
-void WarmStart<T>::clear_way(const Vec3<T>& back, const Mask<T>& wanted) {
+void WarmStart<T>::clear_way(const Vec3<T>& back, const T& floor, const Mask<T>& wanted) {
   robot_back_ = start_;
   put_robot(back, robot_back_);
-  const Mask<T> blocked = wanted && !is_open(robot_back_);
+  const Mask<T> blocked = wanted && !is_open(robot_back_, floor);
   if (!any(blocked)) return;
   Vec3<T> target = back;
-  for (int m = 0; m < 2; ++m) target[m] -= servo_lead() * problem_.direction[m];
+  const T lead = servo_lead();
+  for (int m = 0; m < 2; ++m) target[m] -= lead * problem_.direction[m];
   const Mask<T> cleared =
       step_.solve({start_, forces_.data()}, energy::Drive<T>::towards(target), blocked, trial_);
   robot_back_.assign(cleared, trial_);
@@ -112,14 +113,14 @@ void WarmStart<T>::take_full_contact(const Vec3<T>& target, const Mask<T>& wante
 /// Sets start_ to robot_back_ with the objects moved by -share·forward_displacement_. Takes the
 /// largest share of 1, ½, ¼, ... that leaves all gaps open, or 0.
 template <class T>
-void WarmStart<T>::move_back(const Mask<T>& wanted) {
+void WarmStart<T>::move_back(const T& floor, const Mask<T>& wanted) {
   Mask<T> searching = wanted;
   for (double share = 1.0; share > kLeastShare && any(searching); share *= 0.5) {
     trial_ = robot_back_;
     for (int m = 3; m < 3 * scene_.movable(); ++m)
       trial_.p[m] = robot_back_.p[m] - T(share) * forward_displacement_[m];
     scene_.place(trial_);
-    const Mask<T> open = searching && is_open(trial_);
+    const Mask<T> open = searching && is_open(trial_, floor);
     start_.assign(open, trial_);
     searching = searching && !open;
   }
@@ -140,9 +141,10 @@ Mask<T> WarmStart<T>::step_back(int k, const Mask<T>& full_contact, const Mask<T
   going = step_.solve({start_, forces_.data()}, energy::Drive<T>::towards(here), going, unpushed_);
   for (std::size_t m = 0; m < forward_displacement_.size(); ++m)
     forward_displacement_[m] = pushed_.p[m] - unpushed_.p[m];
-  clear_way(mirrored_path(k - 1), going);
+  const T floor = lesser(T(energy::kGapFloor * scene_.barrier().range), scene_.least_gap(start_));
+  clear_way(mirrored_path(k - 1), floor, going);
   if (any(full_contact)) take_full_contact(here + stride + stride, going && full_contact);
-  move_back(going);
+  move_back(floor, going);
   return going;
 }
 

@@ -44,10 +44,10 @@ class WarmStart {
   Vec3<T> straight_target(int k) const;
   Mask<T> push(const energy::StepStart<T>& from, const Vec3<T>& target, const Mask<T>& wanted,
                energy::Placement<T>& to);
-  Mask<T> is_open(const energy::Placement<T>& at) const;
-  void clear_way(const Vec3<T>& back, const Mask<T>& wanted);
+  Mask<T> is_open(const energy::Placement<T>& at, const T& floor) const;
+  void clear_way(const Vec3<T>& back, const T& floor, const Mask<T>& wanted);
   void take_full_contact(const Vec3<T>& target, const Mask<T>& wanted);
-  void move_back(const Mask<T>& wanted);
+  void move_back(const T& floor, const Mask<T>& wanted);
   Vec3<T> mirrored_path(int k) const;
   Mask<T> begin_at(int k, const Mask<T>& wanted);
   Mask<T> step_back(int k, const Mask<T>& full_contact, const Mask<T>& wanted);

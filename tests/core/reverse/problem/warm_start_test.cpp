@@ -63,7 +63,7 @@ TEST(WarmStart, WithFullContactDragsABodyOverTheWholeWayInSpiteOfSlack) {
   EXPECT_LT(terminal_miss(problem, *full), 0.03);
 }
 
-// No step moves it by two fifths of what another one would.
+// No push moves it by two thirds of what one more would.
 TEST(WarmStart, WithFullContactLeavesABodyAloneThatTheRobotHardlyReached) {
   const TouchingScene scene;
   const ReverseConfig config;

@@ -50,11 +50,11 @@ TEST(FilterSqp, ATouchedBoxIsDraggedTheWholeStrideBack) {
 TEST(FilterSqp, ForwardOfReverseWithTheSolversControlsIsTheEnd) {
   const TouchingScene scene;
   ReverseConfig config;
-  config.feasibility_tol = 1e-9;
+  config.feasibility_tol = 1e-10;
   const ReverseProblem problem = scene.problem(config);
   const SqpResult result = solved(problem);
   ASSERT_EQ(result.status, SolveStatus::kConverged);
-  EXPECT_LT((replayed(problem, result.x).p.back() - result.x.p.back()).norm(), 1e-5);
+  EXPECT_LT((replayed(problem, result.x).p.back() - result.x.p.back()).norm(), 1e-6);
   EXPECT_LT(terminal_miss(problem, result.x), config.terminal_tolerance);
 }
 
