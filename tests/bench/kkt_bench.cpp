@@ -15,11 +15,14 @@
 #include "core/reverse/problem/trial_point.hpp"
 #include "tests/support/gathering.hpp"
 #include "tests/support/random_stages.hpp"
+#include "tests/support/stage_lanes.hpp"
 
 namespace rtg::bench {
 namespace {
 
 using testing::gathering;
+using testing::row_of_boxes;
+using testing::row_poses;
 
 constexpr int kBodies = 6;
 constexpr double kResidual = 2e-9;  // largest accepted; the assembled matrix is shifted by 1e-9
@@ -29,8 +32,8 @@ template <class T>
 class Row {
  public:
   explicit Row(int sub_steps, const PhysicsConfig& physics = {}, int bodies = kBodies)
-      : energy_(scene(bodies), physics, gathering().push),
-        problem_{energy_, config_, poses(bodies), Vector2d::UnitX(), sub_steps},
+      : energy_(row_of_boxes(bodies), physics, gathering().push),
+        problem_{energy_, config_, row_poses(bodies), Vector2d::UnitX(), sub_steps},
         lanes_(problem_),
         x_(lanes_.energy, sub_steps),
         newton_(lanes_) {
@@ -47,18 +50,6 @@ class Row {
   const reverse::NewtonSystem<T>& newton() const { return newton_; }
 
  private:
-  static Scene scene(int bodies) {
-    const tasks::Task task = gathering();
-    Scene row{{task.scene.bodies[0]}};
-    row.bodies.resize(static_cast<std::size_t>(bodies), task.scene.bodies[1]);
-    return row;
-  }
-  static VectorXd poses(int bodies) {
-    VectorXd p = VectorXd::Zero(3 * bodies);
-    for (int k = 1; k < bodies; ++k) p[3 * k] = 1.46 + 1.28 * (k - 1);
-    return p;
-  }
-
   reverse::ReverseConfig config_;
   energy::StepEnergy energy_;
   reverse::ReverseProblem problem_;
@@ -88,21 +79,9 @@ StageSystem<T> instance(Family family, int h) {
 /// Whether the step of lane 0 solves the system.
 template <class T>
 bool is_solved(const StageSystem<double>& system, const StageStep<T>& step) {
-  StageStep<double> one(system.M, system.h);
-  const auto first_lane = [](const auto& from, auto& to) {
-    for (int m = 0; m < 3; ++m) to[m] = lane(from[m], 0);
-  };
-  for (std::size_t k = 0; k < step.poses.size(); ++k) {
-    for (std::size_t i = 0; i < one.poses[k].size(); ++i)
-      first_lane(step.poses[k][i], one.poses[k][i]);
-    if (k == 0) continue;
-    first_lane(step.controls[k], one.controls[k]);
-    for (std::size_t i = 0; i < one.poses[k].size(); ++i)
-      first_lane(step.multipliers[k][i], one.multipliers[k][i]);
-  }
   const Assembled assembled(system, false);
   const VectorXd r = joined(assembled.right_hand_side());
-  const BlockVector x = assembled.written(one);
+  const BlockVector x = assembled.written(testing::lane_of(step, 0));
   const double scale = r.lpNorm<Eigen::Infinity>() + joined(x).lpNorm<Eigen::Infinity>();
   const VectorXd off = joined(product(assembled.matrix(), x)) - r;
   return off.lpNorm<Eigen::Infinity>() <= kResidual * scale;

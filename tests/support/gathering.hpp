@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/math/vectors.hpp"
 #include "core/tasks/task.hpp"
 
 namespace rtg::testing {
@@ -41,6 +42,21 @@ inline tasks::Task gathering_hard() {
   task.name = "gathering_hard";
   add_box(task, {-1.88, -2.63, 0.1});
   return task;
+}
+
+/// Returns Gathering's robot and boxes, `bodies` in all, for row_poses().
+inline Scene row_of_boxes(int bodies) {
+  const tasks::Task task = gathering();
+  Scene row{{task.scene.bodies[0]}};
+  row.bodies.resize(static_cast<std::size_t>(bodies), task.scene.bodies[1]);
+  return row;
+}
+
+/// Returns the poses in which they stand in a row, nearly touching [3·bodies].
+inline VectorXd row_poses(int bodies) {
+  VectorXd p = VectorXd::Zero(3 * bodies);
+  for (int k = 1; k < bodies; ++k) p[3 * k] = 1.46 + 1.28 * (k - 1);
+  return p;
 }
 
 }  // namespace rtg::testing

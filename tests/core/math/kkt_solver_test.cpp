@@ -138,15 +138,12 @@ TEST_P(KktMethods, NewtonSystemsOfAReverseSolveAreSolved) {
 // backward error of 1e-10 here.
 TEST_P(KktMethods, SystemsWithInertiaAreSolvedToRounding) {
   const tasks::Task task = testing::gathering();
-  Scene row{{task.scene.bodies[0]}};
-  row.bodies.resize(6, task.scene.bodies[1]);
-  VectorXd p = VectorXd::Zero(18);
-  for (int k = 1; k < 6; ++k) p[3 * k] = 1.46 + 1.28 * (k - 1);
   PhysicsConfig physics;
   physics.inertia = true;
   const reverse::ReverseConfig config;
-  const energy::StepEnergy energy(row, physics, task.push);
-  const reverse::ReverseProblem problem{energy, config, p, Vector2d::UnitX(), 16};
+  const energy::StepEnergy energy(testing::row_of_boxes(6), physics, task.push);
+  const reverse::ReverseProblem problem{energy, config, testing::row_poses(6), Vector2d::UnitX(),
+                                        16};
   const testing::Linearisation lin(problem, static_iterate(problem), {true, 1.0});
   const BlockTridiagonal K = lin.matrix();
   EXPECT_EQ(K.blocks(), 17U);  // a block per sub-step

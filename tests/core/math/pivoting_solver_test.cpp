@@ -4,10 +4,12 @@
 
 #include "core/math/riccati.hpp"
 #include "tests/support/random_stages.hpp"
+#include "tests/support/stage_lanes.hpp"
 
 namespace rtg {
 namespace {
 
+using testing::lane_of;
 using testing::randomise;
 
 constexpr int kBodies = 3, kSubSteps = 7, kLast = kWidth<Lanes> - 1;
@@ -31,19 +33,13 @@ TEST(PivotingSolver, SolvesALaneInWhichThePivotIsSingular) {
   randomise(alone, 0, 1, 3);
   alone.stages[2].E.at(0, 0).setZero();
   const Assembled assembled(alone, false);
-  StageStep<double> one(kBodies, kSubSteps);
-  for (std::size_t k = 0; k < one.poses.size(); ++k)
-    for (int i = 0; i < kBodies; ++i)
-      for (int m = 0; m < 3; ++m) {
-        const auto b = static_cast<std::size_t>(i);
-        one.poses[k][b][m] = lane(step.poses[k][b][m], kLast);
-        one.multipliers[k][b][m] = lane(step.multipliers[k][b][m], kLast);
-        one.controls[k][m] = lane(step.controls[k][m], kLast);
-        for (int l = 0; l < kLast; ++l)
-          EXPECT_EQ(lane(step.poses[k][b][m], l), lane(before.poses[k][b][m], l));
-      }
-  const VectorXd off = joined(product(assembled.matrix(), assembled.written(one))) -
-                       joined(assembled.right_hand_side());
+  for (int l = 0; l < kLast; ++l) {
+    const StageStep<double> now = lane_of(step, l), then = lane_of(before, l);
+    EXPECT_EQ(assembled.written(now), assembled.written(then)) << l;
+  }
+  const VectorXd off =
+      joined(product(assembled.matrix(), assembled.written(lane_of(step, kLast)))) -
+      joined(assembled.right_hand_side());
   EXPECT_LT(off.norm(), 1e-10);
 }
 
