@@ -17,7 +17,6 @@ AUDIT = {
     "relaxed complementarity": "core/reverse/problem/newton_system.hpp",
     "warm start": "core/reverse/problem/warm_start.hpp",
     "filter, Hessian of the Lagrangian": "core/reverse/sqp/filter_sqp.hpp",
-    "attempts": "core/reverse/sqp/sqp_strategy.hpp",
     "safeguard": "core/reverse/sqp/merit_sqp.cpp",
     "pruning": "core/reverse/pruning.hpp",
     "several starts per solve": "core/reverse/reverse_simulator.cpp",

@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kLeastShare = 0.05;  // smaller shares of a mirrored step are not tried
 constexpr double kTolerance = 1e-6;   // of a forward step [kg m]
-constexpr double kSlack = 1.5;        // largest ratio of the two displacements, see find()
 
 template <class T>
 void put_robot(const Vec3<T>& pose, energy::Placement<T>& at) {
@@ -32,8 +31,7 @@ WarmStart<T>::WarmStart(const ProblemLanes<T>& problem)
       trial_(start_),
       forward_displacement_(start_.p),
       forces_(static_cast<std::size_t>(scene_.contacts()), T(0.0)),
-      last_displacement_(start_.p),
-      changed_(false) {}
+      last_displacement_(start_.p) {}
 
 /// Returns the lag of the robot's servo behind its target in steady motion [m].
 template <class T>
@@ -88,28 +86,6 @@ void WarmStart<T>::clear_way(const Vec3<T>& back, const T& floor, const Mask<T>&
   robot_back_.assign(cleared, trial_);
 }
 
-/// Replaces displacements of forward_displacement_ by those of one push more, from pushed_ to
-/// `target`.
-template <class T>
-void WarmStart<T>::take_full_contact(const Vec3<T>& target, const Mask<T>& wanted) {
-  scene_.forces(pushed_, forces_.data());
-  const Mask<T> found = step_.solve({pushed_, forces_.data(), last_displacement_.data()},
-                                    energy::Drive<T>::towards(target), wanted, trial_);
-  for (int i = 1; i < scene_.movable(); ++i) {
-    T* next = &forward_displacement_[3 * i];
-    const Vec3<T> full(trial_.body(i)[0] - pushed_.body(i)[0],
-                       trial_.body(i)[1] - pushed_.body(i)[1],
-                       trial_.body(i)[2] - pushed_.body(i)[2]);
-    const Mask<T> engaged =
-        found && full[0] * full[0] + full[1] * full[1] <=
-                     T(kSlack * kSlack) * (next[0] * next[0] + next[1] * next[1]);
-    for (int m = 0; m < 3; ++m) {
-      changed_ = changed_ || (engaged && full[m] != next[m]);
-      next[m] = select(engaged, full[m], next[m]);
-    }
-  }
-}
-
 /// Sets start_ to robot_back_ with the objects moved by -share·forward_displacement_. Takes the
 /// largest share of 1, ½, ¼, ... that leaves all gaps open, or 0.
 template <class T>
@@ -131,7 +107,7 @@ void WarmStart<T>::move_back(const T& floor, const Mask<T>& wanted) {
 /// mirrored_path(k - 1), the objects move by a mirrored forward step. Returns the lanes in which
 /// the forward steps succeeded.
 template <class T>
-Mask<T> WarmStart<T>::step_back(int k, const Mask<T>& full_contact, const Mask<T>& wanted) {
+Mask<T> WarmStart<T>::step_back(int k, const Mask<T>& wanted) {
   const Vec3<T> here(start_.p[0], start_.p[1], start_.p[2]);
   const Vec3<T> stride(T(scene_.stride()) * problem_.direction.x(),
                        T(scene_.stride()) * problem_.direction.y(), T(0.0));
@@ -143,7 +119,6 @@ Mask<T> WarmStart<T>::step_back(int k, const Mask<T>& full_contact, const Mask<T
     forward_displacement_[m] = pushed_.p[m] - unpushed_.p[m];
   const T floor = lesser(T(energy::kGapFloor * scene_.barrier().range), scene_.least_gap(start_));
   clear_way(mirrored_path(k - 1), floor, going);
-  if (any(full_contact)) take_full_contact(here + stride + stride, going && full_contact);
   move_back(floor, going);
   return going;
 }
@@ -189,8 +164,7 @@ Mask<T> WarmStart<T>::begin_at(int k, const Mask<T>& wanted) {
 }
 
 template <class T>
-Mask<T> WarmStart<T>::find(const Mask<T>& wanted, const Mask<T>& full_contact, Trajectory<T>& x) {
-  changed_ = Mask<T>(false);
+Mask<T> WarmStart<T>::find(const Mask<T>& wanted, Trajectory<T>& x) {
   std::ranges::fill(last_displacement_, T(0.0));
   start_.p = problem_.end;
   start_.update();
@@ -200,19 +174,19 @@ Mask<T> WarmStart<T>::find(const Mask<T>& wanted, const Mask<T>& full_contact, T
   Mask<T> going = wanted, begun(false);
   for (int k = stop + static_cast<int>(std::ceil(scene_.coasting())); k > 0 && any(going); --k) {
     begun = begun || (k <= stop ? going : begin_at(k, going && !begun));
-    going = going && (step_back(k, full_contact, going && begun) || !begun);
+    going = going && (step_back(k, going && begun) || !begun);
   }
   x.p[0] = start_;
   for (std::vector<T>& y : x.multipliers) std::ranges::fill(y, T(0.0));
   return roll_out(going, x);
 }
 
-std::optional<Iterate> warm_start(const ReverseProblem& problem, bool full_contact) {
+std::optional<Iterate> warm_start(const ReverseProblem& problem) {
   ProblemLanes<double> one(problem);
   one.load(0, problem);
   Trajectory<double> x(one.energy, one.sub_steps);
   x.load(0, problem, static_iterate(problem));
-  if (!WarmStart<double>(one).find(true, full_contact, x)) return std::nullopt;
+  if (!WarmStart<double>(one).find(true, x)) return std::nullopt;
   return x.unload(0, problem);
 }
 

@@ -24,20 +24,8 @@ class WarmStart {
   /// the robot's way back is pushed out of it. Solving F(p_{k-1}) = p_k instead would end nearer to
   /// the final state, but in worse minima of the SQP.
   ///
-  /// At rest a gap is often wider than one across which the robot pushes. F closes it first, so
-  /// that a mirrored step moves the object less than the robot, and the gap widens from step to
-  /// step until contact is lost. In the lanes `full_contact` the displacement is F(F(p_k)) - F(p_k)
-  /// instead, of the objects that this moves at most kSlack times as far. Such a start drags them
-  /// over the whole way, as the objective wants, so that the SQP needs fewer iterations. But it may
-  /// end in a solution that misses the final state by the slack: from 1.5 times on, more and more
-  /// solutions do.
-  ///
   /// Departs from the paper: its SQP starts with everything at rest in the final state, A.2.
-  Mask<T> find(const Mask<T>& wanted, const Mask<T>& full_contact, Trajectory<T>& x);
-
-  /// Returns the lanes of the last find() in which the start would be another one without
-  /// `full_contact`.
-  const Mask<T>& changed_by_full_contact() const { return changed_; }
+  Mask<T> find(const Mask<T>& wanted, Trajectory<T>& x);
 
  private:
   T servo_lead() const;
@@ -46,11 +34,10 @@ class WarmStart {
                energy::Placement<T>& to);
   Mask<T> is_open(const energy::Placement<T>& at, const T& floor) const;
   void clear_way(const Vec3<T>& back, const T& floor, const Mask<T>& wanted);
-  void take_full_contact(const Vec3<T>& target, const Mask<T>& wanted);
   void move_back(const T& floor, const Mask<T>& wanted);
   Vec3<T> mirrored_path(int k) const;
   Mask<T> begin_at(int k, const Mask<T>& wanted);
-  Mask<T> step_back(int k, const Mask<T>& full_contact, const Mask<T>& wanted);
+  Mask<T> step_back(int k, const Mask<T>& wanted);
   Mask<T> roll_out(const Mask<T>& wanted, Trajectory<T>& x);
 
   const ProblemLanes<T>& problem_;
@@ -60,10 +47,9 @@ class WarmStart {
   std::vector<T> forward_displacement_;  // move_back() moves the objects by its negative
   std::vector<T> forces_;                // at start_
   std::vector<T> last_displacement_;     // in the last step; guess for the next
-  Mask<T> changed_;
 };
 
 /// Returns the warm start of one problem, or nothing if a forward step fails.
-std::optional<Iterate> warm_start(const ReverseProblem& problem, bool full_contact = true);
+std::optional<Iterate> warm_start(const ReverseProblem& problem);
 
 }  // namespace rtg::reverse

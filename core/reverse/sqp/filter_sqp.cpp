@@ -65,22 +65,18 @@ bool FilterSqp<T>::refill() {
 }
 
 template <class T>
-void FilterSqp<T>::end_attempt(int l) {
+void FilterSqp<T>::finish(int l) {
   const int job = std::exchange(jobs_[l], -1);
-  SqpStrategy& strategy = strategies_[job];
+  const SqpStrategy& strategy = strategies_[job];
   const ReverseProblem& problem = *problems_[job];
-  SqpResult& result = results_[job];
   Iterate x = x_.unload(l, problem);
   SolveStatus status = strategy.status();
   if (status == SolveStatus::kConverged) status = status_of_converged(problem, x);
-  if (strategy.replaces_result(status))
-    result = {status, std::move(x), 0, 0, lane(now_.infeasibility, l), lane(stationarity_, l)};
-  result.iterations = strategy.iterations();
-  result.attempts = strategy.attempts();
-  if (strategy.wants_another(status) && queue_.put_back(job)) strategy.begin_second(status);
+  results_[job] = {status, std::move(x), strategy.iterations(), lane(now_.infeasibility, l),
+                   lane(stationarity_, l)};
 }
 
-/// Evaluates x_ in the lanes that begin an attempt, and stores the measures and gaps.
+/// Evaluates x_ in the lanes that begin, and stores the measures and gaps.
 template <class T>
 void FilterSqp<T>::evaluate_beginning() {
   for (std::vector<T>& level : trial_gaps_) std::ranges::fill(level, T(0.0));
@@ -119,7 +115,7 @@ void FilterSqp<T>::iterate() {
     if (!is_busy(l)) continue;
     const bool goes_on = strategy(l).goes_on(figures(l));
     set_lane(stepping_, l, goes_on);
-    if (!goes_on) end_attempt(l);
+    if (!goes_on) finish(l);
   }
   if (!any(stepping_)) return;
   reject_ascent(find_step() && newton_.model_curvature(step_) > T(0.0));
@@ -148,7 +144,7 @@ void FilterSqp<T>::reject_ascent(const Mask<T>& descends) {
   for (int l = 0; l < kWidth<T>; ++l) {
     if (!lane(stepping_, l) || lane(descends, l)) continue;
     set_lane(stepping_, l, false);
-    if (!strategy(l).reject_ascent()) end_attempt(l);
+    if (!strategy(l).reject_ascent()) finish(l);
   }
 }
 
@@ -169,7 +165,7 @@ void FilterSqp<T>::line_search() {
     searching = searching && !accepted;
   }
   for (int l = 0; l < kWidth<T>; ++l)
-    if (lane(searching, l) && !strategy(l).reject_line_search()) end_attempt(l);
+    if (lane(searching, l) && !strategy(l).reject_line_search()) finish(l);
 }
 
 /// Returns the lanes of `legal` that accept the trial point with measures `then` and step length

@@ -44,7 +44,7 @@ class FilterSqp {
   Mask<T> find_step();
   bool is_busy(int l) const { return jobs_[l] >= 0; }
   SqpStrategy& strategy(int l) { return strategies_[static_cast<std::size_t>(jobs_[l])]; }
-  void end_attempt(int l);
+  void finish(int l);
   void evaluate_beginning();
   void adopt(const Mask<T>& where, const Measures<T>& found);
   void iterate();
@@ -69,7 +69,7 @@ class FilterSqp {
   Measures<T> now_;               // of x_
   T stationarity_;                // ‖∇L‖∞ of x_
   std::vector<int> jobs_;         // candidates by lane; -1: none
-  Mask<T> beginning_, stepping_;  // lanes that begin an attempt; lanes that take a step
+  Mask<T> beginning_, stepping_;  // lanes that begin; lanes that take a step
   long busy_ = 0, lane_iterations_ = 0;
 };
 

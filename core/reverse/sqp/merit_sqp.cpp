@@ -56,7 +56,7 @@ class MeritSqp {
       const auto ended = [&](SolveStatus status) {
         Iterate x = x_.unload(0, one_);
         if (status == SolveStatus::kConverged) status = status_of_converged(one_, x);
-        return SqpResult{status, std::move(x), iterations, 1, now_.infeasibility, stationarity};
+        return SqpResult{status, std::move(x), iterations, now_.infeasibility, stationarity};
       };
       if (!std::isfinite(stationarity + now_.violation + now_.objective))
         return ended(SolveStatus::kNonFinite);

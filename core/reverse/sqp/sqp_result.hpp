@@ -5,13 +5,12 @@
 
 namespace rtg::reverse {
 
-/// Result of an SQP run. `x` is the last iterate of the attempt that `status` refers to. It is the
-/// static iterate if bodies overlap in the final state.
+/// Result of an SQP run. `x` is the last iterate. It is the static iterate if bodies overlap in the
+/// final state.
 struct SqpResult {
   SolveStatus status = SolveStatus::kNonFinite;
   Iterate x;
-  int iterations = 0;  // over all attempts, also those without an accepted step
-  int attempts = 1;
+  int iterations = 0;          // also those without an accepted step
   double infeasibility = 0.0;  // ‖C‖∞
   double stationarity = 0.0;   // ‖∇L‖∞
 };

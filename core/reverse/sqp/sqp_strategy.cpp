@@ -19,11 +19,11 @@ SqpStrategy::SqpStrategy(const ReverseConfig& config)
 
 bool SqpStrategy::goes_on(const Figures& at) {
   if (!std::isfinite(at.stationarity + at.infeasibility + at.objective))
-    return end_attempt(SolveStatus::kNonFinite);
+    return end(SolveStatus::kNonFinite);
   if (at.infeasibility < config_->feasibility_tol && at.stationarity < config_->stationarity_tol)
-    return end_attempt(SolveStatus::kConverged);
+    return end(SolveStatus::kConverged);
   if (!uses_lagrangian_) return true;  // repeats the same iteration
-  if (iterations_ == config_->max_iterations) return end_attempt(SolveStatus::kIterationLimit);
+  if (iterations_ == config_->max_iterations) return end(SolveStatus::kIterationLimit);
   ++iterations_;
   return true;
 }
@@ -50,23 +50,7 @@ bool SqpStrategy::accept(const Filter::Entry& now, const Filter::Entry& next, do
   return true;
 }
 
-bool SqpStrategy::replaces_result(SolveStatus ended) const {
-  return ended == SolveStatus::kConverged || !missed_final_state_;
-}
-
-bool SqpStrategy::wants_another(SolveStatus ended) const {
-  return ended != SolveStatus::kConverged && iterations_ < config_->max_iterations;
-}
-
-void SqpStrategy::begin_second(SolveStatus ended) {
-  ++attempts_;
-  missed_final_state_ = ended == SolveStatus::kInfeasible;
-  proximal_ = config_->proximal_start;
-  uses_lagrangian_ = true;
-  filter_ = Filter{};
-}
-
-bool SqpStrategy::end_attempt(SolveStatus status) {
+bool SqpStrategy::end(SolveStatus status) {
   status_ = status;
   return false;
 }
@@ -74,7 +58,12 @@ bool SqpStrategy::end_attempt(SolveStatus status) {
 bool SqpStrategy::regularise(SolveStatus if_hopeless) {
   proximal_ *= kGrowth;
   uses_lagrangian_ = true;
-  return proximal_ <= kMostProximal || end_attempt(if_hopeless);
+  if (proximal_ <= kMostProximal) return true;
+  if (filter_was_emptied_) return end(if_hopeless);
+  filter_ = Filter{};
+  filter_was_emptied_ = true;
+  proximal_ = config_->proximal_start;
+  return true;
 }
 
 }  // namespace rtg::reverse

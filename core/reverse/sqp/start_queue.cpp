@@ -10,27 +10,15 @@ StartQueue<T>::StartQueue(const ReverseProblem& like)
       warm_(problem_),
       x_(problem_.energy, like.sub_steps),
       warm_x_(x_),
-      wanted_(false),
-      full_contact_(false) {}
+      wanted_(false) {}
 
 template <class T>
 void StartQueue<T>::begin(std::span<const ReverseProblem* const> problems,
                           std::span<const Iterate> starts) {
   problems_ = problems;
   starts_ = starts;
-  entries_.clear();
-  for (std::size_t k = 0; k < problems.size(); ++k) entries_.push_back({static_cast<int>(k), true});
-  has_other_start_.assign(problems.size(), false);
   next_ = handed_out_ = 0;
   ready_.clear();
-}
-
-template <class T>
-bool StartQueue<T>::put_back(int job) {
-  if (!has_other_start_[static_cast<std::size_t>(job)]) return false;
-  has_other_start_[static_cast<std::size_t>(job)] = false;
-  entries_.push_back({job, false});
-  return true;
 }
 
 template <class T>
@@ -50,17 +38,15 @@ template <class T>
 void StartQueue<T>::prepare() {
   ready_.clear();
   handed_out_ = 0;
-  wanted_ = full_contact_ = Mask<T>(false);
+  wanted_ = Mask<T>(false);
   for (int l = 0; l < kWidth<T>; ++l) {
     problem_.energy.unload(l);
-    if (next_ == entries_.size()) continue;
-    const auto [job, full_contact] = entries_[next_++];
-    const auto k = static_cast<std::size_t>(job);
+    if (next_ == problems_.size()) continue;
+    const std::size_t k = next_++;
     problem_.load(l, *problems_[k]);
     if (!starts_.empty()) x_.load(l, *problems_[k], starts_[k]);
     set_lane(wanted_, l, true);
-    set_lane(full_contact_, l, full_contact);
-    ready_.push_back(job);
+    ready_.push_back(static_cast<int>(k));
   }
   if (!ready_.empty() && starts_.empty()) find_starts();
 }
@@ -78,18 +64,14 @@ void StartQueue<T>::find_starts() {
   for (std::vector<T>& y : x_.multipliers) std::ranges::fill(y, T(0.0));
   const Mask<T> open = energy.least_gap(x_.p[0]) > T(0.0) && energy.separated(x_.p[0]);
   warm_x_ = x_;
-  const Mask<T> found = warm_.find(wanted_, full_contact_, warm_x_);
+  const Mask<T> found = warm_.find(wanted_, warm_x_);
   if (problem_.fixed_end()) {  // a forward simulation ends near the final state, not in it
     warm_x_.p.back() = x_.p.back();
     warm_x_.forces.back() = x_.forces.back();
   }
   x_.assign(found, warm_x_);
-  for (std::size_t k = 0; k < ready_.size(); ++k) {
-    const int l = static_cast<int>(k);
-    if (lane(full_contact_ && warm_.changed_by_full_contact(), l))
-      has_other_start_[static_cast<std::size_t>(ready_[k])] = true;
-    if (!lane(open, l)) ready_[k] = -1;
-  }
+  for (std::size_t l = 0; l < ready_.size(); ++l)
+    if (!lane(open, static_cast<int>(l))) ready_[l] = -1;
 }
 
 template class StartQueue<double>;

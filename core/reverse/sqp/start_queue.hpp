@@ -17,8 +17,7 @@ class StartQueue {
   StartQueue& operator=(const StartQueue&) = delete;
 
   /// Fills the queue with `problems`. `starts` has one trajectory per problem or is empty. If it is
-  /// empty, the queue computes warm starts, with full contact. Where that fails, it uses the static
-  /// iterate.
+  /// empty, the queue computes warm starts. Where that fails, it uses the static iterate.
   void begin(std::span<const ReverseProblem* const> problems, std::span<const Iterate> starts);
 
   /// Takes the next candidate from the queue and copies its trajectory to lane l of `x`. Returns
@@ -26,29 +25,19 @@ class StartQueue {
   /// with overlapping bodies in the final state, as they have no warm start.
   int take(int l, Trajectory<T>& x);
 
-  /// Puts the candidate `job` at the end of the queue once more, with the warm start without full
-  /// contact. Returns false if this start is the one that it has had, or if starts were given.
-  bool put_back(int job);
-
  private:
-  struct Entry {
-    int job;
-    bool full_contact;
-  };
   void prepare();
   void find_starts();
 
   std::span<const ReverseProblem* const> problems_;
   std::span<const Iterate> starts_;
-  std::vector<Entry> entries_;
-  std::vector<bool> has_other_start_;  // by candidate
-  std::size_t next_ = 0;               // first entry not yet prepared
-  std::vector<int> ready_;             // candidates by lane; -1: to be skipped
+  std::size_t next_ = 0;    // first candidate not yet prepared
+  std::vector<int> ready_;  // candidates by lane; -1: to be skipped
   std::size_t handed_out_ = 0;
   ProblemLanes<T> problem_;
   WarmStart<T> warm_;
   Trajectory<T> x_, warm_x_;
-  Mask<T> wanted_, full_contact_;
+  Mask<T> wanted_;
 };
 
 }  // namespace rtg::reverse

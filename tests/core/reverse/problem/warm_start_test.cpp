@@ -49,31 +49,6 @@ TEST(WarmStart, DragsATouchedBodyAgainstThePush) {
   EXPECT_LT(terminal_miss(problem, *x), 0.01);
 }
 
-// The gap is wider than one across which the robot drags the box by 0.02.
-TEST(WarmStart, WithFullContactDragsABodyOverTheWholeWayInSpiteOfSlack) {
-  const TouchingScene scene;
-  const ReverseConfig config;
-  ReverseProblem problem = scene.problem(config);
-  problem.end = energy::stacked({{0, 0, 0}, {1.4 + 0.0287, 0, 0}, {20, 0, 0}});
-  const auto full = warm_start(problem), next = warm_start(problem, false);
-  ASSERT_TRUE(full && next);
-  const auto dragged = [&](const Iterate& x) { return x.p[0][3] - problem.end[3]; };
-  EXPECT_NEAR(dragged(*full), -2.0, 0.05);
-  EXPECT_GT(dragged(*next), -1.0);
-  EXPECT_LT(terminal_miss(problem, *full), 0.03);
-}
-
-// No push moves it by two thirds of what one more would.
-TEST(WarmStart, WithFullContactLeavesABodyAloneThatTheRobotHardlyReached) {
-  const TouchingScene scene;
-  const ReverseConfig config;
-  ReverseProblem problem = scene.problem(config);
-  problem.end = energy::stacked({{0, 0, 0}, {1.4 + 0.145, 0, 0}, {20, 0, 0}});
-  const auto x = warm_start(problem);
-  ASSERT_TRUE(x);
-  EXPECT_GT(x->p[0][3] - problem.end[3], -0.1);
-}
-
 // The second box lies half in the robot's way back, half a metre behind it.
 TEST(WarmStart, ABodyInTheWayBackIsPushedOutOfIt) {
   const TouchingScene scene;

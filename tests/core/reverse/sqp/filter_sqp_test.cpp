@@ -74,7 +74,7 @@ TEST(FilterSqp, ForwardOfReverseIsTheGivenStateWhereItIsFixed) {
       scene.poses[i].theta += rng.uniform(-0.1, 0.1);
     }
     ReverseProblem problem = scene.problem(config);
-    const std::optional<Iterate> pushed = warm_start(problem, false);
+    const std::optional<Iterate> pushed = warm_start(problem);
     if (!pushed) continue;
     ++posed;
     problem.end = pushed->p.back();

@@ -8,24 +8,11 @@
 namespace rtg::reverse {
 namespace {
 
-constexpr SqpStrategy::Figures kFar{1.0, 1.0, 1.0}, kSolved{1.0, 0.0, 0.0};
+constexpr SqpStrategy::Figures kFar{1.0, 1.0, 1.0};
 
 /// Takes `count` steps at an iterate far from a solution.
 void step(SqpStrategy& strategy, int count) {
   for (int k = 0; k < count; ++k) ASSERT_TRUE(strategy.goes_on(kFar)) << k;
-}
-
-/// Ends an attempt.
-void end_attempt(SqpStrategy& strategy, bool converged) {
-  if (converged) {
-    ASSERT_FALSE(strategy.goes_on(kSolved));
-    ASSERT_EQ(strategy.status(), SolveStatus::kConverged);
-    return;
-  }
-  bool goes_on = true;
-  for (int k = 0; k < 100 && goes_on; ++k) goes_on = strategy.reject_line_search();
-  ASSERT_FALSE(goes_on);
-  ASSERT_EQ(strategy.status(), SolveStatus::kLineSearchFailed);
 }
 
 TEST(SqpStrategy, EndsWhereAFigureIsNotFinite) {
@@ -48,7 +35,7 @@ TEST(SqpStrategy, ConvergesOnlyWithinBothTolerances) {
       strategy.goes_on({0.0, 0.99 * config.feasibility_tol, 0.99 * config.stationarity_tol}));
 }
 
-TEST(SqpStrategy, EndsAfterItsIterationsAndTriesNoMore) {
+TEST(SqpStrategy, EndsAfterItsIterations) {
   ReverseConfig config;
   config.max_iterations = 5;
   SqpStrategy strategy(config);
@@ -56,7 +43,6 @@ TEST(SqpStrategy, EndsAfterItsIterationsAndTriesNoMore) {
   EXPECT_FALSE(strategy.goes_on(kFar));
   EXPECT_EQ(strategy.status(), SolveStatus::kIterationLimit);
   EXPECT_EQ(strategy.iterations(), 5);
-  EXPECT_FALSE(strategy.wants_another(strategy.status()));
 }
 
 TEST(SqpStrategy, ATurnToTheObjectivesHessianIsTheSameIteration) {
@@ -76,12 +62,28 @@ TEST(SqpStrategy, ATurnToTheObjectivesHessianIsTheSameIteration) {
 TEST(SqpStrategy, EndsWhereNoRegularisationHelps) {
   const ReverseConfig config;
   SqpStrategy ascending(config), stuck(config);
-  bool goes_on = true;
-  for (int k = 0; k < 100 && goes_on; ++k) goes_on = ascending.reject_ascent();
-  EXPECT_FALSE(goes_on);
+  int tries = 0;
+  while (tries < 100 && ascending.reject_ascent()) ++tries;
+  EXPECT_LT(tries, 100);
   EXPECT_EQ(ascending.status(), SolveStatus::kSingular);
   EXPECT_GT(ascending.proximal(), 1e6);
-  end_attempt(stuck, false);
+  tries = 0;
+  while (tries < 100 && stuck.reject_line_search()) ++tries;
+  EXPECT_LT(tries, 100);
+  EXPECT_EQ(stuck.status(), SolveStatus::kLineSearchFailed);
+}
+
+TEST(SqpStrategy, EmptiesTheFilterOnceBeforeItEnds) {
+  const ReverseConfig config;
+  SqpStrategy strategy(config);
+  ASSERT_TRUE(strategy.accept({0.1, 1.0}, {0.05, 1.0}, 1.0));
+  ASSERT_FALSE(strategy.accept({0.2, 1.0}, {0.1, 1.0}, 1.0));
+  for (double last = 0.0; strategy.proximal() > last;) {
+    last = strategy.proximal();
+    ASSERT_TRUE(strategy.reject_line_search());
+  }
+  EXPECT_EQ(strategy.proximal(), config.proximal_start);
+  EXPECT_TRUE(strategy.accept({0.2, 1.0}, {0.1, 1.0}, 1.0));
 }
 
 TEST(SqpStrategy, ProximalTermFollowsTheStepLength) {
@@ -122,58 +124,11 @@ TEST(SqpStrategy, ATrialPointMustImproveAndBeNewToTheFilter) {
   EXPECT_TRUE(strategy.accept({0.8, 0.0}, {0.7, 0.0}, 1.0));  // no farther than it was
 }
 
-TEST(SqpStrategy, AnAttemptBeginsWithAnEmptyFilter) {
-  const ReverseConfig config;
-  SqpStrategy strategy(config);
-  ASSERT_TRUE(strategy.accept({0.1, 1.0}, {0.05, 1.0}, 1.0));
-  ASSERT_FALSE(strategy.accept({0.2, 1.0}, {0.1, 1.0}, 1.0));
-  strategy.begin_second(SolveStatus::kLineSearchFailed);
-  EXPECT_TRUE(strategy.accept({0.2, 1.0}, {0.1, 1.0}, 1.0));
-}
-
 TEST(SqpStrategy, SolvesTenSystemsAgainAtMost) {
   const ReverseConfig config;
   SqpStrategy strategy(config);
   for (int k = 0; k < 10; ++k) EXPECT_TRUE(strategy.may_pivot()) << k;
   EXPECT_FALSE(strategy.may_pivot());
-}
-
-TEST(SqpStrategyAttempts, EndWithASolution) {
-  const ReverseConfig config;
-  SqpStrategy strategy(config);
-  end_attempt(strategy, true);
-  EXPECT_TRUE(strategy.replaces_result(SolveStatus::kConverged));
-  EXPECT_FALSE(strategy.wants_another(SolveStatus::kConverged));
-  EXPECT_EQ(strategy.attempts(), 1);
-}
-
-TEST(SqpStrategyAttempts, TheSecondBeginsAsTheFirstAndCountsOn) {
-  const ReverseConfig config;
-  SqpStrategy strategy(config);
-  step(strategy, 3);
-  end_attempt(strategy, false);
-  const int iterations = strategy.iterations();
-  ASSERT_GT(strategy.proximal(), config.proximal_start);
-  EXPECT_TRUE(strategy.replaces_result(strategy.status()));
-  ASSERT_TRUE(strategy.wants_another(strategy.status()));
-  strategy.begin_second(strategy.status());
-  EXPECT_EQ(strategy.proximal(), config.proximal_start);
-  EXPECT_TRUE(strategy.uses_lagrangian());
-  EXPECT_EQ(strategy.iterations(), iterations);
-  EXPECT_EQ(strategy.attempts(), 2);
-  EXPECT_TRUE(strategy.replaces_result(SolveStatus::kSingular));  // a later failure an earlier one
-}
-
-TEST(SqpStrategyAttempts, OfSolutionsThatMissTheFinalStateTheFirstCounts) {
-  const ReverseConfig config;
-  SqpStrategy strategy(config);
-  end_attempt(strategy, true);
-  EXPECT_TRUE(strategy.replaces_result(SolveStatus::kInfeasible));
-  ASSERT_TRUE(strategy.wants_another(SolveStatus::kInfeasible));
-  strategy.begin_second(SolveStatus::kInfeasible);
-  EXPECT_FALSE(strategy.replaces_result(SolveStatus::kInfeasible));
-  EXPECT_FALSE(strategy.replaces_result(SolveStatus::kLineSearchFailed));
-  EXPECT_TRUE(strategy.replaces_result(SolveStatus::kConverged));
 }
 
 }  // namespace
