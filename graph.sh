@@ -5,11 +5,17 @@
 #
 # FOLDER/config.yaml is the resolved configuration (./run.sh TASK --print-config). The run is named like FOLDER, which
 # gets generation.json, logs/PROGRAM.log, and what the trainer writes or, of the recorder, transitions.npz alone.
-# Workers, server and logger are started again when they die. Where another program fails, all end with its status.
+# Workers, server and logger are started again when they die before the coordinator has ended. Where another program
+# fails, all end with its status.
 set -uo pipefail
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 nodes=${RTG_NODES:-$root/build/release/nodes} python=${RTG_PYTHON:-$root/.venv/bin/python}
-folder=$(cd -- "${1:?a run folder}" && pwd) || exit 2
+refuse() { # WHY
+  echo "graph.sh: $1" >&2
+  exit 2
+}
+[[ -f ${1:-}/config.yaml ]] || refuse "'${1:-}' is no folder with a config.yaml; legal: graph.sh FOLDER [trainer|recorder]"
+folder=$(cd -- "$1" && pwd)
 consumer=${2:-trainer} flags=("${@:3}") config=$folder/config.yaml run=${RTG_RUN:-${folder##*/}} logs=$folder/logs
 
 program() { # NAME: becomes that program; by hand they can be started in any order
@@ -34,6 +40,9 @@ start() { # NAME
 stop() { # STATUS: ends all programs, at once on a further signal, and this script
   trap 'kill -KILL "${!running[@]}"' INT TERM
   kill "${!running[@]}" 2>/dev/null
+  local deadline=$((SECONDS + 20))
+  while kill -0 "${!running[@]}" && ((SECONDS < deadline)); do sleep 0.1; done
+  kill -KILL "${!running[@]}"
   wait
   exit "$1"
 }
@@ -47,6 +56,7 @@ on_failure() { # NAME STATUS
     tail -n 8 "$logs/$1.log"
     stop "$2"
   fi
+  if ! is_running beam_coordinator; then return; fi
   echo "$1 $how, started again"
   start "$1"
 }
@@ -54,10 +64,10 @@ on_failure() { # NAME STATUS
 setting() { sed -n "/^run:/,\$ s/^  $1: \([^ ]*\).*/\1/p" "$config"; } # KEY: its value in the section run
 is_running() { [[ " ${running[*]} " == *" $1 "* ]]; }                   # NAME
 
-if [[ $consumer != trainer && $consumer != recorder ]]; then
-  echo "graph.sh: no consumer '$consumer'; legal: trainer, recorder"
-  exit 2
-fi
+case "$consumer ${flags[*]}" in
+  'trainer ' | 'trainer --resume' | 'recorder ') ;;
+  *) refuse "no consumer '$consumer${flags[*]:+ ${flags[*]}}'; legal: trainer, trainer --resume, recorder" ;;
+esac
 mkdir -p "$logs" && rm -f "$folder/generation.json" || exit 1
 exec 2>/dev/null # bash's own words about programs that have ended
 trap 'stop 130' INT
@@ -77,7 +87,7 @@ while is_running "$consumer" || is_running beam_coordinator; do
     unset "running[$pid]"
     case $name:$status in
       *:0) ;;
-      beam_coordinator:1) [[ -f $folder/generation.json ]] || on_failure "$name" 1 ;; # tells what was given up
+      beam_coordinator:3) tail -n 1 "$logs/$name.log" ;; # the data are whole, but units of work were given up
       *) on_failure "$name" "$status" ;;
     esac
   done

@@ -5,7 +5,8 @@
 namespace rtg {
 namespace {
 
-constexpr double kAccurate = 1e-12;  // residual / |x| from which on a solution is not refined
+constexpr double kAccurate =
+    1e-12;  // residual / (|r| + |x|) from which on a solution is not refined
 
 double largest(const BlockVector& x) {
   double most = 0.0;

@@ -38,6 +38,9 @@ SparseColumns sparse(const BlockTridiagonal& K) {
   return S;
 }
 
+/// Least ratio of two pivots of a matrix that counts as regular.
+constexpr double kSingular = 1e-14;
+
 bool all_finite(const std::vector<double>& values) {
   return Eigen::Map<const VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()))
       .allFinite();
@@ -52,7 +55,7 @@ class Umfpack final : public KktSolver {
     shape_ = K;
     columns_ = sparse(K);
     const int n = static_cast<int>(K.order());
-    double control[UMFPACK_CONTROL];
+    double control[UMFPACK_CONTROL], info[UMFPACK_INFO];
     umfpack_di_defaults(control);
     // Keeps the band order of the unknowns, in which fill-in grows linearly with the number of
     // blocks. In an AMD ordering it grows quadratically.
@@ -62,11 +65,10 @@ class Umfpack final : public KktSolver {
     const int analysed = umfpack_di_symbolic(n, n, columns_.start.data(), columns_.row.data(),
                                              columns_.value.data(), &symbolic, control, nullptr);
     if (analysed != UMFPACK_OK) return false;
-    const int done =
-        umfpack_di_numeric(columns_.start.data(), columns_.row.data(), columns_.value.data(),
-                           symbolic, &numeric_, control, nullptr);
+    const int done = umfpack_di_numeric(columns_.start.data(), columns_.row.data(),
+                                        columns_.value.data(), symbolic, &numeric_, control, info);
     umfpack_di_free_symbolic(&symbolic);
-    return done == UMFPACK_OK;
+    return done == UMFPACK_OK && info[UMFPACK_RCOND] > kSingular;
   }
 
   [[nodiscard]] BlockVector solve(const BlockVector& r) const override {
@@ -121,8 +123,6 @@ class Klu final : public KktSolver {
   }
 
  private:
-  static constexpr double kSingular = 1e-16;  // least / largest pivot of a singular matrix
-
   void clear() {
     if (numeric_) klu_free_numeric(&numeric_, &common_);
     if (symbolic_) klu_free_symbolic(&symbolic_, &common_);

@@ -5,6 +5,8 @@
 // CONSUMERS (default 1), have all of it. CONFIG.yaml is the resolved configuration of the run.
 
 #include <cstdio>
+#include <filesystem>
+#include <stdexcept>
 
 #include "nodes/beam_coordinator/atomic_file.hpp"
 #include "nodes/beam_coordinator/coordinator_node.hpp"
@@ -17,6 +19,8 @@ namespace {
 
 int run(const program::Words& words) {
   const int consumers = words.size() > 3 ? program::parse_number(words[3], "CONSUMERS") : 1;
+  if (!std::filesystem::is_directory(words[2]))
+    throw std::invalid_argument(words[2] + ": no such folder; legal: a folder that exists");
   const config::Config config = config::load_config(words[0]);
   bus::Bus bus(config.run.bus, words[1]);
   CoordinatorNode node(
@@ -41,7 +45,7 @@ int run(const program::Words& words) {
                "rtg_beam_coordinator: %ld units of work were skipped, because each of them killed "
                "or stalled several workers\n",
                node.given_up());
-  return 1;
+  return 3;
 }
 
 }  // namespace

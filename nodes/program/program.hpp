@@ -17,8 +17,8 @@ using Words = std::vector<std::string>;
 /// optional ones in brackets, as in "CONFIG.yaml RUN [NUMBER]".
 int run(int argc, char** argv, const std::string& usage, int (*body)(const Words&));
 
-/// Prints a line on stdout that begins with the name of the program. A program says so when it
-/// starts, when it is needed first, and when it ends.
+/// Prints a line on stdout that begins with the name of the program. A program prints one
+/// when it starts, when others first need it, and when it ends without an error.
 void say(const std::string& words);
 
 /// Parses `word` as a whole number ≥ 0. Throws std::invalid_argument with `name` in the message if

@@ -27,25 +27,33 @@ bool read_number(std::string_view text, Number least, Number most, Number& out) 
 /// Visitor of a configuration that sets the number, the flag or the choice called `name`.
 struct Setter {
   std::string_view name, value;
-  bool done = false;
+  bool known = false, done = false;
+
+  Setter(std::string_view setting, std::string_view text) : name(setting), value(text) {}
 
   void number(std::string_view key, double& field, double least, double most, const char*) {
-    if (key == name) done = read_number(value, least, most, field);
+    if (is(key)) done = read_number(value, least, most, field);
   }
   void integer(std::string_view key, int& field, int least, int most, const char*) {
-    if (key == name) done = read_number(value, least, most, field);
+    if (is(key)) done = read_number(value, least, most, field);
   }
   void flag(std::string_view key, bool& field, const char*) {
-    if (key != name || (value != "true" && value != "false")) return;
+    if (!is(key) || (value != "true" && value != "false")) return;
     field = value == "true";
     done = true;
   }
   template <class Enum, class Names>
   void choice(std::string_view key, Enum& field, const Names& names, const char*) {
     const auto found = std::ranges::find(names, value);
-    if (key != name || key == "preset" || found == names.end()) return;
+    if (!is(key) || key == "preset" || found == names.end()) return;
     field = static_cast<Enum>(found - names.begin());
     done = true;
+  }
+
+ private:
+  bool is(std::string_view key) {
+    known = known || key == name;
+    return key == name;
   }
 };
 
@@ -55,9 +63,9 @@ struct SolverOptions {
   PhysicsConfig physics;
 };
 
-/// Applies `--preset default|paper` or `--set NAME VALUE` at the beginning of `words`. NAME is one
-/// of the sections reverse and physics. A preset stands above what was set before it. Returns how
-/// many words it took: 0 if they are neither or wrong.
+/// Applies `--preset default|paper` or `--set NAME VALUE` at the beginning of `words`. NAME is a
+/// setting of the section reverse or, if that has none of this name, of physics. A preset stands
+/// above what was set before it. Returns how many words it took: 0 if they are neither or wrong.
 inline std::size_t apply(std::span<char* const> words, SolverOptions& options) {
   const std::string_view flag = words[0];
   if (flag == "--preset" && words.size() >= 2) {
@@ -68,9 +76,9 @@ inline std::size_t apply(std::span<char* const> words, SolverOptions& options) {
     return 2;
   }
   if (flag != "--set" || words.size() < 3) return 0;
-  Setter setter{words[1], words[2]};
+  Setter setter(words[1], words[2]);
   options.reverse.visit(setter);
-  options.physics.visit(setter);
+  if (!setter.known) options.physics.visit(setter);
   return setter.done ? 3 : 0;
 }
 

@@ -111,7 +111,7 @@ class Row:
 
     dump: Json  # with ours
     disagreement: float
-    peer: Peer | None  # without a start IPOPT is not run
+    peer: Peer
 
     @property
     def decided(self) -> bool:
@@ -121,14 +121,12 @@ class Row:
     @property
     def both(self) -> bool:
         """Whether IPOPT ended, too."""
-        return self.decided and self.peer is not None and self.peer.converged
+        return self.decided and self.peer.converged
 
     def __str__(self) -> str:
         d, peer = self.dump, self.peer
         words = f"{d['number']:5} {d['kind']:9} {self.disagreement:8.1e} | {d['status']:15}"
         words += f"{d['iterations']:5} {d['cpu_s']:8.4f} {d['objective']:9.4f} | "
-        if peer is None:
-            return words + "no start"
         end = "failed" if not peer.converged else "" if peer.reaches_end else "misses the end"
         return f"{words}{peer.iterations:5} {peer.cpu:8.3f} {peer.objective:9.4f} {end}"
 
@@ -136,7 +134,7 @@ class Row:
 def compared(dump: Json) -> Row:
     """Solves the problem with IPOPT."""
     problem = PeerProblem(dump)
-    return Row(dump, disagreement(problem), solve(problem) if dump["start"] else None)
+    return Row(dump, disagreement(problem), solve(problem))
 
 
 def margin(row: Row) -> float | None:

@@ -90,7 +90,9 @@ Json dumped(const Entry& entry, const reverse::ReverseModel& model,
   const reverse::Candidate& candidate = *entry.candidate;
   const reverse::ReverseProblem& nlp = candidate.problem();
   const bool paper = config.preset == reverse::ReversePreset::kPaper;
-  const auto start = paper ? reverse::static_iterate(nlp) : warm_start(nlp);
+  // As FilterSqp and MeritSqp start.
+  const auto warm = paper ? std::nullopt : warm_start(nlp);
+  const reverse::Iterate start = warm ? *warm : reverse::static_iterate(nlp);
   const reverse::Violation v = violation(nlp, solved.x);
   VectorXd state(3 * static_cast<Eigen::Index>(entry.job.end.size()));
   for (std::size_t k = 0; k < entry.job.end.size(); ++k)
@@ -107,7 +109,7 @@ Json dumped(const Entry& entry, const reverse::ReverseModel& model,
           {"members", candidate.bodies()},
           {"end", std::vector<double>(nlp.end.begin(), nlp.end.end())},
           {"direction", {nlp.direction.x(), nlp.direction.y()}},
-          {"start", start ? iterate(*start) : Json()},
+          {"start", iterate(start)},
           {"status", name(solved.status)},
           {"iterations", solved.iterations},
           {"cpu_s", cpu},

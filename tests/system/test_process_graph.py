@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -215,3 +218,26 @@ def test_bad_words_are_named(net: network.Network, tmp_path: Path) -> None:
     assert graph.coordinator(-1).wait(PATIENCE) == 2
     graph.config.write_text("task: nowhere.yaml\n")
     assert graph.server().wait(PATIENCE) == 2
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        ["{coordinator}", "{config}", "a-run", "{folder}"],
+        [sys.executable, "-m", "rtg.bus.record", "{config}", "a-run", "{folder}/transitions.npz"],
+    ],
+    ids=["coordinator", "recorder"],
+)
+def test_a_folder_that_does_not_exist_is_refused_before_the_search(
+    tmp_path: Path, program: list[str]
+) -> None:
+    places = {
+        "coordinator": paths.program("rtg_beam_coordinator"),
+        "config": paths.CONFIG / "gathering.yaml",
+        "folder": tmp_path / "none",
+    }
+    words = [word.format(**places) for word in program]
+    env = {**os.environ, "PYTHONPATH": str(paths.ROOT / "train")}
+    ended = subprocess.run(words, env=env, stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
+    assert ended.returncode == 2
+    assert f"{tmp_path / 'none'}: no such folder; legal: " in ended.stderr

@@ -27,7 +27,7 @@ struct ReverseConfig {
   double heading_weight = 100.0;   // κ_θ
   double speed_weight = 0.5;       // χ, limits the speed of objects to about the robot's
   double terminal_weight = 300.0;  // K of the spring to the final state; 0: the state is fixed, but
-                                   // then few rest states of Box2D have a predecessor
+                                   // then not all rest states of Box2D have a predecessor
   double terminal_tolerance = 0.05;  // largest miss of the final state in a valid solution [m]
   double plain_barrier = 0.0;        // μ of the paper's -μ log g [J]; 0: the barrier of `physics`
   double sharpness = 0.0;            // α in the reverse problem [1/m]; 0: that of `physics`

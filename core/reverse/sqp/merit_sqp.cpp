@@ -83,7 +83,9 @@ class MeritSqp {
   /// Returns whether a trial point was accepted.
   bool line_search() {
     const double before = merit_.value(now_.objective, now_.violation);
-    const double slope = merit_.slope(newton_.objective_slope(x_, step_), now_.violation);
+    // The Hessian of the plain barrier is not convex, so that a step may lead uphill.
+    const double slope =
+        std::min(merit_.slope(newton_.objective_slope(x_, step_), now_.violation), 0.0);
     for (double alpha = 1.0; alpha >= kLeastStep; alpha *= 0.5) {
       bool legal = bounded(step_, alpha);
       if (!legal) continue;

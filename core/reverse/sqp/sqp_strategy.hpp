@@ -35,8 +35,9 @@ class SqpStrategy {
   /// Otherwise it has ended with status(). To be called after each linearisation. Counts an
   /// iteration, unless it repeats one with the Hessian of the objective.
   bool goes_on(const Figures& at);
-  /// Returns whether to solve a Newton system again, with pivoting, in which the usual solver met a
-  /// singular pivot. Counts how often it did: where it always does, no solution follows.
+  /// To be called if the usual solver met a singular pivot. Returns whether to solve the Newton
+  /// system again, with pivoting: true ten times, then false, as the candidate has no solution
+  /// then.
   bool may_pivot();
   /// Repeats the iteration with the Hessian of the objective or, if that was used already, with a
   /// larger δ. To be called if the system is singular or the model is not convex along the step.

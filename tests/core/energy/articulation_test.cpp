@@ -66,7 +66,7 @@ TEST(Articulation, TransposedJacobianIsTheTranspose) {
 }
 
 // A lane each for chains of other lengths; the last lane is empty.
-TEST(Articulation, EveryLaneHasPinsOfItsOwn) {
+TEST(Articulation, EveryLaneHasHingesOfItsOwn) {
   constexpr int kLast = kWidth<Lanes> - 1;
   std::vector<ChainScene> scenes(static_cast<std::size_t>(kWidth<Lanes>));
   Articulation<Lanes> all = Articulation<Lanes>::room_for(scenes[0].energy.scene().articulation());
@@ -74,6 +74,9 @@ TEST(Articulation, EveryLaneHasPinsOfItsOwn) {
   for (int l = 0; l < kLast; ++l) {
     ChainScene& scene = scenes[static_cast<std::size_t>(l)];
     scene.scene.joints[0].on_parent.x() += 0.1 * l;
+    scene.scene.joints[0].lower -= 0.1 * l;
+    scene.scene.joints[0].upper += 0.2 * l;
+    scene.scene.bodies[3].shape = box(2.4 + 0.1 * l, 0.7);
     scene.update();
     all.load(l, scene.energy.scene().articulation());
     const VectorXd p = scattered(scene, 6);
@@ -89,6 +92,14 @@ TEST(Articulation, EveryLaneHasPinsOfItsOwn) {
       EXPECT_NEAR(lane(at.p[m], l), expected[static_cast<Eigen::Index>(m)], 1e-14);
   }
   for (const Lanes& x : at.p) EXPECT_EQ(lane(x, kLast), 0.0);
+  for (std::size_t k = 0; k < all.hinges().size(); ++k)
+    for (int l = 0; l < kLast; ++l) {
+      const Articulation<double>& one =
+          scenes[static_cast<std::size_t>(l)].energy.scene().articulation();
+      EXPECT_EQ(lane(all.hinges()[k].lower, l), one.hinges()[k].lower);
+      EXPECT_EQ(lane(all.hinges()[k].upper, l), one.hinges()[k].upper);
+      EXPECT_EQ(lane(all.hinges()[k].reach, l), one.hinges()[k].reach);
+    }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "core/world/separation.hpp"
 #include "tests/support/random_push.hpp"
 
@@ -24,6 +26,14 @@ TEST(FreePath, EndsWhereABodyIsNear) {
   EXPECT_NEAR(free_length({3, 0, 0}, {4, 0, 0}), 2.0 - kNear, 0.006);
   EXPECT_NEAR(free_length({3, 0.9, 0}, {4, 0, 0}), 2.0 - kNear, 0.006);
   EXPECT_EQ(free_length({1.02, 0, 0}, {2, 0, 0}), 0.0);
+}
+
+// Corner beside corner, so that the circles around the bodies do not touch.
+TEST(FreePath, EndsWhereTheCornersOfTwoBodiesAreNear) {
+  const Scene scene = two_boxes();
+  const double corner = std::numbers::pi / 4.0, beside = std::numbers::sqrt2 + 0.03;
+  const Poses poses{{0, 0, corner}, {3, beside, corner}};
+  EXPECT_LT(free_path_length(scene, poses, {4, 0, corner}), 3.0);
 }
 
 TEST(FreePath, IsTheWholePathPastBodiesBesideAndBehind) {

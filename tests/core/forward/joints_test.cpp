@@ -96,6 +96,33 @@ TEST(Joints, ALimitStopsADoorAndTheRobotThatPushesIt) {
   EXPECT_EQ(newton[2], door.start[2]);
 }
 
+TEST(Joints, TheLowerLimitStopsADoorToo) {
+  Door door;
+  door.scene.joints[0].lower = -0.4;
+  door.start[0].y = 1.2;
+  const Poses box2d = Box2dSimulator(door.scene, kPush, kPhysics).push(door.start, 36).end;
+  EXPECT_NEAR(box2d[1].theta, -0.4, 0.02);
+}
+
+// Links that are jammed between each other and a wall never come to rest.
+TEST(Joints, LinksThatDoNotComeToRestAreReported) {
+  Scene scene = testing::robot_and_chain();
+  scene.bodies.push_back({"wall", "wall", box(1.0, 4.0), 1.0, 0.5, true});
+  const Box2dSimulator simulator(scene, kPush, kPhysics);
+  Rng rng(3);
+  int restless = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    Poses poses;
+    for (std::size_t i = 0; i < scene.size(); ++i)
+      poses.push_back({rng.uniform(-1.5, 1.5), rng.uniform(-1.5, 1.5), rng.uniform(-3.0, 3.0)});
+    const PushOutcome first = simulator.settle(with_closed_joints(scene, poses));
+    ASSERT_TRUE(is_finite(first.end));
+    restless += !first.ok;
+  }
+  EXPECT_GT(restless, 0);
+  EXPECT_LT(restless, 20);
+}
+
 TEST(Joints, AStepEndsWhereTheEnergyOverTheCoordinatesIsLeast) {
   const ChainScene scene;
   const energy::StepEnergy& energy = scene.energy;

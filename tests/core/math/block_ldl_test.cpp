@@ -123,5 +123,24 @@ TEST(BlockLdl, SingularPivotsAreReported) {
   EXPECT_FALSE(factor.regular());
 }
 
+TEST(BlockLdl, WhetherAPivotIsSingularDoesNotDependOnItsUnit) {
+  Rng rng(5);
+  const BlockMatrix<double> regular = random_matrix(3, 1, 3.0, rng);
+  BlockMatrix<double> singular = regular;
+  singular.at(0, 0) << 1.0, 1.0, 0.0, 1.0, 1.0 + 1e-15, 0.0, 0.0, 0.0, 1.0;
+  for (const double unit : {1e-12, 1e-6, 1e6, 1e12}) {
+    const auto is_regular = [&](BlockMatrix<double> A) {
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j <= i; ++j)
+          if (A.has(i, j)) A.at(i, j) *= unit;
+      BlockLdl<double> factor(3);
+      factor.factorize(A);
+      return factor.regular();
+    };
+    EXPECT_TRUE(is_regular(regular)) << unit;
+    EXPECT_FALSE(is_regular(singular)) << unit;
+  }
+}
+
 }  // namespace
 }  // namespace rtg

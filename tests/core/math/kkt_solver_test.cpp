@@ -97,6 +97,21 @@ TEST_P(KktMethods, SingularAndNonFiniteSystemsAreReported) {
   }
 }
 
+TEST_P(KktMethods, SystemsThatOnlyRoundingKeepsFromBeingSingularAreReported) {
+  const auto solver = make_kkt_solver(GetParam());
+  Rng rng(6);
+  for (int trial = 0; trial < 20; ++trial) {
+    BlockTridiagonal K = random_system(1, rng);
+    const auto n = K.A[0].rows();
+    MatrixXd M = MatrixXd::Identity(n, n + 1);
+    M.col(n) = noise(n, 1.0, rng);
+    K.A[0] = M.transpose() * K.A[0] * M;  // of rank n
+    EXPECT_FALSE(solver->factorize(K)) << trial;
+    K.A[0](n, n) += 1e-6;
+    EXPECT_TRUE(solver->factorize(K)) << trial;
+  }
+}
+
 /// Appends Newton systems of a solve: at the solution, disturbed, with the objective's Hessian and
 /// the exact one, final state held by a spring and fixed.
 void add_newton_systems(const testing::TouchingScene& scene,

@@ -201,6 +201,7 @@ TEST(Separation, JointedBodiesMayOverlap) {
 TEST(Separation, DistanceToASegmentIsThatToItsNearestPoint) {
   EXPECT_DOUBLE_EQ(distance_to_segment({1, 2}, {0, 0}, {3, 0}), 2.0);
   EXPECT_DOUBLE_EQ(distance_to_segment({-3, 4}, {0, 0}, {3, 0}), 5.0);
+  EXPECT_DOUBLE_EQ(distance_to_segment({6, 4}, {0, 0}, {3, 0}), 5.0);
   EXPECT_DOUBLE_EQ(distance_to_segment({3, 4}, {0, 0}, {0, 0}), 5.0);
 }
 

@@ -158,7 +158,9 @@ def test_methods_that_cannot_be_compared_are_refused(words, more, what):
     begin(naive)
     alone = [word.replace("ddqn_naive,", "") for word in words]
     prepare_runs(parse([*alone, "--set", "train.learning_rate=0.5"]))
-    prepare_runs(parse([*alone, "--sweep", more]))
+    for run in prepare_runs(parse([*alone, "--sweep", more])):
+        begin(run)
+    prepare_runs(parse([*alone, "--set", "train.learning_rate=0.5"]))
     with pytest.raises(UserError, match=f"ddqn_naive/seed-1: was made with {what}; legal: "):
         prepare_runs(parse([*alone, "--set", more]))
     with pytest.raises(UserError, match=f"ddqn_naive/seed-1: was made with {what}; legal: "):

@@ -139,18 +139,39 @@ def test_bad_input_of_a_worker_ends_the_run_at_once(graph):
 def test_a_failure_of_coordinator_or_trainer_ends_the_run_with_its_last_words(graph, name):
     graph.let("rtg_beam_coordinator", PATIENT)
     graph.let("python", PATIENT)
-    graph.let(name, "echo out of memory; exit 3")
+    graph.let(name, "echo out of memory; exit 4")
     status, out = graph.run()
-    assert status == 3
-    assert "ended with exit status 3; the end of " in out and out.endswith("out of memory\n")
+    assert status == 4
+    assert "ended with exit status 4; the end of " in out and out.endswith("out of memory\n")
     assert graph.programs() == []
 
 
 def test_a_coordinator_that_gave_units_up_lets_the_trainer_finish(graph):
-    graph.let("rtg_beam_coordinator", f"{DONE}; exit 1")
+    graph.let("rtg_beam_coordinator", f"{DONE}; echo working; echo 2 units; exit 3")
     graph.let("python", "sleep 1; echo learned")
-    assert graph.run() == (0, "")
+    assert graph.run() == (0, "2 units\n")
     assert graph.log("trainer") == "learned\n"
+
+
+def test_a_coordinator_that_fails_after_the_search_ends_the_run(graph):
+    graph.let("rtg_beam_coordinator", f"{DONE}; echo no memory; exit 1")
+    graph.let("python", PATIENT)
+    status, out = graph.run()
+    assert status == 1
+    assert out.endswith("no memory\n")
+
+
+def test_after_the_coordinator_no_worker_is_started_again(graph):
+    graph.let("rtg_beam_coordinator", f"sleep 0.5; {DONE}")
+    graph.let("rtg_reverse_worker", "sleep 1; echo no coordinator; exit 1")
+    graph.let("python", "sleep 2.5")
+    assert graph.run() == (0, "")
+
+
+def test_a_program_that_does_not_want_to_end_is_killed(graph):
+    graph.let("rtg_forward_sim_server", "trap '' TERM; while :; do sleep 0.05; done")
+    assert graph.run() == (0, "")
+    assert graph.programs() == []
 
 
 def test_a_coordinator_that_waits_in_vain_is_not_waited_for(graph):
@@ -185,7 +206,14 @@ def test_no_program_outlives_the_script(graph):
     wait_for(lambda: graph.programs() == [])
 
 
-def test_a_consumer_that_does_not_exist_is_refused(graph):
-    status, out = graph.run("trainr")
+@pytest.mark.parametrize("words", ["trainr", "recorder --resume", "trainer --resum"])
+def test_a_consumer_that_does_not_exist_is_refused(graph, words):
+    legal = "trainer, trainer --resume, recorder"
+    assert graph.run(*words.split()) == (2, f"graph.sh: no consumer '{words}'; legal: {legal}\n")
+
+
+def test_a_folder_without_a_configuration_is_refused(graph):
+    (graph.run_folder / "config.yaml").unlink()
+    status, out = graph.run()
     assert status == 2
-    assert out == "graph.sh: no consumer 'trainr'; legal: trainer, recorder\n"
+    assert out.startswith(f"graph.sh: '{graph.run_folder}' is no folder with a config.yaml; ")

@@ -12,7 +12,7 @@ from pathlib import Path
 from rtg import _core
 from rtg.bus.bus import Bus
 from rtg.bus.transition_stream import TransitionStream
-from rtg.errors import RunError
+from rtg.errors import RunError, UserError
 from rtg.files.recorder import Recorder
 
 _POLL = 0.1  # [s]
@@ -25,8 +25,10 @@ def _say(words: str) -> None:
 def record(config: _core.Config, run: str, file: Path) -> None:
     """Waits for the end of the run's transitions and writes them to `file`.
 
-    Raises RunError if the coordinator was restarted.
+    Raises RunError if the coordinator was restarted, UserError if there is no folder for the file.
     """
+    if not file.parent.is_dir():
+        raise UserError(f"{file.parent}: no such folder; legal: a file in a folder that exists")
     bus = Bus(config.run.bus, run)
     if bus.warning:
         _say(bus.warning)
@@ -47,7 +49,7 @@ def main(argv: list[str]) -> int:
         return 2
     try:
         record(_core.Config.from_file(Path(argv[0])), argv[1], Path(argv[2]))
-    except (_core.ConfigError, FileNotFoundError) as error:
+    except (_core.ConfigError, UserError, FileNotFoundError) as error:
         print(f"rtg.bus.record: {error}", file=sys.stderr)
         return 2
     except RunError as error:

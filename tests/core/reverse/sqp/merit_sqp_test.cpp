@@ -132,6 +132,7 @@ ReverseConfig small_weights() {
 TEST(MeritSqp, EveryIterationLowersTheMeritAndKeepsToTheSafeguard) {
   expect_descent(PaperScene(small_weights()), 15);  // full steps would break the safeguard
   expect_descent(FreeRobot(small_weights()), 80);   // and here, from the 58th on, raise the merit
+  expect_descent(PaperScene(reverse_preset(ReversePreset::kPaper)), 15);
 }
 
 TEST(MeritSqp, IteratesEndInTheGivenStateWithTheForcesOfTheirGaps) {
