@@ -65,6 +65,22 @@ def test_methods_differ_in_these_values_alone() -> None:
     assert randomised == ["ddqn_rtg_dr"]
 
 
+def test_the_preset_paper_differs_in_these_values_alone() -> None:
+    default, paper = values("ddqn_rtg"), values("ddqn_rtg", "train.preset=paper")
+    table_2 = {"batch": 512, "learning_rate": 5e-5, "target_sync": 250, "target_rate": 1.0}
+    exploration = {"epsilon_start": 1.0, "epsilon_end": 0.05, "epsilon_share": 0.1}
+    uniform = {"offline_share": -1.0, "recent_share": 0.0, "nearby_share": 0.0}
+    of_default = (
+        "target_acts clipped_double_q dueling layer_norm small_head clip_targets value_bounds "
+        "leave_loops reduced_precision"
+    )
+    without = {**dict.fromkeys(of_default.split(), False), "averaging_rate": 1.0, "discount": 0.0}
+    course = {"start_jitter": 0.0, "eval_every": 10000, "stop_at_success": 0.0}
+    changed = {**table_2, **exploration, **uniform, **without, **course, "preset": "paper"}
+    default["train"] |= changed
+    assert paper == default
+
+
 def test_settings_stand_above_the_method_and_it_above_presets_and_the_file() -> None:
     assert values("her", "train.hindsight=2")["train"]["hindsight"] == 2
     paper = values("ddqn_random", "train.preset=paper")
