@@ -99,6 +99,16 @@ TEST(ReverseSimulator, ContactForcesReachByTheRangeBeyondTheSkin) {
 
 // With the constants that eq. (6) leaves open as in the preset, the box that the robot touches goes
 // back with it; with a weak barrier the robot lets go of it.
+// Box2D lets bodies overlap by its slop, 5 mm.
+TEST(ReverseSimulator, AnEndInWhichBodiesOverlapByBox2dsSlopHasAStart) {
+  for (const double overlap : {0.0, 0.002, 0.005}) {
+    const ReverseJob job{{{0, 0, 0}, {1.4 - overlap, 0, 0}}, 0};
+    const ReverseResult result = solve(robot_and_boxes(1), job);
+    ASSERT_EQ(result.status, SolveStatus::kConverged) << overlap;
+    EXPECT_LT(result.predecessors[0][1].x, job.end[1].x - 1.0) << overlap;
+  }
+}
+
 TEST(ReverseSimulator, ThePapersPresetDragsTheBoxThatTheRobotTouches) {
   ReverseConfig paper = reverse_preset(ReversePreset::kPaper);
   const ReverseJob job{{{0, 0, 0}, {1.46, 0.1, 0.0}}, 0};

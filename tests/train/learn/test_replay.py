@@ -93,6 +93,14 @@ def test_batches_are_offline_until_a_batch_of_online_data_exists() -> None:
     assert replay.sample(32).offline == 16
 
 
+def test_with_a_share_of_nothing_all_is_online() -> None:
+    replay = buffer(offline_share=0.0)
+    replay.add_offline(random_transitions(300))
+    for tag in range(64):
+        add_online(replay, float(tag))
+    assert [replay.sample(64).offline for _ in range(5)] == [0] * 5
+
+
 @pytest.mark.parametrize("capacity", [3000, 1200])  # the ring not yet full, and full
 def test_a_share_of_the_online_rows_is_recent(capacity: int, monkeypatch) -> None:
     monkeypatch.setattr("rtg.learn.replay.RECENT_COUNT", 100)
