@@ -5,8 +5,8 @@
 namespace rtg {
 namespace {
 
-constexpr double kAccurate =
-    1e-12;  // residual / (|r| + |x|) from which on a solution is not refined
+// Solutions with a smaller residual / (|r| + |x|) are not refined.
+constexpr double kAccurate = 1e-12;
 
 double largest(const BlockVector& x) {
   double most = 0.0;

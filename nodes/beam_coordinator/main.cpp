@@ -2,7 +2,8 @@
 //
 // Generates the transitions of the run named RUN with the workers and the server on the bus. Writes
 // FOLDER/generation.json. Ends when all living consumers of the transition stream, and at least
-// CONSUMERS (default 1), have all of it. CONFIG.yaml is the resolved configuration of the run.
+// CONSUMERS (default 1), have all of it. CONFIG.yaml is the resolved configuration of the run. Exit
+// status 3 if the transitions are complete but units of work were skipped.
 
 #include <cstdio>
 #include <filesystem>

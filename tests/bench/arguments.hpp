@@ -29,8 +29,6 @@ struct Setter {
   std::string_view name, value;
   bool known = false, done = false;
 
-  Setter(std::string_view setting, std::string_view text) : name(setting), value(text) {}
-
   void number(std::string_view key, double& field, double least, double most, const char*) {
     if (is(key)) done = read_number(value, least, most, field);
   }
@@ -50,7 +48,6 @@ struct Setter {
     done = true;
   }
 
- private:
   bool is(std::string_view key) {
     known = known || key == name;
     return key == name;
@@ -76,7 +73,7 @@ inline std::size_t apply(std::span<char* const> words, SolverOptions& options) {
     return 2;
   }
   if (flag != "--set" || words.size() < 3) return 0;
-  Setter setter(words[1], words[2]);
+  Setter setter{words[1], words[2]};
   options.reverse.visit(setter);
   if (!setter.known) options.physics.visit(setter);
   return setter.done ? 3 : 0;

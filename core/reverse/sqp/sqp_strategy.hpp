@@ -36,8 +36,8 @@ class SqpStrategy {
   /// iteration, unless it repeats one with the Hessian of the objective.
   bool goes_on(const Figures& at);
   /// To be called if the usual solver met a singular pivot. Returns whether to solve the Newton
-  /// system again, with pivoting: true ten times, then false, as the candidate has no solution
-  /// then.
+  /// system again, with pivoting: true ten times per candidate. One that needs more has no
+  /// solution.
   bool may_pivot();
   /// Repeats the iteration with the Hessian of the objective or, if that was used already, with a
   /// larger δ. To be called if the system is singular or the model is not convex along the step.

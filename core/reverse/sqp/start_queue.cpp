@@ -6,11 +6,7 @@ namespace rtg::reverse {
 
 template <class T>
 StartQueue<T>::StartQueue(const ReverseProblem& like)
-    : problem_(like),
-      warm_(problem_),
-      x_(problem_.energy, like.sub_steps),
-      warm_x_(x_),
-      wanted_(false) {}
+    : problem_(like), warm_(problem_), x_(problem_.energy, like.sub_steps), warm_x_(x_) {}
 
 template <class T>
 void StartQueue<T>::begin(std::span<const ReverseProblem* const> problems,
@@ -38,21 +34,21 @@ template <class T>
 void StartQueue<T>::prepare() {
   ready_.clear();
   handed_out_ = 0;
-  wanted_ = Mask<T>(false);
+  Mask<T> wanted(false);
   for (int l = 0; l < kWidth<T>; ++l) {
     problem_.energy.unload(l);
     if (next_ == problems_.size()) continue;
     const std::size_t k = next_++;
     problem_.load(l, *problems_[k]);
     if (!starts_.empty()) x_.load(l, *problems_[k], starts_[k]);
-    set_lane(wanted_, l, true);
+    set_lane(wanted, l, true);
     ready_.push_back(static_cast<int>(k));
   }
-  if (!ready_.empty() && starts_.empty()) find_starts();
+  if (!ready_.empty() && starts_.empty()) find_starts(wanted);
 }
 
 template <class T>
-void StartQueue<T>::find_starts() {
+void StartQueue<T>::find_starts(const Mask<T>& wanted) {
   const energy::SceneModel<T>& energy = problem_.energy;
   // The static iterate: at rest in the final state, λ = λ(g), c = 0.
   for (energy::Placement<T>& level : x_.p) {
@@ -64,7 +60,7 @@ void StartQueue<T>::find_starts() {
   for (std::vector<T>& y : x_.multipliers) std::ranges::fill(y, T(0.0));
   const Mask<T> open = energy.least_gap(x_.p[0]) > T(0.0) && energy.separated(x_.p[0]);
   warm_x_ = x_;
-  const Mask<T> found = warm_.find(wanted_, warm_x_);
+  const Mask<T> found = warm_.find(wanted, warm_x_);
   if (problem_.fixed_end()) {  // a forward simulation ends near the final state, not in it
     warm_x_.p.back() = x_.p.back();
     warm_x_.forces.back() = x_.forces.back();

@@ -27,7 +27,7 @@ class StartQueue {
 
  private:
   void prepare();
-  void find_starts();
+  void find_starts(const Mask<T>& wanted);
 
   std::span<const ReverseProblem* const> problems_;
   std::span<const Iterate> starts_;
@@ -37,7 +37,6 @@ class StartQueue {
   ProblemLanes<T> problem_;
   WarmStart<T> warm_;
   Trajectory<T> x_, warm_x_;
-  Mask<T> wanted_;
 };
 
 }  // namespace rtg::reverse
