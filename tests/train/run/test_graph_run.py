@@ -73,7 +73,7 @@ def test_what_the_network_lacks_is_told(plan, monkeypatch):
 def test_work_that_was_given_up_is_told(plan, tmp_path):
     report = json.dumps({**REPORT, "units_given_up": 2})
     coordinator = tmp_path / "rtg_beam_coordinator"
-    coordinator.write_text(f"#!/bin/sh\necho '{report}' > \"$3/generation.json\"\nexit 1\n")
+    coordinator.write_text(f"#!/bin/sh\necho '{report}' > \"$3/generation.json\"\nexit 3\n")
     with display(io.StringIO()) as shown:
         measured = graph_run.run(plan, shown)
     assert measured["defects"] == ["the coordinator gave up 2 units of work"]
