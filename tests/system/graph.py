@@ -17,6 +17,7 @@ from rtg.run.run_args import Override
 _TINY = paths.CONFIG / "tests" / "tiny.yaml"
 _RUN = "system-test"
 _CONSUMER = Path(__file__).with_name("consumer.py")
+_DEADLY_UNIT = Path(__file__).with_name("deadly_unit.py")
 PATIENCE = 120.0  # [s] until a test that hangs fails
 
 Process = subprocess.Popen[str]
@@ -45,7 +46,14 @@ class Graph:
 
     def consumer(self, name: str = "transitions", *words: str) -> Process:
         file = self.folder / f"{name}.npz"
-        command = [sys.executable, _CONSUMER, self.config, _RUN, file, *words]
+        return self._python(_CONSUMER, file, *words)
+
+    def deadly_unit(self) -> Process:
+        """Lets three workers in a row fall silent at the same unit, then ends."""
+        return self._python(_DEADLY_UNIT)
+
+    def _python(self, script: Path, *words: str | Path) -> Process:
+        command = [sys.executable, script, self.config, _RUN, *words]
         return self.network.start(command, PYTHONPATH=str(paths.ROOT / "train"))
 
     def transitions(self, name: str = "transitions") -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -125,6 +126,19 @@ def test_a_killed_worker(net: network.Network, tmp_path: Path, long: bytes) -> N
     assert lost(consumer) == 0
     assert_all_left(coordinator, server, another)
     assert graph.transitions() == long
+
+
+def test_a_unit_that_no_worker_survives(net: network.Network, tmp_path: Path) -> None:
+    graph = Graph(net, tmp_path)
+    server, consumer = graph.server(), graph.consumer()
+    coordinator, deadly = graph.coordinator(), graph.deadly_unit()
+    assert deadly.wait(PATIENCE) == 0
+    worker = graph.worker(1)
+    assert lost(consumer) == 0
+    assert coordinator.wait(PATIENCE) == 3
+    assert_all_left(server, worker)
+    report = json.loads((tmp_path / "generation.json").read_text())
+    assert (report["units_given_up"], report["transitions"]) == (1, 2000)
 
 
 def test_a_killed_server(net: network.Network, tmp_path: Path, long: bytes) -> None:

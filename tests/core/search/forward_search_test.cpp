@@ -84,6 +84,15 @@ TEST_F(ForwardSearchTest, EndsWithItsFirstSuccess) {
   EXPECT_TRUE(search.grow(replay).empty());
 }
 
+TEST_F(ForwardSearchTest, PlansTheBestSuccessOfItsLastLayer) {
+  task.goal[0].radius = 100.0;  // every state succeeds
+  ForwardSearch search(task, config, start);
+  const std::vector<Transition> kept = search.grow(replay);
+  ASSERT_GT(kept.size(), 1U);
+  EXPECT_TRUE(std::ranges::all_of(kept, &Transition::success));
+  EXPECT_EQ(search.plan(), std::vector{kept.front()});
+}
+
 TEST_F(ForwardSearchTest, HasNoPlanWithinTooFewActions) {
   config.depth = 2;
   EXPECT_TRUE(plan_forward(task, config, start, replay).empty());

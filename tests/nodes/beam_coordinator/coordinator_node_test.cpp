@@ -130,6 +130,18 @@ TEST(CoordinatorNode, AStopEndsTheSearchWithoutAReport) {
   EXPECT_LT(graph.actions.size(), 1200U);
 }
 
+TEST(CoordinatorNode, ASearchThatIsCutShortByAStopHasNoReport) {
+  bus::Bus bus("memq://", "test");
+  std::atomic<bool> stop = false;
+  CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [&] { return stop.load(); }});
+  const auto report = coordinator.run([&](const search::GenerationSeams& seams) {
+    stop = true;
+    while (!seams.cancelled()) std::this_thread::yield();
+    return search::GenerationReport{};
+  });
+  EXPECT_FALSE(report.has_value());
+}
+
 TEST(CoordinatorNode, WhatTheSearchThrowsComesOut) {
   bus::Bus bus("memq://", "test");
   CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [] { return false; }});

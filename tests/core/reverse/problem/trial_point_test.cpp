@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/touching_scene.hpp"
+#include "tests/support/chain_scene.hpp"
 
 namespace rtg::reverse {
 namespace {
@@ -10,16 +10,17 @@ namespace {
 using testing::TouchingScene;
 
 /// A trajectory at rest in contact, and steps from it.
-struct Trial {
-  TouchingScene scene;
+template <class TestScene>
+struct TrialOf {
+  TestScene scene;
   ReverseConfig config;
   ReverseProblem problem = scene.problem(config);
   ProblemLanes<double> lanes{problem};
   Trajectory<double> x{lanes.energy, problem.sub_steps}, moved = x;
-  StageStep<double> step{3, problem.sub_steps};
+  StageStep<double> step{scene.energy.scene().movable(), problem.sub_steps};
   PerContact<double> force_step = x.forces;
 
-  Trial() {
+  TrialOf() {
     lanes.load(0, problem);
     x.load(0, problem, static_iterate(problem));
     moved = x;
@@ -36,6 +37,8 @@ struct Trial {
     return answer;
   }
 };
+
+using Trial = TrialOf<TouchingScene>;
 
 TEST(Trial, MovesEverythingByAlphaTimesTheStep) {
   Trial trial;
@@ -65,6 +68,27 @@ TEST(Trial, MovesEverythingByAlphaTimesTheStep) {
       EXPECT_EQ(trial.moved.controls[k], Vector3d(0.25 * trial.step.controls[k]));
     }
     EXPECT_EQ(trial.moved.p[k].turns[1].s, std::sin(trial.moved.p[k].p[5]));
+  }
+}
+
+TEST(Trial, JointedBodiesAndTheirMultipliersFollow) {
+  TrialOf<testing::ChainScene> trial;
+  Rng rng(1);
+  for (std::size_t k = 0; k < trial.step.poses.size(); ++k)
+    for (std::size_t i = 0; i < trial.step.poses[k].size(); ++i) {
+      trial.step.poses[k][i] = testing::noise(3, 0.1, rng);
+      trial.step.multipliers[k][i] = testing::noise(3, 1.0, rng);
+    }
+  const energy::SceneModel<double>& scene = trial.scene.energy.scene();
+  make_trial(scene, trial.x, {trial.step, trial.force_step, 1.0}, trial.moved);
+  for (std::size_t k = 0; k < trial.step.poses.size(); ++k) {
+    energy::Placement<double> closed = trial.moved.p[k];
+    scene.place(closed);
+    EXPECT_EQ(closed.p, trial.moved.p[k].p);
+    std::vector<double> y = trial.moved.multipliers[k];
+    scene.articulation().apply_jacobian(closed, y.data());
+    EXPECT_EQ(y, trial.moved.multipliers[k]);
+    EXPECT_EQ(y[3] != 0.0, k > 0);  // of the first link, a child
   }
 }
 

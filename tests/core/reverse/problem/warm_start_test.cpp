@@ -62,6 +62,22 @@ TEST(WarmStart, ABodyInTheWayBackIsPushedOutOfIt) {
   EXPECT_LT(violation(problem, *x).max(), 1e-6);
 }
 
+// The box rests half a sub-step's stride, 0.1, beyond the gap at which the robot pushes it: as far
+// as objects coast at k_D = 2. Mirrored from a whole stride beyond, it would miss its place by
+// 0.05.
+TEST(WarmStart, MirroringBeginsAsFarBeyondTheRobotsPathAsObjectsCoast) {
+  testing::CoastingScene scene;
+  scene.physics.damping = 2.0;
+  scene.update();
+  const ReverseConfig config;
+  ReverseProblem problem = scene.problem(config);
+  problem.end = energy::stacked({{0, 0, 0}, {1.4 + 0.0087 + 0.1, 0, 0}, {20, 0, 0}});
+  const auto x = warm_start(problem);
+  ASSERT_TRUE(x);
+  EXPECT_LT(x->p[0][3] - problem.end[3], -0.5);
+  EXPECT_LT(terminal_miss(problem, *x), 0.01);
+}
+
 TEST(WarmStart, LeavesUntouchedBodiesAlone) {
   const TouchingScene scene;
   const ReverseConfig config;
