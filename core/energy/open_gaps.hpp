@@ -11,8 +11,10 @@ inline constexpr double kGapFloor = 0.03;
 double least_gap(const StepEnergy& energy, const VectorXd& p);
 
 /// Returns the poses `p` with joints closed and with bodies moved apart where a gap is below
-/// kGapFloor ĝ. The motion follows the gradient of the gap. The barrier needs positive gaps; states
-/// from Box2D may violate this.
+/// kGapFloor ĝ. The motion follows the gradient of the gap.
+///
+/// Departs from the paper: it takes the final state as it is. The barrier needs positive gaps, and
+/// Box2D leaves bodies that touch with gaps on either side of 0.
 VectorXd with_open_gaps(const StepEnergy& energy, const VectorXd& p);
 
 }  // namespace rtg::energy

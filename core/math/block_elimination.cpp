@@ -8,7 +8,7 @@ bool PivotBlock::factorize(const MatrixXd& A) {
   if (!A.allFinite()) return false;
   lu_.compute(A);
   const auto pivots = lu_.matrixLU().diagonal().cwiseAbs();
-  return pivots.size() == 0 || pivots.minCoeff() > 1e-14 * pivots.maxCoeff();
+  return pivots.size() == 0 || pivots.minCoeff() > kLeastPivotRatio * pivots.maxCoeff();
 }
 
 /// Computes the pivots S_{N-1} = A_{N-1}, S_{k-1} = A_{k-1} - B_kᵀ S_k⁻¹ B_k.

@@ -7,8 +7,11 @@
 
 namespace rtg {
 
+/// Least ratio of two pivots of a matrix that counts as regular.
+inline constexpr double kLeastPivotRatio = 1e-14;
+
 /// LU factorisation of a pivot block. factorize() returns false if the block is not finite or
-/// singular: its largest pivot is at least 1e14 times the least.
+/// singular.
 class PivotBlock {
  public:
   [[nodiscard]] bool factorize(const MatrixXd& A);

@@ -38,9 +38,6 @@ SparseColumns sparse(const BlockTridiagonal& K) {
   return S;
 }
 
-/// Least ratio of two pivots of a matrix that counts as regular.
-constexpr double kSingular = 1e-14;
-
 bool all_finite(const std::vector<double>& values) {
   return Eigen::Map<const VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()))
       .allFinite();
@@ -68,7 +65,7 @@ class Umfpack final : public KktSolver {
     const int done = umfpack_di_numeric(columns_.start.data(), columns_.row.data(),
                                         columns_.value.data(), symbolic, &numeric_, control, info);
     umfpack_di_free_symbolic(&symbolic);
-    return done == UMFPACK_OK && info[UMFPACK_RCOND] > kSingular;
+    return done == UMFPACK_OK && info[UMFPACK_RCOND] > kLeastPivotRatio;
   }
 
   [[nodiscard]] BlockVector solve(const BlockVector& r) const override {
@@ -111,7 +108,7 @@ class Klu final : public KktSolver {
     if (!symbolic_) return false;
     numeric_ = klu_factor(S.start.data(), S.row.data(), S.value.data(), symbolic_, &common_);
     return numeric_ && common_.status == KLU_OK && klu_rcond(symbolic_, numeric_, &common_) &&
-           common_.rcond > kSingular;
+           common_.rcond > kLeastPivotRatio;
   }
 
   [[nodiscard]] BlockVector solve(const BlockVector& r) const override {

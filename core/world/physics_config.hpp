@@ -32,6 +32,9 @@ struct PhysicsConfig {
   /// Returns the number of sub-steps for which the robot is held after a push, until bodies come to
   /// rest. Each divides the speed of a free body by 1 + k_D, all together by 100 or more. 0 without
   /// inertia.
+  ///
+  /// Departs from the paper: its states are two successive poses, so that a push may end while
+  /// bodies move. Here it ends at rest, in poses alone, as the learner sees them.
   int settling_steps() const {
     return inertia ? static_cast<int>(std::ceil(std::log(100.0) / std::log1p(damping))) : 0;
   }

@@ -244,16 +244,18 @@ class NeverRegular final : public StageSolver<double> {
   bool solve(const StageSystem<double>&, StageStep<double>&) override { return false; }
 };
 
-TEST(FilterSqp, SolvesSingularSystemsAgainTenTimes) {
+TEST(FilterSqp, SolvesSingularSystemsAgainWithPivoting) {
   const TouchingScene scene;
-  ReverseConfig config;
+  const ReverseConfig config;
   const ReverseProblem problem = scene.problem(config), *one = &problem;
   const Iterate start = static_iterate(problem);
-  ASSERT_GT(solved_from(problem, start).iterations, 10);
+  const SqpResult regular = solved_from(problem, start);
+  ASSERT_GT(regular.iterations, 10);  // SqpStrategy lets ten systems be solved again
   const SqpResult result =
       FilterSqp<double>(problem, std::make_unique<NeverRegular>()).solve({&one, 1}, {&start, 1})[0];
   EXPECT_EQ(result.status, SolveStatus::kSingular);
-  EXPECT_GT(result.iterations, 3);
+  for (std::size_t k = 0; k < result.x.p.size(); ++k)
+    EXPECT_LT((result.x.p[k] - regular.x.p[k]).norm(), 1e-3);
 }
 
 }  // namespace
