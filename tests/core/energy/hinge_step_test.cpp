@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "tests/support/chain_scene.hpp"
 #include "tests/support/differences.hpp"
 
@@ -61,6 +63,23 @@ TEST(HingeStep, GradientAndHessianOfTheStepEnergyMatchDifferences) {
   EXPECT_LT(testing::derivative_error(value, model.gradient.transpose(), d, directions), 1e-7);
   EXPECT_LT(testing::derivative_error(gradient, model.hessian, d, directions), 1e-5);
   EXPECT_LT((model.hessian - model.hessian.transpose()).norm(), 1e-12);
+}
+
+TEST(HingeStep, CurvatureIsProportionalToItsWeight) {
+  const ChainScene scene;
+  const Articulation<double>& articulation = scene.energy.scene().articulation();
+  const Placement<double> at = placed(stacked(scene.poses));
+  const std::vector<double> g(at.p.size(), 1.0);
+  const int M = scene.energy.dofs() / 3;
+  for (const Hinge<double>& hinge : articulation.hinges()) {
+    BlockMatrix<double> once(M), thrice(M);
+    HingeStep<double>(articulation, hinge, at).add_curvature(g.data(), 1.0, once);
+    HingeStep<double>(articulation, hinge, at).add_curvature(g.data(), 3.0, thrice);
+    for (int i = 0; i < M; ++i) {
+      const Block<double> expected = 3.0 * once.at(i, i);
+      EXPECT_EQ(thrice.at(i, i), expected);
+    }
+  }
 }
 
 }  // namespace

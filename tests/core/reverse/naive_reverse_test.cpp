@@ -129,6 +129,8 @@ TEST_F(NaiveReverseTest, BodyOnTheWayBackPrunes) {
   EXPECT_EQ(solve().status, SolveStatus::kConverged);
   end[1] = {-1.61, 0.5, 0.0};  // behind where it ends
   EXPECT_EQ(solve().status, SolveStatus::kConverged);
+  end[1].x = -1.59;  // touched at its end alone
+  EXPECT_EQ(solve().status, SolveStatus::kPruned);
 }
 
 TEST_F(NaiveReverseTest, FixedBodyOnTheWayBackPrunes) {

@@ -111,6 +111,13 @@ TEST_F(ForwardSearchTest, APushThatTheSimulatorRejectsLeadsNowhere) {
   EXPECT_TRUE(search.plan().empty());
 }
 
+TEST_F(ForwardSearchTest, DoesNotGoBackToItsStart) {
+  const ReplayBatch held_up = [&](std::span<const ReplayJob> jobs) {
+    return std::vector<ReplayResult>(jobs.size(), {start, true, 0.0});
+  };
+  EXPECT_TRUE(ForwardSearch(task, config, start).grow(held_up).empty());
+}
+
 TEST(GenerateForward, StoresWhatItsBeamsKeepWithBranches) {
   SearchConfig config;
   config.generator = Generator::kForward;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/forward/box2d_simulator.hpp"
+#include "core/search/generation.hpp"
 #include "core/search/state_metric.hpp"
 #include "tests/support/gathering.hpp"
 #include "tests/support/generation_run.hpp"
@@ -54,6 +55,30 @@ TEST(Generate, GivesTheSameBytesForAnyNumberOfThreads) {
 
 TEST(Generate, AnotherSeedGivesOtherTransitions) {
   EXPECT_NE(run_naive(gathering(), small(), 8, 2).stored, reference_run().stored);
+}
+
+/// The attempts that repeat() makes where every `period`-th one stores a transition, `budget` all.
+int attempts(int period, int budget) {
+  const tasks::Task task = gathering();
+  SearchConfig config = small();
+  config.transitions = budget;
+  config.branches = 0;
+  const GenerationSeams seams{.store = [](std::span<const Transition>) {}};
+  Generation run{task, config, 7, seams};
+  int made = 0;
+  run.repeat([&](int number) {
+    EXPECT_EQ(number, made++);
+    if (made % period != 0) return;
+    const Transition step{testing::robot_at(made), 0, testing::robot_at(made + 1)};
+    run.data.store({&step, 1}, {});
+  });
+  return made;
+}
+
+TEST(Generate, EndsAfterEightAttemptsInARowThatStoreNothing) {
+  EXPECT_EQ(attempts(5, 20), 100);
+  EXPECT_EQ(attempts(8, 20), 160);
+  EXPECT_EQ(attempts(9, 20), 8);
 }
 
 TEST(Generate, StoresExactlyTheBudget) {

@@ -130,6 +130,7 @@ TEST(Task, JitterIsAllowedUnlessNearlyNoDrawIsLegal) {
   };
   EXPECT_TRUE(allowed(0.5));
   EXPECT_TRUE(allowed(0.1));
+  EXPECT_FALSE(allowed(0.01));  // of 250 draws 2.5 are legal, not 5
   EXPECT_FALSE(allowed(0.002));
 }
 
