@@ -38,11 +38,12 @@ start() { # NAME
 }
 
 stop() { # STATUS: ends all programs, at once on a further signal, and this script
-  trap 'kill -KILL "${!running[@]}"' INT TERM
-  kill "${!running[@]}" 2>/dev/null
-  local deadline=$((SECONDS + 20))
-  while kill -0 "${!running[@]}" && ((SECONDS < deadline)); do sleep 0.1; done
-  kill -KILL "${!running[@]}"
+  local pids deadline=$((SECONDS + 20))
+  pids=$(jobs -p) # not those of `running` alone: a signal may come before start has noted the program
+  trap 'kill -KILL $pids' INT TERM
+  kill $pids
+  while kill -0 $pids && ((SECONDS < deadline)); do sleep 0.1; done
+  kill -KILL $pids
   wait
   exit "$1"
 }
@@ -68,12 +69,14 @@ case "$consumer ${flags[*]}" in
   'trainer ' | 'trainer --resume' | 'recorder ') ;;
   *) refuse "no consumer '$consumer${flags[*]:+ ${flags[*]}}'; legal: trainer, trainer --resume, recorder" ;;
 esac
+workers=$(setting workers)
+[[ $workers =~ ^[1-9][0-9]*$ ]] || refuse "$config: run.workers is '$workers'; legal: a file that ./run.sh TASK --print-config has printed"
 mkdir -p "$logs" && rm -f "$folder/generation.json" || exit 1
 exec 2>/dev/null # bash's own words about programs that have ended
 trap 'stop 130' INT
 trap 'stop 143' TERM
 if [[ $(setting record) == true ]]; then start lcm_logger; fi
-for ((k = 0; k < $(setting workers); ++k)); do start "reverse_worker_$k"; done
+for ((k = 0; k < workers; ++k)); do start "reverse_worker_$k"; done
 start forward_sim_server
 start beam_coordinator
 start "$consumer"

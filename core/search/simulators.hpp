@@ -19,7 +19,7 @@ ReplayOne forward_replay(const tasks::Task& task, const PhysicsConfig& physics,
                          const forward::ForwardConfig& forward = {});
 
 /// Returns seams whose `solve` and `replay` use `threads` threads of this process. The caller sets
-/// `store`, `progress` and `cancelled`.
+/// `store`, and may set `progress` and `cancelled`.
 GenerationSeams in_process_seams(SolveBatch solve, ReplayOne replay, int threads);
 
 }  // namespace rtg::search

@@ -50,6 +50,13 @@ inline Poses state_at(const StateArray& states, std::size_t row) {
   return poses;
 }
 
+/// Returns the only state in `states`. Throws ValueError if there is not exactly one.
+inline Poses only_state(const StateArray& states, std::size_t bodies) {
+  check_bodies(states, bodies);
+  if (states.shape(0) != 1) throw nb::value_error("one state is wanted, [1, bodies, 3]");
+  return state_at(states, 0);
+}
+
 /// Writes x, y, θ of each body to `out`, which has room for 3·bodies numbers.
 inline void write_state(const Poses& poses, double* out) {
   for (const Pose& p : poses) {

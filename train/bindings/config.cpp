@@ -23,17 +23,23 @@ config::Config from_text(const std::string& text, const std::string& name,
   return config::parse_config(text, name, overrides);
 }
 
+template <class Section>
+void bind_section(nb::module_& module, const char* name) {
+  nb::class_<Section> bound(module, name);
+  bind_fields(bound);
+}
+
 }  // namespace
 
 void bind_config(nb::module_& module) {
   module.attr("METHODS") = names_of(config::kMethods);
   nb::exception<config::ConfigError>(module, "ConfigError", PyExc_ValueError);
-  bind_fields<PhysicsConfig>(module, "PhysicsConfig");
-  bind_fields<forward::ForwardConfig>(module, "ForwardConfig");
-  bind_fields<reverse::ReverseConfig>(module, "ReverseConfig");
-  bind_fields<search::SearchConfig>(module, "SearchConfig");
-  bind_fields<config::TrainConfig>(module, "TrainConfig");
-  bind_fields<config::RunConfig>(module, "RunConfig");
+  bind_section<PhysicsConfig>(module, "PhysicsConfig");
+  bind_section<forward::ForwardConfig>(module, "ForwardConfig");
+  bind_section<reverse::ReverseConfig>(module, "ReverseConfig");
+  bind_section<search::SearchConfig>(module, "SearchConfig");
+  bind_section<config::TrainConfig>(module, "TrainConfig");
+  bind_section<config::RunConfig>(module, "RunConfig");
   nb::class_<config::Config>(module, "Config")
       .def_static("from_file", &from_file, nb::arg("file"), nb::arg("overrides") = Overrides{})
       .def_static("from_text", &from_text, nb::arg("text"), nb::arg("name") = "text",

@@ -66,9 +66,9 @@ nanobind::tuple names_of(const Names& names) {
   return nanobind::tuple(found);
 }
 
+/// Binds the fields that Section::visit() shows.
 template <class Section>
-void bind_fields(nanobind::module_& module, const char* name) {
-  nanobind::class_<Section> bound(module, name);
+void bind_fields(nanobind::class_<Section>& bound) {
   Section like;
   FieldBinder<Section> binder(bound, like);
   like.visit(binder);

@@ -39,13 +39,7 @@ void hand_over(const nb::object& store, std::span<const search::Transition> rows
 void report_progress(const nb::object& progress, const search::Progress& p) {
   const nb::gil_scoped_acquire acquire;
   nb::dict line;
-  line["phase"] = p.phase;
-  line["layer"] = p.layer;
-  line["depth"] = p.depth;
-  line["transitions"] = p.transitions;
-  line["target"] = p.target;
-  line["contact_share"] = p.contact_share;
-  line["start_region"] = p.start_region;
+  p.visit([&line](const char* name, const auto& value) { line[name] = value; });
   progress(line);
 }
 
@@ -70,10 +64,8 @@ std::string generate_in_process(const config::Config& config, const nb::object& 
 std::pair<nb::ndarray<nb::numpy, double>, long> plan(const config::Config& config,
                                                      const StateArray& start) {
   const tasks::Task& task = config.task;
-  check_bodies(start, task.scene.size());
-  if (start.shape(0) != 1) throw nb::value_error("one start is wanted, [1, bodies, 3]");
+  const Poses from = only_state(start, task.scene.size());
   search::SearchStats stats;
-  const Poses from = state_at(start, 0);
   std::vector<search::Transition> steps;
   {
     const nb::gil_scoped_release release;

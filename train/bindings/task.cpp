@@ -9,6 +9,7 @@
 #include "core/tasks/contact_heading.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
+#include "train/bindings/fields.hpp"
 
 namespace rtg::bindings {
 namespace {
@@ -102,17 +103,10 @@ std::vector<std::tuple<int, int, Vector2d>> joints(const tasks::Task& task) {
   return out;
 }
 
-/// Returns the only state in `states`. Throws std::invalid_argument if there is not exactly one.
-Poses only_state(const tasks::Task& task, const StateArray& states) {
-  check_bodies(states, task.scene.size());
-  if (states.shape(0) != 1) throw std::invalid_argument("one state is wanted, [1, bodies, 3]");
-  return state_at(states, 0);
-}
-
 /// Returns for each joint whether its angle meets all goal terms on it. The result is false for
 /// joints without a goal term.
 std::vector<bool> joints_reached(const tasks::Task& task, const StateArray& states) {
-  const Poses poses = only_state(task, states);
+  const Poses poses = only_state(states, task.scene.size());
   std::vector<bool> out;
   for (const Joint& joint : task.scene.joints) {
     int asked = 0, held = 0;
@@ -128,7 +122,7 @@ std::vector<bool> joints_reached(const tasks::Task& task, const StateArray& stat
 
 /// Returns one mean centre per kCentroid term of the goal: that of the bodies to which it applies.
 std::vector<Vector2d> centroids(const tasks::Task& task, const StateArray& states) {
-  const Poses poses = only_state(task, states);
+  const Poses poses = only_state(states, task.scene.size());
   std::vector<Vector2d> out;
   for (const tasks::GoalTerm& term : task.goal)
     if (term.subject == tasks::GoalTerm::Subject::kCentroid)
@@ -159,8 +153,9 @@ void bind_goal_term(nb::module_& module) {
 
 void bind_task(nb::module_& module) {
   bind_goal_term(module);
-  nb::class_<tasks::Task>(module, "Task")
-      .def_ro("name", &tasks::Task::name)
+  nb::class_<tasks::Task> bound(module, "Task");
+  bind_fields(bound);
+  bound.def_ro("name", &tasks::Task::name)
       .def_prop_ro("shapes", &shapes)
       .def_prop_ro("names", &names)
       .def_prop_ro("kinds", &kinds)
@@ -172,10 +167,6 @@ void bind_task(nb::module_& module) {
       .def_prop_ro(
           "start", [](const tasks::Task& task) { return state_array(task.start); },
           nb::rv_policy::move)
-      .def_ro("horizon", &tasks::Task::horizon)
-      .def_ro("discount", &tasks::Task::discount)
-      .def_ro("start_jitter", &tasks::Task::start_jitter)
-      .def_ro("randomisation", &tasks::Task::randomisation)
       .def_prop_ro("bodies", [](const tasks::Task& task) { return task.scene.size(); })
       .def_prop_ro("observation_size", &tasks::observation_size)
       .def("observation", &observations, nb::arg("states"))

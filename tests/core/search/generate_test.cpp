@@ -63,7 +63,7 @@ int attempts(int period, int budget) {
   SearchConfig config = small();
   config.transitions = budget;
   config.branches = 0;
-  const GenerationSeams seams{.store = [](std::span<const Transition>) {}};
+  const GenerationSeams seams{{}, {}, [](std::span<const Transition>) {}};
   Generation run{task, config, 7, seams};
   int made = 0;
   run.repeat([&](int number) {

@@ -217,3 +217,12 @@ def test_a_folder_without_a_configuration_is_refused(graph):
     status, out = graph.run()
     assert status == 2
     assert out.startswith(f"graph.sh: '{graph.run_folder}' is no folder with a config.yaml; ")
+
+
+@pytest.mark.parametrize("text", ["run: {workers: 2}\n", "run:\n  workers: 0\n", "seed: 1\n"])
+def test_a_configuration_that_is_not_resolved_is_refused(graph, text):
+    (graph.run_folder / "config.yaml").write_text(text)
+    status, out = graph.run()
+    assert status == 2
+    assert out.startswith(f"graph.sh: {graph.run_folder}/config.yaml: run.workers is '")
+    assert out.endswith("; legal: a file that ./run.sh TASK --print-config has printed\n")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 from rtg.bus.bus import Bus
@@ -15,7 +15,6 @@ class RunWatch:
 
     def __init__(self, bus: Bus, state: RunState) -> None:
         self.state = state
-        self.leaving = False  # True once the coordinator has announced its end
         self._counters: dict[tuple[str, int, int], dict[str, int]] = {}
         bus.subscribe("RTG_PROGRESS", message_type("search_progress_t"), self._on_progress)
         bus.subscribe("RTG_STATUS", message_type("node_status_t"), self._on_status)
@@ -29,18 +28,8 @@ class RunWatch:
         return dict(sorted(total.items()))
 
     def _on_progress(self, message: Any) -> None:
-        self.leaving = self.leaving or bool(message.leaving)
-        self.state = replace(
-            self.state,
-            phase=message.phase,
-            layer=message.layer,
-            depth=message.depth,
-            transitions=message.transitions,
-            target=message.target,
-            contact_share=message.contact_share,
-            start_region=message.start_region,
-            workers=message.workers,
-        )
+        shown = {f.name for f in fields(RunState)} & set(message.__slots__)
+        self.state = replace(self.state, **{name: getattr(message, name) for name in shown})
 
     def _on_status(self, message: Any) -> None:
         key = (message.node, message.number, message.header.sender)
