@@ -12,7 +12,7 @@ enum class Engine {
 };
 inline constexpr std::array<std::string_view, 2> kEngines{"box2d", "newton"};
 
-/// What a run takes for the true dynamics: of replays, training and evaluation.
+/// Names what a run takes for the true dynamics: of replays, training and evaluation.
 struct ForwardConfig {
   Engine engine = Engine::kBox2d;
 

@@ -13,7 +13,7 @@
 
 namespace rtg::bench {
 
-/// Whether the whole text is a number in [least, most]; if so, it is written to `out`.
+/// Returns whether the whole text is a number in [least, most]; if so, it is written to `out`.
 template <class Number>
 bool read_number(std::string_view text, Number least, Number most, Number& out) {
   Number number{};

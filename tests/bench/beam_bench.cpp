@@ -90,7 +90,7 @@ void replay(benchmark::State& state) {
   state.counters["scenes"] = static_cast<double>(jobs.size());
 }
 
-/// Of times on a machine that is not ours alone the median counts.
+/// Runs a benchmark three times: on a machine that is not ours alone the median counts.
 void repeated(benchmark::internal::Benchmark* one) { one->Repetitions(3)->ReportAggregatesOnly(); }
 
 BENCHMARK(over_breadth)

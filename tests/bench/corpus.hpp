@@ -13,7 +13,7 @@
 
 namespace rtg::bench {
 
-/// What makes a reverse problem hard, the worst that applies.
+/// Names what makes a reverse problem hard, the worst that applies.
 enum class Difficulty {
   kFree,    // the robot meets nobody
   kSingle,  // it may drag one object
@@ -27,7 +27,7 @@ inline constexpr std::array<std::string_view, 5> kDifficulties{"free", "single",
 Difficulty difficulty_of(const tasks::Task& task, const PhysicsConfig& physics,
                          const reverse::ReverseJob& job);
 
-/// One candidate that a search has asked for and pruning has let through.
+/// A candidate that a search has asked for and pruning has let through.
 struct Problem {
   std::string task;
   Difficulty difficulty = Difficulty::kFree;
@@ -42,10 +42,11 @@ struct Corpus {
   std::vector<Problem> problems;
 };
 
-/// The tasks of FOLDER/TASK.yaml by name, at least one. Throws std::runtime_error, ConfigError.
+/// Reads the tasks of FOLDER/TASK.yaml by name, at least one. Throws std::runtime_error,
+/// ConfigError.
 std::map<std::string, tasks::Task> read_tasks(const std::filesystem::path& folder);
 
-/// At least one problem. Throws std::runtime_error with file and line, ConfigError.
+/// Reads at least one problem. Throws std::runtime_error with file and line, ConfigError.
 Corpus read_corpus(const std::filesystem::path& folder);
 void write_problems(const std::filesystem::path& file, const std::vector<Problem>& problems);
 

@@ -15,7 +15,7 @@ Gate = tuple[str, Callable[[Times], float], str, float]
 
 
 def ratio(slow: str, fast: str) -> Callable[[Times], float]:
-    """How many times the benchmark `slow` takes what `fast` takes."""
+    """Measures how many times as long the benchmark `slow` takes as `fast`."""
     return lambda times: times[slow] / times[fast]
 
 
@@ -43,7 +43,7 @@ def linearity(family: str) -> Callable[[Times], float]:
 
 
 def kkt(family: str, peer: str, bound: float) -> Gate:
-    """Our KKT solve in lanes against a peer's, of six bodies over 16 sub-steps."""
+    """Compares a peer's KKT solve with ours in lanes, of six bodies over 16 sub-steps."""
     value = ratio(f"{family}/{peer}/16", f"{family}/lanes/16")
     return f"{family}.{peer}_by_ours", value, ">=", bound
 
@@ -67,12 +67,12 @@ _HOLDS = {">=": operator.ge, "<=": operator.le}
 
 
 def gate(name: str, value: float, relation: str, bound: float) -> bool:
-    """Prints the line of a gate; whether it holds. `relation`: ">=" or "<="."""
+    """Prints the line of a gate and returns whether it holds. `relation`: ">=" or "<="."""
     passed = bool(_HOLDS[relation](value, bound))
     print(f"gate {name} {value:.4g} {relation}{bound:g} {'PASS' if passed else 'FAIL'}")
     return passed
 
 
 def check(times: Times) -> bool:
-    """Prints a line per gate; whether all hold."""
+    """Prints a line per gate and returns whether all hold."""
     return all([gate(name, of(times), relation, bound) for name, of, relation, bound in _GATES])

@@ -28,7 +28,7 @@ struct Options {
   int threads = 2;
 };
 
-/// Whether the arguments are legal; tells the first that is not.
+/// Reads the arguments and returns whether they are legal; tells the first that is not.
 bool read(std::span<char* const> arguments, Options& options) {
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     const std::string_view word = arguments[k];

@@ -76,7 +76,7 @@ StageSystem<T> instance(Family family, int h) {
   return Row<T>(h, physics).newton().system();
 }
 
-/// Whether the step of lane 0 solves the system.
+/// Returns whether the step of lane 0 solves the system.
 template <class T>
 bool is_solved(const StageSystem<double>& system, const StageStep<T>& step) {
   const Assembled assembled(system, false);

@@ -66,7 +66,7 @@ def disagreement(problem: PeerProblem) -> float:
 
 @dataclass(frozen=True)
 class Peer:
-    """How IPOPT ended."""
+    """Says how IPOPT ended."""
 
     converged: bool
     reaches_end: bool  # within the tolerance
@@ -77,7 +77,7 @@ class Peer:
 
 
 def solve(problem: PeerProblem) -> Peer:
-    """IPOPT from the start of our SQP."""
+    """Runs IPOPT from the start of our SQP."""
     tolerances = problem.dump["reverse"]
     constraints = ca.vertcat(*problem.residuals, *problem.complementarity, problem.gaps)
     equalities = constraints.shape[0] - problem.gaps.shape[0]
@@ -115,12 +115,12 @@ class Row:
 
     @property
     def decided(self) -> bool:
-        """Whether we found a solution or that there is none."""
+        """Tells whether we found a solution or found that there is none."""
         return self.dump["status"] in ("converged", "infeasible")
 
     @property
     def both(self) -> bool:
-        """Whether IPOPT ended, too."""
+        """Tells whether IPOPT ended, too."""
         return self.decided and self.peer.converged
 
     def __str__(self) -> str:
@@ -138,14 +138,14 @@ def compared(dump: Json) -> Row:
 
 
 def margin(row: Row) -> float | None:
-    """By how much our objective is less than IPOPT's, if that is a comparison."""
+    """Returns by how much our objective is less than IPOPT's; None if that is no comparison."""
     if row.dump["status"] == "converged":
         return float(row.peer.objective - row.dump["objective"])
     return -np.inf if row.peer.reaches_end else None  # we say that there is no solution
 
 
 def over_the_corpus(build: Path, every: int) -> bool:
-    """Compares objectives and times; whether the gates hold."""
+    """Compares objectives and times, and returns whether the gates hold."""
     rows = []
     for dump in dumped(build, "corpus", str(HERE / "corpus"), str(every)):
         rows.append(compared(dump))
@@ -194,7 +194,7 @@ class Pushes:
 
 
 def over_true_pushes(build: Path, count: int) -> bool:
-    """Compares times per push found; whether the gates hold."""
+    """Compares times per push found, and returns whether the gates hold."""
     print(f"\n{'':24} pushes  we: found  CPU/found [ms] | IPOPT: the same | disagree")
     passed = True
     ours: dict[str, Pushes] = {}
@@ -223,13 +223,13 @@ def over_true_pushes(build: Path, count: int) -> bool:
 
 
 def main(build: Path, every: int, pushes: int) -> int:
-    """Exit status."""
+    """Returns the exit status."""
     print("   no kind      disagree | we: status     iterations CPU [s] J | IPOPT: the same")
     return int(not all([over_the_corpus(build, every), over_true_pushes(build, pushes)]))
 
 
 def arguments() -> argparse.Namespace:
-    """Of the command line; exit status 2 if they are wrong."""
+    """Reads the command line; ends with exit status 2 if it is wrong."""
     parser = argparse.ArgumentParser("peer", description=__doc__.split(":")[0], allow_abbrev=False)
     parser.add_argument("build", metavar="BUILD_FOLDER", type=Path)
     parser.add_argument("every", metavar="EVERY", type=int, nargs="?", default=20)

@@ -122,7 +122,7 @@ class PeerProblem:
         return bool(self._reverse["terminal_weight"] == 0.0)
 
     def _full(self, p: Any) -> Any:
-        """With the poses of the fixed bodies."""
+        """Appends the poses of the fixed bodies."""
         return ca.vertcat(p, self._end[self._dofs :])
 
     def _point(self, c: Contact, p: Any) -> Any:

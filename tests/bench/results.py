@@ -43,7 +43,7 @@ def series(benchmarks: Benchmarks, family: str) -> tuple[list[int], list[float]]
 
 
 def exponent(benchmarks: Benchmarks, family: str) -> float:
-    """Of the time in the size."""
+    """Fits the exponent of the time in the size."""
     sizes, times = series(benchmarks, family)
     return float(np.polyfit(np.log(sizes), np.log(times), 1)[0])
 
@@ -55,12 +55,12 @@ def cpu() -> str:
 
 
 def paragraph(*sentences: str) -> str:
-    """Wrapped as the other pages are."""
+    """Wraps the text as the other pages are wrapped."""
     return textwrap.fill(" ".join(sentences), 120, break_long_words=False, break_on_hyphens=False)
 
 
 def machine(context: dict[str, Any], benchmarks: Benchmarks) -> str:
-    """What it was measured on."""
+    """Says what it was measured on."""
     return paragraph(
         f"`./test.sh bench` at commit `{context['commit']}`, {context['date'][:10]}:",
         f"{cpu()},",
@@ -159,7 +159,7 @@ def plots(benchmarks: Benchmarks) -> None:
 
 
 def many_workers(benchmarks: Benchmarks) -> str:
-    """What the measurements say about more workers than there were."""
+    """Tells what the measurements say about more workers than there were."""
     one = benchmarks["beam/threads/1"]
     layer, serial = one["layer_ms"], one["layer_ms"] * one["search_share"]
     breadth = round(one["nodes_per_layer"])

@@ -11,7 +11,7 @@ namespace {
 
 using testing::gathering;
 
-/// What became of the candidates of all states solved.
+/// Counts what became of the candidates of all states solved.
 struct Tally {
   long candidates = 0, pruned = 0, converged = 0;
   std::vector<int> iterations;  // of the converged ones

@@ -67,7 +67,7 @@ def measure(build: Path, out: Path, smoke: bool) -> dict[str, Any]:
 
 
 def commit() -> str:
-    """What is measured, with a mark if it is not committed."""
+    """Names the commit that is measured, with a mark if the files differ from it."""
     return subprocess.run(
         ["git", "describe", "--always", "--dirty"],
         cwd=HERE,
@@ -78,13 +78,13 @@ def commit() -> str:
 
 
 def solves_the_corpus(build: Path, folder: str) -> bool:
-    """Runs the reverse solver over committed problems; whether it met its gates."""
+    """Runs the reverse solver over committed problems and returns whether it met its gates."""
     command = [str(build / "tests" / "reverse_corpus"), str(HERE / folder)]
     return subprocess.run(command, check=False).returncode == 0
 
 
 def finds_true_pushes(build: Path, out: Path, tasks: list[str], *options: str) -> bool:
-    """Solves back from the ends of pushes of Box2D; whether the gates hold. Adds to OUT."""
+    """Solves back from the ends of pushes of Box2D; returns whether the gates hold. Adds to OUT."""
     files = [str(HERE.parents[1] / "config" / f"{task}.yaml") for task in tasks]
     command = [str(build / "tests" / "true_pushes"), *files, *options]
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
@@ -95,7 +95,7 @@ def finds_true_pushes(build: Path, out: Path, tasks: list[str], *options: str) -
 
 
 def solver_gates(build: Path, out: Path, smoke: bool) -> bool:
-    """Whether the gates of the reverse solver hold."""
+    """Runs the checks of the reverse solver and returns whether their gates hold."""
     (out / "true_pushes.txt").write_text("")
     if smoke:
         passed = solves_the_corpus(build, "corpus")
@@ -114,7 +114,7 @@ _REAL = "/real_time"  # at the end of the names of benchmarks that are measured 
 
 
 def name_of(benchmark: dict[str, Any]) -> str:
-    """Without how often it ran and how it was measured."""
+    """Returns the name without how often it ran and how it was measured."""
     return re.sub(rf"/(iterations|repeats):\d+|{_REAL}$", "", benchmark["run_name"])
 
 
@@ -132,7 +132,7 @@ def share(benchmark: dict[str, Any]) -> float:
 
 
 def row(benchmark: dict[str, Any]) -> str:
-    """One line of the table."""
+    """Returns the benchmark's line of the table."""
     name = name_of(benchmark)
     if benchmark.get("error_occurred"):
         return f"| `{name}` | | {benchmark['error_message']} |"
@@ -155,7 +155,7 @@ def table(result: dict[str, Any]) -> str:
 
 
 def main(build: Path, out: Path, smoke: bool) -> int:
-    """Exit status."""
+    """Returns the exit status."""
     out.mkdir(parents=True, exist_ok=True)
     result = measure(build, out, smoke)
     text = table(result)

@@ -77,7 +77,7 @@ def is_ours(header: str) -> bool:
 
 
 def is_standard(header: str) -> bool:
-    """The C++ standard library and C headers without a folder."""
+    """Tells headers of the C++ standard library and C headers without a folder from all others."""
     return "/" not in header and not any(re.fullmatch(third, header) for third in ONLY_IN)
 
 
@@ -88,7 +88,7 @@ def layer(path: str) -> str:
 
 
 def fault(path: str, header: str) -> str:
-    """What is wrong with `path` including `header`; empty when nothing is."""
+    """Returns what is wrong with `path` including `header`; empty when nothing is."""
     if is_ours(header):
         allowed = MAY_INCLUDE.get(layer(path), set())
         folder = str(PurePosixPath(header).parent)
@@ -119,7 +119,7 @@ def imports(text: str) -> Iterator[str]:
 
 
 def python_faults(path: str, text: str) -> list[str]:
-    """What is wrong with what the module at `path` imports."""
+    """Lists what is wrong with what the module at `path` imports."""
     found = []
     if IMPORT_LCM.search(text) and path != "train/rtg/bus/bus.py":
         found.append(f"{path}: import lcm belongs in train/rtg/bus/bus.py alone")

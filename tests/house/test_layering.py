@@ -79,7 +79,7 @@ def test_rooms_import_downwards_alone() -> None:
 
 
 def test_no_module_of_a_room_imports_in_a_circle() -> None:
-    """Imports for type checkers aside."""
+    """Imports for type checkers do not count."""
     of = {}
     for path in sources(".py"):
         parts = path.relative_to(ROOT).with_suffix("").parts
@@ -95,7 +95,7 @@ def test_no_module_of_a_room_imports_in_a_circle() -> None:
 
 
 def modules(node: ast.Import | ast.ImportFrom) -> list[str]:
-    """What it may import, dotted."""
+    """Lists what the statement may import, dotted."""
     if isinstance(node, ast.Import):
         return [alias.name for alias in node.names]
     return [str(node.module), *(f"{node.module}.{alias.name}" for alias in node.names)]

@@ -1,4 +1,4 @@
-"""One namespace per folder. The vocabulary of core/math and core/world is rtg's own."""
+"""Each folder has one namespace. The vocabulary of core/math and core/world is rtg's own."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ OPENED = re.compile(r"^namespace (rtg[\w:]*) \{$", re.MULTILINE)
 
 
 def namespace_of(path: str) -> str:
-    """What the file at `path` is to be in."""
+    """Returns the namespace that the file at `path` is to be in."""
     parts = PurePosixPath(path).parts
     if parts[:2] in {("tests", "support"), ("tests", "bench")}:
         return "rtg::testing" if parts[1] == "support" else "rtg::bench"
@@ -24,7 +24,7 @@ def namespace_of(path: str) -> str:
 
 
 def fault(path: str, text: str) -> str:
-    """What is wrong with the namespaces that `text` opens; empty when nothing is."""
+    """Returns what is wrong with the namespaces that `text` opens; empty when nothing is."""
     asked = namespace_of(path)
     within = {f"{asked}::{own}" for own in NESTED}
     if path.startswith("tests/"):

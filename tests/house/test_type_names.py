@@ -1,5 +1,5 @@
-"""One name, one type: two of them in one namespace break the one-definition rule, and the linker
-takes whichever it meets first."""
+"""Two types of one name in one namespace break the one-definition rule, and the linker takes
+whichever it meets first."""
 
 from __future__ import annotations
 

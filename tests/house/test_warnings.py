@@ -13,8 +13,8 @@ UNINITIALISED = """int f(int a) {
 
 
 def compiled(file: Path, text: str) -> str:
-    """What the compiler says to the text, with the flags of the release build; empty if it is
-    content."""
+    """Returns what the compiler says to the text, with the flags of the release build; empty if it
+    is content."""
     words, folder = command_for("/core/world/push.cpp")
     file.write_text(text)
     command = [*words, "-o", str(file.with_suffix(".o")), "-c", str(file)]

@@ -60,8 +60,8 @@ inline std::vector<BlockVector> directions(const Linearisation& lin) {
   return all;
 }
 
-/// The system's matrix against central differences of the first-order conditions along directions
-/// on which the forces follow the gaps (Δλ = b·Δp).
+/// Compares the system's matrix with central differences of the first-order conditions along
+/// directions on which the forces follow the gaps (Δλ = b·Δp).
 inline void expect_matrix_is_derivative(const reverse::ReverseProblem& problem,
                                         const reverse::Iterate& x) {
   const Linearisation lin(problem, x, {true, 0.0});
@@ -77,8 +77,8 @@ inline void expect_matrix_is_derivative(const reverse::ReverseProblem& problem,
   }
 }
 
-/// To first order in t, x + t d leaves (1 - t) of every constraint, d the Newton step with either
-/// Hessian; by central differences over t.
+/// Expects that to first order in t, x + t d leaves (1 - t) of every constraint, d the Newton step
+/// with either Hessian; by central differences over t.
 inline void expect_step_solves_the_constraints(const reverse::ReverseProblem& problem,
                                                const reverse::Iterate& x, double t,
                                                double tolerance) {
@@ -105,7 +105,7 @@ inline double lagrangian(const reverse::ReverseProblem& problem, const reverse::
   return sum;
 }
 
-/// The right-hand side against differences of the Lagrangian, along directions that keep
+/// Compares the right-hand side with differences of the Lagrangian, along directions that keep
 /// complementarity (Δλ = b·Δp): its multipliers drop out there.
 inline void expect_right_hand_side_is_gradient(const reverse::ReverseProblem& problem,
                                                const reverse::Iterate& x) {

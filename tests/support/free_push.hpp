@@ -14,8 +14,8 @@ inline reverse::ReverseConfig free_push_config(reverse::ReverseConfig config) {
 }
 
 /// With Φ_k solved for the poses, t₀ = t_h - B/m Σ tanh c_k, the objective falls apart into one
-/// function of each control, -w₀ d B/m tanh c + ε c², whose derivative is monotone for d c ≥ 0:
-/// its zero by bisection.
+/// function of each control, -w₀ d B/m tanh c + ε c², whose derivative is monotone for d c ≥ 0.
+/// Returns its zero, by bisection.
 inline double closed_form_control(const reverse::ReverseProblem& problem, double d) {
   const double pull = problem.config.robot_weight * std::abs(d) *
                       problem.energy.control_bound()[0] / problem.energy.damping(0).mass;

@@ -22,7 +22,7 @@ struct Curvature {
   bool start = lagrangian;
 };
 
-/// One candidate's NewtonSystem as a matrix.
+/// The NewtonSystem of one candidate as a matrix.
 class Linearisation {
  public:
   Linearisation(const reverse::ReverseProblem& problem, const reverse::Iterate& x,
@@ -43,7 +43,7 @@ class Linearisation {
   const reverse::Violation& violation() const { return violation_; }
   Assembled assembled() const { return {newton_.system(), problem_.fixed_end()}; }
   BlockTridiagonal matrix() const { return assembled().matrix(); }
-  /// Of the Newton step.
+  /// Returns the right-hand side whose solution is the Newton step.
   BlockVector right_hand_side() const { return assembled().right_hand_side(); }
 
   /// The first-order conditions (∇L; Φ) with complementarity left out.

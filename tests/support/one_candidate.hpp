@@ -54,7 +54,8 @@ inline reverse::Iterate replayed(const reverse::ReverseProblem& problem,
   return again;
 }
 
-/// With each of the KKT methods as with block elimination; `config` is that of the problem.
+/// Expects the same solution with each of the KKT methods as with block elimination; `config` is
+/// that of the problem.
 inline void expect_the_same_solution(const reverse::ReverseProblem& problem,
                                      reverse::ReverseConfig& config,
                                      std::initializer_list<KktMethod> methods) {

@@ -34,7 +34,7 @@ struct RandomBlocks {
   }
 };
 
-/// What randomise() makes.
+/// Chooses what randomise() makes.
 enum class Levels { kTwo, kThree };  // kThree: with G and U, as inertia has them
 
 /// A well-conditioned system in lane l; bodies are coupled with those at most `reach` places away.

@@ -16,7 +16,7 @@ struct TouchingScene {
   energy::StepEnergy energy{scene, physics, task.push};
   Poses poses{{0.0, 0.0, 0.0}, {1.46, 0.15, 0.05}, {2.95, 0.35, 0.6}};
 
-  /// To be called when the physics have changed.
+  /// Must be called when the physics have changed.
   void update() { energy = energy::StepEnergy(scene, physics, task.push); }
 
   /// The reverse problem that ends in these poses.
@@ -30,7 +30,7 @@ struct TouchingScene {
   }
 };
 
-/// The same where bodies coast: k_D = 1.
+/// The touching scene where bodies coast: k_D = 1.
 struct CoastingScene : TouchingScene {
   CoastingScene() {
     physics.inertia = true;

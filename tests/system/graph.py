@@ -57,7 +57,7 @@ class Graph:
         return self.network.start(command, PYTHONPATH=str(paths.ROOT / "train"))
 
     def transitions(self, name: str = "transitions") -> bytes:
-        """What the consumer of that name has written."""
+        """Returns what the consumer of that name has written."""
         return (self.folder / f"{name}.npz").read_bytes()
 
     def is_generating(self) -> bool:
@@ -65,7 +65,7 @@ class Graph:
 
 
 def first_rows(consumer: Process) -> int:
-    """Waits until the consumer has some; how many."""
+    """Waits until the consumer has some rows; returns how many."""
     assert consumer.stdout is not None
     for line in consumer.stdout:
         if found := re.fullmatch(r"recorder: has (\d+) transitions\n", line):
@@ -74,7 +74,7 @@ def first_rows(consumer: Process) -> int:
 
 
 def lost(consumer: Process) -> int:
-    """Waits for its end; how many rows it lacks."""
+    """Waits for the consumer's end; returns how many rows it lacks."""
     assert consumer.stdout is not None
     words = consumer.stdout.read().splitlines()
     assert consumer.wait(PATIENCE) == 0

@@ -1,4 +1,4 @@
-"""Which processes of a run are alive."""
+"""Finds out which processes of a run are alive."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def processes_of(folder: Path) -> dict[int, str]:
 
 
 def wait_until_all_are_gone(folder: Path, patience: float) -> None:
-    """Of processes_of(folder); fails after so many seconds."""
+    """Waits until processes_of(folder) is empty; fails after so many seconds."""
     deadline = time.monotonic() + patience
     while left := processes_of(folder):
         assert time.monotonic() < deadline, left

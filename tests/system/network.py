@@ -23,7 +23,7 @@ add rule ip loss incoming meta l4proto udp numgen random mod 100 lt {percent} co
 
 
 def defect() -> str | None:
-    """Why there can be no such network here; None if there can."""
+    """Returns why there can be no such network here; None if there can."""
     command = ["unshare", "-rn", "sh", "-c", _MULTICAST]
     done = subprocess.run(command, capture_output=True, text=True, env={"PATH": _PATH})
     return done.stderr.strip() if done.returncode else None

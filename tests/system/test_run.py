@@ -156,7 +156,7 @@ def test_the_written_configuration_makes_the_same_run(in_process, tmp_path):
 
 
 def kill(folder, program):
-    """SIGKILL to the processes of a run whose words contain `program`; there must be one."""
+    """Sends SIGKILL to the processes of a run whose words contain `program`; there must be one."""
     victims = [pid for pid, words in processes_of(folder).items() if program in words]
     assert victims
     for pid in victims:

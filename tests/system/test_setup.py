@@ -1,4 +1,4 @@
-"""What the set-up says to somebody who waits for it."""
+"""Checks what the set-up says to somebody who waits for it."""
 
 import shutil
 import subprocess

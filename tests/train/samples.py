@@ -10,14 +10,14 @@ from rtg.learn.replay import ReplayRules
 
 
 def train_settings(**train: Any) -> _core.TrainConfig:
-    """What the loader makes of these values; its defaults for all others."""
+    """Returns what the loader makes of these values; its defaults for all others."""
     overrides = [f"train.{key}={json.dumps(value)}" for key, value in train.items()]
     text = f"task: {paths.CONFIG / 'gathering.yaml'}\nsearch: {{transitions: 1}}"
     return _core.Config.from_text(text, overrides=overrides).train
 
 
 def replay_rules(**changes: Any) -> ReplayRules:
-    """Half of a batch offline, none of it recent, with bounds."""
+    """Returns rules by which half of a batch is offline, none of it recent, with bounds."""
     usual = {"offline_share": 0.5, "recent_share": 0.0, "discount": 0.9, "use_bounds": True}
     return ReplayRules(**{**usual, "seed": 0, **changes})
 

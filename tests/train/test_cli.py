@@ -119,7 +119,7 @@ def test_help_names_every_flag_of_the_contract():
 
 
 def test_spy_names_the_remedy_where_nothing_can_be_heard():
-    """In a network with no device that is up."""
+    """It runs in a network with no device that is up."""
     program = [sys.executable, "-m", "rtg", "spy", "--seconds", "1"]
     done = subprocess.run(
         ["unshare", "--map-root-user", "--net", *program],

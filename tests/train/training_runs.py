@@ -48,7 +48,7 @@ class Stream:
 
 
 def after_polls(count: int) -> Callable[[], bool]:
-    """False `count` times."""
+    """Makes a function that says False `count` times, then True."""
     left = iter(range(count))
     return lambda: next(left, None) is None
 

@@ -65,7 +65,7 @@ VectorXd sliding_by(double u) {
   return z;
 }
 
-/// y of the pose after, nothing before.
+/// Returns z = (y, 0): y of the poses after, nothing of those before.
 VectorXd ahead_alone(const VectorXd& y) {
   Vec12 z = Vec12::Zero();
   z.head<6>() = y;

@@ -30,7 +30,7 @@ VectorXd moved(VectorXd p, const VectorXd& d) {
   return p;
 }
 
-/// Drawn at random around `poses`, gaps at least 0.003: differences over 1e-6 are exact to 1e-7.
+/// Draws a step around `poses`, gaps at least 0.003: differences over 1e-6 are exact to 1e-7.
 Step random_step(const StepEnergy& energy, const Poses& poses, Rng& rng) {
   for (;;) {
     const VectorXd now = moved(stacked(poses), noise(energy.dofs(), 1e-3, rng));

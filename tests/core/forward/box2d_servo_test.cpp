@@ -18,14 +18,15 @@ Scene robot_and_box() {
            {"box", "box", box(1.2, 1.2), 1.0, 0.5, false}}};
 }
 
-/// Of the robot within one Box2D step, in units of the advance at push speed (turns: at the
-/// corners).
+/// Holds the robot's fastest motion within one Box2D step, in units of the advance at push speed
+/// (turns: at the corners).
 struct Fastest {
   double way = 0.0, turn = 0.0;
 };
 
-/// Over the pushes from `kBelowABox` along +x whose path the arena cuts off after 1, 2, ... 50
-/// Box2D steps: a robot that lags behind does the same in the longer ones and then one step more.
+/// Measures it over the pushes from `kBelowABox` along +x whose path the arena cuts off after 1, 2,
+/// ... 50 Box2D steps: a robot that lags behind does the same in the longer ones and then one step
+/// more.
 Fastest fastest(const Scene& scene, const PhysicsConfig& physics) {
   const double advance = PushConfig{}.stride / (physics.sub_steps * physics.box2d_steps);
   Fastest most;

@@ -17,7 +17,8 @@ namespace {
 using testing::CoastingScene;
 using testing::TouchingScene;
 
-/// One sub-step after the other without any force, from `now` moved by `by` in the sub-step before.
+/// Takes one sub-step after the other without any force, from `now` moved by `by` in the sub-step
+/// before.
 std::vector<VectorXd> coasted(const energy::StepEnergy& energy, VectorXd now, const VectorXd& by,
                               int sub_steps) {
   VectorXd before = now - by;

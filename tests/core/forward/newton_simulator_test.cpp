@@ -28,13 +28,13 @@ Scene robot_and_boxes() {
 
 NewtonSimulator simulator() { return {robot_and_boxes(), kPush, kPhysics}; }
 
-/// How far the servo lags behind where it pulls with share·B: e = s artanh(share).
+/// Returns how far the servo lags behind where it pulls with share·B: e = s artanh(share).
 double servo_lag(double share) {
   return energy::servo_scale(kPush.stride / kPhysics.sub_steps) * std::atanh(share);
 }
 
-/// Where a free push by `action` ends: at push speed the drag along d(a) is B/force_factor, and
-/// each coordinate has a servo of its own.
+/// Returns where a free push by `action` ends: at push speed the drag along d(a) is B/force_factor,
+/// and each coordinate has a servo of its own.
 Vector2d end_of_free_push(const Pose& start, int action) {
   const Vector2d end = push_target(start, action, kPush).position();
   const Vector2d share = direction(action, kPush) / kPhysics.force_factor;

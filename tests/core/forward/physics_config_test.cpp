@@ -17,7 +17,7 @@ const Scene kScene{{{"robot", "robot", box(1.0, 1.0), 1.0, 0.5, false},
                     {"wall", "wall", box(0.5, 6.0), 1.0, 0.5, true}}};
 const Poses kStart{{0, 0.4, 0}, {1.3, 0, 0.1}, {3.0, 0, 0}};
 
-/// Where both simulators end.
+/// Returns where a push ends in either simulator.
 std::pair<Poses, Poses> ends(const PhysicsConfig& physics) {
   return {NewtonSimulator(kScene, {}, physics).push(kStart, 0).end,
           Box2dSimulator(kScene, {}, physics).push(kStart, 0).end};

@@ -149,8 +149,8 @@ TEST(ReverseSimulator, ASolutionThatMissesTheGivenEndIsNoneInEitherPreset) {
   }
 }
 
-/// Random scenes after a push of the model, solved back and pushed again: how far the bodies are
-/// from where they were, mean over the bodies [m], of all starts found.
+/// Solves random scenes back after a push of the model, and pushes again from all starts found.
+/// Returns how far the bodies then are from where they were, mean over the bodies [m], sorted.
 std::vector<double> model_gaps(int scenes) {
   std::vector<double> gaps;
   for (int seed = 0; seed < scenes; ++seed) {

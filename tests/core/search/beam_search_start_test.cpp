@@ -12,7 +12,7 @@
 namespace rtg::search {
 namespace {
 
-/// How the nodes of a tree look where they are like its target.
+/// Shows how the nodes of a tree look where they are like its target.
 struct BeamSearchStartTest : ::testing::Test, testing::DraggingWorld {
   SearchConfig config;
   SearchStats stats;
@@ -22,7 +22,7 @@ struct BeamSearchStartTest : ::testing::Test, testing::DraggingWorld {
     config.whole_plan_share = 0.0;
   }
 
-  /// Whether nothing is in the way of what is in place.
+  /// Returns whether nothing is in the way of what is in place.
   bool has_room(const Poses& poses) const {
     for (const std::size_t k : {0U, 1U, 2U})
       if ((poses[k].position() - task.start[3].position()).norm() < 2.0) return false;
@@ -42,7 +42,7 @@ struct BeamSearchStartTest : ::testing::Test, testing::DraggingWorld {
     return found;
   }
 
-  /// Poses of box 3 in those of them that have room.
+  /// Lists the poses of box 3 in those of nodes_in_place() that have room.
   std::vector<Pose> in_place() {
     std::vector<Pose> found;
     for (const Poses& poses : nodes_in_place())

@@ -215,8 +215,8 @@ struct WorthReplayingTest : BeamSearchTest {
     found[{node, idle ? -1 : action}].push_back(start_distance(task, metric, start, task.start));
   }
 
-  /// All legal starts of the last layer's answers short of the goal, `parents` the beam it grew
-  /// from.
+  /// Notes all legal starts of the last layer's answers short of the goal; the layer grew from the
+  /// beam `parents`.
   Distances offered(const BeamSearch& search, std::span<const int> parents) const {
     Distances found;
     for (std::size_t k = 0; k < asked.size(); ++k)

@@ -40,7 +40,7 @@ TEST(Coverage, CountsTransitionsThatMoveOneObjectOrMore) {
   EXPECT_DOUBLE_EQ(coverage.multi_body_share(), 0.2);
 }
 
-/// Share of transitions that move several, of one that moves all movable bodies.
+/// Returns the share of transitions that move several, after one that moves all movable bodies.
 double multi_body_share(const tasks::Task& task) {
   Transition t{task.start, 0, task.start, false, Source::kTree};
   for (std::size_t k = 1; k < task.scene.size(); ++k)

@@ -123,7 +123,7 @@ TEST(Generate, EveryTreeStepIsFollowedByItsBranches) {
   EXPECT_GE(reference_run().report.headings_per_state, 4.9);
 }
 
-/// How far the nearest node of a tree is from its target.
+/// Returns how far the nearest node of a tree is from its target.
 double nearest(const tasks::Task& task, const GenerationReport& report, int tree,
                const Poses& target) {
   const StateMetric metric(task.scene);

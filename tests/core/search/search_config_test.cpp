@@ -9,7 +9,7 @@
 namespace rtg::search {
 namespace {
 
-/// What a generation in the world without contact stores.
+/// Returns what a generation in the world without contact stores.
 std::vector<Transition> stored(const SearchConfig& config) {
   testing::DraggingWorld world;
   world.drags = {0.2, 0.6, 0.35, testing::kDrag};

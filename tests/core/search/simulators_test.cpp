@@ -21,7 +21,7 @@ Poses touching(const tasks::Task& task) {
   return forward_replay(task, {})({row, 0}).end;
 }
 
-/// What one node of the beam asks for: a job per heading.
+/// Returns what a node of the beam asks for: a job per heading.
 std::vector<reverse::ReverseJob> layer(const tasks::Task& task) {
   std::vector<reverse::ReverseJob> jobs;
   for (int action = 0; action < task.push.headings; ++action)

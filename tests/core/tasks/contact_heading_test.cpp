@@ -12,7 +12,7 @@
 namespace rtg::tasks {
 namespace {
 
-/// How often each heading is drawn.
+/// Counts how often each heading is drawn.
 std::array<int, 48> drawn(const Task& task, const Poses& state, int draws) {
   std::array<int, 48> counts{};
   Rng rng(3);

@@ -26,7 +26,7 @@ TEST(ParallelFor, OneThreadIsTheCaller) {
   for (std::size_t k = 0; k < order.size(); ++k) EXPECT_EQ(order[k], k);
 }
 
-/// What parallel_for throws if the calls from `first` on throw their index.
+/// Returns what parallel_for throws if the calls from `first` on throw their index.
 std::string thrown(std::size_t count, int threads, std::size_t first) {
   try {
     parallel_for(count, threads, [first](std::size_t k) {

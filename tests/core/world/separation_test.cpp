@@ -25,7 +25,7 @@ Points placed(const Polygon& shape, const Pose& pose) {
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// What of the convex polygon `subject` lies to the left of the line from p to q.
+/// Returns the part of the convex polygon `subject` to the left of the line from p to q.
 Points left_of(const Points& subject, const Vector2d& p, const Vector2d& q) {
   Points out;
   for (std::size_t k = 0; k < subject.size(); ++k) {

@@ -42,7 +42,7 @@ class Played {
     bus.publish("RTG_REPLAY_BEAT", message);
   }
 
-  /// Of a worker that holds the unit and can take four.
+  /// Publishes the beat of a worker that holds the unit, if one is given, and can take four.
   void beat_of(jobs::WorkerId worker, std::optional<jobs::JobId> held) {
     rtg_msgs::worker_beat_t message{};
     message.incarnation = worker;
@@ -66,7 +66,7 @@ class Played {
     bus.publish("RTG_REPLAY_RESULT", message);
   }
 
-  /// What the pool answers, or nothing if it was stopped; serves the bus meanwhile.
+  /// Returns what the pool answers, or nothing if it was stopped; serves the bus meanwhile.
   std::optional<std::vector<search::ReplayResult>> ask(const std::vector<search::ReplayJob>& jobs) {
     std::optional<std::vector<search::ReplayResult>> results;
     std::atomic<bool> ended = false;

@@ -45,7 +45,7 @@ struct TransitionPublisherTest : ::testing::Test {
 
   void deliver() { testing::handle_all(bus); }
 
-  /// What goes out a second later.
+  /// Lets a second pass and delivers what then goes out.
   void tick() {
     publisher.tick(now += 1.0);
     deliver();

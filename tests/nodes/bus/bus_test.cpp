@@ -38,7 +38,7 @@ TEST(Bus, ExceptionsOfHandlersSurfaceInSpinAndLoseNothing) {
   EXPECT_EQ(handled, 2);
 }
 
-/// What a listening bus of the run "test" counts when a stranger sends `bytes`.
+/// Returns what a listening bus of the run "test" counts when a stranger sends `bytes`.
 std::map<std::string, long> counters_after(std::span<const std::uint8_t> bytes) {
   Bus bus("memq://", "test");
   bus.subscribe<stream_tail_t>("TAIL", [](const stream_tail_t&) { FAIL(); });

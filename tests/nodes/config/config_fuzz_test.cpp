@@ -47,8 +47,8 @@ std::size_t place(const std::string& text, Rng& rng) {
   return static_cast<std::size_t>(rng.below(static_cast<int>(text.size()) + 1));
 }
 
-/// One random edit: a byte changed, a token put in, a stretch shorter than `longest` left out or
-/// put in once more somewhere else.
+/// Makes one random edit: changes a byte, puts a token in, or leaves a stretch shorter than
+/// `longest` out or puts it in once more somewhere else.
 void mutate(std::string& text, int longest, Rng& rng) {
   const std::size_t at = place(text, rng);
   const auto length = static_cast<std::size_t>(rng.below(longest));
@@ -96,7 +96,7 @@ Values values(Config config) {
   return all;
 }
 
-/// A legal configuration prints as a text that reads back to equal values.
+/// Expects a legal configuration to print as a text that reads back to equal values.
 void expect_to_read_back(const Config& config, const std::string& from) {
   const std::string canonical = canonical_yaml(config);
   const Config again = parse_config(canonical, "canonical.yaml");
@@ -109,7 +109,7 @@ void expect_to_read_back(const Config& config, const std::string& from) {
   EXPECT_EQ(again.task.goal, config.task.goal) << from;
 }
 
-/// What is wrong is said in one line: the place, a colon, what is wrong, what is legal.
+/// Expects a message of one line: the place, a colon, what is wrong, what is legal.
 void expect_to_tell(const std::string& message, const std::string& place, const std::string& from) {
   EXPECT_TRUE(message.starts_with(place + ": ")) << message << '\n' << from;
   const std::size_t legal = message.find("; legal: ", place.size());

@@ -39,7 +39,7 @@ SETTINGS = blocks("wrong_settings.txt")
 
 
 def refusal(file: Path, *settings: str) -> str:
-    """What is wrong; empty if nothing is."""
+    """Returns what is wrong; empty if nothing is."""
     try:
         _core.Config.from_file(file, settings)
     except _core.ConfigError as error:
@@ -113,7 +113,7 @@ def test_jitters_must_leave_room_for_starts(tmp_path: Path) -> None:
 
 
 def test_jitters_must_keep_objects_in_the_arena() -> None:
-    """Of six boxes moved by up to 10 m, hardly ever all are within 7 m."""
+    """Six boxes moved by up to 10 m are hardly ever all within 7 m."""
     task, wide = paths.CONFIG / "sorting_hard.yaml", "task.randomisation=10"
     assert refusal(task, "task.push.arena=7") == ""
     said = refusal(task, "task.push.arena=7", wide)

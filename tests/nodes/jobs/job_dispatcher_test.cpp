@@ -19,7 +19,7 @@ void beat(JobDispatcher& jobs, WorkerId worker, bus::Seconds now, const Ids& hel
   jobs.on_beat({worker, capacity, held}, now);
 }
 
-/// What is sent from `begin` to `end` when nothing is heard.
+/// Returns what is sent from `begin` to `end` when nothing is heard.
 Sends sent_between(JobDispatcher& jobs, bus::Seconds begin, bus::Seconds end) {
   Sends sends;
   for (bus::Seconds now = begin; now <= end; now += 0.5)
@@ -80,7 +80,8 @@ TEST(JobDispatcher, GivesTheJobsOfASilentWorkerToAnother) {
   EXPECT_EQ(jobs.on_result(10), Verdict::kAccepted);
 }
 
-/// Beats of a worker that holds the jobs, once a second until `end`; what is sent meanwhile.
+/// Lets a worker that holds the jobs beat once a second until `end`; returns what is sent
+/// meanwhile.
 Sends beats_until(JobDispatcher& jobs, WorkerId worker, const Ids& held, bus::Seconds begin,
                   bus::Seconds end) {
   Sends sends;

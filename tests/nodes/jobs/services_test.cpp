@@ -62,7 +62,7 @@ TEST(Service, JobsAndResultsSurviveTheWireBitForBit) {
   }
 }
 
-/// Whether a message is refused once `spoil` has been at it.
+/// Returns whether a message is refused once `spoil` has been at it.
 template <class Service, class Items>
 bool refused(const Items& items,
              const std::function<void(decltype(Service::message(items))&)>& spoil,

@@ -34,7 +34,7 @@ std::vector<reverse::ReverseResult> solve(std::span<const reverse::ReverseJob> j
   return out;
 }
 
-/// A worker and, on the same bus, what it says.
+/// Holds a worker and notes, on the same bus, what it says.
 class Pair {
  public:
   explicit Pair(WorkerNode<ReverseService>::Answer answer = solve)

@@ -1,4 +1,4 @@
-"""What a process hears and says, on a bus within this process and on a network of its own."""
+"""Checks what a process hears and says, on a bus within it and on a network of its own."""
 
 import os
 import re
@@ -129,7 +129,7 @@ def test_a_closed_bus_hears_nothing(ours):
 
 
 def warning(size):
-    """Of a bus on the network that asks for a receive buffer of `size` bytes."""
+    """Returns the warning of a bus on the network that asks for a buffer of `size` bytes."""
     program = f"""from rtg.bus import bus
 bus.RECEIVE_BUFFER = {size}
 opened = bus.Bus("udpm://239.255.76.67:7667", "a run")

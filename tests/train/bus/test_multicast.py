@@ -1,4 +1,4 @@
-"""What is said about networks that LCM cannot use."""
+"""Checks what is said about networks that LCM cannot use."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""What `rtg spy` shows, from messages on a bus within this process."""
+"""Checks what `rtg spy` shows, from messages on a bus within this process."""
 
 import asyncio
 import io

@@ -30,7 +30,7 @@ def row(interactions: int, success: float) -> dict[str, Any]:
 
 
 def summary_of(seed: int) -> dict[str, Any]:
-    """What a run came to, but for its success."""
+    """Returns what a run came to, but for its success."""
     rng = np.random.default_rng(seed)
     gaps = np.exp(rng.normal(-5.0, 1.0, size=500)).tolist()
     return {

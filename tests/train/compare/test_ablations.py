@@ -1,4 +1,4 @@
-"""What is taken back of the preset `default`, one after the other."""
+"""Checks what is taken back of the preset `default`, one after the other."""
 
 from rtg import paths
 from rtg.compare.ablations import (

@@ -13,7 +13,7 @@ from training_runs import TINY
 
 @pytest.fixture
 def words(tmp_path):
-    """Of a comparison with two runs."""
+    """Lists the arguments of a comparison with two runs."""
     return [
         str(TINY),
         "--methods",
@@ -28,7 +28,7 @@ def words(tmp_path):
 
 
 def begin(run, *overrides):
-    """As `rtg run` does."""
+    """Begins the run as `rtg run` does."""
     run.folder.mkdir(parents=True)
     args = run_args.parse([*run.arguments, *overrides, "--out", str(run.folder)])
     text = effective_config.load(args.file, args.overrides).yaml
@@ -125,7 +125,7 @@ def test_a_run_killed_as_it_began_begins_again(words):
 
 
 def test_a_run_that_has_begun_takes_transitions_over_too(words, monkeypatch):
-    """Killed between the one and the other."""
+    """It was killed between the one and the other."""
     found = []
     monkeypatch.setattr("rtg.run.shared_transitions.find", lambda *place: found.append(place))
     run = prepare_runs(parse(words))[0]

@@ -14,7 +14,7 @@ COMPARISONS = sorted(grid.parent for grid in (paths.ROOT / "results").glob("*/gr
 def test_a_committed_report_is_that_of_its_runs(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """But for the pictures, which other versions of a font library draw differently."""
+    """Pictures are not compared: other versions of a font library draw them differently."""
     monkeypatch.setattr(report_files, "_draw", lambda *_: None)
     for picture in [*folder.glob("*.png"), *folder.glob("*.gif")]:
         shutil.copy(picture, tmp_path)  # the page shows those that are there

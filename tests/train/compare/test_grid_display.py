@@ -1,4 +1,4 @@
-"""How a comparison shows where its runs stand."""
+"""Checks how a comparison shows where its runs stand."""
 
 import io
 

@@ -1,4 +1,4 @@
-"""Which runs generate first and then learn side by side."""
+"""Checks which runs generate first and then learn side by side."""
 
 import pytest
 from rtg.compare import grouped_seeds
@@ -11,7 +11,7 @@ from training_runs import TINY
 
 @pytest.fixture
 def runs(tmp_path):
-    """Of two methods, one of them with offline data, two seeds each."""
+    """Prepares the runs of two methods, one of them with offline data, two seeds each."""
     words = [str(TINY), "--methods", "ddqn,ddqn_naive", "--seeds", "2", "--out", str(tmp_path)]
     return prepare_runs(parse(words))
 

@@ -182,7 +182,8 @@ def test_each_method_runs_from_the_flag_to_the_summary(method: str, tmp_path: Pa
 @pytest.mark.parametrize("method", ["ddqn", "her", "rcg"])
 @pytest.mark.parametrize("cut", [3, 41])
 def test_a_resumed_run_ends_with_the_same_bits(tmp_path: Path, method: str, cut: int) -> None:
-    """Cut off early and between evaluations. The robot stands where it pushes a box in at times."""
+    """It is cut off early and between evaluations. The robot begins where it at times pushes a
+    box in."""
     behind = ("task.bodies.0.start=[-4.9, 1.13, 0.0]", "task.horizon=6")
     ends = []
     for name, cuts in (("whole", []), ("cut", [cut, 7])):
@@ -225,7 +226,7 @@ def test_a_file_of_a_hindsight_policy_asks_for_the_nearest_layouts(tmp_path: Pat
 
 
 def test_domain_randomisation_is_judged_where_it_is_trained(tmp_path: Path, rows: Rows) -> None:
-    """The final evaluation, too."""
+    """This holds for the final evaluation, too."""
     wanted = ("run.method=ddqn_rtg_dr", "train.interactions=4", "train.eval_episodes=30")
     folder = run_folder(tmp_path / "run", rows, *wanted)
     assert trainer.main([str(folder), "--no-stream"]) == 0

@@ -262,7 +262,7 @@ DAMAGED = {
 
 
 def test_curves_without_costs_are_named(folder, tmp_path):
-    """As an earlier version left them."""
+    """An earlier version left such curves."""
     runs = tmp_path / "runs"
     shutil.copytree(folder, runs)
     path = runs / CELLS[0].name / "progress.csv"

@@ -22,7 +22,7 @@ Summary = dict[str, Any]
 
 
 def summaries() -> list[Summary]:
-    """Of three seeds, each with figures of its own."""
+    """Makes the summaries of three seeds, each with figures of its own."""
     rng = np.random.default_rng(3)
 
     def other(value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""What the pictures of a comparison show."""
+"""Checks what the pictures of a comparison show."""
 
 import statistics
 

@@ -1,4 +1,4 @@
-"""What a report says of methods over all tasks."""
+"""Checks what a report says of methods over all tasks."""
 
 from comparison_samples import finished, table_row, write_grid
 from rtg.compare.cells import Cell

@@ -1,4 +1,4 @@
-"""What a report says of reverse simulation and the other sources of data."""
+"""Checks what a report says of reverse simulation and the other sources of data."""
 
 import pytest
 from comparison_samples import finished, write_grid

@@ -1,4 +1,4 @@
-"""How the tables of a report put the figures of seeds."""
+"""Checks how the tables of a report put the figures of seeds."""
 
 import pytest
 from rtg.compare.report_tables import seed_ranges, spread

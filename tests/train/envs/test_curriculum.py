@@ -1,4 +1,4 @@
-"""Which starts the reverse curriculum keeps, and where the next ones come from."""
+"""Checks which starts the reverse curriculum keeps, and where the next ones come from."""
 
 import json
 from pathlib import Path
@@ -40,7 +40,7 @@ def play_round(one: Curriculum, solved: dict[int, int]) -> np.ndarray:
 
 
 def near(states: np.ndarray, seeds: np.ndarray) -> np.ndarray:
-    """Of each state, whether an object is where that of one of the seeds is. [states]"""
+    """Tells of each state whether an object is where that of one of the seeds is. [states]"""
     moved = np.abs(states[:, None, 1:] - seeds[None, :, 1:]).max(axis=3) > 1e-9
     return ~moved.all(axis=2).all(axis=1)
 

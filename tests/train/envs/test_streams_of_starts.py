@@ -12,7 +12,7 @@ COUNT = 300
 
 
 def of_search(seed: int) -> np.ndarray:
-    """Where the walks of a generation begin. [walks, bodies, 3]"""
+    """Returns where the walks of a generation begin. [walks, bodies, 3]"""
     overrides = ["search.generator=random", f"run.seed={seed}", "search.branches=0"]
     config = _core.Config.from_file(TINY, [*overrides, "task.horizon=1", "search.transitions=300"])
     starts: list[np.ndarray] = []

@@ -48,7 +48,7 @@ class Singles:
         return self.envs[k].reset(options={"poses": start})[0]
 
     def step(self, k: int, action: int) -> tuple[np.ndarray, float, bool, dict]:
-        """As one copy of PushVecEnv."""
+        """Does what one copy of PushVecEnv does."""
         seen, reward, terminated, truncated, _ = self.envs[k].step(action)
         self.lengths[k] += 1
         self.successes += terminated

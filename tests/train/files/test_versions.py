@@ -1,4 +1,4 @@
-"""What a run says it was made with."""
+"""Checks what a run says it was made with."""
 
 import json
 import re

@@ -8,7 +8,7 @@ NAMES = {"monotonic": 0, "process_time": 1, "thread_time": 2}
 
 @pytest.fixture
 def now(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """What the clocks of the system say: wall, process, thread."""
+    """Sets what the clocks of the system say: wall, process, thread."""
     times = [100.0, 10.0, 5.0]
     for name, place in NAMES.items():
         monkeypatch.setattr(f"time.{name}", lambda place=place: times[place])
@@ -17,7 +17,7 @@ def now(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
 @pytest.mark.parametrize(("alone", "cpu"), [(True, 0.5), (False, 0.25)])
 def test_wall_and_processor_time_count_while_it_runs(now, alone: bool, cpu: float) -> None:
-    """The processor's of the process, or where others share it of the thread."""
+    """Processor time is the process's, or the thread's where others share the process."""
     clock = Clock()
     assert not clock.running and clock.seconds() == {"wall_s": 0.0, "cpu_s": 0.0}
     clock.start(alone)

@@ -27,7 +27,7 @@ def cloning(**changes: object) -> Cloning:
 
 
 def rows_of(source: str, actions: np.ndarray) -> Transitions:
-    """One in each state of the line."""
+    """Makes a row in each state of the line."""
     n = len(actions)
     nothing = np.zeros(n, np.float32)
     return Transitions(
@@ -64,7 +64,7 @@ def test_the_loss_is_the_cross_entropy_of_the_actions(monkeypatch: pytest.Monkey
 
 
 def test_it_learns_what_the_steps_do_and_not_what_their_branches_do() -> None:
-    """Of which there are four to a step, alike for the worse."""
+    """Each step has four branches, all with the same worse action."""
     one = cloning(learning_rate=1e-3)
     branches = [rows_of("branch", (WANTED + 1) % 8)] * 4
     for part in [rows_of("tree", WANTED), *branches]:

@@ -37,7 +37,7 @@ def test_without_a_share_nobody_is_asked_for_contact_headings() -> None:
 
 
 def explored(one: Exploration, states: list[float], epsilon: float = 0.0) -> list[bool]:
-    """Whether one environment, whose greedy heading is 3, does something else in each state."""
+    """Tells of each state whether an environment whose greedy heading is 3 does something else."""
     done = [one.actions(np.array([3]), np.full((1, 5), x), epsilon)[0] for x in states]
     return [bool(action != 3) for action in done]
 

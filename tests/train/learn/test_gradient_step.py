@@ -1,4 +1,4 @@
-"""One gradient step by hand: targets, loss, and how far it moves."""
+"""Reckons a gradient step by hand: targets, loss, and how far it moves."""
 
 import numpy as np
 import pytest

@@ -145,7 +145,7 @@ def goals_by_hand(count: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np
 
 
 def names(goals: np.ndarray) -> set[str]:
-    """Of the states of EPISODE with those layouts."""
+    """Names the layouts, all of which states of EPISODE have."""
     known = {EPISODE[0].tobytes(): "rest", SOME.tobytes(): "some", ALL.tobytes(): "all"}
     return {known[goal.tobytes()] for goal in goals}
 
@@ -163,7 +163,7 @@ def test_goals_are_what_a_later_state_reached_and_this_one_has_not() -> None:
 
 
 def test_every_later_state_is_as_likely() -> None:
-    """Of s_1, s_3 and s_4 after s_0, whose layout s_2 has."""
+    """After s_0, whose layout s_2 has, these are s_1, s_3 and s_4."""
     goals, _, _ = goals_by_hand(9000)
     share = (goals[0] == ALL).all(axis=1).mean()
     assert abs(share - 1 / 3) < 4 * np.sqrt(2 / 9 / 9000)  # four sigma
@@ -206,7 +206,7 @@ def buffer(capacity: int = 1000, n_envs: int = 1, **rules: Any) -> HindsightRepl
 
 
 def play(replay: HindsightReplayBuffer, reward: float = 0.0) -> None:
-    """The episode of EPISODE, cut by time without a reward; robot and action of s_t are t."""
+    """Plays EPISODE, cut by time where there is no reward; robot and action of s_t are t."""
     for t in range(4):
         before, after = observed(EPISODE[t], t)[None], observed(EPISODE[t + 1], t + 1)[None]
         last, got = t == 3, reward * (t == 3)
@@ -220,7 +220,7 @@ def asked_for(seen: np.ndarray) -> np.ndarray:
 
 
 def is_one_of(layouts: np.ndarray, known: np.ndarray) -> np.ndarray:
-    """Up to rounding. [N, size], [M, size] -> [N] bool"""
+    """Tells which layouts are known, up to rounding. [N, size], [M, size] -> [N] bool"""
     return (np.abs(layouts[:, None] - known).max(axis=2) < 1e-6).any(axis=1)
 
 
@@ -298,7 +298,7 @@ def test_a_learner_acts_as_its_episodes_ask_and_is_judged_by_the_nearest_layouts
 
 
 def test_episodes_of_a_learner_are_stored_with_what_they_were_asked_for() -> None:
-    """All of an episode with the same; some layouts are reached when objects move."""
+    """All steps of an episode have the same layout; some layouts are reached when objects move."""
     one = learner(epsilon_start=1.0, epsilon_end=1.0, contact_share=1.0)
     one.learn(600)
     store = one.replay_buffer.online

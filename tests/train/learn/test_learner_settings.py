@@ -23,8 +23,8 @@ def played(**changes: Any) -> DoubleDqn:
 
 
 def first_step(**changes: Any) -> float:
-    """How far the first gradient step moves the weight that it moves most: Adam's first step is
-    its rate in each weight that has a gradient."""
+    """Returns how far the first gradient step moves the weight that it moves most: Adam's first
+    step is its rate in each weight that has a gradient."""
     one = played(**changes)
     before = weights(one.q_net)
     one.train(1, 32)
@@ -46,7 +46,7 @@ def steps_of_40_interactions(**changes: Any) -> int:
 
 
 def target_after(steps: int) -> Measure:
-    """How far along from its first weights to the learner's the target network is."""
+    """Measures how far along from its first weights to the learner's the target network is."""
 
     def measure(**changes: Any) -> float:
         one = played(dueling=False, **changes)
@@ -80,8 +80,8 @@ def of_rules(name: str) -> Measure:
 
 
 def next_value(**changes: Any) -> float:
-    """What the next state is taken to be worth, of which the learner says (0.5, 0.2) and the target
-    network (0.7, 0.9): from the error where the state itself is said to be worth 0."""
+    """Returns what the next state is taken to be worth, of which the learner says (0.5, 0.2) and
+    the target network (0.7, 0.9): the mean target of steps without a reward, before discounting."""
     one = played(dueling=False, value_bounds=False, **changes)
     constant(one.q_net, 0.5, 0.2)
     constant(one.q_net_target, 0.7, 0.9)
@@ -96,7 +96,7 @@ def next_value(**changes: Any) -> float:
 
 
 def least_target(**changes: Any) -> float:
-    """Where all values are said to be -1."""
+    """Returns the least target, before discounting, where all values are said to be -1."""
     one = played(dueling=False, value_bounds=False, **changes)
     constant(one.q_net, *[-1.0] * 8)
     constant(one.q_net_target, *[-1.0] * 8)
@@ -111,13 +111,13 @@ def names_of_parameters(word: str) -> Measure:
 
 
 def largest_first_value(**changes: Any) -> bool:
-    """Whether a network that nothing was learned by says more than 0.02 of anything."""
+    """Tells whether a network that has learned nothing says more than 0.02 of anything."""
     seen = np.random.default_rng(0).normal(size=(100, 3)).astype(np.float32)
     return bool(np.abs(model(**changes).values(seen)).max() > 0.02)
 
 
 def pull_on_other_actions(**changes: Any) -> bool:
-    """Whether a step that sees offline rows of action 1 lowers what is said of action 0."""
+    """Tells whether a step that sees offline rows of action 1 lowers what is said of action 0."""
     one = model(dueling=False, **changes)
     x = np.zeros((4, 3), np.float32)
     ones = np.ones(4, np.float32)
@@ -134,7 +134,7 @@ def epsilon_at(interactions: int) -> Measure:
 
 
 def headings(**changes: Any) -> set[int]:
-    """What is done where the greedy heading is 0 and that towards an object 4, of 8."""
+    """Returns the headings taken where the greedy one is 0 and that towards an object 4, of 8."""
     always = {"epsilon_start": 1.0, "nearby_share": 1.0, "nearby_headings": 1, "contact_share": 0.0}
     one = model(**{"leave_loops": False, **always, **changes}).exploration
     one.contact = lambda seed: np.full(2000, 4)
@@ -151,7 +151,7 @@ LESS = th.bfloat16 if networks.has_fast_bfloat16() else th.float32
 
 
 def width(**changes: Any) -> th.dtype:
-    """Of the numbers that the inner layers compute with."""
+    """Returns the type of the numbers that the inner layers compute with."""
     one, found = model(**changes), []
     one.q_net.inner.register_forward_hook(lambda net, seen, out: found.append(out.dtype))
     one.q_net.train(True)(th.zeros(1, 3))

@@ -27,7 +27,7 @@ def state(one: Training) -> list[object]:
 def test_no_environment_is_stepped_and_rounds_follow_the_schedule(
     method: str, tmp_path: Path, rows: Rows, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Two gradient steps per four interactions that are left out."""
+    """There are two gradient steps per four interactions that are left out."""
     for name in ("reset", "step_wait"):
         monkeypatch.setattr(PushVecEnv, name, never)
     wanted = (f"run.method={method}", "train.gradient_steps=2")
@@ -78,7 +78,7 @@ def test_learning_waits_for_all_transitions(
 def test_a_resumed_run_ends_with_the_same_bits(
     method: str, cut: int, tmp_path: Path, rows: Rows
 ) -> None:
-    """Cut off while waiting and while learning."""
+    """It is cut off while waiting and while learning."""
     ends = []
     for name, cuts in (("whole", []), ("cut", [cut, 41])):
         folder = run_folder(tmp_path / name, None, f"run.method={method}")

@@ -37,7 +37,7 @@ def planner(folder: Path) -> Planning:
 
 
 def result(folder: Path) -> dict:
-    """What a run leaves but for its seconds."""
+    """Returns what a run leaves but for its seconds."""
     found = json.loads((folder / "training.json").read_text())
     return {name: value for name, value in found.items() if name not in SECONDS}
 

@@ -19,7 +19,7 @@ def buffer(capacity: int = 1000, n_envs: int = 1, **rules: Any) -> MixedReplayBu
 
 
 def add_online(replay: MixedReplayBuffer, tag: float, **changes: object) -> None:
-    """One transition whose observation is `tag` everywhere."""
+    """Adds a transition whose observation is `tag` everywhere."""
     row = np.full((1, SIZE), tag, np.float32)
     done = bool(changes.get("done", False))
     replay.add(
@@ -281,7 +281,7 @@ def test_episodes_side_by_side_are_relabelled_each_by_its_own() -> None:
 
 @pytest.mark.parametrize("cut", [0, 2])
 def test_a_restored_hindsight_buffer_goes_on_with_the_same_samples(cut: int) -> None:
-    """After an episode, or within another one."""
+    """It is restored after an episode, or within another one."""
     replay, other = asking_buffer(), asking_buffer(seed=9)
     play(replay)
     for t in range(cut):

@@ -18,7 +18,7 @@ from training_runs import TINY, Stream, run_folder, training
 
 
 def course(one: Training, rows: Rows, success: list[bool]) -> dict[str, Any]:
-    """What a run does whose learner learns nothing, and whose evaluations end as told."""
+    """Returns what a run does whose learner learns nothing and whose evaluations end as told."""
     saved, seen, ends = [], [], iter(success)
 
     def learn(interactions: int, **_: Any) -> None:
@@ -80,7 +80,7 @@ def test_a_setting_of_the_course(field: str, tmp_path: Path, rows: Rows) -> None
 
 
 def spread(one: Training) -> float:
-    """How far from where the task has it a start puts an object at most. [m]"""
+    """Returns how far a start puts an object at most from where the task has it. [m]"""
     starts = []
     for _ in range(50):
         one.env.reset()

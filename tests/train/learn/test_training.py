@@ -56,7 +56,7 @@ def test_the_model_file_holds_the_policy(tmp_path: Path, rows: Rows) -> None:
 
 @pytest.mark.parametrize("cut", [1, 17, 41, 55])
 def test_a_resumed_run_ends_with_the_same_bits(tmp_path: Path, rows: Rows, cut: int) -> None:
-    """Cut off while waiting, between events and after an evaluation; transitions still come in."""
+    """It is cut off while waiting, between events and after an evaluation; rows still come in."""
     ends = []
     for name, cuts in (("whole", []), ("cut", [cut, 7])):
         folder = run_folder(tmp_path / name, None)
@@ -250,7 +250,7 @@ def test_evaluation_agrees_with_single_episodes() -> None:
 def test_an_episode_ends_in_failure_where_the_simulator_gives_up(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Also in a state that would be a success."""
+    """This holds in a state that would be a success, too."""
     config = _core.Config.from_file(TINY)
     starts = held_out_starts(config.task, 2)
     goal = config.task.goal_state(0)

@@ -1,4 +1,4 @@
-"""What the trainer makes of the settings, and that its parts work with the same values."""
+"""Checks what the trainer makes of the settings, and that its parts work with the same values."""
 
 from pathlib import Path
 
@@ -46,7 +46,7 @@ def test_bounds_are_proven_before_all_transitions_are_in(tmp_path: Path, rows: R
 
 @pytest.mark.parametrize("randomise", [False, True])
 def test_training_starts_are_jittered(tmp_path: Path, randomise: bool) -> None:
-    """By train.start_jitter, or all over task.randomisation where it is asked for."""
+    """They are by train.start_jitter, or all over task.randomisation where it is asked for."""
     method = "ddqn_rtg_dr" if randomise else "ddqn_rtg"
     wanted = (
         "train.start_jitter=0.2",

@@ -14,7 +14,7 @@ DISCOUNT = 0.5
 
 
 def right(observation: np.ndarray) -> np.ndarray:
-    """What is wanted, by the first number that the learner sees: the robot to the right."""
+    """Returns what is wanted, by the first number that the learner sees: the robot to the right."""
     return 0.5 + 0.5 * observation[:, 0]
 
 

@@ -1,4 +1,4 @@
-"""What is drawn, where."""
+"""Checks what is drawn, and where."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -48,7 +48,7 @@ def test_every_body_stands_where_its_pose_says(window):
 
 
 def test_walls_have_a_colour_of_their_own():
-    """And take none of those of the objects."""
+    """They take none of those of the objects."""
     task = _core.Config.from_file(paths.CONFIG / "examples" / "door.yaml").task
     assert task.names[1:] == ["wall", "door", "crate"] and task.fixed == [False, True, False, False]
     picture, window = state_image(task, task.start[None]), arena_window(task)

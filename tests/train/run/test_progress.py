@@ -1,4 +1,4 @@
-"""What a run shows of itself, on a terminal and elsewhere."""
+"""Checks what a run shows of itself, on a terminal and elsewhere."""
 
 import io
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What is drawn and said of a run at its end."""
+"""Checks what is drawn and said of a run at its end."""
 
 from pathlib import Path
 
@@ -27,7 +27,7 @@ def config(*overrides):
 
 @pytest.fixture
 def learned(tmp_path):
-    """Of a run in the folder that has learned, though it was never evaluated on the way."""
+    """Makes the folder that of a run that has learned, though it was never evaluated on the way."""
     made_with = config("run.method=ddqn")
     (tmp_path / "config.yaml").write_text(made_with.yaml)
     (tmp_path / "progress.csv").write_text("interactions,success_rate\n")
@@ -41,7 +41,7 @@ def pictures(folder):
 
 
 def test_a_run_that_was_never_evaluated_ends_without_a_curve(tmp_path, learned):
-    """Resumed with a budget below what it had used, before the first evaluation."""
+    """It is resumed with a budget below what it had used, before the first evaluation."""
     plan = RunPlan(tmp_path, "x", learned, train=True, resume=True, notes=())
     assert results.finish(plan, {})["method"] == "ddqn"
     assert pictures(tmp_path) == {"episode.png", "episode.gif"}

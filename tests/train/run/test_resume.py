@@ -1,4 +1,4 @@
-"""What may change when a run goes on: nothing that decides its transitions or its checkpoint."""
+"""When a run goes on, nothing may change that decides its transitions or its checkpoint."""
 
 import re
 
@@ -31,7 +31,7 @@ CHANGES = {
 
 @pytest.fixture
 def folder(tmp_path):
-    """Of a stopped run."""
+    """Makes the folder that of a stopped run."""
     (tmp_path / "config.yaml").write_text(effective_config.load(TINY).yaml)
     return tmp_path
 

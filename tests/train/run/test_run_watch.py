@@ -1,4 +1,4 @@
-"""What is known of a run by the messages of its processes."""
+"""Checks what is known of a run by the messages of its processes."""
 
 from rtg.bus.bus import Bus
 from rtg.bus.messages import message_type

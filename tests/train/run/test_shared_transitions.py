@@ -1,4 +1,4 @@
-"""What of the transitions of one run is good for another."""
+"""Checks which transitions of one run are good for another."""
 
 import json
 
@@ -102,7 +102,7 @@ def test_what_another_program_made_or_is_not_whole_is_not_found(made, tmp_path, 
 
 
 def test_what_another_program_made_stays_that_of_the_other(made, tmp_path):
-    """Also when this one goes on with the run."""
+    """It does so even when this one goes on with the run."""
     other = {"git_revision": "another", "core_sha256": "another"}
     versions.write(made, other)
     make_plan(run_args.parse(["--resume", "--out", str(made)]))

@@ -10,7 +10,7 @@ namespace {
 
 using testing::TouchingScene;
 
-/// Whether `after` is a legal trial point of `before`, all levels alike but level 1.
+/// Returns whether `after` is a legal trial point of `before`, all levels alike but level 1.
 bool is_legal(const ReverseProblem& problem, const VectorXd& before, const VectorXd& after) {
   ProblemLanes<double> lanes(problem);
   lanes.load(0, problem);

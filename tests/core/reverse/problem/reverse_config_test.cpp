@@ -54,8 +54,8 @@ TEST(ReverseConfig, ThePaperHasItsOwnObjectiveAndIterations) {
   EXPECT_EQ(paper.late_contacts, 0);
 }
 
-/// What the solver makes of pushes that end with a box against the robot, turned a little, and
-/// another one behind it.
+/// Solves back pushes that end with a box against the robot, turned a little, and another one
+/// behind it.
 std::vector<std::tuple<SolveStatus, int, std::vector<Poses>>> solutions(
     const ReverseConfig& config) {
   Scene scene{{{"robot", "robot", regular_polygon(6, 0.8), 1.0, 0.5, false}}};
