@@ -2,12 +2,14 @@
 
 import ast
 import re
+import subprocess
 
 import pytest
 from layering import ROOT, sources
 
-PAGES = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "core/NOTATION.md", "msgs/CHANNELS.md"]
-PAGES += ["train/SUMMARY.md"]
+PAGES = subprocess.run(
+    ["git", "ls-files", "*.md"], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True
+).stdout.splitlines()
 READERS_OWN = {"config/mine.yaml", "msgs/NAME_t.lcm"}
 CODE = "\n".join(path.read_text() for path in sources(".hpp", ".cpp", ".py"))
 
@@ -25,7 +27,7 @@ def test_links_lead_somewhere(page: str) -> None:
 @pytest.mark.parametrize("page", PAGES)
 def test_paths_exist(page: str) -> None:
     """Names in backticks that begin with a folder of the repository."""
-    folders = "core|msgs|nodes|config|train|tests"
+    folders = "core|msgs|nodes|config|train|tests|docs|results"
     paths = [name for name in in_backticks(page) if re.fullmatch(rf"({folders})/[\w./]*", name)]
     assert {name for name in paths if not (ROOT / name).exists()} <= READERS_OWN
 
@@ -70,11 +72,9 @@ def test_notation_names_what_is_in_the_code() -> None:
 
 
 def openings() -> list[str]:
-    """The first words of all doc comments of the product."""
+    """Lists the first words of all doc comments."""
     found = []
     for path in sources(".hpp", ".cpp", ".py"):
-        if path.relative_to(ROOT).parts[0] == "tests":
-            continue
         text = path.read_text()
         if path.suffix == ".py":
             kinds = ast.Module | ast.ClassDef | ast.FunctionDef
@@ -90,4 +90,4 @@ def test_doc_comments_say_what_a_thing_does_or_is() -> None:
     """Few begin with a word that leaves the reader to find subject and verb."""
     words = openings()
     vague = sum(word in {"What", "Whether", "One", "Of"} for word in words)
-    assert len(words) > 1000 and vague <= 0.03 * len(words)
+    assert len(words) > 1500 and vague <= 0.03 * len(words)
