@@ -33,7 +33,11 @@ MISTAKES = {
     "check without file": (["check"], "the following arguments are required: FILE.yaml; legal: "),
     "check of two": (
         ["check", "a", "b"],
-        "unrecognized arguments: b; legal: ./run.sh check [-h] F",
+        "unrecognized arguments: b; legal: ./run.sh check [-h] [",
+    ),
+    "check of a wrong value": (
+        ["check", "gathering", "--set", "search.breadth=0"],
+        "--set search.breadth=0: key 'search.breadth': 0 is out of range; legal: ",
     ),
     "half a flag of spy": (
         ["spy", "--sec", "1"],
@@ -174,6 +178,8 @@ def test_check_prints_what_it_understood_and_refuses_a_wrong_file(tmp_path):
     good = rtg("check", "config/gathering.yaml")
     assert good.returncode == 0
     assert good.stdout.startswith("config/gathering.yaml: legal\ntask gathering\n")
+    changed = rtg("check", "gathering", "--set", "task.horizon=71")
+    assert changed.returncode == 0 and "71 pushes" in changed.stdout
     file = tmp_path / "wrong.yaml"
     file.write_text("task: gathering\nsaerch: {}\n")
     bad = rtg("check", str(file))

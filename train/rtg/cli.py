@@ -27,8 +27,10 @@ def _check(words: Sequence[str]) -> int:
         prog="./run.sh check", description="Validate a task file; print what it says."
     )
     parser.add_argument("file", metavar="FILE.yaml", help="a task file, or a task of config/")
+    run_args.add_set(parser, "any configuration value")
     args = parser.parse_args(words)
-    print(effective_config.check(run_args.task_file(args.file)), end="")
+    file = run_args.task_file(args.file)
+    print(effective_config.check(file, run_args.set_values(args)), end="")
     return 0
 
 

@@ -15,7 +15,7 @@ from rtg.compare.ablations import ablations
 from rtg.compare.cells import Cell
 from rtg.compare.methods import METHODS, REFERENCE, TASKS, method_flags
 from rtg.errors import UserError
-from rtg.run.run_args import Override, Parser, task_file
+from rtg.run.run_args import Override, Parser, add_set, task_file
 from rtg.run.run_args import parse as parse_run
 
 DEFAULT_SEEDS = "5"
@@ -91,7 +91,7 @@ def parser() -> Parser:
     p.add_argument(
         "--together", action="store_true", help="a method's seeds learn in one process, as on a GPU"
     )
-    p.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="of all runs")
+    add_set(p, "of all runs")
     return p
 
 

@@ -73,6 +73,6 @@ def _settings(text: str) -> list[tuple[str, str]]:
     return found
 
 
-def check(file: Path) -> str:
+def check(file: Path, overrides: Sequence[Override] = ()) -> str:
     """Checks a task file; returns its content in human-readable text. Raises UserError."""
-    return f"{file}: legal\n{load(file).description}"
+    return f"{file}: legal\n{load(file, overrides).description}"

@@ -90,9 +90,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--seed", metavar="N", help="decides everything random")
     p.add_argument("--out", metavar="DIR", help="the run folder (runs/TASK-TIME)")
     p.add_argument("--resume", action="store_true", help="go on with the run in --out DIR")
-    p.add_argument(
-        "--set", metavar="KEY=VALUE", action="append", default=[], help="any configuration value"
-    )
+    add_set(p, "any configuration value")
     p.add_argument("--print-config", action="store_true", help="print all values and stop")
     return p
 
@@ -117,8 +115,18 @@ def _task_file(task: str | None) -> Path:
     return task_file("gathering" if task is None else task, also=", a tool (--help)")
 
 
+def add_set(p: argparse.ArgumentParser, what: str) -> None:
+    """Adds the flag --set, which can be repeated, with the help text `what`."""
+    p.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help=what)
+
+
+def set_values(args: argparse.Namespace) -> list[Override]:
+    """Returns what the flags --set change."""
+    return [Override(f"--set {setting}", setting) for setting in args.set]
+
+
 def _overrides(args: argparse.Namespace) -> tuple[Override, ...]:
-    found = [Override(f"--set {setting}", setting) for setting in args.set]
+    found = set_values(args)
     for flag, key in _KEYS.items():
         value = getattr(args, flag)
         if value is not None:
