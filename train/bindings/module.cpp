@@ -1,6 +1,7 @@
 #include "train/bindings/bindings.hpp"
 
 NB_MODULE(_core, module) {
+  nanobind::set_leak_warnings(false);  // sys.exit() leaves objects to the end of the process
   module.doc() = "The C++ core of RTG: configuration, tasks, the true dynamics, generation.";
   rtg::bindings::bind_task(module);
   rtg::bindings::bind_config(module);
