@@ -93,10 +93,16 @@ def test_so_many_are_at_work_as_there_are_jobs(comparison):
     assert finish(comparison(2, *[f"sleep 0.3; {SUCCEEDS}"] * 3)) == 2
 
 
-def test_of_runs_that_need_the_same_transitions_one_generates_them(comparison, monkeypatch):
+def test_of_runs_that_need_the_same_transitions_one_generates_them(
+    comparison, monkeypatch, tmp_path
+):
     needs_transitions = property(lambda run: None if run.done else "the same")
     monkeypatch.setattr(CellRun, "pending_generation_key", needs_transitions)
-    assert finish(comparison(3, *[f"sleep 0.3; {SUCCEEDS}"] * 3)) == 1
+    generates = shlex.quote(str(tmp_path / "generates"))
+    alone = f"mkdir {generates} || exit 4; sleep 0.3; rmdir {generates}; {SUCCEEDS}"
+    pool = comparison(3, alone, alone, alone)
+    finish(pool)
+    assert [row.phase for row in pool.rows()] == ["done"] * 3
 
 
 def test_a_run_that_is_stopped_has_not_failed(comparison, tmp_path):
