@@ -19,8 +19,8 @@ _INTRODUCTION = """\
 
 Made by `python tests/house/departures.py` from the comments that begin with "Departs from the
 paper:". Figures of pushes found are those of `true_pushes --count 100` (100 pushes each of
-Gathering, Sorting and ArtManip that Box2D has made). What the preset `paper` does, and with which constants, is in
-[paper_mode.md](paper_mode.md).
+Gathering, Sorting and ArtManip that Box2D has made). What the preset `paper` does, and with which
+constants, is in [paper_mode.md](paper_mode.md).
 """
 
 
