@@ -18,7 +18,7 @@ struct ForwardConfig {
 
   template <class Visitor>
   void visit(Visitor& v) {
-    v.choice("engine", engine, kEngines, "simulator of replays, training and evaluation");
+    v.choice("engine", engine, kEngines, "forward simulator of replays, training and evaluation");
   }
 };
 

@@ -8,6 +8,9 @@
 
 namespace rtg {
 
+/// Methods for the KKT systems of the SQP. kBlockElimination stands for two: the Riccati recursion
+/// (Riccati) in the filter SQP (preset `default`) if the final state is not fixed, otherwise block
+/// elimination of the assembled system (make_kkt_solver()). See solve_together().
 enum class KktMethod { kBlockElimination, kCyclicReduction, kUmfpack, kKlu };
 inline constexpr std::array<std::string_view, 4> kKktMethods{"block_elimination",
                                                              "cyclic_reduction", "umfpack", "klu"};

@@ -38,26 +38,36 @@ struct SearchConfig {
 
   template <class Visitor>
   void visit(Visitor& v) {
-    v.choice("generator", generator, kGenerators, "what finds the stored steps");
-    v.integer("transitions", transitions, 1, 100000000, "transitions to store");
-    v.integer("branches", branches, 0, 359, "other headings simulated per stored step");
-    v.integer("near_branches", near_branches, 0, 359, "of them near the step's own");
-    v.integer("near_headings", near_headings, 1, 180, "how many headings away, at most");
-    v.integer("breadth", breadth, 1, 100000, "nodes kept per layer");
-    v.integer("plans_per_node", plans_per_node, 1, 1000, "plans simulated per place in the beam");
+    v.choice("generator", generator, kGenerators, "method that generates the transitions");
+    v.integer("transitions", transitions, 1, 100000000,
+              "number of transitions to store, branches included");
+    v.integer("branches", branches, 0, 359,
+              "other headings also simulated and stored at each stored step");
+    v.integer("near_branches", near_branches, 0, 359,
+              "branches per step that lie near the heading of the step");
+    v.integer("near_headings", near_headings, 1, 180,
+              "largest distance of a near branch from the step's heading [headings]");
+    v.integer("breadth", breadth, 1, 100000, "beam width: largest number of nodes per layer");
+    v.integer("plans_per_node", plans_per_node, 1, 1000,
+              "plans simulated per layer, as a multiple of breadth");
     v.number("whole_plan_share", whole_plan_share, 0.0, 1.0,
-             "share of successful plans stored whole");
-    v.integer("depth", depth, 1, 1000, "layers per tree at most");
-    v.number("contact_quota", contact_quota, 0.0, 1.0, "share of the beam that moved an object");
-    v.number("gap_tolerance", gap_tolerance, 0.0, 100.0, "largest miss of a body kept [m]");
+             "share of plans stored in full, not only their first step");
+    v.integer("depth", depth, 1, 1000, "largest number of layers of a search tree");
+    v.number("contact_quota", contact_quota, 0.0, 1.0,
+             "share of the beam reserved for nodes whose step moved an object");
+    v.number("gap_tolerance", gap_tolerance, 0.0, 100.0,
+             "largest replay error of a body in a kept reverse step [m]");
     v.integer("predecessors_per_solve", predecessors_per_solve, 1, 100,
-              "predecessors that move an object, replayed per solve");
-    v.integer("free_moves", free_moves, 0, 360, "steps without contact replayed per node");
+              "object-moving predecessors replayed per node and heading");
+    v.integer("free_moves", free_moves, 0, 360,
+              "reverse steps that move no object, replayed per node at most");
     v.integer("nodes_per_layout", nodes_per_layout, 1, 100000,
-              "nodes of a beam with objects alike");
-    v.integer("root_draws", root_draws, 1, 1000, "goal states drawn per root kept");
-    v.integer("patience", patience, 1, 1000, "layers without a better node that end a tree");
-    v.flag("randomise", randomise, "starts lie all over task.randomisation");
+              "largest number of beam nodes that differ in the robot alone");
+    v.integer("root_draws", root_draws, 1, 1000,
+              "goal states drawn for the roots of a tree, as a multiple of breadth");
+    v.integer("patience", patience, 1, 1000,
+              "end a tree after this many layers in a row no nearer to its start");
+    v.flag("randomise", randomise, "shift objects in search starts by up to task.randomisation");
   }
 };
 

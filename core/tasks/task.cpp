@@ -81,7 +81,8 @@ Poses jittered_start(const Task& task, double amplitude, Rng& rng) {
     if (std::optional<Poses> poses = jittered(task, task.start, amplitude, rng))
       return *std::move(poses);
   throw std::invalid_argument("no legal start among " + std::to_string(kAttempts) +
-                              " draws with jitter " + std::to_string(amplitude));
+                              " random draws with objects shifted by up to " +
+                              std::to_string(amplitude) + " m; legal: a smaller shift");
 }
 
 bool allows_jitter(const Task& task, double amplitude) {

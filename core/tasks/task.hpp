@@ -26,12 +26,13 @@ struct Task {
   /// Shows the numeric settings to `v`, with their bounds and help texts.
   template <class Visitor>
   void visit(Visitor& v) {
-    v.integer("horizon", horizon, 1, 100000, "pushes of an episode at most");
-    v.number("discount", discount, 0.01, 0.9999, "of the reward per push");
+    v.integer("horizon", horizon, 1, 100000, "largest number of pushes in an episode");
+    v.number("discount", discount, 0.01, 0.9999,
+             "discount factor of the reward per push, if train.discount is 0");
     v.number("start_jitter", start_jitter, 0.0, 10.0,
-             "evaluation starts: object positions +- this [m]");
+             "largest x, y shift of objects in evaluation/search starts [m]");
     v.number("randomisation", randomisation, 0.0, 10.0,
-             "domain randomisation, where asked for: object positions +- this [m]");
+             "domain randomisation (randomise): largest x, y object shift [m]");
   }
 };
 

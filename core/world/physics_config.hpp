@@ -43,20 +43,29 @@ struct PhysicsConfig {
   void visit(Visitor& v) {
     v.number("time_step", time_step, 1e-4, 10.0, "length of a sub-step [s]");
     v.integer("sub_steps", sub_steps, 1, 1024, "sub-steps of one push");
-    v.number("damping", damping, 1e-6, 1e6, "damping coefficient k_D");
-    v.number("barrier", barrier, 1e-12, 1e6, "weight of the contact barrier [J]");
-    v.number("range", range, 1e-4, 10.0, "gap beyond which bodies exert no force [m]");
-    v.number("skin", skin, 0.0, 1.0, "offset of the gap [m]");
-    v.number("sharpness", sharpness, 1.0, 1e5, "of the smoothed signed distance [1/m]");
-    v.number("slip", slip, 1e-6, 10.0, "displacement over which friction builds up [m]");
-    v.number("force_factor", force_factor, 0.1, 1e6, "largest force / robot's own drag");
-    v.number("torque_factor", torque_factor, 0.1, 1e6, "largest torque / (drag x robot radius)");
-    v.flag("plain_barrier", plain_barrier, "-mu log g, of infinite range");
-    v.flag("inertia", inertia, "dynamic instead of quasi-static steps; damping from 0.05 on");
-    v.flag("periodic_turns", periodic_turns, "1 - cos instead of the square of turns");
+    v.number("damping", damping, 1e-6, 1e6, "damping coefficient k_D of the bodies, dimensionless");
+    v.number("barrier", barrier, 1e-12, 1e6, "weight mu of the contact barrier [J]");
+    v.number("range", range, 1e-4, 10.0, "gap beyond which contacts exert no force [m]");
+    v.number("skin", skin, 0.0, 1.0,
+             "gap = distance between bodies - skin [m]; must be below range");
+    v.number("sharpness", sharpness, 1.0, 1e5,
+             "sharpness of the smoothed signed distance (log-sum-exp) [1/m]");
+    v.number("slip", slip, 1e-6, 10.0, "slip of a contact over which friction builds up [m]");
+    v.number("force_factor", force_factor, 0.1, 1e6,
+             "largest force on the robot / its own drag at push speed");
+    v.number("torque_factor", torque_factor, 0.1, 1e6,
+             "largest robot torque / (its drag at push speed x its radius)");
+    v.flag("plain_barrier", plain_barrier,
+           "use the barrier -mu log(gap), whose contact forces have infinite range");
+    v.flag("inertia", inertia,
+           "dynamic instead of quasi-static sub-steps; needs a damping of 0.05 or more");
+    v.flag("periodic_turns", periodic_turns,
+           "turns cost 1 - cos(turn) instead of turn^2 / 2 in damping and inertia");
     v.integer("box2d_steps", box2d_steps, 1, 1000, "Box2D steps per sub-step");
-    v.integer("box2d_velocity_iterations", box2d_velocity_iterations, 1, 1000, "");
-    v.integer("box2d_position_iterations", box2d_position_iterations, 1, 1000, "");
+    v.integer("box2d_velocity_iterations", box2d_velocity_iterations, 1, 1000,
+              "velocity iterations of Box2D's solver per Box2D step");
+    v.integer("box2d_position_iterations", box2d_position_iterations, 1, 1000,
+              "position iterations of Box2D's solver per Box2D step");
   }
 };
 

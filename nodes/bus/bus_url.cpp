@@ -36,7 +36,7 @@ std::string checked_bus_url(const std::string& url) {
   if (!legal)
     throw std::invalid_argument(
         "'" + url +
-        "' is no bus URL; legal: memq://, udpm://GROUP:PORT[?ttl=N] with a multicast group "
+        "' is not a bus URL; legal: memq://, udpm://GROUP:PORT[?ttl=N] with a multicast group "
         "224.x.x.x-239.x.x.x, port 1024-65535, ttl 0-255");
   return url + (has_ttl ? "&" : "?ttl=0&") + "recv_buf_size=" + std::to_string(kReceiveBuffer);
 }

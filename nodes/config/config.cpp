@@ -26,7 +26,7 @@ using Kind = ConfigNode::Kind;
 
 const std::vector<std::string> kSections{"task",   "physics", "forward", "reverse",
                                          "search", "train",   "run"};
-const std::string kTaskLegal = "a mapping, or the path of a YAML file with one";
+const std::string kTaskLegal = "a mapping, or the path of a YAML file with a section 'task'";
 
 std::string read_text(const std::filesystem::path& file, const std::string& origin) {
   std::error_code error;
@@ -45,7 +45,7 @@ ConfigNode parse_root(const std::string& text, const std::string& name) {
   ConfigNode root = parse_yaml(text, name);
   if (root.kind != Kind::kMap)
     throw ConfigError((root.origin.empty() ? name + ":1" : root.origin) + ": holds " +
-                      in_words(root) + "; legal: a mapping with keys of " + listed(kSections));
+                      in_words(root) + "; legal: a mapping with keys among " + listed(kSections));
   root.origin = name + ":1";
   return root;
 }
@@ -59,7 +59,7 @@ void fetch_task(ConfigNode& root, const std::filesystem::path& folder) {
     const ConfigNode other = parse_root(read_text(file, where), file.string());
     const ConfigEntry* task = find(other, "task");
     if (!task || task->value.kind != Kind::kMap)
-      throw ConfigError(where + ": describes no task; legal: " + kTaskLegal);
+      throw ConfigError(where + ": has no mapping 'task'; legal: " + kTaskLegal);
     entry.value = task->value;
   }
 }
@@ -150,9 +150,10 @@ void check_inertia(const ConfigNode& root, const Config& config) {
   const ConfigEntry *flag = find(root, "physics", "inertia"),
                     *damping = find(root, "physics", "damping");
   if (config.physics.damping < kLeastInertialDamping)
-    throw ConfigError((damping ? damping : flag)->value.origin, "physics.damping",
-                      number_text(config.physics.damping) + " with physics.inertia",
-                      number_text(kLeastInertialDamping) + " or more");
+    throw ConfigError(
+        (damping ? damping : flag)->value.origin, "physics.damping",
+        number_text(config.physics.damping) + " is too small with physics.inertia: true",
+        number_text(kLeastInertialDamping) + " or more");
 }
 
 /// Throws ConfigError if a field `randomise` is true but task.randomisation is 0.
@@ -162,7 +163,7 @@ void check_randomisation(const ConfigNode& root, const Config& config) {
        {std::pair{"train", config.train.randomise}, std::pair{"search", config.search.randomise}})
     if (asked)
       throw ConfigError(find(root, section, "randomise")->value.origin, "task.randomisation",
-                        std::string("0 with ") + section + ".randomise", "more than 0");
+                        std::string("is 0, but ") + section + ".randomise is true", "more than 0");
 }
 
 void check_bus(const ConfigNode& root, const std::string& url) {

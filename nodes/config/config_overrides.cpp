@@ -17,9 +17,10 @@ ConfigNode& item_at(ConfigNode& list, const std::string& key, const std::string&
   std::size_t index = 0;
   const auto [end, code] = std::from_chars(key.data(), key.data() + key.size(), index);
   if (code != std::errc{} || end != key.data() + key.size() || index >= list.items.size())
-    throw ConfigError(flag, path, "no such entry",
-                      list.items.empty() ? "none, the list is empty"
-                                         : "0 to " + std::to_string(list.items.size() - 1));
+    throw ConfigError(flag, path, "the list has no such entry",
+                      list.items.empty()
+                          ? "none, the list is empty"
+                          : "a number from 0 to " + std::to_string(list.items.size() - 1));
   return list.items[index];
 }
 
@@ -44,7 +45,8 @@ void apply_override(ConfigNode& root, const std::string& setting) {
   const std::string flag = "--set " + setting;
   const std::size_t equals = setting.find('=');
   if (equals == std::string::npos || equals == 0)
-    throw ConfigError(flag + ": no KEY=VALUE; legal: for example --set search.breadth=32");
+    throw ConfigError(flag +
+                      ": is not of the form KEY=VALUE; legal: for example --set search.breadth=32");
   const std::string path = setting.substr(0, equals);
   ConfigNode* node = &root;
   for (std::size_t begin = 0; begin <= path.size();) {

@@ -73,8 +73,8 @@ FieldReader::FieldReader(const ConfigNode& section, std::string path,
                          std::span<const std::string> keys)
     : section_(section), path_(std::move(path)) {
   if (section.kind != Kind::kMap)
-    throw ConfigError(section.origin, path_, "is " + in_words(section),
-                      "a mapping with keys of " + listed(keys));
+    throw ConfigError(section.origin, path_, in_words(section) + " is not a mapping",
+                      "a mapping with keys among " + listed(keys));
   for (const ConfigEntry& entry : section.entries)
     if (std::find(keys.begin(), keys.end(), entry.key) == keys.end())
       throw ConfigError(entry.origin, this->path(entry.key),
@@ -93,7 +93,7 @@ void FieldReader::integer(const char* key, int& value, int least, int most, cons
   std::errc error{};
   const std::optional<int> read = spelled<int>(entry->value, error);
   if (!read)
-    throw ConfigError(entry->value.origin, path(key), in_words(entry->value) + " is no integer",
+    throw ConfigError(entry->value.origin, path(key), in_words(entry->value) + " is not an integer",
                       legal);
   if (error == std::errc::result_out_of_range || *read < least || *read > most)
     throw ConfigError(entry->value.origin, path(key), entry->value.scalar + " is out of range",
@@ -107,7 +107,8 @@ void FieldReader::flag(const char* key, bool& value, const char*) {
   const ConfigNode& node = entry->value;
   if (node.kind != Kind::kScalar || node.quoted ||
       (node.scalar != "true" && node.scalar != "false"))
-    throw ConfigError(node.origin, path(key), in_words(node) + " is neither", "true, false");
+    throw ConfigError(node.origin, path(key), in_words(node) + " is neither true nor false",
+                      "true, false");
   value = node.scalar == "true";
 }
 
@@ -119,7 +120,7 @@ void FieldReader::text(const char* key, std::string& value, const char*) {
   if (node.kind != Kind::kScalar || node.scalar.empty() || node.scalar.size() > kMaxText ||
       !std::all_of(node.scalar.begin(), node.scalar.end(), is_legal))
     throw ConfigError(
-        node.origin, path(key), in_words(node) + " is no such text",
+        node.origin, path(key), in_words(node) + " is not a legal text",
         "1 to " + std::to_string(kMaxText) + " ASCII characters other than \" and \\");
   value = node.scalar;
 }
@@ -130,8 +131,8 @@ int FieldReader::index_of(const ConfigEntry& entry, std::span<const std::string_
     for (std::size_t k = 0; k < names.size(); ++k)
       if (names[k] == node.scalar) return static_cast<int>(k);
   const std::vector<std::string> legal(names.begin(), names.end());
-  throw ConfigError(node.origin, path(entry.key), in_words(node) + " is none of them",
-                    listed(legal));
+  throw ConfigError(node.origin, path(entry.key),
+                    in_words(node) + " is not one of the legal values", listed(legal));
 }
 
 const ConfigEntry& FieldReader::required(const char* key, const std::string& legal) const {
@@ -146,7 +147,7 @@ std::vector<double> FieldReader::numbers(const char* key, std::size_t count, dou
     throw ConfigError(node.origin, path(key),
                       node.kind == Kind::kList
                           ? "has " + std::to_string(node.items.size()) + " entries"
-                          : "is " + in_words(node),
+                          : in_words(node) + " is not a list",
                       legal);
   std::vector<double> out;
   for (const ConfigNode& item : node.items)
@@ -159,7 +160,7 @@ double read_number(const ConfigNode& node, const std::string& path, double least
   std::errc error{};
   const std::optional<double> read = spelled<double>(node, error);
   if (!read || std::isnan(*read))
-    throw ConfigError(node.origin, path, in_words(node) + " is no number", legal);
+    throw ConfigError(node.origin, path, in_words(node) + " is not a number", legal);
   if (error == std::errc::result_out_of_range || *read < least || *read > most)
     throw ConfigError(node.origin, path, node.scalar + " is out of range", legal);
   return *read;

@@ -37,7 +37,7 @@ void read_half_plane(const ConfigNode& section, const std::string& path, tasks::
     throw ConfigError(find(section, "normal")->value.origin, reader.path("normal"),
                       "has length " + number_text(length), "[x, y] of length 1, within 0.01");
   if (std::abs(length - 1.0) > kUnitExactly) term.normal /= length;
-  reader.required("offset", "a number, largest normal . x [m]");
+  reader.required("offset", "a number, the largest normal . [x, y] in the half-plane [m]");
   reader.number("offset", term.offset, -kMaxPlace, kMaxPlace);
 }
 
@@ -46,7 +46,8 @@ void read_subject(const FieldReader& reader, const std::string& path, tasks::Goa
   const ConfigNode& section = reader.section();
   const bool of_joint = find(section, "joint"), of_centroid = find(section, "centroid");
   if (of_joint + of_centroid + (find(section, "kind") != nullptr) > 1)
-    throw ConfigError(section.origin, path, "has two subjects", kTermLegal);
+    throw ConfigError(section.origin, path, "has more than one of the keys kind, centroid, joint",
+                      kTermLegal);
   const char* key = of_joint ? "joint" : of_centroid ? "centroid" : "kind";
   term.subject = of_joint      ? tasks::GoalTerm::Subject::kJoint
                  : of_centroid ? tasks::GoalTerm::Subject::kCentroid
@@ -77,13 +78,16 @@ tasks::GoalTerm read_term(const ConfigNode& section, const std::string& path) {
                     *angles = find(section, "angles");
   const int regions = (disc != nullptr) + (half_plane != nullptr) + (angles != nullptr);
   if (regions != 1)
-    throw ConfigError(section.origin, path, regions ? "has two regions" : "has no region",
+    throw ConfigError(section.origin, path,
+                      regions ? "has more than one of the keys disc, half_plane, angles"
+                              : "has none of the keys disc, half_plane, angles",
                       kTermLegal);
   tasks::GoalTerm term;
   read_subject(reader, path, term);
   if ((angles != nullptr) != (term.subject == tasks::GoalTerm::Subject::kJoint))
     throw ConfigError(section.origin, path,
-                      angles ? "has angles of what is no joint" : "has a joint without angles",
+                      angles ? "has the key angles without the key joint"
+                             : "has the key joint without the key angles",
                       kTermLegal);
   if (disc) read_disc(disc->value, reader.path("disc"), term);
   if (half_plane) read_half_plane(half_plane->value, reader.path("half_plane"), term);

@@ -23,8 +23,8 @@ int read_body_name(const FieldReader& reader, const char* key, const Scene& scen
     if (scene.bodies[i].name == name) return static_cast<int>(i);
     names.push_back(scene.bodies[i].name);
   }
-  throw ConfigError(reader.required(key, "").value.origin, reader.path(key), "names no object",
-                    listed(names));
+  throw ConfigError(reader.required(key, "").value.origin, reader.path(key),
+                    '\'' + name + "' is not the name of an object", listed(names));
 }
 
 [[noreturn]] void fail_at(const ConfigNode& section, std::size_t k, const char* key,
@@ -39,7 +39,7 @@ void check_tree(const Scene& scene, const ConfigNode& section) {
     const int child = scene.joints[k].child;
     const std::string name = '\'' + scene.bodies[static_cast<std::size_t>(child)].name + '\'';
     if (scene.bodies[static_cast<std::size_t>(child)].fixed)
-      fail_at(section, k, "child", name + " is fixed", "a body that moves");
+      fail_at(section, k, "child", name + " is a fixed body", "a body that can move");
     int ancestor = scene.joints[k].parent;
     for (std::size_t n = 0; n <= scene.joints.size() && ancestor != child; ++n) {
       const auto up = std::ranges::find(scene.joints, ancestor, &Joint::child);
@@ -47,11 +47,12 @@ void check_tree(const Scene& scene, const ConfigNode& section) {
       ancestor = up->parent;
     }
     if (ancestor == child)
-      fail_at(section, k, "child", name + " hangs on itself", "joints that make trees");
+      fail_at(section, k, "child", name + " would hang on itself through its joints",
+              "joints that form trees");
     for (std::size_t n = 0; n < k; ++n)
       if (scene.joints[n].child == child)
-        fail_at(section, k, "child", name + " is the child of joint " + std::to_string(n) + " too",
-                "joints that make trees");
+        fail_at(section, k, "child", name + " is already the child of joint " + std::to_string(n),
+                "joints that form trees");
   }
 }
 
@@ -64,18 +65,19 @@ void check_start(const tasks::Task& task, const ConfigNode& section) {
       const Vector2d pin =
           to_world(task.start[static_cast<std::size_t>(joint.parent)], joint.on_parent);
       const Vector2d at = pin - rotate(task.start[child].theta, joint.on_child);
-      fail_at(
-          section, k, "on_child",
-          "is " + number_text(std::round(1e4 * gap) / 1e4) + " m off on_parent in the start state",
-          "'" + task.scene.bodies[child].name + "' at [" + single_text(static_cast<float>(at.x())) +
-              ", " + single_text(static_cast<float>(at.y())) + "], to 0.001 m");
+      fail_at(section, k, "on_child",
+              "is " + number_text(std::round(1e4 * gap) / 1e4) +
+                  " m away from on_parent in the start state",
+              "'" + task.scene.bodies[child].name + "' at [" +
+                  single_text(static_cast<float>(at.x())) + ", " +
+                  single_text(static_cast<float>(at.y())) + "] in the start state, within 0.001 m");
     }
     const double angle = joint_angle(joint, task.start);
     if (angle < joint.lower - kRounding || angle > joint.upper + kRounding)
       fail_at(section, k, "limits",
-              "exclude the angle of the start state, " + single_text(static_cast<float>(angle)) +
-                  " rad",
-              "[least, most] around it");
+              "exclude the joint's angle in the start state, " +
+                  single_text(static_cast<float>(angle)) + " rad",
+              "[least, most] in rad that include this angle");
   }
 }
 

@@ -37,18 +37,19 @@ void check_learner(const Config& config, const ConfigNode& root) {
   if (train.learner == Learner::kPlanning) {
     if (train.interact || train.offline)
       throw ConfigError(place(root, {learner, interact, offline}), "train.learner",
-                        "planning learns from nothing",
-                        "planning with train.interact and train.offline false");
+                        "planning neither interacts nor learns from transitions",
+                        "planning with train.interact false and train.offline false");
     return;
   }
   if (!train.interact && !train.offline)
-    throw ConfigError(place(root, {interact, offline}), "train.interact",
-                      "false without train.offline leaves nothing to learn from",
-                      "either true, or train.learner planning");
+    throw ConfigError(
+        place(root, {interact, offline}), "train.interact",
+        "train.interact and train.offline are both false, which leaves nothing to learn from",
+        "one of the two true, or train.learner planning");
   if (train.learner == Learner::kCloning &&
       (train.interact || !leads_to_success(config.search.generator)))
     throw ConfigError(place(root, {learner, interact, generator}), "train.learner",
-                      "cloning imitates generated steps alone",
+                      "cloning only imitates generated steps that lead to success",
                       "cloning with train.interact false and search.generator one of rrbs, naive, "
                       "forward");
 }
@@ -59,14 +60,14 @@ void check_buffer(const Config& config, const ConfigNode& root) {
   throw ConfigError(place(root, {{"train", "buffer"}, {"search", "transitions"}}), "train.buffer",
                     std::to_string(buffer) +
                         " is too small for search.transitions = " + std::to_string(transitions),
-                    "equal or larger ones");
+                    "at least as many as search.transitions");
 }
 
 void check_record(const Config& config, const ConfigNode& root) {
   if (!config.run.record || (config.train.offline && !config.run.in_process)) return;
   const std::string why = config.run.in_process ? "with run.in_process" : "without train.offline";
   throw ConfigError(place(root, {{"run", "record"}}), "run.record",
-                    "true, but " + why + " there are no messages", "false");
+                    "is true, but " + why + " there are no messages to record", "false");
 }
 
 }  // namespace

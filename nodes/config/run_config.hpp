@@ -18,12 +18,13 @@ struct RunConfig {
 
   template <class Visitor>
   void visit(Visitor& v) {
-    v.choice("method", method, kMethods, "values of search and train that are not given");
-    v.integer("seed", seed, 0, 2147483647, "decides everything random");
-    v.integer("workers", workers, 0, 1024, "reverse workers; 0: one per core");
-    v.flag("in_process", in_process, "everything in one process, no LCM");
-    v.flag("record", record, "lcm-logger writes all messages to lcm.log in the run folder");
-    v.text("bus", bus, "LCM URL, udpm://GROUP:PORT?ttl=N");
+    v.choice("method", method, kMethods,
+             "compared method: defaults of some keys of search and train");
+    v.integer("seed", seed, 0, 2147483647, "seed of all random numbers");
+    v.integer("workers", workers, 0, 1024, "number of reverse workers; 0: one per core");
+    v.flag("in_process", in_process, "run everything in one process, without LCM");
+    v.flag("record", record, "record all messages with lcm-logger, in lcm.log of the run folder");
+    v.text("bus", bus, "LCM URL of the message bus, udpm://GROUP:PORT?ttl=N");
   }
 };
 

@@ -50,11 +50,12 @@ Polygon read_regular(const ConfigNode& section, const std::string& path) {
 
 Polygon read_vertices(const ConfigNode& list, const std::string& path) {
   if (list.kind != Kind::kList)
-    throw ConfigError(list.origin, path, "is " + in_words(list), kVerticesLegal);
+    throw ConfigError(list.origin, path, in_words(list) + " is not a list", kVerticesLegal);
   Polygon shape;
   for (const ConfigNode& item : list.items) {
     if (item.kind != Kind::kList || item.items.size() != 2)
-      throw ConfigError(item.origin, path, in_words(item) + " is no vertex", kVerticesLegal);
+      throw ConfigError(item.origin, path, in_words(item) + " is not a vertex [x, y]",
+                        kVerticesLegal);
     shape.vertices.emplace_back(read_number(item.items[0], path, -kMaxSize, kMaxSize),
                                 read_number(item.items[1], path, -kMaxSize, kMaxSize));
   }
@@ -75,8 +76,8 @@ Polygon read_shape(const ConfigNode& section, const std::string& path) {
   if (section.kind != Kind::kMap || section.entries.size() != 1)
     throw ConfigError(section.origin, path,
                       section.kind == Kind::kMap
-                          ? "has " + std::to_string(section.entries.size()) + " keys"
-                          : "is " + in_words(section),
+                          ? "has " + std::to_string(section.entries.size()) + " keys instead of one"
+                          : in_words(section) + " is not a mapping",
                       kShapeLegal);
   const FieldReader reader(section, path, kShapes);
   const ConfigEntry& only = section.entries.front();

@@ -41,9 +41,9 @@ void check_jitters(const Config& config, const ConfigNode& root) {
     if (!allows_jitter(config.task, amplitude))
       throw ConfigError(
           origin_of(root, section, key), std::string(section) + '.' + key,
-          "with objects moved by +-" + number_text(amplitude) +
-              " m hardly a start is free of overlaps, within the arena and short of the goal",
-          "up to " + number_text(legal_amplitude(config.task, amplitude)) + " with these bodies");
+          "with objects shifted by up to " + number_text(amplitude) +
+              " m too few starts are legal (no overlaps, objects in the arena, goal not met)",
+          "at most " + number_text(legal_amplitude(config.task, amplitude)) + " with these bodies");
 }
 
 }  // namespace rtg::config

@@ -26,9 +26,11 @@ const ConfigNode& body_section(const ConfigNode& section, std::size_t i) {
 void check_movable(const tasks::Task& task, const ConfigNode& section) {
   const auto& bodies = task.scene.bodies;
   if (bodies[0].fixed)
-    fail_at(section, 0, "fixed", "the first body is the robot, which moves", "false");
+    fail_at(section, 0, "fixed",
+            "is true, but the first body is the robot, which must be able to move", "false");
   if (std::all_of(bodies.begin() + 1, bodies.end(), [](const Body& body) { return body.fixed; }))
-    fail_at(section, 1, "fixed", "no object can move", "false for one body besides the robot");
+    fail_at(section, 1, "fixed", "is true for all objects, so that none can move",
+            "false for at least one body other than the robot");
 }
 
 void check_start(const tasks::Task& task, const ConfigNode& section) {
@@ -41,14 +43,14 @@ void check_start(const tasks::Task& task, const ConfigNode& section) {
               "x and y from -" + arena + " to " + arena + " (task.push.arena)");
     if (bounding_radius(body.shape) > task.push.arena)
       fail_at(section, i, "shape", "is larger than the arena",
-              "a reach of at most " + arena + " m (task.push.arena)");
+              "a bounding radius of at most " + arena + " m (task.push.arena)");
   }
   if (const auto pair = first_overlap(task.scene, task.start, tasks::kStartClearance)) {
     const auto [a, b] = std::minmax(pair->first, pair->second);
     const double gap = separation(task.scene.bodies[a].shape, task.start[a],
                                   task.scene.bodies[b].shape, task.start[b]);
     fail_at(section, b, "start",
-            (gap < 0.0 ? "overlaps '" : "touches '") + task.scene.bodies[a].name + "'",
+            (gap < 0.0 ? "overlaps '" : "is too close to '") + task.scene.bodies[a].name + "'",
             "bodies at least 0.02 m apart");
   }
 }
@@ -78,7 +80,7 @@ std::string legal_joints(const tasks::Task& task) {
   std::vector<std::string> names{"\"*\""};
   for (const Joint& joint : task.scene.joints)
     names.push_back(task.scene.bodies[static_cast<std::size_t>(joint.child)].name);
-  return task.scene.joints.empty() ? "task.joints, of which there are none" : listed(names);
+  return task.scene.joints.empty() ? "none, because the task has no joints" : listed(names);
 }
 
 bool concerns_something(const tasks::GoalTerm& term, const Scene& scene) {
@@ -94,16 +96,19 @@ void check_angles(const tasks::GoalTerm& term, const Joint& joint, const tasks::
                   const ConfigEntry& angles, const std::string& path) {
   if (!concerns(term, task.scene, joint)) return;
   if (!(joint.upper - joint.lower < 2.0 * std::numbers::pi))
-    throw ConfigError(angles.value.origin, path + ".joint", "can turn round and round",
-                      "joints with limits less than 6.28 rad apart");
+    throw ConfigError(angles.value.origin, path + ".joint",
+                      "the joint of '" +
+                          task.scene.bodies[static_cast<std::size_t>(joint.child)].name +
+                          "' can make a full turn",
+                      "joints whose limits are less than 6.28 rad apart");
   if (std::max(joint.lower, term.least + tasks::kGoalSpare) >
       std::min(joint.upper, term.most - tasks::kGoalSpare))
     throw ConfigError(angles.value.origin, path + ".angles",
-                      "are none that the joint of '" +
+                      "the joint of '" +
                           task.scene.bodies[static_cast<std::size_t>(joint.child)].name +
-                          "' can have",
-                      "angles from " + number_text(joint.lower) + " to " +
-                          number_text(joint.upper) + " (its limits), with 0.05 rad to spare");
+                          "' cannot reach an angle 0.05 rad inside this range",
+                      "[least, most] in rad that overlaps its limits, " + number_text(joint.lower) +
+                          " to " + number_text(joint.upper) + ", by at least 0.05 rad");
 }
 
 void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& section) {
@@ -115,7 +120,7 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
     const char* key = of_joint ? "joint" : find(node, "centroid") ? "centroid" : "kind";
     const ConfigEntry* subject = find(node, key);
     throw ConfigError(subject ? subject->value.origin : node.origin, path + '.' + key,
-                      of_joint ? "no joint has a child '" + term.kind + "'"
+                      of_joint ? "no joint has the child '" + term.kind + "'"
                                : "no object that can move is of kind '" + term.kind + "'",
                       of_joint ? legal_joints(task) : legal_kinds(task));
   }
@@ -123,9 +128,9 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
     for (const Joint& joint : task.scene.joints) check_angles(term, joint, task, *angles, path);
   const std::string arena = number_text(task.push.arena);
   if (!meets_arena(term, task.push.arena))
-    throw ConfigError(
-        node.origin, path, "lies outside the arena",
-        "regions with points of x and y from -" + arena + " to " + arena + " (task.push.arena)");
+    throw ConfigError(node.origin, path, "lies outside the arena",
+                      "a region that contains a point with x and y from -" + arena + " to " +
+                          arena + " (task.push.arena)");
 }
 
 /// Returns whether fixed body `body` meets all goal terms that concern it.
@@ -142,15 +147,16 @@ void check_goal(const tasks::Task& task, const ConfigNode& section) {
   for (std::size_t i = 1; i < task.scene.size(); ++i)
     if (task.scene.bodies[i].fixed && !stands_right(task, i))
       throw ConfigError(origin, "task.goal",
-                        "asks fixed body '" + task.scene.bodies[i].name + "' to be elsewhere",
-                        "terms that the fixed bodies of that kind meet");
+                        "does not hold for the fixed body '" + task.scene.bodies[i].name + "'",
+                        "terms that hold for all fixed bodies of their kind");
   if (succeeded(task, task.start))
     throw ConfigError(origin, "task.goal", "holds in the start state",
                       "a goal that the start state does not meet");
   Rng rng(1);
   if (!sample_goal(task, rng))
-    throw ConfigError(origin, "task.goal", "no layout of the bodies that meets it was found",
-                      "terms that all objects can meet at once, with 0.05 m and rad to spare");
+    throw ConfigError(
+        origin, "task.goal", "no layout of the bodies that meets the goal was found",
+        "terms that all objects can meet at once, with a margin of 0.05 m and 0.05 rad");
 }
 
 }  // namespace
@@ -161,8 +167,8 @@ void check_names(const tasks::Task& task, const ConfigNode& section) {
     for (std::size_t j = 0; j < i; ++j)
       if (bodies[i].name == bodies[j].name)
         fail_at(section, i, "name",
-                "'" + bodies[i].name + "' is the name of body " + std::to_string(j) + " too",
-                "names that differ");
+                "'" + bodies[i].name + "' is already the name of body " + std::to_string(j),
+                "a name that no other body has");
 }
 
 void check_task(const tasks::Task& task, const ConfigNode& section) {

@@ -45,7 +45,7 @@ const ConfigNode& list_at(const FieldReader& reader, const char* key, std::size_
       "a list of " + std::to_string(least) + " to " + std::to_string(most) + " entries";
   const ConfigNode& list = reader.required(key, legal).value;
   if (list.kind != Kind::kList)
-    throw ConfigError(list.origin, reader.path(key), "is " + in_words(list), legal);
+    throw ConfigError(list.origin, reader.path(key), in_words(list) + " is not a list", legal);
   if (list.items.size() < least || list.items.size() > most)
     throw ConfigError(list.origin, reader.path(key),
                       "has " + std::to_string(list.items.size()) + " entries", legal);
@@ -112,7 +112,7 @@ ConfigNode task_node(tasks::Task task) {
   node.entries.push_back({"name", "", text_node(task.name)});
   node.entries.push_back({"bodies", "", list_node(std::move(bodies)), "the first is the robot"});
   if (!joints.empty()) node.entries.push_back({"joints", "", list_node(std::move(joints))});
-  node.entries.push_back({"goal", "", list_node(std::move(goal)), "all must hold"});
+  node.entries.push_back({"goal", "", list_node(std::move(goal)), "all terms must hold"});
   node.entries.push_back({"push", "", fields_of(task.push)});
   for (ConfigEntry& field : fields_of(task).entries) node.entries.push_back(std::move(field));
   return node;

@@ -22,7 +22,7 @@ std::string name_at(const FieldReader& reader, const char* key, const std::strin
   const std::string& name = node.scalar;
   if (node.kind != ConfigNode::Kind::kScalar || name.empty() || name.size() > kMaxName ||
       !is_letter(name[0]) || !std::all_of(name.begin(), name.end(), is_legal))
-    throw ConfigError(node.origin, reader.path(key), in_words(node) + " is no name", legal);
+    throw ConfigError(node.origin, reader.path(key), in_words(node) + " is not a name", legal);
   return name;
 }
 
@@ -32,11 +32,13 @@ Vector2d point_at(const FieldReader& reader, const char* key) {
 }
 
 Vector2d angles_at(const FieldReader& reader, const char* key) {
-  const std::string legal = "[least, most] in rad, at least 0.15 apart";
+  const std::string legal = "[least, most] in rad, with most at least 0.15 above least";
   const auto angles = reader.numbers(key, 2, -kMaxAngle, kMaxAngle, legal);
   if (angles[1] - angles[0] < kLeastAngles - kRounding)
     throw ConfigError(reader.required(key, legal).value.origin, reader.path(key),
-                      "leaves hardly any angle", legal);
+                      "the range [" + number_text(angles[0]) + ", " + number_text(angles[1]) +
+                          "] is narrower than 0.15 rad",
+                      legal);
   return {angles[0], angles[1]};
 }
 

@@ -82,63 +82,88 @@ struct TrainConfig {
   /// Visits the fields of exploration, of the starts of episodes and of hindsight goals.
   template <class Visitor>
   void visit_experience(Visitor& v) {
-    v.number("epsilon_start", epsilon_start, 0.0, 1.0, "exploration at the first interaction");
-    v.number("epsilon_end", epsilon_end, 0.0, 1.0, "exploration after its decay");
-    v.number("epsilon_share", epsilon_share, 0.0, 1.0, "share of the interactions it decays over");
+    v.number("epsilon_start", epsilon_start, 0.0, 1.0,
+             "epsilon (share of exploring actions) at the first interaction");
+    v.number("epsilon_end", epsilon_end, 0.0, 1.0,
+             "epsilon (share of exploring actions) after its decay");
+    v.number("epsilon_share", epsilon_share, 0.0, 1.0,
+             "share of train.interactions over which epsilon decays");
     v.number("nearby_share", nearby_share, 0.0, 1.0,
-             "share of exploration near the greedy heading");
-    v.integer("nearby_headings", nearby_headings, 1, 180, "how many headings away, at most");
-    v.number("contact_share", contact_share, 0.0, 1.0, "share of exploration towards objects");
-    v.flag("leave_loops", leave_loops, "explore where the episode comes back to, too");
+             "near-greedy share of exploring actions not aimed at an object");
+    v.integer("nearby_headings", nearby_headings, 1, 180,
+              "largest distance of near-greedy exploring actions [headings]");
+    v.number("contact_share", contact_share, 0.0, 1.0,
+             "share of exploring actions that head towards a random object");
+    v.flag("leave_loops", leave_loops,
+           "also explore in states that the episode visited a few steps before");
     v.number("start_jitter", start_jitter, 0.0, 10.0,
-             "training starts: object positions +- this [m]");
-    v.flag("randomise", randomise, "training and evaluation start all over task.randomisation");
-    v.integer("hindsight", hindsight, 0, 100, "goals reached later per online transition; 0: none");
-    v.number("curriculum", curriculum, 0.0, 1.0, "share of episodes from a reverse curriculum");
+             "largest x, y shift of objects in training starts [m]");
+    v.flag("randomise", randomise,
+           "shift objects in training and evaluation starts by up to task.randomisation");
+    v.integer("hindsight", hindsight, 0, 100,
+              "HER: goals relabelled per online transition; 0: no relabelling");
+    v.number("curriculum", curriculum, 0.0, 1.0,
+             "share of episodes with starts of a reverse curriculum; 0: none");
   }
 
   template <class Visitor>
   void visit(Visitor& v) {
     constexpr int kMany = 1000000000;
     constexpr int kTogether = 4;  // environments stepped at once; their transitions must fit
-    v.choice("preset", preset, kTrainPresets, "values of all fields that are not given");
-    v.choice("learner", learner, kLearners, "what makes a policy of the data");
-    v.flag("interact", interact, "act in the environment, or learn from generated data alone");
-    v.integer("interactions", interactions, 1, kMany, "environment steps of the learner");
-    v.flag("offline", offline, "generate transitions and learn from them, too");
+    v.choice("preset", preset, kTrainPresets, "values of the keys of train that are not given");
+    v.choice("learner", learner, kLearners, "learning algorithm; planning learns nothing");
+    v.flag("interact", interact,
+           "act in the environment; false: learn from generated transitions only");
+    v.integer("interactions", interactions, 1, kMany,
+              "largest number of environment steps of the learner");
+    v.flag("offline", offline, "generate transitions and learn from them; false: generate none");
     v.integer("transitions_before_learning", transitions_before_learning, 0, kMany,
-              "transitions that must be in before learning starts");
-    v.integer("buffer", buffer, kTogether, kMany, "capacity of each replay buffer");
+              "offline transitions before learning starts");
+    v.integer("buffer", buffer, kTogether, kMany,
+              "capacity of each replay buffer (offline, online) [transitions]");
     v.integer("batch", batch, 1, 1000000, "transitions per gradient step");
-    v.number("learning_rate", learning_rate, 1e-9, 1.0, "of Adam");
+    v.number("learning_rate", learning_rate, 1e-9, 1.0, "learning rate of Adam");
     v.integer("train_frequency", train_frequency, 1, 100000, "interactions per training round");
     v.integer("gradient_steps", gradient_steps, 1, 100000, "gradient steps per training round");
-    v.integer("target_sync", target_sync, 1, kMany, "gradient steps between target updates");
-    v.number("target_rate", target_rate, 1e-6, 1.0, "how far the target network moves; 1: a copy");
-    v.flag("target_acts", target_acts, "the target network acts in training, not the learner's");
+    v.integer("target_sync", target_sync, 1, kMany,
+              "gradient steps between updates of the target network");
+    v.number("target_rate", target_rate, 1e-6, 1.0,
+             "rate tau of the target network's soft update; 1: a copy");
+    v.flag("target_acts", target_acts,
+           "act in training by the target network; false: by the online network");
     v.number("averaging_rate", averaging_rate, 1e-6, 1.0,
-             "least rate of the policy's averaged weights, per gradient step; 1: no averaging");
-    v.number("discount", discount, 0.0, 0.9999, "of the learner; 0: the task's");
-    v.number("offline_share", offline_share, -1.0, 1.0, "of a batch; negative: uniform over all");
-    v.number("recent_share", recent_share, 0.0, 1.0, "of its online part: from the latest 10,000");
-    v.number("cql_weight", cql_weight, 0.0, 100.0, "weight of CQL's term; 0: none");
-    v.flag("double_q", double_q, "Double-Q targets");
+             "least weight-averaging rate per gradient step; 1: none");
+    v.number("discount", discount, 0.0, 0.9999, "discount factor of the learner; 0: task.discount");
+    v.number("offline_share", offline_share, -1.0, 1.0,
+             "offline share of a batch; negative: uniform over all data");
+    v.number("recent_share", recent_share, 0.0, 1.0,
+             "share of a batch's online part drawn from the latest 10,000");
+    v.number("cql_weight", cql_weight, 0.0, 100.0,
+             "weight of the CQL penalty on offline transitions; 0: none");
+    v.flag("double_q", double_q,
+           "Double Q-learning: the online network selects, the target network evaluates");
     v.flag("clipped_double_q", clipped_double_q,
-           "... valued by the network with the smaller value");
-    v.flag("dueling", dueling, "dueling head");
-    v.flag("layer_norm", layer_norm, "layer normalisation");
-    v.flag("small_head", small_head, "last layer starts near 0");
-    v.flag("clip_targets", clip_targets, "clip targets to [0, 1]");
-    v.flag("value_bounds", value_bounds, "raise targets to what stored trajectories prove");
+           "bootstrap from the smaller value of the online and the target network");
+    v.flag("dueling", dueling, "dueling network head: state value and advantages");
+    v.flag("layer_norm", layer_norm, "layer normalisation after each hidden layer");
+    v.flag("small_head", small_head,
+           "initialise the last layer near 0, so that first values are small");
+    v.flag("clip_targets", clip_targets, "clip TD targets to [0, 1]");
+    v.flag("value_bounds", value_bounds,
+           "raise TD targets to lower bounds that stored trajectories prove");
     visit_experience(v);
     v.integer("eval_every", eval_every, 1, kMany, "interactions between evaluations");
-    v.integer("eval_episodes", eval_episodes, 1, 100000, "held-out starts of an evaluation");
+    v.integer("eval_episodes", eval_episodes, 1, 100000,
+              "episodes of an evaluation, one per held-out start");
     v.integer("checkpoint_every", checkpoint_every, 1, kMany, "interactions between checkpoints");
-    v.number("stop_at_success", stop_at_success, 0.0, 1.0, "success that ends training; 0: none");
+    v.number("stop_at_success", stop_at_success, 0.0, 1.0,
+             "success rate that ends training early; 0: never");
     v.integer("stop_evaluations", stop_evaluations, 1, 100000,
-              "... in so many evaluations in a row");
-    v.flag("reduced_precision", reduced_precision, "inner layers in bfloat16 where it is fast");
-    v.choice("device", device, kDevices, "where the networks are; auto: on a GPU if there is one");
+              "consecutive evaluations that must reach stop_at_success");
+    v.flag("reduced_precision", reduced_precision,
+           "train the inner layers in bfloat16 where hardware supports it");
+    v.choice("device", device, kDevices,
+             "device of the networks; auto: a GPU if PyTorch finds one");
   }
 };
 

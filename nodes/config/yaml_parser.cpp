@@ -36,7 +36,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    refuse(mark.line, "an alias (*)", "every value written out");
+    refuse(mark.line, "an alias (*) is not allowed", "every value written out");
   }
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -72,8 +72,9 @@ class TreeBuilder : public YAML::EventHandler {
 
   ConfigNode node(ConfigNode::Kind kind, const YAML::Mark& mark, const std::string& tag,
                   YAML::anchor_t anchor) const {
-    if (anchor != 0) refuse(mark.line, "an anchor (&)", "every value written out");
-    if (!tag.empty() && tag != "?" && tag != "!") refuse(mark.line, "a tag (!)", "plain values");
+    if (anchor != 0) refuse(mark.line, "an anchor (&) is not allowed", "every value written out");
+    if (!tag.empty() && tag != "?" && tag != "!")
+      refuse(mark.line, "a tag (!) is not allowed", "plain values");
     ConfigNode made;
     made.kind = kind;
     made.origin = origin_(mark.line);
@@ -82,7 +83,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void open(ConfigNode container) {
     if (levels_.size() == kMaxDepth)
-      throw ConfigError(container.origin + ": nested too deep; legal: at most " +
+      throw ConfigError(container.origin + ": the text is nested too deep; legal: at most " +
                         std::to_string(kMaxDepth) + " levels");
     levels_.push_back({std::move(container)});
   }
@@ -120,10 +121,10 @@ class TreeBuilder : public YAML::EventHandler {
 
   void take_key(Level& level, const ConfigNode& key) const {
     if (key.kind != ConfigNode::Kind::kScalar)
-      throw ConfigError(key.origin + ": " + in_words(key) + " as a key; legal: a word");
+      throw ConfigError(key.origin + ": " + in_words(key) + " cannot be a key; legal: a word");
     if (const ConfigEntry* first = find(level.node, key.scalar))
-      throw ConfigError(key.origin, path() + key.scalar, "given twice, first at " + first->origin,
-                        "once");
+      throw ConfigError(key.origin, path() + key.scalar,
+                        "is given twice, first at " + first->origin, "once");
     level.has_key = true;
     level.key = key.scalar;
     level.key_origin = key.origin;
@@ -137,13 +138,13 @@ void check_utf8(const std::string& text, const OriginOfLine& origin) {
   const auto wrong = utf8::find_invalid(text.begin(), text.end());
   if (wrong == text.end()) return;
   const auto line = static_cast<int>(std::count(text.begin(), wrong, '\n'));
-  throw ConfigError(origin(line) + ": a byte that is no UTF-8; legal: text in UTF-8");
+  throw ConfigError(origin(line) + ": has a byte that is not UTF-8; legal: text in UTF-8");
 }
 
 ConfigNode parse(const std::string& text, const OriginOfLine& origin) {
   if (text.size() > kMaxBytes)
-    throw ConfigError(origin(0) + ": too long; legal: at most " + std::to_string(kMaxBytes) +
-                      " bytes");
+    throw ConfigError(origin(0) + ": the text is too long; legal: at most " +
+                      std::to_string(kMaxBytes) + " bytes");
   check_utf8(text, origin);
   std::istringstream stream(text);
   TreeBuilder builder(origin);
@@ -153,10 +154,11 @@ ConfigNode parse(const std::string& text, const OriginOfLine& origin) {
     ConfigNode root = std::move(builder.root);
     TreeBuilder rest(origin);
     if (parser.HandleNextDocument(rest))
-      throw ConfigError(rest.root.origin + ": a second document; legal: one");
+      throw ConfigError(rest.root.origin +
+                        ": a second document is not allowed; legal: one document");
     return root;
   } catch (const YAML::Exception& error) {
-    throw ConfigError(origin(error.mark.line) + ": wrong YAML: " + error.msg +
+    throw ConfigError(origin(error.mark.line) + ": is not valid YAML: " + error.msg +
                       "; legal: YAML, 'key: value' on each line, indented by spaces");
   }
 }

@@ -29,7 +29,7 @@ MISTAKES = {
         "--set train.buffer=5: key 'train.buffer': 5 is too small for search.tr",
     ),
     "folder of another kind": (["--out", "/proc/rtg", "--in-process"], "--out: /proc/rtg: "),
-    "resume without folder": (["--resume"], "--resume: needs --out DIR"),
+    "resume without folder": (["--resume"], "--resume: --out is missing"),
     "check without file": (["check"], "the following arguments are required: FILE.yaml; legal: "),
     "check of two": (
         ["check", "a", "b"],
@@ -44,7 +44,7 @@ MISTAKES = {
         "unrecognized arguments: --sec; legal: ./run.sh s",
     ),
     "flag of lcm-spy": (["lcm-spy", "-x"], "unrecognized arguments: -x; legal: ./run.sh lcm-spy ["),
-    "spy for no time": (["spy", "--seconds", "0"], "--seconds 0: legal is a number of seconds"),
+    "spy for no time": (["spy", "--seconds", "0"], "--seconds 0: not a legal duration; legal: "),
     "reproduce of nothing": (
         ["reproduce", "sortign"],
         "sortign: no task of that name; legal: art_",
@@ -109,7 +109,7 @@ def test_text_that_is_no_utf8_is_a_mistake(tmp_path):
         ("--out", b"runs/\xff"): "runs/\\xff",
     }.items():
         done = rtg(*words)
-        assert done.stderr == f"rtg: {shown}: a byte that is no UTF-8; legal: text in UTF-8\n"
+        assert done.stderr == f"rtg: {shown}: has a byte that is not UTF-8; legal: text in UTF-8\n"
         assert (done.returncode, done.stdout) == (2, "")
 
 

@@ -84,7 +84,7 @@ def test_pushes_of_a_batch_do_not_depend_on_each_other() -> None:
     [
         (4, [-1], "legal: 0 to 47"),
         (4, [48], "legal: 0 to 47"),
-        (4, [0, 47], "number"),
+        (4, [0, 47], "1 states but 2 actions; legal: one action per state"),
         (3, [0], "3 bodies"),
     ],
 )

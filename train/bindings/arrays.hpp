@@ -38,7 +38,8 @@ struct OwnedArray {
 inline void check_bodies(const StateArray& states, std::size_t bodies) {
   if (states.shape(1) != bodies) {
     const std::string found = std::to_string(states.shape(1)), want = std::to_string(bodies);
-    throw nb::value_error(("states of " + found + " bodies; the task has " + want).c_str());
+    throw nb::value_error(
+        ("states of " + found + " bodies; legal: " + want + ", the bodies of the task").c_str());
   }
 }
 
@@ -53,7 +54,9 @@ inline Poses state_at(const StateArray& states, std::size_t row) {
 /// Returns the only state in `states`. Throws ValueError if there is not exactly one.
 inline Poses only_state(const StateArray& states, std::size_t bodies) {
   check_bodies(states, bodies);
-  if (states.shape(0) != 1) throw nb::value_error("one state is wanted, [1, bodies, 3]");
+  if (states.shape(0) != 1)
+    throw nb::value_error(
+        (std::to_string(states.shape(0)) + " states; legal: one, [1, bodies, 3]").c_str());
   return state_at(states, 0);
 }
 

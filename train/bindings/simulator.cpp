@@ -25,7 +25,10 @@ void check_actions(const TaskSimulator& simulator, const StateArray& states,
                    const ActionArray& actions) {
   check_bodies(states, simulator.bodies);
   if (actions.shape(0) != states.shape(0))
-    throw nb::value_error("states and actions differ in number");
+    throw nb::value_error((std::to_string(states.shape(0)) + " states but " +
+                           std::to_string(actions.shape(0)) +
+                           " actions; legal: one action per state")
+                              .c_str());
   for (std::size_t row = 0; row < actions.shape(0); ++row) {
     const std::int64_t action = actions.data()[row];
     if (action < 0 || action >= simulator.headings) {

@@ -90,7 +90,8 @@ std::optional<nb::ndarray<nb::numpy, double>> goal_state(const tasks::Task& task
 nb::ndarray<nb::numpy, double> start(const tasks::Task& task, double amplitude, std::uint64_t seed,
                                      std::uint64_t index) {
   if (!(amplitude >= 0.0 && amplitude <= 10.0))
-    throw nb::value_error("amplitude: legal are 0 to 10 m");
+    throw nb::value_error(
+        ("amplitude " + std::to_string(amplitude) + " is out of range; legal: 0 to 10 m").c_str());
   Rng rng(seed, index);
   return state_array(jittered_start(task, amplitude, rng));
 }

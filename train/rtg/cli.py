@@ -60,7 +60,9 @@ def _seconds(word: str) -> float:
     except ValueError:
         seconds = -1.0
     if not 0.0 < seconds <= 1e6:
-        raise UserError(f"--seconds {word}: legal is a number of seconds above 0")
+        raise UserError(
+            f"--seconds {word}: not a legal duration; legal: a number of seconds above 0"
+        )
     return seconds
 
 
@@ -102,7 +104,7 @@ def _plot(words: Sequence[str]) -> int:
     parser.add_argument("--out", metavar="DIR", help="where to (the same folder)")
     args = parser.parse_args(words)
     if args.out == "":
-        raise UserError("--out: '' is no folder; legal: the path of one")
+        raise UserError("--out: the path is empty; legal: the path of a folder")
     from rtg.compare.report_files import write_report
 
     print(f"report: {write_report(args.folder, Path(args.out or args.folder))}")
@@ -125,7 +127,9 @@ def _check_utf8(words: Sequence[str]) -> None:
             word.encode()
         except UnicodeEncodeError:
             shown = os.fsencode(word).decode(errors="backslashreplace")
-            raise UserError(f"{shown}: a byte that is no UTF-8; legal: text in UTF-8") from None
+            raise UserError(
+                f"{shown}: has a byte that is not UTF-8; legal: text in UTF-8"
+            ) from None
 
 
 def main(words: Sequence[str] | None = None) -> int:

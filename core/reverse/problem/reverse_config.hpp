@@ -14,6 +14,9 @@ inline constexpr std::array<std::string_view, 2> kReversePresets{"default", "pap
 /// Parameters of the reverse problem (eq. 6, 7) and its SQP (A.2). The default values are those of
 /// the preset `default`. A loader begins with reverse_preset(preset) and overwrites the fields that
 /// the user gives. Energies are in units of k_D/Δt², see core/NOTATION.md.
+///
+/// `preset` also chooses the solver, see solve_together(): the filter SQP from warm starts
+/// (`default`), or the printed SQP with the l1 merit from the static start (`paper`).
 struct ReverseConfig {
   ReversePreset preset = ReversePreset::kDefault;
   KktMethod kkt = KktMethod::kBlockElimination;
@@ -39,28 +42,46 @@ struct ReverseConfig {
 
   template <class Visitor>
   void visit(Visitor& v) {
-    v.choice("preset", preset, kReversePresets, "values of all fields that are not given");
-    v.choice("kkt", kkt, kKktMethods, "how the Newton systems are solved");
-    v.integer("max_iterations", max_iterations, 1, 100000, "SQP iterations per candidate");
-    v.number("feasibility_tol", feasibility_tol, 1e-14, 1.0, "largest constraint violation");
-    v.number("stationarity_tol", stationarity_tol, 1e-14, 1.0, "largest Lagrangian gradient");
-    v.number("robot_weight", robot_weight, 0.0, 1e6, "pull of the robot against the push");
-    v.number("object_weight", object_weight, 0.0, 1e6, "pull of the objects against the push");
-    v.number("control_weight", control_weight, 1e-9, 1e6, "price of control");
-    v.number("path_weight", path_weight, 0.0, 1e9, "holds the robot on the push's straight line");
-    v.number("heading_weight", heading_weight, 0.0, 1e9, "holds the robot's heading");
-    v.number("speed_weight", speed_weight, 0.0, 1e9, "price of objects that outrun the push");
-    v.number("terminal_weight", terminal_weight, 0.0, 1e9, "holds the final state; 0: fixes it");
-    v.number("terminal_tolerance", terminal_tolerance, 0.0, 100.0, "largest miss of it [m]");
-    v.number("plain_barrier", plain_barrier, 0.0, 1e6, "weight of -mu log g; 0: physics' barrier");
-    v.number("sharpness", sharpness, 0.0, 1e5, "of the reverse problem [1/m]; 0: that of physics");
+    v.choice("preset", preset, kReversePresets,
+             "values of keys not given, and SQP: filter, warm start (default) or l1 merit, static "
+             "start (paper)");
+    v.choice("kkt", kkt, kKktMethods, "solver of KKT systems");
+    v.integer("max_iterations", max_iterations, 1, 100000,
+              "largest number of SQP iterations per reverse problem");
+    v.number("feasibility_tol", feasibility_tol, 1e-14, 1.0,
+             "SQP tolerance: max norm of the constraint violation");
+    v.number("stationarity_tol", stationarity_tol, 1e-14, 1.0,
+             "SQP tolerance: max norm of the Lagrangian gradient");
+    v.number("robot_weight", robot_weight, 0.0, 1e6,
+             "weight that pulls the robot's start against the push [kg m]");
+    v.number("object_weight", object_weight, 0.0, 1e6,
+             "weight that pulls objects' starts against the push [kg m]");
+    v.number("control_weight", control_weight, 1e-9, 1e6,
+             "penalty on the squared robot controls [kg m^2]");
+    v.number("path_weight", path_weight, 0.0, 1e9,
+             "penalty on the robot leaving its straight path [kg]; 0: none");
+    v.number("heading_weight", heading_weight, 0.0, 1e9,
+             "penalty on the robot turning [kg m^2]; 0: none");
+    v.number("speed_weight", speed_weight, 0.0, 1e9,
+             "penalty on objects faster than the robot [kg m^2]; 0: none");
+    v.number("terminal_weight", terminal_weight, 0.0, 1e9,
+             "stiffness holding the final state [kg]; 0: it is fixed");
+    v.number("terminal_tolerance", terminal_tolerance, 0.0, 100.0,
+             "largest final position error of a valid solution [m]");
+    v.number("plain_barrier", plain_barrier, 0.0, 1e6,
+             "weight mu of a barrier -mu log(gap) [J]; 0: as in physics");
+    v.number("sharpness", sharpness, 0.0, 1e5,
+             "sharpness of the signed distance [1/m]; 0: as in physics");
     v.number("torque_factor", torque_factor, 0.0, 1e6,
-             "of the reverse problem; 0: that of physics");
-    v.number("robot_density", robot_density, 0.01, 100.0, "in the reverse problem / its true one");
-    v.flag("periodic_turns", periodic_turns, "1 - cos instead of the square of turns");
-    v.number("proximal_start", proximal_start, 1e-4, 1e9, "regularisation of the first step");
+             "largest robot torque / (drag x radius); 0: as in physics");
+    v.number("robot_density", robot_density, 0.01, 100.0,
+             "robot density in the reverse problem / its true density");
+    v.flag("periodic_turns", periodic_turns,
+           "turns cost 1 - cos(turn), not turn^2 / 2; false: as in physics");
+    v.number("proximal_start", proximal_start, 1e-4, 1e9,
+             "first proximal weight of the filter SQP [kg]");
     v.integer("late_contacts", late_contacts, 0, kMaxPredecessors - 1,
-              "predecessors whose objects are met later");
+              "further predecessors per solution, in which contacts begin later");
   }
 };
 

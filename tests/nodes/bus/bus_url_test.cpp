@@ -17,7 +17,7 @@ TEST(BusUrl, IsSpeltOut) {
 
 TEST(BusUrl, IllegalOnesAreNamed) {
   const std::string legal =
-      "' is no bus URL; legal: memq://, udpm://GROUP:PORT[?ttl=N] with a multicast group "
+      "' is not a bus URL; legal: memq://, udpm://GROUP:PORT[?ttl=N] with a multicast group "
       "224.x.x.x-239.x.x.x, port 1024-65535, ttl 0-255";
   for (const std::string url :
        {"", "udpm://", "tcpq://127.0.0.1:7700", "udpm://10.0.0.1:7667", "udpm://239.255.76.67",

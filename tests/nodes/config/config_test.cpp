@@ -158,7 +158,7 @@ TEST(Config, ABrokenByteInASettingIsNamed) {
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_EQ(std::string(error.what()),
-              "--set task.name=gr\xf6sser: a byte that is no UTF-8; legal: text in UTF-8");
+              "--set task.name=gr\xf6sser: has a byte that is not UTF-8; legal: text in UTF-8");
   }
 }
 
@@ -214,7 +214,9 @@ TEST(Config, DynamicModeNeedsDamping) {
   EXPECT_TRUE(parsed("physics: {inertia: true, damping: 0.05}\n").physics.inertia);
   EXPECT_TRUE(
       refusal("physics: {inertia: true, damping: 0.04}\n")
-          .ends_with(": key 'physics.damping': 0.04 with physics.inertia; legal: 0.05 or more"));
+          .ends_with(
+              ": key 'physics.damping': 0.04 is too small with physics.inertia: true; legal: "
+              "0.05 or more"));
 }
 
 TEST(Config, AMethodGivesTheValuesThatAreNotGiven) {
@@ -258,8 +260,8 @@ TEST(Config, WhatAMethodStandsForReadsBackToItself) {
 
 TEST(Config, DomainRandomisationNeedsItsRange) {
   EXPECT_EQ(refusal("", {"train.randomise=true"}),
-            "--set train.randomise=true: key 'task.randomisation': 0 with train.randomise; legal: "
-            "more than 0");
+            "--set train.randomise=true: key 'task.randomisation': is 0, but train.randomise is "
+            "true; legal: more than 0");
 }
 
 }  // namespace

@@ -82,13 +82,13 @@ WALLS = """\
     - {name: above, kind: wall, fixed: true, shape: {box: [1, 0.2]}, start: [3, 0.63, 0]}
     - {name: below, kind: wall, fixed: true, shape: {box: [1, 0.2]}, start: [3, -0.63, 0]}
 """
-HARDLY = (
-    "m hardly a start is free of overlaps, within the arena and short of the goal; legal: up to"
+TOO_FEW = (
+    "m too few starts are legal (no overlaps, objects in the arena, goal not met); legal: at most"
 )
 
 
 def test_text_must_be_utf8(file: Path, tmp_path: Path) -> None:
-    wrong = "a byte that is no UTF-8; legal: text in UTF-8"
+    wrong = "has a byte that is not UTF-8; legal: text in UTF-8"
     path = tmp_path / "latin.yaml"
     path.write_bytes(file.read_bytes() + "# größer\n".encode("latin-1"))
     lines = file.read_bytes().count(b"\n") + 1
@@ -100,15 +100,15 @@ def test_jitters_must_leave_room_for_starts(tmp_path: Path) -> None:
     path = tmp_path / "walls.yaml"
     path.write_text(TASK.replace("  goal:\n", WALLS + "  goal:\n"))
 
-    task = "key 'task.start_jitter': with objects moved by +-"
-    assert refusal(path) == f"{path}:4: {task}0.1 {HARDLY} 0.05 with these bodies"
+    task = "key 'task.start_jitter': with objects shifted by up to "
+    assert refusal(path) == f"{path}:4: {task}0.1 {TOO_FEW} 0.05 with these bodies"
     wide = "task.start_jitter=0.2"
-    assert refusal(path, wide) == f"--set {wide}: {task}0.2 {HARDLY} 0.05 with these bodies"
+    assert refusal(path, wide) == f"--set {wide}: {task}0.2 {TOO_FEW} 0.05 with these bodies"
     legal = ["task.start_jitter=0.01", "train.start_jitter=0.01"]
     assert refusal(path, *legal) == ""
     last = "train.start_jitter=0.4"
     assert refusal(path, *legal, last).startswith(
-        f"--set {last}: key 'train.start_jitter': with objects moved by +-0.4 m"
+        f"--set {last}: key 'train.start_jitter': with objects shifted by up to 0.4 m"
     )
 
 
@@ -117,7 +117,7 @@ def test_jitters_must_keep_objects_in_the_arena() -> None:
     task, wide = paths.CONFIG / "sorting_hard.yaml", "task.randomisation=10"
     assert refusal(task, "task.push.arena=7") == ""
     said = refusal(task, "task.push.arena=7", wide)
-    assert said.startswith(f"--set {wide}: key 'task.randomisation': with objects moved by")
+    assert said.startswith(f"--set {wide}: key 'task.randomisation': with objects shifted by")
 
 
 def test_of_several_settings_the_one_that_made_it_wrong_is_named(file: Path) -> None:
@@ -162,7 +162,11 @@ def test_a_task_may_lie_in_another_file(file: Path, tmp_path: Path) -> None:
     ("name", "message"),
     [
         ("none.yaml", "no such file; legal: a YAML file with a section 'task'"),
-        ("mine.yaml", "describes no task; legal: a mapping, or the path of a YAML file with one"),
+        (
+            "mine.yaml",
+            "has no mapping 'task'; legal: a mapping, or the path of a YAML file with a section "
+            "'task'",
+        ),
     ],
 )
 def test_a_wrong_path_of_a_task_is_named(name: str, message: str, tmp_path: Path) -> None:

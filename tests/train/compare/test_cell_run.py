@@ -48,7 +48,7 @@ def test_a_new_run_begins_and_one_that_has_begun_goes_on(words):
     write_json(naive.folder / "summary.json", {"interactions": 400, "success_rate": 0.5})
     assert naive.done
     write_json(naive.folder / "summary.json", {"interactions": 400})
-    with pytest.raises(UserError, match=r"summary\.json: no success_rate; legal: as the run left"):
+    with pytest.raises(UserError, match=r"summary\.json: has no success_rate; legal: the file as"):
         prepare_runs(parse(words))[0].outcome()
 
 
@@ -138,7 +138,9 @@ def test_a_file_where_a_run_belongs_is_refused(words):
     run = prepare_runs(parse(words))[0]
     run.folder.parent.mkdir(parents=True)
     run.folder.write_text("mine")
-    with pytest.raises(UserError, match="holds no run; legal: an empty --out, or none"):
+    with pytest.raises(
+        UserError, match="neither empty nor the folder of a run; legal: a new or an empty --out"
+    ):
         prepare_runs(parse(words))
 
 
@@ -190,7 +192,9 @@ def test_a_folder_of_another_kind_is_refused(words):
     run = prepare_runs(parse(words))[0]
     run.folder.mkdir(parents=True)
     (run.folder / "notes.txt").write_text("mine")
-    with pytest.raises(UserError, match="holds no run; legal: an empty --out, or none"):
+    with pytest.raises(
+        UserError, match="neither empty nor the folder of a run; legal: a new or an empty --out"
+    ):
         prepare_runs(parse(words))
 
 
@@ -203,5 +207,7 @@ def test_wrong_values_are_named_by_the_flag_that_they_came_with(words):
 
 
 def test_values_that_make_the_same_run_are_refused(words):
-    with pytest.raises(UserError, match=r"=0\.50/seed-1: is the same run as .*=0\.5/seed-1; legal"):
+    with pytest.raises(
+        UserError, match=r"=0\.50/seed-1: has the same settings as .*=0\.5/seed-1; legal"
+    ):
         prepare_runs(parse([*words, "--sweep", "train.offline_share=0.5,0.50"]))

@@ -29,5 +29,5 @@ def test_a_command_is_forgotten_once_others_ask_for_all_that_it_asked_for():
 @pytest.mark.parametrize("text", ["[]", "{", '{"cells": [{"task": "x"}]}', '{"cells": 3}'])
 def test_a_damaged_file_is_named(tmp_path, text):
     (tmp_path / "grid.json").write_text(text)
-    with pytest.raises(UserError, match=r"grid\.json: damaged; legal: as "):
+    with pytest.raises(UserError, match=r"grid\.json: is damaged; legal: the file as "):
         read_grid(tmp_path)

@@ -92,44 +92,47 @@ def test_settings_stand_above_the_method_and_it_above_presets_and_the_file() -> 
 def test_another_id_is_refused_and_the_legal_ones_are_named(capsys) -> None:
     assert cli.main(["gathering", "--method", "sac"]) == 2
     legal = ", ".join(METHODS)
-    words = f"rtg: --method sac: key 'run.method': 'sac' is none of them; legal: {legal}\n"
+    wrong = "'sac' is not one of the legal values"
+    words = f"rtg: --method sac: key 'run.method': {wrong}; legal: {legal}\n"
     assert capsys.readouterr().err == words
 
 
 REFUSED = {
     "nothing to do": (
         ["--method", "her", "--no-train"],
-        "rtg: --no-train: nothing to do, run.method her generates no transitions ",
+        "rtg: --no-train: leaves nothing to do, as run.method her generates no transitions ",
     ),
     "no messages": (
         ["--method", "rcg", "--set", "run.record=true"],
-        "rtg: --set run.record=true: key 'run.record': true, but without train.offline there are "
-        "no messages; legal: false",
+        "rtg: --set run.record=true: key 'run.record': is true, but without train.offline there "
+        "are no messages to record; legal: false",
     ),
     "no range": (
         ["--method", "ddqn_rtg_dr", "--set", "task.randomisation=0"],
-        "rtg: --method ddqn_rtg_dr: run.method ddqn_rtg_dr: key 'task.randomisation': 0 with "
-        "train.randomise; legal: more than 0",
+        "rtg: --method ddqn_rtg_dr: run.method ddqn_rtg_dr: key 'task.randomisation': is 0, but "
+        "train.randomise is true; legal: more than 0",
     ),
     "a planner with data": (
         ["--method", "planner", "--set", "train.offline=true"],
-        "rtg: --set train.offline=true: key 'train.learner': planning learns "
-        "from nothing; legal: planning with train.interact and train.offline false",
+        "rtg: --set train.offline=true: key 'train.learner': planning neither "
+        "interacts nor learns from transitions; legal: planning with train.interact false and "
+        "train.offline false",
     ),
     "nothing to learn from": (
         ["--method", "cql_rtg", "--set", "train.offline=false"],
-        "rtg: --set train.offline=false: key 'train.interact': false without "
-        "train.offline leaves nothing to learn from; legal: either true, or train.learner planning",
+        "rtg: --set train.offline=false: key 'train.interact': train.interact "
+        "and train.offline are both false, which leaves nothing to learn from; legal: one of the "
+        "two true, or train.learner planning",
     ),
     "steps that lead nowhere": (
         ["--method", "bc_rtg", "--set", "search.generator=scatter"],
         "rtg: --set search.generator=scatter: key 'train.learner': cloning "
-        "imitates generated steps alone; legal: cloning with train.interact false and "
-        "search.generator one of rrbs, naive, forward",
+        "only imitates generated steps that lead to success; legal: cloning with train.interact "
+        "false and search.generator one of rrbs, naive, forward",
     ),
     "a clone that interacts": (
         ["--method", "bc_rtg", "--set", "train.interact=true"],
-        "rtg: --set train.interact=true: key 'train.learner': cloning imitates ",
+        "rtg: --set train.interact=true: key 'train.learner': cloning only imitates ",
     ),
 }
 
@@ -243,7 +246,9 @@ def test_the_device_is_a_gpu_where_there_is_one(monkeypatch: pytest.MonkeyPatch)
         assert device.chosen("cpu") == "cpu"
     assert device.chosen("cuda") == "cuda"
     monkeypatch.setattr("torch.cuda.is_available", lambda: False)
-    with pytest.raises(UserError, match=r"train\.device: cuda, but PyTorch sees no such device;"):
+    with pytest.raises(
+        UserError, match=r"train\.device: is cuda, but PyTorch finds no CUDA device;"
+    ):
         device.chosen("cuda")
 
 
@@ -253,5 +258,7 @@ def test_a_device_that_is_not_there_is_refused_before_anything_starts(
     monkeypatch.setattr("torch.cuda.is_available", lambda: False)
     words = [str(TINY), "--set", "train.device=cuda", "--out", str(tmp_path / "run")]
     assert cli.main(words) == 2
-    assert capsys.readouterr().err.startswith("rtg: train.device: cuda, but PyTorch sees no such")
+    assert capsys.readouterr().err.startswith(
+        "rtg: train.device: is cuda, but PyTorch finds no CUDA"
+    )
     assert not (tmp_path / "run").exists()

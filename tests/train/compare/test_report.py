@@ -247,7 +247,7 @@ def test_the_command_writes_the_report_and_names_what_is_no_comparison(folder, t
         f"rtg: {tmp_path}: holds no comparison (no grid.json)"
     )
     assert cli.main(["plot", str(folder), "--out", ""]) == 2
-    assert capsys.readouterr().err == "rtg: --out: '' is no folder; legal: the path of one\n"
+    assert capsys.readouterr().err == "rtg: --out: the path is empty; legal: the path of a folder\n"
     assert cli.main(["plot", str(folder), "--out", "/proc/rtg"]) == 2
     assert capsys.readouterr().err.startswith("rtg: --out: /proc/rtg: ")
 

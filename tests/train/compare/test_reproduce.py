@@ -119,7 +119,7 @@ def test_a_run_that_is_stopped_has_not_failed(comparison, tmp_path):
 def test_two_commands_do_not_work_in_one_folder(tmp_path, capsys):
     with run_folder.exclusive_lock(tmp_path, "nobody"):
         assert cli.main(["reproduce", str(TINY), "--out", str(tmp_path)]) == 2
-    assert "another reproduce works there" in capsys.readouterr().err
+    assert "another reproduce uses this folder" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("folder", ["/proc/rtg", "/proc"])

@@ -86,31 +86,49 @@ def test_the_values_of_a_sweep_may_be_negative():
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--set", "run.seed=3"], "--set run.seed=3: reproduce decides it; legal: --seeds"),
+        (
+            ["--set", "run.seed=3"],
+            "--set run.seed=3: reproduce sets this key itself; legal: --seeds",
+        ),
         (["gatherin"], "gatherin: no task of that name; legal: art_manip, gathering, "),
         (["gathering", "--methods", "magic"], "--methods magic: no method of that name; legal: "),
         (["--methods", ""], "--methods : no method of that name; legal: "),
-        (["--seeds", "0"], "--seeds 0: legal: a number from 1 to 1000, or a list 1,2,3"),
-        (["--seeds", "1001"], "--seeds 1001: legal: a number from 1 to 1000, or a list 1,2,3"),
-        (["--seeds", ""], "--seeds '': legal: a number from 1 to 1000, or a list 1,2,3"),
-        (["--seeds", "1,x"], "--seeds x: legal: a list 1,2,3"),
-        (["--seeds", ","], "--seeds '': legal: a list 1,2,3"),
-        (["--jobs", "0"], "--jobs 0: legal: a number from 1 to 1000"),
-        (["--jobs", ""], "--jobs '': legal: a number from 1 to 1000"),
+        (
+            ["--seeds", "0"],
+            "--seeds 0: not a legal number; legal: a number from 1 to 1000, or a list 1,2,3",
+        ),
+        (
+            ["--seeds", "1001"],
+            "--seeds 1001: not a legal number; legal: a number from 1 to 1000, or a list 1,2,3",
+        ),
+        (
+            ["--seeds", ""],
+            "--seeds '': not a legal number; legal: a number from 1 to 1000, or a list 1,2,3",
+        ),
+        (["--seeds", "1,x"], "--seeds x: not a legal number; legal: a list 1,2,3"),
+        (["--seeds", ","], "--seeds '': not a legal number; legal: a list 1,2,3"),
+        (["--jobs", "0"], "--jobs 0: not a legal number; legal: a number from 1 to 1000"),
+        (["--jobs", ""], "--jobs '': not a legal number; legal: a number from 1 to 1000"),
         (
             ["--sweep", "train.batch=8", "--sweep", "train.batch=9"],
-            "--sweep train.batch: stands twice; legal: once, train.batch=V1,V2",
+            "--sweep train.batch: is given twice; legal: once, train.batch=V1,V2",
         ),
-        (["--jobs", "-1"], "--jobs -1: legal: a number from 1 to 1000"),
-        (["--out", ""], "--out: '' is no folder; legal: the path of one"),
-        (["--sweep", "train.batch"], "--sweep train.batch: legal: KEY=V1,V2 "),
-        (["--sweep", "train.batch=1,"], "--sweep train.batch=1,: legal: KEY=V1,V2 "),
-        (["--sweep", "train.batch=1,a/b"], "--sweep train.batch=1,a/b: legal: KEY=V1,V2 "),
+        (["--jobs", "-1"], "--jobs -1: not a legal number; legal: a number from 1 to 1000"),
+        (["--out", ""], "--out: the path is empty; legal: the path of a folder"),
+        (["--sweep", "train.batch"], "--sweep train.batch: not a legal axis; legal: KEY=V1,V2, "),
+        (
+            ["--sweep", "train.batch=1,"],
+            "--sweep train.batch=1,: not a legal axis; legal: KEY=V1,V2, ",
+        ),
+        (
+            ["--sweep", "train.batch=1,a/b"],
+            "--sweep train.batch=1,a/b: not a legal axis; legal: KEY=V1,V2, ",
+        ),
         (
             ["--ablations", "--sweep", "train.batch=1,2"],
-            "--ablations: not with --sweep, which changes settings, too; legal: one",
+            "--ablations: cannot be combined with --sweep; legal: one",
         ),
-        (["--sweep", "run.seed=1,2"], "--sweep run.seed=1,2: run.seed is no axis; legal: "),
+        (["--sweep", "run.seed=1,2"], "--sweep run.seed=1,2: run.seed cannot be swept; legal: "),
         (["--in-process"], "unrecognized arguments: --in-process; legal: ./run.sh reproduce [-h]"),
     ],
 )
@@ -122,5 +140,7 @@ def test_a_mistake_is_named(words, message):
 
 def test_two_tasks_need_two_names(tmp_path):
     (tmp_path / "gathering.yaml").write_text("")
-    with pytest.raises(UserError, match="gathering is named twice; legal: each name of a file"):
+    with pytest.raises(
+        UserError, match="gathering is named twice; legal: tasks with different file names"
+    ):
         parse(["gathering", str(tmp_path / "gathering.yaml")])

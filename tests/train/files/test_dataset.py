@@ -68,16 +68,16 @@ def test_concatenate_keeps_order(transitions: Transitions) -> None:
     ("changes", "message"),
     [
         ({"reward": None}, "array 'reward' is missing; legal: poses, action,"),
-        ({"action": np.zeros(50)}, "'action' is float64; legal: int32"),
+        ({"action": np.zeros(50)}, "'action' has type float64; legal: int32"),
         ({"action": np.zeros(49, np.int32)}, "'poses' has shape [50, 4, 3]; legal: [N, bodies, 3]"),
         ({"poses": np.zeros((50, 4, 2))}, "'poses' has shape [50, 4, 2]; legal: [N, bodies, 3]"),
         ({"next_poses": np.zeros((50, 5, 3))}, "'poses' and 'next_poses' differ in shape"),
         ({"poses": np.full((50, 4, 3), np.nan)}, "'poses' has values that are not finite"),
         ({"reward": np.full(50, 0.5, np.float32)}, "'reward' has other values than 0 and 1"),
-        ({"terminated": np.ones(50, bool)}, "'terminated' is not reward == 1"),
+        ({"terminated": np.ones(50, bool)}, "'terminated' differs from reward == 1"),
         ({"action": np.full(50, -1, np.int32)}, "'action' has negative values"),
-        ({"action": np.full(50, 48, np.int32)}, "action 48; the task's are 0 to 47"),
-        ({"source": np.full(50, 4, np.int8)}, "'source' has other values than 0 to 3"),
+        ({"action": np.full(50, 48, np.int32)}, "has action 48; legal: 0 to 47"),
+        ({"source": np.full(50, 4, np.int8)}, "'source' has illegal values; legal: 0 to 3"),
     ],
 )
 def test_wrong_arrays_are_named(
@@ -95,7 +95,7 @@ def test_a_wrong_file_is_bad_input_to_every_command() -> None:
 
 def test_other_tasks_are_refused(tmp_path: Path, transitions: Transitions) -> None:
     dataset.write(tmp_path / "a.npz", transitions)
-    with pytest.raises(DatasetError, match="4 bodies; the task has 5"):
+    with pytest.raises(DatasetError, match="has 4 bodies; legal: 5"):
         dataset.read(tmp_path / "a.npz", bodies=5)
 
 

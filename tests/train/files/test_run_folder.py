@@ -93,4 +93,6 @@ def test_a_damaged_report_is_named(text, tmp_path):
     file.write_text(text)
     with pytest.raises(UserError) as error:
         run_folder.read_json(file)
-    assert str(error.value) == f"{file}: damaged; legal: as the run left it, or none"
+    assert (
+        str(error.value) == f"{file}: is damaged; legal: the file as the run wrote it, or no file"
+    )

@@ -93,7 +93,7 @@ def test_data_without_steps_to_imitate_end_the_run(tmp_path: Path, rows: Rows, c
     walks = rows._replace(source=np.full_like(rows.source, SOURCES.index("walk")))
     folder = run_folder(tmp_path / "run", walks, *BC)
     assert trainer.main([str(folder), "--no-stream"]) == 1
-    assert "none of 2000 transitions to learn from" in capsys.readouterr().err
+    assert "none of the 2000 transitions can be learned from" in capsys.readouterr().err
 
 
 def test_logits_are_not_written_down_as_values(tmp_path: Path, rows: Rows) -> None:

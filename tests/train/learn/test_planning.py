@@ -181,5 +181,5 @@ def test_it_does_not_go_on_from_a_learners_checkpoint(tmp_path: Path, capsys) ->
     config = _core.Config.from_file(folder / "config.yaml", changes)
     (folder / "config.yaml").write_text(config.yaml)
     assert trainer.main([str(folder), "--no-stream", "--resume"]) == 2
-    words = "made with learner = q_learning; this run has planning"
+    words = "made with learner = q_learning, but this run has planning"
     assert words in capsys.readouterr().err

@@ -20,10 +20,10 @@ FITTING = {"observation_size": 20, "headings": 48, "dueling": True, "layer_norm"
 @pytest.mark.parametrize(
     ("state", "message"),
     [
-        ({}, "it does not say what made it"),
-        ({"identity": {}}, "made with observation_size = None; this run has 20"),
+        ({}, "does not say with which settings it was made"),
+        ({"identity": {}}, "made with observation_size = None, but this run has 20"),
         ({"identity": FITTING, "model": {}}, "holds no policy"),
-        ({"identity": FITTING, "weights": {}}, "the weights do not fit"),
+        ({"identity": FITTING, "weights": {}}, "its weights do not fit the network"),
     ],
 )
 def test_files_of_another_kind_are_no_policies(

@@ -126,7 +126,7 @@ def test_another_stream_is_not_mixed_with_the_checkpoint(tmp_path: Path, rows: R
     other = training(folder)
     other.restore()
     changed = rows._replace(action=(rows.action + 1) % 48)
-    with pytest.raises(RunError, match="not those that the checkpoint was made with"):
+    with pytest.raises(RunError, match="differ from those that the checkpoint was made with"):
         other.run(Stream(changed, other.data, piece=60), lambda: False, record=True)
 
 
@@ -155,8 +155,8 @@ def test_a_signal_leaves_a_checkpoint_to_go_on_from(
 @pytest.mark.parametrize(
     ("override", "message"),
     [
-        ("run.seed=9", "made with seed = 1; this run has 9"),
-        ("train.dueling=false", "made with dueling = True; this run has False"),
+        ("run.seed=9", "made with seed = 1, but this run has 9"),
+        ("train.dueling=false", "made with dueling = True, but this run has False"),
         ("train.buffer=3000", "made with buffer = "),
     ],
 )
@@ -174,11 +174,13 @@ def test_a_checkpoint_of_another_run_is_refused(
 def test_files_that_are_no_checkpoints_are_refused(tmp_path: Path) -> None:
     for content in (b"", b"no", b"\x80\x02\x95", b"junk", b"hello", b"task:\n"):
         (tmp_path / "state.pt").write_bytes(content)
-        with pytest.raises(UserError, match=r"state\.pt: damaged, or not a file that RTG wrote$"):
+        with pytest.raises(
+            UserError, match=r"state\.pt: is damaged or foreign; legal: a file that RTG wrote$"
+        ):
             checkpoint.read(tmp_path / "state.pt")
     with pytest.raises(UserError, match="Is a directory; legal: a file to read"):
         checkpoint.read(tmp_path)
-    with pytest.raises(UserError, match="no such checkpoint"):
+    with pytest.raises(UserError, match="no such file; legal: a checkpoint"):
         checkpoint.read(tmp_path / "absent.pt")
 
 
@@ -190,8 +192,8 @@ def test_a_checkpoint_without_its_transitions_is_refused_and_says_what_helps(
     (folder / "transitions.npz").unlink()
     assert trainer.main([str(folder), "--resume"]) == 2
     words = capsys.readouterr().err
-    assert "transitions.npz: missing, the checkpoint" in words
-    assert f"legal: {folder / 'checkpoint'} whole, or removed, to learn anew" in words
+    assert "transitions.npz: is missing, but the checkpoint" in words
+    assert f"legal: {folder / 'checkpoint'} complete, or removed, to learn anew" in words
 
 
 def test_missing_files_are_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -51,7 +51,8 @@ def test_a_run_at_work_is_refused_and_left_alone(folder, capsys):
     with run_folder.exclusive_lock(folder, "nobody"):
         assert cli.main(["--resume", "--out", str(folder), "--interactions", "9"]) == 2
     assert (
-        capsys.readouterr().err == f"rtg: --out: {folder}: another run works there; wait for it\n"
+        capsys.readouterr().err
+        == f"rtg: --out: {folder}: another run uses this folder; legal: another folder, or wait\n"
     )
     assert (folder / "config.yaml").read_bytes() == before
 

@@ -46,8 +46,8 @@ def test_a_path_is_a_task_file(tmp_path):
         (["--worker", "3"], "unrecognized arguments: --worker; legal: ./run.sh [-h] "),
         (["gathering", "more"], "unrecognized arguments: more; legal: "),
         (["--seed"], "argument --seed: expected one argument; legal: "),
-        (["--resume"], "--resume: needs --out DIR, "),
-        (["--out", ""], "--out: '' is no folder; legal: the path of one"),
+        (["--resume"], "--resume: --out is missing; legal: "),
+        (["--out", ""], "--out: the path is empty; legal: the path of a folder"),
     ],
 )
 def test_a_mistake_is_named(words, message, monkeypatch):
@@ -68,9 +68,11 @@ def test_what_a_task_may_be_is_named_in_full(monkeypatch):
 def test_a_run_folder_with_something_in_it_is_not_overwritten(tmp_path):
     assert parse(["--out", str(tmp_path)]).out == tmp_path
     (tmp_path / "notes.txt").write_text("mine")
-    with pytest.raises(UserError, match="exists and is not empty; take another or add --resume"):
+    with pytest.raises(
+        UserError, match="is not empty; legal: a new or an empty folder, or --resume"
+    ):
         parse(["--out", str(tmp_path)])
-    with pytest.raises(UserError, match=r"notes\.txt is no folder"):
+    with pytest.raises(UserError, match=r"notes\.txt is not a folder"):
         parse(["--out", str(tmp_path / "notes.txt")])
     with pytest.raises(UserError, match=r"holds no run \(no config.yaml\)"):
         parse(["--out", str(tmp_path), "--resume"])

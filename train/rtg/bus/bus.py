@@ -135,7 +135,7 @@ class Bus:
         message.header.sender = os.getpid()
         data = message.encode()
         if len(data) > MAX_MESSAGE_BYTES:
-            raise ValueError(f"{type(message).__name__}: longer than one datagram")
+            raise ValueError(f"{type(message).__name__}: the message is longer than one datagram")
         self.send(channel, data)
 
     def send(self, channel: str, data: bytes) -> None:

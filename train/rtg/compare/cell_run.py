@@ -115,7 +115,9 @@ def prepare_runs(args: ReproduceArgs) -> list[CellRun]:
         config = effective_config.load(args.files[cell.task], _overrides(args, cell))
         twin = seen.setdefault(config.json, cell.name)
         if twin != cell.name:
-            raise UserError(f"{cell.name}: is the same run as {twin}; legal: values that differ")
+            raise UserError(
+                f"{cell.name}: has the same settings as {twin}; legal: settings that differ"
+            )
         run_plan.check(config, train=True)
         folder = args.out / cell.name
         _check_folder(folder)
@@ -150,7 +152,9 @@ def _check_folder(folder: Path) -> None:
     if (folder / "config.yaml").is_file():
         return
     if folder.exists() and not (folder.is_dir() and all(map(_is_partial_config, folder.iterdir()))):
-        raise UserError(f"{folder}: holds no run; legal: an empty --out, or none")
+        raise UserError(
+            f"{folder}: is neither empty nor the folder of a run; legal: a new or an empty --out"
+        )
 
 
 def _is_partial_config(file: Path) -> bool:

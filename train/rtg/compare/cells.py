@@ -87,4 +87,6 @@ def read_grid(folder: Path) -> Grid:
             failure_by_name=dict(zip(failed, _texts(list(failed.values())), strict=True)),
         )
     except (AttributeError, KeyError, TypeError, ValueError):
-        raise UserError(f"{_file(folder)}: damaged; legal: as `reproduce` left it") from None
+        raise UserError(
+            f"{_file(folder)}: is damaged; legal: the file as `reproduce` wrote it"
+        ) from None

@@ -43,7 +43,9 @@ def write_report(runs: Path, out: Path) -> Path:
     """
     grid = read_grid(runs)
     if not grid.commands_by_cell:
-        raise UserError(f"{runs}: holds no comparison (no grid.json); legal: DIR of `reproduce`")
+        raise UserError(
+            f"{runs}: holds no comparison (no grid.json); legal: the --out of `reproduce`"
+        )
     comparison, remarks = read_comparison(runs, grid), read_remarks(runs)
     episodes = {task: _best_episode(comparison, task) for task in comparison.tasks}
     with run_folder.write_errors_as_user_errors(out):
@@ -113,7 +115,9 @@ def _read_episode(run: RunResult) -> Episode | None:
         if poses.ndim != 3 or poses.shape[1:] != (task.bodies, 3) or not len(poses):
             raise ValueError(poses.shape)
     except (OSError, ValueError, TypeError, KeyError, zipfile.BadZipFile):
-        raise UserError(f"{path}: damaged; legal: as the run left it, or none") from None
+        raise UserError(
+            f"{path}: is damaged; legal: the file as the run wrote it, or no file"
+        ) from None
     return Episode(task, run.cell.label, poses, success)
 
 

@@ -80,7 +80,11 @@ def parser() -> Parser:
     p.add_argument("--out", metavar="DIR", help="folder of the comparison (runs/reproduce)")
     p.add_argument("--quick", action="store_true", help="small budgets, one seed: minutes")
     p.add_argument(
-        "--sweep", metavar="KEY=V1,V2", action="append", default=[], help="one more axis"
+        "--sweep",
+        metavar="KEY=V1,V2",
+        action="append",
+        default=[],
+        help="compare these values of a key",
     )
     p.add_argument(
         "--ablations",
@@ -91,14 +95,14 @@ def parser() -> Parser:
     p.add_argument(
         "--together", action="store_true", help="a method's seeds learn in one process, as on a GPU"
     )
-    add_set(p, "of all runs")
+    add_set(p, "any configuration value, for all runs")
     return p
 
 
 def _parse_number(flag: str, word: str, least: int, most: int, legal: str = "") -> int:
     if not (word.isascii() and word.isdigit() and least <= int(word) <= most):
         legal = legal or f"a number from {least} to {most}"
-        raise UserError(f"{flag} {word or repr(word)}: legal: {legal}")
+        raise UserError(f"{flag} {word or repr(word)}: not a legal number; legal: {legal}")
     return int(word)
 
 
@@ -139,7 +143,9 @@ def _files(words: Sequence[str]) -> dict[str, Path]:
     for word in dict.fromkeys(words):
         path = task_file(word).absolute()
         if path.stem in files:
-            raise UserError(f"{word}: {path.stem} is named twice; legal: each name of a file once")
+            raise UserError(
+                f"{word}: {path.stem} is named twice; legal: tasks with different file names"
+            )
         files[path.stem] = path
     return files
 
@@ -149,9 +155,13 @@ def parse_sweep(words: str) -> tuple[str, ...]:
     key, sign, values = words.partition("=")
     found = [f"{key}={value}" for value in values.split(",")]
     if not (key and sign) or any(bad in words for bad in "/@ ") or "" in values.split(","):
-        raise UserError(f"--sweep {words}: legal: KEY=V1,V2 with values without blank, / or @")
+        raise UserError(
+            f"--sweep {words}: not a legal axis; legal: KEY=V1,V2, values without blank, / or @"
+        )
     if key.startswith("run.") or key == "task":
-        raise UserError(f"--sweep {words}: {key} is no axis; legal: keys of the other sections")
+        raise UserError(
+            f"--sweep {words}: {key} cannot be swept; legal: keys outside of run and task"
+        )
     return tuple(dict.fromkeys(found))
 
 
@@ -160,7 +170,7 @@ def _check_keys(sweeps: Sequence[tuple[str, ...]]) -> None:
     seen = set[str]()
     for key in (sweep[0].partition("=")[0] for sweep in sweeps):
         if key in seen:
-            raise UserError(f"--sweep {key}: stands twice; legal: once, {key}=V1,V2")
+            raise UserError(f"--sweep {key}: is given twice; legal: once, {key}=V1,V2")
         seen.add(key)
 
 
@@ -169,7 +179,7 @@ def _cells(args: argparse.Namespace, files: dict[str, Path]) -> tuple[Cell, ...]
     sweeps = [parse_sweep(sweep) for sweep in args.sweep]
     _check_keys(sweeps)
     if args.ablations and sweeps:
-        raise UserError("--ablations: not with --sweep, which changes settings, too; legal: one")
+        raise UserError("--ablations: cannot be combined with --sweep; legal: one of the two")
     found = []
     for task, method in itertools.product(files, _methods(args)):
         changes = list(itertools.product(*sweeps))
@@ -184,7 +194,9 @@ def _settings(args: argparse.Namespace) -> tuple[str, ...]:
     """Returns the settings of all cells. Raises UserError if --set names a key of RESERVED_KEYS."""
     for setting in args.set:
         if (key := setting.partition("=")[0]) in RESERVED_KEYS:
-            raise UserError(f"--set {setting}: reproduce decides it; legal: {RESERVED_KEYS[key]}")
+            raise UserError(
+                f"--set {setting}: reproduce sets this key itself; legal: {RESERVED_KEYS[key]}"
+            )
     return (*(QUICK_SETTINGS if args.quick else ()), *args.set)
 
 
@@ -202,7 +214,7 @@ def parse(words: Sequence[str]) -> ReproduceArgs:
     cells = _cells(args, files)
     jobs = str(len(os.sched_getaffinity(0))) if args.jobs is None else args.jobs
     if args.out == "":
-        raise UserError("--out: '' is no folder; legal: the path of one")
+        raise UserError("--out: the path is empty; legal: the path of a folder")
     flags = ["--methods", ",".join(_methods(args)), "--seeds", _seeds(args)]
     flags += [*["--quick"] * args.quick, *["--ablations"] * args.ablations]
     flags += [word for sweep in args.sweep for word in ("--sweep", sweep)]

@@ -173,7 +173,7 @@ def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
     if not curve:
         return {}
     if not {*COSTS, *CURVE_COLUMNS} <= curve.keys():
-        raise UserError(f"{progress}: lacks columns; legal: as the run left it")
+        raise UserError(f"{progress}: lacks columns; legal: the file as the run wrote it")
     generation_costs = {"pushes": summary.get("replays"), "cpu_s": summary.get("generate_cpu_s")}
     return curve | {cost: curve[cost] + (extra or 0) for cost, extra in generation_costs.items()}
 

@@ -56,7 +56,9 @@ def goal_states(task: _core.Task, seed: int, count: int = GOAL_DRAWS) -> Floats:
     draws = [task.goal_state(seed, k) for k in range(count)]
     found = [state for state in draws if state is not None]
     if not found:
-        raise UserError(f"goal: none of {count} draws found a state in which it holds")
+        raise UserError(
+            f"task.goal: {count} random draws gave no goal state; legal: a goal that can be met"
+        )
     return np.stack(found)
 
 

@@ -70,7 +70,7 @@ class PushEnv(gymnasium.Env[Any, Any]):
         options = options or {}
         unknown = set(options) - {"poses", "jitter"}
         if unknown:
-            raise ValueError(f"options {sorted(unknown)}; legal: 'poses', 'jitter'")
+            raise ValueError(f"unknown options {sorted(unknown)}; legal: 'poses', 'jitter'")
         key = int(self.np_random.integers(2**63))
         start = options.get("poses")
         if start is None:

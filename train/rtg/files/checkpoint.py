@@ -30,13 +30,17 @@ def read(path: Path) -> dict[str, Any]:
     try:
         state = th.load(path, map_location="cpu", weights_only=True)
     except FileNotFoundError:
-        raise UserError(f"{path}: no such checkpoint") from None
+        raise UserError(
+            f"{path}: no such file; legal: a checkpoint or policy file of RTG"
+        ) from None
     except OSError as error:
         raise UserError(f"{path}: {error.strerror or error}; legal: a file to read") from None
     except Exception as error:  # the unpickler may raise any error on foreign bytes
-        raise UserError(f"{path}: damaged, or not a file that RTG wrote") from error
+        raise UserError(f"{path}: is damaged or foreign; legal: a file that RTG wrote") from error
     if not isinstance(state, dict):
-        raise UserError(f"{path}: holds a {type(state).__name__}, which RTG never wrote there")
+        raise UserError(
+            f"{path}: holds a {type(state).__name__}, not a dict; legal: a file that RTG wrote"
+        )
     return state
 
 

@@ -124,7 +124,9 @@ def read(path: Path, bodies: int | None = None, headings: int | None = None) -> 
     except (DatasetError, FileNotFoundError):
         raise
     except (*_DAMAGED_FILE_ERRORS, OSError) as error:
-        raise DatasetError(f"{path}: not a transition file ({error})") from error
+        raise DatasetError(
+            f"{path}: is not a transition file ({error}); legal: a transitions.npz of RTG"
+        ) from error
     transitions = Transitions(**arrays)
     _check_shapes(path, transitions)
     _check_values(path, transitions)
@@ -138,7 +140,7 @@ def _member(path: Path, archive: Any, name: str) -> Array:
     array: Array = archive[name]
     if array.dtype != _COLUMNS[name].dtype:
         expected = np.dtype(_COLUMNS[name].dtype).name
-        raise DatasetError(f"{path}: '{name}' is {array.dtype}; legal: {expected}")
+        raise DatasetError(f"{path}: '{name}' has type {array.dtype}; legal: {expected}")
     return array
 
 
@@ -152,26 +154,36 @@ def _check_shapes(path: Path, transitions: Transitions) -> None:
             raise DatasetError(f"{path}: '{name}' has shape {shape}; legal: {legal}, one N for all")
     for name in ("poses", "observation"):
         if getattr(transitions, name).shape != getattr(transitions, f"next_{name}").shape:
-            raise DatasetError(f"{path}: '{name}' and 'next_{name}' differ in shape")
+            raise DatasetError(
+                f"{path}: '{name}' and 'next_{name}' differ in shape; legal: equal shapes"
+            )
 
 
 def _check_values(path: Path, transitions: Transitions) -> None:
     for name in ("poses", "next_poses", "observation", "next_observation"):
         if not np.isfinite(getattr(transitions, name)).all():
-            raise DatasetError(f"{path}: '{name}' has values that are not finite")
+            raise DatasetError(
+                f"{path}: '{name}' has values that are not finite; legal: finite numbers"
+            )
     if not np.isin(transitions.reward, (0.0, 1.0)).all():
-        raise DatasetError(f"{path}: 'reward' has other values than 0 and 1")
+        raise DatasetError(f"{path}: 'reward' has other values than 0 and 1; legal: 0, 1")
     if not np.array_equal(transitions.terminated, transitions.reward == 1.0):
-        raise DatasetError(f"{path}: 'terminated' is not reward == 1")
+        raise DatasetError(
+            f"{path}: 'terminated' differs from reward == 1; legal: true where 'reward' is 1"
+        )
     if (transitions.action < 0).any():
-        raise DatasetError(f"{path}: 'action' has negative values")
+        raise DatasetError(f"{path}: 'action' has negative values; legal: 0 or more")
     if not np.isin(transitions.source, range(len(SOURCES))).all():
-        raise DatasetError(f"{path}: 'source' has other values than 0 to {len(SOURCES) - 1}")
+        raise DatasetError(f"{path}: 'source' has illegal values; legal: 0 to {len(SOURCES) - 1}")
 
 
 def _check_task(path: Path, data: Transitions, bodies: int | None, headings: int | None) -> None:
     if bodies is not None and data.poses.shape[1] != bodies:
-        raise DatasetError(f"{path}: {data.poses.shape[1]} bodies; the task has {bodies}")
+        raise DatasetError(
+            f"{path}: has {data.poses.shape[1]} bodies; legal: {bodies}, those of the task"
+        )
     if headings is not None and len(data.action) and data.action.max() >= headings:
         largest = data.action.max()
-        raise DatasetError(f"{path}: action {largest}; the task's are 0 to {headings - 1}")
+        raise DatasetError(
+            f"{path}: has action {largest}; legal: 0 to {headings - 1}, those of the task"
+        )

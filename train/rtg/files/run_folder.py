@@ -80,7 +80,9 @@ def exclusive_lock(folder: Path, holder: str) -> Iterator[None]:
         try:
             fcntl.flock(directory, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise UserError(f"--out: {folder}: {holder} works there; wait for it") from None
+            raise UserError(
+                f"--out: {folder}: {holder} uses this folder; legal: another folder, or wait"
+            ) from None
         yield
     finally:
         os.close(directory)
@@ -115,7 +117,7 @@ def read_json(path: Path) -> dict[str, Any]:
     except ValueError:
         value = None
     if not isinstance(value, dict):
-        raise UserError(f"{path}: damaged; legal: as the run left it, or none")
+        raise UserError(f"{path}: is damaged; legal: the file as the run wrote it, or no file")
     return value
 
 
@@ -128,7 +130,9 @@ def result(run: Path) -> dict[str, Any]:
     if found.get("interactions") is None:
         return {}
     if not isinstance(found.get("success_rate"), float):
-        raise UserError(f"{run / 'summary.json'}: no success_rate; legal: as the run left it")
+        raise UserError(
+            f"{run / 'summary.json'}: has no success_rate; legal: the file as the run wrote it"
+        )
     return found
 
 

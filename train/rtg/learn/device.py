@@ -10,7 +10,7 @@ from rtg.errors import UserError
 def chosen(device: str) -> str:
     """Resolves `train.device` to "cpu" or "cuda". Raises UserError if cuda is missing."""
     if device == "cuda" and not th.cuda.is_available():
-        raise UserError("train.device: cuda, but PyTorch sees no such device; legal: auto, cpu")
+        raise UserError("train.device: is cuda, but PyTorch finds no CUDA device; legal: auto, cpu")
     return "cuda" if device != "cpu" and th.cuda.is_available() else "cpu"
 
 

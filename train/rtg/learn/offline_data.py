@@ -87,7 +87,7 @@ class OfflineData:
             for name in ("poses", "action", "next_poses", "source")
         )
         if not all(same):
-            raise RunError("the transitions are not those that the checkpoint was made with")
+            raise RunError("the transitions differ from those that the checkpoint was made with")
         self._repeated_count += again
         if self._repeated_count == len(known.action):
             self._checkpoint_rows = None
@@ -116,7 +116,9 @@ class OfflineData:
         count, refreshed = state["count"], state["refreshed"]
         if len(rows.action) < count:
             found = len(rows.action)
-            raise RunError(f"the transition file has {found} rows, the checkpoint saw {count}")
+            raise RunError(
+                f"the transition file has {found} rows, fewer than the {count} of the checkpoint"
+            )
         if refreshed:
             self.add(rows.slice(0, refreshed))
             self.refresh_bounds_if_grown(complete=True)

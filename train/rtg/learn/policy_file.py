@@ -36,10 +36,15 @@ def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
 def check_identity(path: Path, found: Any, wanted: dict[str, Any]) -> None:
     """Raises UserError if a value of `wanted` differs in `found`, the identity in file `path`."""
     if not isinstance(found, dict):
-        raise UserError(f"{path}: of another kind: it does not say what made it")
+        raise UserError(
+            f"{path}: does not say with which settings it was made; legal: a file that RTG wrote"
+        )
     for name, value in wanted.items():
         if found.get(name) != value:
-            raise UserError(f"{path}: made with {name} = {found.get(name)}; this run has {value}")
+            raise UserError(
+                f"{path}: was made with {name} = {found.get(name)}, but this run has {value}; "
+                "legal: the same value"
+            )
 
 
 def write(
@@ -60,7 +65,7 @@ def read(path: Path, task: _core.Task) -> Policy:
     wanted = {"observation_size": task.observation_size, "headings": task.headings}
     check_identity(path, found, wanted)
     if not isinstance(weights, dict):
-        raise UserError(f"{path}: holds no policy; legal: a model.pt")
+        raise UserError(f"{path}: holds no policy; legal: a model.pt of RTG")
     network: dict[str, Any] = {name: bool(found.get(name)) for name in ("dueling", "layer_norm")}
     layouts = Layouts(task) if found.get("hindsight") else None
     network["goal_size"] = layouts.size if layouts else 0
@@ -73,7 +78,9 @@ def read(path: Path, task: _core.Task) -> Policy:
     try:
         policy.q_net.load_state_dict(weights)
     except RuntimeError as error:
-        raise UserError(f"{path}: the weights do not fit ({error})") from error
+        raise UserError(
+            f"{path}: its weights do not fit the network ({error}); legal: a model.pt of RTG"
+        ) from error
     policy.set_training_mode(False)
 
     def greedy(observation: NDArray[np.float32]) -> NDArray[Any]:

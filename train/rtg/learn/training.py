@@ -134,7 +134,9 @@ class Training:
         elif self.model.replay_buffer.size():
             self.model.learn_offline()
         else:
-            raise RunError(f"{self.folder}: none of {self.data.count} transitions to learn from")
+            raise RunError(
+                f"{self.folder}: none of the {self.data.count} transitions can be learned from"
+            )
 
     def _current_device_info(self) -> dict[str, Any]:
         kind = self.model.device.type
@@ -272,8 +274,8 @@ class Training:
             if path.exists():
                 return path
         raise UserError(
-            f"{path}: missing, the checkpoint beside it learned from these transitions; legal: "
-            f"{self._checkpoint.parent} whole, or removed, to learn anew"
+            f"{path}: is missing, but the checkpoint beside it learned from these transitions; "
+            f"legal: {self._checkpoint.parent} complete, or removed, to learn anew"
         )
 
     def finish(self, lost: int) -> None:

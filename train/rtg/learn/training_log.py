@@ -52,7 +52,7 @@ class TrainingLog:
         """Appends a row; missing columns stay empty. Raises KeyError for an unknown column."""
         unknown = set(row) - set(COLUMNS)
         if unknown:
-            raise KeyError(f"no columns of progress.csv: {sorted(unknown)}")
+            raise KeyError(f"{sorted(unknown)} are not columns of progress.csv")
         self.rows.append(dict(row))
         self.write()
 

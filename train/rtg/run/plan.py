@@ -83,8 +83,8 @@ def check(config: _core.Config, train: bool) -> None:
         _check_device(config)
     elif not config.train.offline:
         raise UserError(
-            f"--no-train: nothing to do, run.method {config.run.method} generates no transitions "
-            "(train.offline is false); legal: another method, or with training"
+            f"--no-train: leaves nothing to do, as run.method {config.run.method} generates no "
+            "transitions (train.offline is false); legal: another method, or no --no-train"
         )
 
 
@@ -117,8 +117,8 @@ def _check_resumed(file: Path, config: _core.Config) -> None:
         if old != new:
             kept = old if isinstance(old, str) else json.dumps(old)
             raise UserError(
-                f"--resume: {name} must stay {kept} as in {file}; legal are changes of train and "
-                "run, but for run.seed and, with a checkpoint, run.method and "
+                f"--resume: {name} must stay {kept} as in {file}; legal: changes of train and "
+                "run, except run.seed and, with a checkpoint, run.method and "
                 f"train.{{{','.join(CHECKPOINT_SETTINGS)}}}"
             )
 

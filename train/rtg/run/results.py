@@ -31,7 +31,7 @@ def learning_curve(path: Path) -> dict[str, Floats]:
         names = rows[0].keys() if rows else ()
         return {name: np.array([float(row[name] or "nan") for row in rows]) for name in names}
     except (ValueError, TypeError, csv.Error):
-        raise UserError(f"{path}: damaged; legal: as the run left it") from None
+        raise UserError(f"{path}: is damaged; legal: the file as the run wrote it") from None
 
 
 def _draw_generation(plan: RunPlan) -> None:

@@ -80,14 +80,16 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     p.add_argument("task", nargs="?", help="a task of config/ or a FILE.yaml (gathering)")
-    p.add_argument("--in-process", action="store_true", help="everything in one process, no LCM")
+    p.add_argument(
+        "--in-process", action="store_true", help="run everything in one process, without LCM"
+    )
     p.add_argument("--workers", metavar="N", help="reverse workers; 0: one per core")
-    p.add_argument("--method", metavar="ID", help="what is compared: dqn, ddqn, ... (ddqn_rtg)")
-    p.add_argument("--generator", metavar="ID", help="what finds the stored steps (rrbs)")
+    p.add_argument("--method", metavar="ID", help="method to run: dqn, ddqn, ... (ddqn_rtg)")
+    p.add_argument("--generator", metavar="ID", help="method that generates the transitions (rrbs)")
     p.add_argument("--transitions", metavar="N", help="transitions to generate")
     p.add_argument("--interactions", metavar="N", help="environment steps of the learner")
     p.add_argument("--no-train", action="store_true", help="stop after the generation")
-    p.add_argument("--seed", metavar="N", help="decides everything random")
+    p.add_argument("--seed", metavar="N", help="seed of all random numbers")
     p.add_argument("--out", metavar="DIR", help="the run folder (runs/TASK-TIME)")
     p.add_argument("--resume", action="store_true", help="go on with the run in --out DIR")
     add_set(p, "any configuration value")
@@ -142,22 +144,28 @@ def parse(argv: Sequence[str]) -> RunArgs:
         _task_file(argv[0])  # reports a misspelt tool before mistakes in its arguments
     args = parser().parse_args(argv)
     if args.out == "":
-        raise UserError("--out: '' is no folder; legal: the path of one")
+        raise UserError("--out: the path is empty; legal: the path of a folder")
     out = None if args.out is None else Path(args.out).absolute()
     if args.resume:
         if out is None:
-            raise UserError("--resume: needs --out DIR, the folder of the run to go on with")
+            raise UserError(
+                "--resume: --out is missing; legal: --resume --out DIR with the folder of a run"
+            )
         if args.task is not None:
-            raise UserError(f"{args.task}: --resume goes on with the task of {out}; name none")
+            raise UserError(f"{args.task}: --resume goes on with the task of {out}; legal: no TASK")
         file = out / "config.yaml"
         if not file.is_file():
-            raise UserError(f"--resume: {out} holds no run (no config.yaml)")
+            raise UserError(
+                f"--resume: {out} holds no run (no config.yaml); legal: the folder of a run"
+            )
     else:
         file = _task_file(args.task)
         if out is not None and out.exists() and not out.is_dir():
-            raise UserError(f"--out: {out} is no folder; take another")
+            raise UserError(f"--out: {out} is not a folder; legal: a new or an empty folder")
         if out is not None and out.is_dir() and any(out.iterdir()):
-            raise UserError(f"--out: {out} exists and is not empty; take another or add --resume")
+            raise UserError(
+                f"--out: {out} is not empty; legal: a new or an empty folder, or --resume"
+            )
     return RunArgs(
         file=file,
         overrides=_overrides(args),
