@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from rtg import _core
 from rtg.files.dataset import Rows
-from rtg.learn import trainer
+from rtg.learn import device, trainer
 from rtg.learn.evaluation import Evaluation
 from rtg.learn.hindsight import HindsightReplayBuffer
 from rtg.learn.training import Training
@@ -59,7 +59,6 @@ OF_THE_COURSE: dict[str, tuple[Any, str, Any]] = {
     "eval_every": (120, "evaluated", [120, 240]),
     "checkpoint_every": (60, "saved", [60, 120, 180, 240]),
     "stop_at_success": (0.5, "end", 160),
-    "stop_evaluations": (2, "end", 240),
 }
 
 
@@ -77,6 +76,14 @@ def of_course(folder: Path, rows: Rows, settings: dict[str, Any]) -> dict[str, A
 def test_a_setting_of_the_course(field: str, tmp_path: Path, rows: Rows) -> None:
     value, what, expected = OF_THE_COURSE[field]
     assert of_course(tmp_path, rows, {**USUAL, field: value})[what] == expected
+
+
+@pytest.mark.parametrize(("count", "end"), [(1, 80), (2, 160), (3, 240)])
+def test_so_many_evaluations_in_a_row_end_a_run(
+    count: int, end: int, tmp_path: Path, rows: Rows
+) -> None:
+    settings = {"interactions": 400, "stop_at_success": 0.5, "stop_evaluations": count}
+    assert of_course(tmp_path, rows, {**USUAL, **settings})["end"] == end
 
 
 def spread(one: Training) -> float:
@@ -106,7 +113,6 @@ OF_THE_PARTS: dict[str, tuple[Any, Any, Callable[[Training], Any], Any, Any]] = 
     "hindsight": (0, 2, lambda t: isinstance(t.model.replay_buffer, HindsightReplayBuffer), 0, 1),
     "curriculum": (0.0, 0.5, lambda t: t.env.curriculum is not None, False, True),
     "eval_episodes": (2, 3, lambda t: len(t.starts), 2, 3),
-    "device": ("auto", "cpu", lambda t: t.model.device.type, "cpu", "cpu"),  # no GPU in tests
 }
 
 
@@ -118,6 +124,17 @@ def test_a_setting_of_the_parts(field: str, tmp_path: Path, rows: Rows) -> None:
         assert measure(training(run_folder(tmp_path / name, rows, text))) == wanted
 
 
+@pytest.mark.parametrize("wanted", ["auto", "cpu"])
+def test_networks_are_on_the_device_that_is_chosen(
+    wanted: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On PyTorch's device without memory, because tests have no GPU."""
+    monkeypatch.setattr(device, "chosen", {wanted: "meta"}.get)
+    one = training(run_folder(tmp_path / "run", None, f"train.device={wanted}"))
+    assert one.model.device.type == "meta"
+    assert {weight.device.type for weight in one.model.q_net.parameters()} == {"meta"}
+
+
 @pytest.mark.parametrize(("learner", "name"), [("q_learning", "DoubleDqn"), ("cloning", "Cloning")])
 def test_the_learner_is_the_one_of_that_name(learner: str, name: str, tmp_path: Path) -> None:
     settings = ["train.interact=false", f"train.learner={learner}"]
@@ -126,5 +143,6 @@ def test_the_learner_is_the_one_of_that_name(learner: str, name: str, tmp_path: 
 
 def test_each_setting_has_its_test() -> None:
     fields = set(json.loads(_core.Config.from_file(TINY).json)["train"])
-    elsewhere = {"preset", "learner"}  # presets of all others: test_settings.py
+    # presets of all others: test_settings.py; the rest has tests of its own above
+    elsewhere = {"preset", "learner", "stop_evaluations", "device"}
     assert {*OF_THE_LEARNER, *OF_THE_COURSE, *OF_THE_PARTS} == fields - elsewhere
