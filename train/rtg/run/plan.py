@@ -93,13 +93,11 @@ def _fixed_values(config: _core.Config, has_checkpoint: bool) -> dict[str, Any]:
 
     These determine the transitions. If there is a checkpoint, they also determine its learner.
     """
-    sections = effective_config.values(config)
-    found: dict[str, Any] = {"run.seed": config.run.seed}
-    for section in ("task", "physics", "forward", "reverse", "search"):
-        found.update({f"{section}.{name}": value for name, value in sections[section].items()})
+    found = shared_transitions.determining_values(config)
     if has_checkpoint:
+        train = effective_config.values(config)["train"]
         found["run.method"] = config.run.method
-        found.update({f"train.{name}": sections["train"][name] for name in CHECKPOINT_SETTINGS})
+        found.update({f"train.{name}": train[name] for name in CHECKPOINT_SETTINGS})
     return found
 
 

@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 from pathlib import Path
+from typing import Any
 
 from rtg import _core
 from rtg.errors import UserError
@@ -15,16 +16,23 @@ from rtg.run import effective_config
 _FILES = ("transitions.npz", "generation.json")
 
 
+def determining_values(config: _core.Config) -> dict[str, Any]:
+    """Returns, by "section.key", all values that determine the generated transitions."""
+    values = effective_config.values(config)
+    found: dict[str, Any] = {"run.seed": config.run.seed}
+    for section in ("task", "physics", "forward", "reverse", "search"):
+        found.update({f"{section}.{name}": value for name, value in values[section].items()})
+    return found
+
+
 def generation_key(config: _core.Config) -> str | None:
-    """Returns a key of the generated transitions: all values that determine them.
+    """Returns a key of the generated transitions, made of the determining_values().
 
     Runs with equal keys generate equal transitions. Returns None if the run generates none.
     """
     if not config.train.offline:
         return None
-    values = effective_config.values(config)
-    parts = [values[section] for section in ("task", "physics", "forward", "reverse", "search")]
-    return json.dumps([*parts, config.run.seed])
+    return json.dumps(determining_values(config))
 
 
 def is_generated(run: Path) -> bool:
