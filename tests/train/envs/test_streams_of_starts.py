@@ -30,11 +30,11 @@ def of_training(seed: int) -> np.ndarray:
 
 
 def test_starts_of_search_training_and_evaluations_are_all_different() -> None:
-    task = _core.Config.from_file(TINY).task
+    config = _core.Config.from_file(TINY, [f"train.eval_episodes={COUNT}"])
     of = {f"search {seed}": of_search(seed) for seed in (1, 2)}
     of |= {f"training {seed}": of_training(seed) for seed in (1, 2)}
-    of["evaluations"] = held_out_starts(task, COUNT)
-    of["the final one"] = held_out_starts(task, COUNT, FINAL_SEED)
+    of["evaluations"] = held_out_starts(config)
+    of["the final one"] = held_out_starts(config, FINAL_SEED)
     places = {name: {start[1:, :2].tobytes() for start in starts} for name, starts in of.items()}
     for name, found in places.items():
         assert len(found) == COUNT, name

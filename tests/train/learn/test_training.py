@@ -204,12 +204,12 @@ def test_missing_files_are_bad_input(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 
 def test_held_out_starts_are_legal_distinct_and_no_training_starts() -> None:
-    task = _core.Config.from_file(TINY).task
-    starts = held_out_starts(task, 50)
+    config = _core.Config.from_file(TINY, ["train.eval_episodes=50"])
+    task, starts = config.task, held_out_starts(config)
     assert len(np.unique(starts[:, 1, 0])) == 50
     assert np.abs(starts - task.start).max() <= task.start_jitter + 1e-6
     assert HELD_OUT_SEED > 2**31 - 1  # the largest legal run.seed
-    final = held_out_starts(task, 50, FINAL_SEED)
+    final = held_out_starts(config, FINAL_SEED)
     assert not set(starts[:, 1, 0]) & set(final[:, 1, 0])
 
 
@@ -218,7 +218,7 @@ def test_the_result_is_measured_on_starts_that_did_not_stop_training(
 ) -> None:
     wanted = ("train.stop_at_success=0.5", "train.stop_evaluations=1", "train.eval_every=20")
     one = training(run_folder(tmp_path / "run", rows, *wanted))
-    watched = held_out_starts(one.task, one.settings.eval_episodes)
+    watched = held_out_starts(one.config)
 
     def lucky(config, policy, starts, discount):  # success on just the starts of the evaluations
         found = evaluate(config, policy, starts, discount)
@@ -233,8 +233,8 @@ def test_the_result_is_measured_on_starts_that_did_not_stop_training(
 
 
 def test_evaluation_agrees_with_single_episodes() -> None:
-    config = _core.Config.from_file(TINY)
-    starts = held_out_starts(config.task, 3)
+    config = _core.Config.from_file(TINY, ["train.eval_episodes=3"])
+    starts = held_out_starts(config)
     starts[1] = [[-4.5, 0.0, 0.0], [-2.9, 0.0, 0.0], [1.2, 0.7, 0.0], [1.2, -0.7, 0.0]]
     found = evaluate(config, lambda seen: np.zeros(len(seen), int), starts, discount=0.9)
     assert found.success.tolist() == [False, True, False]
@@ -253,8 +253,8 @@ def test_an_episode_ends_in_failure_where_the_simulator_gives_up(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """This holds in a state that would be a success, too."""
-    config = _core.Config.from_file(TINY)
-    starts = held_out_starts(config.task, 2)
+    config = _core.Config.from_file(TINY, ["train.eval_episodes=2"])
+    starts = held_out_starts(config)
     goal = config.task.goal_state(0)
     assert config.task.succeeded(goal[None])[0]
     starts[1] = goal

@@ -34,7 +34,6 @@ TREE_ABLATIONS: dict[str, tuple[Any, ...]] = {
 # Keys of `search` without an ablation: sizes, and keys that the method sets.
 SIZE_KEYS = ("transitions", "breadth", "depth")
 SET_BY_METHOD = ("generator", "randomise")
-_TREE_GENERATORS = ("rrbs", "naive")  # generators that grow trees
 # Groups of keys of `train` that only have a meaning together.
 _KEY_GROUPS = (
     ("target_sync", "target_rate"),
@@ -72,7 +71,7 @@ def search_ablations(search: dict[str, Any]) -> list[Settings]:
     Skips values that `search` has already.
     """
     alternatives = BRANCH_ABLATIONS | (
-        TREE_ABLATIONS if search["generator"] in _TREE_GENERATORS else {}
+        TREE_ABLATIONS if search["generator"] in effective_config.TREE_GENERATORS else {}
     )
     return [
         (f"search.{key}={json.dumps(value)}",)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.learn.settings import start_amplitudes
 
 Floats = NDArray[np.float64]
 Policy = Callable[[NDArray[np.float32]], NDArray[Any]]  # [N, observation] -> [N] actions
@@ -42,15 +43,13 @@ class Evaluation(NamedTuple):
         }
 
 
-def held_out_starts(
-    task: _core.Task, count: int, seed: int = HELD_OUT_SEED, randomise: bool = False
-) -> Floats:
-    """Returns the starts of random stream `seed`, the same for every run. [count, bodies, 3]
+def held_out_starts(config: _core.Config, seed: int = HELD_OUT_SEED) -> Floats:
+    """Returns the starts of random stream `seed`, the same for every run. [episodes, bodies, 3]
 
-    Objects are moved by up to ± task.start_jitter, or ± task.randomisation if `randomise`.
+    There is one for each of the `train.eval_episodes`.
     """
-    amplitude = task.randomisation if randomise else task.start_jitter
-    return np.stack([task.jittered_start(amplitude, seed, k) for k in range(count)])
+    amplitude, count = start_amplitudes(config).evaluation, config.train.eval_episodes
+    return np.stack([config.task.jittered_start(amplitude, seed, k) for k in range(count)])
 
 
 def evaluate(config: _core.Config, policy: Policy, starts: Floats, discount: float) -> Evaluation:

@@ -16,6 +16,7 @@ from rtg.files import checkpoint, run_folder
 from rtg.learn import policy_file
 from rtg.learn.evaluation import FINAL_SEED, Evaluation, Floats, held_out_starts
 from rtg.learn.offline_data import Source
+from rtg.learn.settings import learner_discount
 from rtg.learn.training_log import TrainingLog
 
 _FORMAT = 2  # version of the checkpoint format
@@ -64,9 +65,9 @@ class Planning:
 
     def __init__(self, config: _core.Config, folder: Path) -> None:
         self.config, self.task = config, config.task
-        self.settings = s = config.train
-        self.discount = s.discount or self.task.discount
-        self.starts = held_out_starts(self.task, s.eval_episodes, FINAL_SEED, s.randomise)
+        self.settings = config.train
+        self.discount = learner_discount(config)
+        self.starts = held_out_starts(config, FINAL_SEED)
         self.plans: list[Plan] = []  # one for each start so far
         self.log = TrainingLog(folder)
         self.runs = 1  # number of runs in this process

@@ -18,7 +18,7 @@ from rtg.learn.cloning import Cloning, imitated
 from rtg.learn.ddqn import DoubleDqn
 from rtg.learn.evaluation import FINAL_SEED, Evaluation, Floats, evaluate, held_out_starts
 from rtg.learn.offline_data import OfflineData, Source, read_rows
-from rtg.learn.settings import CHECKPOINT_SETTINGS
+from rtg.learn.settings import CHECKPOINT_SETTINGS, learner_discount, start_amplitudes
 from rtg.learn.training_log import TrainingLog
 
 MAX_ENVIRONMENTS = 4  # stepped together at most; train.buffer must not be smaller
@@ -44,12 +44,11 @@ class Training:
         self.clock = Clock()
         self.config, self.task, self.folder = config, config.task, folder
         self.settings = s = config.train
-        self.discount = s.discount or self.task.discount
+        self.discount = learner_discount(config)
         self.seed = seed = config.run.seed
         count = math.gcd(s.train_frequency, MAX_ENVIRONMENTS)
-        jitter = max(s.start_jitter, self.task.randomisation) if s.randomise else s.start_jitter
         curriculum = Curriculum(config, s.curriculum, seed) if s.curriculum else None
-        self.env = PushVecEnv(config, count, jitter, seed, curriculum)
+        self.env = PushVecEnv(config, count, start_amplitudes(config).training, seed, curriculum)
         clones = s.learner == "cloning"
         self.model = (Cloning if clones else DoubleDqn)(self.env, s, self.discount, seed)
         selection = {"select": imitated} if clones else {}
@@ -62,7 +61,7 @@ class Training:
             **fixed,
             **policy_file.identity(self.task, s),
         }
-        self.starts = held_out_starts(self.task, s.eval_episodes, randomise=s.randomise)
+        self.starts = held_out_starts(config)
         self.runs = 1  # number of runs that learn in this process
         # Device and precision of the last period of learning, see _current_device_info().
         self.device_info: dict[str, Any] = {}
@@ -285,10 +284,8 @@ class Training:
         evaluation with chance success may have stopped training. `lost`: number of lost
         transitions.
         """
-        s = self.settings
-        starts = held_out_starts(self.task, s.eval_episodes, FINAL_SEED, s.randomise)
-        final = self._evaluate(starts)
+        final = self._evaluate(held_out_starts(self.config, FINAL_SEED))
         weights = self.model.mean_net.state_dict()
-        policy_file.write(self.folder / "model.pt", self.task, s, weights)
+        policy_file.write(self.folder / "model.pt", self.task, self.settings, weights)
         self.log.write_result(final, training_result.figures(self, final, lost))
         self.log.display(self._display_state(), force=True)

@@ -14,6 +14,8 @@ from rtg.run.run_args import Override
 
 Values = dict[str, dict[str, Any]]  # section -> key -> value
 
+TREE_GENERATORS = ("rrbs", "naive")  # values of search.generator that grow trees, backwards
+
 
 def load(file: Path, overrides: Sequence[Override] = ()) -> _core.Config:
     """Loads `file` with `overrides`. Raises UserError for a mistake; it quotes the typed flags."""

@@ -13,11 +13,10 @@ from rtg.errors import UserError
 from rtg.files import dataset, run_folder
 from rtg.files.episodes import replayed_plan
 from rtg.pictures import episode_pictures, plots
+from rtg.run.effective_config import TREE_GENERATORS
 from rtg.run.plan import RunPlan
 
 Floats = NDArray[np.float64]
-
-_REVERSE = ("rrbs", "naive")  # generators that search backwards
 
 
 def learning_curve(path: Path) -> dict[str, Floats]:
@@ -75,7 +74,7 @@ def _origin(plan: RunPlan) -> str:
     if _trained(plan):
         plans = plan.config.train.learner == "planning"
         return "forward search" if plans else "learned policy"
-    is_reverse = plan.config.search.generator in _REVERSE
+    is_reverse = plan.config.search.generator in TREE_GENERATORS
     return "plan found backwards, replayed" if is_reverse else "plan of the data, replayed"
 
 
