@@ -31,9 +31,6 @@ TREE_ABLATIONS: dict[str, tuple[Any, ...]] = {
     "root_draws": (1,),
     "patience": (1000,),  # no limit
 }
-# Keys of `search` without an ablation: sizes, and keys that the method sets.
-SIZE_KEYS = ("transitions", "breadth", "depth")
-SET_BY_METHOD = ("generator", "randomise")
 # Groups of keys of `train` that only have a meaning together.
 _KEY_GROUPS = (
     ("target_sync", "target_rate"),

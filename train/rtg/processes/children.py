@@ -38,18 +38,12 @@ class Node:
     def __init__(self, name: str, command: Sequence[str | Path], log: Path) -> None:
         """Starts the program. Main thread only, because the child dies with its starting thread."""
         self.name = name
-        self.command = [str(part) for part in command]
         self.log = log
-        self.start()
-
-    def start(self) -> None:
-        """Starts or restarts the program."""
-        self.started = time.monotonic()
         self._reaped = False
-        with self.log.open("ab") as output:
+        with log.open("ab") as output:
             self._log_start = self._log_read = output.tell()
             self._process = subprocess.Popen(
-                self.command,
+                [str(part) for part in command],
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
@@ -88,7 +82,7 @@ class Node:
         return self.exit_status() is not None
 
     def log_tail(self, lines: int = 8) -> str:
-        """Returns the last `lines` lines of the log since the last start of the program."""
+        """Returns the last `lines` lines that the program has written to the log."""
         logged = self.log.read_bytes()[self._log_start :] if self.log.exists() else b""
         return "\n".join(logged.decode(errors="replace").splitlines()[-lines:])
 

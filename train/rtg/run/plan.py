@@ -34,11 +34,6 @@ class RunPlan:
         return self.config.run.in_process
 
     @property
-    def config_file(self) -> Path:
-        """The file with all settings."""
-        return self.folder / "config.yaml"
-
-    @property
     def transitions_file(self) -> Path:
         """The file of the transitions, written at the end of the generation."""
         return self.folder / "transitions.npz"
