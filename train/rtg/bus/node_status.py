@@ -12,10 +12,10 @@ ENDED = "ended"  # the last state that a process publishes before it exits
 
 
 class NodeStatus:
-    """Publishes the status of this process, which `node` and `number` identify in the run."""
+    """Publishes the status of this process, which `node` names."""
 
-    def __init__(self, bus: Bus, node: str, number: int = 0) -> None:
-        self._bus, self._node, self._number = bus, node, number
+    def __init__(self, bus: Bus, node: str) -> None:
+        self._bus, self._node = bus, node
         self._published, self._published_at = "", -1e9
 
     def tick(self, state: str, done: int) -> None:
@@ -28,7 +28,7 @@ class NodeStatus:
             return
         self._published, self._published_at = state, now
         message = message_type("node_status_t")()
-        message.node, message.number = self._node, self._number
+        message.node = self._node
         message.state, message.done = state, done
         message.cpu_s = time.process_time()
         message.counter_name = list(self._bus.counters)

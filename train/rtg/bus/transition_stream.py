@@ -24,6 +24,7 @@ MAX_RANGES = 32  # maximum number of ranges in one acknowledgement
 # Number of acknowledgements sent at once when the stream is complete. The consumer may then exit,
 # so one of them must survive message loss.
 FINAL_ACKS = 10
+CREDIT = 8192  # number of rows that the sender may send in advance
 
 
 class Ack(NamedTuple):
@@ -160,25 +161,18 @@ def to_rows(message: Any, bodies: int, headings: int) -> Rows | None:
 class TransitionStream:
     """Passes every transition of the run to `sink`, once and in order.
 
-    `credit`: largest number of rows that the sender may send in advance.
-
     stream = TransitionStream(bus, bodies=7, headings=48, sink=buffer.add)
     while not stream.complete:
         stream.poll(0.1)
     """
 
     def __init__(
-        self,
-        bus: Bus,
-        bodies: int,
-        headings: int,
-        sink: Callable[[Rows], object],
-        credit: int = 8192,
+        self, bus: Bus, bodies: int, headings: int, sink: Callable[[Rows], object]
     ) -> None:
         self._bus = bus
         self._bodies, self._headings = bodies, headings
         self._sink = sink
-        self._cursor = StreamCursor(credit)
+        self._cursor = StreamCursor(CREDIT)
         self._consumer = secrets.randbits(62)
         self._stream: int | None = None
         bus.subscribe("RTG_TRANSITION", message_type("transition_batch_t"), self._on_batch)

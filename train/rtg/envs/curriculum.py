@@ -77,11 +77,6 @@ class Curriculum:
         self.pushes = 0  # simulated pushes of the walks; not among the learner's interactions
         self._set_pool(self._new_starts(), self._good)
 
-    @property
-    def pool(self) -> Floats:
-        """The starts of this round. [starts, bodies, 3]"""
-        return self._pool
-
     def draw(self) -> tuple[int, Floats | None]:
         """Returns the start of the next episode: its number and its state [bodies, 3].
 
@@ -89,9 +84,9 @@ class Curriculum:
         """
         if self._rng.random() >= self._share:
             return NOT_FROM_CURRICULUM, None
-        k = self._drawn % len(self._pool)
+        k = self._drawn % len(self.pool)
         self._drawn += 1
-        return self._first_number + k, self._pool[k]
+        return self._first_number + k, self.pool[k]
 
     def record_episode(self, number: int, success: bool, length: int) -> None:
         """Records the result of an episode from start `number` with `length` pushes.
@@ -105,19 +100,19 @@ class Curriculum:
         self._tries[k] += 1
         self._wins[k] += success
         self._lengths[k] += length
-        if self._tries.sum() >= EPISODES_PER_START * len(self._pool):
+        if self._tries.sum() >= EPISODES_PER_START * len(self.pool):
             self._next_round()
 
     def _next_round(self) -> None:
         rate = self._wins / np.maximum(self._tries, 1)
-        good = self._pool[(rate >= MIN_SUCCESS) & (rate <= MAX_SUCCESS)]
+        good = self.pool[(rate >= MIN_SUCCESS) & (rate <= MAX_SUCCESS)]
         few = len(good) < MIN_GOOD_STARTS
         walk_starts = np.concatenate((good, self._longest_mastered(rate))) if few else good
         if len(walk_starts):
             self._walk_starts = walk_starts
         old = self._random_subset(self._good, OLD_STARTS)
         self._good = np.concatenate((self._good, good))
-        self._first_number += len(self._pool)
+        self._first_number += len(self.pool)
         self._set_pool(self._new_starts(), old)
 
     def _longest_mastered(self, rate: Floats) -> Floats:
@@ -128,11 +123,12 @@ class Curriculum:
         mastered = np.flatnonzero(rate[: self._new_count] > MAX_SUCCESS)
         lengths = self._lengths[mastered] / self._tries[mastered]
         longest = np.argsort(-lengths, kind="stable")[: (len(mastered) + 1) // 2]
-        return self._pool[mastered[longest]]
+        return self.pool[mastered[longest]]
 
     def _set_pool(self, new: Floats, old: Floats) -> None:
         pool = np.concatenate((new, old))
-        self._pool, self._new_count = pool, len(new)
+        self.pool = pool  # the starts of this round, [starts, bodies, 3]
+        self._new_count = len(new)
         self._drawn = 0
         self._tries = np.zeros(len(pool), np.int64)
         self._wins = np.zeros(len(pool), np.int64)
@@ -171,7 +167,7 @@ class Curriculum:
             "rng": self._rng.bit_generator.state,
             "seeds": self._walk_starts,
             "good": self._good,
-            "pool": self._pool,
+            "pool": self.pool,
             "new": self._new_count,
             "tries": self._tries,
             "wins": self._wins,

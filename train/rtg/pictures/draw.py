@@ -39,10 +39,6 @@ class GoalLike(Protocol):
         """ "disc", "half_plane" or "angles"."""
 
     @property
-    def subject(self) -> str:
-        """ "every", "centroid" or "joint"."""
-
-    @property
     def centre(self) -> Floats: ...
     @property
     def radius(self) -> float: ...
@@ -177,19 +173,19 @@ class Canvas:
         (x, y), r = self._points(xy)[0], radius * self._scale
         ImageDraw.Draw(self._image).ellipse((x - r, y - r, x + r, y + r), fill=colour)
 
-    def text(self, xy: Any, words: str, size: float = 0.75, colour: Colour = INK) -> None:
+    def text(self, xy: Any, words: str, size: float) -> None:
         """Draws `words` with their upper left corner at `xy`. `size`: font size [m]."""
         font = ImageFont.load_default(size=size * self._scale)
-        ImageDraw.Draw(self._image).text(self._points(xy)[0], words, fill=colour, font=font)
+        ImageDraw.Draw(self._image).text(self._points(xy)[0], words, fill=INK, font=font)
 
     def pixels(self) -> NDArray[np.uint8]:
         """Returns the picture in its final size. [height, width, 3]"""
         return np.asarray(self._image.reduce(OVERSAMPLING))
 
 
-def circle(centre: Any, radius: float, corners: int = 96) -> Floats:
-    """Returns a polygon that approximates a disc. [corners, 2]"""
-    angle = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
+def circle(centre: Any, radius: float) -> Floats:
+    """Returns a polygon that approximates a disc. [96, 2]"""
+    angle = np.linspace(0.0, 2.0 * np.pi, 96, endpoint=False)
     centre = np.asarray(centre, dtype=float).reshape(2)
     return centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
