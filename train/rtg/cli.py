@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from rtg.errors import RunError, UserError
+from rtg.errors import UserError, exit_status
 from rtg.run import run_args
 
 # Functions import modules that load slowly, so that --help and errors appear at once.
@@ -132,21 +132,19 @@ def _check_utf8(words: Sequence[str]) -> None:
             ) from None
 
 
+def _command(words: Sequence[str]) -> int:
+    _check_utf8(words)
+    tool = _TOOLS.get(words[0]) if words else None
+    status = tool(words[1:]) if tool else _run(words)
+    sys.stdout.flush()  # Python would flush after main(), where no handler catches errors
+    return status
+
+
 def main(words: Sequence[str] | None = None) -> int:
     """Runs the command and returns its exit status: 0 success, 2 bad input, 1 anything else."""
     words = list(sys.argv[1:] if words is None else words)
-    tool = _TOOLS.get(words[0]) if words else None
     try:
-        _check_utf8(words)
-        status = tool(words[1:]) if tool else _run(words)
-        sys.stdout.flush()  # Python would flush after main(), where no handler catches errors
-        return status
-    except UserError as error:
-        print(f"rtg: {error}", file=sys.stderr)
-        return 2
-    except RunError as error:
-        print(f"rtg: {error}", file=sys.stderr)
-        return 1
+        return exit_status("rtg", lambda: _command(words))
     except KeyboardInterrupt:
         print("rtg: interrupted", file=sys.stderr)
         return 1

@@ -12,9 +12,10 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import NoReturn
 
 from rtg import _core, paths
-from rtg.errors import RunError
+from rtg.errors import RunError, UserError, exit_status
 
 _TYPES_JAR = paths.BUILD / "msgs" / "rtg_msgs.jar"
 
@@ -69,13 +70,16 @@ def lcm_spy(url: str) -> None:
     os.execve(program, [str(program), f"--lcm-url={url}"], environment)
 
 
-def main(argv: list[str]) -> int:
-    """Replaces this process by lcm-logger. Returns 2 for bad words."""
+def _become_logger(argv: list[str]) -> NoReturn:
     if len(argv) != 2:
-        print("rtg.bus.lcm_tools: legal words: CONFIG.yaml FILE", file=sys.stderr)
-        return 2
+        raise UserError("legal words: CONFIG.yaml FILE")
     url, program = _core.Config.from_file(Path(argv[0])).run.bus, lcm_program("lcm-logger")
     os.execv(program, [str(program), "--quiet", "--append", f"--lcm-url={url}", argv[1]])
+
+
+def main(argv: list[str]) -> int:
+    """Replaces this process by lcm-logger, or returns the exit status of the error."""
+    return exit_status("rtg.bus.lcm_tools", lambda: _become_logger(argv))
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from pathlib import Path
 from rtg import _core
 from rtg.bus.bus import Bus
 from rtg.bus.transition_stream import TransitionStream
-from rtg.errors import RunError, UserError
+from rtg.errors import UserError, exit_status
 from rtg.files.recorder import Recorder
 
 _POLL = 0.1  # [s]
@@ -43,19 +43,15 @@ def record(config: _core.Config, run: str, file: Path) -> None:
     _say(f"ends, {stream.lost} transitions lost")
 
 
-def main(argv: list[str]) -> int:
+def _main(argv: list[str]) -> int:
     if len(argv) != 3:
-        print("rtg.bus.record: legal words: CONFIG.yaml RUN FILE.npz", file=sys.stderr)
-        return 2
-    try:
-        record(_core.Config.from_file(Path(argv[0])), argv[1], Path(argv[2]))
-    except (_core.ConfigError, UserError, FileNotFoundError) as error:
-        print(f"rtg.bus.record: {error}", file=sys.stderr)
-        return 2
-    except RunError as error:
-        print(f"rtg.bus.record: {error}", file=sys.stderr)
-        return 1
+        raise UserError("legal words: CONFIG.yaml RUN FILE.npz")
+    record(_core.Config.from_file(Path(argv[0])), argv[1], Path(argv[2]))
     return 0
+
+
+def main(argv: list[str]) -> int:
+    return exit_status("rtg.bus.record", lambda: _main(argv))
 
 
 if __name__ == "__main__":

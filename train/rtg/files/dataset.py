@@ -81,7 +81,7 @@ _DAMAGED_FILE_ERRORS = (
 
 
 class DatasetError(UserError, ValueError):
-    """An error for a file that is no legal transition set.
+    """An error for a file that is missing or is no legal transition set.
 
     The message names the file, the array and the legal values.
     """
@@ -116,13 +116,15 @@ def read(path: Path, bodies: int | None = None, headings: int | None = None) -> 
     """Reads and checks a transition set.
 
     If given, `bodies` and `headings` are the numbers of the task that it must fit. Raises
-    FileNotFoundError if there is no file. Raises DatasetError if it is no legal transition set.
+    DatasetError if there is no file or it is no legal transition set.
     """
     try:
         with np.load(path, allow_pickle=False) as archive:
             arrays = {name: _member(path, archive, name) for name in _COLUMNS}
-    except (DatasetError, FileNotFoundError):
+    except DatasetError:
         raise
+    except FileNotFoundError:
+        raise DatasetError(f"{path}: no such file; legal: the transitions of a run") from None
     except (*_DAMAGED_FILE_ERRORS, OSError) as error:
         raise DatasetError(
             f"{path}: is not a transition file ({error}); legal: a transitions.npz of RTG"

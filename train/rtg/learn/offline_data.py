@@ -43,7 +43,7 @@ class Source(Protocol):
 
 
 def read_rows(path: Path, task: _core.Task) -> Rows:
-    """Reads the rows of a transition file. Raises dataset.DatasetError or FileNotFoundError."""
+    """Reads the rows of a transition file. Raises dataset.DatasetError."""
     with _READ_LOCK:
         transitions = dataset.read(path, bodies=task.bodies, headings=task.headings)
     return Rows(*(getattr(transitions, name) for name in Rows._fields))

@@ -1,4 +1,4 @@
-"""The learner's process, which ./run.sh starts.
+"""The learner's process: the trainer of graph.sh, and of runs without LCM.
 
 `python -m rtg.learn.trainer RUN_FOLDER... [--resume] [--no-stream] [--run-name NAME]` reads
 RUN_FOLDER/config.yaml and receives the transitions of the run while it learns. It writes
@@ -26,7 +26,7 @@ from rtg import _core
 from rtg.bus.bus import Bus
 from rtg.bus.node_status import ENDED, NodeStatus
 from rtg.bus.transition_stream import TransitionStream
-from rtg.errors import RunError, UserError
+from rtg.errors import exit_status
 from rtg.files.dataset import Rows
 from rtg.learn.offline_data import FileSource, NoSource, Source
 from rtg.learn.planning import Planning
@@ -125,15 +125,8 @@ def _keep_to_one_thread() -> None:
 
 def main(argv: Sequence[str] | None = None) -> int:
     _keep_to_one_thread()
-    try:
-        with Interrupts() as interrupts:
-            return train(_parse(argv), interrupts)
-    except (UserError, _core.ConfigError, FileNotFoundError) as error:
-        print(f"rtg.learn.trainer: {error}", file=sys.stderr)
-        return 2
-    except RunError as error:
-        print(f"rtg.learn.trainer: {error}", file=sys.stderr)
-        return 1
+    with Interrupts() as interrupts:
+        return exit_status("rtg.learn.trainer", lambda: train(_parse(argv), interrupts))
 
 
 if __name__ == "__main__":
