@@ -5,6 +5,7 @@ from pathlib import Path
 from layering import ROOT, sources
 
 TOOLS = Path(sys.executable).parent
+TESTS = ROOT / "tests"
 PYPROJECT = "train/pyproject.toml"
 
 
@@ -16,6 +17,13 @@ def check(*command: str) -> None:
 def test_cpp_is_formatted() -> None:
     files = [str(path) for path in sources(".hpp", ".cpp")]
     check(str(TOOLS / "clang-format"), "--dry-run", "-Werror", *files)
+
+
+def test_cpp_functions_are_small() -> None:
+    """Bounds that stop what has got out of hand; ruff has those of Python in pyproject.toml."""
+    files = [str(path) for path in sources(".hpp", ".cpp") if not path.is_relative_to(TESTS)]
+    bounds = ("--length", "60", "--CCN", "15", "--arguments", "7")
+    check(sys.executable, "-m", "lizard", "--languages", "cpp", "--warnings_only", *bounds, *files)
 
 
 def test_python_is_formatted() -> None:
