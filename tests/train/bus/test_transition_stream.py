@@ -137,6 +137,14 @@ def test_rows_beyond_the_credit_are_neither_held_nor_forgotten():
     assert cursor.ack_due(now=1.0) == (0, 20, [(0, 19)])
 
 
+def test_a_gap_begins_after_the_longest_of_overlapping_pieces():
+    cursor = StreamCursor(credit=100)
+    cursor.on_rows(10, "long", 20, now=0.0)
+    cursor.on_rows(12, "within", 3, now=0.0)
+    cursor.on_tail(40, False)
+    assert cursor.ack_due(now=1.0) == (0, 100, [(0, 9), (30, 39)])
+
+
 def test_overlapping_pieces_are_cut():
     cursor = StreamCursor(credit=100)
     assert cursor.on_rows(5, "late", 10, now=0.0) == []

@@ -9,6 +9,7 @@ import pytest
 from comparison_samples import finished, table_row, write_grid
 from PIL import Image
 from rtg import cli
+from rtg.compare import report_files
 from rtg.compare.cells import Cell, Grid
 from rtg.compare.report_files import write_report
 from rtg.errors import UserError
@@ -70,6 +71,17 @@ def test_the_data_and_what_q_makes_of_them_have_a_row(page):
     data = "120 ± 0 | 24 ± 0 | 96 ± 0 | 4.9 ± 0.0 | 0.50 ± 0.00 | 300 ± 0 | 12 ± 0 | 14 ± 0"
     assert f"| {data} | 0.0060 ± 0.0000 |" in row
     assert row.endswith("| 0.75 ± 0.00 | 0.020 ± 0.000 | 0.070 ± 0.000 |")
+
+
+def test_the_episode_shown_is_a_success_if_any_method_has_one(tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(report_files, "_draw_episode", lambda out, task, one: drawn.append(one))
+    cells = [CELLS[0], CELLS[2]]
+    for cell, success in zip(cells, (0.2, 0.9), strict=True):
+        finished(tmp_path, cell, [success])
+    write_grid(tmp_path, cells)
+    write_report(tmp_path, tmp_path)
+    assert [(one.label, one.success) for one in drawn] == [("ddqn_naive", True)]
 
 
 def test_a_bar_that_some_seeds_never_reach_says_how_many_do(tmp_path):

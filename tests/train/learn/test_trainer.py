@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from rtg.files.dataset import Rows
+from rtg.files.run_folder import read_json
 from rtg.learn import trainer
 from training_runs import run_folder
 
@@ -28,6 +29,8 @@ def test_several_runs_come_to_the_same_bits_as_alone(tmp_path: Path, rows: Rows)
     ]
     assert weights[0] == weights[1]
     assert len(set(weights[0])) == 3
+    counted = [read_json(folder / "training.json")["runs_in_process"] for folder in alone + beside]
+    assert counted == [1, 1, 1, 3, 3, 3]
 
 
 def test_a_run_that_cannot_learn_leaves_the_others_alone(
