@@ -33,7 +33,7 @@ class Graph:
         self.config.write_text(effective_config.load(_TINY, given).yaml)
 
     def _program(self, name: str, *words: str | Path) -> Process:
-        return self.network.start([paths.program(name), self.config, _RUN, *words])
+        return self.network.start([paths.BUILD / "nodes" / name, self.config, _RUN, *words])
 
     def server(self) -> Process:
         return self._program("rtg_forward_sim_server")

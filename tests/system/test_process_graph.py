@@ -246,7 +246,7 @@ def test_a_folder_that_does_not_exist_is_refused_before_the_search(
     tmp_path: Path, program: list[str]
 ) -> None:
     places = {
-        "coordinator": paths.program("rtg_beam_coordinator"),
+        "coordinator": paths.BUILD / "nodes" / "rtg_beam_coordinator",
         "config": paths.CONFIG / "gathering.yaml",
         "folder": tmp_path / "none",
     }

@@ -1,26 +1,13 @@
-"""Paths of folders and programs in the checkout."""
+"""Paths of folders in the checkout."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from rtg.errors import RunError
-
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = ROOT / "config"
 RUNS = ROOT / "runs"
 BUILD = ROOT / "build" / "release"
-
-
-def program(name: str) -> Path:
-    """Returns the path of a C++ program of RTG.
-
-    Raises RunError, which names the remedy, if the program is not built.
-    """
-    path = BUILD / "nodes" / name
-    if not path.is_file():
-        raise RunError(f"{path} is not built: start through ./run.sh, which builds it")
-    return path
 
 
 def task_names() -> list[str]:
