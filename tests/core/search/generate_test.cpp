@@ -63,14 +63,15 @@ int attempts(int period, int budget) {
   SearchConfig config = small();
   config.transitions = budget;
   config.branches = 0;
-  const GenerationSeams seams{{}, {}, [](std::span<const Transition>) {}};
+  const ReplayBatch none = [](std::span<const ReplayJob>) { return std::vector<ReplayResult>(); };
+  const GenerationSeams seams{{}, none, [](std::span<const Transition>) {}};
   Generation run{task, config, 7, seams};
   int made = 0;
   run.repeat([&](int number) {
     EXPECT_EQ(number, made++);
     if (made % period != 0) return;
     const Transition step{testing::robot_at(made), 0, testing::robot_at(made + 1)};
-    run.data.store({&step, 1}, {});
+    run.data.store({&step, 1}, none);
   });
   return made;
 }
