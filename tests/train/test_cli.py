@@ -57,7 +57,10 @@ MISTAKES = {
         ["reproduce", "--sweep", "train.offline_share=0.5,9", "--out", "/proc/rtg"],
         "--sweep train.offline_share=9: key 'train.offline_share': 9 is out of range; legal: ",
     ),
-    "plot of nothing": (["plot", "tests"], "tests: holds no comparison (no grid.json); legal: DIR"),
+    "plot of nothing": (
+        ["plot", "tests"],
+        "tests: holds no comparison (no grid.json); legal: the --out of `re",
+    ),
     "spy on nothing": (["spy", "sortign"], "sortign: no task of that name"),
     "spy on a folder": (["spy", "tests"], "tests: no such task file; legal: art_manip, "),
 }

@@ -86,7 +86,7 @@ def test_numbers_that_are_none_are_counted_and_not_heard(ours, value):
 def test_what_does_not_fit_into_a_datagram_is_not_sent(ours):
     message = message_type("node_status_t")()
     message.state = "x" * MAX_MESSAGE_BYTES
-    with pytest.raises(ValueError, match="node_status_t: longer than one datagram"):
+    with pytest.raises(ValueError, match="node_status_t: the message is longer than one datagram"):
         ours.publish("RTG_STATUS", message)
 
 

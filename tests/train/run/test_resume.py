@@ -23,7 +23,10 @@ CHANGES = {
     "reverse": (["--set", "reverse.preset=paper"], "--resume: reverse."),
     "method": (["--method", "ddqn_random"], "--resume: search.generator must stay naive as in "),
     "task setting": (["--set", "task.horizon=9"], "--resume: task.horizon must stay 60 as in "),
-    "task": (["--set", "task=gathering_hard"], "--set task=gathering_hard: key 'task': is "),
+    "task": (
+        ["--set", "task=gathering_hard"],
+        "--set task=gathering_hard: key 'task': 'gathering_hard' is not a mapping",
+    ),
     "one of two": (["--workers", "1", "--seed", "9"], "--resume: run.seed must stay 1 as in "),
     "named task": (["gathering"], "gathering: --resume goes on with the task of "),
 }
@@ -122,7 +125,7 @@ def test_messages_to_record_need_a_process_graph(folder, capsys):
     words = ["--resume", "--in-process", "--set", "run.record=true", "--out", str(folder)]
     assert cli.main(words) == 2
     assert capsys.readouterr().err.startswith(
-        "rtg: --set run.record=true: key 'run.record': true, but with run.in_process there are no"
+        "rtg: --set run.record=true: key 'run.record': is true, but with run.in_process "
     )
 
 
