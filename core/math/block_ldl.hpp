@@ -54,11 +54,10 @@ Mask<T> BlockLdl<T>::factorize(const BlockMatrix<T>& A) {
     }
     Block<T> D;
     rest.store(D);
-    T determinant;
-    inverse_[i] = symmetric_inverse(D, determinant);
-    regular_ = regular_ && is_regular(D, determinant);
-    positive = positive && D(0, 0) > T(0.0) && D(0, 0) * D(1, 1) - D(1, 0) * D(1, 0) > T(0.0) &&
-               determinant > T(0.0);
+    const SymmetricInverse<T> of(D);
+    inverse_[i] = of.inverse;
+    regular_ = regular_ && of.regular;
+    positive = positive && of.positive;
   }
   return positive;
 }

@@ -96,33 +96,52 @@ Block<T> diagonal(const Vec3<T>& entries) {
   return D;
 }
 
-/// Returns the inverse of a symmetric block by cofactors and sets `determinant` to that of A. Reads
-/// the lower half of A only.
+/// The inverse of a symmetric block A, of which only the lower half is read. Where A is positive
+/// definite, the inverse comes from A = L D Lᵀ, as accurate as the ratio of its largest to its
+/// smallest eigenvalue permits; a contact makes that ratio 1e10 and more. Elsewhere it comes from
+/// cofactors.
 template <class T>
-Block<T> symmetric_inverse(const Block<T>& A, T& determinant) {
-  const T c00 = A(1, 1) * A(2, 2) - A(2, 1) * A(2, 1);
-  const T c10 = A(2, 0) * A(2, 1) - A(1, 0) * A(2, 2);
-  const T c20 = A(1, 0) * A(2, 1) - A(2, 0) * A(1, 1);
-  const T c11 = A(0, 0) * A(2, 2) - A(2, 0) * A(2, 0);
-  const T c21 = A(1, 0) * A(2, 0) - A(0, 0) * A(2, 1);
-  const T c22 = A(0, 0) * A(1, 1) - A(1, 0) * A(1, 0);
-  determinant = A(0, 0) * c00 + A(1, 0) * c10 + A(2, 0) * c20;
-  const T scale = T(1.0) / determinant;
-  Block<T> out;
-  out << c00 * scale, c10 * scale, c20 * scale, c10 * scale, c11 * scale, c21 * scale, c20 * scale,
-      c21 * scale, c22 * scale;
-  return out;
-}
+struct SymmetricInverse {
+  Block<T> inverse;
+  Mask<T> positive;  // lanes in which A is positive definite
+  Mask<T> regular;   // lanes in which it has an inverse, rounding errors apart
 
-/// Returns the lanes in which A is regular: its `determinant` exceeds rounding errors. Reads the
-/// lower half of A only.
-template <class T>
-Mask<T> is_regular(const Block<T>& A, const T& determinant) {
-  constexpr double kRounding = 1e-14;
-  T size(0.0);
-  for (int m = 0; m < 3; ++m)
-    for (int n = 0; n <= m; ++n) size = greater(size, magnitude(A(m, n)));
-  return magnitude(determinant) > T(kRounding) * size * size * size;
-}
+  explicit SymmetricInverse(const Block<T>& A) {
+    const T kRounding(1e-14);
+    const T i0 = T(1.0) / A(0, 0), l10 = A(1, 0) * i0, l20 = A(2, 0) * i0;
+    const T d1 = A(1, 1) - l10 * A(1, 0), s21 = A(2, 1) - l10 * A(2, 0);
+    const T i1 = T(1.0) / d1, l21 = s21 * i1;
+    const T d2 = A(2, 2) - l20 * A(2, 0) - l21 * s21, i2 = T(1.0) / d2;
+    const T m20 = l10 * l21 - l20;
+    const T out20 = m20 * i2, out21 = -l21 * i2;
+    const T out10 = -l10 * i1 + m20 * out21;
+    inverse << i0 + l10 * l10 * i1 + m20 * out20, out10, out20,  //
+        out10, i1 - l21 * out21, out21,                          //
+        out20, out21, i2;
+    positive = A(0, 0) > T(0.0) && d1 > kRounding * A(1, 1) && d2 > kRounding * A(2, 2);
+    regular = positive;
+    if (any(!positive)) by_cofactors(A, kRounding);
+  }
+
+ private:
+  void by_cofactors(const Block<T>& A, const T& rounding) {
+    const T c00 = A(1, 1) * A(2, 2) - A(2, 1) * A(2, 1);
+    const T c10 = A(2, 0) * A(2, 1) - A(1, 0) * A(2, 2);
+    const T c20 = A(1, 0) * A(2, 1) - A(2, 0) * A(1, 1);
+    const T c11 = A(0, 0) * A(2, 2) - A(2, 0) * A(2, 0);
+    const T c21 = A(1, 0) * A(2, 0) - A(0, 0) * A(2, 1);
+    const T c22 = A(0, 0) * A(1, 1) - A(1, 0) * A(1, 0);
+    const T determinant = A(0, 0) * c00 + A(1, 0) * c10 + A(2, 0) * c20;
+    const T scale = T(1.0) / determinant;
+    Block<T> other;
+    other << c00, c10, c20, c10, c11, c21, c20, c21, c22;
+    T size(0.0);
+    for (int m = 0; m < 3; ++m)
+      for (int n = 0; n <= m; ++n) size = greater(size, magnitude(A(m, n)));
+    regular = positive || magnitude(determinant) > rounding * size * size * size;
+    for (int k = 0; k < 9; ++k)
+      inverse.data()[k] = select(positive, inverse.data()[k], other.data()[k] * scale);
+  }
+};
 
 }  // namespace rtg

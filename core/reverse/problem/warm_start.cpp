@@ -124,7 +124,14 @@ Mask<T> WarmStart<T>::step_back(int k, const Mask<T>& wanted) {
 }
 
 template <class T>
+Mask<T> WarmStart<T>::simulate(const Mask<T>& wanted, Trajectory<T>& x) {
+  std::ranges::fill(last_displacement_, T(0.0));
+  return roll_out(wanted, x);
+}
+
+template <class T>
 Mask<T> WarmStart<T>::roll_out(const Mask<T>& wanted, Trajectory<T>& x) {
+  for (std::vector<T>& y : x.multipliers) std::ranges::fill(y, T(0.0));
   scene_.forces(x.p[0], x.forces[0].data());
   Mask<T> going = wanted;
   for (int k = 1; k <= problem_.sub_steps; ++k) {
@@ -177,7 +184,6 @@ Mask<T> WarmStart<T>::find(const Mask<T>& wanted, Trajectory<T>& x) {
     going = going && (step_back(k, going && begun) || !begun);
   }
   x.p[0] = start_;
-  for (std::vector<T>& y : x.multipliers) std::ranges::fill(y, T(0.0));
   return roll_out(going, x);
 }
 

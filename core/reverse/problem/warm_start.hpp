@@ -27,6 +27,11 @@ class WarmStart {
   /// Departs from the paper: its SQP starts with everything at rest in the final state, A.2.
   Mask<T> find(const Mask<T>& wanted, Trajectory<T>& x);
 
+  /// Sets `x`, in the lanes `wanted`, to the forward simulation of the push from its start p_0,
+  /// with multipliers 0. Returns the lanes in which it succeeded; in all others `x` becomes
+  /// undefined.
+  Mask<T> simulate(const Mask<T>& wanted, Trajectory<T>& x);
+
  private:
   T servo_lead() const;
   Vec3<T> straight_target(int k) const;

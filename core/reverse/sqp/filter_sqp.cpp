@@ -21,6 +21,7 @@ FilterSqp<T>::FilterSqp(const ReverseProblem& like, std::unique_ptr<StageSolver<
       newton_(problem_),
       kkt_(std::move(kkt)),
       pivoting_(problem_.fixed_end()),
+      warm_(problem_),
       evaluator_(problem_),
       x_(problem_.energy, like.sub_steps),
       trial_(x_),
@@ -60,6 +61,7 @@ bool FilterSqp<T>::refill() {
     }
     busy = busy || is_busy(l);
   }
+  if (!problem_.fixed_end()) restore();
   if (any(beginning_)) evaluate_beginning();
   return busy;
 }
@@ -74,6 +76,20 @@ void FilterSqp<T>::finish(int l) {
   if (status == SolveStatus::kConverged) status = status_of_converged(problem, x);
   results_[job] = {status, std::move(x), strategy.iterations(), lane(now_.infeasibility, l),
                    lane(stationarity_, l)};
+}
+
+/// Replaces x_ in the lanes that ask for it by the forward simulation from its start p_0, which
+/// violates no constraint. Where the simulation fails, x_ stays.
+template <class T>
+void FilterSqp<T>::restore() {
+  Mask<T> wanted(false);
+  for (int l = 0; l < kWidth<T>; ++l)
+    if (is_busy(l) && strategy(l).take_restoration()) set_lane(wanted, l, true);
+  if (!any(wanted)) return;
+  trial_ = x_;
+  const Mask<T> found = warm_.simulate(wanted, trial_);
+  x_.assign(found, trial_);
+  beginning_ = beginning_ || found;
 }
 
 /// Evaluates x_ in the lanes that begin, and stores the measures and gaps.

@@ -51,6 +51,7 @@ class FilterSqp {
   SqpStrategy::Figures figures(int l) const;
   void reject_ascent(const Mask<T>& descends);
   void line_search();
+  void restore();
   Mask<T> accept(const Mask<T>& legal, const Measures<T>& then, double alpha);
 
   const ReverseConfig& config_;
@@ -62,6 +63,7 @@ class FilterSqp {
   NewtonSystem<T> newton_;
   std::unique_ptr<StageSolver<T>> kkt_;
   PivotingSolver<T> pivoting_;  // where kkt_ reports a singular system
+  WarmStart<T> warm_;           // restores feasibility
   Evaluator<T> evaluator_;
   Trajectory<T> x_, trial_;
   StageStep<T> step_;

@@ -59,9 +59,9 @@ bool SqpStrategy::regularise(SolveStatus if_hopeless) {
   proximal_ *= kGrowth;
   uses_lagrangian_ = true;
   if (proximal_ <= kMostProximal) return true;
-  if (filter_was_emptied_) return end(if_hopeless);
+  if (restored_) return end(if_hopeless);
+  restored_ = wants_restoration_ = true;
   filter_ = Filter{};
-  filter_was_emptied_ = true;
   proximal_ = config_->proximal_start;
   return true;
 }

@@ -142,5 +142,29 @@ TEST(BlockLdl, WhetherAPivotIsSingularDoesNotDependOnItsUnit) {
   }
 }
 
+// A stiff contact: D = s n nᵀ + I, whose inverse is I - s/(1 + s) n nᵀ. Its determinant s is less
+// than the rounding errors of its products, s³ ε, from s = 1e8 on.
+TEST(SymmetricInverse, IsAccurateForStiffBlocks) {
+  const Vec3<double> n = Vec3<double>(1.0, -2.0, 2.0) / 3.0;
+  for (const double s : {1e2, 1e6, 1e10, 1e12}) {
+    const Block<double> A = s * n * n.transpose() + Block<double>::Identity();
+    const SymmetricInverse<double> of(A);
+    EXPECT_TRUE(of.positive && of.regular) << s;
+    const Block<double> expected = Block<double>::Identity() - s / (1.0 + s) * n * n.transpose();
+    EXPECT_LT((of.inverse - expected).norm(), 1e-15 * s) << s;
+  }
+}
+
+TEST(SymmetricInverse, OfAnIndefiniteBlockComesFromCofactors) {
+  Block<double> A;
+  A << 0.0, 2.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 4.0;
+  const SymmetricInverse<double> of(A);
+  EXPECT_TRUE(!of.positive && of.regular);
+  EXPECT_EQ(Block<double>(of.inverse * A), Block<double>(Block<double>::Identity()));
+  A(1, 0) = 0.0;
+  const SymmetricInverse<double> none(A);
+  EXPECT_FALSE(none.positive || none.regular);
+}
+
 }  // namespace
 }  // namespace rtg

@@ -78,6 +78,24 @@ TEST(WarmStart, MirroringBeginsAsFarBeyondTheRobotsPathAsObjectsCoast) {
   EXPECT_LT(terminal_miss(problem, *x), 0.01);
 }
 
+TEST(WarmStart, SimulatesThePushFromAnyStart) {
+  const TouchingScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  ProblemLanes<double> lanes(problem);
+  lanes.load(0, problem);
+  Trajectory<double> x(lanes.energy, problem.sub_steps);
+  Iterate start = *warm_start(problem);
+  start.p[0][4] += 0.3;  // moves the first box aside
+  x.load(0, problem, start);
+  ASSERT_TRUE(WarmStart<double>(lanes).simulate(true, x));
+  const Iterate simulated = x.unload(0, problem);
+  EXPECT_EQ(simulated.p[0], start.p[0]);
+  EXPECT_LT(violation(problem, simulated).max(), 1e-6);
+  EXPECT_NEAR(simulated.p.back()[0], problem.end[0], 0.05);  // the robot has gone its way
+  for (const VectorXd& y : simulated.multipliers) EXPECT_EQ(y.norm(), 0.0);
+}
+
 TEST(WarmStart, LeavesUntouchedBodiesAlone) {
   const TouchingScene scene;
   const ReverseConfig config;

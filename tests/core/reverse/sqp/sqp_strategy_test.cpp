@@ -124,6 +124,28 @@ TEST(SqpStrategy, ATrialPointMustImproveAndBeNewToTheFilter) {
   EXPECT_TRUE(strategy.accept({0.8, 0.0}, {0.7, 0.0}, 1.0));  // no farther than it was
 }
 
+TEST(SqpStrategy, RestoresFeasibilityOnceWhereNoProximalWeightHelps) {
+  const ReverseConfig config;
+  SqpStrategy strategy(config);
+  ASSERT_TRUE(strategy.accept({0.1, 1.0}, {0.05, 1.0}, 1.0));
+  ASSERT_FALSE(strategy.accept({0.05, 1.0}, {0.1, 1.0}, 1.0));  // known to the filter
+  double before = 0.0;
+  for (; strategy.proximal() > before; strategy.reject_line_search()) {
+    EXPECT_FALSE(strategy.take_restoration());
+    before = strategy.proximal();
+  }
+  EXPECT_GT(before, 1e5);
+  EXPECT_EQ(strategy.proximal(), config.proximal_start);
+  EXPECT_TRUE(strategy.take_restoration());
+  EXPECT_FALSE(strategy.take_restoration());
+  EXPECT_TRUE(strategy.accept({0.2, 1.0}, {0.1, 1.0}, 1.0));  // the filter is empty
+  int more = 0;
+  while (strategy.reject_line_search()) ++more;
+  EXPECT_GT(more, 10);
+  EXPECT_EQ(strategy.status(), SolveStatus::kLineSearchFailed);
+  EXPECT_FALSE(strategy.take_restoration());
+}
+
 TEST(SqpStrategy, SolvesTenSystemsAgainAtMost) {
   const ReverseConfig config;
   SqpStrategy strategy(config);
