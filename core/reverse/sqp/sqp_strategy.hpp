@@ -14,8 +14,8 @@ namespace rtg::reverse {
 ///
 /// Where no δ helps, it asks once for a restoration of feasibility, as filter methods do, and
 /// begins with an empty filter and the first δ again. This leaves 0.2 % of the problems of
-/// tests/bench/corpus undecided and 2.2 % of those of corpus_joints. If the filter is emptied
-/// without a restoration, it is 0.3 % and 2.6 %.
+/// tests/bench/corpus undecided and 2.2 % of those of corpus_joints, and finds 199 of 200 true
+/// pushes of ArtManip. If the filter is emptied without a restoration, it is 0.2 %, 2.8 % and 194.
 class SqpStrategy {
  public:
   /// The figures of an iterate on which decisions depend.
