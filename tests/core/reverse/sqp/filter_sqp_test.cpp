@@ -254,8 +254,8 @@ TEST(FilterSqp, SolvesSingularSystemsAgainWithPivoting) {
   const SqpResult result =
       FilterSqp<double>(problem, std::make_unique<NeverRegular>()).solve({&one, 1}, {&start, 1})[0];
   EXPECT_EQ(result.status, SolveStatus::kSingular);
-  for (std::size_t k = 0; k < result.x.p.size(); ++k)
-    EXPECT_LT((result.x.p[k] - regular.x.p[k]).norm(), 1e-3);
+  EXPECT_LT((result.x.p[0] - regular.x.p[0]).norm(), 1e-3);
+  EXPECT_LT(result.infeasibility, config.feasibility_tol);  // a forward simulation from there
 }
 
 }  // namespace
