@@ -54,10 +54,10 @@ Mask<T> BlockLdl<T>::factorize(const BlockMatrix<T>& A) {
     }
     Block<T> D;
     rest.store(D);
-    const SymmetricInverse<T> of(D);
-    inverse_[i] = of.inverse;
-    regular_ = regular_ && of.regular;
-    positive = positive && of.positive;
+    const SymmetricInverse<T> inverted(D);
+    inverse_[i] = inverted.inverse;
+    regular_ = regular_ && inverted.regular;
+    positive = positive && inverted.positive;
   }
   return positive;
 }

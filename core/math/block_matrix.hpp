@@ -103,8 +103,9 @@ Block<T> diagonal(const Vec3<T>& entries) {
 template <class T>
 struct SymmetricInverse {
   Block<T> inverse;
-  Mask<T> positive;  // lanes in which A is positive definite
-  Mask<T> regular;   // lanes in which it has an inverse, rounding errors apart
+  Mask<T> positive;  // lanes in which A is positive definite, rounding errors apart
+  Mask<T>
+      regular;  // lanes in which `inverse` is accurate; stiff indefinite blocks are not among them
 
   explicit SymmetricInverse(const Block<T>& A) {
     const T kRounding(1e-14);

@@ -141,9 +141,9 @@ Block<T> Riccati<T>::find_gain(const Stage& stage, Gain& gain) {
     R(a, a) += stage.R[a];
     r[a] = r[a] + stage.B[a] * w_[0][a];
   }
-  const SymmetricInverse<T> of(R);
-  const Block<T>& inverse = of.inverse;
-  regular_ = regular_ && of.regular;
+  const SymmetricInverse<T> inverted(R);
+  const Block<T>& inverse = inverted.inverse;
+  regular_ = regular_ && inverted.regular;
   RegisterSum<Vec3<T>> product;
   product.add(inverse, r);
   product.store(gain.r);
@@ -152,7 +152,7 @@ Block<T> Riccati<T>::find_gain(const Stage& stage, Gain& gain) {
     scaled.add(inverse, C_[j]);
     scaled.store(gain.C[j]);
   }
-  return of.inverse;
+  return inverse;
 }
 
 /// Computes P of the stage `before` the current one.

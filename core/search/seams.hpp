@@ -49,18 +49,6 @@ struct Progress {
   long target = 0;       // to be stored in all
   double contact_share = 0.0;
   long start_region = 0;  // transitions so far that begin in the start region
-
-  /// Calls visitor(name, value) with each field.
-  template <class Visitor>
-  void visit(Visitor&& visitor) const {
-    visitor("phase", phase);
-    visitor("layer", layer);
-    visitor("depth", depth);
-    visitor("transitions", transitions);
-    visitor("target", target);
-    visitor("contact_share", contact_share);
-    visitor("start_region", start_region);
-  }
 };
 
 /// The functions that generate() receives from its caller.

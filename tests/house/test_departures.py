@@ -23,6 +23,7 @@ AUDIT = {
     "warm start": ("reverse/problem/warm_start.hpp", "everything at rest"),
     "filter": ("reverse/sqp/filter_sqp.hpp", "filter instead of the merit function"),
     "Hessian of the Lagrangian": ("reverse/sqp/filter_sqp.hpp", "Hessian of the Lagrangian"),
+    "restoration": ("reverse/sqp/sqp_strategy.hpp", "restoration of feasibility"),
     "safeguard": ("reverse/sqp/merit_sqp.cpp", "‖C‖₁ ≤ ε_c"),
     "pruning of headings": ("reverse/pruning.hpp", "all headings"),
     "pruning of bodies": ("reverse/pruning.hpp", "all bodies"),
@@ -45,8 +46,10 @@ def test_every_departure_of_the_audit_is_marked(what: str) -> None:
 
 
 def test_every_mark_is_of_the_audit() -> None:
-    files = {f"core/{file}" for file, _ in AUDIT.values()}
-    assert files == {one.file for one in departures.departures()}
+    for one in departures.departures():
+        assert any(
+            one.file == f"core/{file}" and words in one.text for file, words in AUDIT.values()
+        )
 
 
 def test_marks_have_a_reason() -> None:

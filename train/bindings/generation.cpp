@@ -39,7 +39,13 @@ void hand_over(const nb::object& store, std::span<const search::Transition> rows
 void report_progress(const nb::object& progress, const search::Progress& p) {
   const nb::gil_scoped_acquire acquire;
   nb::dict line;
-  p.visit([&line](const char* name, const auto& value) { line[name] = value; });
+  line["phase"] = p.phase;
+  line["layer"] = p.layer;
+  line["depth"] = p.depth;
+  line["transitions"] = p.transitions;
+  line["target"] = p.target;
+  line["contact_share"] = p.contact_share;
+  line["start_region"] = p.start_region;
   progress(line);
 }
 

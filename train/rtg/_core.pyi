@@ -224,8 +224,9 @@ def generate(
     """Generates transitions in this process, on run.workers threads. Returns the report as JSON.
 
     Calls store(poses, action, next_poses, success, source) with the transitions in sequence order.
-    Calls progress() after each layer of the search, with a dictionary of the fields of the C++
-    struct Progress. An exception of either function ends the generation and is raised.
+    Calls progress() after each layer of the search, with a dictionary of "phase", "layer", "depth",
+    "transitions", "target", "contact_share" and "start_region". An exception of either function
+    ends the generation and is raised.
     """
 
 def plan(config: Config, start: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:

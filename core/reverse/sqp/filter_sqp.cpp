@@ -61,7 +61,7 @@ bool FilterSqp<T>::refill() {
     }
     busy = busy || is_busy(l);
   }
-  if (!problem_.fixed_end()) restore();
+  if (!problem_.fixed_end()) restore();  // a simulation ends near the final state, not in it
   if (any(beginning_)) evaluate_beginning();
   return busy;
 }

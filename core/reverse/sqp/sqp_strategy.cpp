@@ -62,6 +62,7 @@ bool SqpStrategy::regularise(SolveStatus if_hopeless) {
   if (restored_) return end(if_hopeless);
   restored_ = wants_restoration_ = true;
   filter_ = Filter{};
+  pivoted_ = 0;
   proximal_ = config_->proximal_start;
   return true;
 }

@@ -17,3 +17,26 @@ def test_counters_of_a_process_and_of_its_successor_add_up(monkeypatch):
         bus.publish("RTG_STATUS", status)
         bus.spin(0.0)
     assert watch.counters() == {"jobs": 9}
+
+
+def test_the_progress_of_the_coordinator_is_shown():
+    bus = Bus("memq://", "test")
+    watch = RunWatch(bus, RunState(budget=9, interactions=8))
+    progress = message_type("search_progress_t")()
+    progress.phase, progress.layer, progress.depth = "tree 2", 3, 40
+    progress.transitions, progress.target = 500, 49000
+    progress.contact_share, progress.start_region, progress.workers = 0.25, 6, 2
+    bus.publish("RTG_PROGRESS", progress)
+    bus.spin(0.0)
+    assert watch.state == RunState(
+        phase="tree 2",
+        layer=3,
+        depth=40,
+        transitions=500,
+        target=49000,
+        contact_share=0.25,
+        start_region=6,
+        workers=2,
+        interactions=8,
+        budget=9,
+    )
