@@ -99,16 +99,14 @@ Block<T> diagonal(const Vec3<T>& entries) {
 /// The inverse of a symmetric block A, of which only the lower half is read. Where A is positive
 /// definite, the inverse comes from A = L D Lᵀ, as accurate as the ratio of its largest to its
 /// smallest eigenvalue permits; a contact makes that ratio 1e10 and more. Elsewhere it comes from
-/// cofactors.
+/// cofactors, which are not accurate for stiff blocks: those count as singular.
 template <class T>
 struct SymmetricInverse {
   Block<T> inverse;
   Mask<T> positive;  // lanes in which A is positive definite, rounding errors apart
-  Mask<T>
-      regular;  // lanes in which `inverse` is accurate; stiff indefinite blocks are not among them
+  Mask<T> regular;   // lanes in which `inverse` is accurate
 
   explicit SymmetricInverse(const Block<T>& A) {
-    const T kRounding(1e-14);
     const T i0 = T(1.0) / A(0, 0), l10 = A(1, 0) * i0, l20 = A(2, 0) * i0;
     const T d1 = A(1, 1) - l10 * A(1, 0), s21 = A(2, 1) - l10 * A(2, 0);
     const T i1 = T(1.0) / d1, l21 = s21 * i1;
@@ -119,13 +117,15 @@ struct SymmetricInverse {
     inverse << i0 + l10 * l10 * i1 + m20 * out20, out10, out20,  //
         out10, i1 - l21 * out21, out21,                          //
         out20, out21, i2;
-    positive = A(0, 0) > T(0.0) && d1 > kRounding * A(1, 1) && d2 > kRounding * A(2, 2);
+    positive = A(0, 0) > T(0.0) && d1 > T(kRounding) * A(1, 1) && d2 > T(kRounding) * A(2, 2);
     regular = positive;
-    if (any(!positive)) by_cofactors(A, kRounding);
+    if (any(!positive)) by_cofactors(A);
   }
 
  private:
-  void by_cofactors(const Block<T>& A, const T& rounding) {
+  static constexpr double kRounding = 1e-14;
+
+  void by_cofactors(const Block<T>& A) {
     const T c00 = A(1, 1) * A(2, 2) - A(2, 1) * A(2, 1);
     const T c10 = A(2, 0) * A(2, 1) - A(1, 0) * A(2, 2);
     const T c20 = A(1, 0) * A(2, 1) - A(2, 0) * A(1, 1);
@@ -139,7 +139,7 @@ struct SymmetricInverse {
     T size(0.0);
     for (int m = 0; m < 3; ++m)
       for (int n = 0; n <= m; ++n) size = greater(size, magnitude(A(m, n)));
-    regular = positive || magnitude(determinant) > rounding * size * size * size;
+    regular = positive || magnitude(determinant) > T(kRounding) * size * size * size;
     for (int k = 0; k < 9; ++k)
       inverse.data()[k] = select(positive, inverse.data()[k], other.data()[k] * scale);
   }
