@@ -166,5 +166,28 @@ TEST(SymmetricInverse, OfAnIndefiniteBlockComesFromCofactors) {
   EXPECT_FALSE(none.positive || none.regular);
 }
 
+TEST(SymmetricInverse, LanesOfEachKindHaveTheInverseThatTheyHaveAlone) {
+  constexpr double kDiagonals[][3] = {{2.0, 3.0, 4.0}, {-2.0, 3.0, 4.0}, {0.0, 3.0, 4.0}};
+  const auto block = [&](int l) {
+    const double* d = kDiagonals[l % 3];
+    Block<double> A;
+    A << d[0], 0.0, 0.0, 0.0, d[1], 0.5, 0.0, 0.5, d[2];
+    return A;
+  };
+  Block<Lanes> all;
+  for (int l = 0; l < kWidth<Lanes>; ++l)
+    for (int k = 0; k < 9; ++k) set_lane(all.data()[k], l, block(l).data()[k]);
+  const SymmetricInverse<Lanes> together(all);
+  for (int l = 0; l < kWidth<Lanes>; ++l) {
+    const SymmetricInverse<double> alone(block(l));
+    EXPECT_EQ(lane(together.positive, l), alone.positive) << l;
+    EXPECT_EQ(lane(together.positive, l), l % 3 == 0);
+    EXPECT_EQ(lane(together.regular, l), alone.regular) << l;
+    EXPECT_EQ(lane(together.regular, l), l % 3 != 2);
+    for (int k = 0; k < 9 && alone.regular; ++k)
+      EXPECT_NEAR(lane(together.inverse.data()[k], l), alone.inverse.data()[k], 1e-15) << l;
+  }
+}
+
 }  // namespace
 }  // namespace rtg
