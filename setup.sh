@@ -116,12 +116,19 @@ setup_python() {
   printf '%s\n' "$wanted" >"$MADE_FROM"
 }
 
-# Shows ninja's progress as one changing line on a terminal, nothing elsewhere.
+# build_progress PRESET LOG: says on stderr how many steps ninja has to do, if any; on a terminal, shows each as one
+# changing line. ninja's output goes to LOG.
 build_progress() {
-  local line
+  local line steps= cores
+  cores=$(nproc)
   while IFS= read -r line; do
-    printf '%s\n' "$line" >>"$1"
-    if [[ -t 2 && $line == \[* ]]; then printf '\r\033[K%s' "${line:0:100}" >&2; fi
+    printf '%s\n' "$line" >>"$2"
+    if [[ ! $line =~ ^\[[1-9][0-9]*/([0-9]+)\]\  ]]; then continue; fi # [0/2]: ninja looks for new files
+    if [[ -z $steps ]]; then
+      steps=${BASH_REMATCH[1]}
+      say "building build/$1: $steps steps, about $((steps / 30 / cores + 1)) min on $cores cores" # 2 s of a core each
+    fi
+    if [[ -t 2 ]]; then printf '\r\033[K%s' "${line:0:100}" >&2; fi
   done
   if [[ -t 2 ]]; then printf '\r\033[K' >&2; fi
 }
@@ -141,18 +148,8 @@ build_preset() {
     fi
     touch "$folder/build.ninja" # CMake leaves it as old as it was where nothing changed
   fi
-  local todo steps cores estimate=
-  todo=$(ninja -C "$folder" -n "$target" 2>/dev/null 9>&-) || todo=
-  if [[ $todo != *'no work to do'* ]]; then
-    if [[ -n $todo && $todo != *'Re-running CMake'* ]]; then # which says nothing of the steps after it
-      steps=$(grep -c '^\[' <<<"$todo" || true)
-      cores=$(nproc)
-      estimate=": $steps steps, about $((steps / 30 / cores + 1)) min on $cores cores" # 2 s of a core each
-    fi
-    say "building build/$preset$estimate"
-    if ! (set -o pipefail && ninja -C "$folder" "$target" 2>&1 9>&- | build_progress "$log"); then
-      grep -vE '^\[[0-9]+/[0-9]+\] ' "$log" | tail -n 60 >&2
-      fail "the build failed (whole log: build/$preset.log)"
-    fi
+  if ! (set -o pipefail && ninja -C "$folder" "$target" 2>&1 9>&- | build_progress "$preset" "$log"); then
+    grep -vE '^\[[0-9]+/[0-9]+\] ' "$log" | tail -n 60 >&2
+    fail "the build failed (whole log: build/$preset.log)"
   fi
 }
