@@ -113,12 +113,6 @@ class World {
     return fastest_ < kSlowSpeed;
   }
 
-  /// Sets the velocity of the robot to push speed towards `target`.
-  void set_speed(const Pose& target) {
-    const Vector2d way = target.position() - pose_of(*bodies_[0]).position();
-    bodies_[0]->SetLinearVelocity(to_b2(servo_.advance / servo_.step_s * way.normalized()));
-  }
-
   /// Marks every body as touched. poses() then include the motion by which Box2D resolves overlaps
   /// of the start; otherwise bodies without velocity keep their start.
   void touch_all() { touched_.assign(touched_.size(), true); }
@@ -270,7 +264,6 @@ PushOutcome Box2dSimulator::push(const Poses& start, int action) const {
   const int done = std::min(path.steps, static_cast<int>(clear / servo.advance));
   begun[0] = path.at(done);
   World table(scene_, physics_, servo, begun);
-  if (done > 0) table.set_speed(path.to);
   const bool ok = drive(table, path, done) && table.come_to_rest();
   return {table.poses(), ok};
 }

@@ -42,8 +42,33 @@ struct FieldChange {
   }
 };
 
+/// Lists the values of all fields.
+struct FieldValues {
+  std::map<std::string, double> found = {};
+
+  void number(const char* field, double at, double, double, const char*) { found[field] = at; }
+  void integer(const char* field, int at, int, int, const char*) { found[field] = at; }
+  void flag(const char* field, bool at, const char*) { found[field] = at; }
+  template <class Enum, class Names>
+  void choice(const char* field, Enum at, const Names&, const char*) {
+    found[field] = static_cast<int>(at);
+  }
+};
+
+/// Returns the fields in which `a` and `b` differ.
+template <class Section>
+std::set<std::string> differences(Section a, Section b) {
+  FieldValues of_a, of_b;
+  a.visit(of_a);
+  b.visit(of_b);
+  std::set<std::string> differ;
+  for (const auto& [name, value] : of_a.found)
+    if (of_b.found.at(name) != value) differ.insert(name);
+  return differ;
+}
+
 /// Expects that each field of `config`, with its value in `others`, changes what `result` makes of
-/// the configuration, and that `others` has all fields but `left_out`.
+/// the configuration, and no other field, and that `others` has all fields but `left_out`.
 template <class Section, class Result>
 void expect_each_field_matters(const Section& config, const OtherValues& others,
                                const std::set<std::string>& left_out, Result result) {
@@ -57,6 +82,7 @@ void expect_each_field_matters(const Section& config, const OtherValues& others,
     Section changed = config;
     FieldChange change{name, value};
     changed.visit(change);
+    EXPECT_EQ(differences(config, changed), std::set{name});
     EXPECT_FALSE(result(changed) == usual) << name << " does nothing";
   }
   EXPECT_EQ(tried, none.seen);

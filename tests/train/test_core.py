@@ -64,6 +64,24 @@ def test_success_is_the_goal_term_drawn_in_pictures() -> None:
     np.testing.assert_array_equal(TASK.succeeded(states), expected)
 
 
+def test_joints_are_reached_where_each_goal_of_theirs_is_met() -> None:
+    goal = "task.goal=[{joint: link2, angles: [1.0, 1.5]}, {joint: link3, angles: [-1.5, -1.0]}]"
+    task = _core.Config.from_file(paths.CONFIG / "art_manip.yaml", [goal]).task
+    straight = task.start[None]
+    assert task.joints_reached(straight) == [False, False, False]
+    bent = straight.copy()
+    bent[0, 2:, 2] += 1.2  # the first joint by 1.2, the others by none
+    assert task.joints_reached(bent) == [True, False, False]
+
+
+def test_a_plan_says_how_many_pushes_its_search_made() -> None:
+    settings = ["run.method=planner", "search.breadth=4", "search.depth=3"]
+    config = _core.Config.from_file(paths.CONFIG / "gathering.yaml", settings)
+    states, pushes = _core.plan(config, config.task.start[None])
+    np.testing.assert_array_equal(states, config.task.start[None])  # it found no plan
+    assert pushes == 48 * (1 + 4 + 4)
+
+
 def test_pushes_of_a_batch_do_not_depend_on_each_other() -> None:
     simulator = _core.Simulator(CONFIG)
     rng = np.random.default_rng(1)

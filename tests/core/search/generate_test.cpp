@@ -269,6 +269,9 @@ TEST(Generate, WithRandomiseTreesAndWalksHaveStartsAllOverTheTasksRandomisation)
     config.randomise = true;
     EXPECT_EQ(run_naive(task, config, 7, 1).stored, all_over);
     EXPECT_NE(near, all_over);
+    task.randomisation = 0.1;  // less than start_jitter, which holds then
+    EXPECT_EQ(run_naive(task, config, 7, 1).stored, near);
+    task.randomisation = wide.randomisation;
   }
 }
 

@@ -152,6 +152,15 @@ TEST(GoalRoots, DrawsInVainAreCountedAndEndNothingUntilThereAreTooMany) {
   EXPECT_EQ(stats.undrawn_goals, 20);
 }
 
+TEST(GoalRoots, OnlyDrawsInVainInARowEndTheDrawing) {
+  tasks::Task task = gathering();
+  task.goal[0].radius = 0.88;  // so tight that two of five draws are in vain
+  Rng rng(1);
+  SearchStats stats;
+  EXPECT_EQ(goal_roots(task, of(15, 4), task.start, rng, stats).size(), 15U);
+  EXPECT_GT(stats.undrawn_goals, 20);
+}
+
 TEST(GoalRoots, AreDistinctGoalsNearestFirst) {
   const tasks::Task task = gathering();
   const StateMetric metric(task.scene);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/gathering.hpp"
+
 namespace rtg::search {
 namespace {
 
@@ -68,6 +70,19 @@ TEST(Report, WithoutReverseStepsSaysNothingOfThem) {
                             "pushing_iterations_p90", "replay_gap_median", "replay_gap_p90"})
     EXPECT_NE(json.find('"' + std::string(field) + "\":null,"), std::string::npos) << field;
   EXPECT_NE(json.find(R"("contact_share":0.25,)"), std::string::npos);
+}
+
+TEST(Report, OfNodesCountsTreesAndTheLeastDepthInTheStartRegionButForGoals) {
+  const tasks::Task task = testing::gathering();
+  Poses elsewhere = task.start;
+  elsewhere[1].x += 2.0;
+  GenerationReport report;
+  fill(report, task, {{task.start, 0, 0}, {elsewhere, 3, 0}});
+  EXPECT_EQ(report.start_region_depth, -1);
+  fill(report, task,
+       {{task.start, 0, 0}, {elsewhere, 3, 0}, {task.start, 7, 1}, {task.start, 5, 2}});
+  EXPECT_EQ(report.start_region_depth, 5);
+  EXPECT_EQ(report.trees, 3);
 }
 
 TEST(Report, OfNothingHasEmptyListsAndNoDepth) {

@@ -72,6 +72,9 @@ TEST(Config, AHalfPlaneMayReachACornerOfTheArenaAlone) {
   const std::string term = "{kind: box, half_plane: {normal: [0.7071, 0.7071], offset: ";
   EXPECT_NO_THROW(parsed("", {"task.goal=[" + term + "-9}}]"}));
   EXPECT_THROW(parsed("", {"task.goal=[" + term + "-12}}]"}), ConfigError);
+  const std::string other = "{kind: box, half_plane: {normal: [-0.7071, 0.7071], offset: ";
+  EXPECT_NO_THROW(parsed("", {"task.goal=[" + other + "-9}}]"}));
+  EXPECT_THROW(parsed("", {"task.goal=[" + other + "-12}}]"}), ConfigError);
 }
 
 TEST(Config, TheLayoutsOfTheFilesAreThoseOfTheTests) {

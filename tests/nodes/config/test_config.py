@@ -196,6 +196,24 @@ def test_check_says_joints_and_goals_of_a_chain() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("normal", "offset", "words"),
+    [
+        ("[1, 0]", -2, "x <= -2 m"),
+        ("[-1, 0]", -2, "x >= 2 m"),
+        ("[0, 1]", -2, "y <= -2 m"),
+        ("[0, -1]", -2, "y >= 2 m"),
+        ("[-0.6, 0.8]", 1, "-0.6 x +0.8 y <= 1 m"),
+    ],
+)
+def test_check_says_where_a_half_plane_lies(
+    file: Path, normal: str, offset: int, words: str
+) -> None:
+    goal = f"task.goal=[{{kind: box, half_plane: {{normal: {normal}, offset: {offset}}}}}]"
+    said = _core.Config.from_file(file, [goal]).description
+    assert f"\n  the centre of every 'box' lies at {words}\n" in said
+
+
 SORTING = {
     "robot": ("robot", [0.0, -6.5, 0.0]),
     "a1": ("a", [1.2, 3.0, 0.1]),

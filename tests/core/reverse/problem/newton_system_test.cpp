@@ -103,14 +103,23 @@ TEST(NewtonSystem, RightHandSideIsMinusTheGradientOfTheLagrangian) {
   expect_right_hand_side_is_gradient(at.problem, at.x);
 }
 
-TEST(NewtonSystem, StationarityIsTheLargestGradientOfThePrimalUnknowns) {
-  const Disturbed at(6);
-  const Linearisation lin(at.problem, at.x, {true, 0.0});
+void expect_stationarity_is_largest_gradient(const ReverseProblem& problem, const Iterate& x) {
+  const Linearisation lin(problem, x, {true, 0.0});
   const BlockVector r = lin.conditions();
   double largest = r[0].lpNorm<Eigen::Infinity>();
   for (std::size_t k = 1; k < r.size(); ++k)
     largest = std::max(largest, r[k].head(9 + 3).lpNorm<Eigen::Infinity>());
   EXPECT_DOUBLE_EQ(lin.newton().stationarity(), largest);
+}
+
+TEST(NewtonSystem, StationarityIsTheLargestGradientOfThePrimalUnknowns) {
+  const Disturbed at(6);
+  expect_stationarity_is_largest_gradient(at.problem, at.x);
+  for (int m = 0; m < 3; ++m) {
+    Iterate x = at.x;
+    x.controls[4][m] += 1e4;  // whose gradient is the largest then
+    expect_stationarity_is_largest_gradient(at.problem, x);
+  }
 }
 
 TEST(NewtonSystem, StepSolvesTheLinearisedConstraints) {

@@ -96,9 +96,12 @@ TEST(Trial, LongMovesTurnsAndNonsenseAreRefused) {
   Trial trial;
   EXPECT_TRUE(trial.is_bounded(0, 0, 0.99));
   EXPECT_FALSE(trial.is_bounded(0, 0, 1.01));
-  EXPECT_TRUE(trial.is_bounded(0, 0, 1.01, 0.5));
+  EXPECT_TRUE(trial.is_bounded(0, 0, 1.99, 0.5));
+  EXPECT_FALSE(trial.is_bounded(0, 0, 2.01, 0.5));
   EXPECT_TRUE(trial.is_bounded(0, 2, 0.49));
   EXPECT_FALSE(trial.is_bounded(0, 2, -0.51));
+  EXPECT_TRUE(trial.is_bounded(0, 2, 0.99, 0.5));
+  EXPECT_FALSE(trial.is_bounded(0, 2, 1.01, 0.5));
   EXPECT_FALSE(trial.is_bounded(1, 1, NAN));
   EXPECT_FALSE(trial.is_bounded(2, 2, INFINITY));
 }
