@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -25,6 +26,17 @@ struct Config {
   search::SearchConfig search;
   TrainConfig train;
   RunConfig run;
+
+  /// Returns the discount of the learner, γ.
+  double learner_discount() const { return train.discount > 0.0 ? train.discount : task.discount; }
+  /// Return the largest random displacement of an object in x and y at the start of an episode of
+  /// evaluation or training [m].
+  double evaluation_jitter() const {
+    return train.randomise ? task.randomisation : task.start_jitter;
+  }
+  double training_jitter() const {
+    return train.randomise ? std::max(train.start_jitter, task.randomisation) : train.start_jitter;
+  }
 };
 
 /// Reads and checks a configuration file. Throws ConfigError if it is not legal. Only the section

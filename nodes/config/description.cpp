@@ -99,19 +99,8 @@ std::string term_in_words(const tasks::GoalTerm& term) {
          '\n';
 }
 
-/// Largest random displacements of objects in x and y at the start of an episode [m].
-struct Amplitudes {
-  double evaluation = 0.0, training = 0.0;
-};
-
-Amplitudes amplitudes(const Config& config) {
+std::string task_in_words(const Config& config) {
   const tasks::Task& task = config.task;
-  const double training = config.train.start_jitter;
-  if (!config.train.randomise) return {task.start_jitter, training};
-  return {task.randomisation, std::max(training, task.randomisation)};
-}
-
-std::string task_in_words(const tasks::Task& task, const Amplitudes& starts) {
   std::string out = "task " + task.name + "\n" + bodies_in_words(task) +
                     joints_in_words(task.scene) + "goal, all of\n";
   for (const tasks::GoalTerm& term : task.goal) out += term_in_words(term);
@@ -123,7 +112,7 @@ std::string task_in_words(const tasks::Task& task, const Amplitudes& starts) {
   out += print("episodes\n  at most %d pushes, discount %.4g, observation of %d numbers\n",
                task.horizon, task.discount, observation_size(task));
   out += print("  objects start within %.4g m of the layout above (training: %.4g m)\n",
-               starts.evaluation, starts.training);
+               config.evaluation_jitter(), config.training_jitter());
   return out;
 }
 
@@ -136,7 +125,7 @@ std::string training_in_words(const Config& config) {
                     : "without offline data";
   return print("  train for %d interactions, preset %s, discount %.4g, %s\n", train.interactions,
                kTrainPresets[static_cast<std::size_t>(train.preset)].data(),
-               train.discount > 0.0 ? train.discount : config.task.discount, from.c_str());
+               config.learner_discount(), from.c_str());
 }
 
 std::string processes_in_words(const RunConfig& run) {
@@ -160,7 +149,7 @@ std::string work_in_words(const Config& config) {
 }  // namespace
 
 std::string description(const Config& config) {
-  return task_in_words(config.task, amplitudes(config)) + work_in_words(config);
+  return task_in_words(config) + work_in_words(config);
 }
 
 }  // namespace rtg::config

@@ -116,3 +116,28 @@ def test_pushes_that_do_not_fit_the_task_are_refused(
 def test_arrays_outlive_the_call() -> None:
     kept = [_core.Config.from_file(paths.CONFIG / "gathering.yaml").task.start for _ in range(100)]
     assert all(np.array_equal(start, TASK.start) for start in kept)
+
+
+@pytest.mark.parametrize(
+    ("settings", "evaluation", "training"),
+    [
+        ((), 0.1, 0.3),
+        (("train.randomise=true",), 0.7, 0.7),
+        (("train.randomise=true", "train.start_jitter=0.9"), 0.7, 0.9),
+    ],
+)
+def test_randomise_widens_the_jitter_of_starts(
+    settings: tuple[str, ...], evaluation: float, training: float
+) -> None:
+    base = ("task.start_jitter=0.1", "task.randomisation=0.7", "train.start_jitter=0.3")
+    config = _core.Config.from_file(paths.CONFIG / "gathering.yaml", [*base, *settings])
+    assert (config.evaluation_jitter, config.training_jitter) == (evaluation, training)
+
+
+def test_the_learner_discounts_as_the_task_does_unless_told() -> None:
+    settings = ["task.discount=0.7", "train.discount=0"]
+    config = _core.Config.from_file(paths.CONFIG / "gathering.yaml", settings)
+    assert config.learner_discount == 0.7
+    settings[1] = "train.discount=0.9"
+    config = _core.Config.from_file(paths.CONFIG / "gathering.yaml", settings)
+    assert config.learner_discount == 0.9

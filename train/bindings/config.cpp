@@ -51,6 +51,9 @@ void bind_config(nb::module_& module) {
       .def_ro("search", &config::Config::search)
       .def_ro("train", &config::Config::train)
       .def_ro("run", &config::Config::run)
+      .def_prop_ro("learner_discount", &config::Config::learner_discount)
+      .def_prop_ro("evaluation_jitter", &config::Config::evaluation_jitter)
+      .def_prop_ro("training_jitter", &config::Config::training_jitter)
       .def_prop_ro("description", &config::description)
       .def_prop_ro("yaml", &config::canonical_yaml)
       .def_prop_ro("json", &config::config_json);

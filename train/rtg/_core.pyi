@@ -181,6 +181,15 @@ class Config:
     @property
     def run(self) -> RunConfig: ...
     @property
+    def learner_discount(self) -> float:
+        """Discount of the learner: `train.discount`, or that of the task if it is 0."""
+    @property
+    def evaluation_jitter(self) -> float:
+        """Largest displacement of objects in x and y at the start of an evaluation episode [m]."""
+    @property
+    def training_jitter(self) -> float:
+        """The same for episodes of training [m]."""
+    @property
     def description(self) -> str:
         """The configuration in human-readable text."""
     @property

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
-from rtg.learn.settings import start_amplitudes
 
 Floats = NDArray[np.float64]
 Policy = Callable[[NDArray[np.float32]], NDArray[Any]]  # [N, observation] -> [N] actions
@@ -48,7 +47,7 @@ def held_out_starts(config: _core.Config, seed: int = HELD_OUT_SEED) -> Floats:
 
     There is one for each of the `train.eval_episodes`.
     """
-    amplitude, count = start_amplitudes(config).evaluation, config.train.eval_episodes
+    amplitude, count = config.evaluation_jitter, config.train.eval_episodes
     return np.stack([config.task.jittered_start(amplitude, seed, k) for k in range(count)])
 
 

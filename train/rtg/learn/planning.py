@@ -16,7 +16,6 @@ from rtg.files import checkpoint, run_folder
 from rtg.learn import policy_file
 from rtg.learn.evaluation import FINAL_SEED, Evaluation, Floats, held_out_starts
 from rtg.learn.offline_data import Source
-from rtg.learn.settings import learner_discount
 from rtg.learn.training_log import TrainingLog
 
 _FORMAT = 2  # version of the checkpoint format
@@ -66,7 +65,7 @@ class Planning:
     def __init__(self, config: _core.Config, folder: Path) -> None:
         self.config, self.task = config, config.task
         self.settings = config.train
-        self.discount = learner_discount(config)
+        self.discount = config.learner_discount
         self.starts = held_out_starts(config, FINAL_SEED)
         self.plans: list[Plan] = []  # one for each start so far
         self.log = TrainingLog(folder)

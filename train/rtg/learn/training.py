@@ -18,7 +18,7 @@ from rtg.learn.cloning import Cloning, imitated
 from rtg.learn.ddqn import DoubleDqn
 from rtg.learn.evaluation import FINAL_SEED, Evaluation, Floats, evaluate, held_out_starts
 from rtg.learn.offline_data import OfflineData, Source, read_rows
-from rtg.learn.settings import CHECKPOINT_SETTINGS, learner_discount, start_amplitudes
+from rtg.learn.settings import CHECKPOINT_SETTINGS
 from rtg.learn.training_log import TrainingLog
 
 MAX_ENVIRONMENTS = 4  # stepped together at most; train.buffer must not be smaller
@@ -44,11 +44,11 @@ class Training:
         self.clock = Clock()
         self.config, self.task, self.folder = config, config.task, folder
         self.settings = s = config.train
-        self.discount = learner_discount(config)
+        self.discount = config.learner_discount
         self.seed = seed = config.run.seed
         count = math.gcd(s.train_frequency, MAX_ENVIRONMENTS)
         curriculum = Curriculum(config, s.curriculum, seed) if s.curriculum else None
-        self.env = PushVecEnv(config, count, start_amplitudes(config).training, seed, curriculum)
+        self.env = PushVecEnv(config, count, config.training_jitter, seed, curriculum)
         clones = s.learner == "cloning"
         self.model = (Cloning if clones else DoubleDqn)(self.env, s, self.discount, seed)
         selection = {"select": imitated} if clones else {}
