@@ -129,7 +129,7 @@ void SceneModel<T>::load(int lane, const SceneModel<double>& one) {
 }
 
 template <class T>
-void SceneModel<T>::forces(const Placement<T>& at, T* lambda) const {
+void SceneModel<T>::forces(const Placement<T>& at, T* lambda, double spare) const {
   for (int n = 0; n < pair_count(); ++n) {
     const Mask<T> close = near(n, at);
     T* of = lambda + contact_of(n, 0);
@@ -139,7 +139,7 @@ void SceneModel<T>::forces(const Placement<T>& at, T* lambda) const {
     for (int v = 0; v < corners(n); ++v) {
       const VertexContact<T> contact(*this, n, v, pair, close);
       if (any(contact.within))
-        of[v] = select(contact.within, barrier_.force(contact.gap()), T(0.0));
+        of[v] = select(contact.within, barrier_.force(contact.gap(), spare), T(0.0));
     }
   }
   for_each_limit(articulation_, at, [&](int l, const JointLimit<T>& limit) {

@@ -122,8 +122,9 @@ class SceneModel {
     articulation_.close(at);
   }
 
-  /// Writes the normal force λ(g(p)) of every contact to `lambda` [contacts].
-  void forces(const Placement<T>& at, T* lambda) const;
+  /// Writes the normal force λ(g(p)) of every contact to `lambda` [contacts]. For the start of a
+  /// push, `spare` is Barrier::start_spare().
+  void forces(const Placement<T>& at, T* lambda, double spare = 0.0) const;
   /// Returns the least gap of all contacts, but at most ĝ [m].
   T least_gap(const Placement<T>& at) const;
   /// Returns the lanes in which all pairs pass the separating-axis test (SeparatingEdges).

@@ -38,6 +38,12 @@ VectorXd StepEnergy::forces(const VectorXd& p) const {
   return from_contact_index(lambda);
 }
 
+VectorXd StepEnergy::start_forces(const VectorXd& p) const {
+  std::vector<double> lambda(static_cast<std::size_t>(scene_.contacts()));
+  scene_.forces(placed(p), lambda.data(), barrier().start_spare());
+  return from_contact_index(lambda);
+}
+
 namespace {
 
 /// A StepPotential after begin(), together with the placements that must outlive it.

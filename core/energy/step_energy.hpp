@@ -60,6 +60,8 @@ class StepEnergy {
   double gap_value(const Contact& c, const VectorXd& p) const;
   /// Returns the normal force λ(g(p)) of every contact [contacts].
   VectorXd forces(const VectorXd& p) const;
+  /// Returns those at the start `p` of a push, λ₀ (Barrier).
+  VectorXd start_forces(const VectorXd& p) const;
 
   /// Returns Ψ without actuation; +∞ if a gap is not positive.
   double value(const VectorXd& next, const StepFrom& from) const;

@@ -38,12 +38,13 @@ PushOutcome NewtonSimulator::follow(const Poses& start,
                                     const std::vector<Vector3d>& targets) const {
   if (!is_finite(start)) return {start, false};
   VectorXd p = with_open_gaps(energy_, energy::stacked(select(scene_, start, order_).poses));
-  VectorXd before = p;
+  VectorXd before = p, forces = energy_.start_forces(p);
   for (const Vector3d& target : targets) {
-    const auto step = implicit_step(energy_, {p, energy_.forces(p), &before},
-                                    energy::Drive<double>::towards(target));
+    const auto step =
+        implicit_step(energy_, {p, forces, &before}, energy::Drive<double>::towards(target));
     if (!step) return {start, false};
     before = std::exchange(p, step->next);
+    forces = energy_.forces(p);
   }
   return {merged(start, energy::unstacked(p), order_), true};
 }

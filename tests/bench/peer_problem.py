@@ -76,6 +76,7 @@ class PeerProblem:
         self._contacts = _contacts(self._bodies)
         self._dofs = 3 * sum(not body["fixed"] for body in self._bodies)
         self._end = np.array(dump["end"])
+        self._start_spare = dump["start_spare"]
         self._build()
 
     def _build(self) -> None:
@@ -93,10 +94,7 @@ class PeerProblem:
         self.x = ca.vertcat(*poses, *forces, *self._c)
         self.objective = self._objective(gaps[0])
         self.residuals = [self._residual(k, gaps, points) for k in levels[1:]]
-        self.complementarity = [
-            ca.vertcat(*(f[n] * g - self._barrier * self._window(g) for n, g in enumerate(level)))
-            for f, level in zip(forces, gaps if forces else [], strict=True)
-        ]
+        self.complementarity = [self._complementarity(k, f, gaps[k]) for k, f in enumerate(forces)]
         self.gaps = ca.vertcat(*(g for level in gaps for g in level))
         if self._fixed_end:
             self._put_end()
@@ -148,6 +146,14 @@ class PeerProblem:
 
     def _window(self, gap: Any) -> Any:
         return ca.fmax(0.0, 1.0 - gap / self._physics["range"]) ** 3
+
+    def _complementarity(self, k: int, forces: Any, gaps: list[Any]) -> Any:
+        """λ g - μ̃ w of all contacts; at the start λ (g + s) - μ̃ w."""
+        spare = 0.0 if k else self._start_spare
+        rows = (
+            forces[n] * (g + spare) - self._barrier * self._window(g) for n, g in enumerate(gaps)
+        )
+        return ca.vertcat(*rows)
 
     def _slip_potential(self, c: Contact, now: Any, after: Any) -> Any:
         normals, _ = self._planes[c.other]

@@ -44,7 +44,8 @@ inline reverse::Iterate replayed(const reverse::ReverseProblem& problem,
                                  const reverse::Iterate& x) {
   reverse::Iterate again = x;
   for (std::size_t k = 1; k < x.p.size(); ++k) {
-    again.forces[k - 1] = problem.energy.forces(again.p[k - 1]);
+    again.forces[k - 1] =
+        k == 1 ? problem.energy.start_forces(again.p[0]) : problem.energy.forces(again.p[k - 1]);
     const auto step = implicit_step(
         problem.energy, {again.p[k - 1], again.forces[k - 1], &again.p[k > 1 ? k - 2 : 0]},
         energy::Drive<double>::controls(x.controls[k]));

@@ -42,13 +42,14 @@ bool ContactLinearisation<T>::add(int vertex, Eliminated<T>& eliminated) {
   const SignedDistance<T> d = contact.distance();
   const Mat2<T> D = d.hessian();
   const energy::GapTerms<T> gap(d, D, contact.point);
-  const T g = contact.gap(d, acts), inverse = T(1.0) / g;
+  const T g = contact.gap(d, acts);
+  const T r = first_ ? g + T(scene_.barrier().start_spare()) : g, inverse = T(1.0) / r;
   const energy::Barrier::Window<T> window = scene_.barrier().window(g);
   const T weight = select(acts, T(scene_.barrier().weight), T(0.0));
   const T s = force - weight * window.d1;
-  eliminated.a = (weight * window.w - force * g) * inverse;
+  eliminated.a = (weight * window.w - force * r) * inverse;
   if (!poses_fixed_) eliminated.b = gap.gradient * (-s * inverse);
-  Contact c{contact, d, D, gap, g, force, eliminated.b, eliminated.a};
+  Contact c{contact, d, D, gap, g, r, force, eliminated.b, eliminated.a};
   if (first_)
     add_start_barrier(c);
   else
@@ -114,7 +115,7 @@ void ContactLinearisation<T>::add_friction(Contact& c, const energy::ContactPoin
 template <class T>
 void ContactLinearisation<T>::add_complementarity(const Contact& c, const T& s, const T& bend) {
   own.gradient += c.b * c.force_gradient;
-  const T z = -c.force_gradient / c.g * curvature_.lagrangian;
+  const T z = -c.force_gradient / c.r * curvature_.lagrangian;
   own.Q += c.gap.hessian * (z * s);
   own.Q -= (c.gap.gradient * (z * bend)) * c.gap.gradient.transpose();
   const Vec4<T> now = c.now * curvature_.lagrangian + c.gap.gradient * z;

@@ -118,11 +118,11 @@ struct Evaluator<T>::Pass {
   }
 
   /// Stores the gap `g` of a contact and updates `legal`. Adds the complementarity residual
-  /// λ g - μ̃ w to the measures. `window` is w(g).
-  void note_gap(int k, int contact, const T& g, const T& window) {
+  /// λ (g + spare) - μ̃ w to the measures. `window` is w(g).
+  void note_gap(int k, int contact, const T& g, const T& window, double spare = 0.0) {
     gaps[k][contact] = g;
     legal = legal && is_gap_acceptable(g, previous_gaps[k][contact], scene.barrier());
-    const T off = x.forces[k][contact] * g - T(scene.barrier().weight) * window;
+    const T off = x.forces[k][contact] * (g + T(spare)) - T(scene.barrier().weight) * window;
     into.complementarity_[k][contact] = off;
     sum.violation = sum.violation + magnitude(off);
     sum.infeasibility = greater(sum.infeasibility, magnitude(off));
@@ -135,7 +135,8 @@ struct Evaluator<T>::Pass {
     const energy::Barrier& barrier = scene.barrier();
     const Mask<T> acts = contact.within || x.forces[k][index] != T(0.0);
     const T g = contact.gap(d, acts);
-    note_gap(k, index, g, select(acts, barrier.window(g).w, T(0.0)));
+    note_gap(k, index, g, select(acts, barrier.window(g).w, T(0.0)),
+             k == 0 ? barrier.start_spare() : 0.0);
     if (k == 0) sum.objective = sum.objective + select(contact.within, barrier.value(g), T(0.0));
   }
 };

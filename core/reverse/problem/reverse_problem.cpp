@@ -1,6 +1,7 @@
 #include "core/reverse/problem/reverse_problem.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/reverse/problem/evaluator.hpp"
 
@@ -28,8 +29,9 @@ struct Evaluation {
 
 Iterate static_iterate(const ReverseProblem& problem) {
   const auto levels = static_cast<std::size_t>(problem.sub_steps) + 1;
-  return {std::vector<VectorXd>(levels, problem.end),
-          std::vector<VectorXd>(levels, problem.energy.forces(problem.end)),
+  std::vector<VectorXd> forces(levels, problem.energy.forces(problem.end));
+  forces[0] = problem.energy.start_forces(problem.end);
+  return {std::vector<VectorXd>(levels, problem.end), std::move(forces),
           std::vector<Vector3d>(levels, Vector3d::Zero()),
           std::vector<VectorXd>(levels, VectorXd::Zero(problem.energy.dofs()))};
 }

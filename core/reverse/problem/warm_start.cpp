@@ -132,7 +132,7 @@ Mask<T> WarmStart<T>::simulate(const Mask<T>& wanted, Trajectory<T>& x) {
 template <class T>
 Mask<T> WarmStart<T>::roll_out(const Mask<T>& wanted, Trajectory<T>& x) {
   for (std::vector<T>& y : x.multipliers) std::ranges::fill(y, T(0.0));
-  scene_.forces(x.p[0], x.forces[0].data());
+  scene_.forces(x.p[0], x.forces[0].data(), scene_.barrier().start_spare());
   Mask<T> going = wanted;
   for (int k = 1; k <= problem_.sub_steps; ++k) {
     const Vec3<T> target = straight_target(k);

@@ -91,7 +91,8 @@ class MeritSqp {
       if (!legal) continue;
       make_trial(problem_.energy, x_, {step_, no_force_step_, alpha}, trial_);
       for (std::size_t k = 0; k < trial_.p.size(); ++k)
-        problem_.energy.forces(trial_.p[k], trial_.forces[k].data());
+        problem_.energy.forces(trial_.p[k], trial_.forces[k].data(),
+                               k == 0 ? problem_.energy.barrier().start_spare() : 0.0);
       const Measures<double> then =
           evaluator_.evaluate(problem_, trial_, gaps_, trial_gaps_, legal);
       if (!legal || then.violation > std::max(kSafeguard, now_.violation)) continue;

@@ -44,6 +44,7 @@ bool SqpStrategy::accept(const Filter::Entry& now, const Filter::Entry& next, do
       !Filter::improves(next, now))
     return false;
   filter_.add(now);
+  restored_ = false;
   uses_lagrangian_ = true;
   if (alpha <= kShortStep) proximal_ *= kGrowth;
   if (alpha > 0.5) proximal_ = std::max(kShrinkage * proximal_, kLeastProximal);

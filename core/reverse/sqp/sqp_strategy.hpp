@@ -13,10 +13,10 @@ namespace rtg::reverse {
 /// iterate.
 ///
 /// Departs from the paper: it has no restoration of feasibility. Here, where no δ helps, the SQP
-/// asks for one, once, and begins with an empty filter and the first δ again; with a fixed final
-/// state the filter is only emptied. This leaves 0.2 % of the problems of tests/bench/corpus
-/// undecided and 2.2 % of those of corpus_joints, and finds 199 of 200 true pushes of ArtManip. If
-/// the filter is only emptied everywhere, it is 0.2 %, 2.8 % and 194.
+/// asks for one and begins with an empty filter and the first δ again; with a fixed final state the
+/// filter is only emptied. The SQP ends if no step is accepted after that. It leaves 0.05 %
+/// of the problems of tests/bench/corpus undecided and 0.8 % of those of corpus_joints. If the
+/// filter is only emptied everywhere, it is 0.5 % and 1.9 %.
 class SqpStrategy {
  public:
   /// The figures of an iterate on which decisions depend.
@@ -65,7 +65,8 @@ class SqpStrategy {
   bool uses_lagrangian_ = true;
   SolveStatus status_ = SolveStatus::kNonFinite;
   Filter filter_;
-  bool restored_ = false, wants_restoration_ = false;
+  bool restored_ = false;  // and no step accepted since
+  bool wants_restoration_ = false;
 };
 
 }  // namespace rtg::reverse

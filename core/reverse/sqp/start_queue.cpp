@@ -50,12 +50,13 @@ void StartQueue<T>::prepare() {
 template <class T>
 void StartQueue<T>::find_starts(const Mask<T>& wanted) {
   const energy::SceneModel<T>& energy = problem_.energy;
-  // The static iterate: at rest in the final state, λ = λ(g), c = 0.
+  // The static iterate: at rest in the final state, λ = λ(g), λ_0 = λ₀(g), c = 0.
   for (energy::Placement<T>& level : x_.p) {
     level.p = problem_.end;
     level.update();
   }
   for (std::vector<T>& lambda : x_.forces) energy.forces(x_.p[0], lambda.data());
+  energy.forces(x_.p[0], x_.forces[0].data(), energy.barrier().start_spare());
   for (Vec3<T>& c : x_.controls) c.setConstant(T(0.0));
   for (std::vector<T>& y : x_.multipliers) std::ranges::fill(y, T(0.0));
   const Mask<T> open = energy.least_gap(x_.p[0]) > T(0.0) && energy.separated(x_.p[0]);

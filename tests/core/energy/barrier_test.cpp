@@ -61,6 +61,17 @@ TEST(Barrier, ForceSatisfiesRelaxedComplementarity) {
 
 // Close to the range b goes like the fourth power of what is left of it, so b and its first three
 // derivatives vanish there: each is divided by 2^4, 2^3, 2^2, 2 where the rest is halved.
+TEST(Barrier, AtTheStartOfAPushForcesAreThoseOfAWiderGap) {
+  const double spare = kBarrier.start_spare();
+  EXPECT_NEAR(spare, 3e-4, 1e-12);
+  for (const double g : {1e-9, 1e-4, 0.01, 0.149}) {
+    const double force = kBarrier.force(g, spare);
+    EXPECT_NEAR(force * (g + spare), kBarrier.weight * kBarrier.window(g).w, 1e-15);
+    EXPECT_LE(force, 10.0);
+  }
+  EXPECT_EQ(kPlain.start_spare(), 0.0);
+}
+
 TEST(Barrier, IsThreeTimesContinuouslyDifferentiableAtItsRange) {
   const auto third = [](double g) {
     return (kBarrier.force_slope(g + 1e-6) - kBarrier.force_slope(g - 1e-6)) / 2e-6;

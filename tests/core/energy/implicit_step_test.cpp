@@ -143,12 +143,14 @@ TEST(ImplicitStep, DerivativesOfTheEndMatchStepsSolvedAgain) {
   x.forces[1] = scene.energy.forces(x.p[1]);
   const ResidualJacobians J = residual_jacobians(problem, x);
   const Eigen::PartialPivLU<MatrixXd> lu(J.next);
-  const auto end_from = [&](const VectorXd& p) {
-    return step(scene.energy, p, Drive<double>::controls(x.controls[1]));
+  const auto end = [&](const VectorXd& p, const Vector3d& controls) {
+    const auto found = implicit_step(scene.energy, {p, scene.energy.start_forces(p)},
+                                     Drive<double>::controls(controls));
+    EXPECT_TRUE(found);
+    return found ? found->next : p;
   };
-  const auto end_by = [&](const VectorXd& c) {
-    return step(scene.energy, x.p[0], Drive<double>::controls(Vector3d(c)));
-  };
+  const auto end_from = [&](const VectorXd& p) { return end(p, x.controls[1]); };
+  const auto end_by = [&](const VectorXd& c) { return end(x.p[0], c); };
   Rng rng(2);
   const MatrixXd by_now = -lu.solve(J.now), by_control = -lu.solve(J.control);
   EXPECT_LT(testing::derivative_error(end_from, by_now, x.p[0],
