@@ -17,14 +17,6 @@ namespace rtg::energy {
 ///
 /// Departs from the paper: its -μ̃ ln g has infinite range and moves bodies that nothing touches, by
 /// 0.01 to 0.05 m in each push of the preset `paper`.
-///
-/// At the start of a push the contact force is λ₀ = μ̃ w/(g + s) with a small spare gap s. It is at
-/// most μ̃/s then, five times the largest force of the robot by default.
-///
-/// Departs from the paper: it has s = 0. The force at the start appears in the friction of the
-/// first sub-step alone. Without a bound the reverse SQP narrows gaps at the start until friction
-/// holds the bodies together, with forces of 1e3 to 1e5 times the robot's. It leaves 2.3 %
-/// of the problems of tests/bench/corpus_joints undecided then, with s = 0.002 ĝ 0.8 %.
 struct Barrier {
   double weight = 1.0;  // μ̃ [kg m²]
   double range = 1.0;   // ĝ [m]
@@ -45,7 +37,13 @@ struct Barrier {
     return select(g > T(0.0), b, T(INFINITY));
   }
 
-  /// Returns s [m].
+  /// Returns the spare gap g_s of the contact force at the start of a push, λ₀ = μ̃ w/(g + g_s) [m].
+  /// It bounds that force by μ̃/g_s, with the defaults five times the largest force of the robot.
+  ///
+  /// Departs from the paper: it has g_s = 0. The force at the start appears in the friction of the
+  /// first sub-step alone. Without a bound the reverse SQP narrows gaps at the start until friction
+  /// holds bodies together, with forces of 1e3 to 1e5 times the robot's. It leaves 2.3 % of the
+  /// problems of tests/bench/corpus_joints undecided then, with g_s = 0.002 ĝ 0.8 %.
   double start_spare() const { return plain ? 0.0 : kStartSpare * range; }
 
   /// The window w(g) and its first two derivatives with respect to g.

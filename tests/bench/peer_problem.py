@@ -148,7 +148,7 @@ class PeerProblem:
         return ca.fmax(0.0, 1.0 - gap / self._physics["range"]) ** 3
 
     def _complementarity(self, k: int, forces: Any, gaps: list[Any]) -> Any:
-        """λ g - μ̃ w of all contacts; at the start λ (g + s) - μ̃ w."""
+        """λ g - μ̃ w of all contacts; at the start λ (g + g_s) - μ̃ w."""
         spare = 0.0 if k else self._start_spare
         rows = (
             forces[n] * (g + spare) - self._barrier * self._window(g) for n, g in enumerate(gaps)

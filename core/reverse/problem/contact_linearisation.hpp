@@ -68,7 +68,7 @@ class ContactLinearisation {
     const SignedDistance<T>& d;
     const Mat2<T>& D;
     const energy::GapTerms<T>& gap;
-    T g, r, force;  // r of the complementarity row λ r = μ̃ w: g, at the start g + s
+    T g, r, force;  // r of the complementarity row λ r = μ̃ w: g, at the start g + g_s
     Vec4<T> b;
     T a;
     T force_gradient = T(0.0);                // ∂L/∂λ without the complementarity row
