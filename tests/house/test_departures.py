@@ -10,6 +10,7 @@ AUDIT = {
     "friction is smoothed": ("energy/slip_terms.hpp", "|u| is smoothed"),
     "friction's derivatives are whole": ("energy/slip_terms.hpp", "derivatives of λ"),
     "range of the barrier": ("energy/barrier.hpp", "infinite range"),
+    "forces at the start": ("energy/barrier.hpp", "bound the reverse SQP"),
     "quadratic turns, damping": ("energy/damping.hpp", "Quadratic is the default"),
     "quadratic turns, inertia": ("energy/inertia.hpp", "Quadratic is the default"),
     "separating axes": ("energy/separating_edges.hpp", "vertices alone"),
