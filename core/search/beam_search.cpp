@@ -23,7 +23,7 @@ void BeamSearch::make_roots(const ReplayBatch& replay, SearchStats& stats) {
     goals.push_back({std::move(goal), kSettle});
   for (const ReplayResult& settled : replay(goals)) {
     if (!settled.ok) continue;
-    Poses rest = float_rounded(settled.end);
+    Poses rest = to_single(settled.end);
     if (!legal_state(task_, rest) || !succeeded(task_, rest)) {
       ++stats.unsettled_goals;
       continue;

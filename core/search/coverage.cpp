@@ -36,12 +36,13 @@ void Coverage::add(const Transition& t) {
   states_.insert(reverse::key_of(t.poses, 0));
 }
 
-double Coverage::contact_share() const { return share(contacts_, transitions_); }
-
-double Coverage::multi_body_share() const { return share(multi_body_, transitions_); }
-
-double Coverage::headings_per_state() const {
-  return share(transitions_, static_cast<long>(states_.size()));
+Coverage::Figures Coverage::figures() const {
+  return {transitions_,
+          by_source_,
+          share(contacts_, transitions_),
+          share(multi_body_, transitions_),
+          share(transitions_, static_cast<long>(states_.size())),
+          start_region_};
 }
 
 }  // namespace rtg::search

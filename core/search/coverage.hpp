@@ -14,18 +14,22 @@ namespace rtg::search {
 /// Statistics of a stream of transitions.
 class Coverage {
  public:
+  struct Figures {
+    long transitions = 0;
+    std::array<long, kSources.size()> by_source{};
+    double contact_share = 0.0;         // share that moves an object by more than kMoved
+    double multi_body_share = 0.0;      // share that moves several objects not connected by joints
+    double headings_per_state = 0.0;    // transitions per distinct state
+    long start_region_transitions = 0;  // that begin with all objects in_place() of task.start
+
+    long of(Source source) const { return by_source[static_cast<std::size_t>(source)]; }
+  };
+
   explicit Coverage(const tasks::Task& task);
 
   void add(const Transition& transition);
-
   long transitions() const { return transitions_; }
-  long of(Source source) const { return by_source_[static_cast<std::size_t>(source)]; }
-  double contact_share() const;       // share that moves an object by more than kMoved
-  double multi_body_share() const;    // share that moves several objects not connected by joints
-  double headings_per_state() const;  // transitions per distinct state
-  /// Returns the number of transitions that begin with all objects near their start poses,
-  /// in_place().
-  long start_region() const { return start_region_; }
+  Figures figures() const;
 
  private:
   bool moves_several(const Transition& t) const;

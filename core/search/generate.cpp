@@ -34,14 +34,6 @@ void grow_tree(Generation& run, int number) {
   for (const Node& n : search.nodes()) run.nodes.push_back({n.poses, n.depth, number});
 }
 
-GenerationReport report_of(Generation& run) {
-  GenerationReport report;
-  fill(report, run.task, std::move(run.nodes));
-  fill(report, run.data.coverage());
-  fill(report, run.stats);
-  return report;
-}
-
 }  // namespace
 
 void Generation::repeat(const std::function<void(int)>& attempt) {
@@ -55,9 +47,9 @@ void Generation::repeat(const std::function<void(int)>& attempt) {
 
 void Generation::show(std::string phase, int layer, int depth) const {
   if (!seams.progress) return;
-  const Coverage& c = data.coverage();
-  seams.progress({std::move(phase), layer, depth, c.transitions(), config.transitions,
-                  c.contact_share(), c.start_region()});
+  const Coverage::Figures c = data.coverage().figures();
+  seams.progress({std::move(phase), layer, depth, c.transitions, config.transitions,
+                  c.contact_share, c.start_region_transitions});
 }
 
 GenerationReport generate(const tasks::Task& task, const SearchConfig& config, std::uint64_t seed,
@@ -77,7 +69,8 @@ GenerationReport generate(const tasks::Task& task, const SearchConfig& config, s
         return walk(run, number);
     }
   });
-  GenerationReport report = report_of(run);
+  GenerationReport report{run.data.coverage().figures(), std::move(run.stats)};
+  set_nodes(report, task, std::move(run.nodes));
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   report.generate_wall_s = wall.count();
   report.generate_cpu_s = threads::process_cpu_s() - cpu_before;

@@ -1,18 +1,11 @@
 #include "core/search/predecessor.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/world/separation.hpp"
 
 namespace rtg::search {
-
-Poses float_rounded(const Poses& poses) {
-  Poses out = poses;
-  for (Pose& p : out) p = to_single(p);
-  return out;
-}
 
 double replay_gap(const Poses& reverse_end, const Poses& replayed_end) {
   double sum = 0.0;
@@ -40,7 +33,7 @@ std::vector<Predecessor> proposals(const tasks::Task& task,
   std::vector<Predecessor> out;
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     for (const Poses& exact : answers[k].predecessors) {
-      Poses start = float_rounded(exact);
+      Poses start = to_single(exact);
       if (!legal_state(task, start)) {
         ++stats.illegal_starts;
         continue;

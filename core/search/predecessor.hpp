@@ -28,9 +28,6 @@ struct Predecessor {
 /// Displacement above which an object counts as moved [m].
 inline constexpr double kMoved = 0.05;
 
-/// Returns `poses` rounded to single precision (to_single()).
-Poses float_rounded(const Poses& poses);
-
 /// Returns the replay gap of Fig. 16: the distance between the two positions of a body, averaged
 /// over all bodies [m].
 double replay_gap(const Poses& reverse_end, const Poses& replayed_end);

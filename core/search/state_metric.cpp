@@ -13,16 +13,6 @@ constexpr double kRobotCell = 0.8;    // side of a cell [m]
 constexpr double kObjectCell = 0.4;   // side of a cell [m], [rad]
 constexpr double kAngleRadius = 0.5;  // r [m], about the radius of gyration of a 1.2 m box
 
-bool maps_onto_itself(const Polygon& shape, std::size_t shift, double tolerance) {
-  const double angle =
-      2.0 * std::numbers::pi * static_cast<double>(shift) / static_cast<double>(shape.size());
-  for (std::size_t k = 0; k < shape.size(); ++k) {
-    const Vector2d turned = rotate(angle, shape.vertices[k]);
-    if ((turned - shape.vertices[(k + shift) % shape.size()]).norm() > tolerance) return false;
-  }
-  return true;
-}
-
 std::int64_t slot(double x, double side) { return static_cast<std::int64_t>(std::floor(x / side)); }
 
 std::uint64_t with_slot(std::uint64_t hash, std::int64_t number) {
@@ -30,20 +20,6 @@ std::uint64_t with_slot(std::uint64_t hash, std::int64_t number) {
 }
 
 }  // namespace
-
-int symmetry_order(const Polygon& shape) {
-  const double tolerance = 1e-6 * bounding_radius(shape);
-  const std::size_t n = shape.size();
-  for (std::size_t shift = 1; shift < n; ++shift)
-    if (n % shift == 0 && maps_onto_itself(shape, shift, tolerance))
-      return static_cast<int>(n / shift);
-  return 1;
-}
-
-double angle_difference(double a, double b, int order) {
-  const double period = 2.0 * std::numbers::pi / order;
-  return std::remainder(a - b, period);
-}
 
 StateMetric::StateMetric(const Scene& scene) {
   for (std::size_t k = 1; k < scene.size(); ++k) {
@@ -54,8 +30,9 @@ StateMetric::StateMetric(const Scene& scene) {
 }
 
 double StateMetric::distance(const Object& o, const Poses& a, const Poses& b) const {
+  const double period = 2.0 * std::numbers::pi / o.order;
   return (a[o.body].position() - b[o.body].position()).norm() +
-         kAngleRadius * std::abs(angle_difference(a[o.body].theta, b[o.body].theta, o.order));
+         kAngleRadius * std::abs(std::remainder(a[o.body].theta - b[o.body].theta, period));
 }
 
 double StateMetric::layout_distance(const Poses& a, const Poses& b) const {

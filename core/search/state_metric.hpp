@@ -8,12 +8,6 @@
 
 namespace rtg::search {
 
-/// Returns the largest k such that turning `shape` about its origin by 2π/k maps it onto itself.
-int symmetry_order(const Polygon& shape);
-
-/// Returns a - b [rad] modulo 2π/order, in [-π/order, π/order].
-double angle_difference(double a, double b, int order);
-
 /// Distances between states, and a grid that groups similar states. Poses of an object that look
 /// the same are equal here: angles count modulo the symmetry of its shape. An object with a joint
 /// has symmetry order 1. The robot's angle is ignored, because no push changes it. So are fixed
@@ -30,7 +24,8 @@ class StateMetric {
   };
   std::span<const Object> objects() const { return objects_; }
 
-  /// Returns |x_a - x_b| + r|θ_a - θ_b| of `object` [m], with r = 0.5 m.
+  /// Returns |x_a - x_b| + r|θ_a - θ_b| of `object` [m], with r = 0.5 m. The turn is taken modulo
+  /// 2π/order, to the least.
   double distance(const Object& object, const Poses& a, const Poses& b) const;
 
   /// Returns the sum of distance() over all objects.

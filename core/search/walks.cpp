@@ -1,6 +1,5 @@
 #include "core/search/walks.hpp"
 
-#include <optional>
 #include <utility>
 #include <vector>
 

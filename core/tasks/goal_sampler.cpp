@@ -280,8 +280,7 @@ std::optional<Poses> attempt(const Task& task, Rng& rng) {
     if (term.subject != GoalTerm::Subject::kEvery &&
         !holds(term, task.scene, state.poses, kGoalSpare))
       return std::nullopt;
-  std::transform(state.poses.begin(), state.poses.end(), state.poses.begin(), to_single);
-  return state.poses;
+  return to_single(std::move(state.poses));
 }
 
 }  // namespace

@@ -29,8 +29,7 @@ std::optional<Poses> jittered(const Task& task, const Poses& start, double ampli
     poses[i].x += rng.uniform(-amplitude, amplitude);
     poses[i].y += rng.uniform(-amplitude, amplitude);
   }
-  poses = with_closed_joints(task.scene, std::move(poses));
-  std::transform(poses.begin(), poses.end(), poses.begin(), to_single);
+  poses = to_single(with_closed_joints(task.scene, std::move(poses)));
   const bool within = std::ranges::all_of(
       std::views::iota(std::size_t{1}, poses.size()),
       [&](std::size_t i) { return !movable_object(task, i) || in_arena(poses[i], task.push); });

@@ -14,6 +14,16 @@ double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 
 std::string vertex_name(std::size_t k) { return "vertex " + std::to_string(k); }
 
+bool maps_onto_itself(const Polygon& shape, std::size_t shift, double tolerance) {
+  const double angle =
+      2.0 * std::numbers::pi * static_cast<double>(shift) / static_cast<double>(shape.size());
+  for (std::size_t k = 0; k < shape.size(); ++k) {
+    const Vector2d turned = rotate(angle, shape.vertices[k]);
+    if ((turned - shape.vertices[(k + shift) % shape.size()]).norm() > tolerance) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Moments moments(const Polygon& shape) {
@@ -98,6 +108,15 @@ Polygon offset_polygon(const Polygon& polygon, double by) {
     out.vertices.push_back(polygon.vertices[k] + by / (1.0 + before.dot(after)) * (before + after));
   }
   return out;
+}
+
+int symmetry_order(const Polygon& shape) {
+  const double tolerance = 1e-6 * bounding_radius(shape);
+  const std::size_t n = shape.size();
+  for (std::size_t shift = 1; shift < n; ++shift)
+    if (n % shift == 0 && maps_onto_itself(shape, shift, tolerance))
+      return static_cast<int>(n / shift);
+  return 1;
 }
 
 }  // namespace rtg

@@ -46,4 +46,7 @@ Polygon regular_polygon(int sides, double circumradius);
 /// extended until they meet, so that sharp corners extend far.
 Polygon offset_polygon(const Polygon& polygon, double by);
 
+/// Returns the largest k such that turning `shape` about its origin by 2π/k maps it onto itself.
+int symmetry_order(const Polygon& shape);
+
 }  // namespace rtg

@@ -37,10 +37,15 @@ inline Vector2d to_local(const Pose& p, const Vector2d& x) {
   return rotate(-p.theta, x - p.position());
 }
 
-/// Returns the pose rounded to single precision, in which Box2D computes. Such poses enter Box2D
+/// Return poses rounded to single precision, in which Box2D computes. Such poses enter Box2D
 /// without further rounding.
 inline Pose to_single(const Pose& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.theta)};
+}
+
+inline Poses to_single(Poses poses) {
+  for (Pose& p : poses) p = to_single(p);
+  return poses;
 }
 
 inline bool is_finite(const Pose& p) {

@@ -35,7 +35,7 @@ int run(const program::Words& words) {
   if (report) {
     report->units_given_up = node.given_up();
     write_atomically(std::filesystem::path(words[2]) / "generation.json", to_json(*report));
-    program::say("has found " + std::to_string(report->transitions) +
+    program::say("has found " + std::to_string(report->coverage.transitions) +
                  " transitions, waits until all consumers have them");
     node.drain(consumers);
   }

@@ -117,7 +117,7 @@ void close_joints(tasks::Task& task, const ConfigNode& section) {
   check_tree(task.scene, section);
   check_start(task, section);
   task.start = with_closed_joints(task.scene, std::move(task.start));
-  std::ranges::transform(task.start, task.start.begin(), to_single);
+  task.start = to_single(std::move(task.start));
 }
 
 }  // namespace rtg::config

@@ -7,6 +7,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -66,10 +67,11 @@ void run(const Options& options) {
       search::forward_replay(config.task, config.physics, config.forward), options.threads);
   seams.store = [](std::span<const search::Transition>) {};
   seams.progress = print_progress;
-  search::GenerationReport report = generate(config.task, config.search, options.seed, seams);
-  report.replay_gaps.clear();
-  report.nodes.clear();
-  std::printf("%s\n", to_json(report).c_str());
+  auto report = nlohmann::ordered_json::parse(
+      to_json(generate(config.task, config.search, options.seed, seams)));
+  report.erase("replay_gaps");
+  report.erase("nodes");
+  std::printf("%s\n", report.dump().c_str());
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ inline tasks::Task art_manip() {
     if (k > 1) task.scene.joints.push_back({k - 1, k, {1.2, 0.0}, {-1.2, 0.0}, -2.391, 2.391});
   }
   task.start = with_closed_joints(task.scene, task.start);
-  for (Pose& pose : task.start) pose = to_single(pose);
+  task.start = to_single(task.start);
   tasks::GoalTerm square;
   square.subject = tasks::GoalTerm::Subject::kJoint;
   square.region = tasks::GoalTerm::Region::kAngles;

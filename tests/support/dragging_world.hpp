@@ -67,7 +67,7 @@ struct DraggingWorld {
     Poses end = moved(job.start, 0, task.push.stride * d);
     if (const std::size_t object = dragged(job.action); object != 0)
       end = moved(end, object, (kDrag + over) * d);
-    return search::float_rounded(misses(job.action) ? moved(end, 0, {0.0, aside}) : end);
+    return to_single(misses(job.action) ? moved(end, 0, {0.0, aside}) : end);
   }
 };
 

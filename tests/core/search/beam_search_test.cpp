@@ -49,7 +49,7 @@ TEST_F(BeamSearchTest, BeginsAtGoalStatesAtRest) {
   EXPECT_EQ(search.beam().size(), 6U);
   for (const Node& n : search.nodes()) {
     EXPECT_TRUE(succeeded(task, n.poses));
-    EXPECT_EQ(n.poses, float_rounded(n.poses));
+    EXPECT_EQ(n.poses, to_single(n.poses));
     EXPECT_EQ(n.depth, 0);
   }
 }
@@ -221,7 +221,7 @@ struct WorthReplayingTest : BeamSearchTest {
     Distances found;
     for (std::size_t k = 0; k < asked.size(); ++k)
       for (const Poses& exact : answered[k].predecessors)
-        if (const Poses start = float_rounded(exact); legal_state(task, start))
+        if (const Poses start = to_single(exact); legal_state(task, start))
           note(found, node_of(search, parents, asked[k].end), asked[k].action, start, asked[k].end);
     return found;
   }

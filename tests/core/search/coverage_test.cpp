@@ -25,8 +25,8 @@ TEST(Coverage, SharesAreZeroWithoutTransitions) {
   const tasks::Task task = gathering();
   const Coverage coverage(task);
   EXPECT_EQ(coverage.transitions(), 0);
-  EXPECT_EQ(coverage.contact_share(), 0.0);
-  EXPECT_EQ(coverage.multi_body_share(), 0.0);
+  EXPECT_EQ(coverage.figures().contact_share, 0.0);
+  EXPECT_EQ(coverage.figures().multi_body_share, 0.0);
 }
 
 TEST(Coverage, CountsTransitionsThatMoveOneObjectOrMore) {
@@ -36,8 +36,8 @@ TEST(Coverage, CountsTransitionsThatMoveOneObjectOrMore) {
   coverage.add(moving(3, 0.04));  // too little to count as moved
   coverage.add(moving(1, 0.04));
   EXPECT_EQ(coverage.transitions(), 10);
-  EXPECT_DOUBLE_EQ(coverage.contact_share(), 0.4);
-  EXPECT_DOUBLE_EQ(coverage.multi_body_share(), 0.2);
+  EXPECT_DOUBLE_EQ(coverage.figures().contact_share, 0.4);
+  EXPECT_DOUBLE_EQ(coverage.figures().multi_body_share, 0.2);
 }
 
 /// Returns the share of transitions that move several, after one that moves all movable bodies.
@@ -47,7 +47,7 @@ double multi_body_share(const tasks::Task& task) {
     if (!task.scene.bodies[k].fixed) t.next[k].y += 1.0;
   Coverage coverage(task);
   coverage.add(t);
-  return coverage.multi_body_share();
+  return coverage.figures().multi_body_share;
 }
 
 TEST(Coverage, WhatJointsConnectCountsAsOneButForWhatHangsOnAFixedBody) {
@@ -69,17 +69,17 @@ TEST(Coverage, CountsWhatBeginsInTheStartRegionAndWhereItComesFrom) {
   t.poses[1].x += 1.0;  // begins outside, ends inside
   t.source = Source::kForward;
   coverage.add(t);
-  EXPECT_EQ(coverage.start_region(), 4);
-  EXPECT_EQ(coverage.of(Source::kTree), 1);
-  EXPECT_EQ(coverage.of(Source::kBranch), 2);
-  EXPECT_EQ(coverage.of(Source::kWalk), 1);
-  EXPECT_EQ(coverage.of(Source::kForward), 1);
+  EXPECT_EQ(coverage.figures().start_region_transitions, 4);
+  EXPECT_EQ(coverage.figures().of(Source::kTree), 1);
+  EXPECT_EQ(coverage.figures().of(Source::kBranch), 2);
+  EXPECT_EQ(coverage.figures().of(Source::kWalk), 1);
+  EXPECT_EQ(coverage.figures().of(Source::kForward), 1);
 }
 
 TEST(Coverage, HeadingsPerStateAreTransitionsOverDistinctStates) {
   const tasks::Task task = gathering();
   Coverage coverage(task);
-  EXPECT_EQ(coverage.headings_per_state(), 0.0);
+  EXPECT_EQ(coverage.figures().headings_per_state, 0.0);
   Transition t = moving(0, 0.0);
   for (const int action : {1, 2, 3}) {
     t.action = action;
@@ -87,7 +87,7 @@ TEST(Coverage, HeadingsPerStateAreTransitionsOverDistinctStates) {
   }
   t.poses[0].x += 1e-9;  // another state
   coverage.add(t);
-  EXPECT_DOUBLE_EQ(coverage.headings_per_state(), 4.0 / 2.0);
+  EXPECT_DOUBLE_EQ(coverage.figures().headings_per_state, 4.0 / 2.0);
 }
 
 }  // namespace

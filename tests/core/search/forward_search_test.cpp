@@ -138,10 +138,10 @@ TEST(GenerateForward, StoresWhatItsBeamsKeepWithBranches) {
     EXPECT_LE(counts.second, 4 * counts.first);
   }
   EXPECT_NEAR(branches, 800, 40);
-  EXPECT_GT(run.report.headings_per_state, 5.0);
+  EXPECT_GT(run.report.coverage.headings_per_state, 5.0);
   EXPECT_EQ(run.stored.size() - branches,
             std::ranges::count(run.stored, Source::kForward, &Transition::source));
-  EXPECT_EQ(run.report.replays % 48, 0) << "the branches are pushes of the layers";
+  EXPECT_EQ(run.report.stats.replays % 48, 0) << "the branches are pushes of the layers";
   EXPECT_EQ(testing::run_naive(testing::gathering(), config, 3, 2).stored, run.stored);
 }
 

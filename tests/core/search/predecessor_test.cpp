@@ -82,7 +82,7 @@ TEST(Proposals, AreTheConvergedAnswersWithLegalStarts) {
   EXPECT_EQ(found[0].end, task.start);
   EXPECT_EQ(found[0].moved, 2);
   EXPECT_EQ(found[0].start[0].x, static_cast<double>(0.1F));
-  EXPECT_EQ(found[0].start, float_rounded(moved));
+  EXPECT_EQ(found[0].start, to_single(moved));
   EXPECT_EQ(stats.illegal_starts, 2);
 }
 

@@ -51,35 +51,6 @@ double naive_angle(double a, double b, int order) {
   return least;
 }
 
-TEST(SymmetryOrder, CountsTheTurnsThatMapAShapeOntoItself) {
-  for (int sides = 3; sides <= 8; ++sides)
-    EXPECT_EQ(symmetry_order(regular_polygon(sides, 0.8)), sides);
-  EXPECT_EQ(symmetry_order(box(1.2, 1.2)), 4);
-  EXPECT_EQ(symmetry_order(box(1.2, 0.7)), 2);
-  EXPECT_EQ(symmetry_order({{{1, 0}, {0, 2}, {-1, 0}, {0, -2}}}), 2);               // a rhombus
-  EXPECT_EQ(symmetry_order(centred({{{-1, 0}, {1, 0}, {0, 3}}})), 1);               // isosceles
-  EXPECT_EQ(symmetry_order(centred({{{-1, 0}, {1, 0}, {0.5, 1}, {-0.5, 1}}})), 1);  // trapezium
-}
-
-TEST(SymmetryOrder, OfAHexagonWithTwoKindsOfCornersIsThree) {
-  Polygon shape = regular_polygon(6, 0.8);
-  for (std::size_t k = 0; k < 6; k += 2) shape.vertices[k] *= 1.2;
-  EXPECT_EQ(symmetry_order(shape), 3);
-}
-
-TEST(SymmetryOrder, OfAnAlmostSquareBoxIsTwo) { EXPECT_EQ(symmetry_order(box(1.2, 1.201)), 2); }
-
-TEST(AngleDifference, IsTheLeastOfAllThatLookTheSame) {
-  Rng rng(2);
-  for (int trial = 0; trial < 300; ++trial) {
-    const int order = 1 + rng.below(8);
-    const double a = rng.uniform(-9.0, 9.0), b = rng.uniform(-9.0, 9.0);
-    const double d = angle_difference(a, b, order);
-    EXPECT_NEAR(std::abs(d), naive_angle(a, b, order), 1e-13);
-    EXPECT_NEAR(naive_angle(b + d, a, order), 0.0, 1e-13);  // b turned by it looks like a
-  }
-}
-
 TEST(StateMetric, ObjectsAreTheMovableBodiesButTheRobot) {
   const Scene scene = mixed_scene();
   const StateMetric metric(scene);

@@ -54,8 +54,8 @@ TEST(Walks, GiveTheSameBytesForAnyNumberOfThreads) {
 TEST(Walks, StoreExactlyTheBudgetWithoutReverseSteps) {
   const GenerationReport& report = random_run().report;
   EXPECT_EQ(random_run().stored.size(), 4000U);
-  EXPECT_EQ(report.transitions, 4000);
-  EXPECT_EQ(report.candidates, 0);
+  EXPECT_EQ(report.coverage.transitions, 4000);
+  EXPECT_EQ(report.stats.candidates, 0);
   EXPECT_EQ(report.trees, 0);
   EXPECT_EQ(random_run().progress.back().transitions, 4000);
 }
@@ -95,16 +95,16 @@ TEST(Walks, OrScatterFromGoalStates) {
 }
 
 TEST(Walks, MoveObjectsFarMoreOftenThanUniformPushesDo) {
-  EXPECT_GT(random_run().report.contact_share, 0.25);
-  EXPECT_LT(random_run().report.contact_share, 0.75);
+  EXPECT_GT(random_run().report.coverage.contact_share, 0.25);
+  EXPECT_LT(random_run().report.coverage.contact_share, 0.75);
 }
 
 TEST(Walks, HaveBranchesAsAllStepsDo) {
   SearchConfig config = walks(Generator::kRandom);
   config.branches = 4;
   const GenerationRun run = run_naive(gathering(), config, 7, 1);
-  EXPECT_NEAR(run.report.branch_transitions, 3200, 20);
-  EXPECT_NEAR(run.report.headings_per_state, 5.0, 0.1);
+  EXPECT_NEAR(run.report.coverage.of(Source::kBranch), 3200, 20);
+  EXPECT_NEAR(run.report.coverage.headings_per_state, 5.0, 0.1);
 }
 
 TEST(Walks, EndWithAPushThatTheSimulatorRejects) {
@@ -122,7 +122,7 @@ TEST(Walks, EndWithAPushThatTheSimulatorRejects) {
   const GenerationReport report = generate(task, walks(Generator::kRandom), 7, seams);
   EXPECT_TRUE(stored.empty());
   EXPECT_EQ(calls, 8) << "it gives up";
-  EXPECT_EQ(report.rejected_pushes, 8 * 50);
+  EXPECT_EQ(report.stats.rejected_pushes, 8 * 50);
 }
 
 }  // namespace

@@ -50,5 +50,23 @@ TEST(Polygon, AnOffsetMovesEveryEdgeAndMitresCorners) {
   EXPECT_NEAR(bounding_radius(offset_polygon(regular_polygon(3, 1.0), 0.1)), 1.2, 1e-14);
 }
 
+TEST(SymmetryOrder, CountsTheTurnsThatMapAShapeOntoItself) {
+  for (int sides = 3; sides <= 8; ++sides)
+    EXPECT_EQ(symmetry_order(regular_polygon(sides, 0.8)), sides);
+  EXPECT_EQ(symmetry_order(box(1.2, 1.2)), 4);
+  EXPECT_EQ(symmetry_order(box(1.2, 0.7)), 2);
+  EXPECT_EQ(symmetry_order({{{1, 0}, {0, 2}, {-1, 0}, {0, -2}}}), 2);               // a rhombus
+  EXPECT_EQ(symmetry_order(centred({{{-1, 0}, {1, 0}, {0, 3}}})), 1);               // isosceles
+  EXPECT_EQ(symmetry_order(centred({{{-1, 0}, {1, 0}, {0.5, 1}, {-0.5, 1}}})), 1);  // trapezium
+}
+
+TEST(SymmetryOrder, OfAHexagonWithTwoKindsOfCornersIsThree) {
+  Polygon shape = regular_polygon(6, 0.8);
+  for (std::size_t k = 0; k < 6; k += 2) shape.vertices[k] *= 1.2;
+  EXPECT_EQ(symmetry_order(shape), 3);
+}
+
+TEST(SymmetryOrder, OfAnAlmostSquareBoxIsTwo) { EXPECT_EQ(symmetry_order(box(1.2, 1.201)), 2); }
+
 }  // namespace
 }  // namespace rtg

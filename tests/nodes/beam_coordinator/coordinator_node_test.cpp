@@ -90,7 +90,7 @@ class Graph {
 };
 
 std::string without_times(search::GenerationReport report) {
-  report.reverse_cpu_s = report.replay_cpu_s = report.generate_wall_s = 0.0;
+  report.stats.reverse_cpu_s = report.stats.replay_cpu_s = report.generate_wall_s = 0.0;
   report.generate_cpu_s = 0.0;
   return to_json(report);
 }
