@@ -45,3 +45,25 @@ def test_observations_of_a_wrong_shape_are_named(tmp_path: Path) -> None:
     assert policy(np.zeros((3, 20), np.float32)).shape == (3,)
     with pytest.raises(ValueError, match=r"observations \[20\]; legal: \[N, 20\]"):
         policy(np.zeros(20, np.float32))
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "expected"),
+    [
+        ("dueling", False, False),
+        ("layer_norm", False, False),
+        ("hindsight", 0, False),
+        ("hindsight", 1, True),
+        ("hindsight", 4, True),
+    ],
+)
+def test_the_identity_says_what_shapes_the_weights(field: str, value: int, expected: bool) -> None:
+    found = policy_file.identity(TASK, train_settings(**{field: value}))
+    assert found == {
+        "observation_size": 20,
+        "headings": 48,
+        "dueling": True,
+        "layer_norm": True,
+        "hindsight": False,
+        field: expected,
+    }
