@@ -1,9 +1,10 @@
-// Beam search on Gathering: the layers of one tree over breadth, depth and threads; and the replay
+// Beam search on Gathering: layers over breadth, depth and threads; and the replay
 // of 64 pushes over threads. Those over threads are in real time.
 
 #include <benchmark/benchmark.h>
 
 #include <chrono>
+#include <optional>
 
 #include "core/search/batches_on_threads.hpp"
 #include "core/search/beam_search.hpp"
@@ -58,12 +59,14 @@ void beam(benchmark::State& state, const Size& size) {
   std::uint64_t seed = 0;
   for (auto _ : state) {  // trees differ in how soon they meet objects
     search::SearchStats stats;
-    search::BeamSearch search(task, config, task.start, ++seed);
-    search.make_roots(seams.replay, stats);
+    std::optional<search::BeamSearch> search;
     for (int layer = 0; layer < size.depth; ++layer, ++layers) {
-      nodes += static_cast<long>(search.beam().size());
-      if (search.grow(seams.solve, seams.replay, stats).empty())
-        return state.SkipWithError("the tree cannot grow");
+      if (!search || search->beam().empty()) {  // a tree that cannot grow gives way to another
+        search.emplace(task, config, task.start, ++seed);
+        search->make_roots(seams.replay, stats);
+      }
+      nodes += static_cast<long>(search->beam().size());
+      search->grow(seams.solve, seams.replay, stats);
     }
   }
   state.counters["search_share"] = 1.0 - simulating / (real_s() - begin);
