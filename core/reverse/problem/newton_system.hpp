@@ -11,7 +11,8 @@ namespace rtg::reverse {
 ///   g Δλ + s ∇g·Δp = -(λ g - μ̃ w),  s = λ - μ̃ w'   =>   Δλ = a + b·Δp,
 ///
 /// eliminates the step of its force. Stationarity in λ gives the multiplier of the row, z = -L_λ/g.
-/// The contacts of a pair of bodies are summed in the coordinates of the pair (PairFrame).
+/// At the start g + g_s takes the place of g (Barrier::start_spare()). The contacts of a pair of
+/// bodies are summed in the coordinates of the pair (PairFrame).
 ///
 /// Departs from the paper: its contact force is a function of the poses, μ̃/g. Kept as an unknown
 /// with the row λ g = μ̃ w, it makes the constraints bilinear, without 1/g. IPOPT failed on the

@@ -41,8 +41,8 @@ struct Iterate {
   std::vector<VectorXd> multipliers;  // of Φ_k = 0 [dofs]; with joints J y, see Articulation
 };
 
-/// Returns the iterate that stays in the final state in all sub-steps: λ = λ(g), λ_0 = λ₀(g), c =
-/// 0.
+/// Returns the iterate that stays in the final state in all sub-steps, with the forces of its gaps
+/// and without controls.
 Iterate static_iterate(const ReverseProblem& problem);
 
 double objective(const ReverseProblem& problem, const Iterate& x);
