@@ -71,16 +71,15 @@ TEST(FilterSqpLanes, ACandidatesBitsDoNotDependOnThoseBesideIt) {
 }
 
 TEST(FilterSqpLanes, ARestoredCandidatesBitsDoNotDependOnThoseBesideIt) {
-  Batch batch;
-  batch.config.max_iterations = 200;
-  const std::vector<SqpResult> together = batch.solve<NeverRegular>(batch.all);
+  const Batch batch;
+  const auto some = std::span(batch.all).first(12);
+  const std::vector<SqpResult> together = batch.solve<NeverRegular>(some);
   int restored = 0;
-  for (std::size_t k = 0; k < batch.all.size(); ++k) {
+  for (std::size_t k = 0; k < some.size(); ++k) {
     restored += together[k].iterations > 20;  // ten pivoted, ten more only after a restoration
-    if (k % 7 == 0)
-      expect_same_bits(together[k], batch.solve<NeverRegular>({&batch.all[k], 1}).front());
+    if (k % 4 == 0) expect_same_bits(together[k], batch.solve<NeverRegular>({&some[k], 1}).front());
   }
-  EXPECT_GT(restored, 5);
+  EXPECT_GT(restored, 2);
 }
 
 // Rounding may lead long solves elsewhere.
