@@ -32,15 +32,9 @@ double StepEnergy::gap_value(const Contact& c, const VectorXd& p) const {
       .gap();
 }
 
-VectorXd StepEnergy::forces(const VectorXd& p) const {
+VectorXd StepEnergy::forces(const VectorXd& p, double spare) const {
   std::vector<double> lambda(static_cast<std::size_t>(scene_.contacts()));
-  scene_.forces(placed(p), lambda.data());
-  return from_contact_index(lambda);
-}
-
-VectorXd StepEnergy::start_forces(const VectorXd& p) const {
-  std::vector<double> lambda(static_cast<std::size_t>(scene_.contacts()));
-  scene_.forces(placed(p), lambda.data(), barrier().start_spare());
+  scene_.forces(placed(p), lambda.data(), spare);
   return from_contact_index(lambda);
 }
 

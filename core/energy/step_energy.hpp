@@ -58,10 +58,10 @@ class StepEnergy {
   /// Returns the gap g of a contact at poses `p`. Returns 2 ĝ for a vertex beyond the barrier's
   /// range.
   double gap_value(const Contact& c, const VectorXd& p) const;
-  /// Returns the normal force λ(g(p)) of every contact [contacts].
-  VectorXd forces(const VectorXd& p) const;
-  /// Returns those at the start `p` of a push, λ₀ (Barrier).
-  VectorXd start_forces(const VectorXd& p) const;
+  /// Returns the normal force λ(g(p)) of every contact [contacts]; `spare` as in SceneModel.
+  VectorXd forces(const VectorXd& p, double spare = 0.0) const;
+  /// Returns those at the start `p` of a push, λ₀, see Barrier::start_spare().
+  VectorXd start_forces(const VectorXd& p) const { return forces(p, barrier().start_spare()); }
 
   /// Returns Ψ without actuation; +∞ if a gap is not positive.
   double value(const VectorXd& next, const StepFrom& from) const;

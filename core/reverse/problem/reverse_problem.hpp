@@ -13,7 +13,7 @@ namespace rtg::reverse {
 ///   min  Σ_i w_i (x_i, y_i)_0·d + ε Σ_k |c_k|² + Σ b(g(p_0)) + κ_x Σ_k |t₀ - t̄₀|²_k
 ///        + κ_θ Σ_k (θ₀ - θ̄₀)²_k + χ Σ_k Σ_{i>0} q³_{k,i} + K/2 |p_h - p̄|² [+ K/2 |p_{h-1} - p̄|²]
 ///   s.t. Φ_k = ∂Ψ/∂p₊(p_k, p_{k-1}, p_{k-2}, c_k) = 0,   λ_k g(p_k) = μ̃ w(g(p_k)),   g > 0,
-///        at the start λ_0 (g(p_0) + g_s) = μ̃ w(g(p_0)), see Barrier.
+///        at the start λ_0 (g(p_0) + g_s) = μ̃ w(g(p_0)), see Barrier::start_spare().
 ///
 /// p̄ is the given final state. (t̄₀, θ̄₀)_k is the straight path of the robot that ends in p̄.
 /// q_{k,i} is half the squared speed of object i, in units of the robot's speed (SpeedPenalty). The
