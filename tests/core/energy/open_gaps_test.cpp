@@ -44,6 +44,15 @@ TEST(OpenGaps, OverlapBySlopIsOpenedByMovingBothBodiesAlike) {
   EXPECT_EQ(Vector3d(open.head<3>()), Vector3d(closed.head<3>()));
 }
 
+// Both corners of a face are in contact. The first one opens half of the second one's gap as well.
+TEST(OpenGaps, FacesAreMovedNoFurtherThanNeeded) {
+  const TouchingScene scene;
+  const double floor = kGapFloor * scene.energy.barrier().range;
+  for (const double gap : {-0.005, -0.002, 0.0})
+    EXPECT_LT(least_gap(scene.energy, with_open_gaps(scene.energy, boxes_apart(gap))), 1.3 * floor)
+        << gap;
+}
+
 TEST(OpenGaps, OpenGapsStayBitForBit) {
   const TouchingScene scene;
   for (const double gap : {0.006, 0.1, 3.0})

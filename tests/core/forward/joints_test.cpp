@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "core/energy/implicit_step.hpp"
 #include "core/forward/box2d_simulator.hpp"
@@ -102,6 +104,21 @@ TEST(Joints, TheLowerLimitStopsADoorToo) {
   door.start[0].y = 1.2;
   const Poses box2d = Box2dSimulator(door.scene, kPush, kPhysics).push(door.start, 36).end;
   EXPECT_NEAR(box2d[1].theta, -0.4, 0.02);
+}
+
+TEST(Joints, ALimitStopsADoorThatHasNoLimitOnTheOtherSide) {
+  Door upper, lower;
+  upper.scene.joints[0].lower = -INFINITY;
+  lower.scene.joints[0].lower = -0.4;
+  lower.scene.joints[0].upper = INFINITY;
+  lower.start[0].y = 1.2;
+  for (const auto& [door, action, limit] : {std::tuple(upper, 12, 0.4), {lower, 36, -0.4}}) {
+    const NewtonSimulator newton(door.scene, kPush, kPhysics);
+    const Box2dSimulator box2d(door.scene, kPush, kPhysics);
+    for (const Simulator* simulator :
+         {static_cast<const Simulator*>(&newton), static_cast<const Simulator*>(&box2d)})
+      EXPECT_NEAR(simulator->push(door.start, action).end[1].theta, limit, 0.03);
+  }
 }
 
 // Links that are jammed between each other and a wall never come to rest.

@@ -194,6 +194,16 @@ TEST(ReverseSimulator, LateContactsStandBetweenTheStartOfTheWholePushAndTheEnd) 
   }
 }
 
+TEST(ReverseSimulator, ThereAreNoMoreStartsThanSubSteps) {
+  ReverseConfig config;
+  config.late_contacts = 30;
+  const ReverseResult result = solve(robot_and_boxes(2), touching_job(), config);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  const auto& starts = result.predecessors;
+  EXPECT_EQ(static_cast<int>(starts.size()), kPhysics.sub_steps + kPhysics.settling_steps());
+  for (std::size_t k = 1; k < starts.size(); ++k) EXPECT_GT(starts[k][1].x, starts[k - 1][1].x);
+}
+
 // The robot has turned a bar that is pinned at its centre; nothing else moves.
 TEST(ReverseSimulator, ATurnAloneHasLateContactsToo) {
   Scene scene = robot_and_boxes(0);

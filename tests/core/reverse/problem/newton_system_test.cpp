@@ -126,6 +126,24 @@ TEST(NewtonSystem, StationarityIsTheLargestGradientOfThePrimalUnknowns) {
   }
 }
 
+// Bodies far apart: with a large multiplier of the motion along one coordinate, the largest
+// gradient is over that one.
+TEST(NewtonSystem, StationarityIsOverPositionsAndAngles) {
+  TouchingScene scene;
+  scene.poses = {{0.0, 0.0, 0.0}, {5.0, 0.0, 0.0}, {0.0, 5.0, 0.0}};
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  for (int m = 3; m < 9; ++m) {
+    Iterate x = static_iterate(problem);
+    x.multipliers[4][m] = 1e7;
+    expect_stationarity_is_largest_gradient(problem, x);
+    const VectorXd r = Linearisation(problem, x, {true, 0.0}).conditions()[4].head(9 + 3);
+    Eigen::Index largest = 0;
+    r.cwiseAbs().maxCoeff(&largest);
+    EXPECT_EQ(largest, m);
+  }
+}
+
 TEST(NewtonSystem, StepSolvesTheLinearisedConstraints) {
   const Disturbed at(7);
   expect_step_solves_the_constraints(at.problem, at.x, 1e-6, 1e-6);

@@ -62,6 +62,20 @@ TEST(WarmStart, ABodyInTheWayBackIsPushedOutOfIt) {
   EXPECT_LT(violation(problem, *x).max(), 1e-6);
 }
 
+// The bar that the robot has pushed reaches beyond the robot's side, where a wall touches its back.
+TEST(WarmStart, TheRobotGoesBackAloneWhereTheBodyCannot) {
+  TouchingScene scene;
+  scene.scene.bodies[1].shape = box(1.2, 6.0);
+  scene.scene.bodies[2].fixed = true;
+  scene.update();
+  scene.poses = {{0, 0, 0}, {1.4087, 0, 0}, {1.4087 - 1.2087, 2.0, 0}};
+  const ReverseConfig config;
+  const auto x = warm_start(scene.problem(config));
+  ASSERT_TRUE(x);
+  EXPECT_NEAR(x->p[0][0], -2.0, 0.01);
+  EXPECT_NEAR(x->p[0][3], 1.4087, 0.01);
+}
+
 // The box rests half a sub-step's stride, 0.1, beyond the gap at which the robot pushes it: as far
 // as objects coast at k_D = 2. Mirrored from a whole stride beyond, it would miss its place by
 // 0.05.
