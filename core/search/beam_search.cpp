@@ -111,7 +111,8 @@ std::vector<int> BeamSearch::plan(const Predecessor& step) const {
 }
 
 /// Moves the objects of `poses` that are near their start poses into a random start
-/// (snapped_to_start()). Returns `poses` unchanged if the result is not legal.
+/// (snapped_to_start()). Returns `poses` unchanged if the result is not legal. An object in place
+/// stays in place, so start_distance() stays as it is.
 Poses BeamSearch::with_drawn_start(const Poses& poses) {
   constexpr double kAround = 0.25;  // largest random displacement of an object [m]
   const double around = std::min(task_.start_jitter, kAround);
@@ -149,7 +150,6 @@ std::vector<Transition> BeamSearch::verify_and_select(std::vector<Predecessor> r
     std::vector<Transition>& followed = *outcomes[k];
     Predecessor& p = tried[k];
     p.depth = static_cast<int>(followed.size());
-    p.start_distance = distance_to_target(p.start);
     if (!followed.empty()) p.moved = objects_moved(p.start, followed.front().next);
     good.push_back(std::move(p));
     if (!followed.empty() && rng_.uniform(0.0, 1.0) >= config_.whole_plan_share) followed.resize(1);

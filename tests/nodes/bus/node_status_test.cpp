@@ -25,5 +25,19 @@ TEST(CoordinatorWatch, ACoordinatorThatSaidItLeavesDoesSoWhateverArrivesLater) {
   EXPECT_TRUE(leaves_after(false));
 }
 
+TEST(CoordinatorWatch, SilenceBeginsAtTheLastMessage) {
+  Bus bus("memq://", "test");
+  const CoordinatorWatch watch(bus);
+  const Seconds made = monotonic_now();
+  while (monotonic_now() == made) {
+  }
+  const Seconds before = monotonic_now();
+  EXPECT_TRUE(watch.silent(before + CoordinatorWatch::kSilence));
+  bus.publish("RTG_PROGRESS", rtg_msgs::search_progress_t{});
+  testing::handle_all(bus);
+  EXPECT_FALSE(watch.silent(before + CoordinatorWatch::kSilence));
+  EXPECT_TRUE(watch.silent(monotonic_now() + 1.01 * CoordinatorWatch::kSilence));
+}
+
 }  // namespace
 }  // namespace rtg::bus

@@ -58,6 +58,11 @@ def test_the_text_behind_the_mistakes_is_legal(file: Path) -> None:
     assert refusal(file) == ""
 
 
+def test_a_learner_without_transitions_needs_no_room_for_them(file: Path) -> None:
+    assert "is too small" in refusal(file, "train.buffer=1000")
+    assert refusal(file, "train.buffer=1000", "train.offline=false") == ""
+
+
 @pytest.mark.parametrize("block", FILES, ids=[b[1] for b in FILES])
 def test_a_mistake_in_a_file_is_named_with_its_line(block: list[str], tmp_path: Path) -> None:
     old, new, message = spelt(block[0]), spelt(block[1]), block[2]
