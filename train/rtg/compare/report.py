@@ -91,6 +91,8 @@ def _machine(versions: dict[str, Any]) -> str:
 
 
 def _learner(summary: dict[str, Any]) -> str:
+    if not summary.get("gradient_steps", 1):
+        return "none"
     runs = summary.get("runs_in_process") or 1
     shared = f"{runs} runs in one process" if runs > 1 else "one core"
     parts = [summary.get(name) or f"unknown {name}" for name in ("device", "precision")]
