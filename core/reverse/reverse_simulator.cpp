@@ -84,7 +84,7 @@ std::vector<ReverseResult> ReverseSimulator::solve(std::span<const ReverseJob> j
 ReverseResult ReverseSimulator::answer(const ReverseJob& job, const Candidate& candidate,
                                        const SqpResult& solved) const {
   ReverseResult result{solved.status, solved.iterations};
-  if (result.status != SolveStatus::kConverged) return result;
+  if (!has_predecessors(result.status)) return result;
   const int late_contacts = model_.physics.inertia ? 0 : config_.late_contacts;
   for (const VectorXd& start : predecessors(solved.x.p, late_contacts))
     result.predecessors.push_back(merged(job.end, energy::unstacked(start), candidate.bodies()));

@@ -14,20 +14,20 @@ namespace rtg::search {
 struct SearchStats {
   long candidates = 0;                                      // reverse jobs answered
   std::array<long, reverse::kSolveStatusCount> statuses{};  // of them, by SolveStatus
-  std::vector<int> iterations;                              // of converged solves
-  std::vector<int> pushing_iterations;  // of converged solves that moved an object
-  long illegal_starts = 0;              // solved starts that are no legal_state()
-  long undrawn_goals = 0;               // failed draws of a goal state
-  long unsettled_goals = 0;             // drawn goals that are no legal goal states once at rest
-  long replays = 0;                     // requests to the simulator, kSettle included
-  long rejected_pushes = 0;             // replays that the simulator could not finish
-  std::vector<float> gaps;              // replay gaps of replayed candidates [m]
+  std::vector<int> iterations;                              // of solves with predecessors
+  std::vector<int> pushing_iterations;                      // of those that moved an object
+  long illegal_starts = 0;   // solved starts that are no legal_state()
+  long undrawn_goals = 0;    // failed draws of a goal state
+  long unsettled_goals = 0;  // drawn goals that are no legal goal states once at rest
+  long replays = 0;          // requests to the simulator, kSettle included
+  long rejected_pushes = 0;  // replays that the simulator could not finish
+  std::vector<float> gaps;   // replay gaps of replayed candidates [m]
   double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
 
   void count(const reverse::ReverseResult& answer, bool moved_object) {
     ++candidates;
     ++statuses[static_cast<std::size_t>(answer.status)];
-    if (answer.status == reverse::SolveStatus::kConverged) {
+    if (reverse::has_predecessors(answer.status)) {
       iterations.push_back(answer.iterations);
       if (moved_object) pushing_iterations.push_back(answer.iterations);
     }

@@ -28,14 +28,15 @@ bool has_shape(const Message& message, const TaskShape& shape) {
   return message.n >= 1 && message.n_poses == std::int64_t{3} * message.n * shape.bodies;
 }
 
-/// Returns whether the counts of `message` are consistent. A converged solve must have 1 to
-/// kMaxPredecessors predecessors, any other solve none. n_poses must match the sum of `starts`.
-bool has_predecessors(const rtg_msgs::reverse_result_t& message, const TaskShape& shape) {
+/// Returns whether the counts of `message` are consistent. A solve with predecessors must have 1 to
+/// kMaxPredecessors of them, any other solve none. n_poses must match the sum of `starts`.
+bool has_consistent_starts(const rtg_msgs::reverse_result_t& message, const TaskShape& shape) {
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < message.starts.size(); ++i) {
-    const bool converged = message.status[i] == static_cast<int>(reverse::SolveStatus::kConverged);
-    if (message.starts[i] < (converged ? 1 : 0) ||
-        message.starts[i] > (converged ? reverse::kMaxPredecessors : 0))
+    const bool some =
+        reverse::has_predecessors(static_cast<reverse::SolveStatus>(message.status[i]));
+    if (message.starts[i] < (some ? 1 : 0) ||
+        message.starts[i] > (some ? reverse::kMaxPredecessors : 0))
       return false;
     sum += message.starts[i];
   }
@@ -105,7 +106,7 @@ std::optional<std::vector<reverse::ReverseResult>> ReverseService::parse(
     const ResultMessage& message, const TaskShape& shape) {
   if (!all_between(message.status, 0, reverse::kSolveStatusCount - 1) ||
       !all_between(message.iterations, 0, 1000000000) || !all_between(message.cpu_s, 0.0, 1e9) ||
-      !has_predecessors(message, shape))
+      !has_consistent_starts(message, shape))
     return std::nullopt;
   std::vector<Result> results;
   std::size_t at = 0;

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "core/reverse/pruning.hpp"
-#include "core/world/selection.hpp"
 #include "core/world/separation.hpp"
 #include "nodes/config/config.hpp"
 
@@ -46,11 +45,16 @@ Problem read_problem(const std::string& line, const std::map<std::string, tasks:
 
 }  // namespace
 
+Selection part_of(const tasks::Task& task, const PhysicsConfig& physics,
+                  const reverse::ReverseJob& job) {
+  const double range = physics.range + physics.skin;
+  return select(task.scene, job.end, relevant_bodies(task.scene, task.push, job, range));
+}
+
 Difficulty difficulty_of(const tasks::Task& task, const PhysicsConfig& physics,
                          const reverse::ReverseJob& job) {
   const double range = physics.range + physics.skin;
-  const Selection part =
-      select(task.scene, job.end, relevant_bodies(task.scene, task.push, job, range));
+  const Selection part = part_of(task, physics, job);
   const std::vector<Body>& bodies = part.scene.bodies;
   if (bodies.size() == 1) return Difficulty::kFree;
   int touching = 0;

@@ -10,6 +10,7 @@
 #include "core/reverse/problem/reverse_job.hpp"
 #include "core/tasks/task.hpp"
 #include "core/world/physics_config.hpp"
+#include "core/world/selection.hpp"
 
 namespace rtg::bench {
 
@@ -23,6 +24,10 @@ enum class Difficulty {
 };
 inline constexpr std::array<std::string_view, 5> kDifficulties{"free", "single", "multi", "corner",
                                                                "jam"};
+
+/// Returns the bodies that take part in a problem.
+Selection part_of(const tasks::Task& task, const PhysicsConfig& physics,
+                  const reverse::ReverseJob& job);
 
 Difficulty difficulty_of(const tasks::Task& task, const PhysicsConfig& physics,
                          const reverse::ReverseJob& job);

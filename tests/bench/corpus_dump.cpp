@@ -1,7 +1,8 @@
 // Collects reverse problems of real searches: corpus_dump FOLDER [TRANSITIONS]
 //
 // Generates so many transitions (20000) for each FOLDER/TASK.yaml and writes FOLDER/problems.txt:
-// of the candidates that pruning lets through, a fixed number of each difficulty, drawn evenly.
+// of the candidates that pruning lets through, a fixed number of each difficulty, drawn evenly. Of
+// tasks with joints only candidates in which a jointed body takes part.
 
 #include <cstdio>
 #include <exception>
@@ -28,6 +29,7 @@ class Sample {
 
   void add(const reverse::ReverseJob& job) {
     if (is_pruned(task_.scene, task_.push, job)) return;
+    if (!task_.scene.joints.empty() && part_of(task_, {}, job).scene.joints.empty()) return;
     const Difficulty difficulty = difficulty_of(task_, {}, job);
     const auto kind = static_cast<std::size_t>(difficulty);
     const std::scoped_lock lock(mutex_);

@@ -3,17 +3,20 @@
 //   reverse_corpus FOLDER [--preset default|paper] [--every N] [--failures] [--set NAME VALUE]...
 //
 // --preset: stands above the --set before it; --every N: only each N-th problem; --failures: lists
-// the unsolved ones, by cause; --set takes keys of the sections reverse and physics. Exit status
-// 1 if a gate fails, 2 for bad input.
+// the unsolved ones, by cause; --set takes keys of the sections reverse and physics. The gates hold
+// for each task, over the problems in which the robot meets a body. Exit status 1 if a gate fails,
+// 2 for bad input.
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <exception>
-#include <optional>
+#include <iterator>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/math/quantile.hpp"
 #include "core/reverse/reverse_simulator.hpp"
@@ -35,6 +38,7 @@ constexpr std::size_t kTogether = 48;
 
 /// A problem's line in the file, and what became of it; its share of the CPU time.
 struct Outcome {
+  std::string task;
   std::size_t line = 0;
   Difficulty difficulty = Difficulty::kFree;
   reverse::SolveStatus status = reverse::SolveStatus::kNonFinite;
@@ -42,17 +46,26 @@ struct Outcome {
   double cpu_ms = 0.0;
 
   bool decided() const {
-    return status == reverse::SolveStatus::kConverged ||
-           status == reverse::SolveStatus::kInfeasible;
+    return has_predecessors(status) || status == reverse::SolveStatus::kInfeasible;
   }
 };
 
-std::vector<int> iterations_of(std::span<const Outcome> outcomes, std::optional<Difficulty> of) {
-  std::vector<int> found;
-  for (const Outcome& o : outcomes)
-    if (o.decided() && (!of || o.difficulty == *of)) found.push_back(o.iterations);
-  return found;
-}
+/// How the problems of a group ended.
+struct Tally {
+  int count = 0, converged = 0, infeasible = 0;
+  double cpu_ms = 0.0;
+  std::vector<int> iterations;  // of the decided ones
+
+  void add(const Outcome& o) {
+    ++count;
+    converged += o.status == reverse::SolveStatus::kConverged;
+    infeasible += o.status == reverse::SolveStatus::kInfeasible;
+    cpu_ms += o.cpu_ms;
+    if (o.decided()) iterations.push_back(o.iterations);
+  }
+
+  double share(int part) const { return static_cast<double>(part) / static_cast<double>(count); }
+};
 
 /// Problems of one task and difficulty are solved together, kTogether at a time.
 std::vector<Outcome> solve(const Corpus& corpus, const Options& options) {
@@ -73,33 +86,31 @@ std::vector<Outcome> solve(const Corpus& corpus, const Options& options) {
       const double share =
           1e3 * (threads::thread_cpu_s() - begin) / static_cast<double>(jobs.size());
       for (std::size_t k = 0; k < jobs.size(); ++k)
-        outcomes.push_back(
-            {lines[first + k] + 1, kind.second, results[k].status, results[k].iterations, share});
+        outcomes.push_back({kind.first, lines[first + k] + 1, kind.second, results[k].status,
+                            results[k].iterations, share});
     }
   }
   return outcomes;
 }
 
-void print_by_difficulty(std::span<const Outcome> outcomes) {
-  std::printf("%-8s %6s %9s %10s %9s %7s %7s %9s\n", "", "count", "converged", "infeasible",
+using Tallies = std::map<std::string, Tally>;
+
+/// Counts the problems in groups of which `name_of` gives the names.
+template <class NameOf>
+Tallies counted(std::span<const Outcome> outcomes, NameOf name_of) {
+  Tallies tallies;
+  for (const Outcome& o : outcomes) tallies[name_of(o)].add(o);
+  return tallies;
+}
+
+void print(const Tallies& tallies) {
+  std::printf("%-15s %6s %9s %10s %9s %7s %7s %9s\n", "", "count", "converged", "infeasible",
               "undecided", "median", "p90", "CPU [ms]");
-  for (std::size_t k = 0; k < kDifficulties.size(); ++k) {
-    std::array<int, reverse::kSolveStatusCount> ends{};
-    int count = 0;
-    double cpu = 0.0;
-    for (const Outcome& o : outcomes) {
-      if (static_cast<std::size_t>(o.difficulty) != k) continue;
-      ++count;
-      ++ends[static_cast<std::size_t>(o.status)];
-      cpu += o.cpu_ms;
-    }
-    const int converged = ends[static_cast<std::size_t>(reverse::SolveStatus::kConverged)];
-    const int infeasible = ends[static_cast<std::size_t>(reverse::SolveStatus::kInfeasible)];
-    const std::vector<int> iterations = iterations_of(outcomes, static_cast<Difficulty>(k));
-    std::printf("%-8s %6d %9d %10d %9d %7.0f %7.0f %9.2f\n", kDifficulties[k].data(), count,
-                converged, infeasible, count - converged - infeasible, quantile(iterations, 0.5),
-                quantile(iterations, 0.9), count > 0 ? cpu / count : 0.0);
-  }
+  for (const auto& [name, t] : tallies)
+    std::printf("%-15s %6d %9d %10d %9d %7.0f %7.0f %9.2f\n", name.c_str(), t.count, t.converged,
+                t.infeasible, t.count - t.converged - t.infeasible, quantile(t.iterations, 0.5),
+                quantile(t.iterations, 0.9), t.cpu_ms / t.count);
+  std::printf("\n");
 }
 
 /// Share of problems decided within so many iterations, and within so much time.
@@ -109,7 +120,7 @@ void print_profile(std::span<const Outcome> outcomes) {
                outcomes, [&](const Outcome& o) { return o.decided() && within(o); })) /
            static_cast<double>(outcomes.size());
   };
-  std::printf("\ndecided within\n");
+  std::printf("decided within\n");
   for (const int limit : {2, 5, 10, 15, 20, 30, 50, 100, 200})
     std::printf("  %3d iterations %.3f\n", limit,
                 share([limit](const Outcome& o) { return o.iterations <= limit; }));
@@ -127,29 +138,25 @@ void print_failures(std::span<const Outcome> outcomes) {
                     kDifficulties[static_cast<std::size_t>(o.difficulty)].data(), o.iterations);
 }
 
-/// Goals of a corpus; jointed problems have their own.
+/// Goals for each task of a corpus; jointed problems have their own.
 struct Goals {
   const char* name;
   double converged, iterations_median, iterations_p90;
 };
 constexpr Goals kGoals{"corpus", 0.9, 20, 50}, kJointedGoals{"corpus_joints", 0.85, 30, 60};
 
-bool gates(std::span<const Outcome> outcomes, const Goals& goals) {
-  const auto decided = std::ranges::count_if(outcomes, &Outcome::decided);
-  const double share = static_cast<double>(decided) / static_cast<double>(outcomes.size());
-  const auto solved =
-      std::ranges::count(outcomes, reverse::SolveStatus::kConverged, &Outcome::status);
-  const double converged = static_cast<double>(solved) / static_cast<double>(outcomes.size());
-  const std::vector<int> iterations = iterations_of(outcomes, std::nullopt);
-  const std::string name = goals.name;
-  std::printf("\n");
-  const bool all[] = {gate(name + ".decided", share, Bound::kAtLeast, 0.99),
-                      gate(name + ".converged", converged, Bound::kAtLeast, goals.converged),
-                      gate(name + ".iterations_median", quantile(iterations, 0.5), Bound::kAtMost,
-                           goals.iterations_median),
-                      gate(name + ".iterations_p90", quantile(iterations, 0.9), Bound::kAtMost,
-                           goals.iterations_p90)};
-  return std::ranges::all_of(all, [](bool passed) { return passed; });
+bool gates(const Tallies& by_task, const Goals& goals) {
+  bool passed = true;
+  for (const auto& [task, t] : by_task) {
+    const std::string name = std::string(goals.name) + "." + task;
+    passed &= gate(name + ".decided", t.share(t.converged + t.infeasible), Bound::kAtLeast, 0.99);
+    passed &= gate(name + ".converged", t.share(t.converged), Bound::kAtLeast, goals.converged);
+    passed &= gate(name + ".iterations_median", quantile(t.iterations, 0.5), Bound::kAtMost,
+                   goals.iterations_median);
+    passed &= gate(name + ".iterations_p90", quantile(t.iterations, 0.9), Bound::kAtMost,
+                   goals.iterations_p90);
+  }
+  return passed;
 }
 
 /// Applies the flag at the beginning of `words`. Returns how many words it took: 0 if it is wrong.
@@ -170,12 +177,21 @@ std::size_t apply(std::span<char* const> words, Options& options) {
 int run(const std::filesystem::path& folder, const Options& options) {
   const Corpus corpus = read_corpus(folder);
   const std::vector<Outcome> outcomes = solve(corpus, options);
-  print_by_difficulty(outcomes);
-  print_profile(outcomes);
+  print(counted(outcomes, [](const Outcome& o) {
+    return std::string(kDifficulties[static_cast<std::size_t>(o.difficulty)]);
+  }));
+  std::vector<Outcome> pushing;
+  std::ranges::copy_if(outcomes, std::back_inserter(pushing),
+                       [](const Outcome& o) { return o.difficulty != Difficulty::kFree; });
+  const Tallies by_task = counted(pushing, [](const Outcome& o) { return o.task; });
+  std::printf("in which the robot meets a body:\n");
+  print(by_task);
+  print_profile(pushing);
   if (options.failures) print_failures(outcomes);
+  std::printf("\n");
   const bool jointed = std::ranges::any_of(
       corpus.tasks, [](const auto& task) { return !task.second.scene.joints.empty(); });
-  return gates(outcomes, jointed ? kJointedGoals : kGoals) ? 0 : 1;
+  return gates(by_task, jointed ? kJointedGoals : kGoals) ? 0 : 1;
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ inline std::uint64_t key_of(const ReverseJob& job) { return key_of(job.end, job.
 /// Largest number of predecessors in the answer to one job.
 inline constexpr int kMaxPredecessors = 8;
 
-/// Answer to a ReverseJob. If `status` is kConverged, `predecessors` holds 1 to kMaxPredecessors
+/// Answer to a ReverseJob. If has_predecessors(status), `predecessors` holds 1 to kMaxPredecessors
 /// finite predecessors. Otherwise it is empty. ReverseSimulator puts the start of the whole push
 /// first.
 struct ReverseResult {

@@ -72,8 +72,8 @@ void FilterSqp<T>::finish(int l) {
   const SqpStrategy& strategy = strategies_[job];
   const ReverseProblem& problem = *problems_[job];
   Iterate x = x_.unload(l, problem);
-  SolveStatus status = strategy.status();
-  if (status == SolveStatus::kConverged) status = status_of_converged(problem, x);
+  const bool feasible = lane(now_.infeasibility, l) < config_.feasibility_tol;
+  const SolveStatus status = final_status(problem, x, strategy.status(), feasible);
   results_[job] = {status, std::move(x), strategy.iterations(), lane(now_.infeasibility, l),
                    lane(stationarity_, l)};
 }
@@ -130,7 +130,7 @@ void FilterSqp<T>::iterate() {
   for (int l = 0; l < kWidth<T>; ++l) {
     if (!is_busy(l)) continue;
     const bool goes_on = strategy(l).goes_on(figures(l));
-    set_lane(stepping_, l, goes_on);
+    set_lane(stepping_, l, goes_on && !strategy(l).wants_restoration());
     if (!goes_on) finish(l);
   }
   if (!any(stepping_)) return;

@@ -23,7 +23,10 @@ bool SqpStrategy::goes_on(const Figures& at) {
   if (at.infeasibility < config_->feasibility_tol && at.stationarity < config_->stationarity_tol)
     return end(SolveStatus::kConverged);
   if (!uses_lagrangian_) return true;  // repeats the same iteration
-  if (iterations_ == config_->max_iterations) return end(SolveStatus::kIterationLimit);
+  if (iterations_ == config_->max_iterations) {
+    if (closing_) return end(SolveStatus::kIterationLimit);
+    return closing_ = wants_restoration_ = true;
+  }
   ++iterations_;
   return true;
 }

@@ -16,7 +16,10 @@ namespace rtg::reverse {
 /// asks for one and begins with an empty filter and the first δ again; with a fixed final state the
 /// filter is only emptied. The SQP ends if no step is accepted after that. It leaves 0.05 %
 /// of the problems of tests/bench/corpus undecided and 0.8 % of those of corpus_joints. If the
-/// filter is only emptied everywhere, it is 0.5 % and 1.9 %.
+/// filter is only emptied everywhere, it is 0.5 % and 1.9 %. At the iteration limit feasibility is
+/// restored once more. A start from which the simulation reaches the final state is a solution then
+/// (SolveStatus::kAcceptable). With it 984 of 1,000 true pushes are found (true_pushes on
+/// Gathering, Sorting, ArtManip, a chain of six and a door), without it 977.
 class SqpStrategy {
  public:
   /// The figures of an iterate on which decisions depend.
@@ -49,6 +52,8 @@ class SqpStrategy {
   /// Repeats the iteration with a larger δ, which counts as another one. To be called if the line
   /// search accepts no trial point. Returns false if the SQP has ended.
   bool reject_line_search();
+  /// Returns whether to restore feasibility instead of another step.
+  bool wants_restoration() const { return wants_restoration_; }
   /// Returns whether to restore feasibility before the next iteration, and forgets it.
   bool take_restoration() { return std::exchange(wants_restoration_, false); }
   /// Returns whether to accept the trial point `next`, reached from `now` with step length `alpha`.
@@ -67,6 +72,7 @@ class SqpStrategy {
   Filter filter_;
   bool restored_ = false;  // and no step accepted since
   bool wants_restoration_ = false;
+  bool closing_ = false;  // at the iteration limit
 };
 
 }  // namespace rtg::reverse

@@ -28,6 +28,22 @@ TEST(StepEnergyGaps, CrossingBarsAreRejectedThoughEveryGapIsOpen) {
   EXPECT_TRUE(energy.separated(apart));
 }
 
+TEST(StepEnergyGaps, OneOverlapIsEnough) {
+  Scene scene = crossing_bars();
+  scene.bodies.push_back({"box", "box", box(1.0, 1.0), 1.0, 0.3, false});
+  const StepEnergy energy(scene, {}, {});
+  const Vector3d crossed(0.0, 0.0, 0.0), bar(0.0, 0.0, 0.0), far(5.0, 0.0, 0.0);
+  const auto state = [](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+    VectorXd p(9);
+    p << a, b, c;
+    return p;
+  };
+  EXPECT_TRUE(energy.separated(state({-5.0, 0.0, 0.0}, bar, far)));
+  EXPECT_FALSE(energy.separated(state(crossed, bar, far)));
+  EXPECT_FALSE(energy.separated(state({-5.0, 0.0, 0.0}, bar, {0.3, 0.0, 0.0})));
+  EXPECT_FALSE(energy.separated(state({5.0, 0.2, 0.0}, bar, far)));
+}
+
 // Corners may overlap by what smoothing takes off them and as much again.
 TEST(StepEnergyGaps, CornersMayOverlapByLittle) {
   const Polygon tip = regular_polygon(3, 1.0);  // one vertex at (1, 0), 60° wide

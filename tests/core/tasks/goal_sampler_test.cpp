@@ -30,7 +30,9 @@ Task half_planes() {
 }
 
 TEST(GoalSampler, GoalsHoldWithRoomToSpareAndDoNotOverlap) {
-  for (const Task& task : {gathering(), gathering_hard(), half_planes()})
+  Task turned = gathering();
+  turned.start[0].theta = 0.3;
+  for (const Task& task : {gathering(), gathering_hard(), half_planes(), turned})
     for (const Poses& poses : goals(task, 1)) {
       EXPECT_TRUE(succeeded(task, poses, 0.049));
       EXPECT_EQ(first_overlap(task.scene, poses, 0.02), std::nullopt);

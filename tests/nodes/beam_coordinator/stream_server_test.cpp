@@ -37,6 +37,13 @@ TEST(StreamServer, ABurstIsNoLongerThanAReceiveBufferStands) {
   EXPECT_EQ(server.due(0.001).size(), 1u);  // 10 kB on
 }
 
+TEST(StreamServer, SilenceBeforeABurstMakesItNoLonger) {
+  StreamServer server({}, kRowBytes);
+  server.due(0.0);
+  server.append(std::vector<search::Transition>(100000));
+  EXPECT_EQ(server.due(3600.0).size(), 4u);
+}
+
 TEST(StreamServer, RowsAskedForGoOutAgainAndFirst) {
   StreamServer server = server_with(400);
   server.due(0.0);

@@ -25,6 +25,14 @@ TEST(Bus, DeliversWhatWasPublished) {
   EXPECT_EQ(counts, (std::vector<std::int64_t>{1, 2, 3}));
 }
 
+// Waiting again would take the whole minute.
+TEST(Bus, SpinWaitsForTheFirstMessageOnly) {
+  Bus bus("memq://", "test");
+  bus.subscribe<stream_tail_t>("TAIL", [](const stream_tail_t&) {});
+  bus.publish("TAIL", stream_tail_t{});
+  EXPECT_EQ(bus.spin(60s), 1);
+}
+
 TEST(Bus, ExceptionsOfHandlersSurfaceInSpinAndLoseNothing) {
   Bus bus("memq://", "test");
   int handled = 0;

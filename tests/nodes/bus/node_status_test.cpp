@@ -2,12 +2,30 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <rtg_msgs/node_status_t.hpp>
 #include <rtg_msgs/search_progress_t.hpp>
+#include <vector>
 
 #include "tests/nodes/bus/handle_all.hpp"
 
 namespace rtg::bus {
 namespace {
+
+TEST(NodeStatus, SaysWhichNodeIsInWhichState) {
+  Bus bus("memq://", "test");
+  std::vector<rtg_msgs::node_status_t> heard;
+  bus.subscribe<rtg_msgs::node_status_t>(
+      "RTG_STATUS", [&](const rtg_msgs::node_status_t& status) { heard.push_back(status); });
+  NodeStatus(bus, "worker", 3).publish("solving", 17, {{"jobs", 2}});
+  testing::handle_all(bus);
+  ASSERT_EQ(heard.size(), 1U);
+  EXPECT_EQ(heard[0].node, "worker");
+  EXPECT_EQ(heard[0].number, 3);
+  EXPECT_EQ(heard[0].state, "solving");
+  EXPECT_EQ(heard[0].done, 17);
+  EXPECT_NE(std::ranges::find(heard[0].counter_name, "jobs"), heard[0].counter_name.end());
+}
 
 // Datagrams may arrive in another order than they were sent in.
 TEST(CoordinatorWatch, ACoordinatorThatSaidItLeavesDoesSoWhateverArrivesLater) {

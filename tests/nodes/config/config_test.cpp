@@ -125,6 +125,37 @@ TEST(Config, APresetChoosesTheDefaultsAndTheOtherKeysOverride) {
   EXPECT_EQ(text_of(config.train), text_of(train));
 }
 
+// Table 2, and without what the preset `default` adds to it.
+TEST(Config, ThePresetPaperIsTable2) {
+  const TrainConfig train = train_preset(TrainPreset::kPaper);
+  EXPECT_EQ(train.batch, 512);
+  EXPECT_EQ(train.learning_rate, 5e-5);
+  EXPECT_EQ(train.target_rate, 1.0);
+  EXPECT_EQ(train.averaging_rate, 1.0);
+  EXPECT_EQ(train.offline_share, -1.0);
+  EXPECT_EQ(train.recent_share, 0.0);
+  EXPECT_EQ(train.nearby_share, 0.0);
+  EXPECT_EQ(train.contact_share, 0.0);
+  EXPECT_EQ(train.start_jitter, 0.0);
+  EXPECT_EQ(train.stop_at_success, 0.0);
+  for (const bool added : {train.target_acts, train.clipped_double_q, train.dueling,
+                           train.layer_norm, train.small_head, train.clip_targets,
+                           train.value_bounds, train.leave_loops, train.reduced_precision})
+    EXPECT_FALSE(added);
+}
+
+TEST(Config, RandomisedStartsAreNoNearerThanTheOthers) {
+  Config config = parsed("train: {start_jitter: 0.5}\n");
+  for (const auto& [randomise, randomisation, evaluation, training] :
+       {std::tuple(false, 2.0, 0.1, 0.5), {true, 2.0, 2.0, 2.0}, {true, 0.3, 0.3, 0.5}}) {
+    config.task.start_jitter = 0.1;
+    config.task.randomisation = randomisation;
+    config.train.randomise = randomise;
+    EXPECT_EQ(config.evaluation_jitter(), evaluation);
+    EXPECT_EQ(config.training_jitter(), training);
+  }
+}
+
 TEST(Config, APresetOnTheCommandLineStandsAboveWhatPresetsDecideInTheFile) {
   const std::vector<std::string> overrides{"train.preset=paper", "train.epsilon_start=0.7",
                                            "reverse.preset=paper"};

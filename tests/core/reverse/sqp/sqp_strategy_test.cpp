@@ -35,11 +35,15 @@ TEST(SqpStrategy, ConvergesOnlyWithinBothTolerances) {
       strategy.goes_on({0.0, 0.99 * config.feasibility_tol, 0.99 * config.stationarity_tol}));
 }
 
-TEST(SqpStrategy, EndsAfterItsIterations) {
+TEST(SqpStrategy, RestoresFeasibilityAfterItsIterationsAndEnds) {
   ReverseConfig config;
   config.max_iterations = 5;
   SqpStrategy strategy(config);
   step(strategy, 5);
+  EXPECT_FALSE(strategy.wants_restoration());
+  EXPECT_TRUE(strategy.goes_on(kFar));
+  EXPECT_TRUE(strategy.wants_restoration());
+  EXPECT_TRUE(strategy.take_restoration());
   EXPECT_FALSE(strategy.goes_on(kFar));
   EXPECT_EQ(strategy.status(), SolveStatus::kIterationLimit);
   EXPECT_EQ(strategy.iterations(), 5);
