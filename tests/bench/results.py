@@ -205,7 +205,8 @@ def pushes(out: Path) -> str:
     before = paragraph(
         "From the ends of pushes of Box2D that move an object by half a metre or more: the pushes",
         "that a preset finds (its start drags an object, and Box2D leads from it back to the end),",
-        "and the CPU time of all solves per push found, of which the gate compares the two.",
+        "and the CPU time of all solves per push found. A gate for each task asks for the share of",
+        "the pushes found; another compares these times, where `paper` has found five or more.",
         "`tests/bench/true_pushes.cpp` says what the columns are.",
     )
     return before + "\n\n```\n" + (out / "true_pushes.txt").read_text().strip() + "\n```"
