@@ -3,10 +3,12 @@
 #
 #   ./graph.sh FOLDER [trainer [--resume] | recorder]
 #
-# FOLDER/config.yaml is the resolved configuration (./run.sh TASK --print-config). The run is named like FOLDER, which
-# gets generation.json, logs/PROGRAM.log, and what the trainer writes or, of the recorder, transitions.npz alone.
+# FOLDER/config.yaml is the resolved configuration (./run.sh TASK --print-config). FOLDER gets generation.json,
+# logs/PROGRAM.log, and what the trainer writes or, of the recorder, transitions.npz alone.
+# Environment: RTG_RUN, the run's name on the bus (FOLDER's), RTG_NODES (build/release/nodes), RTG_PYTHON (.venv/bin/python).
 # Workers, server and logger are started again when they die before the coordinator has ended. Where another program
-# fails, all end with its status.
+# fails, all end with its status. SIGINT, SIGTERM or SIGHUP ends all, the trainer with a checkpoint; a second SIGINT or
+# SIGTERM at once.
 set -uo pipefail
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 nodes=${RTG_NODES:-$root/build/release/nodes} python=${RTG_PYTHON:-$root/.venv/bin/python}
@@ -37,10 +39,11 @@ start() { # NAME
   running[$!]=$1 started[$1]=$SECONDS
 }
 
-stop() { # STATUS: ends all programs, at once on a further signal, and this script
+stop() { # STATUS: ends all programs, at once on a further SIGINT or SIGTERM, and this script
   local pids deadline=$((SECONDS + 20))
   pids=$(jobs -p) # not those of `running` alone: a signal may come before start has noted the program
   trap 'kill -KILL $pids' INT TERM
+  trap '' HUP # a terminal that closes sends it twice
   kill $pids
   while kill -0 $pids && ((SECONDS < deadline)); do sleep 0.1; done
   kill -KILL $pids
@@ -75,6 +78,7 @@ mkdir -p "$logs" && rm -f "$folder/generation.json" || exit 1
 exec 2>/dev/null # bash's own words about programs that have ended
 trap 'stop 130' INT
 trap 'stop 143' TERM
+trap 'stop 129' HUP # which nohup keeps from it
 if [[ $(setting record) == true ]]; then start lcm_logger; fi
 for ((k = 0; k < workers; ++k)); do start "reverse_worker_$k"; done
 start forward_sim_server

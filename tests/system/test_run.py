@@ -173,7 +173,7 @@ def wait_for_line(process, words):
 @pytest.mark.parametrize(
     "mode", [(), ("--in-process", "--no-train")], ids=["over_lcm", "in_process"]
 )
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_a_run_and_all_of_its_processes(tmp_path, mode, number):
     folder = tmp_path / "run"
     process = start(*ENDLESS, *mode, "--out", folder)

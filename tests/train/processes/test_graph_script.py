@@ -1,6 +1,7 @@
 """graph.sh, with programs that do as they are told."""
 
 import os
+import pty
 import signal
 import subprocess
 import time
@@ -180,7 +181,9 @@ def test_a_coordinator_that_waits_in_vain_is_not_waited_for(graph):
     assert graph.programs() == []
 
 
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
+)
 def test_a_signal_ends_all_programs_in_order(graph, number, status):
     orderly = "trap 'echo good-bye; exit 143' TERM; echo here; while :; do sleep 0.05; done"
     graph.let("rtg_beam_coordinator", PATIENT)
@@ -193,6 +196,39 @@ def test_a_signal_ends_all_programs_in_order(graph, number, status):
     process.stdout.close()
     assert log.read_text() == "here\ngood-bye\n"  # told once: a second signal would end it at once
     assert graph.programs() == []
+
+
+def test_a_closed_terminal_leaves_the_trainer_time_for_its_checkpoint(graph):
+    graph.let("rtg_beam_coordinator", PATIENT)
+    orderly = (
+        "trap 'sleep 1; echo checkpoint; exit 143' TERM; echo here; while :; do sleep 0.05; done"
+    )
+    graph.let("python", orderly)
+    shell, terminal = pty.fork()
+    if shell == 0:
+        os.environ |= {"RTG_NODES": str(graph.bin), "RTG_PYTHON": str(graph.bin / "python")}
+        os.execvp("bash", ["bash", "--norc", "-i"])
+    os.write(terminal, f"'{paths.ROOT / 'graph.sh'}' '{graph.run_folder}'\n".encode())
+    log = graph.run_folder / "logs" / "trainer.log"
+    wait_for(lambda: log.exists() and log.read_text() == "here\n")
+    os.close(terminal)
+    os.waitpid(shell, 0)
+    wait_for(lambda: graph.programs() == [])
+    assert log.read_text() == "here\ncheckpoint\n"
+
+
+def test_a_repeated_hangup_does_not_cut_the_end_short(graph):
+    graph.let("rtg_beam_coordinator", PATIENT)
+    orderly = "trap 'echo stops; sleep 1; echo checkpoint; exit 143' TERM; echo here"
+    graph.let("python", f"{orderly}; while :; do sleep 0.05; done")
+    process = graph.start()
+    log = graph.run_folder / "logs" / "trainer.log"
+    for words in ("here\n", "here\nstops\n"):
+        wait_for(lambda words=words: log.exists() and log.read_text() == words)
+        process.send_signal(signal.SIGHUP)
+    assert process.wait(120.0) == 129
+    process.stdout.close()
+    assert log.read_text() == "here\nstops\ncheckpoint\n"
 
 
 def test_no_program_outlives_the_script(graph):

@@ -43,6 +43,13 @@ def test_what_nohup_started_does_not_hear_that_the_terminal_closed():
         signal.signal(signal.SIGHUP, before)
 
 
+def test_a_closing_terminal_says_it_twice_and_means_it_once():
+    with Interrupts(on_second_signal=lambda: pytest.fail("it is the same one")) as interrupts:
+        os.kill(os.getpid(), signal.SIGHUP)
+        os.kill(os.getpid(), signal.SIGHUP)
+        assert interrupts.number == signal.SIGHUP
+
+
 def test_the_second_signal_ends_the_process():
     done = subprocess.run(
         [sys.executable, "-c", TWO_SIGNALS],

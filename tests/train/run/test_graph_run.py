@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 from rtg import paths
-from rtg.errors import RunError, UserError
+from rtg.errors import RunError, StoppedError, UserError
 from rtg.run import effective_config, graph_run, results, run
 from rtg.run.plan import RunPlan
 from rtg.run.progress import display
@@ -60,6 +60,21 @@ def test_restarts_are_told_and_counted(plan, tmp_path):
     with display(out) as shown:
         assert graph_run.run(plan, shown)["worker_restarts"] == 2
     assert "] reverse_worker_1 was killed by SIGKILL, started again\n" in out.getvalue()
+
+
+def test_a_program_that_takes_longer_to_stop_is_waited_for(plan, tmp_path):
+    recorder, ended = tmp_path / "python", tmp_path / "ended"
+    orderly = f"trap 'sleep 5; touch {ended}; exit' TERM"  # more than other children may take
+    recorder.write_text(f"#!/bin/bash\n{orderly}; touch $5; while :; do sleep 0.05; done\n")
+
+    def step(state):
+        if plan.transitions_file.exists():
+            raise StoppedError
+
+    shown = SimpleNamespace(note=lambda message: None, show=step)
+    with pytest.raises(StoppedError):
+        graph_run.run(plan, shown)
+    assert ended.exists()
 
 
 def test_what_the_network_lacks_is_told(plan, monkeypatch):

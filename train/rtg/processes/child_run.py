@@ -10,12 +10,16 @@ from rtg.processes.interrupts import Interrupts
 
 
 def run_child(
-    name: str, command: Sequence[str | Path], log: Path, step: Callable[[Node], object]
+    name: str,
+    command: Sequence[str | Path],
+    log: Path,
+    step: Callable[[Node], object],
+    grace: float = 4.0,
 ) -> Node:
     """Runs a program with its output in `log`, whose folder is created; returns it at its end.
 
     Calls `step`, which should wait a little, until then. Stops the program if `step` raises, or on
-    a signal. Raises StoppedError on a signal.
+    a signal, and kills it if it has not ended within `grace` s. Raises StoppedError on a signal.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
     nodes: list[Node] = []
@@ -27,5 +31,5 @@ def run_child(
                 step(node)
                 interrupts.raise_if_requested()
         finally:
-            stop_all(nodes)
+            stop_all(nodes, grace)
     return node

@@ -18,7 +18,8 @@ class Interrupts:
 
     It stores the number of the first signal in `number`. At a second signal it calls
     `on_second_signal` and ends this process at once, with exit status 128 + signal number. SIGHUP
-    stays ignored if the process ignored it before, as under nohup. Main thread only.
+    is never the second one: of a terminal that closes it comes twice, from the shell and from the
+    kernel. It stays ignored if the process ignored it before, as under nohup. Main thread only.
     """
 
     def __init__(self, on_second_signal: Callable[[], None] = lambda: None) -> None:
@@ -53,7 +54,8 @@ class Interrupts:
             raise StoppedError
 
     def _handle(self, number: int, frame: FrameType | None) -> None:
-        if self.requested():
+        if not self.requested():
+            self.number = number
+        elif number != signal.SIGHUP:
             self._on_second_signal()
             os._exit(128 + number)
-        self.number = number

@@ -16,6 +16,7 @@ from rtg.run.run_watch import RunWatch
 from rtg.run.training_watch import TrainingWatch
 
 _POLL = 0.1  # [s]
+_GRACE = 25.0  # [s] from SIGTERM to SIGKILL; graph.sh allows its programs 20 s
 _RESTARTED = ", started again"  # the end of the lines in which graph.sh says so
 
 
@@ -59,7 +60,7 @@ class GraphRun:
         """
         log = self._plan.folder / "logs" / "graph.log"
         try:
-            graph = run_child("graph", self._command(), log, self._step)
+            graph = run_child("graph", self._command(), log, self._step, _GRACE)
             self._bus.spin(0.0)  # messages that arrived since the last step
         finally:
             self._bus.close()
