@@ -8,7 +8,7 @@ nothing and writes no model.pt.
 
 Several runs learn side by side, each on its own thread. Their results are bitwise equal to those of
 separate runs. On SIGINT, SIGTERM or SIGHUP the process writes a checkpoint and exits with status
-128 + signal number. A second signal ends it at once.
+128 + signal number. A second SIGINT or SIGTERM ends it at once.
 """
 
 from __future__ import annotations
