@@ -15,8 +15,9 @@ namespace rtg::reverse {
 /// bodies are summed in the coordinates of the pair (PairFrame).
 ///
 /// Departs from the paper: its contact force is a function of the poses, μ̃/g. Kept as an unknown
-/// with the row λ g = μ̃ w, it makes the constraints bilinear, without 1/g. IPOPT failed on the
-/// printed form in 9 of 10 scenes, and solved 8 to 9 of 10 with the row.
+/// with the row λ g = μ̃ w, it makes the constraints bilinear, without 1/g. On the scenes of a
+/// prototype, not of this code, IPOPT failed on the printed form in 9 of 10, and solved 8 to 9 of
+/// 10 with the row.
 template <class T>
 class NewtonSystem {
  public:

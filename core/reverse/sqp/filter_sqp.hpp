@@ -19,9 +19,10 @@ namespace rtg::reverse {
 /// queue. An SqpStrategy per candidate controls the iterations.
 ///
 /// Departs from the paper: its SQP has the Hessian of the objective, eq. (9), and an l1 merit
-/// function, eq. (11). In trials on ten scenes of three objects these converged in 3 to 4 within
-/// 300 iterations, with a filter instead of the merit function in 6, with the Hessian of the
-/// Lagrangian as well in 9. `MeritSqp` is the printed one.
+/// function, A.2. In a prototype, not in this code, these converged in 3 to 4 of ten scenes of
+/// three objects within 300 iterations, with a filter instead of the merit function in 6, with the
+/// Hessian of the Lagrangian as well in 9. `MeritSqp` is the printed one; docs/paper_mode.md says
+/// what it does in this code.
 template <class T>
 class FilterSqp {
  public:
