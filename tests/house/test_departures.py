@@ -26,6 +26,8 @@ AUDIT = {
     "Hessian of the Lagrangian": ("reverse/sqp/filter_sqp.hpp", "Hessian of the Lagrangian"),
     "restoration": ("reverse/sqp/sqp_strategy.hpp", "restoration of feasibility"),
     "safeguard": ("reverse/sqp/merit_sqp.cpp", "‖C‖₁ ≤ ε_c"),
+    "decrease of the merit function": ("reverse/sqp/merit_sqp.cpp", "Eq. (11) asks for"),
+    "refused steps": ("reverse/sqp/merit_sqp.cpp", "narrows a gap"),
     "pruning of headings": ("reverse/pruning.hpp", "all headings"),
     "pruning of bodies": ("reverse/pruning.hpp", "all bodies"),
     "several starts per solve": ("reverse/reverse_simulator.cpp", "one start"),

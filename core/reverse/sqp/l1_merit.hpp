@@ -4,7 +4,8 @@
 
 namespace rtg::reverse {
 
-/// The l1 merit function M = J + ν ‖C‖₁, eq. (9). It is exact once ν exceeds every multiplier.
+/// The l1 merit function M = J + ν ‖C‖₁ of A.2, above eq. (9). It is exact once ν exceeds every
+/// multiplier.
 class Merit {
  public:
   /// Raises ν, if necessary, above `multiplier` = ‖y‖∞ by a margin.

@@ -22,9 +22,12 @@ constexpr double kSafeguard = 1.0;  // ε_c [kg m]
 ///
 /// Departs from the paper: in what it cannot mean literally. ‖C‖₁ ≤ ε_c would forbid every step
 /// from a start that violates it, so that a step must not raise ‖C‖₁ above the larger of ε_c and
-/// its present value. The Hessian of J over the poses is singular, so that it gets 1e-6 on its
-/// diagonal. And a step is refused if it moves a body by more than 1 m or 0.5 rad, or into another.
-/// With ε_c from 0.1 to 30 the same pushes are found.
+/// its present value; with ε_c from 0.1 to 30 the same pushes are found. Eq. (11) asks for a
+/// decrease of more than the slope of the merit function promises, which a convex function never
+/// has, so that 1e-4 of it is enough here, with equality; a slope above 0 counts as 0. The Hessian
+/// of J over the poses is singular, so that it gets 1e-6 on its diagonal. And a step is refused if
+/// it moves a body by more than 1 m or 0.5 rad, or into another, or narrows a gap to less than a
+/// tenth both of what it was and of ĝ.
 class MeritSqp {
  public:
   MeritSqp(const ReverseProblem& one, const Iterate& start)
@@ -80,8 +83,8 @@ class MeritSqp {
     return top;
   }
 
-  /// Halves the step until the merit function decreases enough, eq. (11), and the safeguard agrees.
-  /// Returns whether a trial point was accepted.
+  /// Halves the step until the merit function decreases enough, eq. (11) with kArmijo, and the
+  /// safeguard agrees. Returns whether a trial point was accepted.
   bool line_search() {
     const double before = merit_.value(now_.objective, now_.violation);
     // The Hessian of the plain barrier is not convex, so that a step may lead uphill.
