@@ -13,7 +13,8 @@ namespace rtg::energy {
 /// The member functions return the rotational part and its derivatives with respect to a.
 ///
 /// Departs from the paper: quadratic is the default, because the periodic form has spurious roots
-/// at whole turns. An SQP that is free to use them returned turns of 50 to 10⁵ rad.
+/// at whole turns. In a prototype, not in this code, an SQP that was free to use them returned
+/// turns of 50 to 10⁵ rad.
 template <class T>
 struct Damping {
   T mass;    // m [kg]

@@ -1,14 +1,15 @@
 """The page of the departures from the paper."""
 
+import re
+
 import departures
 import pytest
 
 # What an audit of the code against the paper's text found: file and words of the mark of each.
 AUDIT = {
-    "friction counts the barrier's weight once": ("energy/slip_terms.hpp", "stands in P_∥ twice"),
-    "friction has a time step": ("energy/slip_terms.hpp", "does not vanish with Δt"),
+    "friction counts the barrier's weight once": ("energy/slip_terms.hpp", "weight μ twice"),
+    "friction has no time step": ("energy/slip_terms.hpp", "divides the slip by Δt"),
     "friction is smoothed": ("energy/slip_terms.hpp", "|u| is smoothed"),
-    "friction's derivatives are whole": ("energy/slip_terms.hpp", "derivatives of λ"),
     "range of the barrier": ("energy/barrier.hpp", "infinite range"),
     "forces at the start": ("energy/barrier.hpp", "bound the reverse SQP"),
     "quadratic turns, damping": ("energy/damping.hpp", "Quadratic is the default"),
@@ -36,6 +37,21 @@ AUDIT = {
     "branches": ("search/branches.hpp", "steps of trees alone"),
 }
 
+# Of the audit's, those whose mark says its reason without a figure, and why.
+WITHOUT_FIGURE = {
+    "quadratic turns, inertia": "b³ per sub-step follows from the formula",
+    "separating axes": "crossed bars are the counterexample",
+    "reduced coordinates": "the paper leaves it open",
+    "gaps of the final state": "the barrier does not exist without",
+    "rest after a push": "the learner sees poses alone",
+    "warm start": "what the static start costs has not been measured with this code",
+    "pruning of headings": "no push along them can have led to the final state",
+    "pruning of bodies": "no result changes by a bit",
+    "pairing of the KKT blocks": "the pattern of the printed matrix",
+}
+# A number, but not of an equation or a section of the paper, in a name such as Box2D, or a bare 0.
+FIGURE = re.compile(r"(?<![\w.(])(?!0\b(?!\.\d))\d")
+
 
 def test_the_page_says_what_the_code_says() -> None:
     assert departures.PAGE.read_text() == departures.page(), "run python tests/house/departures.py"
@@ -55,5 +71,9 @@ def test_every_mark_is_of_the_audit() -> None:
         )
 
 
-def test_marks_have_a_reason() -> None:
-    assert [one for one in departures.departures() if len(one.text) < 20] == []
+def test_marks_have_a_figure_or_say_why_they_need_none() -> None:
+    exempt = [AUDIT[what] for what in WITHOUT_FIGURE]
+    without = [one for one in departures.departures() if not FIGURE.search(one.text)]
+    for one in without:
+        assert any(one.file == f"core/{file}" and words in one.text for file, words in exempt), one
+    assert len(without) == len(exempt)  # none is exempt that has one

@@ -24,7 +24,9 @@ class WarmStart {
   /// the robot's way back is pushed out of it. Solving F(p_{k-1}) = p_k instead would end nearer to
   /// the final state, but in worse minima of the SQP.
   ///
-  /// Departs from the paper: its SQP starts with everything at rest in the final state, A.2.
+  /// Departs from the paper: its SQP starts with everything at rest in the final state, A.2, from
+  /// where it has to find out which objects the robot can drag. This start drags them already and,
+  /// as a simulation, violates no constraint but a fixed final state.
   Mask<T> find(const Mask<T>& wanted, Trajectory<T>& x);
 
   /// Sets `x`, in the lanes `wanted`, to the forward simulation of the push from its start p_0,
