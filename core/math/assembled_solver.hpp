@@ -55,7 +55,7 @@ class Assembled {
 
   int M_, n_, h_;  // bodies, entries of Δp_k, sub-steps
   bool fixed_end_;
-  bool centred_;              // whether the pairing is
+  bool centred_;              // a block has the poses after its sub-step, not before it
   bool couples_outer_poses_;  // p_{k+1} and p_{k-1}
   int per_block_;             // ζ_k per block
   BlockTridiagonal K_;

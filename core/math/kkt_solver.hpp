@@ -28,8 +28,11 @@ class KktSolver {
 
 /// Returns a solver by one of these methods, for N blocks:
 ///
-/// - block elimination from the last block to the first, O(N). This order works because the last
-///   block, the KKT matrix of a whole sub-step, is regular; the first block alone is singular;
+/// - block elimination from the last block to the first, O(N). This order suits both pairings of
+///   Assembled. In the centred one the last block is the KKT matrix of a whole sub-step, regular
+///   where its E is; the first block, Δp_0 alone, may be singular. In the other one every block is
+///   such a matrix, regular where its F is, but for a last block Δp_h, which has the spring to the
+///   final state;
 /// - cyclic reduction [Hockney 1965], the paper's A.3. Each of O(log N) successive reductions
 ///   eliminates every second block; the total work is O(N);
 /// - SuiteSparse's UMFPACK [Davis 2004] or KLU [Davis 2010] on the assembled sparse matrix. They
