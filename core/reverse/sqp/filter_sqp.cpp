@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/math/kkt_solver.hpp"
 #include "core/reverse/problem/trial_point.hpp"
 
 namespace rtg::reverse {
@@ -140,10 +141,12 @@ void FilterSqp<T>::iterate() {
   line_search();
 }
 
-/// Solves the Newton systems. Returns the lanes of stepping_ in which they are regular.
+/// Solves the Newton systems. Returns the lanes of stepping_ in which they are regular. Where kkt_
+/// meets a singular pivot, solves again with pivoting_, unless both are UMFPACK.
 template <class T>
 Mask<T> FilterSqp<T>::find_step() {
   Mask<T> regular = kkt_->solve(newton_.system(), step_) && stepping_;
+  if (config_.kkt == KktMethod::kUmfpack) return regular;
   for (int l = 0; l < kWidth<T>; ++l)
     if (lane(stepping_ && !regular, l) && strategy(l).may_pivot())
       set_lane(regular, l, pivoting_.solve(newton_.system(), l, step_));

@@ -26,7 +26,8 @@ namespace rtg::reverse {
 template <class T>
 class FilterSqp {
  public:
-  /// The problems must be such as ProblemLanes(like) can load. `kkt` solves the Newton systems.
+  /// The problems must be such as ProblemLanes(like) can load. `kkt` solves the Newton systems by
+  /// the method `like.config.kkt`.
   FilterSqp(const ReverseProblem& like, std::unique_ptr<StageSolver<T>> kkt);
 
   /// Solves `problems` from `starts`, one per problem. If `starts` is empty, computes warm starts.

@@ -261,5 +261,16 @@ TEST(FilterSqp, SolvesSingularSystemsWithPivotingAndGoesOnAfterARestoration) {
     EXPECT_LT((result.x.p[k] - regular.x.p[k]).norm(), 1e-4);
 }
 
+TEST(FilterSqp, DoesNotSolveASingularSystemTwiceByUmfpack) {
+  const TouchingScene scene;
+  ReverseConfig config;
+  config.kkt = KktMethod::kUmfpack;
+  const ReverseProblem problem = scene.problem(config), *one = &problem;
+  const Iterate start = static_iterate(problem);
+  const SqpResult result =
+      FilterSqp<double>(problem, std::make_unique<NeverRegular>()).solve({&one, 1}, {&start, 1})[0];
+  EXPECT_NE(result.status, SolveStatus::kConverged);
+}
+
 }  // namespace
 }  // namespace rtg::reverse
