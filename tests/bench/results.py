@@ -219,8 +219,8 @@ def main(out: Path) -> None:
     plots(benchmarks)
     newton = paragraph(
         "µs per candidate, in parentheses how many times ours. Factorisation and solution;",
-        "the peers do not pay for the assembly of the blocks. The times of KLU and UMFPACK include,",
-        "in each solve, the copy of the blocks into sparse columns and the symbolic analysis.",
+        "the peers do not pay for the assembly of the blocks. The times of KLU and UMFPACK include",
+        "the copy of the blocks into sparse columns and the symbolic analysis, in each solve.",
     )
     sections = [
         "# Results of the benchmarks",

@@ -2,6 +2,7 @@
 
 import ast
 import re
+import runpy
 import subprocess
 
 import pytest
@@ -30,6 +31,14 @@ def test_paths_exist(page: str) -> None:
     folders = "core|msgs|nodes|config|train|tests|docs|results"
     paths = [name for name in in_backticks(page) if re.fullmatch(rf"({folders})/[\w./]*", name)]
     assert {name for name in paths if not (ROOT / name).exists()} <= READERS_OWN
+
+
+def test_the_page_of_results_has_the_gates_of_the_benchmarks() -> None:
+    """Otherwise it is of an older commit: ./test.sh bench, then tests/bench/results.py make it."""
+    page = (ROOT / "tests/bench/RESULTS.md").read_text()
+    listed = re.findall(r"^\| `([\w.]+)` \| \S+ \| [<>]=", page, re.MULTILINE)
+    gates = runpy.run_path(str(ROOT / "tests/bench/gates.py"))["GATES"]
+    assert listed == [name for name, *_ in gates]
 
 
 def test_every_room_has_a_line_on_what_it_holds() -> None:
