@@ -7,8 +7,8 @@
 # logs/PROGRAM.log, and what the trainer writes or, of the recorder, transitions.npz alone.
 # Environment: RTG_RUN, the run's name on the bus (FOLDER's), RTG_NODES (build/release/nodes), RTG_PYTHON (.venv/bin/python).
 # Workers, server and logger are started again when they die before the coordinator has ended. Where another program
-# fails, all end with its status. SIGINT, SIGTERM or SIGHUP ends all, the trainer with a checkpoint; a second SIGINT or
-# SIGTERM at once.
+# fails, all end with its status; where the search falls short, with 1 after the consumer. SIGINT, SIGTERM or SIGHUP
+# ends all, the trainer with a checkpoint; a second SIGINT or SIGTERM at once.
 set -uo pipefail
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 nodes=${RTG_NODES:-$root/build/release/nodes} python=${RTG_PYTHON:-$root/.venv/bin/python}
@@ -65,6 +65,14 @@ on_failure() { # NAME STATUS
   start "$1"
 }
 
+shortfalls() { # what the search did not find, a line each
+  sed -n 's/.*"shortfalls":\["\([^]]*\)"\].*/\1/p' "$folder/generation.json" | sed 's/","/\n/g'
+}
+
+fell_short() { # whether the coordinator has ended because of that: its last line says so
+  [[ $(tail -n 1 "$logs/beam_coordinator.log") == "rtg_beam_coordinator: $(shortfalls | tail -n 1)" ]]
+}
+
 setting() { sed -n "/^run:/,\$ s/^  $1: \([^ ]*\).*/\1/p" "$config"; } # KEY: its value in the section run
 is_running() { [[ " ${running[*]} " == *" $1 "* ]]; }                   # NAME
 
@@ -94,6 +102,7 @@ while is_running "$consumer" || is_running beam_coordinator; do
     unset "running[$pid]"
     case $name:$status in
       *:0) ;;
+      beam_coordinator:1) fell_short || on_failure "$name" "$status" ;;
       beam_coordinator:3) tail -n 1 "$logs/$name.log" ;; # the data are whole, but units of work were given up
       *) on_failure "$name" "$status" ;;
     esac
@@ -102,4 +111,9 @@ while is_running "$consumer" || is_running beam_coordinator; do
   # The consumer's last acknowledgements may be lost. The coordinator then waits in vain.
   if ((SECONDS > ${deadline:=$((SECONDS + 5))})); then break; fi
 done
+lacks=$(shortfalls)
+if [[ $lacks ]]; then
+  echo "$lacks"
+  stop 1
+fi
 stop 0

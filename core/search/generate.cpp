@@ -71,6 +71,7 @@ GenerationReport generate(const tasks::Task& task, const SearchConfig& config, s
   });
   GenerationReport report{run.data.coverage().figures(), std::move(run.stats)};
   set_nodes(report, task, std::move(run.nodes));
+  set_shortfalls(report, config);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   report.generate_wall_s = wall.count();
   report.generate_cpu_s = threads::process_cpu_s() - cpu_before;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/search/coverage.hpp"
+#include "core/search/search_config.hpp"
 #include "core/search/search_stats.hpp"
 #include "core/world/pose.hpp"
 
@@ -26,10 +27,15 @@ struct GenerationReport {
   double generate_wall_s = 0.0;
   double generate_cpu_s = 0.0;  // of this process alone, not of workers
   std::vector<ReportNode> nodes = {};
+  std::vector<std::string> shortfalls = {};  // see set_shortfalls()
 };
 
 /// Writes the nodes, the number of trees and start_region_depth into `report`.
 void set_nodes(GenerationReport& report, const tasks::Task& task, std::vector<ReportNode> nodes);
+
+/// Writes into `report`, a sentence each, what a search that has ended did not find: a step that
+/// moves an object, as many transitions as `config` asks for. Programs then end with status 1.
+void set_shortfalls(GenerationReport& report, const SearchConfig& config);
 
 /// Returns the report as JSON text, one flat object. `statuses` becomes one key per SolveStatus,
 /// iterations and replay gaps become medians and 90th percentiles.

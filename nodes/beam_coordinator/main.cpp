@@ -3,11 +3,13 @@
 // Generates the transitions of the run named RUN with the workers and the server on the bus. Writes
 // FOLDER/generation.json. Ends when all living consumers of the transition stream, and at least
 // CONSUMERS (default 1), have all of it. CONFIG.yaml is the resolved configuration of the run. Exit
-// status 3 if the transitions are complete but units of work were skipped.
+// status 1 if the search fell short, as the last lines say, 3 if the transitions are complete but
+// units of work were skipped.
 
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 
 #include "nodes/beam_coordinator/atomic_file.hpp"
 #include "nodes/beam_coordinator/coordinator_node.hpp"
@@ -40,13 +42,17 @@ int run(const program::Words& words) {
     node.drain(consumers);
   }
   program::say("ends");
-  if (program::stop_signal()) return 128 + program::stop_signal();
-  if (node.given_up() == 0) return 0;
-  std::fprintf(stderr,
-               "rtg_beam_coordinator: %ld units of work were skipped, because each of them killed "
-               "or stalled several workers\n",
-               node.given_up());
-  return 3;
+  if (!report || program::stop_signal()) return 128 + program::stop_signal();
+  if (node.given_up() > 0)
+    std::fprintf(
+        stderr,
+        "rtg_beam_coordinator: %ld units of work were skipped, because each of them killed "
+        "or stalled several workers\n",
+        node.given_up());
+  for (const std::string& shortfall : report->shortfalls)
+    std::fprintf(stderr, "rtg_beam_coordinator: %s\n", shortfall.c_str());
+  if (!report->shortfalls.empty()) return 1;
+  return node.given_up() > 0 ? 3 : 0;
 }
 
 }  // namespace

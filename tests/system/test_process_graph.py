@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -23,6 +24,8 @@ RRBS = (
     "search.transitions=300",
     "search.breadth=4",
 )
+# Falls short.
+SHORT = ("search.depth=2", "search.breadth=1")
 # On the server alone.
 FORWARD = ("search.generator=forward", "search.transitions=800")
 SCATTER = ("search.generator=scatter", "search.transitions=800")
@@ -102,6 +105,20 @@ def test_the_shell_script(net: network.Network, tmp_path: Path, tiny: bytes) -> 
         "rtg_beam_coordinator: ends",
     ]
     assert said["recorder"][-1] == "recorder: ends, 0 transitions lost"
+
+
+def test_a_search_that_falls_short_ends_the_script_with_status_1(
+    net: network.Network, tmp_path: Path
+) -> None:
+    graph = Graph(net, tmp_path, *SHORT)
+    script = net.start([paths.ROOT / "graph.sh", tmp_path, "recorder"])
+    assert script.stdout is not None
+    (line,) = script.stdout.read().splitlines()
+    assert re.match(r"the search \(naive\) found \d+ transitions of the 2,000 asked for ", line)
+    assert script.wait(PATIENCE) == 1
+    said = (tmp_path / "logs" / "beam_coordinator.log").read_text().splitlines()
+    assert said[-2:] == ["rtg_beam_coordinator: ends", f"rtg_beam_coordinator: {line}"]
+    assert graph.transitions() == generated_in_process(tmp_path / "direct.npz", *SHORT)
 
 
 @pytest.mark.parametrize("words", [RRBS, FORWARD, SCATTER], ids=["rrbs", "forward", "scatter"])

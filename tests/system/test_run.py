@@ -155,6 +155,20 @@ def test_the_written_configuration_makes_the_same_run(in_process, tmp_path):
     assert {path.name for path in again.iterdir()} >= COMMON_FILES
 
 
+@pytest.mark.parametrize("mode", [(), ("--in-process",)], ids=["over_lcm", "in_process"])
+def test_a_search_that_falls_short_has_results_and_says_so_once(tmp_path, mode):
+    folder = tmp_path / "run"
+    short = ("--set", "search.depth=2", "--set", "search.breadth=1")
+    done = run(TINY, *short, "--no-train", *mode, "--out", folder)
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert re.match(
+        r"rtg: the search \(naive\) found \d+ transitions of the 2,000 asked for ", line
+    )
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["defects"] == [line.removeprefix("rtg: ")]
+
+
 def kill(folder, program):
     """Sends SIGKILL to the processes of a run whose words contain `program`; there must be one."""
     victims = [pid for pid, words in processes_of(folder).items() if program in words]

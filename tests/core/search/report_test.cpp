@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tests/support/gathering.hpp"
 
 namespace rtg::search {
@@ -29,6 +33,7 @@ GenerationReport filled() {
   r.stats.replay_cpu_s = 41.5;
   r.generate_wall_s = 42.5;
   r.generate_cpu_s = 43.5;
+  r.shortfalls = {"too few", "none moves"};
   r.nodes = {{{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 7, 8}, {{{-0.5, 0.0, 0.5}}, 9, 50}};
   return r;
 }
@@ -47,6 +52,7 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
       R"("pushing_iterations_median":34.0,"pushing_iterations_p90":35.0,)"
       R"("replay_gap_median":0.0625,"replay_gap_p90":0.375,)"
       R"("reverse_cpu_s":40.5,"replay_cpu_s":41.5,"generate_wall_s":42.5,"generate_cpu_s":43.5,)"
+      R"("shortfalls":["too few","none moves"],)"
       R"("replay_gaps":[0.0625,0.03125,0.375],"nodes":[)"
       R"({"poses":[[1.0,2.0,3.0],[4.0,5.0,6.0]],"depth":7,"tree":8},)"
       R"({"poses":[[-0.5,0.0,0.5]],"depth":9,"tree":50}]})");
@@ -75,10 +81,49 @@ TEST(Report, OfNodesCountsTreesAndTheLeastDepthInTheStartRegionButForGoals) {
   EXPECT_EQ(report.trees, 3);
 }
 
+TEST(Report, TellsThatNoStepMovesAnObject) {
+  GenerationReport report;
+  report.coverage.transitions = 7;
+  SearchConfig config;
+  config.transitions = 7;
+  const auto moves = [&](Generator generator, double contact_share, std::vector<int> pushing) {
+    config.generator = generator;
+    report.coverage.contact_share = contact_share;
+    report.stats.pushing_iterations = std::move(pushing);
+    set_shortfalls(report, config);
+    return report.shortfalls.empty();
+  };
+  // A branch may move an object though no reverse step does.
+  EXPECT_FALSE(moves(Generator::kRrbs, 0.1, {}));
+  EXPECT_EQ(report.shortfalls,
+            std::vector<std::string>{
+                "the search (rrbs) found no step that moves an object, see generation.json"});
+  EXPECT_TRUE(moves(Generator::kRrbs, 0.1, {3}));
+  EXPECT_FALSE(moves(Generator::kNaive, 0.0, {3}));
+  EXPECT_TRUE(moves(Generator::kNaive, 0.1, {}));
+}
+
+TEST(Report, TellsThatFewerTransitionsWereFoundThanAskedFor) {
+  GenerationReport report;
+  report.stats.pushing_iterations = {3};
+  SearchConfig config;
+  config.transitions = 1234567;
+  for (const auto& [found, words] : {std::pair(0L, "0"), {999L, "999"}, {1021L, "1,021"}}) {
+    report.coverage.transitions = found;
+    set_shortfalls(report, config);
+    ASSERT_EQ(report.shortfalls.size(), 1U);
+    EXPECT_EQ(report.shortfalls[0],
+              "the search (rrbs) found " + std::string(words) +
+                  " transitions of the 1,234,567 asked for and then nothing more, see "
+                  "generation.json; a wider one may find more (search.breadth, "
+                  "search.gap_tolerance)");
+  }
+}
+
 TEST(Report, OfNothingHasEmptyListsAndNoDepth) {
   const std::string text = to_json({});
   EXPECT_NE(text.find(R"("start_region_depth":-1,)"), std::string::npos);
-  EXPECT_TRUE(text.ends_with(R"("replay_gaps":[],"nodes":[]})"));
+  EXPECT_TRUE(text.ends_with(R"("shortfalls":[],"replay_gaps":[],"nodes":[]})"));
 }
 
 }  // namespace

@@ -13,6 +13,11 @@ CONFIG = "search:\n  workers_: 9\nrun:\n  workers: 2  # reverse workers\n  recor
 # By name: what a program does. The trainer and the recorder are modules of "python".
 PATIENT = "trap 'exit 143' TERM; while :; do sleep 0.05; done"
 DONE = 'echo "{}" > "$3/generation.json"'
+# Writes a generation.json in which the search lacks two things, with other keys around them.
+SHORT = """cat > "$3/generation.json" <<'END'
+{"transitions":3,"shortfalls":["no step, see X","3 of 9 (a.b, c.d)"],"replay_gaps":[],"nodes":[]}
+END
+"""
 PROGRAMS = {
     "rtg_forward_sim_server": PATIENT,
     "rtg_reverse_worker": PATIENT,
@@ -152,6 +157,28 @@ def test_a_coordinator_that_gave_units_up_lets_the_trainer_finish(graph):
     graph.let("python", "sleep 1; echo learned")
     assert graph.run() == (0, "2 units\n")
     assert graph.log("trainer") == "learned\n"
+
+
+def test_a_search_that_falls_short_lets_the_trainer_finish_and_ends_with_status_1(graph):
+    words = "no step, see X", "3 of 9 (a.b, c.d)"
+    told = "; ".join(f'echo "rtg_beam_coordinator: {line}"' for line in ("ends", *words))
+    graph.let("rtg_beam_coordinator", f"{SHORT}{told}; exit 1")
+    graph.let("python", "sleep 1; echo learned")
+    assert graph.run() == (1, f"{words[0]}\n{words[1]}\n")
+    assert graph.log("trainer") == "learned\n"
+
+
+def test_a_search_that_fell_short_is_told_though_the_coordinator_waits_in_vain(graph):
+    graph.let("rtg_beam_coordinator", f"{SHORT}{PATIENT}")
+    assert graph.run() == (1, "no step, see X\n3 of 9 (a.b, c.d)\n")
+
+
+def test_a_coordinator_that_fails_before_all_have_the_data_ends_the_run(graph):
+    graph.let("rtg_beam_coordinator", f"{SHORT}echo no memory; exit 1")
+    graph.let("python", PATIENT)
+    status, out = graph.run()
+    assert status == 1
+    assert out.endswith("no memory\n")
 
 
 def test_a_coordinator_that_fails_after_the_search_ends_the_run(graph):

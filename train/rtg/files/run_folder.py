@@ -55,8 +55,9 @@ SUMMARY_KEYS = (
     "q_spread",
     "lost_transitions",
 )
-# Keys of generation.json that hold the data of pictures. These are too long for summary.json.
-_SAMPLE_KEYS = ("replay_gaps", "nodes")
+# Keys of generation.json that summary.json leaves out: the data of pictures, which are too long,
+# and what it has among "defects".
+_LEFT_OUT = ("replay_gaps", "nodes", "shortfalls")
 
 
 @contextlib.contextmanager
@@ -157,7 +158,7 @@ def summary(
     """
     generation = read_json(run / "generation.json") if config.train.offline else {}
     known: dict[str, Any] = {
-        **{key: value for key, value in generation.items() if key not in _SAMPLE_KEYS},
+        **{key: value for key, value in generation.items() if key not in _LEFT_OUT},
         **measured,
         **read_json(run / "training.json"),
         "task": config.task.name,
