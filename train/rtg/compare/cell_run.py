@@ -13,7 +13,6 @@ from typing import Any
 
 from rtg import _core
 from rtg.compare.cells import Cell
-from rtg.compare.methods import method_flags
 from rtg.compare.reproduce_args import ReproduceArgs
 from rtg.errors import UserError
 from rtg.files import run_folder
@@ -132,7 +131,7 @@ def prepare_runs(args: ReproduceArgs) -> list[CellRun]:
 
 def _flags(cell: Cell) -> list[str]:
     flags = ["--in-process", "--workers", "1", "--seed", str(cell.seed)]
-    return [*flags, *method_flags(cell.method)]
+    return [*flags, "--method", cell.method]
 
 
 def _arguments(args: ReproduceArgs, cell: Cell) -> tuple[str, ...]:

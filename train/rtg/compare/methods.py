@@ -1,4 +1,4 @@
-"""The tasks and methods of comparisons, and the flags that select a method."""
+"""The tasks and methods of comparisons."""
 
 from __future__ import annotations
 
@@ -8,8 +8,3 @@ TASKS = ("gathering", "sorting", "art_manip")
 METHODS = _core.METHODS
 REFERENCE = "ddqn_rtg"  # the method with which the others are compared
 RANDOMISED = "ddqn_rtg_dr"  # starts in a wider region, so its success is not comparable
-
-
-def method_flags(method: str) -> tuple[str, ...]:
-    """Returns the flags of `rtg run` that select the method."""
-    return ("--method", method)

@@ -13,7 +13,7 @@ from pathlib import Path
 from rtg import paths
 from rtg.compare.ablations import ablations
 from rtg.compare.cells import Cell
-from rtg.compare.methods import METHODS, REFERENCE, TASKS, method_flags
+from rtg.compare.methods import METHODS, REFERENCE, TASKS
 from rtg.errors import UserError
 from rtg.run.run_args import Override, Parser, add_set, task_file
 from rtg.run.run_args import parse as parse_run
@@ -202,7 +202,7 @@ def _settings(args: argparse.Namespace) -> tuple[str, ...]:
 
 def _common(args: argparse.Namespace, method: str) -> list[Override]:
     """Returns the overrides that all runs of a method share."""
-    of_method = parse_run(method_flags(method)).overrides
+    of_method = parse_run(["--method", method]).overrides
     return [*of_method, *(Override(f"--set {setting}", setting) for setting in _settings(args))]
 
 
