@@ -75,9 +75,9 @@ def test_the_interval_of_the_improvement_draws_seeds_of_both():
 
 
 def test_a_bar_is_reached_at_the_first_evaluation_that_has_it():
-    at, success = np.array([5.0, 10.0, 15.0]), np.array([0.5, 0.7, 0.6])
-    assert first_reach(at, success, 0.7) == 10
-    assert first_reach(at, success, 0.71) is None
+    success = np.array([0.5, 0.7, 0.6, 0.7])
+    assert first_reach(success, 0.7) == 1
+    assert first_reach(success, 0.71) is None
 
 
 def test_a_course_that_ends_early_keeps_its_last_value():

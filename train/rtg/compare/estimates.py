@@ -75,13 +75,13 @@ def improvement_interval(scores: Scores, others: Scores) -> tuple[float, float] 
     )
 
 
-def first_reach(interactions: Floats, success: Floats, threshold: float) -> int | None:
-    """Returns the interactions at the first evaluation with `success` >= `threshold`.
+def first_reach(success: Floats, threshold: float) -> int | None:
+    """Returns the index of the first evaluation with `success` >= `threshold`; None if none has.
 
-    Returns None if there is none. `interactions` and `success`: [evaluations].
+    `success`: [evaluations].
     """
     reached = np.flatnonzero(success >= threshold)
-    return int(interactions[reached[0]]) if len(reached) else None
+    return int(reached[0]) if len(reached) else None
 
 
 def carried_forward(interactions: Floats, values: Floats, grid: Floats) -> Floats:

@@ -12,15 +12,15 @@ from rtg.compare import report_tables as tables
 from rtg.compare.cells import Grid
 from rtg.compare.estimates import RESAMPLES
 from rtg.compare.methods import RANDOMISED, REFERENCE
-from rtg.compare.run_results import Comparison, RunResult
+from rtg.compare.run_results import THRESHOLD, Comparison, RunResult
 from rtg.errors import UserError
 
-_LEGEND = """\
+_LEGEND = f"""\
 Means ± standard deviations over the seeds. **success**: of the final greedy policy from held-out
 starts, objects jittered by `task.start_jitter`, that nothing was chosen by; **length**: pushes of
 its episodes, failures included; **roll-outs**: of the last 100 training episodes from the starts of
 the task, exploration included; **at ⅓**: greedy success at a third of the budget, from other
-held-out starts, or the final one of a run that had ended by then; **to 0.70**, **to 0.95**:
+held-out starts, or the final one of a run that had ended by then; **to 0.70**, **to {THRESHOLD}**:
 thousand interactions until the first evaluation with that greedy success ("2 of 3": so many of the
 seeds ever), and **pushes** (in thousands) and **CPU s** of the whole run until then. Pushes are
 those of the simulator for data, starts, interactions and plans, those of evaluations left out; CPU
@@ -51,9 +51,10 @@ _DATA = """\
 **branches**: outcomes of other headings in the same states; **headings per state**: distinct ones
 stored from a state; **contact share**: of the transitions, those that move an object; **start
 region**: transitions that begin there; **trees**: how many were grown; **depth**: pushes of the
-shortest plan of a tree from the start region; **replay gap**: how far the replay of a reverse step
-ends from where it began, over all candidates replayed; **rank correlation of Q**: Spearman's, of
-the learner's final Q with the simulator over all headings of a stored state, mean over some hundred
+shortest plan of a tree from the start region; **replay gap**: distance between the state in which
+the push of a reverse step was to end and that in which it ends in the simulator, mean over the
+bodies; quantiles over all candidates replayed; **rank correlation of Q**: Spearman's, of the
+learner's final Q with the simulator over all headings of a stored state, mean over some hundred
 states; **error**: root mean square of the difference; **spread**: standard deviation of the
 simulator's values over the headings of a state, mean over the states. States are those of a run's
 own data and values beyond a success what its own Q says, so that these three judge data of one

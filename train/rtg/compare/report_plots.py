@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rtg.compare.estimates import carried_forward
 from rtg.compare.methods import METHODS
 from rtg.compare.report_tables import mean_success
-from rtg.compare.run_results import Comparison, RunResult
+from rtg.compare.run_results import THRESHOLD, Comparison, RunResult
 from rtg.pictures import plots
 
 Floats = NDArray[np.float64]
@@ -55,7 +55,7 @@ _PANELS = (
 )
 _SHARE_COLUMNS = ("success_rate", "rollout_success")
 _MAX_CURVES = len(METHODS)
-_THRESHOLD, _THRESHOLD_COLOUR = 0.95, "#8a8d93"
+_THRESHOLD_COLOUR = "#8a8d93"
 _RIGHT_ALIGNED: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8}
 
 
@@ -208,7 +208,7 @@ def costs(path: Path, comparison: Comparison, task: str) -> None:
                 values = _aligned_curves(runs, "success_rate")[1]
                 shown = mean_cost > 0.0
                 _draw_curve(axis, (mean_cost[shown], values[:, shown]), True, styles[label])
-            axis.axhline(_THRESHOLD, color=_THRESHOLD_COLOUR, lw=0.8, zorder=0)
+            axis.axhline(THRESHOLD, color=_THRESHOLD_COLOUR, lw=0.8, zorder=0)
             axis.set(xscale="log", xlabel=name, ylim=(-0.03, 1.03))
             axis.xaxis.set_major_formatter(EngFormatter(sep=""))
         axes[0].set_ylabel("greedy success, held-out starts")
@@ -249,7 +249,7 @@ def _swept(comparison: Comparison, task: str) -> dict[str, Sequence[RunResult]]:
 
 
 def sweep(path: Path, comparison: Comparison, task: str) -> None:
-    """Plots the final success and the interactions to success 0.95 for each swept setting.
+    """Plots the final success and the interactions to THRESHOLD for each swept setting.
 
     A dot is a run, a bar the mean.
     """
@@ -274,7 +274,7 @@ def sweep(path: Path, comparison: Comparison, task: str) -> None:
         axes[0].set_yticks(range(len(rows)), list(rows), fontsize=8)
         axes[0].set(title="greedy success at the end", xlim=(-0.03, 1.03))
         axes[0].set_ylim(len(rows) - 0.5, -0.5)
-        axes[1].set_title("interactions / 1000 to 0.95")
+        axes[1].set_title(f"interactions / 1000 to {THRESHOLD}")
         axes[1].set_xlim(left=0.0)
         title = f"{task}: a dot per seed, a bar for their mean"
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from rtg.compare.methods import METHODS, RANDOMISED, REFERENCE
 from rtg.compare.report_tables import NO_VALUE, spread, table, thousands
-from rtg.compare.run_results import COSTS, Comparison
+from rtg.compare.run_results import COSTS, THRESHOLD, Comparison
 
 Floats = NDArray[np.float64]
 
-THRESHOLD = 0.95  # greedy success to reach
 # Methods that learn from data of a source other than reverse simulation.
 SOURCES = ("ddqn_random", "ddqn_scatter", "ddqn_naive", "ddqn_forward")
 # Methods whose costs are shown as multiples of those of the reference.
@@ -26,15 +25,16 @@ Costs up to the first evaluation with a greedy success of {THRESHOLD} or more: i
 learner; pushes and CPU seconds of the whole run, generation included. **fewest**: of all
 methods whose every seed gets there (`{RANDOMISED}` aside, whose starts are others; interactions are
 compared among those that make any). Other columns: multiples of what `{REFERENCE}` needs, or how
-many seeds get there. `planner` needs as much again for every further start: its costs are those of
-one evaluation. Reverse simulation is the source of `{REFERENCE}`, whose backward steps a solver
-finds; those of `ddqn_naive` are of kinematics alone. Compared are the sources that were run of
+many seeds get there. `planner` searches anew from every start: its costs are the sum over all
+held-out starts of the evaluation (`train.eval_episodes`, 100 by default); divide them for one.
+Reverse simulation is the source of `{REFERENCE}`, whose backward steps a solver finds; those of
+`ddqn_naive` are of kinematics alone. Compared are the sources that were run of
 {", ".join(f"`{method}`" for method in SOURCES)}. Reverse simulation is the **better** one if every
 seed of `{REFERENCE}` needs less than every seed of the others named, **not** the better one if
 every seed of a source named needs less than every seed of `{REFERENCE}`, **level** if seeds of
-`{REFERENCE}` and of the sources named overlap; **none**: no seed of any source gets there. A seed
-that does not counts as more than any that does, a source none of whose seeds does as more than any
-seed of `{REFERENCE}`, too."""
+`{REFERENCE}` and of the sources named overlap, **unable** to get there if no seed of any source
+does. A seed that does not counts as more than any that does, a source none of whose seeds does as
+more than any seed of `{REFERENCE}`, too."""
 
 
 def _costs(comparison: Comparison, task: str, method: str, cost: str) -> Floats:
@@ -104,7 +104,7 @@ _VERDICT_TEXTS = {
     "better": "better {costs} than {methods}",
     "not": "not better {costs} than {methods}",
     "level": "level {costs} with {methods}",
-    "none": f"no more than {{methods}} enough for {THRESHOLD} {{costs}}",
+    "unable": f"unable to reach {THRESHOLD} in any seed, like {{methods}}",
 }
 
 
@@ -115,7 +115,7 @@ def _verdict(comparison: Comparison, task: str, cost: str) -> _Verdict:
     if len(reference_costs) == 0 or not others:
         return _Verdict("")
     if not np.isfinite([*reference_costs, *np.concatenate(list(others.values()))]).any():
-        return _Verdict("none", list(others))
+        return _Verdict("unable", list(others))
     if less := [source for source, costs in others.items() if max(costs) < min(reference_costs)]:
         return _Verdict("not", less)
     level = [

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rtg.compare import estimates
 from rtg.compare.methods import METHODS, RANDOMISED, REFERENCE
-from rtg.compare.run_results import Comparison, RunResult
+from rtg.compare.run_results import THRESHOLD, Comparison, RunResult
 
 Floats = NDArray[np.float64]
 NO_VALUE = "–"
@@ -86,9 +86,9 @@ _RESULT_COLUMNS: tuple[Column, ...] = (
     ("roll-outs", "rollout_success", ".2f", _unchanged),
     ("at ⅓", "success_at_third", ".2f", _unchanged),
     ("to 0.70", "interactions_to_70", "count", thousands),
-    ("to 0.95", "interactions_to_95", "count", thousands),
-    ("pushes to 0.95", "pushes_to_95", "count", thousands),
-    ("CPU s to 0.95", "cpu_s_to_95", "count", _unchanged),
+    (f"to {THRESHOLD}", "interactions_to_95", "count", thousands),
+    (f"pushes to {THRESHOLD}", "pushes_to_95", "count", thousands),
+    (f"CPU s to {THRESHOLD}", "cpu_s_to_95", "count", _unchanged),
 )
 _COST_COLUMNS: tuple[Column, ...] = (
     ("transitions", "transitions", "count", thousands),

@@ -22,6 +22,7 @@ from rtg.run.results import learning_curve
 Floats = NDArray[np.float64]
 
 COSTS = ("interactions", "pushes", "cpu_s")  # [1], [1], [s]; columns of a curve
+THRESHOLD = 0.95  # greedy success that solves a task; the costs "..._to_95" are those to reach it
 CURVE_COLUMNS = ("success_rate", "rollout_success", "episode_length_mean", "episode_return_mean")
 
 
@@ -85,7 +86,7 @@ class RunResult:
             **{name: self.summary.get(name) for name in names},
             "success_at_third": self.success_at_third(),
             "interactions_to_70": self.cost_to_reach(0.70),
-            **{f"{cost}_to_95": self.cost_to_reach(0.95, cost) for cost in COSTS},
+            **{f"{cost}_to_95": self.cost_to_reach(THRESHOLD, cost) for cost in COSTS},
             **{name: self.summary.get(name) for name in (*of_generation, *of_learner)},
             **{f"whole_{cost}": self.total_cost(cost) for cost in COSTS[1:]},
             "commit": self.commit,
@@ -117,8 +118,7 @@ class RunResult:
         """
         if not self.curve:
             return None
-        success = self.curve["success_rate"]
-        first = first_reach(np.arange(float(len(success))), success, threshold)
+        first = first_reach(self.curve["success_rate"], threshold)
         return None if first is None else costs(self.curve, cost)[first]
 
 
