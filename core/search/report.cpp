@@ -38,7 +38,7 @@ nlohmann::ordered_json to_json(std::span<const ReportNode> nodes) {
   for (const ReportNode& n : nodes) {
     nlohmann::ordered_json poses = nlohmann::ordered_json::array();
     for (const Pose& p : n.poses) poses.push_back({p.x, p.y, p.theta});
-    out.push_back({{"poses", poses}, {"depth", n.depth}, {"tree", n.tree}});
+    out.push_back({{"poses", poses}, {"depth", n.depth}});
   }
   return out;
 }

@@ -54,8 +54,8 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
       R"("reverse_cpu_s":40.5,"replay_cpu_s":41.5,"generate_wall_s":42.5,"generate_cpu_s":43.5,)"
       R"("shortfalls":["too few","none moves"],)"
       R"("replay_gaps":[0.0625,0.03125,0.375],"nodes":[)"
-      R"({"poses":[[1.0,2.0,3.0],[4.0,5.0,6.0]],"depth":7,"tree":8},)"
-      R"({"poses":[[-0.5,0.0,0.5]],"depth":9,"tree":50}]})");
+      R"({"poses":[[1.0,2.0,3.0],[4.0,5.0,6.0]],"depth":7},)"
+      R"({"poses":[[-0.5,0.0,0.5]],"depth":9}]})");
 }
 
 TEST(Report, WithoutReverseStepsSaysNothingOfThem) {
