@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 #include <utility>
 
 #include "core/search/beam_search.hpp"
@@ -35,22 +36,6 @@ void grow_tree(Generation& run, int number) {
 }
 
 }  // namespace
-
-void Generation::repeat(const std::function<void(int)>& attempt) {
-  constexpr int kMaxBarren = 8;
-  for (int number = 0, barren = 0; barren < kMaxBarren && !data.full() && !cancelled(); ++number) {
-    const long before = data.coverage().transitions();
-    attempt(number);
-    barren = data.coverage().transitions() > before ? 0 : barren + 1;
-  }
-}
-
-void Generation::show(std::string phase, int layer, int depth) const {
-  if (!seams.progress) return;
-  const Coverage::Figures c = data.coverage().figures();
-  seams.progress({std::move(phase), layer, depth, c.transitions, config.transitions,
-                  c.contact_share, c.start_region_transitions});
-}
 
 GenerationReport generate(const tasks::Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams) {

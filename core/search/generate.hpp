@@ -12,8 +12,8 @@ namespace rtg::search {
 /// Generates a data set and returns the report. By default it runs Algorithm 1: trees of reverse
 /// steps grow from goal states towards start states. A step is stored if its plan succeeds in the
 /// forward simulator. It is stored as simulated there, followed by its branches (branches.hpp).
-/// Other values of config.generator: see forward_search.hpp and walks.hpp. A pure function of
-/// `task`, `config`, `seed` and the functions in `seams`.
+/// Other values of config.generator: see forward_search.hpp and walks.hpp. Apart from the times in
+/// the report, a pure function of `task`, `config`, `seed` and the functions in `seams`.
 GenerationReport generate(const tasks::Task& task, const SearchConfig& config, std::uint64_t seed,
                           const GenerationSeams& seams);
 
