@@ -8,7 +8,6 @@
 
 #include "core/search/beam_selection.hpp"
 #include "core/search/goal_roots.hpp"
-#include "core/search/plan.hpp"
 #include "core/search/start_distance.hpp"
 
 namespace rtg::search {
@@ -36,16 +35,18 @@ void BeamSearch::make_roots(const ReplayBatch& replay, SearchStats& stats) {
 
 std::vector<Transition> BeamSearch::grow(const SolveBatch& solve, const ReplayBatch& replay,
                                          SearchStats& stats) {
-  std::vector<Predecessor> found = best_to_replay(reverse_layer(solve, stats));
-  found = replay_predecessors(std::move(found), replay);
-  for (const Predecessor& p : found) stats.gaps.push_back(static_cast<float>(p.mean_error));
-  std::erase_if(found,
-                [this](const Predecessor& p) { return p.max_error > config_.gap_tolerance; });
-  return verify_and_select(std::move(found), replay);
+  std::vector<Predecessor> steps = reverse_layer(solve, stats);
+  steps = best_to_replay(std::move(steps));
+  steps = replay_predecessors(std::move(steps), config_.gap_tolerance, replay, stats);
+  std::unordered_set<std::uint64_t> seen = seen_;  // a copy, as not all of these steps are kept
+  steps = best_of(std::move(steps), config_.plans_per_node, seen);
+  const std::vector<PlanOutcome> outcomes = simulate_plans(steps, replay);
+  std::vector<Transition> stored = to_store(outcomes);
+  make_next_beam(std::move(steps), outcomes);
+  return stored;
 }
 
-/// Solves for the predecessors of every node of the beam under every action. Sets
-/// Predecessor::parent to the index of the node.
+/// Solves for the predecessors of every node of the beam under every action.
 std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
                                                    SearchStats& stats) const {
   std::vector<reverse::ReverseJob> jobs;
@@ -53,13 +54,14 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
     for (int action = 0; action < task_.push.headings; ++action)
       jobs.push_back({node(k).poses, action});
   const std::vector<reverse::ReverseResult> answers = solve(jobs);
+  std::vector<Predecessor> found;
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     const std::vector<Poses>& starts = answers[k].predecessors;
     stats.count(answers[k], !starts.empty() && objects_moved(starts[0], jobs[k].end) > 0);
+    const int parent = beam_[k / static_cast<std::size_t>(task_.push.headings)];
+    for (Predecessor& p : proposals(task_, jobs[k], answers[k], parent, stats))
+      found.push_back(std::move(p));
   }
-  std::vector<Predecessor> found = proposals(task_, jobs, answers, stats);
-  for (Predecessor& p : found)
-    p.parent = beam_[static_cast<std::size_t>(p.parent / task_.push.headings)];
   return found;
 }
 
@@ -91,7 +93,7 @@ std::vector<Predecessor> BeamSearch::best_to_replay(std::vector<Predecessor> all
 /// Returns the steps that select_beam() selects, best first: at most `times` · config.breadth.
 /// Leaves out steps whose start is in a cell of `seen` and adds the cells of the others.
 std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int times,
-                                             std::unordered_set<std::uint64_t>& seen) {
+                                             std::unordered_set<std::uint64_t>& seen) const {
   std::vector<BeamEntry> entries;
   for (const Predecessor& p : steps)
     entries.push_back(
@@ -123,45 +125,48 @@ Poses BeamSearch::with_drawn_start(const Poses& poses) {
 
 /// Replaces the start of each step by with_drawn_start() and simulates the plans from there. If no
 /// plan succeeds, restores the starts and simulates the plans from these. That can happen if a goal
-/// region contains the start position of an object. Returns as carry_out().
-std::vector<std::optional<std::vector<Transition>>> BeamSearch::simulate_plans(
-    std::vector<Predecessor>& steps, const ReplayBatch& replay) {
+/// region contains the start position of an object.
+std::vector<PlanOutcome> BeamSearch::simulate_plans(std::vector<Predecessor>& steps,
+                                                    const ReplayBatch& replay) {
   std::vector<Poses> own;
   std::vector<Plan> plans;
   for (Predecessor& p : steps) {
     own.push_back(std::exchange(p.start, with_drawn_start(p.start)));
     plans.push_back({p.start, plan(p)});
   }
-  auto outcomes = carry_out(task_, plans, replay);
+  std::vector<PlanOutcome> outcomes = carry_out(task_, plans, replay);
   if (std::ranges::any_of(outcomes, [](const auto& o) { return o.has_value(); })) return outcomes;
   for (std::size_t k = 0; k < steps.size(); ++k) steps[k].start = plans[k].start = own[k];
   return carry_out(task_, plans, replay);
 }
 
-std::vector<Transition> BeamSearch::verify_and_select(std::vector<Predecessor> replayed,
-                                                      const ReplayBatch& replay) {
-  std::unordered_set<std::uint64_t> seen = seen_;
-  std::vector<Predecessor> tried = best_of(std::move(replayed), config_.plans_per_node, seen);
-  auto outcomes = simulate_plans(tried, replay);
+/// Returns the first transition of each plan that succeeds; of some plans all of them.
+std::vector<Transition> BeamSearch::to_store(std::span<const PlanOutcome> outcomes) {
+  std::vector<Transition> stored;
+  for (const PlanOutcome& outcome : outcomes) {
+    if (!outcome || outcome->empty()) continue;
+    const bool whole = rng_.uniform(0.0, 1.0) < config_.whole_plan_share;
+    stored.insert(stored.end(), outcome->begin(), whole ? outcome->end() : outcome->begin() + 1);
+  }
+  return stored;
+}
+
+/// Makes the best of the steps whose plan succeeds the next beam.
+void BeamSearch::make_next_beam(std::vector<Predecessor> steps,
+                                std::span<const PlanOutcome> outcomes) {
   std::vector<Predecessor> good;
-  std::vector<Transition> steps;
-  for (std::size_t k = 0; k < tried.size(); ++k) {
+  for (std::size_t k = 0; k < steps.size(); ++k) {
     if (!outcomes[k]) continue;
-    std::vector<Transition>& followed = *outcomes[k];
-    Predecessor& p = tried[k];
-    p.depth = static_cast<int>(followed.size());
-    if (!followed.empty()) p.moved = objects_moved(p.start, followed.front().next);
+    Predecessor& p = steps[k];
+    p.depth = static_cast<int>(outcomes[k]->size());
+    if (p.depth > 0) p.moved = objects_moved(p.start, outcomes[k]->front().next);
     good.push_back(std::move(p));
-    if (!followed.empty() && rng_.uniform(0.0, 1.0) >= config_.whole_plan_share) followed.resize(1);
-    steps.insert(steps.end(), followed.begin(), followed.end());
   }
   beam_.clear();
   for (Predecessor& p : best_of(std::move(good), 1, seen_)) {
     beam_.push_back(static_cast<int>(nodes_.size()));
-    const bool success = p.depth == 0;
-    nodes_.push_back({std::move(p.start), success ? -1 : p.action, p.parent, p.depth});
+    nodes_.push_back({std::move(p.start), p.depth == 0 ? -1 : p.action, p.parent, p.depth});
   }
-  return steps;
 }
 
 double BeamSearch::distance_to_target(const Poses& poses) const {

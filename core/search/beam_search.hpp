@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <unordered_set>
 #include <vector>
 
 #include "core/math/rng.hpp"
+#include "core/search/plan.hpp"
 #include "core/search/predecessor.hpp"
 #include "core/search/search_config.hpp"
 #include "core/search/search_stats.hpp"
@@ -37,16 +37,16 @@ class BeamSearch {
   /// Grows a layer of the tree and returns the transitions to store:
   ///
   ///  1. Solve for the predecessors of every node of the beam under every action.
-  ///  2. Replay the best of them in the simulator. Drop those with `max_error` above
-  ///     config.gap_tolerance.
-  ///  3. Select the best config.plans_per_node · config.breadth of the rest. A plan is such a step
+  ///  2. Keep the best of each node, those whose starts are nearest to the target.
+  ///  3. Replay these in the simulator. Drop those that miss by more than config.gap_tolerance.
+  ///  4. Select the best config.plans_per_node · config.breadth of the rest. A plan is such a step
   ///     followed by the actions of its parent node.
-  ///  4. Simulate each plan. Objects that are near their start poses first move into a random start
+  ///  5. Simulate each plan. Objects that are near their start poses first move into a random start
   ///     (snapped_to_start()). If no plan then succeeds, simulate all plans from the unchanged
   ///     states.
-  ///  5. Return the first transition of each plan that succeeds. For the share
-  ///     config.whole_plan_share of these plans, return all transitions.
-  ///  6. Make the best states from which a plan succeeds the next beam.
+  ///  6. Store the first transition of each plan that succeeds. For the share
+  ///     config.whole_plan_share of these plans, store all transitions.
+  ///  7. Make the best states from which a plan succeeds the next beam.
   ///
   /// No transition begins in a goal state, because episodes end there.
   std::vector<Transition> grow(const SolveBatch& solve, const ReplayBatch& replay,
@@ -61,13 +61,13 @@ class BeamSearch {
  private:
   std::vector<Predecessor> reverse_layer(const SolveBatch& solve, SearchStats& stats) const;
   std::vector<Predecessor> best_to_replay(std::vector<Predecessor> all) const;
-  std::vector<Transition> verify_and_select(std::vector<Predecessor> replayed,
-                                            const ReplayBatch& replay);
   std::vector<Predecessor> best_of(std::vector<Predecessor> steps, int times,
-                                   std::unordered_set<std::uint64_t>& seen);
+                                   std::unordered_set<std::uint64_t>& seen) const;
+  std::vector<PlanOutcome> simulate_plans(std::vector<Predecessor>& steps,
+                                          const ReplayBatch& replay);
+  std::vector<Transition> to_store(std::span<const PlanOutcome> outcomes);
+  void make_next_beam(std::vector<Predecessor> steps, std::span<const PlanOutcome> outcomes);
   std::vector<int> plan(const Predecessor& step) const;
-  std::vector<std::optional<std::vector<Transition>>> simulate_plans(
-      std::vector<Predecessor>& steps, const ReplayBatch& replay);
   Poses with_drawn_start(const Poses& poses);
   double distance_to_target(const Poses& poses) const;
   const Node& node(int k) const { return nodes_[static_cast<std::size_t>(k)]; }

@@ -4,10 +4,9 @@
 
 namespace rtg::search {
 
-std::vector<std::optional<std::vector<Transition>>> carry_out(const tasks::Task& task,
-                                                              std::span<const Plan> plans,
-                                                              const ReplayBatch& replay) {
-  std::vector<std::optional<std::vector<Transition>>> done(plans.size());
+std::vector<PlanOutcome> carry_out(const tasks::Task& task, std::span<const Plan> plans,
+                                   const ReplayBatch& replay) {
+  std::vector<PlanOutcome> done(plans.size());
   std::vector<std::vector<Transition>> steps(plans.size());
   std::vector<std::size_t> going;  // plans that have neither succeeded nor failed
   for (std::size_t k = 0; k < plans.size(); ++k) {

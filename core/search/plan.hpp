@@ -16,12 +16,13 @@ struct Plan {
   std::vector<int> actions;
 };
 
-/// Simulates all plans in parallel, one push of each per call of `replay`. Returns the transitions
-/// of each plan up to the first success. They are empty if the goal holds in the start. Returns
-/// std::nullopt for a plan that does not succeed or has a push that the simulator rejects. The
-/// transitions have Source::kTree.
-std::vector<std::optional<std::vector<Transition>>> carry_out(const tasks::Task& task,
-                                                              std::span<const Plan> plans,
-                                                              const ReplayBatch& replay);
+/// The transitions of a plan up to the first success, with Source::kTree. They are empty if the
+/// goal holds in the start. Nothing if the plan does not succeed or if the simulator rejects a
+/// push.
+using PlanOutcome = std::optional<std::vector<Transition>>;
+
+/// Simulates all plans in parallel, one push of each per call of `replay`.
+std::vector<PlanOutcome> carry_out(const tasks::Task& task, std::span<const Plan> plans,
+                                   const ReplayBatch& replay);
 
 }  // namespace rtg::search

@@ -26,27 +26,25 @@ bool legal_state(const tasks::Task& task, const Poses& poses) {
          !first_overlap(task.scene, poses).has_value();
 }
 
-std::vector<Predecessor> proposals(const tasks::Task& task,
-                                   std::span<const reverse::ReverseJob> jobs,
-                                   std::span<const reverse::ReverseResult> answers,
+std::vector<Predecessor> proposals(const tasks::Task& task, const reverse::ReverseJob& job,
+                                   const reverse::ReverseResult& answer, int parent,
                                    SearchStats& stats) {
   std::vector<Predecessor> out;
-  for (std::size_t k = 0; k < jobs.size(); ++k) {
-    for (const Poses& exact : answers[k].predecessors) {
-      Poses start = to_single(exact);
-      if (!legal_state(task, start)) {
-        ++stats.illegal_starts;
-        continue;
-      }
-      const int moved = objects_moved(start, jobs[k].end);
-      out.push_back({static_cast<int>(k), jobs[k].action, std::move(start), jobs[k].end, moved});
+  for (const Poses& exact : answer.predecessors) {
+    Poses start = to_single(exact);
+    if (!legal_state(task, start)) {
+      ++stats.illegal_starts;
+      continue;
     }
+    const int moved = objects_moved(start, job.end);
+    out.push_back({parent, job.action, std::move(start), job.end, moved});
   }
   return out;
 }
 
 std::vector<Predecessor> replay_predecessors(std::vector<Predecessor> predecessors,
-                                             const ReplayBatch& replay) {
+                                             double tolerance, const ReplayBatch& replay,
+                                             SearchStats& stats) {
   std::vector<ReplayJob> pushes;
   for (const Predecessor& p : predecessors) pushes.push_back({p.start, p.action});
   const std::vector<ReplayResult> results = replay(pushes);
@@ -54,12 +52,13 @@ std::vector<Predecessor> replay_predecessors(std::vector<Predecessor> predecesso
   for (std::size_t k = 0; k < results.size(); ++k) {
     if (!results[k].ok) continue;
     Predecessor& p = predecessors[k];
-    p.mean_error = replay_gap(p.end, results[k].end);
-    for (std::size_t body = 0; body < p.end.size(); ++body)
-      p.max_error =
-          std::max(p.max_error, (p.end[body].position() - results[k].end[body].position()).norm());
-    p.end = results[k].end;
-    p.moved = objects_moved(p.start, p.end);
+    const Poses& end = results[k].end;
+    stats.gaps.push_back(static_cast<float>(replay_gap(p.wanted_end, end)));
+    double error = 0.0;  // largest of a body [m]
+    for (std::size_t body = 0; body < end.size(); ++body)
+      error = std::max(error, (p.wanted_end[body].position() - end[body].position()).norm());
+    if (error > tolerance) continue;
+    p.moved = objects_moved(p.start, end);
     out.push_back(std::move(p));
   }
   return out;

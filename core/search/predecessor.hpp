@@ -10,17 +10,13 @@
 
 namespace rtg::search {
 
-/// A reverse step: by the push `action`, the state `start` should lead to the state `end`. Before
-/// the replay in the simulator, `end` is the final state that the reverse solver was given;
-/// afterwards it is the true outcome.
+/// A reverse step: by the push `action`, the state `start` should lead to the state `wanted_end`.
 struct Predecessor {
-  int parent = 0;  // index of the reverse job; in BeamSearch, of the node it leads to
+  int parent = 0;  // index of the search's node whose state is `wanted_end`
   int action = 0;
   Poses start;
-  Poses end;
-  int moved = 0;                // number of objects that the push moves, objects_moved()
-  double mean_error = 0.0;      // mean replay error over the bodies, replay_gap() [m]
-  double max_error = 0.0;       // largest replay error of a body [m]
+  Poses wanted_end;             // the final state that the reverse solver was given
+  int moved = 0;                // objects_moved() by the push, as last solved or simulated
   double start_distance = 0.0;  // start_distance() of `start`, set by the search
   int depth = 0;                // actions until success, set by the search
 };
@@ -39,18 +35,18 @@ int objects_moved(const Poses& a, const Poses& b);
 /// the arena and without overlaps.
 bool legal_state(const tasks::Task& task, const Poses& poses);
 
-/// Returns a Predecessor for each start in `answers`, rounded to float. answers[k] belongs to
-/// jobs[k]; `end` is the end state of the job. Leaves out starts that are no legal_state() and
-/// counts them as stats.illegal_starts.
-std::vector<Predecessor> proposals(const tasks::Task& task,
-                                   std::span<const reverse::ReverseJob> jobs,
-                                   std::span<const reverse::ReverseResult> answers,
+/// Returns a Predecessor of node `parent` for each start in `answer`, the result of `job`. Starts
+/// are rounded to float. Leaves out those that are no legal_state() and counts them as
+/// stats.illegal_starts.
+std::vector<Predecessor> proposals(const tasks::Task& task, const reverse::ReverseJob& job,
+                                   const reverse::ReverseResult& answer, int parent,
                                    SearchStats& stats);
 
-/// Simulates the push of each predecessor. Sets `end` to the true outcome, and `moved`,
-/// `mean_error` and `max_error` accordingly. Leaves out predecessors whose push the simulator
-/// rejects.
+/// Simulates the push of each predecessor, sets `moved` by its outcome and adds the replay_gap() to
+/// stats.gaps. Leaves out predecessors whose push the simulator rejects, and those of which a body
+/// ends more than `tolerance` [m] from its position in `wanted_end`.
 std::vector<Predecessor> replay_predecessors(std::vector<Predecessor> predecessors,
-                                             const ReplayBatch& replay);
+                                             double tolerance, const ReplayBatch& replay,
+                                             SearchStats& stats);
 
 }  // namespace rtg::search

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "tests/support/gathering.hpp"
 
@@ -72,14 +74,17 @@ TEST(Proposals, AreTheConvergedAnswersWithLegalStarts) {
       {reverse::SolveStatus::kLineSearchFailed, 50},
       {reverse::SolveStatus::kConverged, 9, {overlapping}}};
   SearchStats stats;
-  const std::vector<Predecessor> found = proposals(task, jobs, answers, stats);
+  std::vector<Predecessor> found;
+  for (std::size_t k = 0; k < jobs.size(); ++k)
+    for (Predecessor& p : proposals(task, jobs[k], answers[k], 70 + static_cast<int>(k), stats))
+      found.push_back(std::move(p));
   ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(found[1].parent, 2);
+  EXPECT_EQ(found[1].parent, 72);
   EXPECT_EQ(found[1].start, task.start);
   EXPECT_EQ(found[1].moved, 0);
-  EXPECT_EQ(found[0].parent, 2);
+  EXPECT_EQ(found[0].parent, 72);
   EXPECT_EQ(found[0].action, 5);
-  EXPECT_EQ(found[0].end, task.start);
+  EXPECT_EQ(found[0].wanted_end, task.start);
   EXPECT_EQ(found[0].moved, 2);
   EXPECT_EQ(found[0].start[0].x, static_cast<double>(0.1F));
   EXPECT_EQ(found[0].start, to_single(moved));
@@ -93,9 +98,8 @@ TEST(Proposals, AreJudgedAfterRounding) {
   edge[0] = {0.1, 0.0, 0.0};
   ASSERT_TRUE(legal_state(task, edge));
   SearchStats stats;
-  const std::vector<reverse::ReverseJob> jobs{{edge, 0}};
-  const std::vector<reverse::ReverseResult> answers{{reverse::SolveStatus::kConverged, 1, {edge}}};
-  EXPECT_TRUE(proposals(task, jobs, answers, stats).empty());
+  const reverse::ReverseResult answer{reverse::SolveStatus::kConverged, 1, {edge}};
+  EXPECT_TRUE(proposals(task, {edge, 0}, answer, 0, stats).empty());
   EXPECT_EQ(stats.illegal_starts, 1);
 }
 
@@ -107,32 +111,46 @@ std::vector<ReplayResult> fake_replay(std::span<const ReplayJob> jobs) {
   return results;
 }
 
-Predecessor predecessor(int parent, int action, const Poses& start, const Poses& end) {
-  return {parent, action, start, end, 99};
+Predecessor predecessor(int parent, int action, const Poses& start, const Poses& wanted_end) {
+  return {parent, action, start, wanted_end, 99};
 }
 
-TEST(ReplayPredecessors, FillInWhatThePushTrulyLedTo) {
+constexpr double kAnyError = 100.0;  // a tolerance that drops nothing [m]
+
+TEST(ReplayPredecessors, CountWhatThePushTrulyMovesAndHowFarItMisses) {
   Poses aim = shifted(all_zero(), 10 * kStep);
   aim[2].y = 0.3;
   SearchStats stats;
   const auto out =
       replay_predecessors({predecessor(4, 10, all_zero(), aim),
                            predecessor(5, 3, all_zero(), shifted(all_zero(), 2 * kStep))},
-                          counted(fake_replay, stats));
+                          kAnyError, counted(fake_replay, stats), stats);
   ASSERT_EQ(out.size(), 2U);
   EXPECT_EQ(out[0].parent, 4);
   EXPECT_EQ(out[0].action, 10);
   EXPECT_EQ(out[0].start, all_zero());
-  EXPECT_EQ(out[0].end, shifted(all_zero(), 10 * kStep));
-  EXPECT_NEAR(out[0].mean_error, 0.3 / 4.0, 1e-15);
-  EXPECT_NEAR(out[0].max_error, 0.3, 1e-15);
+  EXPECT_EQ(out[0].wanted_end, aim);
   EXPECT_EQ(out[0].moved, 3);
   EXPECT_EQ(out[1].parent, 5);
-  EXPECT_EQ(out[1].mean_error, kStep);
-  EXPECT_EQ(out[1].max_error, kStep);
   EXPECT_EQ(out[1].moved, 0);
+  ASSERT_EQ(stats.gaps.size(), 2U);
+  EXPECT_FLOAT_EQ(stats.gaps[0], 0.075F);
+  EXPECT_FLOAT_EQ(stats.gaps[1], static_cast<float>(kStep));
   EXPECT_EQ(stats.rejected_pushes, 0);
   EXPECT_EQ(stats.replay_cpu_s, 0.5);
+}
+
+TEST(ReplayPredecessors, LeaveOutWhatMissesByMoreThanTheToleranceWithASingleBody) {
+  Poses near = all_zero(), far = all_zero();
+  near[2].y = 0.24;
+  far[2].y = 0.26;  // a gap of a quarter of that
+  SearchStats stats;
+  const auto out =
+      replay_predecessors({predecessor(0, 0, all_zero(), far), predecessor(1, 0, all_zero(), near)},
+                          0.25, counted(fake_replay, stats), stats);
+  ASSERT_EQ(out.size(), 1U);
+  EXPECT_EQ(out[0].parent, 1);
+  EXPECT_EQ(stats.gaps.size(), 2U) << "the gap of what is left out counts, too";
 }
 
 TEST(ReplayPredecessors, LeaveOutAndCountWhatTheSimulatorRejects) {
@@ -141,11 +159,11 @@ TEST(ReplayPredecessors, LeaveOutAndCountWhatTheSimulatorRejects) {
   const auto out =
       replay_predecessors({predecessor(0, 13, zero, zero), predecessor(1, 1, zero, zero),
                            predecessor(2, 13, zero, zero), predecessor(3, 2, zero, zero)},
-                          counted(fake_replay, stats));
+                          kAnyError, counted(fake_replay, stats), stats);
   ASSERT_EQ(out.size(), 2U);
   EXPECT_EQ(out[0].parent, 1);
   EXPECT_EQ(out[1].parent, 3);
-  EXPECT_EQ(out[1].end, shifted(zero, 2 * kStep));
+  EXPECT_EQ(stats.gaps.size(), 2U);
   EXPECT_EQ(stats.rejected_pushes, 2);
 }
 
