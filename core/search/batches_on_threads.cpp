@@ -24,8 +24,7 @@ std::vector<std::size_t> slice_ends(std::size_t jobs, int threads) {
       std::clamp(jobs / workers / kLanes, std::size_t{1}, std::size_t{4}) * kLanes;
   std::vector<std::size_t> ends;
   for (std::size_t begun = 0; begun < jobs; begun = ends.back()) {
-    const std::size_t left = jobs - begun, share = left / (2 * workers);
-    const std::size_t size = std::max(least, share);
+    const std::size_t left = jobs - begun, size = std::max(least, left / (2 * workers));
     ends.push_back(left < size + kLanes ? jobs : begun + size);
   }
   return ends;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -70,23 +71,20 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
 ///  - of the steps that move no object, the best config.free_moves per node;
 ///  - of the others, the best config.predecessors_per_solve per node and action.
 std::vector<Predecessor> BeamSearch::best_to_replay(std::vector<Predecessor> all) const {
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    all[k].start_distance = distance_to_target(all[k].start);
-    order.emplace_back(all[k].start_distance, k);
-  }
-  std::sort(order.begin(), order.end());
+  for (Predecessor& p : all) p.start_distance = distance_to_target(p.start);
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return all[k].start_distance; });
   std::unordered_map<int, int> idle, pushing;  // counts per node and per solve
-  std::vector<bool> dropped(all.size(), false);
-  for (const auto& [value, k] : order) {
+  std::erase_if(order, [&](std::size_t k) {
     const Predecessor& p = all[k];
-    dropped[k] = p.moved == 0 ? ++idle[p.parent] > config_.free_moves
-                              : ++pushing[p.parent * task_.push.headings + p.action] >
-                                    config_.predecessors_per_solve;
-  }
+    if (p.moved == 0) return ++idle[p.parent] > config_.free_moves;
+    const int solve = p.parent * task_.push.headings + p.action;
+    return ++pushing[solve] > config_.predecessors_per_solve;
+  });
+  std::ranges::sort(order);
   std::vector<Predecessor> out;
-  for (std::size_t k = 0; k < all.size(); ++k)
-    if (!dropped[k]) out.push_back(std::move(all[k]));
+  for (const std::size_t k : order) out.push_back(std::move(all[k]));
   return out;
 }
 
@@ -112,9 +110,8 @@ std::vector<int> BeamSearch::plan(const Predecessor& step) const {
   return actions;
 }
 
-/// Moves the objects of `poses` that are near their start poses into a random start
-/// (snapped_to_start()). Returns `poses` unchanged if the result is not legal. An object in place
-/// stays in place, so start_distance() stays as it is.
+/// Returns snapped_to_start() of `poses` for a random start; `poses` if that is not legal. An
+/// object in place stays in place, so start_distance() stays as it is.
 Poses BeamSearch::with_drawn_start(const Poses& poses) {
   constexpr double kAround = 0.25;  // largest random displacement of an object [m]
   const double around = std::min(task_.start_jitter, kAround);

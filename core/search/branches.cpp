@@ -38,9 +38,7 @@ std::vector<Transition> with_branches(const tasks::Task& task, std::span<const T
     out.push_back(steps[k]);
     for (; push < ends[k]; ++push) {
       if (!results[push].ok) continue;
-      const Poses& end = results[push].end;
-      out.push_back(
-          {steps[k].poses, pushes[push].action, end, succeeded(task, end), Source::kBranch});
+      out.push_back(transition(task, pushes[push], results[push].end, Source::kBranch));
     }
   }
   return out;

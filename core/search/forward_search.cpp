@@ -1,6 +1,7 @@
 #include "core/search/forward_search.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "core/search/beam_selection.hpp"
@@ -32,18 +33,10 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
     entries.push_back({goal_distance(task_, end), metric_.cell(end), metric_.layout_cell(end),
                        objects_moved(pushes[k].start, end) > 0});
     const std::size_t parent = beam_[k / static_cast<std::size_t>(task_.push.headings)];
-    found.push_back(
-        {{pushes[k].start, pushes[k].action, end, succeeded(task_, end), Source::kForward},
-         parent});
+    found.push_back({transition(task_, pushes[k], end, Source::kForward), parent});
   }
-  return keep(std::move(found), entries);
-}
-
-/// Makes the best of `found` the next beam. Returns the steps to these nodes.
-std::vector<Transition> ForwardSearch::keep(std::vector<Node> found,
-                                            std::span<const BeamEntry> entries) {
-  std::vector<Transition> steps;
   beam_.clear();
+  std::vector<Transition> steps;
   for (const std::size_t k : select_beam(entries, config_, seen_)) {
     if (found[k].step.success && solved_ == 0) solved_ = nodes_.size();
     steps.push_back(found[k].step);

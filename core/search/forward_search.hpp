@@ -1,12 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
-#include "core/search/beam_selection.hpp"
 #include "core/search/generation.hpp"
 #include "core/search/seams.hpp"
 #include "core/search/state_metric.hpp"
@@ -38,7 +36,6 @@ class ForwardSearch {
     Transition step;
     std::size_t parent;  // index of the node in whose state the step begins
   };
-  std::vector<Transition> keep(std::vector<Node> found, std::span<const BeamEntry> entries);
 
   const tasks::Task& task_;
   const SearchConfig& config_;

@@ -27,10 +27,8 @@ std::vector<PlanOutcome> carry_out(const tasks::Task& task, std::span<const Plan
     for (std::size_t j = 0; j < going.size(); ++j) {
       const std::size_t k = going[j];
       if (!results[j].ok) continue;
-      const bool success = succeeded(task, results[j].end);
-      steps[k].push_back(
-          {pushes[j].start, pushes[j].action, results[j].end, success, Source::kTree});
-      if (success)
+      steps[k].push_back(transition(task, pushes[j], results[j].end, Source::kTree));
+      if (steps[k].back().success)
         done[k] = std::move(steps[k]);
       else
         left.push_back(k);

@@ -7,6 +7,7 @@
 
 #include "core/reverse/problem/reverse_job.hpp"
 #include "core/search/transition.hpp"
+#include "core/tasks/task.hpp"
 
 namespace rtg::search {
 
@@ -26,6 +27,12 @@ struct ReplayResult {
   bool ok = false;     // as PushOutcome::ok
   double cpu_s = 0.0;  // thread CPU time [s]; not a function of the job, unlike the rest
 };
+
+/// Returns the transition of `push`, which ends in the state `end`.
+inline Transition transition(const tasks::Task& task, const ReplayJob& push, const Poses& end,
+                             Source source) {
+  return {push.start, push.action, end, succeeded(task, end), source};
+}
 
 /// Interfaces for reverse solves (SolveBatch) and forward simulation (ReplayBatch) of many jobs.
 /// They return one result per job, in job order. Implementations may use threads or worker

@@ -33,11 +33,9 @@ void walk(Generation& run, int number) {
     states.clear();
     for (std::size_t k = 0; k < pushes.size(); ++k) {
       if (!results[k].ok) continue;
-      const Poses& end = results[k].end;
       if (!succeeded(run.task, pushes[k].start))
-        steps.push_back(
-            {pushes[k].start, pushes[k].action, end, succeeded(run.task, end), Source::kWalk});
-      states.push_back(end);
+        steps.push_back(transition(run.task, pushes[k], results[k].end, Source::kWalk));
+      states.push_back(results[k].end);
     }
     run.data.store(steps, run.replay);
   }
