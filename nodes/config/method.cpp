@@ -30,9 +30,9 @@ const std::array<Settings, kMethods.size()>& table() {
   static const std::array<Settings, kMethods.size()> kTable{
       online({{"train", "double_q", "false"}}),
       online({{"train", "double_q", "true"}}),
-      // Uniform mixing: otherwise half of every batch would be data without any success.
+      // Uniform mixing: otherwise half of every batch would be walks, which hardly ever succeed.
       unguided({{"search", "generator", "random"}, {"train", "offline_share", "-1.0"}}),
-      unguided({{"search", "generator", "scatter"}}),
+      unguided({{"search", "generator", "scatter"}, {"train", "offline_share", "-1.0"}}),
       Settings{{"search", "generator", "naive"}},
       Settings{{"search", "generator", "forward"}},
       Settings{{"search", "generator", "rrbs"}},

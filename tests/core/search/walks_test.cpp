@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/forward/box2d_simulator.hpp"
 #include "tests/support/gathering.hpp"
@@ -92,6 +95,25 @@ TEST(Walks, OrScatterFromGoalStates) {
     for (std::size_t i = 1; i < begun.size(); ++i)
       nearest = std::min(nearest, begun[i].position().norm());
   EXPECT_LT(nearest, 2.0);
+}
+
+TEST(Walks, AreAsLongAsAnEpisodeOrFromGoalStatesSixPushes) {
+  const tasks::Task task = gathering();
+  for (const auto& [generator, pushes] :
+       {std::pair(Generator::kRandom, task.horizon), std::pair(Generator::kScatter, 6)}) {
+    int calls = 0;
+    GenerationSeams seams;
+    seams.replay = [&](std::span<const ReplayJob> jobs) {
+      calls += !jobs.empty();
+      std::vector<ReplayResult> results;
+      for (const ReplayJob& job : jobs) results.push_back({job.start, true});
+      return results;
+    };
+    seams.store = [](std::span<const Transition>) {};
+    seams.cancelled = [&] { return calls > 0; };  // after the first wave
+    generate(task, walks(generator), 7, seams);
+    EXPECT_EQ(calls, pushes);
+  }
 }
 
 TEST(Walks, MoveObjectsFarMoreOftenThanUniformPushesDo) {

@@ -36,7 +36,7 @@ def test_methods_differ_in_these_values_alone() -> None:
         "dqn": {**vanilla, "double_q": False},
         "ddqn": vanilla,
         "ddqn_random": {**unguided, "offline_share": -1.0},
-        "ddqn_scatter": unguided,
+        "ddqn_scatter": {**unguided, "offline_share": -1.0},
         "ddqn_naive": rtg,
         "ddqn_forward": rtg,
         "ddqn_rtg": rtg,
