@@ -116,6 +116,17 @@ def test_layouts_of_the_task_stay_goals_where_all_objects_are_a_little_off() -> 
     np.testing.assert_array_equal(Layouts(TASK).goal_layouts, BOXES.goal_layouts)
 
 
+def test_the_bodies_of_a_joint_turn_against_each_other_in_any_order_of_the_joints() -> None:
+    lines = (paths.CONFIG / "art_manip.yaml").read_text().splitlines(keepends=True)
+    at = [k for k, line in enumerate(lines) if "{parent: " in line]
+    assert len(at) == 3
+    lines[at[0]], lines[at[2]] = lines[at[2]], lines[at[0]]
+    reordered = _core.Config.from_text("".join(lines)).task
+    assert [joint[:2] for joint in reordered.joints] == [(3, 4), (2, 3), (1, 2)]
+    for task in (CHAIN_TASK, reordered):
+        np.testing.assert_array_equal(hindsight._sides(task), [0, 1, -1, 1, -1])
+
+
 def test_where_no_goal_state_lasts_all_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     states = np.stack([TASK.goal_state(1, k) for k in range(50)])
     few = hindsight.robust_goal_states(TASK, states)

@@ -123,11 +123,16 @@ class Layouts:
 
 
 def _sides(task: _core.Task) -> Array:
-    """Returns 1 and -1 for the two bodies of each joint, 0 for bodies without a joint. [bodies]"""
+    """Returns 1 and -1 for the two bodies of each joint, 0 for bodies without a joint. [bodies]
+
+    Roots have 1. Joints may be listed in any order, so each body follows its parents to its root.
+    """
+    parents = {child: parent for parent, child, _ in task.joints}
     sides = np.zeros(task.bodies)
-    for parent, child, _ in task.joints:
-        sides[parent] = sides[parent] or 1.0
-        sides[child] = -sides[parent]
+    for body in {*parents, *parents.values()}:
+        ancestor, sides[body] = body, 1.0
+        while ancestor in parents:
+            ancestor, sides[body] = parents[ancestor], -sides[body]
     return sides
 
 
