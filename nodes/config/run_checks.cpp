@@ -24,10 +24,10 @@ std::string place(const ConfigNode& root, std::initializer_list<Field> fields) {
   return root.origin;
 }
 
-/// Returns whether the steps of `generator` are known to lead to success.
+/// Returns whether the steps of `generator` are known to lead to success. Only those of trees are:
+/// a forward search also stores steps into dead ends.
 bool leads_to_success(search::Generator generator) {
-  return generator == search::Generator::kRrbs || generator == search::Generator::kNaive ||
-         generator == search::Generator::kForward;
+  return generator == search::Generator::kRrbs || generator == search::Generator::kNaive;
 }
 
 void check_learner(const Config& config, const ConfigNode& root) {
@@ -50,8 +50,7 @@ void check_learner(const Config& config, const ConfigNode& root) {
       (train.interact || !leads_to_success(config.search.generator)))
     throw ConfigError(place(root, {learner, interact, generator}), "train.learner",
                       "cloning only imitates generated steps that lead to success",
-                      "cloning with train.interact false and search.generator one of rrbs, naive, "
-                      "forward");
+                      "cloning with train.interact false and search.generator one of rrbs, naive");
 }
 
 void check_buffer(const Config& config, const ConfigNode& root) {

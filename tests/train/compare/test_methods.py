@@ -128,7 +128,11 @@ REFUSED = {
         ["--method", "bc_rtg", "--set", "search.generator=scatter"],
         "rtg: --set search.generator=scatter: key 'train.learner': cloning "
         "only imitates generated steps that lead to success; legal: cloning with train.interact "
-        "false and search.generator one of rrbs, naive, forward",
+        "false and search.generator one of rrbs, naive\n",
+    ),
+    "steps into dead ends": (
+        ["--method", "bc_rtg", "--set", "search.generator=forward"],
+        "rtg: --set search.generator=forward: key 'train.learner': cloning only imitates ",
     ),
     "a clone that interacts": (
         ["--method", "bc_rtg", "--set", "train.interact=true"],

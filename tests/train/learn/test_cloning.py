@@ -8,7 +8,7 @@ import pytest
 import torch as th
 from rtg.files.dataset import SOURCES, Rows, Transitions
 from rtg.learn import trainer
-from rtg.learn.cloning import IMITATED_SOURCES, Cloning, imitated
+from rtg.learn.cloning import Cloning, imitated
 from rtg.learn.offline_data import FileSource
 from rtg.learn.replay import Batch
 from samples import random_transitions, train_settings
@@ -42,11 +42,10 @@ def rows_of(source: str, actions: np.ndarray) -> Transitions:
     )
 
 
-def test_steps_that_were_found_to_lead_on_are_imitated_and_nothing_else() -> None:
+def test_steps_of_trees_are_imitated_and_nothing_else() -> None:
     data = random_transitions(100)._replace(source=(np.arange(100) % len(SOURCES)).astype(np.int8))
     kept = imitated(data)
-    assert IMITATED_SOURCES == ("tree", "forward")
-    places = [k for k in range(100) if SOURCES[k % len(SOURCES)] in ("tree", "forward")]
+    places = [k for k in range(100) if SOURCES[k % len(SOURCES)] == "tree"]
     for found, column in zip(kept, data, strict=True):
         np.testing.assert_array_equal(found, column[places])
 

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import numpy as np
 from torch.nn import functional
 
 from rtg.files.dataset import SOURCES, Transitions
 from rtg.learn.ddqn import DoubleDqn
 from rtg.learn.replay import Batch
 
-# Sources of transitions that lead towards the goal. Those of a "branch" or a "walk" need not.
-IMITATED_SOURCES = ("tree", "forward")
+# The source of transitions from which a plan is known to succeed. Those of a "branch" or a "walk"
+# need not lead anywhere. Nor need those of a "forward" search, which also keeps dead ends.
+IMITATED_SOURCE = "tree"
 
 
 def imitated(data: Transitions) -> Transitions:
-    """Returns the transitions to imitate, those with a source in IMITATED_SOURCES."""
-    kept = np.isin(data.source, [SOURCES.index(name) for name in IMITATED_SOURCES])
+    """Returns the transitions to imitate, those from IMITATED_SOURCE."""
+    kept = data.source == SOURCES.index(IMITATED_SOURCE)
     return Transitions(*(column[kept] for column in data))
 
 
