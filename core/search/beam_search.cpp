@@ -71,7 +71,7 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
 ///  - of the steps that move no object, the best config.free_moves per node;
 ///  - of the others, the best config.predecessors_per_solve per node and action.
 std::vector<Predecessor> BeamSearch::best_to_replay(std::vector<Predecessor> all) const {
-  for (Predecessor& p : all) p.start_distance = distance_to_target(p.start);
+  for (Predecessor& p : all) p.start_distance = start_distance(task_, metric_, p.start, target_);
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return all[k].start_distance; });
@@ -120,9 +120,8 @@ Poses BeamSearch::with_drawn_start(const Poses& poses) {
   return legal_state(task_, at_start) ? at_start : poses;
 }
 
-/// Replaces the start of each step by with_drawn_start() and simulates the plans from there. If no
-/// plan succeeds, restores the starts and simulates the plans from these. That can happen if a goal
-/// region contains the start position of an object.
+/// Replaces the start of each step by with_drawn_start() and simulates the plans from there.
+/// Restores the starts if no plan succeeds, as where an object starts in its goal region.
 std::vector<PlanOutcome> BeamSearch::simulate_plans(std::vector<Predecessor>& steps,
                                                     const ReplayBatch& replay) {
   std::vector<Poses> own;
@@ -166,13 +165,10 @@ void BeamSearch::make_next_beam(std::vector<Predecessor> steps,
   }
 }
 
-double BeamSearch::distance_to_target(const Poses& poses) const {
-  return start_distance(task_, metric_, poses, target_);
-}
-
 double BeamSearch::min_start_distance() const {
   double best = std::numeric_limits<double>::infinity();
-  for (const int k : beam_) best = std::min(best, distance_to_target(node(k).poses));
+  for (const int k : beam_)
+    best = std::min(best, start_distance(task_, metric_, node(k).poses, target_));
   return best;
 }
 

@@ -49,6 +49,11 @@ class BeamSearch {
   ///  7. Make the best states from which a plan succeeds the next beam.
   ///
   /// No transition begins in a goal state, because episodes end there.
+  ///
+  /// Departs from the paper: it stores every replayed candidate, as a single step. Here its plan
+  /// must succeed: replay errors add up along a plan, so that many a candidate leads nowhere. Some
+  /// plans are stored whole, as a plan passes through other states than the nodes. In a trial on
+  /// Sorting (one seed) success was 0.99 after 90,000 interactions, without both 0 after 130,000.
   std::vector<Transition> grow(const SolveBatch& solve, const ReplayBatch& replay,
                                SearchStats& stats);
 
@@ -69,7 +74,6 @@ class BeamSearch {
   void make_next_beam(std::vector<Predecessor> steps, std::span<const PlanOutcome> outcomes);
   std::vector<int> plan(const Predecessor& step) const;
   Poses with_drawn_start(const Poses& poses);
-  double distance_to_target(const Poses& poses) const;
   const Node& node(int k) const { return nodes_[static_cast<std::size_t>(k)]; }
 
   const tasks::Task& task_;

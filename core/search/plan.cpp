@@ -10,10 +10,8 @@ std::vector<PlanOutcome> carry_out(const tasks::Task& task, std::span<const Plan
   std::vector<std::vector<Transition>> steps(plans.size());
   std::vector<std::size_t> going;  // plans that have neither succeeded nor failed
   for (std::size_t k = 0; k < plans.size(); ++k) {
-    if (succeeded(task, plans[k].start))
-      done[k].emplace();
-    else
-      going.push_back(k);
+    if (succeeded(task, plans[k].start)) done[k].emplace();
+    if (!done[k]) going.push_back(k);
   }
   for (std::size_t step = 0; !going.empty(); ++step) {
     std::erase_if(going, [&](std::size_t k) { return plans[k].actions.size() == step; });
@@ -28,10 +26,8 @@ std::vector<PlanOutcome> carry_out(const tasks::Task& task, std::span<const Plan
       const std::size_t k = going[j];
       if (!results[j].ok) continue;
       steps[k].push_back(transition(task, pushes[j], results[j].end, Source::kTree));
-      if (steps[k].back().success)
-        done[k] = std::move(steps[k]);
-      else
-        left.push_back(k);
+      if (steps[k].back().success) done[k] = std::move(steps[k]);
+      if (!done[k]) left.push_back(k);
     }
     going = std::move(left);
   }

@@ -35,6 +35,9 @@ AUDIT = {
     "pairing of the KKT blocks": ("math/assembled_solver.hpp", "pentadiagonal"),
     "block elimination": ("math/riccati.hpp", "cyclic reduction"),
     "branches": ("search/branches.hpp", "steps of trees alone"),
+    "plans that succeed": ("search/beam_search.hpp", "every replayed candidate"),
+    "whole plans": ("search/beam_search.hpp", "plans are stored whole"),
+    "drawn starts": ("search/start_distance.hpp", "as the reverse steps find them"),
 }
 
 # Of the audit's, those whose mark says its reason without a figure, and why.
