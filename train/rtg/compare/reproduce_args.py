@@ -89,8 +89,8 @@ def parser() -> Parser:
     p.add_argument(
         "--ablations",
         action="store_true",
-        help="also without each part of the search, with each departure from the preset paper "
-        "taken back, and with that preset",
+        help="also with single settings of the search switched off or at the other end of their "
+        "range, with each departure from the preset paper taken back, and with that preset",
     )
     p.add_argument(
         "--together", action="store_true", help="a method's seeds learn in one process, as on a GPU"
