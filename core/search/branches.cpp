@@ -36,10 +36,9 @@ std::vector<Transition> with_branches(const tasks::Task& task, std::span<const T
   std::vector<Transition> out;
   for (std::size_t k = 0, push = 0; k < steps.size(); ++k) {
     out.push_back(steps[k]);
-    for (; push < ends[k]; ++push) {
-      if (!results[push].ok) continue;
-      out.push_back(transition(task, pushes[push], results[push].end, Source::kBranch));
-    }
+    for (; push < ends[k]; ++push)
+      if (results[push].ok)
+        out.push_back(transition(task, pushes[push], results[push].end, Source::kBranch));
   }
   return out;
 }

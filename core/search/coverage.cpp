@@ -1,17 +1,12 @@
 #include "core/search/coverage.hpp"
 
+#include <algorithm>
+
 #include "core/reverse/problem/reverse_job.hpp"
 #include "core/search/predecessor.hpp"
 #include "core/search/start_distance.hpp"
 
 namespace rtg::search {
-namespace {
-
-double share(long part, long whole) {
-  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
-}
-
-}  // namespace
 
 Coverage::Coverage(const tasks::Task& task)
     : task_(task), metric_(task.scene), group_roots_(moving_group_roots(task.scene)) {}
@@ -37,12 +32,10 @@ void Coverage::add(const Transition& t) {
 }
 
 Coverage::Figures Coverage::figures() const {
-  return {transitions_,
-          by_source_,
-          share(contacts_, transitions_),
-          share(multi_body_, transitions_),
-          share(transitions_, static_cast<long>(states_.size())),
-          start_region_};
+  const double count = static_cast<double>(std::max(transitions_, 1L));
+  const double states = static_cast<double>(std::max(states_.size(), std::size_t{1}));
+  return {transitions_,          by_source_,   contacts_ / count, multi_body_ / count,
+          transitions_ / states, start_region_};
 }
 
 }  // namespace rtg::search

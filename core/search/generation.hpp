@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -41,10 +40,22 @@ struct Generation {
 
   /// Calls attempt(0), attempt(1), ...: each runs one tree, forward search or wave of walks. Ends
   /// when the data set is full, the run is cancelled, or eight attempts in a row store nothing.
-  void repeat(const std::function<void(int)>& attempt);
+  template <class Attempt>
+  void repeat(Attempt attempt) {
+    for (int number = 0, barren = 0; barren < 8 && !data.full() && !cancelled(); ++number) {
+      const long before = data.coverage().transitions();
+      attempt(number);
+      barren = data.coverage().transitions() > before ? 0 : barren + 1;
+    }
+  }
 
   /// Reports to the progress display that layer `layer` of `depth` is done in phase `phase`.
-  void show(std::string phase, int layer, int depth) const;
+  void show(const std::string& phase, int layer, int depth) const {
+    if (!seams.progress) return;
+    const Coverage::Figures c = data.coverage().figures();
+    seams.progress({phase, layer, depth, c.transitions, config.transitions, c.contact_share,
+                    c.start_region_transitions});
+  }
 };
 
 }  // namespace rtg::search

@@ -1,7 +1,6 @@
 #include "core/search/report.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -26,13 +25,6 @@ void set_nodes(GenerationReport& report, const tasks::Task& task, std::vector<Re
 
 namespace {
 
-/// Returns the number with a comma before every three digits: 49,000.
-std::string grouped(long number) {
-  std::string digits = std::to_string(number);
-  for (std::size_t left = digits.size(); left > 3; left -= 3) digits.insert(left - 3, ",");
-  return digits;
-}
-
 nlohmann::ordered_json to_json(std::span<const ReportNode> nodes) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
   for (const ReportNode& n : nodes) {
@@ -46,19 +38,19 @@ nlohmann::ordered_json to_json(std::span<const ReportNode> nodes) {
 }  // namespace
 
 void set_shortfalls(GenerationReport& report, const SearchConfig& config) {
-  const auto generator = static_cast<std::size_t>(config.generator);
-  const std::string search = "the search (" + std::string(kGenerators[generator]) + ") found ";
-  const long found = report.coverage.transitions;
+  const std::string search = "the search (" +
+                             std::string(kGenerators[static_cast<std::size_t>(config.generator)]) +
+                             ") found ";
+  const std::string found = std::to_string(report.coverage.transitions);
   const bool moves = config.generator == Generator::kRrbs ? !report.stats.pushing_iterations.empty()
                                                           : report.coverage.contact_share > 0.0;
-  report.shortfalls.clear();
-  if (found > 0 && !moves)
+  if (report.coverage.transitions > 0 && !moves)
     report.shortfalls.push_back(search + "no step that moves an object, see generation.json");
-  if (found < config.transitions)
+  if (report.coverage.transitions < config.transitions)
     report.shortfalls.push_back(
-        search + grouped(found) + " transitions of the " + grouped(config.transitions) +
-        " asked for and then nothing more, see generation.json; a wider one may find more "
-        "(search.breadth, search.gap_tolerance)");
+        search + found + " transitions of the " + std::to_string(config.transitions) +
+        " asked for and then nothing more, see generation.json; a wider one "
+        "may find more (search.breadth, search.gap_tolerance)");
 }
 
 std::string to_json(const GenerationReport& r) {
