@@ -162,9 +162,7 @@ def test_a_search_that_falls_short_has_results_and_says_so_once(tmp_path, mode):
     done = run(TINY, *short, "--no-train", *mode, "--out", folder)
     assert done.returncode == 1
     (line,) = done.stderr.splitlines()
-    assert re.match(
-        r"rtg: the search \(naive\) found \d+ transitions of the 2000 asked for ", line
-    )
+    assert re.match(r"rtg: the search \(naive\) found \d+ transitions of the 2000 asked for ", line)
     summary = json.loads((folder / "summary.json").read_text())
     assert summary["defects"] == [line.removeprefix("rtg: ")]
 

@@ -21,11 +21,11 @@ def test_a_commit_says_whether_files_were_changed():
 
 
 def test_a_run_that_another_commit_goes_on_with_says_so(tmp_path, monkeypatch):
-    for revision in ("old", "old", "new"):
+    for revision in ("older", "old", "old", "new"):
         monkeypatch.setattr(versions, "_revision", lambda revision=revision: (revision, False))
         versions.write(tmp_path, {})
     found = json.loads((tmp_path / versions.FILE).read_text())
-    assert (found["git_revision"], found["begun_by"]) == ("new", ["old"])
+    assert (found["git_revision"], found["begun_by"]) == ("new", ["older", "old"])
 
 
 def test_unknown_makers_stay_unknown(tmp_path):

@@ -194,6 +194,17 @@ def test_the_coverage_of_a_body_bears_its_name(figures):
     assert titles[:3] == ["box1", "box2", "box3"]
 
 
+def test_each_dot_of_the_coverage_has_the_colour_of_its_depth(figures):
+    poses = np.repeat(START, 3, axis=0)
+    poses[:, :, 0] = np.array([1.0, 2.0, 3.0])[:, None]
+    plots.coverage(Path("coverage.png"), "a run", TASK, poses, np.array([7.0, 3.0, 5.0]))
+    for axis in figures[0].axes[:3]:
+        (dots,) = (one for one in axis.collections if one.get_array() is not None)
+        found = dict(zip(dots.get_offsets()[:, 0], dots.get_array(), strict=True))
+        assert found == {1.0: 7.0, 2.0: 3.0, 3.0: 5.0}
+        assert list(dots.get_array()) == [3.0, 5.0, 7.0]  # the deepest are drawn last
+
+
 def test_the_legend_of_the_curves_covers_none_of_them(figures):
     columns = ["interactions", "success_rate", "episode_length_mean", "episode_return_mean"]
     curve = {name: np.linspace(0.0, 1.0, 5) for name in [*columns, "rollout_success"]}
