@@ -65,11 +65,9 @@ Violation violation(const ReverseProblem& problem, const Iterate& x) {
   return v;
 }
 
-SolveStatus final_status(const ReverseProblem& problem, const Iterate& x, SolveStatus status,
-                         bool feasible) {
-  const bool misses = terminal_miss(problem, x) > problem.config.terminal_tolerance;
-  if (status == SolveStatus::kConverged) return misses ? SolveStatus::kInfeasible : status;
-  return feasible && !misses ? SolveStatus::kAcceptable : status;
+SolveStatus status_of_converged(const ReverseProblem& problem, const Iterate& x) {
+  return terminal_miss(problem, x) > problem.config.terminal_tolerance ? SolveStatus::kInfeasible
+                                                                       : SolveStatus::kConverged;
 }
 
 double terminal_miss(const ReverseProblem& problem, const Iterate& x) {

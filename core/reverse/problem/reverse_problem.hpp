@@ -56,12 +56,9 @@ struct Violation {
 };
 Violation violation(const ReverseProblem& problem, const Iterate& x);
 
-/// Returns the status of an iterate at which the SQP ended with `status`. If the SQP converged and
-/// the iterate misses the final state by more than the tolerance, it is kInfeasible. If the SQP did
-/// not converge, but the iterate is `feasible` and does not miss the final state, it is
-/// kAcceptable.
-SolveStatus final_status(const ReverseProblem& problem, const Iterate& x, SolveStatus status,
-                         bool feasible);
+/// Returns the status of a converged iterate: kInfeasible if it misses the final state by more than
+/// the tolerance, otherwise kConverged.
+SolveStatus status_of_converged(const ReverseProblem& problem, const Iterate& x);
 
 /// Returns the largest distance of a movable body at the end of `x` from its position in the given
 /// final state [m].

@@ -8,7 +8,7 @@ namespace rtg::reverse {
 /// Outcome of a reverse solve.
 enum class SolveStatus : std::int8_t {
   kConverged,         // constraints and stationarity below their tolerances
-  kAcceptable,        // the SQP stopped elsewhere, but keeps the constraints and reaches the end
+  kAcceptable,        // as kConverged, but for stationarity
   kPruned,            // the action cannot have led to the final state; nothing was solved
   kInfeasible,        // the solution misses the final state, or bodies overlap
   kIterationLimit,    // max_iterations reached

@@ -73,8 +73,15 @@ void FilterSqp<T>::finish(int l) {
   const SqpStrategy& strategy = strategies_[job];
   const ReverseProblem& problem = *problems_[job];
   Iterate x = x_.unload(l, problem);
-  const bool feasible = lane(now_.infeasibility, l) < config_.feasibility_tol;
-  const SolveStatus status = final_status(problem, x, strategy.status(), feasible);
+  SolveStatus status = strategy.status();
+  const SolveStatus as_converged = status_of_converged(problem, x);
+  // With a fixed final state a feasible iterate says nothing: one is that in which nothing moves.
+  const bool feasible =
+      lane(now_.infeasibility, l) < config_.feasibility_tol && !problem_.fixed_end();
+  if (status == SolveStatus::kConverged)
+    status = as_converged;
+  else if (feasible && status != SolveStatus::kNonFinite && as_converged == SolveStatus::kConverged)
+    status = SolveStatus::kAcceptable;
   results_[job] = {status, std::move(x), strategy.iterations(), lane(now_.infeasibility, l),
                    lane(stationarity_, l)};
 }

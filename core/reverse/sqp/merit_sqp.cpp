@@ -58,8 +58,7 @@ class MeritSqp {
       const double stationarity = newton_.stationarity();
       const auto ended = [&](SolveStatus status) {
         Iterate x = x_.unload(0, one_);
-        const bool feasible = now_.infeasibility < config.feasibility_tol;
-        status = final_status(one_, x, status, feasible);
+        if (status == SolveStatus::kConverged) status = status_of_converged(one_, x);
         return SqpResult{status, std::move(x), iterations, now_.infeasibility, stationarity};
       };
       if (!std::isfinite(stationarity + now_.violation + now_.objective))

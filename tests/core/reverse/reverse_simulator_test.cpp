@@ -277,12 +277,32 @@ TEST(ReverseSimulator, FixedBodiesMayStandAnywhereInTheOrder) {
   EXPECT_EQ(p[3], wall);
 }
 
-TEST(ReverseSimulator, StopsAtTheIterationLimit) {
+// The push from the start that it has then ends near the given state.
+TEST(ReverseSimulator, AtTheIterationLimitAStartIsAcceptableIfThePushReachesTheEnd) {
   ReverseConfig config;
   config.max_iterations = 3;
-  const ReverseResult result = solve(robot_and_boxes(2), touching_job(), config);
-  EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
-  EXPECT_EQ(result.iterations, 3);
+  for (const auto& [tolerance, status] :
+       {std::pair(config.terminal_tolerance, SolveStatus::kAcceptable),
+        {1e-4, SolveStatus::kIterationLimit}}) {
+    config.terminal_tolerance = tolerance;
+    const ReverseResult result = solve(robot_and_boxes(2), touching_job(), config);
+    EXPECT_EQ(result.status, status);
+    EXPECT_EQ(result.iterations, 3);
+    EXPECT_EQ(!result.predecessors.empty(), status == SolveStatus::kAcceptable);
+  }
+}
+
+TEST(ReverseSimulator, AnAcceptableStartReplaysInTheModel) {
+  ReverseConfig config;
+  config.max_iterations = 3;
+  const Scene scene = robot_and_boxes(2);
+  const ReverseJob job = touching_job();
+  const ReverseResult result = solve(scene, job, config);
+  ASSERT_EQ(result.status, SolveStatus::kAcceptable);
+  const forward::NewtonSimulator model(scene, kPush, kPhysics);
+  const Poses reached = model.push(result.predecessors[0], job.action).end;
+  for (std::size_t k = 0; k < job.end.size(); ++k)
+    EXPECT_LT((reached[k].position() - job.end[k].position()).norm(), config.terminal_tolerance);
 }
 
 TEST(ReverseSimulator, AnswersAnyLayoutWithFiniteStarts) {

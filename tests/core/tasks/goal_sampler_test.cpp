@@ -31,7 +31,7 @@ Task half_planes() {
 
 TEST(GoalSampler, GoalsHoldWithRoomToSpareAndDoNotOverlap) {
   Task turned = gathering();
-  turned.start[0].theta = 0.3;
+  turned.start[0].theta = 0.25;
   for (const Task& task : {gathering(), gathering_hard(), half_planes(), turned})
     for (const Poses& poses : goals(task, 1)) {
       EXPECT_TRUE(succeeded(task, poses, 0.049));
