@@ -38,9 +38,10 @@ class SqpStrategy {
   int iterations() const { return iterations_; }
   SolveStatus status() const { return status_; }
 
-  /// Decides at an iterate with the figures `at` whether the SQP goes on with another step.
-  /// Otherwise it has ended with status(). To be called after each linearisation. Counts an
-  /// iteration, unless it repeats one with the Hessian of the objective.
+  /// Decides at an iterate with the figures `at` whether the SQP goes on, with a restoration if
+  /// wants_restoration(), otherwise with another step. If not, it has ended with status(). To be
+  /// called after each linearisation. Counts an iteration, unless it repeats one with the Hessian
+  /// of the objective or goes on with a restoration.
   bool goes_on(const Figures& at);
   /// To be called if the usual solver met a singular pivot. Returns whether to solve the Newton
   /// system again, with pivoting: true ten times, and ten more after a restoration.
