@@ -173,16 +173,9 @@ def test_a_search_that_fell_short_is_told_though_the_coordinator_waits_in_vain(g
     assert graph.run() == (1, "no step, see X\n3 of 9 (a.b, c.d)\n")
 
 
-def test_a_coordinator_that_fails_before_all_have_the_data_ends_the_run(graph):
-    graph.let("rtg_beam_coordinator", f"{SHORT}echo no memory; exit 1")
-    graph.let("python", PATIENT)
-    status, out = graph.run()
-    assert status == 1
-    assert out.endswith("no memory\n")
-
-
-def test_a_coordinator_that_fails_after_the_search_ends_the_run(graph):
-    graph.let("rtg_beam_coordinator", f"{DONE}; echo no memory; exit 1")
+@pytest.mark.parametrize("search", [SHORT, f"{DONE}; "], ids=["fell short", "is done"])
+def test_a_coordinator_that_fails_after_its_search_ends_the_run(graph, search):
+    graph.let("rtg_beam_coordinator", f"{search}echo no memory; exit 1")
     graph.let("python", PATIENT)
     status, out = graph.run()
     assert status == 1
