@@ -20,6 +20,7 @@ AUDIT = {
     "rest after a push": ("world/physics_config.hpp", "ends at rest"),
     "action consistency": ("reverse/problem/objective_terms.hpp", "how the robot moves"),
     "spring to the final state": ("reverse/problem/objective_terms.hpp", "fixes the final state"),
+    "fixed end with inertia": ("reverse/problem/objective_terms.hpp", "fixes p_{h-1} as well"),
     "speed penalty": ("reverse/problem/speed_penalty.hpp", "no such term"),
     "relaxed complementarity": ("reverse/problem/newton_system.hpp", "λ g = μ̃ w"),
     "warm start": ("reverse/problem/warm_start.hpp", "everything at rest"),

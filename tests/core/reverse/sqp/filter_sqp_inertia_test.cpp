@@ -102,7 +102,8 @@ TEST(FilterSqpInertia, EveryKktMethodGivesTheSameSolutionWithPeriodicTurns) {
                            {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu});
 }
 
-// The box has come to rest in the final state but for a hundredth of its speed.
+// The box has come to rest in the final state but for a hundredth of its speed, which damping
+// divides by 1 + k_D per sub-step.
 TEST(FilterSqpInertia, AFixedFinalStateIsReachedExactly) {
   AfterAPush at;
   at.config.terminal_weight = 0.0;
@@ -111,6 +112,11 @@ TEST(FilterSqpInertia, AFixedFinalStateIsReachedExactly) {
   EXPECT_EQ(result.x.p.back(), at.problem.end);
   EXPECT_LT(violation(at.problem, result.x).max(), 1e-9);
   EXPECT_LT(result.x.p[0][0] - at.problem.end[0], -1.0);
+  const std::size_t h = result.x.p.size() - 1;
+  const double last = (result.x.p[h] - result.x.p[h - 1]).norm();
+  const double last_but_one = (result.x.p[h - 1] - result.x.p[h - 2]).norm();
+  EXPECT_LT(last, 0.01 * at.scene.energy.stride());
+  EXPECT_NEAR(last_but_one / last, 1.0 + at.scene.physics.damping, 1e-3);
 }
 
 TEST(FilterSqpInertia, PushesOfRandomScenesAreFoundBack) {
