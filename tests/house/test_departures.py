@@ -49,7 +49,6 @@ WITHOUT_FIGURE = {
     "gaps of the final state": "the barrier does not exist without",
     "rest after a push": "the learner sees poses alone",
     "warm start": "what the static start costs has not been measured with this code",
-    "pruning of headings": "no push along them can have led to the final state",
     "pruning of bodies": "no result changes by a bit",
     "pairing of the KKT blocks": "the pattern of the printed matrix",
 }
