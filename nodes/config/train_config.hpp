@@ -11,6 +11,10 @@ inline constexpr std::array<std::string_view, 2> kTrainPresets{"default", "paper
 enum class Device { kAuto, kCpu, kCuda };
 inline constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"};
 
+/// kHeadings: HeadingNetwork, kPlain: PlainNetwork of train/rtg/learn/networks.py.
+enum class Network { kHeadings, kPlain };
+inline constexpr std::array<std::string_view, 2> kNetworks{"headings", "plain"};
+
 /// kCloning imitates stored steps. kPlanning searches forwards from each start and does not learn.
 enum class Learner { kQLearning, kCloning, kPlanning };
 inline constexpr std::array<std::string_view, 3> kLearners{"q_learning", "cloning", "planning"};
@@ -53,9 +57,7 @@ struct TrainConfig {
   double cql_weight = 0.0;         // α of CQL, which lowers values of headings not in the data
   bool double_q = true;            // van Hasselt et al. 2016
   bool clipped_double_q = true;    // Double-Q value: the smaller of the two networks'
-  bool dueling = true;             // Wang et al. 2016
-  bool layer_norm = true;          // after each hidden layer
-  bool small_head = true;          // last layer starts near 0
+  Network network = Network::kHeadings;
   bool clip_targets = true;        // to [0, 1], the range of the values
   bool value_bounds = true;        // raise targets to lower bounds that stored trajectories prove
   double epsilon_start = 0.3;      // ε at the first interaction
@@ -144,10 +146,8 @@ struct TrainConfig {
            "Double Q-learning: the online network selects, the target network evaluates");
     v.flag("clipped_double_q", clipped_double_q,
            "bootstrap from the smaller value of the online and the target network");
-    v.flag("dueling", dueling, "dueling network head: state value and advantages");
-    v.flag("layer_norm", layer_norm, "layer normalisation after each hidden layer");
-    v.flag("small_head", small_head,
-           "initialise the last layer near 0, so that first values are small");
+    v.choice("network", network, kNetworks,
+             "value network: one whose headings share weights, or Table 2's");
     v.flag("clip_targets", clip_targets, "clip TD targets to [0, 1]");
     v.flag("value_bounds", value_bounds,
            "raise TD targets to lower bounds that stored trajectories prove");

@@ -25,7 +25,7 @@ inline TrainConfig train_preset(TrainPreset preset) {
   config.offline_share = -1.0;
   config.recent_share = 0.0;
   config.clipped_double_q = false;
-  config.dueling = config.layer_norm = config.small_head = false;
+  config.network = Network::kPlain;
   config.clip_targets = config.value_bounds = false;
   config.epsilon_start = 1.0;
   config.epsilon_end = 0.05;

@@ -138,8 +138,8 @@ TEST(Config, ThePresetPaperIsTable2) {
   EXPECT_EQ(train.contact_share, 0.0);
   EXPECT_EQ(train.start_jitter, 0.0);
   EXPECT_EQ(train.stop_at_success, 0.0);
-  for (const bool added : {train.target_acts, train.clipped_double_q, train.dueling,
-                           train.layer_norm, train.small_head, train.clip_targets,
+  EXPECT_EQ(train.network, Network::kPlain);
+  for (const bool added : {train.target_acts, train.clipped_double_q, train.clip_targets,
                            train.value_bounds, train.leave_loops, train.reduced_precision})
     EXPECT_FALSE(added);
 }

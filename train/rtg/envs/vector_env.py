@@ -2,21 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from gymnasium import spaces
 from numpy.typing import NDArray
-from stable_baselines3.common.vec_env import VecEnv
 
 from rtg import _core
 from rtg.envs.curriculum import NOT_FROM_CURRICULUM, Curriculum
-from rtg.envs.push_env import observation_space
+
+Bools = NDArray[np.bool_]
+Observations = NDArray[np.float32]  # [environments, observation]
 
 
-class PushVecEnv(VecEnv):
-    """A vector of `count` environments like PushEnv, for Stable-Baselines3 (SB3).
+class Step(NamedTuple):
+    """The outcome of one action in each environment. [environments] each, but for observations."""
+
+    next_observation: Observations  # after the action
+    reward: NDArray[np.float32]
+    terminated: Bools  # success
+    truncated: Bools  # the horizon is reached, or the push was rejected
+    rejected: Bools  # the simulator could not finish the push
+    observation: Observations  # before the next action, which may belong to a new episode
+    # Success and length of the episodes that ended, without those from starts of a curriculum.
+    episodes: list[tuple[bool, int]]
+
+
+class PushVecEnv:
+    """A vector of `count` environments like PushEnv.
 
     A finished environment begins a new episode at once. The k-th episode of all environments begins
     at start k of random stream `seed`. The count k leaves out episodes that begin at starts of the
@@ -31,9 +43,12 @@ class PushVecEnv(VecEnv):
         seed: int,
         curriculum: Curriculum | None = None,
     ) -> None:
-        self.render_mode = None
         self.task = task = config.task
-        super().__init__(count, observation_space(task), spaces.Discrete(task.headings))
+        self.count, self.observation_size, self.headings = (
+            count,
+            task.observation_size,
+            task.headings,
+        )
         self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
         self.curriculum = curriculum
@@ -43,43 +58,36 @@ class PushVecEnv(VecEnv):
         self.successes = 0  # number of successful episodes
         self._poses = np.zeros((count, task.bodies, 3))  # [count, bodies, 3]
         self._steps = np.zeros(count, np.int64)  # number of actions in the current episodes
-        self._actions = np.zeros(count, np.int64)
 
-    def reset(self) -> NDArray[np.float32]:
-        for env in range(self.num_envs):
+    def reset(self) -> Observations:
+        """Begins an episode in each environment and returns the observations."""
+        for env in range(self.count):
             self._begin(env)
         return self.task.observation(self._poses)
 
-    def step_async(self, actions: NDArray[Any]) -> None:
-        self._actions = np.asarray(actions, np.int64)
-
-    def step_wait(self) -> Any:
-        after, ok = self._simulator.push(self._poses, self._actions)
+    def step(self, actions: NDArray[Any]) -> Step:
+        """Performs an action in each environment. actions [environments] int"""
+        after, ok = self._simulator.push(self._poses, np.asarray(actions, np.int64))
         after[~ok] = self._poses[~ok]
         self._poses, self._steps = after, self._steps + 1
         success = self.task.succeeded(after) & ok
         self.successes += int(success.sum())
-        timeout = ~success & ((self._steps >= self.task.horizon) | ~ok)
-        observation = self.task.observation(after)
-        infos: list[dict[str, Any]] = [
-            {"TimeLimit.truncated": bool(timeout[env]), "rejected": not ok[env]}
-            for env in range(self.num_envs)
-        ]
-        done = success | timeout
-        if done.any():
-            for env in map(int, np.flatnonzero(done)):
-                infos[env]["terminal_observation"] = observation[env]
-                # Only episodes from the task's own starts count, as in evaluations.
-                if self._start_numbers[env] == NOT_FROM_CURRICULUM:
-                    infos[env]["is_success"] = bool(success[env])
-                    infos[env]["episode"] = {"r": float(success[env]), "l": int(self._steps[env])}
-                if self.curriculum:
-                    self.curriculum.record_episode(
-                        self._start_numbers[env], bool(success[env]), int(self._steps[env])
-                    )
-                self._begin(env)
-            observation = self.task.observation(self._poses)
-        return observation, success.astype(np.float32), done, infos
+        truncated = ~success & ((self._steps >= self.task.horizon) | ~ok)
+        seen = following = self.task.observation(after)
+        episodes = []
+        ended = np.flatnonzero(success | truncated)
+        for env in map(int, ended):
+            number, length = self._start_numbers[env], int(self._steps[env])
+            # Only episodes from the task's own starts count, as in evaluations.
+            if number == NOT_FROM_CURRICULUM:
+                episodes.append((bool(success[env]), length))
+            if self.curriculum:
+                self.curriculum.record_episode(number, bool(success[env]), length)
+            self._begin(env)
+        if len(ended):
+            following = self.task.observation(self._poses)
+        reward = success.astype(np.float32)
+        return Step(seen, reward, success, truncated, ~ok, following, episodes)
 
     def contact_headings(self, seed: int) -> NDArray[np.int64]:
         """Draws, for each environment, a heading towards a random object. [count]"""
@@ -114,26 +122,3 @@ class PushVecEnv(VecEnv):
         self._start_numbers = list(state["origins"])
         if self.curriculum:
             self.curriculum.restore(state["curriculum"])
-
-    # The remaining methods of VecEnv.
-
-    def close(self) -> None:
-        pass
-
-    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        return [getattr(self, attr_name)] * len(list(self._get_indices(indices)))
-
-    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        raise NotImplementedError("the environments share their attributes")
-
-    def env_method(
-        self, method_name: str, *args: Any, indices: Any = None, **kwargs: Any
-    ) -> list[Any]:
-        raise NotImplementedError("the environments are no objects of their own")
-
-    def env_is_wrapped(self, wrapper_class: type, indices: Any = None) -> list[bool]:
-        return [False] * len(list(self._get_indices(indices)))
-
-    def seed(self, seed: int | None = None) -> Sequence[int | None]:
-        """Does nothing: the seed is fixed at construction."""
-        return [None] * self.num_envs

@@ -29,5 +29,5 @@ class Cloning(DoubleDqn):
     """
 
     def _gradient_step(self, batch: Batch) -> None:
-        logits = self.q_net(batch.observations)
+        logits = self.online(batch.observations)
         self._descend(functional.cross_entropy(logits, batch.actions[:, 0]))

@@ -1,46 +1,42 @@
-"""Double DQN on offline and online transitions, from Stable-Baselines3's DQN."""
+"""Double DQN on offline and online transitions."""
 
 from __future__ import annotations
 
 import copy
 from collections import deque
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 import torch as th
-from stable_baselines3 import DQN
-from stable_baselines3.common.logger import Logger
-from stable_baselines3.common.utils import polyak_update
-from stable_baselines3.common.vec_env import VecEnv
 from torch.nn import functional
 
 from rtg import _core
-from rtg.learn import device
-from rtg.learn.exploration import Exploration
+from rtg.envs.vector_env import Step
+from rtg.learn import device, networks
+from rtg.learn.exploration import ContactHeadings, Exploration
 from rtg.learn.hindsight import HindsightReplayBuffer, Layouts
-from rtg.learn.networks import ValuePolicy
 from rtg.learn.replay import Batch, MixedReplayBuffer, ReplayRules
 
 Array = npt.NDArray[Any]
 
 MAX_GRADIENT_NORM = 10.0
+RECENT_EPISODES = 100  # number of training episodes of which the log tells success and length
 # In early training the averaged weights cover the last 1 / AVERAGING_WARM_UP of the gradient steps.
 AVERAGING_WARM_UP = 5.0
 
 
-def next_values(online: th.Tensor, target: th.Tensor, clipped_double_q: bool) -> th.Tensor:
-    """Returns the values of the next states s'. [B, actions] each -> [B, 1]
+class Environments(Protocol):
+    """What the learner needs of its environments; see PushVecEnv."""
 
-    `online` and `target` are Q(s', ·) of the two networks. In Double Q-learning the online network
-    chooses the action and the target network evaluates it [van Hasselt et al. 2016]. With
-    `clipped_double_q`, the value is the smaller one of both networks [cf. Fujimoto et al. 2018].
-    Then an error of one network alone cannot raise it. If both arguments are of the target network,
-    this is plain Q-learning.
-    """
-    choice = online.argmax(dim=1, keepdim=True)
-    value = target.gather(1, choice)
-    return th.minimum(value, online.gather(1, choice)) if clipped_double_q else value
+    count: int
+    observation_size: int
+    headings: int
+    task: _core.Task
+    contact_headings: ContactHeadings
+
+    def reset(self) -> npt.NDArray[np.float32]: ...
+    def step(self, actions: Array) -> Step: ...
 
 
 def bootstrap_targets(batch: Batch, next_value: th.Tensor, discount: float) -> th.Tensor:
@@ -73,18 +69,16 @@ def _rules(settings: _core.TrainConfig, discount: float, seed: int) -> ReplayRul
     )
 
 
-class DoubleDqn(DQN):
-    """Double DQN: the DQN of Stable-Baselines3 (SB3) with batches of MixedReplayBuffer.
+class DoubleDqn:
+    """Double DQN with batches of MixedReplayBuffer. Names in backquotes are settings.
 
-    Departs from SB3 (names in backquotes are settings):
-    - It uses Double Q-learning.
-    - It counts target updates in gradient steps (`target_sync`).
-    - Class Exploration decides on exploration. Its schedule depends on the total number of
-      interactions, so learning in rounds and resuming do not change it.
-    - The target network acts in training episodes (`target_acts`). The online network would vary
+    Three networks share one form:
+    - The online network learns.
+    - The target network follows it every `target_sync` gradient steps. It evaluates the next
+      actions and, with `target_acts`, acts in training episodes. The online network would vary
       from step to step, and a single wrong action breaks a long plan. The target network averages
       over few steps, so it is steadier, but its mistakes are still visited and corrected soon.
-    - A third network is evaluated and saved. Its weights are averages over many steps [Polyak and
+    - The mean network is evaluated and saved. Its weights are averages over many steps [Polyak and
       Juditsky 1992].
 
     After gradient step t the averaged weights move by max(`averaging_rate`, 5 / (5 + t)) towards
@@ -92,131 +86,148 @@ class DoubleDqn(DQN):
     1 / `averaging_rate`. With `averaging_rate` 1 they equal the online weights.
     """
 
-    replay_buffer: MixedReplayBuffer  # type: ignore[assignment]
-
     def __init__(
-        self, env: VecEnv, settings: _core.TrainConfig, discount: float, seed: int
+        self, env: Environments, settings: _core.TrainConfig, discount: float, seed: int
     ) -> None:
-        self.settings = settings
-        self.statistics = Statistics()
-        buffer: dict[str, Any] = {"rules": _rules(settings, discount, seed)}
-        self.layouts = Layouts(env.get_attr("task")[0]) if settings.hindsight else None
-        if self.layouts:
-            buffer.update(layouts=self.layouts, goals=settings.hindsight)
-        super().__init__(
-            ValuePolicy,
-            env,
-            learning_rate=settings.learning_rate,
-            buffer_size=settings.buffer,
-            learning_starts=0,  # of SB3, in interactions; Training decides when learning starts
-            batch_size=settings.batch,
-            gamma=discount,
-            train_freq=max(1, settings.train_frequency // env.num_envs),
-            gradient_steps=settings.gradient_steps,
-            replay_buffer_class=HindsightReplayBuffer if self.layouts else MixedReplayBuffer,  # type: ignore[arg-type]
-            replay_buffer_kwargs=buffer,
-            policy_kwargs={
-                "network": {
-                    "dueling": settings.dueling,
-                    "layer_norm": settings.layer_norm,
-                    "small_head": settings.small_head,
-                    "reduced_precision": settings.reduced_precision,
-                    "goal_size": self.layouts.size if self.layouts else 0,
-                }
-            },
-            seed=seed,
-            device=device.chosen(settings.device),
+        self.env, self.settings, self.discount = env, settings, discount
+        self.device = device.chosen(settings.device)
+        self.layouts = Layouts(env.task) if settings.hindsight else None
+        self.replay = self._make_replay(seed)
+        inputs = env.observation_size + (self.layouts.size if self.layouts else 0)
+        th.manual_seed(seed)
+        self.online = networks.make(
+            settings.network, inputs, env.headings, settings.reduced_precision
+        ).to(self.device)
+        self.target, self.mean = copy.deepcopy(self.online), copy.deepcopy(self.online)
+        self._online_weights = networks.flatten(self.online)
+        self._target_weights = networks.flatten(self.target).detach()
+        self._mean_weights = networks.flatten(self.mean).detach()
+        self.optimizer = th.optim.Adam(
+            [self._online_weights], lr=settings.learning_rate, fused=True
         )
-        self.mean_net = copy.deepcopy(self.q_net).requires_grad_(False)
-        self.set_logger(Logger(folder=None, output_formats=[]))
-        headings = int(self.action_space.n)  # type: ignore[attr-defined]
-        contact = getattr(env, "contact_headings", None)  # None if the environment has none
-        self.exploration = Exploration(settings, headings, seed, contact)
-        self.update_exploration()
+        self.exploration = Exploration(settings, env.headings, seed, env.contact_headings)
+        self.statistics = Statistics()
+        self.interactions = self.gradient_steps = 0
+        # Success and length of the latest training episodes.
+        self.episodes: deque[tuple[bool, int]] = deque(maxlen=RECENT_EPISODES)
+        self._observation: Array | None = None  # None before the first interaction
+
+    def _make_replay(self, seed: int) -> MixedReplayBuffer:
+        s, env = self.settings, self.env
+        rules = ReplayRules(
+            offline_share=s.offline_share,
+            recent_share=s.recent_share,
+            discount=self.discount,
+            use_bounds=s.value_bounds,
+            seed=seed,
+        )
+        shape = (s.buffer, env.observation_size, env.count, rules, self.device)
+        if self.layouts:
+            return HindsightReplayBuffer(*shape, layouts=self.layouts, goals=s.hindsight)
+        return MixedReplayBuffer(*shape)
+
+    def learn(self) -> None:
+        """Performs one round of learning: `train_frequency` interactions, then gradient steps."""
+        for _ in range(self.settings.train_frequency // self.env.count):
+            self._interact()
+        self.train(self.settings.gradient_steps)
 
     def learn_offline(self) -> None:
-        """Performs one round of learning: the gradient steps without the interactions.
+        """Performs one round of learning without the interactions.
 
         It counts the interactions all the same, so that schedules advance.
         """
-        self.num_timesteps += self.settings.train_frequency
-        self.train(self.settings.gradient_steps, self.settings.batch)
+        self.interactions += self.settings.train_frequency
+        self.train(self.settings.gradient_steps)
 
-    def train(self, gradient_steps: int, batch_size: int = 100) -> None:
-        self.policy.train(True)  # online and target network
-        self._update_learning_rate(self.policy.optimizer)
+    def _interact(self) -> None:
+        """Performs one action in each environment and stores the transitions."""
+        observation = self.env.reset() if self._observation is None else self._observation
+        action = self.training_actions(observation)
+        step = self.env.step(action)
+        self.replay.add(observation, action, step)
+        self.episodes.extend(step.episodes)
+        self.interactions += self.env.count
+        self._observation = step.observation
+
+    def train(self, gradient_steps: int) -> None:
+        """Performs gradient steps, each on a new batch."""
+        for net in (self.online, self.target):
+            net.train(True)
         for _ in range(gradient_steps):
-            self._gradient_step(self.replay_buffer.sample(batch_size))
-            self._n_updates += 1
-            if self._n_updates % self.settings.target_sync == 0:
-                online, target = self.q_net.parameters(), self.q_net_target.parameters()
-                polyak_update(online, target, self.settings.target_rate)
-            self._average()
-
-    def _average(self) -> None:
-        early_rate = AVERAGING_WARM_UP / (AVERAGING_WARM_UP + self._n_updates)
-        rate = max(self.settings.averaging_rate, early_rate)
-        polyak_update(self.q_net.parameters(), self.mean_net.parameters(), rate)
+            self._gradient_step(self.replay.sample(self.settings.batch))
+            self.gradient_steps += 1
+            if self.gradient_steps % self.settings.target_sync == 0:
+                self._target_weights.lerp_(self._online_weights.data, self.settings.target_rate)
+            early_rate = AVERAGING_WARM_UP / (AVERAGING_WARM_UP + self.gradient_steps)
+            rate = max(self.settings.averaging_rate, early_rate)
+            self._mean_weights.lerp_(self._online_weights.data, rate)
 
     def _gradient_step(self, batch: Batch) -> None:
         with th.no_grad():
-            target = self.q_net_target(batch.next_observations)
-            online = self.q_net(batch.next_observations) if self.settings.double_q else target
-            value = next_values(online, target, self.settings.clipped_double_q)
-            bootstrap = bootstrap_targets(batch, value, self.gamma)
+            bootstrap = bootstrap_targets(batch, self._next_values(batch), self.discount)
             y = td_targets(bootstrap, batch.bounds, self.settings.clip_targets)
-        all_q = self.q_net(batch.observations)
-        q = all_q.gather(1, batch.actions)
+        q = self.online.at(batch.observations, batch.actions)
         loss = functional.smooth_l1_loss(q, y)
         if self.settings.cql_weight and batch.offline:
-            gap = conservative_gap(all_q[: batch.offline], batch.actions[: batch.offline])
+            offline = slice(0, batch.offline)
+            all_q = self.online(batch.observations[offline])
+            gap = conservative_gap(all_q, batch.actions[offline])
             loss = loss + self.settings.cql_weight * gap.mean()
         self._descend(loss)
         self.statistics.add(batch, q.detach(), y, bootstrap)
 
-    def _descend(self, loss: th.Tensor) -> None:
-        self.policy.optimizer.zero_grad()
-        loss.backward()
-        th.nn.utils.clip_grad_norm_(self.q_net.parameters(), MAX_GRADIENT_NORM)
-        self.policy.optimizer.step()
+    def _next_values(self, batch: Batch) -> th.Tensor:
+        """Returns the values of the next states s'. [B, 1]
 
-    def _on_step(self) -> None:
-        self.update_exploration()
-
-    def update_exploration(self) -> None:
-        self.exploration_rate = self.exploration.epsilon(self.num_timesteps)
-
-    def predict(
-        self,
-        observation: Any,
-        state: Any = None,
-        episode_start: Any = None,
-        deterministic: bool = False,
-    ) -> tuple[Array, Any]:
-        """Returns greedy() actions if `deterministic`, else actions for training episodes.
-
-        SB3 calls it in training episodes. Returns `state` unchanged.
+        In Double Q-learning the online network chooses the action and the target network evaluates
+        it [van Hasselt et al. 2016]; in Q-learning the target network does both. With
+        `clipped_double_q`, the value is the smaller one of both networks [cf. Fujimoto et al.
+        2018]. Then an error of one network alone cannot raise it.
         """
-        if deterministic:
-            return self.greedy(observation), state
-        net = self.q_net_target if self.settings.target_acts else self.q_net
-        seen, buffer = observation, self.replay_buffer
-        if isinstance(buffer, HindsightReplayBuffer):
-            seen = buffer.layouts.network_input(observation, buffer.desired_layouts(observation))
-        action = self._values_of(net, seen).argmax(axis=1)
-        return self.exploration.actions(action, observation, self.exploration_rate), state
+        after = batch.next_observations
+        if not self.settings.double_q:
+            return self.target(after).amax(dim=1, keepdim=True)
+        online = self.online(after)
+        choice = online.argmax(dim=1, keepdim=True)
+        value = self.target.at(after, choice)
+        clipped = self.settings.clipped_double_q
+        return th.minimum(value, online.gather(1, choice)) if clipped else value
+
+    def _descend(self, loss: th.Tensor) -> None:
+        self.optimizer.zero_grad(set_to_none=False)
+        loss.backward()
+        th.nn.utils.clip_grad_norm_([self._online_weights], MAX_GRADIENT_NORM)
+        self.optimizer.step()
+
+    @property
+    def exploration_rate(self) -> float:
+        return self.exploration.epsilon(self.interactions)
+
+    def training_actions(self, observation: Array) -> Array:
+        """Returns the actions of training episodes, some of them exploring ones.
+
+        [environments, observation] float32 -> [environments] int
+        """
+        net = self.target if self.settings.target_acts else self.online
+        seen = observation
+        if isinstance(self.replay, HindsightReplayBuffer):
+            layouts = self.replay.desired_layouts(observation)
+            seen = self.replay.layouts.network_input(observation, layouts)
+        greedy = self._values_of(net, seen).argmax(axis=1)
+        return self.exploration.actions(greedy, observation, self.exploration_rate)
 
     def greedy(self, observation: Array) -> Array:
         """Returns the greedy actions of values(). [N, observation] float32 -> [N] int"""
         return self.values(observation).argmax(axis=1)
 
     def values(self, observation: Array) -> Array:
-        """Returns Q of all actions by the network with averaged weights.
+        """Returns Q of all actions by the mean network.
 
         [N, observation] float32 -> [N, actions] float32
         """
         seen = self.layouts.network_input_nearest(observation) if self.layouts else observation
-        return self._values_of(self.mean_net, seen)
+        return self._values_of(self.mean, seen)
 
     def _values_of(self, net: th.nn.Module, observation: Array) -> Array:
         net.train(False)
@@ -228,48 +239,39 @@ class DoubleDqn(DQN):
     def state(self) -> dict[str, Any]:
         """Returns the state for a checkpoint, without replay buffer and environments."""
         return {
-            "q_net": self.q_net.state_dict(),
-            "q_net_target": self.q_net_target.state_dict(),
-            "mean_net": self.mean_net.state_dict(),
-            "optimizer": self.policy.optimizer.state_dict(),
+            "online": self.online.state_dict(),
+            "target": self.target.state_dict(),
+            "mean": self.mean.state_dict(),
+            "optimizer": self.optimizer.state_dict(),
             "exploration": self.exploration.state(),
             "statistics": self.statistics.state(),
-            "interactions": self.num_timesteps,
-            "gradient_steps": self._n_updates,
-            "episodes": self._episode_num,
-            "observation": self._last_obs,  # None before the first interaction
-            "recent_success": list(self.ep_success_buffer or ()),
-            "recent_episodes": list(self.ep_info_buffer or ()),
+            "interactions": self.interactions,
+            "gradient_steps": self.gradient_steps,
+            "observation": self._observation,
+            "episodes": list(self.episodes),
         }
 
     def restore(self, state: dict[str, Any]) -> None:
-        self.q_net.load_state_dict(state["q_net"])
-        self.q_net_target.load_state_dict(state["q_net_target"])
-        self.mean_net.load_state_dict(state["mean_net"])
-        self.policy.optimizer.load_state_dict(state["optimizer"])
+        self.online.load_state_dict(state["online"])
+        self.target.load_state_dict(state["target"])
+        self.mean.load_state_dict(state["mean"])
+        self.optimizer.load_state_dict(state["optimizer"])
         self.exploration.restore(state["exploration"])
         self.statistics.restore(state["statistics"])
-        self.num_timesteps = state["interactions"]
-        self._n_updates = state["gradient_steps"]
-        self._episode_num = state["episodes"]
-        if state["observation"] is not None:
-            self._last_obs = np.asarray(state["observation"]).copy()
-        self.ep_success_buffer = deque(state["recent_success"], maxlen=self._stats_window_size)
-        self.ep_info_buffer = deque(state["recent_episodes"], maxlen=self._stats_window_size)
-        self.update_exploration()
+        self.interactions, self.gradient_steps = state["interactions"], state["gradient_steps"]
+        seen = state["observation"]
+        self._observation = None if seen is None else np.asarray(seen).copy()
+        self.episodes = deque(state["episodes"], RECENT_EPISODES)
 
     def recent_episodes(self) -> dict[str, float]:
-        """Returns success rate and mean length of the last 100 training episodes; {} if none."""
-        if not self.ep_success_buffer or not self.ep_info_buffer:
+        """Returns success rate and mean length of the latest training episodes; {} if none."""
+        if not self.episodes:
             return {}
+        success, length = zip(*self.episodes, strict=True)
         return {
-            "rollout_success": float(np.mean(self.ep_success_buffer)),
-            "rollout_length_mean": float(np.mean([one["l"] for one in self.ep_info_buffer])),
+            "rollout_success": float(np.mean(success)),
+            "rollout_length_mean": float(np.mean(length)),
         }
-
-    @property
-    def gradient_steps_done(self) -> int:
-        return self._n_updates
 
 
 class Statistics:

@@ -208,16 +208,16 @@ class HindsightReplayBuffer(MixedReplayBuffer):
     offline: GoalStore
     online: GoalStore
 
-    def __init__(self, *of_buffer: Any, layouts: Layouts, goals: int, **more: Any) -> None:
+    def __init__(self, *of_buffer: Any, layouts: Layouts, goals: int) -> None:
         """`goals`: number of hindsight goals per transition."""
-        super().__init__(*of_buffer, **more)
+        super().__init__(*of_buffer)
         self.layouts, self.goals = layouts, goals
-        shape = (self.buffer_size, self.obs_shape[0], layouts.size, goals)
+        shape = (self.capacity, self.observation_size, layouts.size, goals)
         self.offline, self.online = GoalStore(*shape), GoalStore(*shape)
         # The desired layout of each environment's episode.
-        self._desired = np.zeros((self.n_envs, layouts.size), np.float32)
+        self._desired = np.zeros((self.environments, layouts.size), np.float32)
         # True if the next step begins an episode.
-        self._begins_episode = np.ones(self.n_envs, np.bool_)
+        self._begins_episode = np.ones(self.environments, np.bool_)
 
     def desired_layouts(self, observation: Array) -> Array:
         """Returns the desired layout of each environment; draws one for each new episode.

@@ -1,19 +1,21 @@
-"""Value networks as Stable-Baselines3 policy classes."""
+"""Value networks Q(s, ·) over the headings of a push.
+
+Both kinds have two methods. Called with observations [B, inputs], they return Q of all headings,
+[B, headings]. `at` returns Q of one heading per observation, [B, 1].
+"""
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from itertools import pairwise
-from typing import Any
 
 import torch as th
-from gymnasium import spaces
-from stable_baselines3.common.torch_layers import FlattenExtractor
-from stable_baselines3.common.type_aliases import PyTorchObs
-from stable_baselines3.dqn.policies import DQNPolicy, QNetwork
 from torch import nn
 
-LAYER_SIZES = (512, 512, 128)  # Table 2
+PLAIN_LAYERS = (512, 512, 128)  # Table 2
+TRUNK_LAYERS = (256, 256)
+FEATURES = 64  # size of each of u, v, w of HeadingNetwork
 
 
 @cache
@@ -32,86 +34,127 @@ def precision(reduced: bool, device: str) -> str:
     return "bfloat16" if reduced and has_fast_bfloat16(device) else "float32"
 
 
-class ValueNetwork(QNetwork):
-    """The value network Q(s, ·) with three hidden layers.
+class _Layers(nn.Module):
+    """Fully connected layers with ReLU. [B, widths[0]] -> [B, widths[-1]]
 
-    `dueling` adds the dueling head [Wang et al. 2016]:
-
-        Q(s, a) = V(s) + A(s, a) - mean_b A(s, b).
-
-    `layer_norm` adds LayerNorm after each hidden layer. `small_head` makes the initial Q small.
-    `goal_size` is the number of inputs after the observation that describe the desired goal, see
-    rtg.learn.hindsight.
-
-    `reduced_precision` computes the two inner layers in bfloat16 during training, which is 2.4
-    times faster. It has no effect without hardware support or when actions are chosen. Weights and
-    sums stay in float32, and so do the first and the last layer. The inputs of the first layer are
-    positions, which bfloat16 resolves only to 2 cm.
+    With `reduced_precision`, training computes all layers but the first in bfloat16. It has no
+    effect without hardware support or when actions are chosen. Weights and sums stay in float32.
+    The inputs of the first layer are positions, which bfloat16 resolves only to 2 cm.
     """
 
-    def __init__(
-        self,
-        *args: Any,
-        dueling: bool = True,
-        layer_norm: bool = True,
-        small_head: bool = True,
-        reduced_precision: bool = False,
-        goal_size: int = 0,
-        **kwargs: Any,
-    ) -> None:
-        super().__init__(*args, **kwargs)
-        actions = int(self.action_space.n)
-        widths = list(self.net_arch)
-        self.dueling = dueling
+    def __init__(self, *widths: int, layer_norm: bool, reduced_precision: bool) -> None:
+        super().__init__()
+        first, *inner = (
+            nn.Sequential(
+                nn.Linear(a, b), *([nn.LayerNorm(b)] if layer_norm else []), nn.ReLU(inplace=True)
+            )
+            for a, b in pairwise(widths)
+        )
+        self.first, self.inner = first, nn.Sequential(*inner)
         self.reduced_precision = reduced_precision
-        self.first = _layer(self.features_dim + goal_size, widths[0], layer_norm)
-        self.inner = nn.Sequential(*(_layer(a, b, layer_norm) for a, b in pairwise(widths)))
-        self.head = nn.Linear(widths[-1], actions + 1 if dueling else actions)
-        if small_head:  # |Q| starts below 0.01; by default it is as large as Q* far from the goal
-            with th.no_grad():
-                self.head.weight.mul_(0.01)
-                self.head.bias.zero_()
-        del self.q_net  # the plain network of the base class
 
-    def forward(self, obs: PyTorchObs) -> th.Tensor:
-        """Returns Q of all actions. [B, observation + goal_size] -> [B, actions]"""
-        hidden = self.first(self.extract_features(obs, self.features_extractor))
+    def forward(self, x: th.Tensor) -> th.Tensor:
+        hidden = self.first(x)
         device = hidden.device.type
         reduced = precision(self.reduced_precision, device) == "bfloat16"
         with th.autocast(device, th.bfloat16, enabled=reduced and self.training):
             hidden = self.inner(hidden)
-        out: th.Tensor = self.head(hidden.float())
-        if not self.dueling:
-            return out
-        value, advantage = out[:, :1], out[:, 1:]
-        return value + advantage - advantage.mean(dim=1, keepdim=True)
+        return hidden.float()
 
 
-def _layer(inputs: int, outputs: int, layer_norm: bool) -> nn.Sequential:
-    norm = [nn.LayerNorm(outputs)] if layer_norm else []
-    return nn.Sequential(nn.Linear(inputs, outputs), *norm, nn.ReLU())
+class PlainNetwork(nn.Module):
+    """The network of Table 2: three hidden layers, then a linear layer with a row per heading."""
+
+    def __init__(self, inputs: int, headings: int, reduced_precision: bool) -> None:
+        super().__init__()
+        self.layers = _Layers(
+            inputs, *PLAIN_LAYERS, layer_norm=False, reduced_precision=reduced_precision
+        )
+        self.head = nn.Linear(PLAIN_LAYERS[-1], headings)
+
+    def forward(self, x: th.Tensor) -> th.Tensor:
+        q: th.Tensor = self.head(self.layers(x))
+        return q
+
+    def at(self, x: th.Tensor, headings: th.Tensor) -> th.Tensor:
+        """x [B, inputs], headings [B, 1] int64 -> [B, 1]"""
+        return self(x).gather(1, headings)
 
 
-class ValuePolicy(DQNPolicy):
-    """SB3's DQN policy with ValueNetwork; `network` holds the keyword arguments of ValueNetwork."""
+class HeadingNetwork(nn.Module):
+    """A value network whose headings share their weights:
 
-    def __init__(
-        self,
-        observation_space: spaces.Space[Any],
-        action_space: spaces.Discrete,
-        lr_schedule: Any,
-        network: dict[str, Any] | None = None,
-        **kwargs: Any,
-    ) -> None:
-        self.network = network or {}
-        kwargs.setdefault("net_arch", list(LAYER_SIZES))
-        kwargs.setdefault("optimizer_kwargs", {"fused": True})
-        kwargs.setdefault("features_extractor_class", FlattenExtractor)
-        super().__init__(observation_space, action_space, lr_schedule, **kwargs)
+        Q(s, a) = V(s) + f(w(s) + cos θ_a u(s) + sin θ_a v(s)).
 
-    def make_q_net(self) -> QNetwork:
-        arguments = self._update_features_extractor(self.net_args, features_extractor=None)
-        return ValueNetwork(**arguments, **self.network).to(self.device)
+    A trunk computes V and the features u, v, w of the state. Each pair (u_i, v_i) is a vector in
+    the plane, of which f sees the component along the heading θ_a. So what f learns of one heading
+    holds for all: a push that meets an object at some angle does the same from any direction.
+    """
 
-    def _get_constructor_parameters(self) -> dict[str, Any]:
-        return {**super()._get_constructor_parameters(), "network": self.network}
+    basis: th.Tensor  # (1, cos θ_a, sin θ_a) of each heading [headings, 3]
+
+    def __init__(self, inputs: int, headings: int, reduced_precision: bool) -> None:
+        super().__init__()
+        self.trunk = _Layers(
+            inputs, *TRUNK_LAYERS, layer_norm=True, reduced_precision=reduced_precision
+        )
+        self.features = nn.Linear(TRUNK_LAYERS[-1], 3 * FEATURES)
+        self.value = nn.Linear(TRUNK_LAYERS[-1], 1)
+        self.advantage = nn.Sequential(
+            nn.LayerNorm(FEATURES),
+            nn.ReLU(inplace=True),
+            nn.Linear(FEATURES, FEATURES),
+            nn.ReLU(inplace=True),
+            nn.Linear(FEATURES, 1),
+        )
+        with th.no_grad():  # |Q| starts below 0.02, while by default it is as large as Q* far away
+            for last in (self.value, self.advantage[-1]):
+                last.weight.mul_(0.01)
+                last.bias.zero_()
+        theta = th.arange(headings) * (2.0 * math.pi / headings)
+        basis = th.stack((th.ones(headings), theta.cos(), theta.sin()), dim=1)
+        self.register_buffer("basis", basis, persistent=False)
+
+    def forward(self, x: th.Tensor) -> th.Tensor:
+        hidden = self.trunk(x)
+        along = th.matmul(self.basis, self._features(hidden))  # [B, headings, FEATURES]
+        q: th.Tensor = self.value(hidden) + self.advantage(along).squeeze(2)
+        return q
+
+    def at(self, x: th.Tensor, headings: th.Tensor) -> th.Tensor:
+        """x [B, inputs], headings [B, 1] int64 -> [B, 1]"""
+        hidden = self.trunk(x)
+        basis = self.basis[headings[:, 0], :, None]  # [B, 3, 1]
+        along = (basis * self._features(hidden)).sum(dim=1)
+        q: th.Tensor = self.value(hidden) + self.advantage(along)
+        return q
+
+    def _features(self, hidden: th.Tensor) -> th.Tensor:
+        """Returns w, u, v. [B, 3, FEATURES]"""
+        wuv: th.Tensor = self.features(hidden)
+        return wuv.view(-1, 3, FEATURES)
+
+
+ValueNetwork = PlainNetwork | HeadingNetwork
+KINDS = {"plain": PlainNetwork, "headings": HeadingNetwork}
+
+
+def make(
+    kind: str, inputs: int, headings: int, reduced_precision: bool = False
+) -> ValueNetwork:
+    """Makes the network that `train.network` names."""
+    return KINDS[kind](inputs, headings, reduced_precision)
+
+
+def flatten(net: nn.Module) -> nn.Parameter:
+    """Moves all weights of `net`, and their gradients, into one tensor, and returns it.
+
+    The weights of `net` become views of it, so that one operation updates them all.
+    """
+    weights = list(net.parameters())
+    flat = nn.Parameter(th.cat([w.detach().ravel() for w in weights]))
+    flat.grad = th.zeros_like(flat)
+    sizes = [w.numel() for w in weights]
+    for w, data, grad in zip(weights, flat.data.split(sizes), flat.grad.split(sizes), strict=True):
+        w.data, w.grad = data.view_as(w), grad.view_as(w)
+    return flat

@@ -10,16 +10,14 @@ from typing import Any
 
 import numpy as np
 import torch as th
-from gymnasium import spaces
 from numpy.typing import NDArray
 
 from rtg import _core
-from rtg.envs.push_env import observation_space
 from rtg.errors import UserError
 from rtg.files import checkpoint
+from rtg.learn import networks
 from rtg.learn.evaluation import Policy
 from rtg.learn.hindsight import Layouts
-from rtg.learn.networks import ValuePolicy
 
 
 def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
@@ -27,8 +25,7 @@ def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
     return {
         "observation_size": task.observation_size,
         "headings": task.headings,
-        "dueling": settings.dueling,
-        "layer_norm": settings.layer_norm,
+        "network": settings.network,
         "hindsight": settings.hindsight > 0,
     }
 
@@ -64,24 +61,20 @@ def read(path: Path, task: _core.Task) -> Policy:
     weights = state.get("weights")
     wanted = {"observation_size": task.observation_size, "headings": task.headings}
     check_identity(path, found, wanted)
+    if found.get("network") not in networks.KINDS:
+        raise UserError(f"{path}: has no network that is known; legal: {', '.join(networks.KINDS)}")
     if not isinstance(weights, dict):
         raise UserError(f"{path}: holds no policy; legal: a model.pt of RTG")
-    network: dict[str, Any] = {name: bool(found.get(name)) for name in ("dueling", "layer_norm")}
     layouts = Layouts(task) if found.get("hindsight") else None
-    network["goal_size"] = layouts.size if layouts else 0
-    policy = ValuePolicy(
-        observation_space(task),
-        spaces.Discrete(task.headings),
-        lambda _: 1.0,
-        network=network,
-    )
+    inputs = task.observation_size + (layouts.size if layouts else 0)
+    network = networks.make(found["network"], inputs, task.headings)
     try:
-        policy.q_net.load_state_dict(weights)
+        network.load_state_dict(weights)
     except RuntimeError as error:
         raise UserError(
             f"{path}: its weights do not fit the network ({error}); legal: a model.pt of RTG"
         ) from error
-    policy.set_training_mode(False)
+    network.train(False)
 
     def greedy(observation: NDArray[np.float32]) -> NDArray[Any]:
         if observation.ndim != 2 or observation.shape[1] != task.observation_size:
@@ -89,6 +82,6 @@ def read(path: Path, task: _core.Task) -> Policy:
             raise ValueError(f"observations {shape}; legal: [N, {task.observation_size}]")
         seen = layouts.network_input_nearest(observation) if layouts else observation
         with th.no_grad():
-            return policy.q_net(th.from_numpy(seen)).argmax(dim=1).numpy()
+            return network(th.from_numpy(seen)).argmax(dim=1).numpy()
 
     return greedy

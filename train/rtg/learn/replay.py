@@ -11,15 +11,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 import torch as th
-from gymnasium import spaces
-from stable_baselines3.common.buffers import BaseBuffer
-from stable_baselines3.common.vec_env import VecNormalize
 
+from rtg.envs.vector_env import Step
 from rtg.files.dataset import Transitions
 from rtg.learn.value_bounds import value_bounds
 
 Array = npt.NDArray[Any]
-Infos = list[dict[str, Any]]
 Part = tuple["Store", Array]  # a store and indices of some of its rows
 
 RECENT_COUNT = 10_000  # number of latest online transitions that count as recent
@@ -120,8 +117,8 @@ class ReplayRules:
     seed: int
 
 
-class MixedReplayBuffer(BaseBuffer):
-    """The replay buffer that SB3's DQN samples from.
+class MixedReplayBuffer:
+    """The replay buffer of the learner.
 
     - A share `offline_share` of each batch comes from the offline store. Before the online store
       holds enough transitions for a batch, the whole batch is offline.
@@ -132,27 +129,25 @@ class MixedReplayBuffer(BaseBuffer):
 
     def __init__(
         self,
-        buffer_size: int,
-        observation_space: spaces.Space[Any],
-        action_space: spaces.Space[Any],
+        capacity: int,
+        observation_size: int,
+        environments: int,
         rules: ReplayRules,
-        **of_sb3: Any,
+        device: str = "cpu",
     ) -> None:
-        """`of_sb3`: `device`, `n_envs` and `optimize_memory_usage`, which SB3 passes by name."""
+        """`capacity`: of each store; `device`: where batches are."""
         # Both s and s' are stored, because offline transitions are not consecutive.
-        of_sb3.pop("optimize_memory_usage", None)
-        arguments = {"device": "cpu", **of_sb3}
-        super().__init__(buffer_size, observation_space, action_space, **arguments)
-        size = self.obs_shape[0]
-        self.offline = Store(buffer_size, size)
-        self.online = Store(buffer_size, size)
+        self.offline = Store(capacity, observation_size)
+        self.online = Store(capacity, observation_size)
+        self.capacity, self.observation_size = capacity, observation_size
+        self.environments, self.device = environments, device
         self.offline_share = rules.offline_share
         self.recent_share = rules.recent_share
         self.discount = rules.discount
         self.use_bounds = rules.use_bounds
         self.rng = np.random.default_rng(rules.seed)
         # Per environment, the numbers in `online` of the transitions of its current episode.
-        self._episodes: list[list[int]] = [[] for _ in range(self.n_envs)]
+        self._episodes: list[list[int]] = [[] for _ in range(environments)]
 
     def size(self) -> int:
         return self.offline.count + self.online.count
@@ -163,7 +158,7 @@ class MixedReplayBuffer(BaseBuffer):
         Raises ValueError if they do not fit.
         """
         if self.offline.count + len(batch.action) > self.offline.capacity:
-            raise ValueError(f"more offline transitions than train.buffer = {self.buffer_size}")
+            raise ValueError(f"more offline transitions than train.buffer = {self.capacity}")
         self.offline.append(
             observation=batch.observation,
             next_observation=batch.next_observation,
@@ -181,30 +176,27 @@ class MixedReplayBuffer(BaseBuffer):
                 store.observation[:n], store.next_observation[:n], store.reward[:n], self.discount
             )
 
-    def add(
-        self, obs: Array, next_obs: Array, action: Array, reward: Array, done: Array, infos: Infos
-    ) -> None:
-        """Adds one online transition per environment; SB3 calls it after each step.
+    def add(self, observation: Array, action: Array, step: Step) -> None:
+        """Adds one online transition per environment: `action` in `observation` led to `step`.
 
-        A time-out does not count as termination, so its target still bootstraps. A push that the
-        simulator could not finish is no transition and is left out.
+        A truncated episode does not count as terminated, so its target still bootstraps. A rejected
+        push is no transition and is left out.
         """
-        timeout = np.array([info.get("TimeLimit.truncated", False) for info in infos])
-        kept = np.flatnonzero([not info.get("rejected", False) for info in infos])
-        more = self._extra_online_columns(obs)
+        kept = np.flatnonzero(~step.rejected)
+        more = self._extra_online_columns(observation)
         numbers = self.online.append(
-            observation=obs[kept],
-            next_observation=next_obs[kept],
-            action=action.reshape(-1)[kept],
-            reward=reward[kept],
-            terminated=(np.asarray(done) & ~timeout)[kept],
-            bound=reward[kept],
+            observation=observation[kept],
+            next_observation=step.next_observation[kept],
+            action=action[kept],
+            reward=step.reward[kept],
+            terminated=step.terminated[kept],
+            bound=step.reward[kept],
             **{name: column[kept] for name, column in more.items()},
         )
         for env, number in zip(kept, numbers, strict=True):
             self._episodes[env].append(int(number))
-        for env in np.flatnonzero(done):
-            self._close_episode(int(env), success=bool(reward[env] > 0))
+        for env in np.flatnonzero(step.terminated | step.truncated):
+            self._close_episode(int(env), success=bool(step.terminated[env]))
 
     def _extra_online_columns(self, observation: Array) -> dict[str, Array]:
         """Returns further columns for the online store. observation [environments, observation]"""
@@ -222,7 +214,7 @@ class MixedReplayBuffer(BaseBuffer):
         if success and self.use_bounds:
             self.online.set_bounds(numbers, self.discount ** np.arange(len(numbers) - 1, -1, -1))
 
-    def sample(self, batch_size: int, env: VecNormalize | None = None) -> Batch:
+    def sample(self, batch_size: int) -> Batch:
         offline = self._offline_count(batch_size)
         parts: list[Part] = []
         if offline:
@@ -273,9 +265,6 @@ class MixedReplayBuffer(BaseBuffer):
         if offline == 0:
             return 0
         return batch_size if online < batch_size else round(self.offline_share * batch_size)
-
-    def _get_samples(self, batch_inds: Array, env: VecNormalize | None = None) -> Any:
-        raise NotImplementedError("rows belong to two stores; use sample()")
 
     def state(self) -> dict[str, Any]:
         """Returns the state for a checkpoint, without offline transitions.

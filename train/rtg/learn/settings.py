@@ -11,8 +11,7 @@ CHECKPOINT_SETTINGS = (
     "train_frequency",
     "buffer",
     "discount",
-    "dueling",
-    "layer_norm",
+    "network",
     "hindsight",
     "curriculum",
 )

@@ -22,7 +22,7 @@ from rtg.learn.settings import CHECKPOINT_SETTINGS
 from rtg.learn.training_log import TrainingLog
 
 MAX_ENVIRONMENTS = 4  # stepped together at most; train.buffer must not be smaller
-_FORMAT = 6  # version of the checkpoint format; other versions are rejected
+_FORMAT = 7  # version of the checkpoint format; other versions are rejected
 POLL_TIMEOUT = 0.1  # [s], how long a poll waits for transitions while not learning
 
 Stop = Callable[[], bool]
@@ -52,7 +52,7 @@ class Training:
         clones = s.learner == "cloning"
         self.model = (Cloning if clones else DoubleDqn)(self.env, s, self.discount, seed)
         selection = {"select": imitated} if clones else {}
-        self.data = OfflineData(self.task, self.model.replay_buffer, **selection)
+        self.data = OfflineData(self.task, self.model.replay, **selection)
         self.log = TrainingLog(folder)
         fixed = {name: getattr(s, name) for name in CHECKPOINT_SETTINGS}
         self._identity = {
@@ -74,7 +74,7 @@ class Training:
     @property
     def scheduled_interactions(self) -> int:
         """Number of interactions so far as schedules count them, also without `train.interact`."""
-        return self.model.num_timesteps
+        return self.model.interactions
 
     @property
     def interactions(self) -> int:
@@ -129,8 +129,8 @@ class Training:
     def _learn(self) -> None:
         """Performs one round of learning. Raises RunError if there is nothing to learn from."""
         if self.settings.interact:
-            self.model.learn(self.settings.train_frequency, reset_num_timesteps=False)
-        elif self.model.replay_buffer.size():
+            self.model.learn()
+        elif self.model.replay.size():
             self.model.learn_offline()
         else:
             raise RunError(
@@ -138,7 +138,7 @@ class Training:
             )
 
     def _current_device_info(self) -> dict[str, Any]:
-        kind = self.model.device.type
+        kind = self.model.device
         return {
             "device": device.name(kind),
             "precision": networks.precision(self.settings.reduced_precision, kind),
@@ -185,7 +185,7 @@ class Training:
         self.log.add(
             {
                 "interactions": self.scheduled_interactions,
-                "gradient_steps": self.model.gradient_steps_done,
+                "gradient_steps": self.model.gradient_steps,
                 **evaluation.summary(),
                 **self.model.recent_episodes(),
                 "online_successes": self.env.successes,
@@ -232,7 +232,7 @@ class Training:
         state = {
             "identity": self._identity,
             "model": self.model.state(),
-            "replay": self.model.replay_buffer.state(),
+            "replay": self.model.replay.state(),
             "env": self.env.state(),
             "data": self.data.state(),
             "rows": self.log.rows,
@@ -252,7 +252,7 @@ class Training:
         policy_file.check_identity(path, state.get("identity"), self._identity)
         rows = read_rows(self._seen_transitions(), self.task)
         self.data.restore(state["data"], rows)
-        self.model.replay_buffer.restore(state["replay"])
+        self.model.replay.restore(state["replay"])
         self.model.restore(state["model"])
         self.env.restore(state["env"])
         self.log.rows = state["rows"]
@@ -285,7 +285,7 @@ class Training:
         transitions.
         """
         final = self._evaluate(held_out_starts(self.config, FINAL_SEED))
-        weights = self.model.mean_net.state_dict()
+        weights = self.model.mean.state_dict()
         policy_file.write(self.folder / "model.pt", self.task, self.settings, weights)
         self.log.write_result(final, training_result.figures(self, final, lost))
         self.log.display(self._display_state(), force=True)

@@ -17,7 +17,7 @@ def figures(run: Training, final: Evaluation, lost: int) -> dict[str, Any]:
     """Returns the content of training.json. `lost`: number of lost transitions."""
     return {
         "interactions": run.interactions,
-        "gradient_steps": run.model.gradient_steps_done,
+        "gradient_steps": run.model.gradient_steps,
         "online_successes": run.env.successes,
         **final.summary(),
         **run.model.recent_episodes(),
@@ -37,7 +37,7 @@ def _counts(run: Training) -> dict[str, int]:
     if run.env.curriculum:
         found["curriculum_pushes"] = run.env.curriculum.pushes
     if run.settings.learner == "cloning":
-        found["imitated_transitions"] = run.model.replay_buffer.size()
+        found["imitated_transitions"] = run.model.replay.size()
     return found
 
 
