@@ -26,9 +26,12 @@ def replay_rules(**changes: Any) -> ReplayRules:
 def step_to(
     after: np.ndarray, reward: Any = 0.0, truncated: Any = False, rejected: Any = False
 ) -> Step:
-    """Makes the outcome of actions in all environments. Rewards end episodes. [N, observation]"""
+    """Makes the outcome of actions in all environments. Rewards end episodes. [N, observation]
+
+    The observation before the next action is far from all, as no buffer stores it.
+    """
     got, cut, given_up = (np.broadcast_to(x, len(after)) for x in (reward, truncated, rejected))
-    return Step(after, np.float32(got), got > 0, cut, given_up, after, episodes=[])
+    return Step(after, np.float32(got), got > 0, cut, given_up, after + 100.0, episodes=[])
 
 
 def random_transitions(count: int, bodies: int = 4, seed: int = 0) -> Transitions:

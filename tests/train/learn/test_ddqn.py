@@ -5,7 +5,7 @@ from rtg.learn import networks
 from rtg.learn.ddqn import DoubleDqn, Statistics, bootstrap_targets, td_targets
 from rtg.learn.replay import Batch
 from samples import train_settings
-from toy import Line, Outcomes
+from toy import TIME_LIMIT, Line, Outcomes
 
 SETTINGS = dict(
     interactions=1000,
@@ -179,6 +179,27 @@ def test_interactions_are_counted_singly() -> None:
     one = model(train_frequency=4)
     play(one, 40)
     assert (one.interactions, one.gradient_steps, one.replay.online.count) == (40, 10, 40)
+
+
+def test_stored_transitions_end_with_their_episode_and_the_next_ones_begin_anew() -> None:
+    one = model(epsilon_start=1.0, epsilon_end=1.0, nearby_share=0.0)
+    for _ in range(200):
+        one._interact()
+    store, cut = one.replay.online, 0
+    at, after = (4.0 * seen[:800, 0] for seen in (store.observation, store.next_observation))
+    success = after == 4
+    np.testing.assert_array_equal(after, at + (store.action[:800] == 1))
+    np.testing.assert_array_equal(store.reward[:800], success)
+    np.testing.assert_array_equal(store.terminated[:800], success)
+    for env in range(4):
+        place, steps = 0, 0
+        for k in range(env, 800, 4):
+            assert at[k] == place
+            steps += 1
+            ended = success[k] or steps == TIME_LIMIT
+            cut += ended and not success[k]
+            place, steps = (0, 0) if ended else (after[k], steps)
+    assert cut > 5 and success.sum() > 5
 
 
 def test_exploration_follows_the_interactions_not_the_calls() -> None:
