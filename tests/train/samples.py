@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 from rtg import _core, paths
+from rtg.envs.vector_env import Step
 from rtg.files.dataset import Transitions
 from rtg.learn.replay import ReplayRules
 
@@ -20,6 +21,17 @@ def replay_rules(**changes: Any) -> ReplayRules:
     """Returns rules by which half of a batch is offline, none of it recent, with bounds."""
     usual = {"offline_share": 0.5, "recent_share": 0.0, "discount": 0.9, "use_bounds": True}
     return ReplayRules(**{**usual, "seed": 0, **changes})
+
+
+def step_to(
+    after: np.ndarray, reward: Any = 0.0, truncated: Any = False, rejected: Any = False
+) -> Step:
+    """Makes the outcome of actions in all environments. Rewards end episodes. [N, observation]
+
+    The observation before the next action is far from all, as no buffer stores it.
+    """
+    got, cut, given_up = (np.broadcast_to(x, len(after)) for x in (reward, truncated, rejected))
+    return Step(after, np.float32(got), got > 0, cut, given_up, after + 100.0, episodes=[])
 
 
 def random_transitions(count: int, bodies: int = 4, seed: int = 0) -> Transitions:

@@ -1,53 +1,62 @@
 """Toy environments: a line to walk along to the right, and episodes that end as they are told."""
 
 from collections.abc import Sequence
-from typing import Any
 
-import gymnasium
 import numpy as np
-from gymnasium import spaces
-from stable_baselines3.common.vec_env import DummyVecEnv
+from rtg.envs.vector_env import Step
+
+TIME_LIMIT = 20  # actions of an episode of the line
 
 
-class Outcomes(gymnasium.Env):
-    """Episodes of one step that end as they are told, in turn; the k-th says it had k steps."""
+class Outcomes:
+    """An environment of episodes of one step that end as they are told, in turn; the k-th says it
+    had k steps."""
 
-    def __init__(self, successes: Sequence[bool], actions: int = 8) -> None:
-        self.observation_space = spaces.Box(-1e4, 1e4, (3,), np.float32)
-        self.action_space = spaces.Discrete(actions)
+    count, observation_size, headings, task = 1, 3, 8, None
+
+    def __init__(self, successes: Sequence[bool]) -> None:
         self.left = list(enumerate(successes))
 
-    def reset(self, **kwargs: Any) -> tuple[np.ndarray, dict[str, Any]]:
-        super().reset(seed=kwargs.get("seed"))
-        return np.zeros(3, np.float32), {}
+    def contact_headings(self, seed: int) -> np.ndarray:
+        raise NotImplementedError("there are no objects")
 
-    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        number, success = self.left.pop(0)
-        told = {"is_success": success, "episode": {"r": float(success), "l": number}}
-        return np.zeros(3, np.float32), float(success), success, not success, told
+    def reset(self) -> np.ndarray:
+        return np.zeros((1, 3), np.float32)
+
+    def step(self, actions: np.ndarray) -> Step:
+        length, success = self.left.pop(0)
+        ends = np.array([success])
+        seen = self.reset()
+        episodes = [(success, length)]
+        return Step(seen, ends.astype(np.float32), ends, ~ends, ends & False, seen, episodes)
 
 
-class Line(gymnasium.Env):
-    """Positions 0 to 4; action 1 goes right, every other action stays."""
+class Line:
+    """Environments with positions 0 to 4; heading 1 goes right, every other heading stays."""
 
-    def __init__(self, actions: int = 8) -> None:
-        self.observation_space = spaces.Box(-1e4, 1e4, (3,), np.float32)
-        self.action_space = spaces.Discrete(actions)
-        self.at = 0
+    observation_size, task = 3, None
+
+    def __init__(self, count: int = 4, headings: int = 8) -> None:
+        self.count, self.headings = count, headings
+        self.at, self.steps = np.zeros(count, int), np.zeros(count, int)
+
+    def contact_headings(self, seed: int) -> np.ndarray:
+        raise NotImplementedError("there are no objects")
 
     def _observation(self) -> np.ndarray:
-        return np.array([self.at / 4.0, 1.0, 0.0], np.float32)
+        one = np.ones(self.count)
+        return np.stack((self.at / 4.0, one, 0.0 * one), axis=1).astype(np.float32)
 
-    def reset(self, **kwargs: Any) -> tuple[np.ndarray, dict[str, Any]]:
-        super().reset(seed=kwargs.get("seed"))
-        self.at = 0
-        return self._observation(), {}
+    def reset(self) -> np.ndarray:
+        self.at[:] = self.steps[:] = 0
+        return self._observation()
 
-    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        self.at += int(action == 1)
-        success = self.at == 4
-        return self._observation(), float(success), success, False, {"is_success": success}
-
-
-def line(count: int = 4, actions: int = 8) -> DummyVecEnv:
-    return DummyVecEnv([lambda: gymnasium.wrappers.TimeLimit(Line(actions), 20)] * count)
+    def step(self, actions: np.ndarray) -> Step:
+        self.at, self.steps = self.at + (actions == 1), self.steps + 1
+        seen, success = self._observation(), self.at == 4
+        truncated = ~success & (self.steps == TIME_LIMIT)
+        ended = success | truncated
+        episodes = [(bool(success[k]), int(self.steps[k])) for k in np.flatnonzero(ended)]
+        self.at[ended] = self.steps[ended] = 0
+        reward = success.astype(np.float32)
+        return Step(seen, reward, success, truncated, ended & False, self._observation(), episodes)

@@ -16,9 +16,9 @@ FILE = paths.CONFIG / "sorting.yaml"
 
 
 def test_what_differs_is_taken_back_key_by_key():
-    current = {"batch": 256, "dueling": True, "discount": 0.95, "eval_every": 5000}
-    paper = {"batch": 512, "dueling": False, "discount": 0.95, "eval_every": 10000}
-    assert departures(current, paper) == [("train.batch=512",), ("train.dueling=false",)]
+    current = {"batch": 256, "network": "headings", "discount": 0.95, "eval_every": 5000}
+    paper = {"batch": 512, "network": "plain", "discount": 0.95, "eval_every": 10000}
+    assert departures(current, paper) == [("train.batch=512",), ("train.network=plain",)]
 
 
 def test_keys_that_belong_together_are_taken_back_together():

@@ -166,7 +166,7 @@ def test_methods_that_cannot_be_compared_are_refused(words, more, what):
     with pytest.raises(UserError, match=f"ddqn_naive/seed-1: was made with {what}; legal: "):
         prepare_runs(parse([*alone, "--set", more]))
     with pytest.raises(UserError, match=f"ddqn_naive/seed-1: was made with {what}; legal: "):
-        prepare_runs(parse([*alone, "--sweep", "train.dueling=false", "--set", more]))
+        prepare_runs(parse([*alone, "--sweep", "train.network=plain", "--set", more]))
     assert not rtg.begun
 
 

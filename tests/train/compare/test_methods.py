@@ -71,10 +71,10 @@ def test_the_preset_paper_differs_in_these_values_alone() -> None:
     exploration = {"epsilon_start": 1.0, "epsilon_end": 0.05, "epsilon_share": 0.1}
     uniform = {"offline_share": -1.0, "recent_share": 0.0, "nearby_share": 0.0}
     of_default = (
-        "target_acts clipped_double_q dueling layer_norm small_head clip_targets value_bounds "
-        "leave_loops reduced_precision"
+        "target_acts clipped_double_q clip_targets value_bounds leave_loops reduced_precision"
     )
     without = {**dict.fromkeys(of_default.split(), False), "averaging_rate": 1.0, "discount": 0.0}
+    without["network"] = "plain"
     course = {"start_jitter": 0.0, "eval_every": 10000, "stop_at_success": 0.0}
     changed = {**table_2, **exploration, **uniform, **without, **course, "preset": "paper"}
     default["train"] |= changed
@@ -84,7 +84,7 @@ def test_the_preset_paper_differs_in_these_values_alone() -> None:
 def test_settings_stand_above_the_method_and_it_above_presets_and_the_file() -> None:
     assert values("her", "train.hindsight=2")["train"]["hindsight"] == 2
     paper = values("ddqn_random", "train.preset=paper")
-    assert paper["search"]["generator"] == "random" and not paper["train"]["dueling"]
+    assert paper["search"]["generator"] == "random" and paper["train"]["network"] == "plain"
     without = json.loads(_core.Config.from_file(TINY).json)
     assert (without["run"]["method"], without["search"]["generator"]) == ("ddqn_rtg", "naive")
 
@@ -201,7 +201,7 @@ def test_a_resumed_run_ends_with_the_same_bits(tmp_path: Path, method: str, cut:
                 one.restore()
             finished = one.run(NoSource(), stop, record=False)
         assert finished and one.interactions == 240
-        assert method != "her" or one.model.replay_buffer.online.goals.any()
+        assert method != "her" or one.model.replay.online.goals.any()
         ends.append(flat(checkpoint.read(folder / "checkpoint" / "state.pt")))
     same = ends[0] == ends[1]
     assert same and len(ends[0]) > 50  # no diff of bytes

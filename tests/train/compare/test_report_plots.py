@@ -126,12 +126,12 @@ def test_a_sweep_shows_every_run_and_who_never_got_there(tmp_path, figures):
 
 def test_swept_values_of_two_methods_are_told_apart(tmp_path, figures):
     cells = {
-        Cell("gathering", method, ("train.batch=8", "train.dueling=true"), 1): [0.5]
+        Cell("gathering", method, ("train.batch=8", "train.clip_targets=true"), 1): [0.5]
         for method in ("dqn", "ddqn_rtg")
     }
     report_plots.sweep(tmp_path / "sweep.png", comparison(tmp_path, cells), "gathering")
     names = [tick.get_text() for tick in figures[0].axes[0].get_yticklabels()]
-    swept = "train.batch=8\ntrain.dueling=true"
+    swept = "train.batch=8\ntrain.clip_targets=true"
     assert names == [f"dqn\n{swept}", f"ddqn_rtg\n{swept}"]
 
 

@@ -32,12 +32,12 @@ def test_quick_is_small_and_what_the_user_sets_stands_above_it():
 
 
 def test_a_sweep_is_one_more_axis_of_the_reference_method():
-    sweeps = ["--sweep", "train.batch=8,16", "--sweep", "train.dueling=false"]
+    sweeps = ["--sweep", "train.batch=8,16", "--sweep", "train.network=plain"]
     args = parse(["gathering", "--seeds", "4,2", *sweeps])
-    settings = [("train.batch=8", "train.dueling=false"), ("train.batch=16", "train.dueling=false")]
+    settings = [("train.batch=8", "train.network=plain"), ("train.batch=16", "train.network=plain")]
     cells = [Cell("gathering", REFERENCE, s, seed) for s in settings for seed in (4, 2)]
     assert list(args.cells) == cells
-    assert cells[0].name == f"gathering/{REFERENCE}@train.batch=8@train.dueling=false/seed-4"
+    assert cells[0].name == f"gathering/{REFERENCE}@train.batch=8@train.network=plain/seed-4"
 
 
 def test_ablations_are_runs_as_they_are_with_each_departure_taken_back_and_as_the_paper():
@@ -46,7 +46,7 @@ def test_ablations_are_runs_as_they_are_with_each_departure_taken_back_and_as_th
     assert {cell.method for cell in args.cells} == {REFERENCE}
     assert settings[0] == () and settings[-1][0] == "train.preset=paper"
     assert ("search.branches=0",) in settings
-    assert ("train.batch=512",) in settings and ("train.dueling=false",) in settings
+    assert ("train.batch=512",) in settings and ("train.network=plain",) in settings
     assert ("train.target_sync=250", "train.target_rate=1.0") in settings
     assert not any("eval_every" in word for words in settings[:-1] for word in words)
     assert args.command == (
@@ -58,11 +58,12 @@ def test_ablations_are_runs_as_they_are_with_each_departure_taken_back_and_as_th
 
 def test_the_command_of_the_report_has_all_that_decides_the_results_and_no_more():
     words = (
-        "gathering --out /tmp/x --jobs 3 --seeds 2 --set train.batch=9 --sweep train.dueling=true"
+        "gathering --out /tmp/x --jobs 3 --seeds 2 --set train.batch=9 "
+        "--sweep train.network=headings"
     )
     args = parse(words.split())
     assert args.command == (
-        "./run.sh reproduce gathering --methods ddqn_rtg --seeds 2 --sweep train.dueling=true "
+        "./run.sh reproduce gathering --methods ddqn_rtg --seeds 2 --sweep train.network=headings "
         "--set train.batch=9"
     )
     assert args.command_line == f"./run.sh reproduce {words}"

@@ -214,8 +214,10 @@ def test_environments_begin_at_its_starts_and_tell_how_they_ended() -> None:
     np.testing.assert_array_equal(env.reset(), TASK.observation(one.pool[:2]))
     rng, episodes, wins, steps = np.random.default_rng(0), 0, 0, 0
     while episodes < 50:
-        _, reward, done, _ = env.step(rng.integers(48, size=2))
-        episodes, wins = episodes + int(done.sum()), wins + int(reward.sum())
+        step = env.step(rng.integers(48, size=2))
+        assert step.episodes == []  # none began at a start of the task
+        episodes += int((step.terminated | step.truncated).sum())
+        wins += int(step.reward.sum())
         steps += 2
     assert one.state()["tries"].sum() == episodes and one.state()["wins"].sum() == wins
     running = env.state()["steps"].sum()

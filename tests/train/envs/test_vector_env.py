@@ -1,4 +1,5 @@
 from collections import Counter
+from typing import Any
 
 import numpy as np
 from rtg import _core, paths
@@ -11,12 +12,9 @@ TASK = CONFIG.task
 
 
 def steps(env: PushVecEnv, count: int, seed: int = 0) -> list[np.ndarray]:
+    """Makes random pushes; returns all that the environments say of them but for the episodes."""
     rng = np.random.default_rng(seed)
-    out = []
-    for _ in range(count):
-        observation, reward, done, _ = env.step(rng.integers(48, size=env.num_envs))
-        out.append(np.column_stack((observation, reward, done)))
-    return out
+    return [np.column_stack(env.step(rng.integers(48, size=env.count))[:-1]) for _ in range(count)]
 
 
 # A push from success, out of four.
@@ -47,18 +45,16 @@ class Singles:
         self.lengths[k] = 0
         return self.envs[k].reset(options={"poses": start})[0]
 
-    def step(self, k: int, action: int) -> tuple[np.ndarray, float, bool, dict]:
-        """Does what one copy of PushVecEnv does."""
+    def step(self, k: int, action: int) -> tuple[Any, ...]:
+        """Does what one copy of PushVecEnv does; returns the fields of Step for it."""
         seen, reward, terminated, truncated, _ = self.envs[k].step(action)
         self.lengths[k] += 1
         self.successes += terminated
-        info = {"TimeLimit.truncated": truncated, "rejected": False}
         if not (terminated or truncated):
-            return seen, reward, False, info
-        self.ends.append((terminated, self.lengths[k]))
-        info |= {"terminal_observation": seen, "is_success": terminated}
-        info["episode"] = {"r": reward, "l": self.lengths[k]}
-        return self.begin(k), reward, True, info
+            return seen, reward, False, False, False, seen, []
+        end = (terminated, self.lengths[k])
+        self.ends.append(end)
+        return seen, reward, terminated, truncated, False, self.begin(k), [end]
 
 
 def test_every_copy_does_what_the_single_environment_does_over_many_episodes() -> None:
@@ -69,12 +65,11 @@ def test_every_copy_does_what_the_single_environment_does_over_many_episodes() -
     rng = np.random.default_rng(0)
     for _ in range(400):
         actions = np.where(rng.random(count) < 0.3, 0, rng.integers(48, size=count))
-        observation, reward, done, infos = many.step(actions)
-        for k in range(count):
-            expected = singles.step(k, int(actions[k]))
-            np.testing.assert_array_equal(observation[k], expected[0])
-            assert (reward[k], done[k]) == expected[1:3]
-            np.testing.assert_equal(infos[k], expected[3])
+        found = many.step(actions)
+        expected = [singles.step(k, int(actions[k])) for k in range(count)]
+        for of_many, *of_singles in zip(found[:-1], *(one[:-1] for one in expected), strict=True):
+            np.testing.assert_array_equal(of_many, np.stack(of_singles))
+        assert found.episodes == [end for *_, ends in expected for end in ends]
         assert many.successes == singles.successes
     kinds = Counter(singles.ends)
     assert kinds[True, 1] > 10 and kinds[False, horizon] > 10
@@ -85,17 +80,13 @@ def test_a_finished_episode_reports_its_end_and_starts_again() -> None:
     env = PushVecEnv(CONFIG, 2, jitter=0.1, seed=9)
     env.reset()
     for _ in range(60):
-        observation, reward, done, infos = env.step(np.array([36, 36]))
-    assert done.all() and not reward.any()
-    for k, info in enumerate(infos):
-        assert (
-            info["TimeLimit.truncated"]
-            and info["episode"] == {"r": 0.0, "l": 60}
-            and not info["is_success"]
-        )
+        step = env.step(np.array([36, 36]))
+    assert step.truncated.all() and not (step.reward.any() or step.terminated.any())
+    assert not step.rejected.any() and step.episodes == [(False, 60)] * 2
+    for k in range(2):
         start = TASK.observation(TASK.jittered_start(0.1, 9, 2 + k)[None])[0]
-        np.testing.assert_array_equal(observation[k], start)
-        assert not np.array_equal(info["terminal_observation"], observation[k])
+        np.testing.assert_array_equal(step.observation[k], start)
+        assert not np.array_equal(step.next_observation[k], start)
 
 
 class Turns:
@@ -117,10 +108,10 @@ def test_only_episodes_from_the_starts_of_the_task_count() -> None:
     env = PushVecEnv(CONFIG, 2, jitter=0.1, seed=9, curriculum=curriculum)
     env.reset()
     for _ in range(60):
-        _, _, done, infos = env.step(np.array([36, 36]))
-    assert done.all() and curriculum.noted == [(0, False, 60), (NOT_FROM_CURRICULUM, False, 60)]
-    assert ["is_success" in info for info in infos] == [False, True]
-    assert ["episode" in info for info in infos] == [False, True]
+        step = env.step(np.array([36, 36]))
+    assert step.truncated.all()
+    assert curriculum.noted == [(0, False, 60), (NOT_FROM_CURRICULUM, False, 60)]
+    assert step.episodes == [(False, 60)]
 
 
 def test_a_restored_environment_goes_on_with_the_same_bits() -> None:
@@ -161,11 +152,11 @@ def test_a_push_that_the_simulator_gives_up_cuts_the_episode() -> None:
     env = PushVecEnv(CONFIG, 2, jitter=0.1, seed=9)
     before = env.reset()
     env._simulator = GivesUp(env)
-    observation, reward, done, infos = env.step(np.array([0, 0]))
-    assert done.tolist() == [False, True] and reward.tolist() == [0.0, 0.0]
-    assert not infos[0]["rejected"]
-    assert infos[1]["rejected"] and infos[1]["TimeLimit.truncated"]
-    np.testing.assert_array_equal(infos[1]["terminal_observation"], before[1])
+    step = env.step(np.array([0, 0]))
+    assert step.rejected.tolist() == step.truncated.tolist() == [False, True]
+    assert not step.terminated.any() and step.reward.tolist() == [0.0, 0.0]
+    assert step.episodes == [(False, 1)]
+    np.testing.assert_array_equal(step.next_observation[1], before[1])
     start = TASK.observation(TASK.jittered_start(0.1, 9, 2)[None])[0]
-    np.testing.assert_array_equal(observation[1], start)
+    np.testing.assert_array_equal(step.observation[1], start)
     assert env.successes == 0

@@ -13,7 +13,7 @@ from rtg.learn.offline_data import FileSource
 from rtg.learn.replay import Batch
 from samples import random_transitions, train_settings
 from test_ddqn import SETTINGS
-from toy import line
+from toy import Line
 from training_runs import run_folder, training
 
 BC = ("run.method=bc_rtg",)
@@ -23,7 +23,7 @@ WANTED = np.array([3, 1, 7, 0, 5])  # an action for each
 
 def cloning(**changes: object) -> Cloning:
     settings = train_settings(**{**SETTINGS, "interact": False, "learner": "cloning", **changes})
-    return Cloning(line(), settings, discount=0.9, seed=0)
+    return Cloning(Line(), settings, discount=0.9, seed=0)
 
 
 def rows_of(source: str, actions: np.ndarray) -> Transitions:
@@ -52,10 +52,10 @@ def test_steps_of_trees_are_imitated_and_nothing_else() -> None:
 
 def test_the_loss_is_the_cross_entropy_of_the_actions(monkeypatch: pytest.MonkeyPatch) -> None:
     """-log of the share of e^f(a) among all eight, mean over both rows."""
-    one, told = cloning(dueling=False), []
+    one, told = cloning(network="plain"), []
     with th.no_grad():
-        one.q_net.head.weight.zero_()
-        one.q_net.head.bias.copy_(th.tensor([1.0, 2.0, 1.0, 4.0, 1.0, 1.0, 1.0, 1.0]).log())
+        one.online.head.weight.zero_()
+        one.online.head.bias.copy_(th.tensor([1.0, 2.0, 1.0, 4.0, 1.0, 1.0, 1.0, 1.0]).log())
     monkeypatch.setattr(one, "_descend", told.append)
     seen, column = th.zeros(2, 3), th.zeros(2, 1)
     one._gradient_step(Batch(seen, th.tensor([[1], [3]]), seen, column, column, column, 2))
@@ -67,7 +67,7 @@ def test_it_learns_what_the_steps_do_and_not_what_their_branches_do() -> None:
     one = cloning(learning_rate=1e-3)
     branches = [rows_of("branch", (WANTED + 1) % 8)] * 4
     for part in [rows_of("tree", WANTED), *branches]:
-        one.replay_buffer.add_offline(imitated(part))
+        one.replay.add_offline(imitated(part))
     for _ in range(60):
         one.learn_offline()
     np.testing.assert_array_equal(one.greedy(HERE), WANTED)
@@ -84,7 +84,7 @@ def test_a_run_imitates_the_trees_of_its_transitions(tmp_path: Path, rows: Rows)
     one = training(folder)
     one.restore()
     np.testing.assert_array_equal(
-        one.model.replay_buffer.offline.action[: trees.sum()], rows.action[trees]
+        one.model.replay.offline.action[: trees.sum()], rows.action[trees]
     )
 
 

@@ -22,7 +22,7 @@ def test_values_of_headings_that_are_not_in_the_data_are_held_down() -> None:
         one = model(cql_weight=cql_weight, learning_rate=1e-3)
         x = np.array([[k / 4, 1, 0] for k in range(5)], np.float32)
         reward = np.array([0, 0, 0, 1], np.float32)
-        one.replay_buffer.offline.append(
+        one.replay.offline.append(
             observation=x[:4],
             next_observation=x[1:],
             action=np.ones(4, np.int64),
@@ -38,7 +38,7 @@ def test_values_of_headings_that_are_not_in_the_data_are_held_down() -> None:
 
 def test_learning_offline_counts_the_interactions_it_leaves_out() -> None:
     one = model(train_frequency=4, gradient_steps=3)
-    one.replay_buffer.offline.append(
+    one.replay.offline.append(
         observation=np.zeros((1, 3), np.float32),
         next_observation=np.zeros((1, 3), np.float32),
         action=np.zeros(1, np.int64),
@@ -47,5 +47,5 @@ def test_learning_offline_counts_the_interactions_it_leaves_out() -> None:
     )
     for _ in range(5):
         one.learn_offline()
-    assert (one.num_timesteps, one.gradient_steps_done) == (20, 15)
-    assert one.replay_buffer.online.count == 0
+    assert (one.interactions, one.gradient_steps) == (20, 15)
+    assert one.replay.online.count == 0

@@ -2,11 +2,10 @@ import numpy as np
 import pytest
 import torch as th
 from rtg.learn import networks
-from rtg.learn.ddqn import DoubleDqn, Statistics, bootstrap_targets, next_values, td_targets
+from rtg.learn.ddqn import DoubleDqn, Statistics, bootstrap_targets, td_targets
 from rtg.learn.replay import Batch
 from samples import train_settings
-from stable_baselines3.common.vec_env import DummyVecEnv
-from toy import Outcomes, line
+from toy import TIME_LIMIT, Line, Outcomes
 
 SETTINGS = dict(
     interactions=1000,
@@ -21,7 +20,14 @@ SETTINGS = dict(
 
 
 def model(seed: int = 0, **changes: object) -> DoubleDqn:
-    return DoubleDqn(line(), train_settings(**{**SETTINGS, **changes}), discount=0.9, seed=seed)
+    return DoubleDqn(Line(), train_settings(**{**SETTINGS, **changes}), discount=0.9, seed=seed)
+
+
+def play(one: DoubleDqn, interactions: int) -> None:
+    """Learns in rounds with so many interactions in all."""
+    assert interactions % one.settings.train_frequency == 0
+    for _ in range(interactions // one.settings.train_frequency):
+        one.learn()
 
 
 def column(*values: float) -> th.Tensor:
@@ -29,7 +35,7 @@ def column(*values: float) -> th.Tensor:
 
 
 def constant(net: th.nn.Module, *q: float) -> None:
-    """The network says these values of the first actions, -9 of the others, in every state."""
+    """A plain network says these values of the first actions, -9 of the others, in every state."""
     with th.no_grad():
         net.head.weight.zero_()
         net.head.bias.fill_(-9.0)
@@ -56,6 +62,20 @@ def test_targets_are_raised_to_proven_bounds() -> None:
     th.testing.assert_close(targets, column(0.64, 0.4, 0.0))
 
 
+class Table(th.nn.Module):
+    """A network whose values are set: those of state k are in row k, and x = k is seen of it."""
+
+    def __init__(self, values: np.ndarray) -> None:
+        super().__init__()
+        self.values = th.from_numpy(values)
+
+    def forward(self, x: th.Tensor) -> th.Tensor:
+        return self.values[x[:, 0].long()]
+
+    def at(self, x: th.Tensor, headings: th.Tensor) -> th.Tensor:
+        return self(x).gather(1, headings)
+
+
 def test_double_q_agrees_with_a_plain_loop() -> None:
     rng = np.random.default_rng(1)
     online, target = rng.normal(size=(2, 64, 48)).astype(np.float32)
@@ -64,53 +84,54 @@ def test_double_q_agrees_with_a_plain_loop() -> None:
         single[i] = max(target[i])
         double[i] = target[i, int(np.argmax(online[i]))]
         lesser[i] = min(double[i], max(online[i]))
-    seen, held = th.from_numpy(online), th.from_numpy(target)
-    for clipped_double_q in (False, True):  # plain Q: one network does both
-        np.testing.assert_array_equal(next_values(held, held, clipped_double_q), single)
-    np.testing.assert_array_equal(next_values(seen, held, clipped_double_q=False), double)
-    np.testing.assert_array_equal(next_values(seen, held, clipped_double_q=True), lesser)
+    before, after = column(*[63.0] * 64), column(*range(64))
+    data = Batch(before, before.long(), after, before, before, before, offline=0)
+
+    def next_values(**settings: bool) -> np.ndarray:
+        one = model(**settings)
+        one.online, one.target = Table(online), Table(target)
+        return one._next_values(data).numpy()
+
+    for clipped in (False, True):  # plain Q: one network does both
+        np.testing.assert_array_equal(next_values(double_q=False, clipped_double_q=clipped), single)
+    np.testing.assert_array_equal(next_values(clipped_double_q=False), double)
+    np.testing.assert_array_equal(next_values(clipped_double_q=True), lesser)
     assert (double <= single).all() and (double < single).any()
     assert (lesser <= double).all() and (lesser < double).any()
 
 
-@pytest.mark.parametrize("dueling", [True, False])
-def test_network_starts_near_zero(dueling: bool) -> None:
-    q = model(dueling=dueling).values(np.random.default_rng(0).normal(size=(100, 3)).astype("f4"))
-    assert q.shape == (100, 8)
-    assert np.abs(q).max() < 0.02 and q.std() > 0
+@pytest.mark.parametrize("network", networks.KINDS)
+def test_networks_of_a_learner_begin_alike_and_have_no_weights_in_common(network: str) -> None:
+    one = model(network=network)
+    nets = (one.online, one.target, one.mean)
+    assert {type(net) for net in nets} == {networks.KINDS[network]}
+    first = weights(one.online)
+    for net in nets:
+        th.testing.assert_close(weights(net), first, rtol=0, atol=0)
+    assert len({p.data_ptr() for net in nets for p in net.parameters()}) == 3 * len(
+        list(one.online.parameters())
+    )
 
 
-def test_dueling_advantages_sum_to_zero() -> None:
-    net = model(dueling=True).q_net
-    x = th.randn(10, 3)
-    out = net.head(net.inner(net.first(x)))
-    th.testing.assert_close(net(x).mean(dim=1), out[:, 0])
+@pytest.mark.parametrize("network", networks.KINDS)
+def test_a_gradient_step_moves_every_layer_of_the_online_network_alone(network: str) -> None:
+    one = model(network=network, target_sync=1000)
+    play(one, 400)
+    nets = (one.online, one.target)
+    before = [[p.detach().clone() for p in net.parameters()] for net in nets]
+    one._gradient_step(one.replay.sample(32))
+    for net, old, moves in zip(nets, before, (True, False), strict=True):
+        for p, was in zip(net.parameters(), old, strict=True):
+            assert th.equal(p, was) != moves
 
 
-def test_plain_network_has_the_layers_of_table_2() -> None:
-    net = model(dueling=False, layer_norm=False).q_net
-    weights = [tuple(p.shape) for name, p in net.named_parameters() if name.endswith("weight")]
-    assert weights == [(512, 3), (512, 512), (128, 512), (8, 128)]
-
-
-@pytest.mark.skipif(not networks.has_fast_bfloat16(), reason="no bfloat16 in this processor")
-def test_reduced_precision_stays_close() -> None:
-    fast, exact = model(reduced_precision=True), model(reduced_precision=False)
-    exact.q_net.load_state_dict(fast.q_net.state_dict())
-    x = th.randn(200, 3)
-    with th.no_grad():
-        error = (fast.q_net.train()(x) - exact.q_net.train()(x)).abs().max()
-        assert 0 < error < 0.02 * exact.q_net(x).abs().max()  # bfloat16 has 8 bits
-        assert th.equal(fast.q_net.eval()(x), exact.q_net.eval()(x))
-
-
-@pytest.mark.skipif(not networks.has_fast_bfloat16(), reason="no bfloat16 in this processor")
 def test_both_networks_train_in_reduced_precision() -> None:
-    one, modes = model(reduced_precision=True), []
-    for net in (one.q_net, one.q_net_target):
+    one, modes = model(network="plain", reduced_precision=True), []
+    for net in (one.online, one.target):
         net.register_forward_hook(lambda net, *_: modes.append(net.training))
-    one.learn(4, reset_num_timesteps=False)
-    assert modes == [False, True, True, True]  # one choice of actions, three passes to learn
+    one.learn()
+    # One choice of actions; then both networks for the next states and the online one to learn.
+    assert modes == [False, True, True, True]
 
 
 def weights(net: th.nn.Module) -> th.Tensor:
@@ -119,83 +140,107 @@ def weights(net: th.nn.Module) -> th.Tensor:
 
 def test_target_network_moves_by_the_target_rate() -> None:
     one = model(target_sync=1, target_rate=0.25)
-    one.learn(4, reset_num_timesteps=False)
-    start = weights(one.q_net_target).clone()
-    one.train(1, 32)
-    th.testing.assert_close(weights(one.q_net_target), 0.75 * start + 0.25 * weights(one.q_net))
+    one.learn()
+    start = weights(one.target).clone()
+    one.train(1)
+    th.testing.assert_close(weights(one.target), 0.75 * start + 0.25 * weights(one.online))
 
 
 def test_the_policy_is_of_a_mean_over_weights() -> None:
     """At first over the last fifth of them, then as the rate says; with 1 it is the learner's."""
     one = model(averaging_rate=0.25)
-    mean = weights(one.mean_net).clone()
-    one.learn(4, reset_num_timesteps=False)
+    mean = weights(one.mean).clone()
+    one.learn()
     for step in range(1, 60):
         rate = max(0.25, 5 / (5 + step))
-        mean += rate * (weights(one.q_net) - mean)
-        th.testing.assert_close(weights(one.mean_net), mean)
-        one.train(1, 32)
+        mean += rate * (weights(one.online) - mean)
+        th.testing.assert_close(weights(one.mean), mean)
+        one.train(1)
     assert rate == 0.25
     for averaging_rate in (0.25, 1.0):
         other = model(averaging_rate=averaging_rate)
-        other.learn(400, reset_num_timesteps=False)
-        learned = weights(other.q_net)
-        assert th.equal(learned, weights(other.mean_net)) == (averaging_rate == 1.0)
+        play(other, 400)
+        learned = weights(other.online)
+        assert th.equal(learned, weights(other.mean)) == (averaging_rate == 1.0)
 
 
 def test_target_network_follows_every_target_sync_gradient_steps() -> None:
     one = model(target_sync=10)
-    one.learn(4, reset_num_timesteps=False)  # fills the online buffer
-    start = weights(one.q_net_target)
-    one.train(10 - one._n_updates - 1, 32)
-    th.testing.assert_close(weights(one.q_net_target), start, rtol=0, atol=0)
-    one.train(1, 32)
-    th.testing.assert_close(weights(one.q_net_target), weights(one.q_net), rtol=0, atol=0)
-    assert not th.equal(weights(one.q_net), start)
+    one.learn()  # fills the online buffer
+    start = weights(one.target)
+    one.train(10 - one.gradient_steps - 1)
+    th.testing.assert_close(weights(one.target), start, rtol=0, atol=0)
+    one.train(1)
+    th.testing.assert_close(weights(one.target), weights(one.online), rtol=0, atol=0)
+    assert not th.equal(weights(one.online), start)
 
 
 def test_interactions_are_counted_singly() -> None:
     one = model(train_frequency=4)
-    one.learn(40, reset_num_timesteps=False)
-    assert (one.num_timesteps, one._n_updates, one.replay_buffer.online.count) == (40, 10, 40)
+    play(one, 40)
+    assert (one.interactions, one.gradient_steps, one.replay.online.count) == (40, 10, 40)
+
+
+def test_stored_transitions_end_with_their_episode_and_the_next_ones_begin_anew() -> None:
+    one = model(epsilon_start=1.0, epsilon_end=1.0, nearby_share=0.0)
+    for _ in range(200):
+        one._interact()
+    store, cut = one.replay.online, 0
+    at, after = (4.0 * seen[:800, 0] for seen in (store.observation, store.next_observation))
+    success = after == 4
+    np.testing.assert_array_equal(after, at + (store.action[:800] == 1))
+    np.testing.assert_array_equal(store.reward[:800], success)
+    np.testing.assert_array_equal(store.terminated[:800], success)
+    for env in range(4):
+        place, steps = 0, 0
+        for k in range(env, 800, 4):
+            assert at[k] == place
+            steps += 1
+            ended = success[k] or steps == TIME_LIMIT
+            cut += ended and not success[k]
+            place, steps = (0, 0) if ended else (after[k], steps)
+    assert cut > 5 and success.sum() > 5
 
 
 def test_exploration_follows_the_interactions_not_the_calls() -> None:
     one = model(epsilon_start=0.3, epsilon_end=0.1, epsilon_share=0.5)
     assert one.exploration_rate == pytest.approx(0.3)
     for _ in range(5):
-        one.learn(52, reset_num_timesteps=False)
-    assert one.num_timesteps == 260
+        play(one, 52)
+    assert one.interactions == 260
     assert one.exploration_rate == pytest.approx(0.3 - 0.2 * 260 / 500)
-    one.learn(400, reset_num_timesteps=False)
+    play(one, 400)
     assert one.exploration_rate == pytest.approx(0.1)
 
 
-def test_deterministic_predictions_do_not_explore() -> None:
-    one = model(epsilon_start=1.0, epsilon_end=1.0)
+def test_greedy_actions_do_not_explore_and_those_of_training_do() -> None:
+    one = model(network="plain", epsilon_start=1.0, epsilon_end=1.0)
+    for net in (one.online, one.target, one.mean):
+        constant(net, 1.0)
     x = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
-    action, _ = one.predict(x, deterministic=True)
-    np.testing.assert_array_equal(action, one.values(x).argmax(axis=1))
+    assert (one.greedy(x) == 0).all()
+    assert len(set(one.training_actions(x).tolist())) > 4
 
 
 @pytest.mark.parametrize("target_acts", [True, False])
 def test_who_acts_in_evaluations_and_in_training(target_acts: bool) -> None:
-    one = model(target_acts=target_acts, epsilon_start=0.0, epsilon_end=0.0)
-    nets = (one.q_net, one.q_net_target, one.mean_net)
+    none = {"epsilon_start": 0.0, "epsilon_end": 0.0}
+    one = model(network="plain", target_acts=target_acts, **none)
+    nets = (one.online, one.target, one.mean)
     for net in nets:
         th.nn.init.normal_(net.head.weight)  # they disagree
     x = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
     with th.no_grad():
         own, target, mean = (net(th.from_numpy(x)).argmax(dim=1).numpy() for net in nets)
     assert (own != target).any() and (own != mean).any() and (target != mean).any()
-    np.testing.assert_array_equal(one.predict(x, deterministic=True)[0], mean)
+    np.testing.assert_array_equal(one.greedy(x), mean)
     acting = target if target_acts else own
-    np.testing.assert_array_equal(one.predict(x, deterministic=False)[0], acting)
+    np.testing.assert_array_equal(one.training_actions(x), acting)
 
 
 def test_learns_the_line() -> None:
     one = model(epsilon_start=1.0, epsilon_end=0.1, learning_rate=1e-3)
-    one.learn(2000)
+    play(one, 2000)
     x = np.array([[k / 4, 1, 0] for k in range(4)], np.float32)
     assert (one.greedy(x) == 1).all()
     np.testing.assert_allclose(one.values(x).max(axis=1), 0.9 ** np.arange(3, -1, -1), atol=0.1)
@@ -215,7 +260,7 @@ def test_only_targets_that_a_proof_raises_count_as_bound() -> None:
 
 
 def test_a_batch_is_made_of_what_the_settings_say() -> None:
-    buffer = model(offline_share=0.25, recent_share=0.125, value_bounds=False).replay_buffer
+    buffer = model(offline_share=0.25, recent_share=0.125, value_bounds=False).replay
     rules = (buffer.offline_share, buffer.recent_share, buffer.use_bounds, buffer.discount)
     assert rules == (0.25, 0.125, False, 0.9)
 
@@ -236,10 +281,9 @@ def test_statistics_are_means_and_peaks_since_the_last_take() -> None:
 def test_recent_episodes_are_the_last_100() -> None:
     """60 successes, 30 failures, 70 successes."""
     ends = [True] * 60 + [False] * 30 + [True] * 70
-    env = DummyVecEnv([lambda: Outcomes(ends)])
-    one = DoubleDqn(env, train_settings(**SETTINGS), discount=0.9, seed=0)
+    one = DoubleDqn(Outcomes(ends), train_settings(**SETTINGS), discount=0.9, seed=0)
     assert one.recent_episodes() == {}
-    one.learn(len(ends), reset_num_timesteps=False)
+    play(one, len(ends))
     found = one.recent_episodes()
     assert found == {"rollout_success": 0.7, "rollout_length_mean": np.mean(range(60, 160))}
     other = model()

@@ -4,20 +4,20 @@ import numpy as np
 import pytest
 import torch as th
 from rtg.learn.replay import Batch
-from test_ddqn import column, constant, model
+from test_ddqn import column, constant, model, play
 
 
 @pytest.mark.parametrize("value_bounds", [False, True])
 def test_targets_of_a_network_that_says_less_than_0_count_as_clipped(value_bounds: bool) -> None:
     random = {"epsilon_start": 1.0, "epsilon_end": 1.0, "nearby_share": 0.0}
-    one = model(value_bounds=value_bounds, **random)
-    one.learn(400)
+    one = model(network="plain", value_bounds=value_bounds, **random)
+    play(one, 400)
     with th.no_grad():
-        for net in (one.q_net, one.q_net_target):
+        for net in (one.online, one.target):
             net.head.weight.zero_()
             net.head.bias.fill_(-1.0)
     one.statistics.pop()
-    data = one.replay_buffer.sample(256)
+    data = one.replay.sample(256)
     one._gradient_step(data)
     shares, goes_on = one.statistics.pop(), data.terminated == 0
     assert shares["clipped_share"] == float(goes_on.float().mean()) > 0.5
@@ -42,12 +42,12 @@ def test_a_gradient_step_learns_what_the_settings_say_of_the_next_state(
     target: tuple[float, ...],
     value: float,
 ) -> None:
-    one = model(dueling=False, value_bounds=False, **changes)
-    one.learn(400)
-    constant(one.q_net, *online)
-    constant(one.q_net_target, *target)
+    one = model(network="plain", value_bounds=False, **changes)
+    play(one, 400)
+    constant(one.online, *online)
+    constant(one.target, *target)
     one.statistics.pop()
-    data = one.replay_buffer.sample(256)
+    data = one.replay.sample(256)
     q = th.full((8,), -9.0)
     q[:2] = th.tensor(online)
     y = data.rewards + 0.9 * (1 - data.terminated) * value
@@ -58,16 +58,16 @@ def test_a_gradient_step_learns_what_the_settings_say_of_the_next_state(
 
 @pytest.mark.parametrize("scale", [1.0, 1e4])
 def test_a_gradient_is_cut_to_the_largest_norm(scale: float) -> None:
-    one = model(dueling=False)
-    constant(one.q_net, 0.0)
+    one = model(network="plain")
+    constant(one.online, 0.0)
 
     def norm() -> float:
-        return float(th.cat([p.grad.ravel() for p in one.q_net.parameters()]).norm())
+        return float(th.cat([p.grad.ravel() for p in one.online.parameters()]).norm())
 
-    q = one.q_net(th.ones(1, 3))[0, 0]
+    q = one.online(th.ones(1, 3))[0, 0]
     (scale * q).backward()
     whole = norm()
-    one._descend(scale * one.q_net(th.ones(1, 3))[0, 0])
+    one._descend(scale * one.online(th.ones(1, 3))[0, 0])
     assert norm() == pytest.approx(min(whole, 10.0), rel=1e-4)
     assert (whole > 1e3) == (scale > 1.0) and whole > 0.9
 
@@ -80,10 +80,10 @@ def test_the_loss_of_a_gradient_step_by_hand(
     """Values are held down of offline rows alone. Q is 0.5, 0.2 and six times 0; targets are what
     is given, as all rows are final; smooth L1 is half the square of an error up to 1, and
     goes straight from there on."""
-    one = model(dueling=False, value_bounds=False, clip_targets=False, cql_weight=cql_weight)
+    one = model(network="plain", value_bounds=False, clip_targets=False, cql_weight=cql_weight)
     told = []
     q = th.tensor([0.5, 0.2, *[0.0] * 6])
-    constant(one.q_net, *q.tolist())
+    constant(one.online, *q.tolist())
     monkeypatch.setattr(one, "_descend", told.append)
     actions, y = th.tensor([[0], [1], [2]]), column(1, 0, 4)
     seen = th.zeros(3, 3)

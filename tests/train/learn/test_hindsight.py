@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 import pytest
 import torch as th
-from gymnasium import spaces
 from rtg import _core, paths
 from rtg.envs.vector_env import PushVecEnv
 from rtg.learn import hindsight
@@ -18,7 +17,7 @@ from rtg.learn.hindsight import (
     Layouts,
     future_goals,
 )
-from samples import random_transitions, replay_rules, train_settings
+from samples import random_transitions, replay_rules, step_to, train_settings
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
 TASK = CONFIG.task
@@ -202,18 +201,10 @@ def test_an_episode_in_which_nothing_moves_teaches_nothing_in_hindsight() -> Non
     assert not (found.any() or bounds.any() or goals.any()) and TOLERANCE == 0.5
 
 
-def buffer(capacity: int = 1000, n_envs: int = 1, **rules: Any) -> HindsightReplayBuffer:
-    space = spaces.Box(-1e4, 1e4, (SIZE,), np.float32)
-    rules = {"discount": 0.5, "offline_share": 0.25, **rules}
-    return HindsightReplayBuffer(
-        capacity,
-        space,
-        spaces.Discrete(48),
-        rules=replay_rules(**rules),
-        layouts=BOXES,
-        goals=4,
-        n_envs=n_envs,
-    )
+def buffer(capacity: int = 1000, count: int = 1, **rules: Any) -> HindsightReplayBuffer:
+    """Makes a buffer for `count` environments."""
+    of = replay_rules(**{"discount": 0.5, "offline_share": 0.25, **rules})
+    return HindsightReplayBuffer(capacity, SIZE, count, of, layouts=BOXES, goals=4)
 
 
 def play(replay: HindsightReplayBuffer, reward: float = 0.0) -> None:
@@ -221,8 +212,7 @@ def play(replay: HindsightReplayBuffer, reward: float = 0.0) -> None:
     for t in range(4):
         before, after = observed(EPISODE[t], t)[None], observed(EPISODE[t + 1], t + 1)[None]
         last, got = t == 3, reward * (t == 3)
-        info = {"TimeLimit.truncated": last and not got}
-        replay.add(before, after, np.array([t]), np.array([got]), np.array([last]), [info])
+        replay.add(before, np.array([t]), step_to(after, got, truncated=last and not got))
 
 
 def asked_for(seen: np.ndarray) -> np.ndarray:
@@ -269,7 +259,7 @@ def test_running_episodes_keep_what_they_were_asked_for() -> None:
     replay = buffer()
     row = observed(EPISODE[0])[None]
     asked = replay.desired_layouts(row)
-    replay.add(row, row, np.array([0]), np.zeros(1), np.array([False]), [{}])
+    replay.add(row, np.array([0]), step_to(row))
     np.testing.assert_array_equal(replay.desired_layouts(observed(ALL)[None]), asked)
     assert is_one_of(asked_for(replay.sample(50).observations.numpy()), asked).all()
 
@@ -280,7 +270,7 @@ def test_each_episode_is_asked_for_the_nearest_of_a_few_layouts() -> None:
     row = observed(np.float32(TASK.start[1:, :2].ravel() / 8))[None]
     for _ in range(60):
         asked.append(replay.desired_layouts(row)[0])
-        replay.add(row, row, np.array([0]), np.zeros(1), np.array([True]), [{}])
+        replay.add(row, np.array([0]), step_to(row, truncated=True))
     way = np.hypot(*(8.0 * (BOXES.goal_layouts - BOXES.of(row))).reshape(-1, 3, 2).T).sum(axis=0)
     rank = [int((way < way[(BOXES.goal_layouts == goal).all(axis=1)][0]).sum()) for goal in asked]
     assert len(set(rank)) > 8 and min(rank) == 0 and max(rank) < 10 * SUBSET_DIVISOR
@@ -294,16 +284,17 @@ def learner(seed: int = 0, **changes: Any) -> DoubleDqn:
 
 
 def test_a_learner_acts_as_its_episodes_ask_and_is_judged_by_the_nearest_layouts() -> None:
-    one = learner(epsilon_start=0.0, epsilon_end=0.0, leave_loops=False, target_acts=False)
-    th.nn.init.normal_(one.q_net.head.weight)
-    th.nn.init.normal_(one.mean_net.head.weight)
+    greedy = dict(epsilon_start=0.0, epsilon_end=0.0, leave_loops=False, target_acts=False)
+    one = learner(network="plain", **greedy)
+    th.nn.init.normal_(one.online.head.weight)
+    th.nn.init.normal_(one.mean.head.weight)
     seen = TASK.observation(np.stack([TASK.jittered_start(0.5, 1, k) for k in range(2)]))
-    asked = one.replay_buffer.desired_layouts(seen)
+    asked = one.replay.desired_layouts(seen)
     with th.no_grad():
-        acting = one.q_net(th.from_numpy(BOXES.network_input(seen, asked))).argmax(dim=1).numpy()
+        acting = one.online(th.from_numpy(BOXES.network_input(seen, asked))).argmax(dim=1).numpy()
         nearest = BOXES.network_input(seen, BOXES.nearest(seen))
-        judged = one.mean_net(th.from_numpy(nearest)).numpy()
-    np.testing.assert_array_equal(one.predict(seen, deterministic=False)[0], acting)
+        judged = one.mean(th.from_numpy(nearest)).numpy()
+    np.testing.assert_array_equal(one.training_actions(seen), acting)
     np.testing.assert_array_equal(one.values(seen), judged)
     np.testing.assert_array_equal(one.greedy(seen), judged.argmax(axis=1))
 
@@ -311,8 +302,9 @@ def test_a_learner_acts_as_its_episodes_ask_and_is_judged_by_the_nearest_layouts
 def test_episodes_of_a_learner_are_stored_with_what_they_were_asked_for() -> None:
     """All steps of an episode have the same layout; some layouts are reached when objects move."""
     one = learner(epsilon_start=1.0, epsilon_end=1.0, contact_share=1.0)
-    one.learn(600)
-    store = one.replay_buffer.online
+    for _ in range(600 // one.settings.train_frequency):
+        one.learn()
+    store = one.replay.online
     for of_episode in (store.asked[:120:2], store.asked[1:120:2]):  # the environments' first
         assert len(of_episode) == 60 and (of_episode == of_episode[0]).all()
     assert not (store.asked[120] == store.asked[0]).all()

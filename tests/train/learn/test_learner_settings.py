@@ -9,7 +9,7 @@ import pytest
 import torch as th
 from rtg.learn import networks
 from rtg.learn.ddqn import DoubleDqn
-from test_ddqn import constant, model, weights
+from test_ddqn import constant, model, play, weights
 
 Measure = Callable[..., Any]
 
@@ -17,8 +17,9 @@ Measure = Callable[..., Any]
 def played(**changes: Any) -> DoubleDqn:
     """A learner that has made 400 interactions, a tenth of them explored, and learned nothing."""
     one = model(**{"epsilon_start": 0.1, "epsilon_end": 0.1, **changes})
-    one.gradient_steps = 0
-    one.learn(400)
+    for _ in range(100):
+        one._interact()
+    assert (one.interactions, one.gradient_steps) == (400, 0)
     return one
 
 
@@ -26,107 +27,100 @@ def first_step(**changes: Any) -> float:
     """Returns how far the first gradient step moves the weight that it moves most: Adam's first
     step is its rate in each weight that has a gradient."""
     one = played(**changes)
-    before = weights(one.q_net)
-    one.train(1, 32)
-    return float((weights(one.q_net) - before).abs().max())
+    before = weights(one.online)
+    one.train(1)
+    return float((weights(one.online) - before).abs().max())
 
 
 def rows_of_a_batch(**changes: Any) -> int:
     one, sizes = model(**changes), []
-    sample = one.replay_buffer.sample
-    one.replay_buffer.sample = lambda size: sizes.append(size) or sample(size)
-    one.learn(4)
+    sample = one.replay.sample
+    one.replay.sample = lambda size: sizes.append(size) or sample(size)
+    one.learn()
     return sizes[0]
 
 
 def steps_of_40_interactions(**changes: Any) -> int:
     one = model(**changes)
-    one.learn(40)
-    return one.gradient_steps_done
+    play(one, 40)
+    return one.gradient_steps
 
 
 def target_after(steps: int) -> Measure:
     """Measures how far along from its first weights to the learner's the target network is."""
 
     def measure(**changes: Any) -> float:
-        one = played(dueling=False, **changes)
-        constant(one.q_net, 1.0)
-        constant(one.q_net_target, 0.0)
-        for group in one.policy.optimizer.param_groups:
+        one = played(network="plain", **changes)
+        constant(one.online, 1.0)
+        constant(one.target, 0.0)
+        for group in one.optimizer.param_groups:
             group["lr"] = 0.0
-        one.lr_schedule = lambda _: 0.0
-        one.train(steps, 32)
-        return round(one.q_net_target.head.bias[0].item(), 4)
+        one.train(steps)
+        return round(one.target.head.bias[0].item(), 4)
 
     return measure
 
 
 def acting(**changes: Any) -> int:
     """The action in training where the learner's own network says 0 and the target network 1."""
-    one = model(dueling=False, epsilon_start=0.0, epsilon_end=0.0, **changes)
-    constant(one.q_net, 1.0, 0.0)
-    constant(one.q_net_target, 0.0, 1.0)
-    return int(one.predict(np.zeros((1, 3), np.float32))[0][0])
+    one = model(network="plain", epsilon_start=0.0, epsilon_end=0.0, **changes)
+    constant(one.online, 1.0, 0.0)
+    constant(one.target, 0.0, 1.0)
+    return int(one.training_actions(np.zeros((1, 3), np.float32))[0])
 
 
 def mean_weights_lag(**changes: Any) -> bool:
     one = model(**changes)
-    one.learn(400)
-    return not th.equal(weights(one.q_net), weights(one.mean_net))
+    play(one, 400)
+    return not th.equal(weights(one.online), weights(one.mean))
 
 
 def of_rules(name: str) -> Measure:
-    return lambda **changes: getattr(model(**changes).replay_buffer, name)
+    return lambda **changes: getattr(model(**changes).replay, name)
 
 
 def next_value(**changes: Any) -> float:
     """Returns what the next state is taken to be worth, of which the learner says (0.5, 0.2) and
     the target network (0.7, 0.9): the mean target of steps without a reward, before discounting."""
-    one = played(dueling=False, value_bounds=False, **changes)
-    constant(one.q_net, 0.5, 0.2)
-    constant(one.q_net_target, 0.7, 0.9)
-    batch = one.replay_buffer.sample(256)
+    one = played(network="plain", value_bounds=False, **changes)
+    constant(one.online, 0.5, 0.2)
+    constant(one.target, 0.7, 0.9)
+    batch = one.replay.sample(256)
     kept = batch.rewards[:, 0] == 0
     batch = batch._replace(**{f: getattr(batch, f)[kept] for f in batch._fields[:-1]})
     one.statistics.pop()
     y = []
     one.statistics.add = lambda batch, q, target, bootstrap: y.append(target)
     one._gradient_step(batch)
-    return round(float(y[0].mean()) / one.gamma, 4)
+    return round(float(y[0].mean()) / one.discount, 4)
 
 
 def least_target(**changes: Any) -> float:
     """Returns the least target, before discounting, where all values are said to be -1."""
-    one = played(dueling=False, value_bounds=False, **changes)
-    constant(one.q_net, *[-1.0] * 8)
-    constant(one.q_net_target, *[-1.0] * 8)
+    one = played(network="plain", value_bounds=False, **changes)
+    constant(one.online, *[-1.0] * 8)
+    constant(one.target, *[-1.0] * 8)
     y = []
     one.statistics.add = lambda batch, q, target, bootstrap: y.append(target)
-    one._gradient_step(one.replay_buffer.sample(256))
-    return round(float(y[0].min()) / one.gamma, 4)
+    one._gradient_step(one.replay.sample(256))
+    return round(float(y[0].min()) / one.discount, 4)
 
 
-def names_of_parameters(word: str) -> Measure:
-    return lambda **changes: any(word in name for name, _ in model(**changes).q_net.named_modules())
-
-
-def largest_first_value(**changes: Any) -> bool:
-    """Tells whether a network that has learned nothing says more than 0.02 of anything."""
-    seen = np.random.default_rng(0).normal(size=(100, 3)).astype(np.float32)
-    return bool(np.abs(model(**changes).values(seen)).max() > 0.02)
+def kind(**changes: Any) -> type[th.nn.Module]:
+    return type(model(**changes).online)
 
 
 def pull_on_other_actions(**changes: Any) -> bool:
     """Tells whether a step that sees offline rows of action 1 lowers what is said of action 0."""
-    one = model(dueling=False, **changes)
+    one = model(network="plain", batch=4, **changes)
     x = np.zeros((4, 3), np.float32)
     ones = np.ones(4, np.float32)
-    one.replay_buffer.offline.append(
+    one.replay.offline.append(
         observation=x, next_observation=x, action=ones.astype(int), reward=ones, terminated=ones
     )
-    before = one.q_net.head.bias[0].item()
-    one.train(1, 4)
-    return one.q_net.head.bias[0].item() < before
+    before = one.online.head.bias[0].item()
+    one.train(1)
+    return one.online.head.bias[0].item() < before
 
 
 def epsilon_at(interactions: int) -> Measure:
@@ -152,9 +146,9 @@ LESS = th.bfloat16 if networks.has_fast_bfloat16() else th.float32
 
 def width(**changes: Any) -> th.dtype:
     """Returns the type of the numbers that the inner layers compute with."""
-    one, found = model(**changes), []
-    one.q_net.inner.register_forward_hook(lambda net, seen, out: found.append(out.dtype))
-    one.q_net.train(True)(th.zeros(1, 3))
+    one, found = model(network="plain", **changes), []
+    one.online.layers.inner.register_forward_hook(lambda net, seen, out: found.append(out.dtype))
+    one.online.train(True)(th.zeros(1, 3))
     return found[0]
 
 
@@ -171,13 +165,11 @@ OF_THE_LEARNER: dict[str, tuple[Any, Any, Measure, Any, Any]] = {
     "offline_share": (0.5, 0.25, of_rules("offline_share"), 0.5, 0.25),
     "recent_share": (0.5, 0.25, of_rules("recent_share"), 0.5, 0.25),
     "value_bounds": (True, False, of_rules("use_bounds"), True, False),
-    "buffer": (10_000, 8, of_rules("buffer_size"), 10_000, 8),
+    "buffer": (10_000, 8, of_rules("capacity"), 10_000, 8),
     "double_q": (True, False, next_value, 0.5, 0.9),
     "clipped_double_q": (True, False, next_value, 0.5, 0.7),
     "clip_targets": (True, False, least_target, 0.0, -1.0),
-    "dueling": (True, False, lambda **c: model(**c).q_net.head.out_features, 9, 8),
-    "layer_norm": (True, False, names_of_parameters("first.2"), True, False),
-    "small_head": (True, False, largest_first_value, False, True),
+    "network": ("headings", "plain", kind, networks.HeadingNetwork, networks.PlainNetwork),
     "cql_weight": (0.0, 5.0, pull_on_other_actions, False, True),
     "epsilon_start": (0.3, 0.5, epsilon_at(0), 0.3, 0.5),
     "epsilon_end": (0.02, 0.05, epsilon_at(1000), 0.02, 0.05),

@@ -28,7 +28,7 @@ def test_no_environment_is_stepped_and_rounds_follow_the_schedule(
     method: str, tmp_path: Path, rows: Rows, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """There are two gradient steps per four interactions that are left out."""
-    for name in ("reset", "step_wait"):
+    for name in ("reset", "step"):
         monkeypatch.setattr(PushVecEnv, name, never)
     wanted = (f"run.method={method}", "train.gradient_steps=2")
     folder = run_folder(tmp_path / "run", rows, *wanted)

@@ -1,20 +1,19 @@
 """Files from outside that shall be policies."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from gymnasium import spaces
+import torch as th
 from rtg import _core, paths
-from rtg.envs.push_env import observation_space
 from rtg.errors import UserError
 from rtg.files import checkpoint
-from rtg.learn import policy_file
-from rtg.learn.networks import ValuePolicy
+from rtg.learn import networks, policy_file
 from samples import train_settings
 
 TASK = _core.Config.from_file(paths.CONFIG / "tests" / "tiny.yaml").task
-FITTING = {"observation_size": 20, "headings": 48, "dueling": True, "layer_norm": True}
+FITTING = {"observation_size": 20, "headings": 48, "network": "headings"}
 
 
 @pytest.mark.parametrize(
@@ -22,6 +21,8 @@ FITTING = {"observation_size": 20, "headings": 48, "dueling": True, "layer_norm"
     [
         ({}, "does not say with which settings it was made"),
         ({"identity": {}}, "made with observation_size = None, but this run has 20"),
+        ({"identity": {**FITTING, "network": "huge"}}, "network that is known; legal: plain, head"),
+        ({"identity": {**FITTING, "network": []}}, "network that is known; legal: plain, head"),
         ({"identity": FITTING, "model": {}}, "holds no policy"),
         ({"identity": FITTING, "weights": {}}, "its weights do not fit the network"),
     ],
@@ -37,33 +38,45 @@ def test_files_of_another_kind_are_no_policies(
 
 def test_observations_of_a_wrong_shape_are_named(tmp_path: Path) -> None:
     file, settings = tmp_path / "model.pt", train_settings()
-    flags = {"dueling": settings.dueling, "layer_norm": settings.layer_norm}
-    actions = spaces.Discrete(TASK.headings)
-    network = ValuePolicy(observation_space(TASK), actions, lambda _: 1.0, network=flags)
-    policy_file.write(file, TASK, settings, network.q_net.state_dict())
+    network = networks.make(settings.network, TASK.observation_size, TASK.headings)
+    policy_file.write(file, TASK, settings, network.state_dict())
     policy = policy_file.read(file, TASK)
     assert policy(np.zeros((3, 20), np.float32)).shape == (3,)
     with pytest.raises(ValueError, match=r"observations \[20\]; legal: \[N, 20\]"):
         policy(np.zeros(20, np.float32))
 
 
+@pytest.mark.parametrize("network", networks.KINDS)
+def test_a_policy_takes_the_best_actions_of_the_network_that_was_written(
+    tmp_path: Path, network: str
+) -> None:
+    """It was flattened, as those of learners are, and trained in reduced precision."""
+    file, settings = tmp_path / "model.pt", train_settings(network=network)
+    written = networks.make(network, TASK.observation_size, TASK.headings, reduced_precision=True)
+    networks.flatten(written)
+    policy_file.write(file, TASK, settings, written.state_dict())
+    seen = np.random.default_rng(0).normal(size=(100, 20)).astype(np.float32)
+    with th.no_grad():
+        best = written.eval()(th.from_numpy(seen)).argmax(dim=1).numpy()
+    np.testing.assert_array_equal(policy_file.read(file, TASK)(seen), best)
+    assert len(set(best.tolist())) > 1
+
+
 @pytest.mark.parametrize(
     ("field", "value", "expected"),
     [
-        ("dueling", False, False),
-        ("layer_norm", False, False),
+        ("network", "plain", "plain"),
         ("hindsight", 0, False),
         ("hindsight", 1, True),
         ("hindsight", 4, True),
     ],
 )
-def test_the_identity_says_what_shapes_the_weights(field: str, value: int, expected: bool) -> None:
+def test_the_identity_says_what_shapes_the_weights(field: str, value: Any, expected: Any) -> None:
     found = policy_file.identity(TASK, train_settings(**{field: value}))
     assert found == {
         "observation_size": 20,
         "headings": 48,
-        "dueling": True,
-        "layer_norm": True,
+        "network": "headings",
         "hindsight": False,
         field: expected,
     }

@@ -3,33 +3,23 @@ from typing import Any
 import numpy as np
 import pytest
 import torch as th
-from gymnasium import spaces
 from rtg.learn.replay import MixedReplayBuffer, Store
-from samples import random_transitions, replay_rules
+from samples import random_transitions, replay_rules, step_to
 from test_hindsight import BOXES, EPISODE, asked_for, names, observed, play
 from test_hindsight import buffer as asking_buffer
 
 SIZE = 20
-SPACE = spaces.Box(-1e4, 1e4, (SIZE,), np.float32)
 
 
-def buffer(capacity: int = 1000, n_envs: int = 1, **rules: Any) -> MixedReplayBuffer:
-    actions = spaces.Discrete(48)
-    return MixedReplayBuffer(capacity, SPACE, actions, n_envs=n_envs, rules=replay_rules(**rules))
+def buffer(capacity: int = 1000, count: int = 1, **rules: Any) -> MixedReplayBuffer:
+    """Makes a buffer for `count` environments."""
+    return MixedReplayBuffer(capacity, SIZE, count, replay_rules(**rules))
 
 
-def add_online(replay: MixedReplayBuffer, tag: float, **changes: object) -> None:
+def add_online(replay: MixedReplayBuffer, tag: float, **outcome: Any) -> None:
     """Adds a transition whose observation is `tag` everywhere."""
     row = np.full((1, SIZE), tag, np.float32)
-    done = bool(changes.get("done", False))
-    replay.add(
-        row,
-        row + 0.5,
-        np.array([3]),
-        np.array([changes.get("reward", 0.0)], np.float32),
-        np.array([done]),
-        [{"TimeLimit.truncated": changes.get("timeout", False)}],
-    )
+    replay.add(row, np.array([3]), step_to(row + 0.5, **outcome))
 
 
 def test_store_returns_what_went_in() -> None:
@@ -132,45 +122,42 @@ def test_without_offline_data_all_is_online() -> None:
 
 def test_time_out_keeps_the_bootstrap_and_success_ends_it() -> None:
     replay = buffer()
-    add_online(replay, 0.0, done=True, timeout=True)
-    add_online(replay, 1.0, done=True, reward=1.0)
+    add_online(replay, 0.0, truncated=True)
+    add_online(replay, 1.0, reward=1.0)
     np.testing.assert_array_equal(replay.online.terminated[:2], [0.0, 1.0])
 
 
 def test_successful_episode_proves_its_own_values() -> None:
     replay = buffer(discount=0.5)
-    add_online(replay, 0.0, done=True, timeout=True)
+    add_online(replay, 0.0, truncated=True)
     for tag in range(2):
         add_online(replay, float(tag))
-    add_online(replay, 2.0, done=True, reward=1.0)
+    add_online(replay, 2.0, reward=1.0)
     np.testing.assert_array_equal(replay.online.bound[:4], [0.0, 0.25, 0.5, 1.0])
 
 
 def test_unused_bounds_bound_nothing() -> None:
     replay = buffer(use_bounds=False)
-    add_online(replay, 2.0, done=True, reward=1.0)
+    add_online(replay, 2.0, reward=1.0)
     assert (replay.sample(4).bounds == -th.inf).all()
 
 
 def test_episodes_of_parallel_environments_are_kept_apart() -> None:
-    replay = buffer(n_envs=2, discount=0.5)
+    replay = buffer(count=2, discount=0.5)
     row = np.zeros((2, SIZE), np.float32)
     for step in range(2):
-        done = np.array([False, step == 1])
-        reward = done.astype(np.float32)
-        replay.add(row, row, np.array([1, 2]), reward, done, [{}, {}])
+        replay.add(row, np.array([1, 2]), step_to(row, reward=np.array([0.0, step == 1])))
     np.testing.assert_array_equal(replay.online.bound[:4], [0.0, 0.5, 0.0, 1.0])
 
 
 @pytest.mark.parametrize("capacity", [11, 8, 6])
 def test_an_episode_longer_than_the_ring_bounds_what_is_left_of_it(capacity: int) -> None:
     """Environment 0 of 4 succeeds with its fifth action; 20 rows have been written by then."""
-    replay = buffer(capacity, n_envs=4, discount=0.5)
+    replay = buffer(capacity, count=4, discount=0.5)
     steps = np.zeros((4, SIZE), np.float32)
     for step in range(5):
         reward = np.array([step == 4, 0, 0, 0], np.float32)
-        action = 10 * np.arange(4) + step
-        replay.add(steps, steps, action, reward, reward > 0, [{}] * 4)
+        replay.add(steps, 10 * np.arange(4) + step, step_to(steps, reward))
     store = replay.online
     bounds = dict(zip(store.action.tolist(), store.bound.tolist(), strict=True))
     assert len(bounds) == capacity
@@ -189,7 +176,7 @@ def test_restored_buffer_continues_with_the_same_samples() -> None:
     other.restore(replay.state())
     for tag in range(3):
         for one in (replay, other):
-            add_online(one, float(tag), done=tag == 2, reward=float(tag == 2))
+            add_online(one, float(tag), reward=float(tag == 2))
     for ours, theirs in zip(replay.sample(64), other.sample(64), strict=True):
         assert ours == theirs if isinstance(ours, int) else th.equal(ours, theirs)
     np.testing.assert_array_equal(replay.online.bound, other.online.bound)
@@ -203,13 +190,12 @@ def test_state_holds_only_what_is_filled() -> None:
 
 
 def test_a_push_that_the_simulator_gave_up_is_not_stored() -> None:
-    replay = buffer(n_envs=2, discount=0.5)
+    replay = buffer(count=2, discount=0.5)
     rows = np.array([[1.0], [2.0]], np.float32) * np.ones(SIZE, np.float32)
-    done = np.array([False, True])
-    infos = [{}, {"rejected": True, "TimeLimit.truncated": True}]
-    replay.add(rows, rows, np.array([1, 2]), np.zeros(2, np.float32), done, infos)
+    given_up = np.array([False, True])
+    replay.add(rows, np.array([1, 2]), step_to(rows, truncated=given_up, rejected=given_up))
     assert replay.online.count == 1 and replay.online.action[0] == 1
-    replay.add(rows, rows, np.array([3, 4]), np.ones(2, np.float32), done | True, [{}, {}])
+    replay.add(rows, np.array([3, 4]), step_to(rows, reward=1.0))
     np.testing.assert_array_equal(replay.online.bound[:3], [0.5, 1.0, 1.0])
 
 
@@ -242,26 +228,22 @@ def test_an_episode_longer_than_the_ring_is_relabelled_as_far_as_it_is_left() ->
         assert names(goals) <= wanted[step]
     play(replay, reward=0.0)
     row = observed(EPISODE[0])[None]
-    replay.add(row, row, np.array([9]), np.zeros(1), np.array([False]), [{}])
+    replay.add(row, np.array([9]), step_to(row))
     new = replay.online.action == 9
     np.testing.assert_array_equal(replay.online.has_goals, ~new)
 
 
 def test_episodes_side_by_side_are_relabelled_each_by_its_own() -> None:
     """The first plays EPISODE; in the second nothing moves, and two pushes are given up."""
-    replay, asked = asking_buffer(n_envs=2), []
+    replay, asked = asking_buffer(count=2), []
     for t in range(4):
         rows, after = (
             np.stack((observed(EPISODE[k], k), observed(EPISODE[0], k))) for k in (t, t + 1)
         )
         last, rejected = t == 3, t in (0, 2)
-        infos = [
-            {"TimeLimit.truncated": last},
-            {"rejected": rejected, "TimeLimit.truncated": rejected or last},
-        ]
-        done = np.array([last, rejected or last])
+        step = step_to(after, truncated=[last, rejected or last], rejected=[False, rejected])
         asked.append(replay.desired_layouts(rows))
-        replay.add(rows, after, np.array([t, 10 + t]), np.zeros(2), done, infos)
+        replay.add(rows, np.array([t, 10 + t]), step)
     store = replay.online
     n = store.count
     action = store.action[:n].tolist()
@@ -286,7 +268,7 @@ def test_a_restored_hindsight_buffer_goes_on_with_the_same_samples(cut: int) -> 
     play(replay)
     for t in range(cut):
         row = observed(EPISODE[t])[None]
-        replay.add(row, row, np.array([t]), np.zeros(1), np.array([False]), [{}])
+        replay.add(row, np.array([t]), step_to(row))
     replay.sample(16)
     other.restore(replay.state())
     for one in (replay, other):

@@ -21,9 +21,9 @@ def course(one: Training, rows: Rows, success: list[bool]) -> dict[str, Any]:
     """Returns what a run does whose learner learns nothing and whose evaluations end as told."""
     saved, seen, ends = [], [], iter(success)
 
-    def learn(interactions: int, **_: Any) -> None:
+    def learn() -> None:
         seen.append(one.data.count)
-        one.model.num_timesteps += interactions
+        one.model.interactions += one.settings.train_frequency
 
     def evaluate() -> Evaluation:
         found = np.full(one.settings.eval_episodes, next(ends))
@@ -96,7 +96,7 @@ def spread(one: Training) -> float:
 
 
 def interactions_of_a_round(one: Training) -> int:
-    one.model.num_timesteps += 4
+    one.model.interactions += 4
     return one.interactions
 
 
@@ -107,10 +107,10 @@ def source(one: Training) -> str:
 OF_THE_PARTS: dict[str, tuple[Any, Any, Callable[[Training], Any], Any, Any]] = {
     "interact": (True, False, interactions_of_a_round, 4, 0),
     "offline": (True, False, source, "FileSource", "NoSource"),
-    "discount": (0.7, 0.9, lambda t: t.model.gamma, 0.7, 0.9),
+    "discount": (0.7, 0.9, lambda t: t.model.discount, 0.7, 0.9),
     "start_jitter": (0.1, 0.2, spread, 0.1, 0.2),
     "randomise": (False, True, spread, 0.1, 0.5),
-    "hindsight": (0, 2, lambda t: isinstance(t.model.replay_buffer, HindsightReplayBuffer), 0, 1),
+    "hindsight": (0, 2, lambda t: isinstance(t.model.replay, HindsightReplayBuffer), 0, 1),
     "curriculum": (0.0, 0.5, lambda t: t.env.curriculum is not None, False, True),
     "eval_episodes": (2, 3, lambda t: len(t.starts), 2, 3),
 }
@@ -131,8 +131,9 @@ def test_networks_are_on_the_device_that_is_chosen(
     """On PyTorch's device without memory, because tests have no GPU."""
     monkeypatch.setattr(device, "chosen", {wanted: "meta"}.get)
     one = training(run_folder(tmp_path / "run", None, f"train.device={wanted}"))
-    assert one.model.device.type == "meta"
-    assert {weight.device.type for weight in one.model.q_net.parameters()} == {"meta"}
+    assert one.model.device == "meta"
+    for net in (one.model.online, one.model.target, one.model.mean):
+        assert {tensor.device.type for tensor in net.state_dict().values()} == {"meta"}
 
 
 @pytest.mark.parametrize(("learner", "name"), [("q_learning", "DoubleDqn"), ("cloning", "Cloning")])

@@ -156,7 +156,7 @@ def test_a_signal_leaves_a_checkpoint_to_go_on_from(
     ("override", "message"),
     [
         ("run.seed=9", "made with seed = 1, but this run has 9"),
-        ("train.dueling=false", "made with dueling = True, but this run has False"),
+        ("train.network=plain", "made with network = headings, but this run has plain"),
         ("train.buffer=3000", "made with buffer = "),
     ],
 )

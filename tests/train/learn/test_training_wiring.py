@@ -29,8 +29,8 @@ def test_learner_bounds_and_evaluation_have_one_discount(
     trees = Stream(rows.slice(0, 350), one.data, piece=300)  # at 350 complete, but hardly grown
     assert one.run(trees, lambda: False, record=False)
     assert one.task.discount == 0.8
-    assert one.model.gamma == discount and used == {discount}
-    seen, bound = one.data.record.transitions(), one.model.replay_buffer.offline.bound
+    assert one.model.discount == discount and used == {discount}
+    seen, bound = one.data.record.transitions(), one.model.replay.offline.bound
     proven = value_bounds(seen.observation, seen.next_observation, seen.reward, discount)
     np.testing.assert_array_equal(bound[: len(proven)], proven)
     assert (proven[300:] > 0).any()
@@ -40,7 +40,7 @@ def test_bounds_are_proven_before_all_transitions_are_in(tmp_path: Path, rows: R
     one = training(run_folder(tmp_path / "run", None))
     stream = Stream(rows, one.data, piece=400)
     assert not one.run(stream, after_polls(3), record=False)
-    bound = one.model.replay_buffer.offline.bound
+    bound = one.model.replay.offline.bound
     assert not stream.complete and ((bound > 0) & (bound < 1)).any()
 
 
@@ -72,7 +72,7 @@ def test_the_least_legal_buffer_takes_a_step_of_all_environments(
     with pytest.raises(_core.ConfigError, match=f"legal: an integer from {MAX_ENVIRONMENTS} to "):
         _core.Config.from_file(TINY, [f"train.buffer={MAX_ENVIRONMENTS - 1}"])
     one = training(run_folder(tmp_path / "run", None, "search.transitions=4", "train.buffer=4"))
-    assert one.env.num_envs == MAX_ENVIRONMENTS
+    assert one.env.count == MAX_ENVIRONMENTS
     assert one.run(Stream(rows.slice(0, 4), one.data, piece=4), lambda: False, record=False)
     assert one.interactions == 240
 

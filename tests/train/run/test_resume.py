@@ -76,8 +76,7 @@ CHECKPOINT_SETTINGS = {
     "offline": "False",
     "hindsight": "4",
     "curriculum": "0.5",
-    "dueling": "False",
-    "layer_norm": "False",
+    "network": "plain",
     "train_frequency": "8",
     "buffer": "9999",
     "discount": "0.5",
@@ -105,7 +104,7 @@ def test_what_a_checkpoint_is_bound_to_is_refused_and_leaves_the_run_alone(
 
 def test_without_a_checkpoint_the_learner_may_become_another(folder):
     words = ["--set", "train.preset=paper", "--resume", "--in-process", "--out", str(folder)]
-    assert not make_plan(parse(words)).config.train.dueling
+    assert make_plan(parse(words)).config.train.network == "plain"
 
 
 def test_the_settings_a_checkpoint_is_bound_to_are_those_of_the_test():

@@ -92,4 +92,9 @@ def departures(current: dict[str, Any], paper: dict[str, Any]) -> list[Settings]
 
 
 def _settings(keys: Sequence[str], values: dict[str, Any]) -> Settings:
-    return tuple(f"train.{key}={json.dumps(values[key])}" for key in keys)
+    return tuple(f"train.{key}={_word(values[key])}" for key in keys)
+
+
+def _word(value: Any) -> str:
+    """Returns `value` as a user writes it after --set; it is part of the name of a folder."""
+    return value if isinstance(value, str) else json.dumps(value)

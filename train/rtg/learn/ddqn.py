@@ -14,7 +14,7 @@ from torch.nn import functional
 from rtg import _core
 from rtg.envs.vector_env import Step
 from rtg.learn import device, networks
-from rtg.learn.exploration import ContactHeadings, Exploration
+from rtg.learn.exploration import Exploration
 from rtg.learn.hindsight import HindsightReplayBuffer, Layouts
 from rtg.learn.replay import Batch, MixedReplayBuffer, ReplayRules
 
@@ -33,10 +33,10 @@ class Environments(Protocol):
     observation_size: int
     headings: int
     task: _core.Task
-    contact_headings: ContactHeadings
 
     def reset(self) -> npt.NDArray[np.float32]: ...
     def step(self, actions: Array) -> Step: ...
+    def contact_headings(self, seed: int, /) -> Array: ...
 
 
 def bootstrap_targets(batch: Batch, next_value: th.Tensor, discount: float) -> th.Tensor:
@@ -114,13 +114,7 @@ class DoubleDqn:
 
     def _make_replay(self, seed: int) -> MixedReplayBuffer:
         s, env = self.settings, self.env
-        rules = ReplayRules(
-            offline_share=s.offline_share,
-            recent_share=s.recent_share,
-            discount=self.discount,
-            use_bounds=s.value_bounds,
-            seed=seed,
-        )
+        rules = _rules(s, self.discount, seed)
         shape = (s.buffer, env.observation_size, env.count, rules, self.device)
         if self.layouts:
             return HindsightReplayBuffer(*shape, layouts=self.layouts, goals=s.hindsight)

@@ -109,6 +109,7 @@ class HeadingNetwork(nn.Module):
         )
         with th.no_grad():  # |Q| starts below 0.02, while by default it is as large as Q* far away
             for last in (self.value, self.advantage[-1]):
+                assert isinstance(last, nn.Linear)
                 last.weight.mul_(0.01)
                 last.bias.zero_()
         theta = th.arange(headings) * (2.0 * math.pi / headings)
@@ -136,12 +137,10 @@ class HeadingNetwork(nn.Module):
 
 
 ValueNetwork = PlainNetwork | HeadingNetwork
-KINDS = {"plain": PlainNetwork, "headings": HeadingNetwork}
+KINDS: dict[str, type[ValueNetwork]] = {"plain": PlainNetwork, "headings": HeadingNetwork}
 
 
-def make(
-    kind: str, inputs: int, headings: int, reduced_precision: bool = False
-) -> ValueNetwork:
+def make(kind: str, inputs: int, headings: int, reduced_precision: bool = False) -> ValueNetwork:
     """Makes the network that `train.network` names."""
     return KINDS[kind](inputs, headings, reduced_precision)
 
