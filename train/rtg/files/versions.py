@@ -16,7 +16,7 @@ from rtg.files import run_folder
 
 FILE = "versions.json"
 _REVISION_KEYS = ("git_revision", "git_modified")
-_PYTHON_PACKAGES = ("torch", "stable-baselines3", "gymnasium", "numpy", "lcm")
+_PYTHON_PACKAGES = ("torch", "gymnasium", "numpy", "lcm")
 _DEBIAN_PACKAGES = ("g++", "libeigen3-dev", "libsuitesparse-dev", "libbox2d-dev", "libyaml-cpp-dev")
 
 
