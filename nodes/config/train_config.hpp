@@ -25,7 +25,8 @@ inline constexpr std::array<std::string_view, 3> kLearners{"q_learning", "clonin
 ///
 /// Experiments behind some defaults:
 ///
-///  - `network`: on the same transitions of Sorting (seed 2), success first reaches 0.95 after 25,000
+///  - `network`: on the same transitions of Sorting (seed 2), success first reaches 0.95 after
+///  25,000
 ///    interactions, with dueling layers of 512, 512 and 128 after 50,000. On Gathering and ArtManip
 ///    (seed 1) it takes as many interactions as these, in 0.7 to 0.8 of the CPU time.
 ///  - `target_rate`: with a hard copy every 500 steps instead, the success rate oscillates between
@@ -61,10 +62,10 @@ struct TrainConfig {
   bool double_q = true;            // van Hasselt et al. 2016
   bool clipped_double_q = true;    // Double-Q value: the smaller of the two networks'
   Network network = Network::kHeadings;
-  bool clip_targets = true;        // to [0, 1], the range of the values
-  bool value_bounds = true;        // raise targets to lower bounds that stored trajectories prove
-  double epsilon_start = 0.3;      // ε at the first interaction
-  double epsilon_end = 0.02;       // ε from epsilon_share of the interactions on
+  bool clip_targets = true;    // to [0, 1], the range of the values
+  bool value_bounds = true;    // raise targets to lower bounds that stored trajectories prove
+  double epsilon_start = 0.3;  // ε at the first interaction
+  double epsilon_end = 0.02;   // ε from epsilon_share of the interactions on
   double epsilon_share = 0.2;
   // Exploring actions: the share contact_share heads towards an object. Of the others, the share
   // nearby_share lies near the greedy heading. The rest is uniform.

@@ -21,8 +21,8 @@ FITTING = {"observation_size": 20, "headings": 48, "network": "headings"}
     [
         ({}, "does not say with which settings it was made"),
         ({"identity": {}}, "made with observation_size = None, but this run has 20"),
-        ({"identity": {**FITTING, "network": "huge"}}, "network that is known; legal: plain, head"),
-        ({"identity": {**FITTING, "network": []}}, "network that is known; legal: plain, head"),
+        ({"identity": {**FITTING, "network": "huge"}}, "an unknown network; legal: plain, head"),
+        ({"identity": {**FITTING, "network": []}}, "an unknown network; legal: plain, head"),
         ({"identity": FITTING, "model": {}}, "holds no policy"),
         ({"identity": FITTING, "weights": {}}, "its weights do not fit the network"),
     ],

@@ -62,7 +62,7 @@ def read(path: Path, task: _core.Task) -> Policy:
     wanted = {"observation_size": task.observation_size, "headings": task.headings}
     check_identity(path, found, wanted)
     if found.get("network") not in list(networks.KINDS):
-        raise UserError(f"{path}: has no network that is known; legal: {', '.join(networks.KINDS)}")
+        raise UserError(f"{path}: has an unknown network; legal: {', '.join(networks.KINDS)}")
     if not isinstance(weights, dict):
         raise UserError(f"{path}: holds no policy; legal: a model.pt of RTG")
     layouts = Layouts(task) if found.get("hindsight") else None
