@@ -26,9 +26,9 @@ inline constexpr std::array<std::string_view, 3> kLearners{"q_learning", "clonin
 /// Experiments behind some defaults:
 ///
 ///  - `network`: on the same transitions of Sorting (seed 2), success first reaches 0.95 after
-///  25,000
-///    interactions, with dueling layers of 512, 512 and 128 after 50,000. On Gathering and ArtManip
-///    (seed 1) it takes as many interactions as these, in 0.7 to 0.8 of the CPU time.
+///    25,000 interactions, with dueling layers of 512, 512 and 128 after 50,000. On Gathering and
+///    ArtManip (seed 1) it takes about as many interactions as these, in 0.7 and 0.9 of the CPU
+///    time.
 ///  - `target_rate`: with a hard copy every 500 steps instead, the success rate oscillates between
 ///    0.7 and 1.
 ///  - `recent_share`, `clipped_double_q`: without them, the success rate of a policy of ArtManip

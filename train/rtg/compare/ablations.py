@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -71,7 +70,7 @@ def search_ablations(search: dict[str, Any]) -> list[Settings]:
         TREE_ABLATIONS if search["generator"] in effective_config.TREE_GENERATORS else {}
     )
     return [
-        (f"search.{key}={json.dumps(value)}",)
+        (f"search.{key}={effective_config.as_typed(value)}",)
         for key, values in alternatives.items()
         for value in values
         if search[key] != value
@@ -92,9 +91,4 @@ def departures(current: dict[str, Any], paper: dict[str, Any]) -> list[Settings]
 
 
 def _settings(keys: Sequence[str], values: dict[str, Any]) -> Settings:
-    return tuple(f"train.{key}={_word(values[key])}" for key in keys)
-
-
-def _word(value: Any) -> str:
-    """Returns `value` as a user writes it after --set; it is part of the name of a folder."""
-    return value if isinstance(value, str) else json.dumps(value)
+    return tuple(f"train.{key}={effective_config.as_typed(values[key])}" for key in keys)

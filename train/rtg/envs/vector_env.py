@@ -44,11 +44,8 @@ class PushVecEnv:
         curriculum: Curriculum | None = None,
     ) -> None:
         self.task = task = config.task
-        self.count, self.observation_size, self.headings = (
-            count,
-            task.observation_size,
-            task.headings,
-        )
+        self.count = count
+        self.observation_size, self.headings = task.observation_size, task.headings
         self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
         self.curriculum = curriculum

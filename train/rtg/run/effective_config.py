@@ -34,6 +34,11 @@ def values(config: _core.Config) -> Values:
     return result
 
 
+def as_typed(value: Any) -> str:
+    """Returns a value of values() as a user writes it after `--set KEY=`."""
+    return value if isinstance(value, str) else json.dumps(value)
+
+
 def load_written(file: Path) -> _core.Config:
     """Loads `file`, a configuration that this version of RTG must have written.
 

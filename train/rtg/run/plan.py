@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import secrets
 from dataclasses import dataclass
 from pathlib import Path
@@ -108,10 +107,9 @@ def _check_resumed(file: Path, config: _core.Config) -> None:
     for name in sorted({*before, *after}):
         old, new = before.get(name), after.get(name)
         if old != new:
-            kept = old if isinstance(old, str) else json.dumps(old)
             raise UserError(
-                f"--resume: {name} must stay {kept} as in {file}; legal: changes of train and "
-                "run, except run.seed and, with a checkpoint, run.method and "
+                f"--resume: {name} must stay {effective_config.as_typed(old)} as in {file}; legal: "
+                "changes of train and run, except run.seed and, with a checkpoint, run.method and "
                 f"train.{{{','.join(CHECKPOINT_SETTINGS)}}}"
             )
 
