@@ -102,6 +102,10 @@ REFUSED = {
         ["--method", "her", "--no-train"],
         "rtg: --no-train: leaves nothing to do, as run.method her generates no transitions ",
     ),
+    "a generator of nothing": (
+        ["--method", "her", "--generator", "random"],
+        "rtg: --generator random: has no effect, as run.method her generates no transitions ",
+    ),
     "no messages": (
         ["--method", "rcg", "--set", "run.record=true"],
         "rtg: --set run.record=true: key 'run.record': is true, but without train.offline there "

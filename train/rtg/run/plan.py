@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -82,6 +83,16 @@ def check(config: _core.Config, train: bool) -> None:
         )
 
 
+def _check_generator(config: _core.Config, overrides: Sequence[Override]) -> None:
+    """Raises UserError if the user chose a generator, but the run generates nothing."""
+    chosen = [o.typed for o in overrides if o.setting.startswith("search.generator=")]
+    if chosen and not config.train.offline:
+        raise UserError(
+            f"{chosen[-1]}: has no effect, as run.method {config.run.method} generates no "
+            "transitions (train.offline is false); legal: another method, or no generator"
+        )
+
+
 def _fixed_values(config: _core.Config, has_checkpoint: bool) -> dict[str, Any]:
     """Returns, by "section.key", the values that must not change when the run is resumed.
 
@@ -125,6 +136,7 @@ def make_plan(args: RunArgs) -> RunPlan:
     if args.resume:
         _check_resumed(args.file, config)
     check(config, args.train)
+    _check_generator(config, overrides)
     notes = []
     needs_bus = config.train.offline and not config.run.in_process
     if needs_bus and (why := multicast.defect(config.run.bus)):
