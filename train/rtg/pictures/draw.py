@@ -128,7 +128,7 @@ def arena_window(task: TaskLike) -> Window:
 def episode_window(task: TaskLike, poses: Floats) -> Window:
     """Returns the window that shows all states of an episode and the discs of the goal.
 
-    It is not larger than arena_window(). poses [T, bodies, 3]
+    Objects may lie outside the arena, which bounds the robot alone. poses [T, bodies, 3]
     """
     marks = [term for term in task.goal if term.region == "disc"]
     corners = [circle(term.centre, term.radius) for term in marks]
@@ -138,9 +138,7 @@ def episode_window(task: TaskLike, poses: Floats) -> Window:
     points = np.concatenate(corners)
     low, high = points.min(axis=0), points.max(axis=0)
     x, y = (low + high) / 2.0
-    half = 0.53 * float((high - low).max()) + 0.4
-    whole = arena_window(task)
-    return whole if half >= whole.half else Window(float(x), float(y), half)
+    return Window(float(x), float(y), 0.53 * float((high - low).max()) + 0.4)
 
 
 class Canvas:
