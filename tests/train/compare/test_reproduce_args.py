@@ -9,9 +9,10 @@ from rtg.compare.reproduce_args import parse, parse_seeds, parse_sweep
 from rtg.errors import UserError
 
 
-def test_without_flags_all_methods_run_on_all_tasks_with_five_seeds():
+def test_without_flags_all_methods_run_on_all_tasks_with_five_seeds_but_the_planner():
     args = parse([])
-    assert len(args.cells) == 3 * len(METHODS) * 5
+    assert len(args.cells) == 3 * (5 * (len(METHODS) - 1) + 1)
+    assert [cell.seed for cell in args.cells if cell.method == "planner"] == [1, 1, 1]
     assert list(args.files) == ["gathering", "sorting", "art_manip"]
     assert {cell.seed for cell in args.cells} == {1, 2, 3, 4, 5}
     assert args.out == paths.RUNS / "reproduce"

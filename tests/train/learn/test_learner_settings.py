@@ -32,6 +32,14 @@ def first_step(**changes: Any) -> float:
     return float((weights(one.online) - before).abs().max())
 
 
+def test_a_restored_learner_has_the_learning_rate_of_its_own_settings() -> None:
+    before, after = played(learning_rate=1e-3), played(learning_rate=5e-3)
+    before.train(1)
+    after.restore(before.state())
+    rates = [group["lr"] for group in after.optimizer.param_groups]
+    assert rates == [5e-3]
+
+
 def rows_of_a_batch(**changes: Any) -> int:
     one, sizes = model(**changes), []
     sample = one.replay.sample
@@ -141,14 +149,13 @@ def leaves_loops(**changes: Any) -> bool:
     return any(one.actions(np.array([0]), seen, 0.0) != 0 for _ in range(2))
 
 
-LESS = th.bfloat16 if networks.has_fast_bfloat16() else th.float32
-
-
 def width(**changes: Any) -> th.dtype:
     """Returns the type of the numbers that the inner layers compute with."""
     one, found = model(network="plain", **changes), []
     one.online.layers.inner.register_forward_hook(lambda net, seen, out: found.append(out.dtype))
-    one.online.train(True)(th.zeros(1, 3))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(networks, "has_fast_bfloat16", lambda device="cpu": True)
+        one.online.train(True)(th.zeros(1, 3))
     return found[0]
 
 
@@ -178,7 +185,7 @@ OF_THE_LEARNER: dict[str, tuple[Any, Any, Measure, Any, Any]] = {
     "nearby_headings": (1, 2, headings, {1, 7}, {1, 2, 6, 7}),
     "contact_share": (0.0, 1.0, headings, {1, 7}, {4}),
     "leave_loops": (False, True, leaves_loops, False, True),
-    "reduced_precision": (False, True, width, th.float32, LESS),
+    "reduced_precision": (False, True, width, th.float32, th.bfloat16),
 }
 
 

@@ -156,6 +156,7 @@ def test_a_signal_leaves_a_checkpoint_to_go_on_from(
     ("override", "message"),
     [
         ("run.seed=9", "made with seed = 1, but this run has 9"),
+        ("train.hindsight=8", "made with hindsight = 4, but this run has 8"),
         ("train.network=plain", "made with network = headings, but this run has plain"),
         ("train.buffer=3000", "made with buffer = "),
     ],
@@ -163,7 +164,7 @@ def test_a_signal_leaves_a_checkpoint_to_go_on_from(
 def test_a_checkpoint_of_another_run_is_refused(
     tmp_path: Path, rows: Rows, override: str, message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder = run_folder(tmp_path / "run", rows)
+    folder = run_folder(tmp_path / "run", rows, "train.hindsight=4")
     assert trainer.main([str(folder), "--no-stream"]) == 0
     other = _core.Config.from_file(folder / "config.yaml", [override])
     (folder / "config.yaml").write_text(other.yaml)

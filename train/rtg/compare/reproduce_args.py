@@ -13,7 +13,7 @@ from pathlib import Path
 from rtg import paths
 from rtg.compare.ablations import ablations
 from rtg.compare.cells import Cell
-from rtg.compare.methods import METHODS, REFERENCE, TASKS
+from rtg.compare.methods import METHODS, REFERENCE, SEEDLESS, TASKS
 from rtg.errors import UserError
 from rtg.run.run_args import Override, Parser, add_set, task_file
 from rtg.run.run_args import parse as parse_run
@@ -175,7 +175,10 @@ def _check_keys(sweeps: Sequence[tuple[str, ...]]) -> None:
 
 
 def _cells(args: argparse.Namespace, files: dict[str, Path]) -> tuple[Cell, ...]:
-    """Returns the cells: tasks x methods x settings x seeds. Raises UserError."""
+    """Returns the cells: tasks x methods x settings x seeds. Raises UserError.
+
+    SEEDLESS runs with the first seed alone.
+    """
     sweeps = [parse_sweep(sweep) for sweep in args.sweep]
     _check_keys(sweeps)
     if args.ablations and sweeps:
@@ -185,7 +188,8 @@ def _cells(args: argparse.Namespace, files: dict[str, Path]) -> tuple[Cell, ...]
         changes = list(itertools.product(*sweeps))
         if args.ablations:
             changes = ablations(files[task], _common(args, method))
-        axes = changes, parse_seeds(_seeds(args))
+        seeds = parse_seeds(_seeds(args))
+        axes = changes, seeds[:1] if method == SEEDLESS else seeds
         found += [Cell(task, method, changed, seed) for changed, seed in itertools.product(*axes)]
     return tuple(found)
 

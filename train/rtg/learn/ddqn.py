@@ -250,6 +250,8 @@ class DoubleDqn:
         self.target.load_state_dict(state["target"])
         self.mean.load_state_dict(state["mean"])
         self.optimizer.load_state_dict(state["optimizer"])
+        for group in self.optimizer.param_groups:  # which hold the rate of the checkpoint
+            group["lr"] = self.settings.learning_rate
         self.exploration.restore(state["exploration"])
         self.statistics.restore(state["statistics"])
         self.interactions, self.gradient_steps = state["interactions"], state["gradient_steps"]

@@ -58,8 +58,8 @@ class Training:
         self._identity = {
             "format": _FORMAT,
             "seed": seed,
-            **fixed,
             **policy_file.identity(self.task, s),
+            **fixed,
         }
         self.starts = held_out_starts(config)
         self.runs = 1  # number of runs that learn in this process
