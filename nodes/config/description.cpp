@@ -109,8 +109,8 @@ std::string task_in_words(const Config& config) {
       "actions\n  %d headings, %.4g degrees apart; a push is %.4g m straight ahead, "
       "within |x|, |y| <= %.4g m\n",
       push.headings, 360.0 / push.headings, push.stride, push.arena);
-  out += print("episodes\n  at most %d pushes, discount %.4g, observation of %d numbers\n",
-               task.horizon, task.discount, observation_size(task));
+  out += print("episodes\n  at most %d pushes, observation of %d numbers\n", task.horizon,
+               observation_size(task));
   out += print("  objects start within %.4g m of the layout above (training: %.4g m)\n",
                config.evaluation_jitter(), config.training_jitter());
   return out;

@@ -92,6 +92,7 @@ std::pair<nb::ndarray<nb::numpy, double>, long> plan(const config::Config& confi
 }  // namespace
 
 void bind_generation(nb::module_& module) {
+  module.attr("GENERATORS") = names_of(search::kGenerators);
   module.attr("SOURCES") = names_of(search::kSources);
   module.def("generate", &generate_in_process, nb::arg("config"), nb::arg("store"),
              nb::arg("progress"));

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 METHODS: tuple[str, ...]
 """The values of run.method: the learning methods, see nodes/config/method.hpp."""
+GENERATORS: tuple[str, ...]
 SOURCES: tuple[str, ...]
 """The sources of transitions, such as "tree"; see core/search/transition.hpp.
 

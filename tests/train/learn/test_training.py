@@ -172,6 +172,18 @@ def test_a_checkpoint_of_another_run_is_refused(
     assert message in capsys.readouterr().err
 
 
+def test_a_learner_is_not_begun_anew_over_its_checkpoint(
+    tmp_path: Path, rows: Rows, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = run_folder(tmp_path / "run", rows)
+    assert trainer.main([str(folder), "--no-stream"]) == 0
+    before = (folder / "checkpoint" / "state.pt").read_bytes()
+    assert trainer.main([str(folder), "--no-stream"]) == 2
+    words = "holds a learner already (checkpoint/); legal: --resume, another folder"
+    assert words in capsys.readouterr().err
+    assert (folder / "checkpoint" / "state.pt").read_bytes() == before
+
+
 def test_files_that_are_no_checkpoints_are_refused(tmp_path: Path) -> None:
     for content in (b"", b"no", b"\x80\x02\x95", b"junk", b"hello", b"task:\n"):
         (tmp_path / "state.pt").write_bytes(content)

@@ -34,10 +34,11 @@ def test_elsewhere_there_is_one_line_per_layer_and_no_control_character():
 
 def test_elsewhere_training_says_every_tenth_of_the_budget_and_every_evaluation():
     states = [replace(TRAINING, interactions=n) for n in (5_000, 20_000, 34_000, 36_000, 60_000)]
-    states.append(replace(states[-1], success_rate=0.5))
+    states += [replace(states[-1], evaluations=n, success_rate=0.5) for n in (1, 1, 2)]
     lines = [line for line in plain(*states) if "interactions/s" in line]
     assert lines == [
         "36,000 of 350,000 interactions: success -, 812 interactions/s",
+        "60,000 of 350,000 interactions: success 0.50, 812 interactions/s",
         "60,000 of 350,000 interactions: success 0.50, 812 interactions/s",
     ]
 

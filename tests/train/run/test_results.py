@@ -76,6 +76,8 @@ SUMMARY = {
     "generate_wall_s": 3.0,
     "contact_share": 0.3,
     "headings_per_state": 4.87,
+    "trees": 3,
+    "start_region_depth": 9,
     "success_rate": 0.98,
     "interactions": 20000,
     "train_wall_s": 60.0,
@@ -91,6 +93,14 @@ def test_of_the_data_and_of_q_the_words_say_what_predicts_learning():
     assert said[2] == "rank correlation of Q with the simulator, over all headings: 0.76"
     without_rank = {**SUMMARY, "q_rank_correlation": None}
     assert len(results.summary_text(plan, without_rank).splitlines()) == 3
+
+
+def test_a_start_that_the_trees_do_not_reach_is_told_and_what_helps():
+    plan = RunPlan(Path("runs/x"), "x", config("run.method=ddqn_rtg"), False, False, ())
+    far = {**SUMMARY, "start_region_depth": -1}
+    assert "a wider search (search.breadth, search.depth)" in results.summary_text(plan, far)
+    for reached in (SUMMARY, {**far, "trees": 0}):
+        assert "search.breadth" not in results.summary_text(plan, reached)
 
 
 @pytest.mark.parametrize(

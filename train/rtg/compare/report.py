@@ -22,22 +22,24 @@ its episodes, failures included; **roll-outs**: of the last 100 training episode
 the task, exploration included; **at ⅓**: greedy success at a third of the budget, from other
 held-out starts, or the final one of a run that had ended by then; **to 0.70**, **to {THRESHOLD}**:
 thousand interactions until the first evaluation with that greedy success ("2 of 3": so many of the
-seeds ever), and **pushes** (in thousands) and **CPU s** of the whole run until then. Pushes are
-those of the simulator for data, starts, interactions and plans, those of evaluations left out; CPU
-seconds are those of all threads, evaluations included (of several runs in one process, those of the
-run's thread). Methods without interactions have the rounds of learning here that so many would have
-brought. In the second table of a task, which says what the whole run cost, **transitions**,
+seeds ever), and **pushes** (in thousands) and **CPU s** of the whole run until then. Exploration
+falls over a share of the budget (`train.epsilon_share`), so that these depend on the budget. Pushes
+are those of the simulator for data, starts, interactions and plans, those of evaluations left out;
+CPU seconds are those of all threads, evaluations included (of several runs in one process, those of
+the run's thread). Methods without interactions have the rounds of learning here that so many would
+have brought. In the second table of a task, which says what the whole run cost, **transitions**,
 **pushes** and **interactions** are in thousands, and wall clock is that of generation on one core,
 of learning on what is named *learner* above. All figures are in [runs.csv](runs.csv), the learning
 curves in [curves.csv](curves.csv); in their pictures a run that ended early keeps its last value,
 and of more rows than there are methods those with swept settings are left out."""
 _POOLED = f"""\
-IQM: mean of the middle half of all final successes, with a 95 % interval by stratified bootstrap
-(seeds drawn within a task, {RESAMPLES:,} resamples), over the tasks that more than one method was
-run on. Last column: the probability that a run of the method does better than one of `{REFERENCE}`
-on the same task, mean over the tasks, equal ones counted half. Single seeds have no interval, and
-of few it is too narrow. Methods with fewer tasks are not comparable with those with more, nor is
-`{RANDOMISED}` with any: its starts, also those it is measured from, lie all over a wider region."""
+IQM: mean of the middle half of all final successes (of fewer than four, of all), with a 95 %
+interval by stratified bootstrap (seeds drawn within a task, {RESAMPLES:,} resamples), over the
+tasks that more than one method was run on. Last column: the probability that a run of the method
+does better than one of `{REFERENCE}` on the same task, mean over the tasks, equal ones counted
+half. Single seeds have no interval, and of few it is too narrow. Methods with fewer tasks are not
+comparable with those with more, nor is `{RANDOMISED}` with any: its starts, also those it is
+measured from, lie all over a wider region."""
 REMARKS = "remarks.md"  # beside grid.json
 _QUICK = (
     "**Small budgets (`--quick`): these figures show that everything works and are no results.**"

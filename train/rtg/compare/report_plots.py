@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter
+from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
 from rtg.compare.estimates import carried_forward
@@ -210,7 +210,9 @@ def costs(path: Path, comparison: Comparison, task: str) -> None:
                 _draw_curve(axis, (mean_cost[shown], values[:, shown]), True, styles[label])
             axis.axhline(THRESHOLD, color=_THRESHOLD_COLOUR, lw=0.8, zorder=0)
             axis.set(xscale="log", xlabel=name, ylim=(-0.03, 1.03))
+            axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
             axis.xaxis.set_major_formatter(EngFormatter(sep=""))
+            axis.xaxis.set_minor_formatter(NullFormatter())
         axes[0].set_ylabel("greedy success, held-out starts")
         title = f"{task}: success against the mean cost, mean ± standard deviation of the seeds"
         _add_legend(figure, runs_by_label, title, columns=5)

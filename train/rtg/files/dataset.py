@@ -126,8 +126,9 @@ def read(path: Path, bodies: int | None = None, headings: int | None = None) -> 
     except FileNotFoundError:
         raise DatasetError(f"{path}: no such file; legal: the transitions of a run") from None
     except (*_DAMAGED_FILE_ERRORS, OSError) as error:
+        why = f" ({error})" if isinstance(error, OSError) else ", or damaged"
         raise DatasetError(
-            f"{path}: is not a transition file ({error}); legal: a transitions.npz of RTG"
+            f"{path}: is not a transition file{why}; legal: a transitions.npz of RTG"
         ) from error
     transitions = Transitions(**arrays)
     _check_shapes(path, transitions)

@@ -125,6 +125,7 @@ class Planning:
             "budget": self.settings.interactions,
             "transitions": 0,
             "online_successes": 0,
+            "evaluations": 0,
             "success_rate": float(found.success.mean()) if found else None,
             "done": self.done,
         }

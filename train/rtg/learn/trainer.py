@@ -26,7 +26,7 @@ from rtg import _core
 from rtg.bus.bus import Bus
 from rtg.bus.node_status import ENDED, NodeStatus
 from rtg.bus.transition_stream import TransitionStream
-from rtg.errors import exit_status
+from rtg.errors import UserError, exit_status
 from rtg.files.dataset import Rows
 from rtg.learn.offline_data import FileSource, NoSource, Source
 from rtg.learn.planning import Planning
@@ -85,7 +85,11 @@ def _begin(folder: Path, args: argparse.Namespace) -> Training | Planning:
     config = _core.Config.from_file(folder / "config.yaml")
     training = (Planning if config.train.learner == "planning" else Training)(config, folder)
     training.runs = len(args.folders)
-    if args.resume and training.has_checkpoint():
+    if training.has_checkpoint():
+        if not args.resume:
+            raise UserError(
+                f"{folder}: holds a learner already (checkpoint/); legal: --resume, another folder"
+            )
         training.restore()
     return training
 

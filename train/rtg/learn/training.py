@@ -213,6 +213,7 @@ class Training:
             "budget": self.settings.interactions,
             "transitions": self.data.count,
             "online_successes": self.env.successes,
+            "evaluations": len(rows),
             "success_rate": rows[-1]["success_rate"] if rows else None,
             "done": self.done,
         }

@@ -39,6 +39,7 @@ class RunState:
     interactions: int = 0
     budget: int = 0  # total number of interactions; 0: no training
     rate: float = 0.0  # interactions per second
+    evaluations: int = 0
     success_rate: float | None = None  # of the last evaluation
 
 
@@ -118,7 +119,7 @@ class PlainDisplay(TimedLines):
         tenth = max(1, state.budget // 10)
         if (
             state.interactions // tenth != last.interactions // tenth
-            or state.success_rate != last.success_rate
+            or state.evaluations != last.evaluations
         ):
             counts = f"{state.interactions:,} of {state.budget:,} interactions"
             self.note(f"{counts}: {training_text(state)}")

@@ -63,5 +63,7 @@ def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
     else:
         return graph_run.run(plan, shown)
     if plan.train:
+        if plan.resume and run_folder.checkpoint_file(plan.folder).exists():
+            shown.note("learning goes on from its last checkpoint")
         train_run.run(plan, shown)
     return {"lost_transitions": 0, "defects": graph_run.generation_defects(plan)}

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rtg import paths
+from rtg import _core, paths
 from rtg.errors import UserError
 
 EPILOG = """\
@@ -70,6 +70,10 @@ class Parser(argparse.ArgumentParser):
         raise UserError(f"{message}; legal: {usage}")
 
 
+def _ids(names: Sequence[str]) -> str:
+    return ", ".join(names)
+
+
 def parser() -> argparse.ArgumentParser:
     """Returns the parser of the arguments of `rtg run`."""
     p = Parser(
@@ -84,8 +88,12 @@ def parser() -> argparse.ArgumentParser:
         "--in-process", action="store_true", help="run everything in one process, without LCM"
     )
     p.add_argument("--workers", metavar="N", help="reverse workers; 0: one per core")
-    p.add_argument("--method", metavar="ID", help="method to run: dqn, ddqn, ... (ddqn_rtg)")
-    p.add_argument("--generator", metavar="ID", help="method that generates the transitions (rrbs)")
+    p.add_argument("--method", metavar="ID", help=f"{_ids(_core.METHODS)} (ddqn_rtg)")
+    p.add_argument(
+        "--generator",
+        metavar="ID",
+        help=f"of transitions: {_ids(_core.GENERATORS)} (rrbs, the reverse simulator)",
+    )
     p.add_argument("--transitions", metavar="N", help="transitions to generate")
     p.add_argument("--interactions", metavar="N", help="environment steps of the learner")
     p.add_argument("--no-train", action="store_true", help="stop after the generation")

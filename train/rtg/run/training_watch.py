@@ -30,6 +30,7 @@ class TrainingWatch:
             state,
             interactions=learner.interactions,
             rate=learner.rate,
+            evaluations=learner.evaluations,
             success_rate=learner.success_rate,
         )
 
@@ -39,5 +40,6 @@ class TrainingWatch:
         self._state = RunState(
             interactions=interactions,
             rate=self._meter.rate(interactions, time.monotonic()),
+            evaluations=learner["evaluations"],
             success_rate=learner["success_rate"],
         )
