@@ -1,8 +1,5 @@
 """Checks which starts the reverse curriculum keeps, and where the next ones come from."""
 
-import json
-from pathlib import Path
-
 import numpy as np
 import pytest
 from rtg import _core, paths
@@ -19,8 +16,6 @@ from rtg.envs.curriculum import (
 )
 from rtg.envs.vector_env import PushVecEnv
 from rtg.errors import UserError
-from rtg.learn.offline_data import NoSource
-from training_runs import run_folder, training
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
 TASK = CONFIG.task
@@ -241,12 +236,3 @@ def test_a_restored_curriculum_goes_on_with_the_same_starts() -> None:
     same = starts(one) == starts(other)
     assert same  # no diff of bytes
     assert one.pushes == other.pushes > first_round
-
-
-def test_pushes_for_starts_of_a_curriculum_are_told(tmp_path: Path) -> None:
-    folder = run_folder(tmp_path / "run", None, "run.method=rcg")
-    one = training(folder)
-    assert one.run(NoSource(), lambda: False, record=False)
-    one.finish(lost=0)
-    found = json.loads((folder / "training.json").read_text())
-    assert found["curriculum_pushes"] == one.env.curriculum.pushes > 0

@@ -259,12 +259,6 @@ def test_only_targets_that_a_proof_raises_count_as_bound() -> None:
         assert shares["clipped_share"] == pytest.approx(3 / 7)
 
 
-def test_a_batch_is_made_of_what_the_settings_say() -> None:
-    buffer = model(offline_share=0.25, recent_share=0.125, value_bounds=False).replay
-    rules = (buffer.offline_share, buffer.recent_share, buffer.use_bounds, buffer.discount)
-    assert rules == (0.25, 0.125, False, 0.9)
-
-
 def test_statistics_are_means_and_peaks_since_the_last_take() -> None:
     statistics = Statistics()
     data = batch(column(0, 0), column(0, 0), column(0, 0))

@@ -84,7 +84,7 @@ def mean_weights_lag(**changes: Any) -> bool:
 
 
 def of_rules(name: str) -> Measure:
-    return lambda **changes: getattr(model(**changes).replay, name)
+    return lambda **changes: getattr(model(**changes).replay.rules, name)
 
 
 def next_value(**changes: Any) -> float:
@@ -172,7 +172,7 @@ OF_THE_LEARNER: dict[str, tuple[Any, Any, Measure, Any, Any]] = {
     "offline_share": (0.5, 0.25, of_rules("offline_share"), 0.5, 0.25),
     "recent_share": (0.5, 0.25, of_rules("recent_share"), 0.5, 0.25),
     "value_bounds": (True, False, of_rules("use_bounds"), True, False),
-    "buffer": (10_000, 8, of_rules("capacity"), 10_000, 8),
+    "buffer": (10_000, 8, lambda **changes: model(**changes).replay.capacity, 10_000, 8),
     "double_q": (True, False, next_value, 0.5, 0.9),
     "clipped_double_q": (True, False, next_value, 0.5, 0.7),
     "clip_targets": (True, False, least_target, 0.0, -1.0),

@@ -247,7 +247,7 @@ class HindsightReplayBuffer(MixedReplayBuffer):
             return
         seen = np.concatenate((store.observation[rows[:1]], store.next_observation[rows]))
         store.goals[rows], store.goal_bounds[rows], store.has_goals[rows] = future_goals(
-            self.layouts, self.layouts.of(seen), self.goals, self.discount, self.rng
+            self.layouts, self.layouts.of(seen), self.goals, self.rules.discount, self.rng
         )
 
     def _columns(self, parts: list[Part]) -> dict[str, Array]:
@@ -273,7 +273,7 @@ class HindsightReplayBuffer(MixedReplayBuffer):
         goal[place] = store.goals[rows, pick]
         reached = self.layouts.near(self.layouts.of(store.next_observation[rows]), goal[place])
         columns["reward"][place] = columns["terminated"][place] = reached
-        if self.use_bounds:
+        if self.rules.use_bounds:
             columns["bound"][place] = store.goal_bounds[rows, pick]
 
     def state(self) -> dict[str, Any]:

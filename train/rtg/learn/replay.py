@@ -141,10 +141,7 @@ class MixedReplayBuffer:
         self.online = Store(capacity, observation_size)
         self.capacity, self.observation_size = capacity, observation_size
         self.environments, self.device = environments, device
-        self.offline_share = rules.offline_share
-        self.recent_share = rules.recent_share
-        self.discount = rules.discount
-        self.use_bounds = rules.use_bounds
+        self.rules = rules
         self.rng = np.random.default_rng(rules.seed)
         # Per environment, the numbers in `online` of the transitions of its current episode.
         self._episodes: list[list[int]] = [[] for _ in range(environments)]
@@ -171,9 +168,12 @@ class MixedReplayBuffer:
     def refresh_bounds(self) -> None:
         """Recomputes the value bounds of all offline transitions. To be called after new data."""
         store, n = self.offline, self.offline.count
-        if self.use_bounds and n:
+        if self.rules.use_bounds and n:
             store.bound[:n] = value_bounds(
-                store.observation[:n], store.next_observation[:n], store.reward[:n], self.discount
+                store.observation[:n],
+                store.next_observation[:n],
+                store.reward[:n],
+                self.rules.discount,
             )
 
     def add(self, observation: Array, action: Array, step: Step) -> None:
@@ -211,8 +211,10 @@ class MixedReplayBuffer:
     def _close_episode(self, env: int, success: bool) -> None:
         numbers = np.array(self._episodes[env])
         self._episodes[env] = []
-        if success and self.use_bounds:
-            self.online.set_bounds(numbers, self.discount ** np.arange(len(numbers) - 1, -1, -1))
+        if success and self.rules.use_bounds:
+            self.online.set_bounds(
+                numbers, self.rules.discount ** np.arange(len(numbers) - 1, -1, -1)
+            )
 
     def sample(self, batch_size: int) -> Batch:
         offline = self._offline_count(batch_size)
@@ -243,7 +245,7 @@ class MixedReplayBuffer:
             name: np.concatenate([getattr(store, name)[rows] for store, rows in parts])
             for name in Store.columns
         }
-        if not self.use_bounds:
+        if not self.rules.use_bounds:
             columns["bound"].fill(-np.inf)
         return columns
 
@@ -252,7 +254,7 @@ class MixedReplayBuffer:
         store = self.online
         rows = self.rng.integers(store.count, size=count)
         recent = min(store.count, RECENT_COUNT)
-        back = self.rng.integers(recent, size=round(self.recent_share * count))
+        back = self.rng.integers(recent, size=round(self.rules.recent_share * count))
         rows[: len(back)] = (store.written - 1 - back) % store.capacity
         return rows
 
@@ -260,11 +262,11 @@ class MixedReplayBuffer:
         offline, online = self.offline.count, self.online.count
         if offline + online == 0:
             raise ValueError("nothing to sample from: the replay buffer is empty")
-        if self.offline_share < 0.0:
+        if self.rules.offline_share < 0.0:
             return int(self.rng.binomial(batch_size, offline / (offline + online)))
         if offline == 0:
             return 0
-        return batch_size if online < batch_size else round(self.offline_share * batch_size)
+        return batch_size if online < batch_size else round(self.rules.offline_share * batch_size)
 
     def state(self) -> dict[str, Any]:
         """Returns the state for a checkpoint, without offline transitions.
