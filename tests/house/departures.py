@@ -1,4 +1,4 @@
-"""Departures from the paper: reads their marks in the comments of core/, writes docs/departures.md.
+"""Departures from the paper: reads their marks in core/ and nodes/, writes docs/departures.md.
 
 A mark begins with "Departs from the paper:" and ends with the comment. Run as a program, it writes
 the page.
@@ -44,7 +44,7 @@ def _of(file: Path) -> list[Departure]:
 
 def departures() -> list[Departure]:
     """All marks, in the order of the files."""
-    files = sorted((ROOT / "core").rglob("*.[hc]pp"))
+    files = [file for of in ("core", "nodes") for file in sorted((ROOT / of).rglob("*.[hc]pp"))]
     return [one for file in files for one in _of(file)]
 
 
