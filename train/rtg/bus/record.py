@@ -25,8 +25,11 @@ def _say(words: str) -> None:
 def record(config: _core.Config, run: str, file: Path) -> None:
     """Waits for the end of the run's transitions and writes them to `file`.
 
-    Raises RunError if the coordinator was restarted, UserError if there is no folder for the file.
+    Raises RunError if the coordinator was restarted, UserError if there is no folder for the file
+    or `file` is a folder.
     """
+    if file.is_dir():
+        raise UserError(f"{file}: is a folder; legal: a file in a folder that exists")
     if not file.parent.is_dir():
         raise UserError(f"{file.parent}: no such folder; legal: a file in a folder that exists")
     bus = Bus(config.run.bus, run)
