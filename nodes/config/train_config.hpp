@@ -87,7 +87,6 @@ struct TrainConfig {
   int checkpoint_every = 20000;   // interactions
   double stop_at_success = 0.95;  // end early at this success rate; 0: use all interactions
   int stop_evaluations = 3;       // consecutive evaluations that must reach stop_at_success
-  bool reduced_precision = true;  // inner layers in bfloat16 where the processor supports it
   Device device = Device::kAuto;  // device of the networks; auto: a GPU if PyTorch finds one
 
   /// Visits the fields of exploration, of the starts of episodes and of hindsight goals.
@@ -169,8 +168,6 @@ struct TrainConfig {
              "success rate that ends training early; 0: never");
     v.integer("stop_evaluations", stop_evaluations, 1, 100000,
               "consecutive evaluations that must reach stop_at_success");
-    v.flag("reduced_precision", reduced_precision,
-           "train the inner layers in bfloat16 where hardware supports it");
     v.choice("device", device, kDevices,
              "device of the networks; auto: a GPU if PyTorch finds one");
   }

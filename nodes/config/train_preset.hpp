@@ -35,7 +35,6 @@ inline TrainConfig train_preset(TrainPreset preset) {
   config.start_jitter = 0.0;
   config.eval_every = 10000;
   config.stop_at_success = 0.0;
-  config.reduced_precision = false;
   return config;
 }
 

@@ -145,12 +145,12 @@ def test_transitions_of_another_commit_are_told(tmp_path):
 
 def test_the_learners_are_named_and_a_run_without_gradient_steps_has_none(tmp_path):
     cells = [Cell("gathering", method, (), 1) for method in ("ddqn_rtg", "ddqn_naive", "planner")]
-    cpu = {"device": "cpu", "precision": "float32", "gradient_steps": 5}
+    cpu = {"device": "cpu", "gradient_steps": 5}
     for cell, more in zip(cells, (cpu, cpu, {"gradient_steps": 0}), strict=True):
         finished(tmp_path, cell, GOOD, **more)
     write_grid(tmp_path, cells)
     page = write_report(tmp_path, tmp_path).read_text()
-    assert "\n- learner: cpu, float32, one core (2 runs); none (1 run)\n" in page
+    assert "\n- learner: cpu, one core (2 runs); none (1 run)\n" in page
 
 
 def test_the_page_says_where_it_comes_from_and_shows_all_pictures(folder, page):

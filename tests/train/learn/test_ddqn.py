@@ -15,7 +15,6 @@ SETTINGS = dict(
     target_acts=False,
     averaging_rate=1.0,
     buffer=10_000,
-    reduced_precision=False,
 )
 
 
@@ -123,15 +122,6 @@ def test_a_gradient_step_moves_every_layer_of_the_online_network_alone(network: 
     for net, old, moves in zip(nets, before, (True, False), strict=True):
         for p, was in zip(net.parameters(), old, strict=True):
             assert th.equal(p, was) != moves
-
-
-def test_both_networks_train_in_reduced_precision() -> None:
-    one, modes = model(network="plain", reduced_precision=True), []
-    for net in (one.online, one.target):
-        net.register_forward_hook(lambda net, *_: modes.append(net.training))
-    one.learn()
-    # One choice of actions; then both networks for the next states and the online one to learn.
-    assert modes == [False, True, True, True]
 
 
 def weights(net: th.nn.Module) -> th.Tensor:

@@ -290,8 +290,6 @@ def test_a_learner_acts_as_its_episodes_ask_and_is_judged_by_the_nearest_layouts
     th.nn.init.normal_(one.mean.head.weight)
     seen = TASK.observation(np.stack([TASK.jittered_start(0.5, 1, k) for k in range(2)]))
     asked = one.replay.desired_layouts(seen)
-    for network in (one.online, one.mean):
-        network.train(False)  # in training, inner layers may be bfloat16
     with th.no_grad():
         acting = one.online(th.from_numpy(BOXES.network_input(seen, asked))).argmax(dim=1).numpy()
         nearest = BOXES.network_input(seen, BOXES.nearest(seen))

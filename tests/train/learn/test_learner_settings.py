@@ -149,16 +149,6 @@ def leaves_loops(**changes: Any) -> bool:
     return any(one.actions(np.array([0]), seen, 0.0) != 0 for _ in range(2))
 
 
-def width(**changes: Any) -> th.dtype:
-    """Returns the type of the numbers that the inner layers compute with."""
-    one, found = model(network="plain", **changes), []
-    one.online.layers.inner.register_forward_hook(lambda net, seen, out: found.append(out.dtype))
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(networks, "has_fast_bfloat16", lambda device="cpu": True)
-        one.online.train(True)(th.zeros(1, 3))
-    return found[0]
-
-
 OF_THE_LEARNER: dict[str, tuple[Any, Any, Measure, Any, Any]] = {
     # field: a value, another, what is measured, what it is with the one, with the other
     "batch": (16, 48, rows_of_a_batch, 16, 48),
@@ -185,7 +175,6 @@ OF_THE_LEARNER: dict[str, tuple[Any, Any, Measure, Any, Any]] = {
     "nearby_headings": (1, 2, headings, {1, 7}, {1, 2, 6, 7}),
     "contact_share": (0.0, 1.0, headings, {1, 7}, {4}),
     "leave_loops": (False, True, leaves_loops, False, True),
-    "reduced_precision": (False, True, width, th.float32, th.bfloat16),
 }
 
 

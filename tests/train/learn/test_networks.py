@@ -11,9 +11,9 @@ from rtg.learn.networks import FEATURES, HeadingNetwork
 KINDS = list(networks.KINDS)
 
 
-def net_of(kind: str, inputs: int = 3, headings: int = 8, reduced: bool = False) -> th.nn.Module:
+def net_of(kind: str, inputs: int = 3, headings: int = 8) -> th.nn.Module:
     th.manual_seed(0)
-    return networks.make(kind, inputs, headings, reduced)
+    return networks.make(kind, inputs, headings)
 
 
 def telling(inputs: int = 3, headings: int = 8) -> HeadingNetwork:
@@ -98,22 +98,6 @@ def test_plain_network_has_the_layers_of_table_2() -> None:
     for a, b in hidden:
         by_hand = (by_hand @ a.T + b).clamp(min=0.0)
     th.testing.assert_close(net(x), by_hand @ weight.T + bias, rtol=1e-4, atol=1e-6)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_reduced_precision_stays_close_and_is_of_training_alone(
-    kind: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Where the processor has no fast bfloat16, it has a slow one."""
-    monkeypatch.setattr(networks, "has_fast_bfloat16", lambda device="cpu": True)
-    fast, exact = net_of(kind, reduced=True), net_of(kind)
-    x = seen(200)
-    with th.no_grad():
-        error = (fast.train()(x) - exact.train()(x)).abs().max()
-        assert 0 < error < 0.02 * exact(x).abs().max()  # bfloat16 has 8 bits
-        assert th.equal(fast.eval()(x), exact.eval()(x))
-        monkeypatch.setattr(networks, "has_fast_bfloat16", lambda device="cpu": False)
-        assert th.equal(fast.train()(x), exact(x))
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -50,14 +50,14 @@ def test_observations_of_a_wrong_shape_are_named(tmp_path: Path) -> None:
 def test_a_policy_takes_the_best_actions_of_the_network_that_was_written(
     tmp_path: Path, network: str
 ) -> None:
-    """It was flattened, as those of learners are, and trained in reduced precision."""
+    """It was flattened, as those of learners are."""
     file, settings = tmp_path / "model.pt", train_settings(network=network)
-    written = networks.make(network, TASK.observation_size, TASK.headings, reduced_precision=True)
+    written = networks.make(network, TASK.observation_size, TASK.headings)
     networks.flatten(written)
     policy_file.write(file, TASK, settings, written.state_dict())
     seen = np.random.default_rng(0).normal(size=(100, 20)).astype(np.float32)
     with th.no_grad():
-        best = written.eval()(th.from_numpy(seen)).argmax(dim=1).numpy()
+        best = written(th.from_numpy(seen)).argmax(dim=1).numpy()
     np.testing.assert_array_equal(policy_file.read(file, TASK)(seen), best)
     assert len(set(best.tolist())) > 1
 

@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 from rtg.files import dataset
 from rtg.files.dataset import Rows
-from rtg.learn import networks
 from rtg.learn.offline_data import FileSource, NoSource
 from rtg.learn.value_check import MAX_STATES, check_values, stored_states
 from training_runs import run_folder, training
@@ -26,7 +25,6 @@ def test_the_learner_is_named_where_it_learned_not_where_it_was_looked_at(
         one.finish(lost=0)
         found = json.loads((folder / "training.json").read_text())
         assert found["runs_in_process"] == 2
-        assert found["precision"] == networks.precision(True, "cpu")
         assert "curriculum_pushes" not in found
 
 

@@ -98,8 +98,7 @@ def _learner(summary: dict[str, Any]) -> str:
         return "none"
     runs = summary.get("runs_in_process") or 1
     shared = f"{runs} runs in one process" if runs > 1 else "one core"
-    parts = [summary.get(name) or f"unknown {name}" for name in ("device", "precision")]
-    return ", ".join([*parts, shared])
+    return f"{summary.get('device') or 'unknown device'}, {shared}"
 
 
 def _programs(versions: dict[str, Any]) -> str:

@@ -95,9 +95,7 @@ class DoubleDqn:
         self.replay = self._make_replay(seed)
         inputs = env.observation_size + (self.layouts.size if self.layouts else 0)
         th.manual_seed(seed)
-        self.online = networks.make(
-            settings.network, inputs, env.headings, settings.reduced_precision
-        ).to(self.device)
+        self.online = networks.make(settings.network, inputs, env.headings).to(self.device)
         self.target, self.mean = copy.deepcopy(self.online), copy.deepcopy(self.online)
         self._online_weights = networks.flatten(self.online)
         self._target_weights = networks.flatten(self.target).detach()
@@ -146,8 +144,6 @@ class DoubleDqn:
 
     def train(self, gradient_steps: int) -> None:
         """Performs gradient steps, each on a new batch."""
-        for net in (self.online, self.target):
-            net.train(True)
         for _ in range(gradient_steps):
             self._gradient_step(self.replay.sample(self.settings.batch))
             self.gradient_steps += 1
@@ -189,7 +185,8 @@ class DoubleDqn:
         return th.minimum(value, online.gather(1, choice)) if clipped else value
 
     def _descend(self, loss: th.Tensor) -> None:
-        self.optimizer.zero_grad(set_to_none=False)
+        assert self._online_weights.grad is not None
+        self._online_weights.grad.zero_()  # in place, as the networks' gradients are views of it
         loss.backward()
         th.nn.utils.clip_grad_norm_([self._online_weights], MAX_GRADIENT_NORM)
         self.optimizer.step()
@@ -224,7 +221,6 @@ class DoubleDqn:
         return self._values_of(self.mean, seen)
 
     def _values_of(self, net: th.nn.Module, observation: Array) -> Array:
-        net.train(False)
         with th.no_grad():
             seen = th.from_numpy(np.ascontiguousarray(observation)).to(self.device)
             q: Array = net(seen).cpu().numpy()

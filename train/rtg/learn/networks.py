@@ -7,7 +7,6 @@ Both kinds have two methods. Called with observations [B, inputs], they return Q
 from __future__ import annotations
 
 import math
-from functools import cache
 from itertools import pairwise
 
 import torch as th
@@ -18,58 +17,21 @@ TRUNK_LAYERS = (256, 256)
 FEATURES = 64  # size of each of u, v, w of HeadingNetwork
 
 
-@cache
-def has_fast_bfloat16(device: str = "cpu") -> bool:
-    """Returns whether the device, "cpu" or "cuda", multiplies bfloat16 matrices in hardware."""
-    if device == "cuda":
-        return bool(th.cuda.is_bf16_supported())
-    return bool(getattr(th.cpu, "_is_avx512_bf16_supported", lambda: False)())
-
-
-def precision(reduced: bool, device: str) -> str:
-    """Returns "bfloat16" or "float32": the precision in which the inner layers are trained.
-
-    `reduced`: bfloat16 is wanted. It is used if `device` has fast hardware for it.
-    """
-    return "bfloat16" if reduced and has_fast_bfloat16(device) else "float32"
-
-
-class _Layers(nn.Module):
-    """Fully connected layers with ReLU. [B, widths[0]] -> [B, widths[-1]]
-
-    With `reduced_precision`, training computes all layers but the first in bfloat16. It has no
-    effect without hardware support or when actions are chosen. Weights and sums stay in float32.
-    The inputs of the first layer are positions, which bfloat16 resolves only to 2 cm.
-    """
-
-    def __init__(self, *widths: int, layer_norm: bool, reduced_precision: bool) -> None:
-        super().__init__()
-        first, *inner = (
-            nn.Sequential(
-                nn.Linear(a, b), *([nn.LayerNorm(b)] if layer_norm else []), nn.ReLU(inplace=True)
-            )
-            for a, b in pairwise(widths)
-        )
-        self.first, self.inner = first, nn.Sequential(*inner)
-        self.reduced_precision = reduced_precision
-
-    def forward(self, x: th.Tensor) -> th.Tensor:
-        hidden = self.first(x)
-        device = hidden.device.type
-        reduced = precision(self.reduced_precision, device) == "bfloat16"
-        with th.autocast(device, th.bfloat16, enabled=reduced and self.training):
-            hidden = self.inner(hidden)
-        return hidden.float()
+def _layers(*widths: int, layer_norm: bool) -> nn.Sequential:
+    """Makes fully connected layers with ReLU. [B, widths[0]] -> [B, widths[-1]]"""
+    layers: list[nn.Module] = []
+    for a, b in pairwise(widths):
+        layers += [nn.Linear(a, b), *([nn.LayerNorm(b)] if layer_norm else [])]
+        layers.append(nn.ReLU(inplace=True))
+    return nn.Sequential(*layers)
 
 
 class PlainNetwork(nn.Module):
     """The network of Table 2: three hidden layers, then a linear layer with a row per heading."""
 
-    def __init__(self, inputs: int, headings: int, reduced_precision: bool) -> None:
+    def __init__(self, inputs: int, headings: int) -> None:
         super().__init__()
-        self.layers = _Layers(
-            inputs, *PLAIN_LAYERS, layer_norm=False, reduced_precision=reduced_precision
-        )
+        self.layers = _layers(inputs, *PLAIN_LAYERS, layer_norm=False)
         self.head = nn.Linear(PLAIN_LAYERS[-1], headings)
 
     def forward(self, x: th.Tensor) -> th.Tensor:
@@ -93,11 +55,9 @@ class HeadingNetwork(nn.Module):
 
     basis: th.Tensor  # (1, cos θ_a, sin θ_a) of each heading [headings, 3]
 
-    def __init__(self, inputs: int, headings: int, reduced_precision: bool) -> None:
+    def __init__(self, inputs: int, headings: int) -> None:
         super().__init__()
-        self.trunk = _Layers(
-            inputs, *TRUNK_LAYERS, layer_norm=True, reduced_precision=reduced_precision
-        )
+        self.trunk = _layers(inputs, *TRUNK_LAYERS, layer_norm=True)
         self.features = nn.Linear(TRUNK_LAYERS[-1], 3 * FEATURES)
         self.value = nn.Linear(TRUNK_LAYERS[-1], 1)
         self.advantage = nn.Sequential(
@@ -140,9 +100,9 @@ ValueNetwork = PlainNetwork | HeadingNetwork
 KINDS: dict[str, type[ValueNetwork]] = {"plain": PlainNetwork, "headings": HeadingNetwork}
 
 
-def make(kind: str, inputs: int, headings: int, reduced_precision: bool = False) -> ValueNetwork:
+def make(kind: str, inputs: int, headings: int) -> ValueNetwork:
     """Makes the network that `train.network` names."""
-    return KINDS[kind](inputs, headings, reduced_precision)
+    return KINDS[kind](inputs, headings)
 
 
 def flatten(net: nn.Module) -> nn.Parameter:

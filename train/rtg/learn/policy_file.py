@@ -74,7 +74,6 @@ def read(path: Path, task: _core.Task) -> Policy:
         raise UserError(
             f"{path}: its weights do not fit the network ({error}); legal: a model.pt of RTG"
         ) from error
-    network.train(False)
 
     def greedy(observation: NDArray[np.float32]) -> NDArray[Any]:
         if observation.ndim != 2 or observation.shape[1] != task.observation_size:

@@ -12,7 +12,7 @@ from rtg.envs.curriculum import Curriculum
 from rtg.envs.vector_env import PushVecEnv
 from rtg.errors import RunError, UserError
 from rtg.files import checkpoint, run_folder
-from rtg.learn import device, networks, policy_file, training_result
+from rtg.learn import device, policy_file, training_result
 from rtg.learn.clock import Clock
 from rtg.learn.cloning import Cloning, imitated
 from rtg.learn.ddqn import DoubleDqn
@@ -22,7 +22,7 @@ from rtg.learn.settings import CHECKPOINT_SETTINGS
 from rtg.learn.training_log import TrainingLog
 
 MAX_ENVIRONMENTS = 4  # stepped together at most; train.buffer must not be smaller
-_FORMAT = 7  # version of the checkpoint format; other versions are rejected
+_FORMAT = 8  # version of the checkpoint format; other versions are rejected
 POLL_TIMEOUT = 0.1  # [s], how long a poll waits for transitions while not learning
 
 Stop = Callable[[], bool]
@@ -63,7 +63,7 @@ class Training:
         }
         self.starts = held_out_starts(config)
         self.runs = 1  # number of runs that learn in this process
-        # Device and precision of the last period of learning, see _current_device_info().
+        # Device of the last period of learning, see _current_device_info().
         self.device_info: dict[str, Any] = {}
         # NodeStatus.tick, if there is a bus.
         self.publish_status: Callable[[str, int], None] = lambda state, done: None
@@ -138,12 +138,7 @@ class Training:
             )
 
     def _current_device_info(self) -> dict[str, Any]:
-        kind = self.model.device
-        return {
-            "device": device.name(kind),
-            "precision": networks.precision(self.settings.reduced_precision, kind),
-            "runs_in_process": self.runs,
-        }
+        return {"device": device.name(self.model.device), "runs_in_process": self.runs}
 
     def _receive(self, source: Source, record: bool, timeout: float) -> None:
         news = not source.complete
