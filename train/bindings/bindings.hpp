@@ -7,6 +7,7 @@ namespace rtg::bindings {
 /// Each of these functions binds one part of the core to the Python module rtg._core.
 void bind_config(nanobind::module_& module);
 void bind_generation(nanobind::module_& module);
+void bind_network(nanobind::module_& module);
 void bind_task(nanobind::module_& module);
 void bind_simulator(nanobind::module_& module);
 

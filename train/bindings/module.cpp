@@ -2,9 +2,12 @@
 
 NB_MODULE(_core, module) {
   nanobind::set_leak_warnings(false);  // sys.exit() leaves objects to the end of the process
-  module.doc() = "The C++ core of RTG: configuration, tasks, the true dynamics, generation.";
+  module.doc() =
+      "The C++ core of RTG: configuration, tasks, the true dynamics, generation, "
+      "values of headings.";
   rtg::bindings::bind_task(module);
   rtg::bindings::bind_config(module);
   rtg::bindings::bind_simulator(module);
   rtg::bindings::bind_generation(module);
+  rtg::bindings::bind_network(module);
 }

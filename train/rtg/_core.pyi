@@ -148,6 +148,33 @@ class _Section:
 
     def __getattr__(self, name: str) -> Any: ...
 
+class HeadingNetwork:
+    """Values of headings and their gradients; see core/learn/heading_network.hpp.
+
+    Arrays are float32 and contiguous; `weights` [W] lie in the order of PyTorch's parameters.
+    Raises ValueError if shapes do not fit. One thread at a time may use it.
+    """
+
+    def __init__(self, inputs: int, headings: int, hidden: int, features: int) -> None: ...
+    def values(
+        self, weights: NDArray[np.float32], states: NDArray[np.float32]
+    ) -> NDArray[np.float32]:
+        """Returns Q of all headings. states [B, inputs] -> [B, headings]"""
+    def values_at(
+        self,
+        weights: NDArray[np.float32],
+        states: NDArray[np.float32],
+        headings: NDArray[np.int64],
+    ) -> NDArray[np.float32]:
+        """Returns Q of one heading per state, [B]."""
+    def gradient(
+        self, weights: NDArray[np.float32], slope: NDArray[np.float32]
+    ) -> NDArray[np.float32]:
+        """Returns the gradient of a loss for the weights, [W], from `slope`, that for Q, [B].
+
+        The last call must have been values_at() with the same weights.
+        """
+
 class PhysicsConfig(_Section): ...
 class ForwardConfig(_Section): ...
 class ReverseConfig(_Section): ...

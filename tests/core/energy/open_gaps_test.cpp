@@ -77,6 +77,18 @@ TEST(OpenGaps, ARowInContactOpensAtEveryJoint) {
   EXPECT_LT((open - closed).norm(), 0.05);
 }
 
+TEST(OpenGaps, OpenJointsAreClosed) {
+  testing::ChainScene scene;
+  scene.poses[0].x -= 3.0;
+  Poses open = with_closed_joints(scene.scene, scene.poses);
+  const VectorXd closed = with_open_gaps(scene.energy, stacked(open));
+  for (const Joint& joint : scene.scene.joints)
+    open[static_cast<std::size_t>(joint.child)].x += 0.002;
+  const VectorXd again = with_open_gaps(scene.energy, stacked(open));
+  EXPECT_LT((again - closed).lpNorm<Eigen::Infinity>(), 1e-9);
+  EXPECT_GT((stacked(open) - closed).lpNorm<Eigen::Infinity>(), 1e-3);
+}
+
 // A door whose tip points straight at a wall 2 mm away: no motion that its hinge leaves opens that.
 TEST(OpenGaps, StayWhereJointsDoNotLetThemOpen) {
   const Scene scene{{{"robot", "robot", box(1.0, 1.0), 1.0, 0.5, false},

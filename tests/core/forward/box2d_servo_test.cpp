@@ -79,5 +79,22 @@ TEST(Box2dServo, ARobotHeldUpAtTheEndOfItsPathCatchesUp) {
   }
 }
 
+// Robot and box weigh 24 times the robot. The servo's largest force is force_factor (1 + 1/k_D)
+// times the robot's drag at push speed: it moves both at force_factor (1 + 1/k_D) / 24 of that
+// speed once they have caught up, within 0.05 s of the push's 0.5 s; as long they coast afterwards.
+TEST(Box2dServo, AHeavyBoxMovesAsFastAsTheLargestForceMovesIt) {
+  Scene scene = robot_and_box();
+  scene.bodies[1].density = 23.0 / (1.2 * 1.2);
+  PhysicsConfig physics;
+  for (const auto& [inertia, damping] : {std::pair(false, 20.0), {true, 1.0}, {true, 0.5}}) {
+    physics.inertia = inertia;
+    physics.damping = damping;
+    const double speed = 6.0 * (1.0 + physics.inertia_weight()) / 24.0;
+    const PushOutcome out = Box2dSimulator(scene, {}, physics).push({{0, 0, 0}, {1.1, 0, 0}}, 0);
+    ASSERT_TRUE(out.ok);
+    EXPECT_NEAR(out.end[1].x - 1.1, speed * PushConfig{}.stride, 0.1) << damping;
+  }
+}
+
 }  // namespace
 }  // namespace rtg::forward

@@ -135,3 +135,51 @@ def test_gradients_of_flattened_weights_are_in_one_tensor(kind: str) -> None:
     for p, was in zip(net.parameters(), other.parameters(), strict=True):
         th.testing.assert_close(p, was - 0.5 * was.grad, rtol=1e-5, atol=1e-6)
         assert not p.grad.any()
+
+
+def unlike_its_start(inputs: int = 5) -> HeadingNetwork:
+    """A network all of whose weights matter."""
+    net = net_of("headings", inputs)
+    with th.no_grad():
+        for weight in net.parameters():
+            weight.add_(0.1 * th.randn_like(weight))
+    return net
+
+
+@pytest.mark.parametrize("count", [1, 4, 50])
+def test_the_core_computes_what_pytorch_does(count: int) -> None:
+    """To rounding: values, and gradients, which two losses share."""
+    theirs = unlike_its_start()
+    ours = copy.deepcopy(theirs)
+    flat = networks.flatten(ours)
+    assert ours.core and theirs.core is None
+    x, headings = seen(count, 5), th.arange(count)[:, None] % 8
+    with th.no_grad():
+        assert theirs(x).std() > 0.1
+        th.testing.assert_close(ours(x), theirs(x), rtol=1e-5, atol=1e-5)
+        th.testing.assert_close(ours.at(x, headings), theirs.at(x, headings), rtol=1e-5, atol=1e-5)
+    for net in (ours, theirs):
+        (net.at(x, headings).square().sum() + net(x).logsumexp(dim=1).sum()).backward()
+    expected = th.cat([weight.grad.ravel() for weight in theirs.parameters()])
+    th.testing.assert_close(flat.grad, expected, rtol=1e-4, atol=1e-4)
+    assert expected.abs().min() < 1.0 < expected.abs().max()
+
+
+def test_the_core_refuses_what_does_not_fit() -> None:
+    net = unlike_its_start()
+    networks.flatten(net)
+    assert net.core
+    x, headings = seen(3, 5), th.zeros(3, 1, dtype=th.int64)
+    for wrong, expected in (
+        (lambda: net.core.values(seen(3, 4)), "states of 4 numbers; legal: 5"),
+        (lambda: net.at(x, headings + 8), "heading 8; legal: 0 to 7"),
+        (lambda: net.at(x, headings - 1), "heading -1; legal: 0 to 7"),
+        (lambda: net.at(x, headings[:2]), "3 states but 2 headings; legal: one heading per state"),
+    ):
+        with pytest.raises(ValueError, match=expected):
+            wrong()
+    q = net.at(x, headings).sum()
+    with th.no_grad():
+        net(x)
+    with pytest.raises(ValueError, match="a slope of 3 values; legal: 0, those of the last call"):
+        q.backward()

@@ -12,8 +12,11 @@ from itertools import pairwise
 import torch as th
 from torch import nn
 
+from rtg import _core
+from rtg.learn.heading_core import HeadingCore
+
 PLAIN_LAYERS = (512, 512, 128)  # Table 2
-TRUNK_LAYERS = (256, 256)
+HIDDEN = 256  # units of each of the two layers of HeadingNetwork's trunk
 FEATURES = 64  # size of each of u, v, w of HeadingNetwork
 
 
@@ -54,12 +57,14 @@ class HeadingNetwork(nn.Module):
     """
 
     basis: th.Tensor  # (1, cos θ_a, sin θ_a) of each heading [headings, 3]
+    core: HeadingCore | None = None  # computes the network if its weights are in one tensor
 
     def __init__(self, inputs: int, headings: int) -> None:
         super().__init__()
-        self.trunk = _layers(inputs, *TRUNK_LAYERS, layer_norm=True)
-        self.features = nn.Linear(TRUNK_LAYERS[-1], 3 * FEATURES)
-        self.value = nn.Linear(TRUNK_LAYERS[-1], 1)
+        self.sizes = inputs, headings, HIDDEN, FEATURES
+        self.trunk = _layers(inputs, HIDDEN, HIDDEN, layer_norm=True)
+        self.features = nn.Linear(HIDDEN, 3 * FEATURES)
+        self.value = nn.Linear(HIDDEN, 1)
         self.advantage = nn.Sequential(
             nn.LayerNorm(FEATURES),
             nn.ReLU(inplace=True),
@@ -77,6 +82,8 @@ class HeadingNetwork(nn.Module):
         self.register_buffer("basis", basis, persistent=False)
 
     def forward(self, x: th.Tensor) -> th.Tensor:
+        if self.core and not th.is_grad_enabled():
+            return self.core.values(x)
         hidden = self.trunk(x)
         along = th.matmul(self.basis, self._features(hidden))  # [B, headings, FEATURES]
         q: th.Tensor = self.value(hidden) + self.advantage(along).squeeze(2)
@@ -84,6 +91,8 @@ class HeadingNetwork(nn.Module):
 
     def at(self, x: th.Tensor, headings: th.Tensor) -> th.Tensor:
         """x [B, inputs], headings [B, 1] int64 -> [B, 1]"""
+        if self.core:
+            return self.core.values_at(x, headings)
         hidden = self.trunk(x)
         basis = self.basis[headings[:, 0], :, None]  # [B, 3, 1]
         along = (basis * self._features(hidden)).sum(dim=1)
@@ -108,7 +117,8 @@ def make(kind: str, inputs: int, headings: int) -> ValueNetwork:
 def flatten(net: nn.Module) -> nn.Parameter:
     """Moves all weights of `net`, and their gradients, into one tensor, and returns it.
 
-    The weights of `net` become views of it, so that one operation updates them all.
+    The weights of `net` become views of it, so that one operation updates them all. On the CPU,
+    the C++ core then computes a HeadingNetwork; gradients of Q of all headings remain PyTorch's.
     """
     weights = list(net.parameters())
     flat = nn.Parameter(th.cat([w.detach().ravel() for w in weights]))
@@ -116,4 +126,6 @@ def flatten(net: nn.Module) -> nn.Parameter:
     sizes = [w.numel() for w in weights]
     for w, data, grad in zip(weights, flat.data.split(sizes), flat.grad.split(sizes), strict=True):
         w.data, w.grad = data.view_as(w), grad.view_as(w)
+    if isinstance(net, HeadingNetwork) and flat.device.type == "cpu":
+        net.core = HeadingCore(_core.HeadingNetwork(*net.sizes), flat)
     return flat

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/learn/layer_norm.hpp"
+
+namespace rtg::learn {
+
+/// The value network of headings θ_a = 2πa / headings, as train/rtg/learn/networks.py defines it:
+///
+///   Q(s, a) = V(h) + f(w(h) + cos θ_a u(h) + sin θ_a v(h)),   h = trunk(s).
+///
+/// The trunk has two layers, each linear, NormRelu. V, w, u and v are linear, and f is NormRelu,
+/// linear, ReLU, linear. PyTorch computes the same in twice the time: each of its many small
+/// operations has a cost of its own and passes over all of its operands.
+///
+/// A batch of B states has a column per state, [inputs, B]. `weights` are those of HeadingWeights,
+/// aligned to 64 bytes as PyTorch's tensors are: results are the same, bit for bit, for the same
+/// arguments. Results are valid until the next call. One thread at a time may use a network.
+class HeadingNetwork {
+ public:
+  using States = Eigen::Map<const Eigen::MatrixXf>;
+  using Headings = std::span<const std::int64_t>;
+
+  explicit HeadingNetwork(const NetworkSizes& sizes);
+
+  const NetworkSizes& sizes() const { return sizes_; }
+
+  /// Returns Q of all headings. [headings, B]
+  const Eigen::MatrixXf& values(const float* weights, const States& states);
+
+  /// Returns Q of one heading per state. [B]
+  const Eigen::RowVectorXf& values_at(const float* weights, const States& states,
+                                      Headings headings);
+
+  /// Returns B of the last call if that was values_at(), else 0.
+  Eigen::Index kept() const { return static_cast<Eigen::Index>(headings_.size()); }
+
+  /// Returns the gradient of a loss L for the weights, from `slope` = ∂L/∂q [B]. The last call must
+  /// have been values_at() with the same weights.
+  const Eigen::VectorXf& gradient(const float* weights,
+                                  const Eigen::Map<const Eigen::RowVectorXf>& slope);
+
+ private:
+  using Weights = HeadingWeights<const float>;
+
+  void trunk(const Weights& weights, const States& states);
+  void features_along(Eigen::Index state, Headings headings, Eigen::Index column);
+
+  NetworkSizes sizes_;
+  Eigen::MatrixXf basis_;               // (1, cos θ_a, sin θ_a) [3, headings]
+  std::vector<std::int64_t> all_;       // headings
+  std::vector<std::int64_t> headings_;  // of the last values_at()
+  NormRelu first_norm_, second_norm_, along_norm_;
+  // Of the last batch: states; outputs of the layers of the trunk; w, u and v; outputs of NormRelu
+  // and ReLU in f.
+  Eigen::MatrixXf states_, first_, second_, features_, along_, inner_;
+  Eigen::MatrixXf all_values_;
+  Eigen::RowVectorXf values_;
+  Eigen::VectorXf gradient_;
+};
+
+}  // namespace rtg::learn

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/learn/heading_weights.hpp"
+
+namespace rtg::learn {
+
+/// Layer normalisation [Ba et al. 2016] followed by ReLU, for a batch with a column per sample:
+///
+///   y = max(γ x̂ + β, 0),   x̂ = (x - mean x) / σ,   σ² = var x + 1e-5.
+///
+/// Keeps what the gradient needs.
+class NormRelu {
+ public:
+  /// Replaces each column x of `batch` by y.
+  void apply(const Norm<const float>& norm, Eigen::MatrixXf& batch) {
+    constexpr float kFloor = 1e-5f;  // PyTorch's
+    normal_.resize(batch.rows(), batch.cols());
+    inverse_sigma_.resize(batch.cols());
+    for (Eigen::Index k = 0; k < batch.cols(); ++k) {
+      auto x = batch.col(k).array();
+      x -= x.mean();
+      inverse_sigma_[k] = 1.0f / std::sqrt(x.square().mean() + kFloor);
+      auto normal = normal_.col(k).array();
+      normal = x * inverse_sigma_[k];
+      x = (normal * norm.scale.array() + norm.shift.array()).max(0.0f);
+    }
+  }
+
+  /// Replaces each column ∂L/∂y of `slope` by ∂L/∂x and writes ∂L/∂γ, ∂L/∂β to `gradient`. `y`: the
+  /// batch after the last apply().
+  void pull_back(const Norm<const float>& norm, const Eigen::MatrixXf& y, Eigen::MatrixXf& slope,
+                 Norm<float> gradient) const {
+    slope = (y.array() > 0.0f).select(slope, 0.0f);
+    gradient.scale = (slope.array() * normal_.array()).rowwise().sum();
+    gradient.shift = slope.rowwise().sum();
+    for (Eigen::Index k = 0; k < slope.cols(); ++k) {
+      auto d = slope.col(k).array();
+      const auto normal = normal_.col(k).array();
+      d *= norm.scale.array();  // ∂L/∂x̂
+      const float mean = d.mean(), along = (d * normal).mean();
+      d = (d - mean - along * normal) * inverse_sigma_[k];
+    }
+  }
+
+ private:
+  Eigen::MatrixXf normal_;         // x̂
+  Eigen::VectorXf inverse_sigma_;  // 1/σ of each column
+};
+
+}  // namespace rtg::learn

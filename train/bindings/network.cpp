@@ -1,0 +1,105 @@
+#include <nanobind/nanobind.h>
+
+#include <algorithm>
+#include <string>
+
+#include "core/learn/heading_network.hpp"
+#include "train/bindings/arrays.hpp"
+#include "train/bindings/bindings.hpp"
+
+namespace rtg::bindings {
+namespace {
+
+using learn::HeadingNetwork;
+using Floats = nb::ndarray<const float, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using StateRows = nb::ndarray<const float, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
+
+std::size_t weight_count(const HeadingNetwork& network) {
+  return static_cast<std::size_t>(learn::HeadingWeights<float>::count(network.sizes()));
+}
+
+[[noreturn]] void refuse(const std::string& what) { throw nb::value_error(what.c_str()); }
+
+void check_weights(const HeadingNetwork& network, const Floats& weights) {
+  if (weights.shape(0) != weight_count(network))
+    refuse(std::to_string(weights.shape(0)) +
+           " weights; legal: " + std::to_string(weight_count(network)));
+}
+
+void check(const HeadingNetwork& network, const Floats& weights, const StateRows& states) {
+  check_weights(network, weights);
+  const std::size_t inputs = static_cast<std::size_t>(network.sizes().inputs);
+  if (states.shape(1) != inputs)
+    refuse("states of " + std::to_string(states.shape(1)) +
+           " numbers; legal: " + std::to_string(inputs));
+}
+
+HeadingNetwork::Headings checked_headings(const HeadingNetwork& network, const StateRows& states,
+                                          const ActionArray& headings) {
+  if (headings.shape(0) != states.shape(0))
+    refuse(std::to_string(states.shape(0)) + " states but " + std::to_string(headings.shape(0)) +
+           " headings; legal: one heading per state");
+  const HeadingNetwork::Headings all(headings.data(), headings.shape(0));
+  for (const std::int64_t heading : all)
+    if (heading < 0 || heading >= network.sizes().headings)
+      refuse("heading " + std::to_string(heading) + "; legal: 0 to " +
+             std::to_string(network.sizes().headings - 1));
+  return all;
+}
+
+/// The rows of a numpy array as columns.
+HeadingNetwork::States columns(const StateRows& rows) {
+  return {rows.data(), static_cast<Eigen::Index>(rows.shape(1)),
+          static_cast<Eigen::Index>(rows.shape(0))};
+}
+
+/// A copy of the numbers of a matrix, column by column.
+template <class Matrix>
+nb::ndarray<nb::numpy, float> copied(const Matrix& matrix,
+                                     std::initializer_list<std::size_t> shape) {
+  OwnedArray<float> out(static_cast<std::size_t>(matrix.size()));
+  std::copy_n(matrix.data(), matrix.size(), out.data.get());
+  return out.release(shape);
+}
+
+nb::ndarray<nb::numpy, float> values(HeadingNetwork& network, const Floats& weights,
+                                     const StateRows& states) {
+  check(network, weights, states);
+  const auto headings = static_cast<std::size_t>(network.sizes().headings);
+  return copied(network.values(weights.data(), columns(states)), {states.shape(0), headings});
+}
+
+nb::ndarray<nb::numpy, float> values_at(HeadingNetwork& network, const Floats& weights,
+                                        const StateRows& states, const ActionArray& headings) {
+  check(network, weights, states);
+  const HeadingNetwork::Headings chosen = checked_headings(network, states, headings);
+  return copied(network.values_at(weights.data(), columns(states), chosen), {chosen.size()});
+}
+
+nb::ndarray<nb::numpy, float> gradient(HeadingNetwork& network, const Floats& weights,
+                                       const Floats& slope) {
+  check_weights(network, weights);
+  const auto count = static_cast<Eigen::Index>(slope.shape(0));
+  if (count != network.kept())
+    refuse("a slope of " + std::to_string(count) + " values; legal: " +
+           std::to_string(network.kept()) + ", those of the last call if it was values_at()");
+  const Eigen::Map<const Eigen::RowVectorXf> of_q(slope.data(), count);
+  return copied(network.gradient(weights.data(), of_q), {weight_count(network)});
+}
+
+}  // namespace
+
+void bind_network(nb::module_& module) {
+  nb::class_<HeadingNetwork>(module, "HeadingNetwork")
+      .def(
+          "__init__",
+          [](HeadingNetwork* network, int inputs, int headings, int hidden, int features) {
+            new (network) HeadingNetwork({inputs, headings, hidden, features});
+          },
+          nb::arg("inputs"), nb::arg("headings"), nb::arg("hidden"), nb::arg("features"))
+      .def("values", &values, nb::arg("weights"), nb::arg("states"))
+      .def("values_at", &values_at, nb::arg("weights"), nb::arg("states"), nb::arg("headings"))
+      .def("gradient", &gradient, nb::arg("weights"), nb::arg("slope"));
+}
+
+}  // namespace rtg::bindings
