@@ -58,6 +58,23 @@ TEST_F(DataSetTest, IsFullWithWhatWasAskedForAndSimulatesNoMore) {
   EXPECT_EQ(stored.size(), 11U);
 }
 
+// Two steps from one state have branches in common, so that the data are not full with them. A step
+// that the first call has left out for want of room can come again.
+TEST_F(DataSetTest, TakesAStepLaterForWhichThereWasNoRoom) {
+  config.transitions = 60;
+  config.branches = 40;  // of 47 others
+  DataSet data(task, config, 1, sink);
+  const std::vector<Transition> given = steps(2);
+  Transition beside = given[0];
+  beside.next = pushed({beside.poses, ++beside.action});
+  const std::vector<Transition> all{given[0], beside, given[1]};
+  data.store(all, counting);
+  ASSERT_LE(stored.size(), 48U);
+  data.store(all, counting);
+  EXPECT_EQ(stored.size(), 60U);
+  EXPECT_TRUE(std::ranges::any_of(stored, [&](const Transition& t) { return t == given[1]; }));
+}
+
 TEST_F(DataSetTest, HasNothingTwice) {
   config.transitions = 1000;
   config.branches = 2;

@@ -9,6 +9,7 @@
 
 #include "core/forward/box2d_simulator.hpp"
 #include "core/search/generation.hpp"
+#include "core/search/predecessor.hpp"
 #include "core/search/state_metric.hpp"
 #include "tests/support/gathering.hpp"
 #include "tests/support/generation_run.hpp"
@@ -193,6 +194,23 @@ TEST(Generate, ATreeThatComesNoNearerEndsWithItsPatience) {
   config.patience = 3;
   EXPECT_GE(layers(config, seams), first + 2);
   EXPECT_LT(layers(config, seams), config.depth);
+}
+
+// Steps that move no object come as near to the start as the tree's roots and no nearer.
+TEST(Generate, ATreeThatStaysAsNearAsItIsEndsWithItsPatience) {
+  SearchConfig config = small();
+  config.transitions = 100000;
+  config.patience = 3;
+  GenerationSeams seams = testing::naive_seams(gathering(), 1);
+  const SolveBatch naive = seams.solve;
+  seams.solve = [&](std::span<const reverse::ReverseJob> jobs) {
+    std::vector<reverse::ReverseResult> answers = naive(jobs);
+    for (std::size_t k = 0; k < jobs.size(); ++k)
+      std::erase_if(answers[k].predecessors,
+                    [&](const Poses& p) { return objects_moved(p, jobs[k].end) > 0; });
+    return answers;
+  };
+  EXPECT_LT(layers(config, seams), 6);
 }
 
 TEST(Generate, ATreeEndsWhereNothingLeadsToIt) {

@@ -65,6 +65,32 @@ def test_the_error_is_that_of_q_against_the_discounted_best_value_behind_the_pus
     assert constant.error == pytest.approx(np.sqrt(np.square(here - worth).mean()), rel=0.01)
 
 
+def test_a_state_from_which_a_push_cannot_be_finished_is_left_out(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Nothing is known of what that heading is worth."""
+
+    class Failing:
+        def __init__(self, config: _core.Config) -> None:
+            self.inner = _core.Simulator(config)
+
+        def push(self, states: np.ndarray, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            after, ok = self.inner.push(states, actions)
+            ok[TASK.headings + 7] = False  # of the second state
+            return after, ok
+
+    class Core:
+        Simulator = Failing
+
+    def worse_behind(seen: np.ndarray) -> np.ndarray:
+        return one_step_ahead(seen, 1.0) ** 3
+
+    both, first = states(2), states(1)
+    alone = check_values(CONFIGURATION, worse_behind, DISCOUNT, first)
+    monkeypatch.setattr("rtg.learn.value_check._core", Core)
+    assert check_values(CONFIGURATION, worse_behind, DISCOUNT, both) == alone
+
+
 def test_where_all_headings_are_worth_the_same_nothing_is_said() -> None:
     flat = check_values(
         CONFIGURATION, lambda seen: np.zeros((len(seen), TASK.headings)), DISCOUNT, states(2)

@@ -94,6 +94,8 @@ TEST(ReverseProblem, NormsOfTheViolationCountBothKinds) {
 TEST(ReverseProblem, ObjectiveIsTheSumOfItsTerms) {
   const TouchingScene scene;
   ReverseConfig config;
+  config.robot_weight = 0.25;
+  config.object_weight = 0.75;
   config.path_weight = 3.0;
   config.heading_weight = 5.0;
   config.speed_weight = 0.0;

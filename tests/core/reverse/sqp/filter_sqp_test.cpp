@@ -171,6 +171,20 @@ TEST(FilterSqp, EveryKktMethodGivesTheSameSolution) {
                            {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu});
 }
 
+// One in which nothing moves is feasible, too.
+TEST(FilterSqp, WithAFixedEndAFeasibleIterateIsNoSolution) {
+  const TouchingScene scene;
+  ReverseConfig config;
+  config.stationarity_tol = 1e-300;  // is never met
+  config.terminal_tolerance = 0.1;
+  for (const double spring : {1.0, 0.0}) {
+    config.terminal_weight = spring * ReverseConfig{}.terminal_weight;
+    const SqpResult result = solved(scene.problem(config));
+    EXPECT_LT(result.infeasibility, config.feasibility_tol);
+    EXPECT_EQ(result.status == SolveStatus::kAcceptable, spring > 0.0);
+  }
+}
+
 TEST(FilterSqp, StopsAtTheIterationLimit) {
   const TouchingScene scene;
   ReverseConfig config;
