@@ -60,6 +60,7 @@ std::optional<search::GenerationReport> CoordinatorNode::run(const Search& searc
   thread.join();
   if (failure) std::rethrow_exception(failure);
   if (options_.stopped()) report.reset();
+  if (report) report->units_given_up = given_up();
   return report;
 }
 

@@ -42,10 +42,10 @@ class CoordinatorNode {
   /// `consumers`, have all of it. Returns early if the node is stopped.
   void drain(int consumers);
 
+ private:
   /// Returns the number of units given up because several workers that had them were lost.
   long given_up() const { return reverse_.state().given_up + replay_.state().given_up; }
 
- private:
   search::GenerationSeams seams();
   void serve();
   void stop_search();

@@ -30,12 +30,11 @@ int run(const program::Words& words) {
       bus, {program::shape_of(config.task), config_hash(config), config.search.transitions,
             [] { return program::stop_signal() != 0; }});
   program::say("waits for the workers and the server of run " + words[1]);
-  auto report = node.run([&](const search::GenerationSeams& seams) {
+  const auto report = node.run([&](const search::GenerationSeams& seams) {
     const auto seed = static_cast<std::uint64_t>(config.run.seed);
     return generate(config.task, config.search, seed, seams);
   });
   if (report) {
-    report->units_given_up = node.given_up();
     write_atomically(std::filesystem::path(words[2]) / "generation.json", to_json(*report));
     program::say("has found " + std::to_string(report->coverage.transitions) +
                  " transitions, waits until all consumers have them");
@@ -43,16 +42,16 @@ int run(const program::Words& words) {
   }
   program::say("ends");
   if (!report || program::stop_signal()) return 128 + program::stop_signal();
-  if (node.given_up() > 0)
+  if (report->units_given_up > 0)
     std::fprintf(
         stderr,
         "rtg_beam_coordinator: %ld units of work were skipped, because each of them killed "
         "or stalled several workers\n",
-        node.given_up());
+        report->units_given_up);
   for (const std::string& shortfall : report->shortfalls)
     std::fprintf(stderr, "rtg_beam_coordinator: %s\n", shortfall.c_str());
   if (!report->shortfalls.empty()) return 1;
-  return node.given_up() > 0 ? 3 : 0;
+  return report->units_given_up > 0 ? 3 : 0;
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ TEST_P(GraphOf, StreamsTheBytesOfTheDirectCall) {
   }
   EXPECT_EQ(graph.poses, poses);
   EXPECT_EQ(graph.next_poses, next_poses);
-  EXPECT_EQ(graph.coordinator.given_up(), 0);
+  EXPECT_EQ(report->units_given_up, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Workers, GraphOf, ::testing::Values(1, 3));
@@ -176,7 +176,7 @@ TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
   {
     CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [] { return false; }});
     const auto report = coordinator.run([&](const search::GenerationSeams& seams) {
-      seams.progress({.phase = "round 1", .layer = 3, .depth = 24});
+      seams.progress({"round 1", 3, 24, 5, 10, 0.25, 7});
       said.wait(false);
       return search::GenerationReport{};
     });
@@ -187,6 +187,10 @@ TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
   ASSERT_FALSE(heard.empty());
   EXPECT_EQ(heard[0].phase, "round 1");
   EXPECT_EQ(heard[0].layer, 3);
+  EXPECT_EQ(heard[0].depth, 24);
+  EXPECT_EQ(heard[0].transitions, 0) << "none is streamed yet";
+  EXPECT_EQ(heard[0].contact_share, 0.25);
+  EXPECT_EQ(heard[0].start_region, 7);
   EXPECT_EQ(heard[0].target, 10);
   EXPECT_EQ(heard[0].leaving, 0);
   EXPECT_EQ(heard.back().phase, "sealed");
