@@ -282,6 +282,13 @@ TEST(Config, AMethodAmongTheOverridesStandsAboveTheFileButNotAboveTheOthers) {
   EXPECT_EQ(parsed(file).search.generator, search::Generator::kNaive);
 }
 
+TEST(Config, CloningImitatesTheStepsOfTrees) {
+  const std::vector<std::string> cloning{"train.learner=cloning", "train.interact=false"};
+  EXPECT_EQ(refusal("search: {generator: rrbs}\n", cloning), "none");
+  EXPECT_EQ(refusal("search: {generator: naive}\n", cloning), "none");
+  EXPECT_NE(refusal("search: {generator: forward}\n", cloning), "none");
+}
+
 TEST(Config, WhatAMethodStandsForReadsBackToItself) {
   for (const std::string_view name : kMethods) {
     const std::vector<std::string> method{"run.method=" + std::string(name),

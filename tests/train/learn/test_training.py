@@ -254,6 +254,7 @@ def test_evaluation_agrees_with_single_episodes() -> None:
     assert found.length.tolist() == [60, 1, 60]
     assert found.discounted.tolist() == [0.0, 1.0, 0.0]
     assert found.best() == 1
+    assert found._replace(success=np.zeros(3, np.bool_)).best() == 0
     assert [len(path) for path in found.paths] == [61, 2, 61]
     simulator = _core.Simulator(config)
     for path in found.paths:

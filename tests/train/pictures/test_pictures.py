@@ -47,6 +47,11 @@ def test_every_body_stands_where_its_pose_says(window):
     assert pixel(picture, 4.5, 4.0, arena_window(TASK)) == PAPER
 
 
+def test_bodies_turn_counterclockwise():
+    turned = outline(np.array([[1.0, 0.0], [0.0, 2.0]]), np.array([3.0, 4.0, np.pi / 2]))
+    np.testing.assert_allclose(turned, [[3.0, 5.0], [1.0, 4.0]], atol=1e-12)
+
+
 def test_walls_have_a_colour_of_their_own():
     """They take none of those of the objects."""
     task = _core.Config.from_file(paths.CONFIG / "examples" / "door.yaml").task

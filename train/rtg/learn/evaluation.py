@@ -27,11 +27,8 @@ class Evaluation(NamedTuple):
     paths: list[Floats]  # per episode [length + 1, bodies, 3]
 
     def best(self) -> int:
-        """Returns the index of the shortest successful episode.
-
-        Returns that of the longest episode if none succeeds. Of equal lengths, the first counts.
-        """
-        return int(np.argmin(np.where(self.success, self.length, 10**9 - self.length)))
+        """Returns the index of the first of the shortest successful episodes; 0 without any."""
+        return int(np.argmin(np.where(self.success, self.length, np.iinfo(np.int64).max)))
 
     def summary(self) -> dict[str, float]:
         """Returns the means over the episodes, by their names in summary.json."""
