@@ -36,12 +36,14 @@ void BeamSearch::make_roots(const ReplayBatch& replay, SearchStats& stats) {
 
 std::vector<Transition> BeamSearch::grow(const SolveBatch& solve, const ReplayBatch& replay,
                                          SearchStats& stats) {
-  std::vector<Predecessor> steps = reverse_layer(solve, stats);
+  std::vector<Predecessor> steps = reverse_layer(timed(solve, stats, Stage::kSolves), stats);
   steps = best_to_replay(std::move(steps));
-  steps = replay_predecessors(std::move(steps), config_.gap_tolerance, replay, stats);
+  steps = replay_predecessors(std::move(steps), config_.gap_tolerance,
+                              counted(replay, stats, Stage::kReplays), stats);
   std::unordered_set<std::uint64_t> seen = seen_;  // a copy, as not all of these steps are kept
   steps = best_of(std::move(steps), config_.plans_per_node, seen);
-  const std::vector<PlanOutcome> outcomes = simulate_plans(steps, replay);
+  const std::vector<PlanOutcome> outcomes =
+      simulate_plans(steps, counted(replay, stats, Stage::kPlans));
   std::vector<Transition> stored = to_store(outcomes);
   make_next_beam(std::move(steps), outcomes);
   return stored;

@@ -1,24 +1,14 @@
 #include "core/search/branches.hpp"
 
-#include <algorithm>
-
 #include "core/math/draws.hpp"
 #include "core/reverse/problem/reverse_job.hpp"
 
 namespace rtg::search {
 
-std::vector<int> other_headings(int action, int headings, const SearchConfig& config, Rng& rng) {
-  std::vector<int> near, others;
-  for (int away = 1; away < headings; ++away) {
-    const int heading = (action + away) % headings;
-    others.push_back(heading);
-    if (std::min(away, headings - away) <= config.near_headings) near.push_back(heading);
-  }
-  std::vector<int> out = drawn(near, std::min(config.near_branches, config.branches), rng);
-  std::erase_if(others, [&](int h) { return std::ranges::find(out, h) != out.end(); });
-  const int left = config.branches - static_cast<int>(out.size());
-  for (const int heading : drawn(others, left, rng)) out.push_back(heading);
-  return out;
+std::vector<int> other_headings(int action, int headings, int count, Rng& rng) {
+  std::vector<int> others;
+  for (int away = 1; away < headings; ++away) others.push_back((action + away) % headings);
+  return drawn(others, count, rng);
 }
 
 std::vector<Transition> with_branches(const tasks::Task& task, std::span<const Transition> steps,
@@ -28,7 +18,7 @@ std::vector<Transition> with_branches(const tasks::Task& task, std::span<const T
   std::vector<std::size_t> ends;  // end of each step's branches in `pushes`
   for (const Transition& step : steps) {
     Rng rng(seed, reverse::key_of(step.poses, step.action));
-    for (const int heading : other_headings(step.action, task.push.headings, config, rng))
+    for (const int heading : other_headings(step.action, task.push.headings, config.branches, rng))
       pushes.push_back({step.poses, heading});
     ends.push_back(pushes.size());
   }

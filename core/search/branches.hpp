@@ -12,10 +12,9 @@
 
 namespace rtg::search {
 
-/// Draws config.branches distinct headings other than `action`, of `headings` in all.
-/// config.near_branches of them lie at most config.near_headings away from `action`. The rest are
-/// uniform. Returns fewer if there are not enough headings.
-std::vector<int> other_headings(int action, int headings, const SearchConfig& config, Rng& rng);
+/// Draws `count` distinct headings other than `action`, of `headings` in all. Returns fewer if
+/// there are not enough headings.
+std::vector<int> other_headings(int action, int headings, int count, Rng& rng);
 
 /// Returns each step followed by its branches: simulated pushes in other directions from the same
 /// state. A reverse step shows one heading only, which nearly always leads towards the goal. A

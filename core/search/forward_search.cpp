@@ -75,7 +75,7 @@ void search_forward(Generation& run, int number) {
   };
   for (int layer = 1; layer <= run.config.depth; ++layer) {
     if (run.data.full() || run.cancelled()) break;
-    const std::vector<Transition> steps = search.grow(run.replay);
+    const std::vector<Transition> steps = search.grow(run.replay(Stage::kReplays));
     if (steps.empty()) break;
     run.data.store(steps, known);
     run.show("plan " + std::to_string(number + 1), layer, run.config.depth);

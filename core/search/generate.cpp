@@ -21,12 +21,13 @@ void grow_tree(Generation& run, int number) {
   Rng rng = run.attempt_rng(number);
   const Poses target = run.draw_start(rng);
   BeamSearch search(run.task, run.config, target, rng.word());
-  search.make_roots(run.replay, run.stats);
+  search.make_roots(run.replay(Stage::kGoals), run.stats);
   double best = search.min_start_distance();
   int patience = run.config.patience;
   for (int layer = 1; layer <= run.config.depth && patience > 0; ++layer) {
     if (search.beam().empty() || run.data.full() || run.cancelled()) break;
-    run.data.store(search.grow(run.seams.solve, run.replay, run.stats), run.replay);
+    run.data.store(search.grow(run.seams.solve, run.seams.replay, run.stats),
+                   run.replay(Stage::kBranches));
     run.show("tree " + std::to_string(number + 1), layer, run.config.depth);
     const double nearest = search.min_start_distance();
     patience = nearest < best ? run.config.patience : patience - 1;

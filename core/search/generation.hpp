@@ -20,7 +20,6 @@ struct Generation {
   const GenerationSeams& seams;
   SearchStats stats = {};
   std::vector<ReportNode> nodes = {};  // of all trees
-  ReplayBatch replay = counted(seams.replay, stats);
   DataSet data{task, config, seed, seams.store};
 
   /// Returns the random number generator of attempt `number`. Training starts never use its
@@ -35,6 +34,8 @@ struct Generation {
     const double least = config.randomise ? task.randomisation : 0.0;
     return jittered_start(task, std::max(least, task.start_jitter), rng);
   }
+
+  ReplayBatch replay(Stage stage) { return counted(seams.replay, stats, stage); }
 
   bool cancelled() const { return seams.cancelled && seams.cancelled(); }
 

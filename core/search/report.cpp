@@ -86,8 +86,14 @@ std::string to_json(const GenerationReport& r) {
   out["pushing_iterations_p90"] = of_search(stats.pushing_iterations, 0.9);
   out["replay_gap_median"] = of_search(stats.gaps, 0.5);
   out["replay_gap_p90"] = of_search(stats.gaps, 0.9);
-  out["reverse_cpu_s"] = stats.reverse_cpu_s;
-  out["replay_cpu_s"] = stats.replay_cpu_s;
+  double replay_cpu_s = 0.0;
+  for (const StageTime& time : stats.times) replay_cpu_s += time.cpu_s;
+  const double reverse_cpu_s = stats.times[static_cast<std::size_t>(Stage::kSolves)].cpu_s;
+  out["reverse_cpu_s"] = reverse_cpu_s;
+  out["replay_cpu_s"] = replay_cpu_s - reverse_cpu_s;
+  for (std::size_t k = 0; k < stats.times.size(); ++k)
+    out["generation_stages"][kStages[k]] = {{"wall_s", stats.times[k].wall_s},
+                                            {"cpu_s", stats.times[k].cpu_s}};
   out["generate_wall_s"] = r.generate_wall_s;
   out["generate_cpu_s"] = r.generate_cpu_s;
   out["shortfalls"] = r.shortfalls;

@@ -21,8 +21,6 @@ struct SearchConfig {
   Generator generator = Generator::kRrbs;
   int transitions = 60000;         // stored in all, branches included
   int branches = 4;                // other headings simulated in the state of each stored step
-  int near_branches = 1;           // how many of them lie near the heading of the step
-  int near_headings = 3;           // largest distance at which a branch is near, in headings
   int breadth = 100;               // B, nodes kept per layer
   int plans_per_node = 2;          // plans simulated per layer, as a multiple of breadth
   double whole_plan_share = 0.05;  // share of plans stored whole; of the rest, the first step
@@ -43,10 +41,6 @@ struct SearchConfig {
               "number of transitions to store, branches included");
     v.integer("branches", branches, 0, 359,
               "other headings also simulated and stored at each stored step");
-    v.integer("near_branches", near_branches, 0, 359,
-              "branches per step that lie near the heading of the step");
-    v.integer("near_headings", near_headings, 1, 180,
-              "largest distance of a near branch from the step's heading [headings]");
     v.integer("breadth", breadth, 1, 100000, "beam width: largest number of nodes per layer");
     v.integer("plans_per_node", plans_per_node, 1, 1000,
               "plans simulated per layer, as a multiple of breadth");

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <chrono>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -8,6 +10,15 @@
 #include "core/search/seams.hpp"
 
 namespace rtg::search {
+
+/// Stages of a generation in which it waits for a batch of jobs. The rest of it is bookkeeping.
+enum class Stage { kGoals, kSolves, kReplays, kPlans, kBranches };
+inline constexpr const char* kStages[] = {"goals", "solves", "replays", "plans", "branches"};
+
+/// Time that the batches of a stage took [s]; CPU time of all threads and processes.
+struct StageTime {
+  double wall_s = 0.0, cpu_s = 0.0;
+};
 
 /// Counts of a run's reverse solves, its replays, and their failures. A candidate that the search
 /// does not select is not a failure.
@@ -22,7 +33,7 @@ struct SearchStats {
   long replays = 0;          // requests to the simulator, kSettle included
   long rejected_pushes = 0;  // replays that the simulator could not finish
   std::vector<float> gaps;   // replay gaps of replayed candidates [m]
-  double reverse_cpu_s = 0.0, replay_cpu_s = 0.0;
+  std::array<StageTime, std::size(kStages)> times{};  // by Stage
 
   void count(const reverse::ReverseResult& answer, bool moved_object) {
     ++candidates;
@@ -31,23 +42,36 @@ struct SearchStats {
       iterations.push_back(answer.iterations);
       if (moved_object) pushing_iterations.push_back(answer.iterations);
     }
-    reverse_cpu_s += answer.cpu_s;
   }
 
   void count(const ReplayResult& answer) {
     ++replays;
     rejected_pushes += !answer.ok;
-    replay_cpu_s += answer.cpu_s;
   }
 };
 
-/// Returns a copy of `replay` that also counts its results in `stats`. `stats` must outlive it.
-inline ReplayBatch counted(ReplayBatch replay, SearchStats& stats) {
-  return [replay = std::move(replay), &stats](std::span<const ReplayJob> jobs) {
-    std::vector<ReplayResult> results = replay(jobs);
-    for (const ReplayResult& result : results) stats.count(result);
+/// Returns a copy of `batch` that also adds its times to those of `stage`. `stats` must outlive it.
+template <class Batch>
+Batch timed(Batch batch, SearchStats& stats, Stage stage) {
+  StageTime& time = stats.times[static_cast<std::size_t>(stage)];
+  return [batch = std::move(batch), &time](auto jobs) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto results = batch(jobs);
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+    time.wall_s += wall.count();
+    for (const auto& result : results) time.cpu_s += result.cpu_s;
     return results;
   };
+}
+
+/// Returns a copy of `replay` that is timed() and counts its results in `stats`.
+inline ReplayBatch counted(ReplayBatch replay, SearchStats& stats, Stage stage) {
+  return
+      [replay = timed(std::move(replay), stats, stage), &stats](std::span<const ReplayJob> jobs) {
+        std::vector<ReplayResult> results = replay(jobs);
+        for (const ReplayResult& result : results) stats.count(result);
+        return results;
+      };
 }
 
 }  // namespace rtg::search

@@ -18,6 +18,13 @@ SolveBatch reverse_solver(const tasks::Task& task, const PhysicsConfig& physics,
 ReplayOne forward_replay(const tasks::Task& task, const PhysicsConfig& physics,
                          const forward::ForwardConfig& forward = {});
 
+/// Return functions that spread a batch of jobs over `threads` threads of this process. `solve`
+/// answers several jobs per call, `replay` a single one. Both must be pure and safe to call from
+/// several threads at once. The results are in job order, with `cpu_s` set. Jobs solved in one call
+/// get equal shares of its CPU time.
+SolveBatch solve_on_threads(SolveBatch solve, int threads);
+ReplayBatch replay_on_threads(ReplayOne replay, int threads);
+
 /// Returns seams whose `solve` and `replay` use `threads` threads of this process. The caller sets
 /// `store`, and may set `progress` and `cancelled`.
 GenerationSeams in_process_seams(SolveBatch solve, ReplayOne replay, int threads);

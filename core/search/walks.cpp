@@ -31,7 +31,7 @@ void walk(Generation& run, int number) {
   for (int step = 0; step < length && !states.empty() && !run.data.full(); ++step) {
     std::vector<ReplayJob> pushes;
     for (const Poses& state : states) pushes.push_back({state, heading(run, state, rng)});
-    const std::vector<ReplayResult> results = run.replay(pushes);
+    const std::vector<ReplayResult> results = run.replay(Stage::kReplays)(pushes);
     std::vector<Transition> steps;
     states.clear();
     for (std::size_t k = 0; k < pushes.size(); ++k) {
@@ -40,7 +40,7 @@ void walk(Generation& run, int number) {
         steps.push_back(transition(run.task, pushes[k], results[k].end, Source::kWalk));
       states.push_back(results[k].end);
     }
-    run.data.store(steps, run.replay);
+    run.data.store(steps, run.replay(Stage::kBranches));
   }
   run.show("random walks", number + 1, 0);
 }

@@ -4,7 +4,6 @@
 // coordinator leaves. CONFIG.yaml is the resolved configuration of the run. The server uses as many
 // threads as the run has reverse workers, because these are idle during replays.
 
-#include "core/search/batches_on_threads.hpp"
 #include "core/search/simulators.hpp"
 #include "nodes/config/config.hpp"
 #include "nodes/program/program.hpp"

@@ -3,7 +3,6 @@
 // Solves reverse jobs of the run named RUN until the coordinator leaves. CONFIG.yaml is the
 // resolved configuration of the run. NUMBER distinguishes workers in displays.
 
-#include "core/search/batches_on_threads.hpp"
 #include "core/search/simulators.hpp"
 #include "nodes/config/config.hpp"
 #include "nodes/program/program.hpp"

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <optional>
 
-#include "core/search/batches_on_threads.hpp"
 #include "core/search/beam_search.hpp"
 #include "core/search/simulators.hpp"
 #include "tests/bench/gathering_states.hpp"

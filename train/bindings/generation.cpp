@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "core/search/batches_on_threads.hpp"
 #include "core/search/forward_search.hpp"
 #include "core/search/generate.hpp"
 #include "core/search/simulators.hpp"
@@ -78,7 +77,7 @@ std::pair<nb::ndarray<nb::numpy, double>, long> plan(const config::Config& confi
     const search::ReplayBatch replay = counted(
         search::replay_on_threads(search::forward_replay(task, config.physics, config.forward),
                                   config.run.workers),
-        stats);
+        stats, search::Stage::kPlans);
     steps = plan_forward(task, config.search, from, replay);
   }
   const std::size_t width = task.scene.size() * 3;

@@ -12,61 +12,43 @@
 namespace rtg::search {
 namespace {
 
-int away(int a, int b, int headings) {
-  const int off = std::abs(a - b);
-  return std::min(off, headings - off);
-}
-
-SearchConfig with(int branches, int near, int reach) {
-  SearchConfig config;
-  config.branches = branches;
-  config.near_branches = near;
-  config.near_headings = reach;
-  return config;
-}
-
 TEST(OtherHeadings, AreSoManyDifferentOnesAndNeverTheStepsOwn) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Rng rng(seed);
     const int action = static_cast<int>(seed % 48);
-    const std::vector<int> found = other_headings(action, 48, with(6, 2, 3), rng);
+    const std::vector<int> found = other_headings(action, 48, 6, rng);
     EXPECT_EQ(std::set<int>(found.begin(), found.end()).size(), 6U);
     for (const int heading : found) {
       EXPECT_NE(heading, action);
       EXPECT_GE(heading, 0);
       EXPECT_LT(heading, 48);
     }
-    EXPECT_LE(away(found[0], action, 48), 3);
-    EXPECT_LE(away(found[1], action, 48), 3);
   }
 }
 
-TEST(OtherHeadings, OfWhichNearOnesLieOnBothSidesAndTheOthersAnywhere) {
-  std::map<int, int> near, far;
+TEST(OtherHeadings, AreUniform) {
+  std::map<int, int> counts;
   for (std::uint64_t seed = 0; seed < 4700; ++seed) {
     Rng rng(seed);
-    const std::vector<int> found = other_headings(10, 48, with(2, 1, 2), rng);
-    ++near[found[0]];
-    ++far[found[1]];
+    ++counts[other_headings(10, 48, 2, rng)[1]];
   }
-  EXPECT_EQ(near.size(), 4U);  // 8, 9, 11, 12
-  for (const auto& [heading, count] : near) EXPECT_NEAR(count, 4700 / 4, 120) << heading;
-  EXPECT_EQ(far.size(), 47U);
-  for (const auto& [heading, count] : far) EXPECT_NEAR(count, 100, 50) << heading;
+  EXPECT_EQ(counts.size(), 47U);
+  for (const auto& [heading, count] : counts) EXPECT_NEAR(count, 100, 50) << heading;
 }
 
 TEST(OtherHeadings, EndWhereThereAreNoMore) {
   Rng rng(1);
-  EXPECT_EQ(other_headings(0, 4, with(9, 1, 1), rng).size(), 3U);
-  EXPECT_EQ(other_headings(0, 1, with(2, 1, 1), rng).size(), 0U);
-  EXPECT_EQ(other_headings(5, 48, with(0, 3, 1), rng).size(), 0U);
-  EXPECT_EQ(other_headings(5, 48, with(4, 9, 1), rng).size(), 4U) << "two near ones, two others";
+  EXPECT_EQ(other_headings(0, 4, 9, rng).size(), 3U);
+  EXPECT_EQ(other_headings(0, 1, 2, rng).size(), 0U);
+  EXPECT_EQ(other_headings(5, 48, 0, rng).size(), 0U);
 }
 
 struct BranchesTest : ::testing::Test, testing::DraggingWorld {
-  SearchConfig config = with(3, 1, 3);
+  SearchConfig config;
   SearchStats stats;
-  ReplayBatch counting = counted(replay, stats);
+  ReplayBatch counting = counted(replay, stats, Stage::kReplays);
+
+  BranchesTest() { config.branches = 3; }
 
   std::vector<Transition> steps(int count) const {
     std::vector<Transition> out;
@@ -120,7 +102,8 @@ TEST_F(BranchesTest, ThatTheSimulatorRejectsAreLeftOutAndCounted) {
     for (std::size_t k = 0; k < results.size(); k += 3) results[k].ok = false;
     return results;
   };
-  const auto rows = with_branches(task, steps(5), config, 7, counted(rejecting, stats));
+  const auto rows =
+      with_branches(task, steps(5), config, 7, counted(rejecting, stats, Stage::kReplays));
   EXPECT_EQ(rows.size(), 15U);
   EXPECT_EQ(stats.rejected_pushes, 5);
 }

@@ -14,7 +14,7 @@ namespace {
 struct DataSetTest : ::testing::Test, testing::DraggingWorld {
   SearchConfig config;
   SearchStats stats;
-  ReplayBatch counting = counted(replay, stats);
+  ReplayBatch counting = counted(replay, stats, Stage::kReplays);
   std::vector<Transition> stored;
   TransitionSink sink = [this](std::span<const Transition> rows) {
     stored.insert(stored.end(), rows.begin(), rows.end());

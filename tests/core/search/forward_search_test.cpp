@@ -40,7 +40,8 @@ TEST_F(ForwardSearchTest, ReplaysEveryHeadingOfEveryStateOfItsBeam) {
       return replay(jobs);
     };
     beam.clear();
-    for (const Transition& t : search.grow(counted(noting, stats))) beam.push_back(t.next);
+    for (const Transition& t : search.grow(counted(noting, stats, Stage::kReplays)))
+      beam.push_back(t.next);
     EXPECT_EQ(seen, expected);
     EXPECT_EQ(beam.size(), 12U);
   }
@@ -106,7 +107,7 @@ TEST_F(ForwardSearchTest, APushThatTheSimulatorRejectsLeadsNowhere) {
     return std::vector<ReplayResult>(jobs.size());
   };
   ForwardSearch search(task, config, start);
-  EXPECT_TRUE(search.grow(counted(none, stats)).empty());
+  EXPECT_TRUE(search.grow(counted(none, stats, Stage::kReplays)).empty());
   EXPECT_EQ(stats.rejected_pushes, 48);
   EXPECT_TRUE(search.plan().empty());
 }

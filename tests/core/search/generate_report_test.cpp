@@ -12,6 +12,8 @@
 namespace rtg::search {
 namespace {
 
+constexpr double kSolveTime = 2.0, kReplayTime = 0.5;  // that each answer claims [s]
+
 /// A world that misses what is asked of it and notes what passes the seams.
 struct NotingWorld : testing::DraggingWorld {
   std::vector<double> gaps;     // of replayed candidates [m]
@@ -19,6 +21,7 @@ struct NotingWorld : testing::DraggingWorld {
   std::vector<int> pushing;     // of those of them that moved an object
   std::vector<Poses> expanded;  // states that were solved for
   std::vector<Transition> stored;
+  int settled = 0;  // goal states
 
   NotingWorld() {
     over = 0.1;
@@ -49,6 +52,7 @@ struct NotingWorld : testing::DraggingWorld {
         if (pushes) pushing.push_back(answer.iterations);
       }
       if (k % static_cast<std::size_t>(task.push.headings) == 0) expanded.push_back(jobs[k].end);
+      answer.cpu_s = kSolveTime;
       for (const Poses& start : answer.predecessors)
         wanted_[reverse::key_of(to_single(start), jobs[k].action)] = jobs[k].end;
     }
@@ -58,7 +62,9 @@ struct NotingWorld : testing::DraggingWorld {
 
   /// The first batch after the solves is that of their candidates.
   std::vector<ReplayResult> noted_replay(std::span<const ReplayJob> jobs) {
-    const std::vector<ReplayResult> results = replay(jobs);
+    std::vector<ReplayResult> results = replay(jobs);
+    for (ReplayResult& result : results) result.cpu_s = kReplayTime;
+    for (const ReplayJob& job : jobs) settled += job.action == kSettle;
     if (to_come_)
       for (std::size_t k = 0; k < jobs.size(); ++k)
         gaps.push_back(
@@ -124,6 +130,28 @@ TEST_F(GenerationReportTest, IterationsAreThoseOfConvergedSolves) {
   EXPECT_EQ(report.stats.iterations, world.iterations);
   EXPECT_EQ(report.stats.pushing_iterations, world.pushing);
   EXPECT_LT(world.pushing.size(), world.iterations.size());
+}
+
+TEST_F(GenerationReportTest, EachStageHasTheTimesOfItsBatches) {
+  const auto time = [&](Stage stage) {
+    return report.stats.times[static_cast<std::size_t>(stage)];
+  };
+  double wall_s = 0.0, replay_cpu_s = 0.0;
+  for (const StageTime& stage : report.stats.times) {
+    EXPECT_GT(stage.wall_s, 0.0);
+    wall_s += stage.wall_s;
+    replay_cpu_s += stage.cpu_s;
+  }
+  EXPECT_LT(wall_s, report.generate_wall_s);
+  EXPECT_EQ(time(Stage::kSolves).cpu_s, kSolveTime * static_cast<double>(report.stats.candidates));
+  replay_cpu_s -= time(Stage::kSolves).cpu_s;
+  EXPECT_EQ(replay_cpu_s, kReplayTime * static_cast<double>(report.stats.replays));
+  EXPECT_EQ(time(Stage::kGoals).cpu_s, kReplayTime * world.settled);
+  EXPECT_EQ(time(Stage::kReplays).cpu_s,
+            kReplayTime * static_cast<double>(report.stats.gaps.size()));
+  EXPECT_GE(time(Stage::kBranches).cpu_s,
+            kReplayTime * static_cast<double>(report.coverage.of(Source::kBranch)));
+  EXPECT_GT(time(Stage::kPlans).cpu_s, 0.0);
 }
 
 TEST_F(GenerationReportTest, CoverageIsThatOfTheStoredTransitions) {

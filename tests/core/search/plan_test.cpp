@@ -10,7 +10,7 @@ namespace {
 
 struct PlanTest : ::testing::Test, testing::DraggingWorld {
   SearchStats stats;
-  ReplayBatch counting = counted(replay, stats);
+  ReplayBatch counting = counted(replay, stats, Stage::kReplays);
 
   /// Gathering with the first box `off` to the right of its disc's edge, which is at 2 m.
   Poses short_of_success(double off) const {

@@ -124,7 +124,7 @@ TEST(ReplayPredecessors, CountWhatThePushTrulyMovesAndHowFarItMisses) {
   const auto out =
       replay_predecessors({predecessor(4, 10, all_zero(), aim),
                            predecessor(5, 3, all_zero(), shifted(all_zero(), 2 * kStep))},
-                          kAnyError, counted(fake_replay, stats), stats);
+                          kAnyError, counted(fake_replay, stats, Stage::kReplays), stats);
   ASSERT_EQ(out.size(), 2U);
   EXPECT_EQ(out[0].parent, 4);
   EXPECT_EQ(out[0].action, 10);
@@ -137,7 +137,7 @@ TEST(ReplayPredecessors, CountWhatThePushTrulyMovesAndHowFarItMisses) {
   EXPECT_FLOAT_EQ(stats.gaps[0], 0.075F);
   EXPECT_FLOAT_EQ(stats.gaps[1], static_cast<float>(kStep));
   EXPECT_EQ(stats.rejected_pushes, 0);
-  EXPECT_EQ(stats.replay_cpu_s, 0.5);
+  EXPECT_EQ(stats.times[static_cast<std::size_t>(Stage::kReplays)].cpu_s, 0.5);
 }
 
 TEST(ReplayPredecessors, LeaveOutWhatMissesByMoreThanTheToleranceWithASingleBody) {
@@ -147,7 +147,7 @@ TEST(ReplayPredecessors, LeaveOutWhatMissesByMoreThanTheToleranceWithASingleBody
   SearchStats stats;
   const auto out =
       replay_predecessors({predecessor(0, 0, all_zero(), far), predecessor(1, 0, all_zero(), near)},
-                          0.25, counted(fake_replay, stats), stats);
+                          0.25, counted(fake_replay, stats, Stage::kReplays), stats);
   ASSERT_EQ(out.size(), 1U);
   EXPECT_EQ(out[0].parent, 1);
   EXPECT_EQ(stats.gaps.size(), 2U) << "the gap of what is left out counts, too";
@@ -159,7 +159,7 @@ TEST(ReplayPredecessors, LeaveOutAndCountWhatTheSimulatorRejects) {
   const auto out =
       replay_predecessors({predecessor(0, 13, zero, zero), predecessor(1, 1, zero, zero),
                            predecessor(2, 13, zero, zero), predecessor(3, 2, zero, zero)},
-                          kAnyError, counted(fake_replay, stats), stats);
+                          kAnyError, counted(fake_replay, stats, Stage::kReplays), stats);
   ASSERT_EQ(out.size(), 2U);
   EXPECT_EQ(out[0].parent, 1);
   EXPECT_EQ(out[1].parent, 3);

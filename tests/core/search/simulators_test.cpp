@@ -7,7 +7,6 @@
 #include "core/forward/box2d_simulator.hpp"
 #include "core/forward/newton_simulator.hpp"
 #include "core/reverse/naive_reverse.hpp"
-#include "core/search/batches_on_threads.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg::search {

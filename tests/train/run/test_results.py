@@ -1,5 +1,6 @@
 """Checks what is drawn and said of a run at its end."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -124,3 +125,25 @@ def test_learning_without_interactions_did_not_end_early_for_want_of_them():
         Path("runs/x"), "x", config("run.method=cql_rtg"), train=True, resume=False, notes=()
     )
     assert "not needed" not in results.summary_text(plan, {**SUMMARY, "interactions": 0})
+
+
+def test_the_rest_of_the_wall_time_is_a_stage_of_its_own() -> None:
+    solves, acting = {"wall_s": 2.0, "cpu_s": 4.0}, {"wall_s": 3.0, "cpu_s": 1.0}
+    generation = {"generation_stages": {"solves": solves}, "generate_wall_s": 2.5}
+    learning = {"learning_stages": {"acting": acting}, "train_wall_s": 2.9}  # rounded
+    parts = {
+        "generation": {"solves": solves, "bookkeeping": {"wall_s": 0.5}},
+        "learning": {"acting": acting, "other": {"wall_s": 0.0}},
+    }
+    assert results.stage_times({**generation, **learning}) == parts
+    assert results.stage_times(generation) == {"generation": parts["generation"]}
+    assert results.stage_times({"train_wall_s": 3.0}) == {}  # of the planner
+
+
+def test_the_times_of_the_stages_are_drawn(tmp_path, learned) -> None:
+    acting = {"acting": {"wall_s": 3.0, "cpu_s": 1.0}}
+    figures = {"learning_stages": acting, "train_wall_s": 4.0}
+    (tmp_path / "training.json").write_text(json.dumps(figures))
+    plan = RunPlan(tmp_path, "x", learned, train=True, resume=True, notes=())
+    results.finish(plan, {})
+    assert pictures(tmp_path) == {"episode.png", "episode.gif", "stages.png"}

@@ -16,8 +16,6 @@ _EVALUATION_KEYS = ("eval_every", "stop_at_success")
 # show how much the part contributes. TREE_ABLATIONS applies only to generators that grow trees.
 BRANCH_ABLATIONS: dict[str, tuple[Any, ...]] = {
     "branches": (0,),
-    "near_branches": (0,),
-    "near_headings": (24,),  # of 48, in either direction: all headings count as near
 }
 TREE_ABLATIONS: dict[str, tuple[Any, ...]] = {
     "plans_per_node": (1,),

@@ -17,6 +17,7 @@ from rtg.learn import device, networks
 from rtg.learn.exploration import Exploration
 from rtg.learn.hindsight import HindsightReplayBuffer, Layouts
 from rtg.learn.replay import Batch, MixedReplayBuffer, ReplayRules
+from rtg.learn.stages import Stages
 
 Array = npt.NDArray[Any]
 
@@ -105,6 +106,7 @@ class DoubleDqn:
         )
         self.exploration = Exploration(settings, env.headings, seed, env.contact_headings)
         self.statistics = Statistics()
+        self.stages = Stages()
         self.interactions = self.gradient_steps = 0
         # Success and length of the latest training episodes.
         self.episodes: deque[tuple[bool, int]] = deque(maxlen=RECENT_EPISODES)
@@ -135,9 +137,12 @@ class DoubleDqn:
     def _interact(self) -> None:
         """Performs one action in each environment and stores the transitions."""
         observation = self.env.reset() if self._observation is None else self._observation
-        action = self.training_actions(observation)
-        step = self.env.step(action)
-        self.replay.add(observation, action, step)
+        with self.stages["acting"]:
+            action = self.training_actions(observation)
+        with self.stages["environment"]:
+            step = self.env.step(action)
+        with self.stages["replay"]:
+            self.replay.add(observation, action, step)
         self.episodes.extend(step.episodes)
         self.interactions += self.env.count
         self._observation = step.observation
@@ -145,13 +150,20 @@ class DoubleDqn:
     def train(self, gradient_steps: int) -> None:
         """Performs gradient steps, each on a new batch."""
         for _ in range(gradient_steps):
-            self._gradient_step(self.replay.sample(self.settings.batch))
-            self.gradient_steps += 1
-            if self.gradient_steps % self.settings.target_sync == 0:
-                self._target_weights.lerp_(self._online_weights.data, self.settings.target_rate)
-            early_rate = AVERAGING_WARM_UP / (AVERAGING_WARM_UP + self.gradient_steps)
-            rate = max(self.settings.averaging_rate, early_rate)
-            self._mean_weights.lerp_(self._online_weights.data, rate)
+            with self.stages["replay"]:
+                batch = self.replay.sample(self.settings.batch)
+            with self.stages["gradient_steps"]:
+                self._gradient_step(batch)
+                self.gradient_steps += 1
+                self._follow()
+
+    def _follow(self) -> None:
+        """Moves the weights of the target network and of the mean network."""
+        online = self._online_weights.data
+        if self.gradient_steps % self.settings.target_sync == 0:
+            self._target_weights.lerp_(online, self.settings.target_rate)
+        early_rate = AVERAGING_WARM_UP / (AVERAGING_WARM_UP + self.gradient_steps)
+        self._mean_weights.lerp_(online, max(self.settings.averaging_rate, early_rate))
 
     def _gradient_step(self, batch: Batch) -> None:
         with th.no_grad():
@@ -235,6 +247,7 @@ class DoubleDqn:
             "optimizer": self.optimizer.state_dict(),
             "exploration": self.exploration.state(),
             "statistics": self.statistics.state(),
+            "stages": self.stages.seconds(),
             "interactions": self.interactions,
             "gradient_steps": self.gradient_steps,
             "observation": self._observation,
@@ -250,6 +263,7 @@ class DoubleDqn:
             group["lr"] = self.settings.learning_rate
         self.exploration.restore(state["exploration"])
         self.statistics.restore(state["statistics"])
+        self.stages.restore(state["stages"])
         self.interactions, self.gradient_steps = state["interactions"], state["gradient_steps"]
         seen = state["observation"]
         self._observation = None if seen is None else np.asarray(seen).copy()

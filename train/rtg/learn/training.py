@@ -22,7 +22,7 @@ from rtg.learn.settings import CHECKPOINT_SETTINGS
 from rtg.learn.training_log import TrainingLog
 
 MAX_ENVIRONMENTS = 4  # stepped together at most; train.buffer must not be smaller
-_FORMAT = 8  # version of the checkpoint format; other versions are rejected
+_FORMAT = 9  # version of the checkpoint format; other versions are rejected
 POLL_TIMEOUT = 0.1  # [s], how long a poll waits for transitions while not learning
 
 Stop = Callable[[], bool]
@@ -111,7 +111,8 @@ class Training:
             self.device_info = self._current_device_info()
         self.clock.start(alone=self.runs == 1)
         while not (stop() or self.done):
-            self._receive(source, record, 0.0)
+            with self.model.stages["receiving"]:
+                self._receive(source, record, 0.0)
             self._learn()
             self._evaluate_and_save()
         self.clock.stop()
@@ -162,9 +163,11 @@ class Training:
         evaluated_at = self.log.rows[-1]["interactions"] if self.log.rows else 0
         over = self.scheduled_interactions >= self.settings.interactions > evaluated_at
         if over or self._is_due(self.settings.eval_every, evaluated_at):
-            self._log_row(self.evaluate())
+            with self.model.stages["evaluation"]:
+                self._log_row(self.evaluate())
         if self._is_due(self.settings.checkpoint_every, self._saved_at):
-            self.save()
+            with self.model.stages["saving"]:
+                self.save()
 
     def _is_due(self, every: int, last: int) -> bool:
         return self.scheduled_interactions // every > last // every

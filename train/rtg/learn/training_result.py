@@ -22,6 +22,7 @@ def figures(run: Training, final: Evaluation, lost: int) -> dict[str, Any]:
         **final.summary(),
         **run.model.recent_episodes(),
         **{f"train_{name}": round(spent, 3) for name, spent in run.clock.seconds().items()},
+        "learning_stages": run.model.stages.seconds(),
         "offline_transitions": run.data.count,
         "lost_transitions": lost,
         "learning_pushes": run.pushes,

@@ -108,6 +108,32 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: st
         save(figure, path)
 
 
+def stages(path: Path, title: str, parts: Mapping[str, Mapping[str, Mapping[str, float]]]) -> None:
+    """Plots the wall time and the processor time of each stage of a run.
+
+    `parts`: of "generation" and of "learning", by stage, "wall_s" and, if known, "cpu_s" [s].
+    """
+    rows = [(part, name, times) for part, found in parts.items() for name, times in found.items()]
+    names = [f"{part}: {name.replace('_', ' ')}" for part, name, _ in rows]
+    with style():
+        height = 1.0 + 0.3 * len(rows)
+        figure, axis = plt.subplots(figsize=(7.0, height), layout="constrained")
+        at = np.arange(len(rows))
+        for offset, key, label, colour in (
+            (-0.2, "wall_s", "wall time", _BLUE),
+            (0.2, "cpu_s", "processor time", _ORANGE),
+        ):
+            seconds = [times.get(key, np.nan) for *_, times in rows]
+            axis.barh(at + offset, seconds, 0.4, color=colour, label=label)
+        axis.set_yticks(at, names)
+        axis.invert_yaxis()
+        axis.grid(visible=False, axis="y")
+        axis.set_xlabel("s")
+        figure.legend(loc="outside upper right", ncols=2, frameon=False)
+        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        save(figure, path)
+
+
 def _metres(value: float) -> str:
     floor = replay_gaps.EDGES[0]
     return f"≤ {floor:g} m" if value <= floor else f"{value:.2g} m"

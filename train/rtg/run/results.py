@@ -110,7 +110,26 @@ def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
     mode = ("in_process" if plan.in_process else "lcm") if plan.offline else None
     summary = run_folder.summary(plan.folder, plan.config, mode, measured)
     run_folder.write_json(plan.folder / "summary.json", summary)
+    if times := stage_times(summary):
+        plots.stages(plan.folder / "stages.png", f"{plan.title}: time", times)
     return summary
+
+
+def stage_times(summary: dict[str, Any]) -> dict[str, dict[str, dict[str, float]]]:
+    """Returns the times of the stages of generation and of learning, by name.
+
+    The last stage of each is the rest of its wall time; the processor time of that is not known.
+    """
+    parts: dict[str, dict[str, dict[str, float]]] = {}
+    for part, rest, total in (
+        ("generation", "bookkeeping", "generate_wall_s"),
+        ("learning", "other", "train_wall_s"),
+    ):
+        found = summary.get(f"{part}_stages")
+        if found:
+            left = summary[total] - sum(times["wall_s"] for times in found.values())
+            parts[part] = {**found, rest: {"wall_s": max(0.0, left)}}
+    return parts
 
 
 def _generation_text(s: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-#include "core/search/batches_on_threads.hpp"
+#include "core/search/simulators.hpp"
 
 #include <gtest/gtest.h>
 
