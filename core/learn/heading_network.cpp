@@ -31,7 +31,7 @@ HeadingNetwork::HeadingNetwork(const NetworkSizes& sizes)
     : sizes_(sizes),
       basis_(3, sizes.headings),
       all_(static_cast<std::size_t>(sizes.headings)),
-      gradient_(Weights::count(sizes)) {
+      gradient_(weight_count(sizes)) {
   std::iota(all_.begin(), all_.end(), std::int64_t{0});
   for (int a = 0; a < sizes.headings; ++a) {
     const double theta = 2.0 * std::numbers::pi * a / sizes.headings;

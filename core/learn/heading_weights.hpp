@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <type_traits>
 
 namespace rtg::learn {
@@ -13,6 +12,14 @@ struct NetworkSizes {
   int hidden = 0;    // units of each of the two layers of the trunk
   int features = 0;  // of each of w, u and v
 };
+
+/// Returns the number of weights of a network of these sizes.
+inline int weight_count(const NetworkSizes& s) {
+  const auto linear = [](int outputs, int inputs) { return outputs * (inputs + 1); };
+  return linear(s.hidden, s.inputs) + linear(s.hidden, s.hidden) + 4 * s.hidden +
+         linear(3 * s.features + 1, s.hidden) + linear(s.features, s.features) + 2 * s.features +
+         linear(1, s.features);
+}
 
 template <class Real>  // float, or const float for weights that do not change
 using MatrixOf = Eigen::Map<
@@ -76,11 +83,6 @@ class HeadingWeights {
         along_norm(norm(s.features)),
         along(linear(s.features, s.features)),
         advantage(linear(1, s.features)) {}
-
-  /// Returns the number of weights of a network of these sizes.
-  static std::ptrdiff_t count(const NetworkSizes& sizes) {
-    return HeadingWeights(sizes, nullptr).next_ - static_cast<Real*>(nullptr);
-  }
 };
 
 }  // namespace rtg::learn

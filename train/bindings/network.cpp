@@ -15,7 +15,7 @@ using Floats = nb::ndarray<const float, nb::shape<-1>, nb::c_contig, nb::device:
 using StateRows = nb::ndarray<const float, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
 
 std::size_t weight_count(const HeadingNetwork& network) {
-  return static_cast<std::size_t>(learn::HeadingWeights<float>::count(network.sizes()));
+  return static_cast<std::size_t>(weight_count(network.sizes()));
 }
 
 [[noreturn]] void refuse(const std::string& what) { throw nb::value_error(what.c_str()); }

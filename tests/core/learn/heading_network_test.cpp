@@ -24,8 +24,7 @@ struct Case {
   explicit Case(int count) {
     std::mt19937 random(7);
     std::normal_distribution<float> normal;
-    weights = VectorXf::NullaryExpr(HeadingWeights<float>::count(kSizes),
-                                    [&] { return 0.5f * normal(random); });
+    weights = VectorXf::NullaryExpr(weight_count(kSizes), [&] { return 0.5f * normal(random); });
     states = MatrixXf::NullaryExpr(kSizes.inputs, count, [&] { return normal(random); });
     for (int k = 0; k < count; ++k) headings.push_back(7 * k % kSizes.headings);
   }
@@ -35,10 +34,11 @@ struct Case {
   MatrixXf all() { return network.values(weights.data(), batch()); }
 };
 
-TEST(HeadingNetwork, HasAsManyWeightsAsItsLayers) {
-  const int trunk = (5 + 1) * 16 + 2 * 16 + (16 + 1) * 16 + 2 * 16;
-  const int heads = (16 + 1) * 24 + (16 + 1) + 2 * 8 + (8 + 1) * 8 + (8 + 1);
-  EXPECT_EQ(HeadingWeights<float>::count(kSizes), trunk + heads);
+TEST(HeadingNetwork, WeightsFillTheirArray) {
+  std::vector<float> array(static_cast<std::size_t>(weight_count(kSizes)));
+  const HeadingWeights<float> weights(kSizes, array.data());
+  EXPECT_EQ(weights.first.weight.data(), array.data());
+  EXPECT_EQ(weights.advantage.bias.data(), &array.back());
 }
 
 // For batches of one state, of fewer and of more states than are computed together.
