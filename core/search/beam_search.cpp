@@ -96,8 +96,7 @@ std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int
                                              std::unordered_set<std::uint64_t>& seen) const {
   std::vector<BeamEntry> entries;
   for (const Predecessor& p : steps)
-    entries.push_back(
-        {p.start_distance, metric_.cell(p.start), metric_.layout_cell(p.start), p.moved > 0});
+    entries.push_back({p.start_distance, metric_.cell(p.start), metric_.layout_cell(p.start)});
   std::vector<Predecessor> best;
   for (const std::size_t k : select_beam(entries, config_, seen, times))
     best.push_back(std::move(steps[k]));
@@ -157,7 +156,6 @@ void BeamSearch::make_next_beam(std::vector<Predecessor> steps,
     if (!outcomes[k]) continue;
     Predecessor& p = steps[k];
     p.depth = static_cast<int>(outcomes[k]->size());
-    if (p.depth > 0) p.moved = objects_moved(p.start, outcomes[k]->front().next);
     good.push_back(std::move(p));
   }
   beam_.clear();

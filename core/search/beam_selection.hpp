@@ -14,16 +14,13 @@ struct BeamEntry {
   double score = 0.0;        // lower is better
   std::uint64_t cell = 0;    // StateMetric::cell(); equal cells: the same state
   std::uint64_t layout = 0;  // StateMetric::layout_cell(); equal: all objects lie alike
-  bool contact = false;      // the push moved an object
 };
 
 /// Selects the next beam and returns its indices in `entries`, best score first:
 ///
 ///  1. Keep the best entry of each cell. Drop entries whose cell is in `seen`.
 ///  2. Keep the best `times` · config.nodes_per_layout entries of each layout.
-///  3. Take the best entries with `contact` for the share config.contact_quota of the beam.
-///  4. Fill the beam with the best other entries, up to `times` · config.breadth in all.
-///  5. Add the cells of the selected entries to `seen`.
+///  3. Keep the best `times` · config.breadth of the rest. Add their cells to `seen`.
 ///
 /// Of equal scores, the lower index is better.
 std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,

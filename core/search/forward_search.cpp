@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/search/beam_selection.hpp"
-#include "core/search/predecessor.hpp"
 #include "core/tasks/goal_distance.hpp"
 
 namespace rtg::search {
@@ -30,8 +29,7 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
     outcomes_.emplace(reverse::key_of(pushes[k].start, pushes[k].action), results[k]);
     if (!results[k].ok) continue;
     const Poses& end = results[k].end;
-    entries.push_back({goal_distance(task_, end), metric_.cell(end), metric_.layout_cell(end),
-                       objects_moved(pushes[k].start, end) > 0});
+    entries.push_back({goal_distance(task_, end), metric_.cell(end), metric_.layout_cell(end)});
     const std::size_t parent = beam_[k / static_cast<std::size_t>(task_.push.headings)];
     found.push_back({transition(task_, pushes[k], end, Source::kForward), parent});
   }

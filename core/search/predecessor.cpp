@@ -58,7 +58,6 @@ std::vector<Predecessor> replay_predecessors(std::vector<Predecessor> predecesso
     for (std::size_t body = 0; body < end.size(); ++body)
       error = std::max(error, (p.wanted_end[body].position() - end[body].position()).norm());
     if (error > tolerance) continue;
-    p.moved = objects_moved(p.start, end);
     out.push_back(std::move(p));
   }
   return out;

@@ -15,7 +15,7 @@ struct Predecessor {
   int action = 0;
   Poses start;
   Poses wanted_end;             // the final state that the reverse solver was given
-  int moved = 0;                // objects_moved() by the push, as last solved or simulated
+  int moved = 0;                // objects_moved() by the push, as solved
   double start_distance = 0.0;  // start_distance() of `start`, set by the search
   int depth = 0;                // actions until success, set by the search
 };
@@ -41,9 +41,9 @@ std::vector<Predecessor> proposals(const tasks::Task& task, const reverse::Rever
                                    const reverse::ReverseResult& answer, int parent,
                                    SearchStats& stats);
 
-/// Simulates the push of each predecessor, sets `moved` by its outcome and adds the replay_gap() to
-/// stats.gaps. Leaves out predecessors whose push the simulator rejects, and those of which a body
-/// ends more than `tolerance` [m] from its position in `wanted_end`.
+/// Simulates the push of each predecessor and adds the replay_gap() to stats.gaps. Leaves out
+/// predecessors whose push the simulator rejects, and those of which a body ends more than
+/// `tolerance` [m] from its position in `wanted_end`.
 std::vector<Predecessor> replay_predecessors(std::vector<Predecessor> predecessors,
                                              double tolerance, const ReplayBatch& replay,
                                              SearchStats& stats);

@@ -25,8 +25,7 @@ struct SearchConfig {
   int plans_per_node = 2;          // plans simulated per layer, as a multiple of breadth
   double whole_plan_share = 0.05;  // share of plans stored whole; of the rest, the first step
   int depth = 40;                  // D, layers per tree at most
-  double contact_quota = 0.4;   // share of the beam reserved for nodes whose step moved an object
-  double gap_tolerance = 0.25;  // largest replay error of a body in a step that is used [m]
+  double gap_tolerance = 0.25;     // largest replay error of a body in a step that is used [m]
   int predecessors_per_solve = 2;  // that move an object, replayed per node and action
   int free_moves = 6;              // steps that move no object, replayed per node, the best ones
   int nodes_per_layout = 18;       // most nodes of a beam that differ only in the robot's position
@@ -47,8 +46,6 @@ struct SearchConfig {
     v.number("whole_plan_share", whole_plan_share, 0.0, 1.0,
              "share of plans stored in full, not only their first step");
     v.integer("depth", depth, 1, 1000, "largest number of layers of a search tree");
-    v.number("contact_quota", contact_quota, 0.0, 1.0,
-             "share of the beam reserved for nodes whose step moved an object");
     v.number("gap_tolerance", gap_tolerance, 0.0, 100.0,
              "largest replay error of a body in a kept reverse step [m]");
     v.integer("predecessors_per_solve", predecessors_per_solve, 1, 100,

@@ -14,10 +14,9 @@ namespace {
 using Cells = std::unordered_set<std::uint64_t>;
 using Indices = std::vector<std::size_t>;
 
-SearchConfig config(int breadth, double quota) {
+SearchConfig config(int breadth) {
   SearchConfig c;
   c.breadth = breadth;
-  c.contact_quota = quota;
   return c;
 }
 
@@ -26,7 +25,7 @@ std::vector<BeamEntry> ranked(int count) {
   std::vector<BeamEntry> entries;
   for (int k = 0; k < count; ++k) {
     const auto id = static_cast<std::uint64_t>(1000 + k);
-    entries.push_back({static_cast<double>(k), id, id, false});
+    entries.push_back({static_cast<double>(k), id, id});
   }
   return entries;
 }
@@ -41,38 +40,20 @@ std::vector<BeamEntry> random_entries(Rng& rng, int count) {
   for (int k = 0; k < count; ++k) {
     const auto layout = static_cast<std::uint64_t>(rng.below(40));
     const std::uint64_t cell = 8 * (layout / 2) + static_cast<std::uint64_t>(rng.below(16));
-    entries.push_back({rng.uniform(0.0, 1.0), cell, layout, rng.below(3) == 0});
+    entries.push_back({rng.uniform(0.0, 1.0), cell, layout});
   }
   return entries;
 }
 
-TEST(BeamSelection, TakesTheBestWithoutQuotas) {
+TEST(BeamSelection, TakesTheBest) {
   std::vector<BeamEntry> entries = ranked(9);
   std::ranges::reverse(entries);
-  EXPECT_EQ(select(entries, config(4, 0.0)), (Indices{8, 7, 6, 5}));
+  EXPECT_EQ(select(entries, config(4)), (Indices{8, 7, 6, 5}));
 }
 
 TEST(BeamSelection, TakesAllIfThereAreFewer) {
-  EXPECT_EQ(select(ranked(3), config(10, 0.6)), (Indices{0, 1, 2}));
-  EXPECT_EQ(select({}, config(10, 0.6)), Indices{});
-}
-
-TEST(BeamSelection, GivesTheQuotaToTheBestContacts) {
-  std::vector<BeamEntry> entries = ranked(30);
-  for (std::size_t k = 20; k < 30; ++k) entries[k].contact = true;
-  EXPECT_EQ(select(entries, config(10, 0.6)), (Indices{0, 1, 2, 3, 20, 21, 22, 23, 24, 25}));
-}
-
-TEST(BeamSelection, LeavesAQuotaThatContactsDoNotFillToTheOthers) {
-  std::vector<BeamEntry> entries = ranked(30);
-  entries[25].contact = true;
-  EXPECT_EQ(select(entries, config(5, 0.6)), (Indices{0, 1, 2, 3, 25}));
-}
-
-TEST(BeamSelection, ContactsBeyondTheQuotaCompeteWithTheOthers) {
-  std::vector<BeamEntry> entries = ranked(12);
-  for (std::size_t k = 0; k < 8; ++k) entries[k].contact = true;
-  EXPECT_EQ(select(entries, config(6, 0.5)), (Indices{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(select(ranked(3), config(10)), (Indices{0, 1, 2}));
+  EXPECT_EQ(select({}, config(10)), Indices{});
 }
 
 TEST(BeamSelection, KeepsTheBestOfEachCell) {
@@ -80,18 +61,18 @@ TEST(BeamSelection, KeepsTheBestOfEachCell) {
   entries[1].cell = entries[0].cell;
   entries[4].cell = entries[0].cell;
   entries[5].cell = entries[3].cell;
-  EXPECT_EQ(select(entries, config(10, 0.6)), (Indices{0, 2, 3}));
+  EXPECT_EQ(select(entries, config(10)), (Indices{0, 2, 3}));
 }
 
 TEST(BeamSelection, OfEqualScoresInACellTheFirstStays) {
   std::vector<BeamEntry> entries = ranked(3);
-  for (BeamEntry& e : entries) e = {1.0, 7, 7, false};
-  EXPECT_EQ(select(entries, config(10, 0.0)), Indices{0});
+  for (BeamEntry& e : entries) e = {1.0, 7, 7};
+  EXPECT_EQ(select(entries, config(10)), Indices{0});
 }
 
 TEST(BeamSelection, NeverEntersACellTwiceAndNotesOnlyWhatItChose) {
   const std::vector<BeamEntry> entries = ranked(9);
-  const SearchConfig c = config(3, 0.0);
+  const SearchConfig c = config(3);
   Cells seen{entries[1].cell};
   EXPECT_EQ(select_beam(entries, c, seen), (Indices{0, 2, 3}));
   EXPECT_EQ(seen, (Cells{entries[0].cell, entries[1].cell, entries[2].cell, entries[3].cell}));
@@ -103,7 +84,7 @@ TEST(BeamSelection, NeverEntersACellTwiceAndNotesOnlyWhatItChose) {
 TEST(BeamSelection, KeepsTheBestOfEachLayout) {
   std::vector<BeamEntry> entries = ranked(10);
   for (std::size_t k = 0; k < 7; ++k) entries[k].layout = 5;
-  SearchConfig c = config(10, 0.0);
+  SearchConfig c = config(10);
   c.nodes_per_layout = 2;
   EXPECT_EQ(select(entries, c), (Indices{0, 1, 7, 8, 9}));
 }
@@ -112,7 +93,7 @@ TEST(BeamSelection, WhatItsLayoutHasNoRoomForLeavesItsCellToOthers) {
   std::vector<BeamEntry> entries = ranked(4);
   entries[1].layout = entries[0].layout;
   entries[2].cell = entries[1].cell;
-  SearchConfig c = config(10, 0.0);
+  SearchConfig c = config(10);
   c.nodes_per_layout = 1;
   EXPECT_EQ(select(entries, c), (Indices{0, 2, 3}));
 }
@@ -121,7 +102,7 @@ TEST(BeamSelection, WhatItsCellHasNoRoomForLeavesItsLayoutToOthers) {
   std::vector<BeamEntry> entries = ranked(3);
   for (BeamEntry& e : entries) e.layout = 5;
   entries[1].cell = entries[0].cell;
-  SearchConfig c = config(10, 0.0);
+  SearchConfig c = config(10);
   c.nodes_per_layout = 2;
   EXPECT_EQ(select(entries, c), (Indices{0, 2}));
 }
@@ -129,7 +110,7 @@ TEST(BeamSelection, WhatItsCellHasNoRoomForLeavesItsLayoutToOthers) {
 TEST(BeamSelection, AWiderChoiceIsThatOfAsManyTimesTheLimits) {
   Rng rng(22);
   const std::vector<BeamEntry> entries = random_entries(rng, 300);
-  SearchConfig narrow = config(10, 0.4), wide = config(30, 0.4);
+  SearchConfig narrow = config(10), wide = config(30);
   narrow.nodes_per_layout = 2;
   wide.nodes_per_layout = 6;
   Cells seen, as_wide;
@@ -142,7 +123,7 @@ TEST(BeamSelection, HoldsAllItsPromisesOnRandomLayers) {
   for (int trial = 0; trial < 200; ++trial) {
     const std::vector<BeamEntry> entries = random_entries(rng, 300);
     Cells seen{3, 17, 80}, before = seen;
-    SearchConfig c = config(20, 0.6);
+    SearchConfig c = config(20);
     c.nodes_per_layout = 3;
     const Indices beam = select_beam(entries, c, seen);
     ASSERT_EQ(beam.size(), 20U);
@@ -165,7 +146,7 @@ TEST(BeamSelection, DoesNotDependOnTheOrderInWhichResultsArrived) {
     std::vector<BeamEntry> entries = random_entries(rng, 200);
     const auto cells = [&entries] {
       std::vector<std::uint64_t> out;
-      for (const std::size_t k : select(entries, config(20, 0.6), {5, 6}))
+      for (const std::size_t k : select(entries, config(20), {5, 6}))
         out.push_back(entries[k].cell);
       return out;
     };

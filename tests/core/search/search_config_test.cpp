@@ -30,11 +30,20 @@ TEST(SearchConfig, EachFieldChangesTheStoredTransitions) {
   config.patience = 2;
   config.depth = 12;
   const testing::OtherValues others{
-      {"generator", 4},  {"transitions", 1100},  {"branches", 3},
-      {"breadth", 7},    {"plans_per_node", 3},  {"whole_plan_share", 0.5},
-      {"depth", 3},      {"contact_quota", 1},   {"predecessors_per_solve", 1},
-      {"free_moves", 3}, {"gap_tolerance", 0.1}, {"nodes_per_layout", 2},
-      {"root_draws", 1}, {"patience", 1},        {"randomise", 1},
+      {"generator", 4},
+      {"transitions", 1100},
+      {"branches", 3},
+      {"breadth", 7},
+      {"plans_per_node", 3},
+      {"whole_plan_share", 0.5},
+      {"depth", 3},
+      {"predecessors_per_solve", 1},
+      {"free_moves", 3},
+      {"gap_tolerance", 0.1},
+      {"nodes_per_layout", 2},
+      {"root_draws", 1},
+      {"patience", 1},
+      {"randomise", 1},
   };
   testing::expect_each_field_matters(config, others, {}, stored);
 }

@@ -70,7 +70,7 @@ def test_what_the_search_is_without_is_not_taken_away():
 def test_only_trees_lose_parts_of_trees_and_only_data_any():
     for method, lost in (("ddqn_naive", True), ("ddqn_scatter", False), ("her", False)):
         found = ablations(FILE, [Override("", f"run.method={method}")])
-        assert (("search.contact_quota=0",) in found) == lost
+        assert (("search.whole_plan_share=0",) in found) == lost
         assert (("search.branches=0",) in found) == (method != "her")
 
 
