@@ -56,6 +56,14 @@ void HeadingNetwork::features_along(Index state, Headings headings, Index column
     along_.col(column++) = wuv.lazyProduct(basis_.col(heading));
 }
 
+/// Writes the outputs of f's first NormRelu over its inputs, along_, and those of its ReLU to
+/// inner_.
+void HeadingNetwork::inner_layer(const Weights& weights) {
+  along_norm_.apply(weights.along_norm, along_);
+  apply(weights.along, along_, inner_);
+  inner_ = inner_.cwiseMax(0.0f);
+}
+
 const MatrixXf& HeadingNetwork::values(const float* array, const States& states) {
   constexpr Index kTogether = 8;  // the values of so many states within f stay in the cache
   const Weights weights(sizes_, array);
@@ -68,9 +76,7 @@ const MatrixXf& HeadingNetwork::values(const float* array, const States& states)
     const Index count = std::min(kTogether, states.cols() - begin);
     along_.resize(sizes_.features, count * sizes_.headings);
     for (Index k = 0; k < count; ++k) features_along(begin + k, all_, k * sizes_.headings);
-    along_norm_.apply(weights.along_norm, along_);
-    apply(weights.along, along_, inner_);
-    inner_ = inner_.cwiseMax(0.0f);
+    inner_layer(weights);
     Eigen::Map<RowVectorXf>(all_values_.col(begin).data(), inner_.cols()).noalias() =
         weights.advantage.weight * inner_;
     all_values_.middleCols(begin, count).rowwise() += value.segment(begin, count);
@@ -86,9 +92,7 @@ const RowVectorXf& HeadingNetwork::values_at(const float* array, const States& s
   along_.resize(sizes_.features, states.cols());
   for (Index k = 0; k < states.cols(); ++k)
     features_along(k, headings.subspan(static_cast<std::size_t>(k), 1), k);
-  along_norm_.apply(weights.along_norm, along_);
-  apply(weights.along, along_, inner_);
-  inner_ = inner_.cwiseMax(0.0f);
+  inner_layer(weights);
   values_ = (weights.value.weight * second_ + weights.advantage.weight * inner_).array() +
             weights.value.bias[0] + weights.advantage.bias[0];
   return values_;

@@ -48,6 +48,7 @@ class HeadingNetwork {
 
   void trunk(const Weights& weights, const States& states);
   void features_along(Eigen::Index state, Headings headings, Eigen::Index column);
+  void inner_layer(const Weights& weights);
 
   NetworkSizes sizes_;
   Eigen::MatrixXf basis_;               // (1, cos θ_a, sin θ_a) [3, headings]

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -40,6 +41,23 @@ inline void check_bodies(const StateArray& states, std::size_t bodies) {
     const std::string found = std::to_string(states.shape(1)), want = std::to_string(bodies);
     throw nb::value_error(
         ("states of " + found + " bodies; legal: " + want + ", the bodies of the task").c_str());
+  }
+}
+
+/// Throws ValueError unless there is one `name` per state, each from 0 to `count` - 1.
+inline void check_headings(const ActionArray& headings, std::size_t states, int count,
+                           const std::string& name) {
+  if (headings.shape(0) != states)
+    throw nb::value_error((std::to_string(states) + " states but " +
+                           std::to_string(headings.shape(0)) + " " + name + "s; legal: one " +
+                           name + " per state")
+                              .c_str());
+  for (std::size_t row = 0; row < states; ++row) {
+    const std::int64_t heading = headings.data()[row];
+    if (heading < 0 || heading >= count)
+      throw nb::value_error(
+          (name + " " + std::to_string(heading) + "; legal: 0 to " + std::to_string(count - 1))
+              .c_str());
   }
 }
 

@@ -34,19 +34,6 @@ void check(const HeadingNetwork& network, const Floats& weights, const StateRows
            " numbers; legal: " + std::to_string(inputs));
 }
 
-HeadingNetwork::Headings checked_headings(const HeadingNetwork& network, const StateRows& states,
-                                          const ActionArray& headings) {
-  if (headings.shape(0) != states.shape(0))
-    refuse(std::to_string(states.shape(0)) + " states but " + std::to_string(headings.shape(0)) +
-           " headings; legal: one heading per state");
-  const HeadingNetwork::Headings all(headings.data(), headings.shape(0));
-  for (const std::int64_t heading : all)
-    if (heading < 0 || heading >= network.sizes().headings)
-      refuse("heading " + std::to_string(heading) + "; legal: 0 to " +
-             std::to_string(network.sizes().headings - 1));
-  return all;
-}
-
 /// The rows of a numpy array as columns.
 HeadingNetwork::States columns(const StateRows& rows) {
   return {rows.data(), static_cast<Eigen::Index>(rows.shape(1)),
@@ -72,7 +59,8 @@ nb::ndarray<nb::numpy, float> values(HeadingNetwork& network, const Floats& weig
 nb::ndarray<nb::numpy, float> values_at(HeadingNetwork& network, const Floats& weights,
                                         const StateRows& states, const ActionArray& headings) {
   check(network, weights, states);
-  const HeadingNetwork::Headings chosen = checked_headings(network, states, headings);
+  check_headings(headings, states.shape(0), network.sizes().headings, "heading");
+  const HeadingNetwork::Headings chosen(headings.data(), headings.shape(0));
   return copied(network.values_at(weights.data(), columns(states), chosen), {chosen.size()});
 }
 

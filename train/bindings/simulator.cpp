@@ -21,27 +21,10 @@ struct TaskSimulator {
             make_simulator(config.forward, config.task.scene, config.task.push, config.physics)) {}
 };
 
-void check_actions(const TaskSimulator& simulator, const StateArray& states,
-                   const ActionArray& actions) {
-  check_bodies(states, simulator.bodies);
-  if (actions.shape(0) != states.shape(0))
-    throw nb::value_error((std::to_string(states.shape(0)) + " states but " +
-                           std::to_string(actions.shape(0)) +
-                           " actions; legal: one action per state")
-                              .c_str());
-  for (std::size_t row = 0; row < actions.shape(0); ++row) {
-    const std::int64_t action = actions.data()[row];
-    if (action < 0 || action >= simulator.headings) {
-      const std::string found = "action " + std::to_string(action);
-      throw nb::value_error(
-          (found + "; legal: 0 to " + std::to_string(simulator.headings - 1)).c_str());
-    }
-  }
-}
-
 std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, bool>> push(
     const TaskSimulator& simulator, const StateArray& states, const ActionArray& actions) {
-  check_actions(simulator, states, actions);
+  check_bodies(states, simulator.bodies);
+  check_headings(actions, states.shape(0), simulator.headings, "action");
   const std::size_t count = states.shape(0), width = simulator.bodies * 3;
   OwnedArray<double> next(count * width);
   OwnedArray<bool> ok(count);
