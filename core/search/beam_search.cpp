@@ -1,10 +1,9 @@
 #include "core/search/beam_search.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
-#include <numeric>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 
 #include "core/search/beam_selection.hpp"
@@ -37,19 +36,17 @@ void BeamSearch::make_roots(const ReplayBatch& replay, SearchStats& stats) {
 std::vector<Transition> BeamSearch::grow(const SolveBatch& solve, const ReplayBatch& replay,
                                          SearchStats& stats) {
   std::vector<Predecessor> steps = reverse_layer(timed(solve, stats, Stage::kSolves), stats);
-  steps = best_to_replay(std::move(steps));
-  steps = replay_predecessors(std::move(steps), config_.gap_tolerance,
-                              counted(replay, stats, Stage::kReplays), stats);
   std::unordered_set<std::uint64_t> seen = seen_;  // a copy, as not all of these steps are kept
   steps = best_of(std::move(steps), config_.plans_per_node, seen);
   const std::vector<PlanOutcome> outcomes =
-      simulate_plans(steps, counted(replay, stats, Stage::kPlans));
+      simulate_plans(steps, counted(replay, stats, Stage::kReplays), stats);
   std::vector<Transition> stored = to_store(outcomes);
   make_next_beam(std::move(steps), outcomes);
   return stored;
 }
 
-/// Solves for the predecessors of every node of the beam under every action.
+/// Solves for the predecessors of every node of the beam under every action. Returns of each solve
+/// the config.predecessors_per_solve whose starts are nearest to the target.
 std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
                                                    SearchStats& stats) const {
   std::vector<reverse::ReverseJob> jobs;
@@ -62,32 +59,16 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
     const std::vector<Poses>& starts = answers[k].predecessors;
     stats.count(answers[k], !starts.empty() && objects_moved(starts[0], jobs[k].end) > 0);
     const int parent = beam_[k / static_cast<std::size_t>(task_.push.headings)];
-    for (Predecessor& p : proposals(task_, jobs[k], answers[k], parent, stats))
-      found.push_back(std::move(p));
+    std::vector<Predecessor> steps = proposals(task_, jobs[k], answers[k], parent, stats);
+    for (Predecessor& p : steps)
+      p.start_distance = start_distance(task_, metric_, p.start, target_);
+    std::ranges::stable_sort(steps, {}, &Predecessor::start_distance);
+    const std::size_t kept =
+        std::min(steps.size(), static_cast<std::size_t>(config_.predecessors_per_solve));
+    std::move(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(kept),
+              std::back_inserter(found));
   }
   return found;
-}
-
-/// Returns the steps to replay, those whose start is nearest to the target:
-///
-///  - of the steps that move no object, the best config.free_moves per node;
-///  - of the others, the best config.predecessors_per_solve per node and action.
-std::vector<Predecessor> BeamSearch::best_to_replay(std::vector<Predecessor> all) const {
-  for (Predecessor& p : all) p.start_distance = start_distance(task_, metric_, p.start, target_);
-  std::vector<std::size_t> order(all.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return all[k].start_distance; });
-  std::unordered_map<int, int> idle, pushing;  // counts per node and per solve
-  std::erase_if(order, [&](std::size_t k) {
-    const Predecessor& p = all[k];
-    if (p.moved == 0) return ++idle[p.parent] > config_.free_moves;
-    const int solve = p.parent * task_.push.headings + p.action;
-    return ++pushing[solve] > config_.predecessors_per_solve;
-  });
-  std::ranges::sort(order);
-  std::vector<Predecessor> out;
-  for (const std::size_t k : order) out.push_back(std::move(all[k]));
-  return out;
 }
 
 /// Returns the steps that select_beam() selects, best first: at most `times` · config.breadth.
@@ -122,9 +103,10 @@ Poses BeamSearch::with_drawn_start(const Poses& poses) {
 }
 
 /// Replaces the start of each step by with_drawn_start() and simulates the plans from there.
-/// Restores the starts if no plan succeeds, as where an object starts in its goal region.
+/// Restores the starts if no plan succeeds, as where an object starts in its goal region. Adds the
+/// replay_gap() of steps whose start is the solver's to stats.gaps.
 std::vector<PlanOutcome> BeamSearch::simulate_plans(std::vector<Predecessor>& steps,
-                                                    const ReplayBatch& replay) {
+                                                    const ReplayBatch& replay, SearchStats& stats) {
   std::vector<Poses> own;
   std::vector<Plan> plans;
   for (Predecessor& p : steps) {
@@ -132,18 +114,24 @@ std::vector<PlanOutcome> BeamSearch::simulate_plans(std::vector<Predecessor>& st
     plans.push_back({p.start, plan(p)});
   }
   std::vector<PlanOutcome> outcomes = carry_out(task_, plans, replay);
-  if (std::ranges::any_of(outcomes, [](const auto& o) { return o.has_value(); })) return outcomes;
-  for (std::size_t k = 0; k < steps.size(); ++k) steps[k].start = plans[k].start = own[k];
-  return carry_out(task_, plans, replay);
+  if (std::ranges::none_of(outcomes, &PlanOutcome::success)) {
+    for (std::size_t k = 0; k < steps.size(); ++k) steps[k].start = plans[k].start = own[k];
+    outcomes = carry_out(task_, plans, replay);
+  }
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    if (steps[k].start == own[k] && !outcomes[k].steps.empty())
+      stats.gaps.push_back(
+          static_cast<float>(replay_gap(steps[k].wanted_end, outcomes[k].steps[0].next)));
+  return outcomes;
 }
 
 /// Returns the first transition of each plan that succeeds; of some plans all of them.
 std::vector<Transition> BeamSearch::to_store(std::span<const PlanOutcome> outcomes) {
   std::vector<Transition> stored;
-  for (const PlanOutcome& outcome : outcomes) {
-    if (!outcome || outcome->empty()) continue;
+  for (const auto& [success, steps] : outcomes) {
+    if (!success || steps.empty()) continue;
     const bool whole = rng_.uniform(0.0, 1.0) < config_.whole_plan_share;
-    stored.insert(stored.end(), outcome->begin(), whole ? outcome->end() : outcome->begin() + 1);
+    stored.insert(stored.end(), steps.begin(), whole ? steps.end() : steps.begin() + 1);
   }
   return stored;
 }
@@ -153,9 +141,9 @@ void BeamSearch::make_next_beam(std::vector<Predecessor> steps,
                                 std::span<const PlanOutcome> outcomes) {
   std::vector<Predecessor> good;
   for (std::size_t k = 0; k < steps.size(); ++k) {
-    if (!outcomes[k]) continue;
+    if (!outcomes[k].success) continue;
     Predecessor& p = steps[k];
-    p.depth = static_cast<int>(outcomes[k]->size());
+    p.depth = static_cast<int>(outcomes[k].steps.size());
     good.push_back(std::move(p));
   }
   beam_.clear();

@@ -36,17 +36,16 @@ class BeamSearch {
 
   /// Grows a layer of the tree and returns the transitions to store:
   ///
-  ///  1. Solve for the predecessors of every node of the beam under every action.
-  ///  2. Keep the best of each node, those whose starts are nearest to the target.
-  ///  3. Replay these in the simulator. Drop those that miss by more than config.gap_tolerance.
-  ///  4. Select the best config.plans_per_node · config.breadth of the rest. A plan is such a step
+  ///  1. Solve for the predecessors of every node of the beam under every action. Keep the best of
+  ///     each solve, those whose starts are nearest to the target.
+  ///  2. Select the best config.plans_per_node · config.breadth of them. A plan is such a step
   ///     followed by the actions of its parent node.
-  ///  5. Simulate each plan. Objects that are near their start poses first move into a random start
+  ///  3. Simulate each plan. Objects that are near their start poses first move into a random start
   ///     (snapped_to_start()). If no plan then succeeds, simulate all plans from the unchanged
   ///     states.
-  ///  6. Store the first transition of each plan that succeeds. For the share
+  ///  4. Store the first transition of each plan that succeeds. For the share
   ///     config.whole_plan_share of these plans, store all transitions.
-  ///  7. Make the best states from which a plan succeeds the next beam.
+  ///  5. Make the best states from which a plan succeeds the next beam.
   ///
   /// No transition begins in a goal state, because episodes end there.
   ///
@@ -65,11 +64,10 @@ class BeamSearch {
 
  private:
   std::vector<Predecessor> reverse_layer(const SolveBatch& solve, SearchStats& stats) const;
-  std::vector<Predecessor> best_to_replay(std::vector<Predecessor> all) const;
   std::vector<Predecessor> best_of(std::vector<Predecessor> steps, int times,
                                    std::unordered_set<std::uint64_t>& seen) const;
   std::vector<PlanOutcome> simulate_plans(std::vector<Predecessor>& steps,
-                                          const ReplayBatch& replay);
+                                          const ReplayBatch& replay, SearchStats& stats);
   std::vector<Transition> to_store(std::span<const PlanOutcome> outcomes);
   void make_next_beam(std::vector<Predecessor> steps, std::span<const PlanOutcome> outcomes);
   std::vector<int> plan(const Predecessor& step) const;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,10 +15,13 @@ struct Plan {
   std::vector<int> actions;
 };
 
-/// The transitions of a plan up to the first success, with Source::kTree. They are empty if the
-/// goal holds in the start. Nothing if the plan does not succeed or if the simulator rejects a
-/// push.
-using PlanOutcome = std::optional<std::vector<Transition>>;
+/// What came of a plan.
+struct PlanOutcome {
+  bool success = false;
+  /// The transitions up to the first success or to a push that the simulator rejects, with
+  /// Source::kTree. They are empty if the goal holds in the start.
+  std::vector<Transition> steps;
+};
 
 /// Simulates all plans in parallel, one push of each per call of `replay`.
 std::vector<PlanOutcome> carry_out(const tasks::Task& task, std::span<const Plan> plans,

@@ -1,6 +1,5 @@
 #include "core/search/predecessor.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "core/world/separation.hpp"
@@ -36,29 +35,7 @@ std::vector<Predecessor> proposals(const tasks::Task& task, const reverse::Rever
       ++stats.illegal_starts;
       continue;
     }
-    const int moved = objects_moved(start, job.end);
-    out.push_back({parent, job.action, std::move(start), job.end, moved});
-  }
-  return out;
-}
-
-std::vector<Predecessor> replay_predecessors(std::vector<Predecessor> predecessors,
-                                             double tolerance, const ReplayBatch& replay,
-                                             SearchStats& stats) {
-  std::vector<ReplayJob> pushes;
-  for (const Predecessor& p : predecessors) pushes.push_back({p.start, p.action});
-  const std::vector<ReplayResult> results = replay(pushes);
-  std::vector<Predecessor> out;
-  for (std::size_t k = 0; k < results.size(); ++k) {
-    if (!results[k].ok) continue;
-    Predecessor& p = predecessors[k];
-    const Poses& end = results[k].end;
-    stats.gaps.push_back(static_cast<float>(replay_gap(p.wanted_end, end)));
-    double error = 0.0;  // largest of a body [m]
-    for (std::size_t body = 0; body < end.size(); ++body)
-      error = std::max(error, (p.wanted_end[body].position() - end[body].position()).norm());
-    if (error > tolerance) continue;
-    out.push_back(std::move(p));
+    out.push_back({parent, job.action, std::move(start), job.end});
   }
   return out;
 }

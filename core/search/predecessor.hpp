@@ -15,7 +15,6 @@ struct Predecessor {
   int action = 0;
   Poses start;
   Poses wanted_end;             // the final state that the reverse solver was given
-  int moved = 0;                // objects_moved() by the push, as solved
   double start_distance = 0.0;  // start_distance() of `start`, set by the search
   int depth = 0;                // actions until success, set by the search
 };
@@ -40,12 +39,5 @@ bool legal_state(const tasks::Task& task, const Poses& poses);
 std::vector<Predecessor> proposals(const tasks::Task& task, const reverse::ReverseJob& job,
                                    const reverse::ReverseResult& answer, int parent,
                                    SearchStats& stats);
-
-/// Simulates the push of each predecessor and adds the replay_gap() to stats.gaps. Leaves out
-/// predecessors whose push the simulator rejects, and those of which a body ends more than
-/// `tolerance` [m] from its position in `wanted_end`.
-std::vector<Predecessor> replay_predecessors(std::vector<Predecessor> predecessors,
-                                             double tolerance, const ReplayBatch& replay,
-                                             SearchStats& stats);
 
 }  // namespace rtg::search

@@ -50,7 +50,7 @@ void set_shortfalls(GenerationReport& report, const SearchConfig& config) {
     report.shortfalls.push_back(
         search + found + " transitions of the " + std::to_string(config.transitions) +
         " asked for and then nothing more, see generation.json; a wider one "
-        "may find more (search.breadth, search.gap_tolerance)");
+        "may find more (search.breadth, search.plans_per_node)");
 }
 
 std::string to_json(const GenerationReport& r) {

@@ -25,9 +25,7 @@ struct SearchConfig {
   int plans_per_node = 2;          // plans simulated per layer, as a multiple of breadth
   double whole_plan_share = 0.05;  // share of plans stored whole; of the rest, the first step
   int depth = 40;                  // D, layers per tree at most
-  double gap_tolerance = 0.25;     // largest replay error of a body in a step that is used [m]
-  int predecessors_per_solve = 2;  // that move an object, replayed per node and action
-  int free_moves = 6;              // steps that move no object, replayed per node, the best ones
+  int predecessors_per_solve = 2;  // considered per node and action, the best ones
   int nodes_per_layout = 18;       // most nodes of a beam that differ only in the robot's position
   int root_draws = 4;              // goal states drawn per root of a tree
   int patience = 4;                // consecutive layers without a better node that end a tree
@@ -46,12 +44,8 @@ struct SearchConfig {
     v.number("whole_plan_share", whole_plan_share, 0.0, 1.0,
              "share of plans stored in full, not only their first step");
     v.integer("depth", depth, 1, 1000, "largest number of layers of a search tree");
-    v.number("gap_tolerance", gap_tolerance, 0.0, 100.0,
-             "largest replay error of a body in a kept reverse step [m]");
     v.integer("predecessors_per_solve", predecessors_per_solve, 1, 100,
-              "object-moving predecessors replayed per node and heading");
-    v.integer("free_moves", free_moves, 0, 360,
-              "reverse steps that move no object, replayed per node at most");
+              "predecessors considered per node and heading");
     v.integer("nodes_per_layout", nodes_per_layout, 1, 100000,
               "largest number of beam nodes that differ in the robot alone");
     v.integer("root_draws", root_draws, 1, 1000,

@@ -12,8 +12,9 @@
 namespace rtg::search {
 
 /// Stages of a generation in which it waits for a batch of jobs. The rest of it is bookkeeping.
-enum class Stage { kGoals, kSolves, kReplays, kPlans, kBranches };
-inline constexpr const char* kStages[] = {"goals", "solves", "replays", "plans", "branches"};
+enum class Stage { kGoals, kSolves, kReplays, kBranches };
+inline constexpr const char* kStages[] = {"goals", "solves", "replays", "branches"};
+static_assert(std::size(kStages) == static_cast<std::size_t>(Stage::kBranches) + 1);
 
 /// Time that the batches of a stage took [s]; CPU time of all threads and processes.
 struct StageTime {
@@ -32,7 +33,7 @@ struct SearchStats {
   long unsettled_goals = 0;  // drawn goals that are no legal goal states once at rest
   long replays = 0;          // requests to the simulator, kSettle included
   long rejected_pushes = 0;  // replays that the simulator could not finish
-  std::vector<float> gaps;   // replay gaps of replayed candidates [m]
+  std::vector<float> gaps;   // replay gaps of simulated reverse steps [m]
   std::array<StageTime, std::size(kStages)> times{};  // by Stage
 
   void count(const reverse::ReverseResult& answer, bool moved_object) {

@@ -77,7 +77,7 @@ std::pair<nb::ndarray<nb::numpy, double>, long> plan(const config::Config& confi
     const search::ReplayBatch replay = counted(
         search::replay_on_threads(search::forward_replay(task, config.physics, config.forward),
                                   config.run.workers),
-        stats, search::Stage::kPlans);
+        stats, search::Stage::kReplays);
     steps = plan_forward(task, config.search, from, replay);
   }
   const std::size_t width = task.scene.size() * 3;

@@ -229,9 +229,8 @@ TEST(Generate, ReportAgreesWithTheStoredTransitions) {
     bool inside = true;
     for (std::size_t k = 1; k < t.poses.size(); ++k) {
       moved += std::hypot(t.next[k].x - t.poses[k].x, t.next[k].y - t.poses[k].y) > 0.05;
-      inside = inside && std::abs(t.poses[k].x - task.start[k].x) <= 0.5 &&
-               std::abs(t.poses[k].y - task.start[k].y) <= 0.5 &&
-               std::abs(std::remainder(t.poses[k].theta - task.start[k].theta, M_PI / 2)) <= 0.35;
+      inside = inside &&
+               std::hypot(t.poses[k].x - task.start[k].x, t.poses[k].y - task.start[k].y) <= 0.4;
     }
     contacts += moved > 0;
     several += moved > 1;
@@ -241,6 +240,7 @@ TEST(Generate, ReportAgreesWithTheStoredTransitions) {
   EXPECT_DOUBLE_EQ(report.coverage.multi_body_share, static_cast<double>(several) / kBudget);
   EXPECT_GT(several, 0);
   EXPECT_EQ(report.coverage.start_region_transitions, region);
+  EXPECT_GT(region, 0);
   EXPECT_EQ(report.stats.candidates,
             std::accumulate(report.stats.statuses.begin(), report.stats.statuses.end(), 0L));
 }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "core/search/search_stats.hpp"
 #include "tests/support/dragging_world.hpp"
 
@@ -26,8 +29,8 @@ TEST_F(PlanTest, GoesOnToTheFirstSuccessFromStateToState) {
   ASSERT_EQ(dragged(kDragsFirst), 1U);
   const Plan plan{short_of_success(0.6), {kRight, kDragsFirst, kDragsFirst, kRight}};
   const auto done = carry_out(task, std::vector{plan}, counting);
-  ASSERT_TRUE(done.at(0).has_value());
-  const std::vector<Transition>& steps = *done[0];
+  ASSERT_TRUE(done.at(0).success);
+  const std::vector<Transition>& steps = done[0].steps;
   ASSERT_EQ(steps.size(), 3U) << "it needs no fourth push";
   EXPECT_EQ(stats.replays, 3);
   Poses state = plan.start;
@@ -41,27 +44,30 @@ TEST_F(PlanTest, GoesOnToTheFirstSuccessFromStateToState) {
   }
 }
 
-TEST_F(PlanTest, IsEmptyWhereTheGoalHoldsAlreadyAndNothingWhereItFails) {
+TEST_F(PlanTest, IsEmptyWhereTheGoalHoldsAlreadyAndHasAllItsPushesWhereItFails) {
   const std::vector<Plan> plans{{short_of_success(-0.5), {kRight}},
                                 {short_of_success(0.6), {kRight, kDragsFirst}},
                                 {short_of_success(0.3), {kDragsFirst}},
                                 {short_of_success(0.3), {}}};
   const auto done = carry_out(task, plans, counting);
-  ASSERT_TRUE(done.at(0).has_value());
-  EXPECT_TRUE(done[0]->empty());
-  EXPECT_FALSE(done[1].has_value());
-  ASSERT_TRUE(done[2].has_value());
-  EXPECT_EQ(done[2]->size(), 1U);
-  EXPECT_FALSE(done[3].has_value());
+  const std::vector<std::pair<bool, std::size_t>> expected{
+      {true, 0}, {false, 2}, {true, 1}, {false, 0}};
+  ASSERT_EQ(done.size(), expected.size());
+  for (std::size_t k = 0; k < done.size(); ++k)
+    EXPECT_EQ(std::pair(done[k].success, done[k].steps.size()), expected[k]);
   EXPECT_EQ(stats.replays, 3) << "each its own pushes alone";
 }
 
-TEST_F(PlanTest, EndsWhereTheSimulatorRejectsAPush) {
-  const ReplayBatch none = [](std::span<const ReplayJob> jobs) {
-    return std::vector<ReplayResult>(jobs.size());
+TEST_F(PlanTest, EndsBeforeThePushThatTheSimulatorRejects) {
+  int calls = 0;
+  const ReplayBatch rejecting = [&](std::span<const ReplayJob> jobs) {
+    return ++calls == 2 ? std::vector<ReplayResult>(jobs.size()) : replay(jobs);
   };
-  const std::vector<Plan> plans{{short_of_success(0.3), {kDragsFirst, kDragsFirst}}};
-  EXPECT_FALSE(carry_out(task, plans, none).at(0).has_value());
+  const std::vector<Plan> plans{{short_of_success(0.6), {kRight, kDragsFirst, kDragsFirst}}};
+  const auto done = carry_out(task, plans, rejecting);
+  EXPECT_FALSE(done.at(0).success);
+  EXPECT_EQ(done[0].steps.size(), 1U);
+  EXPECT_EQ(calls, 2);
 }
 
 }  // namespace

@@ -81,11 +81,9 @@ TEST(Proposals, AreTheConvergedAnswersWithLegalStarts) {
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[1].parent, 72);
   EXPECT_EQ(found[1].start, task.start);
-  EXPECT_EQ(found[1].moved, 0);
   EXPECT_EQ(found[0].parent, 72);
   EXPECT_EQ(found[0].action, 5);
   EXPECT_EQ(found[0].wanted_end, task.start);
-  EXPECT_EQ(found[0].moved, 2);
   EXPECT_EQ(found[0].start[0].x, static_cast<double>(0.1F));
   EXPECT_EQ(found[0].start, to_single(moved));
   EXPECT_EQ(stats.illegal_starts, 2);
@@ -103,71 +101,9 @@ TEST(Proposals, AreJudgedAfterRounding) {
   EXPECT_EQ(stats.illegal_starts, 1);
 }
 
-/// Moves every body by as many steps as the action says and rejects action 13.
-std::vector<ReplayResult> fake_replay(std::span<const ReplayJob> jobs) {
-  std::vector<ReplayResult> results;
-  for (const ReplayJob& job : jobs)
-    results.push_back({shifted(job.start, kStep * job.action), job.action != 13, 0.25});
-  return results;
-}
-
-Predecessor predecessor(int parent, int action, const Poses& start, const Poses& wanted_end) {
-  return {parent, action, start, wanted_end};
-}
-
-constexpr double kAnyError = 100.0;  // a tolerance that drops nothing [m]
-
 TEST(ObjectsMoved, CountsDisplacementsAboveTheThreshold) {
   EXPECT_EQ(objects_moved(all_zero(), shifted(all_zero(), 10 * kStep)), 3);
   EXPECT_EQ(objects_moved(all_zero(), shifted(all_zero(), 3 * kStep)), 0);
-}
-
-TEST(ReplayPredecessors, CountHowFarThePushMisses) {
-  Poses aim = shifted(all_zero(), 10 * kStep);
-  aim[2].y = 0.3;
-  SearchStats stats;
-  const auto out =
-      replay_predecessors({predecessor(4, 10, all_zero(), aim),
-                           predecessor(5, 3, all_zero(), shifted(all_zero(), 2 * kStep))},
-                          kAnyError, counted(fake_replay, stats, Stage::kReplays), stats);
-  ASSERT_EQ(out.size(), 2U);
-  EXPECT_EQ(out[0].parent, 4);
-  EXPECT_EQ(out[0].action, 10);
-  EXPECT_EQ(out[0].start, all_zero());
-  EXPECT_EQ(out[0].wanted_end, aim);
-  EXPECT_EQ(out[1].parent, 5);
-  ASSERT_EQ(stats.gaps.size(), 2U);
-  EXPECT_FLOAT_EQ(stats.gaps[0], 0.075F);
-  EXPECT_FLOAT_EQ(stats.gaps[1], static_cast<float>(kStep));
-  EXPECT_EQ(stats.rejected_pushes, 0);
-  EXPECT_EQ(stats.times[static_cast<std::size_t>(Stage::kReplays)].cpu_s, 0.5);
-}
-
-TEST(ReplayPredecessors, LeaveOutWhatMissesByMoreThanTheToleranceWithASingleBody) {
-  Poses near = all_zero(), far = all_zero();
-  near[2].y = 0.24;
-  far[2].y = 0.26;  // a gap of a quarter of that
-  SearchStats stats;
-  const auto out =
-      replay_predecessors({predecessor(0, 0, all_zero(), far), predecessor(1, 0, all_zero(), near)},
-                          0.25, counted(fake_replay, stats, Stage::kReplays), stats);
-  ASSERT_EQ(out.size(), 1U);
-  EXPECT_EQ(out[0].parent, 1);
-  EXPECT_EQ(stats.gaps.size(), 2U) << "the gap of what is left out counts, too";
-}
-
-TEST(ReplayPredecessors, LeaveOutAndCountWhatTheSimulatorRejects) {
-  const Poses zero = all_zero();
-  SearchStats stats;
-  const auto out =
-      replay_predecessors({predecessor(0, 13, zero, zero), predecessor(1, 1, zero, zero),
-                           predecessor(2, 13, zero, zero), predecessor(3, 2, zero, zero)},
-                          kAnyError, counted(fake_replay, stats, Stage::kReplays), stats);
-  ASSERT_EQ(out.size(), 2U);
-  EXPECT_EQ(out[0].parent, 1);
-  EXPECT_EQ(out[1].parent, 3);
-  EXPECT_EQ(stats.gaps.size(), 2U);
-  EXPECT_EQ(stats.rejected_pushes, 2);
 }
 
 }  // namespace

@@ -38,8 +38,6 @@ TEST(SearchConfig, EachFieldChangesTheStoredTransitions) {
       {"whole_plan_share", 0.5},
       {"depth", 3},
       {"predecessors_per_solve", 1},
-      {"free_moves", 3},
-      {"gap_tolerance", 0.1},
       {"nodes_per_layout", 2},
       {"root_draws", 1},
       {"patience", 1},

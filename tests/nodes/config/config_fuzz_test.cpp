@@ -24,7 +24,7 @@ constexpr std::array<std::string_view, 30> kTokens{
 /// Settings of every kind of value.
 constexpr std::array<std::string_view, 19> kSettings{
     "search.breadth=32",
-    "search.gap_tolerance=0.125",
+    "search.whole_plan_share=0.125",
     "search.generator=naive",
     "reverse.preset=paper",
     "train.preset=paper",

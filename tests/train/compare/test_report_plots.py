@@ -146,7 +146,7 @@ def test_gaps_have_a_histogram_per_task_over_all_its_runs(tmp_path, figures):
     report_plots.replay_gaps(tmp_path / "gaps.png", of_tasks)
     heights = [sum(bar.get_height() for bar in axis.patches) for axis in figures[0].axes]
     assert heights == [1000, 500]
-    assert figures[0].axes[0].get_title(loc="left") == "gathering: 1,000 replayed candidates"
+    assert figures[0].axes[0].get_title(loc="left") == "gathering: 1,000 simulated reverse steps"
 
 
 def test_labels_are_drawn_without_what_they_share():

@@ -20,9 +20,7 @@ BRANCH_ABLATIONS: dict[str, tuple[Any, ...]] = {
 TREE_ABLATIONS: dict[str, tuple[Any, ...]] = {
     "plans_per_node": (1,),
     "whole_plan_share": (0, 1),
-    "gap_tolerance": (0.05, 100),  # [m]; keeps only steps that replay almost exactly; keeps all
     "predecessors_per_solve": (1,),
-    "free_moves": (0, 48),  # none, all of them
     "nodes_per_layout": (100000,),  # no limit
     "root_draws": (1,),
     "patience": (1000,),  # no limit

@@ -234,7 +234,7 @@ def replay_gaps(path: Path, of_tasks: Mapping[str, Sequence[RunResult]]) -> None
             names = ("replay_gap_median", "replay_gap_p90")
             marks = [float(np.mean([run.summary[name] for run in runs])) for name in names]
             plots.gap_histogram(axis, counts, *marks)
-            axis.set_title(f"{task}: {counts.sum():,} replayed candidates")
+            axis.set_title(f"{task}: {counts.sum():,} simulated reverse steps")
         axes[-1, 0].set_xlabel(plots.GAP_AXIS)
         plots.save(figure, path)
 

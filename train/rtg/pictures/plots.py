@@ -148,7 +148,7 @@ def gap_histogram(axis: Axes, counts: Sequence[int], median: float, p90: float) 
     axis.bar(bounds[:-1], counts, np.diff(bounds), align="edge", color=_BLUE, alpha=0.85)
     axis.set_xscale("log")
     axis.set_xlim(bounds[0] / 1.1, bounds[top] * 1.1)
-    axis.set_ylabel("replayed candidates")
+    axis.set_ylabel("simulated reverse steps")
     marks = (("median", median, "-", 0.99), ("90th percentile", p90, "--", 0.9))
     for words, gap, line_style, height in marks:
         at = max(gap, float(bounds[0]))
