@@ -18,11 +18,11 @@ void apply(const Linear<const float>& layer, const MatrixXf& in, MatrixXf& out) 
   out.colwise() += layer.bias;
 }
 
-/// Writes the gradient for the weights of a layer. `slope`: of the loss, for the layer's outputs.
-template <class Slope>
-void pull_back(const MatrixXf& in, const Slope& slope, Linear<float> gradient) {
-  gradient.weight.noalias() = slope * in.transpose();
-  gradient.bias = slope.rowwise().sum();
+/// Writes the gradient for the weights of a layer, from that for its outputs.
+template <class Gradient>
+void pull_back(const MatrixXf& in, const Gradient& of_out, Linear<float> of_weights) {
+  of_weights.weight.noalias() = of_out * in.transpose();
+  of_weights.bias = of_out.rowwise().sum();
 }
 
 }  // namespace
@@ -67,7 +67,8 @@ void HeadingNetwork::inner_layer(const Weights& weights) {
 const MatrixXf& HeadingNetwork::values(const float* array, const States& states) {
   constexpr Index kTogether = 8;  // the values of so many states within f stay in the cache
   const Weights weights(sizes_, array);
-  headings_.clear();
+  ++calls_;
+  last_call_.reset();
   trunk(weights, states);
   all_values_.resize(sizes_.headings, states.cols());
   const RowVectorXf value =
@@ -88,6 +89,7 @@ const RowVectorXf& HeadingNetwork::values_at(const float* array, const States& s
                                              Headings headings) {
   const Weights weights(sizes_, array);
   headings_.assign(headings.begin(), headings.end());
+  last_call_ = {calls_++, states.cols()};
   trunk(weights, states);
   along_.resize(sizes_.features, states.cols());
   for (Index k = 0; k < states.cols(); ++k)
@@ -99,10 +101,10 @@ const RowVectorXf& HeadingNetwork::values_at(const float* array, const States& s
 }
 
 const Eigen::VectorXf& HeadingNetwork::gradient(const float* array,
-                                                const Eigen::Map<const RowVectorXf>& slope) {
+                                                const Eigen::Map<const RowVectorXf>& unaligned) {
   const Weights weights(sizes_, array);
   const HeadingWeights<float> out(sizes_, gradient_.data());
-  const RowVectorXf of_q = slope;  // aligned
+  const RowVectorXf of_q = unaligned;
   pull_back(inner_, of_q, out.advantage);
   pull_back(second_, of_q, out.value);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,8 +14,8 @@ namespace rtg::learn {
 ///   Q(s, a) = V(h) + f(w(h) + cos θ_a u(h) + sin θ_a v(h)),   h = trunk(s).
 ///
 /// The trunk has two layers, each linear, NormRelu. V, w, u and v are linear, and f is NormRelu,
-/// linear, ReLU, linear. PyTorch computes the same in twice the time: each of its many small
-/// operations has a cost of its own and passes over all of its operands.
+/// linear, ReLU, linear. PyTorch takes about 1.6 times as long: each of its many small operations
+/// has a cost of its own and passes over all of its operands.
 ///
 /// A batch of B states has a column per state, [inputs, B]. `weights` are those of HeadingWeights,
 /// aligned to 64 bytes as PyTorch's tensors are: results are the same, bit for bit, for the same
@@ -35,13 +36,19 @@ class HeadingNetwork {
   const Eigen::RowVectorXf& values_at(const float* weights, const States& states,
                                       Headings headings);
 
-  /// Returns B of the last call if that was values_at(), else 0.
-  Eigen::Index kept() const { return static_cast<Eigen::Index>(headings_.size()); }
+  /// A call of values_at(): how many there were before it or of values(), and its B.
+  struct Call {
+    long number = 0;
+    Eigen::Index batch = 0;
+  };
 
-  /// Returns the gradient of a loss L for the weights, from `slope` = ∂L/∂q [B]. The last call must
-  /// have been values_at() with the same weights.
+  /// Returns the last call, whose gradient can be had. Nothing if there was none or if it was
+  /// values().
+  const std::optional<Call>& last_call() const { return last_call_; }
+
+  /// Returns the gradient of a loss L for the weights of last_call(), from `of_q` = ∂L/∂q [B].
   const Eigen::VectorXf& gradient(const float* weights,
-                                  const Eigen::Map<const Eigen::RowVectorXf>& slope);
+                                  const Eigen::Map<const Eigen::RowVectorXf>& of_q);
 
  private:
   using Weights = HeadingWeights<const float>;
@@ -53,7 +60,9 @@ class HeadingNetwork {
   NetworkSizes sizes_;
   Eigen::MatrixXf basis_;               // (1, cos θ_a, sin θ_a) [3, headings]
   std::vector<std::int64_t> all_;       // headings
-  std::vector<std::int64_t> headings_;  // of the last values_at()
+  std::vector<std::int64_t> headings_;  // of last_call()
+  long calls_ = 0;
+  std::optional<Call> last_call_;
   NormRelu first_norm_, second_norm_, along_norm_;
   // Of the last batch: states; outputs of the layers of the trunk; w, u and v; outputs of NormRelu
   // and ReLU in f.

@@ -28,15 +28,15 @@ class NormRelu {
     }
   }
 
-  /// Replaces each column ∂L/∂y of `slope` by ∂L/∂x and writes ∂L/∂γ, ∂L/∂β to `gradient`. `y`: the
-  /// batch after the last apply().
-  void pull_back(const Norm<const float>& norm, const Eigen::MatrixXf& y, Eigen::MatrixXf& slope,
-                 Norm<float> gradient) const {
-    slope = (y.array() > 0.0f).select(slope, 0.0f);
-    gradient.scale = (slope.array() * normal_.array()).rowwise().sum();
-    gradient.shift = slope.rowwise().sum();
-    for (Eigen::Index k = 0; k < slope.cols(); ++k) {
-      auto d = slope.col(k).array();
+  /// Replaces each column ∂L/∂y of `of_batch` by ∂L/∂x and writes ∂L/∂γ, ∂L/∂β to `of_weights`.
+  /// `y`: the batch after the last apply().
+  void pull_back(const Norm<const float>& norm, const Eigen::MatrixXf& y, Eigen::MatrixXf& of_batch,
+                 Norm<float> of_weights) const {
+    of_batch = (y.array() > 0.0f).select(of_batch, 0.0f);
+    of_weights.scale = (of_batch.array() * normal_.array()).rowwise().sum();
+    of_weights.shift = of_batch.rowwise().sum();
+    for (Eigen::Index k = 0; k < of_batch.cols(); ++k) {
+      auto d = of_batch.col(k).array();
       const auto normal = normal_.col(k).array();
       d *= norm.scale.array();  // ∂L/∂x̂
       const float mean = d.mean(), along = (d * normal).mean();

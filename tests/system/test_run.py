@@ -32,7 +32,7 @@ COMMON_FILES = {
     "episode.png",
     "episode.gif",
 }
-TRAINING_FILES = {"progress.csv", "learning_curve.png", "training.json", "model.pt"}
+TRAINING_FILES = {"progress.csv", "learning_curve.png", "training.json", "model.pt", "stages.png"}
 
 
 @pytest.fixture(scope="module", autouse=True)

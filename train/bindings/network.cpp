@@ -1,6 +1,8 @@
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "core/learn/heading_network.hpp"
@@ -53,7 +55,11 @@ nb::ndarray<nb::numpy, float> values(HeadingNetwork& network, const Floats& weig
                                      const StateRows& states) {
   check(network, weights, states);
   const auto headings = static_cast<std::size_t>(network.sizes().headings);
-  return copied(network.values(weights.data(), columns(states)), {states.shape(0), headings});
+  const auto compute = [&]() -> auto& {
+    const nb::gil_scoped_release release;
+    return network.values(weights.data(), columns(states));
+  };
+  return copied(compute(), {states.shape(0), headings});
 }
 
 nb::ndarray<nb::numpy, float> values_at(HeadingNetwork& network, const Floats& weights,
@@ -61,18 +67,27 @@ nb::ndarray<nb::numpy, float> values_at(HeadingNetwork& network, const Floats& w
   check(network, weights, states);
   check_headings(headings, states.shape(0), network.sizes().headings, "heading");
   const HeadingNetwork::Headings chosen(headings.data(), headings.shape(0));
-  return copied(network.values_at(weights.data(), columns(states), chosen), {chosen.size()});
+  const auto compute = [&]() -> auto& {
+    const nb::gil_scoped_release release;
+    return network.values_at(weights.data(), columns(states), chosen);
+  };
+  return copied(compute(), {chosen.size()});
 }
 
 nb::ndarray<nb::numpy, float> gradient(HeadingNetwork& network, const Floats& weights,
-                                       const Floats& slope) {
+                                       const Floats& of_q) {
   check_weights(network, weights);
-  const auto count = static_cast<Eigen::Index>(slope.shape(0));
-  if (count != network.kept())
-    refuse("a slope of " + std::to_string(count) + " values; legal: " +
-           std::to_string(network.kept()) + ", those of the last call if it was values_at()");
-  const Eigen::Map<const Eigen::RowVectorXf> of_q(slope.data(), count);
-  return copied(network.gradient(weights.data(), of_q), {weight_count(network)});
+  const auto count = static_cast<Eigen::Index>(of_q.shape(0));
+  if (!network.last_call())
+    refuse("a gradient without values; legal: values_at() before, no other call between");
+  if (count != network.last_call()->batch)
+    refuse("a gradient for " + std::to_string(count) + " values; legal: " +
+           std::to_string(network.last_call()->batch) + ", those of the last call");
+  const auto compute = [&]() -> auto& {
+    const nb::gil_scoped_release release;
+    return network.gradient(weights.data(), {of_q.data(), count});
+  };
+  return copied(compute(), {weight_count(network)});
 }
 
 }  // namespace
@@ -87,7 +102,12 @@ void bind_network(nb::module_& module) {
           nb::arg("inputs"), nb::arg("headings"), nb::arg("hidden"), nb::arg("features"))
       .def("values", &values, nb::arg("weights"), nb::arg("states"))
       .def("values_at", &values_at, nb::arg("weights"), nb::arg("states"), nb::arg("headings"))
-      .def("gradient", &gradient, nb::arg("weights"), nb::arg("slope"));
+      .def_prop_ro("last_call",
+                   [](const HeadingNetwork& network) -> std::optional<long> {
+                     const auto& call = network.last_call();
+                     return call ? std::optional(call->number) : std::nullopt;
+                   })
+      .def("gradient", &gradient, nb::arg("weights"), nb::arg("of_q"));
 }
 
 }  // namespace rtg::bindings

@@ -167,10 +167,13 @@ class HeadingNetwork:
         headings: NDArray[np.int64],
     ) -> NDArray[np.float32]:
         """Returns Q of one heading per state, [B]."""
+    @property
+    def last_call(self) -> int | None:
+        """The number of the last call if that was values_at(), else None."""
     def gradient(
-        self, weights: NDArray[np.float32], slope: NDArray[np.float32]
+        self, weights: NDArray[np.float32], of_q: NDArray[np.float32]
     ) -> NDArray[np.float32]:
-        """Returns the gradient of a loss for the weights, [W], from `slope`, that for Q, [B].
+        """Returns the gradient of a loss for the weights, [W], from that for Q, [B].
 
         The last call must have been values_at() with the same weights.
         """

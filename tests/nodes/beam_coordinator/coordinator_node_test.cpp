@@ -176,7 +176,7 @@ TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
   {
     CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [] { return false; }});
     const auto report = coordinator.run([&](const search::GenerationSeams& seams) {
-      seams.progress({"round 1", 3, 24, 5, 10, 0.25, 7});
+      seams.progress({"round 1", 3, 24, 5, 99, 0.25, 7});
       said.wait(false);
       return search::GenerationReport{};
     });

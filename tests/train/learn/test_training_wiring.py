@@ -7,7 +7,9 @@ import pytest
 from rtg import _core
 from rtg.files.dataset import Rows
 from rtg.learn.evaluation import evaluate
+from rtg.learn.stages import STAGES
 from rtg.learn.training import MAX_ENVIRONMENTS
+from rtg.learn.training_result import figures
 from rtg.learn.value_bounds import value_bounds
 from training_runs import TINY, Stream, after_polls, run_folder, training
 
@@ -84,3 +86,18 @@ def test_the_seconds_of_a_run_go_on_where_it_is_resumed(tmp_path: Path) -> None:
     other = training(one.folder)
     other.restore()
     assert other.clock.seconds() == {"wall_s": 1e6, "cpu_s": 2e6}
+
+
+def test_each_stage_of_learning_has_its_times_and_they_go_on_where_it_is_resumed(
+    tmp_path: Path, rows: Rows
+) -> None:
+    one = training(run_folder(tmp_path / "run", None, "train.checkpoint_every=80"))
+    assert one.run(Stream(rows, one.data, piece=60), lambda: False, record=False)
+    found = one.model.stages.seconds()
+    assert set(found) == set(STAGES)
+    assert all(times["wall_s"] > 0 for times in found.values()), found
+    assert figures(one, one.evaluate(), lost=0)["learning_stages"] == found
+    other = training(one.folder)
+    other.restore()
+    saved = other.model.stages.seconds()
+    assert all(saved[name]["wall_s"] > 0.5 * found[name]["wall_s"] for name in STAGES)

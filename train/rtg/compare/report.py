@@ -98,7 +98,8 @@ def _learner(summary: dict[str, Any]) -> str:
         return "none"
     runs = summary.get("runs_in_process") or 1
     shared = f"{runs} runs in one process" if runs > 1 else "one core"
-    return f"{summary.get('device') or 'unknown device'}, {shared}"
+    parts = [summary.get("device") or "unknown device", summary.get("precision"), shared]
+    return ", ".join(part for part in parts if part)
 
 
 def _programs(versions: dict[str, Any]) -> str:

@@ -1,7 +1,4 @@
-"""Values and gradients of a HeadingNetwork by the C++ core (core/learn).
-
-PyTorch computes the same in twice the time.
-"""
+"""Values and gradients of a HeadingNetwork by the C++ core (core/learn)."""
 
 from __future__ import annotations
 
@@ -29,7 +26,8 @@ class HeadingCore:
     def values_at(self, x: th.Tensor, headings: th.Tensor) -> th.Tensor:
         """Returns Q of one heading per state. x [B, inputs], headings [B, 1] int64 -> [B, 1]
 
-        The gradient must be computed before the next call of either method.
+        The gradient must be computed before the next call of either method, else `backward()`
+        raises RuntimeError.
         """
         q: th.Tensor = _ValuesAt.apply(self.weights, self.network, x, headings[:, 0])
         return q[:, None]
@@ -46,11 +44,16 @@ class _ValuesAt(th.autograd.Function):
         x: th.Tensor,
         headings: th.Tensor,
     ) -> th.Tensor:
-        ctx.network, ctx.weights = network, weights.detach().numpy()
-        return th.from_numpy(network.values_at(ctx.weights, x.numpy(), headings.numpy()))
+        ctx.save_for_backward(weights)  # PyTorch refuses a gradient if they have changed
+        q = network.values_at(weights.detach().numpy(), x.numpy(), headings.numpy())
+        ctx.network, ctx.call = network, network.last_call
+        return th.from_numpy(q)
 
     @staticmethod
     @once_differentiable
-    def backward(ctx: Any, slope: th.Tensor) -> tuple[th.Tensor, None, None, None]:
-        gradient = ctx.network.gradient(ctx.weights, slope.contiguous().numpy())
+    def backward(ctx: Any, of_q: th.Tensor) -> tuple[th.Tensor, None, None, None]:
+        (weights,) = ctx.saved_tensors
+        if ctx.network.last_call != ctx.call:
+            raise RuntimeError("the network was called again before its gradient was computed")
+        gradient = ctx.network.gradient(weights.detach().numpy(), of_q.contiguous().numpy())
         return th.from_numpy(gradient), None, None, None
