@@ -55,7 +55,7 @@ stored from a state; **contact share**: of the transitions, those that move an o
 region**: transitions that begin there; **trees**: how many were grown; **depth**: pushes of the
 shortest plan of a tree from the start region; **replay gap**: distance between the state in which
 the push of a reverse step was to end and that in which it ends in the simulator, mean over the
-bodies; quantiles over all candidates replayed; **rank correlation of Q**: Spearman's, of the
+bodies; quantiles over simulated reverse steps; **rank correlation of Q**: Spearman's, of the
 learner's final Q with the simulator over all headings of a stored state, mean over some hundred
 states; **error**: root mean square of the difference; **spread**: standard deviation of the
 simulator's values over the headings of a state, mean over the states. States are those of a run's
