@@ -4,7 +4,7 @@
 #   ./test.sh debug       C++ tests in a debug build with AddressSanitizer and UndefinedBehaviorSanitizer
 #   ./test.sh tsan        C++ tests that use threads under ThreadSanitizer
 #   ./test.sh coverage    line coverage of the physics and the solver by their own tests
-#   ./test.sh bench       benchmarks and gates: JSON and a Markdown table in build/bench/
+#   ./test.sh bench       benchmarks and gates: JSON and a Markdown table in build/bench/; then whole jobs, three tasks
 #   ./test.sh peer        the reverse solver against CasADi and IPOPT, which it installs (ten minutes)
 set -euo pipefail
 # shellcheck source=setup.sh
@@ -63,7 +63,11 @@ case ${1:-all} in
     ;;
   bench)
     set_up release all
-    exec "$VENV/bin/python" "$ROOT/tests/bench/table.py" "$ROOT/build/release" "$ROOT/build/bench"
+    rm -rf "$ROOT/build/bench/whole"
+    status=0
+    "$VENV/bin/python" "$ROOT/tests/bench/table.py" "$ROOT/build/release" "$ROOT/build/bench" || status=$?
+    "$VENV/bin/python" "$ROOT/tests/bench/whole.py" "$ROOT/build/bench/whole"
+    exit "$status"
     ;;
   peer)
     set_up release peer_dump

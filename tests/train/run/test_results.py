@@ -44,6 +44,7 @@ def pictures(folder):
 def test_a_run_that_was_never_evaluated_ends_without_a_curve(tmp_path, learned):
     """It is resumed with a budget below what it had used, before the first evaluation."""
     plan = RunPlan(tmp_path, "x", learned, train=True, resume=True, notes=())
+    results.draw(plan)
     assert results.finish(plan, {})["method"] == "ddqn"
     assert pictures(tmp_path) == {"episode.png", "episode.gif"}
 
@@ -51,6 +52,7 @@ def test_a_run_that_was_never_evaluated_ends_without_a_curve(tmp_path, learned):
 def test_the_episode_of_a_learner_stays_when_only_data_are_made(tmp_path, learned):
     before = (tmp_path / "best_episode.npz").read_bytes()
     plan = RunPlan(tmp_path, "x", learned, train=False, resume=True, notes=())
+    results.draw(plan)
     results.finish(plan, {})
     assert (tmp_path / "best_episode.npz").read_bytes() == before
     assert pictures(tmp_path) == {"episode.png", "episode.gif"}
@@ -138,6 +140,7 @@ def test_the_rest_of_the_wall_time_is_a_stage_of_its_own() -> None:
     assert results.stage_times({**generation, **learning}) == parts
     assert results.stage_times(generation) == {"generation": parts["generation"]}
     assert results.stage_times({"train_wall_s": 3.0}) == {}  # of the planner
+    assert results.stage_times({"start_wall_s": 1.5}) == {"run": {"start": {"wall_s": 1.5}}}
 
 
 def test_the_times_of_the_stages_are_drawn(tmp_path, learned) -> None:
@@ -145,5 +148,6 @@ def test_the_times_of_the_stages_are_drawn(tmp_path, learned) -> None:
     figures = {"learning_stages": acting, "train_wall_s": 4.0}
     (tmp_path / "training.json").write_text(json.dumps(figures))
     plan = RunPlan(tmp_path, "x", learned, train=True, resume=True, notes=())
+    results.draw(plan)
     results.finish(plan, {})
     assert pictures(tmp_path) == {"episode.png", "episode.gif", "stages.png"}

@@ -93,8 +93,8 @@ def _draw_episode(plan: RunPlan) -> None:
         episode_pictures.film(plan.folder / "episode.gif", task, poses, success, title)
 
 
-def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
-    """Draws all pictures and writes summary.json; returns the summary."""
+def draw(plan: RunPlan) -> None:
+    """Draws all pictures but stages.png."""
     if plan.offline:
         _draw_generation(plan)
     if plan.train:
@@ -107,6 +107,10 @@ def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
             )
             plots.learning_curve(plan.folder / "learning_curve.png", plan.title, curve, unit)
     _draw_episode(plan)
+
+
+def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
+    """Writes summary.json and draws stages.png; returns the summary."""
     mode = ("in_process" if plan.in_process else "lcm") if plan.offline else None
     summary = run_folder.summary(plan.folder, plan.config, mode, measured)
     run_folder.write_json(plan.folder / "summary.json", summary)
@@ -121,6 +125,8 @@ def stage_times(summary: dict[str, Any]) -> dict[str, dict[str, dict[str, float]
     The last stage of each is the rest of its wall time; the processor time of that is not known.
     """
     parts: dict[str, dict[str, dict[str, float]]] = {}
+    if (start := summary.get("start_wall_s")) is not None:
+        parts["run"] = {"start": {"wall_s": start}}
     for part, rest, total in (
         ("generation", "bookkeeping", "generate_wall_s"),
         ("learning", "other", "train_wall_s"),

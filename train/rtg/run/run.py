@@ -12,6 +12,7 @@ from rtg.run import effective_config
 from rtg.run.plan import RunPlan, make_plan
 from rtg.run.progress import Display, display
 from rtg.run.run_args import RunArgs
+from rtg.run.run_times import RunTimes
 
 
 def run(args: RunArgs) -> int:
@@ -35,7 +36,7 @@ def _carry_out(plan: RunPlan) -> int:
     """Generates, trains and writes the results; returns the exit status."""
     from rtg.run import results  # slow to import
 
-    with display(sys.stdout) as shown:
+    with RunTimes(display(sys.stdout)) as shown:
         for note in (f"{plan.title}: {plan.folder}", *plan.notes):
             shown.note(note)
         try:
@@ -44,7 +45,8 @@ def _carry_out(plan: RunPlan) -> int:
             flags = "--resume" if plan.train else "--resume --no-train"
             command = f"./run.sh {flags} --out {shlex.quote(str(plan.folder))}"
             raise RunError(f"stopped; to go on: {command}") from None
-        summary = results.finish(plan, measured)
+        results.draw(plan)
+        summary = results.finish(plan, {**measured, **shown.seconds()})
     print(results.summary_text(plan, summary))
     for defect in measured["defects"]:
         print(f"rtg: {defect}", file=sys.stderr)
