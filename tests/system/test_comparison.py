@@ -28,6 +28,9 @@ WORDS = ["--quick", "--methods", "ddqn_naive", "--jobs", "2"]
 WORDS += [word for setting in SMALL for word in ("--set", setting)]
 TWO = ("gathering", "sorting")
 HOW = {
+    "start_wall_s",
+    "run_wall_s",
+    "run_cpu_s",
     "generate_wall_s",
     "generate_cpu_s",
     "train_wall_s",

@@ -28,6 +28,7 @@ SearchConfig small() {
   config.generator = Generator::kNaive;
   config.transitions = kBudget;
   config.breadth = 6;
+  config.plans_per_node = 4;  // so that a tree reaches the start region
   config.depth = 12;
   return config;
 }
