@@ -16,7 +16,7 @@ refuse() { # WHY
   echo "graph.sh: $1" >&2
   exit 2
 }
-[[ -f ${1:-}/config.yaml ]] || refuse "'${1:-}' is no folder with a config.yaml; legal: graph.sh FOLDER [trainer|recorder]"
+[[ -f ${1:-}/config.yaml ]] || refuse "'${1:-}' is no folder with a config.yaml; legal: graph.sh FOLDER [trainer [--resume] | recorder]"
 folder=$(cd -- "$1" && pwd)
 consumer=${2:-trainer} flags=("${@:3}") config=$folder/config.yaml run=${RTG_RUN:-${folder##*/}} logs=$folder/logs
 
@@ -74,6 +74,7 @@ fell_short() { # whether the coordinator has ended because of that: its last lin
 }
 
 setting() { sed -n "/^run:/,\$ s/^  $1: \([^ ]*\).*/\1/p" "$config"; } # KEY: its value in the section run
+listens() { (($(ls -l "/proc/$1/fd" | grep -c socket:) > 1)); }         # PID: LCM has a socket to send and, then, one to receive
 is_running() { [[ " ${running[*]} " == *" $1 "* ]]; }                   # NAME
 
 case "$consumer ${flags[*]}" in
@@ -87,7 +88,13 @@ exec 2>/dev/null # bash's own words about programs that have ended
 trap 'stop 130' INT
 trap 'stop 143' TERM
 trap 'stop 129' HUP # which nohup keeps from it
-if [[ $(setting record) == true ]]; then start lcm_logger; fi
+if [[ $(setting record) == true ]]; then
+  start lcm_logger
+  for ((k = 0; k < 100; ++k)); do # until it hears the others
+    if listens $!; then break; fi
+    sleep 0.1
+  done
+fi
 for ((k = 0; k < workers; ++k)); do start "reverse_worker_$k"; done
 start forward_sim_server
 start beam_coordinator

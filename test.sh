@@ -46,8 +46,10 @@ coverage() {
 case ${1:-all} in
   all)
     set_up release all
-    run_ctest release
-    run_pytest
+    status=0
+    run_ctest release || status=1
+    run_pytest || status=1
+    exit $status
     ;;
   debug)
     set_up debug rtg_cpp_tests

@@ -104,6 +104,10 @@ REFUSED = {
         ["--method", "her", "--generator", "random"],
         "rtg: --generator random: has no effect, as run.method her generates no transitions ",
     ),
+    "transitions of nothing": (
+        ["--method", "dqn", "--transitions", "100"],
+        "rtg: --transitions 100: has no effect, as run.method dqn generates no transitions ",
+    ),
     "no messages": (
         ["--method", "rcg", "--set", "run.record=true"],
         "rtg: --set run.record=true: key 'run.record': is true, but without train.offline there "

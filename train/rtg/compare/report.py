@@ -35,11 +35,11 @@ and of more rows than there are methods those with swept settings are left out."
 _POOLED = f"""\
 IQM: mean of the middle half of all final successes (of fewer than four, of all), with a 95 %
 interval by stratified bootstrap (seeds drawn within a task, {RESAMPLES:,} resamples), over the
-tasks that more than one method was run on. Last column: the probability that a run of the method
-does better than one of `{REFERENCE}` on the same task, mean over the tasks, equal ones counted
-half. Single seeds have no interval, and of few it is too narrow. Methods with fewer tasks are not
-comparable with those with more, nor is `{RANDOMISED}` with any: its starts, also those it is
-measured from, lie all over a wider region."""
+tasks that more than one method was run on, if any. Last column: the probability that a run of the
+method does better than one of `{REFERENCE}` on the same task, mean over the tasks, equal ones
+counted half. Single seeds have no interval, and of few it is too narrow. Methods with fewer tasks
+are not comparable with those with more, nor is `{RANDOMISED}` with any: its starts, also those it
+is measured from, lie all over a wider region."""
 REMARKS = "remarks.md"  # beside grid.json
 _QUICK = (
     "**Small budgets (`--quick`): these figures show that everything works and are no results.**"

@@ -149,19 +149,11 @@ def gap_histogram(axis: Axes, counts: Sequence[int], median: float, p90: float) 
     axis.set_xscale("log")
     axis.set_xlim(bounds[0] / 1.1, bounds[top] * 1.1)
     axis.set_ylabel("simulated reverse steps")
-    marks = (("median", median, "-", 0.99), ("90th percentile", p90, "--", 0.9))
-    for words, gap, line_style, height in marks:
+    axis.margins(y=0.35)  # room for the legend above the bars
+    for words, gap, line_style in (("median", median, "-"), ("90th percentile", p90, "--")):
         at = max(gap, float(bounds[0]))
-        axis.axvline(at, color=_ORANGE, lw=1.5, ls=line_style)
-        axis.annotate(
-            f" {words} {_metres(gap)}",
-            (at, height),
-            xycoords=("data", "axes fraction"),
-            va="top",
-            color="#a35d14",
-            bbox={"facecolor": _rgb(PAPER), "edgecolor": "none", "pad": 1.0},
-            zorder=5,  # above the line of the other mark
-        )
+        axis.axvline(at, color=_ORANGE, lw=1.5, ls=line_style, label=f"{words} {_metres(gap)}")
+    axis.legend(loc="upper left")
 
 
 def replay_gap(path: Path, title: str, report: Mapping[str, Any]) -> None:
@@ -237,8 +229,8 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
         bar.set_label("actions until success, over all trees")
         bar.locator = MaxNLocator(integer=True)
         figure.supxlabel(
-            "dots: centres of the object in the search's nodes; outlines: start layout; "
-            "shaded: goal, of the centre or a mean it is part of; "
+            "dots: centres of the object in the search's nodes; outlines: start layout\n"
+            "shaded: goal of the centre, or of a mean that includes it\n"
             f"frame: arena, {2 * task.arena:g} m wide",
             fontsize=8,
         )

@@ -83,13 +83,17 @@ def check(config: _core.Config, train: bool) -> None:
         )
 
 
-def _check_generator(config: _core.Config, overrides: Sequence[Override]) -> None:
-    """Raises UserError if the user chose a generator, but the run generates nothing."""
-    chosen = [o.typed for o in overrides if o.setting.startswith("search.generator=")]
+def _check_search(config: _core.Config, overrides: Sequence[Override]) -> None:
+    """Raises UserError if the user asks for transitions, but the run generates none."""
+    chosen = [
+        o.typed
+        for o in overrides
+        if o.setting.startswith("search.generator=") or o.typed.startswith("--transitions")
+    ]
     if chosen and not config.train.offline:
         raise UserError(
             f"{chosen[-1]}: has no effect, as run.method {config.run.method} generates no "
-            "transitions (train.offline is false); legal: another method, or no generator"
+            "transitions (train.offline is false); legal: another method, or without it"
         )
 
 
@@ -136,7 +140,7 @@ def make_plan(args: RunArgs) -> RunPlan:
     if args.resume:
         _check_resumed(args.file, config)
     check(config, args.train)
-    _check_generator(config, overrides)
+    _check_search(config, overrides)
     notes = []
     needs_bus = config.train.offline and not config.run.in_process
     if needs_bus and (why := multicast.defect(config.run.bus)):

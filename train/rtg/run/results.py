@@ -170,7 +170,8 @@ def _depth_text(s: dict[str, Any]) -> list[str]:
         return []
     return [
         "no tree reaches the start region (start_region_depth is -1), which learning seldom "
-        "survives; a wider search (search.breadth, search.depth) or an easier start may help"
+        "survives; more transitions (search.transitions), a wider search (search.breadth, "
+        "search.depth) or an easier start may help"
     ]
 
 
