@@ -159,7 +159,14 @@ def test_what_does_not_go_together_is_refused(name, tmp_path: Path, capsys) -> N
 def test_each_method_runs_from_the_flag_to_the_summary(method: str, tmp_path: Path) -> None:
     out = tmp_path / "run"
     more = ["--set", "train.buffer=4000", "--set", "train.hindsight=2"] if method == "her" else []
-    small = ["--transitions", "800", "--set", "search.breadth=4", "--set", "search.depth=3"]
+    small = [
+        "--set",
+        "search.transitions=800",
+        "--set",
+        "search.breadth=4",
+        "--set",
+        "search.depth=3",
+    ]
     words = [str(TINY), "--method", method, "--in-process", "--out", str(out), *small, *more]
     assert cli.main(words) == 0
     summary = json.loads((out / "summary.json").read_text())
