@@ -24,7 +24,15 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 TASKS = ("gathering", "sorting", "art_manip")
-_SMOKE = ("--transitions", "500", "--interactions", "200", "--set", "train.eval_episodes=2")
+_SMOKE = (
+    "--in-process",
+    "--transitions",
+    "500",
+    "--interactions",
+    "200",
+    "--set",
+    "train.eval_episodes=2",
+)
 
 Figures = dict[str, Any]
 
