@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,40 +35,26 @@ class HeadingNetwork {
   const Eigen::RowVectorXf& values_at(const float* weights, const States& states,
                                       Headings headings);
 
-  /// A call of values_at(): how many there were before it or of values(), and its B.
-  struct Call {
-    long number = 0;
-    Eigen::Index batch = 0;
-  };
-
-  /// Returns the last call, whose gradient can be had. Nothing if there was none or if it was
-  /// values().
-  const std::optional<Call>& last_call() const { return last_call_; }
-
-  /// Returns the gradient of a loss L for the weights of last_call(), from `of_q` = ∂L/∂q [B].
-  const Eigen::VectorXf& gradient(const float* weights,
-                                  const Eigen::Map<const Eigen::RowVectorXf>& of_q);
+  /// Writes the gradient of a loss L for the weights to `out`, an array like theirs, from `of_q` =
+  /// ∂L/∂q [B]. The last call must have been values_at(), with the same weights, and q its result.
+  void gradient(const float* weights, const Eigen::RowVectorXf& of_q, float* out) const;
 
  private:
   using Weights = HeadingWeights<const float>;
 
   void trunk(const Weights& weights, const States& states);
-  void features_along(Eigen::Index state, Headings headings, Eigen::Index column);
+  void normal_along_all(const Weights& weights, Eigen::Index state, Eigen::Index column);
   void inner_layer(const Weights& weights);
 
   NetworkSizes sizes_;
-  Eigen::MatrixXf basis_;               // (1, cos θ_a, sin θ_a) [3, headings]
-  std::vector<std::int64_t> all_;       // headings
-  std::vector<std::int64_t> headings_;  // of last_call()
-  long calls_ = 0;
-  std::optional<Call> last_call_;
+  Eigen::Matrix3Xf basis_;              // (1, cos θ_a, sin θ_a) [3, headings]
+  std::vector<std::int64_t> headings_;  // of the last values_at()
   NormRelu first_norm_, second_norm_, along_norm_;
   // Of the last batch: states; outputs of the layers of the trunk; w, u and v; outputs of NormRelu
   // and ReLU in f.
   Eigen::MatrixXf states_, first_, second_, features_, along_, inner_;
   Eigen::MatrixXf all_values_;
   Eigen::RowVectorXf values_;
-  Eigen::VectorXf gradient_;
 };
 
 }  // namespace rtg::learn

@@ -6,22 +6,23 @@
 
 namespace rtg::learn {
 
+constexpr float kVarianceFloor = 1e-5f;  // PyTorch's
+
 /// Layer normalisation [Ba et al. 2016] followed by ReLU, for a batch with a column per sample:
 ///
-///   y = max(γ x̂ + β, 0),   x̂ = (x - mean x) / σ,   σ² = var x + 1e-5.
+///   y = max(γ x̂ + β, 0),   x̂ = (x - mean x) / σ,   σ² = var x + kVarianceFloor.
 ///
 /// Keeps what the gradient needs.
 class NormRelu {
  public:
   /// Replaces each column x of `batch` by y.
   void apply(const Norm<const float>& norm, Eigen::MatrixXf& batch) {
-    constexpr float kFloor = 1e-5f;  // PyTorch's
     normal_.resize(batch.rows(), batch.cols());
     inverse_sigma_.resize(batch.cols());
     for (Eigen::Index k = 0; k < batch.cols(); ++k) {
       auto x = batch.col(k).array();
       x -= x.mean();
-      inverse_sigma_[k] = 1.0f / std::sqrt(x.square().mean() + kFloor);
+      inverse_sigma_[k] = 1.0f / std::sqrt(x.square().mean() + kVarianceFloor);
       auto normal = normal_.col(k).array();
       normal = x * inverse_sigma_[k];
       x = (normal * norm.scale.array() + norm.shift.array()).max(0.0f);

@@ -22,7 +22,7 @@ struct SearchConfig {
   int transitions = 60000;         // stored in all, branches included
   int branches = 4;                // other headings simulated in the state of each stored step
   int breadth = 100;               // B, nodes kept per layer
-  int plans_per_node = 2;          // plans simulated per layer, as a multiple of breadth
+  int plans_per_node = 4;          // plans simulated per layer, as a multiple of breadth
   double whole_plan_share = 0.05;  // share of plans stored whole; of the rest, the first step
   int depth = 40;                  // D, layers per tree at most
   int predecessors_per_solve = 2;  // considered per node and action, the best ones

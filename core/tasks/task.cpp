@@ -11,8 +11,7 @@
 namespace rtg::tasks {
 namespace {
 
-constexpr double kLengthScale = 8.0;  // observations divide lengths by this [m]
-constexpr int kAttempts = 1000;       // draws of jittered_start()
+constexpr int kAttempts = 1000;  // draws of jittered_start()
 
 bool movable_object(const Task& task, std::size_t body) {
   return body > 0 && !task.scene.bodies[body].fixed;
@@ -47,18 +46,18 @@ std::vector<float> observation(const Task& task, const Poses& poses) {
   std::vector<float> out;
   out.reserve(static_cast<std::size_t>(observation_size(task)));
   const auto append = [&out](double value) { out.push_back(static_cast<float>(value)); };
-  const auto append_length = [&append](double value) { append(value / kLengthScale); };
+  const double unit = position_unit(task), nearby = relative_unit(task);
   const Pose& robot = poses[0];
-  append_length(robot.x);
-  append_length(robot.y);
+  append(robot.x / unit);
+  append(robot.y / unit);
   for (std::size_t i = 1; i < poses.size(); ++i) {
     if (!movable_object(task, i)) continue;
-    append_length(poses[i].x);
-    append_length(poses[i].y);
+    append(poses[i].x / unit);
+    append(poses[i].y / unit);
     append(std::cos(poses[i].theta));
     append(std::sin(poses[i].theta));
-    append_length(poses[i].x - robot.x);
-    append_length(poses[i].y - robot.y);
+    append((poses[i].x - robot.x) / nearby);
+    append((poses[i].y - robot.y) / nearby);
   }
   for (const Joint& joint : task.scene.joints) {
     const double angle = joint_angle(joint, poses);

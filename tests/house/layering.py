@@ -24,7 +24,7 @@ MAY_INCLUDE = {
         "core/reverse/sqp",
     },
     "core/reverse": {"core/math", "core/world", "core/energy", "core/reverse"},
-    "core/learn": {"core/learn"},
+    "core/learn": {"core/learn", "core/threads"},
     "core/tasks": {"core/math", "core/world", "core/tasks"},
     "core/search": {"core"},
     "core/threads": {"core/threads"},

@@ -45,10 +45,11 @@ def test_sections_of_the_configuration_have_the_values_of_its_text() -> None:
 
 def test_observation_is_the_documented_one() -> None:
     poses = TASK.start + np.arange(12).reshape(4, 3) / 100
-    robot, expected = poses[0], [*(poses[0, :2] / 8)]
+    robot, expected = poses[0], [*(poses[0, :2] / 4)]  # half the arena, half a stride
     for x, y, theta in poses[1:]:
-        expected += [x / 8, y / 8, np.cos(theta), np.sin(theta)]
-        expected += [(x - robot[0]) / 8, (y - robot[1]) / 8]
+        expected += [x / 4, y / 4, np.cos(theta), np.sin(theta)]
+        expected += [x - robot[0], y - robot[1]]
+    assert TASK.position_unit == 4.0
     np.testing.assert_allclose(TASK.observation(poses[None])[0], expected, atol=1e-7)
 
 

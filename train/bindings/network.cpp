@@ -1,10 +1,11 @@
 #include <nanobind/nanobind.h>
-#include <nanobind/stl/optional.h>
+#include <nanobind/stl/tuple.h>
 
 #include <algorithm>
-#include <optional>
 #include <string>
+#include <tuple>
 
+#include "core/learn/double_dqn.hpp"
 #include "core/learn/heading_network.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
@@ -12,28 +13,27 @@
 namespace rtg::bindings {
 namespace {
 
+using learn::DoubleDqn;
 using learn::HeadingNetwork;
+using learn::NetworkSizes;
+using learn::Transitions;
 using Floats = nb::ndarray<const float, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using FloatsOut = nb::ndarray<float, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using StateRows = nb::ndarray<const float, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
-
-std::size_t weight_count(const HeadingNetwork& network) {
-  return static_cast<std::size_t>(weight_count(network.sizes()));
-}
+using Result = nb::ndarray<nb::numpy, float>;
 
 [[noreturn]] void refuse(const std::string& what) { throw nb::value_error(what.c_str()); }
 
-void check_weights(const HeadingNetwork& network, const Floats& weights) {
-  if (weights.shape(0) != weight_count(network))
-    refuse(std::to_string(weights.shape(0)) +
-           " weights; legal: " + std::to_string(weight_count(network)));
+void check_weights(const NetworkSizes& sizes, std::size_t count) {
+  const int legal = weight_count(sizes);
+  if (count != static_cast<std::size_t>(legal))
+    refuse(std::to_string(count) + " weights; legal: " + std::to_string(legal));
 }
 
-void check(const HeadingNetwork& network, const Floats& weights, const StateRows& states) {
-  check_weights(network, weights);
-  const std::size_t inputs = static_cast<std::size_t>(network.sizes().inputs);
-  if (states.shape(1) != inputs)
+void check_states(const NetworkSizes& sizes, const StateRows& states) {
+  if (states.shape(1) != static_cast<std::size_t>(sizes.inputs))
     refuse("states of " + std::to_string(states.shape(1)) +
-           " numbers; legal: " + std::to_string(inputs));
+           " numbers; legal: " + std::to_string(sizes.inputs));
 }
 
 /// The rows of a numpy array as columns.
@@ -44,16 +44,15 @@ HeadingNetwork::States columns(const StateRows& rows) {
 
 /// A copy of the numbers of a matrix, column by column.
 template <class Matrix>
-nb::ndarray<nb::numpy, float> copied(const Matrix& matrix,
-                                     std::initializer_list<std::size_t> shape) {
+Result copied(const Matrix& matrix, std::initializer_list<std::size_t> shape) {
   OwnedArray<float> out(static_cast<std::size_t>(matrix.size()));
   std::copy_n(matrix.data(), matrix.size(), out.data.get());
   return out.release(shape);
 }
 
-nb::ndarray<nb::numpy, float> values(HeadingNetwork& network, const Floats& weights,
-                                     const StateRows& states) {
-  check(network, weights, states);
+Result values(HeadingNetwork& network, const Floats& weights, const StateRows& states) {
+  check_weights(network.sizes(), weights.shape(0));
+  check_states(network.sizes(), states);
   const auto headings = static_cast<std::size_t>(network.sizes().headings);
   const auto compute = [&]() -> auto& {
     const nb::gil_scoped_release release;
@@ -62,32 +61,56 @@ nb::ndarray<nb::numpy, float> values(HeadingNetwork& network, const Floats& weig
   return copied(compute(), {states.shape(0), headings});
 }
 
-nb::ndarray<nb::numpy, float> values_at(HeadingNetwork& network, const Floats& weights,
-                                        const StateRows& states, const ActionArray& headings) {
-  check(network, weights, states);
-  check_headings(headings, states.shape(0), network.sizes().headings, "heading");
-  const HeadingNetwork::Headings chosen(headings.data(), headings.shape(0));
-  const auto compute = [&]() -> auto& {
-    const nb::gil_scoped_release release;
-    return network.values_at(weights.data(), columns(states), chosen);
-  };
-  return copied(compute(), {chosen.size()});
+Transitions::Numbers numbers(const Floats& array) {
+  return {array.data(), static_cast<Eigen::Index>(array.shape(0))};
 }
 
-nb::ndarray<nb::numpy, float> gradient(HeadingNetwork& network, const Floats& weights,
-                                       const Floats& of_q) {
-  check_weights(network, weights);
-  const auto count = static_cast<Eigen::Index>(of_q.shape(0));
-  if (!network.last_call())
-    refuse("a gradient without values; legal: values_at() before, no other call between");
-  if (count != network.last_call()->batch)
-    refuse("a gradient for " + std::to_string(count) + " values; legal: " +
-           std::to_string(network.last_call()->batch) + ", those of the last call");
-  const auto compute = [&]() -> auto& {
+/// The arrays of a gradient step, one row or entry per transition.
+struct TransitionArrays {
+  StateRows states;
+  ActionArray headings;
+  StateRows next_states;
+  Floats rewards, terminated, bounds;
+
+  std::size_t count() const { return states.shape(0); }
+
+  void check(const NetworkSizes& sizes) const {
+    check_states(sizes, states);
+    check_states(sizes, next_states);
+    if (count() == 0 || next_states.shape(0) != count())
+      refuse(std::to_string(count()) + " states and " + std::to_string(next_states.shape(0)) +
+             " next states; legal: as many, at least 1");
+    check_headings(headings, count(), sizes.headings, "heading");
+    for (const Floats& each : {rewards, terminated, bounds})
+      if (each.shape(0) != count())
+        refuse(std::to_string(each.shape(0)) + " numbers for " + std::to_string(count()) +
+               " transitions; legal: one per transition");
+  }
+
+  Transitions view() const {
+    return {.states = columns(states),
+            .headings = {headings.data(), count()},
+            .next_states = columns(next_states),
+            .rewards = numbers(rewards),
+            .terminated = numbers(terminated),
+            .bounds = numbers(bounds)};
+  }
+};
+
+std::tuple<Result, Result, Result> compute(DoubleDqn& learner, const Floats& online,
+                                           const Floats& target, const TransitionArrays& batch,
+                                           const FloatsOut& gradient, int threads) {
+  for (const std::size_t size : {online.shape(0), target.shape(0), gradient.shape(0)})
+    check_weights(learner.sizes(), size);
+  batch.check(learner.sizes());
+  if (threads < 1) refuse(std::to_string(threads) + " threads; legal: at least 1");
+  {
     const nb::gil_scoped_release release;
-    return network.gradient(weights.data(), {of_q.data(), count});
-  };
-  return copied(compute(), {weight_count(network)});
+    learner.compute(online.data(), target.data(), batch.view(), threads, gradient.data());
+  }
+  const std::size_t count = batch.count();
+  return {copied(learner.values(), {count}), copied(learner.targets(), {count}),
+          copied(learner.bootstrap(), {count})};
 }
 
 }  // namespace
@@ -100,14 +123,24 @@ void bind_network(nb::module_& module) {
             new (network) HeadingNetwork({inputs, headings, hidden, features});
           },
           nb::arg("inputs"), nb::arg("headings"), nb::arg("hidden"), nb::arg("features"))
-      .def("values", &values, nb::arg("weights"), nb::arg("states"))
-      .def("values_at", &values_at, nb::arg("weights"), nb::arg("states"), nb::arg("headings"))
-      .def_prop_ro("last_call",
-                   [](const HeadingNetwork& network) -> std::optional<long> {
-                     const auto& call = network.last_call();
-                     return call ? std::optional(call->number) : std::nullopt;
-                   })
-      .def("gradient", &gradient, nb::arg("weights"), nb::arg("of_q"));
+      .def("values", &values, nb::arg("weights"), nb::arg("states"));
+  nb::class_<TransitionArrays>(module, "TransitionArrays")
+      .def(nb::init<StateRows, ActionArray, StateRows, Floats, Floats, Floats>(), nb::arg("states"),
+           nb::arg("headings"), nb::arg("next_states"), nb::arg("rewards"), nb::arg("terminated"),
+           nb::arg("bounds"));
+  nb::class_<DoubleDqn>(module, "DoubleDqn")
+      .def(
+          "__init__",
+          [](DoubleDqn* learner, int inputs, int headings, int hidden, int features,
+             double discount, bool double_q, bool clipped_double_q, bool clip_targets) {
+            new (learner) DoubleDqn({inputs, headings, hidden, features},
+                                    {discount, double_q, clipped_double_q, clip_targets});
+          },
+          nb::arg("inputs"), nb::arg("headings"), nb::arg("hidden"), nb::arg("features"),
+          nb::kw_only(), nb::arg("discount"), nb::arg("double_q"), nb::arg("clipped_double_q"),
+          nb::arg("clip_targets"))
+      .def("compute", &compute, nb::arg("online"), nb::arg("target"), nb::arg("batch"),
+           nb::kw_only(), nb::arg("gradient"), nb::arg("threads"));
 }
 
 }  // namespace rtg::bindings

@@ -83,6 +83,9 @@ class Task:
     def arena(self) -> float:
         """Half width of the square that the robot stays in [m]."""
     @property
+    def position_unit(self) -> float:
+        """Unit of positions in an observation [m]."""
+    @property
     def headings(self) -> int:
         """Number of actions: action a pushes along 2πa/headings."""
     @property
@@ -149,7 +152,7 @@ class _Section:
     def __getattr__(self, name: str) -> Any: ...
 
 class HeadingNetwork:
-    """Values of headings and their gradients; see core/learn/heading_network.hpp.
+    """Values of headings; see core/learn/heading_network.hpp.
 
     Arrays are float32 and contiguous; `weights` [W] lie in the order of PyTorch's parameters.
     Raises ValueError if shapes do not fit. One thread at a time may use it.
@@ -160,22 +163,52 @@ class HeadingNetwork:
         self, weights: NDArray[np.float32], states: NDArray[np.float32]
     ) -> NDArray[np.float32]:
         """Returns Q of all headings. states [B, inputs] -> [B, headings]"""
-    def values_at(
+
+class TransitionArrays:
+    """The arrays of a gradient step, one row or entry per transition; float32, contiguous."""
+
+    def __init__(
         self,
-        weights: NDArray[np.float32],
         states: NDArray[np.float32],
         headings: NDArray[np.int64],
-    ) -> NDArray[np.float32]:
-        """Returns Q of one heading per state, [B]."""
-    @property
-    def last_call(self) -> int | None:
-        """The number of the last call if that was values_at(), else None."""
-    def gradient(
-        self, weights: NDArray[np.float32], of_q: NDArray[np.float32]
-    ) -> NDArray[np.float32]:
-        """Returns the gradient of a loss for the weights, [W], from that for Q, [B].
+        next_states: NDArray[np.float32],
+        rewards: NDArray[np.float32],
+        terminated: NDArray[np.float32],
+        bounds: NDArray[np.float32],
+    ) -> None:
+        """`states`, `next_states` [B, inputs], all else [B]."""
 
-        The last call must have been values_at() with the same weights.
+class DoubleDqn:
+    """Loss of Double Q-learning and its gradient; see core/learn/double_dqn.hpp.
+
+    Arrays and errors as those of HeadingNetwork.
+    """
+
+    def __init__(
+        self,
+        inputs: int,
+        headings: int,
+        hidden: int,
+        features: int,
+        *,
+        discount: float,
+        double_q: bool,
+        clipped_double_q: bool,
+        clip_targets: bool,
+    ) -> None: ...
+    def compute(
+        self,
+        online: NDArray[np.float32],
+        target: NDArray[np.float32],
+        batch: TransitionArrays,
+        *,
+        gradient: NDArray[np.float32],
+        threads: int,
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
+        """Writes the gradient for the weights `online` to `gradient` [W].
+
+        `online`, `target` [W]. Returns Q(s, a), the targets, and these before bounds and clipping,
+        [B] each.
         """
 
 class PhysicsConfig(_Section): ...

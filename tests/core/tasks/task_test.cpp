@@ -55,8 +55,8 @@ TEST(Task, ObservationHasTheDocumentedNumbers) {
   const std::vector<float> seen = observation(task, poses);
   ASSERT_EQ(observation_size(task), 20);
   ASSERT_EQ(seen.size(), 20u);
-  const float expected[8] = {0.0f,           -0.625f,        0.125f, -0.5f,
-                             std::cos(0.5f), std::sin(0.5f), 0.125f, 0.125f};
+  const float expected[8] = {0.0f,           -1.25f,         0.25f, -1.0f,
+                             std::cos(0.5f), std::sin(0.5f), 1.0f,  1.0f};
   for (int k = 0; k < 2; ++k) EXPECT_FLOAT_EQ(seen[k], expected[k]);
   for (int k = 2; k < 8; ++k) EXPECT_FLOAT_EQ(seen[6 + k], expected[k]);
 }

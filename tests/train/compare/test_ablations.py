@@ -85,4 +85,4 @@ def test_what_is_set_for_all_is_no_departure():
     found = ablations(FILE, common)
     words = [word.partition("=")[0] for settings in found for word in settings]
     assert not {"train.batch", "train.nearby_share"} & set(words)
-    assert found[-1] == (PAPER_PRESET, "train.eval_every=5000", "train.stop_at_success=0.5")
+    assert found[-1] == (PAPER_PRESET, "train.eval_every=2500", "train.stop_at_success=0.5")

@@ -56,9 +56,9 @@ def test_the_loss_is_the_cross_entropy_of_the_actions(monkeypatch: pytest.Monkey
     with th.no_grad():
         one.online.head.weight.zero_()
         one.online.head.bias.copy_(th.tensor([1.0, 2.0, 1.0, 4.0, 1.0, 1.0, 1.0, 1.0]).log())
-    monkeypatch.setattr(one, "_descend", told.append)
+    monkeypatch.setattr(one, "_backward", told.append)
     seen, column = th.zeros(2, 3), th.zeros(2, 1)
-    one._gradient_step(Batch(seen, th.tensor([[1], [3]]), seen, column, column, column, 2))
+    one._compute_gradient(Batch(seen, th.tensor([[1], [3]]), seen, column, column, column, 2))
     assert told[0].item() == pytest.approx((np.log(12 / 2) + np.log(12 / 4)) / 2, rel=1e-5)
 
 

@@ -67,7 +67,8 @@ def test_a_gradient_is_cut_to_the_largest_norm(scale: float) -> None:
     q = one.online(th.ones(1, 3))[0, 0]
     (scale * q).backward()
     whole = norm()
-    one._descend(scale * one.online(th.ones(1, 3))[0, 0])
+    one._compute_gradient = lambda batch: one._backward(scale * one.online(th.ones(1, 3))[0, 0])
+    one._gradient_step(batch=None)
     assert norm() == pytest.approx(min(whole, 10.0), rel=1e-4)
     assert (whole > 1e3) == (scale > 1.0) and whole > 0.9
 
@@ -84,10 +85,10 @@ def test_the_loss_of_a_gradient_step_by_hand(
     told = []
     q = th.tensor([0.5, 0.2, *[0.0] * 6])
     constant(one.online, *q.tolist())
-    monkeypatch.setattr(one, "_descend", told.append)
+    monkeypatch.setattr(one, "_backward", told.append)
     actions, y = th.tensor([[0], [1], [2]]), column(1, 0, 4)
     seen = th.zeros(3, 3)
-    one._gradient_step(Batch(seen, actions, seen, y, column(1, 1, 1), column(0, 0, 0), offline))
+    one._compute_gradient(Batch(seen, actions, seen, y, column(1, 1, 1), column(0, 0, 0), offline))
     td = (0.5**2 / 2 + 0.2**2 / 2 + 4.0 - 0.5) / 3
     gaps = np.log(np.exp(0.5) + np.exp(0.2) + 6) - np.array([0.5, 0.2, 0.0])[:offline]
     held_down = cql_weight * gaps.mean() if offline else 0.0

@@ -25,20 +25,21 @@ BOXES = Layouts(TASK)
 CHAIN_TASK = _core.Config.from_file(paths.CONFIG / "art_manip.yaml").task
 CHAIN = Layouts(CHAIN_TASK)
 SIZE = TASK.observation_size
+UNIT = TASK.position_unit  # [m], CHAIN_TASK's too
 
 # Of s_0 to s_4: the first box goes 2 m, back and there again; the second goes 1 m in the end.
 PLACES = np.zeros((5, 3, 2))
 PLACES[[1, 3, 4], 0, 0] = 2.0
 PLACES[4, 1, 1] = 1.0
 PLACES[:, 2] = (4.0, -4.0)
-EPISODE = np.float32(PLACES.reshape(5, 6) / 8.0)  # layouts
+EPISODE = np.float32(PLACES.reshape(5, 6) / UNIT)  # layouts
 SOME, ALL = EPISODE[1], EPISODE[4]
 
 
 def observed(layout: np.ndarray, robot: float = 0.0) -> np.ndarray:
     """An observation of Gathering's with that layout. [observation]"""
     state = TASK.start.copy()
-    state[1:, :2], state[0, :2] = 8.0 * layout.reshape(3, 2), robot
+    state[1:, :2], state[0, :2] = UNIT * layout.reshape(3, 2), robot
     return TASK.observation(state[None])[0]
 
 
@@ -54,11 +55,11 @@ def moved(state: np.ndarray, **by: tuple[int, float]) -> np.ndarray:
 def test_a_layout_is_where_objects_are_and_how_jointed_ones_are_turned() -> None:
     assert (BOXES.size, CHAIN.size) == (6, 16)
     boxes = BOXES.of(TASK.observation(TASK.start[None]))
-    np.testing.assert_array_equal(boxes[0], np.float32(TASK.start[1:, :2].ravel() / 8.0))
+    np.testing.assert_array_equal(boxes[0], np.float32(TASK.start[1:, :2].ravel() / UNIT))
     state = CHAIN_TASK.goal_state(1)
     x, y, theta = state[1:].T
     expected = np.concatenate(
-        (np.stack((x, y), 1).ravel() / 8, np.stack((np.cos(theta), np.sin(theta)), 1).ravel())
+        (np.stack((x, y), 1).ravel() / UNIT, np.stack((np.cos(theta), np.sin(theta)), 1).ravel())
     )
     found = CHAIN.of(CHAIN_TASK.observation(state[None]))[0]
     np.testing.assert_array_equal(found, expected.astype(np.float32))
@@ -71,7 +72,7 @@ def test_fixed_bodies_are_no_part_of_a_layout() -> None:
     task = _core.Config.from_text(text.replace(first, f"    - {wall}\n{first}")).task
     assert task.bodies == 5
     found = Layouts(task).of(task.observation(task.start[None]))
-    np.testing.assert_array_equal(found[0], np.float32(task.start[2:, :2].ravel() / 8.0))
+    np.testing.assert_array_equal(found[0], np.float32(task.start[2:, :2].ravel() / UNIT))
 
 
 @pytest.mark.parametrize("body", [1, 2, 3])
@@ -99,15 +100,15 @@ def test_the_network_sees_how_far_objects_are_from_what_is_asked_for() -> None:
     assert asked.dtype == np.float32 and asked.shape == (1, CHAIN_TASK.observation_size + 16)
     np.testing.assert_array_equal(asked[:, :-16], seen)
     turn = [1, 0, 1, 0, 1, 0, np.cos(0.3), np.sin(0.3)]
-    np.testing.assert_allclose(asked[0, -16:], [0, 0, 0.1, 0, 0, -0.2, 0, 0, *turn], atol=1e-6)
+    np.testing.assert_allclose(asked[0, -16:], [0, 0, 0.2, 0, 0, -0.4, 0, 0, *turn], atol=1e-6)
 
 
 def test_layouts_of_the_task_stay_goals_where_all_objects_are_a_little_off() -> None:
     """The disc's radius is 2.0 m; within it are most draws, but few layouts stay within by 0.5."""
-    radius = np.linalg.norm(8.0 * BOXES.goal_layouts.reshape(-1, 3, 2), axis=2)
+    radius = np.linalg.norm(UNIT * BOXES.goal_layouts.reshape(-1, 3, 2), axis=2)
     assert 300 < len(BOXES.goal_layouts) <= MAX_LAYOUTS and radius.max() < 1.6
     assert 300 < len(CHAIN.goal_layouts) <= MAX_LAYOUTS
-    centre = 8.0 * CHAIN.goal_layouts[:, :8].reshape(-1, 4, 2).mean(axis=1)
+    centre = UNIT * CHAIN.goal_layouts[:, :8].reshape(-1, 4, 2).mean(axis=1)
     assert np.linalg.norm(centre - (0.0, 3.0), axis=1).max() < 0.6
     turns = np.diff(np.arctan2(CHAIN.goal_layouts[:, 9::2], CHAIN.goal_layouts[:, 8::2]), axis=1)
     off = np.abs(np.abs(np.angle(np.exp(1j * turns))) - np.pi / 2)
@@ -141,7 +142,7 @@ def test_the_nearest_layout_has_the_shortest_way_of_all_objects() -> None:
     of_few = BOXES.nearest(TASK.observation(starts), among)
     for start, one, other in zip(starts, found, of_few, strict=True):
         ways = [
-            sum(np.hypot(*(8.0 * goal[2 * k : 2 * k + 2] - start[k + 1, :2])) for k in range(3))
+            sum(np.hypot(*(UNIT * goal[2 * k : 2 * k + 2] - start[k + 1, :2])) for k in range(3))
             for goal in BOXES.goal_layouts
         ]
         np.testing.assert_array_equal(one, BOXES.goal_layouts[np.argmin(ways)])
@@ -195,7 +196,7 @@ def test_bounds_are_those_that_the_episode_proves() -> None:
 
 def test_an_episode_in_which_nothing_moves_teaches_nothing_in_hindsight() -> None:
     still = np.repeat(EPISODE[:1], 5, axis=0)
-    still[3:] += 0.4 / 8.0 / np.sqrt(2.0)  # less than TOLERANCE
+    still[3:] += 0.4 / UNIT / np.sqrt(2.0)  # less than TOLERANCE
     rng = np.random.default_rng(0)
     goals, bounds, found = future_goals(BOXES, still, 4, 0.5, rng)
     assert not (found.any() or bounds.any() or goals.any()) and TOLERANCE == 0.5
@@ -240,7 +241,7 @@ def test_a_batch_asks_for_what_was_reached_and_rewards_it(reward: float) -> None
         for name in ("observations", "next_observations", "rewards", "terminated", "bounds")
     )
     assert seen.shape == after.shape == (3000, SIZE + 6) and seen.dtype == np.float32
-    goal, step = asked_for(seen), np.rint(8.0 * seen[:, 0]).astype(int)
+    goal, step = asked_for(seen), np.rint(UNIT * seen[:, 0]).astype(int)
     np.testing.assert_allclose(asked_for(after), goal, atol=1e-6)
     relabelled = is_one_of(goal, EPISODE)
     assert abs(relabelled.mean() - 0.8) < 4 * np.sqrt(0.16 / 3000)  # k / (k + 1), four sigma
@@ -267,11 +268,11 @@ def test_running_episodes_keep_what_they_were_asked_for() -> None:
 def test_each_episode_is_asked_for_the_nearest_of_a_few_layouts() -> None:
     """They differ. Of a random tenth the nearest is the tenth nearest of all, in the mean."""
     replay, asked = buffer(), []
-    row = observed(np.float32(TASK.start[1:, :2].ravel() / 8))[None]
+    row = observed(np.float32(TASK.start[1:, :2].ravel() / UNIT))[None]
     for _ in range(60):
         asked.append(replay.desired_layouts(row)[0])
         replay.add(row, np.array([0]), step_to(row, truncated=True))
-    way = np.hypot(*(8.0 * (BOXES.goal_layouts - BOXES.of(row))).reshape(-1, 3, 2).T).sum(axis=0)
+    way = np.hypot(*(UNIT * (BOXES.goal_layouts - BOXES.of(row))).reshape(-1, 3, 2).T).sum(axis=0)
     rank = [int((way < way[(BOXES.goal_layouts == goal).all(axis=1)][0]).sum()) for goal in asked]
     assert len(set(rank)) > 8 and min(rank) == 0 and max(rank) < 10 * SUBSET_DIVISOR
     assert np.mean(rank) == pytest.approx(SUBSET_DIVISOR - 1, abs=4.5)

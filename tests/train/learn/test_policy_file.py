@@ -13,14 +13,18 @@ from rtg.learn import networks, policy_file
 from samples import train_settings
 
 TASK = _core.Config.from_file(paths.CONFIG / "tests" / "tiny.yaml").task
-FITTING = {"observation_size": 20, "headings": 48, "network": "headings"}
+FITTING = {"observation": 2, "observation_size": 20, "headings": 48, "network": "headings"}
 
 
 @pytest.mark.parametrize(
     ("state", "message"),
     [
         ({}, "does not say with which settings it was made"),
-        ({"identity": {}}, "made with observation_size = None, but this run has 20"),
+        ({"identity": {}}, "made with observation = None, but this run has 2"),
+        (
+            {"identity": {"observation": 2}},
+            "made with observation_size = None, but this run has 20",
+        ),
         ({"identity": {**FITTING, "network": "huge"}}, "an unknown network; legal: plain, head"),
         ({"identity": {**FITTING, "network": []}}, "an unknown network; legal: plain, head"),
         ({"identity": FITTING, "model": {}}, "holds no policy"),
@@ -74,6 +78,7 @@ def test_a_policy_takes_the_best_actions_of_the_network_that_was_written(
 def test_the_identity_says_what_shapes_the_weights(field: str, value: Any, expected: Any) -> None:
     found = policy_file.identity(TASK, train_settings(**{field: value}))
     assert found == {
+        "observation": 2,
         "observation_size": 20,
         "headings": 48,
         "network": "headings",

@@ -11,6 +11,8 @@ from rtg.paths import CONFIG
 CONFIGURATION = _core.Config.from_file(CONFIG / "gathering.yaml")
 TASK = CONFIGURATION.task
 DISCOUNT = 0.5
+# How far a push moves the robot, in units of what right() sees, times the weight that it has there.
+REACH = 0.5 * 2.0 / TASK.position_unit
 
 
 def right(observation: np.ndarray) -> np.ndarray:
@@ -25,7 +27,7 @@ def states(count: int) -> np.ndarray:
 def one_step_ahead(observation: np.ndarray, sign: float) -> np.ndarray:
     """The true worth of each heading where the robot pushes nothing: `right` of where it ends."""
     angles = 2.0 * np.pi * np.arange(TASK.headings) / TASK.headings
-    ahead = right(observation)[:, None] + sign * 0.5 * 2.0 / 8.0 * np.cos(angles)
+    ahead = right(observation)[:, None] + sign * REACH * np.cos(angles)
     return ahead
 
 
@@ -38,8 +40,8 @@ def test_the_correlation_is_1_where_q_orders_as_the_simulator_and_its_opposite_i
     )
     assert check is not None
     assert check.rank_correlation == pytest.approx(sign, abs=0.02)
-    # γ max Q(s') = 0.5 (right(s') + 1/8): the spread is of half of what the heading moves.
-    assert check.spread == pytest.approx(0.5 * 0.125 / np.sqrt(2.0), rel=0.01)
+    # γ max Q(s') = 0.5 (right(s') + REACH): the spread is of half of what the heading moves.
+    assert check.spread == pytest.approx(0.5 * REACH / np.sqrt(2.0), rel=0.01)
 
 
 def test_the_spread_is_over_the_headings_of_a_state_and_not_over_the_states() -> None:
@@ -48,7 +50,7 @@ def test_the_spread_is_over_the_headings_of_a_state_and_not_over_the_states() ->
     apart[:, 0, :2] = [[-4.0, -6.5], [0.0, -6.5], [4.0, -6.5]]
     check = check_values(CONFIGURATION, lambda seen: one_step_ahead(seen, 1.0), DISCOUNT, apart)
     assert check is not None
-    assert check.spread == pytest.approx(0.5 * 0.125 / np.sqrt(2.0), rel=0.01)
+    assert check.spread == pytest.approx(0.5 * REACH / np.sqrt(2.0), rel=0.01)
 
 
 def test_the_error_is_that_of_q_against_the_discounted_best_value_behind_the_push() -> None:
@@ -61,7 +63,7 @@ def test_the_error_is_that_of_q_against_the_discounted_best_value_behind_the_pus
     assert constant is not None
     here = right(TASK.observation(TASK.start[None]))[0]
     angles = 2.0 * np.pi * np.arange(TASK.headings) / TASK.headings
-    worth = DISCOUNT * (here + 0.125 * np.cos(angles))
+    worth = DISCOUNT * (here + REACH * np.cos(angles))
     assert constant.error == pytest.approx(np.sqrt(np.square(here - worth).mean()), rel=0.01)
 
 

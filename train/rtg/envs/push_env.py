@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from rtg import _core, paths
 from rtg.pictures.draw import state_image
 
-OBSERVATION_LIMIT = 200.0  # bound of all entries; 125 is 1 km, and no body gets that far
+OBSERVATION_LIMIT = 1e6  # bound of all entries; no body gets 1 km far, no unit is below 1 mm
 
 
 def observation_space(task: _core.Task) -> spaces.Box:
-    """Returns the space of observations: lengths / 8 m, sines, cosines. float32 [observation]"""
+    """Returns the space of observations, see core/tasks/task.hpp. float32 [observation]"""
     return spaces.Box(-OBSERVATION_LIMIT, OBSERVATION_LIMIT, (task.observation_size,), np.float32)
 
 

@@ -28,6 +28,6 @@ class Cloning(DoubleDqn):
     action of the network with averaged weights.
     """
 
-    def _gradient_step(self, batch: Batch) -> None:
+    def _compute_gradient(self, batch: Batch) -> None:
         logits = self.online(batch.observations)
-        self._descend(functional.cross_entropy(logits, batch.actions[:, 0]))
+        self._backward(functional.cross_entropy(logits, batch.actions[:, 0]))

@@ -13,7 +13,7 @@ from rtg import _core
 Array = npt.NDArray[Any]
 
 REVISIT_WINDOW = 8  # number of previous states with which a state is compared
-REVISIT_TOLERANCE = 0.02  # states are equal if each entry of the observation differs less (0.16 m)
+REVISIT_TOLERANCE = 0.05  # states are equal if each entry of the observation differs less
 
 # Maps a seed to a heading towards a random object for each environment. [N]
 ContactHeadings = Callable[[int], Array]
@@ -46,7 +46,8 @@ class Exploration:
         self.headings = headings
         self.contact = contact
         self.rng = np.random.default_rng([seed, 1])
-        self.recent_observations: list[Array] = []  # each [N, observation], oldest first
+        # [states, N, observation], oldest first; None before the first one
+        self.recent_observations: Array | None = None
 
     def epsilon(self, interactions: int) -> float:
         """Returns ε after `interactions` interactions.
@@ -69,7 +70,8 @@ class Exploration:
             explores |= self._is_revisited(observation)
         nearby = self.rng.random(n) < self.settings.nearby_share
         offset = self.rng.integers(1, self.settings.nearby_headings + 1, n)
-        beside = (greedy + offset * self.rng.choice((-1, 1), n)) % self.headings
+        side = 2 * self.rng.integers(2, size=n) - 1
+        beside = (greedy + offset * side) % self.headings
         anywhere = self.rng.integers(self.headings, size=n)
         noise = self._towards_objects(np.where(nearby, beside, anywhere))
         return np.where(explores, noise, greedy)
@@ -87,21 +89,19 @@ class Exploration:
 
         Stores `observation` for later calls.
         """
-        found = np.zeros(len(observation), np.bool_)
-        for earlier in self.recent_observations:
-            found |= (np.abs(observation - earlier) < REVISIT_TOLERANCE).all(axis=1)
-        self.recent_observations = [
-            *self.recent_observations[-REVISIT_WINDOW + 1 :],
-            observation.copy(),
-        ]
+        now, known = observation[None], self.recent_observations
+        earlier = now[:0] if known is None else known
+        found: Array = (np.abs(earlier - now) < REVISIT_TOLERANCE).all(axis=2).any(axis=0)
+        self.recent_observations = np.concatenate((earlier[-REVISIT_WINDOW + 1 :], now))
         return found
 
     def state(self) -> dict[str, Any]:
         return {
             "rng": self.rng.bit_generator.state,
-            "last": [seen.copy() for seen in self.recent_observations],
+            "last": self.recent_observations,
         }
 
     def restore(self, state: dict[str, Any]) -> None:
         self.rng.bit_generator.state = state["rng"]
-        self.recent_observations = [np.asarray(seen).copy() for seen in state["last"]]
+        last = state["last"]
+        self.recent_observations = None if last is None else np.asarray(last)

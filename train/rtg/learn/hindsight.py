@@ -44,18 +44,18 @@ ANGLE_TOLERANCE = 0.05  # [rad], largest angle of each body with a joint from a 
 DRAWS, MAX_LAYOUTS = 5000, 1000  # number of goal states drawn; maximum number of layouts
 SUBSET_DIVISOR = 10  # a training episode gets the nearest of 1 / SUBSET_DIVISOR of the layouts
 LAYOUT_SEED = 3 << 61  # fixed seed of the draws, so a policy file need not store it
-LENGTH_UNIT = 8.0  # unit of lengths in an observation [m]
 BODY_ENTRIES = 6  # entries of an observation per movable object; two of the robot come first
 
 
 class Layouts:
     """The desired layouts of a task, and functions that compare layouts with observations.
 
-    A layout is a float32 vector: x, y of each movable object in units of 8 m, then cos θ, sin θ of
-    each movable object with a joint.
+    A layout is a float32 vector: x, y of each movable object in units of task.position_unit, then
+    cos θ, sin θ of each movable object with a joint.
     """
 
     def __init__(self, task: _core.Task) -> None:
+        self._unit = task.position_unit  # [m]
         movable = [body for body in range(1, task.bodies) if not task.fixed[body]]
         jointed = {body for parent, child, _ in task.joints for body in (parent, child)}
         at = [2 + BODY_ENTRIES * k for k in range(len(movable))]
@@ -76,7 +76,7 @@ class Layouts:
     def near(self, one: Array, other: Array) -> Array:
         """Returns whether two layouts agree within the tolerances. [..., size] -> [...] bool"""
         positions, angles = self._difference(one, other)
-        close = np.hypot(positions[..., 0], positions[..., 1]) * LENGTH_UNIT <= TOLERANCE
+        close = np.hypot(positions[..., 0], positions[..., 1]) * self._unit <= TOLERANCE
         alike = angles[..., 0] >= np.cos(ANGLE_TOLERANCE)
         reached: Array = close.all(axis=-1) & alike.all(axis=-1)
         return reached
@@ -96,7 +96,7 @@ class Layouts:
         """Returns the input of the network for the desired layout `goal`. It consists of:
 
         - the observation;
-        - dx, dy from each object to its position in `goal`, in units of 8 m;
+        - dx, dy from each object to its position in `goal`, in the same unit;
         - cos, sin of the angle from each body with a joint to its angle in `goal`.
 
         [N, observation], [N, size] -> [N, observation + size]
@@ -112,7 +112,7 @@ class Layouts:
     def _difference(self, here: Array, there: Array) -> tuple[Array, Array]:
         """Returns the differences of positions and of angles from layout `here` to `there`.
 
-        Positions: dx, dy in units of 8 m, [..., objects, 2]. Angles: cos, sin of the difference for
+        Positions: dx, dy, [..., objects, 2]. Angles: cos, sin of the difference for
         each body with a joint, [..., jointed, 2].
         """
         positions = there[..., : self._position_entries] - here[..., : self._position_entries]

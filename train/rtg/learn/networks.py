@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import NamedTuple
 
+import numpy as np
+import numpy.typing as npt
 import torch as th
 from torch import nn
 
 from rtg import _core
-from rtg.learn.heading_core import HeadingCore
 
 PLAIN_LAYERS = (512, 512, 128)  # Table 2
 HIDDEN = 256  # units of each of the two layers of HeadingNetwork's trunk
@@ -46,6 +48,13 @@ class PlainNetwork(nn.Module):
         return self(x).gather(1, headings)
 
 
+class Core(NamedTuple):
+    """A HeadingNetwork in the C++ core."""
+
+    network: _core.HeadingNetwork
+    weights: npt.NDArray[np.float32]  # all of them, a view of flatten()'s tensor
+
+
 class HeadingNetwork(nn.Module):
     """A value network whose headings share their weights:
 
@@ -57,7 +66,7 @@ class HeadingNetwork(nn.Module):
     """
 
     basis: th.Tensor  # (1, cos θ_a, sin θ_a) of each heading [headings, 3]
-    core: HeadingCore | None = None  # computes the network if its weights are in one tensor
+    core: Core | None = None  # computes values if all weights are in one tensor on the CPU
 
     def __init__(self, inputs: int, headings: int) -> None:
         super().__init__()
@@ -83,7 +92,7 @@ class HeadingNetwork(nn.Module):
 
     def forward(self, x: th.Tensor) -> th.Tensor:
         if self.core and not th.is_grad_enabled():
-            return self.core.values(x)
+            return th.from_numpy(self.core.network.values(self.core.weights, x.numpy()))
         hidden = self.trunk(x)
         along = th.matmul(self.basis, self._features(hidden))  # [B, headings, FEATURES]
         q: th.Tensor = self.value(hidden) + self.advantage(along).squeeze(2)
@@ -91,8 +100,6 @@ class HeadingNetwork(nn.Module):
 
     def at(self, x: th.Tensor, headings: th.Tensor) -> th.Tensor:
         """x [B, inputs], headings [B, 1] int64 -> [B, 1]"""
-        if self.core:
-            return self.core.values_at(x, headings)
         hidden = self.trunk(x)
         basis = self.basis[headings[:, 0], :, None]  # [B, 3, 1]
         along = (basis * self._features(hidden)).sum(dim=1)
@@ -118,7 +125,7 @@ def flatten(net: nn.Module) -> nn.Parameter:
     """Moves all weights of `net`, and their gradients, into one tensor, and returns it.
 
     The weights of `net` become views of it, so that one operation updates them all. On the CPU,
-    the C++ core then computes a HeadingNetwork; gradients of Q of all headings remain PyTorch's.
+    the C++ core then computes the values of a HeadingNetwork where no gradient is asked for.
     """
     weights = list(net.parameters())
     flat = nn.Parameter(th.cat([w.detach().ravel() for w in weights]))
@@ -127,5 +134,5 @@ def flatten(net: nn.Module) -> nn.Parameter:
     for w, data, grad in zip(weights, flat.data.split(sizes), flat.grad.split(sizes), strict=True):
         w.data, w.grad = data.view_as(w), grad.view_as(w)
     if isinstance(net, HeadingNetwork) and flat.device.type == "cpu":
-        net.core = HeadingCore(_core.HeadingNetwork(*net.sizes), flat)
+        net.core = Core(_core.HeadingNetwork(*net.sizes), flat.detach().numpy())
     return flat

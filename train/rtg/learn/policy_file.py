@@ -19,10 +19,13 @@ from rtg.learn import networks
 from rtg.learn.evaluation import Policy
 from rtg.learn.hindsight import Layouts
 
+_OBSERVATION = 2  # number of the form of observations; policies of another form are rejected
+
 
 def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
-    """Returns the values of task and settings that determine the shapes of the weights."""
+    """Returns the values of task and settings that determine what the weights are of."""
     return {
+        "observation": _OBSERVATION,
         "observation_size": task.observation_size,
         "headings": task.headings,
         "network": settings.network,
@@ -59,7 +62,11 @@ def read(path: Path, task: _core.Task) -> Policy:
     state = checkpoint.read(path)
     found: Any = state.get("identity")
     weights = state.get("weights")
-    wanted = {"observation_size": task.observation_size, "headings": task.headings}
+    wanted = {
+        "observation": _OBSERVATION,
+        "observation_size": task.observation_size,
+        "headings": task.headings,
+    }
     check_identity(path, found, wanted)
     if found.get("network") not in list(networks.KINDS):
         raise UserError(f"{path}: has an unknown network; legal: {', '.join(networks.KINDS)}")

@@ -106,6 +106,18 @@ class Store:
             setattr(self, name, np.asarray(state[name]).copy())
 
 
+def _joined(parts: list[Part], name: str) -> Array:
+    """Returns a column of the rows in `parts`."""
+    columns = [getattr(store, name) for store, _ in parts]
+    out = np.empty((sum(len(rows) for _, rows in parts), *columns[0].shape[1:]), columns[0].dtype)
+    begin = 0
+    for column, (_, rows) in zip(columns, parts, strict=True):
+        end = begin + len(rows)
+        np.take(column, rows, axis=0, out=out[begin:end], mode="clip")  # by default out is copied
+        begin = end
+    return out
+
+
 @dataclass(frozen=True)
 class ReplayRules:
     """The settings that determine how a batch is drawn, see MixedReplayBuffer."""
@@ -241,10 +253,7 @@ class MixedReplayBuffer:
 
     def _columns(self, parts: list[Part]) -> dict[str, Array]:
         """Returns the columns of a batch, which joins the rows in `parts`."""
-        columns = {
-            name: np.concatenate([getattr(store, name)[rows] for store, rows in parts])
-            for name in Store.columns
-        }
+        columns = {name: _joined(parts, name) for name in Store.columns}
         if not self.rules.use_bounds:
             columns["bound"].fill(-np.inf)
         return columns

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 STAGES = (
     "receiving",  # transitions, and writing what displays show
@@ -17,17 +17,21 @@ STAGES = (
 
 
 class Stopwatch:
-    """Adds up the time spent in `with` blocks: wall time and that of the thread's processor [s]."""
+    """Adds up the time spent in `with` blocks: wall time and processor time [s].
+
+    Processor time is that of the whole process, or as set by `cpu`.
+    """
 
     def __init__(self) -> None:
         self.wall_s = self.cpu_s = 0.0
+        self.cpu: Callable[[], float] = time.process_time
 
     def __enter__(self) -> None:
-        self._begin = time.monotonic(), time.thread_time()
+        self._begin = time.monotonic(), self.cpu()
 
     def __exit__(self, *_: object) -> None:
         self.wall_s += time.monotonic() - self._begin[0]
-        self.cpu_s += time.thread_time() - self._begin[1]
+        self.cpu_s += self.cpu() - self._begin[1]
 
 
 class Stages:
@@ -38,6 +42,11 @@ class Stages:
 
     def __getitem__(self, name: str) -> Stopwatch:
         return self._watches[name]
+
+    def share_process(self) -> None:
+        """Measures the processor time of the calling thread alone from now on."""
+        for one in self._watches.values():
+            one.cpu = time.thread_time
 
     def seconds(self) -> dict[str, dict[str, float]]:
         """Returns the times so far, by stage and by "wall_s", "cpu_s"."""

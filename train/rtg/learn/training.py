@@ -22,7 +22,7 @@ from rtg.learn.settings import CHECKPOINT_SETTINGS
 from rtg.learn.training_log import TrainingLog
 
 MAX_ENVIRONMENTS = 4  # stepped together at most; train.buffer must not be smaller
-_FORMAT = 9  # version of the checkpoint format; other versions are rejected
+_FORMAT = 10  # version of the checkpoint format; other versions are rejected
 POLL_TIMEOUT = 0.1  # [s], how long a poll waits for transitions while not learning
 
 Stop = Callable[[], bool]
@@ -52,6 +52,7 @@ class Training:
         clones = s.learner == "cloning"
         self.model = (Cloning if clones else DoubleDqn)(self.env, s, self.discount, seed)
         selection = {"select": imitated} if clones else {}
+        self.model.threads = config.run.workers
         self.data = OfflineData(self.task, self.model.replay, **selection)
         self.log = TrainingLog(folder)
         fixed = {name: getattr(s, name) for name in CHECKPOINT_SETTINGS}
@@ -109,6 +110,8 @@ class Training:
             self._receive(source, record, POLL_TIMEOUT)
         if not self.done:
             self.device_info = self._current_device_info()
+        if self.runs > 1:
+            self.model.share_process()
         self.clock.start(alone=self.runs == 1)
         while not (stop() or self.done):
             with self.model.stages["receiving"]:

@@ -1,0 +1,81 @@
+#include "core/learn/double_dqn.hpp"
+
+#include <cstddef>
+#include <vector>
+
+#include "core/threads/parallel_for.hpp"
+
+namespace rtg::learn {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXf;
+using Eigen::RowVectorXf;
+
+/// The states of the columns from `begin` on.
+HeadingNetwork::States columns(const HeadingNetwork::States& all, Index begin, Index count) {
+  return {all.data() + begin * all.rows(), all.rows(), count};
+}
+
+/// Returns the heading of the largest value in each column.
+std::vector<std::int64_t> best_headings(const MatrixXf& values) {
+  std::vector<std::int64_t> best(static_cast<std::size_t>(values.cols()));
+  for (Index k = 0; k < values.cols(); ++k)
+    values.col(k).maxCoeff(&best[static_cast<std::size_t>(k)]);
+  return best;
+}
+
+}  // namespace
+
+DoubleDqn::DoubleDqn(const NetworkSizes& sizes, const TargetRules& rules)
+    : rules_(rules),
+      networks_{HeadingNetwork(sizes), HeadingNetwork(sizes)},
+      second_gradient_(weight_count(sizes)) {}
+
+void DoubleDqn::compute(const float* online, const float* target, const Transitions& batch,
+                        int threads, float* gradient) {
+  const Index count = batch.states.cols(), half = (count + 1) / 2;
+  for (RowVectorXf* each : {&values_, &bootstrap_, &targets_}) each->resize(count);
+  threads::parallel_for(networks_.size(), threads, [&](std::size_t k) {
+    if (k == 0)
+      compute_part(networks_[0], online, target, batch, 0, half, gradient);
+    else
+      compute_part(networks_[1], online, target, batch, half, count - half,
+                   second_gradient_.data());
+  });
+  Eigen::Map<Eigen::VectorXf>(gradient, second_gradient_.size()) += second_gradient_;
+}
+
+void DoubleDqn::compute_part(HeadingNetwork& network, const float* online, const float* target,
+                             const Transitions& batch, Index begin, Index count, float* gradient) {
+  const RowVectorXf next =
+      next_values(network, online, target, columns(batch.next_states, begin, count));
+  auto bootstrap = bootstrap_.segment(begin, count).array();
+  bootstrap = batch.rewards.segment(begin, count).array() +
+              static_cast<float>(rules_.discount) *
+                  (1.0f - batch.terminated.segment(begin, count).array()) * next.array();
+  auto y = targets_.segment(begin, count).array();
+  y = bootstrap.max(batch.bounds.segment(begin, count).array());
+  if (rules_.clip_targets) y = y.max(0.0f).min(1.0f);
+
+  const auto headings =
+      batch.headings.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
+  const RowVectorXf& q = network.values_at(online, columns(batch.states, begin, count), headings);
+  values_.segment(begin, count) = q;
+  const RowVectorXf of_q =
+      (q.array() - y).max(-1.0f).min(1.0f) / static_cast<float>(batch.states.cols());
+  network.gradient(online, of_q, gradient);
+}
+
+/// Returns V(s').
+RowVectorXf DoubleDqn::next_values(HeadingNetwork& network, const float* online,
+                                   const float* target, const HeadingNetwork::States& next) const {
+  if (!rules_.double_q) return network.values(target, next).colwise().maxCoeff();
+  const MatrixXf& values = network.values(online, next);
+  const std::vector<std::int64_t> best = best_headings(values);
+  const RowVectorXf most = values.colwise().maxCoeff();
+  const RowVectorXf& value = network.values_at(target, next, best);
+  return rules_.clipped_double_q ? RowVectorXf(value.cwiseMin(most)) : value;
+}
+
+}  // namespace rtg::learn

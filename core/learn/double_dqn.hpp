@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+
+#include "core/learn/heading_network.hpp"
+
+namespace rtg::learn {
+
+/// The transitions (s, a, r, s') of a gradient step, B of them. States have a column for each,
+/// [inputs, B]; all else is [B].
+struct Transitions {
+  using Numbers = Eigen::Map<const Eigen::RowVectorXf>;
+
+  HeadingNetwork::States states;
+  HeadingNetwork::Headings headings;
+  HeadingNetwork::States next_states;
+  Numbers rewards;
+  Numbers terminated;  // T; 1: no bootstrap from s'
+  Numbers bounds;      // b, lower bounds of Q*(s, a); -∞ where there is none
+};
+
+/// How Q(s', ·) becomes a target, as settings of the same names say.
+struct TargetRules {
+  double discount = 0.0;  // γ
+  bool double_q = true;
+  bool clipped_double_q = true;
+  bool clip_targets = true;
+};
+
+/// The loss of Double Q-learning [van Hasselt et al. 2016] and its gradient for the weights of a
+/// HeadingNetwork, the online network:
+///
+///   L = mean Huber(Q(s, a) - y),   y = max(r + γ (1 - T) V(s'), b), clipped to [0, 1] if asked
+///   for,
+///
+/// where V(s') = Q⁻(s', argmax Q(s', ·)), Q⁻ is the target network and Huber(e) = e²/2 up to
+/// |e| = 1, then |e| - 1/2. With clipped_double_q, V(s') is the smaller one of Q and Q⁻; without
+/// double_q, V(s') = max Q⁻(s', ·).
+///
+/// Two threads take a half of the batch each. Results are the same with one, bit for bit.
+class DoubleDqn {
+ public:
+  DoubleDqn(const NetworkSizes& sizes, const TargetRules& rules);
+
+  const NetworkSizes& sizes() const { return networks_[0].sizes(); }
+
+  /// Writes L's gradient for the weights `online` to `gradient`, an array like theirs. `online` and
+  /// `target` are weights as HeadingNetwork takes them. 1 ≤ `threads`.
+  void compute(const float* online, const float* target, const Transitions& batch, int threads,
+               float* gradient);
+
+  // Of the last compute().
+  const Eigen::RowVectorXf& values() const { return values_; }        // Q(s, a) [B]
+  const Eigen::RowVectorXf& bootstrap() const { return bootstrap_; }  // r + γ (1 - T) V(s') [B]
+  const Eigen::RowVectorXf& targets() const { return targets_; }      // y [B]
+
+ private:
+  void compute_part(HeadingNetwork& network, const float* online, const float* target,
+                    const Transitions& batch, Eigen::Index begin, Eigen::Index count,
+                    float* gradient);
+  Eigen::RowVectorXf next_values(HeadingNetwork& network, const float* online, const float* target,
+                                 const HeadingNetwork::States& next) const;
+
+  TargetRules rules_;
+  std::array<HeadingNetwork, 2> networks_;  // for either half of the batch
+  Eigen::VectorXf second_gradient_;         // of the second half
+  Eigen::RowVectorXf values_, bootstrap_, targets_;
+};
+
+}  // namespace rtg::learn
