@@ -25,7 +25,7 @@ RRBS = (
     "search.breadth=4",
 )
 # Falls short.
-SHORT = ("search.depth=1", "search.breadth=1")
+SHORT = ("search.depth=1", "search.breadth=1", "search.plans_per_node=1")
 # On the server alone.
 FORWARD = ("search.generator=forward", "search.transitions=800")
 SCATTER = ("search.generator=scatter", "search.transitions=800")

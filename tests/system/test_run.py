@@ -158,7 +158,8 @@ def test_the_written_configuration_makes_the_same_run(in_process, tmp_path):
 @pytest.mark.parametrize("mode", [(), ("--in-process",)], ids=["over_lcm", "in_process"])
 def test_a_search_that_falls_short_has_results_and_says_so_once(tmp_path, mode):
     folder = tmp_path / "run"
-    short = ("--set", "search.depth=1", "--set", "search.breadth=1")
+    keys = ("depth", "breadth", "plans_per_node")
+    short = [word for key in keys for word in ("--set", f"search.{key}=1")]
     done = run(TINY, *short, "--no-train", *mode, "--out", folder)
     assert done.returncode == 1
     (line,) = done.stderr.splitlines()

@@ -33,7 +33,8 @@ def learning_curve(path: Path) -> dict[str, Floats]:
         raise UserError(f"{path}: is damaged; legal: the file as the run wrote it") from None
 
 
-def _draw_generation(plan: RunPlan) -> None:
+def draw_generation(plan: RunPlan) -> None:
+    """Draws the pictures of a finished generation."""
     report = run_folder.read_json(plan.report_file)
     if report["replay_gaps"]:
         plots.replay_gap(plan.folder / "replay_gap.png", plan.title, report)
@@ -94,9 +95,7 @@ def _draw_episode(plan: RunPlan) -> None:
 
 
 def draw(plan: RunPlan) -> None:
-    """Draws all pictures but stages.png."""
-    if plan.offline:
-        _draw_generation(plan)
+    """Draws the pictures of learning and of an episode."""
     if plan.train:
         curve = learning_curve(plan.folder / "progress.csv")
         if curve:  # empty if a resumed run had a budget below its first evaluation

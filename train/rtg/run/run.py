@@ -9,6 +9,7 @@ from typing import Any
 from rtg.errors import RunError, StoppedError
 from rtg.files import run_folder
 from rtg.run import effective_config
+from rtg.run.early_pictures import EarlyPictures
 from rtg.run.plan import RunPlan, make_plan
 from rtg.run.progress import Display, display
 from rtg.run.run_args import RunArgs
@@ -34,9 +35,7 @@ def run(args: RunArgs) -> int:
 
 def _carry_out(plan: RunPlan) -> int:
     """Generates, trains and writes the results; returns the exit status."""
-    from rtg.run import results  # slow to import
-
-    with RunTimes(display(sys.stdout)) as shown:
+    with RunTimes(display(sys.stdout)) as shown, EarlyPictures(plan) as pictures:
         for note in (f"{plan.title}: {plan.folder}", *plan.notes):
             shown.note(note)
         try:
@@ -45,6 +44,9 @@ def _carry_out(plan: RunPlan) -> int:
             flags = "--resume" if plan.train else "--resume --no-train"
             command = f"./run.sh {flags} --out {shlex.quote(str(plan.folder))}"
             raise RunError(f"stopped; to go on: {command}") from None
+        pictures.finish()
+        from rtg.run import results  # imports matplotlib
+
         results.draw(plan)
         summary = results.finish(plan, {**measured, **shown.seconds()})
     print(results.summary_text(plan, summary))

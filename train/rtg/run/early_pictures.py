@@ -1,0 +1,50 @@
+"""Draws the pictures of the generation while the run goes on in other processes."""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from types import TracebackType
+from typing import Self
+
+from rtg.run.plan import RunPlan
+
+_POLL = 0.2  # [s]
+
+
+class EarlyPictures:
+    """Draws the pictures of the generation on a thread, once the generation has ended.
+
+    Importing matplotlib and drawing take more than a second, which learning need not wait for.
+    """
+
+    def __init__(self, plan: RunPlan) -> None:
+        self._plan = plan
+        self._over = threading.Event()
+        self._pool = ThreadPoolExecutor(1)
+
+    def __enter__(self) -> Self:
+        self._drawn = self._pool.submit(self._draw)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._over.set()
+        self._pool.shutdown()
+
+    def finish(self) -> None:
+        """Waits until the pictures are there; to be called when the run has ended."""
+        self._over.set()
+        self._drawn.result()
+
+    def _draw(self) -> None:
+        while not self._over.is_set() and not self._plan.report_file.exists():
+            self._over.wait(_POLL)
+        if self._plan.report_file.exists():
+            from rtg.run import results  # imports matplotlib
+
+            results.draw_generation(self._plan)
