@@ -28,22 +28,19 @@ std::vector<std::int64_t> best_headings(const MatrixXf& values) {
 }  // namespace
 
 DoubleDqn::DoubleDqn(const NetworkSizes& sizes, const TargetRules& rules)
-    : rules_(rules),
-      networks_{HeadingNetwork(sizes), HeadingNetwork(sizes)},
-      second_gradient_(weight_count(sizes)) {}
+    : rules_(rules), networks_{HeadingNetwork(sizes), HeadingNetwork(sizes)} {
+  gradients_.fill(Eigen::VectorXf(weight_count(sizes)));
+}
 
 void DoubleDqn::compute(const float* online, const float* target, const Transitions& batch,
-                        int threads, float* gradient) {
+                        int threads) {
   const Index count = batch.states.cols(), half = (count + 1) / 2;
   for (RowVectorXf* each : {&values_, &bootstrap_, &targets_}) each->resize(count);
   threads::parallel_for(networks_.size(), threads, [&](std::size_t k) {
-    if (k == 0)
-      compute_part(networks_[0], online, target, batch, 0, half, gradient);
-    else
-      compute_part(networks_[1], online, target, batch, half, count - half,
-                   second_gradient_.data());
+    compute_part(networks_[k], online, target, batch, k == 0 ? 0 : half,
+                 k == 0 ? half : count - half, gradients_[k].data());
   });
-  Eigen::Map<Eigen::VectorXf>(gradient, second_gradient_.size()) += second_gradient_;
+  gradients_[0] += gradients_[1];
 }
 
 void DoubleDqn::compute_part(HeadingNetwork& network, const float* online, const float* target,

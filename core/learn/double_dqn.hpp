@@ -44,12 +44,12 @@ class DoubleDqn {
 
   const NetworkSizes& sizes() const { return networks_[0].sizes(); }
 
-  /// Writes L's gradient for the weights `online` to `gradient`, an array like theirs. `online` and
-  /// `target` are weights as HeadingNetwork takes them. 1 ≤ `threads`.
-  void compute(const float* online, const float* target, const Transitions& batch, int threads,
-               float* gradient);
+  /// Computes L's gradient for the weights `online` and what it depends on. `online` and `target`
+  /// are weights as HeadingNetwork takes them. 1 ≤ `threads`.
+  void compute(const float* online, const float* target, const Transitions& batch, int threads);
 
   // Of the last compute().
+  const Eigen::VectorXf& gradient() const { return gradients_[0]; }   // [weights]
   const Eigen::RowVectorXf& values() const { return values_; }        // Q(s, a) [B]
   const Eigen::RowVectorXf& bootstrap() const { return bootstrap_; }  // r + γ (1 - T) V(s') [B]
   const Eigen::RowVectorXf& targets() const { return targets_; }      // y [B]
@@ -62,8 +62,9 @@ class DoubleDqn {
                                  const HeadingNetwork::States& next) const;
 
   TargetRules rules_;
-  std::array<HeadingNetwork, 2> networks_;  // for either half of the batch
-  Eigen::VectorXf second_gradient_;         // of the second half
+  // For either half of the batch. In the end, the first gradient is their sum.
+  std::array<HeadingNetwork, 2> networks_;
+  std::array<Eigen::VectorXf, 2> gradients_;
   Eigen::RowVectorXf values_, bootstrap_, targets_;
 };
 

@@ -59,7 +59,8 @@ std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& confi
   }
   std::stable_sort(drawn.begin(), drawn.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  drawn.resize(std::min(drawn.size(), static_cast<std::size_t>(config.breadth)));
+  const int wanted = (config.breadth + kNodesPerRoot - 1) / kNodesPerRoot;
+  drawn.resize(std::min(drawn.size(), static_cast<std::size_t>(wanted)));
   std::vector<Poses> roots;
   for (auto& [score, root] : drawn) roots.push_back(std::move(root));
   return roots;

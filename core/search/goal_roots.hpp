@@ -14,10 +14,14 @@ namespace rtg::search {
 /// have equal kind, shape, density and friction. Such swaps do not change whether a goal holds.
 Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Poses& target);
 
-/// Draws goal states and returns up to config.breadth distinct ones, the nearest to `target` by
-/// start_distance(). Makes at most config.breadth · config.root_draws draws by sample_goal() and
-/// applies with_swapped_twins() to each state. The states are not yet at rest. Counts failed draws
-/// in `stats`.
+/// Nodes of a full beam per root. With a root for each, the first layer takes three times as long,
+/// as its objects touch, and nothing is learned from it that later layers do not teach.
+inline constexpr int kNodesPerRoot = 4;
+
+/// Draws goal states and returns up to config.breadth / kNodesPerRoot (rounded up) distinct ones,
+/// the nearest to `target` by start_distance(). Makes at most config.breadth · config.root_draws
+/// draws by sample_goal() and applies with_swapped_twins() to each state. The states are not yet at
+/// rest. Counts failed draws in `stats`.
 std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& config,
                               const Poses& target, Rng& rng, SearchStats& stats);
 

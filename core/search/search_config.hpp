@@ -27,7 +27,7 @@ struct SearchConfig {
   int depth = 40;                  // D, layers per tree at most
   int predecessors_per_solve = 2;  // considered per node and action, the best ones
   int nodes_per_layout = 18;       // most nodes of a beam that differ only in the robot's position
-  int root_draws = 4;              // goal states drawn per root of a tree
+  int root_draws = 4;              // goal states drawn per tree, as a multiple of breadth
   int patience = 4;                // consecutive layers without a better node that end a tree
   bool randomise = false;          // starts are jittered by up to task.randomisation
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <tuple>
 
+#include "core/learn/adam.hpp"
 #include "core/learn/double_dqn.hpp"
 #include "core/learn/heading_network.hpp"
 #include "train/bindings/arrays.hpp"
@@ -15,7 +16,9 @@ namespace {
 
 using learn::DoubleDqn;
 using learn::HeadingNetwork;
+using learn::LearnerWeights;
 using learn::NetworkSizes;
+using learn::StepRates;
 using learn::Transitions;
 using Floats = nb::ndarray<const float, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using FloatsOut = nb::ndarray<float, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
@@ -97,16 +100,35 @@ struct TransitionArrays {
   }
 };
 
-std::tuple<Result, Result, Result> compute(DoubleDqn& learner, const Floats& online,
-                                           const Floats& target, const TransitionArrays& batch,
-                                           const FloatsOut& gradient, int threads) {
-  for (const std::size_t size : {online.shape(0), target.shape(0), gradient.shape(0)})
-    check_weights(learner.sizes(), size);
+/// The arrays of LearnerWeights.
+struct WeightArrays {
+  FloatsOut online, target, mean, first_moment, second_moment;
+
+  void check(const NetworkSizes& sizes) const {
+    for (const FloatsOut& each : {online, target, mean, first_moment, second_moment})
+      check_weights(sizes, each.shape(0));
+  }
+
+  LearnerWeights view() const {
+    return {.online = online.data(),
+            .target = target.data(),
+            .mean = mean.data(),
+            .first_moment = first_moment.data(),
+            .second_moment = second_moment.data()};
+  }
+};
+
+std::tuple<Result, Result, Result> step(DoubleDqn& learner, const WeightArrays& weights,
+                                        const TransitionArrays& batch, const StepRates& rates,
+                                        int threads) {
+  weights.check(learner.sizes());
   batch.check(learner.sizes());
   if (threads < 1) refuse(std::to_string(threads) + " threads; legal: at least 1");
   {
     const nb::gil_scoped_release release;
-    learner.compute(online.data(), target.data(), batch.view(), threads, gradient.data());
+    const LearnerWeights view = weights.view();
+    learner.compute(view.online, view.target, batch.view(), threads);
+    descend(learner.gradient().data(), static_cast<int>(learner.gradient().size()), view, rates);
   }
   const std::size_t count = batch.count();
   return {copied(learner.values(), {count}), copied(learner.targets(), {count}),
@@ -128,6 +150,12 @@ void bind_network(nb::module_& module) {
       .def(nb::init<StateRows, ActionArray, StateRows, Floats, Floats, Floats>(), nb::arg("states"),
            nb::arg("headings"), nb::arg("next_states"), nb::arg("rewards"), nb::arg("terminated"),
            nb::arg("bounds"));
+  nb::class_<WeightArrays>(module, "WeightArrays")
+      .def(nb::init<FloatsOut, FloatsOut, FloatsOut, FloatsOut, FloatsOut>(), nb::arg("online"),
+           nb::arg("target"), nb::arg("mean"), nb::arg("first_moment"), nb::arg("second_moment"));
+  nb::class_<StepRates>(module, "StepRates")
+      .def(nb::init<long, double, double, double>(), nb::kw_only(), nb::arg("step"),
+           nb::arg("learning"), nb::arg("target"), nb::arg("mean"));
   nb::class_<DoubleDqn>(module, "DoubleDqn")
       .def(
           "__init__",
@@ -139,8 +167,8 @@ void bind_network(nb::module_& module) {
           nb::arg("inputs"), nb::arg("headings"), nb::arg("hidden"), nb::arg("features"),
           nb::kw_only(), nb::arg("discount"), nb::arg("double_q"), nb::arg("clipped_double_q"),
           nb::arg("clip_targets"))
-      .def("compute", &compute, nb::arg("online"), nb::arg("target"), nb::arg("batch"),
-           nb::kw_only(), nb::arg("gradient"), nb::arg("threads"));
+      .def("step", &step, nb::arg("weights"), nb::arg("batch"), nb::arg("rates"), nb::kw_only(),
+           nb::arg("threads"));
 }
 
 }  // namespace rtg::bindings

@@ -178,8 +178,29 @@ class TransitionArrays:
     ) -> None:
         """`states`, `next_states` [B, inputs], all else [B]."""
 
+class WeightArrays:
+    """The weights of a learner and the moments of its optimiser, float32 [W] each.
+
+    The moments are zeros before the first step.
+    """
+
+    def __init__(
+        self,
+        online: NDArray[np.float32],
+        target: NDArray[np.float32],
+        mean: NDArray[np.float32],
+        first_moment: NDArray[np.float32],
+        second_moment: NDArray[np.float32],
+    ) -> None: ...
+
+class StepRates:
+    """How far a gradient step moves the weights; see core/learn/adam.hpp."""
+
+    def __init__(self, *, step: int, learning: float, target: float, mean: float) -> None:
+        """`step`: its number, counted from 1; `target`, `mean`: shares of the way, from 0 to 1."""
+
 class DoubleDqn:
-    """Loss of Double Q-learning and its gradient; see core/learn/double_dqn.hpp.
+    """Gradient steps of Double Q-learning; see core/learn/double_dqn.hpp.
 
     Arrays and errors as those of HeadingNetwork.
     """
@@ -196,19 +217,13 @@ class DoubleDqn:
         clipped_double_q: bool,
         clip_targets: bool,
     ) -> None: ...
-    def compute(
-        self,
-        online: NDArray[np.float32],
-        target: NDArray[np.float32],
-        batch: TransitionArrays,
-        *,
-        gradient: NDArray[np.float32],
-        threads: int,
+    def step(
+        self, weights: WeightArrays, batch: TransitionArrays, rates: StepRates, *, threads: int
     ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
-        """Writes the gradient for the weights `online` to `gradient` [W].
+        """Performs a gradient step, and moves the other networks towards the online one.
 
-        `online`, `target` [W]. Returns Q(s, a), the targets, and these before bounds and clipping,
-        [B] each.
+        Changes all of `weights` in place. Returns Q(s, a), the targets, and these before bounds and
+        clipping, [B] each.
         """
 
 class PhysicsConfig(_Section): ...

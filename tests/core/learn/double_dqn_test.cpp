@@ -47,9 +47,8 @@ struct Case {
 
   /// Returns the gradient.
   VectorXf compute(DoubleDqn& learner, int threads = 1) const {
-    VectorXf out(online.size());
-    learner.compute(online.data(), target.data(), batch(), threads, out.data());
-    return out;
+    learner.compute(online.data(), target.data(), batch(), threads);
+    return learner.gradient();
   }
 
   Transitions batch() const {

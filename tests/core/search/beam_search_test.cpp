@@ -43,10 +43,11 @@ struct BeamSearchTest : ::testing::Test, testing::DraggingWorld {
   }
 };
 
+// One for every four nodes of a full beam, rounded up.
 TEST_F(BeamSearchTest, BeginsAtGoalStatesAtRest) {
   const BeamSearch search = with_roots();
-  EXPECT_EQ(search.nodes().size(), 6U);
-  EXPECT_EQ(search.beam().size(), 6U);
+  EXPECT_EQ(search.nodes().size(), 2U);
+  EXPECT_EQ(search.beam().size(), 2U);
   for (const Node& n : search.nodes()) {
     EXPECT_TRUE(succeeded(task, n.poses));
     EXPECT_EQ(n.poses, to_single(n.poses));
@@ -63,7 +64,7 @@ TEST_F(BeamSearchTest, GoalsThatComeToRestElsewhereAreCountedAndNoRoots) {
   BeamSearch search(task, config, task.start, 1);
   search.make_roots(scattering, stats);
   EXPECT_TRUE(search.nodes().empty() && search.beam().empty());
-  EXPECT_EQ(stats.unsettled_goals, 6);
+  EXPECT_EQ(stats.unsettled_goals, 2);
   EXPECT_EQ(search.min_start_distance(), std::numeric_limits<double>::infinity());
   EXPECT_TRUE(search.grow(solve, replay, stats).empty());
 }
@@ -78,17 +79,18 @@ TEST_F(BeamSearchTest, SolvesForEveryActionOfEveryNodeOfTheBeam) {
     search.grow(solve, replay, stats);
     EXPECT_EQ(asked, expected);
   }
-  EXPECT_EQ(stats.candidates, 2 * 6 * 48);
+  EXPECT_EQ(stats.candidates, (2 + 6) * 48);
 }
 
 TEST_F(BeamSearchTest, ReturnsTrueStepsThatLeadToAboutANodeOfTheBeam) {
   over = 0.1;  // misses within the tolerance
+  config.breadth = 24;
   BeamSearch search = with_roots();
   std::size_t returned = 0;
-  for (int layer = 0; layer < 3; ++layer) {
+  for (int layer = 0; layer < 2; ++layer) {  // no object is in place yet
     const std::vector<int> parents(search.beam().begin(), search.beam().end());
     const std::vector<Transition> steps = search.grow(solve, replay, stats);
-    EXPECT_LE(steps.size(), 18U) << "three per place in the beam";
+    EXPECT_LE(steps.size(), 72U) << "three per place in the beam";
     returned += steps.size();
     for (const Transition& t : steps) {
       EXPECT_EQ(t.next, pushed({t.poses, t.action}));
@@ -208,7 +210,7 @@ TEST_F(BeamSearchTest, OfEachSolveTheStartsNearestToTheTargetAreSimulated) {
       }
     }
   }
-  EXPECT_GT(best, 200U);
+  EXPECT_GT(best, 100U);
   EXPECT_GT(left_out, 200U);
 }
 

@@ -21,14 +21,13 @@ using testing::gathering;
 using testing::GenerationRun;
 using testing::run_naive;
 
-constexpr int kBudget = 1500;
+constexpr int kBudget = 3000;
 
 SearchConfig small() {
   SearchConfig config;
   config.generator = Generator::kNaive;
   config.transitions = kBudget;
-  config.breadth = 6;
-  config.plans_per_node = 4;  // so that a tree reaches the start region
+  config.breadth = 10;  // so that a tree reaches the start region
   config.depth = 12;
   return config;
 }
@@ -164,7 +163,7 @@ TEST(Generate, EachTreeGrowsFromGoalStatesToAStartOfItsOwn) {
 TEST(Generate, ATreeEndsAtItsDepth) {
   SearchConfig config = small();
   config.depth = 3;
-  config.transitions = 400;
+  config.transitions = 1000;
   const GenerationReport report = run_naive(gathering(), config, 7, 1).report;
   EXPECT_GT(report.trees, 1);
   for (const ReportNode& n : report.nodes) EXPECT_LE(n.depth, 3);

@@ -61,7 +61,7 @@ def test_pytorch_computes_what_the_core_does_not_know() -> None:
 WEIGHTS = 16 * 6 + 16 * 17 + 64 + 25 * 17 + 72 + 16 + 9
 
 
-def compute(count: int = 3, **changes: Any) -> None:
+def step(count: int = 3, **changes: Any) -> None:
     row, states = np.zeros(count, np.float32), np.zeros((count, 5), np.float32)
     batch = {
         "states": states,
@@ -71,11 +71,14 @@ def compute(count: int = 3, **changes: Any) -> None:
         "terminated": row,
         "bounds": row,
     }
-    weights = np.zeros(WEIGHTS, np.float32)
-    others = {"online": weights, "target": weights, "gradient": weights.copy(), "threads": 1}
-    batch = {name: changes.get(name, value) for name, value in batch.items()}
-    others = {name: changes.get(name, value) for name, value in others.items()}
-    learner().compute(batch=_core.TransitionArrays(**batch), **others)
+    names = ("online", "target", "mean", "first_moment", "second_moment")
+    weights = {name: np.zeros(WEIGHTS, np.float32) for name in names}
+    learner().step(
+        _core.WeightArrays(**{name: changes.get(name, x) for name, x in weights.items()}),
+        _core.TransitionArrays(**{name: changes.get(name, x) for name, x in batch.items()}),
+        _core.StepRates(step=1, learning=1e-3, target=0.1, mean=0.1),
+        threads=changes.get("threads", 1),
+    )
 
 
 def learner() -> _core.DoubleDqn:
@@ -88,7 +91,9 @@ def learner() -> _core.DoubleDqn:
     [
         ({"online": np.zeros(3, np.float32)}, "3 weights; legal: "),
         ({"target": np.zeros(3, np.float32)}, "3 weights; legal: "),
-        ({"gradient": np.zeros(3, np.float32)}, "3 weights; legal: "),
+        ({"mean": np.zeros(3, np.float32)}, "3 weights; legal: "),
+        ({"first_moment": np.zeros(3, np.float32)}, "3 weights; legal: "),
+        ({"second_moment": np.zeros(3, np.float32)}, "3 weights; legal: "),
         ({"states": np.zeros((3, 4), np.float32)}, "states of 4 numbers; legal: 5"),
         ({"next_states": np.zeros((3, 4), np.float32)}, "states of 4 numbers; legal: 5"),
         ({"next_states": np.zeros((2, 5), np.float32)}, "3 states and 2 next states; legal: as "),
@@ -103,10 +108,10 @@ def learner() -> _core.DoubleDqn:
 )
 def test_the_core_refuses_what_does_not_fit(changes: dict[str, Any], expected: str) -> None:
     with pytest.raises(ValueError, match=expected):
-        compute(**changes)
+        step(**changes)
 
 
 def test_a_gradient_step_has_transitions() -> None:
-    compute(count=1)
+    step(count=1)
     with pytest.raises(ValueError, match="0 states and 0 next states; legal: as many, at least 1"):
-        compute(count=0)
+        step(count=0)

@@ -56,7 +56,7 @@ def test_noise_is_nearby_or_anywhere_and_as_frequent_as_asked() -> None:
 
 def test_a_loop_is_left_where_it_closes() -> None:
     nearby = {"nearby_share": 1.0}  # what explores differs
-    states = [0.0, 1.0, 0.04, 1.04, 2.0, 2.06, 2.2]
+    states = [0.0, 1.0, 0.03, 1.03, 2.0, 2.05, 2.2]
     left = [False, False, True, True, False, False, False]
     assert explored(exploration(leave_loops=True, **nearby), states) == left
     assert explored(exploration(leave_loops=False, **nearby), states) == [False] * 7
@@ -66,7 +66,7 @@ def test_one_number_that_differs_makes_another_state() -> None:
     one = exploration(leave_loops=True, nearby_share=1.0)
     seen = np.zeros((1, 5))
     one.actions(np.array([3]), seen, 0.0)
-    seen[0, 4] = 0.06  # in place: what is remembered is a copy
+    seen[0, 4] = 0.05  # in place: what is remembered is a copy
     assert one.actions(np.array([3]), seen, 0.0) == [3]
     assert one.actions(np.array([3]), seen, 0.0) != [3]
 

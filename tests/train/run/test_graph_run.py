@@ -122,7 +122,8 @@ def test_a_resumed_run_still_tells_what_its_generation_gave_up(plan, monkeypatch
     plan.report_file.write_text(json.dumps(report))
     plan.transitions_file.touch()
     measured = {}
-    monkeypatch.setattr(results, "draw", lambda plan: None)
+    for drawing in ("draw", "draw_generation"):
+        monkeypatch.setattr(results, drawing, lambda plan: None)
     monkeypatch.setattr(results, "finish", lambda plan, found: measured.update(found))
     monkeypatch.setattr(results, "summary_text", lambda plan, summary: "done")
     config = effective_config.load(TINY)

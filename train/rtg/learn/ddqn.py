@@ -51,6 +51,18 @@ def td_targets(bootstrap: th.Tensor, bounds: th.Tensor, clip: bool) -> th.Tensor
     return y.clamp(0.0, 1.0) if clip else y
 
 
+def core_batch(batch: Batch) -> _core.TransitionArrays:
+    """Returns `batch` as the C++ core takes it."""
+    return _core.TransitionArrays(
+        batch.observations.numpy(),
+        batch.actions[:, 0].numpy(),
+        batch.next_observations.numpy(),
+        batch.rewards[:, 0].numpy(),
+        batch.terminated[:, 0].numpy(),
+        batch.bounds[:, 0].numpy(),
+    )
+
+
 def conservative_gap(q: th.Tensor, actions: th.Tensor) -> th.Tensor:
     """Returns the penalty of CQL(H), log Σ_b exp Q(s, b) - Q(s, a) [Kumar et al. 2020, eq. 4].
 
@@ -105,6 +117,8 @@ class DoubleDqn:
             [self._online_weights], lr=settings.learning_rate, fused=True
         )
         self._core = self._make_core()
+        if self._core:
+            self._begin_optimizer()
         self.exploration = Exploration(settings, env.headings, seed, env.contact_headings)
         self.statistics = Statistics()
         self.stages = Stages()
@@ -125,7 +139,8 @@ class DoubleDqn:
     def _make_core(self) -> _core.DoubleDqn | None:
         """Returns what computes loss and gradient in C++; None if PyTorch must do so."""
         s, net = self.settings, self.online
-        if not isinstance(net, networks.HeadingNetwork) or not net.core or s.cql_weight:
+        plain = s.learner == "q_learning" and s.cql_weight == 0.0
+        if not plain or not isinstance(net, networks.HeadingNetwork) or not net.core:
             return None
         return _core.DoubleDqn(
             *net.sizes,
@@ -134,6 +149,12 @@ class DoubleDqn:
             clipped_double_q=s.clipped_double_q,
             clip_targets=s.clip_targets,
         )
+
+    def _begin_optimizer(self) -> None:
+        """Makes the optimiser's state, as PyTorch would do at its first step."""
+        zeros = th.zeros_like(self._online_weights).detach()
+        state = {"step": th.tensor(0.0), "exp_avg": zeros, "exp_avg_sq": zeros.clone()}
+        self.optimizer.state[self._online_weights] = state
 
     def share_process(self) -> None:
         """Prepares for other learners that learn beside this one, on threads of the process."""
@@ -173,48 +194,50 @@ class DoubleDqn:
             with self.stages["replay"]:
                 batch = self.replay.sample(self.settings.batch)
             with self.stages["gradient_steps"]:
-                self._gradient_step(batch)
                 self.gradient_steps += 1
-                self._follow()
+                self._gradient_step(batch)
 
-    def _follow(self) -> None:
-        """Moves the weights of the target network and of the mean network."""
-        online = self._online_weights.data
-        if self.gradient_steps % self.settings.target_sync == 0:
-            self._target_weights.lerp_(online, self.settings.target_rate)
+    def _following_rates(self) -> tuple[float, float]:
+        """Returns how far the target and the mean network move towards the online network now."""
+        s = self.settings
+        target_rate = s.target_rate if self.gradient_steps % s.target_sync == 0 else 0.0
         early_rate = AVERAGING_WARM_UP / (AVERAGING_WARM_UP + self.gradient_steps)
-        self._mean_weights.lerp_(online, max(self.settings.averaging_rate, early_rate))
+        return target_rate, max(s.averaging_rate, early_rate)
 
     def _gradient_step(self, batch: Batch) -> None:
+        """Performs a gradient step and moves the other networks."""
+        if self._core:
+            self._core_step(self._core, batch)
+            return
         self._compute_gradient(batch)
         th.nn.utils.clip_grad_norm_([self._online_weights], MAX_GRADIENT_NORM)
         self.optimizer.step()
+        target_rate, mean_rate = self._following_rates()
+        self._target_weights.lerp_(self._online_weights.data, target_rate)
+        self._mean_weights.lerp_(self._online_weights.data, mean_rate)
+
+    def _core_step(self, core: _core.DoubleDqn, batch: Batch) -> None:
+        state = self.optimizer.state[self._online_weights]
+        state["step"] += 1
+        target_rate, mean_rate = self._following_rates()
+        rates = _core.StepRates(
+            step=int(state["step"]),
+            learning=self.settings.learning_rate,
+            target=target_rate,
+            mean=mean_rate,
+        )
+        figures = core.step(self._core_weights(), core_batch(batch), rates, threads=self.threads)
+        self.statistics.add(batch, *(th.from_numpy(figure)[:, None] for figure in figures))
+
+    def _core_weights(self) -> _core.WeightArrays:
+        state = self.optimizer.state[self._online_weights]
+        weights = self._online_weights.detach(), self._target_weights, self._mean_weights
+        moments = state["exp_avg"], state["exp_avg_sq"]
+        return _core.WeightArrays(*(each.numpy() for each in (*weights, *moments)))
 
     def _compute_gradient(self, batch: Batch) -> None:
         """Writes the gradient of the loss to the online weights."""
-        q, y, bootstrap = (self._core_gradient if self._core else self._torch_gradient)(batch)
-        self.statistics.add(batch, q, y, bootstrap)
-
-    def _core_gradient(self, batch: Batch) -> tuple[th.Tensor, th.Tensor, th.Tensor]:
-        """As _torch_gradient(), by the C++ core."""
-        assert self._core is not None and self._online_weights.grad is not None
-        arrays = _core.TransitionArrays(
-            batch.observations.numpy(),
-            batch.actions[:, 0].numpy(),
-            batch.next_observations.numpy(),
-            batch.rewards[:, 0].numpy(),
-            batch.terminated[:, 0].numpy(),
-            batch.bounds[:, 0].numpy(),
-        )
-        figures = self._core.compute(
-            self._online_weights.detach().numpy(),
-            self._target_weights.numpy(),
-            arrays,
-            gradient=self._online_weights.grad.numpy(),
-            threads=self.threads,
-        )
-        q, y, bootstrap = (th.from_numpy(figure)[:, None] for figure in figures)
-        return q, y, bootstrap
+        self.statistics.add(batch, *self._torch_gradient(batch))
 
     def _torch_gradient(self, batch: Batch) -> tuple[th.Tensor, th.Tensor, th.Tensor]:
         """Computes the gradient of the loss. Returns Q(s, a), td_targets(), bootstrap_targets()."""

@@ -13,7 +13,7 @@ from rtg import _core
 Array = npt.NDArray[Any]
 
 REVISIT_WINDOW = 8  # number of previous states with which a state is compared
-REVISIT_TOLERANCE = 0.05  # states are equal if each entry of the observation differs less
+REVISIT_TOLERANCE = 0.04  # states are equal if each entry of the observation differs less
 
 # Maps a seed to a heading towards a random object for each environment. [N]
 ContactHeadings = Callable[[int], Array]

@@ -82,6 +82,8 @@ def read(path: Path, task: _core.Task) -> Policy:
             f"{path}: its weights do not fit the network ({error}); legal: a model.pt of RTG"
         ) from error
 
+    networks.flatten(network)
+
     def greedy(observation: NDArray[np.float32]) -> NDArray[Any]:
         if observation.ndim != 2 or observation.shape[1] != task.observation_size:
             shape = list(observation.shape)
