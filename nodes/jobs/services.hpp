@@ -20,7 +20,8 @@ struct TaskShape {
   int headings = 0;
 };
 
-/// Upper limits of a unit. A unit is the list of jobs that one message carries.
+/// Upper limits of a unit. A unit is the list of jobs that one message carries, milliseconds of
+/// work: smaller ones cost more messages, larger ones keep workers waiting for the last.
 struct UnitLimit {
   std::size_t jobs;
   std::size_t states;  // in one job or its result
@@ -38,7 +39,7 @@ struct ReverseService {
   static constexpr const char* kBeats = "RTG_REVERSE_BEAT";
   static constexpr const char* kJobs = "RTG_REVERSE_JOB";
   static constexpr const char* kResults = "RTG_REVERSE_RESULT";
-  static constexpr UnitLimit kUnit{.jobs = 24, .states = reverse::kMaxPredecessors};
+  static constexpr UnitLimit kUnit{.jobs = 48, .states = reverse::kMaxPredecessors};
 
   static JobMessage message(std::span<const Job> jobs);
   static ResultMessage message(std::span<const Result> results);
@@ -58,7 +59,7 @@ struct ReplayService {
   static constexpr const char* kBeats = "RTG_REPLAY_BEAT";
   static constexpr const char* kJobs = "RTG_REPLAY_JOB";
   static constexpr const char* kResults = "RTG_REPLAY_RESULT";
-  static constexpr UnitLimit kUnit{.jobs = 24, .states = 1};
+  static constexpr UnitLimit kUnit{.jobs = 128, .states = 1};
 
   static JobMessage message(std::span<const Job> jobs);
   static ResultMessage message(std::span<const Result> results);

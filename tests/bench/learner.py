@@ -65,8 +65,9 @@ def multiplications(net: HeadingNetwork, batch: int) -> float:
     and twice as many for the gradient of these.
     """
     inputs, headings, hidden, features = net.sizes
-    trunk = hidden * (inputs + hidden + 3 * features)
-    return float(batch * (trunk + headings * features**2 + 4 * (trunk + features**2)))
+    trunk = hidden * (inputs + hidden + 3 * features + 1)
+    heading = features * (3 + features + 1)  # their sum along it, f's two layers
+    return float(batch * (trunk + headings * heading + 4 * (trunk + heading)))
 
 
 def bare_step(one: DoubleDqn) -> Callable[[], object]:

@@ -14,6 +14,7 @@ using namespace std::chrono_literals;
 using rtg_msgs::replay_job_t;
 
 constexpr jobs::TaskShape kShape{.bodies = 1, .headings = 48};
+constexpr int kUnit = jobs::ReplayService::kUnit.jobs;
 constexpr std::int64_t kConfig = 77;
 constexpr jobs::WorkerId kAnn = 1;
 
@@ -117,7 +118,7 @@ TEST(JobPool, AnswersInJobOrderHoweverTheUnitsComeBack) {
     played.publish(Played::result_of(waiting.back()));
     waiting.pop_back();
   };
-  const auto jobs = many_jobs(333);
+  const auto jobs = many_jobs(14 * kUnit);
   expect_right(jobs, played.ask(jobs));
   expect_right({}, played.ask({}));
 }
@@ -130,7 +131,7 @@ TEST(JobPool, EqualUnitsAreAskedOnce) {
     ++asked;
     played.publish(Played::result_of(job));
   };
-  const std::vector<search::ReplayJob> jobs(48, many_jobs(2)[1]);
+  const std::vector<search::ReplayJob> jobs(2 * kUnit, many_jobs(2)[1]);
   expect_right(jobs, played.ask(jobs));
   EXPECT_EQ(asked, 1);
 }
@@ -152,7 +153,7 @@ TEST(JobPool, CountsAndIgnoresResultsThatMakeNoSense) {
     played.publish(Played::result_of(job));
     played.publish(Played::result_of(job));
   };
-  const auto jobs = many_jobs(48);
+  const auto jobs = many_jobs(2 * kUnit);
   expect_right(jobs, played.ask(jobs));
   EXPECT_EQ(played.bus.counters().value("results.illegal"), 4);
   EXPECT_GE(played.bus.counters().value("results.unknown"), 2);
@@ -182,7 +183,7 @@ TEST(JobPool, SendsAgainWhatGotLost) {
       played.publish(Played::result_of(job));
   };
   played.each_round = [&] { played.beat(); };
-  const auto jobs = many_jobs(333);
+  const auto jobs = many_jobs(14 * kUnit);
   expect_right(jobs, played.ask(jobs));
   EXPECT_GE(played.pool.state().resent, 5);
 }
@@ -200,7 +201,7 @@ TEST(JobPool, GivesUpAUnitThatNobodySurvives) {
     if (played.pool.state().workers == 0) alive = true;  // another one starts
     if (alive) played.beat();
   };
-  const auto jobs = many_jobs(72);
+  const auto jobs = many_jobs(3 * kUnit);
   const auto results = played.ask(jobs);
   ASSERT_TRUE(results.has_value());
   EXPECT_EQ(played.pool.state().given_up, 1);
@@ -213,7 +214,7 @@ TEST(JobPool, GivesUpAUnitThatNobodySurvives) {
     EXPECT_FALSE(result.ok);
     EXPECT_EQ(result.end, jobs[k].start);
   }
-  EXPECT_EQ(skipped, 24);
+  EXPECT_EQ(skipped, kUnit);
 }
 
 TEST(JobPool, GivesUpAUnitThatHangsOnEveryLivingWorker) {
@@ -231,7 +232,7 @@ TEST(JobPool, GivesUpAUnitThatHangsOnEveryLivingWorker) {
     for (jobs::WorkerId worker = 1; worker <= std::ssize(stuck) + 1; ++worker)
       played.beat_of(worker, stuck.contains(worker) ? hanging : std::nullopt);
   };
-  const auto jobs = many_jobs(72);
+  const auto jobs = many_jobs(3 * kUnit);
   const auto results = played.ask(jobs);
   ASSERT_TRUE(results.has_value());
   EXPECT_EQ(played.pool.state().given_up, 1);
@@ -239,7 +240,7 @@ TEST(JobPool, GivesUpAUnitThatHangsOnEveryLivingWorker) {
   std::size_t answered = 0;
   for (std::size_t k = 0; k < jobs.size(); ++k)
     answered += (*results)[k].end == answer(jobs[k]).end;
-  EXPECT_EQ(answered, 48U);
+  EXPECT_EQ(answered, 2U * kUnit);
 }
 
 TEST(JobPool, StopEndsASearchThatWaits) {

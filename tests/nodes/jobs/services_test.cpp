@@ -105,8 +105,8 @@ TEST(Service, ResultsThatMakeNoSenseAreRefused) {
 TEST(Service, UnitsAreAsEqualAsCanBeAndFitIntoMessages) {
   const UnitLimit limit = ReverseService::kUnit;
   EXPECT_EQ(unit_sizes(0, limit, kShape), std::vector<std::size_t>{});
-  EXPECT_EQ(unit_sizes(24, limit, kShape), std::vector<std::size_t>{24});
-  EXPECT_EQ(unit_sizes(50, limit, kShape), (std::vector<std::size_t>{16, 17, 17}));
+  EXPECT_EQ(unit_sizes(48, limit, kShape), std::vector<std::size_t>{48});
+  EXPECT_EQ(unit_sizes(98, limit, kShape), (std::vector<std::size_t>{32, 33, 33}));
   for (const int bodies : {2, 64, 200}) {
     const TaskShape shape{bodies, 48};
     const auto sizes = unit_sizes(1000, limit, shape);
