@@ -19,7 +19,7 @@ struct StepRates {
   double mean = 0.0;      // likewise
 };
 
-constexpr double kMaxGradientNorm = 10.0;
+inline constexpr double kMaxGradientNorm = 10.0;
 
 /// Performs a step of Adam [Kingma and Ba 2015] on the online weights w,
 ///
@@ -29,8 +29,8 @@ constexpr double kMaxGradientNorm = 10.0;
 /// where g is `gradient` [count], shortened to kMaxGradientNorm if it is longer. Then moves the
 /// weights of the target network and of the mean network towards w.
 ///
-/// PyTorch's operations for the same take three times as long, because each of them passes over all
-/// weights.
+/// With PyTorch's operations for the same, each of which passes over all weights, a whole gradient
+/// step takes 3.7 instead of 3.3 ms.
 void descend(const float* gradient, int count, const LearnerWeights& weights,
              const StepRates& rates);
 

@@ -17,14 +17,6 @@ HeadingNetwork::States columns(const HeadingNetwork::States& all, Index begin, I
   return {all.data() + begin * all.rows(), all.rows(), count};
 }
 
-/// Returns the heading of the largest value in each column.
-std::vector<std::int64_t> best_headings(const MatrixXf& values) {
-  std::vector<std::int64_t> best(static_cast<std::size_t>(values.cols()));
-  for (Index k = 0; k < values.cols(); ++k)
-    values.col(k).maxCoeff(&best[static_cast<std::size_t>(k)]);
-  return best;
-}
-
 }  // namespace
 
 DoubleDqn::DoubleDqn(const NetworkSizes& sizes, const TargetRules& rules)
@@ -69,8 +61,10 @@ RowVectorXf DoubleDqn::next_values(HeadingNetwork& network, const float* online,
                                    const float* target, const HeadingNetwork::States& next) const {
   if (!rules_.double_q) return network.values(target, next).colwise().maxCoeff();
   const MatrixXf& values = network.values(online, next);
-  const std::vector<std::int64_t> best = best_headings(values);
-  const RowVectorXf most = values.colwise().maxCoeff();
+  std::vector<std::int64_t> best(static_cast<std::size_t>(values.cols()));
+  RowVectorXf most(values.cols());
+  for (Index k = 0; k < values.cols(); ++k)
+    most[k] = values.col(k).maxCoeff(&best[static_cast<std::size_t>(k)]);
   const RowVectorXf& value = network.values_at(target, next, best);
   return rules_.clipped_double_q ? RowVectorXf(value.cwiseMin(most)) : value;
 }

@@ -30,12 +30,11 @@ struct TargetRules {
 /// The loss of Double Q-learning [van Hasselt et al. 2016] and its gradient for the weights of a
 /// HeadingNetwork, the online network:
 ///
-///   L = mean Huber(Q(s, a) - y),   y = max(r + γ (1 - T) V(s'), b), clipped to [0, 1] if asked
-///   for,
+///   L = mean Huber(Q(s, a) - y),   y = max(r + γ (1 - T) V(s'), b).
 ///
-/// where V(s') = Q⁻(s', argmax Q(s', ·)), Q⁻ is the target network and Huber(e) = e²/2 up to
-/// |e| = 1, then |e| - 1/2. With clipped_double_q, V(s') is the smaller one of Q and Q⁻; without
-/// double_q, V(s') = max Q⁻(s', ·).
+/// With clip_targets, y is clipped to [0, 1]. V(s') = Q⁻(s', argmax Q(s', ·)), where Q⁻ is the
+/// target network; with clipped_double_q, it is the smaller one of Q and Q⁻; without double_q,
+/// max Q⁻(s', ·). Huber(e) = e²/2 up to |e| = 1, then |e| - 1/2.
 ///
 /// Two threads take a half of the batch each. Results are the same with one, bit for bit.
 class DoubleDqn {

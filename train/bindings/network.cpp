@@ -138,6 +138,7 @@ std::tuple<Result, Result, Result> step(DoubleDqn& learner, const WeightArrays& 
 }  // namespace
 
 void bind_network(nb::module_& module) {
+  module.attr("MAX_GRADIENT_NORM") = learn::kMaxGradientNorm;
   nb::class_<HeadingNetwork>(module, "HeadingNetwork")
       .def(
           "__init__",

@@ -151,6 +151,8 @@ class _Section:
 
     def __getattr__(self, name: str) -> Any: ...
 
+MAX_GRADIENT_NORM: float  # longer gradients are shortened to it
+
 class HeadingNetwork:
     """Values of headings; see core/learn/heading_network.hpp.
 

@@ -21,7 +21,7 @@ from rtg.learn.stages import Stages
 
 Array = npt.NDArray[Any]
 
-MAX_GRADIENT_NORM = 10.0
+MAX_GRADIENT_NORM = _core.MAX_GRADIENT_NORM
 RECENT_EPISODES = 100  # number of training episodes of which the log tells success and length
 # In early training the averaged weights cover the last 1 / AVERAGING_WARM_UP of the gradient steps.
 AVERAGING_WARM_UP = 5.0

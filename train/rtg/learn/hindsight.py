@@ -96,7 +96,7 @@ class Layouts:
         """Returns the input of the network for the desired layout `goal`. It consists of:
 
         - the observation;
-        - dx, dy from each object to its position in `goal`, in the same unit;
+        - dx, dy from each object to its position in `goal`, in units of task.position_unit;
         - cos, sin of the angle from each body with a joint to its angle in `goal`.
 
         [N, observation], [N, size] -> [N, observation + size]
@@ -112,8 +112,8 @@ class Layouts:
     def _difference(self, here: Array, there: Array) -> tuple[Array, Array]:
         """Returns the differences of positions and of angles from layout `here` to `there`.
 
-        Positions: dx, dy, [..., objects, 2]. Angles: cos, sin of the difference for
-        each body with a joint, [..., jointed, 2].
+        Positions: dx, dy, [..., objects, 2]. Angles: cos, sin of the difference for each body with
+        a joint, [..., jointed, 2].
         """
         positions = there[..., : self._position_entries] - here[..., : self._position_entries]
         c, s = here[..., self._position_entries :: 2], here[..., self._position_entries + 1 :: 2]

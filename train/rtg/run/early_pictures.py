@@ -20,6 +20,8 @@ class EarlyPictures:
 
     def __init__(self, plan: RunPlan) -> None:
         self._plan = plan
+        # The report of a generation that begins anew is removed and written again.
+        self._is_stale = plan.report_file.exists() and not plan.is_generated()
         self._over = threading.Event()
         self._pool = ThreadPoolExecutor(1)
 
@@ -42,8 +44,9 @@ class EarlyPictures:
         self._drawn.result()
 
     def _draw(self) -> None:
-        while not self._over.is_set() and not self._plan.report_file.exists():
-            self._over.wait(_POLL)
+        while self._is_stale or not self._plan.report_file.exists():
+            if self._over.wait(_POLL):
+                break
         if self._plan.report_file.exists():
             from rtg.run import results  # imports matplotlib
 
