@@ -5,18 +5,20 @@
 #   ./test.sh tsan        C++ tests that use threads under ThreadSanitizer
 #   ./test.sh coverage    line coverage of the physics and the solver by their own tests
 #   ./test.sh bench       benchmarks and gates: JSON and a Markdown table in build/bench/; then whole jobs, three tasks
-#   ./test.sh peer        the reverse solver against CasADi and IPOPT, which it installs (ten minutes)
+#   ./test.sh peer        the reverse solver against CasADi and IPOPT (ten minutes)
+# The last two install CasADi, whose package also holds HPIPM.
 set -euo pipefail
 # shellcheck source=setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 
-usage() { sed -n '3,8s/^# *//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '3,9s/^# *//p' "${BASH_SOURCE[0]}"; }
 
-set_up() { # PRESET TARGET
+set_up() { # PRESET TARGET [REQUIREMENTS]
   lock_setup
   setup_packages "${PACKAGES[@]}" "${TEST_PACKAGES[@]}"
   setup_python
-  build_preset "$@"
+  if (($# > 2)); then pip_install -r "$3"; fi
+  build_preset "$1" "$2"
   unlock_setup
 }
 
@@ -64,7 +66,7 @@ case ${1:-all} in
     coverage
     ;;
   bench)
-    set_up release all
+    set_up release all "$ROOT/tests/bench/requirements.txt"
     rm -rf "$ROOT/build/bench/whole"
     status=0
     "$VENV/bin/python" "$ROOT/tests/bench/table.py" "$ROOT/build/release" "$ROOT/build/bench" || status=$?
@@ -73,10 +75,7 @@ case ${1:-all} in
     exit "$status"
     ;;
   peer)
-    set_up release peer_dump
-    lock_setup
-    pip_install -r "$ROOT/tests/bench/requirements.txt"
-    unlock_setup
+    set_up release peer_dump "$ROOT/tests/bench/requirements.txt"
     exec "$VENV/bin/python" "$ROOT/tests/bench/peer.py" "$ROOT/build/release" "${@:2}"
     ;;
   -h | --help) usage ;;

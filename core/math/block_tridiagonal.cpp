@@ -33,6 +33,28 @@ BlockVector product(const BlockTridiagonal& K, const BlockVector& x) {
   return y;
 }
 
+Eigen::SparseMatrix<double> sparse(const BlockTridiagonal& K) {
+  Eigen::SparseMatrix<double> S(K.order(), K.order());
+  Eigen::Index at = 0, before = 0, column = 0;
+  const auto append = [&](const auto& entries, Eigen::Index first) {
+    for (Eigen::Index i = 0; i < entries.size(); ++i)
+      if (entries[i] != 0.0) S.insertBack(first + i, column) = entries[i];
+  };
+  for (std::size_t k = 0; k < K.blocks(); ++k) {
+    const Eigen::Index n = K.A[k].rows();
+    for (Eigen::Index j = 0; j < n; ++j, ++column) {
+      S.startVec(column);
+      if (k > 0) append(K.B[k].row(j), before);
+      append(K.A[k].col(j), at);
+      if (k + 1 < K.blocks()) append(K.B[k + 1].col(j), at + n);
+    }
+    before = at;
+    at += n;
+  }
+  S.finalize();
+  return S;
+}
+
 VectorXd joined(const BlockVector& x) {
   Eigen::Index n = 0, at = 0;
   for (const VectorXd& block : x) n += block.size();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <vector>
 
 #include "core/math/vectors.hpp"
@@ -25,6 +26,9 @@ using BlockVector = std::vector<VectorXd>;
 
 /// Returns K x.
 BlockVector product(const BlockTridiagonal& K, const BlockVector& x);
+
+/// Returns the entries of K other than zero, compressed by columns.
+Eigen::SparseMatrix<double> sparse(const BlockTridiagonal& K);
 
 /// Concatenates the blocks of `x`. split_like() does the reverse, with the block sizes of `K`.
 VectorXd joined(const BlockVector& x);

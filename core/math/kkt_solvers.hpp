@@ -44,18 +44,17 @@ class CyclicReduction final : public KktSolver {
   [[nodiscard]] BlockVector solve(const BlockVector& r) const override;
 
  private:
-  /// A reduction step. It eliminates the odd blocks of the system and keeps the even ones.
+  /// A system of which a reduction eliminates the odd blocks and keeps the even ones, the next
+  /// level's. Its memory serves one factorisation after the other.
   struct Level {
-    std::size_t blocks = 0;
+    BlockTridiagonal K;
     std::vector<PivotBlock> pivots;     // of the odd blocks
-    std::vector<MatrixXd> B;            // of this level's system
     std::vector<MatrixXd> left, right;  // pivot⁻¹ times the couplings to the even neighbours
   };
-  [[nodiscard]] bool halve(BlockTridiagonal& K);
+  [[nodiscard]] static bool halve(Level& level, BlockTridiagonal& half);
   [[nodiscard]] BlockVector reduced_solution(const BlockVector& r) const;
 
-  BlockTridiagonal K_;
-  std::vector<Level> levels_;
+  std::vector<Level> levels_;  // the last one has a single block
   PivotBlock last_;
 };
 

@@ -1,6 +1,7 @@
-// Six bodies over the number of sub-steps h: solution of the KKT system, in lanes and by its peers;
-// a whole SQP iteration with one trial point, over h and over the number of bodies. Times of lanes
-// are those of all of them, as many as the counter `candidates` says.
+// Six bodies over the number of sub-steps h: solution of the KKT system, in lanes, of a lone
+// problem and by its peers; a whole SQP iteration with one trial point, over h and over the number
+// of bodies. Times of lanes are those of all of them, as many as the counter `candidates` says. All
+// run on one core; the peers solve one problem at a time, as they have no lanes.
 
 #include <benchmark/benchmark.h>
 
@@ -13,6 +14,7 @@
 #include "core/reverse/problem/evaluator.hpp"
 #include "core/reverse/problem/newton_system.hpp"
 #include "core/reverse/problem/trial_point.hpp"
+#include "tests/bench/kkt_peers.hpp"
 #include "tests/support/gathering.hpp"
 #include "tests/support/random_stages.hpp"
 #include "tests/support/stage_lanes.hpp"
@@ -24,7 +26,6 @@ using testing::gathering;
 using testing::row_of_boxes;
 using testing::row_poses;
 
-constexpr int kBodies = 6;
 constexpr double kResidual = 2e-9;  // largest accepted; the assembled matrix is shifted by 1e-9
 
 /// The robot and boxes in a row, nearly touching, in every lane.
@@ -76,45 +77,47 @@ StageSystem<T> instance(Family family, int h) {
   return Row<T>(h, physics).newton().system();
 }
 
-/// Returns whether the step of lane 0 solves the system.
-template <class T>
-bool is_solved(const StageSystem<double>& system, const StageStep<T>& step) {
+/// Puts the residual of a step, ‖K x - r‖∞ / (‖r‖∞ + ‖x‖∞), on the benchmark's row, and refuses a
+/// large one.
+void check(benchmark::State& state, const StageSystem<double>& system,
+           const StageStep<double>& step) {
   const Assembled assembled(system, false);
   const VectorXd r = joined(assembled.right_hand_side());
-  const BlockVector x = assembled.written(testing::lane_of(step, 0));
+  const BlockVector x = assembled.written(step);
   const double scale = r.lpNorm<Eigen::Infinity>() + joined(x).lpNorm<Eigen::Infinity>();
   const VectorXd off = joined(product(assembled.matrix(), x)) - r;
-  return off.lpNorm<Eigen::Infinity>() <= kResidual * scale;
+  const double residual = off.lpNorm<Eigen::Infinity>() / scale;
+  state.counters["residual"] = residual;
+  if (!(residual <= kResidual)) state.SkipWithError("the residual is too large");
 }
 
-void kkt_lanes(benchmark::State& state, Family family) {
+/// Our recursion, in lanes or of a lone problem.
+template <class T>
+void kkt_ours(benchmark::State& state, Family family) {
   const int h = static_cast<int>(state.range(0));
-  const StageSystem<Lanes> system = instance<Lanes>(family, h);
-  Riccati<Lanes> solver(kBodies, h);
-  StageStep<Lanes> step(kBodies, h);
+  const StageSystem<T> system = instance<T>(family, h);
+  Riccati<T> solver(kBodies, h);
+  StageStep<T> step(kBodies, h);
   for (auto _ : state) {
     benchmark::DoNotOptimize(solver.solve(system, step));
     benchmark::ClobberMemory();
   }
-  if (!is_solved(instance<double>(family, h), step))
-    state.SkipWithError("the residual is too large");
-  state.counters["candidates"] = kWidth<Lanes>;
+  check(state, instance<double>(family, h), testing::lane_of(step, 0));
+  state.counters["candidates"] = kWidth<T>;
 }
 
-/// Factorisation and solution of the assembled matrix; assembling is not counted.
-void kkt_peer(benchmark::State& state, Family family, KktMethod method) {
+using MakePeer = std::unique_ptr<KktPeer> (*)(const StageSystem<double>& system);
+
+void kkt_peer(benchmark::State& state, Family family, MakePeer make) {
   const StageSystem<double> system = instance<double>(family, static_cast<int>(state.range(0)));
-  const Assembled assembled(system, false);
-  const std::unique_ptr<KktSolver> solver = make_kkt_solver(method);
-  BlockVector x;
+  const std::unique_ptr<KktPeer> peer = make(system);
   for (auto _ : state) {
-    if (!solver->factorize(assembled.matrix())) return state.SkipWithError("singular");
-    x = solver->solve(assembled.right_hand_side());
-    benchmark::DoNotOptimize(x.data());
+    if (!peer->solve()) return state.SkipWithError("singular");
+    benchmark::ClobberMemory();
   }
   StageStep<double> step(kBodies, system.h);
-  assembled.read(x, step);
-  if (!is_solved(system, step)) state.SkipWithError("the residual is too large");
+  peer->read(step);
+  check(state, system, step);
 }
 
 void sqp_iteration(benchmark::State& state, int bodies, int h) {
@@ -137,8 +140,7 @@ void sqp_iteration(benchmark::State& state, int bodies, int h) {
     benchmark::DoNotOptimize(evaluator.evaluate(row.problem(), trial, gaps, trial_gaps, legal));
     if (!any(legal)) return state.SkipWithError("the trial point is not legal");
   }
-  if (!is_solved(Row<double>(h, {}, bodies).newton().system(), step))
-    state.SkipWithError("the residual is too large");
+  check(state, Row<double>(h, {}, bodies).newton().system(), testing::lane_of(step, 0));
   state.counters["candidates"] = kWidth<Lanes>;
 }
 
@@ -164,16 +166,22 @@ void peak(benchmark::State& state) {
                                                  benchmark::Counter::kIsIterationInvariantRate);
 }
 
+const std::vector<std::pair<std::string, MakePeer>> kPeers{
+    {"cyclic_reduction", cyclic_reduction_peer},
+    {"klu", klu_peer},
+#ifdef RTG_HPIPM
+    {"hpipm", hpipm_peer},
+#endif
+};
+
 void register_family(Family family) {
   const std::string name(kFamilies[static_cast<std::size_t>(family)]);
   std::vector<benchmark::internal::Benchmark*> all{
-      benchmark::RegisterBenchmark((name + "/lanes").c_str(), kkt_lanes, family)};
-  for (const KktMethod method :
-       {KktMethod::kCyclicReduction, KktMethod::kUmfpack, KktMethod::kKlu}) {
-    const std::string peer(kKktMethods[static_cast<std::size_t>(method)]);
+      benchmark::RegisterBenchmark((name + "/lanes").c_str(), kkt_ours<Lanes>, family),
+      benchmark::RegisterBenchmark((name + "/lone").c_str(), kkt_ours<double>, family)};
+  for (const auto& [peer, make] : kPeers)
     all.push_back(
-        benchmark::RegisterBenchmark((name + '/' + peer).c_str(), kkt_peer, family, method));
-  }
+        benchmark::RegisterBenchmark((name + '/' + peer).c_str(), kkt_peer, family, make));
   for (auto* one : all) one->RangeMultiplier(4)->Range(16, 256)->Unit(benchmark::kMicrosecond);
 }
 

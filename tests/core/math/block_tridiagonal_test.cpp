@@ -18,6 +18,13 @@ TEST(BlockTridiagonal, DenseHasTheBlocksInTheirPlaces) {
   EXPECT_EQ(two_by_one_by_one().dense(), expected);
 }
 
+TEST(BlockTridiagonal, SparseIsTheDenseMatrixWithoutItsZeros) {
+  BlockTridiagonal K = two_by_one_by_one();
+  K.B[1](0, 1) = 0.0;
+  EXPECT_EQ(MatrixXd(sparse(K)), K.dense());
+  EXPECT_EQ(sparse(K).nonZeros(), 10);
+}
+
 TEST(BlockTridiagonal, ProductIsThatOfTheDenseMatrix) {
   const BlockTridiagonal K = two_by_one_by_one();
   const VectorXd x{{1, -2, 3, -4}};
