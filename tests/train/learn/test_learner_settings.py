@@ -40,6 +40,14 @@ def test_a_restored_learner_has_the_learning_rate_of_its_own_settings() -> None:
     assert rates == [5e-3]
 
 
+def test_a_checkpoint_without_gradient_steps_of_pytorch_is_continued_by_the_core() -> None:
+    before, after = played(cql_weight=0.1), played()
+    assert before._core is None and after._core is not None
+    after.restore(before.state())
+    after.train(1)
+    assert after.gradient_steps == 1
+
+
 def rows_of_a_batch(**changes: Any) -> int:
     one, sizes = model(**changes), []
     sample = one.replay.sample

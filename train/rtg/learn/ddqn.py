@@ -116,9 +116,8 @@ class DoubleDqn:
         self.optimizer = th.optim.Adam(
             [self._online_weights], lr=settings.learning_rate, fused=True
         )
+        self._begin_optimizer()
         self._core = self._make_core()
-        if self._core:
-            self._begin_optimizer()
         self.exploration = Exploration(settings, env.headings, seed, env.contact_headings)
         self.statistics = Statistics()
         self.stages = Stages()
@@ -151,9 +150,13 @@ class DoubleDqn:
         )
 
     def _begin_optimizer(self) -> None:
-        """Makes the optimiser's state, as PyTorch would do at its first step."""
+        """Makes the optimiser's state, as PyTorch would do at its first step.
+
+        A checkpoint from before that step has it, too.
+        """
         zeros = th.zeros_like(self._online_weights).detach()
-        state = {"step": th.tensor(0.0), "exp_avg": zeros, "exp_avg_sq": zeros.clone()}
+        step = th.zeros((), device=self.device)
+        state = {"step": step, "exp_avg": zeros, "exp_avg_sq": zeros.clone()}
         self.optimizer.state[self._online_weights] = state
 
     def share_process(self) -> None:
