@@ -13,8 +13,9 @@ using Eigen::RowVectorXf;
 
 /// Writes the layer's outputs for a batch of inputs.
 void apply(const Linear<const float>& layer, const MatrixXf& in, MatrixXf& out) {
-  out.noalias() = layer.weight * in;
-  out.colwise() += layer.bias;
+  out.resize(layer.bias.size(), in.cols());
+  out.colwise() = layer.bias;
+  out.noalias() += layer.weight * in;
 }
 
 /// Writes the gradient for the weights of a layer, from that for its outputs.
@@ -74,16 +75,20 @@ const MatrixXf& HeadingNetwork::values(const float* array, const States& states)
   const Weights weights(sizes_, array);
   trunk(weights, states);
   all_values_.resize(sizes_.headings, states.cols());
+  const Eigen::Map<const Eigen::VectorXf> advantage(weights.advantage.weight.data(),
+                                                    sizes_.features);
   const RowVectorXf value =
       (weights.value.weight * second_).array() + weights.value.bias[0] + weights.advantage.bias[0];
   for (Index begin = 0; begin < states.cols(); begin += kTogether) {
     const Index count = std::min(kTogether, states.cols() - begin);
     along_.resize(sizes_.features, count * sizes_.headings);
     for (Index k = 0; k < count; ++k) normal_along_all(weights, begin + k, k * sizes_.headings);
-    inner_layer(weights);
-    Eigen::Map<RowVectorXf>(all_values_.col(begin).data(), inner_.cols()).noalias() =
-        weights.advantage.weight * inner_;
-    all_values_.middleCols(begin, count).rowwise() += value.segment(begin, count);
+    apply(weights.along, along_, inner_);
+    for (Index k = 0; k < count; ++k)
+      for (Index a = 0; a < sizes_.headings; ++a)
+        all_values_(a, begin + k) =
+            value[begin + k] +
+            advantage.dot(inner_.col(k * sizes_.headings + a).cwiseMax(0.0f));
   }
   return all_values_;
 }
