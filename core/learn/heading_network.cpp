@@ -87,8 +87,7 @@ const MatrixXf& HeadingNetwork::values(const float* array, const States& states)
     for (Index k = 0; k < count; ++k)
       for (Index a = 0; a < sizes_.headings; ++a)
         all_values_(a, begin + k) =
-            value[begin + k] +
-            advantage.dot(inner_.col(k * sizes_.headings + a).cwiseMax(0.0f));
+            value[begin + k] + advantage.dot(inner_.col(k * sizes_.headings + a).cwiseMax(0.0f));
   }
   return all_values_;
 }
