@@ -116,7 +116,7 @@ void HeadingNetwork::gradient(const float* array, const RowVectorXf& of_q, float
   pull_back(second_, of_q, out.value);
 
   MatrixXf of_inner = weights.advantage.weight.transpose() * of_q;
-  of_inner = (inner_.array() > 0.0f).select(of_inner, 0.0f);
+  pull_back_relu(inner_, of_inner);
   pull_back(along_, of_inner, out.along);
 
   MatrixXf of_along = weights.along.weight.transpose() * of_inner;

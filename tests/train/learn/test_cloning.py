@@ -84,7 +84,7 @@ def test_a_run_imitates_the_trees_of_its_transitions(tmp_path: Path, rows: Rows)
     one = training(folder)
     one.restore()
     np.testing.assert_array_equal(
-        one.model.replay.offline.action[: trees.sum()], rows.action[trees]
+        one.model.replay.offline.rows["action"][: trees.sum()], rows.action[trees]
     )
 
 

@@ -176,11 +176,13 @@ def test_stored_transitions_end_with_their_episode_and_the_next_ones_begin_anew(
     for _ in range(200):
         one._interact()
     store, cut = one.replay.online, 0
-    at, after = (4.0 * seen[:800, 0] for seen in (store.observation, store.next_observation))
+    at, after = (
+        4.0 * seen[:800, 0] for seen in (store.rows["observation"], store.rows["next_observation"])
+    )
     success = after == 4
-    np.testing.assert_array_equal(after, at + (store.action[:800] == 1))
-    np.testing.assert_array_equal(store.reward[:800], success)
-    np.testing.assert_array_equal(store.terminated[:800], success)
+    np.testing.assert_array_equal(after, at + (store.rows["action"][:800] == 1))
+    np.testing.assert_array_equal(store.rows["reward"][:800], success)
+    np.testing.assert_array_equal(store.rows["terminated"][:800], success)
     for env in range(4):
         place, steps = 0, 0
         for k in range(env, 800, 4):

@@ -306,7 +306,10 @@ def test_episodes_of_a_learner_are_stored_with_what_they_were_asked_for() -> Non
     for _ in range(600 // one.settings.train_frequency):
         one.learn()
     store = one.replay.online
-    for of_episode in (store.asked[:120:2], store.asked[1:120:2]):  # the environments' first
+    for of_episode in (
+        store.rows["asked"][:120:2],
+        store.rows["asked"][1:120:2],
+    ):  # the environments' first
         assert len(of_episode) == 60 and (of_episode == of_episode[0]).all()
-    assert not (store.asked[120] == store.asked[0]).all()
-    assert 0.3 < store.has_goals[:480].mean() < 1.0
+    assert not (store.rows["asked"][120] == store.rows["asked"][0]).all()
+    assert 0.3 < store.rows["has_goals"][:480].mean() < 1.0

@@ -25,10 +25,10 @@ def add_online(replay: MixedReplayBuffer, tag: float, **outcome: Any) -> None:
 def test_store_returns_what_went_in() -> None:
     store = Store(100, SIZE)
     data = random_transitions(30)
-    known = {name: getattr(data, name) for name in Store.columns if name != "bound"}
+    known = {name: getattr(data, name) for name in store.columns if name != "bound"}
     np.testing.assert_array_equal(store.append(**known), np.arange(30))
     for name in ("observation", "next_observation", "action", "reward", "terminated"):
-        np.testing.assert_array_equal(getattr(store, name)[:30], getattr(data, name))
+        np.testing.assert_array_equal(store.rows[name][:30], getattr(data, name))
 
 
 def test_full_store_overwrites_the_oldest() -> None:
@@ -36,8 +36,8 @@ def test_full_store_overwrites_the_oldest() -> None:
     for value in range(8):
         store.append(observation=np.full((1, 1), value), action=np.array([value]))
     assert store.count == 5
-    assert sorted(store.action[:5]) == [3, 4, 5, 6, 7]
-    assert store.observation[:, 0].tolist() == [5, 6, 7, 3, 4]
+    assert sorted(store.rows["action"][:5]) == [3, 4, 5, 6, 7]
+    assert store.rows["observation"][:, 0].tolist() == [5, 6, 7, 3, 4]
 
 
 def test_offline_transitions_are_never_evicted() -> None:
@@ -47,7 +47,7 @@ def test_offline_transitions_are_never_evicted() -> None:
         add_online(replay, float(tag))
     assert (replay.offline.count, replay.online.count) == (40, 40)
     np.testing.assert_array_equal(
-        replay.offline.observation[:40], random_transitions(40).observation
+        replay.offline.rows["observation"][:40], random_transitions(40).observation
     )
     with pytest.raises(ValueError, match=r"more offline transitions than train\.buffer = 40"):
         replay.add_offline(random_transitions(1))
@@ -124,7 +124,7 @@ def test_time_out_keeps_the_bootstrap_and_success_ends_it() -> None:
     replay = buffer()
     add_online(replay, 0.0, truncated=True)
     add_online(replay, 1.0, reward=1.0)
-    np.testing.assert_array_equal(replay.online.terminated[:2], [0.0, 1.0])
+    np.testing.assert_array_equal(replay.online.rows["terminated"][:2], [0.0, 1.0])
 
 
 def test_successful_episode_proves_its_own_values() -> None:
@@ -133,7 +133,7 @@ def test_successful_episode_proves_its_own_values() -> None:
     for tag in range(2):
         add_online(replay, float(tag))
     add_online(replay, 2.0, reward=1.0)
-    np.testing.assert_array_equal(replay.online.bound[:4], [0.0, 0.25, 0.5, 1.0])
+    np.testing.assert_array_equal(replay.online.rows["bound"][:4], [0.0, 0.25, 0.5, 1.0])
 
 
 def test_unused_bounds_bound_nothing() -> None:
@@ -147,7 +147,7 @@ def test_episodes_of_parallel_environments_are_kept_apart() -> None:
     row = np.zeros((2, SIZE), np.float32)
     for step in range(2):
         replay.add(row, np.array([1, 2]), step_to(row, reward=np.array([0.0, step == 1])))
-    np.testing.assert_array_equal(replay.online.bound[:4], [0.0, 0.5, 0.0, 1.0])
+    np.testing.assert_array_equal(replay.online.rows["bound"][:4], [0.0, 0.5, 0.0, 1.0])
 
 
 @pytest.mark.parametrize("capacity", [11, 8, 6])
@@ -159,7 +159,7 @@ def test_an_episode_longer_than_the_ring_bounds_what_is_left_of_it(capacity: int
         reward = np.array([step == 4, 0, 0, 0], np.float32)
         replay.add(steps, 10 * np.arange(4) + step, step_to(steps, reward))
     store = replay.online
-    bounds = dict(zip(store.action.tolist(), store.bound.tolist(), strict=True))
+    bounds = dict(zip(store.rows["action"].tolist(), store.rows["bound"].tolist(), strict=True))
     assert len(bounds) == capacity
     proven = {0: 0.0625, 1: 0.125, 2: 0.25, 3: 0.5, 4: 1.0}
     assert bounds == {action: proven.get(action, 0.0) for action in bounds}
@@ -179,7 +179,7 @@ def test_restored_buffer_continues_with_the_same_samples() -> None:
             add_online(one, float(tag), reward=float(tag == 2))
     for ours, theirs in zip(replay.sample(64), other.sample(64), strict=True):
         assert ours == theirs if isinstance(ours, int) else th.equal(ours, theirs)
-    np.testing.assert_array_equal(replay.online.bound, other.online.bound)
+    np.testing.assert_array_equal(replay.online.rows["bound"], other.online.rows["bound"])
 
 
 def test_state_holds_only_what_is_filled() -> None:
@@ -194,16 +194,16 @@ def test_a_push_that_the_simulator_gave_up_is_not_stored() -> None:
     rows = np.array([[1.0], [2.0]], np.float32) * np.ones(SIZE, np.float32)
     given_up = np.array([False, True])
     replay.add(rows, np.array([1, 2]), step_to(rows, truncated=given_up, rejected=given_up))
-    assert replay.online.count == 1 and replay.online.action[0] == 1
+    assert replay.online.count == 1 and replay.online.rows["action"][0] == 1
     replay.add(rows, np.array([3, 4]), step_to(rows, reward=1.0))
-    np.testing.assert_array_equal(replay.online.bound[:3], [0.5, 1.0, 1.0])
+    np.testing.assert_array_equal(replay.online.rows["bound"][:3], [0.5, 1.0, 1.0])
 
 
 def test_offline_transitions_are_asked_for_the_nearest_layout() -> None:
     replay, data = asking_buffer(capacity=3000), random_transitions(2300)
     replay.add_offline(data)
     expected = BOXES.nearest(data.observation)
-    np.testing.assert_array_equal(replay.offline.asked[:2300], expected)
+    np.testing.assert_array_equal(replay.offline.rows["asked"][:2300], expected)
     batch = replay.sample(64)
     assert batch.offline == 64
     known = {row.tobytes(): k for k, row in enumerate(data.observation)}
@@ -221,16 +221,16 @@ def test_offline_transitions_are_asked_for_the_nearest_layout() -> None:
 def test_an_episode_longer_than_the_ring_is_relabelled_as_far_as_it_is_left() -> None:
     replay = asking_buffer(capacity=3)
     play(replay)
-    steps = replay.online.action
-    assert sorted(steps) == [1, 2, 3] and replay.online.has_goals.all()
+    steps = replay.online.rows["action"]
+    assert sorted(steps) == [1, 2, 3] and replay.online.rows["has_goals"].all()
     wanted = {1: {"rest", "all"}, 2: {"some", "all"}, 3: {"all"}}
-    for step, goals in zip(steps, replay.online.goals, strict=True):
+    for step, goals in zip(steps, replay.online.rows["goals"], strict=True):
         assert names(goals) <= wanted[step]
     play(replay, reward=0.0)
     row = observed(EPISODE[0])[None]
     replay.add(row, np.array([9]), step_to(row))
-    new = replay.online.action == 9
-    np.testing.assert_array_equal(replay.online.has_goals, ~new)
+    new = replay.online.rows["action"] == 9
+    np.testing.assert_array_equal(replay.online.rows["has_goals"], ~new)
 
 
 def test_episodes_side_by_side_are_relabelled_each_by_its_own() -> None:
@@ -246,9 +246,11 @@ def test_episodes_side_by_side_are_relabelled_each_by_its_own() -> None:
         replay.add(rows, np.array([t, 10 + t]), step)
     store = replay.online
     n = store.count
-    action = store.action[:n].tolist()
+    action = store.rows["action"][:n].tolist()
     assert sorted(action) == [0, 1, 2, 3, 11, 13]
-    columns = zip(store.goals[:n], store.has_goals[:n], store.asked[:n], strict=True)
+    columns = zip(
+        store.rows["goals"][:n], store.rows["has_goals"][:n], store.rows["asked"][:n], strict=True
+    )
     found = dict(zip(action, columns, strict=True))
     wanted = {0: {"some", "all"}, 1: {"rest", "all"}, 2: {"some", "all"}, 3: {"all"}}
     for t in range(4):
@@ -277,7 +279,9 @@ def test_a_restored_hindsight_buffer_goes_on_with_the_same_samples(cut: int) -> 
     for ours, theirs in zip(replay.sample(64), other.sample(64), strict=True):
         assert ours == theirs if isinstance(ours, int) else th.equal(ours, theirs)
     count = replay.online.count
-    np.testing.assert_array_equal(replay.online.asked[:count], other.online.asked[:count])
+    np.testing.assert_array_equal(
+        replay.online.rows["asked"][:count], other.online.rows["asked"][:count]
+    )
 
 
 def test_unused_bounds_of_hindsight_bound_nothing() -> None:

@@ -32,7 +32,7 @@ def test_learner_bounds_and_evaluation_have_one_discount(
     assert one.run(trees, lambda: False, record=False)
     assert one.task.discount == 0.8
     assert one.model.discount == discount and used == {discount}
-    seen, bound = one.data.record.transitions(), one.model.replay.offline.bound
+    seen, bound = one.data.record.transitions(), one.model.replay.offline.rows["bound"]
     proven = value_bounds(seen.observation, seen.next_observation, seen.reward, discount)
     np.testing.assert_array_equal(bound[: len(proven)], proven)
     assert (proven[300:] > 0).any()
@@ -42,7 +42,7 @@ def test_bounds_are_proven_before_all_transitions_are_in(tmp_path: Path, rows: R
     one = training(run_folder(tmp_path / "run", None))
     stream = Stream(rows, one.data, piece=400)
     assert not one.run(stream, after_polls(3), record=False)
-    bound = one.model.replay.offline.bound
+    bound = one.model.replay.offline.rows["bound"]
     assert not stream.complete and ((bound > 0) & (bound < 1)).any()
 
 

@@ -35,7 +35,7 @@ import numpy.typing as npt
 
 from rtg import _core
 from rtg.envs.curriculum import goal_states
-from rtg.learn.replay import MixedReplayBuffer, Part, Store
+from rtg.learn.replay import Field, MixedReplayBuffer, Part, Store
 
 Array = npt.NDArray[Any]
 
@@ -182,22 +182,6 @@ def future_goals(
     return goals, bounds, found
 
 
-class GoalStore(Store):
-    """A store of transitions with their desired layouts and hindsight goals.
-
-    `size`: entries of a layout; `goals`: hindsight goals per transition.
-    """
-
-    columns = (*Store.columns, "asked", "goals", "goal_bounds", "has_goals")
-
-    def __init__(self, capacity: int, observation_size: int, size: int, goals: int) -> None:
-        super().__init__(capacity, observation_size)
-        self.asked = np.zeros((0, size), np.float32)
-        self.goals = np.zeros((0, goals, size), np.float32)
-        self.goal_bounds = np.zeros((0, goals), np.float32)
-        self.has_goals = np.zeros(0, np.bool_)  # False until the episode has ended
-
-
 class HindsightReplayBuffer(MixedReplayBuffer):
     """A replay buffer whose batches hold network inputs: observations with desired layouts.
 
@@ -205,15 +189,18 @@ class HindsightReplayBuffer(MixedReplayBuffer):
     get the task's layout nearest to s.
     """
 
-    offline: GoalStore
-    online: GoalStore
-
     def __init__(self, *of_buffer: Any, layouts: Layouts, goals: int) -> None:
         """`goals`: number of hindsight goals per transition."""
         super().__init__(*of_buffer)
         self.layouts, self.goals = layouts, goals
-        shape = (self.capacity, self.observation_size, layouts.size, goals)
-        self.offline, self.online = GoalStore(*shape), GoalStore(*shape)
+        fields: list[Field] = [
+            ("asked", np.float32, (layouts.size,)),  # the desired layout
+            ("goals", np.float32, (goals, layouts.size)),  # hindsight goals
+            ("goal_bounds", np.float32, (goals,)),  # lower bounds of their values
+            ("has_goals", np.bool_, ()),  # False until the episode has ended
+        ]
+        self.offline = Store(self.capacity, self.observation_size, *fields)
+        self.online = Store(self.capacity, self.observation_size, *fields)
         # The desired layout of each environment's episode.
         self._desired = np.zeros((self.environments, layouts.size), np.float32)
         # True if the next step begins an episode.
@@ -245,36 +232,34 @@ class HindsightReplayBuffer(MixedReplayBuffer):
         rows = numbers[numbers >= store.written - store.capacity] % store.capacity
         if len(rows) == 0:  # the simulator could not finish its first push
             return
-        seen = np.concatenate((store.observation[rows[:1]], store.next_observation[rows]))
-        store.goals[rows], store.goal_bounds[rows], store.has_goals[rows] = future_goals(
+        episode = store.rows[rows]
+        seen = np.concatenate((episode["observation"][:1], episode["next_observation"]))
+        episode["goals"], episode["goal_bounds"], episode["has_goals"] = future_goals(
             self.layouts, self.layouts.of(seen), self.goals, self.rules.discount, self.rng
         )
+        store.rows[rows] = episode
 
     def _columns(self, parts: list[Part]) -> dict[str, Array]:
         columns = super()._columns(parts)
-        goal = np.concatenate([s.asked[rows] for s, rows in parts if isinstance(s, GoalStore)])
-        for store, rows in parts:
-            if store is self.online:
-                self._relabel(columns, goal, rows)
+        online = sum(len(rows) for store, rows in parts if store is self.online)
+        self._relabel({name: column[len(column) - online :] for name, column in columns.items()})
         for name in ("observation", "next_observation"):
-            columns[name] = self.layouts.network_input(columns[name], goal)
+            columns[name] = self.layouts.network_input(columns[name], columns["asked"])
         return columns
 
-    def _relabel(self, columns: dict[str, Array], goal: Array, rows: Array) -> None:
-        """Replaces desired layouts in `goal` by hindsight goals and adapts `columns` to them.
+    def _relabel(self, online: dict[str, Array]) -> None:
+        """Replaces desired layouts by hindsight goals and adapts the other columns to them.
 
-        Each online transition with hindsight goals gets one with probability k / (k + 1). `rows`:
-        their rows in the online store. They are the last ones in `columns` and `goal`.
+        Each online transition with hindsight goals gets one with probability k / (k + 1).
         """
-        store, place = self.online, np.arange(len(goal) - len(rows), len(goal))
-        pick = self.rng.integers(self.goals + 1, size=len(rows))  # the last number: no relabelling
-        seen = (pick < self.goals) & store.has_goals[rows]
-        place, rows, pick = place[seen], rows[seen], pick[seen]
-        goal[place] = store.goals[rows, pick]
-        reached = self.layouts.near(self.layouts.of(store.next_observation[rows]), goal[place])
-        columns["reward"][place] = columns["terminated"][place] = reached
+        pick = self.rng.integers(self.goals + 1, size=len(online["asked"]))  # last: no relabelling
+        place = np.flatnonzero((pick < self.goals) & online["has_goals"])
+        goal = online["goals"][place, pick[place]]
+        online["asked"][place] = goal
+        reached = self.layouts.near(self.layouts.of(online["next_observation"][place]), goal)
+        online["reward"][place] = online["terminated"][place] = reached
         if self.rules.use_bounds:
-            columns["bound"][place] = store.goal_bounds[rows, pick]
+            online["bound"][place] = online["goal_bounds"][place, pick[place]]
 
     def state(self) -> dict[str, Any]:
         return {

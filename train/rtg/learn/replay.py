@@ -18,6 +18,7 @@ from rtg.learn.value_bounds import value_bounds
 
 Array = npt.NDArray[Any]
 Part = tuple["Store", Array]  # a store and indices of some of its rows
+Field = tuple[str, npt.DTypeLike, tuple[int, ...]]  # name, type and shape
 
 RECENT_COUNT = 10_000  # number of latest online transitions that count as recent
 
@@ -35,30 +36,31 @@ class Batch(NamedTuple):
 
 
 class Store:
-    """Stores transitions by column. Grows to `capacity` rows, then overwrites the oldest row.
+    """Stores transitions, a record each. Grows to `capacity` rows, then overwrites the oldest row.
 
     Transition number k, counted from 0 in order of writing, is in row k modulo `capacity`.
     """
 
-    columns: tuple[str, ...] = (
-        "observation",
-        "next_observation",
-        "action",
-        "reward",
-        "terminated",
-        "bound",
-    )
-
-    def __init__(self, capacity: int, observation_size: int) -> None:
+    def __init__(self, capacity: int, observation_size: int, *more: Field) -> None:
+        """`more`: further fields of a record."""
         self.capacity = capacity
         self.written = 0  # transitions so far, including overwritten ones
-        wide, one = (0, observation_size), (0,)
-        self.observation = np.zeros(wide, np.float32)  # [rows, observation]
-        self.next_observation = np.zeros(wide, np.float32)  # [rows, observation]
-        self.action = np.zeros(one, np.int64)  # [rows]
-        self.reward = np.zeros(one, np.float32)  # [rows]
-        self.terminated = np.zeros(one, np.float32)  # [rows]
-        self.bound = np.zeros(one, np.float32)  # [rows]
+        fields: list[Field] = [
+            ("observation", np.float32, (observation_size,)),
+            ("next_observation", np.float32, (observation_size,)),
+            ("action", np.int64, ()),
+            ("reward", np.float32, ()),
+            ("terminated", np.float32, ()),
+            ("bound", np.float32, ()),
+            *more,
+        ]
+        # A sample takes whole records: their fields lie side by side in the memory.
+        self.rows: Array = np.zeros(0, np.dtype(fields, align=True))
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the fields of a record."""
+        return self.rows.dtype.names or ()
 
     @property
     def count(self) -> int:
@@ -76,46 +78,32 @@ class Store:
         self._reserve(min(self.written + added, self.capacity))
         numbers = self.written + np.arange(added)
         for name in self.columns:
-            getattr(self, name)[numbers % self.capacity] = columns.get(name, 0.0)
+            self.rows[name][numbers % self.capacity] = columns.get(name, 0.0)
         self.written += added
         return numbers
 
     def set_bounds(self, numbers: Array, bounds: Array) -> None:
         """Sets the value bounds of transitions by their numbers; skips overwritten ones."""
         kept = numbers >= self.written - self.capacity
-        self.bound[numbers[kept] % self.capacity] = bounds[kept]
+        self.rows["bound"][numbers[kept] % self.capacity] = bounds[kept]
 
     def _reserve(self, rows: int) -> None:
-        if rows <= len(self.action):
+        old = self.rows
+        if rows <= len(old):
             return
-        size = min(max(rows, 2 * len(self.action)), self.capacity)
-        for name in self.columns:
-            old = getattr(self, name)
-            new = np.zeros((size, *old.shape[1:]), old.dtype)
-            new[: len(old)] = old
-            setattr(self, name, new)
+        self.rows = np.zeros(min(max(rows, 2 * len(old)), self.capacity), old.dtype)
+        self.rows[: len(old)] = old
 
     def state(self) -> dict[str, Any]:
-        """Returns the filled rows and the count of written transitions."""
-        rows = {name: getattr(self, name)[: self.count].copy() for name in self.columns}
-        return {"written": self.written, **rows}
+        """Returns the filled rows by column and the count of written transitions."""
+        filled = self.rows[: self.count]
+        return {"written": self.written, **{name: filled[name].copy() for name in self.columns}}
 
     def restore(self, state: dict[str, Any]) -> None:
         self.written = state["written"]
+        self.rows = np.zeros(self.count, self.rows.dtype)
         for name in self.columns:
-            setattr(self, name, np.asarray(state[name]).copy())
-
-
-def _joined(parts: list[Part], name: str) -> Array:
-    """Returns a column of the rows in `parts`."""
-    columns = [getattr(store, name) for store, _ in parts]
-    out = np.empty((sum(len(rows) for _, rows in parts), *columns[0].shape[1:]), columns[0].dtype)
-    begin = 0
-    for column, (_, rows) in zip(columns, parts, strict=True):
-        end = begin + len(rows)
-        np.take(column, rows, axis=0, out=out[begin:end], mode="clip")  # by default out is copied
-        begin = end
-    return out
+            self.rows[name] = state[name]
 
 
 @dataclass(frozen=True)
@@ -179,13 +167,10 @@ class MixedReplayBuffer:
 
     def refresh_bounds(self) -> None:
         """Recomputes the value bounds of all offline transitions. To be called after new data."""
-        store, n = self.offline, self.offline.count
-        if self.rules.use_bounds and n:
-            store.bound[:n] = value_bounds(
-                store.observation[:n],
-                store.next_observation[:n],
-                store.reward[:n],
-                self.rules.discount,
+        rows = self.offline.rows[: self.offline.count]
+        if self.rules.use_bounds and len(rows):
+            rows["bound"] = value_bounds(
+                rows["observation"], rows["next_observation"], rows["reward"], self.rules.discount
             )
 
     def add(self, observation: Array, action: Array, step: Step) -> None:
@@ -253,7 +238,15 @@ class MixedReplayBuffer:
 
     def _columns(self, parts: list[Part]) -> dict[str, Array]:
         """Returns the columns of a batch, which joins the rows in `parts`."""
-        columns = {name: _joined(parts, name) for name in Store.columns}
+        batch = np.empty(sum(len(numbers) for _, numbers in parts), self.offline.rows.dtype)
+        begin = 0
+        for store, numbers in parts:
+            end = begin + len(numbers)
+            np.take(
+                store.rows, numbers, out=batch[begin:end], mode="clip"
+            )  # by default out is copied
+            begin = end
+        columns = {name: np.ascontiguousarray(batch[name]) for name in self.offline.columns}
         if not self.rules.use_bounds:
             columns["bound"].fill(-np.inf)
         return columns
