@@ -15,9 +15,9 @@ _MAX_GAP = 0.25  # [m], largest jump of a body between the end of a step and the
 _MAX_REPLAYS = 50  # largest number of plans to simulate
 
 
-def _positions(states: Floats) -> Floats:
+def _positions(states: Floats) -> NDArray[np.float32]:
     """Returns the positions of all bodies [m]. [N, bodies, 3] -> [N, 2 bodies]"""
-    return states[:, :, :2].reshape(len(states), -1)
+    return states[:, :, :2].reshape(len(states), -1).astype(np.float32)
 
 
 def _nearest(states: Floats, among: Floats) -> Ints:
