@@ -70,7 +70,9 @@ case ${1:-all} in
     rm -rf "$ROOT/build/bench/whole"
     status=0
     "$VENV/bin/python" "$ROOT/tests/bench/table.py" "$ROOT/build/release" "$ROOT/build/bench" || status=$?
-    "$VENV/bin/python" "$ROOT/tests/bench/learner.py" || status=1
+    "$VENV/bin/python" "$ROOT/tests/bench/learner.py" | tee "$ROOT/build/bench/learner.txt" || status=1
+    "$VENV/bin/python" "$ROOT/tests/bench/generation.py" "$ROOT/build/release" |
+      tee "$ROOT/build/bench/generation.txt" || status=1
     "$VENV/bin/python" "$ROOT/tests/bench/whole.py" "$ROOT/build/bench/whole"
     exit "$status"
     ;;

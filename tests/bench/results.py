@@ -24,7 +24,7 @@ import matplotlib.pyplot as plt
 
 HERE = Path(__file__).parent
 Benchmarks = dict[str, dict[str, Any]]
-_UNIT = 24  # jobs of a unit of work (nodes/jobs/services.hpp), at most
+_UNIT = 76  # jobs of a unit of work: as many as a message holds (nodes/jobs/services.hpp)
 _THREADED = ("beam", "replay")
 _LABELS = {
     "lanes": "ours, in lanes",
@@ -214,6 +214,11 @@ def pushes(out: Path) -> str:
     return before + "\n\n```\n" + (out / "true_pushes.txt").read_text().strip() + "\n```"
 
 
+def printed(file: Path) -> str:
+    """What another benchmark printed, word for word."""
+    return f"```\n{file.read_text().strip()}\n```"
+
+
 def main(out: Path) -> None:
     """Writes the page."""
     result = json.loads((out / "rtg_bench.json").read_text())
@@ -242,6 +247,24 @@ def main(out: Path) -> None:
         "## Scaling",
         scaling_table(benchmarks),
         "![Times over h, M, B and D](results.png)",
+        "## Learner",
+        paragraph(
+            "Times of a gradient step on one core, and its gates; `tests/bench/learner.py` says",
+            "what they are.",
+        ),
+        printed(out / "learner.txt"),
+        "## Generation and messages",
+        paragraph(
+            "Times of a generation of Gathering and of whole runs of it, and their gates;",
+            "`tests/bench/generation.py` says what they are.",
+        ),
+        printed(out / "generation.txt"),
+        "## Whole jobs",
+        paragraph(
+            "From `./run.sh TASK` to a policy that solves 95 of 100 held-out starts in three",
+            "evaluations in a row; `tests/bench/whole.py` says what the columns are.",
+        ),
+        (out / "whole" / "whole.md").read_text().strip(),
         "## A thousand workers",
         many_workers(benchmarks),
     ]

@@ -103,7 +103,7 @@ TEST(Service, ResultsThatMakeNoSenseAreRefused) {
 }
 
 TEST(Service, UnitsAreAsEqualAsCanBeAndFitIntoMessages) {
-  const UnitLimit limit = ReverseService::kUnit;
+  const UnitLimit limit{.jobs = 48, .states = reverse::kMaxPredecessors};
   EXPECT_EQ(unit_sizes(0, limit, kShape), std::vector<std::size_t>{});
   EXPECT_EQ(unit_sizes(48, limit, kShape), std::vector<std::size_t>{48});
   EXPECT_EQ(unit_sizes(98, limit, kShape), (std::vector<std::size_t>{32, 33, 33}));
