@@ -10,8 +10,5 @@ setup_packages "${PACKAGES[@]}"
 setup_python
 build_preset release rtg_run
 unlock_setup
-# The processes of a run share the cores, so that NumPy gets no threads, which would spin beside them. Freed memory stays
-# with its process: to get it back from the system, page by page, took 3 % of a generation.
-export OPENBLAS_NUM_THREADS=1
-export GLIBC_TUNABLES=glibc.malloc.trim_threshold=268435456:glibc.malloc.mmap_threshold=33554432${GLIBC_TUNABLES:+:$GLIBC_TUNABLES}
+set_environment
 exec "$VENV/bin/python" -m rtg.cli "$@"

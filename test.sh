@@ -4,7 +4,7 @@
 #   ./test.sh debug       C++ tests in a debug build with AddressSanitizer and UndefinedBehaviorSanitizer
 #   ./test.sh tsan        C++ tests that use threads under ThreadSanitizer
 #   ./test.sh coverage    line coverage of the physics and the solver by their own tests
-#   ./test.sh bench       benchmarks and gates: JSON and a Markdown table in build/bench/; then whole jobs, three tasks
+#   ./test.sh bench       benchmarks and gates: JSON and Markdown in build/bench/ (40 minutes; --smoke: briefly, no gates)
 #   ./test.sh peer        the reverse solver against CasADi and IPOPT (ten minutes)
 # The last two install CasADi, whose package also holds HPIPM.
 set -euo pipefail
@@ -45,6 +45,18 @@ coverage() {
     --txt --txt-summary --html-details "$folder/coverage.html" --fail-under-line 95)
 }
 
+bench() { # [--smoke]
+  local out=$ROOT/build/bench status=0
+  rm -rf "$out"
+  mkdir -p "$out"
+  cd "$ROOT/tests/bench"
+  "$VENV/bin/python" table.py "$ROOT/build/release" "$out" "$@" || status=1
+  "$VENV/bin/python" learner.py "$@" | tee "$out/learner.txt" || status=1
+  "$VENV/bin/python" generation.py "$ROOT/build/release" "$@" | tee "$out/generation.txt" || status=1
+  "$VENV/bin/python" whole.py "$out/whole" --seeds 1,2,3 "$@" || status=1
+  return $status
+}
+
 case ${1:-all} in
   all)
     set_up release all
@@ -67,14 +79,8 @@ case ${1:-all} in
     ;;
   bench)
     set_up release all "$ROOT/tests/bench/requirements.txt"
-    rm -rf "$ROOT/build/bench/whole"
-    status=0
-    "$VENV/bin/python" "$ROOT/tests/bench/table.py" "$ROOT/build/release" "$ROOT/build/bench" || status=$?
-    "$VENV/bin/python" "$ROOT/tests/bench/learner.py" | tee "$ROOT/build/bench/learner.txt" || status=1
-    "$VENV/bin/python" "$ROOT/tests/bench/generation.py" "$ROOT/build/release" |
-      tee "$ROOT/build/bench/generation.txt" || status=1
-    "$VENV/bin/python" "$ROOT/tests/bench/whole.py" "$ROOT/build/bench/whole"
-    exit "$status"
+    set_environment
+    bench "${@:2}"
     ;;
   peer)
     set_up release peer_dump "$ROOT/tests/bench/requirements.txt"

@@ -43,7 +43,7 @@ inline constexpr double kStartClearance = 0.02;
 bool succeeded(const Task& task, const Poses& poses, double tighten = 0.0);
 
 /// Units of lengths in an observation [m]. Relative positions tell contacts, which differ by
-/// hundredths of an arena: with all lengths in units of the arena, Gathering takes 1.8 times as
+/// hundredths of an arena: with all lengths in units of `arena`, Gathering takes 1.8 times as
 /// many gradient steps to be learned (three seeds).
 inline double position_unit(const Task& task) { return task.push.arena / 2.0; }
 inline double relative_unit(const Task& task) { return task.push.stride / 2.0; }

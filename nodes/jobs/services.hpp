@@ -39,7 +39,7 @@ struct ReverseService {
   static constexpr const char* kBeats = "RTG_REVERSE_BEAT";
   static constexpr const char* kJobs = "RTG_REVERSE_JOB";
   static constexpr const char* kResults = "RTG_REVERSE_RESULT";
-  static constexpr UnitLimit kUnit{.jobs = 128, .states = reverse::kMaxPredecessors};
+  static constexpr UnitLimit kUnit{.jobs = 48, .states = reverse::kMaxPredecessors};
 
   static JobMessage message(std::span<const Job> jobs);
   static ResultMessage message(std::span<const Result> results);

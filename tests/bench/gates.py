@@ -42,13 +42,13 @@ def linearity(family: str) -> Callable[[Times], float]:
     return squared_correlation
 
 
-_PEERS = ("cyclic_reduction", "klu", "hpipm")
+PEERS = ("cyclic_reduction", "klu", "hpipm")
 
 
 def best_peer_by(family: str, ours: str) -> Callable[[Times], float]:
     """Compares the fastest peer's KKT solve with `ours`, of six bodies over 16 sub-steps."""
     return lambda times: (
-        min(times[f"{family}/{peer}/16"] for peer in _PEERS) / times[f"{family}/{ours}/16"]
+        min(times[f"{family}/{peer}/16"] for peer in PEERS) / times[f"{family}/{ours}/16"]
     )
 
 

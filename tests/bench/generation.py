@@ -52,11 +52,17 @@ def run(smoke: bool, *words: str) -> Figures:
     """Makes a run; returns the CPU time of its processes and its start [s]."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "run"
-        command = [str(ROOT / "run.sh"), TASK, *(_TINY if smoke else _WHOLE), *words]
+        command = [str(ROOT / "run.sh"), TASK, "--workers", "2"]
+        command += [*(_TINY if smoke else _WHOLE), *words]
         before = os.times()
         subprocess.run([*command, "--out", str(out)], capture_output=True, check=True)
         after = os.times()
         summary = json.loads((out / "summary.json").read_text())
+    mode = "in_process" if "--in-process" in words else "lcm"
+    if summary["mode"] != mode:
+        sys.exit(
+            f"generation.py: the run was {summary['mode']} instead of {mode}; multicast is off"
+        )
     cpu = sum(
         getattr(after, name) - getattr(before, name)
         for name in ("children_user", "children_system")
@@ -73,7 +79,7 @@ def main(words: Sequence[str]) -> int:
     for _ in range(1 if args.smoke else 3):
         found["one"].append(bench(args.build, 1, args.smoke))
         found["two"].append(bench(args.build, 2, args.smoke))
-        found["in process"].append(run(args.smoke, "--in-process", "--workers", "2"))
+        found["in process"].append(run(args.smoke, "--in-process"))
         found["over LCM"].append(run(args.smoke))
     middle = {
         name: {key: statistics.median(one[key] for one in all_of_it) for key in all_of_it[0]}

@@ -1,7 +1,8 @@
 // Six bodies over the number of sub-steps h: solution of the KKT system, in lanes, of a lone
 // problem and by its peers; a whole SQP iteration with one trial point, over h and over the number
 // of bodies. Times of lanes are those of all of them, as many as the counter `candidates` says. All
-// run on one core; the peers solve one problem at a time, as they have no lanes.
+// run on one core; the peers solve one problem at a time, as they have no lanes. `own_us` is the
+// part of a peer's time that is spent in its library.
 
 #include <benchmark/benchmark.h>
 
@@ -115,6 +116,8 @@ void kkt_peer(benchmark::State& state, Family family, MakePeer make) {
     if (!peer->solve()) return state.SkipWithError("singular");
     benchmark::ClobberMemory();
   }
+  if (peer->own_cpu_s() > 0.0)
+    state.counters["own_us"] = 1e6 * peer->own_cpu_s() / static_cast<double>(state.iterations());
   StageStep<double> step(kBodies, system.h);
   peer->read(step);
   check(state, system, step);

@@ -67,7 +67,8 @@ def multiplications(net: HeadingNetwork, batch: int) -> float:
     inputs, headings, hidden, features = net.sizes
     trunk = hidden * (inputs + hidden + 3 * features + 1)
     heading = features * (3 + features + 1)  # their sum along it, f's two layers
-    return float(batch * (trunk + headings * heading + 4 * (trunk + heading)))
+    first = hidden * inputs  # whose inputs need no gradient
+    return float(batch * (trunk + headings * heading + 4 * (trunk + heading) - first))
 
 
 def bare_step(one: DoubleDqn) -> Callable[[], object]:

@@ -74,6 +74,15 @@ def measure(build: Path, out: Path, smoke: bool) -> dict[str, Any]:
     return result
 
 
+def check_peers(build: Path) -> None:
+    """Ends the program if a peer is missing that a gate needs."""
+    command = [str(build / "tests" / "rtg_bench"), "--benchmark_list_tests"]
+    listed = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
+    for peer in gates.PEERS:
+        if f"kkt/{peer}/16" not in listed.splitlines():
+            sys.exit(f"table.py: the benchmarks are built without {peer}; ./test.sh bench does it")
+
+
 def commit() -> str:
     """Names the commit that is measured, with a mark if the files differ from it."""
     return subprocess.run(
@@ -165,6 +174,7 @@ def table(result: dict[str, Any]) -> str:
 def main(build: Path, out: Path, smoke: bool) -> int:
     """Returns the exit status."""
     out.mkdir(parents=True, exist_ok=True)
+    check_peers(build)
     result = measure(build, out, smoke)
     text = table(result)
     (out / "table.md").write_text(text)

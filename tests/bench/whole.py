@@ -4,9 +4,15 @@
 
 Each run is stopped by train.stop_at_success, 0.95 in three evaluations in a row by default. Its
 folder is OUT/NAME/TASK-seed-N, where NAME is `this` or `other`; runs that are there already are not
-made again. --against: a checkout of another commit that is set up, whose runs take turns with ours.
---smoke makes tiny runs, which only show that it works. Prints medians over the seeds as Markdown,
-also to OUT/whole.md.
+made again. Prints medians over the seeds as Markdown, also to OUT/whole.md, and a gate: the wall
+time of Gathering [s].
+
+--against: a checkout of another commit that is set up, whose runs take turns with ours. All have
+evaluations at equal distances then, so that one rule stops them, and further gates are the ratios
+of wall time, CPU time and interactions.
+
+--smoke makes tiny runs of the first task, which only show that it works, without gates. Exit status
+1 if a gate failed.
 """
 
 from __future__ import annotations
@@ -22,6 +28,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from gates import gate
+
 ROOT = Path(__file__).resolve().parents[2]
 TASKS = ("gathering", "sorting", "art_manip")
 _SMOKE = (
@@ -33,6 +41,10 @@ _SMOKE = (
     "--set",
     "train.eval_episodes=2",
 )
+# Evaluations of commits until 57aa8b6 are as far apart by default.
+_ONE_RULE = ("--set", "train.eval_every=5000")
+_LONGEST = 40.0  # wall time of Gathering [s]
+_LEAST = {"interactions": 1.0, "job_wall_s": 4.0, "job_cpu_s": 4.0}  # ratios, other by this
 
 Figures = dict[str, Any]
 
@@ -60,6 +72,24 @@ def middle(runs: Sequence[Figures], key: str) -> float:
     return statistics.median(float(one[key]) for one in runs)
 
 
+def ratio(by_name: dict[str, list[Figures]], key: str) -> float:
+    """Compares the medians of the other checkout and of this one."""
+    return middle(by_name["other"], key) / middle(by_name["this"], key)
+
+
+def gates_hold(runs: dict[str, dict[str, list[Figures]]]) -> bool:
+    """Prints the gates and returns whether all hold."""
+    held = []
+    if "gathering" in runs:
+        wall = middle(runs["gathering"]["this"], "job_wall_s")
+        held.append(gate("whole.gathering.job_wall_s", wall, "<=", _LONGEST))
+    for task, by_name in runs.items():
+        if "other" in by_name:
+            for key, least in _LEAST.items():
+                held.append(gate(f"whole.{task}.{key}", ratio(by_name, key), ">=", least))
+    return all(held)
+
+
 def jobs_table(runs: dict[str, dict[str, list[Figures]]]) -> list[str]:
     """A row for each task and checkout: what its runs came to and took."""
     lines = [
@@ -73,11 +103,7 @@ def jobs_table(runs: dict[str, dict[str, list[Figures]]]) -> list[str]:
             words = f"{figures[0]:.2f} | {figures[1]:,.0f} | {took[0]:.1f} | {took[1]:.1f}"
             lines.append(f"| {task} | {name} | {len(found)} | {words} |")
         if "other" in by_name:
-            ratios = [
-                middle(by_name["other"], k) / middle(by_name["this"], k)
-                for k in ("interactions", "job_wall_s", "job_cpu_s")
-            ]
-            words = " | ".join(f"{ratio:.2f} ×" for ratio in ratios)
+            words = " | ".join(f"{ratio(by_name, key):.2f} ×" for key in _LEAST)
             lines.append(f"| {task} | other / this | | | {words} |")
     return lines
 
@@ -107,13 +133,10 @@ def seconds(values: Sequence[float | None]) -> str:
 def stages(one: Figures) -> dict[str, dict[str, float]]:
     """Returns the times of a run's stages [s], as far as they are known.
 
-    The last one is what the processes used beside the others: their start, the search's own work,
-    messages, pictures. Over LCM learning goes on beside generation.
+    The last one is what the processes used beside the others: set-up and start, the search's own
+    work, messages, pictures. Over LCM learning goes on beside generation.
     """
-    found = {
-        "set-up": {name: one[f"job_{name}"] - one[f"run_{name}"] for name in ("wall_s", "cpu_s")},
-        "start": {"wall_s": one["start_wall_s"]},
-    }
+    found = {"start": {"wall_s": one["start_wall_s"]}}
     for part in ("generation", "learning"):
         for name, times in (one.get(f"{part}_stages") or {}).items():
             found[f"{part}: {name.replace('_', ' ')}"] = times
@@ -130,20 +153,24 @@ def main(words: Sequence[str]) -> int:
     parser.add_argument("--smoke", action="store_true")
     args = parser.parse_args(words)
     checkouts = {"this": ROOT, **({"other": args.against.resolve()} if args.against else {})}
+    tasks, seeds = args.tasks.split(","), args.seeds.split(",")
+    if args.smoke:
+        tasks, seeds = tasks[:1], seeds[:1]
+    settings = _SMOKE if args.smoke else _ONE_RULE if args.against else ()
     runs: dict[str, dict[str, list[Figures]]] = {}
-    for task in args.tasks.split(","):
+    for task in tasks:
         runs[task] = {name: [] for name in checkouts}
-        for seed in args.seeds.split(","):
+        for seed in seeds:
             for name, checkout in checkouts.items():
                 folder = args.out.resolve() / name / f"{task}-seed-{seed}"
-                line = [task, "--seed", seed, *(_SMOKE if args.smoke else ())]
+                line = [task, "--seed", seed, *settings]
                 print(f"{name}: {' '.join(line)}", file=sys.stderr, flush=True)
                 runs[task][name].append(run(checkout, folder, line))
     ours = {task: by_name["this"] for task, by_name in runs.items()}
     text = "\n".join([*jobs_table(runs), "", *stages_table(ours)]) + "\n"
     (args.out / "whole.md").write_text(text)
-    print(text)
-    return 0
+    print(text, flush=True)
+    return 0 if args.smoke or gates_hold(runs) else 1
 
 
 if __name__ == "__main__":

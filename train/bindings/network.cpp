@@ -152,8 +152,11 @@ void bind_network(nb::module_& module) {
            nb::arg("headings"), nb::arg("next_states"), nb::arg("rewards"), nb::arg("terminated"),
            nb::arg("bounds"));
   nb::class_<WeightArrays>(module, "WeightArrays")
-      .def(nb::init<FloatsOut, FloatsOut, FloatsOut, FloatsOut, FloatsOut>(), nb::arg("online"),
-           nb::arg("target"), nb::arg("mean"), nb::arg("first_moment"), nb::arg("second_moment"));
+      // Not converted: a step would change a copy.
+      .def(nb::init<FloatsOut, FloatsOut, FloatsOut, FloatsOut, FloatsOut>(),
+           nb::arg("online").noconvert(), nb::arg("target").noconvert(),
+           nb::arg("mean").noconvert(), nb::arg("first_moment").noconvert(),
+           nb::arg("second_moment").noconvert());
   nb::class_<StepRates>(module, "StepRates")
       .def(nb::init<long, double, double, double>(), nb::kw_only(), nb::arg("step"),
            nb::arg("learning"), nb::arg("target"), nb::arg("mean"));

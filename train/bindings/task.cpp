@@ -165,6 +165,7 @@ void bind_task(nb::module_& module) {
       .def_ro("goal", &tasks::Task::goal)
       .def_prop_ro("arena", [](const tasks::Task& task) { return task.push.arena; })
       .def_prop_ro("position_unit", &tasks::position_unit)
+      .def_prop_ro("relative_unit", &tasks::relative_unit)
       .def_prop_ro("headings", [](const tasks::Task& task) { return task.push.headings; })
       .def_prop_ro(
           "start", [](const tasks::Task& task) { return state_array(task.start); },

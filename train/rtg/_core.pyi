@@ -86,6 +86,9 @@ class Task:
     def position_unit(self) -> float:
         """Unit of positions in an observation [m]."""
     @property
+    def relative_unit(self) -> float:
+        """Unit of relative positions in an observation [m]."""
+    @property
     def headings(self) -> int:
         """Number of actions: action a pushes along 2πa/headings."""
     @property

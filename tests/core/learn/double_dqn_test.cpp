@@ -112,6 +112,23 @@ double loss(const RowVectorXf& q, const RowVectorXf& y) {
   return sum / static_cast<double>(q.size());
 }
 
+// Of a batch of one the second half, which has a gradient of its own, is empty.
+TEST(DoubleDqn, ATransitionTwiceHasTheGradientOfOne) {
+  Case one(1), two(2);
+  two.states.col(1) = two.states.col(0) = one.states;
+  two.next.col(1) = two.next.col(0) = one.next;
+  two.headings[1] = two.headings[0] = one.headings[0];
+  two.rewards.fill(one.rewards[0]);
+  two.terminated.fill(one.terminated[0]);
+  two.bounds.fill(one.bounds[0]);
+  two.online = one.online;
+  two.target = one.target;
+  DoubleDqn learner(kSizes, {0.9, true, true, false}), other(kSizes, {0.9, true, true, false});
+  const VectorXf gradient = one.compute(learner);
+  EXPECT_LT((gradient - two.compute(other)).norm(), 1e-5f * gradient.norm());
+  EXPECT_GT(gradient.norm(), 0.1f);
+}
+
 // By central differences along the gradient, and along it with random signs: the change of Q(s, a)
 // counts, the targets do not. Errors are on both sides of 1, where the loss goes straight.
 TEST(DoubleDqn, GradientIsThatOfTheLossWithFixedTargets) {

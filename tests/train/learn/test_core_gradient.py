@@ -111,6 +111,13 @@ def test_the_core_refuses_what_does_not_fit(changes: dict[str, Any], expected: s
         step(**changes)
 
 
+@pytest.mark.parametrize("name", ["online", "target", "mean", "first_moment", "second_moment"])
+def test_weights_of_which_a_copy_would_change_are_refused(name: str) -> None:
+    for other in (np.zeros(WEIGHTS), np.zeros(2 * WEIGHTS, np.float32)[::2]):
+        with pytest.raises(TypeError):
+            step(**{name: other})
+
+
 def test_a_gradient_step_has_transitions() -> None:
     step(count=1)
     with pytest.raises(ValueError, match="0 states and 0 next states; legal: as many, at least 1"):

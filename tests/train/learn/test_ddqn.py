@@ -245,7 +245,8 @@ def test_only_targets_that_a_proof_raises_count_as_bound() -> None:
     data = batch(bootstrap, bootstrap, bounds)
     for clip in (False, True):
         statistics = Statistics()
-        statistics.add(data, bootstrap, td_targets(bootstrap, bounds, clip), bootstrap)
+        y = td_targets(bootstrap, bounds, clip)
+        statistics.add(data, *(each[:, 0].numpy() for each in (bootstrap, y, bootstrap)))
         shares = statistics.pop()
         assert shares["bound_share"] == pytest.approx(2 / 7)
         assert shares["clipped_share"] == pytest.approx(3 / 7)
@@ -255,7 +256,7 @@ def test_statistics_are_means_and_peaks_since_the_last_take() -> None:
     statistics = Statistics()
     data = batch(column(0, 0), column(0, 0), column(0, 0))
     for q, y in (((0.1, 0.5), (0.0, 0.4)), ((0.2, 0.2), (0.5, 0.5))):
-        statistics.add(data, column(*q), column(*y), column(*y))
+        statistics.add(data, *(np.float32(each) for each in (q, y, y)))
     found = statistics.pop()
     assert found["td_error"] == pytest.approx((0.1 + 0.3) / 2)
     assert found["q_online_mean"] == pytest.approx((0.3 + 0.2) / 2)

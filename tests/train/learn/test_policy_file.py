@@ -13,18 +13,20 @@ from rtg.learn import networks, policy_file
 from samples import train_settings
 
 TASK = _core.Config.from_file(paths.CONFIG / "tests" / "tiny.yaml").task
-FITTING = {"observation": 2, "observation_size": 20, "headings": 48, "network": "headings"}
+UNITS = {"position_unit": 4.0, "relative_unit": 1.0}
+FITTING = {**UNITS, "observation_size": 20, "headings": 48, "network": "headings"}
 
 
 @pytest.mark.parametrize(
     ("state", "message"),
     [
         ({}, "does not say with which settings it was made"),
-        ({"identity": {}}, "made with observation = None, but this run has 2"),
+        ({"identity": {}}, "made with position_unit = None, but this run has 4.0"),
         (
-            {"identity": {"observation": 2}},
-            "made with observation_size = None, but this run has 20",
+            {"identity": {**UNITS, "relative_unit": 0.5}},
+            "made with relative_unit = 0.5, but this run has 1.0",
         ),
+        ({"identity": UNITS}, "made with observation_size = None, but this run has 20"),
         ({"identity": {**FITTING, "network": "huge"}}, "an unknown network; legal: plain, head"),
         ({"identity": {**FITTING, "network": []}}, "an unknown network; legal: plain, head"),
         ({"identity": FITTING, "model": {}}, "holds no policy"),
@@ -78,7 +80,7 @@ def test_a_policy_takes_the_best_actions_of_the_network_that_was_written(
 def test_the_identity_says_what_shapes_the_weights(field: str, value: Any, expected: Any) -> None:
     found = policy_file.identity(TASK, train_settings(**{field: value}))
     assert found == {
-        "observation": 2,
+        **UNITS,
         "observation_size": 20,
         "headings": 48,
         "network": "headings",

@@ -46,6 +46,13 @@ def test_bounds_are_proven_before_all_transitions_are_in(tmp_path: Path, rows: R
     assert not stream.complete and ((bound > 0) & (bound < 1)).any()
 
 
+def test_a_learner_has_as_many_threads_as_the_run_has_workers(tmp_path: Path) -> None:
+    one = training(run_folder(tmp_path / "run", None, "run.workers=3"))
+    assert one.model.threads == 3
+    one.model.share_process()  # with other learners, on a thread each
+    assert one.model.threads == 1
+
+
 @pytest.mark.parametrize("randomise", [False, True])
 def test_training_starts_are_jittered(tmp_path: Path, randomise: bool) -> None:
     """They are by train.start_jitter, or all over task.randomisation where it is asked for."""

@@ -38,6 +38,21 @@ def test_those_of_an_earlier_generation_that_begins_anew_are_not(plan, drawn) ->
     assert drawn.is_set()
 
 
+def test_a_run_that_fails_draws_none_of_an_earlier_generation(plan, drawn) -> None:
+    plan.report_file.write_text("{}")
+    with pytest.raises(KeyError), EarlyPictures(plan):
+        raise KeyError
+    assert not drawn.is_set()
+
+
+def test_those_of_a_generation_that_is_complete_are_drawn_at_once(plan, drawn, monkeypatch) -> None:
+    monkeypatch.setattr(RunPlan, "is_generated", lambda plan: True)
+    plan.report_file.write_text("{}")
+    with EarlyPictures(plan) as pictures:
+        assert drawn.wait(20.0)
+        pictures.finish()
+
+
 def test_without_a_generation_there_are_none(plan, drawn) -> None:
     with EarlyPictures(plan) as pictures:
         pictures.finish()

@@ -13,7 +13,9 @@ from rtg import _core
 Array = npt.NDArray[Any]
 
 REVISIT_WINDOW = 8  # number of previous states with which a state is compared
-REVISIT_TOLERANCE = 0.04  # states are equal if each entry of the observation differs less
+# States are equal if each entry of the observation differs less: by default 0.16 m in positions,
+# 0.04 m in relative ones. With 0.15 ArtManip is not learned.
+REVISIT_TOLERANCE = 0.04
 
 # Maps a seed to a heading towards a random object for each environment. [N]
 ContactHeadings = Callable[[int], Array]

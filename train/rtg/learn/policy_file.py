@@ -19,15 +19,21 @@ from rtg.learn import networks
 from rtg.learn.evaluation import Policy
 from rtg.learn.hindsight import Layouts
 
-_OBSERVATION = 2  # number of the form of observations; policies of another form are rejected
+
+def _interface(task: _core.Task) -> dict[str, Any]:
+    """Returns what inputs and outputs of a network mean: units [m] and numbers of entries."""
+    return {
+        "position_unit": task.position_unit,
+        "relative_unit": task.relative_unit,
+        "observation_size": task.observation_size,
+        "headings": task.headings,
+    }
 
 
 def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
     """Returns the values of task and settings that determine what the weights are of."""
     return {
-        "observation": _OBSERVATION,
-        "observation_size": task.observation_size,
-        "headings": task.headings,
+        **_interface(task),
         "network": settings.network,
         "hindsight": settings.hindsight > 0,
     }
@@ -62,12 +68,7 @@ def read(path: Path, task: _core.Task) -> Policy:
     state = checkpoint.read(path)
     found: Any = state.get("identity")
     weights = state.get("weights")
-    wanted = {
-        "observation": _OBSERVATION,
-        "observation_size": task.observation_size,
-        "headings": task.headings,
-    }
-    check_identity(path, found, wanted)
+    check_identity(path, found, _interface(task))
     if found.get("network") not in list(networks.KINDS):
         raise UserError(f"{path}: has an unknown network; legal: {', '.join(networks.KINDS)}")
     if not isinstance(weights, dict):

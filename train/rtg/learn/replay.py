@@ -242,9 +242,8 @@ class MixedReplayBuffer:
         begin = 0
         for store, numbers in parts:
             end = begin + len(numbers)
-            np.take(
-                store.rows, numbers, out=batch[begin:end], mode="clip"
-            )  # by default out is copied
+            # The mode spares np.take a copy of `out`.
+            np.take(store.rows, numbers, out=batch[begin:end], mode="clip")
             begin = end
         columns = {name: np.ascontiguousarray(batch[name]) for name in self.offline.columns}
         if not self.rules.use_bounds:

@@ -23,6 +23,7 @@ class EarlyPictures:
         # The report of a generation that begins anew is removed and written again.
         self._is_stale = plan.report_file.exists() and not plan.is_generated()
         self._over = threading.Event()
+        self._is_finished = False  # the run is, not stopped or failed
         self._pool = ThreadPoolExecutor(1)
 
     def __enter__(self) -> Self:
@@ -40,6 +41,7 @@ class EarlyPictures:
 
     def finish(self) -> None:
         """Waits until the pictures are there; to be called when the run has ended."""
+        self._is_finished = True
         self._over.set()
         self._drawn.result()
 
@@ -47,7 +49,7 @@ class EarlyPictures:
         while self._is_stale or not self._plan.report_file.exists():
             if self._over.wait(_POLL):
                 break
-        if self._plan.report_file.exists():
+        if self._plan.report_file.exists() and (self._is_finished or not self._is_stale):
             from rtg.run import results  # imports matplotlib
 
             results.draw_generation(self._plan)
