@@ -43,7 +43,10 @@ MAY_INCLUDE = {
 
 # Third-party headers by their first path component or name -> the files that may include them.
 ONLY_IN = {
-    r"(umfpack|cholmod|klu|SuiteSparse|amd|colamd)\w*\.h|suitesparse/.*": r"core/math/\w+\.cpp",
+    r"(umfpack|cholmod|klu|SuiteSparse|amd|colamd)\w*\.h|suitesparse/.*": (
+        r"core/math/\w+\.cpp|tests/bench/kkt_peers\.cpp"
+    ),
+    r"(hpipm|blasfeo)\w*\.h": r"tests/bench/hpipm_peer\.cpp",
     r"box2d/.*": r"(tests/)?core/forward/box2d_\w+\.cpp",
     r"(yaml-cpp|utf8cpp)/.*": r"nodes/config/\w+\.cpp",
     r"lcm/.*": r"nodes/bus/bus\w*\.cpp",
