@@ -8,8 +8,10 @@ import statistics
 from collections.abc import Callable, Mapping
 
 # Time by benchmark, in whatever unit it reports (ratios take one unit): CPU time, or real time
-# where several threads work.
+# where several threads work. Of benchmarks in lanes it is the time per problem; PACK before the
+# name gives the time of all lanes, which is what a problem takes that is alone in them.
 Times = Mapping[str, float]
+PACK = "all lanes of "
 # Name, value, relation, goal.
 Gate = tuple[str, Callable[[Times], float], str, float]
 
@@ -45,18 +47,18 @@ def linearity(family: str) -> Callable[[Times], float]:
 PEERS = ("cyclic_reduction", "klu", "hpipm")
 
 
-def best_peer_by(family: str, ours: str) -> Callable[[Times], float]:
-    """Compares the fastest peer's KKT solve with `ours`, of six bodies over 16 sub-steps."""
+def best_peer_by_ours(family: str, of: str = "") -> Callable[[Times], float]:
+    """Compares the fastest peer's KKT solve with ours, of six bodies over 16 sub-steps."""
     return lambda times: (
-        min(times[f"{family}/{peer}/16"] for peer in PEERS) / times[f"{family}/{ours}/16"]
+        min(times[f"{family}/{peer}/16"] for peer in PEERS) / times[f"{of}{family}/lanes/16"]
     )
 
 
 GATES: tuple[Gate, ...] = (
-    ("kkt.throughput_by_best_peer", best_peer_by("kkt", "lanes"), ">=", 15.0),
-    ("kkt.latency_by_best_peer", best_peer_by("kkt", "lone"), ">=", 5.0),
-    ("kkt_inertia.throughput_by_best_peer", best_peer_by("kkt_inertia", "lanes"), ">=", 15.0),
-    ("kkt_inertia.latency_by_best_peer", best_peer_by("kkt_inertia", "lone"), ">=", 5.0),
+    ("kkt.throughput", best_peer_by_ours("kkt"), ">=", 15.0),
+    ("kkt.latency", best_peer_by_ours("kkt", PACK), ">=", 5.0),
+    ("kkt_inertia.throughput", best_peer_by_ours("kkt_inertia"), ">=", 15.0),
+    ("kkt_inertia.latency", best_peer_by_ours("kkt_inertia", PACK), ">=", 5.0),
     ("sqp_iteration.growth_with_h", growth("sqp_iteration"), "<=", 1.1),
     ("beam.linear_in_breadth", linearity("beam/breadth"), ">=", 0.99),
     ("beam.linear_in_depth", linearity("beam/depth"), ">=", 0.99),

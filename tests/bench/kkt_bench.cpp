@@ -1,8 +1,8 @@
-// Six bodies over the number of sub-steps h: solution of the KKT system, in lanes, of a lone
-// problem and by its peers; a whole SQP iteration with one trial point, over h and over the number
-// of bodies. Times of lanes are those of all of them, as many as the counter `candidates` says. All
-// run on one core; the peers solve one problem at a time, as they have no lanes. `own_us` is the
-// part of a peer's time that is spent in its library.
+// Six bodies over the number of sub-steps h: solution of the KKT system, in lanes and by its peers;
+// a whole SQP iteration with one trial point, over h and over the number of bodies. Times of lanes
+// are those of all of them, as many as the counter `candidates` says. All run on one core; the
+// peers solve one problem at a time, as they have no lanes. `own_us` is the part of a peer's time
+// that is spent in its library.
 
 #include <benchmark/benchmark.h>
 
@@ -92,19 +92,17 @@ void check(benchmark::State& state, const StageSystem<double>& system,
   if (!(residual <= kResidual)) state.SkipWithError("the residual is too large");
 }
 
-/// Our recursion, in lanes or of a lone problem.
-template <class T>
-void kkt_ours(benchmark::State& state, Family family) {
+void kkt_lanes(benchmark::State& state, Family family) {
   const int h = static_cast<int>(state.range(0));
-  const StageSystem<T> system = instance<T>(family, h);
-  Riccati<T> solver(kBodies, h);
-  StageStep<T> step(kBodies, h);
+  const StageSystem<Lanes> system = instance<Lanes>(family, h);
+  Riccati<Lanes> solver(kBodies, h);
+  StageStep<Lanes> step(kBodies, h);
   for (auto _ : state) {
     benchmark::DoNotOptimize(solver.solve(system, step));
     benchmark::ClobberMemory();
   }
   check(state, instance<double>(family, h), testing::lane_of(step, 0));
-  state.counters["candidates"] = kWidth<T>;
+  state.counters["candidates"] = kWidth<Lanes>;
 }
 
 using MakePeer = std::unique_ptr<KktPeer> (*)(const StageSystem<double>& system);
@@ -180,8 +178,7 @@ const std::vector<std::pair<std::string, MakePeer>> kPeers{
 void register_family(Family family) {
   const std::string name(kFamilies[static_cast<std::size_t>(family)]);
   std::vector<benchmark::internal::Benchmark*> all{
-      benchmark::RegisterBenchmark((name + "/lanes").c_str(), kkt_ours<Lanes>, family),
-      benchmark::RegisterBenchmark((name + "/lone").c_str(), kkt_ours<double>, family)};
+      benchmark::RegisterBenchmark((name + "/lanes").c_str(), kkt_lanes, family)};
   for (const auto& [peer, make] : kPeers)
     all.push_back(
         benchmark::RegisterBenchmark((name + '/' + peer).c_str(), kkt_peer, family, make));

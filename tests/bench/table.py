@@ -14,6 +14,7 @@ import json
 import re
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -148,6 +149,15 @@ def share(benchmark: dict[str, Any]) -> float:
     return time_of(benchmark) / candidates
 
 
+def all_times(benchmarks: Iterable[dict[str, Any]]) -> gates.Times:
+    """Returns the times that the gates ask for."""
+    times = {}
+    for one in benchmarks:
+        times[name_of(one)] = share(one)
+        times[gates.PACK + name_of(one)] = time_of(one)
+    return times
+
+
 def row(benchmark: dict[str, Any]) -> str:
     """Returns the benchmark's line of the table."""
     name = name_of(benchmark)
@@ -183,7 +193,7 @@ def main(build: Path, out: Path, smoke: bool) -> int:
         return 1
     passed = solver_gates(build, out, smoke)
     if not smoke:
-        passed &= gates.check({name_of(b): share(b) for b in result["benchmarks"]})
+        passed &= gates.check(all_times(result["benchmarks"]))
     return int(not passed)
 
 
