@@ -38,7 +38,8 @@ class JobDispatcher {
   struct Limits {
     bus::Seconds silence = 2.0;  // a worker without a beat for this long is lost [s]
     bus::Seconds resend = 0.1;   // a beat this long after sending a job should list it [s]
-    bus::Seconds lease = 300.0;  // longest legal time to a result; some hundred times the usual [s]
+    // Longest legal time to a result [s]. A unit takes milliseconds, with the preset paper minutes.
+    bus::Seconds lease = 300.0;
     int poison = 3;              // number of lost workers after which a job is given up
   };
   struct Send {
