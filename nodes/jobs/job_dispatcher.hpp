@@ -40,7 +40,7 @@ class JobDispatcher {
     bus::Seconds resend = 0.1;   // a beat this long after sending a job should list it [s]
     // Longest legal time to a result [s]. A unit takes milliseconds, with the preset paper minutes.
     bus::Seconds lease = 300.0;
-    int poison = 3;              // number of lost workers after which a job is given up
+    int poison = 3;  // number of lost workers after which a job is given up
   };
   struct Send {
     WorkerId worker = 0;
