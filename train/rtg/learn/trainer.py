@@ -17,7 +17,7 @@ import argparse
 import contextlib
 import sys
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from pathlib import Path
 
 import torch as th
@@ -32,6 +32,8 @@ from rtg.learn.offline_data import FileSource, NoSource, Source
 from rtg.learn.planning import Planning
 from rtg.learn.training import Training
 from rtg.processes.interrupts import Interrupts
+
+_WAKE = 0.2  # [s]
 
 
 def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
@@ -116,6 +118,9 @@ def train(args: argparse.Namespace, interrupts: Interrupts) -> int:
     trainings = [_begin(folder, args) for folder in args.folders]
     with ThreadPoolExecutor(len(trainings), initializer=_keep_to_one_thread) as pool:
         ends = [pool.submit(_learn, training, args, interrupts) for training in trainings]
+        # Python handles a signal in the main thread, which a signal to another thread does not wake.
+        while wait(ends, _WAKE).not_done:
+            pass
     return max(end.result() for end in ends)
 
 
