@@ -118,7 +118,7 @@ def train(args: argparse.Namespace, interrupts: Interrupts) -> int:
     trainings = [_begin(folder, args) for folder in args.folders]
     with ThreadPoolExecutor(len(trainings), initializer=_keep_to_one_thread) as pool:
         ends = [pool.submit(_learn, training, args, interrupts) for training in trainings]
-        # Python handles a signal in the main thread, which a signal to another thread does not wake.
+        # Python handles signals in the main thread; one that another thread gets does not wake it.
         while wait(ends, _WAKE).not_done:
             pass
     return max(end.result() for end in ends)
