@@ -20,7 +20,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import statistics
 import subprocess
 import sys
@@ -28,6 +27,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+import cpu_time
 from gates import gate
 from rtg import paths
 
@@ -55,19 +55,15 @@ def run(smoke: bool, *words: str) -> Figures:
         out = Path(folder) / "run"
         command = [str(ROOT / "run.sh"), TASK, "--workers", "2"]
         command += [*(_TINY if smoke else _WHOLE), *words]
-        before = os.times()
+        before = cpu_time.of_children()
         subprocess.run([*command, "--out", str(out)], capture_output=True, check=True)
-        after = os.times()
+        cpu = cpu_time.of_children() - before
         summary = json.loads((out / "summary.json").read_text())
     mode = "in_process" if "--in-process" in words else "lcm"
     if summary["mode"] != mode:
         sys.exit(
             f"generation.py: the run was {summary['mode']} instead of {mode}; multicast is off"
         )
-    cpu = sum(
-        getattr(after, name) - getattr(before, name)
-        for name in ("children_user", "children_system")
-    )
     work = sum(
         times["cpu_s"]
         for part in ("generation_stages", "learning_stages")

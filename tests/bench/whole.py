@@ -19,7 +19,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import statistics
 import subprocess
 import sys
@@ -28,6 +27,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import cpu_time
 from gates import gate
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -54,15 +54,11 @@ def run(checkout: Path, folder: Path, words: Sequence[str]) -> Figures:
     note = folder / "whole.json"
     if not note.exists():
         folder.parent.mkdir(parents=True, exist_ok=True)
-        begin, before = time.monotonic(), os.times()
+        begin, before = time.monotonic(), cpu_time.of_children()
         command = [str(checkout / "run.sh"), *words, "--out", str(folder)]
         with folder.with_suffix(".log").open("w") as log:
             subprocess.run(command, cwd=checkout, stdout=log, stderr=log, check=True)
-        wall, after = time.monotonic() - begin, os.times()
-        cpu = sum(
-            getattr(after, name) - getattr(before, name)
-            for name in ("children_user", "children_system")
-        )
+        wall, cpu = time.monotonic() - begin, cpu_time.of_children() - before
         note.write_text(json.dumps({"job_wall_s": wall, "job_cpu_s": cpu}))
     summary: Figures = json.loads((folder / "summary.json").read_text())
     return {**summary, **json.loads(note.read_text())}
