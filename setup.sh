@@ -130,7 +130,8 @@ build_progress() {
   cores=$(nproc)
   while IFS= read -r line; do
     printf '%s\n' "$line" >>"$2"
-    if [[ ! $line =~ ^\[[1-9][0-9]*/([0-9]+)\]\  ]]; then continue; fi # [0/2]: ninja looks for new files
+    if [[ ! $line =~ ^\[[1-9][0-9]*/([0-9]+)\]\ (.*) ]]; then continue; fi # [0/2]: ninja looks for new files
+    if [[ ${BASH_REMATCH[2]} == Re-running* ]]; then continue; fi
     if [[ -z $steps ]]; then
       steps=${BASH_REMATCH[1]}
       say "building build/$1: $steps steps, about $((steps / 30 / cores + 1)) min on $cores cores" # 2 s of a core each

@@ -4,7 +4,7 @@
 #   ./test.sh debug       C++ tests in a debug build with AddressSanitizer and UndefinedBehaviorSanitizer
 #   ./test.sh tsan        C++ tests that use threads under ThreadSanitizer
 #   ./test.sh coverage    line coverage of the physics and the solver by their own tests
-#   ./test.sh bench       benchmarks and gates: JSON and Markdown in build/bench/ (40 minutes; --smoke: briefly, no gates)
+#   ./test.sh bench       benchmarks and gates: JSON and Markdown in build/bench/ (40 minutes; --smoke: briefly, no gates on time)
 #   ./test.sh peer        the reverse solver against CasADi and IPOPT (ten minutes)
 # The last two install CasADi, whose package also holds HPIPM.
 set -euo pipefail
@@ -45,10 +45,9 @@ coverage() {
     --txt --txt-summary --html-details "$folder/coverage.html" --fail-under-line 95)
 }
 
-bench() { # [--smoke]
-  local out=$ROOT/build/bench status=0
-  rm -rf "$out"
-  mkdir -p "$out"
+run_benches() { # OUT [--smoke]
+  local out=$1 status=0
+  shift
   cd "$ROOT/tests/bench"
   "$VENV/bin/python" table.py "$ROOT/build/release" "$out" "$@" || status=1
   "$VENV/bin/python" learner.py "$@" | tee "$out/learner.txt" || status=1
@@ -57,8 +56,18 @@ bench() { # [--smoke]
   return $status
 }
 
-case ${1:-all} in
-  all)
+bench() { # [--smoke]
+  local out=$ROOT/build/bench status=0
+  rm -rf "$out"
+  mkdir -p "$out"
+  run_benches "$out" "$@" | tee "$out/all.txt" || status=1
+  say "gates: $(grep -c '^gate .* PASS$' "$out/all.txt") hold, $(grep -c '^gate .* FAIL$' "$out/all.txt") fail"
+  grep '^gate .* FAIL$' "$out/all.txt" >&2 || true
+  return $status
+}
+
+case $* in # all words, so that one too many is unknown
+  '' | all)
     set_up release all
     status=0
     run_ctest release || status=1
@@ -77,18 +86,18 @@ case ${1:-all} in
     set_up coverage rtg_cpp_tests
     coverage
     ;;
-  bench)
+  bench | 'bench --smoke')
     set_up release all "$ROOT/tests/bench/requirements.txt"
     set_environment
     bench "${@:2}"
     ;;
-  peer)
+  peer | 'peer '*)
     set_up release peer_dump "$ROOT/tests/bench/requirements.txt"
     exec "$VENV/bin/python" "$ROOT/tests/bench/peer.py" "$ROOT/build/release" "${@:2}"
     ;;
   -h | --help) usage ;;
   *)
-    say "unknown: $1"
+    say "unknown: $*"
     usage >&2
     exit 2
     ;;

@@ -248,6 +248,9 @@ def test_a_stopped_run_goes_on_where_it_was(in_process, tmp_path):
     assert done.returncode == 0, done.stderr
     assert "the transitions are there already" in done.stdout
     assert best_episode(folder).tolist() == best_episode(in_process[0]).tolist()
+    again = run("--resume", "--out", folder)
+    assert again.returncode == 0, again.stderr
+    assert "nothing is left to learn: " in again.stdout
 
 
 def best_episode(folder):

@@ -1,11 +1,15 @@
 """The learner's program on several runs at once."""
 
+import signal
+import threading
+import time
 from pathlib import Path
 
 import pytest
 from rtg.files.dataset import Rows
-from rtg.files.run_folder import read_json
+from rtg.files.run_folder import checkpoint_file, read_json
 from rtg.learn import trainer
+from rtg.processes.interrupts import Interrupts
 from training_runs import run_folder
 
 
@@ -48,3 +52,26 @@ def test_several_runs_have_no_stream(capsys: pytest.CaptureFixture[str]) -> None
         learn("one", "other")
     assert status.value.code == 2
     assert "legal: with --no-stream" in capsys.readouterr().err
+
+
+def test_a_signal_that_another_thread_gets_stops_learning(
+    tmp_path: Path, rows: Rows, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Python handles signals in the main thread, which used to sleep until learning ended."""
+    folder = run_folder(tmp_path / "run", rows)
+    requested, sent = Interrupts.requested, threading.Event()
+
+    def interrupted(interrupts: Interrupts) -> bool:
+        if not sent.is_set():
+            sent.set()
+            assert threading.current_thread() is not threading.main_thread()
+            signal.pthread_kill(threading.get_ident(), signal.SIGTERM)
+            for _ in range(100):
+                if requested(interrupts):
+                    break
+                time.sleep(0.1)
+        return requested(interrupts)
+
+    monkeypatch.setattr(Interrupts, "requested", interrupted)
+    assert learn(folder, "--no-stream") == 128 + signal.SIGTERM
+    assert checkpoint_file(folder).exists() and not (folder / "training.json").exists()

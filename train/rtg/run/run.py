@@ -68,6 +68,13 @@ def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
         return graph_run.run(plan, shown)
     if plan.train:
         if plan.resume and run_folder.checkpoint_file(plan.folder).exists():
-            shown.note("learning goes on from its last checkpoint")
+            shown.note(_what_is_left(plan))
         train_run.run(plan, shown)
     return {"lost_transitions": 0, "defects": graph_run.generation_defects(plan)}
+
+
+def _what_is_left(plan: RunPlan) -> str:
+    done = run_folder.read_json(plan.folder / "training_state.json").get("interactions", 0)
+    if done >= plan.interactions:
+        return f"nothing is left to learn: {done:,} of {plan.interactions:,} interactions are done"
+    return "learning goes on from its last checkpoint"
