@@ -19,8 +19,8 @@ Articulation<T>::Articulation(const Scene& scene)
   for (const std::size_t k : root_first(scene)) {
     const Joint& joint = scene.joints[k];
     double reach = 0.0;
-    for (const Vector2d& v : scene.bodies[static_cast<std::size_t>(joint.child)].shape.vertices)
-      reach = std::max(reach, (v - joint.on_child).norm());
+    for (const Part& part : scene.bodies[static_cast<std::size_t>(joint.child)].shape.parts())
+      reach = std::max(reach, reach_from(joint.on_child, part));
     hinges_.push_back({joint.parent,
                        joint.child,
                        {T(joint.on_parent.x()), T(joint.on_parent.y())},

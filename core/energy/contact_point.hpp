@@ -11,16 +11,22 @@ namespace rtg::energy {
 /// `offset` and the coordinates u of the pair are those of PairFrame. The second derivatives of x
 /// are zero except for those that involve an angle.
 ///
+/// A round corner has its centre at v and the radius r. Its surface rolls by r (θ_i - θ_j) relative
+/// to body j.
+///
 /// A ContactPoint can also hold the rates (ẋ, ȧ) along a motion y, as returned by along(). The
 /// member functions pulled_rate() and add_curvature_rate() are meant for such an object.
 template <class T>
 struct ContactPoint {
-  Vec2<T> x, a;  // [m]
+  Vec2<T> x, a;        // [m]
+  T radius{}, roll{};  // r, r (θ_i - θ_j) [m]
 
   ContactPoint() = default;
-  ContactPoint(const Vec2<T>& vertex, const PairFrame<T>& pair)
+  ContactPoint(const Vec2<T>& vertex, const PairFrame<T>& pair, const T& rounding)
       : a(pair.across.c * vertex.x() - pair.across.s * vertex.y(),
-          pair.across.s * vertex.x() + pair.across.c * vertex.y()) {
+          pair.across.s * vertex.x() + pair.across.c * vertex.y()),
+        radius(rounding),
+        roll(rounding * pair.turn) {
     x = pair.offset + a;
   }
 
@@ -29,6 +35,7 @@ struct ContactPoint {
     ContactPoint rate;
     rate.a = turned(a) * (y[2] - y[3]);
     rate.x = pushed(y);
+    rate.roll = radius * (y[2] - y[3]);
     return rate;
   }
 
@@ -36,6 +43,8 @@ struct ContactPoint {
   Vec2<T> pushed(const Vec4<T>& y) const {
     return {y[0] - a.y() * y[2] + x.y() * y[3], y[1] + a.x() * y[2] - x.x() * y[3]};
   }
+  /// Returns ∂roll/∂u.
+  Vec4<T> roll_gradient() const { return {T(0.0), T(0.0), radius, -radius}; }
   /// Returns Xᵀ w.
   Vec4<T> pulled(const Vec2<T>& w) const {
     return {w.x(), w.y(), a.x() * w.y() - a.y() * w.x(), x.y() * w.x() - x.x() * w.y()};

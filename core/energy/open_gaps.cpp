@@ -34,7 +34,7 @@ bool open_pair(const SceneModel<double>& scene, int n, double floor, Placement<d
     const VertexContact<double> contact(scene, n, v, frame, true);
     if (!contact.within) continue;
     const SignedDistance<double> d = contact.distance();
-    const double gap = d.value - scene.skin();
+    const double gap = contact.gap(d, true);
     if (gap >= floor) continue;
     VectorXd slope = VectorXd::Zero(3 * scene.movable());
     pull(scene, n, frame, contact.point.pulled(d.gradient), slope.data());

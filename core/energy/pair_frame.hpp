@@ -35,9 +35,10 @@ struct PairFrame {
   Turn<T> frame;   // θ_j
   Turn<T> across;  // θ_i - θ_j
   Vec2<T> offset;  // R(θ_j)ᵀ (t_i - t_j) [m]
+  T turn;          // θ_i - θ_j [rad]
 
   PairFrame(const T* pi, const Turn<T>& i, const T* pj, const Turn<T>& j)
-      : frame(j), across{i.c * j.c + i.s * j.s, i.s * j.c - i.c * j.s} {
+      : frame(j), across{i.c * j.c + i.s * j.s, i.s * j.c - i.c * j.s}, turn(pi[2] - pj[2]) {
     const T x = pi[0] - pj[0], y = pi[1] - pj[1];
     offset = {j.c * x + j.s * y, j.c * y - j.s * x};
   }

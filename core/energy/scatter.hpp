@@ -13,7 +13,7 @@ V* entries(const SceneModel<T>& scene, V* stacked, int body) {
 /// Returns V y (PairFrame) of a pair for a motion `y` of all bodies [3·movable].
 template <class T>
 Vec4<T> pushed(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame, const T* y) {
-  const auto [i, j] = scene.pairs()[pair];
+  const int i = scene.pairs()[pair].body, j = scene.pairs()[pair].other;
   return frame.pushed(entries(scene, y, i), entries(scene, y, j));
 }
 
@@ -21,7 +21,7 @@ Vec4<T> pushed(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame, 
 template <class T>
 void pull(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame, const Vec4<T>& g,
           T* into) {
-  const auto [i, j] = scene.pairs()[pair];
+  const int i = scene.pairs()[pair].body, j = scene.pairs()[pair].other;
   frame.pull(g, entries(scene, into, i), entries(scene, into, j));
 }
 
@@ -29,7 +29,7 @@ void pull(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame, const
 template <class T>
 void scatter(const SceneModel<T>& scene, int pair, const PulledBlocks<T>& blocks,
              BlockMatrix<T>& into) {
-  const auto [i, j] = scene.pairs()[pair];
+  const int i = scene.pairs()[pair].body, j = scene.pairs()[pair].other;
   if (scene.movable(i)) into.add(i, i, blocks.ii);
   if (scene.movable(j)) into.add(j, j, blocks.jj);
   if (!scene.movable(i) || !scene.movable(j)) return;
@@ -42,7 +42,7 @@ void scatter(const SceneModel<T>& scene, int pair, const PulledBlocks<T>& blocks
 template <class T>
 void scatter_lower(const SceneModel<T>& scene, int pair, const PairFrame<T>& frame,
                    const Mat4<T>& H, BlockMatrix<T>& into) {
-  const auto [i, j] = scene.pairs()[pair];
+  const int i = scene.pairs()[pair].body, j = scene.pairs()[pair].other;
   const PulledBlocks<T> blocks(frame, H, frame);
   if (scene.movable(i)) into.add(i, i, blocks.ii);
   if (scene.movable(j)) into.add(j, j, blocks.jj);

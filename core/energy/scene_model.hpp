@@ -16,9 +16,11 @@
 
 namespace rtg::energy {
 
-/// Ordered pair of bodies. Its contacts are vertices of `body` against the edges of `other`.
-struct BodyPair {
+/// Ordered pair of parts of two bodies. Its contacts are the tips of `part` against the edges of
+/// `other_part`. The parts of all bodies are numbered one after another.
+struct PartPair {
   int body = 0, other = 0;
+  int part = 0, other_part = 0;
 };
 
 /// Returns the index of the contact of `vertex` in `pair`. Each pair owns kMaxVertices successive
@@ -30,8 +32,8 @@ inline int contact_of(int pair, int vertex) {
 /// The constants of a scene that energies and contacts depend on: shapes, masses, friction,
 /// barrier. Energies are in units of k_D/Δt² (core/NOTATION.md).
 ///
-/// Each lane (core/math/lanes.hpp) holds a scene of its own. All have the same number of bodies and
-/// of movable bodies; the shapes may differ.
+/// Each lane (core/math/lanes.hpp) holds a scene of its own. All have the same number of bodies, of
+/// movable bodies, and of parts of each body; the parts may differ.
 template <class T>
 class SceneModel {
  public:
@@ -39,7 +41,8 @@ class SceneModel {
   /// robot.
   SceneModel(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push);
   /// Returns a model with empty lanes and the physics constants of `like`. It is for scenes with as
-  /// many bodies, and movable bodies, as `like` and with joints between the same bodies.
+  /// many bodies, movable bodies, and parts of each body as `like` and with joints between the same
+  /// bodies.
   static SceneModel room_for(const SceneModel<double>& like) { return {like, Room{}}; }
 
   /// Copies the scene of `one` into this lane.
@@ -48,11 +51,13 @@ class SceneModel {
   void unload(int lane);
 
   int bodies() const { return bodies_; }
+  /// Returns the number of parts of each body.
+  const std::vector<int>& parts() const { return parts_; }
   int movable() const { return movable_; }
   bool movable(int body) const { return body < movable_; }
-  /// Returns all ordered pairs of bodies that can touch. For even n, pair n + 1 is pair n reversed.
-  /// Two fixed bodies form no pair, nor do two bodies connected by a joint.
-  const std::vector<BodyPair>& pairs() const { return pairs_; }
+  /// Returns all ordered pairs of parts that can touch. For even n, pair n + 1 is pair n reversed.
+  /// Those of two fixed bodies form no pair, nor do those of two bodies connected by a joint.
+  const std::vector<PartPair>& pairs() const { return pairs_; }
   int pair_count() const { return static_cast<int>(pairs_.size()); }
   int contacts() const {
     return limit_contact(2 * static_cast<int>(articulation_.hinges().size()));
@@ -89,31 +94,42 @@ class SceneModel {
   const T& friction(int pair) const { return friction_[pair]; }
 
   /// Returns the lanes in which a contact of the pair, or of the reversed pair, may act. It
-  /// compares the distance of the bodies' centres with the sum of two bounding radii: that of one
-  /// shape, and that of the other's offset_polygon(), which contains every vertex within the
+  /// compares the distance of the parts' centres with the sum of two bounding radii: that of one
+  /// part, and that of the other's offset_polygon(), which contains every vertex within the
   /// barrier's range.
   Mask<T> near(int pair, const Placement<T>& at) const {
-    const auto [i, j] = pairs_[pair];
-    const T x = at.body(i)[0] - at.body(j)[0], y = at.body(i)[1] - at.body(j)[1];
-    const T reach = greater(radius_[i] + offset_radius_[j], radius_[j] + offset_radius_[i]);
-    const Mask<T> real = corner_count_[i] > T(0.0);
+    const PartShape &a = first(pair), &b = second(pair);
+    const int i = pairs_[pair].body, j = pairs_[pair].other;
+    T x = at.body(i)[0] - at.body(j)[0], y = at.body(i)[1] - at.body(j)[1];
+    if (parts_[i] + parts_[j] > 2) {
+      const Vec2<T> apart = turned_by(at.turns[i], a.centre) - turned_by(at.turns[j], b.centre);
+      x = x + apart.x();
+      y = y + apart.y();
+    }
+    const T reach = greater(a.radius + b.offset_radius, b.radius + a.offset_radius);
+    const Mask<T> real = a.corner_count > T(0.0);
     return barrier_.plain ? real : real && x * x + y * y < reach * reach;
   }
   PairFrame<T> frame(int pair, const Placement<T>& at) const {
-    const auto [i, j] = pairs_[pair];
+    const int i = pairs_[pair].body, j = pairs_[pair].other;
     return {at.body(i), at.turns[i], at.body(j), at.turns[j]};
   }
-  /// Returns the largest number of vertices that the pair's first body has in any lane.
-  int corners(int pair) const { return corners_[pairs_[pair].body]; }
-  /// Returns the lanes in which the pair's first body has this vertex.
-  Mask<T> real(int pair, int vertex) const { return corner_count_[pairs_[pair].body] > T(vertex); }
+  /// Returns the largest number of vertices that the pair's first part has in any lane. Its tips
+  /// come first.
+  int corners(int pair) const { return first(pair).corners; }
+  /// Returns the lanes in which the pair's first part has this vertex.
+  Mask<T> real(int pair, int vertex) const { return first(pair).corner_count > T(vertex); }
+  /// Returns the lanes in which this vertex is a tip (Shape::tips()), which can touch.
+  Mask<T> is_tip(int pair, int vertex) const { return first(pair).tip_count > T(vertex); }
   ContactPoint<T> point(int pair, int vertex, const PairFrame<T>& frame) const {
-    return {vertices_[pairs_[pair].body][vertex], frame};
+    return {first(pair).vertices[vertex], frame, first(pair).rounding};
   }
-  const Planes<T>& planes(int pair) const { return planes_[pairs_[pair].other]; }
-  SeparatingEdges<T> edges(int pair) const {
-    return {planes(pair), corner_count_[pairs_[pair].other]};
-  }
+  const Planes<T>& planes(int pair) const { return second(pair).planes; }
+  /// Returns the sum of the radii of round corners of both parts [m].
+  T rounding(int pair) const { return first(pair).rounding + second(pair).rounding; }
+  /// Returns whether any body in any lane has round corners.
+  bool is_rounded() const { return is_rounded_; }
+  SeparatingEdges<T> edges(int pair) const { return {planes(pair), second(pair).edge_count}; }
 
   /// Makes `at` consistent after a change of its poses: updates the cached turns and closes all
   /// joints.
@@ -136,15 +152,27 @@ class SceneModel {
   struct Room {};
   SceneModel(const SceneModel<double>& like, Room);
 
+  /// The geometry of a part.
+  struct PartShape {
+    std::array<Vec2<T>, kMaxVertices> vertices;
+    Planes<T> planes;
+    int corners = 0;                              // the largest number in any lane
+    T corner_count{}, tip_count{}, edge_count{};  // 0 in an empty lane
+    T rounding{};                                 // [m]
+    Vec2<T> centre;                               // in the body frame; the origin of a single part
+    T radius{}, offset_radius{};  // of part and offset polygon around the centre [m]
+  };
+  static PartShape part_shape(const Shape& shape, std::size_t part, double range);
+  const PartShape& first(int pair) const { return shapes_[pairs_[pair].part]; }
+  const PartShape& second(int pair) const { return shapes_[pairs_[pair].other_part]; }
+
   int movable_, bodies_;
   Articulation<T> articulation_;
-  std::vector<BodyPair> pairs_;
+  std::vector<PartPair> pairs_;
   std::vector<T> friction_;  // per pair
-  std::vector<std::array<Vec2<T>, kMaxVertices>> vertices_;
-  std::vector<int> corners_;     // per body, the largest number in any lane
-  std::vector<T> corner_count_;  // per body; 0 in an empty lane
-  std::vector<Planes<T>> planes_;
-  std::vector<T> radius_, offset_radius_;  // bounding radii of shape and offset polygon [m]
+  std::vector<int> parts_;   // per body
+  std::vector<PartShape> shapes_;
+  bool is_rounded_ = false;
   std::vector<Damping<T>> damping_;
   Vec3<T> control_bound_;
   Barrier barrier_;

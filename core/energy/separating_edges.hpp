@@ -19,8 +19,8 @@ namespace rtg::energy {
 template <class T>
 class SeparatingEdges {
  public:
-  /// `edges` is the number of edges of the polygon in each lane. Further entries of `planes` are
-  /// unused.
+  /// `edges` is the number of edges of the polygon in each lane, 0 of a single point. Further
+  /// entries of `planes` are unused.
   SeparatingEdges(const Planes<T>& planes, const T& edges) : planes_(planes), edges_(edges) {
     for (int k = 0; k < planes.count; ++k) least_[k] = T(INFINITY);
   }
@@ -31,13 +31,13 @@ class SeparatingEdges {
       least_[k] = select(real, lesser(least_[k], distances[k]), least_[k]);
   }
 
-  /// Returns the lanes in which an edge separates the two bodies. Call note() for all vertices
-  /// first. `sharpness` is α.
+  /// Returns the lanes in which an edge separates the two bodies, or in which there is none: of a
+  /// single point the gap tells enough. Call note() for all vertices first. `sharpness` is α.
   Mask<T> separate(double sharpness) const {
     T best(-INFINITY);
     for (int k = 0; k < planes_.count; ++k)
       best = select(edges_ > T(k), greater(best, least_[k]), best);
-    return best > T(-kCorners * std::numbers::ln2 / sharpness);
+    return best > T(-kCorners * std::numbers::ln2 / sharpness) || edges_ == T(0.0);
   }
 
  private:

@@ -7,7 +7,7 @@ namespace rtg::energy {
 /// Friction potential φ of one contact over a sub-step, per unit of μ_f λ, and its derivatives. The
 /// friction is lagged: λ is the normal force before the sub-step. With the slip u of the contact,
 ///
-///   φ(u) = √(u² + ε²) - ε,   u = t·(x₊ - x),   t = E ∇d(x).
+///   φ(u) = √(u² + ε²) - ε,   u = t·(x₊ - x) - (roll₊ - roll),   t = E ∇d(x).
 ///
 /// In derivatives of φ, u₊ and u denote the coordinates of the pair (PairFrame) instead: after and
 /// before the sub-step.
@@ -19,23 +19,25 @@ namespace rtg::energy {
 template <class T>
 struct SlipTerms {
   Vec2<T> tangent;               // t = ∂u/∂x₊
-  Vec2<T> rotated_displacement;  // Eᵀ (x₊ - x); slip u = ∇d·rotated_displacement
+  Vec2<T> rotated_displacement;  // Eᵀ (x₊ - x); t·(x₊ - x) = ∇d·rotated_displacement
   T root, slope, bend;           // √(u² + ε²), φ', φ''
   T slip;                        // u
-  Vec4<T> ahead;                 // X₊ᵀ t
+  Vec4<T> ahead;                 // ∂u/∂u₊ = X₊ᵀ t - ∂roll₊/∂u₊
 
-  /// `normal` is ∇d(x), `next` the point after the sub-step, `x` the point before it, `scale` ε.
-  SlipTerms(const Vec2<T>& normal, const ContactPoint<T>& next, const Vec2<T>& x, double scale)
+  /// `normal` is ∇d(x), `next` the point after the sub-step, `x` and `roll` those of the point
+  /// before it, `scale` ε.
+  SlipTerms(const Vec2<T>& normal, const ContactPoint<T>& next, const Vec2<T>& x, const T& roll,
+            double scale)
       : tangent(turned(normal)) {
     const Vec2<T> moved = next.x - x;
     rotated_displacement = {moved.y(), -moved.x()};
-    slip = normal.dot(rotated_displacement);
+    slip = normal.dot(rotated_displacement) - (next.roll - roll);
     const T e2(scale * scale);
     root = rtg::root(slip * slip + e2);
     const T inverse = T(1.0) / root;
     slope = slip * inverse;
     bend = e2 * inverse * inverse * inverse;
-    ahead = next.pulled(tangent);
+    ahead = next.pulled(tangent) - next.roll_gradient();
   }
 
   T value(double scale) const { return root - T(scale); }
@@ -75,11 +77,11 @@ class SlipRates {
         rotated_displacement_rate_(rate_.x.y(), -rate_.x.x()) {
     tangent_slope_ << -at.D(1, 0), -at.D(1, 1), at.D(0, 0), at.D(0, 1);
     u_x_ = product(at.D, s.rotated_displacement) - s.tangent;
-    const T slip = s.tangent.dot(rate_.x);
+    const T slip = s.tangent.dot(rate_.x) - rate_.roll;
     slope_ = s.bend * slip;
     bend_ = T(-3.0) * s.slip * s.bend * slip / (s.root * s.root);
     ahead_ = rate_.pulled_rate(s.tangent);
-    behind_ = at.before.pulled(u_x_);
+    behind_ = at.before.pulled(u_x_) + at.before.roll_gradient();
     behind_rate_ = at.before.pulled(product(at.D, rotated_displacement_rate_));
     next = s.ahead * slope_ + ahead_ * s.slope + frame_turn(y[3], s.gradient());
     now = behind_ * slope_ + behind_rate_ * s.slope;
@@ -134,7 +136,7 @@ class SlipRates {
   Vec2<T> u_x_;                        // ∂u/∂x
   T slope_, bend_;                     // rates of φ', φ''
   Vec4<T> ahead_;                      // rate of X₊ᵀ t
-  Vec4<T> behind_;                     // Xᵀ ∂u/∂x
+  Vec4<T> behind_;                     // Xᵀ ∂u/∂x + ∂roll/∂u
   Vec4<T> behind_rate_;
 };
 

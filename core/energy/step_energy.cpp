@@ -7,7 +7,7 @@ namespace rtg::energy {
 StepEnergy::StepEnergy(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push)
     : scene_(scene, physics, push) {
   for (int n = 0; n < scene_.pair_count(); ++n)
-    for (int v = 0; v < scene_.corners(n); ++v)
+    for (int v = 0; v < scene_.corners(n) && scene_.is_tip(n, v); ++v)
       contacts_.push_back(
           {scene_.pairs()[n].body, scene_.pairs()[n].other, scene_.friction(n), n, v});
   constexpr int kPerPair = static_cast<int>(kMaxVertices);

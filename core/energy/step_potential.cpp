@@ -21,6 +21,7 @@ void StepPotential<T>::begin(const Placement<T>& now, const T* previous_forces,
       drags_[n] = 1;
       const VertexContact<T> contact(scene_, n, v, frame, Mask<T>(true));
       lagged.x = contact.point.x;
+      lagged.roll = contact.point.roll;
       lagged.normal = contact.distance().gradient;
       lagged.load = scene_.friction(n) * force;
     }
@@ -76,7 +77,8 @@ T StepPotential<T>::value(const Placement<T>& next, const T* previous_gaps, T* g
         sum = sum + select(contact.within, scene_.barrier().value(gaps[c]), T(0.0));
       }
       if (!lagged_[c].drags) continue;
-      const SlipTerms<T> s(lagged_[c].normal, contact.point, lagged_[c].x, scene_.slip());
+      const SlipTerms<T> s(lagged_[c].normal, contact.point, lagged_[c].x, lagged_[c].roll,
+                           scene_.slip());
       sum = sum + lagged_[c].load * s.value(scene_.slip());
     }
     apart = apart || edges.separate(scene_.sharpness());  // an edge of either body suffices
@@ -123,7 +125,7 @@ void StepPotential<T>::add_contact(const VertexContact<T>& contact, const Lagged
     H -= terms.hessian * force;
   }
   if (!lagged.drags) return;
-  const SlipTerms<T> s(lagged.normal, contact.point, lagged.x, scene_.slip());
+  const SlipTerms<T> s(lagged.normal, contact.point, lagged.x, lagged.roll, scene_.slip());
   slope += s.gradient() * lagged.load;
   H += s.hessian(contact.point) * lagged.load;
 }

@@ -37,7 +37,7 @@ class StepPotential {
   /// Lagged friction of a contact.
   struct Lagged {
     Vec2<T> x, normal;   // point and normal at the start of the sub-step
-    T load;              // μ_f λ
+    T roll, load;        // of that point; μ_f λ
     bool drags = false;  // λ ≠ 0 in some lane; otherwise the members above are unset
   };
   T motion(const Placement<T>& next) const;

@@ -26,15 +26,23 @@ struct VertexContact {
                 const Mask<T>& near)
       : point(scene.point(pair, vertex, frame)), scene_(scene), planes_(scene.planes(pair)) {
     top_ = plane_distances(planes_, point.x, distances);
-    within = near && scene.real(pair, vertex);
-    if (!scene.barrier().plain) within = within && top_ < T(scene.barrier().range + scene.skin());
+    within = near && scene.is_tip(pair, vertex);
+    if (scene.is_rounded()) rounding_ = scene.rounding(pair);
+    if (!scene.barrier().plain)
+      within = within && top_ < T(scene.barrier().range + scene.skin()) + rounding_;
   }
 
   /// Computes the signed distance of the vertex. This is costly: call it only if any(within).
-  SignedDistance<T> distance() const { return {planes_, scene_.sharpness(), distances, top_}; }
-  /// Returns the gap in the lanes `where`, and far() in the others.
+  SignedDistance<T> distance() const {
+    SignedDistance<T> d{planes_, scene_.sharpness(), distances, top_};
+    const Mask<T> round = rounding_ > T(0.0);
+    if (any(round)) d.make_exact(round, point.x, top_);
+    return d;
+  }
+  /// Returns the gap in the lanes `where`, and far() in the others. That of round corners is
+  /// smaller than the distance of their centres by their radii.
   T gap(const SignedDistance<T>& d, const Mask<T>& where) const {
-    return select(where, d.value - T(scene_.skin()), far(scene_));
+    return select(where, d.value - rounding_ - T(scene_.skin()), far(scene_));
   }
   /// Returns 2 ĝ, the gap that stands for "beyond the barrier's range" [m].
   static T far(const SceneModel<T>& scene) { return T(2.0 * scene.barrier().range); }
@@ -46,6 +54,7 @@ struct VertexContact {
   const SceneModel<T>& scene_;
   const Planes<T>& planes_;
   T top_;
+  T rounding_{0.0};  // sum of both radii [m]
 };
 
 }  // namespace rtg::energy

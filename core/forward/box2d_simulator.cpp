@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "core/forward/free_path.hpp"
@@ -47,7 +48,7 @@ Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& 
   const double damping = physics.damping / physics.time_step;
   const double speed = push.stride / (physics.sub_steps * physics.time_step);
   const double step_s = physics.time_step / physics.box2d_steps;
-  const double radius = bounding_radius(scene.bodies[0].shape);
+  const double radius = scene.bodies[0].shape.radius();
   const double drag = mass_of(scene.bodies[0]).mass * damping * speed *
                       (1.0 + physics.inertia_weight()) / (1.0 + step_s * damping);
   // Each step divides the speed of a free body by 1 + h d.
@@ -62,10 +63,10 @@ Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& 
 
 /// Returns whether the bounding circle of body `i` is at least kClear away from all others.
 bool is_isolated(const Scene& scene, const Poses& poses, std::size_t i) {
-  const double radius = bounding_radius(scene.bodies[i].shape) + kClear;
+  const double radius = scene.bodies[i].shape.radius() + kClear;
   for (std::size_t j = 0; j < scene.size(); ++j)
     if (j != i && (poses[j].position() - poses[i].position()).norm() <
-                      radius + bounding_radius(scene.bodies[j].shape))
+                      radius + scene.bodies[j].shape.radius())
       return false;
   return true;
 }
@@ -129,14 +130,8 @@ class World {
     def.linearDamping = def.angularDamping =
         static_cast<float>(physics_.damping / physics_.time_step);
     b2Body* const added = world_.CreateBody(&def);
-    std::array<b2Vec2, kMaxVertices> corners;
-    std::transform(body.shape.vertices.begin(), body.shape.vertices.end(), corners.begin(), to_b2);
-    b2PolygonShape shape;
-    shape.Set(corners.data(), static_cast<int>(body.shape.size()));
-    b2FixtureDef fixture;
-    fixture.shape = &shape;
-    fixture.friction = static_cast<float>(body.friction);
-    added->CreateFixture(&fixture);
+    for (const Part& part : body.shape.parts())
+      add_fixtures(*added, part, static_cast<float>(body.friction));
     if (!body.fixed) {
       // Box2D stores the position of the centre of mass, not of the body origin. A centre of
       // exactly zero avoids rounding of poses.
@@ -146,6 +141,36 @@ class World {
       added->SetMassData(&data);
     }
     bodies_.push_back(added);
+  }
+
+  /// Adds the fixtures whose union is `part`. Box2D keeps polygons, but not circles, apart by a
+  /// skin of b2_polygonRadius each; a circle is larger by that.
+  static void add_fixtures(b2Body& to, const Part& part, float friction) {
+    b2FixtureDef fixture;
+    fixture.friction = friction;
+    const auto add_polygon = [&](std::span<const Vector2d> vertices) {
+      std::array<b2Vec2, kMaxVertices> corners;
+      std::ranges::transform(vertices, corners.begin(), to_b2);
+      b2PolygonShape shape;
+      shape.Set(corners.data(), static_cast<int>(vertices.size()));
+      fixture.shape = &shape;
+      to.CreateFixture(&fixture);
+    };
+    const std::vector<Vector2d>& core = part.core.vertices;
+    if (!part.is_disc()) add_polygon(core);
+    if (part.radius == 0.0) return;
+    for (std::size_t k = 0; k < core.size(); ++k) {
+      b2CircleShape corner;
+      corner.m_p = to_b2(core[k]);
+      corner.m_radius = static_cast<float>(part.radius) + b2_polygonRadius;
+      fixture.shape = &corner;
+      to.CreateFixture(&fixture);
+      if (part.is_disc()) return;
+      const Vector2d &v = core[k], &w = core[(k + 1) % core.size()];
+      const Vector2d edge = (w - v).normalized();
+      const Vector2d out = part.radius * Vector2d(edge.y(), -edge.x());
+      add_polygon(std::array{v, Vector2d(v + out), Vector2d(w + out), w});
+    }
   }
 
   void add_joint(const Joint& joint) {

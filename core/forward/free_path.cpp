@@ -17,13 +17,12 @@ constexpr double kNearEnough = 0.055;  // the search ends here: strides vanish t
 double free_path_length(const Scene& scene, const Poses& poses, const Pose& to) {
   const Vector2d from = poses[0].position();
   const double length = (to.position() - from).norm();
-  const Polygon& robot = scene.bodies[0].shape;
-  const double radius = bounding_radius(robot) + kNear;
+  const Shape& robot = scene.bodies[0].shape;
+  const double radius = robot.radius() + kNear;
   double clear = length;
   for (std::size_t j = 1; j < scene.size(); ++j) {
-    const Polygon& shape = scene.bodies[j].shape;
-    if (distance_to_segment(poses[j].position(), from, to.position()) >
-        radius + bounding_radius(shape))
+    const Shape& shape = scene.bodies[j].shape;
+    if (distance_to_segment(poses[j].position(), from, to.position()) > radius + shape.radius())
       continue;
     double travelled = 0.0;
     for (double gap = INFINITY; travelled < clear && gap > kNearEnough;

@@ -37,10 +37,12 @@ std::vector<SqpResult> filter_sqp(std::span<const ReverseProblem* const> problem
       .solve(problems);
 }
 
-/// Returns the numbers of coordinates and bodies of a scene, followed by its joints. Only
-/// candidates for which these are equal can share a solver.
+/// Returns the number of coordinates of a scene and the numbers of parts of its bodies, followed by
+/// its joints. Only candidates for which these are equal can share a solver.
 std::vector<int> structure_of(const energy::StepEnergy& energy) {
   std::vector<int> structure{energy.dofs(), energy.bodies()};
+  const std::vector<int>& parts = energy.scene().parts();
+  structure.insert(structure.end(), parts.begin(), parts.end());
   for (const energy::Hinge<double>& hinge : energy.scene().articulation().hinges())
     structure.insert(structure.end(), {hinge.parent, hinge.child});
   return structure;

@@ -24,7 +24,7 @@ NaiveReverse::NaiveReverse(Scene scene, PushConfig push)
 std::size_t NaiveReverse::touched_object(const Poses& end, const Vector2d& ahead) const {
   std::size_t best = 0;
   double nearest = kTouch;
-  const Polygon& robot = scene_.bodies[0].shape;
+  const Shape& robot = scene_.bodies[0].shape;
   const Pose advanced = moved(end[0], kTouch * ahead);
   for (std::size_t k = 1; k < scene_.size(); ++k) {
     if (scene_.bodies[k].fixed) continue;
@@ -39,11 +39,11 @@ std::size_t NaiveReverse::touched_object(const Poses& end, const Vector2d& ahead
 
 /// Returns whether a body other than `touched` lies on the robot's way back.
 bool NaiveReverse::blocked(const Poses& end, std::size_t touched, const Vector2d& back) const {
-  const double reach = bounding_radius(scene_.bodies[0].shape) + back.norm();
+  const double reach = scene_.bodies[0].shape.radius() + back.norm();
   for (std::size_t k = 1; k < scene_.size(); ++k) {
     if (k == touched) continue;
-    const Polygon& shape = scene_.bodies[k].shape;
-    if ((end[k].position() - end[0].position()).norm() > reach + bounding_radius(shape)) continue;
+    const Shape& shape = scene_.bodies[k].shape;
+    if ((end[k].position() - end[0].position()).norm() > reach + shape.radius()) continue;
     const int steps = static_cast<int>(back.norm() / kSweepStep) + 1;
     for (int step = 1; step <= steps; ++step) {
       const Pose robot = moved(end[0], static_cast<double>(step) / steps * back);

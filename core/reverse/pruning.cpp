@@ -37,28 +37,32 @@ std::vector<Vector2d> convex_hull(std::vector<Vector2d> points) {
 
 }  // namespace
 
-Polygon swept(const Polygon& shape, double theta, const Vector2d& by) {
-  std::vector<Vector2d> points = shape.vertices;
-  for (const Vector2d& v : shape.vertices) points.push_back(v + rotate(-theta, by));
-  return {convex_hull(std::move(points))};
+std::vector<Part> swept(const Shape& shape, double theta, const Vector2d& by) {
+  std::vector<Part> out;
+  for (const Part& part : shape.parts()) {
+    std::vector<Vector2d> points = part.core.vertices;
+    for (const Vector2d& v : part.core.vertices) points.push_back(v + rotate(-theta, by));
+    out.push_back({{convex_hull(std::move(points))}, part.radius});
+  }
+  return out;
 }
 
 bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job) {
   const Pose& robot = job.end[0];
   const Vector2d back = -push.stride * direction(job.action, push);
   if (!in_arena({robot.x + back.x(), robot.y + back.y(), robot.theta}, push)) return true;
-  const Polygon& shape = scene.bodies[0].shape;
-  const Polygon way = swept(shape, robot.theta, back);
+  const Shape& shape = scene.bodies[0].shape;
+  const std::vector<Part> way = swept(shape, robot.theta, back);
   for (std::size_t k = 1; k < scene.size(); ++k) {
-    const Polygon& other = scene.bodies[k].shape;
+    const Shape& other = scene.bodies[k].shape;
     const Vector2d from = robot.position();
     if (distance_to_segment(job.end[k].position(), from, from + back) >
-        bounding_radius(shape) + bounding_radius(other))
+        shape.radius() + other.radius())
       continue;
     const double touching = std::min(0.0, separation(shape, robot, other, job.end[k]));
     const bool swings = has_joint(scene, k) && !scene.bodies[k].fixed;
     const double allowed = swings ? kSwing : kOverlap;
-    if (separation(way, robot, other, job.end[k]) < touching - allowed) return true;
+    if (separation(way, robot, other.parts(), job.end[k]) < touching - allowed) return true;
   }
   return false;
 }
@@ -72,13 +76,13 @@ std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, con
   for (std::size_t n = 0; n < found.size(); ++n) {
     const auto i = static_cast<std::size_t>(found[n]);
     if (scene.bodies[i].fixed) continue;
-    const Polygon way = swept(scene.bodies[i].shape, job.end[i].theta, back);
+    const std::vector<Part> way = swept(scene.bodies[i].shape, job.end[i].theta, back);
     double reach = i == 0 ? range : range + kClearance;
     if (has_joint(scene, i)) reach += push.stride;  // links also swing
     for (std::size_t k = 1; k < scene.size(); ++k) {
       if (seen[k]) continue;
       if (!jointed(scene, i, k) &&
-          separation(way, job.end[i], scene.bodies[k].shape, job.end[k]) >= reach)
+          separation(way, job.end[i], scene.bodies[k].shape.parts(), job.end[k]) >= reach)
         continue;
       seen[k] = true;
       found.push_back(static_cast<int>(k));

@@ -8,9 +8,10 @@
 
 namespace rtg::reverse {
 
-/// Returns the area that `shape` sweeps over while it moves by `by` (world frame): the convex hull
-/// of its first and last position. The area is in the body frame, which is turned by `theta`.
-Polygon swept(const Polygon& shape, double theta, const Vector2d& by);
+/// Returns the area that `shape` sweeps over while it moves by `by` (world frame): for each part
+/// the convex hull of its first and last position. The area is in the body frame, which is turned
+/// by `theta`.
+std::vector<Part> swept(const Shape& shape, double theta, const Vector2d& by);
 
 /// Returns whether `job.action` cannot have led to `job.end`. This is so if the robot's straight
 /// way back leaves the arena or passes through a body. A movable body with a joint may reach 0.75 m

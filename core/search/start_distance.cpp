@@ -18,16 +18,15 @@ constexpr double kTouching = 0.8;  // approximate distance of touching bodies / 
 
 /// Returns the largest distance between the centres at which the robot can pull `body` [m].
 double farthest_pull(const tasks::Task& task, std::size_t body) {
-  return bounding_radius(task.scene.bodies[0].shape) +
-         bounding_radius(task.scene.bodies[body].shape) + kReach;
+  return task.scene.bodies[0].shape.radius() + task.scene.bodies[body].shape.radius() + kReach;
 }
 
 /// Returns whether the robot at pose `robot` touches `body` at pose `object` on the side to which
 /// `way` points.
 bool can_pull(const tasks::Task& task, const Pose& robot, const Pose& object, std::size_t body,
               const Vector2d& way) {
-  const Polygon& hand = task.scene.bodies[0].shape;
-  const Polygon& shape = task.scene.bodies[body].shape;
+  const Shape& hand = task.scene.bodies[0].shape;
+  const Shape& shape = task.scene.bodies[body].shape;
   const Vector2d arm = robot.position() - object.position();
   if (arm.norm() > farthest_pull(task, body) ||
       arm.dot(way) < std::cos(kPullCone) * arm.norm() * way.norm())
@@ -50,8 +49,8 @@ double approach_pushes(const tasks::Task& task, const Poses& poses, std::size_t 
     const Vector2d at = robot.position() - task.push.stride * direction(a, task.push);
     if (can_pull(task, {at.x(), at.y(), robot.theta}, object, body, way)) return 1.0;
   }
-  const double touching = kTouching * (bounding_radius(task.scene.bodies[0].shape) +
-                                       bounding_radius(task.scene.bodies[body].shape));
+  const double touching =
+      kTouching * (task.scene.bodies[0].shape.radius() + task.scene.bodies[body].shape.radius());
   const Vector2d spot = object.position() + touching * way.normalized();
   return std::max(2.0, (robot.position() - spot).norm() / task.push.stride);
 }

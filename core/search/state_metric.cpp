@@ -9,8 +9,9 @@
 namespace rtg::search {
 namespace {
 
-constexpr double kRobotCell = 0.8;    // side of a cell [m]
-constexpr double kObjectCell = 0.4;   // side of a cell [m], [rad]
+constexpr double kRobotCell = 0.8;   // side of a cell [m]
+constexpr double kObjectCell = 0.4;  // side of a cell [m], [rad]
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kAngleRadius = 0.5;  // r [m], about the radius of gyration of a 1.2 m box
 
 std::int64_t slot(double x, double side) { return static_cast<std::int64_t>(std::floor(x / side)); }
@@ -25,14 +26,14 @@ StateMetric::StateMetric(const Scene& scene) {
   for (std::size_t k = 1; k < scene.size(); ++k) {
     const bool jointed = has_joint(scene, k);
     if (!scene.bodies[k].fixed)
-      objects_.push_back({k, jointed, jointed ? 1 : symmetry_order(scene.bodies[k].shape)});
+      objects_.push_back({k, jointed, jointed ? kTwoPi : symmetry_angle(scene.bodies[k].shape)});
   }
 }
 
 double StateMetric::distance(const Object& o, const Poses& a, const Poses& b) const {
-  const double period = 2.0 * std::numbers::pi / o.order;
-  return (a[o.body].position() - b[o.body].position()).norm() +
-         kAngleRadius * std::abs(std::remainder(a[o.body].theta - b[o.body].theta, period));
+  const double way = (a[o.body].position() - b[o.body].position()).norm();
+  if (o.turn == 0.0) return way;
+  return way + kAngleRadius * std::abs(std::remainder(a[o.body].theta - b[o.body].theta, o.turn));
 }
 
 double StateMetric::layout_distance(const Poses& a, const Poses& b) const {
@@ -45,9 +46,9 @@ std::uint64_t StateMetric::layout_cell(const Poses& poses) const {
   std::uint64_t hash = 0;
   for (const Object& o : objects_) {
     const Pose& p = poses[o.body];
-    const double period = 2.0 * std::numbers::pi / o.order;
-    const auto slots = std::max<std::int64_t>(1, std::llround(period / kObjectCell));
-    const std::int64_t turn = slot(p.theta, period / static_cast<double>(slots));
+    const auto slots = std::max<std::int64_t>(1, std::llround(o.turn / kObjectCell));
+    const double side = o.turn / static_cast<double>(slots);
+    const std::int64_t turn = side > 0.0 ? slot(p.theta, side) : 0;
     hash = with_slot(hash, slot(p.x, kObjectCell));
     hash = with_slot(hash, slot(p.y, kObjectCell));
     hash = with_slot(hash, ((turn % slots) + slots) % slots);

@@ -10,7 +10,7 @@ namespace rtg::search {
 
 /// Distances between states, and a grid that groups similar states. Poses of an object that look
 /// the same are equal here: angles count modulo the symmetry of its shape. An object with a joint
-/// has symmetry order 1. The robot's angle is ignored, because no push changes it. So are fixed
+/// has no symmetry. The robot's angle is ignored, because no push changes it. So are fixed
 /// bodies.
 class StateMetric {
  public:
@@ -20,12 +20,12 @@ class StateMetric {
   struct Object {
     std::size_t body;
     bool jointed;
-    int order;  // symmetry_order(); 1 with a joint
+    double turn;  // symmetry_angle(); 2π with a joint
   };
   std::span<const Object> objects() const { return objects_; }
 
   /// Returns |x_a - x_b| + r|θ_a - θ_b| of `object` [m], with r = 0.5 m. The turn is taken modulo
-  /// 2π/order, to the least.
+  /// Object::turn, to the least.
   double distance(const Object& object, const Poses& a, const Poses& b) const;
 
   /// Returns the sum of distance() over all objects.

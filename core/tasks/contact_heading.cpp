@@ -15,8 +15,7 @@ Vector2d aim(const Task& task, const Poses& state, Rng& rng) {
   const std::size_t k =
       objects[static_cast<std::size_t>(rng.below(static_cast<int>(objects.size())))];
   const double angle = rng.uniform(0.0, 2.0 * std::numbers::pi);
-  const double radius =
-      bounding_radius(task.scene.bodies[k].shape) * std::sqrt(rng.uniform(0.0, 1.0));
+  const double radius = task.scene.bodies[k].shape.radius() * std::sqrt(rng.uniform(0.0, 1.0));
   return state[k].position() + radius * Vector2d(std::cos(angle), std::sin(angle));
 }
 

@@ -57,10 +57,15 @@ Vector2d point_in_goal(const Task& task, std::size_t i, Rng& rng) {
   return x;
 }
 
-/// Returns the angle of the outward normal of edge `k` in the body frame.
-double normal_angle(const Polygon& shape, std::size_t k) {
-  const Vector2d edge = shape.vertices[(k + 1) % shape.size()] - shape.vertices[k];
-  return std::atan2(-edge.x(), edge.y());
+/// Returns the angles of the outward normals of all straight edges of the parts, in the body frame.
+std::vector<double> normal_angles(const Shape& shape) {
+  std::vector<double> angles;
+  for (const auto& [core, radius] : shape.parts())
+    for (std::size_t k = 0; core.size() > 1 && k < core.size(); ++k) {
+      const Vector2d edge = core.vertices[(k + 1) % core.size()] - core.vertices[k];
+      angles.push_back(std::atan2(-edge.x(), edge.y()));
+    }
+  return angles;
 }
 
 /// Proposes a pose of body `i` beside a random other body. Body `i` slides towards that body from a
@@ -69,16 +74,19 @@ double normal_angle(const Polygon& shape, std::size_t k) {
 std::optional<Pose> beside(const Task& task, const PartialState& state, std::size_t i, Rng& rng) {
   const auto j = static_cast<std::size_t>(1 + rng.below(static_cast<int>(task.scene.size()) - 1));
   if (j == i || !state.placed[j]) return std::nullopt;
-  const Polygon &mine = task.scene.bodies[i].shape, &other = task.scene.bodies[j].shape;
+  const Shape &mine = task.scene.bodies[i].shape, &other = task.scene.bodies[j].shape;
+  const std::vector<double> ours = normal_angles(mine), theirs = normal_angles(other);
   double side = rng.uniform(0.0, kTwoPi), theta = rng.uniform(-std::numbers::pi, std::numbers::pi);
-  if (rng.uniform(0.0, 1.0) < 0.5) {
-    const auto theirs = static_cast<std::size_t>(rng.below(static_cast<int>(other.size())));
-    const auto ours = static_cast<std::size_t>(rng.below(static_cast<int>(mine.size())));
-    side = state.poses[j].theta + normal_angle(other, theirs);
-    theta = std::remainder(side + std::numbers::pi - normal_angle(mine, ours), kTwoPi);
+  if (rng.uniform(0.0, 1.0) < 0.5 && !ours.empty() && !theirs.empty()) {
+    const auto one_of = [&rng](const std::vector<double>& angles) {
+      return angles[static_cast<std::size_t>(rng.below(static_cast<int>(angles.size())))];
+    };
+    const double their = one_of(theirs), our = one_of(ours);
+    side = state.poses[j].theta + their;
+    theta = std::remainder(side + std::numbers::pi - our, kTwoPi);
   }
-  const double reach = bounding_radius(mine) + bounding_radius(other) + kBesideGap;
-  const double shift = rng.uniform(-0.5, 0.5) * bounding_radius(other);
+  const double reach = mine.radius() + other.radius() + kBesideGap;
+  const double shift = rng.uniform(-0.5, 0.5) * other.radius();
   const Vector2d from =
       state.poses[j].position() + reach * unit(side) + shift * unit(side + kTwoPi / 4.0);
   return slide(task, state, i,
@@ -225,8 +233,7 @@ bool place_tree(const Task& task, PartialState& state, const Group& tree, Rng& r
 std::optional<Pose> robot_behind(const Task& task, const PartialState& state, Rng& rng) {
   const auto j = static_cast<std::size_t>(1 + rng.below(static_cast<int>(task.scene.size()) - 1));
   const Vector2d d = direction(rng.below(task.push.headings), task.push);
-  const double span =
-      bounding_radius(task.scene.bodies[0].shape) + bounding_radius(task.scene.bodies[j].shape);
+  const double span = task.scene.bodies[0].shape.radius() + task.scene.bodies[j].shape.radius();
   const Vector2d from = state.poses[j].position() - (span + task.push.stride) * d +
                         rng.uniform(-0.8, 0.8) * span * Vector2d(-d.y(), d.x());
   return slide(task, state, 0,

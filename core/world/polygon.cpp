@@ -26,20 +26,30 @@ bool maps_onto_itself(const Polygon& shape, std::size_t shift, double tolerance)
 
 }  // namespace
 
-Moments moments(const Polygon& shape) {
-  double area = 0.0, polar = 0.0;
-  Vector2d first = Vector2d::Zero();
-  for (std::size_t k = 0; k < shape.size(); ++k) {
-    const Vector2d& v = shape.vertices[k];
-    const Vector2d& w = shape.vertices[(k + 1) % shape.size()];
-    const double c = cross(v, w);
-    area += c / 2.0;
-    first += c / 6.0 * (v + w);
-    polar += c / 12.0 * (v.dot(v) + v.dot(w) + w.dot(w));
-  }
-  const Vector2d centroid = first / area;
-  return {area, centroid, polar - area * centroid.squaredNorm()};
+void AreaIntegrals::add(const AreaIntegrals& other, double weight) {
+  area += weight * other.area;
+  first += weight * other.first;
+  second += weight * other.second;
 }
+
+Moments AreaIntegrals::moments() const {
+  const Vector2d centroid = first / area;
+  return {area, centroid, second - area * centroid.squaredNorm()};
+}
+
+AreaIntegrals area_integrals(std::span<const Vector2d> ring) {
+  AreaIntegrals sum;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Vector2d &v = ring[k], &w = ring[(k + 1) % ring.size()];
+    const double c = cross(v, w);
+    sum.area += c / 2.0;
+    sum.first += c / 6.0 * (v + w);
+    sum.second += c / 12.0 * (v.dot(v) + v.dot(w) + w.dot(w));
+  }
+  return sum;
+}
+
+Moments moments(const Polygon& shape) { return area_integrals(shape.vertices).moments(); }
 
 std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices) {
   const std::size_t n = vertices.size();

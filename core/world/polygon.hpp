@@ -20,12 +20,25 @@ struct Polygon {
 /// Largest number of vertices of a polygon; also Box2D's limit.
 inline constexpr std::size_t kMaxVertices = 8;
 
-/// Area integrals of a polygon of unit density.
+/// Moments of an area of unit density.
 struct Moments {
   double area = 0.0;                     // [m²]
   Vector2d centroid = Vector2d::Zero();  // [m]
   double polar = 0.0;                    // ∫|x - centroid|² dx [m⁴]
 };
+
+/// Integrals over an area, which can be added.
+struct AreaIntegrals {
+  double area = 0.0;                  // ∫dx [m²]
+  Vector2d first = Vector2d::Zero();  // ∫x dx [m³]
+  double second = 0.0;                // ∫|x|² dx [m⁴]
+
+  void add(const AreaIntegrals& other, double weight = 1.0);
+  Moments moments() const;
+};
+
+/// Returns the integrals over the polygon with these vertices; negative ones if it is clockwise.
+AreaIntegrals area_integrals(std::span<const Vector2d> ring);
 
 Moments moments(const Polygon& shape);
 

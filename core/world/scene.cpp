@@ -8,7 +8,7 @@
 namespace rtg {
 
 Mass mass_of(const Body& body) {
-  const Moments m = moments(body.shape);
+  const Moments& m = body.shape.moments();
   return {body.density * m.area, body.density * m.polar};
 }
 

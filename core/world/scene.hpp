@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/world/polygon.hpp"
 #include "core/world/pose.hpp"
+#include "core/world/shape.hpp"
 
 namespace rtg {
 
@@ -13,7 +13,7 @@ namespace rtg {
 struct Body {
   std::string name;
   std::string kind;       // class label that goals refer to, for example "box"
-  Polygon shape;          // centred() [m]
+  Shape shape;            // centred() [m]
   double density = 1.0;   // ρ [kg/m²]
   double friction = 0.3;  // μ_f; a pair uses √(μ₁μ₂), as Box2D does
   bool fixed = false;     // takes part in contact, has no coordinates (a wall)

@@ -24,18 +24,24 @@ namespace {
 double degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
 
 /// Returns width and height of the axis-aligned bounding box of `shape` at angle 0 [m].
-Vector2d extent(const Polygon& shape) {
-  Vector2d low = shape.vertices[0], high = low;
-  for (const Vector2d& v : shape.vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
+Vector2d extent(const Shape& shape) {
+  Vector2d low = Vector2d::Constant(INFINITY), high = -low;
+  for (const auto& [core, radius] : shape.parts())
+    for (const Vector2d& v : core.vertices) {
+      low = low.cwiseMin((v.array() - radius).matrix());
+      high = high.cwiseMax((v.array() + radius).matrix());
+    }
   return high - low;
 }
 
-std::string shape_in_words(const Polygon& shape) {
+std::string shape_in_words(const Shape& shape) {
+  const std::vector<Part>& parts = shape.parts();
+  if (parts.size() == 1 && parts[0].is_disc()) return print("disc, radius %.2f m", shape.radius());
   const Vector2d size = extent(shape);
-  return print("%zu corners, %.2f x %.2f m", shape.size(), size.x(), size.y());
+  std::string form = print("%zu corners", parts[0].core.size());
+  if (parts[0].radius > 0.0) form = print("%zu round corners", parts[0].core.size());
+  if (parts.size() > 1) form = print("%zu convex parts", parts.size());
+  return form + print(", %.2f x %.2f m", size.x(), size.y());
 }
 
 std::string body_line(const Body& body, const Pose& start, std::size_t width) {

@@ -1,10 +1,13 @@
 #include "nodes/config/shape_section.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/world/outline.hpp"
 #include "nodes/config/config_error.hpp"
 #include "nodes/config/field_reader.hpp"
 #include "nodes/config/field_writer.hpp"
@@ -19,22 +22,30 @@ constexpr double kMaxSize = 1000.0;      // largest length or coordinate [m]
 constexpr double kMinSize = 0.005;       // smallest length [m]
 constexpr double kMaxRadius = 100.0;     // largest bounding radius [m]
 constexpr double kCentredWithin = 1e-9;  // rounding error of the centroid / bounding radius
+constexpr std::size_t kMaxRing = 64;     // vertices of a simple polygon
+constexpr std::size_t kMaxParts = 16;
 
-const std::vector<std::string> kShapes{"box", "regular", "vertices"};
+const std::vector<std::string> kForms{"box", "regular", "vertices", "disc", "parts"};
+const std::vector<std::string> kShapeKeys{"box",   "regular",  "vertices", "disc",
+                                          "parts", "rounding", "grown"};
+const std::vector<std::string> kPartKeys{"box", "regular",  "vertices", "disc",
+                                         "at",  "rounding", "grown"};
 const std::vector<std::string> kRegularKeys{"sides", "radius"};
 const std::string kShapeLegal =
-    "{box: [width, height]}, {regular: {sides: 3 to 8, radius: m}} or {vertices: [[x, y], ...]}";
+    "{box: [width, height]}, {regular: {sides: 3 to 8, radius: m}}, {vertices: [[x, y], ...]}, "
+    "{disc: radius} or {parts: [...]}";
 const std::string kVerticesLegal =
-    "a convex polygon of 3 to 8 vertices [x, y], counter-clockwise, within 100 m of its centre";
+    "a simple polygon of 3 to 64 vertices [x, y], counter-clockwise, within 100 m of its centre";
 
-/// Returns `shape`. Throws ConfigError if it is not legal.
-Polygon checked(Polygon shape, const std::string& origin, const std::string& path) {
-  std::optional<std::string> defect = polygon_defect(shape.vertices);
-  if (!defect && bounding_radius(shape) > kMaxRadius)
-    defect =
-        "reaches " + std::to_string(std::lround(bounding_radius(shape))) + " m from its centre";
-  if (defect) throw ConfigError(origin, path, *defect, kVerticesLegal);
-  return shape;
+/// Throws ConfigError if `defect` is one.
+void refuse(const std::optional<std::string>& defect, const std::string& origin,
+            const std::string& path, const std::string& legal = kVerticesLegal) {
+  if (defect) throw ConfigError(origin, path, *defect, legal);
+}
+
+Polygon read_box(const FieldReader& reader) {
+  const auto size = reader.numbers("box", 2, kMinSize, kMaxSize, "[width, height] in m");
+  return box(size[0], size[1]);
 }
 
 Polygon read_regular(const ConfigNode& section, const std::string& path) {
@@ -48,62 +59,193 @@ Polygon read_regular(const ConfigNode& section, const std::string& path) {
   return regular_polygon(sides, radius);
 }
 
-Polygon read_vertices(const ConfigNode& list, const std::string& path) {
+std::vector<Vector2d> read_ring(const ConfigNode& list, const std::string& path) {
   if (list.kind != Kind::kList)
     throw ConfigError(list.origin, path, in_words(list) + " is not a list", kVerticesLegal);
-  Polygon shape;
+  std::vector<Vector2d> ring;
   for (const ConfigNode& item : list.items) {
     if (item.kind != Kind::kList || item.items.size() != 2)
       throw ConfigError(item.origin, path, in_words(item) + " is not a vertex [x, y]",
                         kVerticesLegal);
-    shape.vertices.emplace_back(read_number(item.items[0], path, -kMaxSize, kMaxSize),
-                                read_number(item.items[1], path, -kMaxSize, kMaxSize));
+    ring.emplace_back(read_number(item.items[0], path, -kMaxSize, kMaxSize),
+                      read_number(item.items[1], path, -kMaxSize, kMaxSize));
   }
-  shape = checked(std::move(shape), list.origin, path);
-  const bool is_centred = moments(shape).centroid.norm() <= kCentredWithin * bounding_radius(shape);
-  return is_centred ? shape : checked(centred(shape), list.origin, path);
+  if (ring.size() < 3 || ring.size() > kMaxRing)
+    refuse("has " + std::to_string(ring.size()) + " vertices", list.origin, path);
+  return ring;
 }
 
-ConfigNode keyed(const std::string& key, ConfigNode value) {
+/// Reads a simple polygon, as one convex polygon or several.
+std::vector<Polygon> read_vertices(const ConfigNode& list, const std::string& path) {
+  const std::vector<Vector2d> ring = read_ring(list, path);
+  if (!polygon_defect(ring)) return {Polygon{ring}};
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    if ((ring[(k + 1) % ring.size()] - ring[k]).norm() < kMinSize)
+      refuse("edge at vertex " + std::to_string(k) + " is shorter than 0.005 m", list.origin, path);
+  if (const std::optional<std::string> defect = ring_defect(ring))
+    refuse("is not simple: " + *defect, list.origin, path);
+  if (area_integrals(ring).area < 0.0)
+    refuse("is clockwise; list the vertices counter-clockwise", list.origin, path);
+  std::vector<Polygon> pieces = convex_pieces(ring);
+  if (pieces.empty()) refuse("has no area", list.origin, path);
+  for (const Polygon& piece : pieces)
+    if (const std::optional<std::string> defect = polygon_defect(piece.vertices))
+      refuse("has a convex piece that " + *defect, list.origin, path);
+  return pieces;
+}
+
+/// Returns the polygon whose edges lie `radius` within those of `polygon`. Throws ConfigError if it
+/// is too narrow for that.
+Polygon inset(const Polygon& polygon, double radius, const ConfigNode& node,
+              const std::string& path) {
+  Polygon core = offset_polygon(polygon, -radius);
+  for (std::size_t k = 0; k < core.size(); ++k) {
+    const std::size_t next = (k + 1) % core.size();
+    const Vector2d edge = polygon.vertices[next] - polygon.vertices[k];
+    if (edge.dot(core.vertices[next] - core.vertices[k]) < kMinSize * edge.norm())
+      throw ConfigError(node.origin, path, number_text(radius) + " rounds off a whole edge",
+                        "a radius that leaves 0.005 m of each edge straight");
+  }
+  return core;
+}
+
+/// Returns the only key of `section` that tells a form. Throws ConfigError if there are none or
+/// several.
+const ConfigEntry& form_of(const ConfigNode& section, const std::string& path) {
+  const ConfigEntry* form = nullptr;
+  int count = 0;
+  for (const std::string& key : kForms)
+    if (const ConfigEntry* entry = find(section, key)) {
+      form = entry;
+      ++count;
+    }
+  if (count != 1)
+    throw ConfigError(section.origin, path,
+                      count == 0 ? "tells no form" : "has more than one of the keys of a form",
+                      kShapeLegal);
+  return *form;
+}
+
+/// Reads a shape or a part of one, without parts of its own, in its own frame.
+std::vector<Part> read_simple(const FieldReader& reader, const ConfigEntry& form) {
+  const ConfigNode &section = reader.section(), &value = form.value;
+  const std::string path = reader.path(form.key);
+  const ConfigEntry *rounding = find(section, "rounding"), *grown = find(section, "grown");
+  const ConfigEntry* margin = rounding ? rounding : grown;
+  if (margin && (form.key == "disc" || (rounding && grown)))
+    throw ConfigError(margin->value.origin, reader.path(margin->key),
+                      form.key == "disc" ? "a disc has no corners" : "is given beside 'grown'",
+                      "one of rounding, grown, at a polygon");
+  if (form.key == "disc") return {disc(read_number(value, path, kMinSize, kMaxRadius))};
+  std::vector<Polygon> pieces;
+  if (form.key == "vertices")
+    pieces = read_vertices(value, path);
+  else
+    pieces = {form.key == "box" ? read_box(reader) : read_regular(value, path)};
+  for (const Polygon& piece : pieces) refuse(polygon_defect(piece.vertices), value.origin, path);
+  if (!margin) {
+    std::vector<Part> parts;
+    for (Polygon& piece : pieces) parts.push_back({std::move(piece)});
+    return parts;
+  }
+  const std::string margin_path = reader.path(margin->key);
+  if (pieces.size() > 1)
+    throw ConfigError(margin->value.origin, margin_path, "the polygon is not convex",
+                      "convex polygons only; parts of a shape may have it");
+  const double radius = read_number(margin->value, margin_path, kMinSize, kMaxRadius);
+  if (rounding) return {{inset(pieces[0], radius, margin->value, margin_path), radius}};
+  return {{std::move(pieces[0]), radius}};
+}
+
+/// Reads a part of a shape, in the frame of the shape.
+std::vector<Part> read_part(const ConfigNode& section, const std::string& path) {
+  const FieldReader reader(section, path, kPartKeys);
+  std::vector<Part> parts = read_simple(reader, form_of(section, path));
+  const ConfigEntry* at = find(section, "at");
+  if (!at) return parts;
+  const std::size_t count = at->value.kind == Kind::kList && at->value.items.size() == 2 ? 2 : 3;
+  const auto where =
+      reader.numbers("at", count, -kMaxSize, kMaxSize, "[x, y] or [x, y, theta] in m and rad");
+  return placed(std::move(parts), count == 3 ? where[2] : 0.0, {where[0], where[1]});
+}
+
+std::vector<Part> read_parts(const ConfigNode& list, const std::string& path) {
+  const std::string legal = "a list of 1 to 16 parts";
+  if (list.kind != Kind::kList)
+    throw ConfigError(list.origin, path, in_words(list) + " is not a list", legal);
+  std::vector<Part> parts;
+  for (std::size_t n = 0; n < list.items.size(); ++n)
+    for (Part& part : read_part(list.items[n], path + '.' + std::to_string(n)))
+      parts.push_back(std::move(part));
+  if (parts.empty() || parts.size() > kMaxParts)
+    throw ConfigError(list.origin, path, "has " + std::to_string(parts.size()) + " convex parts",
+                      legal);
+  if (!in_one_piece(parts))
+    throw ConfigError(list.origin, path, "is in several pieces",
+                      "parts that overlap or share an edge");
+  return parts;
+}
+
+/// Returns the section of a polygon as that of a shape or of a part.
+ConfigEntry polygon_entry(const Polygon& polygon) {
+  const double width = 2.0 * polygon.vertices[0].x(), height = 2.0 * polygon.vertices[0].y();
+  if (polygon == box(-width, -height))
+    return {"box", "",
+            list_node({token_node(number_text(-width)), token_node(number_text(-height))})};
+  const int sides = static_cast<int>(polygon.size());
+  const double radius = polygon.vertices[0].x();
+  if (polygon == regular_polygon(sides, radius)) {
+    ConfigNode keys = map_node();
+    keys.entries.push_back({"sides", "", token_node(std::to_string(sides))});
+    keys.entries.push_back({"radius", "", token_node(number_text(radius))});
+    return {"regular", "", std::move(keys)};
+  }
+  std::vector<ConfigNode> vertices;
+  for (const Vector2d& v : polygon.vertices) vertices.push_back(point_node(v));
+  return {"vertices", "", list_node(std::move(vertices))};
+}
+
+ConfigNode part_node(const Part& part) {
   ConfigNode node = map_node();
-  node.entries.push_back({key, "", std::move(value)});
+  const ConfigNode radius = token_node(number_text(part.radius));
+  if (part.is_disc()) {
+    const Vector2d& centre = part.core.vertices[0];
+    node.entries.push_back({"disc", "", radius});
+    if (!centre.isZero(0.0)) node.entries.push_back({"at", "", point_node(centre)});
+    return node;
+  }
+  node.entries.push_back(polygon_entry(part.core));
+  if (part.radius > 0.0) node.entries.push_back({"grown", "", radius});
   return node;
 }
 
 }  // namespace
 
-Polygon read_shape(const ConfigNode& section, const std::string& path) {
-  if (section.kind != Kind::kMap || section.entries.size() != 1)
-    throw ConfigError(section.origin, path,
-                      section.kind == Kind::kMap
-                          ? "has " + std::to_string(section.entries.size()) + " keys instead of one"
-                          : in_words(section) + " is not a mapping",
-                      kShapeLegal);
-  const FieldReader reader(section, path, kShapes);
-  const ConfigEntry& only = section.entries.front();
-  if (only.key == "vertices") return read_vertices(only.value, reader.path(only.key));
-  if (only.key == "regular")
-    return checked(read_regular(only.value, reader.path(only.key)), only.value.origin, path);
-  const auto size = reader.numbers("box", 2, kMinSize, kMaxSize, "[width, height] in m");
-  return checked(box(size[0], size[1]), only.value.origin, path);
+Shape read_shape(const ConfigNode& section, const std::string& path) {
+  if (section.kind != Kind::kMap)
+    throw ConfigError(section.origin, path, in_words(section) + " is not a mapping", kShapeLegal);
+  const FieldReader reader(section, path, kShapeKeys);
+  const ConfigEntry& form = form_of(section, path);
+  const bool compound = form.key == "parts";
+  for (const char* key : {"rounding", "grown"})
+    if (const ConfigEntry* margin = find(section, key); margin && compound)
+      throw ConfigError(margin->value.origin, reader.path(key), "is given beside parts",
+                        "the key in the parts");
+  Shape shape(compound ? read_parts(form.value, reader.path(form.key)) : read_simple(reader, form));
+  if (shape.moments().centroid.norm() > kCentredWithin * shape.radius()) shape = shape.centred();
+  if (shape.radius() > kMaxRadius)
+    refuse("reaches " + std::to_string(std::lround(shape.radius())) + " m from its centre",
+           form.value.origin, path, "a shape within 100 m of its centre");
+  return shape;
 }
 
-ConfigNode shape_node(const Polygon& shape) {
-  const double width = 2.0 * shape.vertices[0].x(), height = 2.0 * shape.vertices[0].y();
-  if (shape == box(-width, -height))
-    return keyed("box",
-                 list_node({token_node(number_text(-width)), token_node(number_text(-height))}));
-  const int sides = static_cast<int>(shape.size());
-  const double radius = shape.vertices[0].x();
-  if (shape == regular_polygon(sides, radius)) {
-    ConfigNode keys = map_node();
-    keys.entries.push_back({"sides", "", token_node(std::to_string(sides))});
-    keys.entries.push_back({"radius", "", token_node(number_text(radius))});
-    return keyed("regular", std::move(keys));
-  }
-  std::vector<ConfigNode> vertices;
-  for (const Vector2d& v : shape.vertices) vertices.push_back(point_node(v));
-  return keyed("vertices", list_node(std::move(vertices)));
+ConfigNode shape_node(const Shape& shape) {
+  if (shape.parts().size() == 1) return part_node(shape.parts()[0]);
+  std::vector<ConfigNode> parts;
+  for (const Part& part : shape.parts()) parts.push_back(part_node(part));
+  ConfigNode node = map_node();
+  node.entries.push_back({"parts", "", list_node(std::move(parts))});
+  return node;
 }
 
 }  // namespace rtg::config

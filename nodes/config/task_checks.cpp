@@ -41,7 +41,7 @@ void check_start(const tasks::Task& task, const ConfigNode& section) {
     if (!in_arena(task.start[i], task.push))
       fail_at(section, i, "start", "lies outside the arena",
               "x and y from -" + arena + " to " + arena + " (task.push.arena)");
-    if (bounding_radius(body.shape) > task.push.arena)
+    if (body.shape.radius() > task.push.arena)
       fail_at(section, i, "shape", "is larger than the arena",
               "a bounding radius of at most " + arena + " m (task.push.arena)");
   }

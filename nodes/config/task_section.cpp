@@ -28,7 +28,7 @@ Body read_body(const ConfigNode& section, const std::string& path, Poses& start)
   Body body;
   body.name = name_at(reader, "name", kNameLegal);
   body.kind = name_at(reader, "kind", kNameLegal);
-  const std::string shape_legal = "box, regular or vertices";
+  const std::string shape_legal = "box, regular, vertices, disc or parts";
   body.shape = read_shape(reader.required("shape", shape_legal).value, reader.path("shape"));
   reader.number("density", body.density, 1e-3, 1e3);
   reader.number("friction", body.friction, 0.0, 10.0);

@@ -16,8 +16,8 @@ namespace {
 constexpr double kCorner = 0.2;  // between two vertices that meet [m]
 
 bool vertices_meet(const Body& a, const Pose& at, const Body& b, const Pose& bt) {
-  for (const Vector2d& v : a.shape.vertices)
-    for (const Vector2d& w : b.shape.vertices)
+  for (const Vector2d& v : a.shape.parts()[0].core.vertices)
+    for (const Vector2d& w : b.shape.parts()[0].core.vertices)
       if ((to_world(at, v) - to_world(bt, w)).norm() < kCorner) return true;
   return false;
 }

@@ -62,7 +62,8 @@ Json bodies(const Scene& scene) {
   Json out = Json::array();
   for (const Body& body : scene.bodies) {
     Json vertices = Json::array();
-    for (const Vector2d& v : body.shape.vertices) vertices.push_back({v.x(), v.y()});
+    for (const Vector2d& v : body.shape.parts()[0].core.vertices)
+      vertices.push_back({v.x(), v.y()});
     out.push_back({{"vertices", vertices},
                    {"density", body.density},
                    {"friction", body.friction},

@@ -24,17 +24,32 @@ inline Polygon random_shape(Rng& rng) {
   return centred(regular_polygon(sides, rng.uniform(0.6, 1.0)));
 }
 
+/// A T, an L, a cross, a disc, or a polygon with round corners, of about the same size.
+inline Shape random_compound(Rng& rng) {
+  const double length = rng.uniform(1.2, 1.8), width = rng.uniform(0.3, 0.5);
+  const int kind = rng.below(5);
+  if (kind == 3) return Shape(disc(rng.uniform(0.5, 0.8)));
+  if (kind == 4)
+    return Shape(Part{regular_polygon(3 + rng.below(4), length / 3.0), rng.uniform(0.1, 0.3)});
+  const Vector2d ends[] = {{0.0, length / 2.0 - width}, {length / 3.0, 0.0}, {0.0, 0.0}};
+  std::vector<Part> parts = placed({{box(width, length)}}, 0.0, ends[kind]);
+  parts.push_back({box(length, width)});
+  return Shape(std::move(parts)).centred();
+}
+
 /// The robot and one to four objects around it, none closer to another than Box2D's skin; nothing
 /// if the objects found no room or the robot's straight way misses them all.
-inline std::optional<RandomPush> drawn_push(Rng& rng, const PushConfig& push) {
+inline std::optional<RandomPush> drawn_push(Rng& rng, const PushConfig& push, bool compound) {
   constexpr double kFriction = 0.5, kClearance = 0.02;
   RandomPush drawn;
-  drawn.scene.bodies.push_back({"robot", "robot", regular_polygon(6, 0.8), 1.0, kFriction, false});
+  const Shape robot = compound ? Shape(disc(0.8)) : Shape(regular_polygon(6, 0.8));
+  drawn.scene.bodies.push_back({"robot", "robot", robot, 1.0, kFriction, false});
   drawn.start.push_back({0.0, 0.0, rng.uniform(-std::numbers::pi, std::numbers::pi)});
   drawn.action = rng.below(push.headings);
   const int objects = 1 + rng.below(4);
   for (int k = 0; k < objects; ++k) {
-    drawn.scene.bodies.push_back({"object", "box", random_shape(rng), 1.0, kFriction, false});
+    const Shape shape = compound ? random_compound(rng) : Shape(random_shape(rng));
+    drawn.scene.bodies.push_back({"object", "box", shape, 1.0, kFriction, false});
     const double angle = rng.uniform(-std::numbers::pi, std::numbers::pi);
     const Vector2d at = rotate(angle, {rng.uniform(1.0, 3.5), 0.0});
     drawn.start.push_back({at.x(), at.y(), rng.uniform(-std::numbers::pi, std::numbers::pi)});
@@ -50,11 +65,11 @@ inline std::optional<RandomPush> drawn_push(Rng& rng, const PushConfig& push) {
   return std::nullopt;
 }
 
-/// The push of that seed.
-inline RandomPush random_push(std::uint64_t seed, const PushConfig& push) {
+/// The push of that seed: of a hexagon among polygons, or of a disc among random_compound() bodies.
+inline RandomPush random_push(std::uint64_t seed, const PushConfig& push, bool compound = false) {
   Rng rng(seed);
   for (;;)
-    if (auto drawn = drawn_push(rng, push)) return *drawn;
+    if (auto drawn = drawn_push(rng, push, compound)) return *drawn;
 }
 
 }  // namespace rtg::testing

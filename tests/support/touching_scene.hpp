@@ -3,6 +3,7 @@
 #include "core/energy/step_energy.hpp"
 #include "core/math/rng.hpp"
 #include "core/reverse/problem/warm_start.hpp"
+#include "core/world/separation.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg::testing {
@@ -37,6 +38,27 @@ struct CoastingScene : TouchingScene {
     physics.damping = 1.0;
     physics.barrier /= 20.0;  // in units of k_D/Δt²
     update();
+  }
+};
+
+/// The letter T, as large as Gathering's boxes: a bar 1.6 x 0.4 and a stem 0.4 x 1.2 below it.
+inline Shape letter_t() {
+  std::vector<Part> parts = placed({{box(1.6, 0.4)}}, 0.0, {0.0, 0.8});
+  parts.push_back({box(0.4, 1.2)});
+  return Shape(std::move(parts)).centred();
+}
+
+/// A disc as robot, then a T and a box with round corners, in a row in contact.
+struct RoundScene : TouchingScene {
+  RoundScene() {
+    scene.bodies[0].shape = Shape(disc(0.8));
+    scene.bodies[1].shape = letter_t();
+    scene.bodies[2].shape = Shape(Part{box(0.8, 0.8), 0.2});
+    update();
+    poses = {{0.0, 0.0, 0.3}, {4.0, 0.3, 2.0}, {8.0, 0.6, 0.6}};
+    for (std::size_t k = 1; k < poses.size(); ++k)
+      for (double gap = 1.0; gap > 0.03; poses[k].x -= gap - 0.02)
+        gap = separation(scene.bodies[k].shape, poses[k], scene.bodies[k - 1].shape, poses[k - 1]);
   }
 };
 

@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "core/tasks/contact_heading.hpp"
+#include "core/world/outline.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 #include "train/bindings/fields.hpp"
@@ -16,12 +17,15 @@ namespace {
 
 using Vertices = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
-std::vector<Vertices> shapes(const tasks::Task& task) {
-  std::vector<Vertices> out;
+std::vector<std::vector<Vertices>> outlines(const tasks::Task& task) {
+  std::vector<std::vector<Vertices>> out;
   for (const Body& body : task.scene.bodies) {
-    Vertices& vertices = out.emplace_back(static_cast<Eigen::Index>(body.shape.size()), 2);
-    for (Eigen::Index k = 0; k < vertices.rows(); ++k)
-      vertices.row(k) = body.shape.vertices[static_cast<std::size_t>(k)];
+    std::vector<Vertices>& rings = out.emplace_back();
+    for (const std::vector<Vector2d>& ring : outline(body.shape.parts())) {
+      Vertices& vertices = rings.emplace_back(static_cast<Eigen::Index>(ring.size()), 2);
+      for (Eigen::Index k = 0; k < vertices.rows(); ++k)
+        vertices.row(k) = ring[static_cast<std::size_t>(k)];
+    }
   }
   return out;
 }
@@ -157,7 +161,7 @@ void bind_task(nb::module_& module) {
   nb::class_<tasks::Task> bound(module, "Task");
   bind_fields(bound);
   bound.def_ro("name", &tasks::Task::name)
-      .def_prop_ro("shapes", &shapes)
+      .def_prop_ro("outlines", &outlines)
       .def_prop_ro("names", &names)
       .def_prop_ro("kinds", &kinds)
       .def_prop_ro("fixed", &fixed)

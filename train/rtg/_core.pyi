@@ -62,8 +62,8 @@ class Task:
     @property
     def name(self) -> str: ...
     @property
-    def shapes(self) -> Sequence[NDArray[np.float64]]:
-        """The polygon of each body: [vertices, 2] in m, counter-clockwise, centroid at 0."""
+    def outlines(self) -> Sequence[Sequence[NDArray[np.float64]]]:
+        """The outer ring of each body, then its holes. [vertices, 2] in m, centroid at 0"""
     @property
     def names(self) -> list[str]:
         """The unique names of the bodies."""

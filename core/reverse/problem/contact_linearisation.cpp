@@ -87,7 +87,8 @@ void ContactLinearisation<T>::add_normal_force(Contact& c) {
 /// Adds the friction, μ_f λ ∂φ/∂q₊ in Φ_{k+1}.
 template <class T>
 void ContactLinearisation<T>::add_friction(Contact& c, const energy::ContactPoint<T>& after) {
-  const energy::SlipTerms<T> slip(c.d.gradient, after, c.geometry.point.x, scene_.slip());
+  const energy::SlipTerms<T> slip(c.d.gradient, after, c.geometry.point.x, c.geometry.point.roll,
+                                  scene_.slip());
   const Mat4<T> hessian = slip.hessian(after);
   const energy::SlipGeometry<T> at{c.d, c.D, after, c.geometry.point};
   const energy::SlipRates<T> rates(slip, at, hessian, y_next_);

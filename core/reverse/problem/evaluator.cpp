@@ -109,7 +109,7 @@ struct Evaluator<T>::Pass {
       own -= contact.point.pulled(d.gradient) * force;
       if (last || !any(force != T(0.0))) continue;
       const energy::SlipTerms<T> s(d.gradient, scene.point(n, v, ahead), contact.point.x,
-                                   scene.slip());
+                                   contact.point.roll, scene.slip());
       next += s.gradient() * (scene.friction(n) * force);
     }
     if (k > 0) pull(scene, n, here, own, into.residuals_[k].data());

@@ -29,7 +29,7 @@ struct At {
 
   explicit At(const VectorXd& q)
       : frame(frame_of(q)),
-        point(kVertex, frame),
+        point(kVertex, frame, 0.3),
         d(signed_distance(kBox, kAlpha, point.x)),
         D(d.hessian()),
         terms(d, D, point) {}
@@ -60,6 +60,7 @@ TEST(ContactPoint, RatesAreDerivativesAlongTheMotion) {
     const ContactPoint<double> up = At(q + 1e-6 * y).point, down = At(q - 1e-6 * y).point;
     EXPECT_LT((rate.x - (up.x - down.x) / 2e-6).norm(), 1e-9);
     EXPECT_LT((rate.a - (up.a - down.a) / 2e-6).norm(), 1e-9);
+    EXPECT_NEAR(rate.roll, (up.roll - down.roll) / 2e-6, 1e-9);
   }
 }
 

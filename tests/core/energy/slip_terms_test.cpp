@@ -20,7 +20,7 @@ using testing::test_directions;
 using testing::Vec6;
 using Vec12 = Eigen::Matrix<double, 12, 1>;
 
-constexpr double kSlip = 0.025;
+constexpr double kSlip = 0.025, kRadius = 0.3;
 
 /// Friction at z = (q₊, q) [12].
 struct At {
@@ -32,10 +32,10 @@ struct At {
   explicit At(const VectorXd& z)
       : ahead(frame_of(z.head(6))),
         here(frame_of(z.tail(6))),
-        next(kVertex, ahead),
-        now(kVertex, here),
+        next(kVertex, ahead, kRadius),
+        now(kVertex, here, kRadius),
         d(signed_distance(kBox, kAlpha, now.x)),
-        terms(d.gradient, next, now.x, kSlip) {}
+        terms(d.gradient, next, now.x, now.roll, kSlip) {}
   double value() const { return terms.value(kSlip); }
   Vec6 force() const { return pushing(ahead).transpose() * terms.gradient(); }
   /// Rates along y of the pose after.

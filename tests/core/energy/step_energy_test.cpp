@@ -65,6 +65,11 @@ TEST(StepEnergy, DerivativesMatchDifferences) {
   expect_exact_derivatives(scene.energy, scene.poses);
 }
 
+TEST(StepEnergy, DerivativesOfRoundAndCompoundBodiesMatchDifferences) {
+  const testing::RoundScene scene;
+  expect_exact_derivatives(scene.energy, scene.poses);
+}
+
 TEST(StepEnergy, DerivativesOfThePapersFormMatchDifferences) {
   TouchingScene scene;
   scene.physics.plain_barrier = scene.physics.periodic_turns = true;
@@ -188,6 +193,12 @@ TEST(StepEnergy, EveryVertexMayTouchEveryOtherBody) {
   }
 }
 
+// A disc has one; so has a T six, and a part of it, each against every part of the other.
+TEST(StepEnergy, TipsOfPartsTouchPartsOfOtherBodies) {
+  const testing::RoundScene scene;
+  EXPECT_EQ(scene.energy.contacts().size(), (1u * 2u + 6u) + (1u + 4u) + (6u + 2u * 4u));
+}
+
 TEST(StepEnergy, ConvertsUnitsAndBoundsOnce) {
   const TouchingScene scene;
   const PhysicsConfig& physics = scene.physics;
@@ -243,8 +254,9 @@ TEST(StepEnergy, GapsAreDistancesLessTheSkinWithinTheRange) {
     const Poses poses = unstacked(p);
     for (const Contact& c : energy.contacts()) {
       const Vector2d vertex =
-          scene.scene.bodies[c.body].shape.vertices[static_cast<std::size_t>(c.vertex)];
-      const HalfPlanes planes = half_planes(scene.scene.bodies[c.other].shape);
+          scene.scene.bodies[c.body].shape.parts()[0].core.vertices[static_cast<std::size_t>(
+              c.vertex)];
+      const HalfPlanes planes = half_planes(scene.scene.bodies[c.other].shape.parts()[0].core);
       const double gap = signed_distance(planes, scene.physics.sharpness,
                                          to_local(poses[c.other], to_world(poses[c.body], vertex)))
                              .value -

@@ -42,7 +42,7 @@ TEST(Box2dRotation, AnOffCentrePushTurnsABoxAsItsMomentOfInertiaSays) {
 TEST(Box2dRotation, TheTorqueBoundDecidesWhetherAFixedCornerTurnsTheRobot) {
   Scene scene = frictionless(box(1.0, 1.0), diamond(0.5));
   scene.bodies[1].fixed = true;
-  const double radius = bounding_radius(scene.bodies[0].shape);
+  const double radius = scene.bodies[0].shape.radius();
   for (const double torque_factor : {1.0, 2.0, 3.0}) {
     PhysicsConfig physics;
     physics.torque_factor = torque_factor;

@@ -39,8 +39,8 @@ Fastest fastest(const Scene& scene, const PhysicsConfig& physics) {
     const Pose now = out.end[0];
     if (k > 1)  // the first one brings the steps of the catching up along
       most.way = std::max(most.way, (now.position() - before.position()).norm() / advance);
-    most.turn = std::max(most.turn, std::abs(now.theta - before.theta) *
-                                        bounding_radius(scene.bodies[0].shape) / advance);
+    most.turn = std::max(
+        most.turn, std::abs(now.theta - before.theta) * scene.bodies[0].shape.radius() / advance);
     before = now;
   }
   return most;

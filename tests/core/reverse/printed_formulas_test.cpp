@@ -58,7 +58,7 @@ struct Printed {
     return dt * dt / physics.damping;
   }
   const std::vector<Vector2d>& vertices(std::size_t i) const {
-    return scene.bodies[i].shape.vertices;
+    return scene.bodies[i].shape.parts()[0].core.vertices;
   }
 
   /// X(x, p) of body i.

@@ -32,7 +32,7 @@ TEST(Swept, AreaIsTheBodysAndTheWaysTimesTheWidth) {
     for (int trial = 0; trial < 10; ++trial) {
       const double theta = rng.uniform(-3.0, 3.0);
       const Vector2d by(rng.uniform(-2.0, 2.0), rng.uniform(-2.0, 2.0));
-      const Polygon way = swept(shape, theta, by);
+      const Polygon way = swept(shape, theta, by)[0].core;
       EXPECT_EQ(polygon_defect(std::span(way.vertices).first(3)), std::nullopt);
       EXPECT_NEAR(moments(way).area,
                   moments(shape).area + by.norm() * width_across(shape, theta, by), 1e-12);
@@ -42,7 +42,7 @@ TEST(Swept, AreaIsTheBodysAndTheWaysTimesTheWidth) {
 TEST(Swept, ContainsTheBodyAllAlongItsWay) {
   const Polygon shape = regular_polygon(5, 0.8);
   const Vector2d by(-1.0, 1.5);
-  const Polygon way = swept(shape, 0.4, by);
+  const Polygon way = swept(shape, 0.4, by)[0].core;
   for (const double share : {0.0, 0.3, 1.0})
     for (const Vector2d& v : shape.vertices) {
       const Vector2d at = v + share * rotate(-0.4, by);
@@ -55,7 +55,7 @@ TEST(Swept, ContainsTheBodyAllAlongItsWay) {
 }
 
 TEST(Swept, StandingStillIsTheBodyItself) {
-  EXPECT_NEAR(moments(swept(box(1.2, 0.7), 0.3, {0, 0})).area, 0.84, 1e-12);
+  EXPECT_NEAR(moments(swept(box(1.2, 0.7), 0.3, {0, 0})[0].core).area, 0.84, 1e-12);
 }
 
 /// The hexagonal robot, 0.8 from centre to vertex, and a box.

@@ -57,7 +57,7 @@ TEST(StateMetric, ObjectsAreTheMovableBodiesButTheRobot) {
   ASSERT_EQ(metric.objects().size(), kObjects.size());
   for (std::size_t k = 0; k < kObjects.size(); ++k) {
     EXPECT_EQ(metric.objects()[k].body, kObjects[k]);
-    EXPECT_EQ(metric.objects()[k].order, kOrders[k]);
+    EXPECT_EQ(metric.objects()[k].turn, 2.0 * kPi / kOrders[k]);
   }
 }
 

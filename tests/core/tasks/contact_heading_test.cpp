@@ -31,7 +31,7 @@ TEST(ContactHeading, PointsAtTheObjectsAndNowhereElse) {
       const Vector2d arm = task.start[k].position() - task.start[0].position();
       const double off =
           std::remainder(std::atan2(arm.y(), arm.x()) - a * step, 2.0 * std::numbers::pi);
-      const double reach = std::asin(bounding_radius(task.scene.bodies[k].shape) / arm.norm());
+      const double reach = std::asin(task.scene.bodies[k].shape.radius() / arm.norm());
       at_one = at_one || std::abs(off) < reach + 0.5 * step;
     }
     EXPECT_TRUE(at_one || counts[static_cast<std::size_t>(a)] == 0) << a;

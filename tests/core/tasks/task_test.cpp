@@ -145,7 +145,7 @@ TEST(Gathering, StartsLegalAndUnsolved) {
     EXPECT_FALSE(succeeded(task, task.start));
     EXPECT_EQ(first_overlap(task.scene, task.start, 0.02), std::nullopt);
     for (const Body& body : task.scene.bodies)
-      EXPECT_EQ(polygon_defect(body.shape.vertices), std::nullopt);
+      EXPECT_EQ(polygon_defect(body.shape.parts()[0].core.vertices), std::nullopt);
     for (const Pose& pose : task.start) EXPECT_EQ(pose, to_single(pose));
   }
   EXPECT_EQ(gathering().scene.size(), 4u);

@@ -39,11 +39,11 @@ TEST(SignedDistance, CutsCornersByTheKnownLength) {
   EXPECT_NEAR(distance(square, tip), 0.0, 1e-12);
 }
 
-void expect_derivatives(const HalfPlanes& planes, const Vector2d& x, const Vector2d& along) {
+template <class Distance>
+void expect_derivatives(Distance distance_at, const Vector2d& x, const Vector2d& along) {
   const double t = 1e-6;
-  const SignedDistance<double> d = signed_distance(planes, kAlpha, x);
-  const SignedDistance<double> up = signed_distance(planes, kAlpha, x + t * along);
-  const SignedDistance<double> down = signed_distance(planes, kAlpha, x - t * along);
+  const SignedDistance<double> d = distance_at(x);
+  const SignedDistance<double> up = distance_at(x + t * along), down = distance_at(x - t * along);
   EXPECT_NEAR(d.gradient.dot(along), (up.value - down.value) / (2.0 * t), 1e-8);
   EXPECT_LT((d.hessian() * along - (up.gradient - down.gradient) / (2.0 * t)).norm(), 1e-6);
   EXPECT_LT((d.third(along) - (up.hessian() - down.hessian()) / (2.0 * t)).norm(), 1e-4);
@@ -53,15 +53,36 @@ void expect_derivatives(const HalfPlanes& planes, const Vector2d& x, const Vecto
 // average out.
 TEST(SignedDistance, DerivativesMatchDifferences) {
   const HalfPlanes hexagon = half_planes(regular_polygon(6, 0.8));
+  const auto at = [&](const Vector2d& x) { return signed_distance(hexagon, kAlpha, x); };
   Rng rng(3);
   const Vector2d corner(0.8, 0.0);
   for (int trial = 0; trial < 20; ++trial) {
     const double reach = trial % 2 == 0 ? 1.0 : 0.02;
     const Vector2d off(rng.uniform(-reach, reach), rng.uniform(-reach, reach));
     const Vector2d x = trial % 2 == 0 ? off : Vector2d(corner + off);
-    expect_derivatives(hexagon, x, {rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0)});
-    expect_derivatives(hexagon, x, signed_distance(hexagon, kAlpha, x).gradient);
+    expect_derivatives(at, x, {rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0)});
+    expect_derivatives(at, x, at(x).gradient);
   }
+}
+
+TEST(ExactDistance, IsThatFromTheNearestEdgeOrCorner) {
+  const HalfPlanes square = half_planes(box(2, 2));
+  EXPECT_NEAR(exact_distance(square, {1.5, 0.3}).value, 0.5, 1e-15);
+  EXPECT_NEAR(exact_distance(square, {1.3, 1.4}).value, 0.5, 1e-15);
+  EXPECT_NEAR(exact_distance(square, {0.9, 0.2}).value, -0.1, 1e-15);  // inside
+  const HalfPlanes point = half_planes({{{0.5, 0.0}}});
+  EXPECT_NEAR(exact_distance(point, {0.5, -0.3}).value, 0.3, 1e-15);
+}
+
+TEST(ExactDistance, DerivativesMatchDifferences) {
+  const HalfPlanes square = half_planes(box(2, 2)), point = half_planes({{{0.5, 0.0}}});
+  Rng rng(4);
+  for (const Vector2d& x : {Vector2d(1.3, 1.4), Vector2d(-1.2, 0.3), Vector2d(-0.2, -1.1)})
+    for (const HalfPlanes* planes : {&square, &point}) {
+      const auto at = [&](const Vector2d& y) { return exact_distance(*planes, y); };
+      expect_derivatives(at, x, {rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0)});
+      expect_derivatives(at, x, at(x).gradient);
+    }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "nodes/config/config_error.hpp"
@@ -199,12 +200,40 @@ TEST(Config, ABrokenByteInASettingIsNamed) {
 TEST(Config, APolygonIsCentredAndItsTextReadsBackToTheSameBits) {
   const Config config =
       parsed("", {"task.bodies.1.shape={vertices: [[5, 5], [6.1, 5], [6, 6.5], [5.3, 6.6]]}"});
-  const Polygon& shape = config.task.scene.bodies[1].shape;
-  EXPECT_LT(moments(shape).centroid.norm(), 1e-12);
-  EXPECT_NEAR((shape.vertices[1] - shape.vertices[0]).x(), 1.1, 1e-12);
+  const Shape& shape = config.task.scene.bodies[1].shape;
+  const Polygon& core = shape.parts()[0].core;
+  EXPECT_LT(shape.moments().centroid.norm(), 1e-12);
+  EXPECT_NEAR((core.vertices[1] - core.vertices[0]).x(), 1.1, 1e-12);
   EXPECT_EQ(config.task.start[1], (Pose{3.0, 0.0, 0.0}));
   const Config again = parse_config(canonical_yaml(config), "canonical.yaml");
   EXPECT_EQ(again.task.scene.bodies[1].shape, shape);
+}
+
+TEST(Config, ShapesOfAllKindsAreCentredAndTheirTextReadsBackToTheSameBits) {
+  for (const std::string shape :
+       {"{disc: 0.4}", "{box: [1, 0.7], rounding: 0.15}",
+        "{regular: {sides: 5, radius: 0.6}, grown: 0.1}",
+        "{parts: [{box: [2, 0.5], at: [0.3, 0.9]}, {box: [0.5, 1.5], at: [0.3, -0.1, 0.0]}]}",
+        "{parts: [{disc: 0.3, at: [0.7, 0]}, {box: [1, 0.2]}, {disc: 0.3, at: [-0.7, 0]}]}",
+        "{vertices: [[0, 0], [2, 0], [2, 0.6], [0.7, 0.6], [0.7, 2], [0, 2]]}"}) {
+    const Config config =
+        parsed("", {"task.bodies.1.shape=" + shape, "task.bodies.1.start=[0, 0, 0]"});
+    const Shape& read = config.task.scene.bodies[1].shape;
+    EXPECT_LT(read.moments().centroid.norm(), 1e-9) << shape;
+    const Config again = parse_config(canonical_yaml(config), "canonical.yaml");
+    EXPECT_EQ(again.task.scene.bodies[1].shape, read) << shape;
+  }
+}
+
+TEST(Config, RoundingStaysWithinThePolygonAndGrowingAddsToIt) {
+  const auto shape = [](const std::string& words) {
+    return parsed("", {"task.bodies.1.shape={box: [1.2, 1.0], " + words + "}"})
+        .task.scene.bodies[1]
+        .shape;
+  };
+  const double corners = (4.0 - std::numbers::pi) * 0.01;
+  EXPECT_NEAR(shape("rounding: 0.1").moments().area, 1.2 - corners, 1e-12);
+  EXPECT_NEAR(shape("grown: 0.1").moments().area, 1.4 * 1.2 - corners, 1e-12);
 }
 
 TEST(Config, NamesThatYamlReadsAsNothingReadBackToThemselves) {

@@ -75,7 +75,7 @@ def test_a_disc_on_a_half_plane_is_seen_in_any_order():
     every = {"subject": "every"}
     disc = SimpleNamespace(**every, kind="box", region="disc", centre=(4.0, 4.0), radius=1.0)
     plane = SimpleNamespace(**every, kind="*", region="half_plane", normal=(-1.0, 0.0), offset=0.0)
-    names = ("kinds", "names", "fixed", "shapes", "joints", "start", "arena")
+    names = ("kinds", "names", "fixed", "outlines", "joints", "start", "arena")
     names += ("joints_reached", "centroids")
     shown = {name: getattr(TASK, name) for name in names}
     pictures = [

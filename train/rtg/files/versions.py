@@ -17,7 +17,14 @@ from rtg.files import run_folder
 FILE = "versions.json"
 _REVISION_KEYS = ("git_revision", "git_modified")
 _PYTHON_PACKAGES = ("torch", "gymnasium", "numpy", "lcm")
-_DEBIAN_PACKAGES = ("g++", "libeigen3-dev", "libsuitesparse-dev", "libbox2d-dev", "libyaml-cpp-dev")
+_DEBIAN_PACKAGES = (
+    "g++",
+    "libeigen3-dev",
+    "libsuitesparse-dev",
+    "libbox2d-dev",
+    "libgeos-dev",
+    "libyaml-cpp-dev",
+)
 
 
 def _command_output(*command: str) -> str | None:

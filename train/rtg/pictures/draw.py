@@ -52,8 +52,8 @@ class TaskLike(Protocol):
     """The properties of a task that drawing needs, as in rtg._core.Task."""
 
     @property
-    def shapes(self) -> Sequence[Floats]:
-        """The vertices of each body, [V, 2]."""
+    def outlines(self) -> Sequence[Sequence[Floats]]:
+        """The outer ring of each body, then those of its holes, [V, 2] each."""
 
     @property
     def names(self) -> Sequence[str]: ...
@@ -132,8 +132,8 @@ def episode_window(task: TaskLike, poses: Floats) -> Window:
     """
     marks = [term for term in task.goal if term.region == "disc"]
     corners = [circle(term.centre, term.radius) for term in marks]
-    for body, shape in enumerate(task.shapes):
-        reach = float(np.linalg.norm(shape, axis=1).max())
+    for body, rings in enumerate(task.outlines):
+        reach = float(np.linalg.norm(rings[0], axis=1).max())
         corners += [poses[:, body, :2] - reach, poses[:, body, :2] + reach]
     points = np.concatenate(corners)
     low, high = points.min(axis=0), points.max(axis=0)
@@ -219,7 +219,10 @@ def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
     colours = kind_colours(task)
 
     def draw(body: int, colour: Colour) -> None:
-        canvas.polygon(outline(task.shapes[body], poses[body]), colour, edge=INK)
+        outer, *holes = task.outlines[body]
+        canvas.polygon(outline(outer, poses[body]), colour, edge=INK)
+        for hole in holes:
+            canvas.polygon(outline(hole, poses[body]), PAPER, edge=INK)
 
     for body in range(1, len(task.kinds)):
         if task.fixed[body]:
@@ -254,7 +257,7 @@ def draw_former_outlines(canvas: Canvas, task: TaskLike, before: Floats, poses: 
     colours = kind_colours(task)
     for body in objects(task):
         if np.abs(poses[body] - before[body]).max() > 0.02:
-            xy = outline(task.shapes[body], before[body])
+            xy = outline(task.outlines[body][0], before[body])
             canvas.line(np.vstack([xy, xy[:2]]), colours[task.kinds[body]], 0.06)
 
 

@@ -185,11 +185,12 @@ def _draw_scene(axis: Axes, task: TaskLike, body: int) -> None:
             normal = np.asarray(term.normal).reshape(2)
             edge = normal * term.offset + np.outer([-3 * a, 3 * a], [-normal[1], normal[0]])
             axis.fill(*np.vstack([edge, edge[::-1] - 4 * a * normal]).T, color=colour, alpha=0.15)
-    for other, shape in enumerate(task.shapes):
-        xy = outline(shape, task.start[other])
-        closed = np.vstack([xy, xy[:1]])
+    for other, rings in enumerate(task.outlines):
         colour = _rgb(ROBOT) if other == 0 else _rgb(INK)
-        axis.plot(*closed.T, color=colour, lw=1.8 if other == body else 0.7)
+        for ring in rings:
+            xy = outline(ring, task.start[other])
+            closed = np.vstack([xy, xy[:1]])
+            axis.plot(*closed.T, color=colour, lw=1.8 if other == body else 0.7)
     axis.plot([-a, a, a, -a, -a], [-a, -a, a, a, -a], color="#c9c6bc", lw=1)
     axis.set(xlim=(-1.05 * a, 1.05 * a), ylim=(-1.05 * a, 1.05 * a), aspect="equal")
     axis.axis("off")

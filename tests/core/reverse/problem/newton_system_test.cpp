@@ -34,6 +34,14 @@ TEST(NewtonSystem, MatrixIsDerivativeOfFirstOrderConditions) {
   expect_matrix_is_derivative(problem, disturbed(testing::in_contact(problem), 1e-3, rng));
 }
 
+TEST(NewtonSystem, MatrixIsDerivativeOfRoundAndCompoundBodies) {
+  testing::RoundScene scene;
+  const ReverseConfig config;
+  const ReverseProblem problem = scene.problem(config);
+  Rng rng(1);
+  expect_matrix_is_derivative(problem, disturbed(testing::in_contact(problem), 1e-3, rng));
+}
+
 TEST(NewtonSystem, MatrixIsDerivativeWithInertia) {
   CoastingScene scene;
   const ReverseConfig config;

@@ -13,16 +13,22 @@ namespace {
 
 using testing::TouchingScene;
 
-/// The touching scene with an object of `sides` corners in front of the robot.
+/// A polygon of 3 to 8 corners, a disc, a polygon with round corners.
+Shape shape_number(int number) {
+  if (number < 9) return regular_polygon(number, 0.6);
+  return Shape(number == 9 ? disc(0.55) : Part{regular_polygon(5, 0.4), 0.15});
+}
+
+/// The touching scene with an object of that shape in front of the robot.
 struct OtherShapes : TouchingScene {
   ReverseProblem problem;
 
-  OtherShapes(int sides, const ReverseConfig& config) : problem{TouchingScene::problem(config)} {
-    scene.bodies[1].shape = regular_polygon(sides, 0.6);
-    scene.bodies[2].shape = sides % 2 == 0 ? regular_polygon(3, 0.7) : box(1.0, 0.8);
+  OtherShapes(int number, const ReverseConfig& config) : problem{TouchingScene::problem(config)} {
+    scene.bodies[1].shape = shape_number(number);
+    scene.bodies[2].shape = number % 2 == 0 ? regular_polygon(3, 0.7) : box(1.0, 0.8);
     energy = energy::StepEnergy(scene, physics, task.push);
     problem.end = with_open_gaps(
-        energy, energy::stacked({{0, 0, 0}, {1.38, 0.1, 0.2 + 0.1 * sides}, {2.7, 0.3, 0.6}}));
+        energy, energy::stacked({{0, 0, 0}, {1.38, 0.1, 0.2 + 0.1 * number}, {2.7, 0.3, 0.6}}));
   }
   OtherShapes(const OtherShapes&) = delete;
 };
@@ -35,8 +41,8 @@ TEST(FilterSqpMixed, CandidatesOfOtherShapesHaveTheBitsThatTheyHaveAlone) {
   const ReverseConfig config;
   std::vector<std::unique_ptr<OtherShapes>> scenes;
   std::vector<const ReverseProblem*> problems;
-  for (int k = 0; k < 12; ++k) {
-    scenes.push_back(std::make_unique<OtherShapes>(3 + k % 6, config));
+  for (int k = 0; k < 16; ++k) {
+    scenes.push_back(std::make_unique<OtherShapes>(3 + k % 8, config));
     problems.push_back(&scenes.back()->problem);
   }
   const std::vector<SqpResult> together = solve(problems);

@@ -1,0 +1,219 @@
+#include "core/world/outline.hpp"
+
+#include <geos_c.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+namespace rtg {
+namespace {
+
+constexpr int kQuadrantSides = 128;    // of a round corner, per quarter turn
+constexpr int kPictureSides = 16;      // the same, in pictures
+constexpr double kSameArea = 2e-4;     // difference of areas that count as one / area
+constexpr double kCollinear = 1e-9;    // sine of the turn at a vertex that is left out
+constexpr double kLeastCorner = 1e-6;  // sine of the turn at a convex corner
+
+/// GEOS's handle of a thread, with its last error.
+struct Context {
+  GEOSContextHandle_t handle = GEOS_init_r();
+  std::string error;
+
+  Context() {
+    GEOSContext_setErrorMessageHandler_r(
+        handle, [](const char* message, void* to) { static_cast<Context*>(to)->error = message; },
+        this);
+  }
+  ~Context() { GEOS_finish_r(handle); }
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+};
+
+Context& context() {
+  thread_local Context one;
+  return one;
+}
+
+GEOSContextHandle_t geos() { return context().handle; }
+
+struct Destroy {
+  void operator()(GEOSGeometry* geometry) const { GEOSGeom_destroy_r(geos(), geometry); }
+};
+using Geometry = std::unique_ptr<GEOSGeometry, Destroy>;
+
+/// Takes over what a function of GEOS returned. Throws std::runtime_error if it failed.
+Geometry checked(GEOSGeometry* made) {
+  if (!made) throw std::runtime_error("GEOS: " + context().error);
+  return Geometry(made);
+}
+
+Geometry polygon_of(std::span<const Vector2d> ring) {
+  std::vector<double> xy;
+  for (std::size_t k = 0; k <= ring.size(); ++k) {
+    const Vector2d& v = ring[k % ring.size()];
+    xy.insert(xy.end(), {v.x(), v.y()});
+  }
+  GEOSCoordSequence* sequence = GEOSCoordSeq_copyFromBuffer_r(
+      geos(), xy.data(), static_cast<unsigned>(ring.size() + 1), 0, 0);
+  Geometry line = checked(GEOSGeom_createLinearRing_r(geos(), sequence));
+  return checked(GEOSGeom_createPolygon_r(geos(), line.release(), nullptr, 0));
+}
+
+Geometry area_of(const Part& part, int sides) {
+  const Vector2d& first = part.core.vertices[0];
+  Geometry core = part.is_disc()
+                      ? checked(GEOSGeom_createPointFromXY_r(geos(), first.x(), first.y()))
+                      : polygon_of(part.core.vertices);
+  if (part.radius == 0.0) return core;
+  return checked(GEOSBuffer_r(geos(), core.get(), part.radius, sides));
+}
+
+Geometry union_of(std::span<const Part> parts, int sides = kQuadrantSides) {
+  Geometry all = area_of(parts[0], sides);
+  for (const Part& part : parts.subspan(1))
+    all = checked(GEOSUnion_r(geos(), all.get(), area_of(part, sides).get()));
+  return all;
+}
+
+/// Returns the vertices of a ring, without the last, which is the first.
+std::vector<Vector2d> vertices_of(const GEOSGeometry* ring) {
+  const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(geos(), ring);
+  unsigned count = 0;
+  GEOSCoordSeq_getSize_r(geos(), sequence, &count);
+  std::vector<Vector2d> out(count - 1);
+  for (unsigned k = 0; k + 1 < count; ++k)
+    GEOSCoordSeq_getXY_r(geos(), sequence, k, &out[k].x(), &out[k].y());
+  return out;
+}
+
+/// Adds the integrals over the polygons of `area`; those of holes count negative.
+void add(const GEOSGeometry* area, AreaIntegrals& sum) {
+  for (int n = 0; n < GEOSGetNumGeometries_r(geos(), area); ++n) {
+    const GEOSGeometry* polygon = GEOSGetGeometryN_r(geos(), area, n);
+    const auto add_ring = [&sum](const GEOSGeometry* ring, double sign) {
+      const AreaIntegrals one = area_integrals(vertices_of(ring));
+      sum.add(one, one.area < 0.0 ? -sign : sign);
+    };
+    add_ring(GEOSGetExteriorRing_r(geos(), polygon), 1.0);
+    for (int hole = 0; hole < GEOSGetNumInteriorRings_r(geos(), polygon); ++hole)
+      add_ring(GEOSGetInteriorRingN_r(geos(), polygon, hole), -1.0);
+  }
+}
+
+double area_in(const GEOSGeometry* area) {
+  AreaIntegrals sum;
+  add(area, sum);
+  return sum.area;
+}
+
+/// Returns the sine of the turn at vertex k of a ring; positive to the left.
+double turn_at(std::span<const Vector2d> ring, std::size_t k) {
+  const std::size_t count = ring.size();
+  const Vector2d before = (ring[k] - ring[(k + count - 1) % count]).normalized();
+  const Vector2d after = (ring[(k + 1) % count] - ring[k]).normalized();
+  return before.x() * after.y() - before.y() * after.x();
+}
+
+/// Returns the polygon of two that share the edge from vertex i of `a`, which is the edge from
+/// vertex j of `b` reversed. Returns nothing if it is not convex or has too many vertices.
+std::optional<Polygon> joined(const Polygon& a, std::size_t i, const Polygon& b, std::size_t j) {
+  std::vector<Vector2d> ring;
+  for (std::size_t k = 1; k <= a.size(); ++k) ring.push_back(a.vertices[(i + k) % a.size()]);
+  for (std::size_t k = 2; k < b.size(); ++k) ring.push_back(b.vertices[(j + k) % b.size()]);
+  Polygon out;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const double turn = turn_at(ring, k);
+    if (std::abs(turn) <= kCollinear) continue;
+    if (turn < kLeastCorner) return std::nullopt;
+    out.vertices.push_back(ring[k]);
+  }
+  if (out.size() > kMaxVertices) return std::nullopt;
+  return out;
+}
+
+/// Joins two pieces at the longest edge at which their union is convex. Returns whether there is
+/// such an edge.
+bool join_longest(std::vector<Polygon>& pieces) {
+  double longest = 0.0;
+  std::size_t first = 0, second = 0;
+  std::optional<Polygon> best;
+  for (std::size_t m = 0; m < pieces.size(); ++m)
+    for (std::size_t n = m + 1; n < pieces.size(); ++n)
+      for (std::size_t i = 0; i < pieces[m].size(); ++i)
+        for (std::size_t j = 0; j < pieces[n].size(); ++j) {
+          const Vector2d &v = pieces[m].vertices[i],
+                         &w = pieces[m].vertices[(i + 1) % pieces[m].size()];
+          if (v != pieces[n].vertices[(j + 1) % pieces[n].size()] || w != pieces[n].vertices[j])
+            continue;
+          if ((v - w).norm() <= longest) continue;
+          std::optional<Polygon> one = joined(pieces[m], i, pieces[n], j);
+          if (!one) continue;
+          best = std::move(one);
+          longest = (v - w).norm();
+          first = m;
+          second = n;
+        }
+  if (!best) return false;
+  pieces[first] = *std::move(best);
+  pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(second));
+  return true;
+}
+
+}  // namespace
+
+Moments union_moments(std::span<const Part> parts) {
+  AreaIntegrals sum;
+  add(union_of(parts).get(), sum);
+  return sum.moments();
+}
+
+std::vector<std::vector<Vector2d>> outline(std::span<const Part> parts) {
+  if (parts.size() == 1 && parts[0].radius == 0.0) return {parts[0].core.vertices};
+  const Geometry all = union_of(parts, kPictureSides);
+  std::vector<std::vector<Vector2d>> rings{vertices_of(GEOSGetExteriorRing_r(geos(), all.get()))};
+  for (int hole = 0; hole < GEOSGetNumInteriorRings_r(geos(), all.get()); ++hole)
+    rings.push_back(vertices_of(GEOSGetInteriorRingN_r(geos(), all.get(), hole)));
+  return rings;
+}
+
+bool in_one_piece(std::span<const Part> parts) {
+  return GEOSGetNumGeometries_r(geos(), union_of(parts).get()) == 1;
+}
+
+bool maps_onto_itself(std::span<const Part> parts, double angle) {
+  const Geometry here = union_of(parts);
+  const Geometry there = union_of(placed({parts.begin(), parts.end()}, angle, Vector2d::Zero()));
+  const Geometry difference = checked(GEOSSymDifference_r(geos(), here.get(), there.get()));
+  return area_in(difference.get()) <= kSameArea * area_in(here.get());
+}
+
+std::optional<std::string> ring_defect(std::span<const Vector2d> ring) {
+  const Geometry polygon = polygon_of(ring);
+  const std::unique_ptr<char, void (*)(char*)> reason(GEOSisValidReason_r(geos(), polygon.get()),
+                                                      [](char* text) { GEOSFree_r(geos(), text); });
+  if (!reason) return context().error;
+  const std::string words = reason.get();
+  return words == "Valid Geometry" ? std::nullopt : std::optional(words);
+}
+
+std::vector<Polygon> convex_pieces(std::span<const Vector2d> ring) {
+  const Geometry triangles =
+      checked(GEOSConstrainedDelaunayTriangulation_r(geos(), polygon_of(ring).get()));
+  std::vector<Polygon> pieces;
+  for (int n = 0; n < GEOSGetNumGeometries_r(geos(), triangles.get()); ++n) {
+    Polygon one{
+        vertices_of(GEOSGetExteriorRing_r(geos(), GEOSGetGeometryN_r(geos(), triangles.get(), n)))};
+    if (area_integrals(one.vertices).area < 0.0) std::ranges::reverse(one.vertices);
+    pieces.push_back(std::move(one));
+  }
+  while (join_longest(pieces)) {
+  }
+  return pieces;
+}
+
+}  // namespace rtg
