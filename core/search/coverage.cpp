@@ -27,7 +27,7 @@ void Coverage::add(const Transition& t) {
   ++by_source_[static_cast<std::size_t>(t.source)];
   contacts_ += objects_moved(t.poses, t.next) >= 1;
   multi_body_ += moves_several(t);
-  start_region_ += in_place(metric_, t.poses, task_.start);
+  start_region_ += in_start_region(task_, metric_, t.poses);
   states_.insert(reverse::key_of(t.poses, 0));
 }
 

@@ -16,7 +16,7 @@ void set_nodes(GenerationReport& report, const tasks::Task& task, std::vector<Re
   const StateMetric metric(task.scene);
   for (const ReportNode& n : nodes) {
     report.trees = std::max(report.trees, n.tree + 1);
-    if (n.depth == 0 || !in_place(metric, n.poses, task.start)) continue;
+    if (n.depth == 0 || !in_start_region(task, metric, n.poses)) continue;
     int& least = report.start_region_depth;
     least = least < 0 ? n.depth : std::min(least, n.depth);
   }

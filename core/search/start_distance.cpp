@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/world/separation.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kPushesBetweenObjects = 2.0;  // approximate
 constexpr double kInPlace = 0.4;   // largest distance of an object in place from its place [m]
+constexpr double kInRange = 0.8;   // the same for the angle beyond those of its starts [rad]
 constexpr double kPullCone = 0.5;  // largest angle at the object between robot and pull [rad]
 constexpr double kReach = 0.15;    // largest gap over which the robot can pull an object [m]
 constexpr double kTouching = 0.8;  // approximate distance of touching bodies / sum of their radii
@@ -94,6 +96,18 @@ double start_distance(const tasks::Task& task, const StateMetric& metric, const 
 bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target) {
   return std::ranges::all_of(metric.objects(),
                              [&](const auto& o) { return in_place(metric, o, poses, target); });
+}
+
+bool in_start_region(const tasks::Task& task, const StateMetric& metric, const Poses& poses) {
+  if (task.start_ranges.empty()) return in_place(metric, poses, task.start);
+  return std::ranges::all_of(metric.objects(), [&](const auto& o) {
+    const std::optional<tasks::StartRange>& range = task.start_ranges[o.body];
+    if (!range) return in_place(metric, o, poses, task.start);
+    if (excess(range->region, poses[o.body].position()) > kInPlace) return false;
+    const double off = poses[o.body].theta - (range->least + range->most) / 2.0;
+    const double turn = o.turn > 0.0 ? std::abs(std::remainder(off, o.turn)) : 0.0;
+    return turn <= (range->most - range->least) / 2.0 + kInRange;
+  });
 }
 
 Poses snapped_to_start(const tasks::Task& task, const StateMetric& metric, Poses poses,

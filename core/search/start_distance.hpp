@@ -27,6 +27,10 @@ double start_distance(const tasks::Task& task, const StateMetric& metric, const 
 /// place". The robot may be anywhere.
 bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target);
 
+/// Returns whether every object is in place of a start of the task: near its pose in task.start, or
+/// within 0.4 m of the region that it starts in and 0.8 rad of the angles.
+bool in_start_region(const tasks::Task& task, const StateMetric& metric, const Poses& poses);
+
 /// Returns `poses` with each object that is near its pose in `target` (in place, start_distance())
 /// moved to its pose in `start`, a start state near `target`. Bodies connected by joints, except
 /// through a fixed body, move only if all of them are in place. The robot moves only if it and all

@@ -26,7 +26,7 @@ StateMetric::StateMetric(const Scene& scene) {
   for (std::size_t k = 1; k < scene.size(); ++k) {
     const bool jointed = has_joint(scene, k);
     if (!scene.bodies[k].fixed)
-      objects_.push_back({k, jointed, jointed ? kTwoPi : symmetry_angle(scene.bodies[k].shape)});
+      objects_.push_back({k, jointed, jointed ? kTwoPi : scene.bodies[k].shape.symmetry()});
   }
 }
 

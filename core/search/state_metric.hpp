@@ -20,7 +20,7 @@ class StateMetric {
   struct Object {
     std::size_t body;
     bool jointed;
-    double turn;  // symmetry_angle(); 2π with a joint
+    double turn;  // Shape::symmetry(); 2π with a joint
   };
   std::span<const Object> objects() const { return objects_; }
 

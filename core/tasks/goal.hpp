@@ -1,57 +1,110 @@
 #pragma once
 
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "core/tasks/region.hpp"
 #include "core/world/scene.hpp"
 
 namespace rtg::tasks {
 
-/// A condition on a state: the subject of the term must lie in its region. A goal is a list of
-/// terms, all of which must hold. The subjects are:
-///
-///   kEvery     the centre of every body of the kind ("*": of every movable body but the robot)
-///   kCentroid  the mean of these centres
-///   kJoint     θ_child - θ_parent of the joint whose child has that name ("*": of every joint)
+struct Task;
+
+// Conditions on a state. Those on a body are to hold for every body of a kind. Angles of bodies
+// count modulo the symmetry of their shape.
+
+/// The centre of the body lies in the region.
+struct CentreIn {
+  Region region;
+  bool operator==(const CentreIn&) const = default;
+};
+/// The mean of the centres of all bodies of the kind lies in the region.
+struct MeanIn {
+  Region region;
+  bool operator==(const MeanIn&) const = default;
+};
+/// least ≤ θ ≤ most.
+struct AngleIn {
+  double least = 0.0, most = 0.0;  // [rad]
+  bool operator==(const AngleIn&) const = default;
+};
+/// The centre is within `distance` of that of `pose`, the angle within `turn` of its angle.
+struct PoseNear {
+  Pose pose;
+  double distance = 0.0;  // [m]
+  double turn = 0.0;      // [rad]
+  bool operator==(const PoseNear&) const = default;
+};
+/// The body covers at least `share` of its own outline at `pose`.
+struct Covers {
+  Pose pose;
+  double share = 0.0;
+  bool operator==(const Covers&) const = default;
+};
+/// The separation from the nearest other body of kind `other` is at most `gap`.
+struct Touches {
+  std::string other;
+  double gap = 0.0;  // [m]
+  bool operator==(const Touches&) const = default;
+};
+/// The separation from every other body of kind `other` is at least `gap`.
+struct KeepsFrom {
+  std::string other;
+  double gap = 0.0;  // [m]
+  bool operator==(const KeepsFrom&) const = default;
+};
+/// The centre is within `distance` of where the body is in Task::start.
+struct Stays {
+  double distance = 0.0;  // [m]
+  bool operator==(const Stays&) const = default;
+};
+/// least ≤ joint_value() ≤ most, of the joint whose child has the name `kind` of the term.
+struct JointIn {
+  double least = 0.0, most = 0.0;  // [rad] or [m]
+  bool operator==(const JointIn&) const = default;
+};
+
+using Condition =
+    std::variant<CentreIn, MeanIn, AngleIn, PoseNear, Covers, Touches, KeepsFrom, Stays, JointIn>;
+
+/// A term of a goal, which is a list of terms that all must hold. With `negated` its condition is
+/// to hold for no body of the kind (for no joint, not for the mean).
 struct GoalTerm {
-  enum class Subject { kEvery, kCentroid, kJoint };
-  enum class Region { kDisc, kHalfPlane, kAngles };
-  std::string kind = "*";  // kind of body; for kJoint, name of the joint's child
-  Region region = Region::kDisc;
-  Vector2d centre = Vector2d::Zero();   // kDisc: |x - centre| ≤ radius
-  double radius = 0.0;                  // [m]
-  Vector2d normal = Vector2d::UnitX();  // kHalfPlane: normal·x ≤ offset, |normal| = 1
-  double offset = 0.0;                  // [m]
-  Subject subject = Subject::kEvery;
-  double least = 0.0, most = 0.0;  // kAngles: least ≤ φ ≤ most [rad]
+  std::string kind = "*";  // "*": every movable body but the robot, every joint
+  Condition condition;
+  bool negated = false;
 
   bool operator==(const GoalTerm&) const = default;
 };
 
-/// Returns whether `term` is about the position of `body`, alone (kEvery) or in a mean (kCentroid).
-/// Always false for the robot.
+/// Returns whether `term` is about the position of `body`, alone or in a mean. Always false for the
+/// robot.
 bool concerns(const GoalTerm& term, const Scene& scene, std::size_t body);
-/// Returns whether `term` applies to the angle of `joint`.
+/// Returns whether `term` applies to `joint`.
 bool concerns(const GoalTerm& term, const Scene& scene, const Joint& joint);
 
-/// Returns how far a point [m] or an angle [rad] lies outside the region of `term`. The result is
-/// negative or zero inside.
-double excess(const GoalTerm& term, const Vector2d& x);
-double excess(const GoalTerm& term, double angle);
+/// Returns whether the condition of `term` is about bodies one by one, whatever lies beside them.
+bool is_of_one_body(const GoalTerm& term);
 
-/// Returns whether a point or an angle lies in the region of `term`, shrunk by `tighten` ([m] or
-/// [rad]).
-inline bool contains(const GoalTerm& term, const Vector2d& x, double tighten) {
-  return excess(term, x) <= -tighten;
-}
-inline bool contains(const GoalTerm& term, double angle, double tighten) {
-  return excess(term, angle) <= -tighten;
-}
+/// Returns how far `body`, which `term` concerns, is from meeting it; zero or less if it does. The
+/// unit is [m], for angles [rad]. Not for JointIn and MeanIn.
+double excess(const GoalTerm& term, const Task& task, const Poses& poses, std::size_t body);
+/// The same for a joint and JointIn.
+double excess(const GoalTerm& term, const Joint& joint, const Poses& poses);
 
 /// Returns the mean centre of the bodies to which `term` applies.
 Vector2d centroid_of(const GoalTerm& term, const Scene& scene, const Poses& poses);
 
-/// Returns whether `term` holds with its region shrunk by `tighten` ([m] or [rad]).
-bool holds(const GoalTerm& term, const Scene& scene, const Poses& poses, double tighten);
+/// Returns whether `term` holds.
+bool holds(const GoalTerm& term, const Task& task, const Poses& poses);
+
+/// Margin by which states of sample_goal() satisfy the goal [m], [rad]; less where a term leaves
+/// little room.
+inline constexpr double kGoalSpare = 0.05;
+
+/// Returns a term that holds only where `term` holds with a margin: kGoalSpare, but at most a fifth
+/// of what the term allows.
+GoalTerm tightened(const GoalTerm& term);
 
 }  // namespace rtg::tasks

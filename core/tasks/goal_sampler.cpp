@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <span>
 #include <utility>
 
 #include "core/tasks/placement.hpp"
@@ -11,27 +10,16 @@ namespace rtg::tasks {
 namespace {
 
 constexpr int kAttempts = 1000;
-constexpr int kProposals = 50;         // tries to place a body (or a tree of joints) in one attempt
-constexpr double kBesideShare = 0.5;   // share of proposals that put a body beside another one
-constexpr double kBesideGap = 0.1;     // largest gap to that body [m]
-constexpr double kBehindShare = 0.75;  // probability that the robot stands as after a push
-constexpr double kBehindGap = 0.03;    // robot as after a push: largest gap above kClearance [m]
-constexpr double kFreeRange = 3.0;     // otherwise: largest offset from a body in x and in y [m]
+constexpr int kProposals = 50;        // tries to place a body (or a tree of joints) in one attempt
+constexpr double kBesideShare = 0.5;  // share of proposals that put a body beside another one
+constexpr double kTouchingShare = 0.9;  // the same if the goal asks for that
+constexpr double kBesideGap = 0.1;      // largest gap to that body [m]
+constexpr double kBehindShare = 0.75;   // probability that the robot stands as after a push
+constexpr double kBehindGap = 0.03;     // robot as after a push: largest gap above kClearance [m]
+constexpr double kFreeRange = 3.0;      // otherwise: largest offset from a body in x and in y [m]
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 Vector2d unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
-
-/// Moves `x` into the region of `term`, shrunk by kGoalSpare. In a disc the result is uniform and
-/// does not depend on `x`. For a half-plane, `x` moves along the normal to a random distance behind
-/// the line, at most its old distance. So points close to the line are likelier.
-Vector2d moved_into(const GoalTerm& term, const Vector2d& x, Rng& rng) {
-  if (term.region == GoalTerm::Region::kDisc) {
-    const double r = (term.radius - kGoalSpare) * std::sqrt(rng.uniform(0.0, 1.0));
-    return term.centre + r * unit(rng.uniform(0.0, kTwoPi));
-  }
-  const double depth = term.offset - kGoalSpare - term.normal.dot(x);
-  return x + (depth - rng.uniform(0.0, 1.0) * std::abs(depth)) * term.normal;
-}
 
 Vector2d point_in_arena(const Task& task, Rng& rng) {
   const double a = task.push.arena;
@@ -39,22 +27,74 @@ Vector2d point_in_arena(const Task& task, Rng& rng) {
   return {x, rng.uniform(-a, a)};
 }
 
-/// Returns whether `x` lies in all goal regions for the centre of `body`, shrunk by kGoalSpare.
-bool in_target(const Task& task, std::size_t body, const Vector2d& x) {
-  return std::ranges::all_of(task.goal, [&](const GoalTerm& term) {
-    return term.subject != GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||
-           contains(term, x, kGoalSpare);
-  });
+/// What is being sampled, with the goal as it is to hold: tightened().
+struct Draw {
+  const Task& task;
+  const std::vector<GoalTerm>& goal;
+  Rng& rng;
+  GoalRefusals& refusals;
+  PartialState state;
+
+  /// Returns whether bodies one by one meet the goal at their poses; counts the term that fails.
+  bool meets_terms_of(std::size_t body, const Poses& poses) {
+    for (std::size_t k = 0; k < goal.size(); ++k) {
+      if (!is_of_one_body(goal[k]) || !concerns(goal[k], task.scene, body)) continue;
+      if (excess(goal[k], task, poses, body) <= 0.0) continue;
+      ++refusals.by_term[k];
+      return false;
+    }
+    return true;
+  }
+};
+
+double drawn_angle(const AngleIn& range, double period, Rng& rng) {
+  const double angle = rng.uniform(range.least, range.most);
+  if (period == 0.0) return rng.uniform(-std::numbers::pi, std::numbers::pi);
+  const auto turns = static_cast<int>(std::lround(kTwoPi / period));
+  return angle + period * rng.below(turns);
 }
 
-/// Draws a uniform point of the arena and moves it into the goal regions for the centre of body
-/// `i`.
-Vector2d point_in_goal(const Task& task, std::size_t i, Rng& rng) {
-  Vector2d x = point_in_arena(task, rng);
-  for (const GoalTerm& term : task.goal)
-    if (term.subject == GoalTerm::Subject::kEvery && concerns(term, task.scene, i))
-      x = moved_into(term, x, rng);
-  return x;
+/// Changes the pose of a body so that it meets a condition on it alone, or comes near to that.
+void aim(const Condition& condition, const Pose& start, const Shape& shape, Pose& pose, Rng& rng) {
+  const double period = shape.symmetry();
+  const auto place = [&pose](const Vector2d& x) {
+    pose.x = x.x();
+    pose.y = x.y();
+  };
+  if (const auto* in = std::get_if<CentreIn>(&condition)) {
+    place(moved_into(in->region, pose.position(), rng));
+  } else if (const auto* angle = std::get_if<AngleIn>(&condition)) {
+    pose.theta = drawn_angle(*angle, period, rng);
+  } else if (const auto* near = std::get_if<PoseNear>(&condition)) {
+    place(moved_into(Disc{near->pose.position(), near->distance}, pose.position(), rng));
+    pose.theta =
+        drawn_angle({near->pose.theta - near->turn, near->pose.theta + near->turn}, period, rng);
+  } else if (const auto* covers = std::get_if<Covers>(&condition)) {
+    // An outline that is moved by a share of its size leaves about that share uncovered.
+    const double off = (1.0 - covers->share) * rng.uniform(0.0, 1.0);
+    place(moved_into(Disc{covers->pose.position(), off * shape.radius()}, pose.position(), rng));
+    pose.theta = drawn_angle({covers->pose.theta - off, covers->pose.theta + off}, period, rng);
+  } else if (const auto* stays = std::get_if<Stays>(&condition)) {
+    place(moved_into(Disc{start.position(), stays->distance}, pose.position(), rng));
+    pose.theta = start.theta + stays->distance / shape.radius() * rng.uniform(-1.0, 1.0);
+  }
+}
+
+/// Draws a pose of body `i` for the goal: a uniform point of the arena, moved into the regions for
+/// the centre, and any angle; then what the other terms on the body ask for, one after another.
+Pose pose_in_goal(Draw& draw, std::size_t i) {
+  const auto aim_at = [&](bool regions, Pose& pose) {
+    for (const GoalTerm& term : draw.goal)
+      if (!term.negated && std::holds_alternative<CentreIn>(term.condition) == regions &&
+          concerns(term, draw.task.scene, i))
+        aim(term.condition, draw.task.start[i], draw.task.scene.bodies[i].shape, pose, draw.rng);
+  };
+  const Vector2d x = point_in_arena(draw.task, draw.rng);
+  Pose pose{x.x(), x.y(), 0.0};
+  aim_at(true, pose);
+  pose.theta = draw.rng.uniform(-std::numbers::pi, std::numbers::pi);
+  aim_at(false, pose);
+  return pose;
 }
 
 /// Returns the angles of the outward normals of all straight edges of the parts, in the body frame.
@@ -110,120 +150,151 @@ void move(Group& group, const Vector2d& by) {
   }
 }
 
-/// Returns whether the position of `group` decides if `term`, a kCentroid term, holds. It does if
-/// `term` applies to a body of the group and all its other bodies are placed already.
-bool determines_mean(const Group& group, const GoalTerm& term, const Task& task,
-                     const PartialState& state) {
-  const auto concerned = [&](std::size_t i) { return concerns(term, task.scene, i); };
-  if (term.subject != GoalTerm::Subject::kCentroid) return false;
-  for (std::size_t i = 1; i < task.scene.size(); ++i)
-    if (concerned(i) && !state.placed[i] && !std::ranges::count(group.members, i)) return false;
+/// Returns whether the position of `group` decides if `term`, which has the condition MeanIn,
+/// holds. It does if `term` applies to a body of the group and all its other bodies are placed
+/// already.
+bool determines_mean(const Group& group, const GoalTerm& term, const Draw& draw) {
+  const auto concerned = [&](std::size_t i) { return concerns(term, draw.task.scene, i); };
+  for (std::size_t i = 1; i < draw.task.scene.size(); ++i)
+    if (concerned(i) && !draw.state.placed[i] && !std::ranges::count(group.members, i))
+      return false;
   return std::ranges::any_of(group.members, concerned);
 }
 
 /// For each term whose mean the group determines (determines_mean()), moves the group so that the
 /// mean centre lies in the region.
-void aim_at_centroids(const Task& task, const PartialState& state, Group& group, Rng& rng) {
-  for (const GoalTerm& term : task.goal) {
-    if (!determines_mean(group, term, task, state)) continue;
-    const auto concerned = [&](std::size_t i) { return concerns(term, task.scene, i); };
+void aim_at_means(Draw& draw, Group& group) {
+  const Scene& scene = draw.task.scene;
+  for (const GoalTerm& term : draw.goal) {
+    const auto* mean = std::get_if<MeanIn>(&term.condition);
+    if (!mean || term.negated || !determines_mean(group, term, draw)) continue;
+    const auto concerned = [&](std::size_t i) { return concerns(term, scene, i); };
     std::size_t all = 0;
-    for (std::size_t i = 1; i < task.scene.size(); ++i) all += concerned(i);
+    for (std::size_t i = 1; i < scene.size(); ++i) all += concerned(i);
     const auto ours = static_cast<double>(std::ranges::count_if(group.members, concerned));
-    const Vector2d by = moved_into(term, point_in_arena(task, rng), rng) -
-                        centroid_of(term, task.scene, group.poses);
+    const Vector2d by = moved_into(mean->region, point_in_arena(draw.task, draw.rng), draw.rng) -
+                        centroid_of(term, scene, group.poses);
     move(group, static_cast<double>(all) / ours * by);
   }
 }
 
-/// Adds the bodies of `group` to `state` if their poses are legal; returns whether they are. Each
-/// movable body must lie in its goal regions and in the arena. It must be clear of the bodies
-/// placed before and of the rest of the group.
-bool try_add(const Task& task, PartialState& state, const Group& group) {
-  PartialState trial = state;
+/// Adds the bodies of `group` to the state if their poses are legal; returns whether they are. Each
+/// movable body must meet the terms on it alone and lie in the arena. It must be clear of the
+/// bodies placed before and of the rest of the group.
+bool try_add(Draw& draw, const Group& group) {
+  PartialState trial = draw.state;
   for (const std::size_t i : group.members) {
     const Pose& pose = group.poses[i];
-    if (!task.scene.bodies[i].fixed &&
-        (!in_target(task, i, pose.position()) || !in_arena(pose, task.push) ||
-         !is_clear(task, trial, i, pose)))
-      return false;
+    if (!draw.task.scene.bodies[i].fixed) {
+      if (!draw.meets_terms_of(i, group.poses)) return false;
+      if (!in_arena(pose, draw.task.push) || !is_clear(draw.task, trial, i, pose)) {
+        ++draw.refusals.no_room;
+        return false;
+      }
+    }
     trial.poses[i] = pose;
     trial.placed[i] = true;
   }
-  state = std::move(trial);
+  draw.state = std::move(trial);
   return true;
 }
 
-bool place_object(const Task& task, PartialState& state, std::size_t i, Rng& rng) {
+/// Returns the probability with which a body is proposed beside another one: 0 if a term says where
+/// it is to lie, more than usual if a term says that it is to touch.
+double beside_share(const Draw& draw, std::size_t i) {
+  double share = kBesideShare;
+  for (const GoalTerm& term : draw.goal) {
+    if (term.negated || !concerns(term, draw.task.scene, i)) continue;
+    if (std::holds_alternative<Touches>(term.condition)) share = kTouchingShare;
+    if (std::holds_alternative<PoseNear>(term.condition) ||
+        std::holds_alternative<Covers>(term.condition))
+      return 0.0;
+  }
+  return share;
+}
+
+bool place_object(Draw& draw, std::size_t i) {
+  const double share = beside_share(draw, i);
   for (int k = 0; k < kProposals; ++k) {
-    Group group{i, {i}, state.poses};
-    if (rng.uniform(0.0, 1.0) < kBesideShare) {
-      const std::optional<Pose> pose = beside(task, state, i, rng);
+    Group group{i, {i}, draw.state.poses};
+    if (draw.rng.uniform(0.0, 1.0) < share) {
+      const std::optional<Pose> pose = beside(draw.task, draw.state, i, draw.rng);
       if (!pose) continue;
       group.poses[i] = *pose;
     } else {
-      const Vector2d x = point_in_goal(task, i, rng);
-      group.poses[i] = {x.x(), x.y(), rng.uniform(-std::numbers::pi, std::numbers::pi)};
-      aim_at_centroids(task, state, group, rng);
+      group.poses[i] = pose_in_goal(draw, i);
+      aim_at_means(draw, group);
     }
-    if (try_add(task, state, group)) return true;
+    if (try_add(draw, group)) return true;
   }
   return false;
 }
 
 /// Returns the least and the largest angle that the limits of `joint` and the goal allow [rad].
 /// Returns nothing if there is no such angle.
-std::optional<std::pair<double, double>> angles_in_goal(const Task& task, const Joint& joint) {
+std::optional<std::pair<double, double>> angles_in_goal(const Draw& draw, const Joint& joint) {
   double least = std::isfinite(joint.lower) ? joint.lower : -std::numbers::pi;
   double most = std::isfinite(joint.upper) ? joint.upper : std::numbers::pi;
-  for (const GoalTerm& term : task.goal) {
-    if (!concerns(term, task.scene, joint)) continue;
-    least = std::max(least, term.least + kGoalSpare);
-    most = std::min(most, term.most - kGoalSpare);
+  for (const GoalTerm& term : draw.goal) {
+    if (term.negated || !concerns(term, draw.task.scene, joint)) continue;
+    const auto& range = std::get<JointIn>(term.condition);
+    least = std::max(least, range.least);
+    most = std::min(most, range.most);
   }
   if (least > most) return std::nullopt;
   return std::pair{least, most};
 }
 
-/// Returns the member by whose centre place_tree() positions the group: the first that has a goal
-/// region of its own, otherwise the root.
-std::size_t positioned_member(const Task& task, const Group& group) {
+/// Returns the member by whose pose place_tree() positions the group: the first that has a term of
+/// its own, otherwise the root.
+std::size_t positioned_member(const Draw& draw, const Group& group) {
   for (const std::size_t i : group.members)
-    for (const GoalTerm& term : task.goal)
-      if (term.subject == GoalTerm::Subject::kEvery && concerns(term, task.scene, i)) return i;
+    for (const GoalTerm& term : draw.goal)
+      if (is_of_one_body(term) && concerns(term, draw.task.scene, i)) return i;
   return group.root;
 }
 
 /// Gives each joint of the group a random angle that its limits and the goal allow. Returns false
 /// if a joint has no such angle.
-bool draw_joint_angles(const Task& task, Group& group, Rng& rng) {
-  for (const std::size_t n : root_first(task.scene)) {
-    const Joint& joint = task.scene.joints[n];
+bool draw_joint_angles(Draw& draw, Group& group) {
+  const Scene& scene = draw.task.scene;
+  for (const std::size_t n : root_first(scene)) {
+    const Joint& joint = scene.joints[n];
     const auto child = static_cast<std::size_t>(joint.child);
     if (!std::ranges::count(group.members, child)) continue;
-    const auto angles = angles_in_goal(task, joint);
+    const auto angles = angles_in_goal(draw, joint);
     if (!angles) return false;
     group.poses[child].theta = group.poses[static_cast<std::size_t>(joint.parent)].theta +
-                               rng.uniform(angles->first, angles->second);
+                               draw.rng.uniform(angles->first, angles->second);
   }
-  group.poses = with_closed_joints(task.scene, std::move(group.poses));
+  group.poses = with_closed_joints(scene, std::move(group.poses));
   return true;
 }
 
-/// Places a tree of jointed bodies: draws the joint angles, then moves the tree into its goal
-/// regions. A fixed root stays. Returns whether one of kProposals tries succeeded.
-bool place_tree(const Task& task, PartialState& state, const Group& tree, Rng& rng) {
+/// Turns and moves the group as a rigid body until `member` has the pose `to`.
+void move_to(Group& group, std::size_t member, const Pose& to) {
+  const Pose from = group.poses[member];
+  for (const std::size_t i : group.members) {
+    Pose& pose = group.poses[i];
+    const Vector2d x =
+        to_world({to.x, to.y, to.theta - from.theta}, Vector2d(pose.position() - from.position()));
+    pose = {x.x(), x.y(), pose.theta + to.theta - from.theta};
+  }
+}
+
+/// Places a tree of jointed bodies: draws the joint angles, then moves the tree to where the goal
+/// asks for one of its members. A fixed root stays. Returns whether one of kProposals tries
+/// succeeded.
+bool place_tree(Draw& draw, const Group& tree) {
   for (int k = 0; k < kProposals; ++k) {
     Group group = tree;
-    const bool fixed = task.scene.bodies[group.root].fixed;
-    if (!fixed) group.poses[group.root].theta = rng.uniform(-std::numbers::pi, std::numbers::pi);
-    if (!draw_joint_angles(task, group, rng)) return false;
-    if (!fixed) {
-      const std::size_t positioned = positioned_member(task, group);
-      move(group, point_in_goal(task, positioned, rng) - group.poses[positioned].position());
-      aim_at_centroids(task, state, group, rng);
+    if (!draw_joint_angles(draw, group)) return false;
+    if (!draw.task.scene.bodies[group.root].fixed) {
+      const std::size_t positioned = positioned_member(draw, group);
+      move_to(group, positioned, pose_in_goal(draw, positioned));
+      aim_at_means(draw, group);
     }
-    if (try_add(task, state, group)) return true;
+    if (try_add(draw, group)) return true;
   }
   return false;
 }
@@ -263,38 +334,68 @@ bool place_robot(const Task& task, PartialState& state, Rng& rng) {
   return false;
 }
 
-bool place_objects(const Task& task, PartialState& state, Rng& rng) {
-  const std::vector<std::size_t> roots = roots_of(task.scene);
-  for (std::size_t i = 1; i < task.scene.size(); ++i) {
+bool place_objects(Draw& draw) {
+  const Scene& scene = draw.task.scene;
+  const std::vector<std::size_t> roots = roots_of(scene);
+  for (std::size_t i = 1; i < scene.size(); ++i) {
     if (roots[i] != i) continue;
-    Group group{i, {}, state.poses};
-    for (std::size_t j = 1; j < task.scene.size(); ++j)
+    Group group{i, {}, draw.state.poses};
+    for (std::size_t j = 1; j < scene.size(); ++j)
       if (roots[j] == i) group.members.push_back(j);
     const bool alone = group.members.size() == 1;
-    if (alone && task.scene.bodies[i].fixed) continue;
-    if (alone ? !place_object(task, state, i, rng) : !place_tree(task, state, group, rng))
-      return false;
+    if (alone && scene.bodies[i].fixed) continue;
+    if (alone ? !place_object(draw, i) : !place_tree(draw, group)) return false;
   }
   return true;
 }
 
-std::optional<Poses> attempt(const Task& task, Rng& rng) {
-  PartialState state{task.start, std::vector<bool>(task.scene.size(), false)};
-  for (std::size_t i = 1; i < task.scene.size(); ++i) state.placed[i] = task.scene.bodies[i].fixed;
-  if (!place_objects(task, state, rng)) return std::nullopt;
-  if (task.scene.size() > 1 && !place_robot(task, state, rng)) return std::nullopt;
-  for (const GoalTerm& term : task.goal)  // try_add() has checked the kEvery terms
-    if (term.subject != GoalTerm::Subject::kEvery &&
-        !holds(term, task.scene, state.poses, kGoalSpare))
-      return std::nullopt;
-  return to_single(std::move(state.poses));
+/// Returns whether all terms hold; counts one that does not.
+bool meets_goal(Draw& draw) {
+  for (std::size_t k = 0; k < draw.goal.size(); ++k)
+    if (!is_of_one_body(draw.goal[k]) && !holds(draw.goal[k], draw.task, draw.state.poses)) {
+      ++draw.refusals.by_term[k];
+      return false;
+    }
+  return true;
+}
+
+std::optional<Poses> attempt(const Task& task, const std::vector<GoalTerm>& goal, Rng& rng,
+                             GoalRefusals& refusals) {
+  Draw draw{task, goal, rng, refusals, {task.start, std::vector<bool>(task.scene.size(), false)}};
+  for (std::size_t i = 1; i < task.scene.size(); ++i)
+    draw.state.placed[i] = task.scene.bodies[i].fixed;
+  if (!place_objects(draw)) return std::nullopt;
+  if (task.scene.size() > 1 && !place_robot(task, draw.state, rng)) {
+    ++refusals.no_robot;
+    return std::nullopt;
+  }
+  if (!meets_goal(draw)) return std::nullopt;
+  return to_single(std::move(draw.state.poses));
 }
 
 }  // namespace
 
-std::optional<Poses> sample_goal(const Task& task, Rng& rng) {
+std::string main_reason(const GoalRefusals& refusals) {
+  std::vector<std::pair<long, std::string>> reasons{
+      {refusals.no_room, "bodies overlapped or left the arena"},
+      {refusals.no_robot, "the robot found no place"}};
+  long all = refusals.no_room + refusals.no_robot;
+  for (std::size_t k = 0; k < refusals.by_term.size(); ++k) {
+    reasons.emplace_back(refusals.by_term[k], "task.goal." + std::to_string(k) + " did not hold");
+    all += refusals.by_term[k];
+  }
+  const auto& [count, words] = *std::ranges::max_element(reasons);
+  return words + " in " + std::to_string(100 * count / std::max(all, 1L)) + "% of the tries";
+}
+
+std::optional<Poses> sample_goal(const Task& task, Rng& rng, GoalRefusals* refusals) {
+  std::vector<GoalTerm> goal;
+  for (const GoalTerm& term : task.goal) goal.push_back(tightened(term));
+  GoalRefusals own;
+  GoalRefusals& counts = refusals ? *refusals : own;
+  counts.by_term.resize(goal.size());
   for (int k = 0; k < kAttempts; ++k)
-    if (std::optional<Poses> poses = attempt(task, rng)) return poses;
+    if (std::optional<Poses> poses = attempt(task, goal, rng, counts)) return poses;
   return std::nullopt;
 }
 

@@ -17,6 +17,50 @@ bool movable_object(const Task& task, std::size_t body) {
   return body > 0 && !task.scene.bodies[body].fixed;
 }
 
+/// Returns `poses` if they can be a start; nothing otherwise, see jittered().
+std::optional<Poses> if_legal(const Task& task, Poses poses) {
+  poses = to_single(with_closed_joints(task.scene, std::move(poses)));
+  const bool within = std::ranges::all_of(
+      std::views::iota(std::size_t{0}, poses.size()),
+      [&](std::size_t i) { return task.scene.bodies[i].fixed || in_arena(poses[i], task.push); });
+  if (!within || first_overlap(task.scene, poses, kStartClearance) || succeeded(task, poses))
+    return std::nullopt;
+  return poses;
+}
+
+/// Moves and turns the bodies with the root `root` as one, until the root has the pose `to`.
+void move_to(Poses& poses, const std::vector<std::size_t>& roots, std::size_t root,
+             const Pose& to) {
+  const Pose from = poses[root];
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (roots[i] != root) continue;
+    const Vector2d arm = poses[i].position() - from.position();
+    const Vector2d x = to_world({to.x, to.y, to.theta - from.theta}, arm);
+    poses[i] = {x.x(), x.y(), poses[i].theta + to.theta - from.theta};
+  }
+}
+
+/// Draws a state for jittered_start(). Returns nothing if it is not legal.
+std::optional<Poses> drawn(const Task& task, double amplitude, Rng& rng) {
+  if (task.start_ranges.empty()) return jittered(task, task.start, amplitude, rng);
+  Poses poses = task.start;
+  const std::vector<std::size_t> roots = roots_of(task.scene);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (roots[i] != i || task.scene.bodies[i].fixed) continue;
+    const std::optional<StartRange>& range = task.start_ranges[i];
+    Pose to = poses[i];
+    if (range) {
+      const Vector2d x = moved_into(range->region, Vector2d::Zero(), rng);
+      to = {x.x(), x.y(), rng.uniform(range->least, range->most)};
+    } else if (i > 0) {
+      to.x += rng.uniform(-amplitude, amplitude);
+      to.y += rng.uniform(-amplitude, amplitude);
+    }
+    move_to(poses, roots, i, to);
+  }
+  return if_legal(task, std::move(poses));
+}
+
 }  // namespace
 
 std::optional<Poses> jittered(const Task& task, const Poses& start, double amplitude, Rng& rng) {
@@ -28,18 +72,12 @@ std::optional<Poses> jittered(const Task& task, const Poses& start, double ampli
     poses[i].x += rng.uniform(-amplitude, amplitude);
     poses[i].y += rng.uniform(-amplitude, amplitude);
   }
-  poses = to_single(with_closed_joints(task.scene, std::move(poses)));
-  const bool within = std::ranges::all_of(
-      std::views::iota(std::size_t{1}, poses.size()),
-      [&](std::size_t i) { return !movable_object(task, i) || in_arena(poses[i], task.push); });
-  if (!within || first_overlap(task.scene, poses, kStartClearance) || succeeded(task, poses))
-    return std::nullopt;
-  return poses;
+  return if_legal(task, std::move(poses));
 }
 
-bool succeeded(const Task& task, const Poses& poses, double tighten) {
-  return std::ranges::all_of(
-      task.goal, [&](const GoalTerm& term) { return holds(term, task.scene, poses, tighten); });
+bool succeeded(const Task& task, const Poses& poses) {
+  return std::ranges::all_of(task.goal,
+                             [&](const GoalTerm& term) { return holds(term, task, poses); });
 }
 
 std::vector<float> observation(const Task& task, const Poses& poses) {
@@ -76,8 +114,7 @@ int observation_size(const Task& task) {
 
 Poses jittered_start(const Task& task, double amplitude, Rng& rng) {
   for (int attempt = 0; attempt < kAttempts; ++attempt)
-    if (std::optional<Poses> poses = jittered(task, task.start, amplitude, rng))
-      return *std::move(poses);
+    if (std::optional<Poses> poses = drawn(task, amplitude, rng)) return *std::move(poses);
   throw std::invalid_argument("no legal start among " + std::to_string(kAttempts) +
                               " random draws with objects shifted by up to " +
                               std::to_string(amplitude) + " m; legal: a smaller shift");
@@ -86,7 +123,7 @@ Poses jittered_start(const Task& task, double amplitude, Rng& rng) {
 bool allows_jitter(const Task& task, double amplitude) {
   Rng rng(1);
   for (int draw = 0, legal = 0; draw < 250; ++draw)
-    if (jittered(task, task.start, amplitude, rng) && ++legal == 5) return true;
+    if (drawn(task, amplitude, rng) && ++legal == 5) return true;
   return false;
 }
 

@@ -10,13 +10,22 @@
 
 namespace rtg::tasks {
 
+/// Where a body starts: with its centre anywhere in a region, at any angle of a range (uniform).
+struct StartRange {
+  Region region;                   // a disc or a polygon
+  double least = 0.0, most = 0.0;  // θ [rad]
+
+  bool operator==(const StartRange&) const = default;
+};
+
 /// A sparse-reward task: the reward is 1 and the episode terminates when the goal holds; otherwise
 /// the reward is 0.
 struct Task {
   std::string name;
   Scene scene;
-  Poses start;                 // nominal start state
-  std::vector<GoalTerm> goal;  // all must hold
+  Poses start;                                          // nominal start state
+  std::vector<std::optional<StartRange>> start_ranges;  // per body, of those without a fixed place
+  std::vector<GoalTerm> goal;                           // all must hold
   PushConfig push;
   int horizon = 60;            // pushes after which an episode is truncated
   double discount = 0.8;       // γ
@@ -39,8 +48,8 @@ struct Task {
 /// Distance that start states keep between bodies [m]. Box2D treats closer bodies as in contact.
 inline constexpr double kStartClearance = 0.02;
 
-/// Returns whether the goal holds in `poses`, with every region shrunk by `tighten` ([m] or [rad]).
-bool succeeded(const Task& task, const Poses& poses, double tighten = 0.0);
+/// Returns whether the goal holds in `poses`.
+bool succeeded(const Task& task, const Poses& poses);
 
 /// Units of lengths in an observation [m]. Relative positions tell contacts, which differ by
 /// hundredths of an arena: with all lengths in units of `arena`, Gathering takes 1.8 times as
@@ -65,26 +74,36 @@ int observation_size(const Task& task);
 /// object is outside the arena, or the goal holds. With amplitude 0, returns `start` unchanged.
 std::optional<Poses> jittered(const Task& task, const Poses& start, double amplitude, Rng& rng);
 
-/// Returns jittered() of the task's start. Throws std::invalid_argument if 1000 draws in a row are
-/// illegal; allows_jitter() tests for that in advance.
+/// Returns a start state of the task: the bodies that have a range are drawn from it, the others
+/// are jittered(). Jointed bodies move as one. Throws std::invalid_argument if 1000 draws in a row
+/// are illegal; allows_jitter() tests for that in advance.
 Poses jittered_start(const Task& task, double amplitude, Rng& rng);
 
 /// Returns whether jittered_start() can be relied on to find a legal start: at least 5 of 250 test
 /// draws are legal. If 1 draw in 50 is legal, 1000 in a row are illegal with probability 2e-9.
 bool allows_jitter(const Task& task, double amplitude);
 
-/// Margin by which states of sample_goal() satisfy the goal [m], [rad].
-inline constexpr double kGoalSpare = 0.05;
+/// Why tries to draw a goal state failed.
+struct GoalRefusals {
+  std::vector<long> by_term;  // a term of the goal did not hold
+  long no_room = 0;           // a body met others or the edge of the arena
+  long no_robot = 0;          // there was no place for the robot
+};
 
-/// Draws a state that satisfies the goal with margin kGoalSpare. It places, in this order:
+/// Returns what failed most often, in words to the user: "task.goal.1 failed in 93% of the tries".
+std::string main_reason(const GoalRefusals& refusals);
+
+/// Draws a state that satisfies the tightened() goal. It places, in this order:
 ///
-///   - each object in its goal region at a random angle, or beside a placed body. Jointed bodies
-///     move as one. The last body of a kCentroid term goes where the mean fits.
+///   - each object where the terms on it ask for, at a random angle unless they tell one, or beside
+///     a placed body. Jointed bodies move as one. The last body of a term with a mean goes where
+///     that fits. All other terms are tested.
 ///   - the robot, with its angle of `task.start`: just behind a body as after a push (3 of 4
 ///     draws), or near a body but clear of all.
 ///
 /// Fixed bodies stay; all others are in the arena. Poses are rounded by to_single(). The state is
-/// only nearly at rest, so callers must let it settle. Returns nothing if 1000 attempts fail.
-std::optional<Poses> sample_goal(const Task& task, Rng& rng);
+/// only nearly at rest, so callers must let it settle. Returns nothing if 1000 attempts fail. Adds
+/// to `refusals`, if not null.
+std::optional<Poses> sample_goal(const Task& task, Rng& rng, GoalRefusals* refusals = nullptr);
 
 }  // namespace rtg::tasks

@@ -73,10 +73,15 @@ Geometry area_of(const Part& part, int sides) {
   return checked(GEOSBuffer_r(geos(), core.get(), part.radius, sides));
 }
 
+/// Vertices are rounded to a grid of 2^-36 of the size, so that edges that differ by rounding alone
+/// are one.
 Geometry union_of(std::span<const Part> parts, int sides = kQuadrantSides) {
+  double reach = 0.0;
+  for (const Part& part : parts) reach = std::max(reach, reach_from(Vector2d::Zero(), part));
+  const double grid = std::exp2(std::floor(std::log2(reach)) - 36.0);
   Geometry all = area_of(parts[0], sides);
   for (const Part& part : parts.subspan(1))
-    all = checked(GEOSUnion_r(geos(), all.get(), area_of(part, sides).get()));
+    all = checked(GEOSUnionPrec_r(geos(), all.get(), area_of(part, sides).get(), grid));
   return all;
 }
 
@@ -95,6 +100,8 @@ std::vector<Vector2d> vertices_of(const GEOSGeometry* ring) {
 void add(const GEOSGeometry* area, AreaIntegrals& sum) {
   for (int n = 0; n < GEOSGetNumGeometries_r(geos(), area); ++n) {
     const GEOSGeometry* polygon = GEOSGetGeometryN_r(geos(), area, n);
+    if (GEOSGeomTypeId_r(geos(), polygon) != GEOS_POLYGON || GEOSisEmpty_r(geos(), polygon))
+      continue;  // differences by rounding leave lines, or nothing
     const auto add_ring = [&sum](const GEOSGeometry* ring, double sign) {
       const AreaIntegrals one = area_integrals(vertices_of(ring));
       sum.add(one, one.area < 0.0 ? -sign : sign);
@@ -164,6 +171,21 @@ bool join_longest(std::vector<Polygon>& pieces) {
   return true;
 }
 
+/// Splits a polygon into its constrained Delaunay triangles and joins them while that is convex.
+std::vector<Polygon> pieces_of(const GEOSGeometry& polygon) {
+  const Geometry triangles = checked(GEOSConstrainedDelaunayTriangulation_r(geos(), &polygon));
+  std::vector<Polygon> pieces;
+  for (int n = 0; n < GEOSGetNumGeometries_r(geos(), triangles.get()); ++n) {
+    Polygon one{
+        vertices_of(GEOSGetExteriorRing_r(geos(), GEOSGetGeometryN_r(geos(), triangles.get(), n)))};
+    if (area_integrals(one.vertices).area < 0.0) std::ranges::reverse(one.vertices);
+    pieces.push_back(std::move(one));
+  }
+  while (join_longest(pieces)) {
+  }
+  return pieces;
+}
+
 }  // namespace
 
 Moments union_moments(std::span<const Part> parts) {
@@ -201,19 +223,15 @@ std::optional<std::string> ring_defect(std::span<const Vector2d> ring) {
   return words == "Valid Geometry" ? std::nullopt : std::optional(words);
 }
 
+std::vector<Polygon> disjoint_pieces(std::span<const Part> parts) {
+  if (parts.size() > 1) return pieces_of(*union_of(parts, kPictureSides));
+  Polygon only{outline(parts)[0]};
+  if (area_integrals(only.vertices).area < 0.0) std::ranges::reverse(only.vertices);
+  return {std::move(only)};
+}
+
 std::vector<Polygon> convex_pieces(std::span<const Vector2d> ring) {
-  const Geometry triangles =
-      checked(GEOSConstrainedDelaunayTriangulation_r(geos(), polygon_of(ring).get()));
-  std::vector<Polygon> pieces;
-  for (int n = 0; n < GEOSGetNumGeometries_r(geos(), triangles.get()); ++n) {
-    Polygon one{
-        vertices_of(GEOSGetExteriorRing_r(geos(), GEOSGetGeometryN_r(geos(), triangles.get(), n)))};
-    if (area_integrals(one.vertices).area < 0.0) std::ranges::reverse(one.vertices);
-    pieces.push_back(std::move(one));
-  }
-  while (join_longest(pieces)) {
-  }
-  return pieces;
+  return pieces_of(*polygon_of(ring));
 }
 
 }  // namespace rtg

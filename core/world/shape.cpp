@@ -120,6 +120,16 @@ bool is_tip(std::span<const Part> parts, std::size_t n, std::size_t v, double sa
   return largest_opening(std::move(cones)) > std::numbers::pi + 1e-3;
 }
 
+double symmetry_of(const std::vector<Part>& parts) {
+  if (parts.size() == 1) return parts[0].is_disc() ? 0.0 : kTwoPi / symmetry_order(parts[0].core);
+  std::size_t most = 0;
+  for (const Part& part : parts) most += part.core.size();
+  for (std::size_t order = most; order > 1; --order)
+    if (maps_onto_itself(parts, kTwoPi / static_cast<double>(order)))
+      return kTwoPi / static_cast<double>(order);
+  return kTwoPi;
+}
+
 }  // namespace
 
 double reach_from(const Vector2d& point, const Part& part) {
@@ -135,7 +145,9 @@ Shape::Shape(Part part) : Shape(std::vector<Part>{std::move(part)}) {}
 
 Shape::Shape(std::vector<Part> parts)
     : parts_(std::move(parts)),
-      moments_(parts_.size() == 1 ? part_moments(parts_[0]) : union_moments(parts_)) {
+      moments_(parts_.size() == 1 ? part_moments(parts_[0]) : union_moments(parts_)),
+      symmetry_(symmetry_of(parts_)),
+      pieces_(disjoint_pieces(parts_)) {
   for (const Part& part : parts_) radius_ = std::max(radius_, reach_from(Vector2d::Zero(), part));
   for (std::size_t n = 0; n < parts_.size(); ++n) {
     tips_.emplace_back();
@@ -151,17 +163,5 @@ std::vector<Part> placed(std::vector<Part> parts, double angle, const Vector2d& 
 }
 
 Shape Shape::centred() const { return Shape(placed(parts_, 0.0, -moments_.centroid)); }
-
-double symmetry_angle(const Shape& shape) {
-  const std::vector<Part>& parts = shape.parts();
-  if (parts.size() == 1 && parts[0].is_disc()) return 0.0;
-  if (parts.size() == 1) return kTwoPi / symmetry_order(parts[0].core);
-  std::size_t most = 0;
-  for (const Part& part : parts) most += part.core.size();
-  for (std::size_t order = most; order > 1; --order)
-    if (maps_onto_itself(parts, kTwoPi / static_cast<double>(order)))
-      return kTwoPi / static_cast<double>(order);
-  return kTwoPi;
-}
 
 }  // namespace rtg

@@ -41,6 +41,11 @@ class Shape {
   const Moments& moments() const { return moments_; }
   /// Returns the largest distance of a point of the shape from the origin of the body frame [m].
   double radius() const { return radius_; }
+  /// Returns the least turn about the origin that maps the shape onto itself [rad]: 2π if there is
+  /// no smaller one. Returns 0 for a disc, which every turn maps onto itself.
+  double symmetry() const { return symmetry_; }
+  /// Returns the union as convex polygons that do not overlap (disjoint_pieces()).
+  const std::vector<Polygon>& pieces() const { return pieces_; }
   /// Returns the same shape with its centroid at the origin.
   Shape centred() const;
   /// Returns the vertices of the core of a part that can touch other bodies: those that are convex
@@ -50,15 +55,12 @@ class Shape {
  private:
   std::vector<Part> parts_;
   Moments moments_;
-  double radius_ = 0.0;
+  double radius_ = 0.0, symmetry_ = 0.0;
+  std::vector<Polygon> pieces_;
   std::vector<std::vector<std::size_t>> tips_;  // per part
 };
 
 /// Returns the parts moved by `by` and turned by `angle` about the origin before.
 std::vector<Part> placed(std::vector<Part> parts, double angle, const Vector2d& by);
-
-/// Returns the least turn about the origin that maps the shape onto itself [rad]: 2π if there is
-/// no smaller one. Returns 0 for a disc around the origin, which every turn maps onto itself.
-double symmetry_angle(const Shape& shape);
 
 }  // namespace rtg

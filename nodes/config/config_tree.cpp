@@ -116,6 +116,12 @@ ConfigNode map_node(std::string origin) {
   return node;
 }
 
+ConfigNode mapping(std::vector<ConfigEntry> entries) {
+  ConfigNode node = map_node();
+  node.entries = std::move(entries);
+  return node;
+}
+
 std::string in_words(const ConfigNode& node) {
   switch (node.kind) {
     case Kind::kNull:

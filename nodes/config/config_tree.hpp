@@ -47,6 +47,7 @@ ConfigNode text_node(std::string text);
 ConfigNode token_node(std::string token);
 ConfigNode list_node(std::vector<ConfigNode> items);
 ConfigNode map_node(std::string origin = {});
+ConfigNode mapping(std::vector<ConfigEntry> entries);
 
 /// Returns `node` in words for messages: "'3x'", "a list", "a mapping", "nothing".
 std::string in_words(const ConfigNode& node);

@@ -44,6 +44,33 @@ std::string shape_in_words(const Shape& shape) {
   return form + print(", %.2f x %.2f m", size.x(), size.y());
 }
 
+std::string half_plane_in_words(const Vector2d& normal, double offset) {
+  if (normal.y() == 0.0)
+    return print("x %s %.4g m", normal.x() > 0.0 ? "<=" : ">=", offset * normal.x() + 0.0);
+  if (normal.x() == 0.0)
+    return print("y %s %.4g m", normal.y() > 0.0 ? "<=" : ">=", offset * normal.y() + 0.0);
+  return print("%.4g x %+.4g y <= %.4g m", normal.x(), normal.y(), offset);
+}
+
+std::string angles_in_words(double least, double most) {
+  return print("from %.4g to %.4g deg", degrees(least), degrees(most));
+}
+
+std::string region_in_words(const tasks::Region& region) {
+  if (const auto* disc = std::get_if<tasks::Disc>(&region))
+    return print("within %.4g m of (%.4g, %.4g)", disc->radius, disc->centre.x(), disc->centre.y());
+  if (const auto* half = std::get_if<tasks::HalfPlane>(&region))
+    return "at " + half_plane_in_words(half->normal, half->offset);
+  std::string out = "in the polygon";
+  for (const Vector2d& v : std::get<Polygon>(region).vertices)
+    out += print(" (%.4g, %.4g)", v.x(), v.y());
+  return out;
+}
+
+std::string range_in_words(const tasks::StartRange& range) {
+  return region_in_words(range.region) + ", " + angles_in_words(range.least, range.most);
+}
+
 std::string body_line(const Body& body, const Pose& start, std::size_t width) {
   const std::string mass = body.fixed ? "fixed" : print("%.3g kg", mass_of(body).mass);
   return print("  %-*s  %-8s  %s  %9s  friction %.2f  at (%.2f, %.2f), %.1f deg\n",
@@ -56,21 +83,12 @@ std::string bodies_in_words(const tasks::Task& task) {
   std::size_t width = 0;
   for (const Body& body : task.scene.bodies) width = std::max(width, body.name.size());
   std::string out = "bodies, the first is the robot\n";
-  for (std::size_t i = 0; i < task.scene.size(); ++i)
+  for (std::size_t i = 0; i < task.scene.size(); ++i) {
     out += body_line(task.scene.bodies[i], task.start[i], width);
+    if (!task.start_ranges.empty() && task.start_ranges[i])
+      out += "    or anywhere " + range_in_words(*task.start_ranges[i]) + '\n';
+  }
   return out;
-}
-
-std::string half_plane_in_words(const Vector2d& normal, double offset) {
-  if (normal.y() == 0.0)
-    return print("x %s %.4g m", normal.x() > 0.0 ? "<=" : ">=", offset * normal.x() + 0.0);
-  if (normal.x() == 0.0)
-    return print("y %s %.4g m", normal.y() > 0.0 ? "<=" : ">=", offset * normal.y() + 0.0);
-  return print("%.4g x %+.4g y <= %.4g m", normal.x(), normal.y(), offset);
-}
-
-std::string angles_in_words(double least, double most) {
-  return print("from %.4g to %.4g deg", degrees(least), degrees(most));
 }
 
 std::string joint_line(const Joint& joint, const Scene& scene) {
@@ -89,20 +107,61 @@ std::string joints_in_words(const Scene& scene) {
   return out;
 }
 
+std::string pose_in_words(const Pose& pose) {
+  return print("(%.4g, %.4g) at %.4g deg", pose.x, pose.y, degrees(pose.theta));
+}
+
+std::string kind_in_words(const std::string& kind, const char* all) {
+  return kind == "*" ? all : '\'' + kind + '\'';
+}
+
+/// Says what a condition asks of its subject.
+struct ConditionWords {
+  std::string operator()(const tasks::CentreIn& c) const {
+    return "lies " + region_in_words(c.region);
+  }
+  std::string operator()(const tasks::MeanIn& c) const {
+    return "lies " + region_in_words(c.region);
+  }
+  std::string operator()(const tasks::AngleIn& c) const {
+    return "has an angle " + angles_in_words(c.least, c.most);
+  }
+  std::string operator()(const tasks::JointIn& c) const {
+    return "has an angle " + angles_in_words(c.least, c.most);
+  }
+  std::string operator()(const tasks::PoseNear& c) const {
+    return print("is within %.4g m and %.4g deg of ", c.distance, degrees(c.turn)) +
+           pose_in_words(c.pose);
+  }
+  std::string operator()(const tasks::Covers& c) const {
+    return print("covers %.4g%% of its outline at ", 100.0 * c.share) + pose_in_words(c.pose);
+  }
+  std::string operator()(const tasks::Touches& c) const {
+    return print("is at most %.4g m away from another ", c.gap) + kind_in_words(c.other, "object");
+  }
+  std::string operator()(const tasks::KeepsFrom& c) const {
+    return print("is at least %.4g m away from every other ", c.gap) +
+           kind_in_words(c.other, "object");
+  }
+  std::string operator()(const tasks::Stays& c) const {
+    return print("has its centre within %.4g m of its place above", c.distance);
+  }
+};
+
 std::string term_in_words(const tasks::GoalTerm& term) {
-  const bool any = term.kind == "*";
-  if (term.subject == tasks::GoalTerm::Subject::kJoint)
-    return (any ? "  every joint" : "  the joint of '" + term.kind + "'") + " has an angle " +
-           angles_in_words(term.least, term.most) + '\n';
-  const bool mean = term.subject == tasks::GoalTerm::Subject::kCentroid;
-  const std::string who =
-      any ? (mean ? "movable objects" : "movable object") : "'" + term.kind + "'";
-  const std::string where =
-      term.region == tasks::GoalTerm::Region::kDisc
-          ? print("within %.4g m of (%.4g, %.4g)", term.radius, term.centre.x(), term.centre.y())
-          : "at " + half_plane_in_words(term.normal, term.offset);
-  return (mean ? "  the mean centre of all " : "  the centre of every ") + who + " lies " + where +
-         '\n';
+  std::string every = term.negated ? "  no " : "  every ";
+  if (std::holds_alternative<tasks::CentreIn>(term.condition)) every.insert(2, "the centre of ");
+  std::string who;
+  if (std::holds_alternative<tasks::JointIn>(term.condition))
+    who = term.kind == "*"
+              ? every + "joint"
+              : (term.negated ? "  not: the joint of '" : "  the joint of '") + term.kind + "'";
+  else if (std::holds_alternative<tasks::MeanIn>(term.condition))
+    who = (term.negated ? "  not: the mean centre of all " : "  the mean centre of all ") +
+          kind_in_words(term.kind, "movable objects");
+  else
+    who = every + kind_in_words(term.kind, "movable object");
+  return who + ' ' + std::visit(ConditionWords{}, term.condition) + '\n';
 }
 
 std::string task_in_words(const Config& config) {

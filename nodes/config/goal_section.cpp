@@ -1,112 +1,190 @@
 #include "nodes/config/goal_section.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "nodes/config/config_error.hpp"
 #include "nodes/config/field_reader.hpp"
+#include "nodes/config/region_section.hpp"
 #include "nodes/config/task_words.hpp"
 
 namespace rtg::config {
 namespace {
 
-constexpr double kUnitWithin = 1e-2;    // legal error of a normal's length, as of [0.71, 0.71]
-constexpr double kUnitExactly = 1e-12;  // error of the length that is not corrected
+using namespace tasks;
 
-const std::vector<std::string> kTermKeys{"kind", "centroid",   "joint",
-                                         "disc", "half_plane", "angles"};
-const std::vector<std::string> kDiscKeys{"centre", "radius"};
-const std::vector<std::string> kHalfPlaneKeys{"normal", "offset"};
+constexpr double kLeastLength = 0.01;  // least tolerance of a length [m]
+constexpr double kLeastTurn = 0.01;    // least tolerance of an angle [rad]
+
+const std::vector<std::string> kSubjects{"kind", "centroid", "joint"};
+const std::vector<std::string> kConditions{"disc",  "half_plane", "box",    "polygon",
+                                           "angle", "pose",       "covers", "touching",
+                                           "apart", "stays",      "angles"};
+const std::vector<std::string> kTermKeys{
+    "kind",   "centroid", "joint", "disc",  "half_plane", "box",    "polygon", "angle", "pose",
+    "covers", "touching", "apart", "stays", "angles",     "within", "gap",     "not"};
+const std::vector<std::string> kCoversKeys{"at", "share"};
 const std::string kTermLegal =
-    "kind or centroid with disc: {centre: [x, y], radius: m} or half_plane: {normal: [x, y], "
-    "offset: m}; joint with angles: [least, most]";
+    "one of the conditions disc, half_plane, box, polygon (of a kind or a centroid), angle, pose, "
+    "covers, touching, apart, stays (of a kind), angles (of a joint)";
 
-void read_disc(const ConfigNode& section, const std::string& path, tasks::GoalTerm& term) {
-  FieldReader reader(section, path, kDiscKeys);
-  term.region = tasks::GoalTerm::Region::kDisc;
-  term.centre = point_at(reader, "centre");
-  reader.required("radius", "a number from 0.1 to 1000.0 [m]");
-  reader.number("radius", term.radius, 0.1, kMaxPlace);
+Pose pose_at(const FieldReader& reader, const char* key) {
+  const auto pose = reader.numbers(key, 3, -kMaxPlace, kMaxPlace, "[x, y, theta] in m and rad");
+  return {pose[0], pose[1], pose[2]};
 }
 
-void read_half_plane(const ConfigNode& section, const std::string& path, tasks::GoalTerm& term) {
-  FieldReader reader(section, path, kHalfPlaneKeys);
-  term.region = tasks::GoalTerm::Region::kHalfPlane;
-  term.normal = point_at(reader, "normal");
-  const double length = term.normal.norm();
-  if (std::abs(length - 1.0) > kUnitWithin)
-    throw ConfigError(find(section, "normal")->value.origin, reader.path("normal"),
-                      "has length " + number_text(length), "[x, y] of length 1, within 0.01");
-  if (std::abs(length - 1.0) > kUnitExactly) term.normal /= length;
-  reader.required("offset", "a number, the largest normal . [x, y] in the half-plane [m]");
-  reader.number("offset", term.offset, -kMaxPlace, kMaxPlace);
+PoseNear read_pose(const FieldReader& reader) {
+  const std::string legal = "[distance, turn] in m and rad, 0.01 or more each";
+  const auto within = reader.numbers("within", 2, kLeastLength, kMaxPlace, legal);
+  return {pose_at(reader, "pose"), within[0], within[1]};
 }
 
-/// Reads what the term is about: key `kind` (the default), `centroid` or `joint`.
-void read_subject(const FieldReader& reader, const std::string& path, tasks::GoalTerm& term) {
-  const ConfigNode& section = reader.section();
-  const bool of_joint = find(section, "joint"), of_centroid = find(section, "centroid");
-  if (of_joint + of_centroid + (find(section, "kind") != nullptr) > 1)
-    throw ConfigError(section.origin, path, "has more than one of the keys kind, centroid, joint",
+Covers read_covers(const ConfigNode& section, const std::string& path) {
+  FieldReader reader(section, path, kCoversKeys);
+  Covers covers{pose_at(reader, "at"), 0.0};
+  reader.required("share", "a number from 0.01 to 0.99");
+  reader.number("share", covers.share, 0.01, 0.99);
+  return covers;
+}
+
+double gap_at(FieldReader& reader) {
+  double gap = 0.0;
+  reader.required("gap", "a number from 0.03 to 1000.0 [m]");
+  reader.number("gap", gap, 0.03, kMaxPlace);  // bodies that touch rest up to 0.02 apart
+  return gap;
+}
+
+std::string other_kind(const FieldReader& reader, const char* key) {
+  const std::string legal = "the kind of a body, or \"*\" for all objects";
+  return reader.required(key, legal).value.scalar == "*" ? "*" : name_at(reader, key, legal);
+}
+
+Condition read_condition(FieldReader& reader, const ConfigEntry& entry, bool of_mean) {
+  const std::string& key = entry.key;
+  if (key == "angle") {
+    const Vector2d range = angles_at(reader, "angle");
+    return AngleIn{range[0], range[1]};
+  }
+  if (key == "angles") {
+    const Vector2d range = angles_at(reader, "angles");
+    return JointIn{range[0], range[1]};
+  }
+  if (key == "pose") return read_pose(reader);
+  if (key == "covers") return read_covers(entry.value, reader.path(key));
+  if (key == "touching") return Touches{other_kind(reader, "touching"), gap_at(reader)};
+  if (key == "apart") return KeepsFrom{other_kind(reader, "apart"), gap_at(reader)};
+  if (key == "stays") {
+    Stays stays;
+    reader.number("stays", stays.distance, kLeastLength, kMaxPlace);
+    return stays;
+  }
+  Region region = read_region(reader, entry);
+  if (of_mean) return MeanIn{std::move(region)};
+  return CentreIn{std::move(region)};
+}
+
+/// Returns the only entry of `section` with a key among `keys`; null if there is none. Throws
+/// ConfigError if there are several.
+const ConfigEntry* only_of(const ConfigNode& section, const std::vector<std::string>& keys,
+                           const std::string& path) {
+  const ConfigEntry* only = nullptr;
+  for (const std::string& key : keys) {
+    const ConfigEntry* entry = find(section, key);
+    if (entry && only)
+      throw ConfigError(section.origin, path, "has both of the keys " + only->key + " and " + key,
+                        "one of " + listed(keys));
+    if (entry) only = entry;
+  }
+  return only;
+}
+
+/// Throws ConfigError if the condition is none of this subject, or if a key belongs to another
+/// condition.
+void check_keys(const ConfigNode& section, const std::string& path, const std::string& subject,
+                const std::string& condition) {
+  const bool is_region = condition == "disc" || condition == "half_plane" || condition == "box" ||
+                         condition == "polygon";
+  if ((subject == "joint") != (condition == "angles"))
+    throw ConfigError(section.origin, path,
+                      subject == "joint" ? "has the key joint without the key angles"
+                                         : "has the key angles without the key joint",
                       kTermLegal);
-  const char* key = of_joint ? "joint" : of_centroid ? "centroid" : "kind";
-  term.subject = of_joint      ? tasks::GoalTerm::Subject::kJoint
-                 : of_centroid ? tasks::GoalTerm::Subject::kCentroid
-                               : tasks::GoalTerm::Subject::kEvery;
-  const ConfigEntry* subject = find(section, key);
-  if (subject && subject->value.scalar != "*")
-    term.kind = name_at(reader, key,
-                        of_joint ? "the child of a joint, or \"*\" for all joints"
-                                 : "the kind of a body, or \"*\" for all objects");
+  if (subject == "centroid" && !is_region)
+    throw ConfigError(section.origin, path, "has the key " + condition + " of a centroid",
+                      kTermLegal);
+  const std::pair<const char*, bool> only_with[] = {
+      {"within", condition == "pose"}, {"gap", condition == "touching" || condition == "apart"}};
+  for (const auto& [key, is_legal] : only_with)
+    if (const ConfigEntry* entry = find(section, key); entry && !is_legal)
+      throw ConfigError(
+          entry->value.origin, path + '.' + key, "does not belong to the condition " + condition,
+          std::string(key) == "gap" ? "gap with touching or apart" : "within with pose");
 }
 
-ConfigNode region_node(const tasks::GoalTerm& term) {
-  if (term.region == tasks::GoalTerm::Region::kAngles) return point_node({term.least, term.most});
-  const bool is_disc = term.region == tasks::GoalTerm::Region::kDisc;
-  ConfigNode region = map_node();
-  region.entries.push_back(
-      {is_disc ? "centre" : "normal", "", point_node(is_disc ? term.centre : term.normal)});
-  region.entries.push_back({is_disc ? "radius" : "offset", "",
-                            token_node(number_text(is_disc ? term.radius : term.offset))});
-  return region;
-}
+ConfigNode pose_node(const Pose& pose) { return numbers_node({pose.x, pose.y, pose.theta}); }
+
+/// Writers of the entries of a condition.
+struct ConditionWriter {
+  std::vector<ConfigEntry>& to;
+
+  void operator()(const CentreIn& c) const { to.push_back(region_entry(c.region)); }
+  void operator()(const MeanIn& c) const { to.push_back(region_entry(c.region)); }
+  void operator()(const AngleIn& c) const {
+    to.push_back({"angle", "", point_node({c.least, c.most})});
+  }
+  void operator()(const JointIn& c) const {
+    to.push_back({"angles", "", point_node({c.least, c.most})});
+  }
+  void operator()(const PoseNear& c) const {
+    to.push_back({"pose", "", pose_node(c.pose)});
+    to.push_back({"within", "", point_node({c.distance, c.turn})});
+  }
+  void operator()(const Covers& c) const {
+    to.push_back({"covers", "",
+                  mapping({{"at", "", pose_node(c.pose)},
+                           {"share", "", token_node(number_text(c.share))}})});
+  }
+  void operator()(const Touches& c) const { add_gap("touching", c.other, c.gap); }
+  void operator()(const KeepsFrom& c) const { add_gap("apart", c.other, c.gap); }
+  void operator()(const Stays& c) const {
+    to.push_back({"stays", "", token_node(number_text(c.distance))});
+  }
+
+ private:
+  void add_gap(const char* key, const std::string& other, double gap) const {
+    to.push_back({key, "", text_node(other)});
+    to.push_back({"gap", "", token_node(number_text(gap))});
+  }
+};
 
 }  // namespace
 
-tasks::GoalTerm read_term(const ConfigNode& section, const std::string& path) {
-  const FieldReader reader(section, path, kTermKeys);
-  const ConfigEntry *disc = find(section, "disc"), *half_plane = find(section, "half_plane"),
-                    *angles = find(section, "angles");
-  const int regions = (disc != nullptr) + (half_plane != nullptr) + (angles != nullptr);
-  if (regions != 1)
-    throw ConfigError(section.origin, path,
-                      regions ? "has more than one of the keys disc, half_plane, angles"
-                              : "has none of the keys disc, half_plane, angles",
-                      kTermLegal);
-  tasks::GoalTerm term;
-  read_subject(reader, path, term);
-  if ((angles != nullptr) != (term.subject == tasks::GoalTerm::Subject::kJoint))
-    throw ConfigError(section.origin, path,
-                      angles ? "has the key angles without the key joint"
-                             : "has the key joint without the key angles",
-                      kTermLegal);
-  if (disc) read_disc(disc->value, reader.path("disc"), term);
-  if (half_plane) read_half_plane(half_plane->value, reader.path("half_plane"), term);
-  if (angles) {
-    const Vector2d range = angles_at(reader, "angles");
-    term.region = tasks::GoalTerm::Region::kAngles;
-    term.least = range[0];
-    term.most = range[1];
-  }
+GoalTerm read_term(const ConfigNode& section, const std::string& path) {
+  FieldReader reader(section, path, kTermKeys);
+  const ConfigEntry* subject = only_of(section, kSubjects, path);
+  const ConfigEntry* condition = only_of(section, kConditions, path);
+  if (!condition) throw ConfigError(section.origin, path, "has no condition", kTermLegal);
+  const std::string of = subject ? subject->key : "kind";
+  check_keys(section, path, of, condition->key);
+  GoalTerm term;
+  if (subject && subject->value.scalar != "*")
+    term.kind = name_at(reader, of.c_str(),
+                        of == "joint" ? "the child of a joint, or \"*\" for all joints"
+                                      : "the kind of a body, or \"*\" for all objects");
+  term.condition = read_condition(reader, *condition, of == "centroid");
+  reader.flag("not", term.negated);
   return term;
 }
 
-ConfigNode term_node(const tasks::GoalTerm& term) {
-  constexpr const char* kSubjects[] = {"kind", "centroid", "joint"};
-  constexpr const char* kRegions[] = {"disc", "half_plane", "angles"};
+ConfigNode term_node(const GoalTerm& term) {
   ConfigNode node = map_node();
-  node.entries.push_back(
-      {kSubjects[static_cast<std::size_t>(term.subject)], "", text_node(term.kind)});
-  node.entries.push_back({kRegions[static_cast<std::size_t>(term.region)], "", region_node(term)});
+  const char* subject = std::holds_alternative<JointIn>(term.condition)  ? "joint"
+                        : std::holds_alternative<MeanIn>(term.condition) ? "centroid"
+                                                                         : "kind";
+  node.entries.push_back({subject, "", text_node(term.kind)});
+  std::visit(ConditionWriter{node.entries}, term.condition);
+  if (term.negated) node.entries.push_back({"not", "", token_node("true")});
   return node;
 }
 

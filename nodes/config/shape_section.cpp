@@ -60,16 +60,7 @@ Polygon read_regular(const ConfigNode& section, const std::string& path) {
 }
 
 std::vector<Vector2d> read_ring(const ConfigNode& list, const std::string& path) {
-  if (list.kind != Kind::kList)
-    throw ConfigError(list.origin, path, in_words(list) + " is not a list", kVerticesLegal);
-  std::vector<Vector2d> ring;
-  for (const ConfigNode& item : list.items) {
-    if (item.kind != Kind::kList || item.items.size() != 2)
-      throw ConfigError(item.origin, path, in_words(item) + " is not a vertex [x, y]",
-                        kVerticesLegal);
-    ring.emplace_back(read_number(item.items[0], path, -kMaxSize, kMaxSize),
-                      read_number(item.items[1], path, -kMaxSize, kMaxSize));
-  }
+  std::vector<Vector2d> ring = points_of(list, path, kVerticesLegal);
   if (ring.size() < 3 || ring.size() > kMaxRing)
     refuse("has " + std::to_string(ring.size()) + " vertices", list.origin, path);
   return ring;

@@ -66,13 +66,17 @@ std::string legal_kinds(const tasks::Task& task) {
   return listed(kinds);
 }
 
-/// Returns whether the region of `term` contains a point of the arena, |x|, |y| ≤ a.
+/// Returns whether some point at which `term` asks for a body lies in the arena, |x|, |y| ≤ a.
 bool meets_arena(const tasks::GoalTerm& term, double a) {
-  if (term.region == tasks::GoalTerm::Region::kAngles) return true;
-  if (term.region == tasks::GoalTerm::Region::kHalfPlane)
-    return -a * term.normal.lpNorm<1>() <= term.offset;
-  const Vector2d nearest = term.centre.cwiseMax(-a).cwiseMin(a);
-  return (term.centre - nearest).norm() <= term.radius;
+  if (term.negated) return true;
+  if (const auto* in = std::get_if<tasks::CentreIn>(&term.condition))
+    return meets_square(in->region, a);
+  if (const auto* mean = std::get_if<tasks::MeanIn>(&term.condition))
+    return meets_square(mean->region, a);
+  const auto inside = [a](const Pose& pose) { return pose.position().cwiseAbs().maxCoeff() <= a; };
+  if (const auto* near = std::get_if<tasks::PoseNear>(&term.condition)) return inside(near->pose);
+  if (const auto* covers = std::get_if<tasks::Covers>(&term.condition)) return inside(covers->pose);
+  return true;
 }
 
 /// Lists "*" and the names of the children of joints.
@@ -91,24 +95,37 @@ bool concerns_something(const tasks::GoalTerm& term, const Scene& scene) {
 }
 
 /// Throws ConfigError if the term concerns `joint` and cannot be met by it. The limits must allow
-/// an angle at least kGoalSpare inside the term's range. They must be less than a full turn apart.
+/// an angle that meets the tightened() term. They must be less than a full turn apart.
 void check_angles(const tasks::GoalTerm& term, const Joint& joint, const tasks::Task& task,
                   const ConfigEntry& angles, const std::string& path) {
   if (!concerns(term, task.scene, joint)) return;
+  const std::string& child = task.scene.bodies[static_cast<std::size_t>(joint.child)].name;
   if (!(joint.upper - joint.lower < 2.0 * std::numbers::pi))
     throw ConfigError(angles.value.origin, path + ".joint",
-                      "the joint of '" +
-                          task.scene.bodies[static_cast<std::size_t>(joint.child)].name +
-                          "' can make a full turn",
+                      "the joint of '" + child + "' can make a full turn",
                       "joints whose limits are less than 6.28 rad apart");
-  if (std::max(joint.lower, term.least + tasks::kGoalSpare) >
-      std::min(joint.upper, term.most - tasks::kGoalSpare))
-    throw ConfigError(angles.value.origin, path + ".angles",
-                      "the joint of '" +
-                          task.scene.bodies[static_cast<std::size_t>(joint.child)].name +
-                          "' cannot reach an angle 0.05 rad inside this range",
-                      "[least, most] in rad that overlaps its limits, " + number_text(joint.lower) +
-                          " to " + number_text(joint.upper) + ", by at least 0.05 rad");
+  const auto range = std::get<tasks::JointIn>(tightened(term).condition);
+  if (!term.negated && std::max(joint.lower, range.least) > std::min(joint.upper, range.most))
+    throw ConfigError(
+        angles.value.origin, path + ".angles",
+        "the joint of '" + child + "' cannot reach an angle 0.05 rad inside this range",
+        "[least, most] in rad that overlaps its limits, " + number_text(joint.lower) + " to " +
+            number_text(joint.upper) + ", by at least 0.05 rad");
+}
+
+/// Throws ConfigError if no body has the kind that a term compares with.
+void check_other(const tasks::GoalTerm& term, const tasks::Task& task, const ConfigNode& node,
+                 const std::string& path) {
+  const auto check = [&](const std::string& kind, const char* key) {
+    const auto is_other = [&](const Body& body) { return kind == "*" || body.kind == kind; };
+    if (std::any_of(task.scene.bodies.begin() + 1, task.scene.bodies.end(), is_other)) return;
+    throw ConfigError(find(node, key)->value.origin, path + '.' + key,
+                      "no object is of kind '" + kind + "'", "the kind of an object, also fixed");
+  };
+  if (const auto* touches = std::get_if<tasks::Touches>(&term.condition))
+    check(touches->other, "touching");
+  if (const auto* apart = std::get_if<tasks::KeepsFrom>(&term.condition))
+    check(apart->other, "apart");
 }
 
 void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& section) {
@@ -116,7 +133,7 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
   const ConfigNode& node = find(section, "goal")->value.items[k];
   const std::string path = "task.goal." + std::to_string(k);
   if (!concerns_something(term, task.scene)) {
-    const bool of_joint = term.subject == tasks::GoalTerm::Subject::kJoint;
+    const bool of_joint = std::holds_alternative<tasks::JointIn>(term.condition);
     const char* key = of_joint ? "joint" : find(node, "centroid") ? "centroid" : "kind";
     const ConfigEntry* subject = find(node, key);
     throw ConfigError(subject ? subject->value.origin : node.origin, path + '.' + key,
@@ -124,6 +141,7 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
                                : "no object that can move is of kind '" + term.kind + "'",
                       of_joint ? legal_joints(task) : legal_kinds(task));
   }
+  check_other(term, task, node, path);
   if (const ConfigEntry* angles = find(node, "angles"))
     for (const Joint& joint : task.scene.joints) check_angles(term, joint, task, *angles, path);
   const std::string arena = number_text(task.push.arena);
@@ -136,8 +154,8 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
 /// Returns whether fixed body `body` meets all goal terms that concern it.
 bool stands_right(const tasks::Task& task, std::size_t body) {
   return std::ranges::all_of(task.goal, [&](const tasks::GoalTerm& term) {
-    return term.subject != tasks::GoalTerm::Subject::kEvery || !concerns(term, task.scene, body) ||
-           contains(term, task.start[body].position(), 0.0);
+    return !is_of_one_body(term) || !concerns(term, task.scene, body) ||
+           excess(term, task, task.start, body) <= 0.0;
   });
 }
 
@@ -153,9 +171,11 @@ void check_goal(const tasks::Task& task, const ConfigNode& section) {
     throw ConfigError(origin, "task.goal", "holds in the start state",
                       "a goal that the start state does not meet");
   Rng rng(1);
-  if (!sample_goal(task, rng))
+  tasks::GoalRefusals refusals;
+  if (!sample_goal(task, rng, &refusals))
     throw ConfigError(
-        origin, "task.goal", "no layout of the bodies that meets the goal was found",
+        origin, "task.goal",
+        "no layout of the bodies that meets the goal was found; " + main_reason(refusals),
         "terms that all objects can meet at once, with a margin of 0.05 m and 0.05 rad");
 }
 

@@ -1,5 +1,7 @@
 #include "nodes/config/task_section.hpp"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -9,6 +11,7 @@
 #include "nodes/config/goal_section.hpp"
 #include "nodes/config/joint_section.hpp"
 #include "nodes/config/shape_section.hpp"
+#include "nodes/config/start_section.hpp"
 #include "nodes/config/task_checks.hpp"
 #include "nodes/config/task_words.hpp"
 
@@ -23,7 +26,8 @@ constexpr std::size_t kMaxTerms = 32;
 const std::vector<std::string> kBodyKeys{"name",     "kind",  "shape", "density",
                                          "friction", "fixed", "start"};
 
-Body read_body(const ConfigNode& section, const std::string& path, Poses& start) {
+/// Reads a body and adds its start to those of the task.
+Body read_body(const ConfigNode& section, const std::string& path, tasks::Task& task) {
   FieldReader reader(section, path, kBodyKeys);
   Body body;
   body.name = name_at(reader, "name", kNameLegal);
@@ -33,8 +37,12 @@ Body read_body(const ConfigNode& section, const std::string& path, Poses& start)
   reader.number("density", body.density, 1e-3, 1e3);
   reader.number("friction", body.friction, 0.0, 10.0);
   reader.flag("fixed", body.fixed);
-  const auto pose = reader.numbers("start", 3, -kMaxPlace, kMaxPlace, "[x, y, theta] in m and rad");
-  start.push_back(to_single({pose[0], pose[1], pose[2]}));
+  Start start = read_start(reader);
+  if (start.range && body.fixed)
+    throw ConfigError(find(section, "start")->value.origin, reader.path("start"),
+                      "is a range, but the body is fixed", "[x, y, theta] in m and rad");
+  task.start.push_back(start.pose);
+  task.start_ranges.push_back(std::move(start.range));
   return body;
 }
 
@@ -52,12 +60,9 @@ const ConfigNode& list_at(const FieldReader& reader, const char* key, std::size_
   return list;
 }
 
-/// Returns a node with the shortest number that single precision reads back as `single`.
-ConfigNode single_node(double single) {
-  return token_node(single_text(static_cast<float>(single)));
-}
-
-ConfigNode body_node(const Body& body, const Pose& start) {
+ConfigNode body_node(const tasks::Task& task, std::size_t i) {
+  const Body& body = task.scene.bodies[i];
+  const bool ranges = !task.start_ranges.empty();
   ConfigNode node = map_node();
   const auto add = [&node](const char* key, ConfigNode value) {
     node.entries.push_back({key, "", std::move(value)});
@@ -68,7 +73,7 @@ ConfigNode body_node(const Body& body, const Pose& start) {
   add("density", token_node(number_text(body.density)));
   add("friction", token_node(number_text(body.friction)));
   add("fixed", token_node(body.fixed ? "true" : "false"));
-  add("start", list_node({single_node(start.x), single_node(start.y), single_node(start.theta)}));
+  add("start", start_node(task.start[i], ranges ? task.start_ranges[i] : std::nullopt));
   return node;
 }
 
@@ -83,7 +88,9 @@ tasks::Task read_task(const ConfigNode& section) {
   const ConfigNode& bodies = list_at(reader, "bodies", 2, kMaxBodies);
   for (std::size_t i = 0; i < bodies.items.size(); ++i)
     task.scene.bodies.push_back(
-        read_body(bodies.items[i], "task.bodies." + std::to_string(i), task.start));
+        read_body(bodies.items[i], "task.bodies." + std::to_string(i), task));
+  if (std::ranges::none_of(task.start_ranges, &std::optional<tasks::StartRange>::has_value))
+    task.start_ranges.clear();
   check_names(task, section);
   if (find(section, "joints")) {
     const ConfigNode& joints = list_at(reader, "joints", 0, kMaxBodies);
@@ -98,6 +105,7 @@ tasks::Task read_task(const ConfigNode& section) {
     read_fields(push->value, "task.push", task.push);
   task.visit(reader);
   close_joints(task, section);
+  draw_nominal_start(task, section);
   check_task(task, section);
   return task;
 }
@@ -105,8 +113,7 @@ tasks::Task read_task(const ConfigNode& section) {
 ConfigNode task_node(tasks::Task task) {
   ConfigNode node = map_node();
   std::vector<ConfigNode> bodies, joints, goal;
-  for (std::size_t i = 0; i < task.scene.size(); ++i)
-    bodies.push_back(body_node(task.scene.bodies[i], task.start[i]));
+  for (std::size_t i = 0; i < task.scene.size(); ++i) bodies.push_back(body_node(task, i));
   for (const Joint& joint : task.scene.joints) joints.push_back(joint_node(joint, task.scene));
   for (const tasks::GoalTerm& term : task.goal) goal.push_back(term_node(term));
   node.entries.push_back({"name", "", text_node(task.name)});

@@ -1,6 +1,7 @@
 #include "nodes/config/task_words.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "nodes/config/config_error.hpp"
 
@@ -48,8 +49,26 @@ void fail_at(const ConfigNode& entry, const std::string& path, const char* key,
   throw ConfigError(field ? field->value.origin : entry.origin, path + '.' + key, wrong, legal);
 }
 
-ConfigNode point_node(const Vector2d& x) {
-  return list_node({token_node(number_text(x.x())), token_node(number_text(x.y()))});
+std::vector<Vector2d> points_of(const ConfigNode& list, const std::string& path,
+                                const std::string& legal) {
+  if (list.kind != ConfigNode::Kind::kList)
+    throw ConfigError(list.origin, path, in_words(list) + " is not a list", legal);
+  std::vector<Vector2d> points;
+  for (const ConfigNode& item : list.items) {
+    if (item.kind != ConfigNode::Kind::kList || item.items.size() != 2)
+      throw ConfigError(item.origin, path, in_words(item) + " is not a vertex [x, y]", legal);
+    points.emplace_back(read_number(item.items[0], path, -kMaxPlace, kMaxPlace),
+                        read_number(item.items[1], path, -kMaxPlace, kMaxPlace));
+  }
+  return points;
+}
+
+ConfigNode point_node(const Vector2d& x) { return numbers_node({x.x(), x.y()}); }
+
+ConfigNode numbers_node(const std::vector<double>& numbers) {
+  std::vector<ConfigNode> items;
+  for (const double number : numbers) items.push_back(token_node(number_text(number)));
+  return list_node(std::move(items));
 }
 
 }  // namespace rtg::config

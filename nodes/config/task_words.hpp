@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/world/pose.hpp"
 #include "nodes/config/field_reader.hpp"
@@ -28,6 +29,11 @@ Vector2d angles_at(const FieldReader& reader, const char* key);
 [[noreturn]] void fail_at(const ConfigNode& entry, const std::string& path, const char* key,
                           const std::string& wrong, const std::string& legal);
 
+/// Reads a list of points [x, y]. `legal`: what is legal, for messages.
+std::vector<Vector2d> points_of(const ConfigNode& list, const std::string& path,
+                                const std::string& legal);
+
 ConfigNode point_node(const Vector2d& x);
+ConfigNode numbers_node(const std::vector<double>& numbers);
 
 }  // namespace rtg::config

@@ -20,17 +20,8 @@ inline tasks::Task art_manip() {
   }
   task.start = with_closed_joints(task.scene, task.start);
   task.start = to_single(task.start);
-  tasks::GoalTerm square;
-  square.subject = tasks::GoalTerm::Subject::kJoint;
-  square.region = tasks::GoalTerm::Region::kAngles;
-  square.least = 1.309;
-  square.most = 1.833;
-  tasks::GoalTerm place;
-  place.subject = tasks::GoalTerm::Subject::kCentroid;
-  place.kind = "link";
-  place.centre = {0.0, 3.0};
-  place.radius = 1.0;
-  task.goal = {square, place};
+  task.goal = {{"*", tasks::JointIn{1.309, 1.833}},
+               {"link", tasks::MeanIn{tasks::Disc{{0.0, 3.0}, 1.0}}}};
   task.discount = 0.9;
   task.randomisation = 0.5;
   return task;

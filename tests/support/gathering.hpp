@@ -13,6 +13,11 @@ inline void add_box(tasks::Task& task, const Pose& pose) {
   task.start.push_back(to_single(pose));
 }
 
+/// The goal that all objects lie within `radius` of the origin [m].
+inline std::vector<tasks::GoalTerm> near_origin(double radius) {
+  return {{"*", tasks::CentreIn{tasks::Disc{Vector2d::Zero(), radius}}}};
+}
+
 /// The task of config/gathering.yaml, for tests of the core, which reads no YAML.
 inline tasks::Task gathering() {
   tasks::Task task;
@@ -22,9 +27,7 @@ inline tasks::Task gathering() {
   add_box(task, {-3.0, 1.13, 0.2});
   add_box(task, {2.63, 2.25, -0.3});
   add_box(task, {2.25, -2.25, 0.6});
-  tasks::GoalTerm near_origin;
-  near_origin.radius = 2.0;
-  task.goal.push_back(near_origin);
+  task.goal = near_origin(2.0);
   task.randomisation = 0.5;
   return task;
 }

@@ -54,12 +54,12 @@ def test_observation_is_the_documented_one() -> None:
 
 
 def test_success_is_the_goal_term_drawn_in_pictures() -> None:
-    (term,) = TASK.goal
-    assert term.region == "disc"
+    (mark,) = TASK.goal_marks
+    centre, radius = mark.ring.mean(axis=0), np.linalg.norm(mark.ring[0])
     rng = np.random.default_rng(0)
     states = np.repeat(TASK.start[None], 500, 0)
     states[:, 1:, :2] = rng.uniform(-2.2, 2.2, (500, 3, 2))
-    inside = np.linalg.norm(states[:, 1:, :2] - term.centre, axis=2) <= term.radius
+    inside = np.linalg.norm(states[:, 1:, :2] - centre, axis=2) <= radius
     expected = inside.all(axis=1)
     assert 0.1 < expected.mean() < 0.9
     np.testing.assert_array_equal(TASK.succeeded(states), expected)

@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "core/tasks/contact_heading.hpp"
+#include "core/tasks/goal_marks.hpp"
 #include "core/world/outline.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
@@ -17,15 +18,18 @@ namespace {
 
 using Vertices = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
+Vertices vertices_of(const std::vector<Vector2d>& ring) {
+  Vertices out(static_cast<Eigen::Index>(ring.size()), 2);
+  for (Eigen::Index k = 0; k < out.rows(); ++k) out.row(k) = ring[static_cast<std::size_t>(k)];
+  return out;
+}
+
 std::vector<std::vector<Vertices>> outlines(const tasks::Task& task) {
   std::vector<std::vector<Vertices>> out;
   for (const Body& body : task.scene.bodies) {
     std::vector<Vertices>& rings = out.emplace_back();
-    for (const std::vector<Vector2d>& ring : outline(body.shape.parts())) {
-      Vertices& vertices = rings.emplace_back(static_cast<Eigen::Index>(ring.size()), 2);
-      for (Eigen::Index k = 0; k < vertices.rows(); ++k)
-        vertices.row(k) = ring[static_cast<std::size_t>(k)];
-    }
+    for (const std::vector<Vector2d>& ring : outline(body.shape.parts()))
+      rings.push_back(vertices_of(ring));
   }
   return out;
 }
@@ -118,46 +122,35 @@ std::vector<bool> joints_reached(const tasks::Task& task, const StateArray& stat
     for (const tasks::GoalTerm& term : task.goal) {
       if (!concerns(term, task.scene, joint)) continue;
       ++asked;
-      held += contains(term, joint_angle(joint, poses), 0.0);
+      held += excess(term, joint, poses) <= 0.0;
     }
     out.push_back(asked > 0 && held == asked);
   }
   return out;
 }
 
-/// Returns one mean centre per kCentroid term of the goal: that of the bodies to which it applies.
+/// Returns one mean centre per goal term with a mean: that of the bodies to which it applies.
 std::vector<Vector2d> centroids(const tasks::Task& task, const StateArray& states) {
   const Poses poses = only_state(states, task.scene.size());
   std::vector<Vector2d> out;
   for (const tasks::GoalTerm& term : task.goal)
-    if (term.subject == tasks::GoalTerm::Subject::kCentroid)
+    if (std::holds_alternative<tasks::MeanIn>(term.condition))
       out.push_back(centroid_of(term, task.scene, poses));
   return out;
 }
 
-void bind_goal_term(nb::module_& module) {
-  nb::class_<tasks::GoalTerm>(module, "GoalTerm")
-      .def_ro("kind", &tasks::GoalTerm::kind)
-      .def_prop_ro("region",
-                   [](const tasks::GoalTerm& term) {
-                     constexpr const char* kNames[] = {"disc", "half_plane", "angles"};
-                     return kNames[static_cast<std::size_t>(term.region)];
-                   })
-      .def_prop_ro("subject",
-                   [](const tasks::GoalTerm& term) {
-                     constexpr const char* kNames[] = {"every", "centroid", "joint"};
-                     return kNames[static_cast<std::size_t>(term.subject)];
-                   })
-      .def_ro("centre", &tasks::GoalTerm::centre)
-      .def_ro("radius", &tasks::GoalTerm::radius)
-      .def_ro("normal", &tasks::GoalTerm::normal)
-      .def_ro("offset", &tasks::GoalTerm::offset);
+void bind_goal_mark(nb::module_& module) {
+  nb::class_<tasks::GoalMark>(module, "GoalMark")
+      .def_ro("kind", &tasks::GoalMark::kind)
+      .def_prop_ro("ring", [](const tasks::GoalMark& mark) { return vertices_of(mark.ring); })
+      .def_ro("target", &tasks::GoalMark::target)
+      .def_ro("negated", &tasks::GoalMark::negated);
 }
 
 }  // namespace
 
 void bind_task(nb::module_& module) {
-  bind_goal_term(module);
+  bind_goal_mark(module);
   nb::class_<tasks::Task> bound(module, "Task");
   bind_fields(bound);
   bound.def_ro("name", &tasks::Task::name)
@@ -166,7 +159,7 @@ void bind_task(nb::module_& module) {
       .def_prop_ro("kinds", &kinds)
       .def_prop_ro("fixed", &fixed)
       .def_prop_ro("joints", &joints)
-      .def_ro("goal", &tasks::Task::goal)
+      .def_prop_ro("goal_marks", &tasks::goal_marks)
       .def_prop_ro("arena", [](const tasks::Task& task) { return task.push.arena; })
       .def_prop_ro("position_unit", &tasks::position_unit)
       .def_prop_ro("relative_unit", &tasks::relative_unit)

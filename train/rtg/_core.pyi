@@ -19,39 +19,20 @@ SOURCES: tuple[str, ...]
 The `source` of a transition is an index into this tuple.
 """
 
-class GoalTerm:
-    """A condition on a state: the quantity `subject` lies in the set `region`."""
+class GoalMark:
+    """What a picture shows of a goal term: an area of the plane."""
 
     @property
-    def subject(self) -> str:
-        """The quantity x that must lie in the region.
-
-        - "every": the centre of each body of class `kind`;
-        - "centroid": the mean of these centres;
-        - "joint": the angle of the joint whose child is named `kind`.
-
-        The `kind` "*" stands for all objects or all joints.
-        """
+    def kind(self) -> str:
+        """The kind of the bodies that the term is about; "*": all objects."""
     @property
-    def kind(self) -> str: ...
+    def ring(self) -> NDArray[np.float64]:
+        """The area's vertices, [V, 2] in m."""
     @property
-    def region(self) -> str:
-        """The set that must contain the subject x.
-
-        - "disc": |x - centre| <= radius;
-        - "half_plane": normal·x <= offset;
-        - "angles": an interval of the joint angle.
-        """
+    def target(self) -> bool:
+        """Whether the area is the outline of a body where it is to lie."""
     @property
-    def centre(self) -> NDArray[np.float64]:
-        """The centre of a disc, [2], m."""
-    @property
-    def radius(self) -> float: ...
-    @property
-    def normal(self) -> NDArray[np.float64]:
-        """The unit normal of a half-plane, [2]."""
-    @property
-    def offset(self) -> float: ...
+    def negated(self) -> bool: ...
 
 class Task:
     """A task with sparse reward. Body 0 is the robot.
@@ -77,8 +58,8 @@ class Task:
     def joints(self) -> list[tuple[int, int, NDArray[np.float64]]]:
         """The joints: (parent body, child body, pin in the frame of the parent [2], m)."""
     @property
-    def goal(self) -> list[GoalTerm]:
-        """The conditions of the goal; all must hold."""
+    def goal_marks(self) -> list[GoalMark]:
+        """The regions and target outlines of the goal, for pictures."""
     @property
     def arena(self) -> float:
         """Half width of the square that the robot stays in [m]."""

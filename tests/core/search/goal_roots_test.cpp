@@ -145,7 +145,7 @@ std::vector<Poses> roots(const tasks::Task& task, const SearchConfig& config, st
 
 TEST(GoalRoots, DrawsInVainAreCountedAndEndNothingUntilThereAreTooMany) {
   tasks::Task task = gathering();
-  task.goal[0].radius = 0.04;  // less than what a goal is met with to spare
+  task.goal = testing::near_origin(0.04);  // no room for three
   Rng rng(1);
   SearchStats stats;
   EXPECT_TRUE(goal_roots(task, of(20, 4), task.start, rng, stats).empty());
@@ -154,7 +154,8 @@ TEST(GoalRoots, DrawsInVainAreCountedAndEndNothingUntilThereAreTooMany) {
 
 TEST(GoalRoots, OnlyDrawsInVainInARowEndTheDrawing) {
   tasks::Task task = gathering();
-  task.goal[0].radius = 0.88;  // so tight that two of five draws are in vain
+  task.goal = {{"*", tasks::CentreIn{tasks::Disc{
+                         {0.0, 0.0}, 0.88}}}};  // so tight that two of five draws are in vain
   Rng rng(1);
   SearchStats stats;
   EXPECT_EQ(goal_roots(task, of(15, 4), task.start, rng, stats).size(), 4U);
@@ -191,7 +192,7 @@ TEST(GoalRoots, StatesOfOneCellAreOneRoot) {
   tasks::Task task = gathering();
   task.scene.bodies.resize(2);
   task.start.resize(2);
-  task.goal[0].radius = 0.1;
+  task.goal = testing::near_origin(0.1);
   task.push.arena = 1.6;
   const std::vector<Poses> found = roots(task, of(400, 4), 66);
   const StateMetric metric(task.scene);
@@ -209,7 +210,7 @@ TEST(GoalRoots, AreAFunctionOfTheRandomStream) {
 
 TEST(GoalRoots, OfAnImpossibleGoalAreNone) {
   tasks::Task task = gathering();
-  task.goal[0].radius = 0.04;  // less than what a goal is met with to spare
+  task.goal = testing::near_origin(0.04);  // no room for three
   EXPECT_TRUE(roots(task, of(2, 1), 69).empty());
 }
 

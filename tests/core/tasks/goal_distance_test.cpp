@@ -28,9 +28,7 @@ TEST(GoalDistance, IsZeroWhereTheGoalHolds) {
 
 TEST(GoalDistance, OfAHalfPlaneIsThatFromItsLine) {
   Task task = testing::gathering();
-  task.goal[0].region = GoalTerm::Region::kHalfPlane;
-  task.goal[0].normal = {0.0, 1.0};
-  task.goal[0].offset = -1.0;
+  task.goal = {{"*", CentreIn{HalfPlane{{0.0, 1.0}, -1.0}}}};
   const Poses poses{{0, 0, 0}, {0, 1, 0}, {4, -1, 0}, {4, -2, 0}};
   EXPECT_NEAR(goal_distance(task, poses), 2.0 + kRobotWeight * 1.0, 1e-12);
 }
@@ -49,7 +47,7 @@ TEST(GoalDistance, OfJointsAndAMeanCentreIsOfAnglesAndOfTheMean) {
 TEST(GoalDistance, OfAJointIsTheDistanceToTheNearerOfItsTwoBodies) {
   Task task = testing::art_manip();  // 75 to 105 degrees at each joint
   std::erase_if(task.goal,
-                [](const GoalTerm& t) { return t.subject != GoalTerm::Subject::kJoint; });
+                [](const GoalTerm& t) { return !std::holds_alternative<JointIn>(t.condition); });
   Poses poses{{0, 0, 0}, {1, 0, 0.0}, {3, 0, 0.0}, {9, 9, 1.5}, {9, 9, 3.0}};
   const double expected = 75.0 * std::numbers::pi / 180.0 + kRobotWeight * 1.0;
   for (int order = 0; order < 2; ++order) {

@@ -8,11 +8,14 @@
 #include "core/world/separation.hpp"
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
+#include "tests/support/goal_margin.hpp"
 
 namespace rtg::tasks {
 namespace {
 
 using testing::art_manip;
+using testing::succeeded_with;
+using testing::with_margin;
 
 /// The chain at given joint angles, its second link at `x`.
 Poses bent(const Task& task, const std::vector<double>& angles, const Vector2d& x) {
@@ -31,38 +34,34 @@ Poses bent(const Task& task, const std::vector<double>& angles, const Vector2d& 
 TEST(Goal, JointsAreAskedForTheirAngles) {
   const Task task = art_manip();
   const GoalTerm& every = task.goal[0];
-  EXPECT_TRUE(holds(every, task.scene, bent(task, {1.32, 1.57, 1.82}, {0, 0}), 0.0));
-  EXPECT_FALSE(holds(every, task.scene, bent(task, {1.32, 1.57, 1.82}, {0, 0}), 0.05));
-  EXPECT_FALSE(holds(every, task.scene, bent(task, {1.32, 1.84, 1.82}, {0, 0}), 0.0));
-  EXPECT_FALSE(holds(every, task.scene, bent(task, {-1.57, -1.57, -1.57}, {0, 0}), 0.0));
+  EXPECT_TRUE(holds(every, task, bent(task, {1.32, 1.57, 1.82}, {0, 0})));
+  EXPECT_FALSE(holds(with_margin(every, 0.05), task, bent(task, {1.32, 1.57, 1.82}, {0, 0})));
+  EXPECT_FALSE(holds(every, task, bent(task, {1.32, 1.84, 1.82}, {0, 0})));
+  EXPECT_FALSE(holds(every, task, bent(task, {-1.57, -1.57, -1.57}, {0, 0})));
   GoalTerm one = every;
   one.kind = "link3";
-  EXPECT_TRUE(holds(one, task.scene, bent(task, {0.0, 1.57, 0.0}, {0, 0}), 0.0));
-  EXPECT_FALSE(holds(one, task.scene, bent(task, {1.57, 0.0, 1.57}, {0, 0}), 0.0));
+  EXPECT_TRUE(holds(one, task, bent(task, {0.0, 1.57, 0.0}, {0, 0})));
+  EXPECT_FALSE(holds(one, task, bent(task, {1.57, 0.0, 1.57}, {0, 0})));
 }
 
 TEST(Goal, ACentroidIsTheMeanOfTheCentres) {
   const Task task = testing::gathering();
-  GoalTerm mean = task.goal[0];
-  mean.subject = GoalTerm::Subject::kCentroid;
-  mean.radius = 0.5;
+  const GoalTerm mean{"*", MeanIn{Disc{{0.0, 0.0}, 0.5}}};
   const Poses poses{{0, -5, 0}, {-3, 1, 0}, {3, 1, 0}, {0.9, -2, 0}};
   EXPECT_TRUE(centroid_of(mean, task.scene, poses).isApprox(Vector2d(0.3, 0.0)));
-  EXPECT_TRUE(holds(mean, task.scene, poses, 0.19));
-  EXPECT_FALSE(holds(mean, task.scene, poses, 0.21));
+  EXPECT_TRUE(holds(with_margin(mean, 0.19), task, poses));
+  EXPECT_FALSE(holds(with_margin(mean, 0.21), task, poses));
 }
 
 TEST(Goal, AStarMeansAllBodiesThatMayMove) {
   Task task = testing::gathering();
   task.scene.bodies[2].fixed = true;
   const Poses poses{{0, -5, 0}, {-3, 1, 0}, {30, 1, 0}, {1, -2, 0}};
-  GoalTerm term = task.goal[0];
-  term.kind = "*";
-  term.radius = 4.0;
-  EXPECT_TRUE(holds(term, task.scene, poses, 0.0));
-  term.subject = GoalTerm::Subject::kCentroid;
-  EXPECT_TRUE(centroid_of(term, task.scene, poses).isApprox(Vector2d(-1.0, -0.5)));
-  EXPECT_TRUE(holds(term, task.scene, poses, 0.0));
+  const Disc disc{{0.0, 0.0}, 4.0};
+  EXPECT_TRUE(holds({"*", CentreIn{disc}}, task, poses));
+  const GoalTerm mean{"*", MeanIn{disc}};
+  EXPECT_TRUE(centroid_of(mean, task.scene, poses).isApprox(Vector2d(-1.0, -0.5)));
+  EXPECT_TRUE(holds(mean, task, poses));
 }
 
 TEST(Goal, TheObservationEndsWithTheJointAngles) {
@@ -97,7 +96,7 @@ TEST(Goal, SampledGoalsOfAChainHoldAreClosedAndVary) {
   double least = 10.0, most = -10.0;
   for (int draw = 0; draw < 200; ++draw) {
     const Poses poses = sample_goal(task, rng).value();
-    EXPECT_TRUE(succeeded(task, poses, 0.049));
+    EXPECT_TRUE(succeeded_with(task, poses, 0.049));
     EXPECT_EQ(first_overlap(task.scene, poses, 0.02), std::nullopt);
     for (const Joint& joint : task.scene.joints) EXPECT_LT(joint_gap(joint, poses), 1e-6);
     least = std::min(least, poses[1].theta);

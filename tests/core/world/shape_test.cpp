@@ -69,7 +69,7 @@ TEST(Shape, MomentsAreThoseOfTheUnion) {
     EXPECT_NEAR(shape.moments().area, expected.area, 0.01 * expected.area);
     EXPECT_LT((shape.moments().centroid - expected.centroid).norm(), 0.01);
     EXPECT_NEAR(shape.moments().polar, expected.polar, 0.015 * expected.polar);
-    EXPECT_LT(shape.centred().moments().centroid.norm(), 1e-12);
+    EXPECT_LT(shape.centred().moments().centroid.norm(), 1e-10);
   }
 }
 
@@ -104,13 +104,13 @@ TEST(Shape, ATipOfTwoPartsCountsOnce) {
 }
 
 TEST(Shape, SymmetryIsTheLeastTurnOntoItself) {
-  EXPECT_EQ(symmetry_angle(Shape(disc(1))), 0.0);
-  EXPECT_EQ(symmetry_angle(box(1, 1)), kPi / 2);
-  EXPECT_EQ(symmetry_angle(Shape(Part{box(1, 2), 0.1})), kPi);
-  EXPECT_EQ(symmetry_angle(Shape(letter_t()).centred()), 2 * kPi);
-  EXPECT_EQ(symmetry_angle(Shape(cross())), kPi / 2);
+  EXPECT_EQ(Shape(disc(1)).symmetry(), 0.0);
+  EXPECT_EQ(Shape(box(1, 1)).symmetry(), kPi / 2);
+  EXPECT_EQ(Shape(Part{box(1, 2), 0.1}).symmetry(), kPi);
+  EXPECT_EQ(Shape(letter_t()).centred().symmetry(), 2 * kPi);
+  EXPECT_EQ(Shape(cross()).symmetry(), kPi / 2);
   const std::vector<Part> dumbbell{{box(2, 0.2)}, {{{{1, 0}}}, 0.4}, {{{{-1, 0}}}, 0.4}};
-  EXPECT_EQ(symmetry_angle(Shape(dumbbell)), kPi);
+  EXPECT_EQ(Shape(dumbbell).symmetry(), kPi);
 }
 
 double area(const std::vector<Polygon>& pieces) {

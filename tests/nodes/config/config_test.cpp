@@ -64,9 +64,10 @@ TEST(Config, EveryFileOfOursIsLegalAndItsCanonicalTextReadsBackToItself) {
 TEST(Config, TheNormalOfAHalfPlaneGetsUnitLength) {
   const Config config =
       parsed("", {"task.goal=[{kind: box, half_plane: {normal: [0.6, 0.805], offset: -1.5}}]"});
-  EXPECT_NEAR(config.task.goal.at(0).normal.norm(), 1.0, 1e-15);
-  EXPECT_NEAR(config.task.goal.at(0).normal.x() * 0.805, config.task.goal.at(0).normal.y() * 0.6,
-              1e-15);
+  const auto in = std::get<tasks::CentreIn>(config.task.goal.at(0).condition);
+  const Vector2d normal = std::get<tasks::HalfPlane>(in.region).normal;
+  EXPECT_NEAR(normal.norm(), 1.0, 1e-15);
+  EXPECT_NEAR(normal.x() * 0.805, normal.y() * 0.6, 1e-15);
 }
 
 TEST(Config, AHalfPlaneMayReachACornerOfTheArenaAlone) {
@@ -223,6 +224,20 @@ TEST(Config, ShapesOfAllKindsAreCentredAndTheirTextReadsBackToTheSameBits) {
     const Config again = parse_config(canonical_yaml(config), "canonical.yaml");
     EXPECT_EQ(again.task.scene.bodies[1].shape, read) << shape;
   }
+}
+
+TEST(Config, RangesOfStartsReadBackToTheSameBits) {
+  for (const std::string start :
+       {"{x: [-7, 7], y: [2, 4], theta: [-3, 3]}", "{x: 3, y: [2, 4], theta: 0.5}",
+        "{in: {disc: {centre: [3, 3], radius: 2}}}",
+        "{in: {box: {centre: [3, 3], size: [2, 3], theta: 0.3}}, theta: [0, 1]}"}) {
+    const Config config = parsed("", {"task.bodies.1.start=" + start});
+    const Config again = parse_config(canonical_yaml(config), "canonical.yaml");
+    EXPECT_EQ(again.task.start_ranges, config.task.start_ranges) << start;
+    EXPECT_EQ(again.task.start, config.task.start) << start;
+    EXPECT_EQ(again.task.start_ranges.size(), 3u);
+  }
+  EXPECT_TRUE(parsed("").task.start_ranges.empty());
 }
 
 TEST(Config, RoundingStaysWithinThePolygonAndGrowingAddsToIt) {

@@ -72,15 +72,15 @@ def test_a_reached_goal_is_stronger():
 
 
 def test_a_disc_on_a_half_plane_is_seen_in_any_order():
-    every = {"subject": "every"}
-    disc = SimpleNamespace(**every, kind="box", region="disc", centre=(4.0, 4.0), radius=1.0)
-    plane = SimpleNamespace(**every, kind="*", region="half_plane", normal=(-1.0, 0.0), offset=0.0)
+    goal = "task.goal=[{kind: box, disc: {centre: [4, 4], radius: 1}}, "
+    goal += "{kind: '*', half_plane: {normal: [-1, 0], offset: 0}}]"
+    marks = _core.Config.from_file(paths.CONFIG / "gathering.yaml", [goal]).task.goal_marks
     names = ("kinds", "names", "fixed", "outlines", "joints", "start", "arena")
     names += ("joints_reached", "centroids")
     shown = {name: getattr(TASK, name) for name in names}
     pictures = [
-        state_image(SimpleNamespace(**shown, goal=goal), SOLVED[None])
-        for goal in ([disc, plane], [plane, disc])
+        state_image(SimpleNamespace(**shown, goal_marks=goal), SOLVED[None])
+        for goal in (marks, marks[::-1])
     ]
     assert np.array_equal(*pictures)
     window = arena_window(TASK)

@@ -18,6 +18,7 @@ FAINT: Colour = (222, 220, 213)
 WALL: Colour = (178, 176, 170)
 ROBOT: Colour = (62, 70, 86)
 GOAL: Colour = (92, 160, 112)
+AVOID: Colour = (190, 60, 60)
 TRAIL: Colour = (150, 156, 168)
 KIND_PALETTE: tuple[Colour, ...] = (
     (226, 149, 72),
@@ -29,23 +30,17 @@ KIND_PALETTE: tuple[Colour, ...] = (
 OVERSAMPLING = 3  # pictures are drawn this many times larger, then reduced
 
 
-class GoalLike(Protocol):
-    """The properties of a goal term that drawing needs, as in rtg._core.GoalTerm."""
+class MarkLike(Protocol):
+    """The properties of a mark of the goal that drawing needs, as in rtg._core.GoalMark."""
 
     @property
     def kind(self) -> str: ...
     @property
-    def region(self) -> str:
-        """ "disc", "half_plane" or "angles"."""
-
+    def ring(self) -> Floats: ...
     @property
-    def centre(self) -> Floats: ...
+    def target(self) -> bool: ...
     @property
-    def radius(self) -> float: ...
-    @property
-    def normal(self) -> Floats: ...
-    @property
-    def offset(self) -> float: ...
+    def negated(self) -> bool: ...
 
 
 class TaskLike(Protocol):
@@ -66,7 +61,7 @@ class TaskLike(Protocol):
         """The joints: (parent, child, pin in the frame of the parent)."""
 
     @property
-    def goal(self) -> Sequence[GoalLike]: ...
+    def goal_marks(self) -> Sequence[MarkLike]: ...
     @property
     def start(self) -> Floats:
         """The nominal start, [bodies, 3]."""
@@ -126,12 +121,12 @@ def arena_window(task: TaskLike) -> Window:
 
 
 def episode_window(task: TaskLike, poses: Floats) -> Window:
-    """Returns the window that shows all states of an episode and the discs of the goal.
+    """Returns the window that shows all states of an episode and the smaller marks of the goal.
 
     Objects may lie outside the arena, which bounds the robot alone. poses [T, bodies, 3]
     """
-    marks = [term for term in task.goal if term.region == "disc"]
-    corners = [circle(term.centre, term.radius) for term in marks]
+    marks = [np.asarray(mark.ring) for mark in task.goal_marks]
+    corners = [ring for ring in marks if np.abs(ring).max() <= 2.0 * task.arena]
     for body, rings in enumerate(task.outlines):
         reach = float(np.linalg.norm(rings[0], axis=1).max())
         corners += [poses[:, body, :2] - reach, poses[:, body, :2] + reach]
@@ -181,37 +176,21 @@ class Canvas:
         return np.asarray(self._image.reduce(OVERSAMPLING))
 
 
-def circle(centre: Any, radius: float) -> Floats:
-    """Returns a polygon that approximates a disc. [96, 2]"""
-    angle = np.linspace(0.0, 2.0 * np.pi, 96, endpoint=False)
-    centre = np.asarray(centre, dtype=float).reshape(2)
-    return centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+def _area(ring: Floats) -> float:
+    x, y = np.asarray(ring).T
+    return abs(float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))) / 2.0
 
 
-def _half_plane(term: GoalLike, reach: float) -> Floats:
-    """Returns a rectangle that covers the half-plane of `term` in every window. [4, 2]
-
-    `reach`: half width of the arena [m].
-    """
-    normal = np.asarray(term.normal, dtype=float).reshape(2)
-    along = np.array([-normal[1], normal[0]])
-    edge = normal * term.offset
-    far = edge - normal * 4.0 * reach
-    corners = [edge + along * 2 * reach, edge - along * 2 * reach]
-    return np.array([*corners, far - along * 2 * reach, far + along * 2 * reach])
+def mark_colour(task: TaskLike, mark: MarkLike) -> Colour:
+    """Returns the colour of a mark: that of its kind, AVOID if the term is negated."""
+    return AVOID if mark.negated else kind_colours(task).get(mark.kind, GOAL)
 
 
 def draw_goal(canvas: Canvas, task: TaskLike, reached: bool = False) -> None:
-    """Draws the regions of the goal, darker if `reached`. Discs lie on top of half-planes."""
-    colours = kind_colours(task)
-    regions = [term for term in task.goal if term.region != "angles"]
-    for term in sorted(regions, key=lambda term: term.region == "disc"):
-        colour = colours.get(term.kind, GOAL)
-        if term.region == "disc":
-            shape = circle(term.centre, term.radius)
-        else:
-            shape = _half_plane(term, task.arena)
-        canvas.polygon(shape, blend_with_paper(colour, 0.38 if reached else 0.18), edge=colour)
+    """Draws the marks of the goal, darker if `reached`. Small ones lie on top of large ones."""
+    for mark in sorted(task.goal_marks, key=lambda mark: -_area(mark.ring)):
+        colour = mark_colour(task, mark)
+        canvas.polygon(mark.ring, blend_with_paper(colour, 0.38 if reached else 0.18), edge=colour)
 
 
 def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:

@@ -20,13 +20,11 @@ from numpy.typing import NDArray
 
 from rtg.files import replay_gaps
 from rtg.pictures.draw import (
-    GOAL,
     INK,
     PAPER,
     ROBOT,
     TaskLike,
-    circle,
-    kind_colours,
+    mark_colour,
     objects,
     outline,
 )
@@ -170,21 +168,12 @@ def replay_gap(path: Path, title: str, report: Mapping[str, Any]) -> None:
 def _draw_scene(axis: Axes, task: TaskLike, body: int) -> None:
     """Draws the arena, the outlines of all bodies at the start, and the goal of `body`.
 
-    The outline of `body` is bold. Its goal consists of the regions for its own centre and for means
-    of centres that include it.
+    The outline of `body` is bold. Its goal consists of the marks of the terms on its kind.
     """
-    colours = kind_colours(task)
     a = task.arena
-    for term in task.goal:
-        colour = _rgb(colours.get(term.kind, GOAL))
-        if term.region == "angles" or term.kind not in ("*", task.kinds[body]):
-            continue
-        if term.region == "disc":
-            axis.fill(*circle(term.centre, term.radius).T, color=colour, alpha=0.18, lw=0)
-        else:
-            normal = np.asarray(term.normal).reshape(2)
-            edge = normal * term.offset + np.outer([-3 * a, 3 * a], [-normal[1], normal[0]])
-            axis.fill(*np.vstack([edge, edge[::-1] - 4 * a * normal]).T, color=colour, alpha=0.15)
+    for mark in task.goal_marks:
+        if mark.kind in ("*", task.kinds[body]):
+            axis.fill(*mark.ring.T, color=_rgb(mark_colour(task, mark)), alpha=0.18, lw=0)
     for other, rings in enumerate(task.outlines):
         colour = _rgb(ROBOT) if other == 0 else _rgb(INK)
         for ring in rings:

@@ -1,0 +1,129 @@
+#include "nodes/config/start_section.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "nodes/config/config_error.hpp"
+#include "nodes/config/region_section.hpp"
+#include "nodes/config/task_words.hpp"
+
+namespace rtg::config {
+namespace {
+
+using Kind = ConfigNode::Kind;
+
+constexpr double kThin = 1e-6;  // least side of a range of places [m]
+
+const std::vector<std::string> kRangeKeys{"x", "y", "theta"};
+const std::vector<std::string> kInKeys{"in", "theta"};
+const std::vector<std::string> kRegions{"disc", "box", "polygon"};
+const std::string kStartLegal =
+    "[x, y, theta] in m and rad, {x: a, y: b, theta: c} with ranges [least, most] in the place of "
+    "numbers, or {in: {disc, box or polygon}, theta: [least, most]}";
+
+/// Reads a number, or a range of numbers.
+std::pair<double, double> range_at(const FieldReader& reader, const char* key) {
+  const ConfigNode& node = reader.required(key, "a number or [least, most]").value;
+  if (node.kind != Kind::kList) {
+    const double number = read_number(node, reader.path(key), -kMaxPlace, kMaxPlace);
+    return {number, number};
+  }
+  const auto range = reader.numbers(key, 2, -kMaxPlace, kMaxPlace, "a number or [least, most]");
+  if (range[0] > range[1])
+    throw ConfigError(node.origin, reader.path(key),
+                      number_text(range[0]) + " is above " + number_text(range[1]),
+                      "[least, most] with least at most most");
+  return {range[0], range[1]};
+}
+
+Polygon rectangle(std::pair<double, double> x, std::pair<double, double> y) {
+  for (auto* side : {&x, &y})
+    if (side->second - side->first < kThin / 2.0) {  // what was made thin is read back as it is
+      side->first -= kThin / 2.0;
+      side->second += kThin / 2.0;
+    }
+  return {{{x.first, y.first}, {x.second, y.first}, {x.second, y.second}, {x.first, y.second}}};
+}
+
+Start middle_of(tasks::StartRange range) {
+  Vector2d sum = Vector2d::Zero();
+  const std::vector<Vector2d> ring = ring_of(range.region, 0.0);
+  for (const Vector2d& v : ring) sum += v / static_cast<double>(ring.size());
+  return {to_single({sum.x(), sum.y(), (range.least + range.most) / 2.0}), std::move(range)};
+}
+
+Start read_region_start(const ConfigNode& section, const std::string& path) {
+  const FieldReader reader(section, path, kInKeys);
+  const ConfigNode& in = reader.required("in", "{disc, box or polygon}").value;
+  const FieldReader region(in, reader.path("in"), kRegions);
+  if (in.entries.size() != 1)
+    throw ConfigError(in.origin, reader.path("in"),
+                      "has " + std::to_string(in.entries.size()) + " regions",
+                      "one of " + listed(kRegions));
+  std::pair angles{-std::numbers::pi, std::numbers::pi};
+  if (find(section, "theta")) angles = range_at(reader, "theta");
+  return middle_of({read_region(region, in.entries[0]), angles.first, angles.second});
+}
+
+Start read_box_start(const ConfigNode& section, const std::string& path) {
+  const FieldReader reader(section, path, kRangeKeys);
+  const auto x = range_at(reader, "x"), y = range_at(reader, "y"),
+             theta = range_at(reader, "theta");
+  return middle_of({rectangle(x, y), theta.first, theta.second});
+}
+
+/// Returns a node with the shortest number that single precision reads back as `single`.
+ConfigNode single_node(double single) {
+  return token_node(single_text(static_cast<float>(single)));
+}
+
+}  // namespace
+
+Start read_start(const FieldReader& body) {
+  const ConfigNode& node = body.required("start", kStartLegal).value;
+  const std::string path = body.path("start");
+  if (node.kind == Kind::kMap)
+    return find(node, "in") ? read_region_start(node, path) : read_box_start(node, path);
+  const auto pose = body.numbers("start", 3, -kMaxPlace, kMaxPlace, kStartLegal);
+  return {to_single({pose[0], pose[1], pose[2]}), std::nullopt};
+}
+
+ConfigNode start_node(const Pose& pose, const std::optional<tasks::StartRange>& range) {
+  if (!range) return list_node({single_node(pose.x), single_node(pose.y), single_node(pose.theta)});
+  if (const auto* polygon = std::get_if<Polygon>(&range->region); polygon && polygon->size() == 4) {
+    const Vector2d &low = polygon->vertices[0], &high = polygon->vertices[2];
+    const std::pair x{low.x(), high.x()}, y{low.y(), high.y()};
+    if (*polygon == rectangle(x, y))
+      return mapping({{"x", "", numbers_node({x.first, x.second})},
+                      {"y", "", numbers_node({y.first, y.second})},
+                      {"theta", "", numbers_node({range->least, range->most})}});
+  }
+  return mapping({{"in", "", mapping({region_entry(range->region)})},
+                  {"theta", "", numbers_node({range->least, range->most})}});
+}
+
+void draw_nominal_start(tasks::Task& task, const ConfigNode& section) {
+  if (task.start_ranges.empty()) return;
+  for (const Joint& joint : task.scene.joints) {
+    const auto child = static_cast<std::size_t>(joint.child);
+    if (task.start_ranges[child])
+      fail_at(find(section, "bodies")->value.items[child], "task.bodies." + std::to_string(child),
+              "start", "is a range, but the body hangs on a joint",
+              "[x, y, theta] in m and rad, as if the first body of the tree were in the middle of "
+              "its range");
+  }
+  Rng rng(1);
+  try {
+    task.start = jittered_start(task, 0.0, rng);
+  } catch (const std::invalid_argument&) {
+    throw ConfigError(find(section, "bodies")->value.origin, "task.bodies",
+                      "of 1000 states drawn from the starts none is legal",
+                      "starts in which bodies often lie 0.02 m apart, in the arena, with the goal "
+                      "not met");
+  }
+}
+
+}  // namespace rtg::config

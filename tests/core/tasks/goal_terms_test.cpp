@@ -1,0 +1,178 @@
+// Terms of goals over bodies of any shape: membership, margins and sampled states.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/tasks/goal_atoms.hpp"
+#include "core/tasks/goal_marks.hpp"
+#include "core/world/overlap.hpp"
+#include "core/world/separation.hpp"
+#include "tests/support/gathering.hpp"
+#include "tests/support/touching_scene.hpp"
+
+namespace rtg::tasks {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// The disc, a T of kind "t", a box of kind "box" and a wall, far apart.
+Task letter_and_box() {
+  Task task = testing::gathering();
+  task.scene.bodies[0].shape = Shape(disc(0.5));
+  task.scene.bodies[1] = {"t", "t", testing::letter_t()};
+  task.scene.bodies[2] = {"box", "box", box(1.2, 0.8)};
+  task.scene.bodies[3] = {"wall", "wall", box(0.5, 6.0), 1.0, 0.5, true};
+  task.start = {{0, -5, 0}, {4, 4, 0.5}, {-3, 3, 0.3}, {7, -3, 0}};
+  return task;
+}
+
+bool holds_at(const Condition& condition, const std::string& kind, const Pose& t, const Pose& b,
+              bool negated = false) {
+  const Task task = letter_and_box();
+  Poses poses = task.start;
+  poses[1] = t;
+  poses[2] = b;
+  return holds({kind, condition, negated}, task, poses);
+}
+
+const Pose kAway{-6, -6, 0};
+
+TEST(GoalTerms, AnAngleCountsModuloTheSymmetryOfTheShape) {
+  const AngleIn upright{kPi / 2 - 0.2, kPi / 2 + 0.2};
+  for (const double turn : {0.0, kPi, -kPi, 3 * kPi}) {
+    EXPECT_TRUE(holds_at(upright, "box", kAway, {0, 0, kPi / 2 + 0.15 + turn}));
+    EXPECT_FALSE(holds_at(upright, "box", kAway, {0, 0, kPi / 2 + 0.25 + turn}));
+  }
+  EXPECT_TRUE(holds_at(upright, "t", {0, 0, kPi / 2 - 2 * kPi}, kAway));
+  EXPECT_FALSE(holds_at(upright, "t", {0, 0, -kPi / 2}, kAway));
+}
+
+TEST(GoalTerms, APoseAsksForPlaceAndAngle) {
+  const PoseNear near{{1, 2, 0.4}, 0.3, 0.1};
+  EXPECT_TRUE(holds_at(near, "box", kAway, {1.2, 2.2, 0.49 + kPi}));
+  EXPECT_FALSE(holds_at(near, "box", kAway, {1.3, 2.2, 0.4}));
+  EXPECT_FALSE(holds_at(near, "box", kAway, {1, 2, 0.51}));
+}
+
+TEST(GoalTerms, CoversAsksForAShareOfTheBodysOwnOutline) {
+  const Covers most{{1, 2, 0.4}, 0.9};
+  EXPECT_TRUE(holds_at(most, "box", kAway, {1, 2, 0.4}));
+  EXPECT_TRUE(
+      holds_at(most, "box", kAway, {1 + 0.1 * std::cos(0.4), 2 + 0.1 * std::sin(0.4), 0.4}));
+  EXPECT_FALSE(holds_at(most, "box", kAway, {1.2, 2.2, 0.4}));
+  EXPECT_TRUE(holds_at(most, "t", {1, 2, 0.4}, kAway));
+  EXPECT_FALSE(holds_at(most, "t", {1, 2, 0.4 + kPi}, kAway));
+}
+
+TEST(GoalTerms, TouchingAndApartAreAboutTheNearestOther) {
+  const Pose beside{6.0, -3.0, 0.0};  // 0.15 m from the wall
+  EXPECT_TRUE(holds_at(Touches{"wall", 0.2}, "box", kAway, beside));
+  EXPECT_FALSE(holds_at(Touches{"wall", 0.1}, "box", kAway, beside));
+  EXPECT_TRUE(holds_at(KeepsFrom{"wall", 0.1}, "box", kAway, beside));
+  EXPECT_FALSE(holds_at(KeepsFrom{"wall", 0.2}, "box", kAway, beside));
+  EXPECT_FALSE(holds_at(Touches{"*", 0.2}, "box", kAway, beside)) << "a wall is no movable object";
+}
+
+TEST(GoalTerms, ABodyStaysNearItsStart) {
+  EXPECT_TRUE(holds_at(Stays{0.5}, "box", kAway, {-3.3, 3.3, 2.0}));
+  EXPECT_FALSE(holds_at(Stays{0.5}, "box", kAway, {-3.4, 3.4, 0.3}));
+}
+
+TEST(GoalTerms, NotMeansNoBodyOfTheKind) {
+  const CentreIn left{HalfPlane{{1, 0}, 0}};
+  Task task = letter_and_box();
+  task.scene.bodies[1].kind = "box";
+  const auto outside = [&](double x1, double x2) {
+    Poses poses = task.start;
+    poses[1].x = x1;
+    poses[2].x = x2;
+    return holds({"box", left, true}, task, poses);
+  };
+  EXPECT_TRUE(outside(1, 2));
+  EXPECT_FALSE(outside(1, -2));
+  EXPECT_FALSE(outside(-1, -2));
+}
+
+TEST(GoalTerms, RegionsMayBePolygons) {
+  const CentreIn triangle{Polygon{{{0, 0}, {2, 0}, {0, 2}}}};
+  EXPECT_TRUE(holds_at(triangle, "box", kAway, {0.5, 0.5, 0}));
+  EXPECT_FALSE(holds_at(triangle, "box", kAway, {1.1, 1.1, 0}));
+}
+
+TEST(CommonArea, IsThatOfTheOverlap) {
+  const auto moved = [](Polygon polygon, double x, double y, double theta = 0.0) {
+    for (Vector2d& v : polygon.vertices) v = rotate(theta, v) + Vector2d(x, y);
+    return polygon.vertices;
+  };
+  const std::vector<Vector2d> square = box(2, 2).vertices;
+  EXPECT_NEAR(common_area(square, moved(box(2, 2), 1, 0.5)), 1.5, 1e-12);
+  EXPECT_NEAR(common_area(square, moved(box(2, 2), 0, 0, kPi / 4)), 8 * (std::sqrt(2.0) - 1),
+              1e-12);
+  EXPECT_NEAR(common_area(square, moved(box(1, 1), 0.1, 0.2, 0.3)), 1.0, 1e-12);
+  EXPECT_EQ(common_area(square, moved(box(1, 1), 5, 0)), 0.0);
+}
+
+/// Each term alone, as sampled: in the state it holds, with room to spare.
+TEST(GoalTerms, SampledStatesMeetThemWithRoomToSpare) {
+  const std::vector<GoalTerm> terms{
+      {"t", AngleIn{1.0, 1.4}},
+      {"t", PoseNear{{-2, 1, 0.7}, 0.3, 0.2}},
+      {"t", Covers{{-2, 1, 0.7}, 0.9}},
+      {"t", Covers{{-2, 1, 0.7}, 0.95}},
+      {"box", Touches{"wall", 0.1}},
+      {"box", Touches{"t", 0.1}},
+      {"t", KeepsFrom{"*", 2.0}},
+      {"t", Stays{0.3}},
+      {"t", CentreIn{Polygon{{{0, 0}, {3, 0}, {0, 3}}}}},
+      {"t", CentreIn{Disc{{0, 0}, 4.0}}, true},
+      {"*", MeanIn{Disc{{0, 0}, 0.5}}},
+  };
+  for (const GoalTerm& term : terms) {
+    Task task = letter_and_box();
+    task.goal = {term};
+    Rng rng(1);
+    for (int draw = 0; draw < 20; ++draw) {
+      const std::optional<Poses> poses = sample_goal(task, rng);
+      ASSERT_TRUE(poses) << term.condition.index();
+      EXPECT_TRUE(holds(tightened(term), task, *poses)) << term.condition.index();
+      EXPECT_FALSE(first_overlap(task.scene, *poses, 0.02));
+    }
+  }
+}
+
+TEST(GoalTerms, TermsThatHoldAtOnceAreSampledTogether) {
+  Task task = letter_and_box();
+  task.goal = {{"t", PoseNear{{5, -2, kPi / 2}, 0.3, 0.2}},
+               {"box", Touches{"t", 0.1}},
+               {"box", AngleIn{-0.3, 0.3}},
+               {"box", CentreIn{HalfPlane{{0, 1}, -2}}}};
+  Rng rng(2);
+  for (int draw = 0; draw < 20; ++draw) {
+    const std::optional<Poses> poses = sample_goal(task, rng);
+    ASSERT_TRUE(poses);
+    EXPECT_TRUE(succeeded(task, *poses));
+  }
+}
+
+TEST(GoalTerms, WhatCannotBeMetIsNamed) {
+  Task task = letter_and_box();
+  task.goal = {{"t", CentreIn{Disc{{0, 0}, 2}}}, {"t", CentreIn{Disc{{5, 5}, 1}}, false}};
+  Rng rng(1);
+  GoalRefusals refusals;
+  EXPECT_FALSE(sample_goal(task, rng, &refusals));
+  EXPECT_EQ(main_reason(refusals).substr(0, 11), "task.goal.0");
+}
+
+TEST(GoalMarks, AreRegionsAndTargetOutlines) {
+  Task task = letter_and_box();
+  task.goal = {{"t", Covers{{1, 2, 0.5}, 0.9}}, {"box", Stays{0.3}}, {"box", AngleIn{0, 1}}};
+  const std::vector<GoalMark> marks = goal_marks(task);
+  ASSERT_EQ(marks.size(), 2u);
+  EXPECT_TRUE(marks[0].target);
+  EXPECT_EQ(marks[0].ring.size(), 8u);
+  EXPECT_NEAR((marks[1].ring[0] - task.start[2].position()).norm(), 0.3, 1e-12);
+}
+
+}  // namespace
+}  // namespace rtg::tasks
