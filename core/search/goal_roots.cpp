@@ -44,7 +44,7 @@ Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Pose
 
 std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& config,
                               const Poses& target, Rng& rng, SearchStats& stats) {
-  const StateMetric metric(task.scene);
+  const StateMetric metric(task);
   std::unordered_set<std::uint64_t> seen;
   std::vector<std::pair<double, Poses>> drawn;
   for (int k = 0, failures = 0; k < config.breadth * config.root_draws; ++k) {

@@ -40,8 +40,8 @@ bool can_pull(const tasks::Task& task, const Pose& robot, const Pose& object, st
 /// Estimates the number of pushes until the robot can pull `body` along `way`. Returns 0, 1, or the
 /// distance in strides. The last is at least 2, because two pushes reach any distance of up to two
 /// strides.
-double approach_pushes(const tasks::Task& task, const Poses& poses, std::size_t body,
-                       const Vector2d& way) {
+double approach_pushes(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
+                       std::size_t body, const Vector2d& way) {
   const Pose& robot = poses[0];
   const Pose& object = poses[body];
   if (can_pull(task, robot, object, body, way)) return 0.0;
@@ -54,7 +54,7 @@ double approach_pushes(const tasks::Task& task, const Poses& poses, std::size_t 
   const double touching =
       kTouching * (task.scene.bodies[0].shape.radius() + task.scene.bodies[body].shape.radius());
   const Vector2d spot = object.position() + touching * way.normalized();
-  return std::max(2.0, (robot.position() - spot).norm() / task.push.stride);
+  return std::max(2.0, metric.way(0, robot.position(), spot).length / task.push.stride);
 }
 
 /// Returns whether object `o` is in place. With a joint the angle counts, too, because a pin can
@@ -71,12 +71,13 @@ double next_approach_pushes(const tasks::Task& task, const StateMetric& metric, 
                             const Poses& target) {
   double best = std::numeric_limits<double>::infinity();
   for (const auto& o : metric.objects()) {
-    const Vector2d way = target[o.body].position() - poses[o.body].position();
-    if (!in_place(metric, o, poses, target))
-      best = std::min(best, approach_pushes(task, poses, o.body, way));
+    if (in_place(metric, o, poses, target)) continue;
+    const Vector2d from = poses[o.body].position();
+    const Vector2d way = metric.way(o.body, from, target[o.body].position()).next - from;
+    best = std::min(best, approach_pushes(task, metric, poses, o.body, way));
   }
   if (std::isfinite(best)) return best;
-  const double home = (target[0].position() - poses[0].position()).norm();
+  const double home = metric.way(0, poses[0].position(), target[0].position()).length;
   if (home <= kInPlace) return 0.0;
   if (std::abs(home - task.push.stride) <= kInPlace) return 1.0;
   return std::max(2.0, home / task.push.stride);
@@ -89,7 +90,7 @@ double start_distance(const tasks::Task& task, const StateMetric& metric, const 
   double sum = next_approach_pushes(task, metric, poses, target);
   for (const auto& o : metric.objects())
     if (!in_place(metric, o, poses, target))
-      sum += kPushesBetweenObjects + metric.distance(o, poses, target) / task.push.stride;
+      sum += kPushesBetweenObjects + metric.distance_around(o, poses, target) / task.push.stride;
   return sum;
 }
 

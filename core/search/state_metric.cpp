@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kRobotCell = 0.8;   // side of a cell [m]
 constexpr double kObjectCell = 0.4;  // side of a cell [m], [rad]
+constexpr double kSnug = 0.9;  // clearance of a way around walls / half the least width of a body
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kAngleRadius = 0.5;  // r [m], about the radius of gyration of a 1.2 m box
 
@@ -30,10 +31,32 @@ StateMetric::StateMetric(const Scene& scene) {
   }
 }
 
+StateMetric::StateMetric(const tasks::Task& task) : StateMetric(task.scene) {
+  const std::vector<Body>& bodies = task.scene.bodies;
+  if (std::ranges::none_of(bodies, &Body::fixed)) return;
+  for (std::size_t k = 0; k < bodies.size(); ++k)
+    ways_.push_back(bodies[k].fixed || has_joint(task.scene, k)
+                        ? Ways()
+                        : Ways(task.scene, task.start, kSnug * least_half_width(bodies[k].shape),
+                               task.push.arena));
+}
+
+Ways::Way StateMetric::way(std::size_t body, const Vector2d& a, const Vector2d& b) const {
+  return ways_.empty() ? Ways::Way{(a - b).norm(), b} : ways_[body].between(a, b);
+}
+
+/// Returns r|θ_a - θ_b|.
+double StateMetric::turn_between(const Object& o, const Poses& a, const Poses& b) const {
+  if (o.turn == 0.0) return 0.0;
+  return kAngleRadius * std::abs(std::remainder(a[o.body].theta - b[o.body].theta, o.turn));
+}
+
 double StateMetric::distance(const Object& o, const Poses& a, const Poses& b) const {
-  const double way = (a[o.body].position() - b[o.body].position()).norm();
-  if (o.turn == 0.0) return way;
-  return way + kAngleRadius * std::abs(std::remainder(a[o.body].theta - b[o.body].theta, o.turn));
+  return (a[o.body].position() - b[o.body].position()).norm() + turn_between(o, a, b);
+}
+
+double StateMetric::distance_around(const Object& o, const Poses& a, const Poses& b) const {
+  return way(o.body, a[o.body].position(), b[o.body].position()).length + turn_between(o, a, b);
 }
 
 double StateMetric::layout_distance(const Poses& a, const Poses& b) const {

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "core/search/ways.hpp"
+#include "core/tasks/task.hpp"
 #include "core/world/scene.hpp"
 
 namespace rtg::search {
@@ -15,6 +17,8 @@ namespace rtg::search {
 class StateMetric {
  public:
   explicit StateMetric(const Scene& scene);
+  /// Knows the ways around the fixed bodies of the task, too.
+  explicit StateMetric(const tasks::Task& task);
 
   /// A body other than the robot that can move.
   struct Object {
@@ -28,6 +32,13 @@ class StateMetric {
   /// Object::turn, to the least.
   double distance(const Object& object, const Poses& a, const Poses& b) const;
 
+  /// Returns the shortest way of a body's centre from `a` to `b` around the fixed bodies. It is
+  /// straight for bodies with joints, and for all if the constructor was given no task.
+  Ways::Way way(std::size_t body, const Vector2d& a, const Vector2d& b) const;
+
+  /// Returns distance() with the length of the way() in the place of |x_a - x_b|.
+  double distance_around(const Object& object, const Poses& a, const Poses& b) const;
+
   /// Returns the sum of distance() over all objects.
   double layout_distance(const Poses& a, const Poses& b) const;
 
@@ -39,7 +50,10 @@ class StateMetric {
   std::uint64_t layout_cell(const Poses& poses) const;
 
  private:
+  double turn_between(const Object& object, const Poses& a, const Poses& b) const;
+
   std::vector<Object> objects_;
+  std::vector<Ways> ways_;  // per body; empty if all are straight
 };
 
 }  // namespace rtg::search

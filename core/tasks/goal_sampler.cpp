@@ -3,8 +3,10 @@
 #include <numbers>
 #include <utility>
 
+#include "core/math/draws.hpp"
 #include "core/tasks/placement.hpp"
 #include "core/tasks/task.hpp"
+#include "core/world/separation.hpp"
 
 namespace rtg::tasks {
 namespace {
@@ -12,6 +14,8 @@ namespace {
 constexpr int kAttempts = 1000;
 constexpr int kProposals = 50;        // tries to place a body (or a tree of joints) in one attempt
 constexpr double kBesideShare = 0.5;  // share of proposals that put a body beside another one
+constexpr double kFaceShare = 0.8;    // share of those that lie face to face with it then
+constexpr double kSlideError = 1e-3;  // largest error of that gap [m]
 constexpr double kTouchingShare = 0.9;  // the same if the goal asks for that
 constexpr double kBesideGap = 0.1;      // largest gap to that body [m]
 constexpr double kBehindShare = 0.75;   // probability that the robot stands as after a push
@@ -35,7 +39,7 @@ struct Draw {
   GoalRefusals& refusals;
   PartialState state;
 
-  /// Returns whether bodies one by one meet the goal at their poses; counts the term that fails.
+  /// Returns whether a body meets the terms on it alone; counts the term that fails.
   bool meets_terms_of(std::size_t body, const Poses& poses) {
     for (std::size_t k = 0; k < goal.size(); ++k) {
       if (!is_of_one_body(goal[k]) || !concerns(goal[k], task.scene, body)) continue;
@@ -108,16 +112,15 @@ std::vector<double> normal_angles(const Shape& shape) {
   return angles;
 }
 
-/// Proposes a pose of body `i` beside a random other body. Body `i` slides towards that body from a
-/// random side, face to face or at a random angle with equal odds. Returns nothing if that body is
-/// not placed yet or if slide() fails.
-std::optional<Pose> beside(const Task& task, const PartialState& state, std::size_t i, Rng& rng) {
-  const auto j = static_cast<std::size_t>(1 + rng.below(static_cast<int>(task.scene.size()) - 1));
-  if (j == i || !state.placed[j]) return std::nullopt;
+/// Proposes a pose of body `i` beside body `j`, which is placed. Body `i` slides towards that body
+/// from a random side, face to face with the probability `face_share`, else at a random angle.
+/// Returns nothing if slide() fails.
+std::optional<Pose> beside(const Task& task, const PartialState& state, std::size_t i,
+                           std::size_t j, double face_share, Rng& rng) {
   const Shape &mine = task.scene.bodies[i].shape, &other = task.scene.bodies[j].shape;
   const std::vector<double> ours = normal_angles(mine), theirs = normal_angles(other);
   double side = rng.uniform(0.0, kTwoPi), theta = rng.uniform(-std::numbers::pi, std::numbers::pi);
-  if (rng.uniform(0.0, 1.0) < 0.5 && !ours.empty() && !theirs.empty()) {
+  if (rng.uniform(0.0, 1.0) < face_share && !ours.empty() && !theirs.empty()) {
     const auto one_of = [&rng](const std::vector<double>& angles) {
       return angles[static_cast<std::size_t>(rng.below(static_cast<int>(angles.size())))];
     };
@@ -134,6 +137,58 @@ std::optional<Pose> beside(const Task& task, const PartialState& state, std::siz
                 .heading = -unit(side),
                 .gap = rng.uniform(kClearance, kBesideGap),
                 .range = 2.0 * reach});
+}
+
+/// Proposes a pose of body `i` beside a random other body. Returns nothing if that is not placed.
+std::optional<Pose> beside_any(const Task& task, const PartialState& state, std::size_t i,
+                               Rng& rng) {
+  const auto j = static_cast<std::size_t>(1 + rng.below(static_cast<int>(task.scene.size()) - 1));
+  if (j == i || !state.placed[j]) return std::nullopt;
+  return beside(task, state, i, j, 0.5, rng);
+}
+
+/// Returns the placed bodies that a term asks body `i` to touch, in random order.
+std::vector<std::size_t> to_touch(Draw& draw, std::size_t i) {
+  std::vector<std::size_t> found;
+  for (const GoalTerm& term : draw.goal) {
+    const auto* touches = std::get_if<Touches>(&term.condition);
+    if (!touches || term.negated || !concerns(term, draw.task.scene, i)) continue;
+    for (std::size_t j = 1; j < draw.state.poses.size(); ++j) {
+      const Body& other = draw.task.scene.bodies[j];
+      if (j == i || !draw.state.placed[j]) continue;
+      if (touches->other == "*" ? !other.fixed : touches->other == other.kind) found.push_back(j);
+    }
+  }
+  return drawn(found, static_cast<int>(found.size()), draw.rng);
+}
+
+/// Moves a pose of body `i` straight along `heading` until the body is kBesideGap / 2 from body
+/// `k`.
+Pose moved_up_to(const Draw& draw, std::size_t i, Pose pose, const Vector2d& heading,
+                 std::size_t k) {
+  const Shape &mine = draw.task.scene.bodies[i].shape, &other = draw.task.scene.bodies[k].shape;
+  for (int step = 0; step < kProposals; ++step) {
+    const double free = separation(mine, pose, other, draw.state.poses[k]) - kBesideGap / 2.0;
+    if (free < kSlideError) break;
+    pose.x += free * heading.x();
+    pose.y += free * heading.y();
+  }
+  return pose;
+}
+
+/// Proposes a pose of body `i` at one of the bodies that it is to touch, and of two if there are
+/// more: beside the first it then moves along until it meets the second.
+std::optional<Pose> in_touch(Draw& draw, std::size_t i) {
+  const std::vector<std::size_t> others = to_touch(draw, i);
+  if (others.empty()) return std::nullopt;
+  const std::optional<Pose> pose =
+      beside(draw.task, draw.state, i, others[0], kFaceShare, draw.rng);
+  if (!pose || others.size() == 1 || draw.rng.uniform(0.0, 1.0) < 0.2) return pose;
+  const Vector2d to = draw.state.poses[others[1]].position() - pose->position();
+  const double turn =
+      pose->theta +
+      std::round((std::atan2(to.y(), to.x()) - pose->theta) / (kTwoPi / 4.0)) * (kTwoPi / 4.0);
+  return moved_up_to(draw, i, *pose, unit(turn), others[1]);
 }
 
 /// Bodies that are placed together, with their intended poses.
@@ -218,7 +273,8 @@ bool place_object(Draw& draw, std::size_t i) {
   for (int k = 0; k < kProposals; ++k) {
     Group group{i, {i}, draw.state.poses};
     if (draw.rng.uniform(0.0, 1.0) < share) {
-      const std::optional<Pose> pose = beside(draw.task, draw.state, i, draw.rng);
+      std::optional<Pose> pose = in_touch(draw, i);
+      if (!pose) pose = beside_any(draw.task, draw.state, i, draw.rng);
       if (!pose) continue;
       group.poses[i] = *pose;
     } else {

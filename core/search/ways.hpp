@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "core/world/scene.hpp"
+
+namespace rtg::search {
+
+/// Shortest ways of a point around the fixed bodies of a scene, each widened by a clearance:
+/// straight lines where nothing is in between, else along the corners of a visibility graph
+/// [Lozano-Pérez and Wesley 1979].
+class Ways {
+ public:
+  /// Without obstacles: all ways are straight.
+  Ways() = default;
+
+  /// The fixed bodies of `scene` at their `poses`, widened by `clearance` [m]. Corners with |x| or
+  /// |y| above `arena` [m] lie on no way.
+  Ways(const Scene& scene, const Poses& poses, double clearance, double arena);
+
+  struct Way {
+    double length = 0.0;               // [m]
+    Vector2d next = Vector2d::Zero();  // where its first straight piece ends
+  };
+
+  /// Returns the shortest way from `a` to `b`. A point within an obstacle sees what lies outside.
+  /// If there is no way, returns the straight one.
+  Way between(const Vector2d& a, const Vector2d& b) const;
+
+ private:
+  bool is_free(const Vector2d& a, const Vector2d& b) const;
+  std::vector<std::pair<std::size_t, double>> seen_from(const Vector2d& x) const;
+
+  std::vector<Polygon> obstacles_;
+  std::vector<Vector2d> corners_;
+  MatrixXd lengths_;  // of the ways between corners; infinite if there is none
+};
+
+/// Returns half the least width of a shape between two parallel lines, to 1 % [m]: what a body
+/// needs on each side of its centre to pass a gap.
+double least_half_width(const Shape& shape);
+
+}  // namespace rtg::search
