@@ -54,7 +54,7 @@ double approach_pushes(const tasks::Task& task, const StateMetric& metric, const
   const double touching =
       kTouching * (task.scene.bodies[0].shape.radius() + task.scene.bodies[body].shape.radius());
   const Vector2d spot = object.position() + touching * way.normalized();
-  return std::max(2.0, metric.way(0, robot.position(), spot).length / task.push.stride);
+  return std::max(2.0, metric.way(0, poses, robot.position(), spot).length / task.push.stride);
 }
 
 /// Returns whether object `o` is in place. With a joint the angle counts, too, because a pin can
@@ -73,11 +73,11 @@ double next_approach_pushes(const tasks::Task& task, const StateMetric& metric, 
   for (const auto& o : metric.objects()) {
     if (in_place(metric, o, poses, target)) continue;
     const Vector2d from = poses[o.body].position();
-    const Vector2d way = metric.way(o.body, from, target[o.body].position()).next - from;
+    const Vector2d way = metric.way(o.body, poses, from, target[o.body].position()).next - from;
     best = std::min(best, approach_pushes(task, metric, poses, o.body, way));
   }
   if (std::isfinite(best)) return best;
-  const double home = metric.way(0, poses[0].position(), target[0].position()).length;
+  const double home = metric.way(0, poses, poses[0].position(), target[0].position()).length;
   if (home <= kInPlace) return 0.0;
   if (std::abs(home - task.push.stride) <= kInPlace) return 1.0;
   return std::max(2.0, home / task.push.stride);

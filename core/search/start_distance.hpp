@@ -9,8 +9,9 @@ namespace rtg::search {
 ///
 ///   Σ_objects out of place [(|x - x*| + r|θ - θ*|) / stride + 2] + approach_pushes
 ///
-/// |x - x*| is the length of the shortest way around fixed bodies (StateMetric::way()); so are the
-/// robot's distances. The way in which an object is to be pulled is the first piece of that.
+/// |x - x*| is the length of the shortest way around fixed bodies and gates (StateMetric::way());
+/// so are the robot's distances, around fixed bodies. The way in which an object is to be pulled is
+/// the first piece of that.
 ///
 /// The place of an object is its pose x*, θ* in `target`; r is that of StateMetric. The object is
 /// in place if |x - x*| ≤ 0.4 m or, with a joint, if |x - x*| + r|θ - θ*| ≤ 0.4 m. The 2 is about

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kRobotCell = 0.8;   // side of a cell [m]
 constexpr double kObjectCell = 0.4;  // side of a cell [m], [rad]
+constexpr double kGateCell = 0.2;    // gates in one cell count as equal [m], [rad]
 constexpr double kSnug = 0.9;  // clearance of a way around walls / half the least width of a body
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kAngleRadius = 0.5;  // r [m], about the radius of gyration of a 1.2 m box
@@ -34,15 +35,40 @@ StateMetric::StateMetric(const Scene& scene) {
 StateMetric::StateMetric(const tasks::Task& task) : StateMetric(task.scene) {
   const std::vector<Body>& bodies = task.scene.bodies;
   if (std::ranges::none_of(bodies, &Body::fixed)) return;
-  for (std::size_t k = 0; k < bodies.size(); ++k)
-    ways_.push_back(bodies[k].fixed || has_joint(task.scene, k)
-                        ? Ways()
-                        : Ways(task.scene, task.start, kSnug * least_half_width(bodies[k].shape),
-                               task.push.arena));
+  task_ = task;
+  const std::vector<std::size_t> roots = roots_of(task.scene);
+  std::vector<std::size_t> walls;
+  for (std::size_t k = 1; k < bodies.size(); ++k) {
+    if (bodies[k].fixed) walls.push_back(k);
+    if (!bodies[k].fixed && bodies[roots[k]].fixed) gates_.push_back(k);
+  }
+  std::vector<std::size_t> all = walls;
+  all.insert(all.end(), gates_.begin(), gates_.end());
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    movers_.emplace_back();
+    if (bodies[k].fixed || has_joint(task.scene, k)) continue;
+    movers_[k] = Mover{kSnug * least_half_width(bodies[k].shape), k == 0 ? walls : all, {}};
+  }
 }
 
-Ways::Way StateMetric::way(std::size_t body, const Vector2d& a, const Vector2d& b) const {
-  return ways_.empty() ? Ways::Way{(a - b).norm(), b} : ways_[body].between(a, b);
+Ways::Way StateMetric::way(std::size_t body, const Poses& poses, const Vector2d& a,
+                           const Vector2d& b) const {
+  if (movers_.empty() || !movers_[body]) return {(a - b).norm(), b};
+  const Mover& mover = *movers_[body];
+  std::uint64_t key = 0;
+  if (body > 0)
+    for (const std::size_t gate : gates_) {
+      key = with_slot(key, slot(poses[gate].x, kGateCell));
+      key = with_slot(key, slot(poses[gate].y, kGateCell));
+      key = with_slot(key, slot(poses[gate].theta, kGateCell));
+    }
+  auto found = mover.ways.find(key);
+  if (found == mover.ways.end())
+    found = mover.ways
+                .emplace(key, Ways(task_->scene, poses, mover.obstacles, mover.clearance,
+                                   task_->push.arena))
+                .first;
+  return found->second.between(a, b);
 }
 
 /// Returns r|θ_a - θ_b|.
@@ -56,7 +82,7 @@ double StateMetric::distance(const Object& o, const Poses& a, const Poses& b) co
 }
 
 double StateMetric::distance_around(const Object& o, const Poses& a, const Poses& b) const {
-  return way(o.body, a[o.body].position(), b[o.body].position()).length + turn_between(o, a, b);
+  return way(o.body, a, a[o.body].position(), b[o.body].position()).length + turn_between(o, a, b);
 }
 
 double StateMetric::layout_distance(const Poses& a, const Poses& b) const {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "core/search/ways.hpp"
@@ -32,9 +34,11 @@ class StateMetric {
   /// Object::turn, to the least.
   double distance(const Object& object, const Poses& a, const Poses& b) const;
 
-  /// Returns the shortest way of a body's centre from `a` to `b` around the fixed bodies. It is
-  /// straight for bodies with joints, and for all if the constructor was given no task.
-  Ways::Way way(std::size_t body, const Vector2d& a, const Vector2d& b) const;
+  /// Returns the shortest way of a body's centre from `a` to `b` around the fixed bodies; of an
+  /// object also around gates, which hang on fixed bodies, where they are in the state `poses`. It
+  /// is straight for bodies with joints, and for all if the constructor was given no task. Not
+  /// thread-safe.
+  Ways::Way way(std::size_t body, const Poses& poses, const Vector2d& a, const Vector2d& b) const;
 
   /// Returns distance() with the length of the way() in the place of |x_a - x_b|.
   double distance_around(const Object& object, const Poses& a, const Poses& b) const;
@@ -53,7 +57,15 @@ class StateMetric {
   double turn_between(const Object& object, const Poses& a, const Poses& b) const;
 
   std::vector<Object> objects_;
-  std::vector<Ways> ways_;  // per body; empty if all are straight
+  /// A body that does not keep to straight lines.
+  struct Mover {
+    double clearance = 0.0;                                // [m]
+    std::vector<std::size_t> obstacles;                    // bodies
+    mutable std::unordered_map<std::uint64_t, Ways> ways;  // by the cells of the gates
+  };
+  std::vector<std::optional<Mover>> movers_;  // per body; empty if there is none
+  std::vector<std::size_t> gates_;            // movable bodies that hang on fixed ones
+  std::optional<tasks::Task> task_;
 };
 
 }  // namespace rtg::search

@@ -53,10 +53,11 @@ bool is_within(const Polygon& polygon, const Vector2d& x) {
 
 }  // namespace
 
-Ways::Ways(const Scene& scene, const Poses& poses, double clearance, double arena) {
+Ways::Ways(const Scene& scene, const Poses& poses, const std::vector<std::size_t>& obstacles,
+           double clearance, double arena)
+    : arena_(arena) {
   std::vector<Vector2d> found;
-  for (std::size_t i = 1; i < scene.size(); ++i) {
-    if (!scene.bodies[i].fixed) continue;
+  for (const std::size_t i : obstacles) {
     for (const Part& part : scene.bodies[i].shape.parts()) {
       obstacles_.push_back(widened(part, poses[i], clearance));
       const Polygon around = widened(part, poses[i], clearance + kBeyond);
@@ -99,7 +100,7 @@ std::vector<std::pair<std::size_t, double>> Ways::seen_from(const Vector2d& x) c
 Ways::Way Ways::between(const Vector2d& a, const Vector2d& b) const {
   Way best{(a - b).norm(), b};
   if (obstacles_.empty() || is_free(a, b)) return best;
-  const double straight = best.length;
+  const Way none{best.length + 2.0 * arena_, b};
   best.length = kInfinity;
   const auto ends = seen_from(b);
   for (const auto& [from, before] : seen_from(a))
@@ -108,7 +109,7 @@ Ways::Way Ways::between(const Vector2d& a, const Vector2d& b) const {
           before + after + lengths_(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(to));
       if (length < best.length) best = {length, corners_[from]};
     }
-  return std::isfinite(best.length) ? best : Way{straight, b};
+  return std::isfinite(best.length) ? best : none;
 }
 
 double least_half_width(const Shape& shape) {

@@ -6,7 +6,7 @@
 
 namespace rtg::search {
 
-/// Shortest ways of a point around the fixed bodies of a scene, each widened by a clearance:
+/// Shortest ways of a point around some bodies of a scene, each widened by a clearance:
 /// straight lines where nothing is in between, else along the corners of a visibility graph
 /// [Lozano-Pérez and Wesley 1979].
 class Ways {
@@ -14,9 +14,10 @@ class Ways {
   /// Without obstacles: all ways are straight.
   Ways() = default;
 
-  /// The fixed bodies of `scene` at their `poses`, widened by `clearance` [m]. Corners with |x| or
-  /// |y| above `arena` [m] lie on no way.
-  Ways(const Scene& scene, const Poses& poses, double clearance, double arena);
+  /// The bodies with the indices `obstacles` at their `poses`, widened by `clearance` [m]. Corners
+  /// with |x| or |y| above `arena` [m] lie on no way.
+  Ways(const Scene& scene, const Poses& poses, const std::vector<std::size_t>& obstacles,
+       double clearance, double arena);
 
   struct Way {
     double length = 0.0;               // [m]
@@ -24,7 +25,7 @@ class Ways {
   };
 
   /// Returns the shortest way from `a` to `b`. A point within an obstacle sees what lies outside.
-  /// If there is no way, returns the straight one.
+  /// If there is no way, returns the straight one, longer by the width of the arena.
   Way between(const Vector2d& a, const Vector2d& b) const;
 
  private:
@@ -34,6 +35,7 @@ class Ways {
   std::vector<Polygon> obstacles_;
   std::vector<Vector2d> corners_;
   MatrixXd lengths_;  // of the ways between corners; infinite if there is none
+  double arena_ = 0.0;
 };
 
 /// Returns half the least width of a shape between two parallel lines, to 1 % [m]: what a body

@@ -125,5 +125,39 @@ TEST(SnappedToStart, WhatJointsConnectIsPutThereTogether) {
   EXPECT_EQ(snapped_to_start(task, metric, poses, task.start, task.start), poses);
 }
 
+/// A box above a wall with a gate of 2 m, whose start is below it, and the gate's leaf.
+tasks::Task gate() {
+  tasks::Task task = gathering();
+  const auto set = [&](std::size_t i, const Shape& shape, const Pose& pose, bool fixed) {
+    task.scene.bodies[i].shape = shape;
+    task.scene.bodies[i].fixed = fixed;
+    task.start[i] = pose;
+  };
+  task.scene.bodies.push_back(task.scene.bodies[3]);
+  task.start.emplace_back();
+  set(1, box(1.0, 1.0), {4.0, -4.0, 0.0}, false);
+  set(2, box(7.0, 0.5), {-4.5, 0.0, 0.0}, true);
+  set(3, box(7.0, 0.5), {4.5, 0.0, 0.0}, true);
+  set(4, box(1.9, 0.3), {0.0, 0.0, 0.0}, false);
+  task.scene.joints = {{2, 4, {3.55, 0.0}, {-0.95, 0.0}}};
+  return task;
+}
+
+TEST(StartDistance, KnowsTheWayAroundWallsAndThroughAnOpenGate) {
+  const tasks::Task task = gate();
+  const StateMetric metric(task);
+  Poses poses = task.start;
+  poses[1] = {-4.0, 4.0, 0.0};
+  const double closed = start_distance(task, metric, poses, task.start);
+  poses[4].theta = -1.5;
+  poses = with_closed_joints(task.scene, poses);
+  const double open = start_distance(task, metric, poses, task.start);
+  EXPECT_LT(open + 1.0, closed) << "although the leaf is not in its place then";
+  const Ways::Way way = metric.way(1, poses, poses[1].position(), task.start[1].position());
+  EXPECT_GT(way.length, std::hypot(8.0, 8.0));
+  EXPECT_LT(way.length, 14.0);
+  EXPECT_EQ(metric.way(4, poses, {0, 0}, {1, 0}).length, 1.0) << "a leaf has no way to go";
+}
+
 }  // namespace
 }  // namespace rtg::search
