@@ -262,4 +262,17 @@ std::int64_t config_hash(const Config& config) {
   return bus::ContentHash().add(canonical_yaml(config)).value();
 }
 
+std::int64_t task_hash(tasks::Task task) {
+  const tasks::Task neutral;
+  task.name = "task";
+  task.horizon = neutral.horizon;
+  task.discount = neutral.discount;
+  task.start_jitter = neutral.start_jitter;
+  task.randomisation = neutral.randomisation;
+  task.start_ranges.clear();
+  for (std::size_t i = 0; i < task.start.size(); ++i)
+    if (!task.scene.bodies[i].fixed) task.start[i] = {};
+  return bus::ContentHash().add(yaml_text(task_node(std::move(task)))).value();
+}
+
 }  // namespace rtg::config

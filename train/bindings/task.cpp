@@ -9,6 +9,7 @@
 #include "core/tasks/contact_heading.hpp"
 #include "core/tasks/goal_marks.hpp"
 #include "core/world/outline.hpp"
+#include "nodes/config/config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 #include "train/bindings/fields.hpp"
@@ -169,6 +170,7 @@ void bind_task(nb::module_& module) {
           nb::rv_policy::move)
       .def_prop_ro("bodies", [](const tasks::Task& task) { return task.scene.size(); })
       .def_prop_ro("observation_size", &tasks::observation_size)
+      .def_prop_ro("content", &config::task_hash)
       .def("observation", &observations, nb::arg("states"))
       .def("joints_reached", &joints_reached, nb::arg("states"))
       .def("centroids", &centroids, nb::arg("states"))

@@ -64,6 +64,9 @@ class Task:
     def arena(self) -> float:
         """Half width of the square that the robot stays in [m]."""
     @property
+    def content(self) -> int:
+        """The hash of bodies, joints, goal and pushes: of what a policy of the task is about."""
+    @property
     def position_unit(self) -> float:
         """Unit of positions in an observation [m]."""
     @property

@@ -14,7 +14,13 @@ from samples import train_settings
 
 TASK = _core.Config.from_file(paths.CONFIG / "tests" / "tiny.yaml").task
 UNITS = {"position_unit": 4.0, "relative_unit": 1.0}
-FITTING = {**UNITS, "observation_size": 20, "headings": 48, "network": "headings"}
+FITTING = {
+    **UNITS,
+    "observation_size": 20,
+    "headings": 48,
+    "task": TASK.content,
+    "network": "headings",
+}
 
 
 @pytest.mark.parametrize(
@@ -83,7 +89,32 @@ def test_the_identity_says_what_shapes_the_weights(field: str, value: Any, expec
         **UNITS,
         "observation_size": 20,
         "headings": 48,
+        "task": TASK.content,
         "network": "headings",
         "hindsight": False,
         field: expected,
     }
+
+
+@pytest.mark.parametrize(
+    ("setting", "same"),
+    [
+        ("task.name=other", True),
+        ("task.horizon=7", True),
+        ("task.bodies.1.start=[-3, 2, 0]", True),
+        ("task.bodies.1.friction=0.4", False),
+        ("task.bodies.1.shape={box: [1.2, 1.1]}", False),
+        ("task.goal.0.disc.radius=2.1", False),
+        ("task.push.stride=1.9", False),
+    ],
+)
+def test_a_policy_fits_tasks_of_the_same_content(tmp_path: Path, setting: str, same: bool) -> None:
+    file = tmp_path / "model.pt"
+    network = networks.make("headings", TASK.observation_size, TASK.headings)
+    policy_file.write(file, TASK, train_settings(), network.state_dict())
+    other = _core.Config.from_file(paths.CONFIG / "tests" / "tiny.yaml", [setting]).task
+    if same:
+        policy_file.read(file, other)
+    else:
+        with pytest.raises(UserError):
+            policy_file.read(file, other)

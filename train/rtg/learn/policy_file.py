@@ -1,6 +1,7 @@
 """The file of a trained policy: the weights of the value network, and their identity.
 
-The identity holds the values of task and settings that determine the shapes of the weights.
+The identity holds the values of task and settings that determine the shapes of the weights, and a
+hash of the task's content.
 """
 
 from __future__ import annotations
@@ -30,10 +31,14 @@ def _interface(task: _core.Task) -> dict[str, Any]:
     }
 
 
+def _contents(task: _core.Task) -> dict[str, Any]:
+    return {**_interface(task), "task": task.content}
+
+
 def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
     """Returns the values of task and settings that determine what the weights are of."""
     return {
-        **_interface(task),
+        **_contents(task),
         "network": settings.network,
         "hindsight": settings.hindsight > 0,
     }
@@ -46,6 +51,11 @@ def check_identity(path: Path, found: Any, wanted: dict[str, Any]) -> None:
             f"{path}: does not say with which settings it was made; legal: a file that RTG wrote"
         )
     for name, value in wanted.items():
+        if found.get(name) != value and name == "task":
+            raise UserError(
+                f"{path}: was made for another task; legal: a file of one with the same bodies, "
+                "joints, goal and pushes"
+            )
         if found.get(name) != value:
             raise UserError(
                 f"{path}: was made with {name} = {found.get(name)}, but this run has {value}; "
@@ -68,7 +78,7 @@ def read(path: Path, task: _core.Task) -> Policy:
     state = checkpoint.read(path)
     found: Any = state.get("identity")
     weights = state.get("weights")
-    check_identity(path, found, _interface(task))
+    check_identity(path, found, _contents(task))
     if found.get("network") not in list(networks.KINDS):
         raise UserError(f"{path}: has an unknown network; legal: {', '.join(networks.KINDS)}")
     if not isinstance(weights, dict):
