@@ -48,6 +48,7 @@ ONLY_IN = {
     ),
     r"(hpipm|blasfeo)\w*\.h": r"tests/bench/hpipm_peer\.cpp",
     r"box2d/.*": r"(tests/)?core/forward/box2d_\w+\.cpp",
+    r"geos_c\.h": r"core/world/outline\.cpp",
     r"(yaml-cpp|utf8cpp)/.*": r"nodes/config/\w+\.cpp",
     r"lcm/.*": r"nodes/bus/bus\w*\.cpp",
     r"nlohmann/.*": r"(core/search|nodes|train|tests/bench)/.*\.cpp",

@@ -4,7 +4,9 @@ import os
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+from PIL import Image
 from rtg import paths
 
 MISTAKES = {
@@ -34,6 +36,14 @@ MISTAKES = {
     "check of two": (
         ["check", "a", "b"],
         "unrecognized arguments: b; legal: ./run.sh check [-h] [",
+    ),
+    "picture of no known format": (
+        ["check", "gathering", "--picture", "a.b"],
+        "--picture: a.b: has no known ending; legal: .png, .jpg, .pdf, .gif",
+    ),
+    "picture in no folder": (
+        ["check", "gathering", "--picture", "/none/a.png"],
+        "--picture: /none/a.png: No such file or directory; legal: a file that can be written",
     ),
     "check of a wrong value": (
         ["check", "gathering", "--set", "search.breadth=0"],
@@ -114,6 +124,16 @@ def test_text_that_is_no_utf8_is_a_mistake(tmp_path):
         done = rtg(*words)
         assert done.stderr == f"rtg: {shown}: has a byte that is not UTF-8; legal: text in UTF-8\n"
         assert (done.returncode, done.stdout) == (2, "")
+
+
+@pytest.mark.parametrize("task", ["push_t", "gate", "pack"])
+def test_a_task_is_drawn_with_starts_and_goal_states(tmp_path, task):
+    done = rtg("check", task, "--picture", tmp_path / "task.png")
+    assert (done.returncode, done.stderr) == (0, "")
+    picture = np.asarray(Image.open(tmp_path / "task.png"))
+    assert picture.shape[1] == 4 * 302 - 2 and picture.shape[0] > 2 * 300
+    start, goal = picture[-602:-302, :300], picture[-300:, :300]
+    assert start.std() > 5 and not np.array_equal(start, goal)
 
 
 def test_help_names_every_flag_of_the_contract():

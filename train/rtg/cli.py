@@ -27,10 +27,17 @@ def _check(words: Sequence[str]) -> int:
         prog="./run.sh check", description="Validate a task file; print what it says."
     )
     parser.add_argument("file", metavar="FILE.yaml", help="a task file, or a task of config/")
+    parser.add_argument("--picture", metavar="FILE.png", help="also draw starts and goal states")
     run_args.add_set(parser, "any configuration value")
     args = parser.parse_args(words)
     file = run_args.task_file(args.file)
-    print(effective_config.check(file, run_args.set_values(args)), end="")
+    said = effective_config.check(file, run_args.set_values(args))
+    if args.picture is not None:
+        from rtg.pictures import task_picture
+
+        config = effective_config.load(file, run_args.set_values(args))
+        task_picture.draw(Path(args.picture), config)
+    print(said, end="")
     return 0
 
 

@@ -49,7 +49,7 @@ def interpolate(task: TaskLike, before: Floats, after: Floats, share: float) -> 
     return before + (after - before) * progress[:, None]
 
 
-def _heading(title: str, width: int) -> Picture:
+def heading(title: str, width: int) -> Picture:
     """Draws `title` as a line of text, as large as fits into `width` pixels."""
     largest = 18.0 * OVERSAMPLING  # [pixel]
     length = ImageFont.load_default(size=largest).getlength(title)
@@ -81,28 +81,28 @@ def strip(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) 
                 reached=success and step == last,
             )
         )
-    sheet = _sheet(tiles, min(_COLUMNS, len(tiles)))
-    Image.fromarray(np.concatenate([_heading(title, sheet.shape[1]), sheet])).save(path)
+    picture = sheet(tiles, min(_COLUMNS, len(tiles)))
+    Image.fromarray(np.concatenate([heading(title, picture.shape[1]), picture])).save(path)
 
 
-def _sheet(tiles: list[Picture], columns: int) -> Picture:
+def sheet(tiles: list[Picture], columns: int) -> Picture:
     """Arranges the tiles row by row, with thin lines between them."""
     line, side = 2, tiles[0].shape[0]
     rows = -(-len(tiles) // columns)
     size = ((side + line) * rows - line, (side + line) * columns - line)
-    sheet = np.empty((*size, 3), np.uint8)
-    sheet[:] = FAINT
+    whole = np.empty((*size, 3), np.uint8)
+    whole[:] = FAINT
     for k in range(rows * columns):
         y, x = (side + line) * (k // columns), (side + line) * (k % columns)
-        sheet[y : y + side, x : x + side] = tiles[k] if k < len(tiles) else PAPER
-    return sheet
+        whole[y : y + side, x : x + side] = tiles[k] if k < len(tiles) else PAPER
+    return whole
 
 
 def film(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -> None:
     """Writes an animated GIF of an episode. poses [T+1, bodies, 3]."""
     last = len(poses) - 1
     window = episode_window(task, poses)
-    heading = _heading(title, _FILM_SIDE)
+    band = heading(title, _FILM_SIDE)
     frames, durations = [], []
     per_push = min(_FRAMES_PER_PUSH, max(2, _FRAMES // max(1, last)))
 
@@ -111,7 +111,7 @@ def film(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -
         shown[:-1, 1:] = state[1:]  # no outlines of earlier places: the film shows the motion
         canvas = Canvas(window, _FILM_SIDE)
         picture = state_image(task, shown, canvas=canvas, caption=f"{step}", reached=reached)
-        frames.append(Image.fromarray(np.concatenate([heading, picture])))
+        frames.append(Image.fromarray(np.concatenate([band, picture])))
         durations.append(milliseconds)
 
     add(poses[0], 0, _HOLD_MS)
