@@ -10,12 +10,18 @@ from PIL import Image
 from rtg import paths
 
 MISTAKES = {
-    "unknown task": (["sortign"], "sortign: no task of that name; legal: art_manip, gate, gathering, "),
+    "unknown task": (
+        ["sortign"],
+        "sortign: no task of that name; legal: art_manip, gate, gathering, ",
+    ),
     "unknown flag": (
         ["--wokers", "2"],
         "unrecognized arguments: --wokers; legal: ./run.sh [-h] [--in-proc",
     ),
-    "missing file": (["mine.yaml"], "mine.yaml: no such task file; legal: art_manip, gate, gathering, "),
+    "missing file": (
+        ["mine.yaml"],
+        "mine.yaml: no such task file; legal: art_manip, gate, gathering, ",
+    ),
     "workers no number": (["--workers", "two"], "--workers two: "),
     "workers negative": (["--workers", "-1"], "--workers"),
     "too many workers": (["--workers", "5000"], "--workers 5000: "),

@@ -142,3 +142,16 @@ def test_the_learner_discounts_as_the_task_does_unless_told() -> None:
     settings[1] = "train.discount=0.9"
     config = _core.Config.from_file(paths.CONFIG / "gathering.yaml", settings)
     assert config.learner_discount == 0.9
+
+
+def test_the_start_region_is_that_of_objects_within_reach_of_a_start() -> None:
+    ranged = "task.bodies.1.start={x: [-5, -2], y: [0, 3], theta: [-0.5, 0.5]}"
+    for settings, inside, outside in (
+        ([], (0.3, 0.2), (0.3, 0.3)),
+        ([ranged], (1.3, 2.2), (1.5, 2.2)),
+    ):
+        task = _core.Config.from_file(paths.CONFIG / "gathering.yaml", settings).task
+        states = np.repeat(TASK.start[None], 2, 0)
+        states[:, 1, :2] += np.array([inside, outside])
+        states[:, 0] += 3.0
+        assert task.in_start_region(states).tolist() == [True, False]

@@ -6,6 +6,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "core/search/start_distance.hpp"
 #include "core/tasks/contact_heading.hpp"
 #include "core/tasks/goal_marks.hpp"
 #include "core/world/outline.hpp"
@@ -72,6 +73,15 @@ nb::ndarray<nb::numpy, bool> successes(const tasks::Task& task, const StateArray
   OwnedArray<bool> out(states.shape(0));
   for (std::size_t row = 0; row < states.shape(0); ++row)
     out.data[row] = succeeded(task, state_at(states, row));
+  return out.release({states.shape(0)});
+}
+
+nb::ndarray<nb::numpy, bool> in_start_regions(const tasks::Task& task, const StateArray& states) {
+  check_bodies(states, task.scene.size());
+  const search::StateMetric metric(task.scene);
+  OwnedArray<bool> out(states.shape(0));
+  for (std::size_t row = 0; row < states.shape(0); ++row)
+    out.data[row] = search::in_start_region(task, metric, state_at(states, row));
   return out.release({states.shape(0)});
 }
 
@@ -177,6 +187,7 @@ void bind_task(nb::module_& module) {
       .def("contact_headings", &contact_headings, nb::arg("states"), nb::arg("seed"))
       .def("goal_state", &goal_state, nb::arg("seed"), nb::arg("index") = 0)
       .def("succeeded", &successes, nb::arg("states"))
+      .def("in_start_region", &in_start_regions, nb::arg("states"))
       .def("jittered_start", &start, nb::arg("amplitude"), nb::arg("seed"), nb::arg("index") = 0);
 }
 

@@ -117,6 +117,12 @@ class Task:
         """
     def succeeded(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Returns whether the goal holds in each state. [N, bodies, 3] -> [N]"""
+    def in_start_region(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Returns whether all objects are in place of a start. [N, bodies, 3] -> [N]
+
+        They are within 0.4 m of the start, or of the region that they start in; the robot may be
+        anywhere.
+        """
     def jittered_start(self, amplitude: float, seed: int, index: int = 0) -> NDArray[np.float64]:
         """Samples a start: the nominal one, objects moved by up to ± `amplitude` [m] in x and y.
 

@@ -71,7 +71,10 @@ def test_an_episode_comes_from_the_learner_or_the_data(tmp_path, method, trained
     plan = RunPlan(
         tmp_path, "x", config(f"run.method={method}"), train=trained, resume=False, notes=()
     )
-    assert results._origin(plan) == origin
+    assert results._origin(plan, plan.config.task.start) == origin
+    if not trained:
+        away = plan.config.task.start + np.array([0.0, 0.6, 0.0])
+        assert results._origin(plan, away).startswith("end of a plan ")
 
 
 SUMMARY = {

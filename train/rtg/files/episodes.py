@@ -69,9 +69,9 @@ def replayed_plan(config: _core.Config, transitions: Transitions) -> Floats | No
     A plan is a chain of stored transitions that ends in a success. Each one begins within 0.25 m of
     the end of the previous one. Branches (outcomes of other headings) are left out.
 
-    Plans are simulated until one succeeds, at most 50 of them. Those that begin nearest to the
-    start of the task come first. If all fail, the states of the first one are returned. Returns
-    None if there is no plan.
+    Plans are simulated until one succeeds, at most 50 of them. Those that begin in the start region
+    come first, then those that begin nearest to the start of the task. If all fail, the states of
+    the first one are returned. Returns None if there is no plan.
     """
     chosen = transitions.source != SOURCES.index("branch")
     steps = Transitions(*(column[chosen] for column in transitions))
@@ -82,8 +82,9 @@ def replayed_plan(config: _core.Config, transitions: Transitions) -> Floats | No
         _positions(steps.poses) - _positions(config.task.start[None]), axis=1
     )
     planned = np.flatnonzero(lengths)
+    outside = ~config.task.in_start_region(steps.poses[planned].astype(np.float64))
     episodes = []
-    for step in planned[np.argsort(distances[planned], kind="stable")][:_MAX_REPLAYS]:
+    for step in planned[np.lexsort((distances[planned], outside))][:_MAX_REPLAYS]:
         plan = [int(step)]
         while len(plan) < lengths[step]:
             plan.append(int(following[plan[-1]]))

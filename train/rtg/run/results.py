@@ -70,13 +70,16 @@ def _episode(plan: RunPlan) -> Floats | None:
     return found
 
 
-def _origin(plan: RunPlan) -> str:
-    """Returns the origin of the episode, in words."""
+def _origin(plan: RunPlan, start: Floats) -> str:
+    """Returns the origin of the episode that begins in the state `start`, in words."""
     if _trained(plan):
         plans = plan.config.train.learner == "planning"
         return "forward search" if plans else "learned policy"
     is_reverse = plan.config.search.generator in TREE_GENERATORS
-    return "plan found backwards, replayed" if is_reverse else "plan of the data, replayed"
+    found = "plan found backwards" if is_reverse else "plan of the data"
+    if not plan.config.task.in_start_region(start[None])[0]:
+        return f"end of a {found}, which reaches no start"
+    return f"{found}, replayed"
 
 
 def episode_title(task: str, actions: int, success: bool, origin: str) -> str:
@@ -89,7 +92,7 @@ def _draw_episode(plan: RunPlan) -> None:
     poses, task = _episode(plan), plan.config.task
     if poses is not None:
         success = bool(task.succeeded(poses[-1:])[0])
-        title = episode_title(task.name, len(poses) - 1, success, _origin(plan))
+        title = episode_title(task.name, len(poses) - 1, success, _origin(plan, poses[0]))
         episode_pictures.strip(plan.folder / "episode.png", task, poses, success, title)
         episode_pictures.film(plan.folder / "episode.gif", task, poses, success, title)
 
