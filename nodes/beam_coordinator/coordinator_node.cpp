@@ -68,7 +68,7 @@ void CoordinatorNode::drain(int consumers) {
   transitions_.seal();
   {
     const std::scoped_lock lock(mutex_);
-    progress_.phase = "sealed";
+    progress_.phase = "finished";
   }
   while (!options_.stopped() && !transitions_.drained(consumers, bus::monotonic_now())) serve();
 }

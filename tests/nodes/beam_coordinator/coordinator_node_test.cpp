@@ -193,7 +193,7 @@ TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
   EXPECT_EQ(heard[0].start_region, 7);
   EXPECT_EQ(heard[0].target, 10);
   EXPECT_EQ(heard[0].leaving, 0);
-  EXPECT_EQ(heard.back().phase, "sealed");
+  EXPECT_EQ(heard.back().phase, "finished");
   EXPECT_EQ(heard.back().leaving, 1);
 }
 

@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import pytest
 from rich.console import Console
-from rtg.run.progress import LiveDisplay, PlainDisplay, RateMeter, RunState, display
+from rtg.run.progress import LiveDisplay, PlainDisplay, display
+from rtg.run.run_state import RateMeter, RunState
+from rtg.run.time_left import TimeLeft
 
 GENERATING = RunState(
     phase="round 1", layer=2, depth=24, transitions=1234, target=60000, contact_share=0.417
 )
-TRAINING = replace(GENERATING, phase="sealed", interactions=10_000, budget=350_000, rate=812.3)
+TRAINING = replace(GENERATING, phase="finished", interactions=10_000, budget=350_000, rate=812.3)
 
 
 def plain(*states):
@@ -19,7 +21,8 @@ def plain(*states):
         assert isinstance(shown, PlainDisplay)
         for state in states:
             shown.show(state)
-    return [line.split("] ", 1)[1] for line in out.getvalue().splitlines()]
+    lines = [line.split("] ", 1)[1] for line in out.getvalue().splitlines()]
+    return [line.split(", at most ")[0] for line in lines]
 
 
 def test_elsewhere_there_is_one_line_per_layer_and_no_control_character():
@@ -73,15 +76,27 @@ def test_a_terminal_shows_a_bar_with_words_for_each_half_of_the_run():
         assert words in text
 
 
-def test_time_counts_from_the_first_transition_and_the_first_interaction():
+def test_a_terminal_shows_the_time_since_the_command_and_what_is_left(monkeypatch):
+    monkeypatch.setattr("rtg.run.progress.process_age", lambda: 83.2)
     out = io.StringIO()
     with LiveDisplay(Console(file=out, force_terminal=True, width=100)) as shown:
         shown.show(replace(GENERATING, transitions=0, budget=1000))
         before = out.tell()
-        shown.show(replace(GENERATING, budget=1000))
+        shown.show(RunState(generates=False, budget=10_000, interactions=4_000, rate=100.0))
     first, last = out.getvalue()[:before], out.getvalue()[before:]
-    assert first.count("-:--:--") == 2
-    assert last.count("0:00:00") == last.count("-:--:--") == 1
+    assert "1:23" in first and "left" not in first
+    assert "1:23, at most 1:00 left" in last
+
+
+def test_the_time_left_is_that_of_both_halves_at_their_rates():
+    left = TimeLeft()
+    assert left.seconds(RunState(), 0.0) is None, "nothing is known yet"
+    begun = replace(GENERATING, transitions=0, target=1000, budget=6000)
+    assert left.seconds(begun, 0.0) is None
+    assert left.seconds(replace(begun, transitions=100), 10.0) == pytest.approx(90.0 + 10.0)
+    done = replace(begun, transitions=1000, interactions=3000, rate=100.0)
+    assert left.seconds(done, 100.0) == pytest.approx(30.0)
+    assert left.seconds(replace(done, interactions=6000), 130.0) == 0.0
 
 
 def test_without_training_there_is_one_bar():

@@ -5,7 +5,7 @@ import sys
 import time
 
 from rtg.run import run_times
-from rtg.run.progress import RunState
+from rtg.run.run_state import RunState
 from rtg.run.run_times import RunTimes
 
 
@@ -57,7 +57,7 @@ def test_what_processes_used_that_have_ended_counts() -> None:
 
 
 def test_the_age_of_a_process_is_the_time_since_its_start() -> None:
-    code = "from rtg.run.run_times import process_age; print(process_age())"
+    code = "from rtg.run.clock import process_age; print(process_age())"
     begin = time.monotonic()
     said = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
     assert 0.02 < float(said.stdout) <= time.monotonic() - begin + 0.02

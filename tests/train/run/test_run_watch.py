@@ -2,7 +2,7 @@
 
 from rtg.bus.bus import Bus
 from rtg.bus.messages import message_type
-from rtg.run.progress import RunState
+from rtg.run.run_state import RunState
 from rtg.run.run_watch import RunWatch
 
 

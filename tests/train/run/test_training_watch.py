@@ -2,7 +2,7 @@
 
 import json
 
-from rtg.run.progress import RunState
+from rtg.run.run_state import RunState
 from rtg.run.training_watch import TrainingWatch
 
 

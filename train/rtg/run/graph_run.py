@@ -11,7 +11,8 @@ from rtg.files import run_folder
 from rtg.processes.child_run import run_child
 from rtg.processes.children import Node
 from rtg.run.plan import RunPlan
-from rtg.run.progress import Display, RunState
+from rtg.run.progress import Display
+from rtg.run.run_state import RunState
 from rtg.run.run_watch import RunWatch
 from rtg.run.training_watch import TrainingWatch
 

@@ -17,7 +17,8 @@ from rtg.files.dataset import Rows
 from rtg.files.recorder import Recorder
 from rtg.processes.interrupts import Interrupts
 from rtg.run.plan import RunPlan
-from rtg.run.progress import Display, RunState
+from rtg.run.progress import Display
+from rtg.run.run_state import RunState
 
 _POLL = 0.1  # [s]
 _STOP_TIMEOUT = 4.0  # [s] that stop() waits for the end of a layer

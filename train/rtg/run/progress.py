@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 from types import TracebackType
 from typing import Protocol, Self, TextIO
 
@@ -16,31 +15,14 @@ from rich.progress import (
     Task,
     TaskID,
     TextColumn,
-    TimeElapsedColumn,
 )
 from rich.text import Text
 
+from rtg.run.clock import duration, process_age
+from rtg.run.run_state import RunState
+from rtg.run.time_left import TimeLeft
+
 _REDRAW = 0.2  # [s]
-
-
-@dataclass(frozen=True)
-class RunState:
-    """The progress of a run."""
-
-    generates: bool = True  # False if the run generates no transitions
-    phase: str = ""  # phase of the generation, such as "tree 1", "plan 3", "random walks"
-    layer: int = 0  # current layer of the search, of `depth` layers
-    depth: int = 0
-    transitions: int = 0
-    target: int = 0
-    contact_share: float = 0.0
-    start_region: int = 0
-    workers: int = 0
-    interactions: int = 0
-    budget: int = 0  # total number of interactions; 0: no training
-    rate: float = 0.0  # interactions per second
-    evaluations: int = 0
-    success_rate: float | None = None  # of the last evaluation
 
 
 def generation_text(state: RunState) -> str:
@@ -88,11 +70,10 @@ class Display(ScreenContext, Protocol):
 
 
 class TimedLines:
-    """Prints lines that begin with the seconds since construction."""
+    """Prints lines that begin with the seconds since the command was given."""
 
     def __init__(self, out: TextIO) -> None:
         self._out = out
-        self._start = time.monotonic()
 
     def __enter__(self) -> Self:
         return self
@@ -101,7 +82,7 @@ class TimedLines:
         pass
 
     def note(self, message: str) -> None:
-        print(f"[{time.monotonic() - self._start:7.1f} s] {message}", file=self._out, flush=True)
+        print(f"[{process_age():7.1f} s] {message}", file=self._out, flush=True)
 
 
 class PlainDisplay(TimedLines):
@@ -110,19 +91,22 @@ class PlainDisplay(TimedLines):
     def __init__(self, out: TextIO) -> None:
         super().__init__(out)
         self._shown = RunState()
+        self._left = TimeLeft()
 
     def show(self, state: RunState) -> None:
         last = self._shown
+        left = self._left.seconds(state, time.monotonic())
+        most = "" if left is None else f", at most {duration(left)} left"
         if (state.phase, state.layer) != (last.phase, last.layer):
             counts = f"{state.transitions:,} of {state.target:,} transitions"
-            self.note(f"{counts}: {generation_text(state)}")
+            self.note(f"{counts}: {generation_text(state)}{most}")
         tenth = max(1, state.budget // 10)
         if (
             state.interactions // tenth != last.interactions // tenth
             or state.evaluations != last.evaluations
         ):
             counts = f"{state.interactions:,} of {state.budget:,} interactions"
-            self.note(f"{counts}: {training_text(state)}")
+            self.note(f"{counts}: {training_text(state)}{most}")
         self._shown = state
 
 
@@ -134,25 +118,38 @@ class _Counts(ProgressColumn):
         return Text(f"{f'{task.completed:,.0f}':>9} of {total:>9}", style="progress.download")
 
 
+class _Time(ProgressColumn):
+    """The column of the bar of the whole run: the time since the command, and what is left."""
+
+    left: float | None = None  # [s]
+
+    def render(self, task: Task) -> Text:
+        left = "" if self.left is None else f", at most {duration(self.left)} left"
+        return Text(f"{duration(process_age())}{left}", style="progress.elapsed")
+
+
 class LiveDisplay:
-    """Shows two progress bars that change in place, each with a line of text below."""
+    """Shows progress bars that change in place: of the whole run, by its time, and of its halves,
+    each with a line of text below."""
 
     def __init__(self, console: Console) -> None:
         self._console = console
-        self._bars = [self._bar("generate"), self._bar("train")]
+        self._time = _Time()
+        self._run = self._bar("run", self._time)
+        self._bars = [self._bar("generate", _Counts()), self._bar("train", _Counts())]
+        self._left = TimeLeft()
         # No refresh thread, because this process starts other processes with fork.
         self._live = Live(console=console, auto_refresh=False)
         self._drawn = 0.0
 
-    def _bar(self, name: str) -> Progress:
+    def _bar(self, name: str, column: ProgressColumn) -> Progress:
         bar = Progress(
             TextColumn("{task.description:<8}"),
             BarColumn(bar_width=28),
-            _Counts(),
-            TimeElapsedColumn(),  # training may end early, so the remaining time is unknown
+            column,
             console=self._console,
         )
-        bar.add_task(name, total=None, start=False)
+        bar.add_task(name, total=None)
         return bar
 
     def __enter__(self) -> Self:
@@ -168,17 +165,18 @@ class LiveDisplay:
     def show(self, state: RunState) -> None:
         generate, train = self._bars
         only = TaskID(0)
-        for bar, begun in ((generate, state.transitions), (train, state.interactions)):
-            if begun and bar.tasks[0].start_time is None:
-                bar.start_task(only)
+        now = time.monotonic()
+        self._time.left = self._left.seconds(state, now)
+        if self._time.left is not None:
+            age = process_age()
+            self._run.update(only, completed=age, total=age + self._time.left)
         generate.update(only, completed=state.transitions, total=state.target or None)
-        rows: list[RenderableType] = []
+        rows: list[RenderableType] = [self._run]
         if state.generates:
             rows += [generate, _indented(generation_text(state))]
         if state.budget:
             train.update(only, completed=state.interactions, total=state.budget)
             rows += [train, _indented(training_text(state))]
-        now = time.monotonic()
         refresh = now - self._drawn >= _REDRAW
         self._drawn = now if refresh else self._drawn
         self._live.update(Group(*rows), refresh=refresh)
@@ -192,22 +190,3 @@ def display(out: TextIO) -> Display:
     """Returns a LiveDisplay if `out` is a terminal, else a PlainDisplay."""
     console = Console(file=out)
     return LiveDisplay(console) if console.is_terminal else PlainDisplay(out)
-
-
-class RateMeter:
-    """The rate of a count [1/s] over the last `window` seconds."""
-
-    def __init__(self, window: float = 10.0) -> None:
-        self._window = window
-        self._samples: list[tuple[float, int]] = []
-
-    def rate(self, count: int, now: float) -> float:
-        """Adds a count at time `now` [s] and returns the rate. A decrease resets the meter."""
-        if self._samples and count < self._samples[-1][1]:
-            self._samples.clear()
-        if not self._samples or count != self._samples[-1][1]:
-            self._samples.append((now, count))
-        while len(self._samples) > 2 and now - self._samples[0][0] > self._window:
-            self._samples.pop(0)
-        (first_time, first), (_, last) = self._samples[0], self._samples[-1]
-        return (last - first) / (now - first_time) if now > first_time else 0.0

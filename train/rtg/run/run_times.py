@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-import time
-from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from rtg.run.progress import Display, RunState
+from rtg.run.clock import process_age
+from rtg.run.progress import Display
+from rtg.run.run_state import RunState
 
 
 class RunTimes:
@@ -51,10 +51,3 @@ class RunTimes:
             "run_wall_s": round(process_age(), 2),
             "run_cpu_s": round(cpu, 2),
         }
-
-
-def process_age() -> float:
-    """Returns the time since this process was started [s], to 0.01 s."""
-    fields = Path("/proc/self/stat").read_text().rpartition(")")[2].split()
-    started = int(fields[19]) / os.sysconf("SC_CLK_TCK")  # since the boot of the machine
-    return time.clock_gettime(time.CLOCK_BOOTTIME) - started

@@ -7,7 +7,7 @@ from typing import Any
 
 from rtg.bus.bus import Bus
 from rtg.bus.messages import message_type
-from rtg.run.progress import RunState
+from rtg.run.run_state import RunState
 
 
 class RunWatch:

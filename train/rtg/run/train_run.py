@@ -8,7 +8,8 @@ from rtg.files.run_folder import read_json
 from rtg.processes.child_run import run_child
 from rtg.processes.children import Node
 from rtg.run.plan import RunPlan
-from rtg.run.progress import Display, RunState
+from rtg.run.progress import Display
+from rtg.run.run_state import RunState
 from rtg.run.training_watch import TrainingWatch
 
 _POLL = 0.1  # [s]
@@ -20,7 +21,7 @@ def _initial_state(plan: RunPlan) -> RunState:
         return RunState(generates=False, budget=plan.interactions)
     report = read_json(plan.report_file)
     return RunState(
-        phase="done",
+        phase="finished",
         transitions=report["transitions"],
         target=report["transitions"],
         contact_share=report["contact_share"],

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rtg.files.run_folder import read_json
-from rtg.run.progress import RateMeter, RunState
+from rtg.run.run_state import RateMeter, RunState
 
 
 class TrainingWatch:
