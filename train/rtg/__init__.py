@@ -10,6 +10,12 @@ ENVIRONMENTS = {
     "RTG/Sorting-v0": "sorting",
     "RTG/SortingHard-v0": "sorting_hard",
     "RTG/ArtManip-v0": "art_manip",
+    "RTG/PushT-v0": "push_t",
+    "RTG/PushTHard-v0": "push_t_hard",
+    "RTG/Insert-v0": "insert",
+    "RTG/Pack-v0": "pack",
+    "RTG/Gate-v0": "gate",
+    "RTG/Maze-v0": "maze",
 }
 
 for _id, _task in ENVIRONMENTS.items():
