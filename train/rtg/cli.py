@@ -118,6 +118,22 @@ def _plot(words: Sequence[str]) -> int:
     return 0
 
 
+def _evaluate(words: Sequence[str]) -> int:
+    parser = run_args.Parser(
+        prog="./run.sh evaluate",
+        description="Success of a trained policy from other starts, with noise, other physics.",
+    )
+    parser.add_argument("folder", metavar="RUN", type=Path, help="the folder of a run")
+    parser.add_argument("--episodes", metavar="N", default="100", help="starts of each row (100)")
+    args = parser.parse_args(words)
+    if not args.episodes.isdecimal() or not 1 <= int(args.episodes) <= 100_000:
+        raise UserError(f"--episodes {args.episodes}: legal: a number from 1 to 100000")
+    from rtg.compare.evaluate import evaluate
+
+    print(evaluate(args.folder, int(args.episodes)), end="")
+    return 0
+
+
 _TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "run": _run,
     "check": _check,
@@ -125,6 +141,7 @@ _TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "lcm-spy": _lcm_spy,
     "reproduce": _reproduce,
     "plot": _plot,
+    "evaluate": _evaluate,
 }
 
 

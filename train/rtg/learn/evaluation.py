@@ -48,12 +48,21 @@ def held_out_starts(config: _core.Config, seed: int = HELD_OUT_SEED) -> Floats:
     return np.stack([config.task.jittered_start(amplitude, seed, k) for k in range(count)])
 
 
-def evaluate(config: _core.Config, policy: Policy, starts: Floats, discount: float) -> Evaluation:
+def evaluate(
+    config: _core.Config,
+    policy: Policy,
+    starts: Floats,
+    discount: float,
+    observe: Callable[[Floats], NDArray[np.float32]] | None = None,
+) -> Evaluation:
     """Simulates an episode of `policy` from each start, [N, bodies, 3].
+
+    `observe`: what the policy sees of states; the task's observation if None.
 
     An episode fails after task.horizon actions, or if the simulator cannot finish a push.
     """
     task, simulator = config.task, _core.Simulator(config)
+    observe = observe or task.observation
     success = np.zeros(len(starts), np.bool_)
     length = np.zeros(len(starts), np.int64)
     paths = [[start] for start in starts]
@@ -62,7 +71,7 @@ def evaluate(config: _core.Config, policy: Policy, starts: Floats, discount: flo
         if not len(running):
             break
         states = np.stack([paths[k][-1] for k in running])
-        actions = np.asarray(policy(task.observation(states)), np.int64)
+        actions = np.asarray(policy(observe(states)), np.int64)
         after, ok = simulator.push(states, actions)
         after[~ok] = states[~ok]
         for k, state in zip(running, after, strict=True):

@@ -6,6 +6,7 @@ hash of the task's content.
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -71,7 +72,7 @@ def write(
 
 
 def read(path: Path, task: _core.Task) -> Policy:
-    """Reads the greedy policy, [N, observation] -> [N] actions.
+    """Reads the greedy policy, [N, observation] -> [N] actions. Threads may share it.
 
     Raises UserError if the file does not fit the task.
     """
@@ -94,13 +95,14 @@ def read(path: Path, task: _core.Task) -> Policy:
         ) from error
 
     networks.flatten(network)
+    one_at_a_time = threading.Lock()  # networks have buffers
 
     def greedy(observation: NDArray[np.float32]) -> NDArray[Any]:
         if observation.ndim != 2 or observation.shape[1] != task.observation_size:
             shape = list(observation.shape)
             raise ValueError(f"observations {shape}; legal: [N, {task.observation_size}]")
         seen = layouts.network_input_nearest(observation) if layouts else observation
-        with th.no_grad():
+        with one_at_a_time, th.no_grad():
             return network(th.from_numpy(seen)).argmax(dim=1).numpy()
 
     return greedy

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import matplotlib
 
@@ -161,6 +161,36 @@ def replay_gap(path: Path, title: str, report: Mapping[str, Any]) -> None:
         counts = replay_gaps.counts(report["replay_gaps"])
         gap_histogram(axis, counts, report["replay_gap_median"], report["replay_gap_p90"])
         axis.set_xlabel(GAP_AXIS)
+        axis.set_title(title)
+        save(figure, path)
+
+
+class RobustnessRow(Protocol):
+    """The success of a policy under a variant; None where there are no legal starts."""
+
+    @property
+    def variant(self) -> Any:
+        """What differs: its `group` and `label`."""
+
+    @property
+    def success(self) -> float | None: ...
+
+
+def robustness(path: Path, title: str, rows: Sequence[RobustnessRow]) -> None:
+    """Plots the success under each variant as a bar, with lines between the groups."""
+    with style():
+        figure, axis = plt.subplots(figsize=(6.4, 0.9 + 0.19 * len(rows)), layout="constrained")
+        places = np.arange(len(rows))
+        axis.barh(places, [row.success or 0.0 for row in rows], color=_BLUE, alpha=0.85)
+        words = [f"{row.variant.group} {row.variant.label}".strip() for row in rows]
+        axis.set_yticks(places, words, fontsize=7)
+        for place, row in zip(places, rows, strict=True):
+            text = "no legal starts" if row.success is None else f"{row.success:.2f}"
+            axis.text((row.success or 0.0) + 0.01, place, text, va="center", fontsize=7)
+            if place and row.variant.group != rows[place - 1].variant.group:
+                axis.axhline(place - 0.5, color="#c9c6bc", lw=0.6)
+        axis.invert_yaxis()
+        axis.set(xlim=(0.0, 1.12), xlabel="success")
         axis.set_title(title)
         save(figure, path)
 

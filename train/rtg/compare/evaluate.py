@@ -1,0 +1,73 @@
+"""`./run.sh evaluate RUN`: success of a run's policy against what it was not trained for."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import torch as th
+
+from rtg import _core
+from rtg.errors import UserError
+from rtg.files import run_folder
+from rtg.learn import policy_file, robustness
+from rtg.learn.robustness import Row, Variant
+from rtg.pictures import plots
+from rtg.run import effective_config
+
+
+def _table(rows: list[Row], title: str, episodes: int) -> str:
+    lines = [
+        f"# {title}",
+        "",
+        f"Greedy policy, {episodes} held-out starts each.",
+        "",
+        "| | | success | actions per episode |",
+        "|---|---|---:|---:|",
+    ]
+    for row in rows:
+        cells = ["no legal starts", ""]
+        if row.success is not None:
+            cells = [f"{row.success:.2f}", f"{row.length:.1f}"]
+        lines.append(f"| {row.variant.group} | {row.variant.label} | {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def evaluate(run: Path, episodes: int) -> str:
+    """Writes evaluation.md, .json and .png into the folder of a run; returns the table.
+
+    Raises UserError if the folder has no policy.
+    """
+    file, model = run / "config.yaml", run / "model.pt"
+    for needed in (file, model):
+        if not needed.is_file():
+            raise UserError(
+                f"{run}: has no {needed.name}; legal: the folder of a run that has trained"
+            )
+    config: _core.Config = effective_config.load_written(file)
+    policy_file.read(model, config.task)  # reports what is wrong with it
+    th.set_num_threads(1)
+
+    def row_of(variant: Variant) -> Row:
+        policy = policy_file.read(model, config.task)  # one that no other thread waits for
+        return robustness.evaluate_variant(file, config, policy, variant, episodes)
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        rows = list(pool.map(row_of, robustness.variants(config)))
+    title = f"{config.task.name}, {config.run.method}, seed {config.run.seed}"
+    text = _table(rows, title, episodes)
+    with run_folder.write_errors_as_user_errors(run):
+        run_folder.write_text(run / "evaluation.md", text)
+        found = [
+            {
+                "group": row.variant.group,
+                "label": row.variant.label,
+                "success": row.success,
+                "episode_length": row.length,
+            }
+            for row in rows
+        ]
+        run_folder.write_json(run / "evaluation.json", {"episodes": episodes, "rows": found})
+        plots.robustness(run / "evaluation.png", title, rows)
+    return text

@@ -1,0 +1,133 @@
+"""Evaluates a trained policy where it was not trained: other starts, noise, other physics."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg import _core
+from rtg.learn.evaluation import FINAL_SEED, Policy, evaluate
+
+Floats = NDArray[np.float64]
+
+_MOVED = (0.1, 0.25, 0.5, 1.0, 2.0)  # [m]
+_TURNED = (0.25, 0.5, 1.0)  # [rad]
+_NOISE = (0.02, 0.05, 0.1)  # [m] and [rad]
+_FACTORS = (0.5, 0.7, 1.3, 2.0)  # of friction and of masses
+_STRIDES = (0.75, 0.9, 1.1, 1.25)  # factors
+_COASTING = (10.0, 4.0, 2.0)  # physics.damping, with inertia
+_NOISE_SEED = 5
+
+
+class Variant(NamedTuple):
+    """What differs from the training: settings of the configuration, and noise of the poses."""
+
+    group: str  # what differs, in words
+    label: str  # by how much
+    settings: tuple[str, ...] = ()
+    noise: float = 0.0  # standard deviation of the poses that the policy sees [m], [rad]
+
+
+class Row(NamedTuple):
+    """The result of a variant; None where the task has no legal starts then."""
+
+    variant: Variant
+    success: float | None
+    length: float | None  # actions per episode
+
+
+def _starts(task: dict[str, Any], change: Callable[[int, list[float]], str]) -> tuple[str, ...]:
+    """Returns settings that replace the start [x, y, theta] of each loose object."""
+    jointed = {
+        name for joint in task.get("joints", ()) for name in (joint["parent"], joint["child"])
+    }
+    return tuple(
+        f"task.bodies.{k}.start={change(k, body['start'])}"
+        for k, body in enumerate(task["bodies"])
+        if k > 0 and not body["fixed"] and body["name"] not in jointed
+    )
+
+
+def _range(x: float, spread: float) -> str:
+    return f"[{x - spread}, {x + spread}]"
+
+
+def _start_variants(task: dict[str, Any]) -> Iterator[Variant]:
+    arena = task["push"]["arena"]
+    if isinstance(task["bodies"][0]["start"], list):
+        theta = task["bodies"][0]["start"][2]
+        anywhere = f"{{x: [{-arena}, {arena}], y: [{-arena}, {arena}], theta: {theta}}}"
+        yield Variant("robot", "anywhere", (f"task.bodies.0.start={anywhere}",))
+    if not all(isinstance(body["start"], list) for body in task["bodies"][1:]):
+        return  # starts are drawn from ranges already
+    for by in _MOVED:
+        yield Variant(
+            "objects moved",
+            f"by up to {by} m",
+            (f"task.start_jitter={by}", "train.randomise=false"),
+        )
+    for by in _TURNED:
+        settings = _starts(
+            task,
+            lambda _, at, by=by: (
+                f"{{x: {_range(at[0], 0.1)}, y: {_range(at[1], 0.1)}, theta: {_range(at[2], by)}}}"
+            ),
+        )
+        if settings:
+            yield Variant("objects turned", f"by up to {by} rad", settings)
+
+
+def variants(config: _core.Config) -> list[Variant]:
+    """Returns the variants of a task, the trained one first."""
+    task = json.loads(config.json)["task"]
+    found = [Variant("as trained", ""), *_start_variants(task)]
+    found += [Variant("noise of poses", f"{by} m, {by} rad", noise=by) for by in _NOISE]
+    for factor in _FACTORS:
+        for group, key in (("friction", "friction"), ("mass of objects", "density")):
+            settings = tuple(
+                f"task.bodies.{k}.{key}={body[key] * factor}"
+                for k, body in enumerate(task["bodies"])
+                if key == "friction" or k > 0
+            )
+            found.append(Variant(group, f"x {factor}", settings))
+    for factor in _STRIDES:
+        stride = task["push"]["stride"] * factor
+        found.append(Variant("stride", f"x {factor}", (f"task.push.stride={stride}",)))
+    for damping in _COASTING:
+        settings = ("physics.inertia=true", f"physics.damping={damping}")
+        found.append(Variant("coasting", f"damping {damping}", settings))
+    return sorted(found, key=lambda variant: [v.group for v in found].index(variant.group))
+
+
+def _seen(task: _core.Task, noise: float) -> Callable[[Floats], NDArray[np.float32]]:
+    """Returns what the policy sees of states: the observation of its own task, with noise."""
+    rng = np.random.default_rng(_NOISE_SEED)
+
+    def observe(states: Floats) -> NDArray[np.float32]:
+        if noise > 0.0:
+            states = states + noise * rng.standard_normal(states.shape)
+        return task.observation(states)
+
+    return observe
+
+
+def evaluate_variant(
+    file: Path, config: _core.Config, policy: Policy, variant: Variant, episodes: int
+) -> Row:
+    """Simulates episodes from held-out starts of the variant. `file`, `config`: of the run."""
+    try:
+        changed = _core.Config.from_file(file, list(variant.settings))
+        task = changed.task
+        starts = np.stack(
+            [task.jittered_start(changed.evaluation_jitter, FINAL_SEED, k) for k in range(episodes)]
+        )
+    except ValueError:
+        return Row(variant, None, None)
+    observe = _seen(config.task, variant.noise)
+    found = evaluate(changed, policy, starts, config.learner_discount, observe)
+    return Row(variant, float(found.success.mean()), float(found.length.mean()))
