@@ -41,16 +41,19 @@ class Row(NamedTuple):
     length: float | None  # actions per episode
 
 
-def _starts(task: dict[str, Any], change: Callable[[int, list[float]], str]) -> tuple[str, ...]:
-    """Returns settings that replace the start [x, y, theta] of each loose object."""
+def _turned(task: dict[str, Any], by: float) -> tuple[str, ...]:
+    """Returns settings that turn each loose object by up to `by` [rad] and move it by 0.1 m."""
     jointed = {
         name for joint in task.get("joints", ()) for name in (joint["parent"], joint["child"])
     }
-    return tuple(
-        f"task.bodies.{k}.start={change(k, body['start'])}"
-        for k, body in enumerate(task["bodies"])
-        if k > 0 and not body["fixed"] and body["name"] not in jointed
-    )
+    found = []
+    for k, body in enumerate(task["bodies"]):
+        if k == 0 or body["fixed"] or body["name"] in jointed:
+            continue
+        x, y, theta = body["start"]
+        ranges = f"x: {_range(x, 0.1)}, y: {_range(y, 0.1)}, theta: {_range(theta, by)}"
+        found.append(f"task.bodies.{k}.start={{{ranges}}}")
+    return tuple(found)
 
 
 def _range(x: float, spread: float) -> str:
@@ -72,13 +75,7 @@ def _start_variants(task: dict[str, Any]) -> Iterator[Variant]:
             (f"task.start_jitter={by}", "train.randomise=false"),
         )
     for by in _TURNED:
-        settings = _starts(
-            task,
-            lambda _, at, by=by: (
-                f"{{x: {_range(at[0], 0.1)}, y: {_range(at[1], 0.1)}, theta: {_range(at[2], by)}}}"
-            ),
-        )
-        if settings:
+        if settings := _turned(task, by):
             yield Variant("objects turned", f"by up to {by} rad", settings)
 
 

@@ -180,7 +180,7 @@ def robustness(path: Path, title: str, rows: Sequence[RobustnessRow]) -> None:
     """Plots the success under each variant as a bar, with lines between the groups."""
     with style():
         figure, axis = plt.subplots(figsize=(6.4, 0.9 + 0.19 * len(rows)), layout="constrained")
-        places = np.arange(len(rows))
+        places = list(range(len(rows)))
         axis.barh(places, [row.success or 0.0 for row in rows], color=_BLUE, alpha=0.85)
         words = [f"{row.variant.group} {row.variant.label}".strip() for row in rows]
         axis.set_yticks(places, words, fontsize=7)
