@@ -83,6 +83,10 @@ SUMMARY = {
     "contact_share": 0.3,
     "headings_per_state": 4.87,
     "trees": 3,
+    "candidates": 9000,
+    "pruned": 3000,
+    "converged": 5000,
+    "start_region_transitions": 200,
     "start_region_depth": 9,
     "success_rate": 0.98,
     "interactions": 20000,
@@ -101,12 +105,13 @@ def test_of_the_data_and_of_q_the_words_say_what_predicts_learning():
     assert len(results.summary_text(plan, without_rank).splitlines()) == 3
 
 
-def test_a_start_that_the_trees_do_not_reach_is_told_and_what_helps():
-    plan = RunPlan(Path("runs/x"), "x", config("run.method=ddqn_rtg"), False, False, ())
+def test_what_falls_short_is_the_last_word_before_the_folder(tmp_path):
+    plan = RunPlan(tmp_path, "x", config("run.method=ddqn_rtg"), False, False, ())
+    nodes = [{"poses": plan.config.task.start.tolist(), "depth": 3}]
+    (tmp_path / "generation.json").write_text(json.dumps({"nodes": nodes}))
     far = {**SUMMARY, "start_region_depth": -1}
-    assert "a wider search (search.breadth, search.depth)" in results.summary_text(plan, far)
-    for reached in (SUMMARY, {**far, "trees": 0}):
-        assert "search.breadth" not in results.summary_text(plan, reached)
+    assert results.summary_text(plan, far).splitlines()[-2].startswith("bottleneck: reaching")
+    assert "bottleneck" not in results.summary_text(plan, SUMMARY)
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from rtg.errors import UserError
 from rtg.files import dataset, run_folder
 from rtg.files.episodes import replayed_plan
 from rtg.pictures import episode_pictures, plots
+from rtg.run import diagnosis
 from rtg.run.effective_config import TREE_GENERATORS
 from rtg.run.plan import RunPlan
 
@@ -166,20 +167,12 @@ def _learning_text(plan: RunPlan, s: dict[str, Any]) -> list[str]:
     return lines
 
 
-def _depth_text(s: dict[str, Any]) -> list[str]:
-    """Returns what to do if the trees do not reach the start, on which learning then fails."""
-    if not s["trees"] or s["start_region_depth"] >= 0:
-        return []
-    return [
-        "no tree reaches the start region (start_region_depth is -1), which learning seldom "
-        "survives; more transitions (search.transitions), a wider search (search.breadth, "
-        "search.depth) or an easier start may help"
-    ]
-
-
 def summary_text(plan: RunPlan, summary: dict[str, Any]) -> str:
     """Returns the results of the run in human-readable text."""
     generated = summary["transitions"] is not None
-    lines = [_generation_text(summary), *_depth_text(summary)] if generated else []
-    learned = _learning_text(plan, summary) if plan.train else []
-    return "\n".join([*lines, *learned, f"results: {plan.folder}"])
+    lines = [_generation_text(summary)] if generated else []
+    lines += _learning_text(plan, summary) if plan.train else []
+    nodes = run_folder.read_json(plan.report_file).get("nodes", []) if generated else []
+    if words := diagnosis.bottleneck(plan.config, summary, nodes):
+        lines.append(words)
+    return "\n".join([*lines, f"results: {plan.folder}"])
