@@ -19,6 +19,7 @@ from rtg.pictures.draw import (
     arena_window,
     draw_joints,
     episode_window,
+    kind_colours,
     outline,
     state_image,
 )
@@ -220,3 +221,14 @@ def test_the_legend_of_the_curves_covers_none_of_them(figures):
     legend = figure.legends[0].get_window_extent()
     assert len(figure.legends[0].get_texts()) == 2
     assert not any(legend.overlaps(axis.get_window_extent()) for axis in figure.axes)
+
+
+def test_a_kind_with_the_name_of_a_colour_has_it():
+    kinds = [f"task.bodies.{k}.kind={kind}" for k, kind in enumerate(("red", "blue", "crate"), 1)]
+    goal = "task.goal=[{kind: '*', disc: {centre: [0, 0], radius: 2}}]"
+    task = _core.Config.from_file(paths.CONFIG / "gathering.yaml", [*kinds, goal]).task
+    colours = kind_colours(task)
+    red, green, blue = colours["red"]
+    assert red > green + 60 and red > blue + 60
+    assert colours["blue"][2] > max(colours["blue"][:2]) + 60
+    assert colours["crate"] == KIND_PALETTE[0]

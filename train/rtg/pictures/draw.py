@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageColor, ImageDraw, ImageFont
 
 Floats = NDArray[np.float64]
 Colour = tuple[int, int, int]
@@ -27,6 +28,7 @@ KIND_PALETTE: tuple[Colour, ...] = (
     (200, 92, 92),
     (96, 160, 160),
 )
+GREY_LEVEL = 160
 OVERSAMPLING = 3  # pictures are drawn this many times larger, then reduced
 
 
@@ -78,12 +80,24 @@ def objects(task: TaskLike) -> list[int]:
 
 
 def kind_colours(task: TaskLike) -> dict[str, Colour]:
-    """Returns a colour per kind of object; kinds are in order of first appearance."""
+    """Returns a colour per kind of object; kinds are in order of first appearance.
+
+    A kind with the name of a colour, such as "red", has a mild one of that.
+    """
     colours: dict[str, Colour] = {}
+    palette = itertools.cycle(KIND_PALETTE)
     for kind in (task.kinds[body] for body in objects(task)):
-        if kind not in colours:
-            colours[kind] = KIND_PALETTE[len(colours) % len(KIND_PALETTE)]
+        if kind in colours:
+            continue
+        named = ImageColor.colormap.get(kind.lower())
+        colours[kind] = _mild(ImageColor.getrgb(named)) if named else next(palette)
     return colours
+
+
+def _mild(colour: Sequence[int]) -> Colour:
+    """Mixes a colour with the grey of GREY_LEVEL, so that outlines and marks stay visible on it."""
+    red, green, blue = (round(0.7 * c + 0.3 * GREY_LEVEL) for c in colour[:3])
+    return red, green, blue
 
 
 def blend_with_paper(colour: Colour, share: float) -> Colour:
