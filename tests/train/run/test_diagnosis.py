@@ -33,13 +33,14 @@ NODES = [node(3, box1=(3.0, 0.0), box2=(0.3, 0.0)), node(9, box1=(3.0, 0.0), box
 
 
 def said(**figures: Any) -> str:
-    words = bottleneck(CONFIG, {**GOOD, **figures}, NODES)
+    words = bottleneck(CONFIG, {**GOOD, "success_rate": None, **figures}, NODES)
     assert words is not None and words.startswith("bottleneck: ")
     return words
 
 
 def test_nothing_is_said_of_a_run_that_is_well_or_has_no_trees() -> None:
     assert bottleneck(CONFIG, GOOD, NODES) is None
+    assert bottleneck(CONFIG, {**GOOD, "start_region_depth": -1}, NODES) is None
     assert bottleneck(CONFIG, {**GOOD, "success_rate": None}, NODES) is None  # --no-train
     walks = _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["run.method=ddqn_random"])
     bad = {**GOOD, "trees": 0, "start_region_depth": -1, "success_rate": 0.0}
@@ -68,7 +69,7 @@ def test_of_a_start_that_is_not_reached_each_object_is_told() -> None:
     [(3, 39, "search.depth, 40 now"), (1, 9, "search.transitions"), (5, 9, "search.breadth")],
 )
 def test_the_advice_is_about_what_ended_the_trees(trees: int, depth: int, advice: str) -> None:
-    figures = {**GOOD, "start_region_depth": -1, "trees": trees}
+    figures = {**GOOD, "start_region_depth": -1, "trees": trees, "success_rate": 0.1}
     words = bottleneck(CONFIG, figures, [*NODES, node(depth)])
     assert words is not None and advice in words
 

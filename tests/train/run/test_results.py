@@ -109,7 +109,7 @@ def test_what_falls_short_is_the_last_word_before_the_folder(tmp_path):
     plan = RunPlan(tmp_path, "x", config("run.method=ddqn_rtg"), False, False, ())
     nodes = [{"poses": plan.config.task.start.tolist(), "depth": 3}]
     (tmp_path / "generation.json").write_text(json.dumps({"nodes": nodes}))
-    far = {**SUMMARY, "start_region_depth": -1}
+    far = {**SUMMARY, "start_region_depth": -1, "success_rate": None}
     assert results.summary_text(plan, far).splitlines()[-2].startswith("bottleneck: reaching")
     assert "bottleneck" not in results.summary_text(plan, SUMMARY)
 

@@ -73,7 +73,7 @@ def _generation(
 
 def _learning(config: _core.Config, summary: dict[str, Any]) -> str | None:
     success = summary.get("success_rate")
-    if success is None or success >= _WELL:
+    if success is None:
         return None
     starts, count = summary["start_region_transitions"], summary["transitions"]
     if starts < _COVERED * count:
@@ -102,6 +102,8 @@ def bottleneck(
     `nodes`: those of generation.json. Only of runs whose data trees found.
     """
     if summary["transitions"] is None or config.search.generator not in TREE_GENERATORS:
+        return None
+    if (summary.get("success_rate") or 0.0) >= _WELL:
         return None
     found = _generation(config, summary, nodes) or _learning(config, summary)
     return found and f"bottleneck: {found}"
