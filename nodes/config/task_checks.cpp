@@ -128,6 +128,17 @@ void check_other(const tasks::GoalTerm& term, const tasks::Task& task, const Con
     check(apart->other, "apart");
 }
 
+/// Throws ConfigError if a body that is to stay has no place of its own.
+void check_stays(const tasks::GoalTerm& term, const tasks::Task& task, const ConfigNode& node,
+                 const std::string& path) {
+  if (!std::holds_alternative<tasks::Stays>(term.condition)) return;
+  for (std::size_t i = 1; i < task.start_ranges.size(); ++i)
+    if (task.start_ranges[i] && concerns(term, task.scene, i))
+      throw ConfigError(find(node, "stays")->value.origin, path + ".stays",
+                        '\'' + task.scene.bodies[i].name + "' starts anywhere in a range",
+                        "bodies whose start is [x, y, theta]");
+}
+
 void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& section) {
   const tasks::GoalTerm& term = task.goal[k];
   const ConfigNode& node = find(section, "goal")->value.items[k];
@@ -142,6 +153,7 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
                       of_joint ? legal_joints(task) : legal_kinds(task));
   }
   check_other(term, task, node, path);
+  check_stays(term, task, node, path);
   if (const ConfigEntry* angles = find(node, "angles"))
     for (const Joint& joint : task.scene.joints) check_angles(term, joint, task, *angles, path);
   const std::string arena = number_text(task.push.arena);

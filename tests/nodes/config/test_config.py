@@ -92,6 +92,14 @@ TOO_FEW = (
 )
 
 
+def test_a_body_that_is_to_stay_has_one_place(tmp_path: Path) -> None:
+    path = tmp_path / "stays.yaml"
+    ranged = TASK.replace("start: [3, 0, 0]", "start: {x: [2, 4], y: 0, theta: 0}")
+    path.write_text(ranged.replace("radius: 2}}", "radius: 2}}\n    - {kind: box, stays: 1}"))
+    wrong = "'a' starts anywhere in a range; legal: bodies whose start is [x, y, theta]"
+    assert refusal(path) == f"{path}:9: key 'task.goal.1.stays': {wrong}"
+
+
 def test_text_must_be_utf8(file: Path, tmp_path: Path) -> None:
     wrong = "has a byte that is not UTF-8; legal: text in UTF-8"
     path = tmp_path / "latin.yaml"
