@@ -92,6 +92,13 @@ TOO_FEW = (
 )
 
 
+def test_the_example_of_the_page_on_tasks_is_legal(tmp_path: Path) -> None:
+    page = (paths.ROOT / "docs" / "tasks.md").read_text()
+    file = tmp_path / "example.yaml"
+    file.write_text(page.split("```yaml\n")[1].split("```")[0])
+    assert refusal(file) == ""
+
+
 def test_a_body_that_is_to_stay_has_one_place(tmp_path: Path) -> None:
     path = tmp_path / "stays.yaml"
     ranged = TASK.replace("start: [3, 0, 0]", "start: {x: [2, 4], y: 0, theta: 0}")
