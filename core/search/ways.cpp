@@ -30,9 +30,7 @@ Polygon widened(const Part& part, const Pose& pose, double by) {
 double share_inside(const Polygon& polygon, const Vector2d& a, const Vector2d& b) {
   double enters = 0.0, leaves = 1.0;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vector2d& v = polygon.vertices[k];
-    const Vector2d edge = polygon.vertices[(k + 1) % polygon.size()] - v;
-    const Vector2d normal = Vector2d(edge.y(), -edge.x()).normalized();
+    const Vector2d &v = polygon.vertices[k], normal = edge_normal(polygon, k);
     const double from = normal.dot(a - v) + kGraze, to = normal.dot(b - v) + kGraze;
     if (from >= 0.0 && to >= 0.0) return 0.0;
     const double at = from / (from - to);

@@ -330,12 +330,7 @@ bool draw_joint_angles(Draw& draw, Group& group) {
 /// Turns and moves the group as a rigid body until `member` has the pose `to`.
 void move_to(Group& group, std::size_t member, const Pose& to) {
   const Pose from = group.poses[member];
-  for (const std::size_t i : group.members) {
-    Pose& pose = group.poses[i];
-    const Vector2d x =
-        to_world({to.x, to.y, to.theta - from.theta}, Vector2d(pose.position() - from.position()));
-    pose = {x.x(), x.y(), pose.theta + to.theta - from.theta};
-  }
+  for (const std::size_t i : group.members) group.poses[i] = carried(group.poses[i], from, to);
 }
 
 /// Places a tree of jointed bodies: draws the joint angles, then moves the tree to where the goal

@@ -13,24 +13,16 @@ constexpr int kDiscSides = 96;
 
 Vector2d unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
-/// Returns the distance of x from each edge line of a polygon, positive outside, to `visit`.
-template <class Visit>
-void for_each_edge(const Polygon& polygon, const Vector2d& x, Visit visit) {
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vector2d& v = polygon.vertices[k];
-    const Vector2d edge = polygon.vertices[(k + 1) % polygon.size()] - v;
-    visit(Vector2d(edge.y(), -edge.x()).normalized().dot(x - v));
-  }
-}
-
 }  // namespace
 
 double excess(const Region& region, const Vector2d& x) {
   if (const auto* disc = std::get_if<Disc>(&region))
     return (x - disc->centre).norm() - disc->radius;
   if (const auto* half = std::get_if<HalfPlane>(&region)) return half->normal.dot(x) - half->offset;
+  const auto& polygon = std::get<Polygon>(region);
   double most = -std::numeric_limits<double>::infinity();
-  for_each_edge(std::get<Polygon>(region), x, [&](double d) { most = std::max(most, d); });
+  for (std::size_t k = 0; k < polygon.size(); ++k)
+    most = std::max(most, edge_normal(polygon, k).dot(x - polygon.vertices[k]));
   return most;
 }
 

@@ -28,18 +28,6 @@ std::optional<Poses> if_legal(const Task& task, Poses poses) {
   return poses;
 }
 
-/// Moves and turns the bodies with the root `root` as one, until the root has the pose `to`.
-void move_to(Poses& poses, const std::vector<std::size_t>& roots, std::size_t root,
-             const Pose& to) {
-  const Pose from = poses[root];
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (roots[i] != root) continue;
-    const Vector2d arm = poses[i].position() - from.position();
-    const Vector2d x = to_world({to.x, to.y, to.theta - from.theta}, arm);
-    poses[i] = {x.x(), x.y(), poses[i].theta + to.theta - from.theta};
-  }
-}
-
 /// Draws a state for jittered_start(). Returns nothing if it is not legal.
 std::optional<Poses> drawn(const Task& task, double amplitude, Rng& rng) {
   if (task.start_ranges.empty()) return jittered(task, task.start, amplitude, rng);
@@ -56,7 +44,9 @@ std::optional<Poses> drawn(const Task& task, double amplitude, Rng& rng) {
       to.x += rng.uniform(-amplitude, amplitude);
       to.y += rng.uniform(-amplitude, amplitude);
     }
-    move_to(poses, roots, i, to);
+    const Pose from = poses[i];
+    for (std::size_t j = 0; j < poses.size(); ++j)
+      if (roots[j] == i) poses[j] = carried(poses[j], from, to);
   }
   return if_legal(task, std::move(poses));
 }

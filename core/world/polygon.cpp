@@ -91,6 +91,11 @@ double bounding_radius(const Polygon& shape) {
   return r;
 }
 
+Vector2d edge_normal(const Polygon& polygon, std::size_t k) {
+  const Vector2d edge = polygon.vertices[(k + 1) % polygon.size()] - polygon.vertices[k];
+  return Vector2d(edge.y(), -edge.x()).normalized();
+}
+
 Polygon box(double width, double height) {
   const double a = width / 2.0, b = height / 2.0;
   return {{{-a, -b}, {a, -b}, {a, b}, {-a, b}}};
@@ -108,10 +113,7 @@ Polygon regular_polygon(int sides, double circumradius) {
 Polygon offset_polygon(const Polygon& polygon, double by) {
   const std::size_t count = polygon.size();
   std::vector<Vector2d> normals;  // outward; entry k is that of the edge that begins at vertex k
-  for (std::size_t k = 0; k < count; ++k) {
-    const Vector2d edge = polygon.vertices[(k + 1) % count] - polygon.vertices[k];
-    normals.push_back(Vector2d(edge.y(), -edge.x()).normalized());
-  }
+  for (std::size_t k = 0; k < count; ++k) normals.push_back(edge_normal(polygon, k));
   Polygon out;
   for (std::size_t k = 0; k < count; ++k) {
     const Vector2d &before = normals[(k + count - 1) % count], &after = normals[k];

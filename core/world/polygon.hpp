@@ -52,6 +52,9 @@ Polygon centred(const Polygon& shape);
 /// Returns the largest distance of a vertex from the body origin [m].
 double bounding_radius(const Polygon& shape);
 
+/// Returns the outward unit normal of the edge that begins at vertex k.
+Vector2d edge_normal(const Polygon& polygon, std::size_t k);
+
 Polygon box(double width, double height);
 Polygon regular_polygon(int sides, double circumradius);
 

@@ -37,6 +37,14 @@ inline Vector2d to_local(const Pose& p, const Vector2d& x) {
   return rotate(-p.theta, x - p.position());
 }
 
+/// Returns `pose` after the rigid motion that takes the pose `from` to `to`.
+inline Pose carried(const Pose& pose, const Pose& from, const Pose& to) {
+  const double turn = to.theta - from.theta;
+  const Vector2d arm = pose.position() - from.position();
+  const Vector2d x = to_world({to.x, to.y, turn}, arm);
+  return {x.x(), x.y(), pose.theta + to.theta - from.theta};
+}
+
 /// Return poses rounded to single precision, in which Box2D computes. Such poses enter Box2D
 /// without further rounding.
 inline Pose to_single(const Pose& p) {

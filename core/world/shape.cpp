@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/world/outline.hpp"
+#include "core/world/separation.hpp"
 
 namespace rtg {
 namespace {
@@ -21,12 +22,6 @@ AreaIntegrals sector(const Vector2d& apex, double radius, double from, double tu
                          Vector2d(std::sin(to) - std::sin(from), std::cos(from) - std::cos(to));
   return {area, area * apex + lever,
           area * apex.squaredNorm() + 2.0 * apex.dot(lever) + std::pow(radius, 4) * turn / 4.0};
-}
-
-/// Returns the outward unit normal of the edge from vertex k of a core.
-Vector2d edge_normal(const Polygon& core, std::size_t k) {
-  const Vector2d edge = core.vertices[(k + 1) % core.size()] - core.vertices[k];
-  return Vector2d(edge.y(), -edge.x()).normalized();
 }
 
 double angle_of(const Vector2d& v) { return std::atan2(v.y(), v.x()); }
@@ -57,9 +52,8 @@ Moments part_moments(const Part& part) {
 double core_distance(const Polygon& core, const Vector2d& x) {
   double top = -INFINITY, least = INFINITY;
   for (std::size_t k = 0; k < core.size(); ++k) {
-    const Vector2d &v = core.vertices[k], edge = core.vertices[(k + 1) % core.size()] - v;
-    const double along = edge.dot(x - v) / std::max(edge.squaredNorm(), 1e-300);
-    least = std::min(least, (x - v - std::clamp(along, 0.0, 1.0) * edge).norm());
+    const Vector2d &v = core.vertices[k], &w = core.vertices[(k + 1) % core.size()];
+    least = std::min(least, distance_to_segment(x, v, w));
     if (core.size() > 1) top = std::max(top, edge_normal(core, k).dot(x - v));
   }
   return core.size() > 1 && top < 0.0 ? top : least;

@@ -13,7 +13,7 @@ HalfPlanes half_planes(const Polygon& shape) {
   for (std::size_t k = 0; k < shape.size(); ++k) {
     const Vector2d& v = shape.vertices[k];
     const Vector2d edge = shape.vertices[(k + 1) % shape.size()] - v;
-    planes.normal[k] = Vector2d(edge.y(), -edge.x()).normalized();
+    planes.normal[k] = edge_normal(shape, k);
     planes.offset[k] = planes.normal[k].dot(v);
     planes.corner[k] = v;
     planes.edge[k] = edge;
