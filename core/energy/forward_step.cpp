@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numbers>
 
-#include "core/energy/hinge_step.hpp"
-
 namespace rtg::energy {
 namespace {
 
@@ -66,22 +64,7 @@ void ForwardStep<T>::linearise(const Placement<T>& at, const Drive<T>& drive) {
     gradient_[0][m] -= bound * push;
     if (drive.servo) hessian_.at(0, 0)(m, m) += bound * (T(1.0) - push * push) * T(1.0 / scale);
   }
-  reduce(at);
-}
-
-/// Converts gradient_ and hessian_ to reduced coordinates (Articulation).
-template <class T>
-void ForwardStep<T>::reduce(const Placement<T>& at) {
-  const Articulation<T>& articulation = scene_.articulation();
-  if (articulation.empty()) return;
-  mirror_lower(hessian_);
-  const auto& hinges = articulation.hinges();
-  for (auto hinge = hinges.rbegin(); hinge != hinges.rend(); ++hinge) {
-    const HingeStep<T> step(articulation, *hinge, at);
-    step.gather_both(hessian_);
-    step.add_curvature(gradient_[0].data(), T(1.0), hessian_);
-    step.gather(gradient_[0].data());
-  }
+  potential_.reduce(at, gradient_[0].data(), hessian_);
 }
 
 /// Computes the Newton direction. Where the Hessian is indefinite, adds growing multiples of the
@@ -139,9 +122,7 @@ Mask<T> ForwardStep<T>::line_search(const Drive<T>& drive, const Mask<T>& wanted
   trial_ = p;
   for (double step = 1.0; step >= kLeastStep && any(searching); step *= 0.5) {
     const T length = select(searching, T(step), T(0.0));
-    for (int i = 0; i < hessian_.M; ++i)
-      for (int m = 0; m < 3; ++m) trial_.p[3 * i + m] = p.p[3 * i + m] + length * direction_[i][m];
-    scene_.place(trial_);
+    scene_.advance(p, direction_[0].data(), length, trial_);
     Mask<T> legal;
     const T after = this->value(trial_, drive, legal);
     const Mask<T> better = searching && legal && after <= value + T(kArmijo * step) * slope + noise;

@@ -57,7 +57,6 @@ class ForwardStep {
   void take_guess(const Drive<T>& drive, const T* guess, Placement<T>& p, T& value);
   Mask<T> converged(Mask<T>& pending) const;
   void linearise(const Placement<T>& at, const Drive<T>& drive);
-  void reduce(const Placement<T>& at);
   Mask<T> find_direction(Mask<T> wanted);
   Mask<T> line_search(const Drive<T>& drive, const Mask<T>& wanted, Placement<T>& p, T& value);
   void accept(const Mask<T>& better, Placement<T>& p);

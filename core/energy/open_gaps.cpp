@@ -1,6 +1,6 @@
 #include "core/energy/open_gaps.hpp"
 
-#include <utility>
+#include <vector>
 
 #include "core/energy/joint_limit.hpp"
 #include "core/energy/scatter.hpp"
@@ -12,17 +12,12 @@ namespace {
 constexpr int kRounds = 50;
 constexpr double kLeastShare = 0.01;  // least |Jᵀ∇g|²/|∇g|²; below it the joints hold the gap
 
-/// Moves the bodies so that a gap grows by `amount`, to first order. `gradient` is ∇g [3·movable].
-/// Does nothing if the joints permit almost no motion that opens the gap.
-void open_by(const SceneModel<double>& scene, double amount, VectorXd gradient,
+/// Moves the bodies so that a gap grows by `amount`, to first order. `gradient` is ∇g over the
+/// coordinates [3·movable].
+void open_by(const SceneModel<double>& scene, double amount, const VectorXd& gradient,
              Placement<double>& at) {
-  const double free = gradient.squaredNorm();
-  scene.articulation().apply_jacobian_transposed(at, gradient.data());
-  const double size = gradient.squaredNorm();
-  if (size < kLeastShare * free) return;
-  for (Eigen::Index m = 0; m < gradient.size(); ++m)
-    at.p[static_cast<std::size_t>(m)] += amount / size * gradient[m];
-  scene.place(at);
+  const Placement<double> from = at;
+  scene.advance(from, gradient.data(), amount / gradient.squaredNorm(), at);
 }
 
 /// Moves the bodies of pair `n` apart where a gap is below `floor`. Returns whether there was such
@@ -38,8 +33,10 @@ bool open_pair(const SceneModel<double>& scene, int n, double floor, Placement<d
     if (gap >= floor) continue;
     VectorXd slope = VectorXd::Zero(3 * scene.movable());
     pull(scene, n, frame, contact.point.pulled(d.gradient), slope.data());
-    open_by(scene, 1.1 * floor - gap, std::move(slope), at);
     opened = true;
+    const double free = slope.squaredNorm();
+    scene.articulation().apply_jacobian_transposed(at, slope.data());
+    if (slope.squaredNorm() >= kLeastShare * free) open_by(scene, 1.1 * floor - gap, slope, at);
   }
   return opened;
 }
@@ -48,11 +45,14 @@ bool open_pair(const SceneModel<double>& scene, int n, double floor, Placement<d
 bool open_limits(const SceneModel<double>& scene, double floor, Placement<double>& at) {
   bool opened = false;
   const Placement<double> was = at;
-  for_each_limit(scene.articulation(), was, [&](int, const JointLimit<double>& limit) {
+  const Articulation<double>& articulation = scene.articulation();
+  for_each_limit(articulation, was, [&](int l, const JointLimit<double>& limit) {
     if (limit.gap >= floor) return;
     VectorXd slope = VectorXd::Zero(3 * scene.movable());
-    limit.add_gradient(1.0, scene.movable(), slope.data());
-    open_by(scene, 1.1 * floor - limit.gap, std::move(slope), at);
+    std::vector<double> at_joints(articulation.joints().size(), 0.0);
+    at_joints[static_cast<std::size_t>(l / 2)] = limit.slope;
+    articulation.apply_jacobian_transposed(at, slope.data(), at_joints.data());
+    open_by(scene, 1.1 * floor - limit.gap, slope, at);
     opened = true;
   });
   return opened;

@@ -60,7 +60,7 @@ class SceneModel {
   const std::vector<PartPair>& pairs() const { return pairs_; }
   int pair_count() const { return static_cast<int>(pairs_.size()); }
   int contacts() const {
-    return limit_contact(2 * static_cast<int>(articulation_.hinges().size()));
+    return limit_contact(2 * static_cast<int>(articulation_.joints().size()));
   }
   int limit_contact(int limit) const { return contact_of(pair_count(), 0) + limit; }
   const Articulation<T>& articulation() const { return articulation_; }
@@ -136,6 +136,13 @@ class SceneModel {
   void place(Placement<T>& at) const {
     at.update();
     articulation_.close(at);
+  }
+  /// Sets the movable bodies in `to` to `from` moved by `length` times `step` [3·movable], in the
+  /// coordinates of the articulation.
+  void advance(const Placement<T>& from, const T* step, const T& length, Placement<T>& to) const {
+    for (int m = 0; m < 3 * movable_; ++m) to.p[m] = from.p[m] + length * step[m];
+    to.update();
+    articulation_.follow(from, step, length, to);
   }
 
   /// Writes the normal force λ(g(p)) of every contact to `lambda` [contacts]. For the start of a

@@ -12,9 +12,9 @@ StepEnergy::StepEnergy(const Scene& scene, const PhysicsConfig& physics, const P
           {scene_.pairs()[n].body, scene_.pairs()[n].other, scene_.friction(n), n, v});
   constexpr int kPerPair = static_cast<int>(kMaxVertices);
   int limit = 0;
-  for (const Hinge<double>& hinge : scene_.articulation().hinges())
+  for (const JointModel<double>& joint : scene_.articulation().joints())
     for (int side = 0; side < 2; ++side, ++limit)
-      contacts_.push_back({hinge.child, hinge.parent, 0.0, scene_.pair_count() + limit / kPerPair,
+      contacts_.push_back({joint.child, joint.parent, 0.0, scene_.pair_count() + limit / kPerPair,
                            limit % kPerPair});
 }
 
@@ -66,7 +66,9 @@ double StepEnergy::value(const VectorXd& next, const StepFrom& from) const {
 StepEnergy::Model StepEnergy::model(const VectorXd& next, const StepFrom& from) const {
   Model model{VectorXd::Zero(dofs()), MatrixXd::Zero(dofs(), dofs())};
   BlockMatrix<double> H(scene_.movable());
-  Begun(*this, from).potential.model(placed(next), model.gradient.data(), H);
+  const Begun begun(*this, from);
+  begun.potential.model(placed(next), model.gradient.data(), H);
+  begun.potential.reduce(placed(next), model.gradient.data(), H);
   for (int i = 0; i < H.M; ++i)
     for (int j = 0; j <= i; ++j) {
       if (!H.has(i, j)) continue;

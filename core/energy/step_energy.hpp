@@ -69,8 +69,8 @@ class StepEnergy {
     VectorXd gradient;  // [dofs]
     MatrixXd hessian;   // [dofs × dofs]
   };
-  /// Returns the gradient and the Hessian of value() with respect to p₊. Joints are not eliminated:
-  /// the poses of jointed bodies count as independent.
+  /// Returns the gradient and the Hessian of value() with respect to p₊, or to the coordinates of a
+  /// scene with joints (Articulation).
   Model model(const VectorXd& next, const StepFrom& from) const;
 
   /// Returns whether all pairs of bodies pass the separating-axis test; see SeparatingEdges.

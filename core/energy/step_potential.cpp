@@ -2,6 +2,7 @@
 
 #include "core/energy/gap_terms.hpp"
 #include "core/energy/joint_limit.hpp"
+#include "core/energy/joint_step.hpp"
 
 namespace rtg::energy {
 
@@ -151,10 +152,27 @@ void StepPotential<T>::model(const Placement<T>& next, T* gradient, BlockMatrix<
     pull(scene_, n, frame, slope, gradient);
     scatter_lower(scene_, n, frame, H, hessian);
   }
-  for_each_limit(scene_.articulation(), next, [&](int, const JointLimit<T>& limit) {
-    limit.add_gradient(-scene_.barrier().force(limit.gap), scene_.movable(), gradient);
-    limit.add_hessian(-scene_.barrier().force_slope(limit.gap), scene_.movable(), hessian);
-  });
+}
+
+template <class T>
+void StepPotential<T>::reduce(const Placement<T>& next, T* gradient,
+                              BlockMatrix<T>& hessian) const {
+  const Articulation<T>& articulation = scene_.articulation();
+  if (articulation.empty()) return;
+  mirror_lower(hessian);
+  for (std::size_t n = articulation.joints().size(); n-- > 0;) {
+    const JointModel<T>& joint = articulation.joints()[n];
+    const JointStep<T> step(articulation, joint, next);
+    step.gather_both(hessian);
+    step.add_curvature(gradient, T(1.0), hessian);
+    step.gather(gradient);
+    for (const bool upper : {false, true}) {
+      const JointLimit<T> limit(joint, upper, value_of(joint, next));
+      step.add_force(-scene_.barrier().force(limit.gap) * limit.slope, gradient);
+      step.add_stiffness(-scene_.barrier().force_slope(limit.gap) * limit.slope * limit.slope,
+                         hessian);
+    }
+  }
 }
 
 template class StepPotential<double>;

@@ -29,9 +29,12 @@ class StepPotential {
   /// at the previous iterate.
   T value(const Placement<T>& next, const T* previous_gaps, T* gaps, Mask<T>& legal) const;
 
-  /// Adds the gradient of value() to `gradient` [3·movable]. Adds its Hessian to the lower half of
-  /// `hessian`.
+  /// Adds the gradient of value() to `gradient` [3·movable], and its Hessian to the lower half of
+  /// `hessian`. Joints are not eliminated, and their limits are left out.
   void model(const Placement<T>& next, T* gradient, BlockMatrix<T>& hessian) const;
+  /// Converts the results of model() to the coordinates of the articulation, with the limits of the
+  /// joints and both halves of the Hessian. Does nothing if there are no joints.
+  void reduce(const Placement<T>& next, T* gradient, BlockMatrix<T>& hessian) const;
 
  private:
   /// Lagged friction of a contact.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "core/forward/free_path.hpp"
@@ -174,18 +175,53 @@ class World {
   }
 
   void add_joint(const Joint& joint) {
-    b2RevoluteJointDef def;
+    switch (joint.type) {
+      case JointType::kRevolute: {
+        b2RevoluteJointDef def;
+        set_ends(def, joint);
+        def.enableLimit = is_limited(joint);
+        std::tie(def.lowerAngle, def.upperAngle) = limits_of(joint, b2_angularSlop, kMaxAngle);
+        world_.CreateJoint(&def);
+        return;
+      }
+      case JointType::kPrismatic: {
+        b2PrismaticJointDef def;
+        set_ends(def, joint);
+        def.localAxisA = to_b2(joint.axis);
+        def.referenceAngle = static_cast<float>(joint.angle);
+        def.enableLimit = is_limited(joint);
+        std::tie(def.lowerTranslation, def.upperTranslation) =
+            limits_of(joint, b2_linearSlop, kMaxCoordinate);
+        world_.CreateJoint(&def);
+        return;
+      }
+      case JointType::kFixed: {
+        b2WeldJointDef def;
+        set_ends(def, joint);
+        def.referenceAngle = static_cast<float>(joint.angle);
+        world_.CreateJoint(&def);
+        return;
+      }
+    }
+  }
+
+  template <class Def>
+  void set_ends(Def& def, const Joint& joint) const {
     def.bodyA = bodies_[static_cast<std::size_t>(joint.parent)];
     def.bodyB = bodies_[static_cast<std::size_t>(joint.child)];
     def.localAnchorA = to_b2(joint.on_parent);
     def.localAnchorB = to_b2(joint.on_child);
-    def.enableLimit = std::isfinite(joint.lower) || std::isfinite(joint.upper);
-    // Box2D lets a loaded joint exceed its limits by the angular slop.
-    const double slop =
-        std::min(static_cast<double>(b2_angularSlop), 0.5 * (joint.upper - joint.lower));
-    def.lowerAngle = static_cast<float>(std::max(joint.lower + slop, -kMaxAngle));
-    def.upperAngle = static_cast<float>(std::min(joint.upper - slop, kMaxAngle));
-    world_.CreateJoint(&def);
+  }
+
+  static bool is_limited(const Joint& joint) {
+    return std::isfinite(joint.lower) || std::isfinite(joint.upper);
+  }
+
+  /// Returns the limits for Box2D, which lets a loaded joint exceed them by its `slop`.
+  static std::pair<float, float> limits_of(const Joint& joint, double slop, double most) {
+    slop = std::min(slop, 0.5 * (joint.upper - joint.lower));
+    return {static_cast<float>(std::max(joint.lower + slop, -most)),
+            static_cast<float>(std::min(joint.upper - slop, most))};
   }
 
   void add_servo() {

@@ -43,8 +43,8 @@ std::vector<int> structure_of(const energy::StepEnergy& energy) {
   std::vector<int> structure{energy.dofs(), energy.bodies()};
   const std::vector<int>& parts = energy.scene().parts();
   structure.insert(structure.end(), parts.begin(), parts.end());
-  for (const energy::Hinge<double>& hinge : energy.scene().articulation().hinges())
-    structure.insert(structure.end(), {hinge.parent, hinge.child});
+  for (const energy::JointModel<double>& joint : energy.scene().articulation().joints())
+    structure.insert(structure.end(), {joint.parent, joint.child, static_cast<int>(joint.type)});
   return structure;
 }
 

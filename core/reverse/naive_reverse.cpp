@@ -1,5 +1,6 @@
 #include "core/reverse/naive_reverse.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/math/rng.hpp"
@@ -17,7 +18,7 @@ Pose moved(const Pose& p, const Vector2d& by) { return {p.x + by.x(), p.y + by.y
 }  // namespace
 
 NaiveReverse::NaiveReverse(Scene scene, PushConfig push)
-    : scene_(std::move(scene)), push_(push), roots_(roots_of(scene_)) {}
+    : scene_(std::move(scene)), push_(push), roots_(moving_group_roots(scene_)) {}
 
 /// Returns the object that the robot touches in the direction `ahead`: the nearest movable one
 /// whose gap is below kTouch. Returns 0 if there is none.
@@ -68,12 +69,16 @@ ReverseResult NaiveReverse::solve(const ReverseJob& job) const {
   return {SolveStatus::kConverged, 0, std::move(predecessors)};
 }
 
-/// Returns one copy of `start` per draw of L, with `object` pulled back by L. Bodies that joints
-/// connect with `object` follow. Returns nothing if `object` is fixed.
+/// Returns one copy of `start` per draw of L, with `object` pulled back by L, along its axis if it
+/// slides on a fixed body. Bodies that joints connect with `object` follow. Returns nothing if a
+/// joint holds it to a fixed body otherwise.
 std::vector<Poses> NaiveReverse::pulled(const ReverseJob& job, std::size_t object,
                                         const Poses& start) const {
   std::vector<Poses> out;
-  if (scene_.bodies[object].fixed) return out;
+  const auto holds = [object](const Joint& joint) {
+    return static_cast<std::size_t>(joint.child) == object && joint.type != JointType::kPrismatic;
+  };
+  if (std::ranges::any_of(scene_.joints, holds)) return out;
   const Vector2d ahead = direction(job.action, push_);
   Rng rng(key_of(job));
   for (int draw = 0; draw < kMaxPredecessors; ++draw) {

@@ -9,7 +9,7 @@ namespace rtg::reverse {
 /// Baseline that the reverse simulator must beat: guesses predecessors of a state without physics.
 /// The robot moves back by one stride against the push direction d. An object that it touches in
 /// front is pulled back by a length L without turning. Bodies that joints connect with the object
-/// follow.
+/// follow. One that slides on a fixed body moves along its axis alone.
 ///
 ///   start(robot) = end(robot) - stride·d,   start(object) = end(object) - L·d
 ///
@@ -17,7 +17,7 @@ namespace rtg::reverse {
 /// of L from [0.2, 1]·stride; equal jobs give equal values. The status is
 ///
 ///   kPruned      if the robot would start outside the arena or a body blocks its way back,
-///   kInfeasible  if bodies overlap for every L or if joints connect the object with a fixed root.
+///   kInfeasible  if bodies overlap for every L or if the object hangs on a fixed body otherwise.
 class NaiveReverse {
  public:
   NaiveReverse(Scene scene, PushConfig push);
@@ -31,7 +31,7 @@ class NaiveReverse {
 
   Scene scene_;
   PushConfig push_;
-  std::vector<std::size_t> roots_;  // roots_of(scene_)
+  std::vector<std::size_t> roots_;  // moving_group_roots(scene_)
 };
 
 }  // namespace rtg::reverse

@@ -102,7 +102,8 @@ bool concerns(const GoalTerm& term, const Scene& scene, std::size_t body) {
 }
 
 bool concerns(const GoalTerm& term, const Scene& scene, const Joint& joint) {
-  if (!std::holds_alternative<JointIn>(term.condition)) return false;
+  const auto* range = std::get_if<JointIn>(&term.condition);
+  if (!range || joint.type != range->type) return false;
   return term.kind == "*" || term.kind == scene.bodies[static_cast<std::size_t>(joint.child)].name;
 }
 
@@ -120,8 +121,8 @@ double excess(const GoalTerm& term, const Task& task, const Poses& poses, std::s
 }
 
 double excess(const GoalTerm& term, const Joint& joint, const Poses& poses) {
-  const auto& [least, most] = std::get<JointIn>(term.condition);
-  const double value = joint_angle(joint, poses);
+  const auto& [least, most, type] = std::get<JointIn>(term.condition);
+  const double value = joint_value(joint, poses);
   const double off = std::max(least - value, value - most);
   return term.negated ? -off : off;
 }

@@ -59,9 +59,11 @@ struct Stays {
   double distance = 0.0;  // [m]
   bool operator==(const Stays&) const = default;
 };
-/// least ≤ joint_value() ≤ most, of the joint whose child has the name `kind` of the term.
+/// least ≤ joint_value() ≤ most, of the joint of this type whose child has the name `kind` of the
+/// term.
 struct JointIn {
-  double least = 0.0, most = 0.0;  // [rad] or [m]
+  double least = 0.0, most = 0.0;  // [rad], of a prismatic joint [m]
+  JointType type = JointType::kRevolute;
   bool operator==(const JointIn&) const = default;
 };
 

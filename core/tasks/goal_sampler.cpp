@@ -286,11 +286,13 @@ bool place_object(Draw& draw, std::size_t i) {
   return false;
 }
 
-/// Returns the least and the largest angle that the limits of `joint` and the goal allow [rad].
-/// Returns nothing if there is no such angle.
-std::optional<std::pair<double, double>> angles_in_goal(const Draw& draw, const Joint& joint) {
-  double least = std::isfinite(joint.lower) ? joint.lower : -std::numbers::pi;
-  double most = std::isfinite(joint.upper) ? joint.upper : std::numbers::pi;
+/// Returns the least and the largest value that the limits of `joint` and the goal allow. Returns
+/// nothing if there is no such value.
+std::optional<std::pair<double, double>> values_in_goal(const Draw& draw, const Joint& joint) {
+  const double span =
+      joint.type == JointType::kPrismatic ? 2.0 * draw.task.push.arena : std::numbers::pi;
+  double least = std::isfinite(joint.lower) ? joint.lower : -span;
+  double most = std::isfinite(joint.upper) ? joint.upper : span;
   for (const GoalTerm& term : draw.goal) {
     if (term.negated || !concerns(term, draw.task.scene, joint)) continue;
     const auto& range = std::get<JointIn>(term.condition);
@@ -310,20 +312,18 @@ std::size_t positioned_member(const Draw& draw, const Group& group) {
   return group.root;
 }
 
-/// Gives each joint of the group a random angle that its limits and the goal allow. Returns false
-/// if a joint has no such angle.
-bool draw_joint_angles(Draw& draw, Group& group) {
+/// Gives each joint of the group a random value that its limits and the goal allow. Returns false
+/// if a joint has no such value.
+bool draw_joint_values(Draw& draw, Group& group) {
   const Scene& scene = draw.task.scene;
   for (const std::size_t n : root_first(scene)) {
     const Joint& joint = scene.joints[n];
     const auto child = static_cast<std::size_t>(joint.child);
     if (!std::ranges::count(group.members, child)) continue;
-    const auto angles = angles_in_goal(draw, joint);
-    if (!angles) return false;
-    group.poses[child].theta = group.poses[static_cast<std::size_t>(joint.parent)].theta +
-                               draw.rng.uniform(angles->first, angles->second);
+    const auto values = values_in_goal(draw, joint);
+    if (!values) return false;
+    set_joint_value(joint, draw.rng.uniform(values->first, values->second), group.poses);
   }
-  group.poses = with_closed_joints(scene, std::move(group.poses));
   return true;
 }
 
@@ -333,13 +333,13 @@ void move_to(Group& group, std::size_t member, const Pose& to) {
   for (const std::size_t i : group.members) group.poses[i] = carried(group.poses[i], from, to);
 }
 
-/// Places a tree of jointed bodies: draws the joint angles, then moves the tree to where the goal
-/// asks for one of its members. A fixed root stays. Returns whether one of kProposals tries
-/// succeeded.
+/// Places a tree of jointed bodies: draws the values of its joints, then moves the tree to where
+/// the goal asks for one of its members. A fixed root stays. Returns whether one of kProposals
+/// tries succeeded.
 bool place_tree(Draw& draw, const Group& tree) {
   for (int k = 0; k < kProposals; ++k) {
     Group group = tree;
-    if (!draw_joint_angles(draw, group)) return false;
+    if (!draw_joint_values(draw, group)) return false;
     if (!draw.task.scene.bodies[group.root].fixed) {
       const std::size_t positioned = positioned_member(draw, group);
       move_to(group, positioned, pose_in_goal(draw, positioned));

@@ -31,7 +31,7 @@ std::optional<Poses> if_legal(const Task& task, Poses poses) {
 /// Draws a state for jittered_start(). Returns nothing if it is not legal.
 std::optional<Poses> drawn(const Task& task, double amplitude, Rng& rng) {
   if (task.start_ranges.empty()) return jittered(task, task.start, amplitude, rng);
-  Poses poses = task.start;
+  Poses poses = task.layout;
   const std::vector<std::size_t> roots = roots_of(task.scene);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (roots[i] != i || task.scene.bodies[i].fixed) continue;
@@ -88,15 +88,19 @@ std::vector<float> observation(const Task& task, const Poses& poses) {
     append((poses[i].y - robot.y) / nearby);
   }
   for (const Joint& joint : task.scene.joints) {
-    const double angle = joint_angle(joint, poses);
-    append(std::sin(angle));
-    append(std::cos(angle));
+    const double value = joint_value(joint, poses);
+    if (joint.type == JointType::kPrismatic) append(value / nearby);
+    if (joint.type != JointType::kRevolute) continue;
+    append(std::sin(value));
+    append(std::cos(value));
   }
   return out;
 }
 
 int observation_size(const Task& task) {
-  int size = 2 + 2 * static_cast<int>(task.scene.joints.size());
+  int size = 2;
+  for (const Joint& joint : task.scene.joints)
+    size += joint.type == JointType::kRevolute ? 2 : joint.type == JointType::kPrismatic ? 1 : 0;
   for (std::size_t i = 1; i < task.scene.size(); ++i)
     if (movable_object(task, i)) size += 6;
   return size;

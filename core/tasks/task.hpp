@@ -25,6 +25,7 @@ struct Task {
   Scene scene;
   Poses start;                                          // nominal start state
   std::vector<std::optional<StartRange>> start_ranges;  // per body, of those without a fixed place
+  Poses layout;                                         // with ranges: all bodies, in their middles
   std::vector<GoalTerm> goal;                           // all must hold
   PushConfig push;
   int horizon = 60;            // pushes after which an episode is truncated
@@ -61,10 +62,10 @@ inline double relative_unit(const Task& task) { return task.push.stride / 2.0; }
 ///
 ///   x, y of the robot,
 ///   x, y, cos θ, sin θ, x - x_robot, y - y_robot of each movable object,
-///   sin φ, cos φ of each joint angle φ.
+///   sin φ, cos φ of each revolute joint, s of each prismatic one.
 ///
-/// Positions are in units of position_unit(), relative ones in those of relative_unit(). Bodies and
-/// joints are in the order of the scene, so an entry always belongs to the same object.
+/// Positions are in units of position_unit(), relative ones and s in those of relative_unit().
+/// Bodies and joints are in the order of the scene, so an entry always belongs to the same object.
 std::vector<float> observation(const Task& task, const Poses& poses);
 int observation_size(const Task& task);
 

@@ -29,15 +29,42 @@ bool jointed(const Scene& scene, std::size_t a, std::size_t b) {
   });
 }
 
-double joint_gap(const Joint& joint, const Poses& poses) {
-  return (to_world(poses[static_cast<std::size_t>(joint.parent)], joint.on_parent) -
-          to_world(poses[static_cast<std::size_t>(joint.child)], joint.on_child))
-      .norm();
+double joint_value(const Joint& joint, const Poses& poses) {
+  const Pose& parent = poses[static_cast<std::size_t>(joint.parent)];
+  const Pose& child = poses[static_cast<std::size_t>(joint.child)];
+  if (joint.type == JointType::kRevolute) return child.theta - parent.theta;
+  if (joint.type == JointType::kFixed) return 0.0;
+  const Vector2d apart = to_world(child, joint.on_child) - to_world(parent, joint.on_parent);
+  return apart.dot(rotate(parent.theta, joint.axis));
 }
 
-double joint_angle(const Joint& joint, const Poses& poses) {
-  return poses[static_cast<std::size_t>(joint.child)].theta -
-         poses[static_cast<std::size_t>(joint.parent)].theta;
+Pose closed_child(const Joint& joint, const Poses& poses) {
+  const Pose& parent = poses[static_cast<std::size_t>(joint.parent)];
+  Pose child = poses[static_cast<std::size_t>(joint.child)];
+  if (joint.type != JointType::kRevolute) child.theta = parent.theta + joint.angle;
+  Vector2d pin = to_world(parent, joint.on_parent);
+  if (joint.type == JointType::kPrismatic) {
+    const Vector2d axis = rotate(parent.theta, joint.axis);
+    pin += axis.dot(to_world(child, joint.on_child) - pin) * axis;
+  }
+  const Vector2d at = pin - rotate(child.theta, joint.on_child);
+  return {at.x(), at.y(), child.theta};
+}
+
+void set_joint_value(const Joint& joint, double value, Poses& poses) {
+  const double turn = poses[static_cast<std::size_t>(joint.parent)].theta;
+  Pose& child = poses[static_cast<std::size_t>(joint.child)];
+  if (joint.type == JointType::kRevolute) child.theta = turn + value;
+  child = closed_child(joint, poses);
+  if (joint.type != JointType::kPrismatic) return;
+  const Vector2d by = (value - joint_value(joint, poses)) * rotate(turn, joint.axis);
+  child.x += by.x();
+  child.y += by.y();
+}
+
+double joint_gap(const Joint& joint, const Poses& poses) {
+  const Pose& child = poses[static_cast<std::size_t>(joint.child)];
+  return (closed_child(joint, poses).position() - child.position()).norm();
 }
 
 std::vector<std::size_t> root_first(const Scene& scene) {
@@ -91,11 +118,7 @@ std::vector<std::size_t> moving_group_roots(const Scene& scene) {
 Poses with_closed_joints(const Scene& scene, Poses poses) {
   for (const std::size_t k : root_first(scene)) {
     const Joint& joint = scene.joints[k];
-    const Vector2d pin = to_world(poses[static_cast<std::size_t>(joint.parent)], joint.on_parent);
-    Pose& child = poses[static_cast<std::size_t>(joint.child)];
-    const Vector2d at = pin - rotate(child.theta, joint.on_child);
-    child.x = at.x();
-    child.y = at.y();
+    poses[static_cast<std::size_t>(joint.child)] = closed_child(joint, poses);
   }
   return poses;
 }

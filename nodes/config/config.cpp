@@ -272,6 +272,7 @@ std::int64_t task_hash(tasks::Task task) {
   task.start_ranges.clear();
   for (std::size_t i = 0; i < task.start.size(); ++i)
     if (!task.scene.bodies[i].fixed) task.start[i] = {};
+  task.start = with_closed_joints(task.scene, std::move(task.start));
   return bus::ContentHash().add(yaml_text(task_node(std::move(task)))).value();
 }
 

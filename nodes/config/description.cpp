@@ -56,6 +56,10 @@ std::string angles_in_words(double least, double most) {
   return print("from %.4g to %.4g deg", degrees(least), degrees(most));
 }
 
+std::string lengths_in_words(double least, double most) {
+  return print("from %.4g to %.4g m", least, most);
+}
+
 std::string region_in_words(const tasks::Region& region) {
   if (const auto* disc = std::get_if<tasks::Disc>(&region))
     return print("within %.4g m of (%.4g, %.4g)", disc->radius, disc->centre.x(), disc->centre.y());
@@ -95,9 +99,13 @@ std::string joint_line(const Joint& joint, const Scene& scene) {
   const auto name = [&scene](int body) {
     return scene.bodies[static_cast<std::size_t>(body)].name;
   };
-  const std::string limits =
-      std::isfinite(joint.lower) ? angles_in_words(joint.lower, joint.upper) : "any angle";
-  return "  '" + name(joint.child) + "' on '" + name(joint.parent) + "', " + limits + '\n';
+  const std::string ends = "  '" + name(joint.child) + "' on '" + name(joint.parent) + "', ";
+  if (joint.type == JointType::kFixed) return ends + "fixed\n";
+  const bool limited = std::isfinite(joint.lower);
+  if (joint.type == JointType::kRevolute)
+    return ends + (limited ? angles_in_words(joint.lower, joint.upper) : "any angle") + '\n';
+  return ends + print("slides along (%.4g, %.4g)", joint.axis.x(), joint.axis.y()) +
+         (limited ? ' ' + lengths_in_words(joint.lower, joint.upper) : "") + '\n';
 }
 
 std::string joints_in_words(const Scene& scene) {
@@ -127,7 +135,8 @@ struct ConditionWords {
     return "has an angle " + angles_in_words(c.least, c.most);
   }
   std::string operator()(const tasks::JointIn& c) const {
-    return "has an angle " + angles_in_words(c.least, c.most);
+    return c.type == JointType::kPrismatic ? "is out " + lengths_in_words(c.least, c.most)
+                                           : "has an angle " + angles_in_words(c.least, c.most);
   }
   std::string operator()(const tasks::PoseNear& c) const {
     return print("is within %.4g m and %.4g deg of ", c.distance, degrees(c.turn)) +

@@ -20,14 +20,14 @@ constexpr double kLeastTurn = 0.01;    // least tolerance of an angle [rad]
 const std::vector<std::string> kSubjects{"kind", "centroid", "joint"};
 const std::vector<std::string> kConditions{"disc",  "half_plane", "box",    "polygon",
                                            "angle", "pose",       "covers", "touching",
-                                           "apart", "stays",      "angles"};
+                                           "apart", "stays",      "angles", "slides"};
 const std::vector<std::string> kTermKeys{
     "kind",   "centroid", "joint", "disc",  "half_plane", "box",    "polygon", "angle", "pose",
-    "covers", "touching", "apart", "stays", "angles",     "within", "gap",     "not"};
+    "covers", "touching", "apart", "stays", "angles",     "slides", "within",  "gap",   "not"};
 const std::vector<std::string> kCoversKeys{"at", "share"};
 const std::string kTermLegal =
     "one of the conditions disc, half_plane, box, polygon (of a kind or a centroid), angle, pose, "
-    "covers, touching, apart, stays (of a kind), angles (of a joint)";
+    "covers, touching, apart, stays (of a kind), angles or slides (of a joint)";
 
 Pose pose_at(const FieldReader& reader, const char* key) {
   const auto pose = reader.numbers(key, 3, -kMaxPlace, kMaxPlace, "[x, y, theta] in m and rad");
@@ -68,7 +68,11 @@ Condition read_condition(FieldReader& reader, const ConfigEntry& entry, bool of_
   }
   if (key == "angles") {
     const Vector2d range = angles_at(reader, "angles");
-    return JointIn{range[0], range[1]};
+    return JointIn{range[0], range[1], JointType::kRevolute};
+  }
+  if (key == "slides") {
+    const Vector2d range = lengths_at(reader, "slides");
+    return JointIn{range[0], range[1], JointType::kPrismatic};
   }
   if (key == "pose") return read_pose(reader);
   if (key == "covers") return read_covers(entry.value, reader.path(key));
@@ -105,10 +109,11 @@ void check_keys(const ConfigNode& section, const std::string& path, const std::s
                 const std::string& condition) {
   const bool is_region = condition == "disc" || condition == "half_plane" || condition == "box" ||
                          condition == "polygon";
-  if ((subject == "joint") != (condition == "angles"))
+  const bool of_joint = condition == "angles" || condition == "slides";
+  if ((subject == "joint") != of_joint)
     throw ConfigError(section.origin, path,
-                      subject == "joint" ? "has the key joint without the key angles"
-                                         : "has the key angles without the key joint",
+                      of_joint ? "has the key " + condition + " without the key joint"
+                               : "has the key joint without the keys angles or slides",
                       kTermLegal);
   if (subject == "centroid" && !is_region)
     throw ConfigError(section.origin, path, "has the key " + condition + " of a centroid",
@@ -134,7 +139,8 @@ struct ConditionWriter {
     to.push_back({"angle", "", point_node({c.least, c.most})});
   }
   void operator()(const JointIn& c) const {
-    to.push_back({"angles", "", point_node({c.least, c.most})});
+    to.push_back(
+        {c.type == JointType::kPrismatic ? "slides" : "angles", "", point_node({c.least, c.most})});
   }
   void operator()(const PoseNear& c) const {
     to.push_back({"pose", "", pose_node(c.pose)});

@@ -1,7 +1,9 @@
 #include "nodes/config/joint_section.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "nodes/config/config_error.hpp"
@@ -12,9 +14,17 @@ namespace rtg::config {
 namespace {
 
 constexpr double kOffPin = 1e-3;    // largest legal gap of a joint in a start state [m]
-constexpr double kRounding = 1e-5;  // rounding error of angles in single precision [rad]
+constexpr double kRounding = 1e-5;  // rounding error of values in single precision [rad], [m]
+constexpr double kLeastAxis = 1e-3;
+constexpr double kUnitLength = 1e-12;  // an axis of this length, about 1, stays as it is
 
-const std::vector<std::string> kJointKeys{"parent", "child", "on_parent", "on_child", "limits"};
+const std::vector<std::string> kJointKeys{"parent",   "child", "type",  "on_parent",
+                                          "on_child", "axis",  "limits"};
+constexpr std::array<std::string_view, 3> kTypes{"revolute", "prismatic", "fixed"};
+
+std::string type_name(JointType type) {
+  return std::string(kTypes[static_cast<std::size_t>(type)]);
+}
 
 int read_body_name(const FieldReader& reader, const char* key, const Scene& scene) {
   const std::string name = name_at(reader, key, "the name of a body");
@@ -29,8 +39,38 @@ int read_body_name(const FieldReader& reader, const char* key, const Scene& scen
 
 [[noreturn]] void fail_at(const ConfigNode& section, std::size_t k, const char* key,
                           const std::string& wrong, const std::string& legal) {
-  fail_at(find(section, "joints")->value.items[k], "task.joints." + std::to_string(k), key, wrong,
-          legal);
+  config::fail_at(find(section, "joints")->value.items[k], "task.joints." + std::to_string(k), key,
+                  wrong, legal);
+}
+
+JointType read_type(const FieldReader& reader) {
+  JointType type = JointType::kRevolute;
+  FieldReader(reader).choice("type", type, kTypes);
+  return type;
+}
+
+Vector2d read_axis(const FieldReader& reader) {
+  const Vector2d axis = point_at(reader, "axis");
+  const double length = axis.norm();
+  if (length < kLeastAxis)
+    throw ConfigError(reader.required("axis", "").value.origin, reader.path("axis"),
+                      "is no direction", "[x, y] in the parent's frame, not zero");
+  return std::abs(length - 1.0) < kUnitLength ? axis : Vector2d(axis / length);
+}
+
+/// Throws ConfigError if a key belongs to joints of another type.
+void check_keys(const ConfigNode& section, const std::string& path, JointType type) {
+  const std::pair<const char*, bool> only_with[] = {{"on_parent", type == JointType::kRevolute},
+                                                    {"on_child", type == JointType::kRevolute},
+                                                    {"axis", type == JointType::kPrismatic},
+                                                    {"limits", type != JointType::kFixed}};
+  for (const auto& [key, is_legal] : only_with)
+    if (find(section, key) && !is_legal)
+      config::fail_at(section, path, key, "does not belong to a joint of type " + type_name(type),
+                      type == JointType::kPrismatic ? "parent, child, type, axis, limits"
+                      : type == JointType::kFixed   ? "parent, child, type"
+                                                    : "parent, child, type, on_parent, on_child, "
+                                                      "limits");
 }
 
 /// Throws ConfigError if a child is fixed, is the child of two joints, or is its own ancestor.
@@ -56,7 +96,7 @@ void check_tree(const Scene& scene, const ConfigNode& section) {
   }
 }
 
-/// Throws ConfigError if a joint is open in the start state or has an angle beyond its limits.
+/// Throws ConfigError if a joint is open in the start state or has a value beyond its limits.
 void check_start(const tasks::Task& task, const ConfigNode& section) {
   for (std::size_t k = 0; k < task.scene.joints.size(); ++k) {
     const Joint& joint = task.scene.joints[k];
@@ -72,26 +112,40 @@ void check_start(const tasks::Task& task, const ConfigNode& section) {
                   single_text(static_cast<float>(at.x())) + ", " +
                   single_text(static_cast<float>(at.y())) + "] in the start state, within 0.001 m");
     }
-    const double angle = joint_angle(joint, task.start);
-    if (angle < joint.lower - kRounding || angle > joint.upper + kRounding)
+    const double value = joint_value(joint, task.start);
+    const bool slides = joint.type == JointType::kPrismatic;
+    const std::string unit = slides ? "m" : "rad";
+    if (value < joint.lower - kRounding || value > joint.upper + kRounding)
       fail_at(section, k, "limits",
-              "exclude the joint's angle in the start state, " +
-                  single_text(static_cast<float>(angle)) + " rad",
-              "[least, most] in rad that include this angle");
+              (slides ? "exclude the joint's place in the start state, "
+                      : "exclude the joint's angle in the start state, ") +
+                  single_text(static_cast<float>(value)) + ' ' + unit,
+              "[least, most] in " + unit + " that include it");
   }
 }
 
 }  // namespace
 
-Joint read_joint(const ConfigNode& section, const std::string& path, const Scene& scene) {
+Joint read_joint(const ConfigNode& section, const std::string& path, const tasks::Task& task) {
   const FieldReader reader(section, path, kJointKeys);
   Joint joint;
-  joint.parent = read_body_name(reader, "parent", scene);
-  joint.child = read_body_name(reader, "child", scene);
-  joint.on_parent = point_at(reader, "on_parent");
-  joint.on_child = point_at(reader, "on_child");
+  joint.parent = read_body_name(reader, "parent", task.scene);
+  joint.child = read_body_name(reader, "child", task.scene);
+  if (find(section, "type")) joint.type = read_type(reader);
+  check_keys(section, path, joint.type);
+  if (joint.type == JointType::kRevolute) {
+    joint.on_parent = point_at(reader, "on_parent");
+    joint.on_child = point_at(reader, "on_child");
+  } else {
+    const Pose& parent = task.start[static_cast<std::size_t>(joint.parent)];
+    const Pose& child = task.start[static_cast<std::size_t>(joint.child)];
+    joint.on_parent = to_local(parent, child.position());
+    joint.angle = child.theta - parent.theta;
+  }
+  if (joint.type == JointType::kPrismatic) joint.axis = read_axis(reader);
   if (find(section, "limits")) {
-    const Vector2d limits = angles_at(reader, "limits");
+    const bool slides = joint.type == JointType::kPrismatic;
+    const Vector2d limits = slides ? lengths_at(reader, "limits") : angles_at(reader, "limits");
     joint.lower = limits[0];
     joint.upper = limits[1];
   }
@@ -105,8 +159,13 @@ ConfigNode joint_node(const Joint& joint, const Scene& scene) {
   ConfigNode node = map_node();
   node.entries.push_back({"parent", "", name(joint.parent)});
   node.entries.push_back({"child", "", name(joint.child)});
-  node.entries.push_back({"on_parent", "", point_node(joint.on_parent)});
-  node.entries.push_back({"on_child", "", point_node(joint.on_child)});
+  node.entries.push_back({"type", "", text_node(type_name(joint.type))});
+  if (joint.type == JointType::kRevolute) {
+    node.entries.push_back({"on_parent", "", point_node(joint.on_parent)});
+    node.entries.push_back({"on_child", "", point_node(joint.on_child)});
+  }
+  if (joint.type == JointType::kPrismatic)
+    node.entries.push_back({"axis", "", point_node(joint.axis)});
   if (std::isfinite(joint.lower))
     node.entries.push_back({"limits", "", point_node({joint.lower, joint.upper})});
   return node;

@@ -116,6 +116,7 @@ void draw_nominal_start(tasks::Task& task, const ConfigNode& section) {
               "its range");
   }
   Rng rng(1);
+  task.layout = task.start;
   try {
     task.start = jittered_start(task, 0.0, rng);
   } catch (const std::invalid_argument&) {

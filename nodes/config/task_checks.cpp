@@ -79,12 +79,13 @@ bool meets_arena(const tasks::GoalTerm& term, double a) {
   return true;
 }
 
-/// Lists "*" and the names of the children of joints.
-std::string legal_joints(const tasks::Task& task) {
+/// Lists "*" and the names of the children of joints of a type.
+std::string legal_joints(const tasks::Task& task, JointType type) {
   std::vector<std::string> names{"\"*\""};
   for (const Joint& joint : task.scene.joints)
-    names.push_back(task.scene.bodies[static_cast<std::size_t>(joint.child)].name);
-  return task.scene.joints.empty() ? "none, because the task has no joints" : listed(names);
+    if (joint.type == type)
+      names.push_back(task.scene.bodies[static_cast<std::size_t>(joint.child)].name);
+  return names.size() == 1 ? "none, because the task has no such joints" : listed(names);
 }
 
 bool concerns_something(const tasks::GoalTerm& term, const Scene& scene) {
@@ -95,22 +96,25 @@ bool concerns_something(const tasks::GoalTerm& term, const Scene& scene) {
 }
 
 /// Throws ConfigError if the term concerns `joint` and cannot be met by it. The limits must allow
-/// an angle that meets the tightened() term. They must be less than a full turn apart.
-void check_angles(const tasks::GoalTerm& term, const Joint& joint, const tasks::Task& task,
-                  const ConfigEntry& angles, const std::string& path) {
+/// a value that meets the tightened() term. Angles must be less than a full turn apart.
+void check_joint(const tasks::GoalTerm& term, const Joint& joint, const tasks::Task& task,
+                 const ConfigEntry& range, const std::string& path) {
   if (!concerns(term, task.scene, joint)) return;
   const std::string& child = task.scene.bodies[static_cast<std::size_t>(joint.child)].name;
-  if (!(joint.upper - joint.lower < 2.0 * std::numbers::pi))
-    throw ConfigError(angles.value.origin, path + ".joint",
+  const bool slides = joint.type == JointType::kPrismatic;
+  if (!slides && !(joint.upper - joint.lower < 2.0 * std::numbers::pi))
+    throw ConfigError(range.value.origin, path + ".joint",
                       "the joint of '" + child + "' can make a full turn",
                       "joints whose limits are less than 6.28 rad apart");
-  const auto range = std::get<tasks::JointIn>(tightened(term).condition);
-  if (!term.negated && std::max(joint.lower, range.least) > std::min(joint.upper, range.most))
-    throw ConfigError(
-        angles.value.origin, path + ".angles",
-        "the joint of '" + child + "' cannot reach an angle 0.05 rad inside this range",
-        "[least, most] in rad that overlaps its limits, " + number_text(joint.lower) + " to " +
-            number_text(joint.upper) + ", by at least 0.05 rad");
+  const auto inner = std::get<tasks::JointIn>(tightened(term).condition);
+  if (term.negated || std::max(joint.lower, inner.least) <= std::min(joint.upper, inner.most))
+    return;
+  const std::string unit = slides ? " m" : " rad";
+  throw ConfigError(range.value.origin, path + '.' + range.key,
+                    "the joint of '" + child + "' cannot get 0.05" + unit + " into this range",
+                    "[least, most] in" + unit + " that overlaps its limits, " +
+                        number_text(joint.lower) + " to " + number_text(joint.upper) +
+                        ", by at least 0.05" + unit);
 }
 
 /// Throws ConfigError if no body has the kind that a term compares with.
@@ -144,18 +148,22 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
   const ConfigNode& node = find(section, "goal")->value.items[k];
   const std::string path = "task.goal." + std::to_string(k);
   if (!concerns_something(term, task.scene)) {
-    const bool of_joint = std::holds_alternative<tasks::JointIn>(term.condition);
+    const auto* of_joint = std::get_if<tasks::JointIn>(&term.condition);
     const char* key = of_joint ? "joint" : find(node, "centroid") ? "centroid" : "kind";
     const ConfigEntry* subject = find(node, key);
-    throw ConfigError(subject ? subject->value.origin : node.origin, path + '.' + key,
-                      of_joint ? "no joint has the child '" + term.kind + "'"
-                               : "no object that can move is of kind '" + term.kind + "'",
-                      of_joint ? legal_joints(task) : legal_kinds(task));
+    throw ConfigError(
+        subject ? subject->value.origin : node.origin, path + '.' + key,
+        of_joint ? (of_joint->type == JointType::kPrismatic ? "no prismatic joint has the child '"
+                                                            : "no revolute joint has the child '") +
+                       term.kind + "'"
+                 : "no object that can move is of kind '" + term.kind + "'",
+        of_joint ? legal_joints(task, of_joint->type) : legal_kinds(task));
   }
   check_other(term, task, node, path);
   check_stays(term, task, node, path);
-  if (const ConfigEntry* angles = find(node, "angles"))
-    for (const Joint& joint : task.scene.joints) check_angles(term, joint, task, *angles, path);
+  for (const char* key : {"angles", "slides"})
+    if (const ConfigEntry* range = find(node, key))
+      for (const Joint& joint : task.scene.joints) check_joint(term, joint, task, *range, path);
   const std::string arena = number_text(task.push.arena);
   if (!meets_arena(term, task.push.arena))
     throw ConfigError(node.origin, path, "lies outside the arena",

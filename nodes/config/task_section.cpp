@@ -73,7 +73,8 @@ ConfigNode body_node(const tasks::Task& task, std::size_t i) {
   add("density", token_node(number_text(body.density)));
   add("friction", token_node(number_text(body.friction)));
   add("fixed", token_node(body.fixed ? "true" : "false"));
-  add("start", start_node(task.start[i], ranges ? task.start_ranges[i] : std::nullopt));
+  add("start", start_node((ranges ? task.layout : task.start)[i],
+                          ranges ? task.start_ranges[i] : std::nullopt));
   return node;
 }
 
@@ -96,7 +97,7 @@ tasks::Task read_task(const ConfigNode& section) {
     const ConfigNode& joints = list_at(reader, "joints", 0, kMaxBodies);
     for (std::size_t i = 0; i < joints.items.size(); ++i)
       task.scene.joints.push_back(
-          read_joint(joints.items[i], "task.joints." + std::to_string(i), task.scene));
+          read_joint(joints.items[i], "task.joints." + std::to_string(i), task));
   }
   const ConfigNode& goal = list_at(reader, "goal", 1, kMaxTerms);
   for (std::size_t i = 0; i < goal.items.size(); ++i)

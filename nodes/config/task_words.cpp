@@ -8,9 +8,22 @@
 namespace rtg::config {
 namespace {
 
-constexpr std::size_t kMaxName = 40;   // characters
-constexpr double kLeastAngles = 0.15;  // least width of an angle range, > 2 kGoalSpare [rad]
-constexpr double kRounding = 1e-9;     // rounding error of that width [rad]
+constexpr std::size_t kMaxName = 40;  // characters
+constexpr double kLeastWidth = 0.15;  // of a range, > 2 kGoalSpare [rad], [m]
+constexpr double kRounding = 1e-9;    // rounding error of that width
+
+Vector2d range_at(const FieldReader& reader, const char* key, double most, const char* unit) {
+  const std::string width = number_text(kLeastWidth);
+  const std::string legal =
+      "[least, most] in " + (unit + (", with most at least " + width)) + " above least";
+  const auto range = reader.numbers(key, 2, -most, most, legal);
+  if (range[1] - range[0] < kLeastWidth - kRounding)
+    throw ConfigError(reader.required(key, legal).value.origin, reader.path(key),
+                      "the range [" + number_text(range[0]) + ", " + number_text(range[1]) +
+                          "] is narrower than " + width + ' ' + unit,
+                      legal);
+  return {range[0], range[1]};
+}
 
 }  // namespace
 
@@ -33,14 +46,11 @@ Vector2d point_at(const FieldReader& reader, const char* key) {
 }
 
 Vector2d angles_at(const FieldReader& reader, const char* key) {
-  const std::string legal = "[least, most] in rad, with most at least 0.15 above least";
-  const auto angles = reader.numbers(key, 2, -kMaxAngle, kMaxAngle, legal);
-  if (angles[1] - angles[0] < kLeastAngles - kRounding)
-    throw ConfigError(reader.required(key, legal).value.origin, reader.path(key),
-                      "the range [" + number_text(angles[0]) + ", " + number_text(angles[1]) +
-                          "] is narrower than 0.15 rad",
-                      legal);
-  return {angles[0], angles[1]};
+  return range_at(reader, key, kMaxAngle, "rad");
+}
+
+Vector2d lengths_at(const FieldReader& reader, const char* key) {
+  return range_at(reader, key, kMaxPlace, "m");
 }
 
 void fail_at(const ConfigNode& entry, const std::string& path, const char* key,

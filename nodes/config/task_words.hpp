@@ -21,8 +21,9 @@ std::string name_at(const FieldReader& reader, const char* key, const std::strin
 /// Reads a point [x, y].
 Vector2d point_at(const FieldReader& reader, const char* key);
 
-/// Reads a range of angles [least, most] in rad.
+/// Reads a range of angles [least, most] in rad, or of lengths in m.
 Vector2d angles_at(const FieldReader& reader, const char* key);
+Vector2d lengths_at(const FieldReader& reader, const char* key);
 
 /// Throws ConfigError about `key` of `entry`, a mapping in a list of the task. `path`: the dotted
 /// key of `entry`. The error names the place of the key, or of `entry` if the key is missing.

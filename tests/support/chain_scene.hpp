@@ -61,6 +61,38 @@ struct ChainScene : TouchingScene {
   }
 };
 
+/// Gathering's robot in contact with a carriage, on which a slider runs that carries a plate, to
+/// which an arm is pinned; and a drawer in a wall. Slider and drawer are close to a limit.
+struct SliderScene : TouchingScene {
+  SliderScene() {
+    const auto add = [this](const char* name, const Shape& shape, bool fixed = false) {
+      scene.bodies.push_back({name, name, shape, 1.0, 0.5, fixed});
+    };
+    scene = {{scene.bodies[0]}, {}};
+    add("carriage", box(1.2, 1.2));
+    add("slider", box(1.0, 0.4));
+    add("plate", box(0.6, 0.6));
+    add("arm", box(1.2, 0.3));
+    add("drawer", box(1.5, 0.8));
+    add("wall", box(1.0, 1.0), true);
+    Joint slides{1, 2, {0.3, 0.1}, {-0.1, 0.05}, -0.5, 1.33, JointType::kPrismatic};
+    slides.axis = Vector2d(0.9, 0.4).normalized();
+    slides.angle = 0.4;
+    Joint fixed{2, 3, {0.9, 0.1}, {0.0, 0.0}};
+    fixed.type = JointType::kFixed;
+    fixed.angle = 0.7;
+    Joint drawer{6, 5, {0.0, -0.6}, {0.75, 0.0}, -0.01, 2.0, JointType::kPrismatic};
+    drawer.axis = {0.0, -1.0};
+    drawer.angle = 1.57;
+    scene.joints = {{3, 4, {0.35, 0.0}, {-0.7, 0.1}, -1.0, 2.0}, drawer, fixed, slides};
+    poses = {{0, 0, 0},   {1.46, 0.15, 0.05}, {0, 0, 0},       {0, 0, 0},
+             {0, 0, 1.9}, {0, 0, 0},          {1.92, 6.6, 0.0}};
+    for (const std::size_t k : root_first(scene))
+      set_joint_value(scene.joints[k], k == 0 ? 0.8 : k == 3 ? 1.3 : 0.0, poses);
+    update();
+  }
+};
+
 /// Stacked poses moved onto the joints.
 inline VectorXd closed(const energy::StepEnergy& energy, const VectorXd& p) {
   energy::Placement<double> at = energy::placed(p);
@@ -74,10 +106,24 @@ inline VectorXd apply_jacobian(const energy::StepEnergy& energy, const VectorXd&
   return y;
 }
 
+/// The coordinates y of w = J y.
+inline VectorXd to_coordinates(const energy::StepEnergy& energy, const VectorXd& p, VectorXd w) {
+  energy.scene().articulation().to_coordinates(energy::placed(p), w.data());
+  return w;
+}
+
+/// Poses p moved by the step d of the coordinates [3·movable].
+inline VectorXd advanced(const energy::StepEnergy& energy, const VectorXd& p, const VectorXd& d) {
+  energy::Placement<double> to = energy::placed(p);
+  energy.scene().advance(energy::placed(p), d.data(), 1.0, to);
+  return Eigen::Map<const VectorXd>(to.p.data(), p.size());
+}
+
 /// `y` without the entries that belong to no coordinate.
 inline VectorXd of_coordinates(const energy::StepEnergy& energy, VectorXd y) {
-  for (const energy::Hinge<double>& hinge : energy.scene().articulation().hinges())
-    y.segment<2>(3 * hinge.child).setZero();
+  for (const energy::JointModel<double>& joint : energy.scene().articulation().joints())
+    for (int m = 0; m < 3; ++m)
+      if (m != energy::slot_of(joint.type)) y[3 * joint.child + m] = 0.0;
   return y;
 }
 

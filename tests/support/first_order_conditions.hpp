@@ -11,12 +11,11 @@ namespace rtg::testing {
 inline reverse::Iterate moved(const reverse::ReverseProblem& problem, reverse::Iterate x,
                               const Direction& d, double t) {
   for (std::size_t k = 0; k < x.p.size(); ++k) {
-    x.p[k].head(d.p[k].size()) += t * d.p[k];
+    const VectorXd y = to_coordinates(problem.energy, x.p[k], x.multipliers[k]);
+    x.p[k] = advanced(problem.energy, x.p[k], t * d.p[k]);
     x.forces[k] += t * d.forces[k];
     x.controls[k] += t * d.controls[k];
-    x.multipliers[k] += t * d.multipliers[k];
-    x.p[k] = closed(problem.energy, x.p[k]);
-    x.multipliers[k] = apply_jacobian(problem.energy, x.p[k], x.multipliers[k]);
+    x.multipliers[k] = apply_jacobian(problem.energy, x.p[k], y + t * d.multipliers[k]);
   }
   return x;
 }
@@ -42,10 +41,12 @@ inline BlockVector noise_like(const BlockTridiagonal& K, Rng& rng) {
 /// A vector of the system without the entries that belong to no coordinate.
 inline BlockVector of_coordinates(const Linearisation& lin, const BlockVector& x) {
   StageStep<double> step = lin.step(x);
-  for (const energy::Hinge<double>& hinge : lin.problem().energy.scene().articulation().hinges())
-    for (auto* levels : {&step.poses, &step.multipliers})
-      for (std::size_t k = levels == &step.poses ? 0 : 1; k < levels->size(); ++k)
-        (*levels)[k][static_cast<std::size_t>(hinge.child)].head<2>().setZero();
+  const energy::StepEnergy& energy = lin.problem().energy;
+  for (auto* levels : {&step.poses, &step.multipliers})
+    for (std::size_t k = levels == &step.poses ? 0 : 1; k < levels->size(); ++k) {
+      Eigen::Map<VectorXd> flat((*levels)[k][0].data(), energy.dofs());
+      flat = of_coordinates(energy, flat);
+    }
   return lin.assembled().written(step);
 }
 
@@ -101,7 +102,8 @@ inline void expect_step_solves_the_constraints(const reverse::ReverseProblem& pr
 inline double lagrangian(const reverse::ReverseProblem& problem, const reverse::Iterate& x) {
   const reverse::Violation v = violation(problem, x);
   double sum = objective(problem, x);
-  for (std::size_t k = 1; k < x.p.size(); ++k) sum += x.multipliers[k].dot(v.residuals[k]);
+  for (std::size_t k = 1; k < x.p.size(); ++k)
+    sum += to_coordinates(problem.energy, x.p[k], x.multipliers[k]).dot(v.residuals[k]);
   return sum;
 }
 

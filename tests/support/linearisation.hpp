@@ -39,6 +39,7 @@ class Linearisation {
 
   const reverse::ReverseProblem& problem() const { return one_; }
   const reverse::NewtonSystem<double>& newton() const { return newton_; }
+  const reverse::ProblemLanes<double>& lanes() const { return problem_; }
   const reverse::Trajectory<double>& trajectory() const { return x_; }
   const reverse::Violation& violation() const { return violation_; }
   Assembled assembled() const { return {newton_.system(), problem_.fixed_end()}; }

@@ -6,6 +6,8 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+
 #include "core/search/start_distance.hpp"
 #include "core/tasks/contact_heading.hpp"
 #include "core/tasks/goal_marks.hpp"
@@ -115,15 +117,23 @@ nb::ndarray<nb::numpy, double> start(const tasks::Task& task, double amplitude, 
   return state_array(jittered_start(task, amplitude, rng));
 }
 
-/// Returns the joints as (parent, child, pin in the frame of the parent).
-std::vector<std::tuple<int, int, Vector2d>> joints(const tasks::Task& task) {
-  std::vector<std::tuple<int, int, Vector2d>> out;
-  for (const Joint& joint : task.scene.joints)
-    out.emplace_back(joint.parent, joint.child, joint.on_parent);
+/// Returns the joints as (parent, child, points in the frame of the parent): the pin of a revolute
+/// joint, the ends of the axis of a prismatic one.
+std::vector<std::tuple<int, int, std::vector<Vector2d>>> joints(const tasks::Task& task) {
+  std::vector<std::tuple<int, int, std::vector<Vector2d>>> out;
+  const double most = 2.0 * task.push.arena;
+  for (const Joint& joint : task.scene.joints) {
+    std::vector<Vector2d> points;
+    if (joint.type == JointType::kRevolute) points = {joint.on_parent};
+    if (joint.type == JointType::kPrismatic)
+      for (const double value : {joint.lower, joint.upper})
+        points.emplace_back(joint.on_parent + std::clamp(value, -most, most) * joint.axis);
+    out.emplace_back(joint.parent, joint.child, std::move(points));
+  }
   return out;
 }
 
-/// Returns for each joint whether its angle meets all goal terms on it. The result is false for
+/// Returns for each joint whether its value meets all goal terms on it. The result is false for
 /// joints without a goal term.
 std::vector<bool> joints_reached(const tasks::Task& task, const StateArray& states) {
   const Poses poses = only_state(states, task.scene.size());

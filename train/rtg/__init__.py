@@ -16,6 +16,7 @@ ENVIRONMENTS = {
     "RTG/Pack-v0": "pack",
     "RTG/Gate-v0": "gate",
     "RTG/Maze-v0": "maze",
+    "RTG/Drawer-v0": "drawer",
 }
 
 for _id, _task in ENVIRONMENTS.items():

@@ -55,8 +55,11 @@ class Task:
     def fixed(self) -> list[bool]:
         """True for each body that never moves."""
     @property
-    def joints(self) -> list[tuple[int, int, NDArray[np.float64]]]:
-        """The joints: (parent body, child body, pin in the frame of the parent [2], m)."""
+    def joints(self) -> list[tuple[int, int, list[NDArray[np.float64]]]]:
+        """The joints: (parent body, child body, points in the frame of the parent [2], m).
+
+        The pin of a revolute joint, both ends of the axis of a prismatic one, none of a fixed one.
+        """
     @property
     def goal_marks(self) -> list[GoalMark]:
         """The regions and target outlines of the goal, for pictures."""

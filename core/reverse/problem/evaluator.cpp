@@ -74,10 +74,11 @@ struct Evaluator<T>::Pass {
   }
 
   void add_limits(int k) {
+    std::ranges::fill(into.at_joints_, T(0.0));
     for_each_limit(scene.articulation(), x.p[k], [&](int l, const energy::JointLimit<T>& limit) {
       const int contact = scene.limit_contact(l);
       const T force = x.forces[k][contact];
-      if (k > 0) limit.add_gradient(-force, scene.movable(), into.residuals_[k].data());
+      into.at_joints_[l / 2] = into.at_joints_[l / 2] - force * limit.slope;
       note_gap(k, contact, limit.gap, scene.barrier().window(limit.gap).w);
       if (k == 0) sum.objective = sum.objective + scene.barrier().value(limit.gap);
     });
@@ -146,9 +147,9 @@ Evaluator<T>::Evaluator(const ProblemLanes<T>& problem, bool all_levels)
     : all_levels_(all_levels),
       residuals_(static_cast<std::size_t>(problem.sub_steps) + 1,
                  std::vector<T>(3 * static_cast<std::size_t>(problem.energy.movable()), T(0.0))),
-      complementarity_(
-          residuals_.size(),
-          std::vector<T>(static_cast<std::size_t>(problem.energy.contacts()), T(0.0))) {}
+      complementarity_(residuals_.size(),
+                       std::vector<T>(static_cast<std::size_t>(problem.energy.contacts()), T(0.0))),
+      at_joints_(problem.energy.articulation().joints().size()) {}
 
 template <class T>
 Measures<T> Evaluator<T>::evaluate(const ProblemLanes<T>& problem, const Trajectory<T>& x,
@@ -160,7 +161,8 @@ Measures<T> Evaluator<T>::evaluate(const ProblemLanes<T>& problem, const Traject
     if (k < problem.sub_steps) set_free_residual(problem, x, k + 1, residuals_[k + 1].data());
     pass.add_level(k);
     if (k == 0) continue;
-    problem.energy.articulation().apply_jacobian_transposed(x.p[k], residuals_[k].data());
+    problem.energy.articulation().apply_jacobian_transposed(x.p[k], residuals_[k].data(),
+                                                            at_joints_.data());
     for (const T& r : residuals_[k]) {
       pass.sum.violation = pass.sum.violation + magnitude(r);
       pass.sum.infeasibility = greater(pass.sum.infeasibility, magnitude(r));

@@ -43,6 +43,7 @@ class Evaluator {
   bool all_levels_;
   std::vector<std::vector<T>> residuals_;
   PerContact<T> complementarity_;
+  std::vector<T> at_joints_;  // forces of the limits at a level, one per joint
 };
 
 }  // namespace rtg::reverse

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/math/stage_system.hpp"
+#include "core/reverse/problem/limit_linearisation.hpp"
 #include "core/reverse/problem/problem_lanes.hpp"
 
 namespace rtg::reverse {
@@ -11,7 +12,8 @@ struct PoseSystem {
   StageSystem<T>& system;                 // its q lacks `gradient`, its e lacks `residual`
   std::vector<BlockColumn<T>>& gradient;  // of the Lagrangian [h + 1][bodies]
   std::vector<BlockColumn<T>>& residual;  // Φ_k [h + 1][bodies]
-  T lagrangian;                           // as in Curvature
+  const std::vector<std::vector<LimitTerms<T>>>& limits;  // [h + 1][joints]
+  T lagrangian;                                           // as in Curvature
 };
 
 /// Turns a Newton system over poses p into one over reduced coordinates q (Articulation), in place.
@@ -22,9 +24,9 @@ struct PoseSystem {
 ///   Q ← Jᵀ Q J + Dᵀ E J + (Dᵀ E J)ᵀ + Σ ∇L ∂²p/∂q² + Σ Φ ∂²w/∂q²
 ///   N ← Jᵀ N J₋ + Dᵀ F J₋,  U ← Jᵀ U J₌ + Dᵀ G J₌,  ∇L ← Jᵀ ∇L + Dᵀ Φ
 ///
-/// The hinges are applied one by one, from the leaves to the roots. The entries x, y of a hinged
-/// child belong to no coordinate. Their rows are those of the identity in Q and E and zero
-/// elsewhere, so that their steps are zero.
+/// The joints are applied one by one, from the leaves to the roots, each with the terms of its
+/// limits, which are those of its value. The rows of entries that belong to no coordinate are those
+/// of the identity in Q and E and zero elsewhere, so that their steps are zero.
 template <class T>
 void reduce_joints(const ProblemLanes<T>& problem, const Trajectory<T>& x,
                    const PoseSystem<T>& poses);

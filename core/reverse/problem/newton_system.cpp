@@ -1,7 +1,8 @@
 #include "core/reverse/problem/newton_system.hpp"
 
+#include "core/energy/joint_limit.hpp"
+#include "core/energy/joint_step.hpp"
 #include "core/reverse/problem/joint_reduction.hpp"
-#include "core/reverse/problem/limit_linearisation.hpp"
 
 namespace rtg::reverse {
 namespace {
@@ -9,6 +10,14 @@ namespace {
 /// linearise() adds the contacts of level k this many levels after the other terms of level k. By
 /// then stages k and k + 1 hold all their other terms and are still in the cache.
 constexpr int kContactDelay = 3;
+
+/// Returns the step of the joint that a limit belongs to.
+template <class T>
+energy::JointStep<T> step_of(const energy::SceneModel<T>& scene, const energy::Placement<T>& at,
+                             int limit) {
+  const energy::Articulation<T>& articulation = scene.articulation();
+  return {articulation, articulation.joints()[limit / 2], at};
+}
 
 }  // namespace
 
@@ -21,6 +30,8 @@ NewtonSystem<T>::NewtonSystem(const ProblemLanes<T>& problem)
       control_gradient_(gradient_.size()),
       eliminated_(gradient_.size(),
                   std::vector<Eliminated<T>>(static_cast<std::size_t>(problem.energy.contacts()))),
+      limits_(gradient_.size(),
+              std::vector<LimitTerms<T>>(problem.energy.articulation().joints().size())),
       active_(gradient_.size(), std::vector<char>(problem.energy.pairs().size())),
       moved_(gradient_[0]) {}
 
@@ -41,8 +52,8 @@ void NewtonSystem<T>::linearise(const ProblemLanes<T>& problem, const Trajectory
       add_pair(problem, x, behind, n);
   }
   if (!problem.energy.articulation().empty()) {
-    for (int k = 0; k <= h; ++k) add_limits(problem, x, k);
-    reduce_joints(problem, x, {system_, gradient_, residual_, curvature_.lagrangian});
+    for (int k = 0; k <= h; ++k) set_limits(problem, x, k);
+    reduce_joints(problem, x, {system_, gradient_, residual_, limits_, curvature_.lagrangian});
   }
   for (int k = 0; k <= h; ++k)
     for (int i = 0; i < system_.M; ++i) {
@@ -84,28 +95,23 @@ void NewtonSystem<T>::add_own(const energy::SceneModel<T>& scene, int pair,
   scatter_lower(scene, pair, frame, terms.E, stage.E);
 }
 
-/// Adds the joint limits at level k to the system over poses, before reduce_joints().
+/// Sets the terms of the joint limits at level k.
 template <class T>
-void NewtonSystem<T>::add_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
+void NewtonSystem<T>::set_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k) {
   using Terms = LimitLinearisation<T>;
   const energy::SceneModel<T>& scene = problem.energy;
-  Stage& stage = system_.stages[k];
   const typename Terms::Level level = k == 0 ? Terms::Level::kStart
                                       : k == problem.sub_steps && fixed_end_
                                           ? Terms::Level::kFixed
                                           : Terms::Level::kWithin;
+  limits_[k].assign(limits_[k].size(), {});
   for_each_limit(scene.articulation(), x.p[k], [&](int l, const energy::JointLimit<T>& limit) {
-    const T gradient_dot_y = limit.along(x.multipliers[k].data(), system_.M);
-    const Terms terms({limit.gap, x.forces[k][scene.limit_contact(l)], gradient_dot_y},
-                      scene.barrier(), curvature_, level);
-    eliminated_[k][scene.limit_contact(l)].a = terms.a;
-    eliminated_[k][scene.limit_contact(l)].b[0] = terms.b;
-    limit.add_gradient(terms.gradient, system_.M, gradient_[k][0].data());
-    limit.add_gradient(terms.residual, system_.M, residual_[k][0].data());
-    limit.add_gradient(terms.q, system_.M, stage.q[0].data());
-    limit.add_gradient(terms.e, system_.M, stage.e[0].data());
-    limit.add_hessian(terms.Q, system_.M, stage.Q);
-    if (k > 0) limit.add_hessian(terms.E, system_.M, stage.E);
+    const T rate = step_of(scene, x.p[k], l).value_rate(x.multipliers[k].data());
+    const Terms of({limit.gap, x.forces[k][scene.limit_contact(l)], limit.slope * rate},
+                   scene.barrier(), curvature_, level);
+    eliminated_[k][scene.limit_contact(l)].a = of.a;
+    eliminated_[k][scene.limit_contact(l)].b[0] = of.b;
+    limits_[k][l / 2].add(of.terms, limit.slope);
   });
 }
 
@@ -161,7 +167,8 @@ void NewtonSystem<T>::find_force_steps(const energy::SceneModel<T>& scene,
   }
   for_each_limit(scene.articulation(), at, [&](int l, const energy::JointLimit<T>& limit) {
     const Eliminated<T>& e = eliminated_[k][scene.limit_contact(l)];
-    out[scene.limit_contact(l)] = e.a + e.b[0] * limit.along(moved, scene.movable());
+    out[scene.limit_contact(l)] =
+        e.a + e.b[0] * limit.slope * step_of(scene, at, l).value_rate(moved);
   });
 }
 
@@ -183,14 +190,18 @@ T NewtonSystem<T>::model_curvature(const StageStep<T>& step) const {
 /// Uses ∇J·s = ∇L·s - y·A s and A s = -e. A is the Jacobian of the constraints, y the multipliers
 /// at `x`.
 template <class T>
-T NewtonSystem<T>::objective_slope(const Trajectory<T>& x, const StageStep<T>& step) const {
+T NewtonSystem<T>::objective_slope(const ProblemLanes<T>& problem, const Trajectory<T>& x,
+                                   const StageStep<T>& step) const {
+  const energy::Articulation<T>& articulation = problem.energy.articulation();
   T sum(0.0);
   for (int k = 0; k <= system_.h; ++k) {
     for (int i = 0; i < system_.M; ++i) sum = sum + gradient_[k][i].dot(step.poses[k][i]);
     if (k == 0) continue;
     sum = sum + control_gradient_[k].dot(step.controls[k]);
-    for (std::size_t m = 0; m < x.multipliers[k].size(); ++m)
-      sum = sum + x.multipliers[k][m] * system_.stages[k].e[m / 3][m % 3];
+    for (int i = 0; i < system_.M; ++i)
+      for (int m = 0; m < 3; ++m) moved_[i][m] = x.multipliers[k][3 * i + m];
+    articulation.to_coordinates(x.p[k], moved_[0].data());
+    for (int i = 0; i < system_.M; ++i) sum = sum + moved_[i].dot(system_.stages[k].e[i]);
   }
   return sum;
 }

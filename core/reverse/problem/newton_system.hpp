@@ -2,6 +2,7 @@
 
 #include "core/math/stage_system.hpp"
 #include "core/reverse/problem/contact_linearisation.hpp"
+#include "core/reverse/problem/limit_linearisation.hpp"
 
 namespace rtg::reverse {
 
@@ -41,7 +42,8 @@ class NewtonSystem {
   /// system.
   T model_curvature(const StageStep<T>& step) const;
   /// Returns ∇J·s, the slope of the objective along s = `step`. `step` must solve the system.
-  T objective_slope(const Trajectory<T>& x, const StageStep<T>& step) const;
+  T objective_slope(const ProblemLanes<T>& problem, const Trajectory<T>& x,
+                    const StageStep<T>& step) const;
 
  private:
   using Stage = typename StageSystem<T>::Stage;
@@ -51,7 +53,7 @@ class NewtonSystem {
   void add_turn_curvature(const typename energy::Inertia<T>::Slope& s, const T& y, int k, int i);
   void add_control(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
   void add_pair(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k, int n);
-  void add_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
+  void set_limits(const ProblemLanes<T>& problem, const Trajectory<T>& x, int k);
   void find_force_steps(const energy::SceneModel<T>& scene, const energy::Placement<T>& at, int k,
                         const T* moved, T* out) const;
   void add_own(const energy::SceneModel<T>& scene, int pair, const energy::PairFrame<T>& frame,
@@ -64,8 +66,9 @@ class NewtonSystem {
   std::vector<BlockColumn<T>> residual_;  // Φ_k
   std::vector<Vec3<T>> control_gradient_;
   std::vector<std::vector<Eliminated<T>>> eliminated_;  // [h + 1][contacts]
+  std::vector<std::vector<LimitTerms<T>>> limits_;      // [h + 1][joints]
   std::vector<std::vector<char>> active_;               // [h + 1][pairs]
-  mutable BlockColumn<T> moved_;                        // workspace of force_steps()
+  mutable BlockColumn<T> moved_;                        // workspace
 };
 
 }  // namespace rtg::reverse

@@ -25,16 +25,16 @@ void make_trial(const energy::SceneModel<T>& scene, const Trajectory<T>& x, cons
                 Trajectory<T>& trial) {
   const T& alpha = move.alpha;
   for (std::size_t k = 0; k < x.p.size(); ++k) {
-    for (std::size_t m = 0; m < x.multipliers[k].size(); ++m) {
-      const auto body = m / 3;
-      const auto row = static_cast<Eigen::Index>(m % 3);
-      trial.p[k].p[m] = x.p[k].p[m] + alpha * move.step.poses[k][body][row];
-      if (k > 0)
-        trial.multipliers[k][m] = x.multipliers[k][m] + alpha * move.step.multipliers[k][body][row];
+    scene.advance(x.p[k], move.step.poses[k][0].data(), alpha, trial.p[k]);
+    if (k > 0) {
+      std::vector<T>& y = trial.multipliers[k];
+      y = x.multipliers[k];
+      scene.articulation().to_coordinates(x.p[k], y.data());
+      const T* step = move.step.multipliers[k][0].data();
+      for (std::size_t m = 0; m < y.size(); ++m) y[m] = y[m] + alpha * step[m];
+      scene.articulation().apply_jacobian(trial.p[k], y.data());
+      trial.controls[k] = x.controls[k] + move.step.controls[k] * alpha;
     }
-    scene.place(trial.p[k]);
-    scene.articulation().apply_jacobian(trial.p[k], trial.multipliers[k].data());
-    if (k > 0) trial.controls[k] = x.controls[k] + move.step.controls[k] * alpha;
     for (std::size_t c = 0; c < trial.forces[k].size(); ++c) {
       const T force = x.forces[k][c] + alpha * move.forces[k][c];
       trial.forces[k][c] = select(magnitude(force) < T(kNoForce), T(0.0), force);

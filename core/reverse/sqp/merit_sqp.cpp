@@ -88,7 +88,7 @@ class MeritSqp {
     const double before = merit_.value(now_.objective, now_.violation);
     // The Hessian of the plain barrier is not convex, so that a step may lead uphill.
     const double slope =
-        std::min(merit_.slope(newton_.objective_slope(x_, step_), now_.violation), 0.0);
+        std::min(merit_.slope(newton_.objective_slope(problem_, x_, step_), now_.violation), 0.0);
     for (double alpha = 1.0; alpha >= kLeastStep; alpha *= 0.5) {
       bool legal = bounded(step_, alpha);
       if (!legal) continue;

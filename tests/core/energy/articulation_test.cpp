@@ -8,14 +8,21 @@
 namespace rtg::energy {
 namespace {
 
+using testing::advanced;
 using testing::apply_jacobian;
 using testing::ChainScene;
 using testing::closed;
 using testing::noise;
 using testing::of_coordinates;
+using testing::SliderScene;
 
-/// Poses of the chain moved at random, jointed bodies off their pins.
-VectorXd scattered(const ChainScene& scene, std::uint64_t seed) {
+template <class Scene>
+class ArticulationTest : public ::testing::Test {};
+using Scenes = ::testing::Types<ChainScene, SliderScene>;
+TYPED_TEST_SUITE(ArticulationTest, Scenes);
+
+/// Poses moved at random, jointed bodies off their joints.
+VectorXd scattered(const testing::TouchingScene& scene, std::uint64_t seed) {
   Rng rng(seed);
   VectorXd p = stacked(scene.poses);
   p.head(scene.energy.dofs()) += noise(scene.energy.dofs(), 0.5, rng);
@@ -34,24 +41,52 @@ TEST(Articulation, PlacingClosesEveryJointAndKeepsRootsAndAngles) {
   EXPECT_LT((other - after).norm(), 1e-15);
 }
 
-TEST(Articulation, JacobianIsTheDerivativeOfThePoses) {
-  const ChainScene scene;
+TYPED_TEST(ArticulationTest, PlacingClosesEveryJoint) {
+  const TypeParam scene;
+  const VectorXd p = scattered(scene, 1), after = closed(scene.energy, p);
+  for (const Joint& joint : scene.scene.joints)
+    EXPECT_LT(joint_gap(joint, unstacked(after)), 1e-15);
+  const VectorXd other = stacked(with_closed_joints(scene.scene, unstacked(p)));
+  EXPECT_LT((other - after).norm(), 1e-14);
+}
+
+TYPED_TEST(ArticulationTest, AStepMovesEachJointByItsCoordinate) {
+  const TypeParam scene;
+  const VectorXd p = closed(scene.energy, scattered(scene, 1));
+  Rng rng(6);
+  const VectorXd d = of_coordinates(scene.energy, noise(scene.energy.dofs(), 0.5, rng));
+  const Poses before = unstacked(p), after = unstacked(advanced(scene.energy, p, d));
+  for (const Joint& joint : scene.scene.joints) {
+    EXPECT_LT(joint_gap(joint, after), 1e-15);
+    const double moved = joint_value(joint, after) - joint_value(joint, before);
+    if (joint.type == JointType::kPrismatic) {
+      EXPECT_NEAR(moved, d[3 * joint.child], 1e-14);
+    }
+    if (joint.type != JointType::kRevolute) continue;
+    EXPECT_NEAR(after[static_cast<std::size_t>(joint.child)].theta,
+                before[static_cast<std::size_t>(joint.child)].theta + d[3 * joint.child + 2],
+                1e-14);
+  }
+}
+
+TYPED_TEST(ArticulationTest, JacobianIsTheDerivativeOfThePoses) {
+  const TypeParam scene;
   const int n = scene.energy.dofs();
   const VectorXd p = closed(scene.energy, scattered(scene, 2));
   Rng rng(3);
   for (int trial = 0; trial < 5; ++trial) {
     const VectorXd y = of_coordinates(scene.energy, noise(n, 1.0, rng));
     const double t = 1e-6;
-    VectorXd up = p, down = p;
-    up.head(n) += t * y;
-    down.head(n) -= t * y;
-    const VectorXd slope = (closed(scene.energy, up) - closed(scene.energy, down)) / (2.0 * t);
-    EXPECT_LT((slope.head(n) - apply_jacobian(scene.energy, p, y)).norm(), 1e-8);
+    const VectorXd slope =
+        (advanced(scene.energy, p, t * y) - advanced(scene.energy, p, -t * y)) / (2.0 * t);
+    const VectorXd w = apply_jacobian(scene.energy, p, y);
+    EXPECT_LT((slope.head(n) - w).norm(), 1e-8);
+    EXPECT_LT((testing::to_coordinates(scene.energy, p, w) - y).norm(), 1e-14);
   }
 }
 
-TEST(Articulation, TransposedJacobianIsTheTranspose) {
-  const ChainScene scene;
+TYPED_TEST(ArticulationTest, TransposedJacobianIsTheTranspose) {
+  const TypeParam scene;
   const int n = scene.energy.dofs();
   const VectorXd p = closed(scene.energy, scattered(scene, 4));
   Rng rng(5);
@@ -66,7 +101,7 @@ TEST(Articulation, TransposedJacobianIsTheTranspose) {
 }
 
 // A lane each for chains of other lengths; the last lane is empty.
-TEST(Articulation, EveryLaneHasHingesOfItsOwn) {
+TEST(Articulation, EveryLaneHasJointsOfItsOwn) {
   constexpr int kLast = kWidth<Lanes> - 1;
   std::vector<ChainScene> scenes(static_cast<std::size_t>(kWidth<Lanes>));
   Articulation<Lanes> all = Articulation<Lanes>::room_for(scenes[0].energy.scene().articulation());
@@ -92,13 +127,13 @@ TEST(Articulation, EveryLaneHasHingesOfItsOwn) {
       EXPECT_NEAR(lane(at.p[m], l), expected[static_cast<Eigen::Index>(m)], 1e-14);
   }
   for (const Lanes& x : at.p) EXPECT_EQ(lane(x, kLast), 0.0);
-  for (std::size_t k = 0; k < all.hinges().size(); ++k)
+  for (std::size_t k = 0; k < all.joints().size(); ++k)
     for (int l = 0; l < kLast; ++l) {
       const Articulation<double>& one =
           scenes[static_cast<std::size_t>(l)].energy.scene().articulation();
-      EXPECT_EQ(lane(all.hinges()[k].lower, l), one.hinges()[k].lower);
-      EXPECT_EQ(lane(all.hinges()[k].upper, l), one.hinges()[k].upper);
-      EXPECT_EQ(lane(all.hinges()[k].reach, l), one.hinges()[k].reach);
+      EXPECT_EQ(lane(all.joints()[k].lower, l), one.joints()[k].lower);
+      EXPECT_EQ(lane(all.joints()[k].upper, l), one.joints()[k].upper);
+      EXPECT_EQ(lane(all.joints()[k].reach, l), one.joints()[k].reach);
     }
 }
 

@@ -31,25 +31,14 @@ TEST(JointLimit, GapIsTheWayOfTheTipToTheStop) {
   EXPECT_NEAR(limits.all[3].gap, door * 0.05 + 0.02, 1e-12);
 }
 
-TEST(JointLimit, GradientIsThatOfTheGap) {
-  const Limits limits;
-  const int n = limits.scene.energy.dofs(), movable = n / 3;
-  for (std::size_t l = 0; l < limits.all.size(); ++l) {
-    VectorXd gradient = VectorXd::Zero(n);
-    limits.all[l].add_gradient(1.0, movable, gradient.data());
-    for (int m = 0; m < n; ++m) {
-      VectorXd p = stacked(limits.scene.poses);
-      p[m] += 1e-3;
-      double gap = 0.0;
-      for_each_limit(limits.scene.energy.scene().articulation(), placed(p),
-                     [&](int k, const JointLimit<double>& limit) {
-                       if (k == static_cast<int>(l)) gap = limit.gap;
-                     });
-      EXPECT_NEAR((gap - limits.all[l].gap) / 1e-3, gradient[m], 1e-9);
-      const VectorXd unit = VectorXd::Unit(n, m);
-      EXPECT_EQ(limits.all[l].along(unit.data(), movable), gradient[m]);
+TEST(JointLimit, SlopeIsThatOfTheGapOverTheValue) {
+  const testing::SliderScene scene;
+  for (const JointModel<double>& joint : scene.energy.scene().articulation().joints())
+    for (const bool upper : {false, true}) {
+      const JointLimit<double> here(joint, upper, 0.1), there(joint, upper, 0.2);
+      EXPECT_NEAR(there.gap - here.gap, 0.1 * here.slope, 1e-12);
+      EXPECT_EQ(here.slope == 0.0, joint.type == JointType::kFixed);
     }
-  }
 }
 
 TEST(JointLimit, AJointWithoutLimitsExertsNoForce) {

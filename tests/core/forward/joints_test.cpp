@@ -121,6 +121,66 @@ TEST(Joints, ALimitStopsADoorThatHasNoLimitOnTheOtherSide) {
   }
 }
 
+/// A drawer in a wall, 0.5 m out, in front of the robot, with a block on each side of it. One is
+/// welded to it, the other slides on it.
+struct Drawer {
+  Scene scene{{testing::gathering().scene.bodies[0],
+               {"drawer", "drawer", box(1.6, 0.6), 1.0, 0.5, false},
+               {"welded", "block", box(0.6, 0.6), 0.5, 0.5, false},
+               {"slider", "block", box(0.6, 0.6), 0.5, 0.5, false},
+               {"wall", "wall", box(4.0, 0.2), 1.0, 0.5, true}}};
+  Poses start;
+
+  Drawer() {
+    Joint slides{4, 1, {0.0, 0.5}, {0.0, 0.0}, 0.0, 0.8, JointType::kPrismatic};
+    slides.axis = Vector2d::UnitY();
+    Joint fixed{1, 2, {-1.2, 0.0}, {0.0, 0.0}};
+    fixed.type = JointType::kFixed;
+    fixed.angle = 0.3;
+    Joint along{1, 3, {1.2, 0.0}, {0.0, 0.0}, -0.1, 1.0, JointType::kPrismatic};
+    scene.joints = {slides, fixed, along};
+    start = {{0.3, 2.5, 0.0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    for (const Joint& joint : scene.joints) set_joint_value(joint, 0.0, start);
+    set_joint_value(scene.joints[0], 0.5, start);
+    start = with_closed_joints(scene, start);
+  }
+};
+
+/// Largest distance of a body from where its joint is closed, and largest angle [m], [rad].
+double widest_opening(const Scene& scene, const Poses& poses) {
+  double most = widest_joint(scene, poses);
+  for (const Joint& joint : scene.joints)
+    most = std::max(most, std::abs(closed_child(joint, poses).theta -
+                                   poses[static_cast<std::size_t>(joint.child)].theta));
+  return most;
+}
+
+TEST(Joints, ADrawerSlidesInUntilItsLimit) {
+  const Drawer drawer;
+  const Poses newton = NewtonSimulator(drawer.scene, kPush, kPhysics).push(drawer.start, 36).end;
+  const Poses box2d = Box2dSimulator(drawer.scene, kPush, kPhysics).push(drawer.start, 36).end;
+  for (const Poses& end : {newton, box2d}) {
+    EXPECT_NEAR(joint_value(drawer.scene.joints[0], end), 0.0, 0.02);
+    EXPECT_LT(widest_opening(drawer.scene, end), 2e-3);
+    EXPECT_EQ(end[4], drawer.start[4]);
+  }
+  EXPECT_LT(widest_opening(drawer.scene, newton), 1e-14);
+  EXPECT_NEAR(newton[0].y, box2d[0].y, 0.05);
+}
+
+// The robot comes from the right and pushes the block that slides on the drawer.
+TEST(Joints, ABlockSlidesOnTheDrawerThatHoldsIt) {
+  Drawer drawer;
+  drawer.scene.joints[2].lower = -1.0;
+  drawer.start[0] = {3.9, 0.9, 0.0};
+  const Poses newton = NewtonSimulator(drawer.scene, kPush, kPhysics).push(drawer.start, 24).end;
+  const Poses box2d = Box2dSimulator(drawer.scene, kPush, kPhysics).push(drawer.start, 24).end;
+  const double far = joint_value(drawer.scene.joints[2], box2d);
+  EXPECT_LT(far, -0.2);
+  EXPECT_NEAR(joint_value(drawer.scene.joints[2], newton), far, 0.05);
+  for (const Poses& end : {newton, box2d}) EXPECT_LT(widest_opening(drawer.scene, end), 2e-3);
+}
+
 // Links that are jammed between each other and a wall never come to rest.
 TEST(Joints, LinksThatDoNotComeToRestAreReported) {
   Scene scene = testing::robot_and_chain();

@@ -184,6 +184,20 @@ TEST_F(NaiveReverseTest, WhatHangsOnAFixedBodyIsNotPulled) {
   EXPECT_EQ(solve().status, SolveStatus::kInfeasible);
 }
 
+TEST_F(NaiveReverseTest, WhatSlidesOnAFixedBodyMovesAlongItsAxis) {
+  add(box(1, 1), {2.1, 0.5, 0.0});
+  add(box(1, 1), {3.3, 0.5, 0.0}, true);
+  scene.joints.push_back({2, 1, {-1.2, 0.0}, {0.0, 0.0}});
+  scene.joints[0].type = JointType::kPrismatic;
+  scene.joints[0].axis = Vector2d(0.6, 0.8);
+  const ReverseResult result = solve();
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  for (const Poses& start : result.predecessors) {
+    EXPECT_LT(joint_gap(scene.joints[0], start), 1e-12);
+    EXPECT_LT(joint_value(scene.joints[0], start), -0.1);
+  }
+}
+
 TEST_F(NaiveReverseTest, AnswersWithFiniteStartsOfAllBodiesOrNone) {
   Rng rng(41);
   add(box(1, 1), {});

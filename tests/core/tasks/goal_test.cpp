@@ -117,8 +117,8 @@ TEST(Goal, SampledAnglesKeepToLimitsBeyondHalfATurn) {
   for (int draw = 0; draw < 20; ++draw) {
     const Poses poses = sample_goal(task, rng).value();
     for (const Joint& joint : task.scene.joints) {
-      EXPECT_GE(joint_angle(joint, poses), 4.0 - 1e-6);
-      EXPECT_LE(joint_angle(joint, poses), 5.5 + 1e-6);
+      EXPECT_GE(joint_value(joint, poses), 4.0 - 1e-6);
+      EXPECT_LE(joint_value(joint, poses), 5.5 + 1e-6);
     }
   }
 }

@@ -56,6 +56,30 @@ TEST(Scene, RootFirstListsJointsAfterThoseOfTheirParents) {
   EXPECT_EQ(root_first(linked()), (std::vector<std::size_t>{1, 2, 0}));
 }
 
+TEST(Scene, AJointTakesTheValueItIsGiven) {
+  Joint joint{0, 1, {1.0, 0.5}, {-0.3, 0.2}};
+  joint.axis = Vector2d(0.6, 0.8);
+  joint.angle = 0.7;
+  for (const JointType type : {JointType::kRevolute, JointType::kPrismatic, JointType::kFixed}) {
+    joint.type = type;
+    Poses poses{{1, 2, 0.5}, {7, 7, -1.0}};
+    set_joint_value(joint, 1.3, poses);
+    EXPECT_NEAR(joint_value(joint, poses), type == JointType::kFixed ? 0.0 : 1.3, 1e-14);
+    EXPECT_LT(joint_gap(joint, poses), 1e-14);
+    EXPECT_NEAR(poses[1].theta, type == JointType::kRevolute ? 1.8 : 1.2, 1e-15);
+    const Vector2d pin = type == JointType::kPrismatic ? Vector2d(1.78, 1.54) : Vector2d(1.0, 0.5);
+    EXPECT_LT((to_world(poses[1], joint.on_child) - to_world(poses[0], pin)).norm(), 1e-14);
+  }
+}
+
+// A child off its axis goes to the nearest place on it.
+TEST(Scene, AClosedSliderKeepsItsPlaceAlongTheAxis) {
+  Joint joint{0, 1, {0.0, 1.0}, {0.0, 0.0}, -1.0, 1.0, JointType::kPrismatic};
+  const Poses poses{{0, 0, 0}, {2.5, 4.0, 0.3}};
+  EXPECT_EQ(closed_child(joint, poses), (Pose{2.5, 1.0, 0.0}));
+  EXPECT_EQ(joint_gap(joint, poses), 3.0);
+}
+
 TEST(Scene, ClosedJointsLeaveRootsAndAnglesAlone) {
   const Poses poses{{0, 5, 0}, {9, 9, 0.3}, {1, 2, 0.5}, {7, 7, -1.0}, {-4, 0, 2.0}};
   const Poses closed = with_closed_joints(linked(), poses);

@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 30> kTokens{
     "> ", "1e999", ".nan", "-1", "0",  "\t",    "\xff", "\\",     "true", "%YAML 1.2\n"};
 
 /// Settings of every kind of value.
-constexpr std::array<std::string_view, 19> kSettings{
+constexpr std::array<std::string_view, 22> kSettings{
     "search.breadth=32",
     "search.whole_plan_share=0.125",
     "search.generator=naive",
@@ -41,7 +41,10 @@ constexpr std::array<std::string_view, 19> kSettings{
     "task.goal.0={kind: '*', half_plane: {normal: [0, 1], offset: -1}}",
     "task.goal.0={centroid: box, disc: {centre: [0, 2], radius: 1}}",
     "task.joints=[{parent: a, child: b, on_parent: [-3, 0], on_child: [3, 0], limits: [-1, 1]}]",
-    "task.goal.0={joint: '*', angles: [0.2, 0.8]}"};
+    "task.goal.0={joint: '*', angles: [0.2, 0.8]}",
+    "task.joints=[{parent: a, child: b, type: prismatic, axis: [1, 2], limits: [-1, 1]}]",
+    "task.joints=[{parent: b, child: a, type: fixed}]",
+    "task.goal.0={joint: '*', slides: [0.2, 0.8]}"};
 
 std::size_t place(const std::string& text, Rng& rng) {
   return static_cast<std::size_t>(rng.below(static_cast<int>(text.size()) + 1));

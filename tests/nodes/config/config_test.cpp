@@ -240,6 +240,22 @@ TEST(Config, RangesOfStartsReadBackToTheSameBits) {
   EXPECT_TRUE(parsed("").task.start_ranges.empty());
 }
 
+TEST(Config, AChainOnABodyWithARangeReadsBackToTheSameBits) {
+  for (const std::string joint :
+       {"on_parent: [-3, 0], on_child: [3, 0]", "type: prismatic, axis: [1, 2], limits: [-1, 1]",
+        "type: fixed"}) {
+    const Config config =
+        parsed("", {"task.bodies.1.start={x: [2, 4], y: 0.3, theta: [-2.1, 0.3]}",
+                    "task.bodies.2.start=[-0.72966, 4.99996, -0.9]",
+                    "task.joints=[{parent: a, child: b, " + joint + "}]",
+                    "task.goal.0={kind: box, half_plane: {normal: [0, 1], offset: -1}}"});
+    EXPECT_LT(joint_gap(config.task.scene.joints[0], config.task.start), 1e-5);
+    const Config again = parse_config(canonical_yaml(config), "canonical.yaml");
+    expect_same_task(again.task, config.task);
+    EXPECT_EQ(config_hash(again), config_hash(config));
+  }
+}
+
 TEST(Config, RoundingStaysWithinThePolygonAndGrowingAddsToIt) {
   const auto shape = [](const std::string& words) {
     return parsed("", {"task.bodies.1.shape={box: [1.2, 1.0], " + words + "}"})

@@ -117,7 +117,7 @@ FREE = SimpleNamespace(joints=[])
 
 def test_what_joints_connect_moves_together():
     before, after = np.zeros((3, 3)), np.array([[2.0, 0, 0], [0.5, 0, 0], [0.0, 0, 0.4]])
-    chain = SimpleNamespace(joints=[(1, 2, np.zeros(2))])
+    chain = SimpleNamespace(joints=[(1, 2, [np.zeros(2)])])
     assert interpolate(chain, before, after, 0.5)[2].tolist() == [0.0, 0.0, 0.0]
     assert np.allclose(interpolate(chain, before, after, 0.875)[2], [0.0, 0.0, 0.2])
 
@@ -126,7 +126,7 @@ def test_a_chain_moves_together_whatever_the_order_of_its_joints():
     before, after = np.zeros((5, 3)), np.zeros((5, 3))
     after[0, 0], after[1, 0], after[2:, 2] = 2.0, 0.5, 0.4
     for joints in ([(1, 2), (2, 3), (3, 4)], [(3, 4), (2, 3), (1, 2)]):
-        chain = SimpleNamespace(joints=[(*pair, np.zeros(2)) for pair in joints])
+        chain = SimpleNamespace(joints=[(*pair, [np.zeros(2)]) for pair in joints])
         late = interpolate(chain, before, after, 0.875)
         assert np.allclose(late[1:], after[1:] / 2)
 

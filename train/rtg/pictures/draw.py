@@ -59,8 +59,8 @@ class TaskLike(Protocol):
     @property
     def fixed(self) -> Sequence[bool]: ...
     @property
-    def joints(self) -> Sequence[tuple[int, int, Floats]]:
-        """The joints: (parent, child, pin in the frame of the parent)."""
+    def joints(self) -> Sequence[tuple[int, int, Sequence[Floats]]]:
+        """The joints: (parent, child, pin or ends of the axis in the frame of the parent)."""
 
     @property
     def goal_marks(self) -> Sequence[MarkLike]: ...
@@ -227,16 +227,21 @@ def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
 
 
 def draw_joints(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
-    """Draws a pin at each joint, and a cross at each mean centre that the goal constrains.
+    """Draws pins and axes of joints, and a cross at each mean centre that the goal constrains.
 
-    A pin has the colour GOAL if the goal constrains the joint angle and the angle complies.
+    A pin has the colour GOAL if the goal constrains the joint's value and the value complies.
     poses [bodies, 3]
     """
     reached = task.joints_reached(poses[None])
-    for (parent, _, pin), right in zip(task.joints, reached, strict=True):
-        at = outline(np.asarray(pin).reshape(1, 2), poses[parent])[0]
-        canvas.dot(at, INK, 0.24)
-        canvas.dot(at, GOAL if right else PAPER, 0.17)
+    for (parent, child, points), right in zip(task.joints, reached, strict=True):
+        if not points:
+            continue
+        at = outline(np.asarray(points), poses[parent])
+        if len(points) == 2:
+            canvas.line(at, INK, 0.06)
+        pin = at[0] if len(points) == 1 else poses[child][:2]
+        canvas.dot(pin, INK, 0.24)
+        canvas.dot(pin, GOAL if right else PAPER, 0.17)
     for x, y in task.centroids(poses[None]):
         canvas.line([(x - 0.25, y), (x + 0.25, y)], INK, 0.09)
         canvas.line([(x, y - 0.25), (x, y + 0.25)], INK, 0.09)

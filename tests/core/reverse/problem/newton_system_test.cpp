@@ -161,8 +161,8 @@ TEST(NewtonSystem, ObjectiveSlopeMatchesDifferences) {
   const Disturbed at(8);
   const Linearisation lin(at.problem, at.x, {});
   const Direction d = lin.direction(solution_of(lin), true);
-  const double t = 1e-6,
-               slope = lin.newton().objective_slope(lin.trajectory(), lin.step(solution_of(lin)));
+  const double t = 1e-6, slope = lin.newton().objective_slope(lin.lanes(), lin.trajectory(),
+                                                              lin.step(solution_of(lin)));
   EXPECT_NEAR((objective(at.problem, moved(at.problem, at.x, d, t)) -
                objective(at.problem, moved(at.problem, at.x, d, -t))) /
                   (2.0 * t),
