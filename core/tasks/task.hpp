@@ -6,6 +6,7 @@
 
 #include "core/math/rng.hpp"
 #include "core/tasks/goal.hpp"
+#include "core/tasks/units.hpp"
 #include "core/world/push.hpp"
 
 namespace rtg::tasks {
@@ -22,6 +23,7 @@ struct StartRange {
 /// the reward is 0.
 struct Task {
   std::string name;
+  Units units;  // of all lengths and densities here; they are written as [m] and [kg/m²] below
   Scene scene;
   Poses start;                                          // nominal start state
   std::vector<std::optional<StartRange>> start_ranges;  // per body, of those without a fixed place
@@ -39,9 +41,9 @@ struct Task {
     v.integer("horizon", horizon, 1, 100000, "largest number of pushes in an episode");
     v.number("discount", discount, 0.01, 0.9999,
              "discount factor of the reward per push, if train.discount is 0");
-    v.number("start_jitter", start_jitter, 0.0, 10.0,
+    v.length("start_jitter", start_jitter, 0.0, 10.0,
              "largest x, y shift of objects in evaluation/search starts [m]");
-    v.number("randomisation", randomisation, 0.0, 10.0,
+    v.length("randomisation", randomisation, 0.0, 10.0,
              "domain randomisation (randomise): largest x, y object shift [m]");
   }
 };

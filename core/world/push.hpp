@@ -16,8 +16,8 @@ struct PushConfig {
   template <class Visitor>
   void visit(Visitor& v) {
     v.integer("headings", headings, 1, 360, "number of push directions");
-    v.number("stride", stride, 0.01, 100.0, "length of one push [m]");
-    v.number("arena", arena, 0.1, 1000.0, "half width of the square the robot stays in [m]");
+    v.length("stride", stride, 0.01, 100.0, "length of one push [m]");
+    v.length("arena", arena, 0.1, 1000.0, "half width of the square the robot stays in [m]");
   }
 };
 

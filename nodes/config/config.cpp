@@ -108,8 +108,10 @@ ConfigNode& section_of(ConfigNode& root, std::string_view name, const std::strin
 }
 
 template <class Section>
-void read_section(const ConfigNode& root, const std::string& name, Section& config) {
-  if (const ConfigEntry* section = find(root, name)) read_fields(section->value, name, config);
+void read_section(const ConfigNode& root, const std::string& name, Section& config,
+                  const tasks::Units& units = {}) {
+  if (const ConfigEntry* section = find(root, name))
+    read_fields(section->value, name, config, units);
 }
 
 /// Adds the settings of the run's method for all keys that are not given.
@@ -129,10 +131,10 @@ void apply_method(ConfigNode& root) {
 /// Reads section `name`. Its field `preset` determines the values of the fields that are not given.
 template <class Section, class Preset>
 void read_preset_section(const ConfigNode& root, const std::string& name, Section (*values)(Preset),
-                         Section& config) {
-  read_section(root, name, config);
+                         Section& config, const tasks::Units& units = {}) {
+  read_section(root, name, config, units);
   config = values(config.preset);
-  read_section(root, name, config);
+  read_section(root, name, config, units);
 }
 
 void check_physics(const ConfigNode& root, const PhysicsConfig& physics) {
@@ -181,7 +183,7 @@ ConfigNode tree_of(const Config& config) {
   root.entries.push_back({"forward", "", fields_of(config.forward)});
   root.entries.push_back({"reverse", "", fields_of(config.reverse)});
   root.entries.push_back({"search", "", fields_of(config.search)});
-  root.entries.push_back({"train", "", fields_of(config.train)});
+  root.entries.push_back({"train", "", fields_of(config.train, config.task.units)});
   root.entries.push_back({"run", "", fields_of(config.run)});
   return root;
 }
@@ -207,7 +209,7 @@ Config read_config(const ConfigNode& root) {
   read_section(root, "forward", config.forward);
   read_preset_section(root, "reverse", reverse::reverse_preset, config.reverse);
   read_section(root, "search", config.search);
-  read_preset_section(root, "train", train_preset, config.train);
+  read_preset_section(root, "train", train_preset, config.train, config.task.units);
   read_section(root, "run", config.run);
   check_physics(root, config.physics);
   check_inertia(root, config);
@@ -265,6 +267,7 @@ std::int64_t config_hash(const Config& config) {
 std::int64_t task_hash(tasks::Task task) {
   const tasks::Task neutral;
   task.name = "task";
+  task.units = {};
   task.horizon = neutral.horizon;
   task.discount = neutral.discount;
   task.start_jitter = neutral.start_jitter;

@@ -34,14 +34,15 @@ Vector2d extent(const Shape& shape) {
   return high - low;
 }
 
-std::string shape_in_words(const Shape& shape) {
+std::string shape_in_words(const Shape& shape, double metre) {
   const std::vector<Part>& parts = shape.parts();
-  if (parts.size() == 1 && parts[0].is_disc()) return print("disc, radius %.2f m", shape.radius());
-  const Vector2d size = extent(shape);
+  if (parts.size() == 1 && parts[0].is_disc())
+    return print("disc, radius %.3g m", metre * shape.radius());
+  const Vector2d size = metre * extent(shape);
   std::string form = print("%zu corners", parts[0].core.size());
   if (parts[0].radius > 0.0) form = print("%zu round corners", parts[0].core.size());
   if (parts.size() > 1) form = print("%zu convex parts", parts.size());
-  return form + print(", %.2f x %.2f m", size.x(), size.y());
+  return form + print(", %.3g x %.3g m", size.x(), size.y());
 }
 
 std::string half_plane_in_words(const Vector2d& normal, double offset) {
@@ -60,27 +61,32 @@ std::string lengths_in_words(double least, double most) {
   return print("from %.4g to %.4g m", least, most);
 }
 
-std::string region_in_words(const tasks::Region& region) {
+std::string region_in_words(const tasks::Region& region, double metre) {
   if (const auto* disc = std::get_if<tasks::Disc>(&region))
-    return print("within %.4g m of (%.4g, %.4g)", disc->radius, disc->centre.x(), disc->centre.y());
+    return print("within %.4g m of (%.4g, %.4g)", metre * disc->radius, metre * disc->centre.x(),
+                 metre * disc->centre.y());
   if (const auto* half = std::get_if<tasks::HalfPlane>(&region))
-    return "at " + half_plane_in_words(half->normal, half->offset);
+    return "at " + half_plane_in_words(half->normal, metre * half->offset);
   std::string out = "in the polygon";
   for (const Vector2d& v : std::get<Polygon>(region).vertices)
-    out += print(" (%.4g, %.4g)", v.x(), v.y());
+    out += print(" (%.4g, %.4g)", metre * v.x(), metre * v.y());
   return out;
 }
 
-std::string range_in_words(const tasks::StartRange& range) {
-  return region_in_words(range.region) + ", " + angles_in_words(range.least, range.most);
+std::string range_in_words(const tasks::StartRange& range, double metre) {
+  return region_in_words(range.region, metre) + ", " + angles_in_words(range.least, range.most);
 }
 
-std::string body_line(const Body& body, const Pose& start, std::size_t width) {
-  const std::string mass = body.fixed ? "fixed" : print("%.3g kg", mass_of(body).mass);
-  return print("  %-*s  %-8s  %s  %9s  friction %.2f  at (%.2f, %.2f), %.1f deg\n",
+std::string body_line(const tasks::Task& task, std::size_t i, std::size_t width) {
+  const Body& body = task.scene.bodies[i];
+  const Pose& start = task.start[i];
+  const double metre = task.units.length,
+               mass = mass_of(body).mass * task.units.density * metre * metre;
+  const std::string weight = body.fixed ? "fixed" : print("%.3g kg", mass);
+  return print("  %-*s  %-8s  %s  %9s  friction %.2f  at (%.3g, %.3g), %.1f deg\n",
                static_cast<int>(width), body.name.c_str(), body.kind.c_str(),
-               shape_in_words(body.shape).c_str(), mass.c_str(), body.friction, start.x, start.y,
-               degrees(start.theta));
+               shape_in_words(body.shape, metre).c_str(), weight.c_str(), body.friction,
+               metre * start.x, metre * start.y, degrees(start.theta));
 }
 
 std::string bodies_in_words(const tasks::Task& task) {
@@ -88,35 +94,36 @@ std::string bodies_in_words(const tasks::Task& task) {
   for (const Body& body : task.scene.bodies) width = std::max(width, body.name.size());
   std::string out = "bodies, the first is the robot\n";
   for (std::size_t i = 0; i < task.scene.size(); ++i) {
-    out += body_line(task.scene.bodies[i], task.start[i], width);
+    out += body_line(task, i, width);
     if (!task.start_ranges.empty() && task.start_ranges[i])
-      out += "    or anywhere " + range_in_words(*task.start_ranges[i]) + '\n';
+      out += "    or anywhere " + range_in_words(*task.start_ranges[i], task.units.length) + '\n';
   }
   return out;
 }
 
-std::string joint_line(const Joint& joint, const Scene& scene) {
-  const auto name = [&scene](int body) {
-    return scene.bodies[static_cast<std::size_t>(body)].name;
+std::string joint_line(const Joint& joint, const tasks::Task& task) {
+  const auto name = [&task](int body) {
+    return task.scene.bodies[static_cast<std::size_t>(body)].name;
   };
   const std::string ends = "  '" + name(joint.child) + "' on '" + name(joint.parent) + "', ";
   if (joint.type == JointType::kFixed) return ends + "fixed\n";
   const bool limited = std::isfinite(joint.lower);
   if (joint.type == JointType::kRevolute)
     return ends + (limited ? angles_in_words(joint.lower, joint.upper) : "any angle") + '\n';
+  const double metre = task.units.length;
   return ends + print("slides along (%.4g, %.4g)", joint.axis.x(), joint.axis.y()) +
-         (limited ? ' ' + lengths_in_words(joint.lower, joint.upper) : "") + '\n';
+         (limited ? ' ' + lengths_in_words(metre * joint.lower, metre * joint.upper) : "") + '\n';
 }
 
-std::string joints_in_words(const Scene& scene) {
-  if (scene.joints.empty()) return "";
+std::string joints_in_words(const tasks::Task& task) {
+  if (task.scene.joints.empty()) return "";
   std::string out = "joints\n";
-  for (const Joint& joint : scene.joints) out += joint_line(joint, scene);
+  for (const Joint& joint : task.scene.joints) out += joint_line(joint, task);
   return out;
 }
 
-std::string pose_in_words(const Pose& pose) {
-  return print("(%.4g, %.4g) at %.4g deg", pose.x, pose.y, degrees(pose.theta));
+std::string pose_in_words(const Pose& pose, double metre) {
+  return print("(%.4g, %.4g) at %.4g deg", metre * pose.x, metre * pose.y, degrees(pose.theta));
 }
 
 std::string kind_in_words(const std::string& kind, const char* all) {
@@ -125,39 +132,44 @@ std::string kind_in_words(const std::string& kind, const char* all) {
 
 /// Says what a condition asks of its subject.
 struct ConditionWords {
+  double metre;
+
   std::string operator()(const tasks::CentreIn& c) const {
-    return "lies " + region_in_words(c.region);
+    return "lies " + region_in_words(c.region, metre);
   }
   std::string operator()(const tasks::MeanIn& c) const {
-    return "lies " + region_in_words(c.region);
+    return "lies " + region_in_words(c.region, metre);
   }
   std::string operator()(const tasks::AngleIn& c) const {
     return "has an angle " + angles_in_words(c.least, c.most);
   }
   std::string operator()(const tasks::JointIn& c) const {
-    return c.type == JointType::kPrismatic ? "is out " + lengths_in_words(c.least, c.most)
-                                           : "has an angle " + angles_in_words(c.least, c.most);
+    return c.type == JointType::kPrismatic
+               ? "is out " + lengths_in_words(metre * c.least, metre * c.most)
+               : "has an angle " + angles_in_words(c.least, c.most);
   }
   std::string operator()(const tasks::PoseNear& c) const {
-    return print("is within %.4g m and %.4g deg of ", c.distance, degrees(c.turn)) +
-           pose_in_words(c.pose);
+    return print("is within %.4g m and %.4g deg of ", metre * c.distance, degrees(c.turn)) +
+           pose_in_words(c.pose, metre);
   }
   std::string operator()(const tasks::Covers& c) const {
-    return print("covers %.4g%% of its outline at ", 100.0 * c.share) + pose_in_words(c.pose);
+    return print("covers %.4g%% of its outline at ", 100.0 * c.share) +
+           pose_in_words(c.pose, metre);
   }
   std::string operator()(const tasks::Touches& c) const {
-    return print("is at most %.4g m away from another ", c.gap) + kind_in_words(c.other, "object");
+    return print("is at most %.4g m away from another ", metre * c.gap) +
+           kind_in_words(c.other, "object");
   }
   std::string operator()(const tasks::KeepsFrom& c) const {
-    return print("is at least %.4g m away from every other ", c.gap) +
+    return print("is at least %.4g m away from every other ", metre * c.gap) +
            kind_in_words(c.other, "object");
   }
   std::string operator()(const tasks::Stays& c) const {
-    return print("has its centre within %.4g m of its place above", c.distance);
+    return print("has its centre within %.4g m of its place above", metre * c.distance);
   }
 };
 
-std::string term_in_words(const tasks::GoalTerm& term) {
+std::string term_in_words(const tasks::GoalTerm& term, double metre) {
   std::string every = term.negated ? "  no " : "  every ";
   if (std::holds_alternative<tasks::CentreIn>(term.condition)) every.insert(2, "the centre of ");
   std::string who;
@@ -170,23 +182,24 @@ std::string term_in_words(const tasks::GoalTerm& term) {
           kind_in_words(term.kind, "movable objects");
   else
     who = every + kind_in_words(term.kind, "movable object");
-  return who + ' ' + std::visit(ConditionWords{}, term.condition) + '\n';
+  return who + ' ' + std::visit(ConditionWords{metre}, term.condition) + '\n';
 }
 
 std::string task_in_words(const Config& config) {
   const tasks::Task& task = config.task;
-  std::string out = "task " + task.name + "\n" + bodies_in_words(task) +
-                    joints_in_words(task.scene) + "goal, all of\n";
-  for (const tasks::GoalTerm& term : task.goal) out += term_in_words(term);
+  const double metre = task.units.length;
+  std::string out =
+      "task " + task.name + "\n" + bodies_in_words(task) + joints_in_words(task) + "goal, all of\n";
+  for (const tasks::GoalTerm& term : task.goal) out += term_in_words(term, metre);
   const PushConfig& push = task.push;
   out += print(
       "actions\n  %d headings, %.4g degrees apart; a push is %.4g m straight ahead, "
       "within |x|, |y| <= %.4g m\n",
-      push.headings, 360.0 / push.headings, push.stride, push.arena);
+      push.headings, 360.0 / push.headings, metre * push.stride, metre * push.arena);
   out += print("episodes\n  at most %d pushes, observation of %d numbers\n", task.horizon,
                observation_size(task));
   out += print("  objects start within %.4g m of the layout above (training: %.4g m)\n",
-               config.evaluation_jitter(), config.training_jitter());
+               metre * config.evaluation_jitter(), metre * config.training_jitter());
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -58,6 +59,17 @@ std::optional<Number> spelled(const ConfigNode& node, std::errc& error) {
   return value;
 }
 
+/// Returns the number that a scalar holds; infinite if it is out of range of numbers.
+double read_number(const ConfigNode& node, const std::string& path, const std::string& legal) {
+  std::errc error{};
+  const std::optional<double> read = spelled<double>(node, error);
+  if (!read || std::isnan(*read))
+    throw ConfigError(node.origin, path, in_words(node) + " is not a number", legal);
+  if (error == std::errc::result_out_of_range)
+    throw ConfigError(node.origin, path, node.scalar + " is out of range", legal);
+  return *read;
+}
+
 template <class Number>
 std::string shortest(Number number) {
   char buffer[32];
@@ -70,8 +82,8 @@ std::string shortest(Number number) {
 }  // namespace
 
 FieldReader::FieldReader(const ConfigNode& section, std::string path,
-                         std::span<const std::string> keys)
-    : section_(section), path_(std::move(path)) {
+                         std::span<const std::string> keys, const tasks::Units& units)
+    : section_(section), path_(std::move(path)), units_(units) {
   if (section.kind != Kind::kMap)
     throw ConfigError(section.origin, path_, in_words(section) + " is not a mapping",
                       "a mapping with keys among " + listed(keys));
@@ -84,6 +96,11 @@ FieldReader::FieldReader(const ConfigNode& section, std::string path,
 void FieldReader::number(const char* key, double& value, double least, double most, const char*) {
   if (const ConfigEntry* entry = find(section_, key))
     value = read_number(entry->value, path(key), least, most);
+}
+
+void FieldReader::length(const char* key, double& value, double least, double most, const char*) {
+  if (const ConfigEntry* entry = find(section_, key))
+    value = read_length(entry->value, path(key), least, most, units_);
 }
 
 void FieldReader::integer(const char* key, int& value, int least, int most, const char*) {
@@ -140,8 +157,8 @@ const ConfigEntry& FieldReader::required(const char* key, const std::string& leg
   throw ConfigError(section_.origin, path(key), "is missing", legal);
 }
 
-std::vector<double> FieldReader::numbers(const char* key, std::size_t count, double least,
-                                         double most, const std::string& legal) const {
+const std::vector<ConfigNode>& FieldReader::items(const char* key, std::size_t count,
+                                                  const std::string& legal) const {
   const ConfigNode& node = required(key, legal).value;
   if (node.kind != Kind::kList || node.items.size() != count)
     throw ConfigError(node.origin, path(key),
@@ -149,21 +166,77 @@ std::vector<double> FieldReader::numbers(const char* key, std::size_t count, dou
                           ? "has " + std::to_string(node.items.size()) + " entries"
                           : in_words(node) + " is not a list",
                       legal);
+  return node.items;
+}
+
+std::vector<double> FieldReader::numbers(const char* key, std::size_t count, double least,
+                                         double most, const std::string& legal) const {
   std::vector<double> out;
-  for (const ConfigNode& item : node.items)
+  for (const ConfigNode& item : items(key, count, legal))
     out.push_back(read_number(item, path(key), least, most));
   return out;
 }
 
+std::vector<double> FieldReader::lengths(const char* key, std::size_t count, double least,
+                                         double most, const std::string& legal) const {
+  std::vector<double> out;
+  for (const ConfigNode& item : items(key, count, legal))
+    out.push_back(read_length(item, path(key), least, most, units_));
+  return out;
+}
+
+Pose FieldReader::pose(const char* key, double most, const std::string& legal) const {
+  const std::vector<ConfigNode>& entries = items(key, 3, legal);
+  return {read_length(entries[0], path(key), -most, most, units_),
+          read_length(entries[1], path(key), -most, most, units_),
+          read_number(entries[2], path(key), -most, most)};
+}
+
 double read_number(const ConfigNode& node, const std::string& path, double least, double most) {
   const std::string legal = range_text("a number", number_text(least), number_text(most));
-  std::errc error{};
-  const std::optional<double> read = spelled<double>(node, error);
-  if (!read || std::isnan(*read))
-    throw ConfigError(node.origin, path, in_words(node) + " is not a number", legal);
-  if (error == std::errc::result_out_of_range || *read < least || *read > most)
+  const double number = read_number(node, path, legal);
+  if (number < least || number > most)
     throw ConfigError(node.origin, path, node.scalar + " is out of range", legal);
-  return *read;
+  return number;
+}
+
+double read_length(const ConfigNode& node, const std::string& path, double least, double most,
+                   const tasks::Units& units) {
+  const std::string legal =
+      range_text("a number", length_text(least, units), length_text(most, units));
+  const double metres = read_number(node, path, legal);
+  const double length = units.length_of(metres);
+  if (length < least || length > most)
+    throw ConfigError(node.origin, path, node.scalar + " is out of range", legal);
+  return length;
+}
+
+std::string shortest_text(double number, const std::function<bool(double)>& is_right) {
+  char buffer[32];
+  for (int digits = 1; digits <= std::numeric_limits<double>::digits10; ++digits) {
+    const auto [end, code] = std::to_chars(buffer, buffer + sizeof buffer, number,
+                                           std::chars_format::scientific, digits - 1);
+    double read = 0.0;
+    std::from_chars(buffer, end, read);
+    if (is_right(read)) return number_text(read);
+  }
+  return number_text(number);
+}
+
+std::string length_text(double x, const tasks::Units& units) {
+  return shortest_text(x * units.length,
+                       [&](double metres) { return units.length_of(metres) == x; });
+}
+
+std::string single_length_text(double x, const tasks::Units& units) {
+  return shortest_text(x * units.length, [&](double metres) {
+    return static_cast<float>(units.length_of(metres)) == static_cast<float>(x);
+  });
+}
+
+std::string density_text(double x, const tasks::Units& units) {
+  return shortest_text(x * units.density,
+                       [&](double given) { return units.density_of(given) == x; });
 }
 
 std::string number_text(double number) { return shortest(number); }

@@ -17,6 +17,12 @@ void FieldWriter::number(const char* key, double value, double least, double mos
   add(key, number_text(value), false, with_range(doc, number_text(least), number_text(most)));
 }
 
+void FieldWriter::length(const char* key, double value, double least, double most,
+                         const char* doc) {
+  add(key, length_text(value, units_), false,
+      with_range(doc, length_text(least, units_), length_text(most, units_)));
+}
+
 void FieldWriter::integer(const char* key, int value, int least, int most, const char* doc) {
   add(key, std::to_string(value), false,
       with_range(doc, std::to_string(least), std::to_string(most)));

@@ -13,8 +13,11 @@ namespace rtg::config {
 /// Visitor that writes the fields of a struct into a mapping, with the legal values in comments.
 class FieldWriter {
  public:
+  explicit FieldWriter(const tasks::Units& units = {}) : units_(units) {}
+
   ConfigNode section = map_node();
 
+  void length(const char* key, double value, double least, double most, const char* doc);
   void number(const char* key, double value, double least, double most, const char* doc);
   void integer(const char* key, int value, int least, int most, const char* doc);
   void flag(const char* key, bool value, const char* doc);
@@ -30,12 +33,15 @@ class FieldWriter {
  private:
   static std::string joined(std::span<const std::string_view> names);
   void add(const char* key, std::string value, bool quoted, std::string comment);
+
+  tasks::Units units_;
 };
 
-/// Returns the fields of `config`, as listed by config.visit(), as a mapping.
+/// Returns the fields of `config`, as listed by config.visit(), as a mapping. `units`: those of its
+/// lengths.
 template <class Section>
-ConfigNode fields_of(Section config) {
-  FieldWriter writer;
+ConfigNode fields_of(Section config, const tasks::Units& units = {}) {
+  FieldWriter writer(units);
   config.visit(writer);
   return std::move(writer.section);
 }
@@ -43,10 +49,11 @@ ConfigNode fields_of(Section config) {
 /// Reads the fields of `config`, as listed by config.visit(), from `section`. `path`: dotted key of
 /// the section. Fields that are not given keep their values.
 template <class Section>
-void read_fields(const ConfigNode& section, const std::string& path, Section& config) {
+void read_fields(const ConfigNode& section, const std::string& path, Section& config,
+                 const tasks::Units& units = {}) {
   std::vector<std::string> keys;
   for (const ConfigEntry& field : fields_of(config).entries) keys.push_back(field.key);
-  FieldReader reader(section, path, keys);
+  FieldReader reader(section, path, keys, units);
   config.visit(reader);
 }
 

@@ -14,7 +14,8 @@ namespace {
 
 using namespace tasks;
 
-constexpr double kLeastLength = 0.01;  // least tolerance of a length [m]
+constexpr double kLeastLength = 0.01;  // least tolerance of a length
+constexpr double kLeastGap = 0.03;     // bodies that touch rest up to 0.02 apart
 constexpr double kLeastTurn = 0.01;    // least tolerance of an angle [rad]
 
 const std::vector<std::string> kSubjects{"kind", "centroid", "joint"};
@@ -29,20 +30,25 @@ const std::string kTermLegal =
     "one of the conditions disc, half_plane, box, polygon (of a kind or a centroid), angle, pose, "
     "covers, touching, apart, stays (of a kind), angles or slides (of a joint)";
 
-Pose pose_at(const FieldReader& reader, const char* key) {
-  const auto pose = reader.numbers(key, 3, -kMaxPlace, kMaxPlace, "[x, y, theta] in m and rad");
-  return {pose[0], pose[1], pose[2]};
+const std::string kPoseLegal = "[x, y, theta] in m and rad";
+
+std::string metres(double length, const FieldReader& reader) {
+  return length_text(length, reader.units());
 }
 
 PoseNear read_pose(const FieldReader& reader) {
-  const std::string legal = "[distance, turn] in m and rad, 0.01 or more each";
-  const auto within = reader.numbers("within", 2, kLeastLength, kMaxPlace, legal);
-  return {pose_at(reader, "pose"), within[0], within[1]};
+  const std::string legal = "[distance, turn] in m and rad, " + metres(kLeastLength, reader) +
+                            " m and " + number_text(kLeastTurn) + " rad or more";
+  const std::vector<ConfigNode>& within = reader.items("within", 2, legal);
+  const std::string path = reader.path("within");
+  return {reader.pose("pose", kMaxPlace, kPoseLegal),
+          read_length(within[0], path, kLeastLength, kMaxPlace, reader.units()),
+          read_number(within[1], path, kLeastTurn, kMaxPlace)};
 }
 
-Covers read_covers(const ConfigNode& section, const std::string& path) {
-  FieldReader reader(section, path, kCoversKeys);
-  Covers covers{pose_at(reader, "at"), 0.0};
+Covers read_covers(const ConfigNode& section, const std::string& path, const Units& units) {
+  FieldReader reader(section, path, kCoversKeys, units);
+  Covers covers{reader.pose("at", kMaxPlace, kPoseLegal), 0.0};
   reader.required("share", "a number from 0.01 to 0.99");
   reader.number("share", covers.share, 0.01, 0.99);
   return covers;
@@ -50,8 +56,9 @@ Covers read_covers(const ConfigNode& section, const std::string& path) {
 
 double gap_at(FieldReader& reader) {
   double gap = 0.0;
-  reader.required("gap", "a number from 0.03 to 1000.0 [m]");
-  reader.number("gap", gap, 0.03, kMaxPlace);  // bodies that touch rest up to 0.02 apart
+  reader.required("gap", "a number from " + metres(kLeastGap, reader) + " to " +
+                             metres(kMaxPlace, reader) + " [m]");
+  reader.length("gap", gap, kLeastGap, kMaxPlace);
   return gap;
 }
 
@@ -75,12 +82,12 @@ Condition read_condition(FieldReader& reader, const ConfigEntry& entry, bool of_
     return JointIn{range[0], range[1], JointType::kPrismatic};
   }
   if (key == "pose") return read_pose(reader);
-  if (key == "covers") return read_covers(entry.value, reader.path(key));
+  if (key == "covers") return read_covers(entry.value, reader.path(key), reader.units());
   if (key == "touching") return Touches{other_kind(reader, "touching"), gap_at(reader)};
   if (key == "apart") return KeepsFrom{other_kind(reader, "apart"), gap_at(reader)};
   if (key == "stays") {
     Stays stays;
-    reader.number("stays", stays.distance, kLeastLength, kMaxPlace);
+    reader.length("stays", stays.distance, kLeastLength, kMaxPlace);
     return stays;
   }
   Region region = read_region(reader, entry);
@@ -127,47 +134,49 @@ void check_keys(const ConfigNode& section, const std::string& path, const std::s
           std::string(key) == "gap" ? "gap with touching or apart" : "within with pose");
 }
 
-ConfigNode pose_node(const Pose& pose) { return numbers_node({pose.x, pose.y, pose.theta}); }
-
 /// Writers of the entries of a condition.
 struct ConditionWriter {
   std::vector<ConfigEntry>& to;
+  const Units& units;
 
-  void operator()(const CentreIn& c) const { to.push_back(region_entry(c.region)); }
-  void operator()(const MeanIn& c) const { to.push_back(region_entry(c.region)); }
+  void operator()(const CentreIn& c) const { to.push_back(region_entry(c.region, units)); }
+  void operator()(const MeanIn& c) const { to.push_back(region_entry(c.region, units)); }
   void operator()(const AngleIn& c) const {
-    to.push_back({"angle", "", point_node({c.least, c.most})});
+    to.push_back({"angle", "", numbers_node({c.least, c.most})});
   }
   void operator()(const JointIn& c) const {
-    to.push_back(
-        {c.type == JointType::kPrismatic ? "slides" : "angles", "", point_node({c.least, c.most})});
+    if (c.type == JointType::kPrismatic)
+      to.push_back({"slides", "", lengths_node({c.least, c.most}, units)});
+    else
+      to.push_back({"angles", "", numbers_node({c.least, c.most})});
   }
   void operator()(const PoseNear& c) const {
-    to.push_back({"pose", "", pose_node(c.pose)});
-    to.push_back({"within", "", point_node({c.distance, c.turn})});
+    to.push_back({"pose", "", pose_node(c.pose, units)});
+    to.push_back({"within", "",
+                  list_node({length_node(c.distance, units), token_node(number_text(c.turn))})});
   }
   void operator()(const Covers& c) const {
     to.push_back({"covers", "",
-                  mapping({{"at", "", pose_node(c.pose)},
+                  mapping({{"at", "", pose_node(c.pose, units)},
                            {"share", "", token_node(number_text(c.share))}})});
   }
   void operator()(const Touches& c) const { add_gap("touching", c.other, c.gap); }
   void operator()(const KeepsFrom& c) const { add_gap("apart", c.other, c.gap); }
   void operator()(const Stays& c) const {
-    to.push_back({"stays", "", token_node(number_text(c.distance))});
+    to.push_back({"stays", "", length_node(c.distance, units)});
   }
 
  private:
   void add_gap(const char* key, const std::string& other, double gap) const {
     to.push_back({key, "", text_node(other)});
-    to.push_back({"gap", "", token_node(number_text(gap))});
+    to.push_back({"gap", "", length_node(gap, units)});
   }
 };
 
 }  // namespace
 
-GoalTerm read_term(const ConfigNode& section, const std::string& path) {
-  FieldReader reader(section, path, kTermKeys);
+GoalTerm read_term(const ConfigNode& section, const std::string& path, const Units& units) {
+  FieldReader reader(section, path, kTermKeys, units);
   const ConfigEntry* subject = only_of(section, kSubjects, path);
   const ConfigEntry* condition = only_of(section, kConditions, path);
   if (!condition) throw ConfigError(section.origin, path, "has no condition", kTermLegal);
@@ -183,13 +192,13 @@ GoalTerm read_term(const ConfigNode& section, const std::string& path) {
   return term;
 }
 
-ConfigNode term_node(const GoalTerm& term) {
+ConfigNode term_node(const GoalTerm& term, const Units& units) {
   ConfigNode node = map_node();
   const char* subject = std::holds_alternative<JointIn>(term.condition)  ? "joint"
                         : std::holds_alternative<MeanIn>(term.condition) ? "centroid"
                                                                          : "kind";
   node.entries.push_back({subject, "", text_node(term.kind)});
-  std::visit(ConditionWriter{node.entries}, term.condition);
+  std::visit(ConditionWriter{node.entries, units}, term.condition);
   if (term.negated) node.entries.push_back({"not", "", token_node("true")});
   return node;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/tasks/goal.hpp"
+#include "core/tasks/units.hpp"
 #include "nodes/config/config_tree.hpp"
 
 namespace rtg::config {
@@ -18,12 +19,13 @@ namespace rtg::config {
 ///                    touching: kind, apart: kind, with gap: g
 ///                    stays: r
 ///   centroid: k      the first four
-///   joint: child     angles: [least, most]
+///   joint: child     angles: [least, most], slides: [least, most]
 ///
 /// Throws ConfigError if it is not legal.
-tasks::GoalTerm read_term(const ConfigNode& section, const std::string& path);
+tasks::GoalTerm read_term(const ConfigNode& section, const std::string& path,
+                          const tasks::Units& units);
 
 /// Converts `term` to a section, from which read_term() reads it back.
-ConfigNode term_node(const tasks::GoalTerm& term);
+ConfigNode term_node(const tasks::GoalTerm& term, const tasks::Units& units);
 
 }  // namespace rtg::config

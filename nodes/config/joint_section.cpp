@@ -13,8 +13,8 @@
 namespace rtg::config {
 namespace {
 
-constexpr double kOffPin = 1e-3;    // largest legal gap of a joint in a start state [m]
-constexpr double kRounding = 1e-5;  // rounding error of values in single precision [rad], [m]
+constexpr double kOffPin = 1e-3;    // largest legal gap of a joint in a start state
+constexpr double kRounding = 1e-5;  // rounding error of values in single precision
 constexpr double kLeastAxis = 1e-3;
 constexpr double kUnitLength = 1e-12;  // an axis of this length, about 1, stays as it is
 
@@ -50,7 +50,7 @@ JointType read_type(const FieldReader& reader) {
 }
 
 Vector2d read_axis(const FieldReader& reader) {
-  const Vector2d axis = point_at(reader, "axis");
+  const Vector2d axis = direction_at(reader, "axis");
   const double length = axis.norm();
   if (length < kLeastAxis)
     throw ConfigError(reader.required("axis", "").value.origin, reader.path("axis"),
@@ -106,11 +106,12 @@ void check_start(const tasks::Task& task, const ConfigNode& section) {
           to_world(task.start[static_cast<std::size_t>(joint.parent)], joint.on_parent);
       const Vector2d at = pin - rotate(task.start[child].theta, joint.on_child);
       fail_at(section, k, "on_child",
-              "is " + number_text(std::round(1e4 * gap) / 1e4) +
+              "is " + length_text(std::round(1e4 * gap) / 1e4, task.units) +
                   " m away from on_parent in the start state",
               "'" + task.scene.bodies[child].name + "' at [" +
-                  single_text(static_cast<float>(at.x())) + ", " +
-                  single_text(static_cast<float>(at.y())) + "] in the start state, within 0.001 m");
+                  single_length_text(at.x(), task.units) + ", " +
+                  single_length_text(at.y(), task.units) + "] in the start state, within " +
+                  length_text(kOffPin, task.units) + " m");
     }
     const double value = joint_value(joint, task.start);
     const bool slides = joint.type == JointType::kPrismatic;
@@ -119,7 +120,9 @@ void check_start(const tasks::Task& task, const ConfigNode& section) {
       fail_at(section, k, "limits",
               (slides ? "exclude the joint's place in the start state, "
                       : "exclude the joint's angle in the start state, ") +
-                  single_text(static_cast<float>(value)) + ' ' + unit,
+                  (slides ? single_length_text(value, task.units)
+                          : single_text(static_cast<float>(value))) +
+                  ' ' + unit,
               "[least, most] in " + unit + " that include it");
   }
 }
@@ -127,7 +130,7 @@ void check_start(const tasks::Task& task, const ConfigNode& section) {
 }  // namespace
 
 Joint read_joint(const ConfigNode& section, const std::string& path, const tasks::Task& task) {
-  const FieldReader reader(section, path, kJointKeys);
+  const FieldReader reader(section, path, kJointKeys, task.units);
   Joint joint;
   joint.parent = read_body_name(reader, "parent", task.scene);
   joint.child = read_body_name(reader, "child", task.scene);
@@ -152,22 +155,25 @@ Joint read_joint(const ConfigNode& section, const std::string& path, const tasks
   return joint;
 }
 
-ConfigNode joint_node(const Joint& joint, const Scene& scene) {
-  const auto name = [&scene](int body) {
-    return text_node(scene.bodies[static_cast<std::size_t>(body)].name);
+ConfigNode joint_node(const Joint& joint, const tasks::Task& task) {
+  const auto name = [&task](int body) {
+    return text_node(task.scene.bodies[static_cast<std::size_t>(body)].name);
   };
   ConfigNode node = map_node();
   node.entries.push_back({"parent", "", name(joint.parent)});
   node.entries.push_back({"child", "", name(joint.child)});
   node.entries.push_back({"type", "", text_node(type_name(joint.type))});
   if (joint.type == JointType::kRevolute) {
-    node.entries.push_back({"on_parent", "", point_node(joint.on_parent)});
-    node.entries.push_back({"on_child", "", point_node(joint.on_child)});
+    node.entries.push_back({"on_parent", "", point_node(joint.on_parent, task.units)});
+    node.entries.push_back({"on_child", "", point_node(joint.on_child, task.units)});
   }
   if (joint.type == JointType::kPrismatic)
-    node.entries.push_back({"axis", "", point_node(joint.axis)});
+    node.entries.push_back({"axis", "", numbers_node({joint.axis.x(), joint.axis.y()})});
+  const std::vector<double> limits{joint.lower, joint.upper};
   if (std::isfinite(joint.lower))
-    node.entries.push_back({"limits", "", point_node({joint.lower, joint.upper})});
+    node.entries.push_back({"limits", "",
+                            joint.type == JointType::kPrismatic ? lengths_node(limits, task.units)
+                                                                : numbers_node(limits)});
   return node;
 }
 

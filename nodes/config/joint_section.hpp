@@ -9,8 +9,8 @@ namespace rtg::config {
 /// of a prismatic joint is 0 in task.start. Throws ConfigError if it is not legal.
 Joint read_joint(const ConfigNode& section, const std::string& path, const tasks::Task& task);
 
-/// Converts `joint` to a section, from which read_joint() reads it back.
-ConfigNode joint_node(const Joint& joint, const Scene& scene);
+/// Converts a joint of `task` to a section, from which read_joint() reads it back.
+ConfigNode joint_node(const Joint& joint, const tasks::Task& task);
 
 /// Moves the children of all joints in task.start so that the joints close in single precision.
 /// `section`: the section `task`, for messages. Throws ConfigError if

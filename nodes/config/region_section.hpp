@@ -17,6 +17,6 @@ namespace rtg::config {
 tasks::Region read_region(const FieldReader& reader, const ConfigEntry& entry);
 
 /// Converts `region` to an entry, from which read_region() reads it back. A box becomes a polygon.
-ConfigEntry region_entry(const tasks::Region& region);
+ConfigEntry region_entry(const tasks::Region& region, const tasks::Units& units);
 
 }  // namespace rtg::config

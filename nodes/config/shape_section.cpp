@@ -16,12 +16,14 @@
 namespace rtg::config {
 namespace {
 
+using tasks::Units;
 using Kind = ConfigNode::Kind;
 
-constexpr double kMaxSize = 1000.0;      // largest length or coordinate [m]
-constexpr double kMinSize = 0.005;       // smallest length [m]
-constexpr double kMaxRadius = 100.0;     // largest bounding radius [m]
-constexpr double kCentredWithin = 1e-9;  // rounding error of the centroid / bounding radius
+// In units of the task.
+constexpr double kMaxSize = 1000.0;      // largest length or coordinate
+constexpr double kMinSize = 0.005;       // smallest length
+constexpr double kMaxRadius = 100.0;     // largest bounding radius
+constexpr double kCentredWithin = 1e-9;  // rounding error of the centroid / (1 + bounding radius)
 constexpr std::size_t kMaxRing = 64;     // vertices of a simple polygon
 constexpr std::size_t kMaxParts = 16;
 
@@ -34,8 +36,23 @@ const std::vector<std::string> kRegularKeys{"sides", "radius"};
 const std::string kShapeLegal =
     "{box: [width, height]}, {regular: {sides: 3 to 8, radius: m}}, {vertices: [[x, y], ...]}, "
     "{disc: radius} or {parts: [...]}";
-const std::string kVerticesLegal =
-    "a simple polygon of 3 to 64 vertices [x, y], counter-clockwise, within 100 m of its centre";
+const std::string kVerticesLegal = "a simple polygon of 3 to 64 vertices [x, y], counter-clockwise";
+
+std::string metres(double length, const Units& units) { return length_text(length, units) + " m"; }
+
+bool is_off_centre(const Shape& shape) {
+  return shape.moments().centroid.norm() > kCentredWithin * (1.0 + shape.radius());
+}
+
+/// Returns the shape with its numbers rounded, so that its text reads back to the bit.
+Shape on_grid(const Shape& shape) {
+  std::vector<Part> parts = shape.parts();
+  for (Part& part : parts) {
+    for (Vector2d& v : part.core.vertices) v = config::on_grid(v);
+    part.radius = Units::rounded(part.radius);
+  }
+  return Shape(std::move(parts));
+}
 
 /// Throws ConfigError if `defect` is one.
 void refuse(const std::optional<std::string>& defect, const std::string& origin,
@@ -44,35 +61,38 @@ void refuse(const std::optional<std::string>& defect, const std::string& origin,
 }
 
 Polygon read_box(const FieldReader& reader) {
-  const auto size = reader.numbers("box", 2, kMinSize, kMaxSize, "[width, height] in m");
+  const auto size = reader.lengths("box", 2, kMinSize, kMaxSize, "[width, height] in m");
   return box(size[0], size[1]);
 }
 
-Polygon read_regular(const ConfigNode& section, const std::string& path) {
-  FieldReader reader(section, path, kRegularKeys);
+Polygon read_regular(const ConfigNode& section, const std::string& path, const Units& units) {
+  FieldReader reader(section, path, kRegularKeys, units);
   int sides = 0;
   double radius = 0.0;
   reader.required("sides", "an integer from 3 to 8");
   reader.required("radius", "the distance of the corners from the centre [m]");
   reader.integer("sides", sides, 3, static_cast<int>(kMaxVertices));
-  reader.number("radius", radius, kMinSize, kMaxSize);
+  reader.length("radius", radius, kMinSize, kMaxSize);
   return regular_polygon(sides, radius);
 }
 
-std::vector<Vector2d> read_ring(const ConfigNode& list, const std::string& path) {
-  std::vector<Vector2d> ring = points_of(list, path, kVerticesLegal);
+std::vector<Vector2d> read_ring(const ConfigNode& list, const std::string& path,
+                                const Units& units) {
+  std::vector<Vector2d> ring = points_of(list, path, kVerticesLegal, units);
   if (ring.size() < 3 || ring.size() > kMaxRing)
     refuse("has " + std::to_string(ring.size()) + " vertices", list.origin, path);
   return ring;
 }
 
 /// Reads a simple polygon, as one convex polygon or several.
-std::vector<Polygon> read_vertices(const ConfigNode& list, const std::string& path) {
-  const std::vector<Vector2d> ring = read_ring(list, path);
+std::vector<Polygon> read_vertices(const ConfigNode& list, const std::string& path,
+                                   const Units& units) {
+  const std::vector<Vector2d> ring = read_ring(list, path, units);
   if (!polygon_defect(ring)) return {Polygon{ring}};
   for (std::size_t k = 0; k < ring.size(); ++k)
     if ((ring[(k + 1) % ring.size()] - ring[k]).norm() < kMinSize)
-      refuse("edge at vertex " + std::to_string(k) + " is shorter than 0.005 m", list.origin, path);
+      refuse("edge at vertex " + std::to_string(k) + " is shorter than " + metres(kMinSize, units),
+             list.origin, path);
   if (const std::optional<std::string> defect = ring_defect(ring))
     refuse("is not simple: " + *defect, list.origin, path);
   if (area_integrals(ring).area < 0.0)
@@ -88,14 +108,15 @@ std::vector<Polygon> read_vertices(const ConfigNode& list, const std::string& pa
 /// Returns the polygon whose edges lie `radius` within those of `polygon`. Throws ConfigError if it
 /// is too narrow for that.
 Polygon inset(const Polygon& polygon, double radius, const ConfigNode& node,
-              const std::string& path) {
+              const std::string& path, const Units& units) {
   Polygon core = offset_polygon(polygon, -radius);
   for (std::size_t k = 0; k < core.size(); ++k) {
     const std::size_t next = (k + 1) % core.size();
     const Vector2d edge = polygon.vertices[next] - polygon.vertices[k];
     if (edge.dot(core.vertices[next] - core.vertices[k]) < kMinSize * edge.norm())
-      throw ConfigError(node.origin, path, number_text(radius) + " rounds off a whole edge",
-                        "a radius that leaves 0.005 m of each edge straight");
+      throw ConfigError(
+          node.origin, path, length_text(radius, units) + " rounds off a whole edge",
+          "a radius that leaves " + metres(kMinSize, units) + " of each edge straight");
   }
   return core;
 }
@@ -127,12 +148,13 @@ std::vector<Part> read_simple(const FieldReader& reader, const ConfigEntry& form
     throw ConfigError(margin->value.origin, reader.path(margin->key),
                       form.key == "disc" ? "a disc has no corners" : "is given beside 'grown'",
                       "one of rounding, grown, at a polygon");
-  if (form.key == "disc") return {disc(read_number(value, path, kMinSize, kMaxRadius))};
+  if (form.key == "disc")
+    return {disc(read_length(value, path, kMinSize, kMaxRadius, reader.units()))};
   std::vector<Polygon> pieces;
   if (form.key == "vertices")
-    pieces = read_vertices(value, path);
+    pieces = read_vertices(value, path, reader.units());
   else
-    pieces = {form.key == "box" ? read_box(reader) : read_regular(value, path)};
+    pieces = {form.key == "box" ? read_box(reader) : read_regular(value, path, reader.units())};
   for (const Polygon& piece : pieces) refuse(polygon_defect(piece.vertices), value.origin, path);
   if (!margin) {
     std::vector<Part> parts;
@@ -143,30 +165,33 @@ std::vector<Part> read_simple(const FieldReader& reader, const ConfigEntry& form
   if (pieces.size() > 1)
     throw ConfigError(margin->value.origin, margin_path, "the polygon is not convex",
                       "convex polygons only; parts of a shape may have it");
-  const double radius = read_number(margin->value, margin_path, kMinSize, kMaxRadius);
-  if (rounding) return {{inset(pieces[0], radius, margin->value, margin_path), radius}};
+  const double radius =
+      read_length(margin->value, margin_path, kMinSize, kMaxRadius, reader.units());
+  if (rounding)
+    return {{inset(pieces[0], radius, margin->value, margin_path, reader.units()), radius}};
   return {{std::move(pieces[0]), radius}};
 }
 
 /// Reads a part of a shape, in the frame of the shape.
-std::vector<Part> read_part(const ConfigNode& section, const std::string& path) {
-  const FieldReader reader(section, path, kPartKeys);
+std::vector<Part> read_part(const ConfigNode& section, const std::string& path,
+                            const Units& units) {
+  const FieldReader reader(section, path, kPartKeys, units);
   std::vector<Part> parts = read_simple(reader, form_of(section, path));
   const ConfigEntry* at = find(section, "at");
   if (!at) return parts;
-  const std::size_t count = at->value.kind == Kind::kList && at->value.items.size() == 2 ? 2 : 3;
-  const auto where =
-      reader.numbers("at", count, -kMaxSize, kMaxSize, "[x, y] or [x, y, theta] in m and rad");
-  return placed(std::move(parts), count == 3 ? where[2] : 0.0, {where[0], where[1]});
+  if (at->value.kind == Kind::kList && at->value.items.size() == 2)
+    return placed(std::move(parts), 0.0, point_at(reader, "at"));
+  const Pose where = reader.pose("at", kMaxSize, "[x, y] or [x, y, theta] in m and rad");
+  return placed(std::move(parts), where.theta, where.position());
 }
 
-std::vector<Part> read_parts(const ConfigNode& list, const std::string& path) {
+std::vector<Part> read_parts(const ConfigNode& list, const std::string& path, const Units& units) {
   const std::string legal = "a list of 1 to 16 parts";
   if (list.kind != Kind::kList)
     throw ConfigError(list.origin, path, in_words(list) + " is not a list", legal);
   std::vector<Part> parts;
   for (std::size_t n = 0; n < list.items.size(); ++n)
-    for (Part& part : read_part(list.items[n], path + '.' + std::to_string(n)))
+    for (Part& part : read_part(list.items[n], path + '.' + std::to_string(n), units))
       parts.push_back(std::move(part));
   if (parts.empty() || parts.size() > kMaxParts)
     throw ConfigError(list.origin, path, "has " + std::to_string(parts.size()) + " convex parts",
@@ -178,62 +203,64 @@ std::vector<Part> read_parts(const ConfigNode& list, const std::string& path) {
 }
 
 /// Returns the section of a polygon as that of a shape or of a part.
-ConfigEntry polygon_entry(const Polygon& polygon) {
+ConfigEntry polygon_entry(const Polygon& polygon, const Units& units) {
   const double width = 2.0 * polygon.vertices[0].x(), height = 2.0 * polygon.vertices[0].y();
-  if (polygon == box(-width, -height))
-    return {"box", "",
-            list_node({token_node(number_text(-width)), token_node(number_text(-height))})};
+  if (polygon == box(-width, -height)) return {"box", "", lengths_node({-width, -height}, units)};
   const int sides = static_cast<int>(polygon.size());
   const double radius = polygon.vertices[0].x();
   if (polygon == regular_polygon(sides, radius)) {
     ConfigNode keys = map_node();
     keys.entries.push_back({"sides", "", token_node(std::to_string(sides))});
-    keys.entries.push_back({"radius", "", token_node(number_text(radius))});
+    keys.entries.push_back({"radius", "", length_node(radius, units)});
     return {"regular", "", std::move(keys)};
   }
   std::vector<ConfigNode> vertices;
-  for (const Vector2d& v : polygon.vertices) vertices.push_back(point_node(v));
+  for (const Vector2d& v : polygon.vertices) vertices.push_back(point_node(v, units));
   return {"vertices", "", list_node(std::move(vertices))};
 }
 
-ConfigNode part_node(const Part& part) {
+ConfigNode part_node(const Part& part, const Units& units) {
   ConfigNode node = map_node();
-  const ConfigNode radius = token_node(number_text(part.radius));
+  const ConfigNode radius = length_node(part.radius, units);
   if (part.is_disc()) {
     const Vector2d& centre = part.core.vertices[0];
     node.entries.push_back({"disc", "", radius});
-    if (!centre.isZero(0.0)) node.entries.push_back({"at", "", point_node(centre)});
+    if (!centre.isZero(0.0)) node.entries.push_back({"at", "", point_node(centre, units)});
     return node;
   }
-  node.entries.push_back(polygon_entry(part.core));
+  node.entries.push_back(polygon_entry(part.core, units));
   if (part.radius > 0.0) node.entries.push_back({"grown", "", radius});
   return node;
 }
 
 }  // namespace
 
-Shape read_shape(const ConfigNode& section, const std::string& path) {
+Shape read_shape(const ConfigNode& section, const std::string& path, const Units& units) {
   if (section.kind != Kind::kMap)
     throw ConfigError(section.origin, path, in_words(section) + " is not a mapping", kShapeLegal);
-  const FieldReader reader(section, path, kShapeKeys);
+  const FieldReader reader(section, path, kShapeKeys, units);
   const ConfigEntry& form = form_of(section, path);
   const bool compound = form.key == "parts";
   for (const char* key : {"rounding", "grown"})
     if (const ConfigEntry* margin = find(section, key); margin && compound)
       throw ConfigError(margin->value.origin, reader.path(key), "is given beside parts",
                         "the key in the parts");
-  Shape shape(compound ? read_parts(form.value, reader.path(form.key)) : read_simple(reader, form));
-  if (shape.moments().centroid.norm() > kCentredWithin * shape.radius()) shape = shape.centred();
+  Shape shape(compound ? read_parts(form.value, reader.path(form.key), units)
+                       : read_simple(reader, form));
+  if (is_off_centre(shape)) shape = shape.centred();
+  if (form.key != "regular" || find(section, "rounding")) shape = on_grid(shape);
   if (shape.radius() > kMaxRadius)
-    refuse("reaches " + std::to_string(std::lround(shape.radius())) + " m from its centre",
-           form.value.origin, path, "a shape within 100 m of its centre");
+    refuse("reaches " + std::to_string(std::lround(shape.radius() * units.length)) +
+               " m from its centre",
+           form.value.origin, path,
+           "a shape within " + metres(kMaxRadius, units) + " of its centre");
   return shape;
 }
 
-ConfigNode shape_node(const Shape& shape) {
-  if (shape.parts().size() == 1) return part_node(shape.parts()[0]);
+ConfigNode shape_node(const Shape& shape, const Units& units) {
+  if (shape.parts().size() == 1) return part_node(shape.parts()[0], units);
   std::vector<ConfigNode> parts;
-  for (const Part& part : shape.parts()) parts.push_back(part_node(part));
+  for (const Part& part : shape.parts()) parts.push_back(part_node(part, units));
   ConfigNode node = map_node();
   node.entries.push_back({"parts", "", list_node(std::move(parts))});
   return node;

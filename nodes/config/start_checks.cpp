@@ -41,9 +41,10 @@ void check_jitters(const Config& config, const ConfigNode& root) {
     if (!allows_jitter(config.task, amplitude))
       throw ConfigError(
           origin_of(root, section, key), std::string(section) + '.' + key,
-          "with objects shifted by up to " + number_text(amplitude) +
+          "with objects shifted by up to " + length_text(amplitude, config.task.units) +
               " m too few starts are legal (no overlaps, objects in the arena, goal not met)",
-          "at most " + number_text(legal_amplitude(config.task, amplitude)) + " with these bodies");
+          "at most " + length_text(legal_amplitude(config.task, amplitude), config.task.units) +
+              " with these bodies");
 }
 
 }  // namespace rtg::config

@@ -13,9 +13,10 @@
 namespace rtg::config {
 namespace {
 
+using tasks::Units;
 using Kind = ConfigNode::Kind;
 
-constexpr double kThin = 1e-6;  // least side of a range of places [m]
+constexpr double kThin = 1e-6;  // least side of a range of places
 
 const std::vector<std::string> kRangeKeys{"x", "y", "theta"};
 const std::vector<std::string> kInKeys{"in", "theta"};
@@ -24,19 +25,33 @@ const std::string kStartLegal =
     "[x, y, theta] in m and rad, {x: a, y: b, theta: c} with ranges [least, most] in the place of "
     "numbers, or {in: {disc, box or polygon}, theta: [least, most]}";
 
-/// Reads a number, or a range of numbers.
-std::pair<double, double> range_at(const FieldReader& reader, const char* key) {
-  const ConfigNode& node = reader.required(key, "a number or [least, most]").value;
+/// Reads a value, or a range of values, by read(node).
+template <class Read>
+std::pair<double, double> range_at(const FieldReader& reader, const char* key, Read read) {
+  const std::string legal = "a number or [least, most]";
+  const ConfigNode& node = reader.required(key, legal).value;
   if (node.kind != Kind::kList) {
-    const double number = read_number(node, reader.path(key), -kMaxPlace, kMaxPlace);
-    return {number, number};
+    const double value = read(node);
+    return {value, value};
   }
-  const auto range = reader.numbers(key, 2, -kMaxPlace, kMaxPlace, "a number or [least, most]");
-  if (range[0] > range[1])
-    throw ConfigError(node.origin, reader.path(key),
-                      number_text(range[0]) + " is above " + number_text(range[1]),
+  const std::vector<ConfigNode>& ends = reader.items(key, 2, legal);
+  const std::pair range{read(ends[0]), read(ends[1])};
+  if (range.first > range.second)
+    throw ConfigError(node.origin, reader.path(key), ends[0].scalar + " is above " + ends[1].scalar,
                       "[least, most] with least at most most");
-  return {range[0], range[1]};
+  return range;
+}
+
+std::pair<double, double> lengths_of(const FieldReader& reader, const char* key) {
+  return range_at(reader, key, [&](const ConfigNode& node) {
+    return read_length(node, reader.path(key), -kMaxPlace, kMaxPlace, reader.units());
+  });
+}
+
+std::pair<double, double> angles_of(const FieldReader& reader, const char* key) {
+  return range_at(reader, key, [&](const ConfigNode& node) {
+    return read_number(node, reader.path(key), -kMaxPlace, kMaxPlace);
+  });
 }
 
 Polygon rectangle(std::pair<double, double> x, std::pair<double, double> y) {
@@ -55,29 +70,24 @@ Start middle_of(tasks::StartRange range) {
   return {to_single({sum.x(), sum.y(), (range.least + range.most) / 2.0}), std::move(range)};
 }
 
-Start read_region_start(const ConfigNode& section, const std::string& path) {
-  const FieldReader reader(section, path, kInKeys);
+Start read_region_start(const ConfigNode& section, const std::string& path, const Units& units) {
+  const FieldReader reader(section, path, kInKeys, units);
   const ConfigNode& in = reader.required("in", "{disc, box or polygon}").value;
-  const FieldReader region(in, reader.path("in"), kRegions);
+  const FieldReader region(in, reader.path("in"), kRegions, units);
   if (in.entries.size() != 1)
     throw ConfigError(in.origin, reader.path("in"),
                       "has " + std::to_string(in.entries.size()) + " regions",
                       "one of " + listed(kRegions));
   std::pair angles{-std::numbers::pi, std::numbers::pi};
-  if (find(section, "theta")) angles = range_at(reader, "theta");
+  if (find(section, "theta")) angles = angles_of(reader, "theta");
   return middle_of({read_region(region, in.entries[0]), angles.first, angles.second});
 }
 
-Start read_box_start(const ConfigNode& section, const std::string& path) {
-  const FieldReader reader(section, path, kRangeKeys);
-  const auto x = range_at(reader, "x"), y = range_at(reader, "y"),
-             theta = range_at(reader, "theta");
+Start read_box_start(const ConfigNode& section, const std::string& path, const Units& units) {
+  const FieldReader reader(section, path, kRangeKeys, units);
+  const auto x = lengths_of(reader, "x"), y = lengths_of(reader, "y"),
+             theta = angles_of(reader, "theta");
   return middle_of({rectangle(x, y), theta.first, theta.second});
-}
-
-/// Returns a node with the shortest number that single precision reads back as `single`.
-ConfigNode single_node(double single) {
-  return token_node(single_text(static_cast<float>(single)));
 }
 
 }  // namespace
@@ -86,22 +96,26 @@ Start read_start(const FieldReader& body) {
   const ConfigNode& node = body.required("start", kStartLegal).value;
   const std::string path = body.path("start");
   if (node.kind == Kind::kMap)
-    return find(node, "in") ? read_region_start(node, path) : read_box_start(node, path);
-  const auto pose = body.numbers("start", 3, -kMaxPlace, kMaxPlace, kStartLegal);
-  return {to_single({pose[0], pose[1], pose[2]}), std::nullopt};
+    return find(node, "in") ? read_region_start(node, path, body.units())
+                            : read_box_start(node, path, body.units());
+  return {to_single(body.pose("start", kMaxPlace, kStartLegal)), std::nullopt};
 }
 
-ConfigNode start_node(const Pose& pose, const std::optional<tasks::StartRange>& range) {
-  if (!range) return list_node({single_node(pose.x), single_node(pose.y), single_node(pose.theta)});
+ConfigNode start_node(const Pose& pose, const std::optional<tasks::StartRange>& range,
+                      const Units& units) {
+  if (!range)
+    return list_node({token_node(single_length_text(pose.x, units)),
+                      token_node(single_length_text(pose.y, units)),
+                      token_node(single_text(static_cast<float>(pose.theta)))});
   if (const auto* polygon = std::get_if<Polygon>(&range->region); polygon && polygon->size() == 4) {
     const Vector2d &low = polygon->vertices[0], &high = polygon->vertices[2];
     const std::pair x{low.x(), high.x()}, y{low.y(), high.y()};
     if (*polygon == rectangle(x, y))
-      return mapping({{"x", "", numbers_node({x.first, x.second})},
-                      {"y", "", numbers_node({y.first, y.second})},
+      return mapping({{"x", "", lengths_node({x.first, x.second}, units)},
+                      {"y", "", lengths_node({y.first, y.second}, units)},
                       {"theta", "", numbers_node({range->least, range->most})}});
   }
-  return mapping({{"in", "", mapping({region_entry(range->region)})},
+  return mapping({{"in", "", mapping({region_entry(range->region, units)})},
                   {"theta", "", numbers_node({range->least, range->most})}});
 }
 
@@ -122,8 +136,9 @@ void draw_nominal_start(tasks::Task& task, const ConfigNode& section) {
   } catch (const std::invalid_argument&) {
     throw ConfigError(find(section, "bodies")->value.origin, "task.bodies",
                       "of 1000 states drawn from the starts none is legal",
-                      "starts in which bodies often lie 0.02 m apart, in the arena, with the goal "
-                      "not met");
+                      "starts in which bodies often lie " +
+                          length_text(tasks::kStartClearance, task.units) +
+                          " m apart, in the arena, with the goal not met");
   }
 }
 

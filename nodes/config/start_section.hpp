@@ -25,7 +25,8 @@ struct Start {
 Start read_start(const FieldReader& body);
 
 /// Converts a start to a value, from which read_start() reads it back.
-ConfigNode start_node(const Pose& pose, const std::optional<tasks::StartRange>& range);
+ConfigNode start_node(const Pose& pose, const std::optional<tasks::StartRange>& range,
+                      const tasks::Units& units);
 
 /// Draws task.start from the ranges, if there are any; always the same state. Throws ConfigError if
 /// 1000 draws are not legal. `section`: that of the task, for messages.

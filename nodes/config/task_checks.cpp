@@ -34,7 +34,7 @@ void check_movable(const tasks::Task& task, const ConfigNode& section) {
 }
 
 void check_start(const tasks::Task& task, const ConfigNode& section) {
-  const std::string arena = number_text(task.push.arena);
+  const std::string arena = length_text(task.push.arena, task.units);
   for (std::size_t i = 0; i < task.scene.size(); ++i) {
     const Body& body = task.scene.bodies[i];
     if (body.fixed) continue;
@@ -51,7 +51,7 @@ void check_start(const tasks::Task& task, const ConfigNode& section) {
                                   task.scene.bodies[b].shape, task.start[b]);
     fail_at(section, b, "start",
             (gap < 0.0 ? "overlaps '" : "is too close to '") + task.scene.bodies[a].name + "'",
-            "bodies at least 0.02 m apart");
+            "bodies at least " + length_text(tasks::kStartClearance, task.units) + " m apart");
   }
 }
 
@@ -164,7 +164,7 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
   for (const char* key : {"angles", "slides"})
     if (const ConfigEntry* range = find(node, key))
       for (const Joint& joint : task.scene.joints) check_joint(term, joint, task, *range, path);
-  const std::string arena = number_text(task.push.arena);
+  const std::string arena = length_text(task.push.arena, task.units);
   if (!meets_arena(term, task.push.arena))
     throw ConfigError(node.origin, path, "lies outside the arena",
                       "a region that contains a point with x and y from -" + arena + " to " +
@@ -196,7 +196,8 @@ void check_goal(const tasks::Task& task, const ConfigNode& section) {
     throw ConfigError(
         origin, "task.goal",
         "no layout of the bodies that meets the goal was found; " + main_reason(refusals),
-        "terms that all objects can meet at once, with a margin of 0.05 m and 0.05 rad");
+        "terms that all objects can meet at once, with a margin of " +
+            length_text(tasks::kGoalSpare, task.units) + " m and 0.05 rad");
 }
 
 }  // namespace

@@ -14,27 +14,37 @@
 #include "nodes/config/start_section.hpp"
 #include "nodes/config/task_checks.hpp"
 #include "nodes/config/task_words.hpp"
+#include "nodes/config/units_section.hpp"
 
 namespace rtg::config {
 namespace {
 
+using tasks::Units;
 using Kind = ConfigNode::Kind;
 
 constexpr std::size_t kMaxBodies = 32;
 constexpr std::size_t kMaxTerms = 32;
+constexpr double kLeastDensity = 1e-3, kMostDensity = 1e3;  // as a multiple of the robot's
 
 const std::vector<std::string> kBodyKeys{"name",     "kind",  "shape", "density",
                                          "friction", "fixed", "start"};
 
+double read_density(FieldReader& reader, const Units& units) {
+  double density = 1.0;
+  reader.number("density", density, kLeastDensity * units.density, kMostDensity * units.density);
+  return units.density_of(density);
+}
+
 /// Reads a body and adds its start to those of the task.
 Body read_body(const ConfigNode& section, const std::string& path, tasks::Task& task) {
-  FieldReader reader(section, path, kBodyKeys);
+  FieldReader reader(section, path, kBodyKeys, task.units);
   Body body;
   body.name = name_at(reader, "name", kNameLegal);
   body.kind = name_at(reader, "kind", kNameLegal);
   const std::string shape_legal = "box, regular, vertices, disc or parts";
-  body.shape = read_shape(reader.required("shape", shape_legal).value, reader.path("shape"));
-  reader.number("density", body.density, 1e-3, 1e3);
+  body.shape =
+      read_shape(reader.required("shape", shape_legal).value, reader.path("shape"), task.units);
+  body.density = read_density(reader, task.units);
   reader.number("friction", body.friction, 0.0, 10.0);
   reader.flag("fixed", body.fixed);
   Start start = read_start(reader);
@@ -69,24 +79,27 @@ ConfigNode body_node(const tasks::Task& task, std::size_t i) {
   };
   add("name", text_node(body.name));
   add("kind", text_node(body.kind));
-  add("shape", shape_node(body.shape));
-  add("density", token_node(number_text(body.density)));
+  add("shape", shape_node(body.shape, task.units));
+  add("density", token_node(i == 0 ? number_text(task.units.density)
+                                   : density_text(body.density, task.units)));
   add("friction", token_node(number_text(body.friction)));
   add("fixed", token_node(body.fixed ? "true" : "false"));
   add("start", start_node((ranges ? task.layout : task.start)[i],
-                          ranges ? task.start_ranges[i] : std::nullopt));
+                          ranges ? task.start_ranges[i] : std::nullopt, task.units));
   return node;
 }
 
 }  // namespace
 
 tasks::Task read_task(const ConfigNode& section) {
-  std::vector<std::string> keys{"name", "bodies", "joints", "goal", "push"};
+  std::vector<std::string> keys{"name", "scale", "bodies", "joints", "goal", "push"};
   tasks::Task task;
   for (const ConfigEntry& field : fields_of(task).entries) keys.push_back(field.key);
-  FieldReader reader(section, "task", keys);
-  task.name = name_at(reader, "name", kNameLegal);
-  const ConfigNode& bodies = list_at(reader, "bodies", 2, kMaxBodies);
+  const FieldReader names(section, "task", keys);
+  task.name = name_at(names, "name", kNameLegal);
+  const ConfigNode& bodies = list_at(names, "bodies", 2, kMaxBodies);
+  task.units = read_units(names, bodies.items[0]);
+  FieldReader reader(section, "task", keys, task.units);
   for (std::size_t i = 0; i < bodies.items.size(); ++i)
     task.scene.bodies.push_back(
         read_body(bodies.items[i], "task.bodies." + std::to_string(i), task));
@@ -101,9 +114,9 @@ tasks::Task read_task(const ConfigNode& section) {
   }
   const ConfigNode& goal = list_at(reader, "goal", 1, kMaxTerms);
   for (std::size_t i = 0; i < goal.items.size(); ++i)
-    task.goal.push_back(read_term(goal.items[i], "task.goal." + std::to_string(i)));
+    task.goal.push_back(read_term(goal.items[i], "task.goal." + std::to_string(i), task.units));
   if (const ConfigEntry* push = find(section, "push"))
-    read_fields(push->value, "task.push", task.push);
+    read_fields(push->value, "task.push", task.push, task.units);
   task.visit(reader);
   close_joints(task, section);
   draw_nominal_start(task, section);
@@ -115,14 +128,17 @@ ConfigNode task_node(tasks::Task task) {
   ConfigNode node = map_node();
   std::vector<ConfigNode> bodies, joints, goal;
   for (std::size_t i = 0; i < task.scene.size(); ++i) bodies.push_back(body_node(task, i));
-  for (const Joint& joint : task.scene.joints) joints.push_back(joint_node(joint, task.scene));
-  for (const tasks::GoalTerm& term : task.goal) goal.push_back(term_node(term));
+  for (const Joint& joint : task.scene.joints) joints.push_back(joint_node(joint, task));
+  for (const tasks::GoalTerm& term : task.goal) goal.push_back(term_node(term, task.units));
   node.entries.push_back({"name", "", text_node(task.name)});
+  node.entries.push_back({"scale", "", token_node(scale_text(task.units)),
+                          "radius of the robot, to which the constants of the solver fit [m]"});
   node.entries.push_back({"bodies", "", list_node(std::move(bodies)), "the first is the robot"});
   if (!joints.empty()) node.entries.push_back({"joints", "", list_node(std::move(joints))});
   node.entries.push_back({"goal", "", list_node(std::move(goal)), "all terms must hold"});
-  node.entries.push_back({"push", "", fields_of(task.push)});
-  for (ConfigEntry& field : fields_of(task).entries) node.entries.push_back(std::move(field));
+  node.entries.push_back({"push", "", fields_of(task.push, task.units)});
+  for (ConfigEntry& field : fields_of(task, task.units).entries)
+    node.entries.push_back(std::move(field));
   return node;
 }
 

@@ -12,17 +12,21 @@ constexpr std::size_t kMaxName = 40;  // characters
 constexpr double kLeastWidth = 0.15;  // of a range, > 2 kGoalSpare [rad], [m]
 constexpr double kRounding = 1e-9;    // rounding error of that width
 
-Vector2d range_at(const FieldReader& reader, const char* key, double most, const char* unit) {
-  const std::string width = number_text(kLeastWidth);
-  const std::string legal =
-      "[least, most] in " + (unit + (", with most at least " + width)) + " above least";
-  const auto range = reader.numbers(key, 2, -most, most, legal);
-  if (range[1] - range[0] < kLeastWidth - kRounding)
-    throw ConfigError(reader.required(key, legal).value.origin, reader.path(key),
-                      "the range [" + number_text(range[0]) + ", " + number_text(range[1]) +
-                          "] is narrower than " + width + ' ' + unit,
-                      legal);
-  return {range[0], range[1]};
+/// Throws ConfigError if `range` is too narrow, by less than `width`, as messages call kLeastWidth.
+Vector2d wide_enough(const std::vector<double>& range, const FieldReader& reader, const char* key,
+                     const std::string& width, const std::string& legal) {
+  if (range[1] - range[0] >= kLeastWidth - kRounding) return {range[0], range[1]};
+  const ConfigNode& node = reader.required(key, legal).value;
+  throw ConfigError(node.origin, reader.path(key),
+                    "the range [" + node.items[0].scalar + ", " + node.items[1].scalar +
+                        "] is narrower than " + width,
+                    legal);
+}
+
+std::string range_legal(const std::string& width) {
+  const std::string unit = width.substr(width.find(' ') + 1),
+                    number = width.substr(0, width.find(' '));
+  return "[least, most] in " + unit + ", with most at least " + number + " above least";
 }
 
 }  // namespace
@@ -41,16 +45,26 @@ std::string name_at(const FieldReader& reader, const char* key, const std::strin
 }
 
 Vector2d point_at(const FieldReader& reader, const char* key) {
+  const auto x = reader.lengths(key, 2, -kMaxPlace, kMaxPlace, "[x, y]");
+  return {x[0], x[1]};
+}
+
+Vector2d direction_at(const FieldReader& reader, const char* key) {
   const auto x = reader.numbers(key, 2, -kMaxPlace, kMaxPlace, "[x, y]");
   return {x[0], x[1]};
 }
 
 Vector2d angles_at(const FieldReader& reader, const char* key) {
-  return range_at(reader, key, kMaxAngle, "rad");
+  const std::string width = number_text(kLeastWidth) + " rad", legal = range_legal(width);
+  return wide_enough(reader.numbers(key, 2, -kMaxAngle, kMaxAngle, legal), reader, key, width,
+                     legal);
 }
 
 Vector2d lengths_at(const FieldReader& reader, const char* key) {
-  return range_at(reader, key, kMaxPlace, "m");
+  const std::string width = length_text(kLeastWidth, reader.units()) + " m",
+                    legal = range_legal(width);
+  return wide_enough(reader.lengths(key, 2, -kMaxPlace, kMaxPlace, legal), reader, key, width,
+                     legal);
 }
 
 void fail_at(const ConfigNode& entry, const std::string& path, const char* key,
@@ -60,20 +74,37 @@ void fail_at(const ConfigNode& entry, const std::string& path, const char* key,
 }
 
 std::vector<Vector2d> points_of(const ConfigNode& list, const std::string& path,
-                                const std::string& legal) {
+                                const std::string& legal, const tasks::Units& units) {
   if (list.kind != ConfigNode::Kind::kList)
     throw ConfigError(list.origin, path, in_words(list) + " is not a list", legal);
   std::vector<Vector2d> points;
   for (const ConfigNode& item : list.items) {
     if (item.kind != ConfigNode::Kind::kList || item.items.size() != 2)
       throw ConfigError(item.origin, path, in_words(item) + " is not a vertex [x, y]", legal);
-    points.emplace_back(read_number(item.items[0], path, -kMaxPlace, kMaxPlace),
-                        read_number(item.items[1], path, -kMaxPlace, kMaxPlace));
+    points.emplace_back(read_length(item.items[0], path, -kMaxPlace, kMaxPlace, units),
+                        read_length(item.items[1], path, -kMaxPlace, kMaxPlace, units));
   }
   return points;
 }
 
-ConfigNode point_node(const Vector2d& x) { return numbers_node({x.x(), x.y()}); }
+ConfigNode length_node(double x, const tasks::Units& units) {
+  return token_node(length_text(x, units));
+}
+
+ConfigNode lengths_node(const std::vector<double>& lengths, const tasks::Units& units) {
+  std::vector<ConfigNode> items;
+  for (const double length : lengths) items.push_back(length_node(length, units));
+  return list_node(std::move(items));
+}
+
+ConfigNode point_node(const Vector2d& x, const tasks::Units& units) {
+  return lengths_node({x.x(), x.y()}, units);
+}
+
+ConfigNode pose_node(const Pose& pose, const tasks::Units& units) {
+  return list_node({length_node(pose.x, units), length_node(pose.y, units),
+                    token_node(number_text(pose.theta))});
+}
 
 ConfigNode numbers_node(const std::vector<double>& numbers) {
   std::vector<ConfigNode> items;

@@ -108,7 +108,7 @@ struct TrainConfig {
              "share of exploring actions that head towards a random object");
     v.flag("leave_loops", leave_loops,
            "also explore in states that the episode visited a few steps before");
-    v.number("start_jitter", start_jitter, 0.0, 10.0,
+    v.length("start_jitter", start_jitter, 0.0, 10.0,
              "largest x, y shift of objects in training starts [m]");
     v.flag("randomise", randomise,
            "shift objects in training and evaluation starts by up to task.randomisation");

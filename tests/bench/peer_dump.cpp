@@ -38,6 +38,7 @@ struct Numbers {
   Json found = Json::object();
 
   void number(const char* key, double field, double, double, const char*) { found[key] = field; }
+  void length(const char* key, double field, double, double, const char*) { found[key] = field; }
   void integer(const char* key, int field, int, int, const char*) { found[key] = field; }
   void flag(const char* key, bool field, const char*) { found[key] = field; }
   template <class Enum, class Names>

@@ -22,6 +22,9 @@ struct FieldChange {
     EXPECT_TRUE(least <= value && value <= most && value != at) << field;
     at = value;
   }
+  void length(const char* field, double& at, double least, double most, const char* doc) {
+    number(field, at, least, most, doc);
+  }
   void integer(const char* field, int& at, int least, int most, const char*) {
     if (!is_wanted(field)) return;
     EXPECT_TRUE(least <= value && value <= most && value != at) << field;
@@ -47,6 +50,7 @@ struct FieldValues {
   std::map<std::string, double> found = {};
 
   void number(const char* field, double at, double, double, const char*) { found[field] = at; }
+  void length(const char* field, double at, double, double, const char*) { found[field] = at; }
   void integer(const char* field, int at, int, int, const char*) { found[field] = at; }
   void flag(const char* field, bool at, const char*) { found[field] = at; }
   template <class Enum, class Names>

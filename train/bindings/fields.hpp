@@ -20,6 +20,9 @@ class FieldBinder {
   void number(const char* name, const double& at, double, double, const char* doc) {
     bind(name, at, doc);
   }
+  void length(const char* name, const double& at, double, double, const char* doc) {
+    bind(name, at, doc);
+  }
   void integer(const char* name, const int& at, int, int, const char* doc) { bind(name, at, doc); }
   void flag(const char* name, const bool& at, const char* doc) { bind(name, at, doc); }
   void text(const char* name, const std::string& at, const char* doc) { bind(name, at, doc); }

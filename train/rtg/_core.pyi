@@ -70,6 +70,9 @@ class Task:
     def content(self) -> int:
         """The hash of bodies, joints, goal and pushes: of what a policy of the task is about."""
     @property
+    def metre(self) -> float:
+        """One metre, in the unit of lengths of poses: that in which the robot's radius is 0.8."""
+    @property
     def position_unit(self) -> float:
         """Unit of positions in an observation [m]."""
     @property

@@ -76,6 +76,7 @@ struct Values {
   std::vector<std::string> texts;
 
   void number(const char*, double x, double, double, const char*) { numbers.push_back(x); }
+  void length(const char*, double x, double, double, const char*) { numbers.push_back(x); }
   void integer(const char*, int x, int, int, const char*) { numbers.push_back(x); }
   void flag(const char*, bool x, const char*) { numbers.push_back(x); }
   void text(const char*, const std::string& x, const char*) { texts.push_back(x); }

@@ -92,7 +92,10 @@ def test_the_values_of_a_sweep_may_be_negative():
             ["--set", "run.seed=3"],
             "--set run.seed=3: reproduce sets this key itself; legal: --seeds",
         ),
-        (["gatherin"], "gatherin: no task of that name; legal: art_manip, gate, gathering, "),
+        (
+            ["gatherin"],
+            "gatherin: no task of that name; legal: art_manip, drawer, gate, gathering, ",
+        ),
         (["gathering", "--methods", "magic"], "--methods magic: no method of that name; legal: "),
         (["--methods", ""], "--methods : no method of that name; legal: "),
         (

@@ -29,7 +29,8 @@ class PushEnv(gymnasium.Env[Any, Any]):
     determines all random numbers.
 
     - `config`: the configuration with the task and the physics, or its file; Gathering's if None.
-    - `jitter`: largest random offset of an object's x and y at the start [m]; the task's if None.
+    - `jitter`: largest random offset of an object's x and y at the start, in units
+      of the task (Task.metre); the task's if None.
     - `info` has the keys "poses" [bodies, 3], "is_success" and "rejected".
 
     "rejected" means that the simulator could not finish the push. The episode is then truncated and
@@ -64,7 +65,8 @@ class PushEnv(gymnasium.Env[Any, Any]):
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Begins an episode. Raises ValueError for unknown options.
 
-        `options`: "poses", the start [bodies, 3]; "jitter" [m], which replaces self.jitter.
+        `options`: "poses", the start [bodies, 3]; "jitter", which replaces self.jitter. Both
+        are in units of the task.
         """
         super().reset(seed=seed)
         options = options or {}

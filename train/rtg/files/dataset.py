@@ -22,7 +22,7 @@ _ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip entry can sto
 class Rows(NamedTuple):
     """Consecutive transitions without observations, as a search produces them."""
 
-    poses: npt.NDArray[np.float64]  # [n, bodies, 3]: x [m], y [m], theta [rad]
+    poses: npt.NDArray[np.float64]  # [n, bodies, 3]: x, y [task units], theta [rad]
     action: npt.NDArray[np.int32]  # [n]
     next_poses: npt.NDArray[np.float64]  # [n, bodies, 3]
     reward: npt.NDArray[np.float32]  # [n], 1 on success
@@ -37,7 +37,7 @@ class Rows(NamedTuple):
 class Transitions(NamedTuple):
     """N simulated transitions with observations, in the order of generation."""
 
-    poses: Array  # [N, bodies, 3] float64, x [m], y [m], θ [rad]; body 0 is the robot
+    poses: Array  # [N, bodies, 3] float64, x, y [task units], θ [rad]; body 0 is the robot
     action: Array  # [N] int32
     next_poses: Array  # [N, bodies, 3] float64
     reward: Array  # [N] float32, 1 where the goal holds afterwards, else 0

@@ -15,9 +15,10 @@ from rtg.learn.evaluation import FINAL_SEED, Policy, evaluate
 
 Floats = NDArray[np.float64]
 
-_MOVED = (0.1, 0.25, 0.5, 1.0, 2.0)  # [m]
+# Lengths are for a robot of 0.8 m radius, those of others are in proportion.
+_MOVED = (0.1, 0.25, 0.5, 1.0, 2.0)
 _TURNED = (0.25, 0.5, 1.0)  # [rad]
-_NOISE = (0.02, 0.05, 0.1)  # [m] and [rad]
+_NOISE = (0.02, 0.05, 0.1)  # also [rad]
 _FACTORS = (0.5, 0.7, 1.3, 2.0)  # of friction and of masses
 _STRIDES = (0.75, 0.9, 1.1, 1.25)  # factors
 _COASTING = (10.0, 4.0, 2.0)  # physics.damping, with inertia
@@ -30,7 +31,7 @@ class Variant(NamedTuple):
     group: str  # what differs, in words
     label: str  # by how much
     settings: tuple[str, ...] = ()
-    noise: float = 0.0  # standard deviation of the poses that the policy sees [m], [rad]
+    noise: float = 0.0  # standard deviation of the poses that the policy sees
 
 
 class Row(NamedTuple):
@@ -41,8 +42,8 @@ class Row(NamedTuple):
     length: float | None  # actions per episode
 
 
-def _turned(task: dict[str, Any], by: float) -> tuple[str, ...]:
-    """Returns settings that turn each loose object by up to `by` [rad] and move it by 0.1 m."""
+def _turned(task: dict[str, Any], by: float, shift: float) -> tuple[str, ...]:
+    """Returns settings that turn each loose object by up to `by` [rad], and move it by `shift`."""
     jointed = {
         name for joint in task.get("joints", ()) for name in (joint["parent"], joint["child"])
     }
@@ -51,7 +52,7 @@ def _turned(task: dict[str, Any], by: float) -> tuple[str, ...]:
         if k == 0 or body["fixed"] or body["name"] in jointed:
             continue
         x, y, theta = body["start"]
-        ranges = f"x: {_range(x, 0.1)}, y: {_range(y, 0.1)}, theta: {_range(theta, by)}"
+        ranges = f"x: {_range(x, shift)}, y: {_range(y, shift)}, theta: {_range(theta, by)}"
         found.append(f"task.bodies.{k}.start={{{ranges}}}")
     return tuple(found)
 
@@ -60,7 +61,7 @@ def _range(x: float, spread: float) -> str:
     return f"[{x - spread}, {x + spread}]"
 
 
-def _start_variants(task: dict[str, Any]) -> Iterator[Variant]:
+def _start_variants(task: dict[str, Any], unit: float) -> Iterator[Variant]:
     arena = task["push"]["arena"]
     if isinstance(task["bodies"][0]["start"], list):
         theta = task["bodies"][0]["start"][2]
@@ -71,19 +72,20 @@ def _start_variants(task: dict[str, Any]) -> Iterator[Variant]:
     for by in _MOVED:
         yield Variant(
             "objects moved",
-            f"by up to {by} m",
-            (f"task.start_jitter={by}", "train.randomise=false"),
+            f"by up to {by * unit:.3g} m",
+            (f"task.start_jitter={by * unit}", "train.randomise=false"),
         )
     for by in _TURNED:
-        if settings := _turned(task, by):
+        if settings := _turned(task, by, _MOVED[0] * unit):
             yield Variant("objects turned", f"by up to {by} rad", settings)
 
 
 def variants(config: _core.Config) -> list[Variant]:
     """Returns the variants of a task, the trained one first."""
     task = json.loads(config.json)["task"]
-    found = [Variant("as trained", ""), *_start_variants(task)]
-    found += [Variant("noise of poses", f"{by} m, {by} rad", noise=by) for by in _NOISE]
+    unit = 1.0 / config.task.metre
+    found = [Variant("as trained", ""), *_start_variants(task, unit)]
+    found += [Variant("noise of poses", f"{by * unit:.3g} m, {by} rad", noise=by) for by in _NOISE]
     for factor in _FACTORS:
         for group, key in (("friction", "friction"), ("mass of objects", "density")):
             settings = tuple(

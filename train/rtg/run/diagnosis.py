@@ -16,8 +16,8 @@ _WELL = 0.9  # success rate that needs no explanation
 _SOLVED = 0.5  # least share of reverse solves
 _COVERED = 0.005  # least share of transitions that begin in the start region
 _RANKED = 0.5  # least rank correlation of Q with the simulator
-_THERE = 0.4  # distance at which an object is in its place [m]
-_STILL = 0.05  # spread of places of an object that does not move [m]
+_THERE = 0.4  # distance at which an object is in its place
+_STILL = 0.05  # spread of places of an object that does not move
 
 
 def _distances(config: _core.Config, poses: NDArray[np.float64]) -> str:
@@ -26,7 +26,7 @@ def _distances(config: _core.Config, poses: NDArray[np.float64]) -> str:
     for body in objects(task):
         way = np.linalg.norm(poses[:, body, :2] - task.start[body, :2], axis=1)
         still = bool(np.ptp(poses[:, body, :2], axis=0).max() < _STILL)
-        words = f"'{task.names[body]}' {way.min():.2g} m"
+        words = f"'{task.names[body]}' {way.min() / task.metre:.2g} m"
         if still and way.min() > _THERE:
             words += " (no step moves it)"
         parts.append(words)
