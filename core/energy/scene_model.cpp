@@ -77,7 +77,7 @@ SceneModel<T>::SceneModel(const Scene& scene, const PhysicsConfig& physics, cons
       sharpness_(physics.sharpness),
       skin_(physics.skin),
       slip_(physics.slip),
-      stride_(push.stride / physics.sub_steps),
+      stride_(longest_stride(push) / physics.sub_steps),
       inertia_weight_(physics.inertia_weight()) {
   const double unit = physics.damping / (physics.time_step * physics.time_step);  // k_D/Δt²
   barrier_ = {physics.barrier / unit, physics.range, physics.plain_barrier};

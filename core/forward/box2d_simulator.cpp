@@ -45,9 +45,9 @@ struct Servo {
 // Box2D damps an applied force within its step, but not the impulse of a joint. For the same motion
 // a joint therefore needs only 1/(1 + h d) of the force, with the step h and the damping d. The
 // bounds are scaled by this factor: the servo then stops the robot where it would stop in Ψ.
-Servo servo_of(const Scene& scene, const PushConfig& push, const PhysicsConfig& physics) {
+Servo servo_of(const Scene& scene, double stride, const PhysicsConfig& physics) {
   const double damping = physics.damping / physics.time_step;
-  const double speed = push.stride / (physics.sub_steps * physics.time_step);
+  const double speed = stride / (physics.sub_steps * physics.time_step);
   const double step_s = physics.time_step / physics.box2d_steps;
   const double radius = scene.bodies[0].shape.radius();
   const double drag = mass_of(scene.bodies[0]).mass * damping * speed *
@@ -301,7 +301,7 @@ bool drive(World& table, const Path& path, int done) {
 }  // namespace
 
 Box2dSimulator::Box2dSimulator(Scene scene, PushConfig push, PhysicsConfig physics)
-    : scene_(std::move(scene)), push_(push), physics_(physics) {}
+    : scene_(std::move(scene)), push_(std::move(push)), physics_(physics) {}
 
 bool Box2dSimulator::plausible(const Poses& start) const {
   if (start.size() != scene_.size()) return false;
@@ -313,7 +313,7 @@ bool Box2dSimulator::plausible(const Poses& start) const {
 
 PushOutcome Box2dSimulator::push(const Poses& start, int action) const {
   if (!plausible(start)) return {start, false};
-  const Servo servo = servo_of(scene_, push_, physics_);
+  const Servo servo = servo_of(scene_, stride_of(action, push_), physics_);
   const Path path(start[0], push_target(start[0], action, push_), servo.advance,
                   physics_.sub_steps * physics_.box2d_steps);
   const double clear = free_path_length(scene_, start, path.to);
@@ -331,7 +331,7 @@ PushOutcome Box2dSimulator::push(const Poses& start, int action) const {
 
 PushOutcome Box2dSimulator::settle(const Poses& start) const {
   if (!plausible(start)) return {start, false};
-  const Servo servo = servo_of(scene_, push_, physics_);
+  const Servo servo = servo_of(scene_, longest_stride(push_), physics_);
   World table(scene_, physics_, servo, start);
   table.touch_all();
   const bool ok = table.come_to_rest();

@@ -30,14 +30,15 @@ class NewtonSimulator final : public Simulator {
 
  private:
   /// Simulates one sub-step for each element of `targets`, the target poses (x, y, θ) of the servo.
-  PushOutcome follow(const Poses& start, const std::vector<Vector3d>& targets) const;
+  PushOutcome follow(const Poses& start, const std::vector<Vector3d>& targets,
+                     const energy::StepEnergy& energy) const;
 
   Scene scene_;
   PushConfig push_;
   int sub_steps_;
-  std::size_t settling_;    // number of sub-steps after the robot has stopped
-  std::vector<int> order_;  // the bodies of scene_ in the order of energy_
-  energy::StepEnergy energy_;
+  std::size_t settling_;                      // number of sub-steps after the robot has stopped
+  std::vector<int> order_;                    // the bodies of scene_ in the order of energies_
+  std::vector<energy::StepEnergy> energies_;  // one per stride
 };
 
 }  // namespace rtg::forward

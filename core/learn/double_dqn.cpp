@@ -19,8 +19,9 @@ HeadingNetwork::States columns(const HeadingNetwork::States& all, Index begin, I
 
 }  // namespace
 
-DoubleDqn::DoubleDqn(const NetworkSizes& sizes, const TargetRules& rules)
-    : rules_(rules), networks_{HeadingNetwork(sizes), HeadingNetwork(sizes)} {
+DoubleDqn::DoubleDqn(const NetworkSizes& sizes, const TargetRules& rules,
+                     const std::vector<double>& strides)
+    : rules_(rules), networks_{HeadingNetwork(sizes, strides), HeadingNetwork(sizes, strides)} {
   gradients_.fill(Eigen::VectorXf(weight_count(sizes)));
 }
 
@@ -47,9 +48,9 @@ void DoubleDqn::compute_part(HeadingNetwork& network, const float* online, const
   y = bootstrap.max(batch.bounds.segment(begin, count).array());
   if (rules_.clip_targets) y = y.max(0.0f).min(1.0f);
 
-  const auto headings =
-      batch.headings.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
-  const RowVectorXf& q = network.values_at(online, columns(batch.states, begin, count), headings);
+  const auto actions =
+      batch.actions.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
+  const RowVectorXf& q = network.values_at(online, columns(batch.states, begin, count), actions);
   values_.segment(begin, count) = q;
   const RowVectorXf of_q =
       (q.array() - y).max(-1.0f).min(1.0f) / static_cast<float>(batch.states.cols());

@@ -12,7 +12,7 @@ struct Transitions {
   using Numbers = Eigen::Map<const Eigen::RowVectorXf>;
 
   HeadingNetwork::States states;
-  HeadingNetwork::Headings headings;
+  HeadingNetwork::Actions actions;
   HeadingNetwork::States next_states;
   Numbers rewards;
   Numbers terminated;  // T; 1: no bootstrap from s'
@@ -39,9 +39,10 @@ struct TargetRules {
 /// Two threads take a half of the batch each. Results are the same with one, bit for bit.
 class DoubleDqn {
  public:
-  DoubleDqn(const NetworkSizes& sizes, const TargetRules& rules);
+  DoubleDqn(const NetworkSizes& sizes, const TargetRules& rules,
+            const std::vector<double>& strides = {1.0});
 
-  const NetworkSizes& sizes() const { return networks_[0].sizes(); }
+  const HeadingNetwork& network() const { return networks_[0]; }
 
   /// Computes L's gradient for the weights `online` and what it depends on. `online` and `target`
   /// are weights as HeadingNetwork takes them. 1 ≤ `threads`.

@@ -27,11 +27,13 @@ void pull_back(const MatrixXf& in, const Gradient& of_out, Linear<float> of_weig
 
 }  // namespace
 
-HeadingNetwork::HeadingNetwork(const NetworkSizes& sizes)
-    : sizes_(sizes), basis_(3, sizes.headings) {
-  for (int a = 0; a < sizes.headings; ++a) {
-    const double theta = 2.0 * std::numbers::pi * a / sizes.headings;
-    basis_.col(a) << 1.0f, static_cast<float>(std::cos(theta)), static_cast<float>(std::sin(theta));
+HeadingNetwork::HeadingNetwork(const NetworkSizes& sizes, const std::vector<double>& strides)
+    : sizes_(sizes), basis_(3, sizes.headings * static_cast<int>(strides.size())) {
+  for (int a = 0; a < actions(); ++a) {
+    const double theta = 2.0 * std::numbers::pi * (a % sizes.headings) / sizes.headings;
+    const double stride = strides[static_cast<std::size_t>(a / sizes.headings)];
+    basis_.col(a) << 1.0f, static_cast<float>(stride * std::cos(theta)),
+        static_cast<float>(stride * std::sin(theta));
   }
 }
 
@@ -44,12 +46,12 @@ void HeadingNetwork::trunk(const Weights& weights, const States& states) {
   apply(weights.features, second_, features_);
 }
 
-/// Writes NormRelu of w + cos θ_a u + sin θ_a v of a state, for all headings a, into along_ from
-/// `column` on.
+/// Writes NormRelu of w + ℓ_k cos θ_a u + ℓ_k sin θ_a v of a state, for all actions a, into along_
+/// from `column` on.
 ///
-/// With b_a = (1, cos θ_a, sin θ_a), and the features less their means as X = (w, u, v), mean and
-/// variance over the features are 0 and b_aᵀ (XᵀX / features) b_a. So they take no pass over the
-/// features of each heading.
+/// With b_a = (1, ℓ_k cos θ_a, ℓ_k sin θ_a), and the features less their means as X = (w, u, v),
+/// mean and variance over the features are 0 and b_aᵀ (XᵀX / features) b_a. So they take no pass
+/// over the features of each action.
 void HeadingNetwork::normal_along_all(const Weights& weights, Index state, Index column) {
   using Features = Eigen::MatrixX3f;
   Features x = Eigen::Map<const Features>(features_.col(state).data(), sizes_.features, 3);
@@ -59,7 +61,7 @@ void HeadingNetwork::normal_along_all(const Weights& weights, Index state, Index
   const Eigen::Matrix3Xf scaled =
       basis_.array().rowwise() / (variance + kVarianceFloor).sqrt().eval();
   x.array().colwise() *= weights.along_norm.scale.array();
-  auto out = along_.middleCols(column, sizes_.headings);
+  auto out = along_.middleCols(column, actions());
   out = x.lazyProduct(scaled);
   out = (out.colwise() + weights.along_norm.shift).cwiseMax(0.0f);
 }
@@ -74,33 +76,33 @@ const MatrixXf& HeadingNetwork::values(const float* array, const States& states)
   constexpr Index kTogether = 8;  // the values of so many states within f stay in the cache
   const Weights weights(sizes_, array);
   trunk(weights, states);
-  all_values_.resize(sizes_.headings, states.cols());
+  all_values_.resize(actions(), states.cols());
   const Eigen::Map<const Eigen::VectorXf> advantage(weights.advantage.weight.data(),
                                                     sizes_.features);
   const RowVectorXf value =
       (weights.value.weight * second_).array() + weights.value.bias[0] + weights.advantage.bias[0];
   for (Index begin = 0; begin < states.cols(); begin += kTogether) {
     const Index count = std::min(kTogether, states.cols() - begin);
-    along_.resize(sizes_.features, count * sizes_.headings);
-    for (Index k = 0; k < count; ++k) normal_along_all(weights, begin + k, k * sizes_.headings);
+    along_.resize(sizes_.features, count * actions());
+    for (Index k = 0; k < count; ++k) normal_along_all(weights, begin + k, k * actions());
     apply(weights.along, along_, inner_);
     for (Index k = 0; k < count; ++k)
-      for (Index a = 0; a < sizes_.headings; ++a)
+      for (Index a = 0; a < actions(); ++a)
         all_values_(a, begin + k) =
-            value[begin + k] + advantage.dot(inner_.col(k * sizes_.headings + a).cwiseMax(0.0f));
+            value[begin + k] + advantage.dot(inner_.col(k * actions() + a).cwiseMax(0.0f));
   }
   return all_values_;
 }
 
 const RowVectorXf& HeadingNetwork::values_at(const float* array, const States& states,
-                                             Headings headings) {
+                                             Actions actions) {
   const Weights weights(sizes_, array);
-  headings_.assign(headings.begin(), headings.end());
+  actions_.assign(actions.begin(), actions.end());
   trunk(weights, states);
   along_.resize(sizes_.features, states.cols());
   for (Index k = 0; k < states.cols(); ++k) {
     const Eigen::Map<const Eigen::MatrixX3f> wuv(features_.col(k).data(), sizes_.features, 3);
-    along_.col(k) = wuv.lazyProduct(basis_.col(headings[static_cast<std::size_t>(k)]));
+    along_.col(k) = wuv.lazyProduct(basis_.col(actions[static_cast<std::size_t>(k)]));
   }
   along_norm_.apply(weights.along_norm, along_);
   inner_layer(weights);
@@ -124,7 +126,7 @@ void HeadingNetwork::gradient(const float* array, const RowVectorXf& of_q, float
 
   MatrixXf of_features(features_.rows(), features_.cols());
   for (Index k = 0; k < of_features.cols(); ++k) {
-    const auto basis = basis_.col(headings_[static_cast<std::size_t>(k)]);
+    const auto basis = basis_.col(actions_[static_cast<std::size_t>(k)]);
     Eigen::Map<MatrixXf>(of_features.col(k).data(), sizes_.features, 3) =
         of_along.col(k).lazyProduct(basis.transpose());
   }

@@ -8,9 +8,10 @@
 
 namespace rtg::learn {
 
-/// The value network of headings θ_a = 2πa / headings, as train/rtg/learn/networks.py defines it:
+/// The value network of pushes, as train/rtg/learn/networks.py defines it. With headings
+/// θ_a = 2πa/n and strides ℓ_k, k = ⌊a/n⌋, in units of the longest one, it is
 ///
-///   Q(s, a) = V(h) + f(w(h) + cos θ_a u(h) + sin θ_a v(h)),   h = trunk(s).
+///   Q(s, a) = V(h) + f(w(h) + ℓ_k cos θ_a u(h) + ℓ_k sin θ_a v(h)),   h = trunk(s).
 ///
 /// The trunk has two layers, each linear, NormRelu. V, w, u and v are linear, and f is NormRelu,
 /// linear, ReLU, linear. PyTorch takes about 1.6 times as long: each of its many small operations
@@ -22,18 +23,19 @@ namespace rtg::learn {
 class HeadingNetwork {
  public:
   using States = Eigen::Map<const Eigen::MatrixXf>;
-  using Headings = std::span<const std::int64_t>;
+  using Actions = std::span<const std::int64_t>;
 
-  explicit HeadingNetwork(const NetworkSizes& sizes);
+  /// `strides`: ℓ_k.
+  explicit HeadingNetwork(const NetworkSizes& sizes, const std::vector<double>& strides = {1.0});
 
   const NetworkSizes& sizes() const { return sizes_; }
+  int actions() const { return static_cast<int>(basis_.cols()); }
 
-  /// Returns Q of all headings. [headings, B]
+  /// Returns Q of all actions. [actions, B]
   const Eigen::MatrixXf& values(const float* weights, const States& states);
 
-  /// Returns Q of one heading per state. [B]
-  const Eigen::RowVectorXf& values_at(const float* weights, const States& states,
-                                      Headings headings);
+  /// Returns Q of one action per state. [B]
+  const Eigen::RowVectorXf& values_at(const float* weights, const States& states, Actions actions);
 
   /// Writes the gradient of a loss L for the weights to `out`, an array like theirs, from `of_q` =
   /// ∂L/∂q [B]. The last call must have been values_at(), with the same weights, and q its result.
@@ -47,8 +49,8 @@ class HeadingNetwork {
   void inner_layer(const Weights& weights);
 
   NetworkSizes sizes_;
-  Eigen::Matrix3Xf basis_;              // (1, cos θ_a, sin θ_a) [3, headings]
-  std::vector<std::int64_t> headings_;  // of the last values_at()
+  Eigen::Matrix3Xf basis_;             // (1, ℓ_k cos θ_a, ℓ_k sin θ_a) [3, actions]
+  std::vector<std::int64_t> actions_;  // of the last values_at()
   NormRelu first_norm_, second_norm_, along_norm_;
   // Of the last batch: states; outputs of the layers of the trunk; w, u and v; outputs of NormRelu
   // and ReLU in f.

@@ -37,10 +37,11 @@ std::vector<SqpResult> filter_sqp(std::span<const ReverseProblem* const> problem
       .solve(problems);
 }
 
-/// Returns the number of coordinates of a scene and the numbers of parts of its bodies, followed by
-/// its joints. Only candidates for which these are equal can share a solver.
-std::vector<int> structure_of(const energy::StepEnergy& energy) {
-  std::vector<int> structure{energy.dofs(), energy.bodies()};
+/// Returns the stride, the number of coordinates of a scene and the numbers of parts of its bodies,
+/// followed by its joints. Only candidates for which these are equal can share a solver.
+std::vector<int> structure_of(const Candidate& candidate) {
+  const energy::StepEnergy& energy = candidate.problem().energy;
+  std::vector<int> structure{candidate.stride(), energy.dofs(), energy.bodies()};
   const std::vector<int>& parts = energy.scene().parts();
   structure.insert(structure.end(), parts.begin(), parts.end());
   for (const energy::JointModel<double>& joint : energy.scene().articulation().joints())
@@ -52,7 +53,7 @@ std::vector<int> structure_of(const energy::StepEnergy& energy) {
 std::vector<SqpResult> filter_sqp_of_all(std::span<const Candidate* const> candidates) {
   std::map<std::vector<int>, std::vector<std::size_t>> alike;
   for (std::size_t k = 0; k < candidates.size(); ++k)
-    alike[structure_of(candidates[k]->problem().energy)].push_back(k);
+    alike[structure_of(*candidates[k])].push_back(k);
   std::vector<SqpResult> results(candidates.size());
   for (const auto& [structure, members] : alike) {
     std::vector<const ReverseProblem*> group;
@@ -67,11 +68,13 @@ std::vector<SqpResult> filter_sqp_of_all(std::span<const Candidate* const> candi
 
 Candidate::Candidate(const Scene& scene, const PhysicsConfig& physics, const PushConfig& push,
                      const ReverseConfig& config, const ReverseJob& job)
-    : bodies_(relevant_bodies(
-          scene, push, job,
-          reach(physics) + physics.inertia_weight() * push.stride / physics.sub_steps)),
+    : bodies_(
+          relevant_bodies(scene, push, job,
+                          reach(physics) + physics.inertia_weight() * stride_of(job.action, push) /
+                                               physics.sub_steps)),
+      stride_(stride_index(job.action, push)),
       subscene_(select(scene, job.end, bodies_)),
-      energy_(subscene_.scene, physics, push),
+      energy_(subscene_.scene, physics, with_stride_of(job.action, push)),
       problem_{energy_,
                config,
                with_open_gaps(energy_, energy::stacked(subscene_.poses)),

@@ -20,11 +20,13 @@ class Candidate {
   Candidate& operator=(const Candidate&) = delete;
 
   const ReverseProblem& problem() const { return problem_; }
+  int stride() const { return stride_; }                      // its stride_index()
   const std::vector<int>& bodies() const { return bodies_; }  // scene indices, in problem order
   const Scene& scene() const { return subscene_.scene; }      // of these bodies alone
 
  private:
   std::vector<int> bodies_;
+  int stride_;
   Selection subscene_;
   energy::StepEnergy energy_;
   ReverseProblem problem_;

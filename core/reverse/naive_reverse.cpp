@@ -58,9 +58,9 @@ ReverseResult NaiveReverse::solve(const ReverseJob& job) const {
   const Vector2d ahead = direction(job.action, push_);
   const std::size_t touched = touched_object(job.end, ahead);
   Poses start = job.end;
-  start[0] = moved(job.end[0], -push_.stride * ahead);
-  if (!in_arena(start[0], push_) || blocked(job.end, touched, -push_.stride * ahead))
-    return {SolveStatus::kPruned};
+  const Vector2d back = -stride_of(job.action, push_) * ahead;
+  start[0] = moved(job.end[0], back);
+  if (!in_arena(start[0], push_) || blocked(job.end, touched, back)) return {SolveStatus::kPruned};
   std::vector<Poses> predecessors{start};
   if (touched != 0) predecessors = pulled(job, roots_[touched], start);
   std::erase_if(predecessors,
@@ -82,7 +82,7 @@ std::vector<Poses> NaiveReverse::pulled(const ReverseJob& job, std::size_t objec
   const Vector2d ahead = direction(job.action, push_);
   Rng rng(key_of(job));
   for (int draw = 0; draw < kMaxPredecessors; ++draw) {
-    const double pull = rng.uniform(kLeastPull, 1.0) * push_.stride;
+    const double pull = rng.uniform(kLeastPull, 1.0) * stride_of(job.action, push_);
     Poses one = start;
     one[object] = moved(job.end[object], -pull * ahead);
     out.push_back(with_closed_joints(scene_, std::move(one)));

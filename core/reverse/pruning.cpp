@@ -49,7 +49,7 @@ std::vector<Part> swept(const Shape& shape, double theta, const Vector2d& by) {
 
 bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job) {
   const Pose& robot = job.end[0];
-  const Vector2d back = -push.stride * direction(job.action, push);
+  const Vector2d back = -stride_of(job.action, push) * direction(job.action, push);
   if (!in_arena({robot.x + back.x(), robot.y + back.y(), robot.theta}, push)) return true;
   const Shape& shape = scene.bodies[0].shape;
   const std::vector<Part> way = swept(shape, robot.theta, back);
@@ -69,7 +69,7 @@ bool is_pruned(const Scene& scene, const PushConfig& push, const ReverseJob& job
 
 std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, const ReverseJob& job,
                                  double range) {
-  const Vector2d back = -push.stride * direction(job.action, push);
+  const Vector2d back = -stride_of(job.action, push) * direction(job.action, push);
   std::vector<int> found{0};
   std::vector<bool> seen(scene.size(), false);
   seen[0] = true;
@@ -78,7 +78,7 @@ std::vector<int> relevant_bodies(const Scene& scene, const PushConfig& push, con
     if (scene.bodies[i].fixed) continue;
     const std::vector<Part> way = swept(scene.bodies[i].shape, job.end[i].theta, back);
     double reach = i == 0 ? range : range + kClearance;
-    if (has_joint(scene, i)) reach += push.stride;  // links also swing
+    if (has_joint(scene, i)) reach += stride_of(job.action, push);  // links also swing
     for (std::size_t k = 1; k < scene.size(); ++k) {
       if (seen[k]) continue;
       if (!jointed(scene, i, k) &&

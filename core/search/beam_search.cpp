@@ -51,14 +51,14 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
                                                    SearchStats& stats) const {
   std::vector<reverse::ReverseJob> jobs;
   for (const int k : beam_)
-    for (int action = 0; action < task_.push.headings; ++action)
+    for (int action = 0; action < action_count(task_.push); ++action)
       jobs.push_back({node(k).poses, action});
   const std::vector<reverse::ReverseResult> answers = solve(jobs);
   std::vector<Predecessor> found;
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     const std::vector<Poses>& starts = answers[k].predecessors;
     stats.count(answers[k], !starts.empty() && objects_moved(starts[0], jobs[k].end) > 0);
-    const int parent = beam_[k / static_cast<std::size_t>(task_.push.headings)];
+    const int parent = beam_[k / static_cast<std::size_t>(action_count(task_.push))];
     std::vector<Predecessor> steps = proposals(task_, jobs[k], answers[k], parent, stats);
     for (Predecessor& p : steps)
       p.start_distance = start_distance(task_, metric_, p.start, target_);

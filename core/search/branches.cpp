@@ -5,9 +5,9 @@
 
 namespace rtg::search {
 
-std::vector<int> other_headings(int action, int headings, int count, Rng& rng) {
+std::vector<int> other_actions(int action, int actions, int count, Rng& rng) {
   std::vector<int> others;
-  for (int away = 1; away < headings; ++away) others.push_back((action + away) % headings);
+  for (int away = 1; away < actions; ++away) others.push_back((action + away) % actions);
   return drawn(others, count, rng);
 }
 
@@ -18,8 +18,9 @@ std::vector<Transition> with_branches(const tasks::Task& task, std::span<const T
   std::vector<std::size_t> ends;  // end of each step's branches in `pushes`
   for (const Transition& step : steps) {
     Rng rng(seed, reverse::key_of(step.poses, step.action));
-    for (const int heading : other_headings(step.action, task.push.headings, config.branches, rng))
-      pushes.push_back({step.poses, heading});
+    for (const int other :
+         other_actions(step.action, action_count(task.push), config.branches, rng))
+      pushes.push_back({step.poses, other});
     ends.push_back(pushes.size());
   }
   const std::vector<ReplayResult> results = replay(pushes);

@@ -12,9 +12,9 @@
 
 namespace rtg::search {
 
-/// Draws `count` distinct headings other than `action`, of `headings` in all. Returns fewer if
-/// there are not enough headings.
-std::vector<int> other_headings(int action, int headings, int count, Rng& rng);
+/// Draws `count` distinct actions other than `action`, of `actions` in all. Returns fewer if there
+/// are not enough.
+std::vector<int> other_actions(int action, int actions, int count, Rng& rng);
 
 /// Returns each step followed by its branches: simulated pushes in other directions from the same
 /// state. A reverse step shows one heading only, which nearly always leads towards the goal. A

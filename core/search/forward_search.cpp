@@ -19,7 +19,7 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
   if (solved_ > 0) return {};
   std::vector<ReplayJob> pushes;
   for (const std::size_t k : beam_)
-    for (int action = 0; action < task_.push.headings; ++action)
+    for (int action = 0; action < action_count(task_.push); ++action)
       pushes.push_back({nodes_[k].step.next, action});
   const std::vector<ReplayResult> results = replay(pushes);
   outcomes_.clear();
@@ -30,7 +30,7 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
     if (!results[k].ok) continue;
     const Poses& end = results[k].end;
     entries.push_back({goal_distance(task_, end), metric_.cell(end), metric_.layout_cell(end)});
-    const std::size_t parent = beam_[k / static_cast<std::size_t>(task_.push.headings)];
+    const std::size_t parent = beam_[k / static_cast<std::size_t>(action_count(task_.push))];
     found.push_back({transition(task_, pushes[k], end, Source::kForward), parent});
   }
   beam_.clear();

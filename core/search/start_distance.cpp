@@ -45,16 +45,18 @@ double approach_pushes(const tasks::Task& task, const StateMetric& metric, const
   const Pose& robot = poses[0];
   const Pose& object = poses[body];
   if (can_pull(task, robot, object, body, way)) return 0.0;
-  const double left = (robot.position() - object.position()).norm() - task.push.stride;
-  const bool one_away = std::abs(left) <= farthest_pull(task, body);
-  for (int a = 0; one_away && a < task.push.headings; ++a) {
-    const Vector2d at = robot.position() - task.push.stride * direction(a, task.push);
+  const double apart = (robot.position() - object.position()).norm();
+  for (int a = 0; a < action_count(task.push); ++a) {
+    const double stride = stride_of(a, task.push);
+    if (std::abs(apart - stride) > farthest_pull(task, body)) continue;
+    const Vector2d at = robot.position() - stride * direction(a, task.push);
     if (can_pull(task, {at.x(), at.y(), robot.theta}, object, body, way)) return 1.0;
   }
   const double touching =
       kTouching * (task.scene.bodies[0].shape.radius() + task.scene.bodies[body].shape.radius());
   const Vector2d spot = object.position() + touching * way.normalized();
-  return std::max(2.0, metric.way(0, poses, robot.position(), spot).length / task.push.stride);
+  return std::max(2.0,
+                  metric.way(0, poses, robot.position(), spot).length / longest_stride(task.push));
 }
 
 /// Returns whether object `o` is in place. With a joint the angle counts, too, because a pin can
@@ -79,8 +81,9 @@ double next_approach_pushes(const tasks::Task& task, const StateMetric& metric, 
   if (std::isfinite(best)) return best;
   const double home = metric.way(0, poses, poses[0].position(), target[0].position()).length;
   if (home <= kInPlace) return 0.0;
-  if (std::abs(home - task.push.stride) <= kInPlace) return 1.0;
-  return std::max(2.0, home / task.push.stride);
+  for (const double stride : task.push.strides)
+    if (std::abs(home - stride) <= kInPlace) return 1.0;
+  return std::max(2.0, home / longest_stride(task.push));
 }
 
 }  // namespace
@@ -90,7 +93,8 @@ double start_distance(const tasks::Task& task, const StateMetric& metric, const 
   double sum = next_approach_pushes(task, metric, poses, target);
   for (const auto& o : metric.objects())
     if (!in_place(metric, o, poses, target))
-      sum += kPushesBetweenObjects + metric.distance_around(o, poses, target) / task.push.stride;
+      sum += kPushesBetweenObjects +
+             metric.distance_around(o, poses, target) / longest_stride(task.push);
   return sum;
 }
 

@@ -15,7 +15,7 @@ constexpr int kPushesFromGoal = 6;
 
 int heading(const Generation& run, const Poses& state, Rng& rng) {
   const bool seeks = rng.uniform(0.0, 1.0) < kSeeking;
-  return seeks ? contact_heading(run.task, state, rng) : rng.below(run.task.push.headings);
+  return seeks ? contact_heading(run.task, state, rng) : rng.below(action_count(run.task.push));
 }
 
 }  // namespace

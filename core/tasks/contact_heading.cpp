@@ -26,7 +26,9 @@ int contact_heading(const Task& task, const Poses& state, Rng& rng) {
   const Vector2d way = aim(task, state, rng) - state[0].position();
   const double turns = std::atan2(way.y(), way.x()) / (2.0 * std::numbers::pi);
   const int nearest = static_cast<int>(std::lround(turns * headings));
-  return (nearest + headings) % headings;
+  const int strides = static_cast<int>(task.push.strides.size());
+  const int stride = strides > 1 ? rng.below(strides) : 0;
+  return stride * headings + (nearest + headings) % headings;
 }
 
 }  // namespace rtg::tasks

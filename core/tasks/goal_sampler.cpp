@@ -356,13 +356,13 @@ std::optional<Pose> robot_behind(const Task& task, const PartialState& state, Rn
   const auto j = static_cast<std::size_t>(1 + rng.below(static_cast<int>(task.scene.size()) - 1));
   const Vector2d d = direction(rng.below(task.push.headings), task.push);
   const double span = task.scene.bodies[0].shape.radius() + task.scene.bodies[j].shape.radius();
-  const Vector2d from = state.poses[j].position() - (span + task.push.stride) * d +
+  const Vector2d from = state.poses[j].position() - (span + longest_stride(task.push)) * d +
                         rng.uniform(-0.8, 0.8) * span * Vector2d(-d.y(), d.x());
   return slide(task, state, 0,
                {.from = {from.x(), from.y(), task.start[0].theta},
                 .heading = d,
                 .gap = kClearance + rng.uniform(0.0, kBehindGap),
-                .range = 2.0 * (span + task.push.stride)});
+                .range = 2.0 * (span + longest_stride(task.push))});
 }
 
 bool place_robot(const Task& task, PartialState& state, Rng& rng) {

@@ -58,7 +58,7 @@ bool succeeded(const Task& task, const Poses& poses);
 /// hundredths of an arena: with all lengths in units of `arena`, Gathering takes 1.8 times as
 /// many gradient steps to be learned (three seeds).
 inline double position_unit(const Task& task) { return task.push.arena / 2.0; }
-inline double relative_unit(const Task& task) { return task.push.stride / 2.0; }
+inline double relative_unit(const Task& task) { return longest_stride(task.push) / 2.0; }
 
 /// Returns the learner's observation [observation_size]:
 ///

@@ -5,13 +5,31 @@
 
 namespace rtg {
 
+int action_count(const PushConfig& config) {
+  return config.headings * static_cast<int>(config.strides.size());
+}
+
+int stride_index(int action, const PushConfig& config) { return action / config.headings; }
+
+double stride_of(int action, const PushConfig& config) {
+  return config.strides[static_cast<std::size_t>(stride_index(action, config))];
+}
+
+double longest_stride(const PushConfig& config) { return std::ranges::max(config.strides); }
+
+PushConfig with_stride_of(int action, const PushConfig& config) {
+  PushConfig one = config;
+  one.strides = {stride_of(action, config)};
+  return one;
+}
+
 Vector2d direction(int action, const PushConfig& config) {
-  const double angle = 2.0 * std::numbers::pi * action / config.headings;
+  const double angle = 2.0 * std::numbers::pi * (action % config.headings) / config.headings;
   return {std::cos(angle), std::sin(angle)};
 }
 
 Pose push_target(const Pose& robot, int action, const PushConfig& config) {
-  const Vector2d to = robot.position() + config.stride * direction(action, config);
+  const Vector2d to = robot.position() + stride_of(action, config) * direction(action, config);
   return {std::clamp(to.x(), -config.arena, config.arena),
           std::clamp(to.y(), -config.arena, config.arena), robot.theta};
 }

@@ -192,10 +192,13 @@ std::string task_in_words(const Config& config) {
       "task " + task.name + "\n" + bodies_in_words(task) + joints_in_words(task) + "goal, all of\n";
   for (const tasks::GoalTerm& term : task.goal) out += term_in_words(term, metre);
   const PushConfig& push = task.push;
+  std::string strides;
+  for (const double stride : push.strides)
+    strides += (strides.empty() ? "" : " or ") + print("%.4g", metre * stride);
   out += print(
-      "actions\n  %d headings, %.4g degrees apart; a push is %.4g m straight ahead, "
+      "actions\n  %d headings, %.4g degrees apart; a push is %s m straight ahead, "
       "within |x|, |y| <= %.4g m\n",
-      push.headings, 360.0 / push.headings, metre * push.stride, metre * push.arena);
+      push.headings, 360.0 / push.headings, strides.c_str(), metre * push.arena);
   out += print("episodes\n  at most %d pushes, observation of %d numbers\n", task.horizon,
                observation_size(task));
   out += print("  objects start within %.4g m of the layout above (training: %.4g m)\n",

@@ -24,10 +24,14 @@ using Kind = ConfigNode::Kind;
 
 constexpr std::size_t kMaxBodies = 32;
 constexpr std::size_t kMaxTerms = 32;
+constexpr std::size_t kMaxStrides = 8;
+constexpr double kLeastStride = 0.01, kLongestStride = 100.0;
 constexpr double kLeastDensity = 1e-3, kMostDensity = 1e3;  // as a multiple of the robot's
 
 const std::vector<std::string> kBodyKeys{"name",     "kind",  "shape", "density",
                                          "friction", "fixed", "start"};
+
+const std::vector<std::string> kPushKeys{"headings", "strides", "stride", "arena"};
 
 double read_density(FieldReader& reader, const Units& units) {
   double density = 1.0;
@@ -68,6 +72,46 @@ const ConfigNode& list_at(const FieldReader& reader, const char* key, std::size_
     throw ConfigError(list.origin, reader.path(key),
                       "has " + std::to_string(list.items.size()) + " entries", legal);
   return list;
+}
+
+/// Reads the key `strides`, a list of lengths, or `stride`, one length.
+std::vector<double> read_strides(const FieldReader& reader) {
+  const ConfigNode& section = reader.section();
+  const ConfigEntry *one = find(section, "stride"), *all = find(section, "strides");
+  if (one && all)
+    throw ConfigError(one->value.origin, reader.path("stride"), "is given beside strides",
+                      "strides, a list, or stride, one number");
+  const auto read = [&](const ConfigNode& node, const char* key) {
+    return read_length(node, reader.path(key), kLeastStride, kLongestStride, reader.units());
+  };
+  if (one) return {read(one->value, "stride")};
+  if (!all) return PushConfig{}.strides;
+  const ConfigNode& list = list_at(reader, "strides", 1, kMaxStrides);
+  std::vector<double> strides;
+  for (const ConfigNode& item : list.items) {
+    strides.push_back(read(item, "strides"));
+    if (std::ranges::count(strides, strides.back()) > 1)
+      throw ConfigError(item.origin, reader.path("strides"), item.scalar + " is given twice",
+                        "lengths that differ");
+  }
+  return strides;
+}
+
+PushConfig read_push(const ConfigNode& section, const Units& units) {
+  PushConfig push;
+  FieldReader reader(section, "task.push", kPushKeys, units);
+  push.visit(reader);
+  push.strides = read_strides(reader);
+  return push;
+}
+
+ConfigNode push_node(const PushConfig& push, const Units& units) {
+  ConfigNode node = fields_of(push, units);
+  node.entries.insert(node.entries.begin() + 1,
+                      {"strides", "", lengths_node(push.strides, units),
+                       "lengths of a push [m]; " + length_text(kLeastStride, units) + " to " +
+                           length_text(kLongestStride, units)});
+  return node;
 }
 
 ConfigNode body_node(const tasks::Task& task, std::size_t i) {
@@ -116,7 +160,7 @@ tasks::Task read_task(const ConfigNode& section) {
   for (std::size_t i = 0; i < goal.items.size(); ++i)
     task.goal.push_back(read_term(goal.items[i], "task.goal." + std::to_string(i), task.units));
   if (const ConfigEntry* push = find(section, "push"))
-    read_fields(push->value, "task.push", task.push, task.units);
+    task.push = read_push(push->value, task.units);
   task.visit(reader);
   close_joints(task, section);
   draw_nominal_start(task, section);
@@ -136,7 +180,7 @@ ConfigNode task_node(tasks::Task task) {
   node.entries.push_back({"bodies", "", list_node(std::move(bodies)), "the first is the robot"});
   if (!joints.empty()) node.entries.push_back({"joints", "", list_node(std::move(joints))});
   node.entries.push_back({"goal", "", list_node(std::move(goal)), "all terms must hold"});
-  node.entries.push_back({"push", "", fields_of(task.push, task.units)});
+  node.entries.push_back({"push", "", push_node(task.push, task.units)});
   for (ConfigEntry& field : fields_of(task, task.units).entries)
     node.entries.push_back(std::move(field));
   return node;

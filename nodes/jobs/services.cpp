@@ -94,7 +94,7 @@ ReverseService::ResultMessage ReverseService::message(std::span<const Result> re
 
 std::optional<std::vector<reverse::ReverseJob>> ReverseService::parse(const JobMessage& message,
                                                                       const TaskShape& shape) {
-  if (!has_shape(message, shape) || !all_between(message.action, 0, shape.headings - 1))
+  if (!has_shape(message, shape) || !all_between(message.action, 0, shape.actions - 1))
     return std::nullopt;
   std::vector<Job> jobs;
   for (std::size_t i = 0; i < message.action.size(); ++i)
@@ -151,7 +151,7 @@ std::optional<std::vector<search::ReplayJob>> ReplayService::parse(const JobMess
                                                                    const TaskShape& shape) {
   static_assert(search::kSettle == -1);
   if (!has_shape(message, shape) ||
-      !all_between(message.action, search::kSettle, shape.headings - 1))
+      !all_between(message.action, search::kSettle, shape.actions - 1))
     return std::nullopt;
   std::vector<Job> jobs;
   for (std::size_t i = 0; i < message.action.size(); ++i)

@@ -17,7 +17,7 @@ namespace rtg::jobs {
 /// Numbers of bodies and actions of a task, for checks of messages.
 struct TaskShape {
   int bodies = 0;
-  int headings = 0;
+  int actions = 0;
 };
 
 /// Upper limits of a unit. A unit is the list of jobs that one message carries, milliseconds of

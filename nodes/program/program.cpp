@@ -59,7 +59,7 @@ int parse_number(const std::string& word, const std::string& name) {
 }
 
 jobs::TaskShape shape_of(const tasks::Task& task) {
-  return {static_cast<int>(task.scene.size()), task.push.headings};
+  return {static_cast<int>(task.scene.size()), action_count(task.push)};
 }
 
 }  // namespace rtg::program

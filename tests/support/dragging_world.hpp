@@ -53,7 +53,7 @@ struct DraggingWorld {
 
   reverse::ReverseResult predecessors(const reverse::ReverseJob& job) const {
     const Vector2d d = direction(job.action, task.push);
-    const Poses back = moved(job.end, 0, -task.push.stride * d);
+    const Poses back = moved(job.end, 0, -longest_stride(task.push) * d);
     const std::size_t object = dragged(job.action);
     if (object == 0) return {reverse::SolveStatus::kConverged, 1, {back}};
     reverse::ReverseResult out{reverse::SolveStatus::kConverged, 1};
@@ -64,7 +64,7 @@ struct DraggingWorld {
   Poses pushed(const search::ReplayJob& job) const {
     if (job.action == search::kSettle) return job.start;
     const Vector2d d = direction(job.action, task.push);
-    Poses end = moved(job.start, 0, task.push.stride * d);
+    Poses end = moved(job.start, 0, longest_stride(task.push) * d);
     if (const std::size_t object = dragged(job.action); object != 0)
       end = moved(end, object, (kDrag + over) * d);
     return to_single(misses(job.action) ? moved(end, 0, {0.0, aside}) : end);

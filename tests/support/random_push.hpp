@@ -57,7 +57,7 @@ inline std::optional<RandomPush> drawn_push(Rng& rng, const PushConfig& push, bo
   if (first_overlap(drawn.scene, drawn.start, kClearance)) return std::nullopt;
   Poses ahead = drawn.start;
   for (int k = 1; k <= 4; ++k) {
-    const Vector2d at = 0.25 * k * push.stride * direction(drawn.action, push);
+    const Vector2d at = 0.25 * k * longest_stride(push) * direction(drawn.action, push);
     ahead[0] = {at.x(), at.y(), drawn.start[0].theta};
     const auto met = first_overlap(drawn.scene, ahead, 0.0);
     if (met && met->first == 0) return drawn;

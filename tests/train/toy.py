@@ -12,7 +12,7 @@ class Outcomes:
     """An environment of episodes of one step that end as they are told, in turn; the k-th says it
     had k steps."""
 
-    count, observation_size, headings, task = 1, 3, 8, None
+    count, observation_size, headings, strides, task = 1, 3, 8, (1.0,), None
 
     def __init__(self, successes: Sequence[bool]) -> None:
         self.left = list(enumerate(successes))
@@ -34,7 +34,7 @@ class Outcomes:
 class Line:
     """Environments with positions 0 to 4; heading 1 goes right, every other heading stays."""
 
-    observation_size, task = 3, None
+    observation_size, strides, task = 3, (1.0,), None
 
     def __init__(self, count: int = 4, headings: int = 8) -> None:
         self.count, self.headings = count, headings

@@ -44,19 +44,18 @@ inline void check_bodies(const StateArray& states, std::size_t bodies) {
   }
 }
 
-/// Throws ValueError unless there is one `name` per state, each from 0 to `count` - 1.
-inline void check_headings(const ActionArray& headings, std::size_t states, int count,
-                           const std::string& name) {
-  if (headings.shape(0) != states)
+/// Throws ValueError unless there is one action per state, each from 0 to `count` - 1.
+inline void check_actions(const ActionArray& actions, std::size_t states, int count) {
+  if (actions.shape(0) != states)
     throw nb::value_error((std::to_string(states) + " states but " +
-                           std::to_string(headings.shape(0)) + " " + name + "s; legal: one " +
-                           name + " per state")
+                           std::to_string(actions.shape(0)) +
+                           " actions; legal: one action per state")
                               .c_str());
   for (std::size_t row = 0; row < states; ++row) {
-    const std::int64_t heading = headings.data()[row];
-    if (heading < 0 || heading >= count)
+    const std::int64_t action = actions.data()[row];
+    if (action < 0 || action >= count)
       throw nb::value_error(
-          (name + " " + std::to_string(heading) + "; legal: 0 to " + std::to_string(count - 1))
+          ("action " + std::to_string(action) + "; legal: 0 to " + std::to_string(count - 1))
               .c_str());
   }
 }

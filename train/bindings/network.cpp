@@ -1,5 +1,6 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <string>
@@ -56,12 +57,12 @@ Result copied(const Matrix& matrix, std::initializer_list<std::size_t> shape) {
 Result values(HeadingNetwork& network, const Floats& weights, const StateRows& states) {
   check_weights(network.sizes(), weights.shape(0));
   check_states(network.sizes(), states);
-  const auto headings = static_cast<std::size_t>(network.sizes().headings);
+  const auto actions = static_cast<std::size_t>(network.actions());
   const auto compute = [&]() -> auto& {
     const nb::gil_scoped_release release;
     return network.values(weights.data(), columns(states));
   };
-  return copied(compute(), {states.shape(0), headings});
+  return copied(compute(), {states.shape(0), actions});
 }
 
 Transitions::Numbers numbers(const Floats& array) {
@@ -71,19 +72,20 @@ Transitions::Numbers numbers(const Floats& array) {
 /// The arrays of a gradient step, one row or entry per transition.
 struct TransitionArrays {
   StateRows states;
-  ActionArray headings;
+  ActionArray actions;
   StateRows next_states;
   Floats rewards, terminated, bounds;
 
   std::size_t count() const { return states.shape(0); }
 
-  void check(const NetworkSizes& sizes) const {
+  void check(const HeadingNetwork& network) const {
+    const NetworkSizes& sizes = network.sizes();
     check_states(sizes, states);
     check_states(sizes, next_states);
     if (count() == 0 || next_states.shape(0) != count())
       refuse(std::to_string(count()) + " states and " + std::to_string(next_states.shape(0)) +
              " next states; legal: as many, at least 1");
-    check_headings(headings, count(), sizes.headings, "heading");
+    check_actions(actions, count(), network.actions());
     for (const Floats& each : {rewards, terminated, bounds})
       if (each.shape(0) != count())
         refuse(std::to_string(each.shape(0)) + " numbers for " + std::to_string(count()) +
@@ -92,7 +94,7 @@ struct TransitionArrays {
 
   Transitions view() const {
     return {.states = columns(states),
-            .headings = {headings.data(), count()},
+            .actions = {actions.data(), count()},
             .next_states = columns(next_states),
             .rewards = numbers(rewards),
             .terminated = numbers(terminated),
@@ -121,8 +123,8 @@ struct WeightArrays {
 std::tuple<Result, Result, Result> step(DoubleDqn& learner, const WeightArrays& weights,
                                         const TransitionArrays& batch, const StepRates& rates,
                                         int threads) {
-  weights.check(learner.sizes());
-  batch.check(learner.sizes());
+  weights.check(learner.network().sizes());
+  batch.check(learner.network());
   if (threads < 1) refuse(std::to_string(threads) + " threads; legal: at least 1");
   {
     const nb::gil_scoped_release release;
@@ -142,14 +144,16 @@ void bind_network(nb::module_& module) {
   nb::class_<HeadingNetwork>(module, "HeadingNetwork")
       .def(
           "__init__",
-          [](HeadingNetwork* network, int inputs, int headings, int hidden, int features) {
-            new (network) HeadingNetwork({inputs, headings, hidden, features});
+          [](HeadingNetwork* network, int inputs, int headings, int hidden, int features,
+             const std::vector<double>& strides) {
+            new (network) HeadingNetwork({inputs, headings, hidden, features}, strides);
           },
-          nb::arg("inputs"), nb::arg("headings"), nb::arg("hidden"), nb::arg("features"))
+          nb::arg("inputs"), nb::arg("headings"), nb::arg("hidden"), nb::arg("features"),
+          nb::arg("strides"))
       .def("values", &values, nb::arg("weights"), nb::arg("states"));
   nb::class_<TransitionArrays>(module, "TransitionArrays")
       .def(nb::init<StateRows, ActionArray, StateRows, Floats, Floats, Floats>(), nb::arg("states"),
-           nb::arg("headings"), nb::arg("next_states"), nb::arg("rewards"), nb::arg("terminated"),
+           nb::arg("actions"), nb::arg("next_states"), nb::arg("rewards"), nb::arg("terminated"),
            nb::arg("bounds"));
   nb::class_<WeightArrays>(module, "WeightArrays")
       // Not converted: a step would change a copy.
@@ -164,13 +168,14 @@ void bind_network(nb::module_& module) {
       .def(
           "__init__",
           [](DoubleDqn* learner, int inputs, int headings, int hidden, int features,
-             double discount, bool double_q, bool clipped_double_q, bool clip_targets) {
+             const std::vector<double>& strides, double discount, bool double_q,
+             bool clipped_double_q, bool clip_targets) {
             new (learner) DoubleDqn({inputs, headings, hidden, features},
-                                    {discount, double_q, clipped_double_q, clip_targets});
+                                    {discount, double_q, clipped_double_q, clip_targets}, strides);
           },
           nb::arg("inputs"), nb::arg("headings"), nb::arg("hidden"), nb::arg("features"),
-          nb::kw_only(), nb::arg("discount"), nb::arg("double_q"), nb::arg("clipped_double_q"),
-          nb::arg("clip_targets"))
+          nb::arg("strides"), nb::kw_only(), nb::arg("discount"), nb::arg("double_q"),
+          nb::arg("clipped_double_q"), nb::arg("clip_targets"))
       .def("step", &step, nb::arg("weights"), nb::arg("batch"), nb::arg("rates"), nb::kw_only(),
            nb::arg("threads"));
 }

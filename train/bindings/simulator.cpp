@@ -11,12 +11,12 @@ namespace {
 /// The simulator of one task that defines its true dynamics.
 struct TaskSimulator {
   std::size_t bodies;
-  int headings;
+  int actions;
   std::unique_ptr<const forward::Simulator> pushes;
 
   explicit TaskSimulator(const config::Config& config)
       : bodies(config.task.scene.size()),
-        headings(config.task.push.headings),
+        actions(action_count(config.task.push)),
         pushes(
             make_simulator(config.forward, config.task.scene, config.task.push, config.physics)) {}
 };
@@ -24,7 +24,7 @@ struct TaskSimulator {
 std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, bool>> push(
     const TaskSimulator& simulator, const StateArray& states, const ActionArray& actions) {
   check_bodies(states, simulator.bodies);
-  check_headings(actions, states.shape(0), simulator.headings, "action");
+  check_actions(actions, states.shape(0), simulator.actions);
   const std::size_t count = states.shape(0), width = simulator.bodies * 3;
   OwnedArray<double> next(count * width);
   OwnedArray<bool> ok(count);

@@ -117,6 +117,13 @@ nb::ndarray<nb::numpy, double> start(const tasks::Task& task, double amplitude, 
   return state_array(jittered_start(task, amplitude, rng));
 }
 
+/// Returns the strides, the longest one being 1.
+std::vector<double> strides(const tasks::Task& task) {
+  std::vector<double> out;
+  for (const double stride : task.push.strides) out.push_back(stride / longest_stride(task.push));
+  return out;
+}
+
 /// Returns the joints as (parent, child, points in the frame of the parent): the pin of a revolute
 /// joint, the ends of the axis of a prismatic one.
 std::vector<std::tuple<int, int, std::vector<Vector2d>>> joints(const tasks::Task& task) {
@@ -186,6 +193,8 @@ void bind_task(nb::module_& module) {
       .def_prop_ro("position_unit", &tasks::position_unit)
       .def_prop_ro("relative_unit", &tasks::relative_unit)
       .def_prop_ro("headings", [](const tasks::Task& task) { return task.push.headings; })
+      .def_prop_ro("strides", &strides)
+      .def_prop_ro("actions", [](const tasks::Task& task) { return action_count(task.push); })
       .def_prop_ro(
           "start", [](const tasks::Task& task) { return state_array(task.start); },
           nb::rv_policy::move)

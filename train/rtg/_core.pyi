@@ -80,7 +80,13 @@ class Task:
         """Unit of relative positions in an observation [m]."""
     @property
     def headings(self) -> int:
-        """Number of actions: action a pushes along 2πa/headings."""
+        """Number of headings of a push."""
+    @property
+    def strides(self) -> list[float]:
+        """Lengths of a push, the longest one being 1."""
+    @property
+    def actions(self) -> int:
+        """Number of actions: action a has the heading a % headings, the stride a // headings."""
     @property
     def start(self) -> NDArray[np.float64]:
         """The nominal start. [bodies, 3]"""
@@ -159,11 +165,13 @@ class HeadingNetwork:
     Raises ValueError if shapes do not fit. One thread at a time may use it.
     """
 
-    def __init__(self, inputs: int, headings: int, hidden: int, features: int) -> None: ...
+    def __init__(
+        self, inputs: int, headings: int, hidden: int, features: int, strides: list[float]
+    ) -> None: ...
     def values(
         self, weights: NDArray[np.float32], states: NDArray[np.float32]
     ) -> NDArray[np.float32]:
-        """Returns Q of all headings. states [B, inputs] -> [B, headings]"""
+        """Returns Q of all actions. states [B, inputs] -> [B, actions]"""
 
 class TransitionArrays:
     """The arrays of a gradient step, one row or entry per transition; float32, contiguous."""
@@ -171,7 +179,7 @@ class TransitionArrays:
     def __init__(
         self,
         states: NDArray[np.float32],
-        headings: NDArray[np.int64],
+        actions: NDArray[np.int64],
         next_states: NDArray[np.float32],
         rewards: NDArray[np.float32],
         terminated: NDArray[np.float32],
@@ -212,6 +220,7 @@ class DoubleDqn:
         headings: int,
         hidden: int,
         features: int,
+        strides: list[float],
         *,
         discount: float,
         double_q: bool,

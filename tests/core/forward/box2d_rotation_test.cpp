@@ -25,7 +25,7 @@ TEST(Box2dRotation, AnOffCentrePushTurnsABoxAsItsMomentOfInertiaSays) {
   const Scene scene = frictionless(diamond(0.5), box(1.2, 0.8));
   const Mass mass = mass_of(scene.bodies[1]);
   PushConfig push;
-  push.stride = 0.04;
+  push.strides = {0.04};
   for (const double y : {-0.3, 0.1, 0.2, 0.35}) {
     const Poses start{{0, y, 0}, {1.12, 0, 0}};
     const PushOutcome out = Box2dSimulator(scene, push, {}).push(start, 0);

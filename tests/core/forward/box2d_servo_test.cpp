@@ -28,7 +28,7 @@ struct Fastest {
 /// ... 50 Box2D steps: a robot that lags behind does the same in the longer ones and then one step
 /// more.
 Fastest fastest(const Scene& scene, const PhysicsConfig& physics) {
-  const double advance = PushConfig{}.stride / (physics.sub_steps * physics.box2d_steps);
+  const double advance = longest_stride(PushConfig{}) / (physics.sub_steps * physics.box2d_steps);
   Fastest most;
   Pose before = kBelowABox[0];
   for (int k = 1; k <= physics.sub_steps * physics.box2d_steps; ++k) {
@@ -92,7 +92,7 @@ TEST(Box2dServo, AHeavyBoxMovesAsFastAsTheLargestForceMovesIt) {
     const double speed = 6.0 * (1.0 + physics.inertia_weight()) / 24.0;
     const PushOutcome out = Box2dSimulator(scene, {}, physics).push({{0, 0, 0}, {1.1, 0, 0}}, 0);
     ASSERT_TRUE(out.ok);
-    EXPECT_NEAR(out.end[1].x - 1.1, speed * PushConfig{}.stride, 0.1) << damping;
+    EXPECT_NEAR(out.end[1].x - 1.1, speed * longest_stride(PushConfig{}), 0.1) << damping;
   }
 }
 

@@ -134,7 +134,7 @@ TEST(Box2dSimulator, UntouchedBodiesInContactDoNotCreep) {
 // v Σ (1 + h d)^-k = v/d.
 TEST(Box2dSimulator, APushedBoxStopsAtTheRobotsFacePlusSkinPlusCoasting) {
   const Box2dSimulator simulator(robot_and_box(), kPush, kPhysics);
-  const double speed = kPush.stride / (kPhysics.sub_steps * kPhysics.time_step);
+  const double speed = longest_stride(kPush) / (kPhysics.sub_steps * kPhysics.time_step);
   const double coasting = speed * kPhysics.time_step / kPhysics.damping;
   for (const double gap : {0.02, 0.1, 0.313, 0.8}) {
     const PushOutcome out = simulator.push({{0, 0, 0}, {1.1 + gap, 0, 0}}, 0);

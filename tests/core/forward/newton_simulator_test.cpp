@@ -8,6 +8,7 @@
 #include "core/energy/implicit_step.hpp"
 #include "core/forward/box2d_simulator.hpp"
 #include "core/math/rng.hpp"
+#include "tests/support/gathering.hpp"
 #include "tests/support/random_push.hpp"
 
 namespace rtg::forward {
@@ -30,7 +31,7 @@ NewtonSimulator simulator() { return {robot_and_boxes(), kPush, kPhysics}; }
 
 /// Returns how far the servo lags behind where it pulls with share·B: e = s artanh(share).
 double servo_lag(double share) {
-  return energy::servo_scale(kPush.stride / kPhysics.sub_steps) * std::atanh(share);
+  return energy::servo_scale(longest_stride(kPush) / kPhysics.sub_steps) * std::atanh(share);
 }
 
 /// Returns where a free push by `action` ends: at push speed the drag along d(a) is B/force_factor,
@@ -66,6 +67,22 @@ TEST(NewtonSimulator, AFreePushEndsWhereBox2dsDoes) {
   }
 }
 
+TEST(NewtonSimulator, EachStrideIsPushedAsIfItWereTheOnlyOne) {
+  const Scene scene = testing::gathering().scene;
+  const Poses start = testing::gathering().start;
+  const PushConfig both{48, {0.7, 2.0}, 8.0};
+  for (int action = 0; action < action_count(both); action += 7) {
+    const PushConfig one = with_stride_of(action, both);
+    for (const bool box2d : {false, true}) {
+      const auto push = [&](const PushConfig& config, int a) {
+        return box2d ? Box2dSimulator(scene, config, kPhysics).push(start, a)
+                     : NewtonSimulator(scene, config, kPhysics).push(start, a);
+      };
+      EXPECT_EQ(push(both, action).end, push(one, action % 48).end) << action;
+    }
+  }
+}
+
 TEST(NewtonSimulator, TheRobotStaysInTheArena) {
   const Poses start{{7, 7, 0.3}, {1, 5, 0}, {-5, -5, 0}};
   const PushOutcome out = simulator().push(start, 0);
@@ -93,7 +110,7 @@ TEST(NewtonSimulator, APushedBoxEndsWhereItsDragBalancesTheBarrier) {
   const PushOutcome out = simulator().push({{0, 0, 0}, {1.7, 0, 0}, {-5, -5, 0}}, 0);
   ASSERT_TRUE(out.ok);
   const double share = (robot + box) / robot / kPhysics.force_factor;
-  EXPECT_NEAR(out.end[0].x, kPush.stride - servo_lag(share), 1e-6);
+  EXPECT_NEAR(out.end[0].x, longest_stride(kPush) - servo_lag(share), 1e-6);
   EXPECT_NEAR(out.end[1].x - out.end[0].x, 0.8 + 0.6 + gap, 1e-6);
   EXPECT_NEAR(out.end[1].y, 0.0, 1e-9);
   EXPECT_NEAR(out.end[1].theta, 0.0, 1e-9);
@@ -103,7 +120,7 @@ TEST(NewtonSimulator, APushedBoxEndsWhereItsDragBalancesTheBarrier) {
 TEST(NewtonSimulator, APushedBoxEndsWhereBox2dsDoesButForSkinAndCoasting) {
   const Poses start{{0, 0, 0}, {1.7, 0, 0}, {-5, -5, 0}};
   const Box2dSimulator box2d(robot_and_boxes(), kPush, kPhysics);
-  const double speed = kPush.stride / (kPhysics.sub_steps * kPhysics.time_step);
+  const double speed = longest_stride(kPush) / (kPhysics.sub_steps * kPhysics.time_step);
   const double coasting = speed * kPhysics.time_step / kPhysics.damping, skin = 0.02;
   const double ahead = box2d.push(start, 0).end[1].x - simulator().push(start, 0).end[1].x;
   EXPECT_GT(ahead, 0.0);

@@ -24,7 +24,7 @@ constexpr float kNone = -std::numeric_limits<float>::infinity();
 struct Case {
   VectorXf online, target;
   MatrixXf states, next;
-  std::vector<std::int64_t> headings;
+  std::vector<std::int64_t> actions;
   RowVectorXf rewards, terminated, bounds;
 
   explicit Case(int count) {
@@ -39,7 +39,7 @@ struct Case {
     terminated = RowVectorXf::Zero(count);
     bounds = RowVectorXf::Constant(count, kNone);
     for (int k = 0; k < count; ++k) {
-      headings.push_back(7 * k % kSizes.headings);
+      actions.push_back(7 * k % kSizes.headings);
       if (k % 3 == 0) terminated[k] = 1.0f;
       if (k % 5 == 0) bounds[k] = 0.5f;
     }
@@ -54,7 +54,7 @@ struct Case {
   Transitions batch() const {
     const auto map = [](const RowVectorXf& x) { return Transitions::Numbers(x.data(), x.size()); };
     return {{states.data(), states.rows(), states.cols()},
-            headings,
+            actions,
             {next.data(), next.rows(), next.cols()},
             map(rewards),
             map(terminated),
@@ -96,7 +96,7 @@ TEST(DoubleDqn, TargetsAreThoseOfAPlainLoop) {
         EXPECT_NEAR(learner.bootstrap()[k], bootstrap, 1e-4) << k;
         EXPECT_NEAR(learner.targets()[k], y, 1e-4) << k;
         const auto row = static_cast<std::size_t>(k);
-        EXPECT_NEAR(learner.values()[k], here(c.headings[row], k), 1e-4) << k;
+        EXPECT_NEAR(learner.values()[k], here(c.actions[row], k), 1e-4) << k;
       }
     }
   }
@@ -117,7 +117,7 @@ TEST(DoubleDqn, ATransitionTwiceHasTheGradientOfOne) {
   Case one(1), two(2);
   two.states.col(1) = two.states.col(0) = one.states;
   two.next.col(1) = two.next.col(0) = one.next;
-  two.headings[1] = two.headings[0] = one.headings[0];
+  two.actions[1] = two.actions[0] = one.actions[0];
   two.rewards.fill(one.rewards[0]);
   two.terminated.fill(one.terminated[0]);
   two.bounds.fill(one.bounds[0]);

@@ -16,23 +16,25 @@ using Eigen::VectorXf;
 
 constexpr NetworkSizes kSizes{.inputs = 5, .headings = 12, .hidden = 16, .features = 8};
 
-/// Random weights and a batch of random states, each with a heading.
+constexpr int kActions = 24;  // with two strides
+
+/// Random weights and a batch of random states, each with an action.
 struct Case {
-  HeadingNetwork network{kSizes};
+  HeadingNetwork network{kSizes, {0.4, 1.0}};
   VectorXf weights;
   MatrixXf states;
-  std::vector<std::int64_t> headings;
+  std::vector<std::int64_t> actions;
 
   explicit Case(int count) {
     std::mt19937 random(7);
     std::normal_distribution<float> normal;
     weights = VectorXf::NullaryExpr(weight_count(kSizes), [&] { return 0.5f * normal(random); });
     states = MatrixXf::NullaryExpr(kSizes.inputs, count, [&] { return normal(random); });
-    for (int k = 0; k < count; ++k) headings.push_back(7 * k % kSizes.headings);
+    for (int k = 0; k < count; ++k) actions.push_back(7 * k % kActions);
   }
 
   HeadingNetwork::States batch() const { return {states.data(), states.rows(), states.cols()}; }
-  RowVectorXf at() { return network.values_at(weights.data(), batch(), headings); }
+  RowVectorXf at() { return network.values_at(weights.data(), batch(), actions); }
   VectorXf gradient(const RowVectorXf& of_q) {
     VectorXf out(weights.size());
     network.gradient(weights.data(), of_q, out.data());
@@ -49,16 +51,16 @@ TEST(HeadingNetwork, WeightsFillTheirArray) {
 }
 
 // For batches of one state, of fewer and of more states than are computed together.
-TEST(HeadingNetwork, ValuesOfAllHeadingsAreThoseOfEach) {
+TEST(HeadingNetwork, ValuesOfAllActionsAreThoseOfEach) {
   for (const int count : {1, 5, 8, 21}) {
     Case c(count);
     const MatrixXf all = c.all();
     EXPECT_GT(all.maxCoeff() - all.minCoeff(), 0.1f);
-    for (int turn = 0; turn < kSizes.headings; ++turn) {
+    for (int turn = 0; turn < kActions; ++turn) {
       const RowVectorXf q = c.at();
       for (int k = 0; k < count; ++k)
-        EXPECT_NEAR(q[k], all(c.headings[static_cast<std::size_t>(k)], k), 1e-5) << count;
-      for (std::int64_t& heading : c.headings) heading = (heading + 1) % kSizes.headings;
+        EXPECT_NEAR(q[k], all(c.actions[static_cast<std::size_t>(k)], k), 1e-5) << count;
+      for (std::int64_t& action : c.actions) action = (action + 1) % kActions;
     }
   }
 }
@@ -132,7 +134,7 @@ TEST(HeadingNetwork, ResultsAreTheSameBitForBit) {
     states.tail(c.states.size()) = c.states.reshaped();
     const HeadingNetwork::States batch(states.data() + shift, kSizes.inputs, 21);
     EXPECT_EQ(c.network.values(c.weights.data(), batch), all);
-    EXPECT_EQ(c.network.values_at(c.weights.data(), batch, c.headings), q);
+    EXPECT_EQ(c.network.values_at(c.weights.data(), batch, c.actions), q);
     EXPECT_EQ(c.gradient(q), gradient);
   }
 }

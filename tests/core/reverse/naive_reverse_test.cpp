@@ -18,7 +18,7 @@ constexpr int kRight = 0;  // of 4 actions; the robot comes from the left
 /// A square robot of 1 m and objects of the given shapes; pushes of 2 m in an arena of ±8 m.
 struct NaiveReverseTest : ::testing::Test {
   Scene scene{{{"robot", "robot", box(1.0, 1.0), 1.0, 0.5, false}}};
-  PushConfig push{4, 2.0, 8.0};
+  PushConfig push{4, {2.0}, 8.0};
   Poses end{{1.0, 0.5, 0.0}};
 
   void add(const Polygon& shape, const Pose& pose, bool fixed = false) {

@@ -94,7 +94,8 @@ double least_separation(const Pose& robot, const Pose& other, int action) {
   const Scene scene = robot_and_box();
   double least = INFINITY;
   for (int k = 0; k <= 400; ++k) {
-    const Vector2d at = robot.position() - kPush.stride * k / 400.0 * direction(action, kPush);
+    const Vector2d at =
+        robot.position() - longest_stride(kPush) * k / 400.0 * direction(action, kPush);
     least = std::min(least, separation(scene.bodies[0].shape, {at.x(), at.y(), robot.theta},
                                        scene.bodies[1].shape, other));
   }

@@ -38,7 +38,7 @@ TEST(ReverseSimulator, AFreeRobotStepsBackOneStrideAndTheOthersStay) {
   for (const int action : {0, 7, 30}) {
     const ReverseResult result = solve(robot_and_boxes(2), {end, action});
     ASSERT_EQ(result.status, SolveStatus::kConverged);
-    const Vector2d back = end[0].position() - kPush.stride * direction(action, kPush);
+    const Vector2d back = end[0].position() - longest_stride(kPush) * direction(action, kPush);
     // The pull on the robot against the push and the price of control shift it a little.
     EXPECT_LT((result.predecessors[0][0].position() - back).norm(), 0.01);
     EXPECT_NEAR(result.predecessors[0][0].theta, 0.3, 1e-6);
@@ -217,6 +217,30 @@ TEST(ReverseSimulator, ATurnAloneHasLateContactsToo) {
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   EXPECT_LT((result.predecessors[0][2].position() - end[2].position()).norm(), 1e-6);
   EXPECT_GT(result.predecessors.size(), 1U);
+}
+
+// A job's stride is its own, whatever the strides of others in the lanes beside it.
+TEST(ReverseSimulator, EachStrideIsPulledBackAsIfItWereTheOnlyOne) {
+  const PushConfig both{48, {1.0, 2.0}, 8.0};
+  const ReverseSimulator together(robot_and_boxes(2), kPhysics, both, {});
+  std::vector<ReverseJob> jobs;
+  for (int action = 0; action < action_count(both); action += 3)
+    jobs.push_back({touching_job().end, action});
+  const std::vector<ReverseResult> results = together.solve(jobs);
+  int dragged = 0;
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    const PushConfig one = with_stride_of(jobs[k].action, both);
+    const ReverseResult alone = ReverseSimulator(robot_and_boxes(2), kPhysics, one, {})
+                                    .solve({jobs[k].end, jobs[k].action % both.headings});
+    EXPECT_EQ(results[k].status, alone.status) << k;
+    EXPECT_EQ(results[k].predecessors, alone.predecessors) << k;
+    if (alone.status != SolveStatus::kConverged) continue;
+    const Poses& start = results[k].predecessors[0];
+    EXPECT_NEAR((start[0].position() - jobs[k].end[0].position()).norm(),
+                stride_of(jobs[k].action, both), 0.2);
+    dragged += (start[1].position() - jobs[k].end[1].position()).norm() > 0.2;
+  }
+  EXPECT_GE(dragged, 4);
 }
 
 TEST(ReverseSimulator, PrunedJobsComeBackUnsolved) {

@@ -16,7 +16,7 @@ TEST(OtherHeadings, AreSoManyDifferentOnesAndNeverTheStepsOwn) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Rng rng(seed);
     const int action = static_cast<int>(seed % 48);
-    const std::vector<int> found = other_headings(action, 48, 6, rng);
+    const std::vector<int> found = other_actions(action, 48, 6, rng);
     EXPECT_EQ(std::set<int>(found.begin(), found.end()).size(), 6U);
     for (const int heading : found) {
       EXPECT_NE(heading, action);
@@ -30,7 +30,7 @@ TEST(OtherHeadings, AreUniform) {
   std::map<int, int> counts;
   for (std::uint64_t seed = 0; seed < 4700; ++seed) {
     Rng rng(seed);
-    ++counts[other_headings(10, 48, 2, rng)[1]];
+    ++counts[other_actions(10, 48, 2, rng)[1]];
   }
   EXPECT_EQ(counts.size(), 47U);
   for (const auto& [heading, count] : counts) EXPECT_NEAR(count, 100, 50) << heading;
@@ -38,9 +38,9 @@ TEST(OtherHeadings, AreUniform) {
 
 TEST(OtherHeadings, EndWhereThereAreNoMore) {
   Rng rng(1);
-  EXPECT_EQ(other_headings(0, 4, 9, rng).size(), 3U);
-  EXPECT_EQ(other_headings(0, 1, 2, rng).size(), 0U);
-  EXPECT_EQ(other_headings(5, 48, 0, rng).size(), 0U);
+  EXPECT_EQ(other_actions(0, 4, 9, rng).size(), 3U);
+  EXPECT_EQ(other_actions(0, 1, 2, rng).size(), 0U);
+  EXPECT_EQ(other_actions(5, 48, 0, rng).size(), 0U);
 }
 
 struct BranchesTest : ::testing::Test, testing::DraggingWorld {

@@ -66,7 +66,7 @@ class Graph {
   }
 
   jobs::TaskShape shape() const {
-    return {static_cast<int>(task.scene.size()), task.push.headings};
+    return {static_cast<int>(task.scene.size()), action_count(task.push)};
   }
 
   const tasks::Task task = gathering();

@@ -13,7 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 using rtg_msgs::replay_job_t;
 
-constexpr jobs::TaskShape kShape{.bodies = 1, .headings = 48};
+constexpr jobs::TaskShape kShape{.bodies = 1, .actions = 48};
 constexpr int kUnit = jobs::ReplayService::kUnit.jobs;
 constexpr std::int64_t kConfig = 77;
 constexpr jobs::WorkerId kAnn = 1;

@@ -34,7 +34,7 @@ struct TransitionPublisherTest : ::testing::Test {
   bus::Bus bus{"memq://", "test"};
   std::vector<transition_batch_t> batches;
   std::vector<stream_tail_t> tails;
-  TransitionPublisher publisher{bus, jobs::TaskShape{.bodies = 2, .headings = 48}};
+  TransitionPublisher publisher{bus, jobs::TaskShape{.bodies = 2, .actions = 48}};
   bus::Seconds now = bus::monotonic_now();
 
   TransitionPublisherTest() {

@@ -9,7 +9,7 @@
 namespace rtg::jobs {
 namespace {
 
-constexpr TaskShape kShape{.bodies = 2, .headings = 48};
+constexpr TaskShape kShape{.bodies = 2, .actions = 48};
 
 Poses state(double x) { return {{x, x + 0.25, 0.1}, {-x, 1.0 / 3.0, 7.0}}; }
 
@@ -78,10 +78,10 @@ TEST(Service, JobsThatMakeNoSenseAreRefused) {
   EXPECT_TRUE(
       refused<ReverseService>(reverse_jobs(), [](auto& m) { m.action[0] = search::kSettle; }));
   EXPECT_TRUE(refused<ReverseService>(reverse_jobs(), [](auto& m) { m = {}; }));
-  EXPECT_TRUE(refused<ReverseService>(reverse_jobs(), [](auto&) {}, {.bodies = 3, .headings = 48}));
+  EXPECT_TRUE(refused<ReverseService>(reverse_jobs(), [](auto&) {}, {.bodies = 3, .actions = 48}));
   EXPECT_TRUE(refused<ReplayService>(replay_jobs(), [](auto& m) { m.action[1] = 48; }));
   EXPECT_TRUE(refused<ReplayService>(replay_jobs(), [](auto& m) { m.action[0] = -2; }));
-  EXPECT_TRUE(refused<ReplayService>(replay_jobs(), [](auto&) {}, {.bodies = 1, .headings = 48}));
+  EXPECT_TRUE(refused<ReplayService>(replay_jobs(), [](auto&) {}, {.bodies = 1, .actions = 48}));
 }
 
 TEST(Service, ResultsThatMakeNoSenseAreRefused) {
@@ -95,11 +95,10 @@ TEST(Service, ResultsThatMakeNoSenseAreRefused) {
   EXPECT_TRUE(refused<ReverseService>(reverse_results(), [](auto& m) { m.starts = {2, 1, 0}; }));
   EXPECT_TRUE(refused<ReverseService>(reverse_results(), [](auto& m) { m.starts[0] = -1; }));
   EXPECT_TRUE(
-      refused<ReverseService>(reverse_results(), [](auto&) {}, {.bodies = 3, .headings = 48}));
+      refused<ReverseService>(reverse_results(), [](auto&) {}, {.bodies = 3, .actions = 48}));
   EXPECT_TRUE(refused<ReplayService>(replay_results(), [](auto& m) { m.ok[0] = 2; }));
   EXPECT_TRUE(refused<ReplayService>(replay_results(), [](auto& m) { m.cpu_s[1] = 1e300; }));
-  EXPECT_TRUE(
-      refused<ReplayService>(replay_results(), [](auto&) {}, {.bodies = 3, .headings = 48}));
+  EXPECT_TRUE(refused<ReplayService>(replay_results(), [](auto&) {}, {.bodies = 3, .actions = 48}));
 }
 
 TEST(Service, UnitsAreAsEqualAsCanBeAndFitIntoMessages) {

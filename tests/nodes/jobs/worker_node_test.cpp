@@ -16,7 +16,7 @@ using rtg_msgs::reverse_job_t;
 using rtg_msgs::reverse_result_t;
 using rtg_msgs::worker_beat_t;
 
-constexpr TaskShape kShape{.bodies = 2, .headings = 48};
+constexpr TaskShape kShape{.bodies = 2, .actions = 48};
 constexpr std::int64_t kConfig = 77;
 
 const std::vector<reverse::ReverseJob> kJobs{{{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 5},

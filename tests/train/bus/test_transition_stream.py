@@ -154,7 +154,7 @@ def test_overlapping_pieces_are_cut():
 
 def test_two_streams_are_not_mixed():
     ours = Bus("memq://", "a run")
-    stream = TransitionStream(ours, bodies=3, headings=48, sink=print)
+    stream = TransitionStream(ours, bodies=3, actions=48, sink=print)
     for number in (5, 5, 6):
         tail = message_type("stream_tail_t")()
         tail.stream = number
@@ -174,7 +174,7 @@ class Message:
 
 
 def test_rows_have_the_shapes_of_the_data_set():
-    rows = to_rows(Message(), bodies=3, headings=48)
+    rows = to_rows(Message(), bodies=3, actions=48)
     assert isinstance(rows, Rows)
     assert rows.poses.shape == rows.next_poses.shape == (2, 3, 3)
     assert rows.next_poses[1, 2, 2] == 35.0
@@ -196,4 +196,4 @@ def test_rows_have_the_shapes_of_the_data_set():
     ],
 )
 def test_a_batch_that_makes_no_sense_is_refused(changes):
-    assert to_rows(Message(**changes), bodies=3, headings=48) is None
+    assert to_rows(Message(**changes), bodies=3, actions=48) is None

@@ -27,7 +27,7 @@ def saved(path: Path, transitions: Transitions, **changes: object) -> Path:
 def test_round_trip_is_exact(tmp_path: Path, transitions: Transitions) -> None:
     path = tmp_path / "transitions.npz"
     dataset.write(path, transitions)
-    back = dataset.read(path, bodies=4, headings=48)
+    back = dataset.read(path, bodies=4, actions=48)
     for wrote, got in zip(transitions, back, strict=True):
         assert wrote.dtype == got.dtype
         np.testing.assert_array_equal(wrote, got)
@@ -85,7 +85,7 @@ def test_wrong_arrays_are_named(
 ) -> None:
     path = saved(tmp_path / "bad.npz", transitions, **changes)
     with pytest.raises(DatasetError) as error:
-        dataset.read(path, bodies=4, headings=48)
+        dataset.read(path, bodies=4, actions=48)
     assert str(error.value).startswith(f"{path}: {message}")
 
 

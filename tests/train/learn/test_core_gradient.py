@@ -65,7 +65,7 @@ def step(count: int = 3, **changes: Any) -> None:
     row, states = np.zeros(count, np.float32), np.zeros((count, 5), np.float32)
     batch = {
         "states": states,
-        "headings": np.zeros(count, np.int64),
+        "actions": np.zeros(count, np.int64),
         "next_states": states,
         "rewards": row,
         "terminated": row,
@@ -97,9 +97,9 @@ def learner() -> _core.DoubleDqn:
         ({"states": np.zeros((3, 4), np.float32)}, "states of 4 numbers; legal: 5"),
         ({"next_states": np.zeros((3, 4), np.float32)}, "states of 4 numbers; legal: 5"),
         ({"next_states": np.zeros((2, 5), np.float32)}, "3 states and 2 next states; legal: as "),
-        ({"headings": np.full(3, 8)}, "heading 8; legal: 0 to 7"),
-        ({"headings": np.full(3, -1)}, "heading -1; legal: 0 to 7"),
-        ({"headings": np.zeros(2, np.int64)}, "3 states but 2 headings; legal: one heading per"),
+        ({"actions": np.full(3, 8)}, "action 8; legal: 0 to 7"),
+        ({"actions": np.full(3, -1)}, "action -1; legal: 0 to 7"),
+        ({"actions": np.zeros(2, np.int64)}, "3 states but 2 actions; legal: one action per"),
         ({"rewards": np.zeros(2, np.float32)}, "2 numbers for 3 transitions; legal: one per"),
         ({"terminated": np.zeros(2, np.float32)}, "2 numbers for 3 transitions; legal: one per"),
         ({"bounds": np.zeros(4, np.float32)}, "4 numbers for 3 transitions; legal: one per"),

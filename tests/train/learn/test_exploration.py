@@ -54,6 +54,19 @@ def test_noise_is_nearby_or_anywhere_and_as_frequent_as_asked() -> None:
     assert (np.abs(counts / n - 1 / 8) < 0.012).all()  # five sigma
 
 
+def test_nearby_headings_have_the_stride_of_the_greedy_action() -> None:
+    settings = train_settings(leave_loops=False, nearby_share=1.0, nearby_headings=2)
+    one = Exploration(settings, headings=8, seed=0, strides=3)
+    greedy = np.repeat([0, 8, 23], 1000)
+    actions = one.actions(greedy, np.zeros((3000, 5)), 1.0)
+    assert (actions // 8 == greedy // 8).all()
+    assert set(actions[2000:]) == {16, 17, 21, 22}
+    anywhere = Exploration(
+        train_settings(leave_loops=False, nearby_share=0.0), headings=8, seed=0, strides=3
+    ).actions(greedy, np.zeros((3000, 5)), 1.0)
+    assert set(anywhere) == set(range(24))
+
+
 def test_a_loop_is_left_where_it_closes() -> None:
     nearby = {"nearby_share": 1.0}  # what explores differs
     states = [0.0, 1.0, 0.03, 1.03, 2.0, 2.05, 2.2]

@@ -79,6 +79,15 @@ def test_heading_a_points_at_so_many_of_all_headings_from_the_x_axis() -> None:
     th.testing.assert_close(u[1], v[1])
 
 
+def test_the_headings_of_each_stride_are_those_of_the_longest_made_shorter() -> None:
+    net = networks.make("headings", 3, 8, [0.25, 1.0])
+    short, long = net.basis[:8], net.basis[8:]
+    th.testing.assert_close(short[:, 1:], 0.25 * long[:, 1:])
+    th.testing.assert_close(long, net_of("headings").basis)
+    for kind in networks.KINDS:
+        assert networks.make(kind, 3, 8, [0.25, 1.0])(seen(5)).shape == (5, 16)
+
+
 @pytest.mark.parametrize("inputs", [3, 20, 44])
 def test_a_network_of_headings_starts_near_zero(inputs: int) -> None:
     for seed in range(5):

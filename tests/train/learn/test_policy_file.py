@@ -18,6 +18,7 @@ FITTING = {
     **UNITS,
     "observation_size": 20,
     "headings": 48,
+    "strides": [1.0],
     "task": TASK.content,
     "network": "headings",
 }
@@ -89,6 +90,7 @@ def test_the_identity_says_what_shapes_the_weights(field: str, value: Any, expec
         **UNITS,
         "observation_size": 20,
         "headings": 48,
+        "strides": [1.0],
         "task": TASK.content,
         "network": "headings",
         "hindsight": False,

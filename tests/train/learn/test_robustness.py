@@ -52,7 +52,7 @@ def test_the_policy_sees_the_units_of_its_own_task_and_noise_where_it_is_asked_f
     for seen, variant in (
         (plain, Variant("", "")),
         (noisy, Variant("", "", noise=0.1)),
-        (longer, Variant("", "", ("task.push.stride=2.5",))),
+        (longer, Variant("", "", ("task.push.strides=[2.5]",))),
     ):
         row = evaluate_variant(FILE, CONFIG, policy_of(seen), variant, 4)
         assert row.success == 0.0 and row.length == CONFIG.task.horizon

@@ -37,7 +37,7 @@ def record(config: _core.Config, run: str, file: Path) -> None:
         _say(bus.warning)
     _say(f"waits for the transitions of run {run}")
     recorder = Recorder(config.task)
-    stream = TransitionStream(bus, config.task.bodies, config.task.headings, recorder.add)
+    stream = TransitionStream(bus, config.task.bodies, config.task.actions, recorder.add)
     while not stream.complete:
         if stream.poll(_POLL):
             _say(f"has {stream.received} transitions")

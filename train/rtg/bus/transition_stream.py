@@ -133,10 +133,10 @@ class StreamCursor:
         return gaps[:MAX_RANGES]
 
 
-def to_rows(message: Any, bodies: int, headings: int) -> Rows | None:
+def to_rows(message: Any, bodies: int, actions: int) -> Rows | None:
     """Returns the rows of a transition_batch_t, or None if they are invalid.
 
-    `bodies` and `headings`: the task's numbers of bodies and of actions.
+    `bodies` and `actions`: the task's numbers of bodies and of actions.
     """
     n = message.n
     if n < 1 or message.first < 0 or message.n_poses != n * bodies * 3:
@@ -151,7 +151,7 @@ def to_rows(message: Any, bodies: int, headings: int) -> Rows | None:
         source=np.asarray(message.source, np.int8),
     )
     legal = (
-        ((rows.action >= 0) & (rows.action < headings)).all()
+        ((rows.action >= 0) & (rows.action < actions)).all()
         and ((success == 0) | (success == 1)).all()
         and ((rows.source >= 0) & (rows.source < len(SOURCES))).all()
     )
@@ -161,16 +161,14 @@ def to_rows(message: Any, bodies: int, headings: int) -> Rows | None:
 class TransitionStream:
     """Passes every transition of the run to `sink`, once and in order.
 
-    stream = TransitionStream(bus, bodies=7, headings=48, sink=buffer.add)
+    stream = TransitionStream(bus, bodies=7, actions=48, sink=buffer.add)
     while not stream.complete:
         stream.poll(0.1)
     """
 
-    def __init__(
-        self, bus: Bus, bodies: int, headings: int, sink: Callable[[Rows], object]
-    ) -> None:
+    def __init__(self, bus: Bus, bodies: int, actions: int, sink: Callable[[Rows], object]) -> None:
         self._bus = bus
-        self._bodies, self._headings = bodies, headings
+        self._bodies, self._actions = bodies, actions
         self._sink = sink
         self._cursor = StreamCursor(CREDIT)
         self._consumer = secrets.randbits(62)
@@ -208,7 +206,7 @@ class TransitionStream:
         return self._cursor.complete
 
     def _on_batch(self, message: Any) -> None:
-        rows = to_rows(message, self._bodies, self._headings)
+        rows = to_rows(message, self._bodies, self._actions)
         if rows is None:
             self._bus.counters["stream.illegal"] += 1
             return

@@ -158,7 +158,7 @@ class Curriculum:
     def _headings(self, states: Floats) -> NDArray[np.int64]:
         """Draws the heading of the next push of each walk. [walks]"""
         contact = self._task.contact_headings(states, int(self._rng.integers(1 << 62)))
-        anywhere = self._rng.integers(self._task.headings, size=len(states))
+        anywhere = self._rng.integers(self._task.actions, size=len(states))
         return np.where(self._rng.random(len(states)) < CONTACT_SHARE, contact, anywhere)
 
     def state(self) -> dict[str, Any]:

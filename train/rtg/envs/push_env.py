@@ -24,9 +24,9 @@ def observation_space(task: _core.Task) -> spaces.Box:
 class PushEnv(gymnasium.Env[Any, Any]):
     """The environment of a task in which a robot pushes objects until the goal holds.
 
-    Action a moves the robot one stride along 2πa/headings. The reward is 1 when the goal holds,
-    else 0. Success ends the episode. An episode is truncated after task.horizon actions. The seed
-    determines all random numbers.
+    Action a moves the robot along 2πa/headings, by the stride a // headings of the task. The
+    reward is 1 when the goal holds, else 0. Success ends the episode. An episode is truncated after
+    task.horizon actions. The seed determines all random numbers.
 
     - `config`: the configuration with the task and the physics, or its file; Gathering's if None.
     - `jitter`: largest random offset of an object's x and y at the start, in units
@@ -51,7 +51,7 @@ class PushEnv(gymnasium.Env[Any, Any]):
         self.jitter = self.task.start_jitter if jitter is None else jitter
         self.render_mode = render_mode
         self.observation_space = observation_space(self.task)
-        self.action_space = spaces.Discrete(self.task.headings)
+        self.action_space = spaces.Discrete(self.task.actions)
         self._simulator = _core.Simulator(config)
         self._path: list[NDArray[np.float64]] = [self.task.start]  # states of the current episode
 
@@ -84,7 +84,7 @@ class PushEnv(gymnasium.Env[Any, Any]):
         self, action: np.int64 | int
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         if not self.action_space.contains(action):
-            raise ValueError(f"action {action}; legal: integers from 0 to {self.task.headings - 1}")
+            raise ValueError(f"action {action}; legal: integers from 0 to {self.task.actions - 1}")
         after, ok = self._simulator.push(self.poses[None], np.array([action], np.int64))
         self._path.append(after[0] if ok[0] else self.poses)
         success = bool(ok[0]) and bool(self.task.succeeded(self.poses[None])[0])

@@ -45,7 +45,8 @@ class PushVecEnv:
     ) -> None:
         self.task = task = config.task
         self.count = count
-        self.observation_size, self.headings = task.observation_size, task.headings
+        self.observation_size = task.observation_size
+        self.headings, self.strides = task.headings, task.strides
         self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
         self.curriculum = curriculum

@@ -112,10 +112,10 @@ def write(path: Path, transitions: Transitions) -> None:
     os.replace(partial, path)
 
 
-def read(path: Path, bodies: int | None = None, headings: int | None = None) -> Transitions:
+def read(path: Path, bodies: int | None = None, actions: int | None = None) -> Transitions:
     """Reads and checks a transition set.
 
-    If given, `bodies` and `headings` are the numbers of the task that it must fit. Raises
+    If given, `bodies` and `actions` are the numbers of the task that it must fit. Raises
     DatasetError if there is no file or it is no legal transition set.
     """
     try:
@@ -133,7 +133,7 @@ def read(path: Path, bodies: int | None = None, headings: int | None = None) -> 
     transitions = Transitions(**arrays)
     _check_shapes(path, transitions)
     _check_values(path, transitions)
-    _check_task(path, transitions, bodies, headings)
+    _check_task(path, transitions, bodies, actions)
     return transitions
 
 
@@ -180,13 +180,13 @@ def _check_values(path: Path, transitions: Transitions) -> None:
         raise DatasetError(f"{path}: 'source' has illegal values; legal: 0 to {len(SOURCES) - 1}")
 
 
-def _check_task(path: Path, data: Transitions, bodies: int | None, headings: int | None) -> None:
+def _check_task(path: Path, data: Transitions, bodies: int | None, actions: int | None) -> None:
     if bodies is not None and data.poses.shape[1] != bodies:
         raise DatasetError(
             f"{path}: has {data.poses.shape[1]} bodies; legal: {bodies}, those of the task"
         )
-    if headings is not None and len(data.action) and data.action.max() >= headings:
+    if actions is not None and len(data.action) and data.action.max() >= actions:
         largest = data.action.max()
         raise DatasetError(
-            f"{path}: has action {largest}; legal: 0 to {headings - 1}, those of the task"
+            f"{path}: has action {largest}; legal: 0 to {actions - 1}, those of the task"
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections import deque
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -33,6 +34,7 @@ class Environments(Protocol):
     count: int
     observation_size: int
     headings: int
+    strides: Sequence[float]  # lengths of a push, the longest one being 1
     task: _core.Task
 
     def reset(self) -> npt.NDArray[np.float32]: ...
@@ -108,7 +110,9 @@ class DoubleDqn:
         self.replay = self._make_replay(seed)
         inputs = env.observation_size + (self.layouts.size if self.layouts else 0)
         th.manual_seed(seed)
-        self.online = networks.make(settings.network, inputs, env.headings).to(self.device)
+        self.online = networks.make(settings.network, inputs, env.headings, env.strides).to(
+            self.device
+        )
         self.target, self.mean = copy.deepcopy(self.online), copy.deepcopy(self.online)
         self._online_weights = networks.flatten(self.online)
         self._target_weights = networks.flatten(self.target).detach()
@@ -118,7 +122,9 @@ class DoubleDqn:
         )
         self._begin_optimizer()
         self._core = self._make_core()
-        self.exploration = Exploration(settings, env.headings, seed, env.contact_headings)
+        self.exploration = Exploration(
+            settings, env.headings, seed, env.contact_headings, len(env.strides)
+        )
         self.statistics = Statistics()
         self.stages = Stages()
         self.threads = 1  # of the core's gradients

@@ -42,10 +42,14 @@ class Exploration:
         headings: int,
         seed: int,
         contact: ContactHeadings | None = None,
+        strides: int = 1,
     ) -> None:
-        """`contact` draws headings towards objects; needed if contact_share is above 0."""
+        """`contact` draws actions towards objects; needed if contact_share is above 0.
+
+        `headings`, `strides`: their numbers. Action a has the heading a % headings.
+        """
         self.settings = settings
-        self.headings = headings
+        self.headings, self.action_count = headings, headings * strides
         self.contact = contact
         self.rng = np.random.default_rng([seed, 1])
         # [states, N, observation], oldest first; None before the first one
@@ -73,8 +77,9 @@ class Exploration:
         nearby = self.rng.random(n) < self.settings.nearby_share
         offset = self.rng.integers(1, self.settings.nearby_headings + 1, n)
         side = 2 * self.rng.integers(2, size=n) - 1
-        beside = (greedy + offset * side) % self.headings
-        anywhere = self.rng.integers(self.headings, size=n)
+        heading = greedy % self.headings
+        beside = greedy - heading + (heading + offset * side) % self.headings
+        anywhere = self.rng.integers(self.action_count, size=n)
         noise = self._towards_objects(np.where(nearby, beside, anywhere))
         return np.where(explores, noise, greedy)
 

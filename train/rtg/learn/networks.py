@@ -1,12 +1,13 @@
-"""Value networks Q(s, ·) over the headings of a push.
+"""Value networks Q(s, ·) over the actions, pushes in each heading by each stride.
 
-Both kinds have two methods. Called with observations [B, inputs], they return Q of all headings,
-[B, headings]. `at` returns Q of one heading per observation, [B, 1].
+Both kinds have two methods. Called with observations [B, inputs], they return Q of all actions,
+[B, actions]. `at` returns Q of one action per observation, [B, 1].
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -34,18 +35,18 @@ def _layers(*widths: int, layer_norm: bool) -> nn.Sequential:
 class PlainNetwork(nn.Module):
     """The network of Table 2: three hidden layers, then a linear layer with a row per heading."""
 
-    def __init__(self, inputs: int, headings: int) -> None:
+    def __init__(self, inputs: int, headings: int, strides: Sequence[float] = (1.0,)) -> None:
         super().__init__()
         self.layers = _layers(inputs, *PLAIN_LAYERS, layer_norm=False)
-        self.head = nn.Linear(PLAIN_LAYERS[-1], headings)
+        self.head = nn.Linear(PLAIN_LAYERS[-1], headings * len(strides))
 
     def forward(self, x: th.Tensor) -> th.Tensor:
         q: th.Tensor = self.head(self.layers(x))
         return q
 
-    def at(self, x: th.Tensor, headings: th.Tensor) -> th.Tensor:
-        """x [B, inputs], headings [B, 1] int64 -> [B, 1]"""
-        return self(x).gather(1, headings)
+    def at(self, x: th.Tensor, actions: th.Tensor) -> th.Tensor:
+        """x [B, inputs], actions [B, 1] int64 -> [B, 1]"""
+        return self(x).gather(1, actions)
 
 
 class Core(NamedTuple):
@@ -56,21 +57,21 @@ class Core(NamedTuple):
 
 
 class HeadingNetwork(nn.Module):
-    """A value network whose headings share their weights:
+    """A value network whose actions share their weights. With the heading θ_a and the stride ℓ_a:
 
-        Q(s, a) = V(s) + f(w(s) + cos θ_a u(s) + sin θ_a v(s)).
+        Q(s, a) = V(s) + f(w(s) + ℓ_a cos θ_a u(s) + ℓ_a sin θ_a v(s)).
 
     A trunk computes V and the features u, v, w of the state. Each pair (u_i, v_i) is a vector in
-    the plane, of which f sees the component along the heading θ_a. So what f learns of one heading
-    holds for all: a push that meets an object at some angle does the same from any direction.
+    the plane, of which f sees the component along the push. So what f learns of one heading holds
+    for all: a push that meets an object at some angle does the same from any direction.
     """
 
-    basis: th.Tensor  # (1, cos θ_a, sin θ_a) of each heading [headings, 3]
+    basis: th.Tensor  # (1, ℓ_a cos θ_a, ℓ_a sin θ_a) of each action [actions, 3]
     core: Core | None = None  # computes values if all weights are in one tensor on the CPU
 
-    def __init__(self, inputs: int, headings: int) -> None:
+    def __init__(self, inputs: int, headings: int, strides: Sequence[float] = (1.0,)) -> None:
         super().__init__()
-        self.sizes = inputs, headings, HIDDEN, FEATURES
+        self.sizes = inputs, headings, HIDDEN, FEATURES, list(strides)
         self.trunk = _layers(inputs, HIDDEN, HIDDEN, layer_norm=True)
         self.features = nn.Linear(HIDDEN, 3 * FEATURES)
         self.value = nn.Linear(HIDDEN, 1)
@@ -87,21 +88,22 @@ class HeadingNetwork(nn.Module):
                 last.weight.mul_(0.01)
                 last.bias.zero_()
         theta = th.arange(headings) * (2.0 * math.pi / headings)
-        basis = th.stack((th.ones(headings), theta.cos(), theta.sin()), dim=1)
+        turns = th.stack((th.ones(headings), theta.cos(), theta.sin()), dim=1)
+        basis = th.cat([turns * th.tensor((1.0, stride, stride)) for stride in strides])
         self.register_buffer("basis", basis, persistent=False)
 
     def forward(self, x: th.Tensor) -> th.Tensor:
         if self.core and not th.is_grad_enabled():
             return th.from_numpy(self.core.network.values(self.core.weights, x.numpy()))
         hidden = self.trunk(x)
-        along = th.matmul(self.basis, self._features(hidden))  # [B, headings, FEATURES]
+        along = th.matmul(self.basis, self._features(hidden))  # [B, actions, FEATURES]
         q: th.Tensor = self.value(hidden) + self.advantage(along).squeeze(2)
         return q
 
-    def at(self, x: th.Tensor, headings: th.Tensor) -> th.Tensor:
-        """x [B, inputs], headings [B, 1] int64 -> [B, 1]"""
+    def at(self, x: th.Tensor, actions: th.Tensor) -> th.Tensor:
+        """x [B, inputs], actions [B, 1] int64 -> [B, 1]"""
         hidden = self.trunk(x)
-        basis = self.basis[headings[:, 0], :, None]  # [B, 3, 1]
+        basis = self.basis[actions[:, 0], :, None]  # [B, 3, 1]
         along = (basis * self._features(hidden)).sum(dim=1)
         q: th.Tensor = self.value(hidden) + self.advantage(along)
         return q
@@ -116,9 +118,9 @@ ValueNetwork = PlainNetwork | HeadingNetwork
 KINDS: dict[str, type[ValueNetwork]] = {"plain": PlainNetwork, "headings": HeadingNetwork}
 
 
-def make(kind: str, inputs: int, headings: int) -> ValueNetwork:
-    """Makes the network that `train.network` names."""
-    return KINDS[kind](inputs, headings)
+def make(kind: str, inputs: int, headings: int, strides: Sequence[float] = (1.0,)) -> ValueNetwork:
+    """Makes the network that `train.network` names. `strides`: in units of the longest one."""
+    return KINDS[kind](inputs, headings, strides)
 
 
 def flatten(net: nn.Module) -> nn.Parameter:

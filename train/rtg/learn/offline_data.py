@@ -45,7 +45,7 @@ class Source(Protocol):
 def read_rows(path: Path, task: _core.Task) -> Rows:
     """Reads the rows of a transition file. Raises dataset.DatasetError."""
     with _READ_LOCK:
-        transitions = dataset.read(path, bodies=task.bodies, headings=task.headings)
+        transitions = dataset.read(path, bodies=task.bodies, actions=task.actions)
     return Rows(*(getattr(transitions, name) for name in Rows._fields))
 
 

@@ -29,6 +29,7 @@ def _interface(task: _core.Task) -> dict[str, Any]:
         "relative_unit": task.relative_unit,
         "observation_size": task.observation_size,
         "headings": task.headings,
+        "strides": task.strides,
     }
 
 
@@ -86,7 +87,7 @@ def read(path: Path, task: _core.Task) -> Policy:
         raise UserError(f"{path}: holds no policy; legal: a model.pt of RTG")
     layouts = Layouts(task) if found.get("hindsight") else None
     inputs = task.observation_size + (layouts.size if layouts else 0)
-    network = networks.make(found["network"], inputs, task.headings)
+    network = networks.make(found["network"], inputs, task.headings, task.strides)
     try:
         network.load_state_dict(weights)
     except RuntimeError as error:

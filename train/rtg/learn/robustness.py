@@ -95,8 +95,8 @@ def variants(config: _core.Config) -> list[Variant]:
             )
             found.append(Variant(group, f"x {factor}", settings))
     for factor in _STRIDES:
-        stride = task["push"]["stride"] * factor
-        found.append(Variant("stride", f"x {factor}", (f"task.push.stride={stride}",)))
+        strides = [stride * factor for stride in task["push"]["strides"]]
+        found.append(Variant("stride", f"x {factor}", (f"task.push.strides={strides}",)))
     for damping in _COASTING:
         settings = ("physics.inertia=true", f"physics.damping={damping}")
         found.append(Variant("coasting", f"damping {damping}", settings))

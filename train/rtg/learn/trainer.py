@@ -76,7 +76,7 @@ def _source(training: Training | Planning, args: argparse.Namespace) -> Source:
         begun = True
         training.data.add(rows)
 
-    return TransitionStream(bus, task.bodies, task.headings, add)
+    return TransitionStream(bus, task.bodies, task.actions, add)
 
 
 def _say(words: str) -> None:

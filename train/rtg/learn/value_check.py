@@ -1,8 +1,8 @@
-"""Checks in the simulator how well Q(s, ·) ranks the headings of a state.
+"""Checks in the simulator how well Q(s, ·) ranks the actions in a state.
 
-The policy chooses headings by Q(s, ·), so a good ranking indicates useful data. The check simulates
+The policy chooses actions by Q(s, ·), so a good ranking indicates useful data. The check simulates
 every heading in some hundred stored states. The value of a heading is 1 if it succeeds, else
-γ max_b Q(s', b). Q(s, ·) should rank the headings as these values do.
+γ max_b Q(s', b). Q(s, ·) should rank the actions as these values do.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from rtg import _core
 from rtg.files.dataset import Transitions
 
 Array = NDArray[Any]
-Values = Callable[[Array], Array]  # [N, observation] -> [N, headings]
+Values = Callable[[Array], Array]  # [N, observation] -> [N, actions]
 
 MAX_STATES = 300
 
 
 class ValueCheck(NamedTuple):
-    """The agreement of Q(s, ·) with the simulated values of the headings."""
+    """The agreement of Q(s, ·) with the simulated values of the actions."""
 
-    rank_correlation: float  # Spearman's, over the headings of a state; mean over the states
+    rank_correlation: float  # Spearman's, over the actions in a state; mean over the states
     error: float  # root mean square of Q(s, a) - the value of a in s
-    spread: float  # standard deviation of the values over the headings; mean over the states
+    spread: float  # standard deviation of the values over the actions; mean over the states
 
     def summary(self) -> dict[str, float]:
         """Returns the figures by their names in summary.json."""
@@ -64,15 +64,15 @@ def _spearman(a: Array, b: Array) -> Array:
 def check_values(
     config: _core.Config, values: Values, discount: float, states: Array
 ) -> ValueCheck | None:
-    """Compares Q(s, ·), from `values`, with the simulated values of all headings.
+    """Compares Q(s, ·), from `values`, with the simulated values of all actions.
 
-    Leaves out states in which the simulator cannot finish a push, or in which all headings have
+    Leaves out states in which the simulator cannot finish a push, or in which all actions have
     equal values. Returns None if no state is left. states [N, bodies, 3]
     """
     task, simulator = config.task, _core.Simulator(config)
-    headings = np.arange(task.headings)
+    actions = np.arange(task.actions)
     after, ok = simulator.push(
-        np.repeat(states, len(headings), axis=0), np.tile(headings, len(states))
+        np.repeat(states, len(actions), axis=0), np.tile(actions, len(states))
     )
     action_values = discount * values(task.observation(after)).max(axis=1)
     action_values = np.where(task.succeeded(after), 1.0, action_values).reshape(len(states), -1)

@@ -58,7 +58,7 @@ def _generation(
     if asked and summary["converged"] < _SOLVED * asked:
         return (
             f"reverse solves: {summary['converged']:,} of {asked:,} found a push; try more "
-            "sub-steps of a push (physics.sub_steps) or shorter ones (task.push.stride)"
+            "sub-steps of a push (physics.sub_steps) or shorter ones (task.push.strides)"
         )
     if summary["start_region_depth"] < 0 and nodes:
         poses = np.array([node["poses"] for node in nodes])
