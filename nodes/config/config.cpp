@@ -89,12 +89,23 @@ void clear_for_method(ConfigNode& root) {
                         [&](const ConfigEntry& field) { return field.key == setting.key; });
 }
 
+/// Removes the file's strides, which the command line gives, by whichever of the two keys.
+void clear_for_strides(ConfigNode& root) {
+  for (ConfigEntry& task : root.entries)
+    for (ConfigEntry& push : task.value.entries)
+      if (task.key == "task" && push.key == "push")
+        std::erase_if(push.value.entries, [](const ConfigEntry& field) {
+          return field.key == "stride" || field.key == "strides";
+        });
+}
+
 void apply_overrides(ConfigNode& root, std::span<const std::string> overrides) {
   for (const std::string& setting : overrides) {
     if (setting.starts_with("reverse.preset="))
       clear_for_preset(root, "reverse", reverse::reverse_preset);
     if (setting.starts_with("train.preset=")) clear_for_preset(root, "train", train_preset);
     if (setting.starts_with("run.method=")) clear_for_method(root);
+    if (setting.starts_with("task.push.stride")) clear_for_strides(root);
   }
   for (const std::string& setting : overrides) apply_override(root, setting);
 }

@@ -240,6 +240,15 @@ TEST(Config, RangesOfStartsReadBackToTheSameBits) {
   EXPECT_TRUE(parsed("").task.start_ranges.empty());
 }
 
+TEST(Config, StridesOfTheCommandLineReplaceThoseOfTheFileByEitherKey) {
+  for (const std::string given : {"stride: 1.5", "strides: [1.0, 1.5]"}) {
+    const std::string file = "  push: {" + given + "}\n";
+    EXPECT_EQ(parsed(file, {"task.push.strides=[0.5, 2]"}).task.push.strides,
+              (std::vector{0.5, 2.0}));
+    EXPECT_EQ(parsed(file, {"task.push.stride=3"}).task.push.strides, std::vector{3.0});
+  }
+}
+
 TEST(Config, AChainOnABodyWithARangeReadsBackToTheSameBits) {
   for (const std::string joint :
        {"on_parent: [-3, 0], on_child: [3, 0]", "type: prismatic, axis: [1, 2], limits: [-1, 1]",

@@ -83,7 +83,7 @@ def step(count: int = 3, **changes: Any) -> None:
 
 def learner() -> _core.DoubleDqn:
     rules = {"double_q": True, "clipped_double_q": True, "clip_targets": True}
-    return _core.DoubleDqn(5, 8, 16, 8, discount=0.9, **rules)
+    return _core.DoubleDqn(5, 8, 16, 8, [1.0], discount=0.9, **rules)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -46,7 +47,8 @@ class PushVecEnv:
         self.task = task = config.task
         self.count = count
         self.observation_size = task.observation_size
-        self.headings, self.strides = task.headings, task.strides
+        self.headings = task.headings
+        self.strides: Sequence[float] = task.strides
         self._simulator = _core.Simulator(config)
         self._jitter, self._seed = jitter, seed
         self.curriculum = curriculum
