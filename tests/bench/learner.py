@@ -64,7 +64,7 @@ def multiplications(net: HeadingNetwork, batch: int) -> float:
     Values of all headings in s', then of one heading: by the target network, by the online network,
     and twice as many for the gradient of these.
     """
-    inputs, headings, hidden, features = net.sizes
+    inputs, headings, hidden, features, _ = net.sizes
     trunk = hidden * (inputs + hidden + 3 * features + 1)
     heading = features * (3 + features + 1)  # their sum along it, f's two layers
     first = hidden * inputs  # whose inputs need no gradient

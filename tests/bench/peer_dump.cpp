@@ -38,7 +38,6 @@ struct Numbers {
   Json found = Json::object();
 
   void number(const char* key, double field, double, double, const char*) { found[key] = field; }
-  void length(const char* key, double field, double, double, const char*) { found[key] = field; }
   void integer(const char* key, int field, int, int, const char*) { found[key] = field; }
   void flag(const char* key, bool field, const char*) { found[key] = field; }
   template <class Enum, class Names>
@@ -104,7 +103,7 @@ Json dumped(const Entry& entry, const reverse::ReverseModel& model,
           {"kind", entry.kind},
           {"bodies", bodies(candidate.scene())},
           {"physics", numbers(model.physics)},
-          {"push", numbers(entry.task->push)},
+          {"stride", longest_stride(entry.task->push)},
           {"reverse", numbers(config)},
           {"state", std::vector<double>(state.begin(), state.end())},
           {"action", entry.job.action},

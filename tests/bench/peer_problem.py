@@ -65,7 +65,7 @@ class PeerProblem:
         self._physics, self._reverse = dump["physics"], dump["reverse"]
         self._bodies = dump["bodies"]
         self._steps = int(self._physics["sub_steps"])
-        self._stride = dump["push"]["stride"] / self._steps
+        self._stride = dump["stride"] / self._steps
         self._unit = self._physics["damping"] / self._physics["time_step"] ** 2
         shapes = [np.array(body["vertices"]) for body in self._bodies]
         self._planes = [_planes(shape) for shape in shapes]
