@@ -16,6 +16,15 @@ Vec2<T> in_all_lanes(const Vector2d& v) {
   return {T(v.x()), T(v.y())};
 }
 
+/// Gives the child of a joint that holds its angle the angle of the parent, turned by α.
+template <class T>
+void align(const JointModel<T>& joint, Placement<T>& at) {
+  if (joint.is_revolute()) return;
+  T& angle = at.body(joint.child)[2];
+  angle = at.body(joint.parent)[2] + joint.angle;
+  at.turns[static_cast<std::size_t>(joint.child)] = turn_of(angle);
+}
+
 double reach_of(const Scene& scene, const Joint& joint) {
   if (joint.type != JointType::kRevolute) return 1.0;
   double reach = 0.0;
@@ -74,18 +83,14 @@ void Articulation<T>::unload(int lane) {
   }
 }
 
-/// Sets the pose of the child from that of the parent and from the joint's `value`; that of a
-/// revolute joint is the child's angle in `at`.
+/// Sets the position of the child, whose angle is right already, from the pose of the parent and
+/// from the `value` of a prismatic joint.
 template <class T>
 void Articulation<T>::set_child(const JointModel<T>& joint, const T& value,
                                 Placement<T>& at) const {
   const auto i = static_cast<std::size_t>(joint.parent), j = static_cast<std::size_t>(joint.child);
   const T* parent = at.body(joint.parent);
   T* child = at.body(joint.child);
-  if (!joint.is_revolute()) {
-    child[2] = parent[2] + joint.angle;
-    at.turns[j] = turn_of(child[2]);
-  }
   const Vec2<T> a = turned_by(at.turns[i], joint.a), b = turned_by(at.turns[j], joint.b);
   for (int m = 0; m < 2; ++m) child[m] = parent[m] + a[m] - b[m];
   if (joint.type != JointType::kPrismatic) return;
@@ -96,10 +101,7 @@ void Articulation<T>::set_child(const JointModel<T>& joint, const T& value,
 template <class T>
 void Articulation<T>::close(Placement<T>& at) const {
   for (const JointModel<T>& joint : joints_) {
-    if (joint.type == JointType::kPrismatic) {
-      at.body(joint.child)[2] = at.body(joint.parent)[2] + joint.angle;
-      at.turns[static_cast<std::size_t>(joint.child)] = turn_of(at.body(joint.child)[2]);
-    }
+    align(joint, at);
     set_child(joint, value_of(joint, at), at);
   }
 }
@@ -111,6 +113,7 @@ void Articulation<T>::follow(const Placement<T>& from, const T* step, const T& l
     T value(0.0);
     if (joint.type == JointType::kPrismatic)
       value = value_of(joint, from) + length * step[3 * joint.child];
+    align(joint, to);
     set_child(joint, value, to);
   }
 }

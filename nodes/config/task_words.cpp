@@ -12,21 +12,20 @@ constexpr std::size_t kMaxName = 40;  // characters
 constexpr double kLeastWidth = 0.15;  // of a range, > 2 kGoalSpare [rad], [m]
 constexpr double kRounding = 1e-9;    // rounding error of that width
 
-/// Throws ConfigError if `range` is too narrow, by less than `width`, as messages call kLeastWidth.
+std::string range_legal(const std::string& width, const std::string& unit) {
+  return "[least, most] in " + unit + ", with most at least " + width + " above least";
+}
+
+/// Throws ConfigError if `range` is narrower than kLeastWidth. Messages call that `width` `unit`.
 Vector2d wide_enough(const std::vector<double>& range, const FieldReader& reader, const char* key,
-                     const std::string& width, const std::string& legal) {
+                     const std::string& width, const std::string& unit) {
   if (range[1] - range[0] >= kLeastWidth - kRounding) return {range[0], range[1]};
+  const std::string legal = range_legal(width, unit);
   const ConfigNode& node = reader.required(key, legal).value;
   throw ConfigError(node.origin, reader.path(key),
                     "the range [" + node.items[0].scalar + ", " + node.items[1].scalar +
-                        "] is narrower than " + width,
+                        "] is narrower than " + width + ' ' + unit,
                     legal);
-}
-
-std::string range_legal(const std::string& width) {
-  const std::string unit = width.substr(width.find(' ') + 1),
-                    number = width.substr(0, width.find(' '));
-  return "[least, most] in " + unit + ", with most at least " + number + " above least";
 }
 
 }  // namespace
@@ -55,16 +54,15 @@ Vector2d direction_at(const FieldReader& reader, const char* key) {
 }
 
 Vector2d angles_at(const FieldReader& reader, const char* key) {
-  const std::string width = number_text(kLeastWidth) + " rad", legal = range_legal(width);
-  return wide_enough(reader.numbers(key, 2, -kMaxAngle, kMaxAngle, legal), reader, key, width,
-                     legal);
+  const std::string width = number_text(kLeastWidth);
+  return wide_enough(reader.numbers(key, 2, -kMaxAngle, kMaxAngle, range_legal(width, "rad")),
+                     reader, key, width, "rad");
 }
 
 Vector2d lengths_at(const FieldReader& reader, const char* key) {
-  const std::string width = length_text(kLeastWidth, reader.units()) + " m",
-                    legal = range_legal(width);
-  return wide_enough(reader.lengths(key, 2, -kMaxPlace, kMaxPlace, legal), reader, key, width,
-                     legal);
+  const std::string width = length_text(kLeastWidth, reader.units());
+  return wide_enough(reader.lengths(key, 2, -kMaxPlace, kMaxPlace, range_legal(width, "m")), reader,
+                     key, width, "m");
 }
 
 void fail_at(const ConfigNode& entry, const std::string& path, const char* key,
