@@ -112,7 +112,7 @@ def test_layouts_of_the_task_stay_goals_where_all_objects_are_a_little_off() -> 
     assert np.linalg.norm(centre - (0.0, 3.0), axis=1).max() < 0.6
     turns = np.diff(np.arctan2(CHAIN.goal_layouts[:, 9::2], CHAIN.goal_layouts[:, 8::2]), axis=1)
     off = np.abs(np.abs(np.angle(np.exp(1j * turns))) - np.pi / 2)
-    assert off.max() < 0.263 - 2 * hindsight.ANGLE_TOLERANCE  # joints may be 15 degrees off
+    assert off.max() < 0.263 - 2 * hindsight.JOINT_TOLERANCE  # joints may be 15 degrees off
     np.testing.assert_array_equal(Layouts(TASK).goal_layouts, BOXES.goal_layouts)
 
 
@@ -127,12 +127,29 @@ def test_the_bodies_of_a_joint_turn_against_each_other_in_any_order_of_the_joint
         np.testing.assert_array_equal(hindsight._sides(task), [0, 1, -1, 1, -1])
 
 
-def test_where_no_goal_state_lasts_all_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_goal_state_is_robust_if_it_holds_a_little_further_on() -> None:
     states = np.stack([TASK.goal_state(1, k) for k in range(50)])
-    few = hindsight.robust_goal_states(TASK, states)
-    assert 0 < len(few) < 50
-    monkeypatch.setattr(hindsight, "TOLERANCE", 4.0)
-    np.testing.assert_array_equal(hindsight.robust_goal_states(TASK, states), states)
+    still = np.zeros(TASK.bodies)
+    assert 0 < len(hindsight.robust_goal_states(TASK, states, TOLERANCE, still)) < 50
+    assert len(hindsight.robust_goal_states(TASK, states, 4.0, still)) == 0
+
+
+def test_layouts_know_the_angles_of_loose_bodies_that_a_goal_asks_for() -> None:
+    task = _core.Config.from_file(paths.CONFIG / "push_t.yaml").task
+    layouts = Layouts(task)
+    assert layouts.size == 4 and 0.0 < layouts.tolerance < TOLERANCE
+    assert layouts.turns == hindsight.ANGLE_TOLERANCE * layouts.tolerance / TOLERANCE
+    target = np.array([0, 0, np.sqrt(0.5), np.sqrt(0.5)])
+    assert np.abs(layouts.goal_layouts - target).max() < 0.2
+    goal = task.goal_state(1)
+    turned, aside = goal.copy(), goal.copy()
+    turned[1, 2] += 1.01 * layouts.turns[0]
+    aside[1, 0] += 1.01 * layouts.tolerance
+    here, there, off = layouts.of(task.observation(np.stack([goal, turned, aside])))
+    assert layouts.near(here, here)
+    assert not layouts.near(here, there) and not layouts.near(here, off)
+    pack = _core.Config.from_file(paths.CONFIG / "pack.yaml").task
+    assert Layouts(pack).size == 12  # three boxes, whose angles the goal asks for
 
 
 def test_the_nearest_layout_has_the_shortest_way_of_all_objects() -> None:

@@ -1,13 +1,13 @@
 """Hindsight experience replay [Andrychowicz et al. 2017] on the poses of the objects.
 
-A layout consists of the positions of all movable objects and the angles of all bodies with a joint.
-It serves as the goal. Each training episode has a desired layout, in which the task's goal holds.
+A layout consists of the positions of all movable objects and the angles of those whose turn can
+undo a goal, see goal_angles(). It serves as the goal. Each training episode has a desired layout, in which the task's goal holds.
 The network receives the observation and the offset of each object from the desired layout.
 
 With k = train.hindsight, the share k / (k + 1) of the online transitions in a batch is relabelled:
 the desired layout becomes one that the episode reached later (the strategy "future"). A relabelled
 transition has reward 1 and ends the episode if s' is near the new layout. Near means that all
-objects are within TOLERANCE and ANGLE_TOLERANCE. The other transitions keep the reward of the task,
+objects are within the tolerances of the layouts. The other transitions keep the reward of the task,
 which does not depend on the desired layout.
 
 Choices that give the method its best chance:
@@ -23,7 +23,8 @@ Choices that give the method its best chance:
 
 TOLERANCE is 0.5 m, because one push of 2 m in one of 48 headings seldom places a box more
 precisely. Goal regions, such as a disc of 2 m or a half-plane, contain layouts that far from their
-edge.
+edge. Where a task allows no such layouts, as with a pose for a goal, all tolerances are halved until
+it does.
 """
 
 from __future__ import annotations
@@ -40,7 +41,10 @@ from rtg.learn.replay import Field, MixedReplayBuffer, Part, Store
 Array = npt.NDArray[Any]
 
 TOLERANCE = 0.5  # [m], largest distance of each object from a reached layout
-ANGLE_TOLERANCE = 0.05  # [rad], largest angle of each body with a joint from a reached layout
+JOINT_TOLERANCE = 0.05  # [rad], largest angle of each body with a joint from a reached layout
+ANGLE_TOLERANCE = 0.2  # [rad], the same of the other bodies of goal_angles()
+HALVINGS = 5  # of the tolerances, at most
+ANGLE_REACH = 0.5  # [m / rad], weighs angles against ways
 DRAWS, MAX_LAYOUTS = 5000, 1000  # number of goal states drawn; maximum number of layouts
 SUBSET_DIVISOR = 10  # a training episode gets the nearest of 1 / SUBSET_DIVISOR of the layouts
 LAYOUT_SEED = 3 << 61  # fixed seed of the draws, so a policy file need not store it
@@ -51,21 +55,28 @@ class Layouts:
     """The desired layouts of a task, and functions that compare layouts with observations.
 
     A layout is a float32 vector: x, y of each movable object in units of task.position_unit, then
-    cos θ, sin θ of each movable object with a joint.
+    cos θ, sin θ of each of goal_angles().
     """
 
     def __init__(self, task: _core.Task) -> None:
         self._unit = task.position_unit  # [m]
+        states = goal_states(task, LAYOUT_SEED, DRAWS)
         movable = [body for body in range(1, task.bodies) if not task.fixed[body]]
-        jointed = {body for parent, child, _ in task.joints for body in (parent, child)}
-        at = [2 + BODY_ENTRIES * k for k in range(len(movable))]
-        turned = [first for first, body in zip(at, movable, strict=True) if body in jointed]
-        positions = [column for first in at for column in (first, first + 1)]
-        angles = [column for first in turned for column in (first + 2, first + 3)]
+        turned = [body for body in goal_angles(task, states[:MAX_LAYOUTS]) if body in movable]
+        at = {body: 2 + BODY_ENTRIES * k for k, body in enumerate(movable)}
+        positions = [column for body in movable for column in (at[body], at[body] + 1)]
+        angles = [column for body in turned for column in (at[body] + 2, at[body] + 3)]
         self._columns = np.array(positions + angles)  # columns of an observation
         self._position_entries = len(positions)
         self.size = len(self._columns)
-        goals = robust_goal_states(task, goal_states(task, LAYOUT_SEED, DRAWS))[:MAX_LAYOUTS]
+        turns = _tolerated_turns(task, turned)
+        for share in 0.5 ** np.arange(HALVINGS + 1):
+            self.tolerance = TOLERANCE * share  # [m]
+            self.turns = turns[turned] * share  # [rad], per angle of a layout
+            robust = robust_goal_states(task, states, self.tolerance, turns * share)
+            if len(robust):
+                break
+        goals = (robust if len(robust) else states)[:MAX_LAYOUTS]
         self.goal_layouts = self.of(task.observation(goals))  # [layouts, size]
 
     def of(self, observation: Array) -> Array:
@@ -76,20 +87,22 @@ class Layouts:
     def near(self, one: Array, other: Array) -> Array:
         """Returns whether two layouts agree within the tolerances. [..., size] -> [...] bool"""
         positions, angles = self._difference(one, other)
-        close = np.hypot(positions[..., 0], positions[..., 1]) * self._unit <= TOLERANCE
-        alike = angles[..., 0] >= np.cos(ANGLE_TOLERANCE)
+        close = np.hypot(positions[..., 0], positions[..., 1]) * self._unit <= self.tolerance
+        alike = angles[..., 0] >= np.cos(self.turns)
         reached: Array = close.all(axis=-1) & alike.all(axis=-1)
         return reached
 
     def nearest(self, observation: Array, among: Array | None = None) -> Array:
         """Returns, for each observation, the task's layout with the smallest sum of distances.
 
-        The sum is over the objects. `among`: indices in `goal_layouts` of the layouts to choose
+        The sum is over the objects, of their ways and of their angles times ANGLE_REACH. `among`: indices in `goal_layouts` of the layouts to choose
         from; all if None. [N, observation] -> [N, size]
         """
         goals = self.goal_layouts if among is None else self.goal_layouts[among]
-        way, _ = self._difference(self.of(observation)[:, None], goals)
-        nearest: Array = goals[np.hypot(way[..., 0], way[..., 1]).sum(axis=2).argmin(axis=1)]
+        way, turn = self._difference(self.of(observation)[:, None], goals)
+        ways = self._unit * np.hypot(way[..., 0], way[..., 1]).sum(axis=2)
+        angles = np.abs(np.arctan2(turn[..., 1], turn[..., 0])).sum(axis=2)
+        nearest: Array = goals[(ways + ANGLE_REACH * angles).argmin(axis=1)]
         return nearest
 
     def network_input(self, observation: Array, goal: Array) -> Array:
@@ -97,7 +110,7 @@ class Layouts:
 
         - the observation;
         - dx, dy from each object to its position in `goal`, in units of task.position_unit;
-        - cos, sin of the angle from each body with a joint to its angle in `goal`.
+        - cos, sin of the angle from each body of goal_angles() to its angle in `goal`.
 
         [N, observation], [N, size] -> [N, observation + size]
         """
@@ -112,8 +125,8 @@ class Layouts:
     def _difference(self, here: Array, there: Array) -> tuple[Array, Array]:
         """Returns the differences of positions and of angles from layout `here` to `there`.
 
-        Positions: dx, dy, [..., objects, 2]. Angles: cos, sin of the difference for each body with
-        a joint, [..., jointed, 2].
+        Positions: dx, dy, [..., objects, 2]. Angles: cos, sin of the difference for each body of
+        goal_angles(), [..., angles, 2].
         """
         positions = there[..., : self._position_entries] - here[..., : self._position_entries]
         c, s = here[..., self._position_entries :: 2], here[..., self._position_entries + 1 :: 2]
@@ -136,22 +149,46 @@ def _sides(task: _core.Task) -> Array:
     return sides
 
 
-def robust_goal_states(task: _core.Task, states: Array) -> Array:
-    """Returns those `states` in which the goal is robust, or all if there is none. [N, bodies, 3]
+def goal_angles(task: _core.Task, states: Array) -> list[int]:
+    """Returns the bodies with a joint, and those whose turn alone undoes a goal state.
+
+    `states`: goal states, [N, bodies, 3].
+    """
+    bodies = {body for parent, child, _ in task.joints for body in (parent, child)}
+    for body in range(1, task.bodies):
+        for turn in (np.pi, 0.7, -0.7):
+            turned = states.copy()
+            turned[:, body, 2] += turn
+            if not task.fixed[body] and not task.succeeded(turned).all():
+                bodies.add(body)
+    return sorted(bodies)
+
+
+def _tolerated_turns(task: _core.Task, turned: list[int]) -> Array:
+    """Returns the tolerances of the angles of the bodies `turned`; 0 of others. [bodies] [rad]"""
+    turns = np.zeros(task.bodies)
+    turns[turned] = np.where(_sides(task)[turned] == 0.0, ANGLE_TOLERANCE, JOINT_TOLERANCE)
+    return turns
+
+
+def robust_goal_states(task: _core.Task, states: Array, way: float, turns: Array) -> Array:
+    """Returns those `states` in which the goal is robust. [N, bodies, 3]
 
     The goal is robust if it still holds after each of these displacements:
-    - all objects move by TOLERANCE, in one of eight directions;
-    - at the same time, one body of each joint turns by ANGLE_TOLERANCE and the other by
-      -ANGLE_TOLERANCE, or the other way round.
+    - all objects move by `way`, in one of eight directions;
+    - at the same time, each body turns by its entry of `turns` [bodies], all to the left or all to
+      the right, but one body of each joint against the other.
     """
     angles = np.arange(8) * np.pi / 4
+    sides = _sides(task)
     moved = np.repeat(states[:, None], 2 * len(angles), axis=1)  # [N, 16, bodies, 3]
-    moved[:, :, 1:, 0] += TOLERANCE * np.tile(np.cos(angles), 2)[:, None]
-    moved[:, :, 1:, 1] += TOLERANCE * np.tile(np.sin(angles), 2)[:, None]
-    moved[:, :, :, 2] += ANGLE_TOLERANCE * np.repeat((1, -1), len(angles))[:, None] * _sides(task)
+    moved[:, :, 1:, 0] += way * np.tile(np.cos(angles), 2)[:, None]
+    moved[:, :, 1:, 1] += way * np.tile(np.sin(angles), 2)[:, None]
+    signs = np.repeat((1, -1), len(angles))[:, None]
+    moved[:, :, :, 2] += signs * turns * np.where(sides == 0.0, 1.0, sides)
     holds = task.succeeded(moved.reshape(-1, *states.shape[1:])).reshape(len(states), -1)
-    stays = holds.all(axis=1)
-    return states[stays] if stays.any() else states
+    robust: Array = states[holds.all(axis=1)]
+    return robust
 
 
 def future_goals(
