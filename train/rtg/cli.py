@@ -105,16 +105,29 @@ def _reproduce(words: Sequence[str]) -> int:
 def _plot(words: Sequence[str]) -> int:
     parser = run_args.Parser(
         prog="./run.sh plot",
-        description="Make report, tables and pictures anew from the runs of a comparison.",
+        description="Make report, tables and pictures of a comparison anew, or the pictures of a "
+        "run.",
     )
-    parser.add_argument("folder", metavar="DIR", type=Path, help="the --out of reproduce")
-    parser.add_argument("--out", metavar="DIR", help="where to (the same folder)")
+    parser.add_argument("folder", metavar="DIR", type=Path, help="the --out of reproduce, or a run")
+    parser.add_argument("--out", metavar="DIR", help="of a comparison: where to (the same folder)")
+    parser.add_argument("--format", choices=("png", "svg", "pdf"), default="png", help="of plots")
     args = parser.parse_args(words)
     if args.out == "":
         raise UserError("--out: the path is empty; legal: the path of a folder")
     from rtg.compare.report_files import write_report
+    from rtg.pictures import plots
+    from rtg.run.plan import plan_of
+    from rtg.run.results import draw_again
 
-    print(f"report: {write_report(args.folder, Path(args.out or args.folder))}")
+    is_run = (args.folder / "config.yaml").is_file()
+    if is_run and args.out:
+        raise UserError(f"--out: {args.folder} is a run, drawn where it is; legal: no --out")
+    with plots.written_as(args.format):
+        if is_run:
+            draw_again(plan_of(args.folder))
+            print(f"pictures: {args.folder}")
+        else:
+            print(f"report: {write_report(args.folder, Path(args.out or args.folder))}")
     return 0
 
 

@@ -274,6 +274,13 @@ def test_the_command_writes_the_report_and_names_what_is_no_comparison(folder, t
     assert capsys.readouterr().err.startswith("rtg: --out: /proc/rtg: ")
 
 
+def test_the_command_draws_a_comparison_as_vectors(folder, tmp_path):
+    assert cli.main(["plot", str(folder), "--out", str(tmp_path), "--format", "svg"]) == 0
+    assert (tmp_path / "curves_gathering.svg").read_text().startswith("<?xml")
+    assert not list(tmp_path.glob("curves_*.png"))
+    assert cli.main(["plot", str(folder), "--format", "bmp"]) == 2
+
+
 DAMAGED = {
     "summary.json": ('{"interactions": 5}', "no success_rate; legal: "),
     "versions.json": ("{", "damaged; legal: "),

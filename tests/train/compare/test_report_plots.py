@@ -9,6 +9,7 @@ from rtg.compare.cells import Cell, read_grid
 from rtg.compare.methods import METHODS
 from rtg.compare.report_plots import split_names
 from rtg.compare.run_results import read_comparison
+from rtg.files import replay_gaps
 
 
 def comparison(folder, courses):
@@ -27,7 +28,7 @@ def test_a_line_is_the_mean_of_the_seeds_of_which_one_may_have_ended_early(tmp_p
     }
     report_plots.curves(tmp_path / "curves.png", comparison(tmp_path, cells), "gathering")
     axis = figures[0].axes[0]
-    lines = [line for line in axis.get_lines() if len(line.get_xdata()) > 1]
+    lines = [line for line in axis.get_lines() if line.get_marker() != "o"]
     assert [line.get_xdata().tolist() for line in lines] == [[5.0, 10.0], [5.0, 10.0, 15.0]]
     assert np.allclose(lines[0].get_ydata(), [0.0, 0.1])
     assert np.allclose(lines[1].get_ydata(), [0.1, 0.7, 0.8])
@@ -35,6 +36,18 @@ def test_a_line_is_the_mean_of_the_seeds_of_which_one_may_have_ended_early(tmp_p
     words = [text.get_text() for text in figures[0].legends[0].get_texts()]
     assert words == ["dqn: 0.10 (1)", "ddqn_rtg: 0.80 (2)"]
     assert lines[0].get_color() != lines[1].get_color()
+    dots = [line.get_ydata()[-1] for line in axis.get_lines() if line.get_marker() == "o"]
+    assert np.allclose(dots, [0.1, 0.8]), "where the legend says"
+
+
+def test_lines_that_hide_each_other_at_zero_are_named(tmp_path, figures):
+    cells = {
+        Cell("gathering", "dqn", (), 1): [0.0, 0.0],
+        Cell("gathering", "her", (), 1): [0.0, 0.0],
+        Cell("gathering", "ddqn_rtg", (), 1): [0.0, 0.5],
+    }
+    report_plots.curves(tmp_path / "curves.png", comparison(tmp_path, cells), "gathering")
+    assert [text.get_text() for text in figures[0].axes[0].texts] == ["always 0: dqn, her"]
 
 
 def test_the_band_is_the_sample_deviation_from_where_all_seeds_have_a_value(tmp_path, figures):
@@ -147,6 +160,16 @@ def test_gaps_have_a_histogram_per_task_over_all_its_runs(tmp_path, figures):
     heights = [sum(bar.get_height() for bar in axis.patches) for axis in figures[0].axes]
     assert heights == [1000, 500]
     assert figures[0].axes[0].get_title(loc="left") == "gathering: 1,000 simulated reverse steps"
+
+
+def test_the_axis_of_gaps_holds_those_of_every_task(tmp_path, figures):
+    cells = {Cell(task, "ddqn_rtg", (), 1): [0.5] for task in ("gathering", "sorting")}
+    runs = comparison(tmp_path, cells)
+    of_tasks = {task: runs.done(task, "ddqn_rtg") for task in runs.tasks}
+    counts = of_tasks["gathering"][0].summary["replay_gap_counts"]
+    counts[:] = [0] * (len(counts) - 1) + [7]
+    report_plots.replay_gaps(tmp_path / "gaps.png", of_tasks)
+    assert figures[0].axes[-1].get_xlim()[1] >= replay_gaps.EDGES[-1]
 
 
 def test_labels_are_drawn_without_what_they_share():

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rtg import _core, paths
+from rtg import _core, cli, paths
 from rtg.run import results
-from rtg.run.plan import RunPlan
+from rtg.run.plan import RunPlan, plan_of
 
 
 @pytest.mark.parametrize(
@@ -159,3 +159,18 @@ def test_the_times_of_the_stages_are_drawn(tmp_path, learned) -> None:
     results.draw(plan)
     results.finish(plan, {})
     assert pictures(tmp_path) == {"episode.png", "episode.gif", "stages.png"}
+
+
+def test_the_pictures_of_a_finished_run_are_drawn_again(tmp_path, learned, capsys) -> None:
+    assert cli.main(["plot", str(tmp_path)]) == 2
+    assert f"{tmp_path}: has no summary.json; legal: " in capsys.readouterr().err
+    acting = {"acting": {"wall_s": 3.0, "cpu_s": 1.0}}
+    (tmp_path / "training.json").write_text(
+        json.dumps({"learning_stages": acting, "train_wall_s": 4.0})
+    )
+    results.finish(plan_of(tmp_path), {})
+    (tmp_path / "stages.png").unlink()
+    assert cli.main(["plot", str(tmp_path), "--format", "pdf"]) == 0
+    assert (tmp_path / "stages.pdf").read_bytes().startswith(b"%PDF")
+    assert pictures(tmp_path) == {"episode.png", "episode.gif"}
+    assert cli.main(["plot", str(tmp_path), "--out", "elsewhere"]) == 2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -94,9 +95,16 @@ def _aligned_curves(runs: Sequence[RunResult], column: str) -> tuple[Floats, Flo
 
 
 def _draw_curve(
-    axis: Axes, curve: tuple[Floats, Floats], is_share: bool, style: tuple[str, str]
+    axis: Axes,
+    curve: tuple[Floats, Floats],
+    is_share: bool,
+    style: tuple[str, str],
+    end: float | None = None,
 ) -> None:
-    """Draws mean and standard deviation over the seeds, at points where all seeds have a value."""
+    """Draws mean and standard deviation over the seeds, at points where all seeds have a value.
+
+    A dot is where the curve stops, or at the value `end` there.
+    """
     grid, values = curve
     known = np.isfinite(values).all(axis=0)
     if not known.any():
@@ -105,7 +113,8 @@ def _draw_curve(
     mean = values.mean(axis=0)
     colour, line_style = style
     axis.plot(grid, mean, color=colour, ls=line_style, lw=2.0)
-    axis.plot(grid[-1:], mean[-1:], color=colour, marker="o", ms=4)
+    last = mean[-1] if end is None else end
+    axis.plot(grid[[-1, -1]], [mean[-1], last], color=colour, marker="o", markevery=[1], lw=0.8)
     if len(values) > 1:
         spread = values.std(axis=0, ddof=1)
         low, high = mean - spread, mean + spread
@@ -163,6 +172,18 @@ def _add_legend(figure: Figure, runs_by_label: RunsByLabel, title: str, columns:
     figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
 
 
+def _name_hidden(axis: Axes, runs_by_label: RunsByLabel) -> None:
+    """Names the labels whose lines hide each other, as their success is never above 0."""
+    at_zero = [
+        label
+        for label, runs in runs_by_label.items()
+        if all(np.nanmax(run.curve["success_rate"], initial=0.0) == 0.0 for run in runs)
+    ]
+    if len(at_zero) > 1:
+        words = textwrap.fill(f"always 0: {', '.join(split_names(at_zero)[1])}", 44)
+        axis.text(0.98, 0.04, words, transform=axis.transAxes, ha="right", va="bottom", fontsize=8)
+
+
 def curves(path: Path, comparison: Comparison, task: str) -> None:
     """Plots success, episode length and return over interactions, a line per label.
 
@@ -179,16 +200,22 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
         for axis, (name, column) in zip(axes.flat, _PANELS, strict=True):
             for label, runs in runs_by_label.items():
                 grid, values = _aligned_curves(runs, column)
-                _draw_curve(axis, (grid / 1000.0, values), column in _SHARE_COLUMNS, styles[label])
+                end = mean_success(runs) if column == "success_rate" else None
+                curve = grid / 1000.0, values
+                _draw_curve(axis, curve, column in _SHARE_COLUMNS, styles[label], end)
             axis.set_title(name)
             if column in _SHARE_COLUMNS:
                 axis.set_ylim(-0.03, 1.03)
             else:
                 axis.set_ylim(bottom=0.0)
+        _name_hidden(axes[0, 0], runs_by_label)
         for axis in axes[-1]:
             axis.set_xlabel("interactions / 1000")
             axis.set_xlim(left=0.0)
-        title = f"{task}: mean ± standard deviation of the seeds, a dot where the last one stopped"
+        title = (
+            f"{task}: mean ± standard deviation of the seeds; dots of greedy success: final one, "
+            "from other starts"
+        )
         _add_legend(figure, runs_by_label, title)
         plots.save(figure, path)
 
@@ -207,14 +234,18 @@ def costs(path: Path, comparison: Comparison, task: str) -> None:
                 mean_cost = _aligned_curves(runs, cost)[1].mean(axis=0)
                 values = _aligned_curves(runs, "success_rate")[1]
                 shown = mean_cost > 0.0
-                _draw_curve(axis, (mean_cost[shown], values[:, shown]), True, styles[label])
+                curve = mean_cost[shown], values[:, shown]
+                _draw_curve(axis, curve, True, styles[label], mean_success(runs))
             axis.axhline(THRESHOLD, color=_THRESHOLD_COLOUR, lw=0.8, zorder=0)
             axis.set(xscale="log", xlabel=name, ylim=(-0.03, 1.03))
             axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
             axis.xaxis.set_major_formatter(EngFormatter(sep=""))
             axis.xaxis.set_minor_formatter(NullFormatter())
         axes[0].set_ylabel("greedy success, held-out starts")
-        title = f"{task}: success against the mean cost, mean ± standard deviation of the seeds"
+        title = (
+            f"{task}: success against the mean cost, mean ± standard deviation of the seeds; dots: "
+            "final success, from other starts"
+        )
         _add_legend(figure, runs_by_label, title, columns=5)
         plots.save(figure, path)
 
@@ -229,12 +260,15 @@ def replay_gaps(path: Path, of_tasks: Mapping[str, Sequence[RunResult]]) -> None
         figure, axes = plt.subplots(
             len(of_tasks), 1, figsize=size, layout="constrained", sharex=True, squeeze=False
         )
+        highest = 0.0
         for axis, (task, runs) in zip(axes.flat, of_tasks.items(), strict=True):
             counts = np.sum([run.summary["replay_gap_counts"] for run in runs], axis=0)
             names = ("replay_gap_median", "replay_gap_p90")
             marks = [float(np.mean([run.summary[name] for run in runs])) for name in names]
             plots.gap_histogram(axis, counts, *marks)
             axis.set_title(f"{task}: {counts.sum():,} simulated reverse steps")
+            highest = max(highest, axis.get_xlim()[1])
+        axes[-1, 0].set_xlim(right=highest)
         axes[-1, 0].set_xlabel(plots.GAP_AXIS)
         plots.save(figure, path)
 

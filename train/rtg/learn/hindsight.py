@@ -1,8 +1,9 @@
 """Hindsight experience replay [Andrychowicz et al. 2017] on the poses of the objects.
 
 A layout consists of the positions of all movable objects and the angles of those whose turn can
-undo a goal, see goal_angles(). It serves as the goal. Each training episode has a desired layout, in which the task's goal holds.
-The network receives the observation and the offset of each object from the desired layout.
+undo a goal, see goal_angles(). It serves as the goal. Each training episode has a desired layout,
+in which the task's goal holds. The network receives the observation and the offset of each object
+from the desired layout.
 
 With k = train.hindsight, the share k / (k + 1) of the online transitions in a batch is relabelled:
 the desired layout becomes one that the episode reached later (the strategy "future"). A relabelled
@@ -22,9 +23,9 @@ Choices that give the method its best chance:
   transition keeps the desired layout of its episode.
 
 TOLERANCE is 0.5 m, because one push of 2 m in one of 48 headings seldom places a box more
-precisely. Goal regions, such as a disc of 2 m or a half-plane, contain layouts that far from their
-edge. Where a task allows no such layouts, as with a pose for a goal, all tolerances are halved until
-it does.
+precisely. Goal regions, such as a disc of 2 m or a half-plane, contain layouts that far from
+their edge. Where a task allows no such layouts, as with a pose for a goal, all tolerances are
+halved until it does.
 """
 
 from __future__ import annotations
@@ -95,8 +96,9 @@ class Layouts:
     def nearest(self, observation: Array, among: Array | None = None) -> Array:
         """Returns, for each observation, the task's layout with the smallest sum of distances.
 
-        The sum is over the objects, of their ways and of their angles times ANGLE_REACH. `among`: indices in `goal_layouts` of the layouts to choose
-        from; all if None. [N, observation] -> [N, size]
+        The sum is over the objects, of their ways and of their angles times ANGLE_REACH. `among`:
+        indices in `goal_layouts` of the layouts to choose from; all if None.
+        [N, observation] -> [N, size]
         """
         goals = self.goal_layouts if among is None else self.goal_layouts[among]
         way, turn = self._difference(self.of(observation)[:, None], goals)

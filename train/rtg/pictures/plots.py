@@ -61,9 +61,14 @@ def style() -> AbstractContextManager[None]:
     return plt.rc_context(_STYLE)
 
 
+def written_as(suffix: str) -> AbstractContextManager[None]:
+    """Returns a context manager for plots as png, svg or pdf."""
+    return plt.rc_context({"savefig.format": suffix})
+
+
 def save(figure: Figure, path: Path) -> None:
-    """Writes the figure to `path` and closes it."""
-    figure.savefig(path, dpi=130)
+    """Writes the figure to `path`, with the suffix of written_as(), and closes it."""
+    figure.savefig(path.with_suffix(f".{plt.rcParams['savefig.format']}"), dpi=130)
     plt.close(figure)
 
 

@@ -129,6 +129,13 @@ def _check_resumed(file: Path, config: _core.Config) -> None:
             )
 
 
+def plan_of(folder: Path) -> RunPlan:
+    """Returns the plan of the run in `folder`, to read its results. Raises UserError."""
+    config = effective_config.load_written(folder / "config.yaml")
+    trained = (folder / "training.json").is_file()
+    return RunPlan(folder, folder.name, config, trained, True, ())
+
+
 def make_plan(args: RunArgs) -> RunPlan:
     """Resolves the configuration and writes it to the run folder, which it creates.
 

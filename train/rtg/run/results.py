@@ -117,9 +117,24 @@ def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
     mode = ("in_process" if plan.in_process else "lcm") if plan.offline else None
     summary = run_folder.summary(plan.folder, plan.config, mode, measured)
     run_folder.write_json(plan.folder / "summary.json", summary)
+    _draw_stages(plan, summary)
+    return summary
+
+
+def _draw_stages(plan: RunPlan, summary: dict[str, Any]) -> None:
     if times := stage_times(summary):
         plots.stages(plan.folder / "stages.png", f"{plan.title}: time", times)
-    return summary
+
+
+def draw_again(plan: RunPlan) -> None:
+    """Draws all pictures of a run that has ended. Raises UserError if it has not."""
+    file = plan.folder / "summary.json"
+    if not file.is_file():
+        raise UserError(f"{plan.folder}: has no {file.name}; legal: the folder of a finished run")
+    if plan.report_file.is_file():
+        draw_generation(plan)
+    draw(plan)
+    _draw_stages(plan, run_folder.read_json(file))
 
 
 def stage_times(summary: dict[str, Any]) -> dict[str, dict[str, dict[str, float]]]:
