@@ -71,12 +71,12 @@ void search_forward(Generation& run, int number) {
     for (const ReplayJob& push : pushes) results.push_back(search.outcome(push));
     return results;
   };
-  for (int layer = 1; layer <= run.config.depth; ++layer) {
+  for (int layer = 1; layer <= run.layers(); ++layer) {
     if (run.data.full() || run.cancelled()) break;
     const std::vector<Transition> steps = search.grow(run.replay(Stage::kReplays));
     if (steps.empty()) break;
     run.data.store(steps, known);
-    run.show("plan " + std::to_string(number + 1), layer, run.config.depth);
+    run.show("plan " + std::to_string(number + 1), layer, run.layers());
   }
 }
 

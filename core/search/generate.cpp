@@ -15,7 +15,7 @@ namespace rtg::search {
 namespace {
 
 /// Runs Algorithm 1 once: draws a start and grows a tree from goal states towards it. Ends after
-/// config.depth layers. Ends earlier if config.patience layers in a row come no nearer to the
+/// run.layers() layers. Ends earlier if config.patience layers in a row come no nearer to the
 /// start.
 void grow_tree(Generation& run, int number) {
   Rng rng = run.attempt_rng(number);
@@ -24,11 +24,11 @@ void grow_tree(Generation& run, int number) {
   search.make_roots(run.replay(Stage::kGoals), run.stats);
   double best = search.min_start_distance();
   int patience = run.config.patience;
-  for (int layer = 1; layer <= run.config.depth && patience > 0; ++layer) {
+  for (int layer = 1; layer <= run.layers() && patience > 0; ++layer) {
     if (search.beam().empty() || run.data.full() || run.cancelled()) break;
     run.data.store(search.grow(run.seams.solve, run.seams.replay, run.stats),
                    run.replay(Stage::kBranches));
-    run.show("tree " + std::to_string(number + 1), layer, run.config.depth);
+    run.show("tree " + std::to_string(number + 1), layer, run.layers());
     const double nearest = search.min_start_distance();
     patience = nearest < best ? run.config.patience : patience - 1;
     best = std::min(best, nearest);

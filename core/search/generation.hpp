@@ -35,6 +35,9 @@ struct Generation {
     return jittered_start(task, std::max(least, task.start_jitter), rng);
   }
 
+  /// Returns the largest number of layers of a search. More actions have no place in an episode.
+  int layers() const { return std::min(config.depth, task.horizon); }
+
   ReplayBatch replay(Stage stage) { return counted(seams.replay, stats, stage); }
 
   bool cancelled() const { return seams.cancelled && seams.cancelled(); }
@@ -50,11 +53,11 @@ struct Generation {
     }
   }
 
-  /// Reports to the progress display that layer `layer` of `depth` is done in phase `phase`.
-  void show(const std::string& phase, int layer, int depth) const {
+  /// Reports to the progress display that layer `layer` of `last` is done in phase `phase`.
+  void show(const std::string& phase, int layer, int last) const {
     if (!seams.progress) return;
     const Coverage::Figures c = data.coverage().figures();
-    seams.progress({phase, layer, depth, c.transitions, config.transitions, c.contact_share,
+    seams.progress({phase, layer, last, c.transitions, config.transitions, c.contact_share,
                     c.start_region_transitions});
   }
 };

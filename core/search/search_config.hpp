@@ -24,7 +24,7 @@ struct SearchConfig {
   int breadth = 100;               // B, nodes kept per layer
   int plans_per_node = 4;          // plans simulated per layer, as a multiple of breadth
   double whole_plan_share = 0.05;  // share of plans stored whole; of the rest, the first step
-  int depth = 40;                  // D, layers per tree at most
+  int depth = 100;                 // D, layers per tree at most; no more than task.horizon
   int predecessors_per_solve = 2;  // considered per node and action, the best ones
   int nodes_per_layout = 18;       // most nodes of a beam that differ only in the robot's position
   int root_draws = 4;              // goal states drawn per tree, as a multiple of breadth
@@ -43,7 +43,7 @@ struct SearchConfig {
               "plans simulated per layer, as a multiple of breadth");
     v.number("whole_plan_share", whole_plan_share, 0.0, 1.0,
              "share of plans stored in full, not only their first step");
-    v.integer("depth", depth, 1, 1000, "largest number of layers of a search tree");
+    v.integer("depth", depth, 1, 1000, "largest number of layers of a search tree, at most task.horizon");
     v.integer("predecessors_per_solve", predecessors_per_solve, 1, 100,
               "predecessors considered per node and heading");
     v.integer("nodes_per_layout", nodes_per_layout, 1, 100000,

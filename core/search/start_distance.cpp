@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/world/separation.hpp"
@@ -67,18 +68,9 @@ bool in_place(const StateMetric& metric, const StateMetric::Object& o, const Pos
                     : (poses[o.body].position() - target[o.body].position()).norm()) <= kInPlace;
 }
 
-/// Estimates the number of pushes until the robot can pull an object that is not in place. If all
-/// are in place, estimates the number until the robot is in its own place.
-double next_approach_pushes(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
-                            const Poses& target) {
-  double best = std::numeric_limits<double>::infinity();
-  for (const auto& o : metric.objects()) {
-    if (in_place(metric, o, poses, target)) continue;
-    const Vector2d from = poses[o.body].position();
-    const Vector2d way = metric.way(o.body, poses, from, target[o.body].position()).next - from;
-    best = std::min(best, approach_pushes(task, metric, poses, o.body, way));
-  }
-  if (std::isfinite(best)) return best;
+/// Estimates the number of pushes until the robot is in its own place, where all objects are.
+double pushes_home(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
+                   const Poses& target) {
   const double home = metric.way(0, poses, poses[0].position(), target[0].position()).length;
   if (home <= kInPlace) return 0.0;
   for (const double stride : task.push.strides)
@@ -86,16 +78,59 @@ double next_approach_pushes(const tasks::Task& task, const StateMetric& metric, 
   return std::max(2.0, home / longest_stride(task.push));
 }
 
+/// An object that is out of place, and where the robot goes with it.
+struct Errand {
+  Vector2d from, to;      // where the object is, and its place
+  double approach = 0.0;  // approach_pushes()
+};
+
+/// Returns the length of a tour of the robot through all errands and home: from the place of
+/// `first` to where the nearest other object is, from that one's place on in the same way [m].
+double tour(const StateMetric& metric, const Poses& poses, const Vector2d& home,
+            std::span<const Errand> errands, std::size_t first) {
+  const auto way = [&](std::size_t k, const Vector2d& to) {
+    return metric.way(0, poses, errands[k].to, to).length;
+  };
+  double sum = 0.0;
+  std::vector<bool> done(errands.size(), false);
+  done[first] = true;
+  for (std::size_t n = 1, at = first;; ++n) {
+    if (n == errands.size()) return sum + way(at, home);
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t next = at;
+    for (std::size_t k = 0; k < errands.size(); ++k) {
+      if (done[k]) continue;
+      if (const double length = way(at, errands[k].from); length < least) {
+        least = length;
+        next = k;
+      }
+    }
+    sum += least;
+    done[at = next] = true;
+  }
+}
+
 }  // namespace
 
 double start_distance(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
                       const Poses& target) {
-  double sum = next_approach_pushes(task, metric, poses, target);
-  for (const auto& o : metric.objects())
-    if (!in_place(metric, o, poses, target))
-      sum += kPushesBetweenObjects +
-             metric.distance_around(o, poses, target) / longest_stride(task.push);
-  return sum;
+  const double stride = longest_stride(task.push);
+  std::vector<Errand> errands;
+  double pulls = 0.0;
+  for (const auto& o : metric.objects()) {
+    if (in_place(metric, o, poses, target)) continue;
+    pulls += kPushesBetweenObjects + metric.distance_around(o, poses, target) / stride;
+    const Vector2d from = poses[o.body].position(), to = target[o.body].position();
+    const Vector2d way = metric.way(o.body, poses, from, to).next - from;
+    errands.push_back({from, to, approach_pushes(task, metric, poses, o.body, way)});
+  }
+  if (errands.empty()) return pushes_home(task, metric, poses, target);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < errands.size(); ++k) {
+    const double length = tour(metric, poses, target[0].position(), errands, k);
+    least = std::min(least, errands[k].approach + length / stride);
+  }
+  return pulls + least;
 }
 
 bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target) {

@@ -7,7 +7,7 @@ namespace rtg::search {
 
 /// Estimates the number of pushes between `poses` and the start state `target`:
 ///
-///   Σ_objects out of place [(|x - x*| + r|θ - θ*|) / stride + 2] + approach_pushes
+///   Σ_objects out of place [(|x - x*| + r|θ - θ*|) / stride + 2] + approach_pushes + tour / stride
 ///
 /// |x - x*| is the length of the shortest way around fixed bodies and gates (StateMetric::way());
 /// so are the robot's distances, around fixed bodies. The way in which an object is to be pulled is
@@ -15,13 +15,15 @@ namespace rtg::search {
 ///
 /// The place of an object is its pose x*, θ* in `target`; r is that of StateMetric. The object is
 /// in place if |x - x*| ≤ 0.4 m or, with a joint, if |x - x*| + r|θ - θ*| ≤ 0.4 m. The 2 is about
-/// the number of pushes from one object to the next.
+/// the number of pushes that take the robot from one side of an object to another.
 ///
-/// `approach_pushes` is the number of pushes until the robot can pull an object that is out of
-/// place. (Seen backwards in time, a push pulls.) The robot can pull an object if it touches the
-/// object on the side towards the place. If all objects are in place, `approach_pushes` is the
-/// number of pushes until the robot is within 0.4 m of its own place. `approach_pushes` is 0, 1, or
-/// the distance in strides, at least 2.
+/// `approach_pushes` is the number of pushes until the robot can pull the object that it pulls
+/// first: 0, 1, or the distance in strides, at least 2. (Seen backwards in time, a push pulls.) The
+/// robot can pull an object if it touches the object on the side towards the place. `tour` is the
+/// length of its way from the place of that object to the nearest other object out of place, from
+/// the place of that one on in the same way, and in the end to its own place. Of all objects that
+/// can be the first, that with the least sum counts. If all objects are in place, approach_pushes
+/// is the number of pushes until the robot is within 0.4 m of its own place, and that is all.
 ///
 /// At distance 0, snapped_to_start() returns its argument `start`.
 double start_distance(const tasks::Task& task, const StateMetric& metric, const Poses& poses,

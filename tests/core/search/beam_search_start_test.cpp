@@ -35,7 +35,7 @@ struct BeamSearchStartTest : ::testing::Test, testing::DraggingWorld {
   std::vector<Poses> nodes_in_place() {
     BeamSearch search(task, config, task.start, 1);
     search.make_roots(replay, stats);
-    for (int layer = 0; layer < 12; ++layer) search.grow(solve, replay, stats);
+    for (int layer = 0; layer < 20; ++layer) search.grow(solve, replay, stats);
     std::vector<Poses> found;
     for (const Node& n : search.nodes())
       if (n.depth > 0 && (n.poses[3].position() - task.start[3].position()).norm() <= 0.4)

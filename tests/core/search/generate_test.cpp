@@ -28,7 +28,7 @@ SearchConfig small() {
   config.generator = Generator::kNaive;
   config.transitions = kBudget;
   config.breadth = 10;  // so that a tree reaches the start region
-  config.depth = 12;
+  config.depth = 20;
   return config;
 }
 

@@ -35,8 +35,9 @@ def _distances(config: _core.Config, poses: NDArray[np.float64]) -> str:
 
 def _search_advice(config: _core.Config, summary: dict[str, Any], deepest: int) -> str:
     search = config.search
-    if deepest >= search.depth - 1:
-        return f"deeper trees (search.depth, {search.depth} now)"
+    if deepest >= min(search.depth, config.task.horizon) - 1:
+        horizon = config.task.horizon
+        return f"deeper trees (search.depth, {search.depth} now, and task.horizon, {horizon} now)"
     if summary["trees"] <= 1:
         return f"more transitions (search.transitions, {search.transitions:,} now)"
     return (
