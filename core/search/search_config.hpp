@@ -43,7 +43,8 @@ struct SearchConfig {
               "plans simulated per layer, as a multiple of breadth");
     v.number("whole_plan_share", whole_plan_share, 0.0, 1.0,
              "share of plans stored in full, not only their first step");
-    v.integer("depth", depth, 1, 1000, "largest number of layers of a search tree, at most task.horizon");
+    v.integer("depth", depth, 1, 1000,
+              "largest number of layers of a search tree, at most task.horizon");
     v.integer("predecessors_per_solve", predecessors_per_solve, 1, 100,
               "predecessors considered per node and heading");
     v.integer("nodes_per_layout", nodes_per_layout, 1, 100000,

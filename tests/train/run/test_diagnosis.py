@@ -66,7 +66,11 @@ def test_of_a_start_that_is_not_reached_each_object_is_told() -> None:
 
 @pytest.mark.parametrize(
     ("trees", "depth", "advice"),
-    [(3, 59, "search.depth, 100 now, and task.horizon, 60 now"), (1, 9, "search.transitions"), (5, 9, "search.breadth")],
+    [
+        (3, 59, "search.depth, 100 now, and task.horizon, 60 now"),
+        (1, 9, "search.transitions"),
+        (5, 9, "search.breadth"),
+    ],
 )
 def test_the_advice_is_about_what_ended_the_trees(trees: int, depth: int, advice: str) -> None:
     figures = {**GOOD, "start_region_depth": -1, "trees": trees, "success_rate": 0.1}
