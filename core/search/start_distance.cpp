@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/world/separation.hpp"
@@ -14,6 +13,7 @@ namespace {
 
 constexpr double kPushesBetweenObjects = 2.0;  // approximate
 constexpr double kInPlace = 0.4;   // largest distance of an object in place from its place [m]
+constexpr double kDetour = 0.4;    // least detour around gates that has them opened [m]
 constexpr double kInRange = 0.8;   // the same for the angle beyond those of its starts [rad]
 constexpr double kPullCone = 0.5;  // largest angle at the object between robot and pull [rad]
 constexpr double kReach = 0.15;    // largest gap over which the robot can pull an object [m]
@@ -68,6 +68,13 @@ bool in_place(const StateMetric& metric, const StateMetric::Object& o, const Pos
                     : (poses[o.body].position() - target[o.body].position()).norm()) <= kInPlace;
 }
 
+/// Returns whether gates are in the way of an object that is out of place.
+bool gates_are_shut(const StateMetric& metric, const Poses& poses, const Poses& target) {
+  return std::ranges::any_of(metric.objects(), [&](const auto& o) {
+    return !in_place(metric, o, poses, target) && metric.detour(o, poses, target) > kDetour;
+  });
+}
+
 /// Estimates the number of pushes until the robot is in its own place, where all objects are.
 double pushes_home(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
                    const Poses& target) {
@@ -78,59 +85,29 @@ double pushes_home(const tasks::Task& task, const StateMetric& metric, const Pos
   return std::max(2.0, home / longest_stride(task.push));
 }
 
-/// An object that is out of place, and where the robot goes with it.
-struct Errand {
-  Vector2d from, to;      // where the object is, and its place
-  double approach = 0.0;  // approach_pushes()
-};
-
-/// Returns the length of a tour of the robot through all errands and home: from the place of
-/// `first` to where the nearest other object is, from that one's place on in the same way [m].
-double tour(const StateMetric& metric, const Poses& poses, const Vector2d& home,
-            std::span<const Errand> errands, std::size_t first) {
-  const auto way = [&](std::size_t k, const Vector2d& to) {
-    return metric.way(0, poses, errands[k].to, to).length;
-  };
-  double sum = 0.0;
-  std::vector<bool> done(errands.size(), false);
-  done[first] = true;
-  for (std::size_t n = 1, at = first;; ++n) {
-    if (n == errands.size()) return sum + way(at, home);
-    double least = std::numeric_limits<double>::infinity();
-    std::size_t next = at;
-    for (std::size_t k = 0; k < errands.size(); ++k) {
-      if (done[k]) continue;
-      if (const double length = way(at, errands[k].from); length < least) {
-        least = length;
-        next = k;
-      }
-    }
-    sum += least;
-    done[at = next] = true;
-  }
-}
-
 }  // namespace
 
 double start_distance(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
                       const Poses& target) {
   const double stride = longest_stride(task.push);
-  std::vector<Errand> errands;
-  double pulls = 0.0;
+  const Vector2d home = target[0].position();
+  const auto from_home = [&](const Vector2d& to) {
+    return metric.way(0, poses, home, to).length / stride;
+  };
+  const bool shut = gates_are_shut(metric, poses, target);
+  double sum = 0.0, first = std::numeric_limits<double>::infinity();
   for (const auto& o : metric.objects()) {
-    if (in_place(metric, o, poses, target)) continue;
-    pulls += kPushesBetweenObjects + metric.distance_around(o, poses, target) / stride;
+    const bool placed = in_place(metric, o, poses, target);
+    if (placed && !(shut && metric.is_gate(o.body))) continue;
     const Vector2d from = poses[o.body].position(), to = target[o.body].position();
+    const double there = from_home(from);
+    sum += kPushesBetweenObjects + there + from_home(to) +
+           metric.distance_around(o, poses, target) / stride;
+    if (placed) continue;
     const Vector2d way = metric.way(o.body, poses, from, to).next - from;
-    errands.push_back({from, to, approach_pushes(task, metric, poses, o.body, way)});
+    first = std::min(first, approach_pushes(task, metric, poses, o.body, way) - there);
   }
-  if (errands.empty()) return pushes_home(task, metric, poses, target);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < errands.size(); ++k) {
-    const double length = tour(metric, poses, target[0].position(), errands, k);
-    least = std::min(least, errands[k].approach + length / stride);
-  }
-  return pulls + least;
+  return std::isfinite(first) ? sum + first : pushes_home(task, metric, poses, target);
 }
 
 bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target) {

@@ -7,23 +7,28 @@ namespace rtg::search {
 
 /// Estimates the number of pushes between `poses` and the start state `target`:
 ///
-///   Σ_objects out of place [(|x - x*| + r|θ - θ*|) / stride + 2] + approach_pushes + tour / stride
+///   Σ_objects out of place [2 + (|h - x| + |x - x*| + r|θ - θ*| + |x* - h|) / stride]
+///     + min_objects out of place [approach_pushes - |h - x| / stride]
 ///
-/// |x - x*| is the length of the shortest way around fixed bodies and gates (StateMetric::way());
-/// so are the robot's distances, around fixed bodies. The way in which an object is to be pulled is
-/// the first piece of that.
+/// h is the robot's own place. So the robot goes to an object, takes it to its place, goes home and
+/// from there to the next. This is more than it needs, but an object that comes into place is
+/// progress in whatever order and however far the next is: the triangle inequality.
+///
+/// Gates (StateMetric::is_gate()) that are in place, but in the way of an object that is not, count
+/// as out of place in the first sum: they have to be opened and shut again.
+///
+/// All lengths are those of the shortest ways around fixed bodies (StateMetric::way()), |x - x*|
+/// also around gates. The way in which an object is to be pulled is the first piece of that.
 ///
 /// The place of an object is its pose x*, θ* in `target`; r is that of StateMetric. The object is
 /// in place if |x - x*| ≤ 0.4 m or, with a joint, if |x - x*| + r|θ - θ*| ≤ 0.4 m. The 2 is about
 /// the number of pushes that take the robot from one side of an object to another.
 ///
-/// `approach_pushes` is the number of pushes until the robot can pull the object that it pulls
-/// first: 0, 1, or the distance in strides, at least 2. (Seen backwards in time, a push pulls.) The
-/// robot can pull an object if it touches the object on the side towards the place. `tour` is the
-/// length of its way from the place of that object to the nearest other object out of place, from
-/// the place of that one on in the same way, and in the end to its own place. Of all objects that
-/// can be the first, that with the least sum counts. If all objects are in place, approach_pushes
-/// is the number of pushes until the robot is within 0.4 m of its own place, and that is all.
+/// `approach_pushes` is the number of pushes until the robot can pull the object. (Seen backwards
+/// in time, a push pulls.) It can if it touches the object on the side towards the place. If all
+/// objects are in place, `approach_pushes` is the number of pushes until the robot is within 0.4 m
+/// of its own place, and that is all. `approach_pushes` is 0, 1, or the distance in strides, at
+/// least 2.
 ///
 /// At distance 0, snapped_to_start() returns its argument `start`.
 double start_distance(const tasks::Task& task, const StateMetric& metric, const Poses& poses,

@@ -47,7 +47,11 @@ StateMetric::StateMetric(const tasks::Task& task) : StateMetric(task.scene) {
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     movers_.emplace_back();
     if (bodies[k].fixed || has_joint(task.scene, k)) continue;
-    movers_[k] = Mover{kSnug * least_half_width(bodies[k].shape), k == 0 ? walls : all, {}};
+    const double clearance = kSnug * least_half_width(bodies[k].shape);
+    movers_[k] = Mover{clearance,
+                       k == 0 ? walls : all,
+                       Ways(task.scene, task.start, walls, clearance, task.push.arena),
+                       {}};
   }
 }
 
@@ -69,6 +73,14 @@ Ways::Way StateMetric::way(std::size_t body, const Poses& poses, const Vector2d&
                                    task_->push.arena))
                 .first;
   return found->second.between(a, b);
+}
+
+bool StateMetric::is_gate(std::size_t body) const { return std::ranges::count(gates_, body) > 0; }
+
+double StateMetric::detour(const Object& o, const Poses& a, const Poses& b) const {
+  if (gates_.empty() || !movers_[o.body]) return 0.0;
+  const Vector2d from = a[o.body].position(), to = b[o.body].position();
+  return way(o.body, a, from, to).length - movers_[o.body]->without_gates.between(from, to).length;
 }
 
 /// Returns r|θ_a - θ_b|.

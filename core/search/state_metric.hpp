@@ -40,6 +40,13 @@ class StateMetric {
   /// thread-safe.
   Ways::Way way(std::size_t body, const Poses& poses, const Vector2d& a, const Vector2d& b) const;
 
+  /// Returns whether `body` hangs on a fixed body, as gates do.
+  bool is_gate(std::size_t body) const;
+
+  /// Returns how much longer gates make the way() of `object` from where it is in `a` to where it
+  /// is in `b` [m].
+  double detour(const Object& object, const Poses& a, const Poses& b) const;
+
   /// Returns distance() with the length of the way() in the place of |x_a - x_b|.
   double distance_around(const Object& object, const Poses& a, const Poses& b) const;
 
@@ -59,8 +66,9 @@ class StateMetric {
   std::vector<Object> objects_;
   /// A body that does not keep to straight lines.
   struct Mover {
-    double clearance = 0.0;                                // [m]
-    std::vector<std::size_t> obstacles;                    // bodies
+    double clearance = 0.0;              // [m]
+    std::vector<std::size_t> obstacles;  // bodies
+    Ways without_gates;
     mutable std::unordered_map<std::uint64_t, Ways> ways;  // by the cells of the gates
   };
   std::vector<std::optional<Mover>> movers_;  // per body; empty if there is none

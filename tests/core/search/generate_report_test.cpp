@@ -101,7 +101,7 @@ struct Noted {
     SearchConfig config;
     config.transitions = 1500;
     config.breadth = 8;
-    report = generate(world.task, config, 8, world.seams());
+    report = generate(world.task, config, 9, world.seams());
   }
 };
 

@@ -24,11 +24,11 @@ std::vector<Transition> stored(const SearchConfig& config) {
 
 TEST(SearchConfig, EachFieldChangesTheStoredTransitions) {
   SearchConfig config;
-  config.transitions = 1200;
+  config.transitions = 6000;
   config.breadth = 6;
   config.nodes_per_layout = 4;
-  config.patience = 2;
-  config.depth = 12;
+  config.patience = 1;
+  config.depth = 60;
   const testing::OtherValues others{
       {"generator", 4},
       {"transitions", 1100},
@@ -40,7 +40,7 @@ TEST(SearchConfig, EachFieldChangesTheStoredTransitions) {
       {"predecessors_per_solve", 1},
       {"nodes_per_layout", 2},
       {"root_draws", 1},
-      {"patience", 1},
+      {"patience", 8},
       {"randomise", 1},
   };
   testing::expect_each_field_matters(config, others, {}, stored);
