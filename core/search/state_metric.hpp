@@ -66,9 +66,9 @@ class StateMetric {
   std::vector<Object> objects_;
   /// A body that does not keep to straight lines.
   struct Mover {
-    double clearance = 0.0;              // [m]
-    std::vector<std::size_t> obstacles;  // bodies
-    Ways without_gates;
+    double clearance = 0.0;                                // [m]
+    std::vector<std::size_t> obstacles;                    // bodies
+    Ways without_gates;                                    // around fixed bodies alone
     mutable std::unordered_map<std::uint64_t, Ways> ways;  // by the cells of the gates
   };
   std::vector<std::optional<Mover>> movers_;  // per body; empty if there is none

@@ -122,12 +122,13 @@ def _plot(words: Sequence[str]) -> int:
     is_run = (args.folder / "config.yaml").is_file()
     if is_run and args.out:
         raise UserError(f"--out: {args.folder} is a run, drawn where it is; legal: no --out")
-    with plots.written_as(args.format):
-        if is_run:
+    if is_run:
+        with plots.written_as(args.format):
             draw_again(plan_of(args.folder))
-            print(f"pictures: {args.folder}")
-        else:
-            print(f"report: {write_report(args.folder, Path(args.out or args.folder))}")
+        print(f"pictures: {args.folder}")
+    else:
+        page = write_report(args.folder, Path(args.out or args.folder), args.format)
+        print(f"report: {page}")
     return 0
 
 

@@ -277,7 +277,8 @@ def test_the_command_writes_the_report_and_names_what_is_no_comparison(folder, t
 def test_the_command_draws_a_comparison_as_vectors(folder, tmp_path):
     assert cli.main(["plot", str(folder), "--out", str(tmp_path), "--format", "svg"]) == 0
     assert (tmp_path / "curves_gathering.svg").read_text().startswith("<?xml")
-    assert not list(tmp_path.glob("curves_*.png"))
+    assert (tmp_path / "curves_gathering.png").is_file(), "the page shows it"
+    assert "(curves_gathering.png)" in (tmp_path / "report.md").read_text()
     assert cli.main(["plot", str(folder), "--format", "bmp"]) == 2
 
 

@@ -28,7 +28,7 @@ from rtg.compare.run_results import (
 )
 from rtg.errors import UserError
 from rtg.files import run_folder
-from rtg.pictures import episode_pictures
+from rtg.pictures import episode_pictures, plots
 from rtg.run import effective_config
 from rtg.run.results import episode_title
 
@@ -36,10 +36,11 @@ _TASK_PICTURES = ("costs_*.png", "curves_*.png", "sweep_*.png", "strip_*.png", "
 _PICTURES = (*_TASK_PICTURES, "replay_gap.png")
 
 
-def write_report(runs: Path, out: Path) -> Path:
+def write_report(runs: Path, out: Path, suffix: str = "png") -> Path:
     """Writes the report on the comparison `runs` to `out`; returns the path of its page.
 
-    Raises UserError.
+    Its pictures are PNGs. With another `suffix`, svg or pdf, the plots are also written so. Raises
+    UserError.
     """
     grid = read_grid(runs)
     if not grid.commands_by_cell:
@@ -50,14 +51,25 @@ def write_report(runs: Path, out: Path) -> Path:
     episodes = {task: _best_episode(comparison, task) for task in comparison.tasks}
     with run_folder.write_errors_as_user_errors(out):
         out.mkdir(parents=True, exist_ok=True)
-        _draw(out, comparison, episodes)
+        _draw(out, comparison, episodes, suffix)
         _write_numbers(out, comparison)
         run_folder.write_text(out / "report.md", report(out, grid, comparison, remarks))
     return out / "report.md"
 
 
-def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | None]) -> None:
+def _draw(
+    out: Path, comparison: Comparison, episodes: Mapping[str, Episode | None], suffix: str
+) -> None:
     _remove_old_pictures(out)
+    for task, episode in episodes.items():
+        _draw_episode(out, task, episode)
+    _draw_plots(out, comparison)
+    if suffix != "png":
+        with plots.written_as(suffix):
+            _draw_plots(out, comparison)
+
+
+def _draw_plots(out: Path, comparison: Comparison) -> None:
     gaps = {}
     for task in comparison.tasks:
         done = [run for run in comparison.all_done() if run.cell.task == task]
@@ -66,7 +78,6 @@ def _draw(out: Path, comparison: Comparison, episodes: Mapping[str, Episode | No
             report_plots.curves(out / f"curves_{task}.png", comparison, task)
         if any(run.cell.settings for run in done):
             report_plots.sweep(out / f"sweep_{task}.png", comparison, task)
-        _draw_episode(out, task, episodes[task])
         replayed = _runs_of_reference([run for run in done if "replay_gap_counts" in run.summary])
         if replayed:
             gaps[task] = replayed
