@@ -71,7 +71,7 @@ bool in_place(const StateMetric& metric, const StateMetric::Object& o, const Pos
 /// Returns whether gates are in the way of an object that is out of place.
 bool gates_are_shut(const StateMetric& metric, const Poses& poses, const Poses& target) {
   return std::ranges::any_of(metric.objects(), [&](const auto& o) {
-    return !in_place(metric, o, poses, target) && metric.detour(o, poses, target) > kDetour;
+    return metric.detour(o, poses, target) > kDetour && !in_place(metric, o, poses, target);
   });
 }
 

@@ -48,10 +48,11 @@ StateMetric::StateMetric(const tasks::Task& task) : StateMetric(task.scene) {
     movers_.emplace_back();
     if (bodies[k].fixed || has_joint(task.scene, k)) continue;
     const double clearance = kSnug * least_half_width(bodies[k].shape);
-    movers_[k] = Mover{clearance,
-                       k == 0 ? walls : all,
-                       Ways(task.scene, task.start, walls, clearance, task.push.arena),
-                       {}};
+    movers_[k] = Mover{
+        clearance,
+        k == 0 ? walls : all,
+        gates_.empty() ? Ways() : Ways(task.scene, task.start, walls, clearance, task.push.arena),
+        {}};
   }
 }
 
