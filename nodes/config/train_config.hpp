@@ -79,7 +79,7 @@ struct TrainConfig {
   double nearby_share = 0.5;
   int nearby_headings = 2;  // largest distance from the greedy heading, in headings
   double contact_share = 0.0;
-  bool leave_loops = true;    // also explore where the episode returns to a recent state
+  bool leave_loops = true;    // do something else where an episode returns to a state
   double start_jitter = 0.1;  // training starts: object positions ± this [m]
   bool randomise = false;     // all starts: object positions ± task.randomisation
   int hindsight = 0;          // k, hindsight goals per online transition; 0: none
@@ -107,7 +107,7 @@ struct TrainConfig {
     v.number("contact_share", contact_share, 0.0, 1.0,
              "share of exploring actions that head towards a random object");
     v.flag("leave_loops", leave_loops,
-           "also explore in states that the episode visited a few steps before");
+           "where an episode returns to a state: explore; in evaluations, repeat no action");
     v.length("start_jitter", start_jitter, 0.0, 10.0,
              "largest x, y shift of objects in training starts [m]");
     v.flag("randomise", randomise,

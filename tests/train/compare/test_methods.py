@@ -195,8 +195,8 @@ def test_each_method_runs_from_the_flag_to_the_summary(method: str, tmp_path: Pa
     if method == "planner":
         return
     task = _core.Config.from_file(out / "config.yaml").task
-    policy = policy_file.read(out / "model.pt", task)
-    assert policy(task.observation(task.start[None])).shape == (1,)
+    values = policy_file.read(out / "model.pt", task)
+    assert values(task.observation(task.start[None])).shape == (1, task.actions)
 
 
 @pytest.mark.parametrize("method", ["ddqn", "her", "rcg"])
@@ -240,9 +240,9 @@ def test_a_file_of_a_hindsight_policy_asks_for_the_nearest_layouts(tmp_path: Pat
     one = training(folder)
     assert one.run(NoSource(), lambda: False, record=False)
     one.finish(lost=0)
-    policy = policy_file.read(folder / "model.pt", one.task)
+    values = policy_file.read(folder / "model.pt", one.task)
     seen = one.task.observation(np.stack([one.task.jittered_start(1.0, 5, k) for k in range(50)]))
-    np.testing.assert_array_equal(policy(seen), one.model.greedy(seen))
+    np.testing.assert_array_equal(values(seen), one.model.values(seen))
 
 
 def test_domain_randomisation_is_judged_where_it_is_trained(tmp_path: Path, rows: Rows) -> None:

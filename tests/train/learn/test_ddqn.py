@@ -210,7 +210,7 @@ def test_greedy_actions_do_not_explore_and_those_of_training_do() -> None:
     for net in (one.online, one.target, one.mean):
         constant(net, 1.0)
     x = np.random.default_rng(0).normal(size=(50, 3)).astype(np.float32)
-    assert (one.greedy(x) == 0).all()
+    assert (one.values(x).argmax(axis=1) == 0).all()
     assert len(set(one.training_actions(x).tolist())) > 4
 
 
@@ -225,7 +225,7 @@ def test_who_acts_in_evaluations_and_in_training(target_acts: bool) -> None:
     with th.no_grad():
         own, target, mean = (net(th.from_numpy(x)).argmax(dim=1).numpy() for net in nets)
     assert (own != target).any() and (own != mean).any() and (target != mean).any()
-    np.testing.assert_array_equal(one.greedy(x), mean)
+    np.testing.assert_array_equal(one.values(x).argmax(axis=1), mean)
     acting = target if target_acts else own
     np.testing.assert_array_equal(one.training_actions(x), acting)
 
@@ -234,7 +234,7 @@ def test_learns_the_line() -> None:
     one = model(epsilon_start=1.0, epsilon_end=0.1, learning_rate=1e-3)
     play(one, 2000)
     x = np.array([[k / 4, 1, 0] for k in range(4)], np.float32)
-    assert (one.greedy(x) == 1).all()
+    assert (one.values(x).argmax(axis=1) == 1).all()
     np.testing.assert_allclose(one.values(x).max(axis=1), 0.9 ** np.arange(3, -1, -1), atol=0.1)
 
 

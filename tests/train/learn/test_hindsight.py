@@ -314,7 +314,6 @@ def test_a_learner_acts_as_its_episodes_ask_and_is_judged_by_the_nearest_layouts
         judged = one.mean(th.from_numpy(nearest)).numpy()
     np.testing.assert_array_equal(one.training_actions(seen), acting)
     np.testing.assert_array_equal(one.values(seen), judged)
-    np.testing.assert_array_equal(one.greedy(seen), judged.argmax(axis=1))
 
 
 def test_episodes_of_a_learner_are_stored_with_what_they_were_asked_for() -> None:

@@ -39,12 +39,12 @@ def test_settings_of_variants_are_legal_or_leave_no_start(task: str) -> None:
     assert len(refused) <= 2, refused
 
 
-def policy_of(seen: list[np.ndarray]):
-    def policy(observation: np.ndarray) -> np.ndarray:
+def values_of(seen: list[np.ndarray]):
+    def values(observation: np.ndarray) -> np.ndarray:
         seen.append(observation)
-        return np.zeros(len(observation), np.int64)
+        return np.zeros((len(observation), CONFIG.task.actions))
 
-    return policy
+    return values
 
 
 def test_the_policy_sees_the_units_of_its_own_task_and_noise_where_it_is_asked_for() -> None:
@@ -54,7 +54,7 @@ def test_the_policy_sees_the_units_of_its_own_task_and_noise_where_it_is_asked_f
         (noisy, Variant("", "", noise=0.1)),
         (longer, Variant("", "", ("task.push.strides=[2.5]",))),
     ):
-        row = evaluate_variant(FILE, CONFIG, policy_of(seen), variant, 4)
+        row = evaluate_variant(FILE, CONFIG, values_of(seen), variant, 4)
         assert row.success == 0.0 and row.length == CONFIG.task.horizon
     np.testing.assert_array_equal(plain[0], longer[0])
     off = (noisy[0] - plain[0])[:, :2] * CONFIG.task.position_unit
@@ -63,7 +63,7 @@ def test_the_policy_sees_the_units_of_its_own_task_and_noise_where_it_is_asked_f
 
 def test_without_legal_starts_a_row_says_so() -> None:
     variant = Variant("objects moved", "onto the robot", ("task.bodies.1.start=[0, -5, 0]",))
-    assert evaluate_variant(FILE, CONFIG, policy_of([]), variant, 4).success is None
+    assert evaluate_variant(FILE, CONFIG, values_of([]), variant, 4).success is None
 
 
 def test_the_command_writes_table_picture_and_json(tmp_path: Path) -> None:

@@ -23,9 +23,9 @@ def test_learner_bounds_and_evaluation_have_one_discount(
     """train.discount, or the task's, 0.8, if that is 0."""
     one, used = training(run_folder(tmp_path / "run", None, setting)), set[float]()
 
-    def watched(config, policy, starts, discount):
+    def watched(config, values, starts, discount):
         used.add(discount)
-        return evaluate(config, policy, starts, discount)
+        return evaluate(config, values, starts, discount)
 
     monkeypatch.setattr("rtg.learn.training.evaluate", watched)
     trees = Stream(rows.slice(0, 350), one.data, piece=300)  # at 350 complete, but hardly grown

@@ -50,8 +50,8 @@ def evaluate(run: Path, episodes: int) -> str:
     th.set_num_threads(1)
 
     def row_of(variant: Variant) -> Row:
-        policy = policy_file.read(model, config.task)  # one that no other thread waits for
-        return robustness.evaluate_variant(file, config, policy, variant, episodes)
+        values = policy_file.read(model, config.task)  # for which no other thread waits
+        return robustness.evaluate_variant(file, config, values, variant, episodes)
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         rows = list(pool.map(row_of, robustness.variants(config)))

@@ -304,12 +304,8 @@ class DoubleDqn:
         greedy = self._values_of(net, seen).argmax(axis=1)
         return self.exploration.actions(greedy, observation, self.exploration_rate)
 
-    def greedy(self, observation: Array) -> Array:
-        """Returns the greedy actions of values(). [N, observation] float32 -> [N] int"""
-        return self.values(observation).argmax(axis=1)
-
     def values(self, observation: Array) -> Array:
-        """Returns Q of all actions by the mean network.
+        """Returns Q of all actions by the mean network. Its greedy policy is evaluated.
 
         [N, observation] float32 -> [N, actions] float32
         """

@@ -1,4 +1,4 @@
-"""Evaluates a policy by episodes from held-out starts, simulated side by side."""
+"""Evaluates the greedy policy of values by episodes from held-out starts, side by side."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.learn.tried_actions import TriedActions
 
 Floats = NDArray[np.float64]
-Policy = Callable[[NDArray[np.float32]], NDArray[Any]]  # [N, observation] -> [N] actions
+# A policy takes the action of the largest value. [N, observation] -> [N, actions]
+Values = Callable[[NDArray[np.float32]], NDArray[Any]]
 
 # Seeds of the held-out starts. They exceed all seeds of runs, so no training start is among them.
 HELD_OUT_SEED = 1 << 63  # for evaluations during training, which decide when to stop
@@ -48,16 +50,28 @@ def held_out_starts(config: _core.Config, seed: int = HELD_OUT_SEED) -> Floats:
     return np.stack([config.task.jittered_start(amplitude, seed, k) for k in range(count)])
 
 
+def _greedy_actions(
+    config: _core.Config, tried: TriedActions, seen: NDArray[np.float32], values: NDArray[Any]
+) -> NDArray[np.int64]:
+    if not config.train.leave_loops:
+        return values.argmax(axis=1)
+    actions = tried.best_untried(seen, values)
+    tried.add(seen, actions)
+    return actions
+
+
 def evaluate(
     config: _core.Config,
-    policy: Policy,
+    values: Values,
     starts: Floats,
     discount: float,
     observe: Callable[[Floats], NDArray[np.float32]] | None = None,
 ) -> Evaluation:
-    """Simulates an episode of `policy` from each start, [N, bodies, 3].
+    """Simulates a greedy episode from each start, [N, bodies, 3].
 
-    `observe`: what the policy sees of states; the task's observation if None.
+    The action is that of the largest of the `values`. With `train.leave_loops` it is the best one
+    that the episode has not yet tried in this state. `observe`: what the policy sees of states; the
+    task's observation if None.
 
     An episode fails after task.horizon actions, or if the simulator cannot finish a push.
     """
@@ -67,17 +81,21 @@ def evaluate(
     length = np.zeros(len(starts), np.int64)
     paths = [[start] for start in starts]
     running = np.arange(len(starts))
+    tried = TriedActions(len(starts), task.observation_size)
     for _ in range(task.horizon):
         if not len(running):
             break
         states = np.stack([paths[k][-1] for k in running])
-        actions = np.asarray(policy(observe(states)), np.int64)
+        seen = observe(states)
+        actions = _greedy_actions(config, tried, seen, values(seen))
         after, ok = simulator.push(states, actions)
         after[~ok] = states[~ok]
         for k, state in zip(running, after, strict=True):
             paths[k].append(state)
         length[running] += 1
         success[running] = task.succeeded(after) & ok
-        running = running[~success[running] & ok]
+        goes_on = ~success[running] & ok
+        running = running[goes_on]
+        tried.keep(goes_on)
     discounted = np.where(success, discount ** (length - 1.0), 0.0)
     return Evaluation(success, length, discounted, [np.stack(path) for path in paths])

@@ -18,7 +18,7 @@ from rtg import _core
 from rtg.errors import UserError
 from rtg.files import checkpoint
 from rtg.learn import networks
-from rtg.learn.evaluation import Policy
+from rtg.learn.evaluation import Values
 from rtg.learn.hindsight import Layouts
 
 
@@ -72,8 +72,8 @@ def write(
     checkpoint.write(path, {"identity": identity(task, settings), "weights": weights})
 
 
-def read(path: Path, task: _core.Task) -> Policy:
-    """Reads the greedy policy, [N, observation] -> [N] actions. Threads may share it.
+def read(path: Path, task: _core.Task) -> Values:
+    """Reads the values of a policy, [N, observation] -> [N, actions]. Threads may share them.
 
     Raises UserError if the file does not fit the task.
     """
@@ -98,12 +98,12 @@ def read(path: Path, task: _core.Task) -> Policy:
     networks.flatten(network)
     one_at_a_time = threading.Lock()  # networks have buffers
 
-    def greedy(observation: NDArray[np.float32]) -> NDArray[Any]:
+    def values(observation: NDArray[np.float32]) -> NDArray[Any]:
         if observation.ndim != 2 or observation.shape[1] != task.observation_size:
             shape = list(observation.shape)
             raise ValueError(f"observations {shape}; legal: [N, {task.observation_size}]")
         seen = layouts.network_input_nearest(observation) if layouts else observation
         with one_at_a_time, th.no_grad():
-            return network(th.from_numpy(seen)).argmax(dim=1).numpy()
+            return network(th.from_numpy(seen)).numpy()
 
-    return greedy
+    return values

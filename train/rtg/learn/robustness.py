@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
-from rtg.learn.evaluation import FINAL_SEED, Policy, evaluate
+from rtg.learn.evaluation import FINAL_SEED, Values, evaluate
 
 Floats = NDArray[np.float64]
 
@@ -116,7 +116,7 @@ def _seen(task: _core.Task, noise: float) -> Callable[[Floats], NDArray[np.float
 
 
 def evaluate_variant(
-    file: Path, config: _core.Config, policy: Policy, variant: Variant, episodes: int
+    file: Path, config: _core.Config, values: Values, variant: Variant, episodes: int
 ) -> Row:
     """Simulates episodes from held-out starts of the variant. `file`, `config`: of the run."""
     try:
@@ -128,5 +128,5 @@ def evaluate_variant(
     except ValueError:
         return Row(variant, None, None)
     observe = _seen(config.task, variant.noise)
-    found = evaluate(changed, policy, starts, config.learner_discount, observe)
+    found = evaluate(changed, values, starts, config.learner_discount, observe)
     return Row(variant, float(found.success.mean()), float(found.length.mean()))

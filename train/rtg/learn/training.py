@@ -180,7 +180,7 @@ class Training:
         return self._evaluate(self.starts)
 
     def _evaluate(self, starts: Floats) -> Evaluation:
-        return evaluate(self.config, self.model.greedy, starts, self.discount)
+        return evaluate(self.config, self.model.values, starts, self.discount)
 
     def _log_row(self, evaluation: Evaluation) -> None:
         self.log.add(

@@ -7,7 +7,6 @@ every heading in some hundred stored states. The value of a heading is 1 if it s
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,10 +14,9 @@ from numpy.typing import NDArray
 
 from rtg import _core
 from rtg.files.dataset import Transitions
+from rtg.learn.evaluation import Values
 
 Array = NDArray[Any]
-Values = Callable[[Array], Array]  # [N, observation] -> [N, actions]
-
 MAX_STATES = 300
 
 
