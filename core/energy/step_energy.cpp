@@ -20,7 +20,7 @@ StepEnergy::StepEnergy(const Scene& scene, const PhysicsConfig& physics, const P
 
 double StepEnergy::gap_value(const Contact& c, const VectorXd& p) const {
   const Placement<double> at = placed(p);
-  if (c.pair >= scene_.pair_count()) {
+  if (is_limit(c)) {
     double gap = 0.0;
     for_each_limit(scene_.articulation(), at, [&](int l, const JointLimit<double>& limit) {
       if (scene_.limit_contact(l) == contact_of(c.pair, c.vertex)) gap = limit.gap;
@@ -30,6 +30,15 @@ double StepEnergy::gap_value(const Contact& c, const VectorXd& p) const {
   return VertexContact<double>(scene_, c.pair, c.vertex, scene_.frame(c.pair, at),
                                scene_.near(c.pair, at))
       .gap();
+}
+
+ContactSite StepEnergy::site(const Contact& c, const VectorXd& p) const {
+  const Placement<double> at = placed(p);
+  const VertexContact<double> contact(scene_, c.pair, c.vertex, scene_.frame(c.pair, at), true);
+  const Vector2d gradient = contact.distance().gradient;
+  const Pose other{p[3 * c.other], p[3 * c.other + 1], p[3 * c.other + 2]};
+  const Vector2d normal = rotate(other.theta, gradient.normalized());
+  return {to_world(other, contact.point.x) - contact.point.radius * normal, normal};
 }
 
 VectorXd StepEnergy::forces(const VectorXd& p, double spare) const {

@@ -16,6 +16,12 @@ struct Contact {
   int pair = 0, vertex = 0;
 };
 
+/// Where two bodies touch, in the world frame.
+struct ContactSite {
+  Vector2d point;   // on the surface of Contact::body [m]
+  Vector2d normal;  // ∇d/|∇d|, away from Contact::other; a normal force acts on `body` along it
+};
+
 /// Initial data of a sub-step: the poses p (`now` [3·bodies]) and the normal forces at p
 /// (`previous_forces` [contacts]). `before` are the poses p₋ one sub-step earlier, which only
 /// inertia uses; null if everything is at rest.
@@ -58,6 +64,10 @@ class StepEnergy {
   /// Returns the gap g of a contact at poses `p`. Returns 2 ĝ for a vertex beyond the barrier's
   /// range.
   double gap_value(const Contact& c, const VectorXd& p) const;
+  /// Returns whether a contact is the limit of a joint.
+  bool is_limit(const Contact& c) const { return c.pair >= scene_.pair_count(); }
+  /// Returns where a contact that is no limit acts at poses `p`.
+  ContactSite site(const Contact& c, const VectorXd& p) const;
   /// Returns the normal force λ(g(p)) of every contact [contacts]; `spare` as in SceneModel.
   VectorXd forces(const VectorXd& p, double spare = 0.0) const;
   /// Returns those at the start `p` of a push, λ₀, see Barrier::start_spare().

@@ -6,6 +6,7 @@
 
 #include "core/reverse/candidate.hpp"
 #include "core/reverse/pruning.hpp"
+#include "core/reverse/reverse_solution.hpp"
 
 namespace rtg::reverse {
 namespace {
@@ -54,7 +55,10 @@ std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int late_contact
 
 ReverseSimulator::ReverseSimulator(const Scene& scene, const PhysicsConfig& physics,
                                    const PushConfig& push, const ReverseConfig& config)
-    : model_(reverse_model(scene, physics, config)), push_(push), config_(config) {}
+    : model_(reverse_model(scene, physics, config)),
+      push_(push),
+      config_(config),
+      newton_(physics.damping / (physics.time_step * physics.time_step)) {}
 
 ReverseResult ReverseSimulator::solve(const ReverseJob& job) const {
   return std::move(solve(std::span(&job, 1)).front());
@@ -84,6 +88,7 @@ std::vector<ReverseResult> ReverseSimulator::solve(std::span<const ReverseJob> j
 ReverseResult ReverseSimulator::answer(const ReverseJob& job, const Candidate& candidate,
                                        const SqpResult& solved) const {
   ReverseResult result{solved.status, solved.iterations};
+  if (job.with_solution) result.solution = solution_of(job, candidate, solved, newton_);
   if (!has_predecessors(result.status)) return result;
   const int late_contacts = model_.physics.inertia ? 0 : config_.late_contacts;
   for (const VectorXd& start : predecessors(solved.x.p, late_contacts))

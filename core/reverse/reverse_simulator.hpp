@@ -39,6 +39,7 @@ class ReverseSimulator {
   ReverseModel model_;
   PushConfig push_;
   ReverseConfig config_;
+  double newton_;  // of the forces in a problem, k_D/Δt² [N/(kg m)]
 };
 
 }  // namespace rtg::reverse

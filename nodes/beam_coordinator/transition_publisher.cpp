@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "nodes/jobs/flat_poses.hpp"
+
 namespace rtg::beam_coordinator {
 namespace {
 

@@ -5,23 +5,14 @@
 
 #include "core/math/hash.hpp"
 #include "nodes/bus/wire.hpp"
+#include "nodes/jobs/flat_poses.hpp"
+#include "nodes/jobs/solutions.hpp"
 
 namespace rtg::jobs {
 namespace {
 
 constexpr std::size_t kEnvelope = 200;  // upper bound of a message without its arrays [bytes]
 constexpr std::size_t kPerJob = 16;     // upper bound of a job or result without its poses [bytes]
-
-/// Returns state number `i` of a flat array of states.
-Poses poses_at(const std::vector<double>& numbers, std::size_t i, int bodies) {
-  Poses poses(static_cast<std::size_t>(bodies));
-  const double* p = numbers.data() + i * poses.size() * 3;
-  for (Pose& pose : poses) {
-    pose = {p[0], p[1], p[2]};
-    p += 3;
-  }
-  return poses;
-}
 
 template <class Message>
 bool has_shape(const Message& message, const TaskShape& shape) {
@@ -53,27 +44,28 @@ void set_counts(Message& message, std::size_t n, const std::vector<double>& pose
   message.n_poses = static_cast<std::int32_t>(poses.size());
 }
 
-const Poses& state_of(const reverse::ReverseJob& job) { return job.end; }
-const Poses& state_of(const search::ReplayJob& job) { return job.start; }
+std::uint64_t unit_key(const reverse::ReverseJob& job) {
+  return hashed(reverse::key_of(job), job.with_solution ? 1 : 0);
+}
+std::uint64_t unit_key(const search::ReplayJob& job) {
+  return reverse::key_of(job.start, job.action);
+}
 
 template <class Job>
 std::int64_t hash_of(std::span<const Job> jobs, std::int64_t config) {
   auto hash = static_cast<std::uint64_t>(config);
-  for (const Job& job : jobs) hash = hashed(hash, reverse::key_of(state_of(job), job.action));
+  for (const Job& job : jobs) hash = hashed(hash, unit_key(job));
   return static_cast<std::int64_t>(hash);
 }
 
 }  // namespace
-
-void append_poses(const Poses& poses, std::vector<double>& out) {
-  for (const Pose& p : poses) out.insert(out.end(), {p.x, p.y, p.theta});
-}
 
 ReverseService::JobMessage ReverseService::message(std::span<const Job> jobs) {
   JobMessage out{};
   for (const Job& job : jobs) {
     append_poses(job.end, out.end);
     out.action.push_back(job.action);
+    out.with_solution.push_back(job.with_solution ? 1 : 0);
   }
   set_counts(out, jobs.size(), out.end);
   return out;
@@ -89,16 +81,19 @@ ReverseService::ResultMessage ReverseService::message(std::span<const Result> re
     for (const Poses& start : r.predecessors) append_poses(start, out.start);
   }
   set_counts(out, results.size(), out.start);
+  write_solutions(results, out);
   return out;
 }
 
 std::optional<std::vector<reverse::ReverseJob>> ReverseService::parse(const JobMessage& message,
                                                                       const TaskShape& shape) {
-  if (!has_shape(message, shape) || !all_between(message.action, 0, shape.actions - 1))
+  if (!has_shape(message, shape) || !all_between(message.action, 0, shape.actions - 1) ||
+      !all_between(message.with_solution, 0, 1))
     return std::nullopt;
   std::vector<Job> jobs;
   for (std::size_t i = 0; i < message.action.size(); ++i)
-    jobs.push_back({poses_at(message.end, i, shape.bodies), message.action[i]});
+    jobs.push_back(
+        {poses_at(message.end, i, shape.bodies), message.action[i], message.with_solution[i] == 1});
   return jobs;
 }
 
@@ -119,6 +114,7 @@ std::optional<std::vector<reverse::ReverseResult>> ReverseService::parse(
       r.predecessors.push_back(poses_at(message.start, at++, shape.bodies));
     results.push_back(std::move(r));
   }
+  if (!read_solutions(message, shape.bodies, results)) return std::nullopt;
   return results;
 }
 

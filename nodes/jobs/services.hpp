@@ -79,7 +79,4 @@ std::vector<std::size_t> unit_sizes(std::size_t jobs, const UnitLimit& limit,
 std::int64_t unit_id(std::span<const reverse::ReverseJob> jobs, std::int64_t config);
 std::int64_t unit_id(std::span<const search::ReplayJob> jobs, std::int64_t config);
 
-/// Appends x [m], y [m], θ [rad] of every body to `out`.
-void append_poses(const Poses& poses, std::vector<double>& out);
-
 }  // namespace rtg::jobs

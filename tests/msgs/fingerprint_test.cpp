@@ -16,8 +16,8 @@ std::string fingerprint() {
 TEST(Fingerprint, IsPinned) {
   EXPECT_EQ(fingerprint<header_t>(), "8959133396786f27");
   EXPECT_EQ(fingerprint<worker_beat_t>(), "bc80f2eca7427f4c");
-  EXPECT_EQ(fingerprint<reverse_job_t>(), "e563f95bca108674");
-  EXPECT_EQ(fingerprint<reverse_result_t>(), "ec3ded37a9922222");
+  EXPECT_EQ(fingerprint<reverse_job_t>(), "f57507c0eb56c649");
+  EXPECT_EQ(fingerprint<reverse_result_t>(), "46f8d0e6601ad130");
   EXPECT_EQ(fingerprint<replay_job_t>(), "865ba9ac6170c733");
   EXPECT_EQ(fingerprint<replay_result_t>(), "ff4f8e7111c6e8dc");
   EXPECT_EQ(fingerprint<transition_batch_t>(), "afecb8d7987eaaf4");

@@ -344,5 +344,74 @@ TEST(ReverseSimulator, AnswersAnyLayoutWithFiniteStarts) {
   }
 }
 
+/// Returns the sum of the contact forces on `body` at the end of a sub-step [N].
+Vector2d contact_force(const ReverseSolution& solution, int body, int sub_step) {
+  Vector2d sum = Vector2d::Zero();
+  for (const ContactForce& c : solution.contacts) {
+    if (c.sub_step != sub_step) continue;
+    if (c.body == body) sum += c.force * c.normal;
+    if (c.other == body) sum -= c.force * c.normal;
+  }
+  return sum;
+}
+
+TEST(ReverseSimulator, ASolutionIsThereIfItIsAskedForAndBeginsAtThePredecessor) {
+  ReverseJob job = touching_job();
+  const ReverseSimulator simulator(robot_and_boxes(2), kPhysics, kPush, {});
+  const ReverseResult plain = simulator.solve(job);
+  EXPECT_FALSE(plain.solution.has_value());
+  job.with_solution = true;
+  const ReverseResult result = simulator.solve(job);
+  EXPECT_EQ(result.predecessors, plain.predecessors);
+  ASSERT_TRUE(result.solution.has_value());
+  const ReverseSolution& s = *result.solution;
+  ASSERT_EQ(s.trajectory.size(), static_cast<std::size_t>(kPhysics.sub_steps) + 1);
+  ASSERT_EQ(s.controls.size(), static_cast<std::size_t>(kPhysics.sub_steps));
+  EXPECT_EQ(s.trajectory[0], result.predecessors[0]);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_LT((s.trajectory.back()[k].position() - job.end[k].position()).norm(), 0.05);
+  for (const Poses& poses : s.trajectory) EXPECT_EQ(poses[2], job.end[2]) << "out of reach";
+  EXPECT_LT(s.infeasibility, ReverseConfig{}.feasibility_tol);
+  EXPECT_LT(s.stationarity, ReverseConfig{}.stationarity_tol);
+  EXPECT_NE(s.objective, 0.0);
+}
+
+// k_D/Δt² m Δx = F, eq. (8): without inertia the force moves the box. The robot touches one of its
+// faces, so that friction acts along this and the normal force alone across it.
+TEST(ReverseSimulator, TheContactForcesOfASolutionMoveTheBox) {
+  ReverseJob job = touching_job();
+  job.with_solution = true;
+  const Scene scene = robot_and_boxes(2);
+  const ReverseResult result = ReverseSimulator(scene, kPhysics, kPush, {}).solve(job);
+  ASSERT_TRUE(result.solution.has_value());
+  const ReverseSolution& s = *result.solution;
+  const double drag = kPhysics.damping * mass_of(scene.bodies[1]).mass /
+                      (kPhysics.time_step * kPhysics.time_step);  // [N/m]
+  int pushed = 0;
+  for (int k = 1; k <= kPhysics.sub_steps; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const Vector2d moved = s.trajectory[at][1].position() - s.trajectory[at - 1][1].position();
+    const Vector2d force = contact_force(s, 1, k);
+    if (moved.norm() < 0.05) continue;
+    ++pushed;
+    EXPECT_NEAR(force.norm(), drag * moved.dot(force.normalized()), 0.02 * force.norm()) << k;
+  }
+  EXPECT_GT(pushed, kPhysics.sub_steps / 2);
+  for (const ContactForce& c : s.contacts) {
+    EXPECT_NEAR(c.normal.norm(), 1.0, 1e-12);
+    EXPECT_TRUE((c.body == 1 && c.other == 0) || (c.body == 0 && c.other == 1));
+    const Poses& poses = s.trajectory[static_cast<std::size_t>(c.sub_step)];
+    const double to_box = to_local(poses[1], c.point).lpNorm<Eigen::Infinity>() - 0.6;
+    EXPECT_LT(std::abs(to_box), 0.15 + 1e-9) << "on the surface, or within the range of it";
+  }
+}
+
+TEST(ReverseSimulator, APrunedPushHasNoSolution) {
+  const ReverseJob job{{{0, 0, 0}, {-1.41, 0.0, 0.0}}, 0, true};
+  const ReverseResult result = solve(robot_and_boxes(1), job);
+  EXPECT_EQ(result.status, SolveStatus::kPruned);
+  EXPECT_FALSE(result.solution.has_value());
+}
+
 }  // namespace
 }  // namespace rtg::reverse

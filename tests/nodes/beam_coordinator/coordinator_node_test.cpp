@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/search/simulators.hpp"
+#include "nodes/jobs/flat_poses.hpp"
 #include "nodes/jobs/worker_node.hpp"
 #include "tests/nodes/bus/handle_all.hpp"
 #include "tests/support/gathering.hpp"

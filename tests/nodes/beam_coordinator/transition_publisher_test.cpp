@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "nodes/jobs/flat_poses.hpp"
 #include "tests/nodes/bus/handle_all.hpp"
 
 namespace rtg::beam_coordinator {
