@@ -20,7 +20,7 @@ class Coverage {
     double contact_share = 0.0;         // share that moves an object by more than kMoved
     double multi_body_share = 0.0;      // share that moves several objects not connected by joints
     double headings_per_state = 0.0;    // transitions per distinct state
-    long start_region_transitions = 0;  // that begin with all objects in_place() of task.start
+    long start_region_transitions = 0;  // that begin in_start_region()
 
     long of(Source source) const { return by_source[static_cast<std::size_t>(source)]; }
   };

@@ -45,10 +45,12 @@ Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Pose
 std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& config,
                               const Poses& target, Rng& rng, SearchStats& stats) {
   const StateMetric metric(task);
+  tasks::Task turned = task;  // the robot does not turn on the way from the target to the goal
+  turned.start[0].theta = target[0].theta;
   std::unordered_set<std::uint64_t> seen;
   std::vector<std::pair<double, Poses>> drawn;
   for (int k = 0, failures = 0; k < config.breadth * config.root_draws; ++k) {
-    const std::optional<Poses> goal = sample_goal(task, rng);
+    const std::optional<Poses> goal = sample_goal(turned, rng);
     stats.undrawn_goals += !goal;
     failures = goal ? 0 : failures + 1;
     if (failures == kMaxFailures) break;

@@ -19,9 +19,9 @@ Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Pose
 inline constexpr int kNodesPerRoot = 4;
 
 /// Draws goal states and returns up to config.breadth / kNodesPerRoot (rounded up) distinct ones,
-/// the nearest to `target` by start_distance(). Makes at most config.breadth · config.root_draws
-/// draws by sample_goal() and applies with_swapped_twins() to each state. The states are not yet at
-/// rest. Counts failed draws in `stats`.
+/// the nearest to `target` by start_distance(), with its angle of the robot. Makes at most
+/// config.breadth · config.root_draws draws by sample_goal() and applies with_swapped_twins() to
+/// each state. The states are not yet at rest. Counts failed draws in `stats`.
 std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& config,
                               const Poses& target, Rng& rng, SearchStats& stats);
 

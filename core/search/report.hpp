@@ -22,7 +22,7 @@ struct GenerationReport {
   Coverage::Figures coverage = {};  // of the stored transitions
   SearchStats stats = {};
   int trees = 0;
-  int start_region_depth = -1;  // least depth of a node with all objects in_place(); -1: none
+  int start_region_depth = -1;  // least depth of a node in_start_region(); -1: none
   long units_given_up = 0;      // job messages whose workers were lost, several times; over LCM
   double generate_wall_s = 0.0;
   double generate_cpu_s = 0.0;  // of this process alone, not of workers

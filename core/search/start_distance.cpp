@@ -117,9 +117,10 @@ bool in_place(const StateMetric& metric, const Poses& poses, const Poses& target
 
 bool in_start_region(const tasks::Task& task, const StateMetric& metric, const Poses& poses) {
   if (task.start_ranges.empty()) return in_place(metric, poses, task.start);
+  const Poses layout = layout_around(task, poses);
   return std::ranges::all_of(metric.objects(), [&](const auto& o) {
     const std::optional<tasks::StartRange>& range = task.start_ranges[o.body];
-    if (!range) return in_place(metric, o, poses, task.start);
+    if (!range) return in_place(metric, o, poses, layout);
     if (excess(range->region, poses[o.body].position()) > kInPlace) return false;
     const double off = poses[o.body].theta - (range->least + range->most) / 2.0;
     const double turn = o.turn > 0.0 ? std::abs(std::remainder(off, o.turn)) : 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/tasks/goal_atoms.hpp"
 #include "core/world/overlap.hpp"
@@ -80,15 +81,28 @@ double excess_of(const Other&, const Task&, const Poses&, std::size_t) {
   return 0.0;
 }
 
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+
 /// Returns the margin by which a sampled state meets a condition that allows `room`.
 double spare(double room) { return std::min(kGoalSpare, 0.2 * room); }
+
+/// Returns the least angle by which a body that `term` concerns can be turned onto itself [rad].
+double least_symmetry(const GoalTerm& term, const Scene& scene) {
+  double least = 2.0 * std::numbers::pi;
+  for (std::size_t i = 1; i < scene.size(); ++i)
+    if (const double own = scene.bodies[i].shape.symmetry(); concerns(term, scene, i) && own > 0.0)
+      least = std::min(least, own);
+  return least;
+}
 
 void tighten(Region& region, double sign) {
   region = inset(region, sign * spare(half_width(region)));
 }
 
-void tighten_range(double& least, double& most, double sign) {
-  const double by = sign * spare((most - least) / 2.0);
+/// `around`: all values, of which a negated term leaves those outside of the range.
+void tighten_range(double& least, double& most, double sign, double around) {
+  const double width = most - least;
+  const double by = sign * spare((sign > 0.0 ? width : around - width) / 2.0);
   least += by;
   most -= by;
 }
@@ -144,22 +158,23 @@ bool holds(const GoalTerm& term, const Task& task, const Poses& poses) {
   return all;
 }
 
-GoalTerm tightened(const GoalTerm& term) {
+GoalTerm tightened(const GoalTerm& term, const Scene& scene) {
   GoalTerm out = term;
   const double sign = term.negated ? -1.0 : 1.0;
-  std::visit(Cases{[&](CentreIn& c) { tighten(c.region, sign); },
-                   [&](MeanIn& c) { tighten(c.region, sign); },
-                   [&](AngleIn& c) { tighten_range(c.least, c.most, sign); },
-                   [&](PoseNear& c) {
-                     c.distance -= sign * spare(c.distance);
-                     c.turn -= sign * spare(c.turn);
-                   },
-                   [&](Covers& c) { c.share += sign * spare(1.0 - c.share); },
-                   [&](Touches& c) { c.gap -= sign * spare(c.gap); },
-                   [&](KeepsFrom& c) { c.gap += sign * kGoalSpare; },
-                   [&](Stays& c) { c.distance -= sign * spare(c.distance); },
-                   [&](JointIn& c) { tighten_range(c.least, c.most, sign); }},
-             out.condition);
+  std::visit(
+      Cases{[&](CentreIn& c) { tighten(c.region, sign); },
+            [&](MeanIn& c) { tighten(c.region, sign); },
+            [&](AngleIn& c) { tighten_range(c.least, c.most, sign, least_symmetry(term, scene)); },
+            [&](PoseNear& c) {
+              c.distance -= sign * spare(c.distance);
+              c.turn -= sign * spare(c.turn);
+            },
+            [&](Covers& c) { c.share += sign * spare(1.0 - c.share); },
+            [&](Touches& c) { c.gap -= sign * spare(c.gap); },
+            [&](KeepsFrom& c) { c.gap += term.negated ? -spare(c.gap) : kGoalSpare; },
+            [&](Stays& c) { c.distance -= sign * spare(c.distance); },
+            [&](JointIn& c) { tighten_range(c.least, c.most, sign, kAnywhere); }},
+      out.condition);
   return out;
 }
 

@@ -107,6 +107,6 @@ inline constexpr double kGoalSpare = 0.05;
 
 /// Returns a term that holds only where `term` holds with a margin: kGoalSpare, but at most a fifth
 /// of what the term allows.
-GoalTerm tightened(const GoalTerm& term);
+GoalTerm tightened(const GoalTerm& term, const Scene& scene);
 
 }  // namespace rtg::tasks

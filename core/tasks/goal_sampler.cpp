@@ -84,20 +84,23 @@ void aim(const Condition& condition, const Pose& start, const Shape& shape, Pose
   }
 }
 
+/// Returns the turn of a condition in pose_in_goal(). Later ones have the last word.
+int rank(const Condition& condition) {
+  if (std::holds_alternative<CentreIn>(condition)) return 0;
+  return std::holds_alternative<Stays>(condition) ? 1 : 2;
+}
+
 /// Draws a pose of body `i` for the goal: a uniform point of the arena, moved into the regions for
 /// the centre, and any angle; then what the other terms on the body ask for, one after another.
 Pose pose_in_goal(Draw& draw, std::size_t i) {
-  const auto aim_at = [&](bool regions, Pose& pose) {
-    for (const GoalTerm& term : draw.goal)
-      if (!term.negated && std::holds_alternative<CentreIn>(term.condition) == regions &&
-          concerns(term, draw.task.scene, i))
-        aim(term.condition, draw.task.start[i], draw.task.scene.bodies[i].shape, pose, draw.rng);
-  };
   const Vector2d x = point_in_arena(draw.task, draw.rng);
   Pose pose{x.x(), x.y(), 0.0};
-  aim_at(true, pose);
-  pose.theta = draw.rng.uniform(-std::numbers::pi, std::numbers::pi);
-  aim_at(false, pose);
+  for (int turn = 0; turn < 3; ++turn) {
+    if (turn == 1) pose.theta = draw.rng.uniform(-std::numbers::pi, std::numbers::pi);
+    for (const GoalTerm& term : draw.goal)
+      if (!term.negated && rank(term.condition) == turn && concerns(term, draw.task.scene, i))
+        aim(term.condition, draw.task.start[i], draw.task.scene.bodies[i].shape, pose, draw.rng);
+  }
   return pose;
 }
 
@@ -242,8 +245,10 @@ bool try_add(Draw& draw, const Group& group) {
     const Pose& pose = group.poses[i];
     if (!draw.task.scene.bodies[i].fixed) {
       if (!draw.meets_terms_of(i, group.poses)) return false;
-      if (!in_arena(pose, draw.task.push) || !is_clear(draw.task, trial, i, pose)) {
-        ++draw.refusals.no_room;
+      const bool within = in_arena(pose, draw.task.push);
+      if (const auto other = within ? blocker(draw.task, trial, i, pose) : std::nullopt;
+          other || !within) {
+        ++draw.refusals.no_room[{i, other.value_or(i)}];
         return false;
       }
     }
@@ -287,19 +292,23 @@ bool place_object(Draw& draw, std::size_t i) {
 }
 
 /// Returns the least and the largest value that the limits of `joint` and the goal allow. Returns
-/// nothing if there is no such value.
-std::optional<std::pair<double, double>> values_in_goal(const Draw& draw, const Joint& joint) {
+/// nothing if there is no such value, and counts the term that leaves none.
+std::optional<std::pair<double, double>> values_in_goal(Draw& draw, const Joint& joint) {
   const double span =
       joint.type == JointType::kPrismatic ? 2.0 * draw.task.push.arena : std::numbers::pi;
   double least = std::isfinite(joint.lower) ? joint.lower : -span;
   double most = std::isfinite(joint.upper) ? joint.upper : span;
-  for (const GoalTerm& term : draw.goal) {
+  for (std::size_t k = 0; k < draw.goal.size(); ++k) {
+    const GoalTerm& term = draw.goal[k];
     if (term.negated || !concerns(term, draw.task.scene, joint)) continue;
     const auto& range = std::get<JointIn>(term.condition);
     least = std::max(least, range.least);
     most = std::min(most, range.most);
+    if (least > most) {
+      ++draw.refusals.by_term[k];
+      return std::nullopt;
+    }
   }
-  if (least > most) return std::nullopt;
   return std::pair{least, most};
 }
 
@@ -424,24 +433,40 @@ std::optional<Poses> attempt(const Task& task, const std::vector<GoalTerm>& goal
   return to_single(std::move(draw.state.poses));
 }
 
+/// Returns the number of all refusals.
+long all_of(const GoalRefusals& refusals) {
+  long all = refusals.no_robot;
+  for (const long count : refusals.by_term) all += count;
+  for (const auto& [bodies, count] : refusals.no_room) all += count;
+  return all;
+}
+
 }  // namespace
 
-std::string main_reason(const GoalRefusals& refusals) {
+std::optional<std::size_t> main_term(const GoalRefusals& refusals) {
+  const auto most = std::ranges::max_element(refusals.by_term);
+  if (most == refusals.by_term.end() || 2 * *most < all_of(refusals)) return std::nullopt;
+  return most - refusals.by_term.begin();
+}
+
+std::string main_reason(const GoalRefusals& refusals, const Scene& scene) {
+  const auto name = [&](std::size_t i) { return '\'' + scene.bodies[i].name + '\''; };
   std::vector<std::pair<long, std::string>> reasons{
-      {refusals.no_room, "bodies overlapped or left the arena"},
       {refusals.no_robot, "the robot found no place"}};
-  long all = refusals.no_room + refusals.no_robot;
-  for (std::size_t k = 0; k < refusals.by_term.size(); ++k) {
+  for (const auto& [bodies, count] : refusals.no_room)
+    reasons.emplace_back(count, bodies.first == bodies.second
+                                    ? name(bodies.first) + " left the arena"
+                                    : name(bodies.first) + " overlapped " + name(bodies.second));
+  for (std::size_t k = 0; k < refusals.by_term.size(); ++k)
     reasons.emplace_back(refusals.by_term[k], "task.goal." + std::to_string(k) + " did not hold");
-    all += refusals.by_term[k];
-  }
   const auto& [count, words] = *std::ranges::max_element(reasons);
-  return words + " in " + std::to_string(100 * count / std::max(all, 1L)) + "% of the tries";
+  const long share = 100 * count / std::max(all_of(refusals), 1L);
+  return words + " in " + std::to_string(share) + "% of the tries";
 }
 
 std::optional<Poses> sample_goal(const Task& task, Rng& rng, GoalRefusals* refusals) {
   std::vector<GoalTerm> goal;
-  for (const GoalTerm& term : task.goal) goal.push_back(tightened(term));
+  for (const GoalTerm& term : task.goal) goal.push_back(tightened(term, task.scene));
   GoalRefusals own;
   GoalRefusals& counts = refusals ? *refusals : own;
   counts.by_term.resize(goal.size());

@@ -22,8 +22,18 @@ double clearance(const Task& task, const PartialState& state, std::size_t i, con
 
 }  // namespace
 
+std::optional<std::size_t> blocker(const Task& task, const PartialState& state, std::size_t i,
+                                   const Pose& pose) {
+  for (std::size_t j = 0; j < state.poses.size(); ++j)
+    if (j != i && state.placed[j] && !jointed(task.scene, i, j) &&
+        separation(task.scene.bodies[i].shape, pose, task.scene.bodies[j].shape, state.poses[j]) <
+            kClearance - kSlideError)
+      return j;
+  return std::nullopt;
+}
+
 bool is_clear(const Task& task, const PartialState& state, std::size_t i, const Pose& pose) {
-  return clearance(task, state, i, pose) >= kClearance - kSlideError;
+  return !blocker(task, state, i, pose);
 }
 
 /// Each step is as long as the separating-axis gap. That gap never exceeds the distance, so no step

@@ -17,8 +17,10 @@ struct PartialState {
   std::vector<bool> placed;
 };
 
-/// Returns whether body `i` at `pose` keeps kClearance from all placed bodies, except those that a
-/// joint connects with it.
+/// Returns a placed body from which body `i` at `pose` does not keep kClearance, except those that
+/// a joint connects with it; nothing if it is clear of all.
+std::optional<std::size_t> blocker(const Task& task, const PartialState& state, std::size_t i,
+                                   const Pose& pose);
 bool is_clear(const Task& task, const PartialState& state, std::size_t i, const Pose& pose);
 
 /// A straight motion of a body from `from` towards the placed bodies.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/world/overlap.hpp"
+
 namespace rtg::tasks {
 namespace {
 
@@ -30,7 +32,8 @@ Region inset(const Region& region, double by) {
   if (const auto* disc = std::get_if<Disc>(&region)) return Disc{disc->centre, disc->radius - by};
   if (const auto* half = std::get_if<HalfPlane>(&region))
     return HalfPlane{half->normal, half->offset - by};
-  return offset_polygon(std::get<Polygon>(region), -by);
+  const auto& polygon = std::get<Polygon>(region);
+  return by > 0.0 ? Polygon{inset_ring(polygon.vertices, by)} : offset_polygon(polygon, -by);
 }
 
 double half_width(const Region& region) {

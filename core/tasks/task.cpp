@@ -28,41 +28,59 @@ std::optional<Poses> if_legal(const Task& task, Poses poses) {
   return poses;
 }
 
-/// Draws a state for jittered_start(). Returns nothing if it is not legal.
-std::optional<Poses> drawn(const Task& task, double amplitude, Rng& rng) {
-  if (task.start_ranges.empty()) return jittered(task, task.start, amplitude, rng);
-  Poses poses = task.layout;
+/// Moves each tree of joints, and each body without joints, as one: `placed` (i, pose) returns the
+/// new pose of its root.
+template <class Placed>
+Poses with_moved_trees(const Task& task, Poses poses, Placed placed) {
   const std::vector<std::size_t> roots = roots_of(task.scene);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (roots[i] != i || task.scene.bodies[i].fixed) continue;
-    const std::optional<StartRange>& range = task.start_ranges[i];
-    Pose to = poses[i];
-    if (range) {
-      const Vector2d x = moved_into(range->region, Vector2d::Zero(), rng);
-      to = {x.x(), x.y(), rng.uniform(range->least, range->most)};
-    } else if (i > 0) {
-      to.x += rng.uniform(-amplitude, amplitude);
-      to.y += rng.uniform(-amplitude, amplitude);
-    }
-    const Pose from = poses[i];
+    const Pose from = poses[i], to = placed(i, from);
     for (std::size_t j = 0; j < poses.size(); ++j)
       if (roots[j] == i) poses[j] = carried(poses[j], from, to);
   }
-  return if_legal(task, std::move(poses));
+  return poses;
+}
+
+/// Returns the pose of a root, shifted unless it is that of the robot.
+Pose shifted(std::size_t i, Pose pose, double amplitude, Rng& rng) {
+  if (i == 0) return pose;
+  pose.x += rng.uniform(-amplitude, amplitude);
+  pose.y += rng.uniform(-amplitude, amplitude);
+  return pose;
+}
+
+/// Draws a state for jittered_start(). Returns nothing if it is not legal.
+std::optional<Poses> drawn(const Task& task, double amplitude, Rng& rng) {
+  if (task.start_ranges.empty()) return jittered(task, task.start, amplitude, rng);
+  return if_legal(task, with_moved_trees(task, task.layout, [&](std::size_t i, const Pose& from) {
+                    const std::optional<StartRange>& range = task.start_ranges[i];
+                    if (!range) return shifted(i, from, amplitude, rng);
+                    const Vector2d x = moved_into(range->region, Vector2d::Zero(), rng);
+                    return Pose{x.x(), x.y(), rng.uniform(range->least, range->most)};
+                  }));
 }
 
 }  // namespace
 
 std::optional<Poses> jittered(const Task& task, const Poses& start, double amplitude, Rng& rng) {
   if (amplitude <= 0.0) return start;
-  Poses poses = start;
-  const std::vector<std::size_t> roots = roots_of(task.scene);
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    if (!movable_object(task, i) || roots[i] != i) continue;
-    poses[i].x += rng.uniform(-amplitude, amplitude);
-    poses[i].y += rng.uniform(-amplitude, amplitude);
-  }
-  return if_legal(task, std::move(poses));
+  return if_legal(task, with_moved_trees(task, start, [&](std::size_t i, const Pose& from) {
+                    return shifted(i, from, amplitude, rng);
+                  }));
+}
+
+Poses layout_around(const Task& task, const Poses& poses) {
+  if (task.start_ranges.empty()) return task.start;
+  return with_moved_trees(task, task.layout, [&](std::size_t i, const Pose& from) {
+    return task.start_ranges[i] ? poses[i] : from;
+  });
+}
+
+bool robot_is_turned(const Task& task) {
+  if (task.start_ranges.empty() || !task.start_ranges[0]) return false;
+  const StartRange& range = *task.start_ranges[0];
+  return range.most > range.least && task.scene.bodies[0].shape.symmetry() > 0.0;
 }
 
 bool succeeded(const Task& task, const Poses& poses) {
@@ -78,6 +96,10 @@ std::vector<float> observation(const Task& task, const Poses& poses) {
   const Pose& robot = poses[0];
   append(robot.x / unit);
   append(robot.y / unit);
+  if (robot_is_turned(task)) {
+    append(std::cos(robot.theta));
+    append(std::sin(robot.theta));
+  }
   for (std::size_t i = 1; i < poses.size(); ++i) {
     if (!movable_object(task, i)) continue;
     append(poses[i].x / unit);
@@ -98,7 +120,7 @@ std::vector<float> observation(const Task& task, const Poses& poses) {
 }
 
 int observation_size(const Task& task) {
-  int size = 2;
+  int size = robot_is_turned(task) ? 4 : 2;
   for (const Joint& joint : task.scene.joints)
     size += joint.type == JointType::kRevolute ? 2 : joint.type == JointType::kPrismatic ? 1 : 0;
   for (std::size_t i = 1; i < task.scene.size(); ++i)
@@ -111,7 +133,8 @@ Poses jittered_start(const Task& task, double amplitude, Rng& rng) {
     if (std::optional<Poses> poses = drawn(task, amplitude, rng)) return *std::move(poses);
   throw std::invalid_argument("no legal start among " + std::to_string(kAttempts) +
                               " random draws with objects shifted by up to " +
-                              std::to_string(amplitude) + " m; legal: a smaller shift");
+                              std::to_string(amplitude * task.units.length) +
+                              " m; legal: a smaller shift");
 }
 
 bool allows_jitter(const Task& task, double amplitude) {

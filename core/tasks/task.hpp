@@ -1,7 +1,9 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/math/rng.hpp"
@@ -62,13 +64,15 @@ inline double relative_unit(const Task& task) { return longest_stride(task.push)
 
 /// Returns the learner's observation [observation_size]:
 ///
-///   x, y of the robot,
+///   x, y of the robot, and cos θ, sin θ if robot_is_turned(),
 ///   x, y, cos θ, sin θ, x - x_robot, y - y_robot of each movable object,
 ///   sin φ, cos φ of each revolute joint, s of each prismatic one.
 ///
 /// Positions are in units of position_unit(), relative ones and s in those of relative_unit().
 /// Bodies and joints are in the order of the scene, so an entry always belongs to the same object.
 std::vector<float> observation(const Task& task, const Poses& poses);
+/// Returns whether episodes differ in the angle of the robot, and its shape is no disc.
+bool robot_is_turned(const Task& task);
 int observation_size(const Task& task);
 
 /// Returns `start` with the movable objects shifted at random, by at most `amplitude` [m] in x and
@@ -76,6 +80,10 @@ int observation_size(const Task& task);
 /// rounded by to_single(). Returns nothing if bodies are then closer than kStartClearance, an
 /// object is outside the arena, or the goal holds. With amplitude 0, returns `start` unchanged.
 std::optional<Poses> jittered(const Task& task, const Poses& start, double amplitude, Rng& rng);
+
+/// Returns the layout that the starts are drawn around: the bodies that have a range, with what
+/// hangs on them by joints, as they lie in `poses`; all others in their places.
+Poses layout_around(const Task& task, const Poses& poses);
 
 /// Returns a start state of the task: the bodies that have a range are drawn from it, the others
 /// are jittered(). Jointed bodies move as one. Throws std::invalid_argument if 1000 draws in a row
@@ -89,12 +97,16 @@ bool allows_jitter(const Task& task, double amplitude);
 /// Why tries to draw a goal state failed.
 struct GoalRefusals {
   std::vector<long> by_term;  // a term of the goal did not hold
-  long no_room = 0;           // a body met others or the edge of the arena
-  long no_robot = 0;          // there was no place for the robot
+  // A body met another one, or the edge of the arena (twice the body).
+  std::map<std::pair<std::size_t, std::size_t>, long> no_room;
+  long no_robot = 0;  // there was no place for the robot
 };
 
-/// Returns what failed most often, in words to the user: "task.goal.1 failed in 93% of the tries".
-std::string main_reason(const GoalRefusals& refusals);
+/// Returns the term that caused at least half of the refusals; nothing if none did.
+std::optional<std::size_t> main_term(const GoalRefusals& refusals);
+/// Returns what failed most often, in words to the user: "task.goal.1 did not hold in 93% of the
+/// tries".
+std::string main_reason(const GoalRefusals& refusals, const Scene& scene);
 
 /// Draws a state that satisfies the tightened() goal. It places, in this order:
 ///

@@ -73,15 +73,22 @@ Geometry area_of(const Part& part, int sides) {
   return checked(GEOSBuffer_r(geos(), core.get(), part.radius, sides));
 }
 
-/// Vertices are rounded to a grid of 2^-36 of the size, so that edges that differ by rounding alone
-/// are one.
-Geometry union_of(std::span<const Part> parts, int sides = kQuadrantSides) {
+/// Returns the polygons of `geometry`, without lines and points, which unions of areas that touch
+/// can leave.
+Geometry only_areas(Geometry geometry) {
+  if (GEOSGeomTypeId_r(geos(), geometry.get()) != GEOS_GEOMETRYCOLLECTION) return geometry;
+  return checked(GEOSBuffer_r(geos(), geometry.get(), 0.0, 1));
+}
+
+/// Vertices are rounded to a grid of 2^-`bits` of the size, so that edges that differ by rounding
+/// alone are one.
+Geometry union_of(std::span<const Part> parts, int sides = kQuadrantSides, double bits = 36.0) {
   double reach = 0.0;
   for (const Part& part : parts) reach = std::max(reach, reach_from(Vector2d::Zero(), part));
-  const double grid = std::exp2(std::floor(std::log2(reach)) - 36.0);
+  const double grid = std::exp2(std::floor(std::log2(reach)) - bits);
   Geometry all = area_of(parts[0], sides);
   for (const Part& part : parts.subspan(1))
-    all = checked(GEOSUnionPrec_r(geos(), all.get(), area_of(part, sides).get(), grid));
+    all = only_areas(checked(GEOSUnionPrec_r(geos(), all.get(), area_of(part, sides).get(), grid)));
   return all;
 }
 
@@ -204,7 +211,8 @@ std::vector<std::vector<Vector2d>> outline(std::span<const Part> parts) {
 }
 
 bool in_one_piece(std::span<const Part> parts) {
-  return GEOSGetNumGeometries_r(geos(), union_of(parts).get()) == 1;
+  // Coarse: the vertices may come from a file, rounded.
+  return GEOSGetNumGeometries_r(geos(), union_of(parts, kQuadrantSides, 28.0).get()) == 1;
 }
 
 bool maps_onto_itself(std::span<const Part> parts, double angle) {

@@ -36,6 +36,17 @@ Ring left_of(const Ring& ring, const Vector2d& v, const Vector2d& w) {
 
 }  // namespace
 
+std::vector<Vector2d> inset_ring(std::span<const Vector2d> ring, double by) {
+  Ring out;
+  for (const Vector2d& v : ring) out.add(v);
+  for (std::size_t k = 0; k < ring.size() && out.size > 0; ++k) {
+    const Vector2d &v = ring[k], &w = ring[(k + 1) % ring.size()];
+    const Vector2d inwards = by * Vector2d(v.y() - w.y(), w.x() - v.x()).normalized();
+    out = left_of(out, v + inwards, w + inwards);
+  }
+  return {out.vertices.begin(), out.vertices.begin() + static_cast<std::ptrdiff_t>(out.size)};
+}
+
 /// Clips `a` by the edges of `b` [Sutherland and Hodgman 1974].
 double common_area(std::span<const Vector2d> a, std::span<const Vector2d> b) {
   Ring ring;

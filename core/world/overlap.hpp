@@ -4,6 +4,10 @@
 
 namespace rtg {
 
+/// Returns the part of a convex, counter-clockwise polygon that lies at least `by` [m] within all
+/// its edges; without vertices if there is none. `by` must not be negative.
+std::vector<Vector2d> inset_ring(std::span<const Vector2d> ring, double by);
+
 /// Returns the area that two convex, counter-clockwise polygons have in common [m²]. Both are in
 /// one frame.
 double common_area(std::span<const Vector2d> a, std::span<const Vector2d> b);

@@ -1,6 +1,7 @@
 #include "core/world/polygon.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <numbers>
 
 namespace rtg {
@@ -13,6 +14,12 @@ constexpr double kMaxExtent = 1000;  // [m]
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 std::string vertex_name(std::size_t k) { return "vertex " + std::to_string(k); }
+
+std::string in_metres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g m", length);
+  return text;
+}
 
 bool maps_onto_itself(const Polygon& shape, std::size_t shift, double tolerance) {
   const double angle =
@@ -51,18 +58,19 @@ AreaIntegrals area_integrals(std::span<const Vector2d> ring) {
 
 Moments moments(const Polygon& shape) { return area_integrals(shape.vertices).moments(); }
 
-std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices) {
+std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices, double metre) {
   const std::size_t n = vertices.size();
   if (n < 3 || n > kMaxVertices)
     return "has " + std::to_string(n) + " vertices, not 3 to " + std::to_string(kMaxVertices);
   for (std::size_t k = 0; k < n; ++k)
     if (!vertices[k].allFinite() || vertices[k].cwiseAbs().maxCoeff() > kMaxExtent)
-      return vertex_name(k) + " is not finite or beyond 1000 m";
+      return vertex_name(k) + " is not finite or beyond " + in_metres(kMaxExtent * metre);
   double area = 0.0, turning = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
     const Vector2d edge = vertices[(k + 1) % n] - vertices[k];
     const Vector2d next = vertices[(k + 2) % n] - vertices[(k + 1) % n];
-    if (edge.norm() < kMinEdge) return "edge at " + vertex_name(k) + " is shorter than 0.005 m";
+    if (edge.norm() < kMinEdge)
+      return "edge at " + vertex_name(k) + " is shorter than " + in_metres(kMinEdge * metre);
     turning += std::atan2(cross(edge, next), edge.dot(next));
     area += cross(vertices[k], vertices[(k + 1) % n]) / 2.0;
   }
@@ -74,7 +82,7 @@ std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices) {
       return "is not strictly convex at " + vertex_name((k + 1) % n);
   }
   if (std::abs(turning - 2.0 * std::numbers::pi) > 1e-6) return "crosses itself";
-  if (area < kMinArea) return "has an area below 1e-4 m²";
+  if (area < kMinArea) return "has an area below " + in_metres(kMinArea * metre * metre) + "²";
   return std::nullopt;
 }
 

@@ -44,7 +44,8 @@ Moments moments(const Polygon& shape);
 
 /// Returns nothing if `vertices` is a legal shape, otherwise a message to the user that says why
 /// not. Reasons: too few or too many vertices, not finite, clockwise, not convex, degenerate.
-std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices);
+/// `metre`: unit of the vertices, for the message [m].
+std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices, double metre = 1.0);
 
 /// Returns the same shape with its centroid at the origin.
 Polygon centred(const Polygon& shape);

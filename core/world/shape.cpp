@@ -114,12 +114,30 @@ bool is_tip(std::span<const Part> parts, std::size_t n, std::size_t v, double sa
   return largest_opening(std::move(cones)) > std::numbers::pi + 1e-3;
 }
 
+/// Returns the number of points of a union that are farthest from the origin; 0 if they are a whole
+/// circle. Any symmetry maps them onto each other.
+std::size_t farthest_points(std::span<const Part> parts) {
+  double reach = 0.0;
+  for (const Part& part : parts) reach = std::max(reach, reach_from(Vector2d::Zero(), part));
+  std::vector<Vector2d> points;
+  for (const Part& part : parts)
+    for (const Vector2d& v : part.core.vertices) {
+      if (v.norm() + part.radius < (1.0 - kSame) * reach) continue;
+      if (v.norm() < kSame * reach) return 0;
+      const Vector2d point = reach * v.normalized();
+      const auto is_same = [&](const Vector2d& p) { return (p - point).norm() < 1e-3 * reach; };
+      if (std::ranges::none_of(points, is_same)) points.push_back(point);
+    }
+  return points.size();
+}
+
 double symmetry_of(const std::vector<Part>& parts) {
   if (parts.size() == 1) return parts[0].is_disc() ? 0.0 : kTwoPi / symmetry_order(parts[0].core);
   std::size_t most = 0;
   for (const Part& part : parts) most += part.core.size();
+  const std::size_t farthest = farthest_points(parts);
   for (std::size_t order = most; order > 1; --order)
-    if (maps_onto_itself(parts, kTwoPi / static_cast<double>(order)))
+    if (farthest % order == 0 && maps_onto_itself(parts, kTwoPi / static_cast<double>(order)))
       return kTwoPi / static_cast<double>(order);
   return kTwoPi;
 }

@@ -284,10 +284,20 @@ std::int64_t task_hash(tasks::Task task) {
   task.start_jitter = neutral.start_jitter;
   task.randomisation = neutral.randomisation;
   task.start_ranges.clear();
+  const auto stays = [&](std::size_t i) {
+    return std::ranges::any_of(task.goal, [&](const tasks::GoalTerm& term) {
+      return std::holds_alternative<tasks::Stays>(term.condition) && concerns(term, task.scene, i);
+    });
+  };
   for (std::size_t i = 0; i < task.start.size(); ++i)
-    if (!task.scene.bodies[i].fixed) task.start[i] = {};
+    if (!task.scene.bodies[i].fixed && !stays(i)) task.start[i] = {};
+  std::string zeros;  // of the joints whose values count from the start
+  for (const Joint& joint : task.scene.joints)
+    if (joint.type != JointType::kRevolute)
+      for (const double x : {joint.on_parent.x(), joint.on_parent.y(), joint.angle})
+        zeros += number_text(x) + ' ';
   task.start = with_closed_joints(task.scene, std::move(task.start));
-  return bus::ContentHash().add(yaml_text(task_node(std::move(task)))).value();
+  return bus::ContentHash().add(yaml_text(task_node(std::move(task)))).add(zeros).value();
 }
 
 }  // namespace rtg::config

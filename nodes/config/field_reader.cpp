@@ -189,7 +189,16 @@ Pose FieldReader::pose(const char* key, double most, const std::string& legal) c
   const std::vector<ConfigNode>& entries = items(key, 3, legal);
   return {read_length(entries[0], path(key), -most, most, units_),
           read_length(entries[1], path(key), -most, most, units_),
-          read_number(entries[2], path(key), -most, most)};
+          read_angle(entries[2], path(key))};
+}
+
+double read_angle(const ConfigNode& node, const std::string& path) {
+  constexpr double kFullTurn = 6.2832;  // 2 pi, rounded up
+  const std::string legal = "an angle in rad, from -6.2832 to 6.2832";
+  const double angle = read_number(node, path, legal);
+  if (std::abs(angle) > kFullTurn)
+    throw ConfigError(node.origin, path, node.scalar + " rad is more than a full turn", legal);
+  return angle;
 }
 
 double read_number(const ConfigNode& node, const std::string& path, double least, double most) {

@@ -69,6 +69,8 @@ class FieldReader {
 /// Returns the number that the scalar `node` holds. `path`: its dotted key, for messages. Throws
 /// ConfigError if `node` is no number in [least, most].
 double read_number(const ConfigNode& node, const std::string& path, double least, double most);
+/// Reads an angle of at most a full turn [rad]; more are most likely degrees.
+double read_angle(const ConfigNode& node, const std::string& path);
 
 /// Returns the length in `units` that the scalar `node` holds in m, in [least, most] `units`.
 double read_length(const ConfigNode& node, const std::string& path, double least, double most,

@@ -57,7 +57,7 @@ Polygon read_box(const ConfigNode& section, const std::string& path, const Units
 Polygon read_polygon(const ConfigNode& list, const std::string& path, const Units& units) {
   const std::string legal = "a convex polygon of 3 to 8 vertices [x, y], counter-clockwise";
   Polygon polygon{points_of(list, path, legal, units)};
-  if (const auto defect = polygon_defect(polygon.vertices))
+  if (const auto defect = polygon_defect(polygon.vertices, units.length))
     throw ConfigError(list.origin, path, *defect, legal);
   return polygon;
 }

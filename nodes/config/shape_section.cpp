@@ -99,8 +99,11 @@ std::vector<Polygon> read_vertices(const ConfigNode& list, const std::string& pa
     refuse("is clockwise; list the vertices counter-clockwise", list.origin, path);
   std::vector<Polygon> pieces = convex_pieces(ring);
   if (pieces.empty()) refuse("has no area", list.origin, path);
+  if (pieces.size() > kMaxParts)
+    refuse("splits into " + std::to_string(pieces.size()) + " convex parts", list.origin, path,
+           "a polygon that splits into at most " + std::to_string(kMaxParts));
   for (const Polygon& piece : pieces)
-    if (const std::optional<std::string> defect = polygon_defect(piece.vertices))
+    if (const std::optional<std::string> defect = polygon_defect(piece.vertices, units.length))
       refuse("has a convex piece that " + *defect, list.origin, path);
   return pieces;
 }
@@ -155,7 +158,8 @@ std::vector<Part> read_simple(const FieldReader& reader, const ConfigEntry& form
     pieces = read_vertices(value, path, reader.units());
   else
     pieces = {form.key == "box" ? read_box(reader) : read_regular(value, path, reader.units())};
-  for (const Polygon& piece : pieces) refuse(polygon_defect(piece.vertices), value.origin, path);
+  for (const Polygon& piece : pieces)
+    refuse(polygon_defect(piece.vertices, reader.units().length), value.origin, path);
   if (!margin) {
     std::vector<Part> parts;
     for (Polygon& piece : pieces) parts.push_back({std::move(piece)});

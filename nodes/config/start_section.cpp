@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/world/separation.hpp"
 #include "nodes/config/config_error.hpp"
 #include "nodes/config/region_section.hpp"
 #include "nodes/config/task_words.hpp"
@@ -49,9 +50,15 @@ std::pair<double, double> lengths_of(const FieldReader& reader, const char* key)
 }
 
 std::pair<double, double> angles_of(const FieldReader& reader, const char* key) {
-  return range_at(reader, key, [&](const ConfigNode& node) {
-    return read_number(node, reader.path(key), -kMaxPlace, kMaxPlace);
-  });
+  return range_at(reader, key,
+                  [&](const ConfigNode& node) { return read_angle(node, reader.path(key)); });
+}
+
+/// Returns the range of `theta`; any angle if it is not given, but 0 for the robot.
+std::pair<double, double> angles_of(const FieldReader& reader, bool is_robot) {
+  if (find(reader.section(), "theta")) return angles_of(reader, "theta");
+  const double most = is_robot ? 0.0 : std::numbers::pi;
+  return {-most, most};
 }
 
 Polygon rectangle(std::pair<double, double> x, std::pair<double, double> y) {
@@ -70,7 +77,8 @@ Start middle_of(tasks::StartRange range) {
   return {to_single({sum.x(), sum.y(), (range.least + range.most) / 2.0}), std::move(range)};
 }
 
-Start read_region_start(const ConfigNode& section, const std::string& path, const Units& units) {
+Start read_region_start(const ConfigNode& section, const std::string& path, const Units& units,
+                        bool is_robot) {
   const FieldReader reader(section, path, kInKeys, units);
   const ConfigNode& in = reader.required("in", "{disc, box or polygon}").value;
   const FieldReader region(in, reader.path("in"), kRegions, units);
@@ -78,26 +86,26 @@ Start read_region_start(const ConfigNode& section, const std::string& path, cons
     throw ConfigError(in.origin, reader.path("in"),
                       "has " + std::to_string(in.entries.size()) + " regions",
                       "one of " + listed(kRegions));
-  std::pair angles{-std::numbers::pi, std::numbers::pi};
-  if (find(section, "theta")) angles = angles_of(reader, "theta");
+  const auto angles = angles_of(reader, is_robot);
   return middle_of({read_region(region, in.entries[0]), angles.first, angles.second});
 }
 
-Start read_box_start(const ConfigNode& section, const std::string& path, const Units& units) {
+Start read_box_start(const ConfigNode& section, const std::string& path, const Units& units,
+                     bool is_robot) {
   const FieldReader reader(section, path, kRangeKeys, units);
   const auto x = lengths_of(reader, "x"), y = lengths_of(reader, "y"),
-             theta = angles_of(reader, "theta");
+             theta = angles_of(reader, is_robot);
   return middle_of({rectangle(x, y), theta.first, theta.second});
 }
 
 }  // namespace
 
-Start read_start(const FieldReader& body) {
+Start read_start(const FieldReader& body, bool is_robot) {
   const ConfigNode& node = body.required("start", kStartLegal).value;
   const std::string path = body.path("start");
   if (node.kind == Kind::kMap)
-    return find(node, "in") ? read_region_start(node, path, body.units())
-                            : read_box_start(node, path, body.units());
+    return find(node, "in") ? read_region_start(node, path, body.units(), is_robot)
+                            : read_box_start(node, path, body.units(), is_robot);
   return {to_single(body.pose("start", kMaxPlace, kStartLegal)), std::nullopt};
 }
 
@@ -119,6 +127,39 @@ ConfigNode start_node(const Pose& pose, const std::optional<tasks::StartRange>& 
                   {"theta", "", numbers_node({range->least, range->most})}});
 }
 
+namespace {
+
+constexpr int kTries = 200;  // draws of a body from its range
+
+/// Throws ConfigError if all places that body `i` is drawn from are out of the arena, or overlap
+/// one fixed body.
+void check_range(const tasks::Task& task, std::size_t i, const ConfigNode& section) {
+  const auto fail = [&](const std::string& wrong) {
+    fail_at(find(section, "bodies")->value.items[i], "task.bodies." + std::to_string(i), "start",
+            "puts '" + task.scene.bodies[i].name + "' " + wrong + " in all of " +
+                std::to_string(kTries) + " draws",
+            "a range with room for the body");
+  };
+  Rng rng(1);
+  int outside = 0;
+  std::vector<int> overlaps(task.scene.size(), 0);
+  for (int k = 0; k < kTries; ++k) {
+    const tasks::StartRange& range = *task.start_ranges[i];
+    const Vector2d x = moved_into(range.region, Vector2d::Zero(), rng);
+    const Pose pose{x.x(), x.y(), rng.uniform(range.least, range.most)};
+    outside += !in_arena(pose, task.push);
+    for (std::size_t j = 0; j < task.scene.size(); ++j)
+      overlaps[j] += task.scene.bodies[j].fixed &&
+                     separation(task.scene.bodies[i].shape, pose, task.scene.bodies[j].shape,
+                                task.start[j]) < tasks::kStartClearance;
+  }
+  if (outside == kTries) fail("out of the arena");
+  for (std::size_t j = 0; j < task.scene.size(); ++j)
+    if (overlaps[j] == kTries) fail("onto '" + task.scene.bodies[j].name + "'");
+}
+
+}  // namespace
+
 void draw_nominal_start(tasks::Task& task, const ConfigNode& section) {
   if (task.start_ranges.empty()) return;
   for (const Joint& joint : task.scene.joints) {
@@ -134,6 +175,8 @@ void draw_nominal_start(tasks::Task& task, const ConfigNode& section) {
   try {
     task.start = jittered_start(task, 0.0, rng);
   } catch (const std::invalid_argument&) {
+    for (std::size_t i = 0; i < task.scene.size(); ++i)
+      if (task.start_ranges[i]) check_range(task, i, section);
     throw ConfigError(find(section, "bodies")->value.origin, "task.bodies",
                       "of 1000 states drawn from the starts none is legal",
                       "starts in which bodies often lie " +

@@ -19,10 +19,11 @@ struct Start {
 ///
 ///   [x, y, theta]
 ///   {x: a, y: b, theta: c}           each a number or a range [least, most]
-///   {in: {region}, theta: [a, b]}    a disc, box or polygon; any angle without theta
+///   {in: {region}, theta: [a, b]}    a disc, box or polygon
 ///
-/// Throws ConfigError for anything else.
-Start read_start(const FieldReader& body);
+/// Without theta a range is of any angle; the robot's angle is 0. Throws ConfigError for anything
+/// else.
+Start read_start(const FieldReader& body, bool is_robot);
 
 /// Converts a start to a value, from which read_start() reads it back.
 ConfigNode start_node(const Pose& pose, const std::optional<tasks::StartRange>& range,

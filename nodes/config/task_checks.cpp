@@ -106,25 +106,37 @@ void check_joint(const tasks::GoalTerm& term, const Joint& joint, const tasks::T
     throw ConfigError(range.value.origin, path + ".joint",
                       "the joint of '" + child + "' can make a full turn",
                       "joints whose limits are less than 6.28 rad apart");
-  const auto inner = std::get<tasks::JointIn>(tightened(term).condition);
+  const auto inner = std::get<tasks::JointIn>(tightened(term, task.scene).condition);
   if (term.negated || std::max(joint.lower, inner.least) <= std::min(joint.upper, inner.most))
     return;
-  const std::string unit = slides ? " m" : " rad";
+  const auto text = [&](double value) {
+    return slides ? length_text(value, task.units) : number_text(value);
+  };
+  const std::string unit = slides ? " m" : " rad", margin = text(tasks::kGoalSpare) + unit;
   throw ConfigError(range.value.origin, path + '.' + range.key,
-                    "the joint of '" + child + "' cannot get 0.05" + unit + " into this range",
-                    "[least, most] in" + unit + " that overlaps its limits, " +
-                        number_text(joint.lower) + " to " + number_text(joint.upper) +
-                        ", by at least 0.05" + unit);
+                    "the joint of '" + child + "' cannot get " + margin + " into this range",
+                    "[least, most] in" + unit + " that overlaps its limits, " + text(joint.lower) +
+                        " to " + text(joint.upper) + ", by at least " + margin);
 }
 
-/// Throws ConfigError if no body has the kind that a term compares with.
+/// Throws ConfigError if a body that a term compares with others has none of their kind.
 void check_other(const tasks::GoalTerm& term, const tasks::Task& task, const ConfigNode& node,
                  const std::string& path) {
   const auto check = [&](const std::string& kind, const char* key) {
-    const auto is_other = [&](const Body& body) { return kind == "*" || body.kind == kind; };
-    if (std::any_of(task.scene.bodies.begin() + 1, task.scene.bodies.end(), is_other)) return;
-    throw ConfigError(find(node, key)->value.origin, path + '.' + key,
-                      "no object is of kind '" + kind + "'", "the kind of an object, also fixed");
+    const Scene& scene = task.scene;
+    const auto has_other = [&](std::size_t i) {
+      for (std::size_t j = 1; j < scene.size(); ++j)
+        if (j != i && (kind == "*" ? !scene.bodies[j].fixed : scene.bodies[j].kind == kind))
+          return true;
+      return false;
+    };
+    for (std::size_t i = 1; i < scene.size(); ++i)
+      if (concerns(term, scene, i) && !has_other(i))
+        throw ConfigError(find(node, key)->value.origin, path + '.' + key,
+                          kind == "*" ? "no object beside '" + scene.bodies[i].name + "' can move"
+                                      : "no object beside '" + scene.bodies[i].name +
+                                            "' is of kind '" + kind + "'",
+                          "the kind of another object, also fixed");
   };
   if (const auto* touches = std::get_if<tasks::Touches>(&term.condition))
     check(touches->other, "touching");
@@ -141,6 +153,21 @@ void check_stays(const tasks::GoalTerm& term, const tasks::Task& task, const Con
       throw ConfigError(find(node, "stays")->value.origin, path + ".stays",
                         '\'' + task.scene.bodies[i].name + "' starts anywhere in a range",
                         "bodies whose start is [x, y, theta]");
+}
+
+/// Throws ConfigError if a body that an angle term concerns meets it at any angle.
+void check_angle(const tasks::GoalTerm& term, const tasks::Task& task, const ConfigNode& node,
+                 const std::string& path) {
+  const auto* range = std::get_if<tasks::AngleIn>(&term.condition);
+  for (std::size_t i = 1; range && i < task.scene.size(); ++i) {
+    const double period = task.scene.bodies[i].shape.symmetry();
+    if (!concerns(term, task.scene, i) || range->most - range->least < period) continue;
+    throw ConfigError(find(node, "angle")->value.origin, path + ".angle",
+                      "holds at any angle of '" + task.scene.bodies[i].name + "'",
+                      period == 0.0 ? "bodies that are no discs"
+                                    : "a range narrower than " + number_text(period) +
+                                          " rad, by which the body can be turned onto itself");
+  }
 }
 
 void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& section) {
@@ -161,6 +188,7 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
   }
   check_other(term, task, node, path);
   check_stays(term, task, node, path);
+  check_angle(term, task, node, path);
   for (const char* key : {"angles", "slides"})
     if (const ConfigEntry* range = find(node, key))
       for (const Joint& joint : task.scene.joints) check_joint(term, joint, task, *range, path);
@@ -192,12 +220,14 @@ void check_goal(const tasks::Task& task, const ConfigNode& section) {
                       "a goal that the start state does not meet");
   Rng rng(1);
   tasks::GoalRefusals refusals;
-  if (!sample_goal(task, rng, &refusals))
-    throw ConfigError(
-        origin, "task.goal",
-        "no layout of the bodies that meets the goal was found; " + main_reason(refusals),
-        "terms that all objects can meet at once, with a margin of " +
-            length_text(tasks::kGoalSpare, task.units) + " m and 0.05 rad");
+  if (sample_goal(task, rng, &refusals)) return;
+  const auto term = main_term(refusals);
+  throw ConfigError(
+      term ? find(section, "goal")->value.items[*term].origin : origin, "task.goal",
+      "no layout of the bodies that meets the goal was found; " + main_reason(refusals, task.scene),
+      "terms that all objects can meet at once, with a margin of " +
+          length_text(tasks::kGoalSpare, task.units) +
+          " m and 0.05 rad; objects that fit only side by side need a term on their angle, too");
 }
 
 }  // namespace

@@ -33,8 +33,9 @@ const std::vector<std::string> kBodyKeys{"name",     "kind",  "shape", "density"
 
 const std::vector<std::string> kPushKeys{"headings", "strides", "stride", "arena"};
 
+/// The default is the density of the robot.
 double read_density(FieldReader& reader, const Units& units) {
-  double density = 1.0;
+  double density = units.density;
   reader.number("density", density, kLeastDensity * units.density, kMostDensity * units.density);
   return units.density_of(density);
 }
@@ -51,7 +52,7 @@ Body read_body(const ConfigNode& section, const std::string& path, tasks::Task& 
   body.density = read_density(reader, task.units);
   reader.number("friction", body.friction, 0.0, 10.0);
   reader.flag("fixed", body.fixed);
-  Start start = read_start(reader);
+  Start start = read_start(reader, task.start.empty());
   if (start.range && body.fixed)
     throw ConfigError(find(section, "start")->value.origin, reader.path("start"),
                       "is a range, but the body is fixed", "[x, y, theta] in m and rad");

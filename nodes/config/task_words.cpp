@@ -22,9 +22,11 @@ Vector2d wide_enough(const std::vector<double>& range, const FieldReader& reader
   if (range[1] - range[0] >= kLeastWidth - kRounding) return {range[0], range[1]};
   const std::string legal = range_legal(width, unit);
   const ConfigNode& node = reader.required(key, legal).value;
+  const std::string &least = node.items[0].scalar, &most = node.items[1].scalar;
   throw ConfigError(node.origin, reader.path(key),
-                    "the range [" + node.items[0].scalar + ", " + node.items[1].scalar +
-                        "] is narrower than " + width + ' ' + unit,
+                    range[0] > range[1] ? least + " is above " + most
+                                        : "the range [" + least + ", " + most +
+                                              "] is narrower than " + width + ' ' + unit,
                     legal);
 }
 

@@ -1,10 +1,12 @@
 """Toy environments: a line to walk along to the right, and episodes that end as they are told."""
 
 from collections.abc import Sequence
+from types import SimpleNamespace
 
 import numpy as np
 from rtg.envs.vector_env import Step
 
+TASK = SimpleNamespace(strides=(1.0,), relative_unit=1.0, position_unit=4.0)
 TIME_LIMIT = 20  # actions of an episode of the line
 
 
@@ -12,7 +14,7 @@ class Outcomes:
     """An environment of episodes of one step that end as they are told, in turn; the k-th says it
     had k steps."""
 
-    count, observation_size, headings, strides, task = 1, 3, 8, (1.0,), None
+    count, observation_size, headings, strides, task = 1, 3, 8, (1.0,), TASK
 
     def __init__(self, successes: Sequence[bool]) -> None:
         self.left = list(enumerate(successes))
@@ -34,7 +36,7 @@ class Outcomes:
 class Line:
     """Environments with positions 0 to 4; heading 1 goes right, every other heading stays."""
 
-    observation_size, strides, task = 3, (1.0,), None
+    observation_size, strides, task = 3, (1.0,), TASK
 
     def __init__(self, count: int = 4, headings: int = 8) -> None:
         self.count, self.headings = count, headings

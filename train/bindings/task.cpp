@@ -112,7 +112,7 @@ nb::ndarray<nb::numpy, double> start(const tasks::Task& task, double amplitude, 
                                      std::uint64_t index) {
   if (!(amplitude >= 0.0 && amplitude <= 10.0))
     throw nb::value_error(
-        ("amplitude " + std::to_string(amplitude) + " is out of range; legal: 0 to 10 m").c_str());
+        ("amplitude " + std::to_string(amplitude) + " is out of range; legal: 0 to 10").c_str());
   Rng rng(seed, index);
   return state_array(jittered_start(task, amplitude, rng));
 }
@@ -198,6 +198,8 @@ void bind_task(nb::module_& module) {
       .def_prop_ro(
           "start", [](const tasks::Task& task) { return state_array(task.start); },
           nb::rv_policy::move)
+      .def_prop_ro("robot_entries",
+                   [](const tasks::Task& task) { return robot_is_turned(task) ? 4 : 2; })
       .def_prop_ro("bodies", [](const tasks::Task& task) { return task.scene.size(); })
       .def_prop_ro("observation_size", &tasks::observation_size)
       .def_prop_ro("content", &config::task_hash)

@@ -12,6 +12,7 @@ ENVIRONMENTS = {
     "RTG/ArtManip-v0": "art_manip",
     "RTG/PushT-v0": "push_t",
     "RTG/PushTHard-v0": "push_t_hard",
+    "RTG/Place-v0": "place",
     "RTG/Insert-v0": "insert",
     "RTG/Pack-v0": "pack",
     "RTG/Gate-v0": "gate",

@@ -105,6 +105,9 @@ class Task:
     def bodies(self) -> int: ...
     @property
     def observation_size(self) -> int: ...
+    @property
+    def robot_entries(self) -> int:
+        """Number of the entries of an observation that are about the robot; the first ones."""
     def observation(self, states: NDArray[np.float64]) -> NDArray[np.float32]:
         """Returns the observations of the states. [N, bodies, 3] -> [N, observation_size]"""
     def joints_reached(self, states: NDArray[np.float64]) -> list[bool]:

@@ -110,10 +110,16 @@ def _plot(words: Sequence[str]) -> int:
     )
     parser.add_argument("folder", metavar="DIR", type=Path, help="the --out of reproduce, or a run")
     parser.add_argument("--out", metavar="DIR", help="of a comparison: where to (the same folder)")
-    parser.add_argument("--format", choices=("png", "svg", "pdf"), default="png", help="of plots")
+    parser.add_argument(
+        "--format",
+        choices=("png", "svg", "pdf"),
+        default="png",
+        help="of plots; episodes stay images",
+    )
     args = parser.parse_args(words)
     if args.out == "":
         raise UserError("--out: the path is empty; legal: the path of a folder")
+    from rtg.compare import evaluate
     from rtg.compare.report_files import write_report
     from rtg.pictures import plots
     from rtg.run.plan import plan_of
@@ -125,6 +131,7 @@ def _plot(words: Sequence[str]) -> int:
     if is_run:
         with plots.written_as(args.format):
             draw_again(plan_of(args.folder))
+            evaluate.draw_again(args.folder)
         print(f"pictures: {args.folder}")
     else:
         page = write_report(args.folder, Path(args.out or args.folder), args.format)

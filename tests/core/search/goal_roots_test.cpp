@@ -214,5 +214,19 @@ TEST(GoalRoots, OfAnImpossibleGoalAreNone) {
   EXPECT_TRUE(roots(task, of(2, 1), 69).empty());
 }
 
+// The robot is pushed without turning.
+TEST(GoalRoots, HaveTheRobotsAngleOfTheTarget) {
+  const tasks::Task task = gathering();
+  Poses target = task.start;
+  target[0].theta = 0.5;
+  SearchConfig config;
+  config.breadth = 8;
+  Rng rng(1);
+  SearchStats stats;
+  const std::vector<Poses> roots = goal_roots(task, config, target, rng, stats);
+  ASSERT_FALSE(roots.empty());
+  for (const Poses& root : roots) EXPECT_EQ(root[0].theta, 0.5);
+}
+
 }  // namespace
 }  // namespace rtg::search

@@ -135,7 +135,7 @@ TEST(GoalTerms, SampledStatesMeetThemWithRoomToSpare) {
     for (int draw = 0; draw < 20; ++draw) {
       const std::optional<Poses> poses = sample_goal(task, rng);
       ASSERT_TRUE(poses) << term.condition.index();
-      EXPECT_TRUE(holds(tightened(term), task, *poses)) << term.condition.index();
+      EXPECT_TRUE(holds(tightened(term, task.scene), task, *poses)) << term.condition.index();
       EXPECT_FALSE(first_overlap(task.scene, *poses, 0.02));
     }
   }
@@ -161,7 +161,7 @@ TEST(GoalTerms, WhatCannotBeMetIsNamed) {
   Rng rng(1);
   GoalRefusals refusals;
   EXPECT_FALSE(sample_goal(task, rng, &refusals));
-  EXPECT_EQ(main_reason(refusals).substr(0, 11), "task.goal.0");
+  EXPECT_EQ(main_reason(refusals, task.scene).substr(0, 11), "task.goal.0");
 }
 
 TEST(GoalMarks, AreRegionsAndTargetOutlines) {

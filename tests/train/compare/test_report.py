@@ -266,7 +266,7 @@ def test_the_command_writes_the_report_and_names_what_is_no_comparison(folder, t
     assert capsys.readouterr().out == f"report: {tmp_path / 'results' / 'report.md'}\n"
     assert cli.main(["plot", str(tmp_path)]) == 2
     assert capsys.readouterr().err.startswith(
-        f"rtg: {tmp_path}: holds no comparison (no grid.json)"
+        f"rtg: {tmp_path}: holds neither a comparison (grid.json) nor a run (config.yaml)"
     )
     assert cli.main(["plot", str(folder), "--out", ""]) == 2
     assert capsys.readouterr().err == "rtg: --out: the path is empty; legal: the path of a folder\n"

@@ -53,14 +53,14 @@ def test_observations_of_a_wrong_shape_are_named(tmp_path: Path) -> None:
     file, settings = tmp_path / "model.pt", train_settings()
     network = networks.make(settings.network, TASK.observation_size, TASK.headings)
     policy_file.write(file, TASK, settings, network.state_dict())
-    policy = policy_file.read(file, TASK)
-    assert policy(np.zeros((3, 20), np.float32)).shape == (3,)
+    values = policy_file.read(file, TASK)
+    assert values(np.zeros((3, 20), np.float32)).shape == (3, TASK.actions)
     with pytest.raises(ValueError, match=r"observations \[20\]; legal: \[N, 20\]"):
-        policy(np.zeros(20, np.float32))
+        values(np.zeros(20, np.float32))
 
 
 @pytest.mark.parametrize("network", networks.KINDS)
-def test_a_policy_takes_the_best_actions_of_the_network_that_was_written(
+def test_a_policy_has_the_values_of_the_network_that_was_written(
     tmp_path: Path, network: str
 ) -> None:
     """It was flattened, as those of learners are."""
@@ -70,9 +70,9 @@ def test_a_policy_takes_the_best_actions_of_the_network_that_was_written(
     policy_file.write(file, TASK, settings, written.state_dict())
     seen = np.random.default_rng(0).normal(size=(100, 20)).astype(np.float32)
     with th.no_grad():
-        best = written(th.from_numpy(seen)).argmax(dim=1).numpy()
-    np.testing.assert_array_equal(policy_file.read(file, TASK)(seen), best)
-    assert len(set(best.tolist())) > 1
+        values = written(th.from_numpy(seen)).numpy()
+    np.testing.assert_array_equal(policy_file.read(file, TASK)(seen), values)
+    assert len(set(values.argmax(axis=1).tolist())) > 1
 
 
 @pytest.mark.parametrize(

@@ -8,12 +8,31 @@ from training_runs import TINY
 VALUES = np.array([[0.2, 0.5, 0.1], [0.2, 0.5, 0.1]])
 
 
+TASK = _core.Config.from_file(TINY).task
+
+
+def tried(episodes: int) -> TriedActions:
+    return TriedActions(episodes, TASK)
+
+
 def here(*x: float) -> np.ndarray:
-    return np.array(x)[:, None] * np.ones(4)
+    return np.array(x)[:, None] * np.ones(TASK.observation_size)
+
+
+def test_a_short_push_leads_to_another_state() -> None:
+    """The robot pushes a box by strides of 0.15 m; what differs are places, all in 4 m."""
+    short = _core.Config.from_file(TINY, ["task.push.strides=[0.15]"]).task
+    states = np.stack([short.start] * 2)
+    states[1, :2, 0] += 0.15
+    seen = short.observation(states)
+    one = TriedActions(1, short)
+    one.add(seen[:1], np.array([1]))
+    assert one.best_untried(seen[1:], VALUES[:1]).tolist() == [1]
+    assert one.best_untried(seen[:1], VALUES[:1]).tolist() == [0]
 
 
 def test_the_best_action_is_the_best_of_those_not_tried_in_a_state() -> None:
-    one = TriedActions(2, 4)
+    one = tried(2)
     assert one.best_untried(here(0, 0), VALUES).tolist() == [1, 1]
     one.add(here(0, 0), np.array([1, 2]))
     assert one.best_untried(here(0, 0), VALUES).tolist() == [0, 1]
@@ -24,7 +43,7 @@ def test_the_best_action_is_the_best_of_those_not_tried_in_a_state() -> None:
 
 
 def test_one_number_that_differs_makes_another_state() -> None:
-    one, seen = TriedActions(1, 4), here(0)
+    one, seen = tried(1), here(0)
     one.add(seen, np.array([1]))
     seen = seen.copy()
     seen[0, 3] = 0.05
@@ -32,7 +51,7 @@ def test_one_number_that_differs_makes_another_state() -> None:
 
 
 def test_the_other_episodes_stay_as_they_are() -> None:
-    one = TriedActions(2, 4)
+    one = tried(2)
     one.add(here(0, 5), np.array([1, 1]))
     assert one.best_untried(here(5, 5), VALUES).tolist() == [1, 0]
     one.keep(np.array([False, True]))
@@ -40,7 +59,7 @@ def test_the_other_episodes_stay_as_they_are() -> None:
 
 
 def test_where_all_are_tried_an_episode_goes_on() -> None:
-    one = TriedActions(1, 4)
+    one = tried(1)
     for action in range(3):
         one.add(here(0), np.array([action]))
     assert one.best_untried(here(0), VALUES[:1]).tolist() == [0]

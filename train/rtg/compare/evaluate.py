@@ -34,6 +34,10 @@ def _table(rows: list[Row], title: str, episodes: int) -> str:
     return "\n".join(lines) + "\n"
 
 
+def _title(config: _core.Config) -> str:
+    return f"{config.task.name}, {config.run.method}, seed {config.run.seed}"
+
+
 def evaluate(run: Path, episodes: int) -> str:
     """Writes evaluation.md, .json and .png into the folder of a run; returns the table.
 
@@ -55,7 +59,7 @@ def evaluate(run: Path, episodes: int) -> str:
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         rows = list(pool.map(row_of, robustness.variants(config)))
-    title = f"{config.task.name}, {config.run.method}, seed {config.run.seed}"
+    title = _title(config)
     text = _table(rows, title, episodes)
     with run_folder.write_errors_as_user_errors(run):
         run_folder.write_text(run / "evaluation.md", text)
@@ -71,3 +75,22 @@ def evaluate(run: Path, episodes: int) -> str:
         run_folder.write_json(run / "evaluation.json", {"episodes": episodes, "rows": found})
         plots.robustness(run / "evaluation.png", title, rows)
     return text
+
+
+def draw_again(run: Path) -> None:
+    """Draws the picture of the last evaluate() anew, if there was one.
+
+    Raises UserError if its file is damaged.
+    """
+    file = run / "evaluation.json"
+    if not file.is_file():
+        return
+    try:
+        rows = [
+            Row(Variant(row["group"], row["label"]), row["success"], row["episode_length"])
+            for row in run_folder.read_json(file)["rows"]
+        ]
+    except (KeyError, TypeError):
+        raise UserError(f"{file}: is damaged; legal: the file as evaluate wrote it") from None
+    title = _title(effective_config.load_written(run / "config.yaml"))
+    plots.robustness(run / "evaluation.png", title, rows)

@@ -45,7 +45,8 @@ def write_report(runs: Path, out: Path, suffix: str = "png") -> Path:
     grid = read_grid(runs)
     if not grid.commands_by_cell:
         raise UserError(
-            f"{runs}: holds no comparison (no grid.json); legal: the --out of `reproduce`"
+            f"{runs}: holds neither a comparison (grid.json) nor a run (config.yaml); legal: the "
+            "--out of `reproduce` or of a run"
         )
     comparison, remarks = read_comparison(runs, grid), read_remarks(runs)
     episodes = {task: _best_episode(comparison, task) for task in comparison.tasks}

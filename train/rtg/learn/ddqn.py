@@ -15,7 +15,7 @@ from torch.nn import functional
 from rtg import _core
 from rtg.envs.vector_env import Step
 from rtg.learn import device, networks
-from rtg.learn.exploration import Exploration
+from rtg.learn.exploration import Exploration, revisit_tolerance
 from rtg.learn.hindsight import HindsightReplayBuffer, Layouts
 from rtg.learn.replay import Batch, MixedReplayBuffer, ReplayRules
 from rtg.learn.stages import Stages
@@ -123,7 +123,12 @@ class DoubleDqn:
         self._begin_optimizer()
         self._core = self._make_core()
         self.exploration = Exploration(
-            settings, env.headings, seed, env.contact_headings, len(env.strides)
+            settings,
+            env.headings,
+            seed,
+            env.contact_headings,
+            len(env.strides),
+            revisit_tolerance(env.task),
         )
         self.statistics = Statistics()
         self.stages = Stages()

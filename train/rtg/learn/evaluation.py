@@ -81,7 +81,7 @@ def evaluate(
     length = np.zeros(len(starts), np.int64)
     paths = [[start] for start in starts]
     running = np.arange(len(starts))
-    tried = TriedActions(len(starts), task.observation_size)
+    tried = TriedActions(len(starts), task)
     for _ in range(task.horizon):
         if not len(running):
             break

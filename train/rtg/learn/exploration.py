@@ -13,12 +13,21 @@ from rtg import _core
 Array = npt.NDArray[Any]
 
 REVISIT_WINDOW = 8  # number of previous states with which a state is compared
-# States are equal if each entry of the observation differs less: by default 0.16 m in positions,
-# 0.04 m in relative ones. With 0.15 ArtManip is not learned.
+# States are equal if each entry of the observation differs less, see revisit_tolerance(): by
+# default 0.16 m in positions, 0.04 m in relative ones. With 0.15 ArtManip is not learned.
 REVISIT_TOLERANCE = 0.04
 
 # Maps a seed to a heading towards a random object for each environment. [N]
 ContactHeadings = Callable[[int], Array]
+
+
+def revisit_tolerance(task: _core.Task) -> float:
+    """Returns the difference of entries of an observation below which two states are equal.
+
+    It is at most a quarter of the shortest push, or steady pushing would look like standing still.
+    """
+    shortest = min(task.strides) * 2.0 * task.relative_unit  # [m]
+    return min(REVISIT_TOLERANCE, shortest / 4.0 / task.position_unit)
 
 
 class Exploration:
@@ -43,14 +52,17 @@ class Exploration:
         seed: int,
         contact: ContactHeadings | None = None,
         strides: int = 1,
+        tolerance: float = REVISIT_TOLERANCE,
     ) -> None:
         """`contact` draws actions towards objects; needed if contact_share is above 0.
 
-        `headings`, `strides`: their numbers. Action a has the heading a % headings.
+        `headings`, `strides`: their numbers. Action a has the heading a % headings. `tolerance`:
+        revisit_tolerance() of the task.
         """
         self.settings = settings
         self.headings, self.action_count = headings, headings * strides
         self.contact = contact
+        self.tolerance = tolerance
         self.rng = np.random.default_rng([seed, 1])
         # [states, N, observation], oldest first; None before the first one
         self.recent_observations: Array | None = None
@@ -98,7 +110,7 @@ class Exploration:
         """
         now, known = observation[None], self.recent_observations
         earlier = now[:0] if known is None else known
-        found: Array = (np.abs(earlier - now) < REVISIT_TOLERANCE).all(axis=2).any(axis=0)
+        found: Array = (np.abs(earlier - now) < self.tolerance).all(axis=2).any(axis=0)
         self.recent_observations = np.concatenate((earlier[-REVISIT_WINDOW + 1 :], now))
         return found
 

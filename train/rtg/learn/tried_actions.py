@@ -7,9 +7,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from rtg.learn.exploration import REVISIT_TOLERANCE
+from rtg import _core
+from rtg.learn.exploration import revisit_tolerance
 
 Array = npt.NDArray[Any]
+
+_WINDOW = 500  # largest number of states that are remembered
 
 
 class TriedActions:
@@ -20,9 +23,10 @@ class TriedActions:
     them: it returns the action of the largest value among those not yet tried in a state.
     """
 
-    def __init__(self, episodes: int, observation_size: int) -> None:
+    def __init__(self, episodes: int, task: _core.Task) -> None:
+        self._tolerance = revisit_tolerance(task)
         # [states, N, observation] and [states, N]
-        self._observations: Array = np.zeros((0, episodes, observation_size), np.float32)
+        self._observations: Array = np.zeros((0, episodes, task.observation_size), np.float32)
         self._actions: Array = np.zeros((0, episodes), np.int64)
 
     def best_untried(self, observation: Array, values: Array) -> Array:
@@ -30,7 +34,7 @@ class TriedActions:
 
         observation [N, observation], values [N, actions] -> [N]
         """
-        same = (np.abs(self._observations - observation) < REVISIT_TOLERANCE).all(axis=2)
+        same = (np.abs(self._observations - observation) < self._tolerance).all(axis=2)
         step, episode = np.nonzero(same)
         untried = values.copy()
         untried[episode, self._actions[step, episode]] = -np.inf
@@ -38,8 +42,8 @@ class TriedActions:
 
     def add(self, observation: Array, actions: Array) -> None:
         """Stores that `actions` [N] are taken in states `observation` [N, observation]."""
-        self._observations = np.concatenate((self._observations, observation[None]))
-        self._actions = np.concatenate((self._actions, actions[None]))
+        self._observations = np.concatenate((self._observations[-_WINDOW:], observation[None]))
+        self._actions = np.concatenate((self._actions[-_WINDOW:], actions[None]))
 
     def keep(self, episodes: Array) -> None:
         """Forgets the other episodes. `episodes` [N] bool"""

@@ -48,7 +48,10 @@ _STYLE: Any = {
     "axes.titlelocation": "left",
     "axes.titlesize": 11,
 }
-GAP_AXIS = "replay gap: mean distance between reverse-generated and replayed end [m]"
+GAP_AXIS = (
+    "replay gap: mean distance between reverse-generated and replayed end\n"
+    "[m, where the robot's radius is 0.8 m]"
+)
 _BLUE, _ORANGE = "#4a7ebb", "#d9822b"
 
 
@@ -256,7 +259,7 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
         figure.supxlabel(
             "dots: centres of the object in the search's nodes; outlines: start layout\n"
             "shaded: goal of the centre, or of a mean that includes it\n"
-            f"frame: arena, {2 * task.arena:g} m wide",
+            f"frame: arena, {2 * task.arena / task.metre:g} m wide",
             fontsize=8,
         )
         figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")

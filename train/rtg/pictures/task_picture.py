@@ -17,6 +17,15 @@ _SIDE = 300  # of a state [pixel]
 _SEED = 1
 
 
+def _title(task: _core.Task) -> str:
+    words = (
+        f"{task.name}: starts and goal states; frames are {2 * task.arena / task.metre:g} m wide"
+    )
+    kinds = sorted({mark.kind for mark in task.goal_marks if mark.negated})
+    avoided = ", ".join("any object" if kind == "*" else f"'{kind}'" for kind in kinds)
+    return f"{words}; red: where {avoided} must not lie" if kinds else words
+
+
 def draw(path: Path, config: _core.Config) -> None:
     """Writes a row of starts, the nominal one first, and a row of goal states before they settle.
 
@@ -42,7 +51,7 @@ def draw(path: Path, config: _core.Config) -> None:
         if state is not None
     ]
     picture = sheet(tiles, _COLUMNS)
-    title = heading(f"{task.name}: starts and goal states", picture.shape[1])
+    title = heading(_title(task), picture.shape[1])
     try:
         Image.fromarray(np.concatenate([title, picture])).save(path)
     except ValueError:

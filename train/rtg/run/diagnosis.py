@@ -46,9 +46,15 @@ def _search_advice(config: _core.Config, summary: dict[str, Any], deepest: int) 
     )
 
 
-def _generation(
+def of_generation(
     config: _core.Config, summary: dict[str, Any], nodes: Sequence[dict[str, Any]]
 ) -> str | None:
+    """Returns a sentence about what limits the search; None if nothing does.
+
+    `summary` has the figures of generation.json, `nodes` are those of it.
+    """
+    if config.search.generator not in TREE_GENERATORS:
+        return None
     if not summary["trees"]:
         return (
             f"goal states: {summary.get('undrawn_goals', 0)} draws met no goal and "
@@ -64,10 +70,11 @@ def _generation(
     if summary["start_region_depth"] < 0 and nodes:
         poses = np.array([node["poses"] for node in nodes])
         deepest = max(node["depth"] for node in nodes)
+        room = ", or wider ways between the fixed bodies" if any(config.task.fixed) else ""
         return (
             f"reaching the start: no tree does (start_region_depth is -1), the deepest has "
             f"{deepest} actions; nearest to their starts came {_distances(config, poses)}; try "
-            f"{_search_advice(config, summary, deepest)}, or an easier start"
+            f"{_search_advice(config, summary, deepest)}, or an easier start{room}"
         )
     return None
 
@@ -106,5 +113,5 @@ def bottleneck(
         return None
     if (summary.get("success_rate") or 0.0) >= _WELL:
         return None
-    found = _generation(config, summary, nodes) or _learning(config, summary)
+    found = of_generation(config, summary, nodes) or _learning(config, summary)
     return found and f"bottleneck: {found}"

@@ -1,8 +1,9 @@
-"""Draws the pictures of the generation while the run goes on in other processes."""
+"""Tells of the generation, in pictures and words, while the run goes on in other processes."""
 
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
 from typing import Self
@@ -15,11 +16,12 @@ _POLL = 0.2  # [s]
 class EarlyPictures:
     """Draws the pictures of the generation on a thread, once the generation has ended.
 
-    Importing matplotlib and drawing take more than a second, which learning need not wait for.
+    If something limits the generation, it says so by `note`, before the training that may be in
+    vain. Importing matplotlib and drawing take more than a second. Learning need not wait for it.
     """
 
-    def __init__(self, plan: RunPlan) -> None:
-        self._plan = plan
+    def __init__(self, plan: RunPlan, note: Callable[[str], None]) -> None:
+        self._plan, self._note = plan, note
         # The report of a generation that begins anew is removed and written again.
         self._is_stale = plan.report_file.exists() and not plan.is_generated()
         self._over = threading.Event()
@@ -52,4 +54,6 @@ class EarlyPictures:
         if self._plan.report_file.exists() and (self._is_finished or not self._is_stale):
             from rtg.run import results  # imports matplotlib
 
+            if self._plan.train and (words := results.generation_warning(self._plan)):
+                self._note(words)
             results.draw_generation(self._plan)

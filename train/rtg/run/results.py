@@ -48,6 +48,13 @@ def draw_generation(plan: RunPlan) -> None:
     plots.coverage(picture, plan.title, plan.config.task, poses, depth)
 
 
+def generation_warning(plan: RunPlan) -> str | None:
+    """Returns a sentence about what limits a finished generation; None if nothing does."""
+    report = run_folder.read_json(plan.report_file)
+    found = diagnosis.of_generation(plan.config, report, report["nodes"])
+    return found and f"these data may not suffice: {found}"
+
+
 def _trained(plan: RunPlan) -> bool:
     """Returns whether the run has trained, in this process or before `--resume --no-train`."""
     return plan.train or (plan.folder / "training.json").is_file()

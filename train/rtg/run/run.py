@@ -35,7 +35,7 @@ def run(args: RunArgs) -> int:
 
 def _carry_out(plan: RunPlan) -> int:
     """Generates, trains and writes the results; returns the exit status."""
-    with RunTimes(display(sys.stdout)) as shown, EarlyPictures(plan) as pictures:
+    with RunTimes(display(sys.stdout)) as shown, EarlyPictures(plan, shown.note) as pictures:
         for note in (f"{plan.title}: {plan.folder}", *plan.notes):
             shown.note(note)
         try:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+FINISHED = "finished"  # phase of a generation that has ended
+
 
 @dataclass(frozen=True)
 class RunState:
@@ -26,7 +28,10 @@ class RunState:
 
 
 class RateMeter:
-    """The rate of a count [1/s] over the last `window` seconds."""
+    """The rate of a count [1/s] over the last `window` seconds.
+
+    The time before the count first changes does not count.
+    """
 
     def __init__(self, window: float = 10.0) -> None:
         self._window = window
@@ -35,6 +40,8 @@ class RateMeter:
     def rate(self, count: int, now: float) -> float:
         """Adds a count at time `now` [s] and returns the rate. A decrease resets the meter."""
         if self._samples and count < self._samples[-1][1]:
+            self._samples.clear()
+        if len(self._samples) == 1 and count == self._samples[0][1]:
             self._samples.clear()
         if not self._samples or count != self._samples[-1][1]:
             self._samples.append((now, count))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rtg.run.run_state import RateMeter, RunState
+from rtg.run.run_state import FINISHED, RateMeter, RunState
 
 _WINDOW = 30.0  # over which the rate of transitions is measured [s]
 _USUAL_RATE = 600.0  # of interactions, before any is known [1/s]
@@ -21,7 +21,9 @@ class TimeLeft:
     def seconds(self, state: RunState, now: float) -> float | None:
         """Returns the time [s]; None before the first transition. `now`: any clock [s]."""
         left = 0.0
-        if state.generates and state.transitions < state.target:
+        if state.phase == FINISHED:
+            pass  # perhaps with fewer transitions than asked for
+        elif state.generates and state.transitions < state.target:
             rate = self._transitions.rate(state.transitions, now)
             if rate <= 0.0:
                 return None

@@ -9,7 +9,7 @@ from rtg.processes.child_run import run_child
 from rtg.processes.children import Node
 from rtg.run.plan import RunPlan
 from rtg.run.progress import Display
-from rtg.run.run_state import RunState
+from rtg.run.run_state import FINISHED, RunState
 from rtg.run.training_watch import TrainingWatch
 
 _POLL = 0.1  # [s]
@@ -21,7 +21,7 @@ def _initial_state(plan: RunPlan) -> RunState:
         return RunState(generates=False, budget=plan.interactions)
     report = read_json(plan.report_file)
     return RunState(
-        phase="finished",
+        phase=FINISHED,
         transitions=report["transitions"],
         target=report["transitions"],
         contact_share=report["contact_share"],
