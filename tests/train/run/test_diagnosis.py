@@ -60,8 +60,52 @@ def test_few_solved_pushes_are_the_first_suspect() -> None:
 
 def test_of_a_start_that_is_not_reached_each_object_is_told() -> None:
     words = said(start_region_depth=-1)
-    assert "'box1' 3 m (no step moves it), 'box2' 0.3 m, 'box3' 0 m" in words
+    assert "'box1' 3 m (in one place in all states), 'box2' 0.3 m, 'box3' 0 m" in words
     assert "the deepest has 9 actions" in words and "search.patience, 4 now" in words
+
+
+def of_ranges(text: str, *places: dict[int, tuple[float, float]]) -> str:
+    """What is said of the task of `text` with nodes at `places` [m], by body."""
+    config = _core.Config.from_text(text)
+    nodes = []
+    for place in places:
+        poses = np.array(config.task.start)
+        for body, at in place.items():
+            poses[body, :2] = np.multiply(at, config.task.metre)
+        nodes.append({"poses": poses.tolist(), "depth": 1})
+    words = bottleneck(config, {**GOOD, "success_rate": None, "start_region_depth": -1}, nodes)
+    assert words is not None
+    return words
+
+
+def test_an_object_that_starts_in_ranges_is_as_far_off_as_its_region() -> None:
+    """Push-T's T starts with x and y from -5 to 5 m, and one metre is 1.6 units of poses."""
+    text = (paths.CONFIG / "push_t.yaml").read_text()
+    assert "'t' 2 m (in one place in all states);" in of_ranges(text, {1: (1.0, -7.0)})
+    assert "'t' 0 m;" in of_ranges(text, {1: (7.0, 0.0)}, {1: (-4.9, 4.9)})
+
+
+@pytest.mark.parametrize(
+    ("start", "away"),
+    [
+        ("{disc: {centre: [-3, 1], radius: 1}}", 3.0),
+        ("{polygon: [[-4, 0], [-2, 0], [-2, 2], [-4, 2]]}", 3.0),
+        ("{polygon: [[-4, -1], [-2, 1], [-4, 3]]}", 2.1),  # 3 / √2 from an edge
+    ],
+)
+def test_regions_of_starts_may_have_any_shape(start: str, away: float) -> None:
+    text = (paths.CONFIG / "gathering.yaml").read_text()
+    ranged = text.replace("start: [-3.0, 1.13, 0.2]", f"start: {{in: {start}}}")
+    assert f"'box1' {away:.2g} m (in one" in of_ranges(ranged, {1: (1.0, 1.0)})
+    assert "'box1' 0 m, 'box2' 0 m" in of_ranges(ranged, {1: (-2.5, 1.0)})
+
+
+def test_nothing_is_said_of_bodies_that_hang_on_one_with_ranges() -> None:
+    """Where they start depends on the draw."""
+    text = (paths.CONFIG / "art_manip.yaml").read_text()
+    ranged = text.replace("[-3.6, 0.0, 0.0]", "{x: [-4.6, -2.6], y: [-1, 1], theta: 0}")
+    words = of_ranges(ranged, {1: (-3.0, 5.0)})
+    assert "nearest to their starts came 'link1' 4 m (in one place in all states); try" in words
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from typing import Any
 
@@ -16,19 +17,63 @@ _WELL = 0.9  # success rate that needs no explanation
 _SOLVED = 0.5  # least share of reverse solves
 _COVERED = 0.005  # least share of transitions that begin in the start region
 _RANKED = 0.5  # least rank correlation of Q with the simulator
-_THERE = 0.4  # distance at which an object is in its place
-_STILL = 0.05  # spread of places of an object that does not move
+_THERE = 0.4  # distance at which an object is in its place, in the unit of poses
+_STILL = 0.05  # spread of places of an object that is in one place, in the unit of poses
+
+Floats = NDArray[np.float64]
 
 
-def _distances(config: _core.Config, poses: NDArray[np.float64]) -> str:
-    """Says how near each object comes to its start in the nodes [N, bodies, 3] of the trees."""
+def _outside(region: dict[str, Any], places: Floats) -> Floats:
+    """Returns how far the places lie outside of a start's region; 0 inside. [N, 2] -> [N] [m]
+
+    Near a corner of a polygon the distance from the nearest edge line counts.
+    """
+    if disc := region.get("in", {}).get("disc"):
+        excess = np.linalg.norm(places - disc["centre"], axis=1) - disc["radius"]
+    elif ring := region.get("in", {}).get("polygon"):  # convex, counter-clockwise
+        edges = np.roll(ring, -1, axis=0) - ring
+        normals = np.stack((edges[:, 1], -edges[:, 0]), axis=1)
+        normals /= np.linalg.norm(edges, axis=1)[:, None]
+        excess = (places @ normals.T - (normals * ring).sum(axis=1)).max(axis=1)
+    else:
+        (left, right), (low, high) = region["x"], region["y"]
+        x, y = places.T
+        excess = np.max((left - x, x - right, low - y, y - high), axis=0)
+    return np.maximum(excess, 0.0)
+
+
+def _on_ranges(task: _core.Task, bodies: list[dict[str, Any]]) -> set[int]:
+    """Returns the bodies that joints connect with one whose start is a range.
+
+    Their start is given as if that body were in the middle of its range.
+    """
+    moved = {k for k, body in enumerate(bodies) if isinstance(body["start"], dict)}
+    ranged = set(moved)
+    for _ in task.joints:  # in any order, so one more body of a tree with each pass
+        moved |= {child for parent, child, _ in task.joints if parent in moved}
+    return moved - ranged
+
+
+def _distances(config: _core.Config, poses: Floats) -> str:
+    """Says how near each object comes to where it starts in the nodes [N, bodies, 3] of the trees.
+
+    Says nothing of bodies that hang on one whose start is a range.
+    """
     task, parts = config.task, []
+    bodies = json.loads(config.json)["task"]["bodies"]
+    on_ranges = _on_ranges(task, bodies)
     for body in objects(task):
-        way = np.linalg.norm(poses[:, body, :2] - task.start[body, :2], axis=1)
-        still = bool(np.ptp(poses[:, body, :2], axis=0).max() < _STILL)
-        words = f"'{task.names[body]}' {way.min() / task.metre:.2g} m"
-        if still and way.min() > _THERE:
-            words += " (no step moves it)"
+        if body in on_ranges:
+            continue
+        places, start = poses[:, body, :2], bodies[body]["start"]
+        if isinstance(start, dict):
+            away = float(_outside(start, places / task.metre).min())
+        else:
+            way = np.linalg.norm(places - task.start[body, :2], axis=1)
+            away = float(way.min()) / task.metre
+        words = f"'{task.names[body]}' {away:.2g} m"
+        if np.ptp(places, axis=0).max() < _STILL and away * task.metre > _THERE:
+            words += " (in one place in all states)"
         parts.append(words)
     return ", ".join(parts)
 
