@@ -17,17 +17,26 @@ from rtg.pictures import plots
 from rtg.run import effective_config
 
 
-def _table(rows: list[Row], title: str, episodes: int) -> str:
+def _policy(config: _core.Config) -> str:
+    if not config.train.leave_loops:
+        return "Greedy policy"
+    return (
+        "Policy: the best push; in a state to which the episode returns, the best one not yet "
+        "tried there"
+    )
+
+
+def _table(rows: list[Row], config: _core.Config, episodes: int) -> str:
     lines = [
-        f"# {title}",
+        f"# {_title(config)}",
         "",
-        f"Greedy policy, {episodes} held-out starts each.",
+        f"{_policy(config)}. {episodes} held-out starts each.",
         "",
         "| | | success | actions per episode |",
         "|---|---|---:|---:|",
     ]
     for row in rows:
-        cells = ["no legal starts", ""]
+        cells = [f"{row.reason}", ""]
         if row.success is not None:
             cells = [f"{row.success:.2f}", f"{row.length:.1f}"]
         lines.append(f"| {row.variant.group} | {row.variant.label} | {' | '.join(cells)} |")
@@ -59,8 +68,7 @@ def evaluate(run: Path, episodes: int) -> str:
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         rows = list(pool.map(row_of, robustness.variants(config)))
-    title = _title(config)
-    text = _table(rows, title, episodes)
+    text = _table(rows, config, episodes)
     with run_folder.write_errors_as_user_errors(run):
         run_folder.write_text(run / "evaluation.md", text)
         found = [
@@ -69,11 +77,12 @@ def evaluate(run: Path, episodes: int) -> str:
                 "label": row.variant.label,
                 "success": row.success,
                 "episode_length": row.length,
+                "reason": row.reason,
             }
             for row in rows
         ]
         run_folder.write_json(run / "evaluation.json", {"episodes": episodes, "rows": found})
-        plots.robustness(run / "evaluation.png", title, rows)
+        plots.robustness(run / "evaluation.png", _title(config), rows)
     return text
 
 
@@ -87,7 +96,12 @@ def draw_again(run: Path) -> None:
         return
     try:
         rows = [
-            Row(Variant(row["group"], row["label"]), row["success"], row["episode_length"])
+            Row(
+                Variant(row["group"], row["label"]),
+                row["success"],
+                row["episode_length"],
+                row["reason"],
+            )
             for row in run_folder.read_json(file)["rows"]
         ]
     except (KeyError, TypeError):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import textwrap
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -23,6 +25,7 @@ _FACTORS = (0.5, 0.7, 1.3, 2.0)  # of friction and of masses
 _STRIDES = (0.75, 0.9, 1.1, 1.25)  # factors
 _COASTING = (10.0, 4.0, 2.0)  # physics.damping, with inertia
 _NOISE_SEED = 5
+_REASON_LENGTH = 100  # characters, of why a variant is not possible
 
 
 class Variant(NamedTuple):
@@ -35,21 +38,26 @@ class Variant(NamedTuple):
 
 
 class Row(NamedTuple):
-    """The result of a variant; None where the task has no legal starts then."""
+    """The result of a variant; without figures, but with a reason, if its settings are refused."""
 
     variant: Variant
     success: float | None
     length: float | None  # actions per episode
+    reason: str | None = None
 
 
 def _turned(task: dict[str, Any], by: float, shift: float) -> tuple[str, ...]:
-    """Returns settings that turn each loose object by up to `by` [rad], and move it by `shift`."""
+    """Returns settings that turn each loose object by up to `by` [rad], and move it by `shift`.
+
+    Leaves out objects that a goal term wants to stay: they must not start in ranges.
+    """
     jointed = {
         name for joint in task.get("joints", ()) for name in (joint["parent"], joint["child"])
     }
+    staying = {term["kind"] for term in task["goal"] if "stays" in term}
     found = []
     for k, body in enumerate(task["bodies"]):
-        if k == 0 or body["fixed"] or body["name"] in jointed:
+        if k == 0 or body["fixed"] or body["name"] in jointed or staying & {body["kind"], "*"}:
             continue
         x, y, theta = body["start"]
         ranges = f"x: {_range(x, shift)}, y: {_range(y, shift)}, theta: {_range(theta, by)}"
@@ -115,18 +123,27 @@ def _seen(task: _core.Task, noise: float) -> Callable[[Floats], NDArray[np.float
     return observe
 
 
+def _shortened(error: _core.ConfigError) -> str:
+    """Returns the key and what is wrong with it, without the place and what is legal."""
+    parts = re.search(r"key '(.*?)': (.*?); legal: ", str(error))
+    words = ": ".join(parts.groups()) if parts else str(error)
+    return textwrap.shorten(f"not possible: {words}", _REASON_LENGTH, placeholder=" ...")
+
+
 def evaluate_variant(
     file: Path, config: _core.Config, values: Values, variant: Variant, episodes: int
 ) -> Row:
     """Simulates episodes from held-out starts of the variant. `file`, `config`: of the run."""
     try:
         changed = _core.Config.from_file(file, list(variant.settings))
-        task = changed.task
-        starts = np.stack(
-            [task.jittered_start(changed.evaluation_jitter, FINAL_SEED, k) for k in range(episodes)]
-        )
-    except ValueError:
-        return Row(variant, None, None)
+    except _core.ConfigError as error:
+        return Row(variant, None, None, _shortened(error))
+    starts = np.stack(
+        [
+            changed.task.jittered_start(changed.evaluation_jitter, FINAL_SEED, k)
+            for k in range(episodes)
+        ]
+    )
     observe = _seen(config.task, variant.noise)
     found = evaluate(changed, values, starts, config.learner_discount, observe)
     return Row(variant, float(found.success.mean()), float(found.length.mean()))

@@ -174,7 +174,7 @@ def replay_gap(path: Path, title: str, report: Mapping[str, Any]) -> None:
 
 
 class RobustnessRow(Protocol):
-    """The success of a policy under a variant; None where there are no legal starts."""
+    """The success of a policy under a variant; None, and a reason, where that is not possible."""
 
     @property
     def variant(self) -> Any:
@@ -182,6 +182,8 @@ class RobustnessRow(Protocol):
 
     @property
     def success(self) -> float | None: ...
+    @property
+    def reason(self) -> str | None: ...
 
 
 def robustness(path: Path, title: str, rows: Sequence[RobustnessRow]) -> None:
@@ -193,7 +195,7 @@ def robustness(path: Path, title: str, rows: Sequence[RobustnessRow]) -> None:
         words = [f"{row.variant.group} {row.variant.label}".strip() for row in rows]
         axis.set_yticks(places, words, fontsize=7)
         for place, row in zip(places, rows, strict=True):
-            text = "no legal starts" if row.success is None else f"{row.success:.2f}"
+            text = f"{row.reason}" if row.success is None else f"{row.success:.2f}"
             axis.text((row.success or 0.0) + 0.01, place, text, va="center", fontsize=7)
             if place and row.variant.group != rows[place - 1].variant.group:
                 axis.axhline(place - 0.5, color="#c9c6bc", lw=0.6)
