@@ -148,8 +148,55 @@ def test_layouts_know_the_angles_of_loose_bodies_that_a_goal_asks_for() -> None:
     here, there, off = layouts.of(task.observation(np.stack([goal, turned, aside])))
     assert layouts.near(here, here)
     assert not layouts.near(here, there) and not layouts.near(here, off)
-    pack = _core.Config.from_file(paths.CONFIG / "pack.yaml").task
-    assert Layouts(pack).size == 12  # three boxes, whose angles the goal asks for
+
+
+def moved_within(layouts: Layouts, task: _core.Task, count: int) -> np.ndarray:
+    """States near each layout, of objects that all have angles. [layouts, count, bodies, 3]
+
+    Each object is moved and turned at random, by up to the tolerances.
+    """
+    movable = [body for body in range(1, task.bodies) if not task.fixed[body]]
+    objects, rng = len(movable), np.random.default_rng(1)
+    goals = np.float64(layouts.goal_layouts)
+    states = np.tile(task.start, (len(goals), count, 1, 1))
+    turned = goals[:, 2 * objects :].reshape(-1, objects, 2)
+    states[:, :, movable, :2] = task.position_unit * goals[:, None, : 2 * objects].reshape(
+        -1, 1, objects, 2
+    )
+    states[:, :, movable, 2] = np.arctan2(turned[..., 1], turned[..., 0])[:, None]
+    shape = (len(goals), count, objects)
+    way, angle = (
+        0.999 * layouts.tolerance * np.sqrt(rng.random(shape)),
+        2 * np.pi * rng.random(shape),
+    )
+    states[:, :, movable, 0] += way * np.cos(angle)
+    states[:, :, movable, 1] += way * np.sin(angle)
+    states[:, :, movable, 2] += 0.999 * layouts.turns * rng.uniform(-1, 1, shape)
+    return states
+
+
+def test_who_reaches_a_layout_of_boxes_that_touch_nearly_always_succeeds(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each box moves on its own; so gaps open by up to twice the tolerance."""
+    monkeypatch.setattr(hindsight, "DRAWS", 60)  # each takes 20 ms
+    task = _core.Config.from_file(paths.CONFIG / "pack.yaml").task
+    layouts = Layouts(task)
+    assert layouts.size == 12  # three boxes, whose angles the goal asks for
+    assert len(layouts.goal_layouts) > 30
+    states = moved_within(layouts, task, 100)
+    reached = layouts.of(task.observation(states.reshape(-1, task.bodies, 3)))
+    assert layouts.near(reached, np.repeat(layouts.goal_layouts, 100, axis=0)).all()
+    assert task.succeeded(states.reshape(-1, task.bodies, 3)).mean() > 0.99
+
+
+def test_fixed_bodies_stay_where_goal_states_are_tried_for_robustness() -> None:
+    """The drawer is to be 1.7 to 2.2 m out of its cabinet, which does not come along."""
+    task = _core.Config.from_file(paths.CONFIG / "drawer.yaml").task
+    states = np.stack([task.goal_state(1, k) for k in range(50)])
+    still = np.zeros(task.bodies)
+    assert len(hindsight.robust_goal_states(task, states, 0.26 * task.metre, still)) == 0
+    assert len(hindsight.robust_goal_states(task, states, 0.05 * task.metre, still)) > 0
 
 
 def test_the_nearest_layout_has_the_shortest_way_of_all_objects() -> None:

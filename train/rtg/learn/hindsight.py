@@ -12,8 +12,8 @@ objects are within the tolerances of the layouts. The other transitions keep the
 which does not depend on the desired layout.
 
 Choices that give the method its best chance:
-- Desired layouts come from goal states that remain goal states if their objects move a little, see
-  robust_goal_states(). So reaching a layout means success.
+- Desired layouts come from goal states that remain goal states if each object moves a little, see
+  robust_goal_states(). So whoever reaches a layout nearly always succeeds.
 - Objects of one kind are interchangeable, and any goal state suffices. So the desired layout of a
   training episode is the one nearest to its start among a random tenth of the layouts. Training
   thus covers many layouts, which makes learning faster [Andrychowicz et al. 2017]. The evaluated
@@ -24,8 +24,8 @@ Choices that give the method its best chance:
 
 TOLERANCE is 0.5 m, because one push of 2 m in one of 48 headings seldom places a box more
 precisely. Goal regions, such as a disc of 2 m or a half-plane, contain layouts that far from
-their edge. Where a task allows no such layouts, as with a pose for a goal, all tolerances are
-halved until it does.
+their edge. Where few goal states of a task are so robust, as with a pose for a goal or objects that
+are to touch, all tolerances are halved until enough are.
 """
 
 from __future__ import annotations
@@ -45,9 +45,12 @@ TOLERANCE = 0.5  # [m], largest distance of each object from a reached layout
 JOINT_TOLERANCE = 0.05  # [rad], largest angle of each body with a joint from a reached layout
 ANGLE_TOLERANCE = 0.2  # [rad], the same of the other bodies of goal_angles()
 HALVINGS = 5  # of the tolerances, at most
+ENOUGH = 0.03  # least share of the goal states that are robust, else tolerances are halved
 ANGLE_REACH = 0.5  # [m / rad], weighs angles against ways
 DRAWS, MAX_LAYOUTS = 5000, 1000  # number of goal states drawn; maximum number of layouts
 SUBSET_DIVISOR = 10  # a training episode gets the nearest of 1 / SUBSET_DIVISOR of the layouts
+DIRECTIONS = 8  # of the displacements that robust goal states bear
+MIXED = 112  # number of such displacements in which each object has a direction of its own
 LAYOUT_SEED = 3 << 61  # fixed seed of the draws, so a policy file need not store it
 BODY_ENTRIES = 6  # entries of an observation per movable object; two of the robot come first
 
@@ -75,7 +78,7 @@ class Layouts:
             self.tolerance = TOLERANCE * share  # [m]
             self.turns = turns[turned] * share  # [rad], per angle of a layout
             robust = robust_goal_states(task, states, self.tolerance, turns * share)
-            if len(robust):
+            if len(robust) >= ENOUGH * len(states):
                 break
         goals = (robust if len(robust) else states)[:MAX_LAYOUTS]
         self.goal_layouts = self.of(task.observation(goals))  # [layouts, size]
@@ -173,21 +176,34 @@ def _tolerated_turns(task: _core.Task, turned: list[int]) -> Array:
     return turns
 
 
+def _displacements(task: _core.Task, way: float, turns: Array) -> Array:
+    """Returns those that robust_goal_states() are to bear. [displacements, bodies, 3]"""
+    sides = _sides(task)
+    against = np.where(sides == 0.0, 1.0, sides)
+    rng = np.random.default_rng(0)
+    together = np.repeat(np.arange(DIRECTIONS)[:, None], task.bodies, axis=1)
+    mixed = rng.integers(DIRECTIONS, size=(MIXED, task.bodies))
+    mixed_signs = rng.choice((1.0, -1.0), size=(MIXED, task.bodies))
+    angles = 2.0 * np.pi / DIRECTIONS * np.concatenate((together, together, mixed))
+    signs = np.concatenate((np.outer(np.repeat((1, -1), DIRECTIONS), against), mixed_signs))
+    moved = np.stack((way * np.cos(angles), way * np.sin(angles), turns * signs), axis=2)
+    moved[:, [body for body in range(task.bodies) if body == 0 or task.fixed[body]]] = 0.0
+    return moved
+
+
 def robust_goal_states(task: _core.Task, states: Array, way: float, turns: Array) -> Array:
     """Returns those `states` in which the goal is robust. [N, bodies, 3]
 
     The goal is robust if it still holds after each of these displacements:
-    - all objects move by `way`, in one of eight directions;
-    - at the same time, each body turns by its entry of `turns` [bodies], all to the left or all to
-      the right, but one body of each joint against the other.
+    - all objects move by `way` in the same of DIRECTIONS; at the same time, each body turns by its
+      entry of `turns` [bodies], all to the left or all to the right, but one body of each joint
+      against the other;
+    - each object moves by `way` in a direction of its own, and turns to a side of its own. Such
+      displacements show whether objects still touch or keep apart, MIXED of them are drawn.
+
+    The robot and fixed bodies stay where they are.
     """
-    angles = np.arange(8) * np.pi / 4
-    sides = _sides(task)
-    moved = np.repeat(states[:, None], 2 * len(angles), axis=1)  # [N, 16, bodies, 3]
-    moved[:, :, 1:, 0] += way * np.tile(np.cos(angles), 2)[:, None]
-    moved[:, :, 1:, 1] += way * np.tile(np.sin(angles), 2)[:, None]
-    signs = np.repeat((1, -1), len(angles))[:, None]
-    moved[:, :, :, 2] += signs * turns * np.where(sides == 0.0, 1.0, sides)
+    moved = states[:, None] + _displacements(task, way, turns)
     holds = task.succeeded(moved.reshape(-1, *states.shape[1:])).reshape(len(states), -1)
     robust: Array = states[holds.all(axis=1)]
     return robust
