@@ -179,7 +179,8 @@ def test_who_reaches_a_layout_of_boxes_that_touch_nearly_always_succeeds(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Each box moves on its own; so gaps open by up to twice the tolerance."""
-    monkeypatch.setattr(hindsight, "DRAWS", 60)  # each takes 20 ms
+    monkeypatch.setattr(hindsight, "FIRST_DRAWS", 60)  # each takes 20 ms
+    monkeypatch.setattr(hindsight, "MAX_DRAWS", 60)
     task = _core.Config.from_file(paths.CONFIG / "pack.yaml").task
     layouts = Layouts(task)
     assert layouts.size == 12  # three boxes, whose angles the goal asks for
@@ -188,6 +189,35 @@ def test_who_reaches_a_layout_of_boxes_that_touch_nearly_always_succeeds(
     reached = layouts.of(task.observation(states.reshape(-1, task.bodies, 3)))
     assert layouts.near(reached, np.repeat(layouts.goal_layouts, 100, axis=0)).all()
     assert task.succeeded(states.reshape(-1, task.bodies, 3)).mean() > 0.99
+
+
+class Counted:
+    """A task that counts the goal states that are drawn of it."""
+
+    def __init__(self, task: _core.Task) -> None:
+        self.task, self.draws = task, 0
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.task, name)
+
+    def goal_state(self, seed: int, index: int) -> np.ndarray | None:
+        self.draws += 1
+        return self.task.goal_state(seed, index)
+
+
+@pytest.mark.parametrize(("most", "draws"), [(50, 200), (100, 400), (MAX_LAYOUTS, 2800)])
+def test_goal_states_are_drawn_until_enough_are_robust(
+    monkeypatch: pytest.MonkeyPatch, most: int, draws: int
+) -> None:
+    """Of Sorting's 37 % are. The layouts are those of the first robust draws, however many."""
+    monkeypatch.setattr(hindsight, "MAX_LAYOUTS", most)
+    task = Counted(_core.Config.from_file(paths.CONFIG / "sorting.yaml").task)
+    layouts = Layouts(task)
+    assert len(layouts.goal_layouts) == most and task.draws == draws
+    states = np.stack([task.task.goal_state(hindsight.LAYOUT_SEED, k) for k in range(draws)])
+    robust = hindsight.robust_goal_states(task.task, states, TOLERANCE, np.zeros(task.bodies))
+    expected = layouts.of(task.observation(robust[:most]))
+    np.testing.assert_array_equal(layouts.goal_layouts, expected)
 
 
 def test_fixed_bodies_stay_where_goal_states_are_tried_for_robustness() -> None:

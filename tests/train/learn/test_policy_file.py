@@ -1,5 +1,6 @@
 """Files from outside that shall be policies."""
 
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -73,6 +74,18 @@ def test_a_policy_has_the_values_of_the_network_that_was_written(
         values = written(th.from_numpy(seen)).numpy()
     np.testing.assert_array_equal(policy_file.read(file, TASK)(seen), values)
     assert len(set(values.argmax(axis=1).tolist())) > 1
+
+
+def test_threads_that_share_a_policy_get_what_one_alone_gets(tmp_path: Path) -> None:
+    file, settings = tmp_path / "model.pt", train_settings()
+    network = networks.make(settings.network, TASK.observation_size, TASK.headings)
+    policy_file.write(file, TASK, settings, network.state_dict())
+    values = policy_file.read(file, TASK)
+    rng = np.random.default_rng(0)
+    seen = [rng.normal(size=(50, 20)).astype(np.float32) for _ in range(40)]
+    alone = [values(one) for one in seen]
+    with ThreadPoolExecutor(8) as pool:
+        np.testing.assert_array_equal(list(pool.map(values, seen)), alone)
 
 
 @pytest.mark.parametrize(

@@ -103,10 +103,11 @@ def trained(folder: Path, *settings: str) -> Path:
     from rtg.learn import networks, policy_file
 
     config = _core.Config.from_file(FILE, list(settings))
-    task = config.task
+    task, train = config.task, config.train
     (folder / "config.yaml").write_text(config.yaml)
-    network = networks.make("headings", task.observation_size, task.headings)
-    policy_file.write(folder / "model.pt", task, config.train, network.state_dict())
+    layout = 6 if train.hindsight else 0  # x, y of three boxes
+    network = networks.make("headings", task.observation_size + layout, task.headings)
+    policy_file.write(folder / "model.pt", task, train, network.state_dict())
     return folder
 
 
@@ -153,3 +154,22 @@ def test_the_table_says_which_policy_it_is_of(
     assert "in a state to which the episode returns, the best one not yet tried there" in loops
     greedy = evaluate(trained(tmp_path, "train.leave_loops=false"), 1)
     assert "\nGreedy policy. 1 held-out starts each.\n" in greedy
+
+
+def test_the_layouts_of_a_hindsight_policy_are_drawn_once_for_all_variants(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from rtg.compare.evaluate import evaluate
+    from rtg.learn import policy_file
+
+    made = []
+
+    class Counted(policy_file.Layouts):
+        def __init__(self, task: _core.Task) -> None:
+            made.append(task)
+            super().__init__(task)
+
+    monkeypatch.setattr(policy_file, "Layouts", Counted)
+    monkeypatch.setattr(robustness, "variants", lambda config: [Variant("", str(k)) for k in "ab"])
+    evaluate(trained(tmp_path, "train.hindsight=4"), 1)
+    assert len(made) == 1

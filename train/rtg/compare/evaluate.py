@@ -59,11 +59,10 @@ def evaluate(run: Path, episodes: int) -> str:
                 f"{run}: has no {needed.name}; legal: the folder of a run that has trained"
             )
     config: _core.Config = effective_config.load_written(file)
-    policy_file.read(model, config.task)  # reports what is wrong with it
+    values = policy_file.read(model, config.task)
     th.set_num_threads(1)
 
     def row_of(variant: Variant) -> Row:
-        values = policy_file.read(model, config.task)  # for which no other thread waits
         return robustness.evaluate_variant(file, config, values, variant, episodes)
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:

@@ -47,7 +47,9 @@ ANGLE_TOLERANCE = 0.2  # [rad], the same of the other bodies of goal_angles()
 HALVINGS = 5  # of the tolerances, at most
 ENOUGH = 0.03  # least share of the goal states that are robust, else tolerances are halved
 ANGLE_REACH = 0.5  # [m / rad], weighs angles against ways
-DRAWS, MAX_LAYOUTS = 5000, 1000  # number of goal states drawn; maximum number of layouts
+MAX_LAYOUTS = 1000  # goal states are drawn until so many of them are robust
+FIRST_DRAWS = 200  # number of goal states by which the tolerances are chosen
+MAX_DRAWS = 5000  # maximum number of goal states drawn
 SUBSET_DIVISOR = 10  # a training episode gets the nearest of 1 / SUBSET_DIVISOR of the layouts
 DIRECTIONS = 8  # of the displacements that robust goal states bear
 MIXED = 112  # number of such displacements in which each object has a direction of its own
@@ -64,9 +66,9 @@ class Layouts:
 
     def __init__(self, task: _core.Task) -> None:
         self._unit = task.position_unit  # [m]
-        states = goal_states(task, LAYOUT_SEED, DRAWS)
+        states = goal_states(task, LAYOUT_SEED, FIRST_DRAWS)
         movable = [body for body in range(1, task.bodies) if not task.fixed[body]]
-        turned = [body for body in goal_angles(task, states[:MAX_LAYOUTS]) if body in movable]
+        turned = [body for body in goal_angles(task, states) if body in movable]
         at = {body: 2 + BODY_ENTRIES * k for k, body in enumerate(movable)}
         positions = [column for body in movable for column in (at[body], at[body] + 1)]
         angles = [column for body in turned for column in (at[body] + 2, at[body] + 3)]
@@ -74,13 +76,10 @@ class Layouts:
         self._position_entries = len(positions)
         self.size = len(self._columns)
         turns = _tolerated_turns(task, turned)
-        for share in 0.5 ** np.arange(HALVINGS + 1):
-            self.tolerance = TOLERANCE * share  # [m]
-            self.turns = turns[turned] * share  # [rad], per angle of a layout
-            robust = robust_goal_states(task, states, self.tolerance, turns * share)
-            if len(robust) >= ENOUGH * len(states):
-                break
-        goals = (robust if len(robust) else states)[:MAX_LAYOUTS]
+        share = _robust_share(task, states, turns)
+        self.tolerance = TOLERANCE * share  # [m]
+        self.turns = turns[turned] * share  # [rad], per angle of a layout
+        goals = _desired_states(task, states, self.tolerance, turns * share)
         self.goal_layouts = self.of(task.observation(goals))  # [layouts, size]
 
     def of(self, observation: Array) -> Array:
@@ -93,7 +92,7 @@ class Layouts:
         positions, angles = self._difference(one, other)
         close = np.hypot(positions[..., 0], positions[..., 1]) * self._unit <= self.tolerance
         alike = angles[..., 0] >= np.cos(self.turns)
-        reached: Array = close.all(axis=-1) & alike.all(axis=-1)
+        reached: Array = np.logical_and(close.all(axis=-1), alike.all(axis=-1))
         return reached
 
     def nearest(self, observation: Array, among: Array | None = None) -> Array:
@@ -207,6 +206,37 @@ def robust_goal_states(task: _core.Task, states: Array, way: float, turns: Array
     holds = task.succeeded(moved.reshape(-1, *states.shape[1:])).reshape(len(states), -1)
     robust: Array = states[holds.all(axis=1)]
     return robust
+
+
+def _robust_share(task: _core.Task, states: Array, turns: Array) -> float:
+    """Returns the largest share of the tolerances at which enough of the goal states are robust.
+
+    It is 1, 1/2, 1/4, ...; the smallest one if there never are enough. `turns`: [bodies] [rad]
+    """
+    shares = [0.5**k for k in range(HALVINGS + 1)]
+    for share in shares:
+        robust = robust_goal_states(task, states, TOLERANCE * share, turns * share)
+        if len(robust) >= ENOUGH * len(states):
+            return share
+    return shares[-1]
+
+
+def _desired_states(task: _core.Task, states: Array, way: float, turns: Array) -> Array:
+    """Draws goal states after the first ones, `states`, until MAX_LAYOUTS of them are robust.
+
+    Returns these [layouts, bodies, 3]; `states` if none of them is robust.
+    """
+    robust = robust_goal_states(task, states, way, turns)
+    if not len(robust):
+        return states[:MAX_LAYOUTS]
+    for first in range(FIRST_DRAWS, MAX_DRAWS, FIRST_DRAWS):
+        if len(robust) >= MAX_LAYOUTS:
+            break
+        draws = [task.goal_state(LAYOUT_SEED, first + k) for k in range(FIRST_DRAWS)]
+        more = np.array([state for state in draws if state is not None])
+        more = robust_goal_states(task, more.reshape(-1, task.bodies, 3), way, turns)
+        robust = np.concatenate((robust, more))
+    return robust[:MAX_LAYOUTS]
 
 
 def future_goals(

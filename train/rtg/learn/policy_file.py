@@ -6,6 +6,7 @@ hash of the task's content.
 
 from __future__ import annotations
 
+import copy
 import threading
 from pathlib import Path
 from typing import Any
@@ -73,9 +74,10 @@ def write(
 
 
 def read(path: Path, task: _core.Task) -> Values:
-    """Reads the values of a policy, [N, observation] -> [N, actions]. Threads may share them.
+    """Reads the values of a policy, [N, observation] -> [N, actions].
 
-    Raises UserError if the file does not fit the task.
+    Threads may share them; none waits for another. Raises UserError if the file does not fit the
+    task.
     """
     state = checkpoint.read(path)
     found: Any = state.get("identity")
@@ -95,15 +97,18 @@ def read(path: Path, task: _core.Task) -> Values:
             f"{path}: its weights do not fit the network ({error}); legal: a model.pt of RTG"
         ) from error
 
-    networks.flatten(network)
-    one_at_a_time = threading.Lock()  # networks have buffers
+    own = threading.local()  # networks have buffers, so each thread has its own network
 
     def values(observation: NDArray[np.float32]) -> NDArray[Any]:
         if observation.ndim != 2 or observation.shape[1] != task.observation_size:
             shape = list(observation.shape)
             raise ValueError(f"observations {shape}; legal: [N, {task.observation_size}]")
         seen = layouts.network_input_nearest(observation) if layouts else observation
-        with one_at_a_time, th.no_grad():
-            return network(th.from_numpy(seen)).numpy()
+        if not hasattr(own, "network"):
+            own.network = copy.deepcopy(network)
+            networks.flatten(own.network)
+        with th.no_grad():
+            q: NDArray[Any] = own.network(th.from_numpy(seen)).numpy()
+        return q
 
     return values
