@@ -75,7 +75,7 @@ MISTAKES = {
     ),
     "plot of nothing": (
         ["plot", "tests"],
-        "tests: holds neither a comparison (grid.json) nor a run (config.yaml); legal: the --out of `re",
+        "tests: holds neither a comparison (grid.json) nor a run (config.yaml); legal: ",
     ),
     "spy on nothing": (["spy", "sortign"], "sortign: no task of that name"),
     "spy on a folder": (["spy", "tests"], "tests: no such task file; legal: art_manip, "),

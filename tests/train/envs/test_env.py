@@ -92,5 +92,5 @@ def test_wrong_arguments_are_named() -> None:
         PushEnv().reset(options={"pose": 1})
     with pytest.raises(ValueError, match="states of 2 bodies; legal: 4, the bodies of the task"):
         PushEnv().task.observation(np.zeros((1, 2, 3)))
-    with pytest.raises(ValueError, match="is out of range; legal: 0 to 10 m"):
+    with pytest.raises(ValueError, match="is out of range; legal: 0 to 10"):
         PushEnv().task.jittered_start(float("nan"), 0)

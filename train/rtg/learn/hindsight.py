@@ -69,7 +69,7 @@ class Layouts:
         states = goal_states(task, LAYOUT_SEED, FIRST_DRAWS)
         movable = [body for body in range(1, task.bodies) if not task.fixed[body]]
         turned = [body for body in goal_angles(task, states) if body in movable]
-        at = {body: 2 + BODY_ENTRIES * k for k, body in enumerate(movable)}
+        at = {body: task.robot_entries + BODY_ENTRIES * k for k, body in enumerate(movable)}
         positions = [column for body in movable for column in (at[body], at[body] + 1)]
         angles = [column for body in turned for column in (at[body] + 2, at[body] + 3)]
         self._columns = np.array(positions + angles)  # columns of an observation
