@@ -9,6 +9,7 @@ void bind_config(nanobind::module_& module);
 void bind_generation(nanobind::module_& module);
 void bind_network(nanobind::module_& module);
 void bind_task(nanobind::module_& module);
+void bind_reverse(nanobind::module_& module);
 void bind_simulator(nanobind::module_& module);
 
 }  // namespace rtg::bindings

@@ -8,6 +8,7 @@ NB_MODULE(_core, module) {
   rtg::bindings::bind_task(module);
   rtg::bindings::bind_config(module);
   rtg::bindings::bind_simulator(module);
+  rtg::bindings::bind_reverse(module);
   rtg::bindings::bind_generation(module);
   rtg::bindings::bind_network(module);
 }

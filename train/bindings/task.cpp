@@ -189,6 +189,10 @@ void bind_task(nb::module_& module) {
       .def_prop_ro("joints", &joints)
       .def_prop_ro("goal_marks", &tasks::goal_marks)
       .def_prop_ro("arena", [](const tasks::Task& task) { return task.push.arena; })
+      .def_prop_ro("kilogram",
+                   [](const tasks::Task& task) {
+                     return 1.0 / (task.units.density * task.units.length * task.units.length);
+                   })
       .def_prop_ro("metre", [](const tasks::Task& task) { return 1.0 / task.units.length; })
       .def_prop_ro("position_unit", &tasks::position_unit)
       .def_prop_ro("relative_unit", &tasks::relative_unit)

@@ -2,7 +2,19 @@
 
 from gymnasium.envs.registration import register
 
-from rtg import paths
+from rtg import forward, paths
+from rtg.reverse import Contacts, ReverseSimulator, ReverseSolutions
+from rtg.task import Task, load_task
+
+__all__ = [
+    "ENVIRONMENTS",
+    "Contacts",
+    "ReverseSimulator",
+    "ReverseSolutions",
+    "Task",
+    "forward",
+    "load_task",
+]
 
 ENVIRONMENTS = {
     "RTG/Gathering-v0": "gathering",

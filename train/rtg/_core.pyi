@@ -70,6 +70,9 @@ class Task:
     def content(self) -> int:
         """The hash of bodies, joints, goal and pushes: of what a policy of the task is about."""
     @property
+    def kilogram(self) -> float:
+        """One kilogram, in the unit of masses: that in which the robot's density is 1."""
+    @property
     def metre(self) -> float:
         """One metre, in the unit of lengths of poses: that in which the robot's radius is 0.8."""
     @property
@@ -290,6 +293,25 @@ class Config:
     @property
     def json(self) -> str:
         """The values as JSON."""
+
+SOLVE_STATUSES: tuple[str, ...]
+"""The outcomes of a reverse solve; see core/reverse/problem/solve_status.hpp."""
+
+class ReverseSimulator:
+    """Solves the reverse problems of a task, in units of the core; see rtg.reverse."""
+
+    def __init__(self, config: Config) -> None: ...
+    def solve(
+        self, ends: NDArray[np.float64], actions: NDArray[np.int64], threads: int = 1
+    ) -> dict[str, Any]:
+        """Solves N problems. [N, bodies, 3], [N]
+
+        Returns the arrays "status" (into SOLVE_STATUSES), "iterations" and "found" (number of
+        starts) [N], "starts" [N, 8, bodies, 3], "trajectory" [N, h + 1, bodies, 3], "controls" [N,
+        h, 3], "figures" (objective, infeasibility, stationarity) [N, 3], NaN where there is none,
+        and "contacts": the arrays "solve", "sub_step", "body", "other", "force" [C], "point" and
+        "normal" [C, 2]. Raises ValueError for arrays that do not fit the task.
+        """
 
 class Simulator:
     """Simulates the pushes of a task: the dynamics of replays, training and evaluation.

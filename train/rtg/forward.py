@@ -1,0 +1,42 @@
+"""Forward simulators of a task, with one interface."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rtg import _core
+from rtg.task import Task
+
+Floats = NDArray[np.float64]
+
+
+class _Forward:
+    engine: str  # a value of forward.engine
+
+    def __init__(self, task: Task) -> None:
+        self.task = task
+        settings = [f"forward.engine={self.engine}"]
+        self._core = _core.Simulator(_core.Config.from_text(task.config.yaml, task.name, settings))
+
+    def push(self, states: ArrayLike, actions: ArrayLike) -> tuple[Floats, NDArray[np.bool_]]:
+        """Simulates a push from each state. [N, bodies, 3], [N] -> [N, bodies, 3], [N]
+
+        Returns the states after the pushes, at rest, and whether each push could be finished.
+        Equal arguments give equal bits. Raises ValueError for wrong shapes.
+        """
+        pushes = np.atleast_1d(np.asarray(actions, np.int64))
+        after, ok = self._core.push(self.task.inner(states), pushes)
+        return self.task.outer(after), ok
+
+
+class Newton(_Forward):
+    """Each sub-step minimises the step energy [eq. (5)]: the model that the reverse one inverts."""
+
+    engine = "newton"
+
+
+class Box2D(_Forward):
+    """The rigid-body engine Box2D."""
+
+    engine = "box2d"

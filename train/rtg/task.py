@@ -1,0 +1,125 @@
+"""A task as a user sees it: lengths in metres, angles in rad, one row per state."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rtg import _core, paths
+
+Floats = NDArray[np.float64]
+
+_ENTRIES = ("x", "y", "cos theta", "sin theta", "x to robot", "y to robot")
+
+
+class Task:
+    """A task: bodies, joints, a goal and the pushes of the robot, which is body 0.
+
+    A state is an array [bodies, 3] of x [m], y [m] and θ [rad] of each body; states are [N, bodies,
+    3]. Action a pushes along the heading 2π (a % headings) / headings, by the stride a // headings.
+
+    `core` is the task in the units of the C++ core, in which the robot has the radius 0.8 and the
+    density 1; files and messages have these, too.
+    """
+
+    def __init__(self, config: _core.Config) -> None:
+        self.config = config
+        self.core: _core.Task = config.task
+
+    @property
+    def name(self) -> str:
+        return self.core.name
+
+    @property
+    def bodies(self) -> list[str]:
+        """The names of the bodies, the robot first."""
+        return self.core.names
+
+    @property
+    def actions(self) -> int:
+        """The number of actions, headings times strides."""
+        return self.core.actions
+
+    @property
+    def headings(self) -> int:
+        return self.core.headings
+
+    @property
+    def horizon(self) -> int:
+        """The number of pushes after which an episode ends."""
+        return self.core.horizon
+
+    @property
+    def observation_names(self) -> list[str]:
+        """The entries of an observation, in words; for units see `observation`."""
+        robot = ["robot x", "robot y", "robot cos theta", "robot sin theta"]
+        names = robot[: self.core.robot_entries]
+        for name, fixed in zip(self.bodies[1:], self.core.fixed[1:], strict=True):
+            if not fixed:
+                names += [f"{name} {entry}" for entry in _ENTRIES]
+        for _, child, points in self.core.joints:
+            joint = f"joint of {self.bodies[child]}"
+            if len(points) == 1:
+                names += [f"{joint} sin", f"{joint} cos"]
+            elif points:
+                names.append(f"{joint} slide")
+        return names
+
+    def start(self, seed: int = 1) -> Floats:
+        """Returns the start number `seed`, with objects jittered. [bodies, 3]"""
+        return self.outer(self.core.jittered_start(self.core.start_jitter, seed))
+
+    def goal_state(self, seed: int = 1) -> Floats | None:
+        """Returns a state in which the goal holds; None if none was found. [bodies, 3]"""
+        state = self.core.goal_state(seed)
+        return None if state is None else self.outer(state)
+
+    def succeeded(self, states: ArrayLike) -> NDArray[np.bool_]:
+        """Returns in which states the goal holds. [N, bodies, 3] -> [N]"""
+        return self.core.succeeded(self.inner(states))
+
+    def observation(self, states: ArrayLike) -> NDArray[np.float32]:
+        """Returns what a learner sees of states. [N, bodies, 3] -> [N, observation]
+
+        Entries are named by `observation_names`. Positions are in units of half the arena's half
+        width, relative ones and slides in half the longest stride.
+        """
+        return self.core.observation(self.inner(states))
+
+    def inner(self, states: ArrayLike) -> Floats:
+        """Returns states as the core takes them. [N, bodies, 3] -> [N, bodies, 3]
+
+        Raises ValueError for another shape and for numbers that are not finite.
+        """
+        given = np.asarray(states, np.float64)
+        if given.ndim != 3 or given.shape[1:] != (len(self.bodies), 3):
+            raise ValueError(
+                f"states of shape {list(given.shape)}; legal: [N, {len(self.bodies)}, 3]"
+            )
+        if not np.isfinite(given).all():
+            raise ValueError("states hold numbers that are not finite; legal: finite ones")
+        return np.ascontiguousarray(given * self._scale)
+
+    def outer(self, states: Floats) -> Floats:
+        """Returns states of the core in metres. [..., bodies, 3] -> [..., bodies, 3]"""
+        metres: Floats = states / self._scale
+        return metres
+
+    @property
+    def _scale(self) -> Floats:
+        return np.array([self.core.metre, self.core.metre, 1.0])
+
+
+def load_task(task: str | PathLike[str], settings: Sequence[str] = ()) -> Task:
+    """Loads a task: the name of one of RTG's, such as "push_t", or the path of a YAML file.
+
+    `settings`: each "section.key=value", as after `--set`. Raises ValueError, which says what is
+    wrong with the file and where.
+    """
+    own = paths.CONFIG / f"{task}.yaml"
+    file = own if isinstance(task, str) and own.is_file() else Path(task)
+    return Task(_core.Config.from_file(file, list(settings)))
