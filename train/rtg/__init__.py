@@ -3,17 +3,25 @@
 from gymnasium.envs.registration import register
 
 from rtg import forward, paths
+from rtg.policy import Policy, load_policy, train
 from rtg.reverse import Contacts, ReverseSimulator, ReverseSolutions
 from rtg.task import Task, load_task
+from rtg.transitions import SOURCES, Transitions, generate
 
 __all__ = [
     "ENVIRONMENTS",
+    "SOURCES",
     "Contacts",
+    "Policy",
     "ReverseSimulator",
     "ReverseSolutions",
     "Task",
+    "Transitions",
     "forward",
+    "generate",
+    "load_policy",
     "load_task",
+    "train",
 ]
 
 ENVIRONMENTS = {

@@ -1,0 +1,133 @@
+"""Training from transitions, and trained policies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rtg import _core
+from rtg.errors import UserError
+from rtg.task import Task
+from rtg.transitions import Transitions
+
+
+class Policy:
+    """The policy of a trained value network: it takes the action of the largest value."""
+
+    def __init__(self, task: Task, file: Path) -> None:
+        """Reads `file`, a model.pt. Raises UserError if it does not fit the task."""
+        from rtg.learn import policy_file  # imports PyTorch
+
+        self.task = task
+        self._values = policy_file.read(file, task.core)
+
+    def values(self, states: ArrayLike) -> NDArray[np.float32]:
+        """Returns Q of all actions in states. [N, bodies, 3] -> [N, actions]"""
+        return self.values_of_observations(self.task.observation(states))
+
+    def values_of_observations(self, observations: NDArray[np.float32]) -> NDArray[np.float32]:
+        """The same for what a learner sees, as of a Gymnasium environment. [N, observation]"""
+        values: NDArray[np.float32] = self._values(observations)
+        return values
+
+    def __call__(self, states: ArrayLike) -> NDArray[np.int64]:
+        """Returns the actions to take in states. [N, bodies, 3] -> [N]"""
+        return self.values(states).argmax(axis=1)
+
+    def success_rate(self, episodes: int = 100) -> float:
+        """Returns the share of held-out starts from which it succeeds within the horizon.
+
+        In a state to which an episode returns, the best action not yet tried there is taken.
+        """
+        from rtg.learn.evaluation import FINAL_SEED, evaluate, held_out_starts
+
+        settings = [f"train.eval_episodes={episodes}"]
+        config = _core.Config.from_text(self.task.config.yaml, self.task.name, settings)
+        starts = held_out_starts(config, FINAL_SEED)
+        found = evaluate(config, self._values, starts, config.learner_discount)
+        return float(found.success.mean())
+
+
+def load_policy(run: str | PathLike[str]) -> Policy:
+    """Loads the policy of a run. `run`: its folder. Raises UserError if it has none."""
+    folder = Path(run)
+    for name in ("config.yaml", "model.pt"):
+        if not (folder / name).is_file():
+            raise UserError(f"{folder}: has no {name}; legal: the folder of a run that has trained")
+    return Policy(Task(_core.Config.from_file(folder / "config.yaml", [])), folder / "model.pt")
+
+
+def _checked(task: Task, data: Transitions) -> dict[str, Any]:
+    """Returns the columns of the data for the learner. Raises ValueError for what is not legal."""
+    states, after = task.inner(data.states), task.inner(data.next_states)
+    actions = np.asarray(data.actions)
+    lengths = {len(states), len(after), len(actions), len(data.source)}
+    if len(lengths) != 1:
+        raise ValueError(f"columns of {sorted(lengths)} transitions; legal: of equally many")
+    if not len(actions):
+        raise ValueError("no transitions; legal: at least one")
+    if actions.min() < 0 or actions.max() >= task.actions:
+        wrong = int(actions[(actions < 0) | (actions >= task.actions)][0])
+        raise ValueError(f"action {wrong}; legal: 0 to {task.actions - 1}")
+    success = task.core.succeeded(after)
+    return {
+        "poses": states,
+        "action": actions.astype(np.int32),
+        "next_poses": after,
+        "reward": success.astype(np.float32),
+        "terminated": success,
+        "source": np.asarray(data.source, np.int8),
+    }
+
+
+def train(
+    data: Transitions,
+    task: Task,
+    folder: str | PathLike[str],
+    *,
+    interactions: int | None = None,
+    seed: int = 1,
+    settings: Sequence[str] = (),
+) -> Policy:
+    """Trains a policy from transitions, and interactions with the task, and returns it.
+
+    The folder becomes that of a run: with the policy, the course of training and the transitions.
+    `interactions`: their largest number, `train.interactions` of the task if None. `settings`: each
+    "section.key=value", such as "train.interact=false". Success is judged by the task, whatever the
+    data say. Raises ValueError for data or settings that are not legal, UserError if there is a
+    learner in the folder already.
+    """
+    import torch as th
+
+    from rtg.files.dataset import Rows
+    from rtg.files.recorder import Recorder
+    from rtg.learn.offline_data import FileSource
+    from rtg.learn.training import Training
+
+    own = [f"run.seed={seed}"]
+    if interactions is not None:
+        own.append(f"train.interactions={interactions}")
+    config = _core.Config.from_text(task.config.yaml, task.name, [*own, *settings])
+    recorder = Recorder(config.task)
+    recorder.add(Rows(**_checked(task, data)))
+    run = Path(folder)
+    if (run / "checkpoint").exists() or (run / "model.pt").exists():
+        raise UserError(f"{run}: holds a learner already; legal: another folder")
+    run.mkdir(parents=True, exist_ok=True)
+    (run / "config.yaml").write_text(config.yaml)
+    recorder.write(run / "transitions.npz")
+    threads = th.get_num_threads()
+    th.set_num_threads(1)  # networks this small are slower on more
+    try:
+        training = Training(config, run)
+        source = FileSource(run / "transitions.npz", training.task, training.data)
+        training.run(source, lambda: False, record=False)
+        training.finish(lost=0)
+    finally:
+        th.set_num_threads(threads)
+    return load_policy(run)

@@ -1,0 +1,125 @@
+"""Transitions as arrays, and their generation in this process."""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+import threading
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg import _core
+from rtg.errors import StoppedError
+from rtg.task import Task
+
+Floats = NDArray[np.float64]
+
+SOURCES = _core.SOURCES  # names of the sources of transitions
+
+_AHEAD = 64  # batches that the search may be ahead of who takes them
+
+
+@dataclass(frozen=True)
+class Transitions:
+    """N pushes and where they lead."""
+
+    states: Floats  # [N, bodies, 3] x [m], y [m], θ [rad]
+    actions: NDArray[np.int64]  # [N]
+    next_states: Floats  # [N, bodies, 3]
+    success: NDArray[np.bool_]  # whether the goal holds afterwards [N]
+    source: NDArray[np.int8]  # index into SOURCES [N]
+
+    def __len__(self) -> int:
+        return len(self.actions)
+
+    @classmethod
+    def joined(cls, parts: Iterable[Transitions]) -> Transitions:
+        """Returns all transitions of `parts`, in their order. Raises ValueError for none."""
+        all_parts = list(parts)
+        columns = {
+            field.name: np.concatenate([getattr(part, field.name) for part in all_parts])
+            for field in fields(cls)
+        }
+        return cls(**columns)
+
+
+def generate(
+    task: Task,
+    count: int | None = None,
+    *,
+    seed: int = 1,
+    workers: int = 1,
+    settings: Sequence[str] = (),
+) -> Iterator[Transitions]:
+    """Generates transitions by reverse search, and yields them in batches as they are found.
+
+    Equal arguments give equal transitions, whatever `workers`, the number of threads. `count`: how
+    many; `search.transitions` of the task if None. `settings`: each "section.key=value", such as
+    "search.generator=naive". Fewer than `count` come if the search finds no more. Raises ValueError
+    for settings that are not legal.
+    """
+    own = [f"run.seed={seed}", f"run.workers={workers}"]
+    if count is not None:
+        own.append(f"search.transitions={count}")
+    config = _core.Config.from_text(task.config.yaml, task.name, [*own, *settings])
+    return _batches(task, config)
+
+
+class _Search:
+    """A generation on a thread of its own, which waits where it is _AHEAD of who takes from it."""
+
+    def __init__(self, task: Task, config: _core.Config) -> None:
+        self._task, self._config = task, config
+        self._found: queue.Queue[Transitions | BaseException | None] = queue.Queue(_AHEAD)
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def take(self) -> Transitions | None:
+        """Returns the next batch; None after the last. Raises the error of the search."""
+        item = self._found.get()
+        if isinstance(item, BaseException):
+            raise item
+        return item
+
+    def stop(self) -> None:
+        """Ends the search, at the latest after the current layer."""
+        self._stop.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        try:
+            _core.generate(self._config, self._store, self._progress)
+            self._put(None)
+        except StoppedError:
+            pass
+        except BaseException as error:
+            self._put(error)
+
+    def _put(self, item: Transitions | BaseException | None) -> None:
+        while not self._stop.is_set():
+            with contextlib.suppress(queue.Full):
+                return self._found.put(item, timeout=0.1)
+        raise StoppedError
+
+    def _store(self, poses: Any, action: Any, next_poses: Any, success: Any, source: Any) -> None:
+        states, after = self._task.outer(poses), self._task.outer(next_poses)
+        self._put(Transitions(states, action.astype(np.int64), after, success, source))
+
+    def _progress(self, _: dict[str, Any]) -> None:
+        if self._stop.is_set():
+            raise StoppedError
+
+
+def _batches(task: Task, config: _core.Config) -> Iterator[Transitions]:
+    search = _Search(task, config)
+    try:
+        while (batch := search.take()) is not None:
+            if len(batch):
+                yield batch
+    finally:
+        search.stop()
