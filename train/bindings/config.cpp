@@ -56,7 +56,11 @@ void bind_config(nb::module_& module) {
       .def_prop_ro("training_jitter", &config::Config::training_jitter)
       .def_prop_ro("description", &config::description)
       .def_prop_ro("yaml", &config::canonical_yaml)
-      .def_prop_ro("json", &config::config_json);
+      .def_prop_ro("json", &config::config_json)
+      .def("__reduce__", [](const config::Config& config) {
+        return nb::make_tuple(nb::module_::import_("rtg.pickling").attr("config_of"),
+                              nb::make_tuple(canonical_yaml(config)));
+      });
 }
 
 }  // namespace rtg::bindings

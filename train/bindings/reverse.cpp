@@ -23,12 +23,14 @@ constexpr std::array<std::string_view, reverse::kSolveStatusCount> status_names(
 
 /// The reverse simulator of one task.
 struct TaskReverse {
+  config::Config config;
   std::size_t bodies, sub_steps;
   int actions;
   reverse::ReverseSimulator simulator;
 
-  explicit TaskReverse(const config::Config& config)
-      : bodies(config.task.scene.size()),
+  explicit TaskReverse(const config::Config& given)
+      : config(given),
+        bodies(config.task.scene.size()),
         sub_steps(
             static_cast<std::size_t>(config.physics.sub_steps + config.physics.settling_steps())),
         actions(action_count(config.task.push)),
@@ -139,6 +141,10 @@ void bind_reverse(nb::module_& module) {
   module.attr("SOLVE_STATUSES") = names_of(kStatusNames);
   nb::class_<TaskReverse>(module, "ReverseSimulator")
       .def(nb::init<const config::Config&>(), nb::arg("config"))
+      .def("__reduce__",
+           [](const TaskReverse& reverse) {
+             return nb::make_tuple(nb::type<TaskReverse>(), nb::make_tuple(reverse.config));
+           })
       .def("solve", &solve, nb::arg("ends"), nb::arg("actions"), nb::arg("threads") = 1);
 }
 

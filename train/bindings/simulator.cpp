@@ -10,12 +10,14 @@ namespace {
 
 /// The simulator of one task that defines its true dynamics.
 struct TaskSimulator {
+  config::Config config;
   std::size_t bodies;
   int actions;
   std::unique_ptr<const forward::Simulator> pushes;
 
-  explicit TaskSimulator(const config::Config& config)
-      : bodies(config.task.scene.size()),
+  explicit TaskSimulator(const config::Config& given)
+      : config(given),
+        bodies(config.task.scene.size()),
         actions(action_count(config.task.push)),
         pushes(
             make_simulator(config.forward, config.task.scene, config.task.push, config.physics)) {}
@@ -45,6 +47,10 @@ std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, bool>> push(
 void bind_simulator(nb::module_& module) {
   nb::class_<TaskSimulator>(module, "Simulator")
       .def(nb::init<const config::Config&>(), nb::arg("config"))
+      .def("__reduce__",
+           [](const TaskSimulator& simulator) {
+             return nb::make_tuple(nb::type<TaskSimulator>(), nb::make_tuple(simulator.config));
+           })
       .def("push", &push, nb::arg("states"), nb::arg("actions"));
 }
 

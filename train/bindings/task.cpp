@@ -12,6 +12,7 @@
 #include "core/tasks/contact_heading.hpp"
 #include "core/tasks/goal_marks.hpp"
 #include "core/world/outline.hpp"
+#include "core/world/separation.hpp"
 #include "nodes/config/config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
@@ -75,6 +76,25 @@ nb::ndarray<nb::numpy, bool> successes(const tasks::Task& task, const StateArray
   OwnedArray<bool> out(states.shape(0));
   for (std::size_t row = 0; row < states.shape(0); ++row)
     out.data[row] = succeeded(task, state_at(states, row));
+  return out.release({states.shape(0)});
+}
+
+/// Returns which states an episode can be in: finite, all movable bodies within twice the arena,
+/// and no bodies that overlap by more than kDeep.
+nb::ndarray<nb::numpy, bool> legal_states(const tasks::Task& task, const StateArray& states) {
+  constexpr double kDeep = 0.03;  // beyond what simulators let bodies overlap [m]
+  check_bodies(states, task.scene.size());
+  PushConfig around = task.push;
+  around.arena *= 2.0;
+  OwnedArray<bool> out(states.shape(0));
+  for (std::size_t row = 0; row < states.shape(0); ++row) {
+    const Poses poses = state_at(states, row);
+    bool legal = is_finite(poses);
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      legal = legal &&
+              (task.scene.bodies[i].fixed ? poses[i] == task.start[i] : in_arena(poses[i], around));
+    out.data[row] = legal && !first_overlap(task.scene, poses, -kDeep);
+  }
   return out.release({states.shape(0)});
 }
 
@@ -213,6 +233,14 @@ void bind_task(nb::module_& module) {
       .def("contact_headings", &contact_headings, nb::arg("states"), nb::arg("seed"))
       .def("goal_state", &goal_state, nb::arg("seed"), nb::arg("index") = 0)
       .def("succeeded", &successes, nb::arg("states"))
+      .def("is_legal", &legal_states, nb::arg("states"))
+      .def("__reduce__",
+           [](const tasks::Task& task) {
+             config::Config config;
+             config.task = task;
+             return nb::make_tuple(nb::module_::import_("rtg.pickling").attr("task_of"),
+                                   nb::make_tuple(canonical_yaml(config)));
+           })
       .def("in_start_region", &in_start_regions, nb::arg("states"))
       .def("jittered_start", &start, nb::arg("amplitude"), nb::arg("seed"), nb::arg("index") = 0);
 }

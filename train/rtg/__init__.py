@@ -2,7 +2,7 @@
 
 from gymnasium.envs.registration import register
 
-from rtg import forward, paths
+from rtg import forward
 from rtg.policy import Policy, load_policy, train
 from rtg.reverse import Contacts, ReverseSimulator, ReverseSolutions
 from rtg.task import Task, load_task
@@ -24,21 +24,34 @@ __all__ = [
     "train",
 ]
 
+# Gymnasium's ids: the task of each, and its horizon, after which `gymnasium.make` ends episodes.
 ENVIRONMENTS = {
-    "RTG/Gathering-v0": "gathering",
-    "RTG/GatheringHard-v0": "gathering_hard",
-    "RTG/Sorting-v0": "sorting",
-    "RTG/SortingHard-v0": "sorting_hard",
-    "RTG/ArtManip-v0": "art_manip",
-    "RTG/PushT-v0": "push_t",
-    "RTG/PushTHard-v0": "push_t_hard",
-    "RTG/Place-v0": "place",
-    "RTG/Insert-v0": "insert",
-    "RTG/Pack-v0": "pack",
-    "RTG/Gate-v0": "gate",
-    "RTG/Maze-v0": "maze",
-    "RTG/Drawer-v0": "drawer",
+    "RTG/Gathering-v0": ("gathering", 60),
+    "RTG/GatheringHard-v0": ("gathering_hard", 60),
+    "RTG/Sorting-v0": ("sorting", 60),
+    "RTG/SortingHard-v0": ("sorting_hard", 60),
+    "RTG/ArtManip-v0": ("art_manip", 60),
+    "RTG/PushT-v0": ("push_t", 100),
+    "RTG/PushTHard-v0": ("push_t_hard", 100),
+    "RTG/Place-v0": ("place", 100),
+    "RTG/Insert-v0": ("insert", 80),
+    "RTG/Pack-v0": ("pack", 60),
+    "RTG/Gate-v0": ("gate", 80),
+    "RTG/Maze-v0": ("maze", 80),
+    "RTG/Drawer-v0": ("drawer", 80),
 }
 
-for _id, _task in ENVIRONMENTS.items():
-    register(_id, "rtg.envs.push_env:PushEnv", kwargs={"config": paths.CONFIG / f"{_task}.yaml"})
+
+def _register(id: str, horizon: int | None, **kwargs: str | bool) -> None:
+    register(
+        id,
+        "rtg.envs.push_env:PushEnv",
+        vector_entry_point="rtg.envs.push_vector_env:PushVectorEnv",
+        max_episode_steps=horizon,
+        kwargs=kwargs,
+    )
+
+
+for _id, (_task, _horizon) in ENVIRONMENTS.items():
+    _register(_id, _horizon, config=_task, ends_at_horizon=False)
+_register("RTG/Task-v0", None)  # any task: config="FILE.yaml", whose horizon holds

@@ -135,6 +135,12 @@ class Task:
         """
     def succeeded(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Returns whether the goal holds in each state. [N, bodies, 3] -> [N]"""
+    def is_legal(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Returns which states an episode can be in. [N, bodies, 3] -> [N]
+
+        They are finite, no bodies overlap by more than 0.03 m, movable ones are within twice the
+        arena, and fixed ones in their places.
+        """
     def in_start_region(self, states: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Returns whether all objects are in place of a start. [N, bodies, 3] -> [N]
 

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rtg import _core, paths
+from rtg import _core
+from rtg.envs.push_env import read_config
 
 Floats = NDArray[np.float64]
 
@@ -120,6 +121,4 @@ def load_task(task: str | PathLike[str], settings: Sequence[str] = ()) -> Task:
     `settings`: each "section.key=value", as after `--set`. Raises ValueError, which says what is
     wrong with the file and where.
     """
-    own = paths.CONFIG / f"{task}.yaml"
-    file = own if isinstance(task, str) and own.is_file() else Path(task)
-    return Task(_core.Config.from_file(file, list(settings)))
+    return Task(read_config(Path(task) if isinstance(task, PathLike) else task, settings))
