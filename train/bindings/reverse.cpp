@@ -1,6 +1,9 @@
 #include "core/reverse/reverse_simulator.hpp"
 
+#include <algorithm>
+#include <array>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "core/search/simulators.hpp"
