@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
 from rtg.errors import UserError
+from rtg.files import run_folder
 from rtg.task import Task
 from rtg.transitions import Transitions
 
@@ -55,11 +56,8 @@ class Policy:
 
 def load_policy(run: str | PathLike[str]) -> Policy:
     """Loads the policy of a run. `run`: its folder. Raises UserError if it has none."""
-    folder = Path(run)
-    for name in ("config.yaml", "model.pt"):
-        if not (folder / name).is_file():
-            raise UserError(f"{folder}: has no {name}; legal: the folder of a run that has trained")
-    return Policy(Task(_core.Config.from_file(folder / "config.yaml", [])), folder / "model.pt")
+    file, model = run_folder.policy_files(Path(run))
+    return Policy(Task(_core.Config.from_file(file, [])), model)
 
 
 def _checked(task: Task, data: Transitions) -> dict[str, Any]:

@@ -52,12 +52,7 @@ def evaluate(run: Path, episodes: int) -> str:
 
     Raises UserError if the folder has no policy.
     """
-    file, model = run / "config.yaml", run / "model.pt"
-    for needed in (file, model):
-        if not needed.is_file():
-            raise UserError(
-                f"{run}: has no {needed.name}; legal: the folder of a run that has trained"
-            )
+    file, model = run_folder.policy_files(run)
     config: _core.Config = effective_config.load_written(file)
     values = policy_file.read(model, config.task)
     th.set_num_threads(1)

@@ -89,6 +89,17 @@ def exclusive_lock(folder: Path, holder: str) -> Iterator[None]:
         os.close(directory)
 
 
+def policy_files(folder: Path) -> tuple[Path, Path]:
+    """Returns config.yaml and model.pt of a run. Raises UserError if one is missing."""
+    files = folder / "config.yaml", folder / "model.pt"
+    for file in files:
+        if not file.is_file():
+            raise UserError(
+                f"{folder}: has no {file.name}; legal: the folder of a run that has trained"
+            )
+    return files
+
+
 def checkpoint_file(run: Path) -> Path:
     """Returns the path of the checkpoint from which a stopped learner resumes."""
     return run / "checkpoint" / "state.pt"
