@@ -6,6 +6,7 @@
 
 #include "core/search/predecessor.hpp"
 #include "core/search/state_metric.hpp"
+#include "core/tasks/goal_sampler.hpp"
 
 namespace rtg::search {
 namespace {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/tasks/contact_heading.hpp"
+#include "core/tasks/goal_sampler.hpp"
 
 namespace rtg::search {
 namespace {

@@ -1,6 +1,7 @@
 #include "core/tasks/placement.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/world/separation.hpp"
 
@@ -9,27 +10,25 @@ namespace {
 
 constexpr double kSlideError = 1e-3;  // largest error of a gap after slide() [m]
 
-/// Returns the least separation of body `i` at `pose` from all placed bodies, except those that a
-/// joint connects with it.
-double clearance(const Task& task, const PartialState& state, std::size_t i, const Pose& pose) {
-  double least = 1e9;
+/// Calls visit(j, separation [m]) for each placed body j that no joint connects with body `i`,
+/// which is at `pose`.
+void for_placed(const Task& task, const PartialState& state, std::size_t i, const Pose& pose,
+                auto visit) {
+  const std::vector<Body>& bodies = task.scene.bodies;
   for (std::size_t j = 0; j < state.poses.size(); ++j)
     if (j != i && state.placed[j] && !jointed(task.scene, i, j))
-      least = std::min(least, separation(task.scene.bodies[i].shape, pose,
-                                         task.scene.bodies[j].shape, state.poses[j]));
-  return least;
+      visit(j, separation(bodies[i].shape, pose, bodies[j].shape, state.poses[j]));
 }
 
 }  // namespace
 
 std::optional<std::size_t> blocker(const Task& task, const PartialState& state, std::size_t i,
                                    const Pose& pose) {
-  for (std::size_t j = 0; j < state.poses.size(); ++j)
-    if (j != i && state.placed[j] && !jointed(task.scene, i, j) &&
-        separation(task.scene.bodies[i].shape, pose, task.scene.bodies[j].shape, state.poses[j]) <
-            kClearance - kSlideError)
-      return j;
-  return std::nullopt;
+  std::optional<std::size_t> first;
+  for_placed(task, state, i, pose, [&](std::size_t j, double gap) {
+    if (!first && gap < kClearance - kSlideError) first = j;
+  });
+  return first;
 }
 
 bool is_clear(const Task& task, const PartialState& state, std::size_t i, const Pose& pose) {
@@ -43,7 +42,9 @@ std::optional<Pose> slide(const Task& task, const PartialState& state, std::size
   Pose pose = approach.from;
   double gone = 0.0;
   while (gone < approach.range) {
-    const double free = clearance(task, state, i, pose) - approach.gap;
+    double free = std::numeric_limits<double>::infinity();
+    for_placed(task, state, i, pose,
+               [&](std::size_t, double gap) { free = std::min(free, gap - approach.gap); });
     if (free < kSlideError) return free > -kSlideError ? std::optional(pose) : std::nullopt;
     pose.x += free * approach.heading.x();
     pose.y += free * approach.heading.y();

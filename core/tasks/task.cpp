@@ -56,12 +56,16 @@ std::optional<Poses> drawn(const Task& task, double amplitude, Rng& rng) {
   return if_legal(task, with_moved_trees(task, task.layout, [&](std::size_t i, const Pose& from) {
                     const std::optional<StartRange>& range = task.start_ranges[i];
                     if (!range) return shifted(i, from, amplitude, rng);
-                    const Vector2d x = moved_into(range->region, Vector2d::Zero(), rng);
-                    return Pose{x.x(), x.y(), rng.uniform(range->least, range->most)};
+                    return drawn_from(*range, rng);
                   }));
 }
 
 }  // namespace
+
+Pose drawn_from(const StartRange& range, Rng& rng) {
+  const Vector2d x = moved_into(range.region, Vector2d::Zero(), rng);
+  return {x.x(), x.y(), rng.uniform(range.least, range.most)};
+}
 
 std::optional<Poses> jittered(const Task& task, const Poses& start, double amplitude, Rng& rng) {
   if (amplitude <= 0.0) return start;

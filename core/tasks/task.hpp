@@ -1,9 +1,7 @@
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/math/rng.hpp"
@@ -20,6 +18,9 @@ struct StartRange {
 
   bool operator==(const StartRange&) const = default;
 };
+
+/// Returns a pose drawn from `range`.
+Pose drawn_from(const StartRange& range, Rng& rng);
 
 /// A sparse-reward task: the reward is 1 and the episode terminates when the goal holds; otherwise
 /// the reward is 0.
@@ -93,32 +94,5 @@ Poses jittered_start(const Task& task, double amplitude, Rng& rng);
 /// Returns whether jittered_start() can be relied on to find a legal start: at least 5 of 250 test
 /// draws are legal. If 1 draw in 50 is legal, 1000 in a row are illegal with probability 2e-9.
 bool allows_jitter(const Task& task, double amplitude);
-
-/// Why tries to draw a goal state failed.
-struct GoalRefusals {
-  std::vector<long> by_term;  // a term of the goal did not hold
-  // A body met another one, or the edge of the arena (twice the body).
-  std::map<std::pair<std::size_t, std::size_t>, long> no_room;
-  long no_robot = 0;  // there was no place for the robot
-};
-
-/// Returns the term that caused at least half of the refusals; nothing if none did.
-std::optional<std::size_t> main_term(const GoalRefusals& refusals);
-/// Returns what failed most often, in words to the user: "task.goal.1 did not hold in 93% of the
-/// tries".
-std::string main_reason(const GoalRefusals& refusals, const Scene& scene);
-
-/// Draws a state that satisfies the tightened() goal. It places, in this order:
-///
-///   - each object where the terms on it ask for, at a random angle unless they tell one, or beside
-///     a placed body. Jointed bodies move as one. The last body of a term with a mean goes where
-///     that fits. All other terms are tested.
-///   - the robot, with its angle of `task.start`: just behind a body as after a push (3 of 4
-///     draws), or near a body but clear of all.
-///
-/// Fixed bodies stay; all others are in the arena. Poses are rounded by to_single(). The state is
-/// only nearly at rest, so callers must let it settle. Returns nothing if 1000 attempts fail. Adds
-/// to `refusals`, if not null.
-std::optional<Poses> sample_goal(const Task& task, Rng& rng, GoalRefusals* refusals = nullptr);
 
 }  // namespace rtg::tasks

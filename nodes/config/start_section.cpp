@@ -144,9 +144,7 @@ void check_range(const tasks::Task& task, std::size_t i, const ConfigNode& secti
   int outside = 0;
   std::vector<int> overlaps(task.scene.size(), 0);
   for (int k = 0; k < kTries; ++k) {
-    const tasks::StartRange& range = *task.start_ranges[i];
-    const Vector2d x = moved_into(range.region, Vector2d::Zero(), rng);
-    const Pose pose{x.x(), x.y(), rng.uniform(range.least, range.most)};
+    const Pose pose = drawn_from(*task.start_ranges[i], rng);
     outside += !in_arena(pose, task.push);
     for (std::size_t j = 0; j < task.scene.size(); ++j)
       overlaps[j] += task.scene.bodies[j].fixed &&

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/tasks/goal_sampler.hpp"
 #include "core/world/separation.hpp"
 #include "nodes/config/config_error.hpp"
 #include "nodes/config/field_reader.hpp"

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/forward/box2d_simulator.hpp"
+#include "core/tasks/goal_sampler.hpp"
 #include "tests/support/gathering.hpp"
 
 namespace rtg::bench {

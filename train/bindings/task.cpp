@@ -11,6 +11,7 @@
 #include "core/search/start_distance.hpp"
 #include "core/tasks/contact_heading.hpp"
 #include "core/tasks/goal_marks.hpp"
+#include "core/tasks/goal_sampler.hpp"
 #include "core/world/outline.hpp"
 #include "core/world/separation.hpp"
 #include "nodes/config/config.hpp"

@@ -31,6 +31,7 @@ ENVIRONMENTS = {
     "RTG/Sorting-v0": ("sorting", 60),
     "RTG/SortingHard-v0": ("sorting_hard", 60),
     "RTG/ArtManip-v0": ("art_manip", 60),
+    "RTG/ArtManipHard-v0": ("art_manip_hard", 60),
     "RTG/PushT-v0": ("push_t", 100),
     "RTG/PushTHard-v0": ("push_t_hard", 100),
     "RTG/Place-v0": ("place", 100),

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/math/rng.hpp"
+#include "core/tasks/goal_sampler.hpp"
 #include "core/world/separation.hpp"
 #include "tests/support/gathering.hpp"
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/forward/box2d_simulator.hpp"
+#include "core/tasks/goal_sampler.hpp"
 #include "core/world/separation.hpp"
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"

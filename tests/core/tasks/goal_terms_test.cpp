@@ -6,6 +6,7 @@
 
 #include "core/tasks/goal_atoms.hpp"
 #include "core/tasks/goal_marks.hpp"
+#include "core/tasks/goal_sampler.hpp"
 #include "core/world/overlap.hpp"
 #include "core/world/separation.hpp"
 #include "tests/support/gathering.hpp"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/tasks/goal_sampler.hpp"
 #include "core/tasks/task.hpp"
 #include "core/world/separation.hpp"
 #include "tests/support/art_manip.hpp"

@@ -1,0 +1,113 @@
+#include "core/tasks/body_group.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace rtg::tasks {
+namespace {
+
+/// Returns the least and the largest value that the limits of `joint` and the goal allow. Returns
+/// nothing if there is no such value, and counts the term that leaves none.
+std::optional<std::pair<double, double>> values_in_goal(GoalDraw& draw, const Joint& joint) {
+  const double span =
+      joint.type == JointType::kPrismatic ? 2.0 * draw.task.push.arena : std::numbers::pi;
+  double least = std::isfinite(joint.lower) ? joint.lower : -span;
+  double most = std::isfinite(joint.upper) ? joint.upper : span;
+  for (std::size_t k = 0; k < draw.goal.size(); ++k) {
+    const GoalTerm& term = draw.goal[k];
+    if (term.negated || !concerns(term, draw.task.scene, joint)) continue;
+    const auto& range = std::get<JointIn>(term.condition);
+    least = std::max(least, range.least);
+    most = std::min(most, range.most);
+    if (least > most) {
+      ++draw.refusals.by_term[k];
+      return std::nullopt;
+    }
+  }
+  return std::pair{least, most};
+}
+
+void move(BodyGroup& group, const Vector2d& by) {
+  for (const std::size_t i : group.members) {
+    group.poses[i].x += by.x();
+    group.poses[i].y += by.y();
+  }
+}
+
+/// Returns whether the position of `group` decides if `term`, which has the condition MeanIn,
+/// holds. It does if `term` applies to a body of the group and all its other bodies are placed
+/// already.
+bool determines_mean(const BodyGroup& group, const GoalTerm& term, const GoalDraw& draw) {
+  const auto concerned = [&](std::size_t i) { return concerns(term, draw.task.scene, i); };
+  for (std::size_t i = 1; i < draw.task.scene.size(); ++i)
+    if (concerned(i) && !draw.state.placed[i] && !std::ranges::count(group.members, i))
+      return false;
+  return std::ranges::any_of(group.members, concerned);
+}
+
+}  // namespace
+
+std::size_t positioned_member(const GoalDraw& draw, const BodyGroup& group) {
+  for (const std::size_t i : group.members)
+    for (const GoalTerm& term : draw.goal)
+      if (is_of_one_body(term) && concerns(term, draw.task.scene, i)) return i;
+  return group.root;
+}
+
+bool draw_joint_values(GoalDraw& draw, BodyGroup& group) {
+  const Scene& scene = draw.task.scene;
+  for (const std::size_t n : root_first(scene)) {
+    const Joint& joint = scene.joints[n];
+    const auto child = static_cast<std::size_t>(joint.child);
+    if (!std::ranges::count(group.members, child)) continue;
+    const auto values = values_in_goal(draw, joint);
+    if (!values) return false;
+    set_joint_value(joint, draw.rng.uniform(values->first, values->second), group.poses);
+  }
+  return true;
+}
+
+void move_to(BodyGroup& group, std::size_t member, const Pose& to) {
+  const Pose from = group.poses[member];
+  for (const std::size_t i : group.members) group.poses[i] = carried(group.poses[i], from, to);
+}
+
+void aim_at_means(GoalDraw& draw, BodyGroup& group) {
+  const Scene& scene = draw.task.scene;
+  for (const GoalTerm& term : draw.goal) {
+    const auto* mean = std::get_if<MeanIn>(&term.condition);
+    if (!mean || term.negated || !determines_mean(group, term, draw)) continue;
+    const auto concerned = [&](std::size_t i) { return concerns(term, scene, i); };
+    std::size_t all = 0;
+    for (std::size_t i = 1; i < scene.size(); ++i) all += concerned(i);
+    const auto ours = static_cast<double>(std::ranges::count_if(group.members, concerned));
+    const Vector2d by = moved_into(mean->region, point_in_arena(draw), draw.rng) -
+                        centroid_of(term, scene, group.poses);
+    move(group, static_cast<double>(all) / ours * by);
+  }
+}
+
+bool try_add(GoalDraw& draw, const BodyGroup& group) {
+  PartialState trial = draw.state;
+  for (const std::size_t i : group.members) {
+    const Pose& pose = group.poses[i];
+    if (!draw.task.scene.bodies[i].fixed) {
+      if (!meets_terms_of(draw, i, group.poses)) return false;
+      const bool within = in_arena(pose, draw.task.push);
+      if (const auto other = within ? blocker(draw.task, trial, i, pose) : std::nullopt;
+          other || !within) {
+        ++draw.refusals.no_room[{i, other.value_or(i)}];
+        return false;
+      }
+    }
+    trial.poses[i] = pose;
+    trial.placed[i] = true;
+  }
+  draw.state = std::move(trial);
+  return true;
+}
+
+}  // namespace rtg::tasks
