@@ -25,7 +25,7 @@ import numpy as np
 import torch as th
 from gates import gate
 from rtg import _core, paths
-from rtg.envs.vector_env import PushVecEnv
+from rtg.envs.training_environments import TrainingEnvironments
 from rtg.files.dataset import Transitions
 from rtg.learn.ddqn import DoubleDqn, core_batch
 from rtg.learn.networks import HeadingNetwork
@@ -38,7 +38,7 @@ PRODUCT = (256, 512, 512)  # shape of the large product
 def learner() -> DoubleDqn:
     """Makes a learner of the default settings with random transitions."""
     config = _core.Config.from_file(paths.CONFIG / f"{TASK}.yaml", [])
-    env = PushVecEnv(config, 4, config.training_jitter, 1, None)
+    env = TrainingEnvironments(config, 4, config.training_jitter, 1, None)
     one = DoubleDqn(env, config.train, config.learner_discount, seed=1)
     random = np.random.default_rng(1)
     seen = random.normal(size=(2, ROWS, env.observation_size)).astype(np.float32)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 from rtg import _core, paths
-from rtg.envs.vector_env import Step
+from rtg.envs.training_environments import Step
 from rtg.files.dataset import Transitions
 from rtg.learn.replay import ReplayRules
 

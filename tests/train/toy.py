@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from types import SimpleNamespace
 
 import numpy as np
-from rtg.envs.vector_env import Step
+from rtg.envs.training_environments import Step
 
 TASK = SimpleNamespace(strides=(1.0,), relative_unit=1.0, position_unit=4.0)
 TIME_LIMIT = 20  # actions of an episode of the line

@@ -14,7 +14,7 @@ from rtg.envs.curriculum import (
     WALKS,
     Curriculum,
 )
-from rtg.envs.vector_env import PushVecEnv
+from rtg.envs.training_environments import TrainingEnvironments
 from rtg.errors import UserError
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
@@ -205,7 +205,7 @@ def test_walks_that_meet_no_start_leave_the_start_of_the_task() -> None:
 
 def test_environments_begin_at_its_starts_and_tell_how_they_ended() -> None:
     one = Curriculum(CONFIG, 1.0, seed=1)
-    env = PushVecEnv(CONFIG, 2, jitter=0.1, seed=9, curriculum=one)
+    env = TrainingEnvironments(CONFIG, 2, jitter=0.1, seed=9, curriculum=one)
     np.testing.assert_array_equal(env.reset(), TASK.observation(one.pool[:2]))
     rng, episodes, wins, steps = np.random.default_rng(0), 0, 0, 0
     while episodes < 50:

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 from rtg import _core
-from rtg.envs.vector_env import PushVecEnv
+from rtg.envs.training_environments import TrainingEnvironments
 from rtg.learn.evaluation import FINAL_SEED, held_out_starts
 from training_runs import TINY
 
@@ -22,7 +22,7 @@ def of_search(seed: int) -> np.ndarray:
 
 def of_training(seed: int) -> np.ndarray:
     config = _core.Config.from_file(TINY)
-    env, starts = PushVecEnv(config, 4, config.task.start_jitter, seed), []
+    env, starts = TrainingEnvironments(config, 4, config.task.start_jitter, seed), []
     for _ in range(COUNT // 4):
         env.reset()
         starts.append(env.state()["poses"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch as th
 from rtg import _core, paths
-from rtg.envs.vector_env import PushVecEnv
+from rtg.envs.training_environments import TrainingEnvironments
 from rtg.learn import hindsight
 from rtg.learn.ddqn import DoubleDqn
 from rtg.learn.hindsight import (
@@ -374,7 +374,7 @@ def test_each_episode_is_asked_for_the_nearest_of_a_few_layouts() -> None:
 
 def learner(seed: int = 0, **changes: Any) -> DoubleDqn:
     settings = train_settings(hindsight=4, offline=False, batch=8, buffer=1000, **changes)
-    env = PushVecEnv(CONFIG, 2, jitter=0.1, seed=seed)
+    env = TrainingEnvironments(CONFIG, 2, jitter=0.1, seed=seed)
     return DoubleDqn(env, settings, discount=0.9, seed=seed)
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from rtg.envs.vector_env import PushVecEnv
+from rtg.envs.training_environments import TrainingEnvironments
 from rtg.files import checkpoint
 from rtg.files.dataset import Rows
 from rtg.learn.offline_data import FileSource
@@ -29,7 +29,7 @@ def test_no_environment_is_stepped_and_rounds_follow_the_schedule(
 ) -> None:
     """There are two gradient steps per four interactions that are left out."""
     for name in ("reset", "step"):
-        monkeypatch.setattr(PushVecEnv, name, never)
+        monkeypatch.setattr(TrainingEnvironments, name, never)
     wanted = (f"run.method={method}", "train.gradient_steps=2")
     folder = run_folder(tmp_path / "run", rows, *wanted)
     one = training(folder)

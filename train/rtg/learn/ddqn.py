@@ -13,7 +13,7 @@ import torch as th
 from torch.nn import functional
 
 from rtg import _core
-from rtg.envs.vector_env import Step
+from rtg.envs.training_environments import Step
 from rtg.learn import device, networks
 from rtg.learn.exploration import Exploration, revisit_tolerance
 from rtg.learn.hindsight import HindsightReplayBuffer, Layouts
@@ -29,7 +29,7 @@ AVERAGING_WARM_UP = 5.0
 
 
 class Environments(Protocol):
-    """What the learner needs of its environments; see PushVecEnv."""
+    """What the learner needs of its environments; see TrainingEnvironments."""
 
     count: int
     observation_size: int

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import torch as th
 
-from rtg.envs.vector_env import Step
+from rtg.envs.training_environments import Step
 from rtg.files.dataset import Transitions
 from rtg.learn.value_bounds import value_bounds
 

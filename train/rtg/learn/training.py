@@ -9,7 +9,7 @@ from typing import Any
 
 from rtg import _core
 from rtg.envs.curriculum import Curriculum
-from rtg.envs.vector_env import PushVecEnv
+from rtg.envs.training_environments import TrainingEnvironments
 from rtg.errors import RunError, UserError
 from rtg.files import checkpoint, run_folder
 from rtg.learn import device, policy_file, training_result
@@ -48,7 +48,7 @@ class Training:
         self.seed = seed = config.run.seed
         count = math.gcd(s.train_frequency, MAX_ENVIRONMENTS)
         curriculum = Curriculum(config, s.curriculum, seed) if s.curriculum else None
-        self.env = PushVecEnv(config, count, config.training_jitter, seed, curriculum)
+        self.env = TrainingEnvironments(config, count, config.training_jitter, seed, curriculum)
         clones = s.learner == "cloning"
         self.model = (Cloning if clones else DoubleDqn)(self.env, s, self.discount, seed)
         selection = {"select": imitated} if clones else {}

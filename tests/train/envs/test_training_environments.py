@@ -5,13 +5,13 @@ import numpy as np
 from rtg import _core, paths
 from rtg.envs.curriculum import NOT_FROM_CURRICULUM
 from rtg.envs.push_env import PushEnv
-from rtg.envs.vector_env import PushVecEnv
+from rtg.envs.training_environments import TrainingEnvironments
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
 TASK = CONFIG.task
 
 
-def steps(env: PushVecEnv, count: int, seed: int = 0) -> list[np.ndarray]:
+def steps(env: TrainingEnvironments, count: int, seed: int = 0) -> list[np.ndarray]:
     """Makes random pushes; returns all that the environments say of them but for the episodes."""
     rng = np.random.default_rng(seed)
     return [np.column_stack(env.step(rng.integers(48, size=env.count))[:-1]) for _ in range(count)]
@@ -46,7 +46,7 @@ class Singles:
         return self.envs[k].reset(options={"poses": start})[0]
 
     def step(self, k: int, action: int) -> tuple[Any, ...]:
-        """Does what one copy of PushVecEnv does; returns the fields of Step for it."""
+        """Does what one copy of TrainingEnvironments does; returns the fields of Step for it."""
         seen, reward, terminated, truncated, _ = self.envs[k].step(action)
         self.lengths[k] += 1
         self.successes += terminated
@@ -59,7 +59,10 @@ class Singles:
 
 def test_every_copy_does_what_the_single_environment_does_over_many_episodes() -> None:
     count, horizon = 3, NEAR.task.horizon
-    many, singles = PushVecEnv(NEAR, count, 0.1, seed=9), Singles(NEAR, count, 0.1, seed=9)
+    many, singles = (
+        TrainingEnvironments(NEAR, count, 0.1, seed=9),
+        Singles(NEAR, count, 0.1, seed=9),
+    )
     first = many.reset()
     np.testing.assert_array_equal(first, [singles.begin(k) for k in range(count)])
     rng = np.random.default_rng(0)
@@ -77,7 +80,7 @@ def test_every_copy_does_what_the_single_environment_does_over_many_episodes() -
 
 
 def test_a_finished_episode_reports_its_end_and_starts_again() -> None:
-    env = PushVecEnv(CONFIG, 2, jitter=0.1, seed=9)
+    env = TrainingEnvironments(CONFIG, 2, jitter=0.1, seed=9)
     env.reset()
     for _ in range(60):
         step = env.step(np.array([36, 36]))
@@ -105,7 +108,7 @@ class Turns:
 
 def test_only_episodes_from_the_starts_of_the_task_count() -> None:
     curriculum = Turns()
-    env = PushVecEnv(CONFIG, 2, jitter=0.1, seed=9, curriculum=curriculum)
+    env = TrainingEnvironments(CONFIG, 2, jitter=0.1, seed=9, curriculum=curriculum)
     env.reset()
     for _ in range(60):
         step = env.step(np.array([36, 36]))
@@ -115,18 +118,18 @@ def test_only_episodes_from_the_starts_of_the_task_count() -> None:
 
 
 def test_a_restored_environment_goes_on_with_the_same_bits() -> None:
-    env = PushVecEnv(CONFIG, 4, jitter=0.1, seed=1)
+    env = TrainingEnvironments(CONFIG, 4, jitter=0.1, seed=1)
     env.reset()
     steps(env, 50)
     state = env.state()
     expected = steps(env, 100, seed=7)
-    other = PushVecEnv(CONFIG, 4, jitter=0.1, seed=1)
+    other = TrainingEnvironments(CONFIG, 4, jitter=0.1, seed=1)
     other.restore(state)
     np.testing.assert_array_equal(steps(other, 100, seed=7), expected)
 
 
 def test_contact_headings_are_those_of_the_present_states() -> None:
-    env = PushVecEnv(CONFIG, 3, jitter=0.1, seed=1)
+    env = TrainingEnvironments(CONFIG, 3, jitter=0.1, seed=1)
     env.reset()
     for _ in range(3):
         steps(env, 1)
@@ -139,7 +142,7 @@ def test_contact_headings_are_those_of_the_present_states() -> None:
 class GivesUp:
     """A simulator that finishes no push of environment 1."""
 
-    def __init__(self, env: PushVecEnv) -> None:
+    def __init__(self, env: TrainingEnvironments) -> None:
         self.real = env._simulator
 
     def push(self, states: np.ndarray, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -149,7 +152,7 @@ class GivesUp:
 
 
 def test_a_push_that_the_simulator_gives_up_cuts_the_episode() -> None:
-    env = PushVecEnv(CONFIG, 2, jitter=0.1, seed=9)
+    env = TrainingEnvironments(CONFIG, 2, jitter=0.1, seed=9)
     before = env.reset()
     env._simulator = GivesUp(env)
     step = env.step(np.array([0, 0]))

@@ -28,7 +28,7 @@ class Step(NamedTuple):
     episodes: list[tuple[bool, int]]
 
 
-class PushVecEnv:
+class TrainingEnvironments:
     """A vector of `count` environments like PushEnv.
 
     A finished environment begins a new episode at once. The k-th episode of all environments begins
