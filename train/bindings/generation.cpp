@@ -11,28 +11,15 @@
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 #include "train/bindings/fields.hpp"
+#include "train/bindings/transition_arrays.hpp"
 
 namespace rtg::bindings {
 namespace {
 
-/// Passes `rows` to Python: calls store(poses, action, next_poses, success, source) with one array
-/// per argument.
+/// Passes `rows` to Python: calls store(poses, action, next_poses, success, source).
 void hand_over(const nb::object& store, std::span<const search::Transition> rows) {
   const nb::gil_scoped_acquire acquire;
-  const std::size_t count = rows.size(), bodies = count ? rows[0].poses.size() : 0;
-  OwnedArray<double> poses(count * bodies * 3), next(count * bodies * 3);
-  OwnedArray<std::int32_t> action(count);
-  OwnedArray<bool> success(count);
-  OwnedArray<std::int8_t> source(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    write_state(rows[k].poses, poses.data.get() + k * bodies * 3);
-    write_state(rows[k].next, next.data.get() + k * bodies * 3);
-    action.data[k] = rows[k].action;
-    success.data[k] = rows[k].success;
-    source.data[k] = static_cast<std::int8_t>(rows[k].source);
-  }
-  store(poses.release({count, bodies, 3}), action.release({count}),
-        next.release({count, bodies, 3}), success.release({count}), source.release({count}));
+  store(*transition_arrays(rows));
 }
 
 void report_progress(const nb::object& progress, const search::Progress& p) {

@@ -8,7 +8,9 @@ NB_MODULE(_core, module) {
   rtg::bindings::bind_task(module);
   rtg::bindings::bind_config(module);
   rtg::bindings::bind_simulator(module);
+  rtg::bindings::bind_energy(module);
   rtg::bindings::bind_reverse(module);
+  rtg::bindings::bind_search(module);
   rtg::bindings::bind_generation(module);
   rtg::bindings::bind_network(module);
 }

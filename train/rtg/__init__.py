@@ -3,6 +3,8 @@
 from gymnasium.envs.registration import register
 
 from rtg import forward
+from rtg.beam_search import BeamSearch, Nodes
+from rtg.energy import Contact, StepEnergy
 from rtg.policy import Policy, load_policy, train
 from rtg.reverse import Contacts, ReverseSimulator, ReverseSolutions
 from rtg.task import Task, load_task
@@ -11,10 +13,14 @@ from rtg.transitions import SOURCES, Transitions, generate
 __all__ = [
     "ENVIRONMENTS",
     "SOURCES",
+    "BeamSearch",
+    "Contact",
     "Contacts",
+    "Nodes",
     "Policy",
     "ReverseSimulator",
     "ReverseSolutions",
+    "StepEnergy",
     "Task",
     "Transitions",
     "forward",

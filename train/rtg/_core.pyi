@@ -319,6 +319,61 @@ class ReverseSimulator:
         "normal" [C, 2]. Raises ValueError for arrays that do not fit the task.
         """
 
+class StepEnergy:
+    """The step energy of a task, in units of the core; see rtg.energy.
+
+    States are [1, bodies, 3], forces [C]. Raises ValueError for arrays that do not fit the task.
+    """
+
+    def __init__(self, config: Config) -> None: ...
+    @property
+    def contacts(self) -> list[tuple[int, int, float]]:
+        """Body, other body and coefficient of friction of each contact. [C]"""
+    def gaps(self, state: NDArray[np.float64]) -> NDArray[np.float64]: ...
+    def forces(self, state: NDArray[np.float64]) -> NDArray[np.float64]: ...
+    def value(
+        self,
+        next: NDArray[np.float64],
+        now: NDArray[np.float64],
+        previous_forces: NDArray[np.float64] | None,
+    ) -> float: ...
+    def model(
+        self,
+        next: NDArray[np.float64],
+        now: NDArray[np.float64],
+        previous_forces: NDArray[np.float64] | None,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Returns gradient and Hessian, [3 movable] and [3 movable, 3 movable]."""
+
+class BeamSearch:
+    """A tree of reverse steps from goal states towards a start; see rtg.beam_search.
+
+    `target`: the start, [1, bodies, 3]. In units of the core.
+    """
+
+    def __init__(self, config: Config, target: NDArray[np.float64], seed: int) -> None: ...
+    def make_roots(self) -> None: ...
+    def grow(
+        self,
+    ) -> tuple[
+        NDArray[np.float64],
+        NDArray[np.int32],
+        NDArray[np.float64],
+        NDArray[np.bool_],
+        NDArray[np.int8],
+    ]:
+        """Grows a layer. Returns poses, action, next poses, success and source of N transitions."""
+    @property
+    def nodes(
+        self,
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+        """Poses [K, bodies, 3], action, parent and depth [K] of all nodes."""
+    @property
+    def beam(self) -> NDArray[np.int64]:
+        """Indices of the nodes that the next layer starts from."""
+    @property
+    def start_distance(self) -> float: ...
+
 class Simulator:
     """Simulates the pushes of a task: the dynamics of replays, training and evaluation.
 

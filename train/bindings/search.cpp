@@ -1,0 +1,88 @@
+#include "core/search/beam_search.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "core/search/simulators.hpp"
+#include "nodes/config/config.hpp"
+#include "train/bindings/arrays.hpp"
+#include "train/bindings/bindings.hpp"
+#include "train/bindings/transition_arrays.hpp"
+
+namespace rtg::bindings {
+namespace {
+
+/// A beam search with the simulators of its task.
+class TaskSearch {
+ public:
+  TaskSearch(const config::Config& config, const StateArray& target, std::uint64_t seed)
+      : config_(config),
+        seams_(search::in_process_seams(
+            reverse_solver(config_.task, config_.physics, config_.reverse,
+                           config_.search.generator),
+            search::forward_replay(config_.task, config_.physics, config_.forward),
+            config_.run.workers)),
+        search_(config_.task, config_.search, only_state(target, config_.task.scene.size()), seed) {
+  }
+  TaskSearch(const TaskSearch&) = delete;  // the search refers to the task of this object
+  TaskSearch& operator=(const TaskSearch&) = delete;
+
+  void make_roots() {
+    const nb::gil_scoped_release release;
+    search_.make_roots(counted(seams_.replay, stats_, search::Stage::kGoals), stats_);
+  }
+
+  nb::tuple grow() {
+    std::vector<search::Transition> found;
+    {
+      const nb::gil_scoped_release release;
+      found = search_.grow(seams_.solve, seams_.replay, stats_);
+    }
+    return transition_arrays(found);
+  }
+
+  /// Returns poses [K, bodies, 3], action, parent and depth [K] of all nodes.
+  nb::tuple nodes() const {
+    const std::span<const search::Node> nodes = search_.nodes();
+    const std::size_t count = nodes.size(), bodies = config_.task.scene.size();
+    OwnedArray<double> poses(count * bodies * 3);
+    OwnedArray<std::int64_t> action(count), parent(count), depth(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      write_state(nodes[k].poses, poses.data.get() + k * bodies * 3);
+      action.data[k] = nodes[k].action;
+      parent.data[k] = nodes[k].parent;
+      depth.data[k] = nodes[k].depth;
+    }
+    return nb::make_tuple(poses.release({count, bodies, 3}), action.release({count}),
+                          parent.release({count}), depth.release({count}));
+  }
+
+  nb::ndarray<nb::numpy, std::int64_t> beam() const {
+    OwnedArray<std::int64_t> out(search_.beam().size());
+    std::ranges::copy(search_.beam(), out.data.get());
+    return out.release({search_.beam().size()});
+  }
+
+  double start_distance() const { return search_.min_start_distance(); }
+
+ private:
+  config::Config config_;
+  search::GenerationSeams seams_;
+  search::SearchStats stats_;
+  search::BeamSearch search_;
+};
+
+}  // namespace
+
+void bind_search(nb::module_& module) {
+  nb::class_<TaskSearch>(module, "BeamSearch")
+      .def(nb::init<const config::Config&, const StateArray&, std::uint64_t>(), nb::arg("config"),
+           nb::arg("target"), nb::arg("seed"))
+      .def("make_roots", &TaskSearch::make_roots)
+      .def("grow", &TaskSearch::grow)
+      .def_prop_ro("nodes", &TaskSearch::nodes, nb::rv_policy::move)
+      .def_prop_ro("beam", &TaskSearch::beam, nb::rv_policy::move)
+      .def_prop_ro("start_distance", &TaskSearch::start_distance);
+}
+
+}  // namespace rtg::bindings
