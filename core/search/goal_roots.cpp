@@ -7,38 +7,33 @@
 #include "core/search/predecessor.hpp"
 #include "core/search/state_metric.hpp"
 #include "core/tasks/goal_sampler.hpp"
+#include "core/tasks/symmetry.hpp"
 
 namespace rtg::search {
 namespace {
 
 constexpr int kMaxFailures = 20;  // consecutive failed draws that end the drawing
 
-bool look_the_same(const Scene& scene, std::size_t i, std::size_t j) {
-  const Body &a = scene.bodies[i], &b = scene.bodies[j];
-  if (has_joint(scene, i) || has_joint(scene, j)) return false;
-  return a.kind == b.kind && a.shape == b.shape && a.density == b.density &&
-         a.friction == b.friction && !a.fixed && !b.fixed;
-}
-
 }  // namespace
 
 Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Poses& target) {
   const StateMetric metric(task.scene);
+  const std::vector<std::vector<std::size_t>> groups = interchangeable(task);
   Poses best = poses;
   double least = metric.layout_distance(best, target);
   for (bool improved = true; improved;) {
     improved = false;
-    for (std::size_t i = 1; i < poses.size(); ++i)
-      for (std::size_t j = i + 1; j < poses.size(); ++j) {
-        if (!look_the_same(task.scene, i, j)) continue;
-        Poses trial = best;
-        std::swap(trial[i], trial[j]);
-        const double distance = metric.layout_distance(trial, target);
-        if (distance >= least) continue;
-        best = std::move(trial);
-        least = distance;
-        improved = true;
-      }
+    for (const std::vector<std::size_t>& group : groups)
+      for (std::size_t i = 0; i < group.size(); ++i)
+        for (std::size_t j = i + 1; j < group.size(); ++j) {
+          Poses trial = best;
+          std::swap(trial[group[i]], trial[group[j]]);
+          const double distance = metric.layout_distance(trial, target);
+          if (distance >= least) continue;
+          best = std::move(trial);
+          least = distance;
+          improved = true;
+        }
   }
   return best;
 }

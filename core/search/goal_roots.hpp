@@ -9,9 +9,8 @@
 
 namespace rtg::search {
 
-/// Swaps the poses of interchangeable objects until no swap reduces the layout_distance() to
-/// `target`. Returns the result. Objects are interchangeable if they can move, have no joint, and
-/// have equal kind, shape, density and friction. Such swaps do not change whether a goal holds.
+/// Swaps the poses of interchangeable() objects until no swap reduces the layout_distance() to
+/// `target`. Returns the result.
 Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Poses& target);
 
 /// Nodes of a full beam per root. With a root for each, the first layer takes three times as long,

@@ -69,6 +69,7 @@ struct TrainConfig {
   bool double_q = true;            // van Hasselt et al. 2016
   bool clipped_double_q = true;    // Double-Q value: the smaller of the two networks'
   Network network = Network::kHeadings;
+  bool symmetry = true;        // states equal up to a symmetry of the task are one input
   bool clip_targets = true;    // to [0, 1], the range of the values
   bool value_bounds = true;    // raise targets to lower bounds that stored trajectories prove
   double epsilon_start = 0.3;  // ε at the first interaction
@@ -158,6 +159,9 @@ struct TrainConfig {
            "bootstrap from the smaller value of the online and the target network");
     v.choice("network", network, kNetworks,
              "value network: one whose headings share weights, or Table 2's");
+    v.flag("symmetry", symmetry,
+           "show the network one state for all that differ by swaps of equal objects or turns of "
+           "symmetric ones");
     v.flag("clip_targets", clip_targets, "clip TD targets to [0, 1]");
     v.flag("value_bounds", value_bounds,
            "raise TD targets to lower bounds that stored trajectories prove");

@@ -32,6 +32,7 @@ inline TrainConfig train_preset(TrainPreset preset) {
   config.epsilon_share = 0.1;
   config.nearby_share = 0.0;
   config.leave_loops = false;
+  config.symmetry = false;
   config.start_jitter = 0.0;
   config.eval_every = 10000;
   config.stop_at_success = 0.0;

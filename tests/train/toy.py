@@ -6,7 +6,15 @@ from types import SimpleNamespace
 import numpy as np
 from rtg.envs.training_environments import Step
 
-TASK = SimpleNamespace(strides=(1.0,), relative_unit=1.0, position_unit=4.0)
+TASK = SimpleNamespace(
+    strides=(1.0,),
+    relative_unit=1.0,
+    position_unit=4.0,
+    bodies=1,  # the robot alone
+    robot_entries=3,
+    interchangeable=[],
+    turn_periods=[0.0],
+)
 TIME_LIMIT = 20  # actions of an episode of the line
 
 

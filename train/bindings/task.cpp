@@ -12,6 +12,7 @@
 #include "core/tasks/contact_heading.hpp"
 #include "core/tasks/goal_marks.hpp"
 #include "core/tasks/goal_sampler.hpp"
+#include "core/tasks/symmetry.hpp"
 #include "core/world/outline.hpp"
 #include "core/world/separation.hpp"
 #include "nodes/config/config.hpp"
@@ -138,6 +139,12 @@ nb::ndarray<nb::numpy, double> start(const tasks::Task& task, double amplitude, 
   return state_array(jittered_start(task, amplitude, rng));
 }
 
+std::vector<double> turn_periods(const tasks::Task& task) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < task.scene.size(); ++i) out.push_back(turn_period(task, i));
+  return out;
+}
+
 /// Returns the strides, the longest one being 1.
 std::vector<double> strides(const tasks::Task& task) {
   std::vector<double> out;
@@ -227,6 +234,8 @@ void bind_task(nb::module_& module) {
                    [](const tasks::Task& task) { return robot_is_turned(task) ? 4 : 2; })
       .def_prop_ro("bodies", [](const tasks::Task& task) { return task.scene.size(); })
       .def_prop_ro("observation_size", &tasks::observation_size)
+      .def_prop_ro("interchangeable", &tasks::interchangeable)
+      .def_prop_ro("turn_periods", &turn_periods)
       .def_prop_ro("content", &config::task_hash)
       .def("observation", &observations, nb::arg("states"))
       .def("joints_reached", &joints_reached, nb::arg("states"))

@@ -111,6 +111,15 @@ class Task:
     @property
     def robot_entries(self) -> int:
         """Number of the entries of an observation that are about the robot; the first ones."""
+    @property
+    def interchangeable(self) -> list[list[int]]:
+        """The movable objects in groups: to swap two of a group changes nothing but their names.
+
+        Most often each is alone in its group.
+        """
+    @property
+    def turn_periods(self) -> list[float]:
+        """The angles by which each body can be turned without any change; 0 of discs [rad]."""
     def observation(self, states: NDArray[np.float64]) -> NDArray[np.float32]:
         """Returns the observations of the states. [N, bodies, 3] -> [N, observation_size]"""
     def joints_reached(self, states: NDArray[np.float64]) -> list[bool]:

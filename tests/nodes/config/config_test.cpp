@@ -142,7 +142,7 @@ TEST(Config, ThePresetPaperIsTable2) {
   EXPECT_EQ(train.stop_at_success, 0.0);
   EXPECT_EQ(train.network, Network::kPlain);
   for (const bool added : {train.target_acts, train.clipped_double_q, train.clip_targets,
-                           train.value_bounds, train.leave_loops})
+                           train.value_bounds, train.leave_loops, train.symmetry})
     EXPECT_FALSE(added);
 }
 

@@ -70,7 +70,7 @@ def test_the_preset_paper_differs_in_these_values_alone() -> None:
     table_2 = {"batch": 512, "learning_rate": 5e-5, "target_sync": 250, "target_rate": 1.0}
     exploration = {"epsilon_start": 1.0, "epsilon_end": 0.05, "epsilon_share": 0.1}
     uniform = {"offline_share": -1.0, "recent_share": 0.0, "nearby_share": 0.0}
-    of_default = "target_acts clipped_double_q clip_targets value_bounds leave_loops"
+    of_default = "target_acts clipped_double_q clip_targets value_bounds leave_loops symmetry"
     without = {**dict.fromkeys(of_default.split(), False), "averaging_rate": 1.0, "discount": 0.0}
     without["network"] = "plain"
     course = {"start_jitter": 0.0, "eval_every": 10000, "stop_at_success": 0.0}

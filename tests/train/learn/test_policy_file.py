@@ -65,7 +65,7 @@ def test_a_policy_has_the_values_of_the_network_that_was_written(
     tmp_path: Path, network: str
 ) -> None:
     """It was flattened, as those of learners are."""
-    file, settings = tmp_path / "model.pt", train_settings(network=network)
+    file, settings = tmp_path / "model.pt", train_settings(network=network, symmetry=False)
     written = networks.make(network, TASK.observation_size, TASK.headings)
     networks.flatten(written)
     policy_file.write(file, TASK, settings, written.state_dict())
@@ -95,6 +95,7 @@ def test_threads_that_share_a_policy_get_what_one_alone_gets(tmp_path: Path) -> 
         ("hindsight", 0, False),
         ("hindsight", 1, True),
         ("hindsight", 4, True),
+        ("symmetry", False, False),
     ],
 )
 def test_the_identity_says_what_shapes_the_weights(field: str, value: Any, expected: Any) -> None:
@@ -107,6 +108,7 @@ def test_the_identity_says_what_shapes_the_weights(field: str, value: Any, expec
         "task": TASK.content,
         "network": "headings",
         "hindsight": False,
+        "symmetry": True,
         field: expected,
     }
 

@@ -11,6 +11,7 @@ from rtg import _core
 from rtg.files.dataset import Rows
 from rtg.learn import device, trainer
 from rtg.learn.evaluation import Evaluation
+from rtg.learn.symmetry import Symmetry
 from rtg.learn.training import Training
 from test_learner_settings import OF_THE_LEARNER
 from training_runs import TINY, Stream, run_folder, training
@@ -109,6 +110,7 @@ OF_THE_PARTS: dict[str, tuple[Any, Any, Callable[[Training], Any], Any, Any]] = 
     "discount": (0.7, 0.9, lambda t: t.model.discount, 0.7, 0.9),
     "start_jitter": (0.1, 0.2, spread, 0.1, 0.2),
     "randomise": (False, True, spread, 0.1, 0.5),
+    "symmetry": (True, False, lambda t: isinstance(t.model.symmetry, Symmetry), True, False),
     "hindsight": (0, 2, lambda t: getattr(t.model.replay, "goals", 0), 0, 2),
     "curriculum": (0.0, 0.5, lambda t: t.env.curriculum is not None, False, True),
     "eval_episodes": (2, 3, lambda t: len(t.starts), 2, 3),

@@ -17,8 +17,9 @@ from rtg.envs.training_environments import Step
 from rtg.learn import device, networks
 from rtg.learn.exploration import Exploration, revisit_tolerance
 from rtg.learn.hindsight import HindsightReplayBuffer, Layouts
-from rtg.learn.replay import Batch, MixedReplayBuffer, ReplayRules
+from rtg.learn.replay import Batch, MixedReplayBuffer, ReplayRules, unchanged
 from rtg.learn.stages import Stages
+from rtg.learn.symmetry import Symmetry
 
 Array = npt.NDArray[Any]
 
@@ -107,6 +108,7 @@ class DoubleDqn:
         self.env, self.settings, self.discount = env, settings, discount
         self.device = device.chosen(settings.device)
         self.layouts = Layouts(env.task) if settings.hindsight else None
+        self.symmetry = Symmetry(env.task, self.layouts) if settings.symmetry else unchanged
         self.replay = self._make_replay(seed)
         inputs = env.observation_size + (self.layouts.size if self.layouts else 0)
         th.manual_seed(seed)
@@ -141,7 +143,7 @@ class DoubleDqn:
     def _make_replay(self, seed: int) -> MixedReplayBuffer:
         s, env = self.settings, self.env
         rules = _rules(s, self.discount, seed)
-        shape = (s.buffer, env.observation_size, env.count, rules, self.device)
+        shape = (s.buffer, env.observation_size, env.count, rules, self.device, self.symmetry)
         if self.layouts:
             return HindsightReplayBuffer(*shape, layouts=self.layouts, goals=s.hindsight)
         return MixedReplayBuffer(*shape)
@@ -317,10 +319,10 @@ class DoubleDqn:
         seen = self.layouts.network_input_nearest(observation) if self.layouts else observation
         return self._values_of(self.mean, seen)
 
-    def _values_of(self, net: th.nn.Module, observation: Array) -> Array:
+    def _values_of(self, net: th.nn.Module, seen: Array) -> Array:
         with th.no_grad():
-            seen = th.from_numpy(np.ascontiguousarray(observation)).to(self.device)
-            q: Array = net(seen).cpu().numpy()
+            given = np.ascontiguousarray(self.symmetry(seen))
+            q: Array = net(th.from_numpy(given).to(self.device)).cpu().numpy()
         return q
 
     def state(self) -> dict[str, Any]:

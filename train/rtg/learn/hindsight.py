@@ -54,7 +54,16 @@ SUBSET_DIVISOR = 10  # a training episode gets the nearest of 1 / SUBSET_DIVISOR
 DIRECTIONS = 8  # of the displacements that robust goal states bear
 MIXED = 112  # number of such displacements in which each object has a direction of its own
 LAYOUT_SEED = 3 << 61  # fixed seed of the draws, so a policy file need not store it
-BODY_ENTRIES = 6  # entries of an observation per movable object; two of the robot come first
+BODY_ENTRIES = 6  # entries of an observation per movable object
+
+
+def object_columns(task: _core.Task) -> dict[int, int]:
+    """Returns the first column of each movable object in an observation; see rtg.task.
+
+    Its BODY_ENTRIES columns are x, y, cos θ, sin θ and the offset from the robot.
+    """
+    movable = [body for body in range(1, task.bodies) if not task.fixed[body]]
+    return {body: task.robot_entries + BODY_ENTRIES * k for k, body in enumerate(movable)}
 
 
 class Layouts:
@@ -67,12 +76,12 @@ class Layouts:
     def __init__(self, task: _core.Task) -> None:
         self._unit = task.position_unit  # [m]
         states = goal_states(task, LAYOUT_SEED, FIRST_DRAWS)
-        movable = [body for body in range(1, task.bodies) if not task.fixed[body]]
-        turned = [body for body in goal_angles(task, states) if body in movable]
-        at = {body: task.robot_entries + BODY_ENTRIES * k for k, body in enumerate(movable)}
-        positions = [column for body in movable for column in (at[body], at[body] + 1)]
+        self._at = at = object_columns(task)
+        turned = [body for body in goal_angles(task, states) if body in at]
+        positions = [column for body in at for column in (at[body], at[body] + 1)]
         angles = [column for body in turned for column in (at[body] + 2, at[body] + 3)]
         self._columns = np.array(positions + angles)  # columns of an observation
+        self._first = task.observation_size  # of the columns that network_input() appends
         self._position_entries = len(positions)
         self.size = len(self._columns)
         turns = _tolerated_turns(task, turned)
@@ -81,6 +90,11 @@ class Layouts:
         self.turns = turns[turned] * share  # [rad], per angle of a layout
         goals = _desired_states(task, states, self.tolerance, turns * share)
         self.goal_layouts = self.of(task.observation(goals))  # [layouts, size]
+
+    def columns_of(self, body: int) -> list[int]:
+        """Returns the columns about an object that network_input() appends."""
+        own = range(self._at[body], self._at[body] + BODY_ENTRIES)
+        return [self._first + k for k, column in enumerate(self._columns) if column in own]
 
     def of(self, observation: Array) -> Array:
         """Returns the layouts of the observations. [N, observation] -> [N, size]"""

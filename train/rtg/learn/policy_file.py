@@ -21,6 +21,8 @@ from rtg.files import checkpoint
 from rtg.learn import networks
 from rtg.learn.evaluation import Values
 from rtg.learn.hindsight import Layouts
+from rtg.learn.replay import unchanged
+from rtg.learn.symmetry import Symmetry
 
 
 def _interface(task: _core.Task) -> dict[str, Any]:
@@ -44,6 +46,7 @@ def identity(task: _core.Task, settings: _core.TrainConfig) -> dict[str, Any]:
         **_contents(task),
         "network": settings.network,
         "hindsight": settings.hindsight > 0,
+        "symmetry": settings.symmetry,
     }
 
 
@@ -88,6 +91,7 @@ def read(path: Path, task: _core.Task) -> Values:
     if not isinstance(weights, dict):
         raise UserError(f"{path}: holds no policy; legal: a model.pt of RTG")
     layouts = Layouts(task) if found.get("hindsight") else None
+    symmetry = Symmetry(task, layouts) if found.get("symmetry") else unchanged
     inputs = task.observation_size + (layouts.size if layouts else 0)
     network = networks.make(found["network"], inputs, task.headings, task.strides)
     try:
@@ -108,7 +112,7 @@ def read(path: Path, task: _core.Task) -> Values:
             own.network = copy.deepcopy(network)
             networks.flatten(own.network)
         with th.no_grad():
-            q: NDArray[Any] = own.network(th.from_numpy(seen)).numpy()
+            q: NDArray[Any] = own.network(th.from_numpy(symmetry(seen))).numpy()
         return q
 
     return values

@@ -5,6 +5,7 @@ Offline transitions are never evicted. Online transitions form a ring buffer.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -21,6 +22,10 @@ Part = tuple["Store", Array]  # a store and indices of some of its rows
 Field = tuple[str, npt.DTypeLike, tuple[int, ...]]  # name, type and shape
 
 RECENT_COUNT = 10_000  # number of latest online transitions that count as recent
+
+
+def unchanged(seen: Array) -> Array:
+    return seen
 
 
 class Batch(NamedTuple):
@@ -134,13 +139,18 @@ class MixedReplayBuffer:
         environments: int,
         rules: ReplayRules,
         device: str = "cpu",
+        as_input: Callable[[Array], Array] = unchanged,
     ) -> None:
-        """`capacity`: of each store; `device`: where batches are."""
+        """`capacity`: of each store; `device`: where batches are.
+
+        `as_input`: makes what a network sees of the observations of a batch, see Symmetry.
+        """
         # Both s and s' are stored, because offline transitions are not consecutive.
         self.offline = Store(capacity, observation_size)
         self.online = Store(capacity, observation_size)
         self.capacity, self.observation_size = capacity, observation_size
         self.environments, self.device = environments, device
+        self._as_input = as_input
         self.rules = rules
         self.rng = np.random.default_rng(rules.seed)
         # Per environment, the numbers in `online` of the transitions of its current episode.
@@ -221,6 +231,8 @@ class MixedReplayBuffer:
         if offline < batch_size:
             parts.append((self.online, self._online_rows(batch_size - offline)))
         columns = self._columns(parts)
+        for name in ("observation", "next_observation"):
+            columns[name] = self._as_input(columns[name])
 
         def column(name: str) -> th.Tensor:
             tensor = th.from_numpy(columns[name]).to(self.device)

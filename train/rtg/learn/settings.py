@@ -12,6 +12,7 @@ CHECKPOINT_SETTINGS = (
     "buffer",
     "discount",
     "network",
+    "symmetry",
     "hindsight",
     "curriculum",
 )
