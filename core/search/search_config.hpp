@@ -35,7 +35,7 @@ struct SearchConfig {
   void visit(Visitor& v) {
     v.choice("generator", generator, kGenerators, "method that generates the transitions");
     v.integer("transitions", transitions, 1, 100000000,
-              "number of transitions to store, branches included");
+              "transitions to store, branches included; default: 20000 per object, at least 60000");
     v.integer("branches", branches, 0, 359,
               "other headings also simulated and stored at each stored step");
     v.integer("breadth", breadth, 1, 100000, "beam width: largest number of nodes per layer");

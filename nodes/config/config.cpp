@@ -211,6 +211,15 @@ void check_sections(const ConfigNode& root) {
                           listed(kSections));
 }
 
+/// Returns the number of transitions of tasks that do not tell it: more objects have to be moved in
+/// more steps. With 60,000 the budget is gone before a tree of eight boxes reaches the start.
+int default_transitions(const tasks::Task& task) {
+  constexpr int kPerObject = 20000;
+  int objects = 0;
+  for (std::size_t i = 1; i < task.scene.size(); ++i) objects += !task.scene.bodies[i].fixed;
+  return std::max(search::SearchConfig{}.transitions, kPerObject * objects);
+}
+
 Config read_config(const ConfigNode& root) {
   check_sections(root);
   const FieldReader reader(root, "", kSections);
@@ -219,6 +228,7 @@ Config read_config(const ConfigNode& root) {
   read_section(root, "physics", config.physics);
   read_section(root, "forward", config.forward);
   read_preset_section(root, "reverse", reverse::reverse_preset, config.reverse);
+  config.search.transitions = default_transitions(config.task);
   read_section(root, "search", config.search);
   read_preset_section(root, "train", train_preset, config.train, config.task.units);
   read_section(root, "run", config.run);

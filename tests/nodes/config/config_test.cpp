@@ -146,6 +146,12 @@ TEST(Config, ThePresetPaperIsTable2) {
     EXPECT_FALSE(added);
 }
 
+TEST(Config, TasksOfManyObjectsGetMoreTransitionsUnlessTheFileTellsHowMany) {
+  EXPECT_EQ(parsed("").search.transitions, 60000);
+  EXPECT_EQ(load_config(kConfig / "gathering_hard.yaml").search.transitions, 80000);
+  EXPECT_EQ(load_config(kConfig / "art_manip.yaml").search.transitions, 90000);
+}
+
 TEST(Config, RandomisedStartsAreNoNearerThanTheOthers) {
   Config config = parsed("train: {start_jitter: 0.5}\n");
   for (const auto& [randomise, randomisation, evaluation, training] :
