@@ -104,11 +104,11 @@ pip_install() {
   fi
 }
 
-# .venv with the pinned packages of train/requirements.txt and the package rtg itself, installed in place.
+# .venv with the pinned packages of train/requirements.txt; it finds the package rtg where it lies, in train/.
 # The stamp holds what the environment was made from; a moved checkout is made anew.
 setup_python() {
   local wanted
-  wanted="$ROOT $(cd "$ROOT/train" && cat requirements.txt pyproject.toml | sha256sum)"
+  wanted="$ROOT $(sha256sum <"$ROOT/train/requirements.txt")"
   if [[ -x $VENV/bin/python && -f $MADE_FROM && $(<"$MADE_FROM") == "$wanted" ]]; then return; fi
   local python
   python=$(find_python) || exit 1
@@ -119,7 +119,7 @@ setup_python() {
   fi
   say "installing the Python packages of train/requirements.txt, about two minutes (torch is 200 MB)"
   pip_install -r "$ROOT/train/requirements.txt"
-  pip_install --no-deps --no-build-isolation --editable "$ROOT/train"
+  printf '%s\n' "$ROOT/train" >"$("$VENV/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/rtg.pth"
   printf '%s\n' "$wanted" >"$MADE_FROM"
 }
 

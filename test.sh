@@ -31,7 +31,7 @@ run_ctest() { # PRESET [CTEST_OPTION...]
 
 run_pytest() {
   say "pytest"
-  (cd "$ROOT" && "$VENV/bin/python" -m pytest -c train/pyproject.toml --rootdir . \
+  (cd "$ROOT" && "$VENV/bin/python" -m pytest \
     --numprocesses "$(nproc)" --dist loadfile)
 }
 

@@ -6,7 +6,7 @@ from layering import ROOT, sources
 
 TOOLS = Path(sys.executable).parent
 TESTS = ROOT / "tests"
-PYPROJECT = "train/pyproject.toml"
+PYPROJECT = "pyproject.toml"
 
 
 def check(*command: str) -> None:

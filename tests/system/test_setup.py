@@ -49,8 +49,7 @@ def test_the_first_call_says_that_it_is_the_first(tmp_path):
 
 def test_a_linked_environment_is_not_emptied(tmp_path):
     (tmp_path / "train").mkdir()
-    for name in ("requirements.txt", "pyproject.toml"):
-        shutil.copy(paths.ROOT / "train" / name, tmp_path / "train")
+    shutil.copy(paths.ROOT / "train" / "requirements.txt", tmp_path / "train")
     shutil.copy(paths.ROOT / "setup.sh", tmp_path)
     other = tmp_path / "other"
     other.mkdir()

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from rtg import paths
 from rtg.errors import UserError, exit_status
 from rtg.run import run_args
 
@@ -24,7 +25,7 @@ def _check(words: Sequence[str]) -> int:
     from rtg.run import effective_config
 
     parser = run_args.Parser(
-        prog="./run.sh check", description="Validate a task file; print what it says."
+        prog=f"{paths.COMMAND} check", description="Validate a task file; print what it says."
     )
     parser.add_argument("file", metavar="FILE.yaml", help="a task file, or a task of config/")
     parser.add_argument("--picture", metavar="FILE.png", help="also draw starts and goal states")
@@ -50,7 +51,7 @@ def _bus_url(target: str) -> str:
 
 
 def _watcher(tool: str, description: str) -> argparse.ArgumentParser:
-    parser = run_args.Parser(prog=f"./run.sh {tool}", description=description)
+    parser = run_args.Parser(prog=f"{paths.COMMAND} {tool}", description=description)
     parser.add_argument(
         "target",
         metavar="TASK | FILE.yaml | RUN_FOLDER",
@@ -104,7 +105,7 @@ def _reproduce(words: Sequence[str]) -> int:
 
 def _plot(words: Sequence[str]) -> int:
     parser = run_args.Parser(
-        prog="./run.sh plot",
+        prog=f"{paths.COMMAND} plot",
         description="Make report, tables and pictures of a comparison anew, or the pictures of a "
         "run.",
     )
@@ -141,7 +142,7 @@ def _plot(words: Sequence[str]) -> int:
 
 def _evaluate(words: Sequence[str]) -> int:
     parser = run_args.Parser(
-        prog="./run.sh evaluate",
+        prog=f"{paths.COMMAND} evaluate",
         description="Success of a trained policy from other starts, with noise, other physics.",
     )
     parser.add_argument("folder", metavar="RUN", type=Path, help="the folder of a run")

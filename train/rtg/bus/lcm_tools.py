@@ -27,7 +27,7 @@ def lcm_program(name: str) -> Path:
     """
     spec = importlib.util.find_spec("lcm")
     if spec is None or spec.origin is None:
-        raise RunError("the Python package lcm is missing: start through ./run.sh")
+        raise RunError("the Python package lcm is missing: start through ./run.sh, or install lcm")
     return Path(spec.origin).parents[1] / "bin" / name
 
 
@@ -54,10 +54,13 @@ def _types_jar() -> Path | None:
 def lcm_spy(url: str) -> None:
     """Replaces this process by lcm-spy. Raises RunError with a remedy if it cannot run here."""
     if shutil.which("java") is None:
-        raise RunError("lcm-spy needs Java: apt-get install default-jdk. Without: ./run.sh spy")
+        raise RunError(
+            f"lcm-spy needs Java: apt-get install default-jdk. Without: {paths.COMMAND} spy"
+        )
     if not os.environ.get("DISPLAY"):
         raise RunError(
-            "lcm-spy needs a graphical display (DISPLAY is not set); in a terminal: ./run.sh spy"
+            "lcm-spy needs a graphical display (DISPLAY is not set); in a terminal: "
+            f"{paths.COMMAND} spy"
         )
     jar = _types_jar()
     if jar is None:

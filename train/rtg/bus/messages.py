@@ -11,7 +11,7 @@ from rtg import paths
 
 
 def _generated() -> ModuleType:
-    folder = str(paths.BUILD / "msgs" / "python")
+    folder = str(paths.MESSAGES)
     if folder not in sys.path:
         sys.path.append(folder)  # the types import each other by absolute names
     return importlib.import_module("rtg_msgs")

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from rtg import paths
 from rtg.compare import report_sources as sources
 from rtg.compare import report_tables as tables
 from rtg.compare.cells import Grid
@@ -182,7 +183,7 @@ def report(folder: Path, grid: Grid, comparison: Comparison, remarks: str) -> st
     missing = ", ".join(f"`{method}`" for method in tables.not_run(comparison))
     parts = [
         "# Results",
-        f"Written by `./run.sh plot` from the folders of these runs and `{REMARKS}`.",
+        f"Written by `{paths.COMMAND} plot` from the folders of these runs and `{REMARKS}`.",
         *([_QUICK] if any("--quick" in command.split() for command in grid.commands) else []),
         _origin(grid, comparison),
         _LEGEND + (f" Not run: {missing}." if missing else ""),

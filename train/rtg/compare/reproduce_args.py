@@ -67,9 +67,9 @@ class ReproduceArgs:
 def parser() -> Parser:
     """Returns the parser of the flags."""
     p = Parser(
-        prog="./run.sh reproduce",
+        prog=f"{paths.COMMAND} reproduce",
         description="Run methods x seeds on tasks, one process per core, and write a report.",
-        epilog=EPILOG,
+        epilog=EPILOG.replace("./run.sh", paths.COMMAND),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     p.add_argument("tasks", metavar="TASK", nargs="*", help=f"tasks or files ({' '.join(TASKS)})")
@@ -230,6 +230,6 @@ def parse(words: Sequence[str]) -> ReproduceArgs:
         jobs=_parse_number("--jobs", jobs, 1, 1000),
         together=args.together,
         out=Path(args.out or paths.RUNS / f"reproduce{'-quick' * args.quick}").absolute(),
-        command=shlex.join(["./run.sh", "reproduce", *tasks, *flags]),
-        command_line=shlex.join(["./run.sh", "reproduce", *words]),
+        command=shlex.join([paths.COMMAND, "reproduce", *tasks, *flags]),
+        command_line=shlex.join([paths.COMMAND, "reproduce", *words]),
     )

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rtg import _core
+from rtg import _core, paths
 from rtg.pictures.draw import objects
 from rtg.run.effective_config import TREE_GENERATORS
 
@@ -104,7 +104,7 @@ def of_generation(
         return (
             f"goal states: {summary.get('undrawn_goals', 0)} draws met no goal and "
             f"{summary.get('unsettled_goals', 0)} states did not come to rest as one; try wider "
-            "tolerances of task.goal, and ./run.sh check FILE.yaml --picture FILE.png"
+            f"tolerances of task.goal, and {paths.COMMAND} check FILE.yaml --picture FILE.png"
         )
     asked = summary["candidates"] - summary["pruned"]
     if asked and summary["converged"] < _SOLVED * asked:

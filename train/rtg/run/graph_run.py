@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 from rtg import paths
@@ -71,8 +72,12 @@ class GraphRun:
         consumer = (
             ["trainer", *(["--resume"] if plan.resume else [])] if plan.train else ["recorder"]
         )
-        script = str(paths.ROOT / "graph.sh")
-        return ["env", f"RTG_RUN={plan.name}", script, str(plan.folder), *consumer]
+        settings = (
+            f"RTG_RUN={plan.name}",
+            f"RTG_NODES={paths.PROGRAMS}",
+            f"RTG_PYTHON={sys.executable}",
+        )
+        return ["env", *settings, str(paths.GRAPH), str(plan.folder), *consumer]
 
     def _step(self, graph: Node) -> None:
         self._bus.spin(_POLL)

@@ -6,6 +6,7 @@ import shlex
 import sys
 from typing import Any
 
+from rtg import paths
 from rtg.errors import RunError, StoppedError
 from rtg.files import run_folder
 from rtg.run import effective_config
@@ -42,7 +43,7 @@ def _carry_out(plan: RunPlan) -> int:
             measured = _generate_and_train(plan, shown)
         except StoppedError:
             flags = "--resume" if plan.train else "--resume --no-train"
-            command = f"./run.sh {flags} --out {shlex.quote(str(plan.folder))}"
+            command = f"{paths.COMMAND} {flags} --out {shlex.quote(str(plan.folder))}"
             raise RunError(f"stopped; to go on: {command}") from None
         pictures.finish()
         from rtg.run import results  # imports matplotlib

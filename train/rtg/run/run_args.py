@@ -78,10 +78,10 @@ def _ids(names: Sequence[str]) -> str:
 def parser() -> argparse.ArgumentParser:
     """Returns the parser of the arguments of `rtg run`."""
     p = Parser(
-        prog="./run.sh",
+        prog=paths.COMMAND,
         description="From goal states to a trained policy: generate reverse transitions, train, "
         "evaluate, and leave the results in a run folder.",
-        epilog=EPILOG,
+        epilog=EPILOG.replace("./run.sh", paths.COMMAND),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     p.add_argument("task", nargs="?", help="a task of config/ or a FILE.yaml (gathering)")
