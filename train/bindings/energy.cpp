@@ -91,19 +91,26 @@ class TaskEnergy {
 }  // namespace
 
 void bind_energy(nb::module_& module) {
-  nb::class_<TaskEnergy>(module, "StepEnergy")
+  nb::class_<TaskEnergy>(module, "StepEnergy",
+                         R"(The step energy of a task, in units of the core; see rtg.energy.
+
+States are [1, bodies, 3], forces [C]. Raises ValueError for arrays that do not fit the task.)")
       .def(nb::init<const config::Config&>(), nb::arg("config"))
       .def("__reduce__",
            [](const TaskEnergy& energy) {
              return nb::make_tuple(nb::type<TaskEnergy>(), nb::make_tuple(energy.config()));
            })
-      .def_prop_ro("contacts", &TaskEnergy::contacts)
-      .def("gaps", &TaskEnergy::gaps, nb::arg("state"))
-      .def("forces", &TaskEnergy::forces, nb::arg("state"))
+      .def_prop_ro("contacts", &TaskEnergy::contacts,
+                   "Body, other body and coefficient of friction of each contact. [C]")
+      .def("gaps", &TaskEnergy::gaps, nb::arg("state"), "Returns the gap of each contact. [C]")
+      .def("forces", &TaskEnergy::forces, nb::arg("state"),
+           "Returns the normal force of each contact. [C]")
       .def("value", &TaskEnergy::value, nb::arg("next"), nb::arg("now"),
-           nb::arg("previous_forces").none())
+           nb::arg("previous_forces").none(),
+           "Returns the energy; infinity where a gap is not positive.")
       .def("model", &TaskEnergy::model, nb::arg("next"), nb::arg("now"),
-           nb::arg("previous_forces").none());
+           nb::arg("previous_forces").none(),
+           "Returns gradient and Hessian, [3 movable] and [3 movable, 3 movable].");
 }
 
 }  // namespace rtg::bindings

@@ -80,9 +80,19 @@ std::pair<nb::ndarray<nb::numpy, double>, long> plan(const config::Config& confi
 void bind_generation(nb::module_& module) {
   module.attr("GENERATORS") = names_of(search::kGenerators);
   module.attr("SOURCES") = names_of(search::kSources);
-  module.def("generate", &generate_in_process, nb::arg("config"), nb::arg("store"),
-             nb::arg("progress"));
-  module.def("plan", &plan, nb::arg("config"), nb::arg("start"));
+  module.def(
+      "generate", &generate_in_process, nb::arg("config"), nb::arg("store"), nb::arg("progress"),
+      R"(Generates transitions in this process, on run.workers threads. Returns the report as JSON.
+
+Calls store(poses, action, next_poses, success, source) with the transitions in sequence order.
+Calls progress() after each layer of the search, with a dictionary of "phase", "layer", "depth",
+"transitions", "target", "contact_share" and "start_region". An exception of either function
+ends the generation and is raised.)");
+  module.def("plan", &plan, nb::arg("config"), nb::arg("start"),
+             R"(Searches for a plan from `start`, [1, bodies, 3], by forward beam search.
+
+Returns the states of the plan, [T + 1, bodies, 3], and the number of simulated pushes. Without
+a plan, the states are only the start. Raises ValueError if `start` does not fit the task.)");
 }
 
 }  // namespace rtg::bindings

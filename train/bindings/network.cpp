@@ -141,7 +141,11 @@ std::tuple<Result, Result, Result> step(DoubleDqn& learner, const WeightArrays& 
 
 void bind_network(nb::module_& module) {
   module.attr("MAX_GRADIENT_NORM") = learn::kMaxGradientNorm;
-  nb::class_<HeadingNetwork>(module, "HeadingNetwork")
+  nb::class_<HeadingNetwork>(module, "HeadingNetwork",
+                             R"(Values of headings; see core/learn/heading_network.hpp.
+
+Arrays are float32 and contiguous; `weights` [W] lie in the order of PyTorch's parameters.
+Raises ValueError if shapes do not fit. One thread at a time may use it.)")
       .def(
           "__init__",
           [](HeadingNetwork* network, int inputs, int headings, int hidden, int features,
@@ -150,21 +154,33 @@ void bind_network(nb::module_& module) {
           },
           nb::arg("inputs"), nb::arg("headings"), nb::arg("hidden"), nb::arg("features"),
           nb::arg("strides"))
-      .def("values", &values, nb::arg("weights"), nb::arg("states"));
-  nb::class_<TransitionArrays>(module, "TransitionArrays")
+      .def("values", &values, nb::arg("weights"), nb::arg("states"),
+           "Returns Q of all actions. states [B, inputs] -> [B, actions]");
+  nb::class_<TransitionArrays>(
+      module, "TransitionArrays",
+      "The arrays of a gradient step, one row or entry per transition; float32, contiguous.")
       .def(nb::init<StateRows, ActionArray, StateRows, Floats, Floats, Floats>(), nb::arg("states"),
            nb::arg("actions"), nb::arg("next_states"), nb::arg("rewards"), nb::arg("terminated"),
-           nb::arg("bounds"));
-  nb::class_<WeightArrays>(module, "WeightArrays")
+           nb::arg("bounds"), "`states`, `next_states` [B, inputs], all else [B].");
+  nb::class_<WeightArrays>(
+      module, "WeightArrays",
+      R"(The weights of a learner and the moments of its optimiser, float32 [W] each.
+
+The moments are zeros before the first step.)")
       // Not converted: a step would change a copy.
       .def(nb::init<FloatsOut, FloatsOut, FloatsOut, FloatsOut, FloatsOut>(),
            nb::arg("online").noconvert(), nb::arg("target").noconvert(),
            nb::arg("mean").noconvert(), nb::arg("first_moment").noconvert(),
            nb::arg("second_moment").noconvert());
-  nb::class_<StepRates>(module, "StepRates")
+  nb::class_<StepRates>(module, "StepRates",
+                        "How far a gradient step moves the weights; see core/learn/adam.hpp.")
       .def(nb::init<long, double, double, double>(), nb::kw_only(), nb::arg("step"),
-           nb::arg("learning"), nb::arg("target"), nb::arg("mean"));
-  nb::class_<DoubleDqn>(module, "DoubleDqn")
+           nb::arg("learning"), nb::arg("target"), nb::arg("mean"),
+           "`step`: its number, counted from 1; `target`, `mean`: shares of the way, from 0 to 1.");
+  nb::class_<DoubleDqn>(module, "DoubleDqn",
+                        R"(Gradient steps of Double Q-learning; see core/learn/double_dqn.hpp.
+
+Arrays and errors as those of HeadingNetwork.)")
       .def(
           "__init__",
           [](DoubleDqn* learner, int inputs, int headings, int hidden, int features,
@@ -177,7 +193,11 @@ void bind_network(nb::module_& module) {
           nb::arg("strides"), nb::kw_only(), nb::arg("discount"), nb::arg("double_q"),
           nb::arg("clipped_double_q"), nb::arg("clip_targets"))
       .def("step", &step, nb::arg("weights"), nb::arg("batch"), nb::arg("rates"), nb::kw_only(),
-           nb::arg("threads"));
+           nb::arg("threads"),
+           R"(Performs a gradient step, and moves the other networks towards the online one.
+
+Changes all of `weights` in place. Returns Q(s, a), the targets, and these before bounds and
+clipping, [B] each.)");
 }
 
 }  // namespace rtg::bindings

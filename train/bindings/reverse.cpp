@@ -142,13 +142,22 @@ nb::dict solve(const TaskReverse& reverse, const StateArray& ends, const ActionA
 void bind_reverse(nb::module_& module) {
   static constexpr auto kStatusNames = status_names();
   module.attr("SOLVE_STATUSES") = names_of(kStatusNames);
-  nb::class_<TaskReverse>(module, "ReverseSimulator")
+  nb::class_<TaskReverse>(
+      module, "ReverseSimulator",
+      "Solves the reverse problems of a task, in units of the core; see rtg.reverse.")
       .def(nb::init<const config::Config&>(), nb::arg("config"))
       .def("__reduce__",
            [](const TaskReverse& reverse) {
              return nb::make_tuple(nb::type<TaskReverse>(), nb::make_tuple(reverse.config));
            })
-      .def("solve", &solve, nb::arg("ends"), nb::arg("actions"), nb::arg("threads") = 1);
+      .def("solve", &solve, nb::arg("ends"), nb::arg("actions"), nb::arg("threads") = 1,
+           R"(Solves N problems. [N, bodies, 3], [N]
+
+Returns the arrays "status" (into SOLVE_STATUSES), "iterations" and "found" (number of
+starts) [N], "starts" [N, 8, bodies, 3], "trajectory" [N, h + 1, bodies, 3], "controls" [N,
+h, 3], "figures" (objective, infeasibility, stationarity) [N, 3], NaN where there is none,
+and "contacts": the arrays "solve", "sub_step", "body", "other", "force" [C], "point" and
+"normal" [C, 2]. Raises ValueError for arrays that do not fit the task.)");
 }
 
 }  // namespace rtg::bindings

@@ -75,14 +75,22 @@ class TaskSearch {
 }  // namespace
 
 void bind_search(nb::module_& module) {
-  nb::class_<TaskSearch>(module, "BeamSearch")
+  nb::class_<TaskSearch>(
+      module, "BeamSearch",
+      R"(A tree of reverse steps from goal states towards a start; see rtg.beam_search.
+
+`target`: the start, [1, bodies, 3]. In units of the core.)")
       .def(nb::init<const config::Config&, const StateArray&, std::uint64_t>(), nb::arg("config"),
            nb::arg("target"), nb::arg("seed"))
-      .def("make_roots", &TaskSearch::make_roots)
-      .def("grow", &TaskSearch::grow)
-      .def_prop_ro("nodes", &TaskSearch::nodes, nb::rv_policy::move)
-      .def_prop_ro("beam", &TaskSearch::beam, nb::rv_policy::move)
-      .def_prop_ro("start_distance", &TaskSearch::start_distance);
+      .def("make_roots", &TaskSearch::make_roots, "Makes the first beam: goal states, at rest.")
+      .def("grow", &TaskSearch::grow,
+           "Grows a layer. Returns poses, action, next poses, success and source of N transitions.")
+      .def_prop_ro("nodes", &TaskSearch::nodes, nb::rv_policy::move,
+                   "Poses [K, bodies, 3], action, parent and depth [K] of all nodes.")
+      .def_prop_ro("beam", &TaskSearch::beam, nb::rv_policy::move,
+                   "Indices of the nodes that the next layer starts from.")
+      .def_prop_ro("start_distance", &TaskSearch::start_distance,
+                   "Estimated pushes from the target to the nearest node of the beam.");
 }
 
 }  // namespace rtg::bindings

@@ -45,13 +45,22 @@ std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, bool>> push(
 }  // namespace
 
 void bind_simulator(nb::module_& module) {
-  nb::class_<TaskSimulator>(module, "Simulator")
+  nb::class_<TaskSimulator>(
+      module, "Simulator",
+      R"(Simulates the pushes of a task: the dynamics of replays, training and evaluation.
+
+It holds no state; equal arguments give bitwise equal results.)")
       .def(nb::init<const config::Config&>(), nb::arg("config"))
       .def("__reduce__",
            [](const TaskSimulator& simulator) {
              return nb::make_tuple(nb::type<TaskSimulator>(), nb::make_tuple(simulator.config));
            })
-      .def("push", &push, nb::arg("states"), nb::arg("actions"));
+      .def("push", &push, nb::arg("states"), nb::arg("actions"),
+           R"(Simulates one push per state. [N, bodies, 3], [N] -> [N, bodies, 3], [N]
+
+Returns the states after the pushes, and whether each push is a legal transition. It is
+illegal if the simulator cannot finish it, for instance if the bodies do not come to rest.
+Raises ValueError for arrays that do not fit the task.)");
 }
 
 }  // namespace rtg::bindings

@@ -196,54 +196,109 @@ std::vector<Vector2d> centroids(const tasks::Task& task, const StateArray& state
 }
 
 void bind_goal_mark(nb::module_& module) {
-  nb::class_<tasks::GoalMark>(module, "GoalMark")
-      .def_ro("kind", &tasks::GoalMark::kind)
-      .def_prop_ro("ring", [](const tasks::GoalMark& mark) { return vertices_of(mark.ring); })
-      .def_ro("target", &tasks::GoalMark::target)
-      .def_ro("negated", &tasks::GoalMark::negated);
+  nb::class_<tasks::GoalMark>(module, "GoalMark",
+                              "What a picture shows of a goal term: an area of the plane.")
+      .def_ro("kind", &tasks::GoalMark::kind,
+              "The kind of the bodies that the term is about; \"*\": all objects.")
+      .def_prop_ro(
+          "ring", [](const tasks::GoalMark& mark) { return vertices_of(mark.ring); },
+          "The area's vertices, [V, 2] in m.")
+      .def_ro("target", &tasks::GoalMark::target,
+              "Whether the area is the outline of a body where it is to lie.")
+      .def_ro("negated", &tasks::GoalMark::negated, "Whether the area is to be avoided.");
 }
 
 }  // namespace
 
 void bind_task(nb::module_& module) {
   bind_goal_mark(module);
-  nb::class_<tasks::Task> bound(module, "Task");
+  nb::class_<tasks::Task> bound(module, "Task", R"(A task with sparse reward. Body 0 is the robot.
+
+The reward is 1 when the goal holds, else 0. Success ends the episode.)");
   bind_fields(bound);
-  bound.def_ro("name", &tasks::Task::name)
-      .def_prop_ro("outlines", &outlines)
-      .def_prop_ro("names", &names)
-      .def_prop_ro("kinds", &kinds)
-      .def_prop_ro("fixed", &fixed)
-      .def_prop_ro("joints", &joints)
-      .def_prop_ro("goal_marks", &tasks::goal_marks)
-      .def_prop_ro("arena", [](const tasks::Task& task) { return task.push.arena; })
-      .def_prop_ro("kilogram",
-                   [](const tasks::Task& task) {
-                     return 1.0 / (task.units.density * task.units.length * task.units.length);
-                   })
-      .def_prop_ro("metre", [](const tasks::Task& task) { return 1.0 / task.units.length; })
-      .def_prop_ro("position_unit", &tasks::position_unit)
-      .def_prop_ro("relative_unit", &tasks::relative_unit)
-      .def_prop_ro("headings", [](const tasks::Task& task) { return task.push.headings; })
-      .def_prop_ro("strides", &strides)
-      .def_prop_ro("actions", [](const tasks::Task& task) { return action_count(task.push); })
+  bound.def_ro("name", &tasks::Task::name, "The name of the task.")
+      .def_prop_ro("outlines", &outlines,
+                   "The outer ring of each body, then its holes. [vertices, 2] in m, centroid at 0")
+      .def_prop_ro("names", &names, "The unique names of the bodies.")
+      .def_prop_ro("kinds", &kinds, "The class of each body.")
+      .def_prop_ro("fixed", &fixed, "True for each body that never moves.")
+      .def_prop_ro(
+          "joints", &joints,
+          R"(The joints: (parent body, child body, points in the frame of the parent [2], m).
+
+The pin of a revolute joint, both ends of the axis of a prismatic one, none of a fixed one.)")
+      .def_prop_ro("goal_marks", &tasks::goal_marks,
+                   "The regions and target outlines of the goal, for pictures.")
+      .def_prop_ro(
+          "arena", [](const tasks::Task& task) { return task.push.arena; },
+          "Half width of the square that the robot stays in [m].")
+      .def_prop_ro(
+          "kilogram",
+          [](const tasks::Task& task) {
+            return 1.0 / (task.units.density * task.units.length * task.units.length);
+          },
+          "One kilogram, in the unit of masses: that in which the robot's density is 1.")
+      .def_prop_ro(
+          "metre", [](const tasks::Task& task) { return 1.0 / task.units.length; },
+          "One metre, in the unit of lengths of poses: that in which the robot's radius is 0.8.")
+      .def_prop_ro("position_unit", &tasks::position_unit,
+                   "Unit of positions in an observation [m].")
+      .def_prop_ro("relative_unit", &tasks::relative_unit,
+                   "Unit of relative positions in an observation [m].")
+      .def_prop_ro(
+          "headings", [](const tasks::Task& task) { return task.push.headings; },
+          "Number of headings of a push.")
+      .def_prop_ro("strides", &strides, "Lengths of a push, the longest one being 1.")
+      .def_prop_ro(
+          "actions", [](const tasks::Task& task) { return action_count(task.push); },
+          "Number of actions: action a has the heading a % headings, the stride a // headings.")
       .def_prop_ro(
           "start", [](const tasks::Task& task) { return state_array(task.start); },
-          nb::rv_policy::move)
-      .def_prop_ro("robot_entries",
-                   [](const tasks::Task& task) { return robot_is_turned(task) ? 4 : 2; })
-      .def_prop_ro("bodies", [](const tasks::Task& task) { return task.scene.size(); })
-      .def_prop_ro("observation_size", &tasks::observation_size)
-      .def_prop_ro("interchangeable", &tasks::interchangeable)
-      .def_prop_ro("turn_periods", &turn_periods)
-      .def_prop_ro("content", &config::task_hash)
-      .def("observation", &observations, nb::arg("states"))
-      .def("joints_reached", &joints_reached, nb::arg("states"))
-      .def("centroids", &centroids, nb::arg("states"))
-      .def("contact_headings", &contact_headings, nb::arg("states"), nb::arg("seed"))
-      .def("goal_state", &goal_state, nb::arg("seed"), nb::arg("index") = 0)
-      .def("succeeded", &successes, nb::arg("states"))
-      .def("is_legal", &legal_states, nb::arg("states"))
+          nb::rv_policy::move, "The nominal start. [bodies, 3]")
+      .def_prop_ro(
+          "robot_entries", [](const tasks::Task& task) { return robot_is_turned(task) ? 4 : 2; },
+          "Number of the entries of an observation that are about the robot; the first ones.")
+      .def_prop_ro(
+          "bodies", [](const tasks::Task& task) { return task.scene.size(); },
+          "Number of bodies, with the robot.")
+      .def_prop_ro("observation_size", &tasks::observation_size,
+                   "Number of entries of an observation.")
+      .def_prop_ro(
+          "interchangeable", &tasks::interchangeable,
+          R"(The movable objects in groups: to swap two of a group changes nothing but their names.
+
+Most often each is alone in its group.)")
+      .def_prop_ro(
+          "turn_periods", &turn_periods,
+          "The angles by which each body can be turned without any change; 0 of discs [rad].")
+      .def_prop_ro(
+          "content", &config::task_hash,
+          "The hash of bodies, joints, goal and pushes: of what a policy of the task is about.")
+      .def("observation", &observations, nb::arg("states"),
+           "Returns the observations of the states. [N, bodies, 3] -> [N, observation_size]")
+      .def("joints_reached", &joints_reached, nb::arg("states"),
+           R"(Returns, for each joint, whether the goal constrains its angle and the angle complies.
+
+`states`: a single state, [1, bodies, 3].)")
+      .def("centroids", &centroids, nb::arg("states"),
+           R"(Returns the mean centre for each goal term with subject "centroid", each [2].
+
+`states`: a single state, [1, bodies, 3].)")
+      .def("contact_headings", &contact_headings, nb::arg("states"), nb::arg("seed"),
+           R"(Draws, for each state, a heading towards a random movable object.
+
+Entry k depends only on state k, `seed` and k. [N, bodies, 3] -> [N])")
+      .def("goal_state", &goal_state, nb::arg("seed"), nb::arg("index") = 0,
+           R"(Samples a state in which the goal holds and the bodies are nearly at rest. [bodies, 3]
+
+It is sample `index` of random stream `seed`. Returns None if 1,000 attempts fail.)")
+      .def("succeeded", &successes, nb::arg("states"),
+           "Returns whether the goal holds in each state. [N, bodies, 3] -> [N]")
+      .def("is_legal", &legal_states, nb::arg("states"),
+           R"(Returns which states an episode can be in. [N, bodies, 3] -> [N]
+
+They are finite, no bodies overlap by more than 0.03 m, movable ones are within twice the
+arena, and fixed ones in their places.)")
       .def("__reduce__",
            [](const tasks::Task& task) {
              config::Config config;
@@ -251,8 +306,18 @@ void bind_task(nb::module_& module) {
              return nb::make_tuple(nb::module_::import_("rtg.pickling").attr("task_of"),
                                    nb::make_tuple(canonical_yaml(config)));
            })
-      .def("in_start_region", &in_start_regions, nb::arg("states"))
-      .def("jittered_start", &start, nb::arg("amplitude"), nb::arg("seed"), nb::arg("index") = 0);
+      .def("in_start_region", &in_start_regions, nb::arg("states"),
+           R"(Returns whether all objects are in place of a start. [N, bodies, 3] -> [N]
+
+They are within 0.4 m of the start, or of the region that they start in; the robot may be
+anywhere.)")
+      .def("jittered_start", &start, nb::arg("amplitude"), nb::arg("seed"), nb::arg("index") = 0,
+           R"(Samples a start: the nominal one, objects moved by up to ± `amplitude` [m] in x and y.
+
+It is sample `index` of random stream `seed`. [bodies, 3]
+
+Raises ValueError if 1000 draws in a row are illegal (bodies overlap, an object is outside
+the arena, or the goal holds). Raises ValueError if `amplitude` is outside [0, 10] m.)");
 }
 
 }  // namespace rtg::bindings

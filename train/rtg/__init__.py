@@ -2,6 +2,10 @@
 
 from gymnasium.envs.registration import register
 
+from rtg import processor
+
+processor.check()  # before the core is loaded
+
 from rtg import forward
 from rtg.beam_search import BeamSearch, Nodes
 from rtg.energy import Contact, StepEnergy

@@ -1,0 +1,90 @@
+"""RTG as others install it: a wheel in an environment of its own, and the C++ libraries."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import network
+import numpy as np
+import pytest
+import rtg
+from rtg import paths
+
+PARTS = """
+import gymnasium, numpy, rtg
+task = rtg.load_task("push_t")
+found = rtg.ReverseSimulator(task).solve(task.goal_state(1), range(task.actions))
+assert found.solved.sum() > 10
+environment = gymnasium.make("RTG/Gathering-v0")
+environment.reset(seed=1)
+environment.step(3)
+task = rtg.load_task("gathering")
+data = rtg.Transitions.joined(rtg.generate(task, 400))
+policy = rtg.train(data, task, "trained", settings=["train.interactions=80"])
+assert policy(task.start()[None]).shape == (1,)
+print(rtg.__file__)
+"""
+
+
+def run(command: Sequence[str | Path], **options: object) -> str:
+    done = subprocess.run(
+        [str(word) for word in command], capture_output=True, text=True, **options
+    )
+    assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A virtual environment with nothing but the wheel and what it depends on."""
+    folder = tmp_path_factory.mktemp("package")
+    build = [sys.executable, "-m", "pip", "wheel", paths.ROOT, "--wheel-dir", folder / "wheels"]
+    run([*build, "--no-deps", "--no-build-isolation"])
+    (wheel,) = (folder / "wheels").iterdir()
+    run([sys.executable, "-m", "venv", folder / "environment"])
+    pinned = paths.ROOT / "train" / "requirements.txt"
+    python = folder / "environment" / "bin" / "python"
+    run([python, "-m", "pip", "install", "--constraint", pinned, wheel])
+    return python
+
+
+def elsewhere(folder: Path) -> dict[str, object]:
+    """Returns options of subprocess.run: another folder, and nothing that leads to the checkout."""
+    return {"cwd": folder, "env": {"PATH": os.environ["PATH"], "HOME": str(folder)}}
+
+
+def test_the_parts_work_from_a_wheel_in_any_folder(installed: Path, tmp_path: Path) -> None:
+    said = run([installed, "-c", PARTS], **elsewhere(tmp_path))
+    assert str(installed.parents[1]) in said
+    checked = run([installed.parent / "rtg", "check", "drawer"], **elsewhere(tmp_path))
+    assert f"{installed.parents[1]}/lib" in checked and "drawer.yaml: legal" in checked
+
+
+def test_an_installed_package_runs_its_processes(installed: Path, tmp_path: Path) -> None:
+    network.require()
+    small = ["--transitions", "400", "--interactions", "80", "--workers", "1"]
+    with network.Network() as own:
+        program = installed.parent / "rtg"
+        graph = own.start([program, "gathering", *small, "--out", tmp_path / "run"])
+        said, _ = graph.communicate()
+    assert graph.returncode == 0, said[-4000:]
+    with np.load(tmp_path / "run" / "transitions.npz") as rows:
+        assert len(rows["action"]) == 400
+    assert rtg.load_policy(tmp_path / "run").task.name == "gathering"
+
+
+def test_a_project_of_somebody_else_finds_the_libraries(tmp_path: Path) -> None:
+    """It is told which processor they are for, solves reverse pushes, and has Box2D's own clock."""
+    prefix, build = tmp_path / "prefix", tmp_path / "build"
+    run(["cmake", "--install", paths.BUILD, "--prefix", prefix])
+    sources = paths.ROOT / "tests" / "consumer"
+    configure = ["cmake", "-S", str(sources), "-B", str(build), f"-DCMAKE_PREFIX_PATH={prefix}"]
+    refused = subprocess.run(configure, capture_output=True, text=True)
+    assert refused.returncode and "rtg is compiled with -march=native." in refused.stderr
+    flags = "-march=native -Wall -Wextra -Werror"
+    run([*configure, "-G", "Ninja", f"-DCMAKE_CXX_FLAGS={flags}"])
+    run(["cmake", "--build", build])
+    said = run([build / "consumer", paths.CONFIG / "gathering.yaml"]).split()
+    assert int(said[0]) > 10 and int(said[2]) >= 20
