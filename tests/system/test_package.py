@@ -80,11 +80,12 @@ def test_a_project_of_somebody_else_finds_the_libraries(tmp_path: Path) -> None:
     prefix, build = tmp_path / "prefix", tmp_path / "build"
     run(["cmake", "--install", paths.BUILD, "--prefix", prefix])
     sources = paths.ROOT / "tests" / "consumer"
-    configure = ["cmake", "-S", str(sources), "-B", str(build), f"-DCMAKE_PREFIX_PATH={prefix}"]
+    configure = ["cmake", "-G", "Ninja", "-S", str(sources), "-B", str(build)]
+    configure.append(f"-DCMAKE_PREFIX_PATH={prefix}")
     refused = subprocess.run(configure, capture_output=True, text=True)
     assert refused.returncode and "rtg is compiled with -march=native." in refused.stderr
     flags = "-march=native -Wall -Wextra -Werror"
-    run([*configure, "-G", "Ninja", f"-DCMAKE_CXX_FLAGS={flags}"])
+    run([*configure, f"-DCMAKE_CXX_FLAGS={flags}"])
     run(["cmake", "--build", build])
     said = run([build / "consumer", paths.CONFIG / "gathering.yaml"]).split()
     assert int(said[0]) > 10 and int(said[2]) >= 20

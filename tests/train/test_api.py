@@ -10,7 +10,6 @@ from rtg import paths
 def solved() -> tuple[rtg.Task, np.ndarray, rtg.ReverseSolutions]:
     task = rtg.load_task("push_t")
     goal = task.goal_state(3)
-    assert goal is not None
     return task, goal, rtg.ReverseSimulator(task).solve(goal, np.arange(task.actions))
 
 
@@ -27,7 +26,7 @@ def test_states_are_in_metres() -> None:
     task = rtg.load_task("push_t")
     goal = task.goal_state(1)
     assert task.core.metre == pytest.approx(1.6)
-    assert goal is not None and task.succeeded(goal[None])[0]
+    assert task.succeeded(goal[None])[0]
     off = goal.copy()
     off[1, 0] += 1.0
     assert not task.succeeded(off[None])[0]

@@ -8,7 +8,6 @@ import rtg
 def touching(task: rtg.Task) -> tuple[np.ndarray, np.ndarray]:
     """Two states of a sub-step in which bodies are near each other, and move a little."""
     now = task.goal_state(2)
-    assert now is not None
     after = now.copy()
     after[:, :2] += 0.002 * np.random.default_rng(1).standard_normal((len(now), 2))
     return now, after

@@ -5,16 +5,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
 from rtg.envs.push_env import read_config
+from rtg.pictures.draw import outline, state_image
 
 Floats = NDArray[np.float64]
 
 _ENTRIES = ("x", "y", "cos theta", "sin theta", "x to robot", "y to robot")
+
+
+class GoalArea(NamedTuple):
+    """An area of the plane that a goal is about."""
+
+    kind: str  # of the bodies; "*": of all objects
+    ring: Floats  # [vertices, 2] in m
+    target: bool  # the outline of a body where it is to lie
+    negated: bool  # to be avoided
 
 
 class Task:
@@ -74,10 +85,15 @@ class Task:
         """Returns the start number `seed`, with objects jittered. [bodies, 3]"""
         return self.outer(self.core.jittered_start(self.core.start_jitter, seed))
 
-    def goal_state(self, seed: int = 1) -> Floats | None:
-        """Returns a state in which the goal holds; None if none was found. [bodies, 3]"""
+    def goal_state(self, seed: int = 1) -> Floats:
+        """Returns a random state in which the goal holds. [bodies, 3]
+
+        Raises ValueError if 1,000 attempts find none.
+        """
         state = self.core.goal_state(seed)
-        return None if state is None else self.outer(state)
+        if state is None:
+            raise ValueError(f"no goal state of '{self.name}' was found in 1,000 attempts")
+        return self.outer(state)
 
     def succeeded(self, states: ArrayLike) -> NDArray[np.bool_]:
         """Returns in which states the goal holds. [N, bodies, 3] -> [N]"""
@@ -90,6 +106,40 @@ class Task:
         width, relative ones and slides in half the longest stride.
         """
         return self.core.observation(self.inner(states))
+
+    def outlines(self, state: ArrayLike) -> list[list[Floats]]:
+        """Returns where the outlines of the bodies are in a state, [bodies, 3].
+
+        For each body the outer ring, then its holes: [vertices, 2] in m.
+        """
+        poses = self.inner(np.asarray(state, np.float64)[None])[0]
+        return [
+            [outline(ring, pose) / self.core.metre for ring in rings]
+            for rings, pose in zip(self.core.outlines, poses, strict=True)
+        ]
+
+    @property
+    def goal(self) -> list[GoalArea]:
+        """The areas of the plane that the goal is about; `description` has it in words."""
+        metre = self.core.metre
+        return [
+            GoalArea(mark.kind, mark.ring / metre, mark.target, mark.negated)
+            for mark in self.core.goal_marks
+        ]
+
+    @property
+    def description(self) -> str:
+        """The task in words, as `rtg check` prints it."""
+        return self.config.description
+
+    def image(self, states: ArrayLike, caption: str = "") -> NDArray[np.uint8]:
+        """Draws the last of some states [T, bodies, 3], and the robot's way there, as RGB.
+
+        A goal that holds is drawn as reached. [pixels, pixels, 3]
+        """
+        path = self.inner(states)
+        reached = bool(self.core.succeeded(path[-1:])[0])
+        return state_image(self.core, path, caption=caption, reached=reached)
 
     def inner(self, states: ArrayLike) -> Floats:
         """Returns states as the core takes them. [N, bodies, 3] -> [N, bodies, 3]
