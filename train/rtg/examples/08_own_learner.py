@@ -47,8 +47,8 @@ def main(folder: Path, transitions: int = 20000, steps: int = 3000) -> None:
         if step % 200 == 0:
             target.load_state_dict(online.state_dict())
 
-    # In the simulator: how often it solves states one push from the goal. `rtg.train` has what more
-    # it takes: interactions, bounds that stored plans prove, a network whose headings share weights.
+    # In the simulator: how often it solves states one push from the goal. `rtg.train` has more:
+    # interactions, bounds that stored plans prove, a network whose headings share weights.
     near = data.states[np.flatnonzero(data.success & (data.source == 0))][:200]
     with torch.no_grad():
         chosen = online(torch.from_numpy(task.observation(near))).argmax(dim=1).numpy()
