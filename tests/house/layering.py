@@ -47,7 +47,7 @@ ONLY_IN = {
         r"core/math/\w+\.cpp|tests/bench/kkt_peers\.cpp"
     ),
     r"(hpipm|blasfeo)\w*\.h": r"tests/bench/hpipm_peer\.cpp",
-    r"box2d/.*": r"(tests/)?core/forward/box2d_\w+\.cpp",
+    r"box2d/.*": r"(tests/)?core/forward/box2d_\w+\.cpp|tests/consumer/main\.cpp",
     r"geos_c\.h": r"core/world/outline\.cpp",
     r"(yaml-cpp|utf8cpp)/.*": r"nodes/config/\w+\.cpp",
     r"lcm/.*": r"nodes/bus/bus\w*\.cpp",
@@ -134,6 +134,9 @@ def python_faults(path: str, text: str) -> list[str]:
     room = parts[2].removesuffix(".py")
     if len(parts) == 3 and room not in ROOF:  # above all rooms
         return found
+    if room == "examples":  # programs as a user writes them
+        wrong = [module for module in imports(text) if module != "rtg.all"]
+        return [*found, *(f"{path}: may not import {module}" for module in wrong)]
     if len(parts) > 3 and room not in ROOMS:
         return [*found, f"{path}: {room} is no room of the package"]
     allowed = {room, *ROOMS.get(room, set()), *ROOF}

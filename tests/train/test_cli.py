@@ -12,7 +12,7 @@ from rtg import paths
 MISTAKES = {
     "unknown task": (
         ["sortign"],
-        "sortign: no task of that name; legal: art_manip, drawer, gate, gathering, ",
+        "sortign: no task of that name; legal: art_manip, art_manip_hard, drawer, ",
     ),
     "unknown flag": (
         ["--wokers", "2"],
@@ -20,7 +20,7 @@ MISTAKES = {
     ),
     "missing file": (
         ["mine.yaml"],
-        "mine.yaml: no such task file; legal: art_manip, drawer, gate, gathering, ",
+        "mine.yaml: no such task file; legal: art_manip, art_manip_hard, drawer, ",
     ),
     "workers no number": (["--workers", "two"], "--workers two: "),
     "workers negative": (["--workers", "-1"], "--workers"),

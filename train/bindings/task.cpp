@@ -208,14 +208,8 @@ void bind_goal_mark(nb::module_& module) {
       .def_ro("negated", &tasks::GoalMark::negated, "Whether the area is to be avoided.");
 }
 
-}  // namespace
-
-void bind_task(nb::module_& module) {
-  bind_goal_mark(module);
-  nb::class_<tasks::Task> bound(module, "Task", R"(A task with sparse reward. Body 0 is the robot.
-
-The reward is 1 when the goal holds, else 0. Success ends the episode.)");
-  bind_fields(bound);
+/// Bodies, joints and goal.
+void bind_geometry(nb::class_<tasks::Task>& bound) {
   bound.def_ro("name", &tasks::Task::name, "The name of the task.")
       .def_prop_ro("outlines", &outlines,
                    "The outer ring of each body, then its holes. [vertices, 2] in m, centroid at 0")
@@ -240,7 +234,12 @@ The pin of a revolute joint, both ends of the axis of a prismatic one, none of a
           "One kilogram, in the unit of masses: that in which the robot's density is 1.")
       .def_prop_ro(
           "metre", [](const tasks::Task& task) { return 1.0 / task.units.length; },
-          "One metre, in the unit of lengths of poses: that in which the robot's radius is 0.8.")
+          "One metre, in the unit of lengths of poses: that in which the robot's radius is 0.8.");
+}
+
+/// What a learner sees and does.
+void bind_interface(nb::class_<tasks::Task>& bound) {
+  bound
       .def_prop_ro("position_unit", &tasks::position_unit,
                    "Unit of positions in an observation [m].")
       .def_prop_ro("relative_unit", &tasks::relative_unit,
@@ -273,7 +272,12 @@ Most often each is alone in its group.)")
           "The angles by which each body can be turned without any change; 0 of discs [rad].")
       .def_prop_ro(
           "content", &config::task_hash,
-          "The hash of bodies, joints, goal and pushes: of what a policy of the task is about.")
+          "The hash of bodies, joints, goal and pushes: of what a policy of the task is about.");
+}
+
+/// Functions of states.
+void bind_states(nb::class_<tasks::Task>& bound) {
+  bound
       .def("observation", &observations, nb::arg("states"),
            "Returns the observations of the states. [N, bodies, 3] -> [N, observation_size]")
       .def("joints_reached", &joints_reached, nb::arg("states"),
@@ -318,6 +322,19 @@ It is sample `index` of random stream `seed`. [bodies, 3]
 
 Raises ValueError if 1000 draws in a row are illegal (bodies overlap, an object is outside
 the arena, or the goal holds). Raises ValueError if `amplitude` is outside [0, 10] m.)");
+}
+
+}  // namespace
+
+void bind_task(nb::module_& module) {
+  bind_goal_mark(module);
+  nb::class_<tasks::Task> bound(module, "Task", R"(A task with sparse reward. Body 0 is the robot.
+
+The reward is 1 when the goal holds, else 0. Success ends the episode.)");
+  bind_fields(bound);
+  bind_geometry(bound);
+  bind_interface(bound);
+  bind_states(bound);
 }
 
 }  // namespace rtg::bindings

@@ -77,6 +77,7 @@ CHECKPOINT_SETTINGS = {
     "hindsight": "4",
     "curriculum": "0.5",
     "network": "plain",
+    "symmetry": "False",
     "train_frequency": "8",
     "buffer": "9999",
     "discount": "0.5",

@@ -38,11 +38,11 @@ def test_a_path_is_a_task_file(tmp_path):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["sortign"], "sortign: no task of that name; legal: art_manip, drawer, gate, gathering, "),
+        (["sortign"], "sortign: no task of that name; legal: art_manip, art_manip_hard, drawer, "),
         (["reprodcue", "gathering"], "reprodcue: no task of that name; legal: art_manip, "),
-        ([""], "'': no such task file; legal: art_manip, drawer, gate, gathering, "),
+        ([""], "'': no such task file; legal: art_manip, art_manip_hard, drawer, "),
         (["nowhere/mine.yaml"], "nowhere/mine.yaml: no such task file; legal: art_manip, "),
-        (["config"], "config: no such task file; legal: art_manip, drawer, gate, gathering, "),
+        (["config"], "config: no such task file; legal: art_manip, art_manip_hard, drawer, "),
         (["--worker", "3"], "unrecognized arguments: --worker; legal: ./run.sh [-h] "),
         (["gathering", "more"], "unrecognized arguments: more; legal: "),
         (["--seed"], "argument --seed: expected one argument; legal: "),

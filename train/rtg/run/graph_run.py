@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from typing import Any
 
@@ -74,8 +75,8 @@ class GraphRun:
         )
         settings = (
             f"RTG_RUN={plan.name}",
-            f"RTG_NODES={paths.PROGRAMS}",
-            f"RTG_PYTHON={sys.executable}",
+            f"RTG_NODES={os.environ.get('RTG_NODES', paths.PROGRAMS)}",
+            f"RTG_PYTHON={os.environ.get('RTG_PYTHON', sys.executable)}",
         )
         return ["env", *settings, str(paths.GRAPH), str(plan.folder), *consumer]
 
