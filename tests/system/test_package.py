@@ -28,10 +28,15 @@ print(rtg.__file__)
 """
 
 
+TOOLS = f"{Path(sys.executable).parent}:{os.environ['PATH']}"  # CMake and Ninja among them
+# One process compiles: other tests run beside.
+BUILDING = {**os.environ, "PATH": TOOLS, "CMAKE_BUILD_PARALLEL_LEVEL": "1"}
+
+
 def run(command: Sequence[str | Path], **options: object) -> str:
-    done = subprocess.run(
-        [str(word) for word in command], capture_output=True, text=True, **options
-    )
+    words = [str(word) for word in command]
+    settings = {"env": BUILDING, **options}
+    done = subprocess.run(words, capture_output=True, text=True, **settings)
     assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
     return done.stdout
 
@@ -82,7 +87,7 @@ def test_a_project_of_somebody_else_finds_the_libraries(tmp_path: Path) -> None:
     sources = paths.ROOT / "tests" / "consumer"
     configure = ["cmake", "-G", "Ninja", "-S", str(sources), "-B", str(build)]
     configure.append(f"-DCMAKE_PREFIX_PATH={prefix}")
-    refused = subprocess.run(configure, capture_output=True, text=True)
+    refused = subprocess.run(configure, capture_output=True, text=True, env=BUILDING)
     assert refused.returncode and "rtg is compiled with -march=native." in refused.stderr
     flags = "-march=native -Wall -Wextra -Werror"
     run([*configure, f"-DCMAKE_CXX_FLAGS={flags}"])
