@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/math/hash.hpp"
+#include "core/tasks/symmetry.hpp"
 
 namespace rtg::search {
 namespace {
@@ -13,7 +13,6 @@ constexpr double kRobotCell = 0.8;   // side of a cell [m]
 constexpr double kObjectCell = 0.4;  // side of a cell [m], [rad]
 constexpr double kGateCell = 0.2;    // gates in one cell count as equal [m], [rad]
 constexpr double kSnug = 0.9;  // clearance of a way around walls / half the least width of a body
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kAngleRadius = 0.5;  // r [m], about the radius of gyration of a 1.2 m box
 
 std::int64_t slot(double x, double side) { return static_cast<std::int64_t>(std::floor(x / side)); }
@@ -26,9 +25,8 @@ std::uint64_t with_slot(std::uint64_t hash, std::int64_t number) {
 
 StateMetric::StateMetric(const Scene& scene) {
   for (std::size_t k = 1; k < scene.size(); ++k) {
-    const bool jointed = has_joint(scene, k);
     if (!scene.bodies[k].fixed)
-      objects_.push_back({k, jointed, jointed ? kTwoPi : scene.bodies[k].shape.symmetry()});
+      objects_.push_back({k, has_joint(scene, k), tasks::turn_period(scene, k)});
   }
 }
 

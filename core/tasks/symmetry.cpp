@@ -37,8 +37,8 @@ std::vector<std::vector<std::size_t>> interchangeable(const Task& task) {
   return groups;
 }
 
-double turn_period(const Task& task, std::size_t i) {
-  return has_joint(task.scene, i) ? 2.0 * std::numbers::pi : task.scene.bodies[i].shape.symmetry();
+double turn_period(const Scene& scene, std::size_t i) {
+  return has_joint(scene, i) ? 2.0 * std::numbers::pi : scene.bodies[i].shape.symmetry();
 }
 
 }  // namespace rtg::tasks

@@ -15,6 +15,6 @@ std::vector<std::vector<std::size_t>> interchangeable(const Task& task);
 
 /// Returns the angle by which body `i` can be turned without a change to pushes or goal [rad]: that
 /// of its shape, but 2π with a joint; 0 of discs.
-double turn_period(const Task& task, std::size_t i);
+double turn_period(const Scene& scene, std::size_t i);
 
 }  // namespace rtg::tasks

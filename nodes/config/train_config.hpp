@@ -43,10 +43,10 @@ inline constexpr std::array<std::string_view, 3> kLearners{"q_learning", "clonin
 ///  - `averaging_rate`: on the same transitions of ArtManip (mean over 85,000 to 110,000
 ///    interactions), the policy of the averaged weights has success rate 0.97, that of the target
 ///    network 0.85.
-///  - `symmetry`: eight equal boxes, with 200,000 transitions: success 0.7 after 165,000
-///  interactions
-///    and 0.89 at the end; where swaps alone count 195,000 and 0.76; without it 0.28 at the end
-///    (one seed each). With three or four boxes it makes little difference.
+///  - `symmetry`: eight equal boxes, with 200,000 transitions: success first reaches 0.7 after
+///    165,000 interactions and is 0.89 at the end; where swaps alone count, 195,000 and 0.76;
+///    without it 0.28 at the end (one seed each). With three or four boxes it makes little
+///    difference.
 ///  - `target_acts`: if the averaged weights act in training, their own success rate falls to 0.90.
 ///    Their mistakes are then seen too late.
 struct TrainConfig {

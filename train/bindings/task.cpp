@@ -141,7 +141,8 @@ nb::ndarray<nb::numpy, double> start(const tasks::Task& task, double amplitude, 
 
 std::vector<double> turn_periods(const tasks::Task& task) {
   std::vector<double> out;
-  for (std::size_t i = 0; i < task.scene.size(); ++i) out.push_back(turn_period(task, i));
+  for (std::size_t i = 0; i < task.scene.size(); ++i)
+    out.push_back(tasks::turn_period(task.scene, i));
   return out;
 }
 

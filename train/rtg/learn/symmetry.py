@@ -40,9 +40,8 @@ class Symmetry:
             if len(group) == 1 or len({len(columns) for columns in more}) > 1:
                 continue
             own = [[*range(at[body], at[body] + BODY_ENTRIES)] for body in group]
-            self._groups.append(
-                np.array([[*b, *a] for a, b in zip(own, more, strict=True)], np.int64)
-            )
+            members = [[*extra, *entries] for extra, entries in zip(more, own, strict=True)]
+            self._groups.append(np.array(members, np.int64))
 
     def __call__(self, seen: Array) -> Array:
         """Returns the inputs in whose place those of equal states stand. [N, inputs] float32"""
