@@ -51,6 +51,7 @@ run_benches() { # OUT [--smoke]
   cd "$ROOT/tests/bench"
   "$VENV/bin/python" table.py "$ROOT/build/release" "$out" "$@" || status=1
   "$VENV/bin/python" learner.py "$@" | tee "$out/learner.txt" || status=1
+  "$VENV/bin/python" binding.py "$ROOT/build/release" "$@" | tee "$out/binding.txt" || status=1
   "$VENV/bin/python" generation.py "$ROOT/build/release" "$@" | tee "$out/generation.txt" || status=1
   "$VENV/bin/python" whole.py "$out/whole" --seeds 1,2,3 "$@" || status=1
   return $status

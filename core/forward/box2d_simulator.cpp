@@ -301,7 +301,7 @@ bool drive(World& table, const Path& path, int done) {
 }  // namespace
 
 Box2dSimulator::Box2dSimulator(Scene scene, PushConfig push, PhysicsConfig physics)
-    : scene_(std::move(scene)), push_(std::move(push)), physics_(physics) {}
+    : Simulator(std::move(push)), scene_(std::move(scene)), physics_(physics) {}
 
 bool Box2dSimulator::plausible(const Poses& start) const {
   if (start.size() != scene_.size()) return false;
@@ -311,10 +311,10 @@ bool Box2dSimulator::plausible(const Poses& start) const {
   });
 }
 
-PushOutcome Box2dSimulator::push(const Poses& start, int action) const {
+PushOutcome Box2dSimulator::push_along(const Poses& start, const Stroke& stroke) const {
   if (!plausible(start)) return {start, false};
-  const Servo servo = servo_of(scene_, stride_of(action, push_), physics_);
-  const Path path(start[0], push_target(start[0], action, push_), servo.advance,
+  const Servo servo = servo_of(scene_, stroke.length, physics_);
+  const Path path(start[0], push_target(start[0], stroke, push_), servo.advance,
                   physics_.sub_steps * physics_.box2d_steps);
   const double clear = free_path_length(scene_, start, path.to);
   Poses begun = start;

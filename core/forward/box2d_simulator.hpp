@@ -36,12 +36,12 @@ class Box2dSimulator final : public Simulator {
   /// All shapes of `scene` must be legal (polygon_defect() returns nothing), and bodies[0] movable.
   Box2dSimulator(Scene scene, PushConfig push, PhysicsConfig physics);
 
-  /// See Simulator::push. `ok` is false in each of these cases:
+  /// See Simulator::push_along. `ok` is false in each of these cases:
   ///
   /// - `start` has the wrong size, or a pose that is not finite, beyond 1000 m or beyond 1e4 rad;
   /// - a pose was not finite after a step;
   /// - the bodies did not come to rest.
-  [[nodiscard]] PushOutcome push(const Poses& start, int action) const override;
+  [[nodiscard]] PushOutcome push_along(const Poses& start, const Stroke& stroke) const override;
 
   /// See Simulator::settle. Moves overlapping bodies apart until they rest in contact.
   [[nodiscard]] PushOutcome settle(const Poses& start) const override;
@@ -50,7 +50,6 @@ class Box2dSimulator final : public Simulator {
   bool plausible(const Poses& start) const;
 
   Scene scene_;
-  PushConfig push_;
   PhysicsConfig physics_;
 };
 

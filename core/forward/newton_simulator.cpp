@@ -1,5 +1,6 @@
 #include "core/forward/newton_simulator.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -10,31 +11,39 @@
 namespace rtg::forward {
 
 NewtonSimulator::NewtonSimulator(Scene scene, const PushConfig& push, const PhysicsConfig& physics)
-    : scene_(std::move(scene)),
-      push_(push),
-      sub_steps_(physics.sub_steps),
+    : Simulator(push),
+      scene_(std::move(scene)),
+      physics_(physics),
       settling_(static_cast<std::size_t>(physics.settling_steps())),
       order_(movable_first(scene_)) {
-  const Scene ordered = select(scene_, Poses(scene_.size()), order_).scene;
-  for (int action = 0; action < action_count(push); action += push.headings)
-    energies_.emplace_back(ordered, physics, with_stride_of(action, push));
+  for (const double stride : push.strides) energies_.push_back(energy_of(stride));
 }
 
-PushOutcome NewtonSimulator::push(const Poses& start, int action) const {
+energy::StepEnergy NewtonSimulator::energy_of(double stride) const {
+  PushConfig push = push_;
+  push.strides = {stride};
+  return {select(scene_, Poses(scene_.size()), order_).scene, physics_, push};
+}
+
+PushOutcome NewtonSimulator::push_along(const Poses& start, const Stroke& stroke) const {
   if (start.size() != scene_.size()) return {start, false};
-  const Pose goal = push_target(start[0], action, push_);
+  const Pose goal = push_target(start[0], stroke, push_);
   const Vector3d from(start[0].x, start[0].y, start[0].theta), to(goal.x, goal.y, goal.theta);
   std::vector<Vector3d> targets;
-  for (int k = 1; k <= sub_steps_; ++k)
-    targets.push_back(from + static_cast<double>(k) / sub_steps_ * (to - from));
+  for (int k = 1; k <= physics_.sub_steps; ++k)
+    targets.push_back(from + static_cast<double>(k) / physics_.sub_steps * (to - from));
   targets.resize(targets.size() + settling_, to);
-  return follow(start, targets, energies_[static_cast<std::size_t>(stride_index(action, push_))]);
+  const auto at = std::ranges::find(push_.strides, stroke.length);
+  if (at == push_.strides.end()) return follow(start, targets, energy_of(stroke.length));
+  return follow(start, targets,
+                energies_[static_cast<std::size_t>(std::distance(push_.strides.begin(), at))]);
 }
 
 PushOutcome NewtonSimulator::settle(const Poses& start) const {
   if (start.size() != scene_.size()) return {start, false};
   const Vector3d hold(start[0].x, start[0].y, start[0].theta);
-  return follow(start, {static_cast<std::size_t>(sub_steps_) + settling_, hold}, energies_[0]);
+  return follow(start, {static_cast<std::size_t>(physics_.sub_steps) + settling_, hold},
+                energies_[0]);
 }
 
 PushOutcome NewtonSimulator::follow(const Poses& start, const std::vector<Vector3d>& targets,

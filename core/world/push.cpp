@@ -28,8 +28,12 @@ Vector2d direction(int action, const PushConfig& config) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-Pose push_target(const Pose& robot, int action, const PushConfig& config) {
-  const Vector2d to = robot.position() + stride_of(action, config) * direction(action, config);
+Stroke stroke_of(int action, const PushConfig& config) {
+  return {direction(action, config), stride_of(action, config)};
+}
+
+Pose push_target(const Pose& robot, const Stroke& stroke, const PushConfig& config) {
+  const Vector2d to = robot.position() + stroke.length * stroke.direction;
   return {std::clamp(to.x(), -config.arena, config.arena),
           std::clamp(to.y(), -config.arena, config.arena), robot.theta};
 }

@@ -37,9 +37,18 @@ PushConfig with_stride_of(int action, const PushConfig& config);
 /// Returns d(a), the unit vector of an action.
 Vector2d direction(int action, const PushConfig& config);
 
-/// Returns the robot's target pose for `action` from the pose `robot`: one stride along d(a), with
-/// the same angle. Each coordinate is clipped to the arena.
-Pose push_target(const Pose& robot, int action, const PushConfig& config);
+/// A straight way of the robot: `length` [m] along the unit vector `direction`.
+struct Stroke {
+  Vector2d direction;
+  double length = 0.0;
+};
+
+/// Returns the stroke of an action: ℓ(a) along d(a).
+Stroke stroke_of(int action, const PushConfig& config);
+
+/// Returns the robot's target pose for a stroke from the pose `robot`, with the same angle. Each
+/// coordinate is clipped to the arena.
+Pose push_target(const Pose& robot, const Stroke& stroke, const PushConfig& config);
 
 /// Returns whether a robot pose lies in the arena.
 bool in_arena(const Pose& robot, const PushConfig& config);

@@ -241,6 +241,8 @@ def main(out: Path) -> None:
         gate_table(benchmarks),
         "## The 48 candidates of a state",
         candidates(benchmarks),
+        "The same from Python and in C++, and gates of their ratio (`tests/bench/binding.py`):",
+        printed(out / "binding.txt"),
         "## Pushes solved back",
         pushes(out),
         "## Newton systems",

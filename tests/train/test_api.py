@@ -59,6 +59,23 @@ def test_the_starts_of_a_reverse_solve_lead_to_the_given_state(solved) -> None:
     assert rtg.forward.Box2D(task).push(starts, actions)[1].all()
 
 
+@pytest.mark.parametrize("engine", [rtg.forward.Newton, rtg.forward.Box2D])
+def test_a_way_of_the_robot_is_in_metres(engine: type) -> None:
+    task = rtg.load_task("push_t")
+    start = task.start()
+    start[0, :2] = (-4.0, -4.0)  # nothing is near
+    (after,), ok = engine(task).push_along(start[None], [(0.3, -0.4)])
+    assert ok.all()
+    np.testing.assert_allclose(after[0, :2], (-3.7, -4.4), atol=1e-3)
+    for wrong, message in [
+        ([(0.0, 0.0)], "a way of length 0.0*; legal: finite lengths above 0"),
+        ([(np.nan, 1.0)], "a way of length nan; legal"),
+        (np.ones((2, 2)), "1 states but 2 ways; legal: one way per state"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            engine(task).push_along(start[None], wrong)
+
+
 def test_a_solution_is_a_trajectory_with_controls_and_forces(solved) -> None:
     task, goal, found = solved
     steps = task.config.physics.sub_steps

@@ -4,6 +4,7 @@
 #include <nanobind/ndarray.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -19,6 +20,8 @@ namespace nb = nanobind;
 /// A numpy array of N states of a scene: [N, bodies, 3] float64, x [m], y [m], θ [rad].
 using StateArray = nb::ndarray<const double, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
 using ActionArray = nb::ndarray<const std::int64_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+/// Ways of the robot: [N, 2] float64, x [m], y [m].
+using WayArray = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 
 /// Memory that becomes a numpy array. OwnedArray owns it until release().
 template <class T>
@@ -56,6 +59,21 @@ inline void check_actions(const ActionArray& actions, std::size_t states, int co
     if (action < 0 || action >= count)
       throw nb::value_error(
           ("action " + std::to_string(action) + "; legal: 0 to " + std::to_string(count - 1))
+              .c_str());
+  }
+}
+
+/// Throws ValueError unless there is one way per state, each of a finite length above 0.
+inline void check_ways(const WayArray& ways, std::size_t states) {
+  if (ways.shape(0) != states)
+    throw nb::value_error((std::to_string(states) + " states but " + std::to_string(ways.shape(0)) +
+                           " ways; legal: one way per state")
+                              .c_str());
+  for (std::size_t row = 0; row < states; ++row) {
+    const double length = std::hypot(ways.data()[2 * row], ways.data()[2 * row + 1]);
+    if (!(length > 0.0) || !std::isfinite(length))
+      throw nb::value_error(
+          ("a way of length " + std::to_string(length) + "; legal: finite lengths above 0")
               .c_str());
   }
 }

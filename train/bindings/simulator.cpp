@@ -23,23 +23,44 @@ struct TaskSimulator {
             make_simulator(config.forward, config.task.scene, config.task.push, config.physics)) {}
 };
 
-std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, bool>> push(
-    const TaskSimulator& simulator, const StateArray& states, const ActionArray& actions) {
-  check_bodies(states, simulator.bodies);
-  check_actions(actions, states.shape(0), simulator.actions);
+using Outcomes = std::pair<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, bool>>;
+
+/// Simulates the push `stroke(row)` from each state.
+template <class StrokeOfRow>
+Outcomes push_each(const TaskSimulator& simulator, const StateArray& states,
+                   const StrokeOfRow& stroke) {
   const std::size_t count = states.shape(0), width = simulator.bodies * 3;
   OwnedArray<double> next(count * width);
   OwnedArray<bool> ok(count);
   {
     const nb::gil_scoped_release release;
     for (std::size_t row = 0; row < count; ++row) {
-      const int action = static_cast<int>(actions.data()[row]);
-      const forward::PushOutcome outcome = simulator.pushes->push(state_at(states, row), action);
+      const forward::PushOutcome outcome =
+          simulator.pushes->push_along(state_at(states, row), stroke(row));
       write_state(outcome.end, next.data.get() + row * width);
       ok.data[row] = outcome.ok;
     }
   }
   return {next.release({count, simulator.bodies, 3}), ok.release({count})};
+}
+
+Outcomes push(const TaskSimulator& simulator, const StateArray& states,
+              const ActionArray& actions) {
+  check_bodies(states, simulator.bodies);
+  check_actions(actions, states.shape(0), simulator.actions);
+  return push_each(simulator, states, [&](std::size_t row) {
+    return stroke_of(static_cast<int>(actions.data()[row]), simulator.config.task.push);
+  });
+}
+
+Outcomes push_along(const TaskSimulator& simulator, const StateArray& states,
+                    const WayArray& ways) {
+  check_bodies(states, simulator.bodies);
+  check_ways(ways, states.shape(0));
+  return push_each(simulator, states, [&](std::size_t row) {
+    const Vector2d way(ways.data()[2 * row], ways.data()[2 * row + 1]);
+    return Stroke{way.normalized(), way.norm()};
+  });
 }
 
 }  // namespace
@@ -60,7 +81,11 @@ It holds no state; equal arguments give bitwise equal results.)")
 
 Returns the states after the pushes, and whether each push is a legal transition. It is
 illegal if the simulator cannot finish it, for instance if the bodies do not come to rest.
-Raises ValueError for arrays that do not fit the task.)");
+Raises ValueError for arrays that do not fit the task.)")
+      .def("push_along", &push_along, nb::arg("states"), nb::arg("ways"),
+           R"(Like push(), with a way (x, y) of the robot, in any direction, instead of an action.
+
+[N, bodies, 3], [N, 2] -> [N, bodies, 3], [N]. Raises ValueError for a way of length 0, too.)");
 }
 
 }  // namespace rtg::bindings

@@ -29,6 +29,15 @@ class _Forward:
         after, ok = self._core.push(self.task.inner(states), pushes)
         return self.task.outer(after), ok
 
+    def push_along(self, states: ArrayLike, ways: ArrayLike) -> tuple[Floats, NDArray[np.bool_]]:
+        """Like push(), with the way (x, y) [m] of the robot instead of an action. [N, 2]
+
+        A way has any direction and any length above 0.
+        """
+        ways = np.ascontiguousarray(ways, np.float64) * self.task.core.metre
+        after, ok = self._core.push_along(self.task.inner(states), ways)
+        return self.task.outer(after), ok
+
 
 class Newton(_Forward):
     """Each sub-step minimises the step energy [eq. (5)]: the model that the reverse one inverts."""

@@ -79,8 +79,10 @@ class ReverseSimulator:
             status=[_core.SOLVE_STATUSES[k] for k in found["status"]],
             iterations=found["iterations"],
             starts=[
-                self.task.outer(starts[:count])
-                for starts, count in zip(found["starts"], found["found"], strict=True)
+                starts[:count]
+                for starts, count in zip(
+                    self.task.outer(found["starts"]), found["found"], strict=True
+                )
             ],
             trajectory=self.task.outer(found["trajectory"]),
             controls=found["controls"],

@@ -74,8 +74,8 @@ TEST(Box2dSimulator, AFreePushEndsAtTheTargetWithTheHeadingHeld) {
   start[0] = {6.0, -6.5, 0.4};
   for (int action = 0; action < 48; ++action) {
     const PushOutcome out = simulator.push(start, action);
-    const Pose target =
-        push_target(start[0], action, task.push);  // clipped for some of the actions
+    const Pose target = push_target(start[0], stroke_of(action, task.push),
+                                    task.push);  // clipped for some of the actions
     ASSERT_TRUE(out.ok);
     EXPECT_NEAR(out.end[0].x, target.x, 1e-5);
     EXPECT_NEAR(out.end[0].y, target.y, 1e-5);

@@ -48,7 +48,7 @@ TEST(FreePath, NoBodyIsNearBeforeItsEnd) {
   const PushConfig push;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const testing::RandomPush drawn = testing::random_push(seed, push);
-    const Pose to = push_target(drawn.start[0], drawn.action, push);
+    const Pose to = push_target(drawn.start[0], stroke_of(drawn.action, push), push);
     const double clear = free_path_length(drawn.scene, drawn.start, to);
     const double length = (to.position() - drawn.start[0].position()).norm();
     double least = INFINITY, at_end = INFINITY;

@@ -37,7 +37,7 @@ double servo_lag(double share) {
 /// Returns where a free push by `action` ends: at push speed the drag along d(a) is B/force_factor,
 /// and each coordinate has a servo of its own.
 Vector2d end_of_free_push(const Pose& start, int action) {
-  const Vector2d end = push_target(start, action, kPush).position();
+  const Vector2d end = push_target(start, stroke_of(action, kPush), kPush).position();
   const Vector2d share = direction(action, kPush) / kPhysics.force_factor;
   return end - Vector2d(servo_lag(share.x()), servo_lag(share.y()));
 }
@@ -60,8 +60,8 @@ TEST(NewtonSimulator, AFreePushEndsWhereBox2dsDoes) {
   for (const int action : {0, 5, 30}) {
     const Vector2d newton = simulator().push(start, action).end[0].position();
     const Vector2d other = box2d.push(start, action).end[0].position();
-    const Vector2d lag =
-        push_target(start[0], action, kPush).position() - end_of_free_push(start[0], action);
+    const Vector2d lag = push_target(start[0], stroke_of(action, kPush), kPush).position() -
+                         end_of_free_push(start[0], action);
     EXPECT_LT((newton + lag - other).norm(), 1e-5);
     EXPECT_LT(lag.norm(), 2e-3);
   }

@@ -30,7 +30,7 @@ TEST(Push, ActionsCountCounterClockwiseFromX) {
 
 TEST(Push, TargetIsOneStrideAheadWithTheHeadingHeld) {
   const PushConfig config{4, {1.5}, 8.0};
-  const Pose target = push_target({0.5, -1.0, 7.0}, 1, config);
+  const Pose target = push_target({0.5, -1.0, 7.0}, stroke_of(1, config), config);
   EXPECT_NEAR(target.x, 0.5, 1e-15);
   EXPECT_NEAR(target.y, 0.5, 1e-15);
   EXPECT_EQ(target.theta, 7.0);
@@ -44,17 +44,20 @@ TEST(Push, EachStrideHasAllHeadings) {
   for (int action = 0; action < 8; ++action) {
     EXPECT_EQ(stride_index(action, config), action < 4 ? 0 : 1);
     EXPECT_EQ(direction(action, config), direction(action % 4, config));
-    const Pose target = push_target({0, 0, 0.3}, action, config);
+    const Pose target = push_target({0, 0, 0.3}, stroke_of(action, config), config);
     EXPECT_NEAR(target.position().norm(), action < 4 ? 0.5 : 1.5, 1e-15);
-    EXPECT_EQ(push_target({0, 0, 0.3}, action % 4, with_stride_of(action, config)), target);
+    EXPECT_EQ(push_target({0, 0, 0.3}, stroke_of(action % 4, with_stride_of(action, config)),
+                          with_stride_of(action, config)),
+              target);
   }
 }
 
 TEST(Push, TargetIsClippedToTheArenaInEachCoordinate) {
   const PushConfig config{8, {2.0}, 3.0};
-  const Pose corner = push_target({2.5, -2.0, 0.1}, 7, config);  // to (3.91, -3.41)
+  const Pose corner =
+      push_target({2.5, -2.0, 0.1}, stroke_of(7, config), config);  // to (3.91, -3.41)
   EXPECT_EQ(corner, (Pose{3.0, -3.0, 0.1}));
-  const Pose edge = push_target({2.5, 0.0, 0.1}, 1, config);  // to (3.91, 1.41)
+  const Pose edge = push_target({2.5, 0.0, 0.1}, stroke_of(1, config), config);  // to (3.91, 1.41)
   EXPECT_EQ(edge.x, 3.0);
   EXPECT_NEAR(edge.y, std::numbers::sqrt2, 1e-15);
 }
