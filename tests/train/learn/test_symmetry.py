@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from rtg import _core, paths
+from rtg.envs.layouts import Layouts
 from rtg.envs.training_environments import TrainingEnvironments
 from rtg.learn import policy_file
 from rtg.learn.ddqn import DoubleDqn
-from rtg.learn.hindsight import Layouts
 from rtg.learn.symmetry import Symmetry
 from samples import train_settings
 

@@ -13,10 +13,11 @@ import torch as th
 from torch.nn import functional
 
 from rtg import _core
+from rtg.envs.layouts import Layouts
 from rtg.envs.training_environments import Step
 from rtg.learn import device, networks
 from rtg.learn.exploration import Exploration, revisit_tolerance
-from rtg.learn.hindsight import HindsightReplayBuffer, Layouts
+from rtg.learn.hindsight import HindsightReplayBuffer
 from rtg.learn.replay import Batch, MixedReplayBuffer, ReplayRules, unchanged
 from rtg.learn.stages import Stages
 from rtg.learn.symmetry import Symmetry

@@ -16,11 +16,11 @@ import torch as th
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.envs.layouts import Layouts
 from rtg.errors import UserError
 from rtg.files import checkpoint
 from rtg.learn import networks
 from rtg.learn.evaluation import Values
-from rtg.learn.hindsight import Layouts
 from rtg.learn.replay import unchanged
 from rtg.learn.symmetry import Symmetry
 

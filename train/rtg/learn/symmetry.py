@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rtg import _core
-from rtg.learn.hindsight import BODY_ENTRIES, Layouts, object_columns
+from rtg.envs.layouts import BODY_ENTRIES, Layouts, object_columns
 
 Array = npt.NDArray[Any]
 
