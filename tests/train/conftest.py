@@ -8,6 +8,7 @@ from rtg.files.dataset import Rows
 from rtg.pictures import plots
 from training_runs import TINY
 
+os.environ["SDL_VIDEODRIVER"] = "dummy"  # windows are drawn, but not on a screen
 os.environ["CUDA_VISIBLE_DEVICES"] = ""  # what is compared bit by bit is computed on the processor
 th.set_num_threads(1)  # more threads than idle cores make small networks a hundred times slower
 

@@ -8,20 +8,15 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from gymnasium import spaces
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core, paths
-from rtg.pictures.draw import state_image
+from rtg.envs.interface import Interface, Variant
+from rtg.envs.window import Window
 
 Floats = NDArray[np.float64]
 
-OBSERVATION_LIMIT = 1e6  # bound of all entries; no body gets 1 km far, no unit is below 1 mm
-
-
-def observation_space(task: _core.Task) -> spaces.Box:
-    """Returns the space of observations, see core/tasks/task.hpp. float32 [observation]"""
-    return spaces.Box(-OBSERVATION_LIMIT, OBSERVATION_LIMIT, (task.observation_size,), np.float32)
+RENDERED_PIXELS = 360  # of a side of a rendered picture
 
 
 def read_config(config: _core.Config | str | Path, settings: Sequence[str] = ()) -> _core.Config:
@@ -53,11 +48,24 @@ def checked_state(task: _core.Task, poses: Any) -> Floats:
     return state
 
 
+def check_render_mode(mode: str | None, legal: list[str]) -> None:
+    """Raises ValueError for a mode that is none of the `legal` ones, nor None."""
+    if mode is not None and mode not in legal:
+        raise ValueError(f"render_mode {mode!r}; legal: None, {', '.join(map(repr, legal))}")
+
+
+def first(observation: Any) -> Any:
+    """Returns the first of the observations of Interface.observation()."""
+    if isinstance(observation, dict):
+        return {key: entries[0] for key, entries in observation.items()}
+    return observation[0]
+
+
 class PushEnv(gymnasium.Env[Any, Any]):
     """The environment of a task in which a robot pushes objects until the goal holds.
 
     Action a moves the robot along 2πa/headings, by the stride a // headings of the task. The
-    reward is 1 when the goal holds, else 0. Success ends the episode. The seed determines all
+    reward is 1 when the goal is reached, else 0. Success ends the episode. The seed determines all
     random numbers.
 
     - `config`: the name of a task, its file, or its configuration.
@@ -66,13 +74,18 @@ class PushEnv(gymnasium.Env[Any, Any]):
       of the task (Task.metre); the task's if None.
     - `ends_at_horizon`: an episode is truncated after task.horizon actions. Else it has no limit of
       its own, for `gymnasium.make`, which limits it to `max_episode_steps`.
+    - `render_mode`: "rgb_array", or "human", a window that shows each state.
+    - `variant`: `observations`, `actions`, `goals` and `pixels`, see Variant.
     - `info` has the keys "poses" [bodies, 3], "is_success" and "rejected".
 
     "rejected" means that the simulator could not finish the push. The episode is then truncated and
     the state is unchanged.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012  (gymnasium's own way)
+    metadata = {  # noqa: RUF012  (gymnasium's own way)
+        "render_modes": ["rgb_array", "human"],
+        "render_fps": 4,
+    }
 
     def __init__(
         self,
@@ -81,17 +94,23 @@ class PushEnv(gymnasium.Env[Any, Any]):
         jitter: float | None = None,
         ends_at_horizon: bool = True,
         render_mode: str | None = None,
+        **variant: Any,
     ) -> None:
+        check_render_mode(render_mode, self.metadata["render_modes"])
         read = read_config(config, settings)
+        self.interface = Interface(read, Variant(**variant))
         self.task = read.task
         self.jitter = self.task.start_jitter if jitter is None else jitter
         self.ends_at_horizon = ends_at_horizon
         self.render_mode = render_mode
-        self.observation_space = observation_space(self.task)
-        self.action_space = spaces.Discrete(self.task.actions)
-        self._simulator = _core.Simulator(read)
+        self.observation_space = self.interface.observation_space
+        self.action_space = self.interface.action_space
         self._path: list[Floats] = [self.task.start]  # states of the current episode
+        self._goal = self.task.start  # goal state of the episode, see Interface.drawn_goal()
         self._steps = 0  # actions of the current episode
+        self._window: Window | None = None
+        if self.interface.draws_goals:  # by this attribute others know that goals are drawn
+            self.compute_reward = self.interface.compute_reward
 
     @property
     def poses(self) -> Floats:
@@ -100,67 +119,92 @@ class PushEnv(gymnasium.Env[Any, Any]):
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+    ) -> tuple[Any, dict[str, Any]]:
         """Begins an episode. Raises ValueError for unknown options and illegal poses.
 
-        `options`: "poses", the start [bodies, 3]; "jitter", which replaces self.jitter. Both
-        are in units of the task.
+        `options`: "poses", the start [bodies, 3]; "jitter", which replaces self.jitter; with
+        drawn goals "goal", the state whose layout is to be reached [bodies, 3]. All are in units of
+        the task.
         """
         super().reset(seed=seed)
         options = options or {}
-        unknown = set(options) - {"poses", "jitter"}
-        if unknown:
-            raise ValueError(f"unknown options {sorted(unknown)}; legal: 'poses', 'jitter'")
+        legal = ["poses", "jitter", *(["goal"] if self.interface.draws_goals else [])]
+        if unknown := set(options) - set(legal):
+            words = ", ".join(map(repr, legal))
+            raise ValueError(f"unknown options {sorted(unknown)}; legal: {words}")
         key = int(self.np_random.integers(2**63))
         if (start := options.get("poses")) is not None:
             self._path = [checked_state(self.task, start)]
         else:
             jitter = float(options.get("jitter", self.jitter))
             self._path = [self.task.jittered_start(jitter, key)]
+        if (goal := options.get("goal")) is not None:
+            self._goal = checked_state(self.task, goal)
+        elif self.interface.draws_goals:
+            self._goal = self.interface.drawn_goal(int(self.np_random.integers(2**63)))
         self._steps = 0
+        self._show()
         return self._observation(), self._info(rejected=False)
 
-    def step(
-        self, action: np.int64 | int
-    ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        if not self.action_space.contains(action):
-            raise ValueError(f"action {action}; legal: integers from 0 to {self.task.actions - 1}")
-        after, ok = self._simulator.push(self.poses[None], np.array([action], np.int64))
-        self._path.append(after[0] if ok[0] else self.poses)
+    def step(self, action: ArrayLike) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Performs an action. Raises ValueError for one that is not legal."""
+        after, ok = self.interface.push(self.poses[None], self.interface.batch_of(action))
+        self._path.append(after[0])
         self._steps += 1
         info = self._info(rejected=not ok[0])
         success = bool(ok[0]) and info["is_success"]
         truncated = not success and (self._is_out_of_time() or not ok[0])
+        self._show()
         return self._observation(), float(success), success, bool(truncated), info
 
     def get_state(self) -> dict[str, Any]:
-        """Returns the state of the episode, for set_state(): "poses" [bodies, 3] and "steps"."""
-        return {"poses": self.poses.copy(), "steps": self._steps}
+        """Returns the state of the episode, for set_state().
 
-    def set_state(self, state: dict[str, Any]) -> NDArray[np.float32]:
+        "poses" and "goal" [bodies, 3], and "steps".
+        """
+        return {"poses": self.poses.copy(), "goal": self._goal.copy(), "steps": self._steps}
+
+    def set_state(self, state: dict[str, Any]) -> Any:
         """Goes on from a state of get_state(), to the bit, and returns its observation.
 
         Raises ValueError for poses that are not legal. A wrapper that counts steps, as
         `gymnasium.make` adds one, keeps its own count.
         """
         self._path = [checked_state(self.task, state["poses"])]
+        self._goal = checked_state(self.task, state["goal"])
         self._steps = int(state["steps"])
         return self._observation()
 
     def render(self) -> NDArray[np.uint8] | None:
-        if self.render_mode != "rgb_array":
-            return None
+        """Returns the picture of the state and of the robot's way, in the mode "rgb_array"."""
+        return self._picture() if self.render_mode == "rgb_array" else None
+
+    def close(self) -> None:
+        """Closes the window, if there is one."""
+        if self._window:
+            self._window.close()
+            self._window = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_window": None}  # a copy opens its own
+
+    def _picture(self) -> NDArray[np.uint8]:
         way = np.array(self._path)
         way[:-1, 1:] = self.poses[1:]  # shows the objects only at their current poses
-        reached = bool(self.task.succeeded(self.poses[None])[0])
-        return state_image(self.task, way, caption=f"{self._steps}", reached=reached)
+        return self.interface.image(way, self._goal, RENDERED_PIXELS, caption=f"{self._steps}")
+
+    def _show(self) -> None:
+        if self.render_mode != "human":
+            return
+        self._window = self._window or Window(self.task.name, RENDERED_PIXELS)
+        self._window.show(self._picture(), self.metadata["render_fps"])
 
     def _is_out_of_time(self) -> bool:
         return self.ends_at_horizon and self._steps >= self.task.horizon
 
     def _info(self, rejected: bool) -> dict[str, Any]:
-        success = bool(self.task.succeeded(self.poses[None])[0])
+        success = bool(self.interface.succeeded(self.poses[None], self._goal[None])[0])
         return {"poses": self.poses.copy(), "is_success": success, "rejected": rejected}
 
-    def _observation(self) -> NDArray[np.float32]:
-        return self.task.observation(self.poses[None])[0]
+    def _observation(self) -> Any:
+        return first(self.interface.observation(self.poses[None], self._goal[None]))

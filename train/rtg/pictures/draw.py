@@ -202,9 +202,11 @@ def mark_colour(task: TaskLike, mark: MarkLike) -> Colour:
     return AVOID if mark.negated else kind_colours(task).get(mark.kind, GOAL)
 
 
-def draw_goal(canvas: Canvas, task: TaskLike, reached: bool = False) -> None:
-    """Draws the marks of the goal, darker if `reached`. Small ones lie on top of large ones."""
-    for mark in sorted(task.goal_marks, key=lambda mark: -_area(mark.ring)):
+def draw_goal(
+    canvas: Canvas, task: TaskLike, marks: Sequence[MarkLike], reached: bool = False
+) -> None:
+    """Draws the marks of a goal, darker if `reached`. Small ones lie on top of large ones."""
+    for mark in sorted(marks, key=lambda mark: -_area(mark.ring)):
         colour = mark_colour(task, mark)
         canvas.polygon(mark.ring, blend_with_paper(colour, 0.38 if reached else 0.18), edge=colour)
 
@@ -268,17 +270,18 @@ def state_image(
     canvas: Canvas | None = None,
     caption: str = "",
     reached: bool = False,
+    marks: Sequence[MarkLike] | None = None,
 ) -> NDArray[np.uint8]:
     """Draws the last state of `path` as an RGB picture [pixels, pixels, 3].
 
     The picture also shows the way of the robot along `path` [T, bodies, 3] and the outlines of the
     objects in its first state. `reached` marks a success. Without `canvas`, the picture shows the
-    whole arena.
+    whole arena. `marks`: those of the goal; the task's own if None.
     """
     canvas = canvas or Canvas(arena_window(task))
     path = np.asarray(path, dtype=float)
     a = task.arena
-    draw_goal(canvas, task, reached)
+    draw_goal(canvas, task, task.goal_marks if marks is None else marks, reached)
     canvas.line([(-a, -a), (a, -a), (a, a), (-a, a), (-a, -a)], FAINT, 0.06)
     if len(path) > 1:
         draw_former_outlines(canvas, task, path[0], path[-1])

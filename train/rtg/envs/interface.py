@@ -1,0 +1,216 @@
+"""The side of a task that an agent meets: observations, actions and goals."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, NamedTuple, get_args
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import ArrayLike, NDArray
+
+from rtg import _core
+from rtg.envs.layouts import Layouts
+from rtg.pictures.draw import Canvas, MarkLike, arena_window, outline, state_image
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+Observations = Literal["state", "image"]
+Actions = Literal["discrete", "continuous"]
+Goals = Literal["task", "drawn"]
+
+OBSERVATION_LIMIT = 1e6  # bound of all entries; no body gets 1 km far, no unit is below 1 mm
+
+
+class Variant(NamedTuple):
+    """A choice among the interfaces of a task.
+
+    - `observations`: "state", see core/tasks/task.hpp, float32 [observation]; "image", an RGB
+      picture of the arena, uint8 [pixels, pixels, 3].
+    - `actions`: "discrete", those of the task; "continuous", the way (x, y) of the robot in units
+      of the task's longest stride, float32 [2]. Longer ways are shortened to 1.
+    - `goals`: "task"; "drawn": each episode has a goal state of the task drawn for it, whose layout
+      is to be reached, see rtg.envs.layouts. Observations are then dictionaries of "observation",
+      "achieved_goal" and "desired_goal".
+    """
+
+    observations: Observations = "state"
+    actions: Actions = "discrete"
+    goals: Goals = "task"
+    pixels: int = 96
+
+    def check(self) -> None:
+        """Raises ValueError for values that are not legal."""
+        legal = {"observations": Observations, "actions": Actions, "goals": Goals}
+        for name, kind in legal.items():
+            if getattr(self, name) not in get_args(kind):
+                words = ", ".join(repr(word) for word in get_args(kind))
+                raise ValueError(f"{name} {getattr(self, name)!r}; legal: {words}")
+        if not 8 <= self.pixels <= 2048:
+            raise ValueError(f"pixels {self.pixels}; legal: 8 to 2048")
+
+
+class _Outline(NamedTuple):
+    """A mark of a drawn goal: where a body is to lie."""
+
+    kind: str
+    ring: Floats  # [vertices, 2]
+    target: bool = True
+    negated: bool = False
+
+
+class Interface:
+    """The interface of a task in one variant. Holds no state of an episode."""
+
+    def __init__(self, config: _core.Config, variant: Variant) -> None:
+        variant.check()
+        self.task = config.task
+        self.variant = variant
+        self._simulator = _core.Simulator(config)
+        self._layouts = Layouts(self.task) if variant.goals == "drawn" else None
+        self.action_space = self._action_space()
+        self.observation_space = self._observation_space()
+
+    @property
+    def draws_goals(self) -> bool:
+        """Whether each episode has a goal of its own."""
+        return self._layouts is not None
+
+    def batch_of(self, action: Any) -> NDArray[Any]:
+        """Returns one action as a batch for push(), [1] or [1, 2].
+
+        Raises ValueError for an action that is not legal.
+        """
+        if self.variant.actions == "discrete":
+            if not self.action_space.contains(action):
+                raise ValueError(
+                    f"action {action}; legal: integers from 0 to {self.task.actions - 1}"
+                )
+            return np.array([action], np.int64)
+        way = np.asarray(action, np.float64)
+        if way.shape != (2,) or not (np.abs(way) <= 1.0).all():
+            raise ValueError(f"action {action}; legal: two numbers from -1 to 1")
+        return way[None]
+
+    def push(self, states: Floats, actions: Any) -> tuple[Floats, Bools]:
+        """Simulates an action in each state.
+
+        Returns the states afterwards, and whether the simulator could finish each push; states of
+        others are unchanged. A way of length 0 leaves the state as it is. [N, bodies, 3], [N, ...]
+        """
+        if self.variant.actions == "discrete":
+            after, ok = self._simulator.push(states, np.asarray(actions, np.int64))
+        else:
+            after, ok = self._pushed_along(states, np.asarray(actions, np.float64))
+        return np.where(ok[:, None, None], after, states), ok
+
+    def drawn_goal(self, key: int) -> Floats:
+        """Returns the goal state of an episode, which `key` determines. [bodies, 3]
+
+        Returns the start of the task where goals are those of the task. Raises ValueError if 1,000
+        attempts find no goal state.
+        """
+        if self._layouts is None:
+            return self.task.start
+        state = self.task.goal_state(key)
+        if state is None:
+            raise ValueError(f"no goal state of '{self.task.name}' was found in 1,000 attempts")
+        return state
+
+    def succeeded(self, states: Floats, goals: Floats) -> Bools:
+        """Returns in which states the goal is reached. [N, bodies, 3] each -> [N]"""
+        if self._layouts is None:
+            return self.task.succeeded(states)
+        near: Bools = self._layouts.near(self._layout(states), self._layout(goals))
+        return near
+
+    def compute_reward(
+        self, achieved_goal: ArrayLike, desired_goal: ArrayLike, info: Any = None
+    ) -> Any:
+        """Returns 1 where layouts agree within the tolerances, else 0; for drawn goals alone.
+
+        [..., size] each -> [...]; `info` is not used.
+        """
+        assert self._layouts is not None
+        near = self._layouts.near(np.asarray(achieved_goal), np.asarray(desired_goal))
+        return near.astype(np.float64) if near.ndim else float(near)
+
+    def observation(self, states: Floats, goals: Floats) -> Any:
+        """Returns what an agent sees of states with their goal states. [N, bodies, 3] each
+
+        Arrays [N, ...], or a dictionary of them.
+        """
+        if self.variant.observations == "image":
+            frames = [
+                self.image(state[None], goal, self.variant.pixels)
+                for state, goal in zip(states, goals, strict=True)
+            ]
+            seen: Any = np.stack(frames)
+        else:
+            seen = self.task.observation(states)
+        if self._layouts is None:
+            return seen
+        return {
+            "observation": seen,
+            "achieved_goal": self._layout(states),
+            "desired_goal": self._layout(goals),
+        }
+
+    def image(
+        self, path: Floats, goal: Floats, pixels: int, caption: str = ""
+    ) -> NDArray[np.uint8]:
+        """Draws the last of some states, the way of the robot there, and the goal.
+
+        [T, bodies, 3], [bodies, 3] -> [pixels, pixels, 3]
+        """
+        return state_image(
+            self.task,
+            path,
+            canvas=Canvas(arena_window(self.task), pixels),
+            caption=caption,
+            reached=bool(self.succeeded(path[-1:], goal[None])[0]),
+            marks=None if self._layouts is None else self._outlines(goal),
+        )
+
+    def _outlines(self, goal: Floats) -> list[MarkLike]:
+        task = self.task
+        movable = [body for body in range(1, task.bodies) if not task.fixed[body]]
+        return [
+            _Outline(task.kinds[body], outline(task.outlines[body][0], goal[body]))
+            for body in movable
+        ]
+
+    def _layout(self, states: Floats) -> NDArray[np.float32]:
+        assert self._layouts is not None
+        layout: NDArray[np.float32] = self._layouts.of(self.task.observation(states))
+        return layout
+
+    def _pushed_along(self, states: Floats, ways: Floats) -> tuple[Floats, Bools]:
+        lengths = np.linalg.norm(ways, axis=1)
+        longest = 2.0 * self.task.relative_unit
+        ways = longest * ways / np.maximum(lengths, 1.0)[:, None]
+        after, ok, moves = states.copy(), np.ones(len(states), np.bool_), lengths > 0.0
+        if moves.any():
+            after[moves], ok[moves] = self._simulator.push_along(states[moves], ways[moves])
+        return after, ok
+
+    def _action_space(self) -> spaces.Space[Any]:
+        if self.variant.actions == "discrete":
+            return spaces.Discrete(self.task.actions)
+        return spaces.Box(-1.0, 1.0, (2,), np.float32)
+
+    def _observation_space(self) -> spaces.Space[Any]:
+        side = self.variant.pixels
+        seen = (
+            spaces.Box(0, 255, (side, side, 3), np.uint8)
+            if self.variant.observations == "image"
+            else _unbounded(self.task.observation_size)
+        )
+        if self._layouts is None:
+            return seen
+        layout = _unbounded(self._layouts.size)
+        return spaces.Dict({"observation": seen, "achieved_goal": layout, "desired_goal": layout})
+
+
+def _unbounded(size: int) -> spaces.Box:
+    return spaces.Box(-OBSERVATION_LIMIT, OBSERVATION_LIMIT, (size,), np.float32)
