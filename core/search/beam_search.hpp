@@ -52,7 +52,7 @@ class BeamSearch {
   /// Departs from the paper: it stores every replayed candidate, as a single step. Here its plan
   /// must succeed, as replay errors add up along it, and some plans are stored whole. On Sorting
   /// success is then 0.99 after 90,000 interactions, without both 0 after 130,000 (one seed).
-  /// Without whole plans ArtManip's trees take 2.5 times the CPU time (results/ablations).
+  /// Without whole plans ArtManip's trees take 2.5 times the CPU time (docs/results/ablations).
   std::vector<Transition> grow(const SolveBatch& solve, const ReplayBatch& replay,
                                SearchStats& stats);
 

@@ -23,8 +23,8 @@ std::vector<int> other_actions(int action, int actions, int count, Rng& rng);
 ///
 /// Departs from the paper: its offline transitions are steps of trees alone. With 68,000 of them a
 /// learner of Sorting learns nothing in 170,000 interactions; with 13,600 and 54,400 branches its
-/// success is 0.96 after 60,000 to 75,000 (trials, one seed). In the records (results/third, three
-/// seeds) it is 0.95 after 48,000 ± 3,000.
+/// success is 0.96 after 60,000 to 75,000 (trials, one seed). In the records (docs/results/third,
+/// three seeds) it is 0.95 after 48,000 ± 3,000.
 std::vector<Transition> with_branches(const tasks::Task& task, std::span<const Transition> steps,
                                       const SearchConfig& config, std::uint64_t seed,
                                       const ReplayBatch& replay);

@@ -25,8 +25,8 @@ inline constexpr std::array<std::string_view, 3> kLearners{"q_learning", "clonin
 ///
 /// Departs from the paper: Table 2, with uniform mixing of the data, is the preset `paper`. On
 /// trees and branches its Double DQN reaches success 0.95 after 230,000 interactions of Gathering
-/// and 0.83 after all 350,000 of Sorting (results/paper, one seed). The default reaches 0.95 after
-/// 28,000 and 48,000 (results/third, three seeds, with an earlier network).
+/// and 0.83 after all 350,000 of Sorting (docs/results/paper, one seed). The default reaches 0.95
+/// after 28,000 and 48,000 (docs/results/third, three seeds, with an earlier network).
 ///
 /// Experiments behind some defaults:
 ///

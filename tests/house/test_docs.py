@@ -28,7 +28,7 @@ def test_links_lead_somewhere(page: str) -> None:
 @pytest.mark.parametrize("page", PAGES)
 def test_paths_exist(page: str) -> None:
     """Names in backticks that begin with a folder of the repository."""
-    folders = "core|msgs|nodes|config|train|tests|docs|results"
+    folders = "core|msgs|nodes|config|train|tests|docs"
     paths = [name for name in in_backticks(page) if re.fullmatch(rf"({folders})/[\w./]*", name)]
     assert {name for name in paths if not (ROOT / name).exists()} <= READERS_OWN
 

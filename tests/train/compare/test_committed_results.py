@@ -1,4 +1,4 @@
-"""The reports of results/ are what `./run.sh plot` makes of the runs there."""
+"""The reports of docs/results/ are what `./run.sh plot` makes of the runs there."""
 
 import shutil
 from pathlib import Path
@@ -7,7 +7,7 @@ import pytest
 from rtg import paths
 from rtg.compare import report_files
 
-COMPARISONS = sorted(grid.parent for grid in (paths.ROOT / "results").glob("*/grid.json"))
+COMPARISONS = sorted(grid.parent for grid in (paths.ROOT / "docs" / "results").glob("*/grid.json"))
 
 
 @pytest.mark.parametrize("folder", COMPARISONS, ids=lambda folder: folder.name)

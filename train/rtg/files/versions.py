@@ -47,9 +47,9 @@ def _processor() -> str | None:
 
 def _revision() -> tuple[str | None, bool | None]:
     """Returns the checked-out commit and whether files differ from it; None without git."""
-    # results/ is left out: the runs of the committed report are made there.
+    # docs/results/ is left out: the runs of the committed report are made there.
     changes = _command_output(
-        "git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!results"
+        "git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/results"
     )
     return _command_output("git", "rev-parse", "HEAD"), None if changes is None else bool(changes)
 
