@@ -26,9 +26,10 @@ def main(folder: Path) -> None:
     slopes = np.array([energy.gradient(state, now)[3 * body] for state in states])
     differences = np.gradient(values, shifts)
 
-    figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(6, 6))
+    figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(6, 6), layout="constrained")
     above.plot(shifts, values)
     above.set_ylabel("energy [kg m²]")
+    above.locator_params(nbins=5)
     below.plot(shifts, slopes, label="gradient()")
     below.plot(shifts, differences, ":", label="differences of value()")
     below.set(xlabel="shift of b in x [m]", ylabel="slope [kg m]")

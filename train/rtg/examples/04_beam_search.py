@@ -18,7 +18,7 @@ def main(folder: Path) -> None:
         print(f"layer {len(left) - 1}: {len(data)} transitions, about {left[-1]:.0f} pushes left")
 
     nodes = search.nodes
-    figure, (way, tree) = plt.subplots(1, 2, figsize=(11, 5))
+    figure, (way, tree) = plt.subplots(1, 2, figsize=(11, 5), layout="constrained")
     way.plot(left, "o-")
     way.set(xlabel="layer", ylabel="pushes between the beam and the start, estimated")
     tree.set(aspect="equal", xlabel="x [m]", ylabel="y [m]", title="box1 in the nodes, by depth")
@@ -26,7 +26,7 @@ def main(folder: Path) -> None:
         tree.fill(*area.ring.T, color="green", alpha=0.15)
     points = tree.scatter(*nodes.states[:, 1, :2].T, c=nodes.depths, s=8)
     tree.plot(*search.target[1, :2], "r*", ms=14)
-    figure.colorbar(points)
+    figure.colorbar(points, label="pushes until the goal")
     figure.savefig(folder / "04_beam_search.png", dpi=100)
 
 
