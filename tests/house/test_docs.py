@@ -4,6 +4,7 @@ import ast
 import re
 import runpy
 import subprocess
+from pathlib import Path
 
 import pytest
 from layering import ROOT, sources
@@ -19,10 +20,38 @@ def in_backticks(page: str) -> list[str]:
     return re.findall(r"`([^`\n]+)`", (ROOT / page).read_text())
 
 
+def anchors(page: Path) -> set[str]:
+    """Returns the anchors of the headings of a page, as sites make them."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.DOTALL | re.MULTILINE)
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    words = [re.sub(r"[^\w\s-]", "", heading).strip().lower() for heading in headings]
+    return {re.sub(r"[\s-]+", "-", heading) for heading in words}
+
+
 @pytest.mark.parametrize("page", PAGES)
 def test_links_lead_somewhere(page: str) -> None:
-    targets = re.findall(r"\]\((?!https?:)([^)#]+)\)", (ROOT / page).read_text())
-    assert [name for name in targets if not ((ROOT / page).parent / name).exists()] == []
+    here = ROOT / page
+    wrong = []
+    for name, anchor in re.findall(r"\]\((?!https?:)([^)#]*)(?:#([^)]*))?\)", here.read_text()):
+        there = here.parent / name if name else here
+        if not there.exists() or (anchor and anchor not in anchors(there)):
+            wrong.append(f"{name}#{anchor}")
+    assert wrong == []
+
+
+def test_every_page_is_in_the_navigation() -> None:
+    """With remarks on results it is the report. docs/site/sources.py has those outside of docs/."""
+    lines = (ROOT / "mkdocs.yml").read_text().partition("\nnav:\n")[2].splitlines()
+    listed = {line.rpartition(": ")[2] for line in lines if line.endswith(".md")}
+    elsewhere = runpy.run_path(str(ROOT / "docs/site/sources.py"))["ELSEWHERE"]
+    pages = [page for page in PAGES if not page.endswith("/remarks.md")]
+    assert listed == {elsewhere.get(page, page.removeprefix("docs/")) for page in pages}
+
+
+def test_every_report_is_linked_from_the_page_of_results() -> None:
+    text = (ROOT / "docs/results/index.md").read_text()
+    reports = {path.parent.name for path in (ROOT / "docs/results").glob("*/report.md")}
+    assert reports == set(re.findall(r"\]\((\w+)/report\.md\)", text))
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -74,12 +74,12 @@ def whole_run(request):
     return request.getfixturevalue(request.param)
 
 
-def test_the_readme_names_everything_in_a_run_folder(whole_run):
-    readme = (paths.ROOT / "README.md").read_text()
+def test_a_page_names_everything_in_a_run_folder(whole_run):
+    page = (paths.ROOT / "docs" / "run_folder.md").read_text()
     folder, done = whole_run
     assert done.returncode == 0, done.stderr
     names = {path.name + "/" * path.is_dir() for path in folder.iterdir()}
-    assert {name for name in names if f"`{name}`" not in readme} == set()
+    assert {name for name in names if f"`{name}`" not in page} == set()
 
 
 def test_a_run_ends_well_and_leaves_every_file(whole_run):
