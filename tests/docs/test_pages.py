@@ -8,6 +8,7 @@ import os
 import re
 import shlex
 import statistics
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -65,10 +66,23 @@ def test_pages_have_programs() -> None:
     assert len(PROGRAMS) >= 5
 
 
+def skip_without(program: str) -> None:
+    """Skips a test whose program imports a package of an extra that is not installed."""
+    project = tomllib.loads((paths.ROOT / "pyproject.toml").read_text())["project"]
+    lines = [line for extra in project["optional-dependencies"].values() for line in extra]
+    extras = {re.split(r"[^\w-]", line)[0].replace("-", "_").lower() for line in lines}
+    for node in ast.walk(ast.parse(program)):
+        named = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        named += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+        for module in {name.partition(".")[0] for name in named} & extras:
+            pytest.importorskip(module, reason="a package of an extra")
+
+
 @pytest.mark.parametrize("page", PROGRAMS, ids=ids)
 def test_the_blocks_of_python_run(page: Path, tiny: Path) -> None:
     names: dict[str, object] = {}
     for block in fenced(page.read_text(), "python"):
+        skip_without(block)
         exec(compile(block, page.name, "exec"), names)
     if page.name == "README.md":
         assert isinstance(names["policy"], rtg.Policy)
@@ -128,6 +142,8 @@ def test_run_sh_takes_what_the_pages_say(capsys: pytest.CaptureFixture[str]) -> 
                 check_setting(value)
             if flag == "--method":
                 assert value in {*_core.METHODS, "ID"}, page
+        if tool not in ("run", "check", "reproduce"):  # which take tasks
+            continue
         named = [word for k, word in enumerate(words) if not words[k - 1].startswith("--")]
         for word in [word for word in named if not word.startswith("--") and word != tool]:
             known = word in paths.task_names() or (paths.ROOT / word).is_file()
