@@ -126,6 +126,32 @@ def test_killed_and_begun_again_it_comes_to_the_same_figures(undisturbed, tmp_pa
     assert "the transitions are there already" in log
 
 
+def test_two_commands_share_the_work_and_the_report(undisturbed, tmp_path):
+    """Each run has one process, and the report of the last has the runs of both."""
+    one, other = start(tmp_path, TWO), start(tmp_path, ("sorting", "art_manip"))
+    for process in (one, other):
+        finish(process)
+    logs = [log.read_text() for log in tmp_path.glob("*/ddqn_naive/seed-1.log")]
+    assert len(logs) == 3 and all(log.count("seed 1: ") == 1 for log in logs)
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert list(report) == ["gathering", "sorting", "art_manip"]
+    assert figures(tmp_path) == figures(undisturbed[0])
+
+
+def test_a_command_takes_over_the_runs_of_one_that_is_killed(undisturbed, tmp_path):
+    one = start(tmp_path, ("gathering",))
+    wait_for((tmp_path / "gathering/ddqn_naive/seed-1/checkpoint/state.pt").exists, one)
+    other = start(tmp_path, TWO)
+    seen = other.stdout.readline()
+    while "gathering/ddqn_naive/seed-1: elsewhere" not in seen:
+        seen = other.stdout.readline()
+        assert seen, other.stderr.read()
+    one.kill()
+    one.communicate(timeout=PATIENCE)
+    assert "2 of 2 runs done" in finish(other)
+    assert figures(tmp_path) == figures(undisturbed[0])
+
+
 def test_seeds_that_learn_together_come_to_the_same_figures(undisturbed, tmp_path):
     methods = ("--methods", "ddqn,ddqn_naive", "--seeds", "1,2")
     out = finish(start(tmp_path, ("gathering",), *methods, "--together"))

@@ -37,11 +37,13 @@ def begin(run, *overrides):
 
 def test_a_new_run_begins_and_one_that_has_begun_goes_on(words):
     naive, rtg = prepare_runs(parse(words))
-    assert naive.command()[-2:] == ["--out", str(naive.folder)]
-    assert "--resume" not in naive.command() and str(TINY) in naive.command()
-    begin(naive)
-    naive, _ = prepare_runs(parse(words))
-    assert "--resume" in naive.command() and str(TINY) not in naive.command()
+    assert not naive.begun
+    command = naive.command()
+    assert command[-3:] == ["--resume", "--out", str(naive.folder)]
+    assert naive.begun and not rtg.begun
+    config = (naive.folder / "config.yaml").read_bytes()
+    again, _ = prepare_runs(parse(words))
+    assert again.command() == command and (naive.folder / "config.yaml").read_bytes() == config
     assert not naive.done and not rtg.done
     write_json(naive.folder / "summary.json", {"interactions": None})  # of --no-train
     assert not naive.done
@@ -50,6 +52,16 @@ def test_a_new_run_begins_and_one_that_has_begun_goes_on(words):
     write_json(naive.folder / "summary.json", {"interactions": 400})
     with pytest.raises(UserError, match=r"summary\.json: has no success_rate; legal: the file as"):
         prepare_runs(parse(words))[0].outcome()
+
+
+def test_a_run_that_does_not_fit_one_begun_meanwhile_is_refused(words):
+    """Both commands found the folder empty."""
+    one, _ = prepare_runs(parse(words))
+    _, other = prepare_runs(parse([*words, "--set", "train.interactions=9"]))
+    one.begin()
+    with pytest.raises(UserError, match=r"was made with train\.interactions = \d+, asked for is 9"):
+        other.begin()
+    assert not other.begun
 
 
 def test_a_run_keeps_to_one_thread(words):
@@ -116,12 +128,8 @@ def test_a_run_killed_as_it_began_begins_again(words):
     run.folder.mkdir(parents=True)
     (run.folder / ".config.yaml.123").write_text("ta")
     again = prepare_runs(parse(words))[0]
-    command = again.command()
-    assert "--resume" not in command
-    assert run_args.parse(command[command.index("run") + 1 :]).out == run.folder
-    (run.folder / ".config.yaml.124").write_text("ta")
     again.begin()
-    assert again.begun
+    assert again.begun and not (run.folder / ".config.yaml.123").exists()
 
 
 def test_a_run_that_has_begun_takes_transitions_over_too(words, monkeypatch):

@@ -1,7 +1,9 @@
 """The list of the runs of a comparison."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import pytest
-from rtg.compare.cells import Cell, Grid, read_grid
+from rtg.compare.cells import Cell, Grid, read_grid, update_grid
 from rtg.errors import UserError
 
 ONE = Cell("gathering", "ddqn_rtg", (), 1)
@@ -24,6 +26,17 @@ def test_a_command_is_forgotten_once_others_ask_for_all_that_it_asked_for():
     assert grid.commands == ["both"] and list(grid.commands_by_cell) == [ONE, TWO]
     grid.add("two", [TWO])
     assert grid.commands == ["both", "two"]
+
+
+def test_commands_that_add_cells_at_the_same_time_lose_none(tmp_path):
+    def add(command):
+        cell = Cell(command, "ddqn_rtg", (), 1)
+        update_grid(tmp_path, lambda grid: grid.add(command, [cell]))
+
+    commands = [f"command {number}" for number in range(40)]
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(add, commands))
+    assert sorted(read_grid(tmp_path).commands) == sorted(commands)
 
 
 @pytest.mark.parametrize("text", ["[]", "{", '{"cells": [{"task": "x"}]}', '{"cells": 3}'])

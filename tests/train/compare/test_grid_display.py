@@ -35,6 +35,7 @@ def test_a_small_terminal_shows_what_is_at_work(room, names):
     assert "".join(row.name for row in visible(ROWS, room)) == names
 
 
-def test_counts_name_failures_only_if_there_are_any():
+def test_counts_name_failures_and_other_processes_only_if_there_are_any():
     assert counts(ROWS) == "1 of 3 runs done, 1 running"
     assert counts([Row("x", "failed")]) == "0 of 1 runs done, 1 failed, 0 running"
+    assert counts([Row("x", "elsewhere")]) == "0 of 1 runs done, 0 running, 1 elsewhere"

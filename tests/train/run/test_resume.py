@@ -6,7 +6,7 @@ import pytest
 from rtg import cli, paths
 from rtg.bus import multicast
 from rtg.errors import UserError
-from rtg.files import run_folder
+from rtg.files import locks
 from rtg.learn import settings
 from rtg.run import effective_config
 from rtg.run.plan import make_plan
@@ -36,6 +36,7 @@ CHANGES = {
 def folder(tmp_path):
     """Makes the folder that of a stopped run."""
     (tmp_path / "config.yaml").write_text(effective_config.load(TINY).yaml)
+    (tmp_path / ".lock").touch()
     return tmp_path
 
 
@@ -45,13 +46,13 @@ def test_a_change_of_the_transitions_is_refused_and_leaves_the_run_alone(name, f
     before = (folder / "config.yaml").read_bytes()
     assert cli.main([*words, "--resume", "--out", str(folder)]) == 2
     assert capsys.readouterr().err.startswith(f"rtg: {message}")
-    assert [path.name for path in folder.iterdir()] == ["config.yaml"]
+    assert sorted(path.name for path in folder.iterdir()) == [".lock", "config.yaml"]
     assert (folder / "config.yaml").read_bytes() == before
 
 
 def test_a_run_at_work_is_refused_and_left_alone(folder, capsys):
     before = (folder / "config.yaml").read_bytes()
-    with run_folder.exclusive_lock(folder, "nobody"):
+    with locks.exclusive_lock(folder, "nobody"):
         assert cli.main(["--resume", "--out", str(folder), "--interactions", "9"]) == 2
     assert (
         capsys.readouterr().err

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rtg.errors import UserError
+from rtg.files.locks import lock
 from rtg.files.run_folder import read_json, write_json
 
 
@@ -90,3 +91,19 @@ def read_grid(folder: Path) -> Grid:
         raise UserError(
             f"{_file(folder)}: is damaged; legal: the file as `reproduce` wrote it"
         ) from None
+
+
+def grid_lock(folder: Path) -> Path:
+    """Returns the lock file of whoever changes which cells, or which kind of runs, `folder` has."""
+    return folder / ".grid.lock"
+
+
+def update_grid(folder: Path, change: Callable[[Grid], object]) -> None:
+    """Applies `change` to grid.json as it is now, without losing what other processes write.
+
+    Raises UserError if the file is damaged.
+    """
+    with lock(grid_lock(folder)):
+        grid = read_grid(folder)
+        change(grid)
+        grid.write(folder)

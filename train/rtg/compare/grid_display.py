@@ -15,9 +15,15 @@ from rich.text import Text
 from rtg.run.progress import ScreenContext, TimedLines
 
 _REDRAW = 0.5  # [s]
-_MARKS = {"waiting": " ", "running": "▸", "done": "✓", "failed": "✗"}
-_STYLES = {"waiting": "dim", "running": "", "done": "green", "failed": "red"}
-_PRIORITY = ("running", "failed", "waiting", "done")  # phases by priority on a small terminal
+_MARKS = {"waiting": " ", "running": "▸", "elsewhere": "▹", "done": "✓", "failed": "✗"}
+_STYLES = {"waiting": "dim", "running": "", "elsewhere": "dim", "done": "green", "failed": "red"}
+_PRIORITY = (
+    "running",
+    "failed",
+    "elsewhere",
+    "waiting",
+    "done",
+)  # phases by priority on a small terminal
 
 
 @dataclass(frozen=True)
@@ -25,7 +31,7 @@ class Row:
     """The display of one run: its name, phase and further words."""
 
     name: str
-    phase: str = "waiting"  # or running, done, failed
+    phase: str = "waiting"  # or running, elsewhere (by another process), done, failed
     words: str = ""
 
 
@@ -33,7 +39,9 @@ def counts(rows: Sequence[Row]) -> str:
     """Counts the runs by phase, in one line of text."""
     total = {phase: sum(row.phase == phase for row in rows) for phase in _MARKS}
     failed = f", {total['failed']} failed" if total["failed"] else ""
-    return f"{total['done']} of {len(rows)} runs done{failed}, {total['running']} running"
+    elsewhere = f", {total['elsewhere']} elsewhere" if total["elsewhere"] else ""
+    running = f", {total['running']} running"
+    return f"{total['done']} of {len(rows)} runs done{failed}{running}{elsewhere}"
 
 
 class GridDisplay(ScreenContext, Protocol):

@@ -32,6 +32,10 @@ class Generation:
         return self.run.log
 
     @property
+    def folders(self) -> tuple[Path, ...]:
+        return self.run.folders
+
+    @property
     def done(self) -> bool:
         return shared_transitions.is_generated(self.run.folder)
 
@@ -61,22 +65,30 @@ class Learning:
         return self._folder / "learning.log"
 
     @property
+    def folders(self) -> tuple[Path, ...]:
+        return tuple(run.folder for run in self.runs)
+
+    @property
     def done(self) -> bool:
-        return all((run.folder / "training.json").is_file() for run in self.runs)
+        return not self._unfinished()
 
     @property
     def pending_generation_key(self) -> str | None:
         return None
 
     def command(self) -> list[str]:
-        for run in self.runs:
+        unfinished = self._unfinished()
+        for run in unfinished:
             if not run.begun:  # no Generation has made its folder
                 run.begin()
-        folders = [str(run.folder) for run in self.runs]
+        folders = [str(run.folder) for run in unfinished]
         return module_command("rtg.learn.trainer", *folders, "--no-stream", "--resume")
 
     def outcome(self) -> str:
         return "learned"
+
+    def _unfinished(self) -> list[CellRun]:
+        return [run for run in self.runs if not (run.folder / "training.json").is_file()]
 
     @property
     def _folder(self) -> Path:

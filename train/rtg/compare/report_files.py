@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,7 +28,7 @@ from rtg.compare.run_results import (
     read_comparison,
 )
 from rtg.errors import UserError
-from rtg.files import run_folder
+from rtg.files import locks, run_folder
 from rtg.pictures import episode_pictures, plots
 from rtg.run import effective_config
 from rtg.run.results import episode_title
@@ -42,20 +43,31 @@ def write_report(runs: Path, out: Path, suffix: str = "png") -> Path:
     Its pictures are PNGs. With another `suffix`, svg or pdf, the plots are also written so. Raises
     UserError.
     """
-    grid = read_grid(runs)
-    if not grid.commands_by_cell:
+    if not read_grid(runs).commands_by_cell:
         raise UserError(
             f"{runs}: holds neither a comparison (grid.json) nor a run (config.yaml); legal: the "
             "--out of `reproduce` or of a run"
         )
-    comparison, remarks = read_comparison(runs, grid), read_remarks(runs)
-    episodes = {task: _best_episode(comparison, task) for task in comparison.tasks}
-    with run_folder.write_errors_as_user_errors(out):
-        out.mkdir(parents=True, exist_ok=True)
-        _draw(out, comparison, episodes, suffix)
-        _write_numbers(out, comparison)
-        run_folder.write_text(out / "report.md", report(out, grid, comparison, remarks))
+    with _writing_to(out):
+        # Read after others have written theirs, so that the last report has the runs of all.
+        grid = read_grid(runs)
+        comparison, remarks = read_comparison(runs, grid), read_remarks(runs)
+        episodes = {task: _best_episode(comparison, task) for task in comparison.tasks}
+        with run_folder.write_errors_as_user_errors(out):
+            _draw(out, comparison, episodes, suffix)
+            _write_numbers(out, comparison)
+            run_folder.write_text(out / "report.md", report(out, grid, comparison, remarks))
     return out / "report.md"
+
+
+@contextlib.contextmanager
+def _writing_to(out: Path) -> Iterator[None]:
+    """Makes the folder `out` and keeps other processes from writing a report there meanwhile."""
+    with contextlib.ExitStack() as held:
+        with run_folder.write_errors_as_user_errors(out):
+            out.mkdir(parents=True, exist_ok=True)
+            held.enter_context(locks.lock(out / ".report.lock"))
+        yield
 
 
 def _draw(

@@ -1,9 +1,8 @@
-"""The folder of one run: its lock, its text and JSON files, its summary."""
+"""The folder of one run: its text and JSON files, its summary."""
 
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import json
 import os
 import time
@@ -67,26 +66,6 @@ def write_errors_as_user_errors(folder: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise UserError(f"--out: {folder}: {error.strerror}; legal: a folder to write to") from None
-
-
-@contextlib.contextmanager
-def exclusive_lock(folder: Path, holder: str) -> Iterator[None]:
-    """Locks the existing `folder` against other processes during the `with` block.
-
-    Raises UserError if another process has locked it. The message calls that process `holder`.
-    """
-    with write_errors_as_user_errors(folder):
-        directory = os.open(folder, os.O_RDONLY)
-    try:
-        try:
-            fcntl.flock(directory, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise UserError(
-                f"--out: {folder}: {holder} uses this folder; legal: another folder, or wait"
-            ) from None
-        yield
-    finally:
-        os.close(directory)
 
 
 def policy_files(folder: Path) -> tuple[Path, Path]:

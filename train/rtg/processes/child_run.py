@@ -15,17 +15,19 @@ def run_child(
     log: Path,
     step: Callable[[Node], object],
     grace: float = 4.0,
+    descriptors: Sequence[int] = (),
 ) -> Node:
     """Runs a program with its output in `log`, whose folder is created; returns it at its end.
 
     Calls `step`, which should wait a little, until then. Stops the program if `step` raises, or on
-    a signal, and kills it if it has not ended within `grace` s. Raises StoppedError on a signal.
+    a signal, and kills it if it has not ended within `grace` s. The program inherits the open
+    `descriptors`. Raises StoppedError on a signal.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
     nodes: list[Node] = []
     with Interrupts(on_second_signal=lambda: kill_all(nodes)) as interrupts:
         try:
-            node = Node(name, command, log)
+            node = Node(name, command, log, descriptors)
             nodes.append(node)
             while node.exit_status() is None:
                 step(node)

@@ -10,8 +10,10 @@ import subprocess
 import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
+from typing import Protocol
 
 from rtg.errors import RunError, UserError
+from rtg.processes.program_log import ProgramLog
 
 _PR_SET_PDEATHSIG = 1
 _libc = ctypes.CDLL(None)
@@ -35,13 +37,18 @@ def _die_with(parent: int) -> Callable[[], None]:
 class Node:
     """A program of a run, as a child process with its own process group and log file."""
 
-    def __init__(self, name: str, command: Sequence[str | Path], log: Path) -> None:
-        """Starts the program. Main thread only, because the child dies with its starting thread."""
+    def __init__(
+        self, name: str, command: Sequence[str | Path], log: Path, descriptors: Sequence[int] = ()
+    ) -> None:
+        """Starts the program, which inherits the open `descriptors`.
+
+        Main thread only, because the child dies with its starting thread.
+        """
         self.name = name
         self.log = log
         self._reaped = False
+        self._logged = ProgramLog(log)
         with log.open("ab") as output:
-            self._log_start = self._log_read = output.tell()
             self._process = subprocess.Popen(
                 [str(part) for part in command],
                 stdin=subprocess.DEVNULL,
@@ -49,6 +56,7 @@ class Node:
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
                 preexec_fn=_die_with(os.getpid()),
+                pass_fds=descriptors,
             )
 
     @property
@@ -73,6 +81,15 @@ class Node:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self.pid, number)
 
+    def stop(self) -> None:
+        """Asks the program to stop, by SIGTERM."""
+        if self.exit_status() is None:
+            self.signal_group(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """Ends the program and its descendants at once, by SIGKILL."""
+        self.signal_group(signal.SIGKILL)
+
     def wait(self, seconds: float) -> bool:
         """Waits at most `seconds`; returns whether the program has ended."""
         try:
@@ -83,16 +100,11 @@ class Node:
 
     def log_tail(self, lines: int = 8) -> str:
         """Returns the last `lines` lines that the program has written to the log."""
-        logged = self.log.read_bytes()[self._log_start :] if self.log.exists() else b""
-        return "\n".join(logged.decode(errors="replace").splitlines()[-lines:])
+        return self._logged.tail(lines)
 
     def new_log_lines(self) -> list[str]:
         """Returns the lines that the program has completed since the last call of this method."""
-        with self.log.open("rb") as log:
-            log.seek(self._log_read)
-            whole, end, _ = log.read().rpartition(b"\n")
-        self._log_read += len(whole) + len(end)
-        return whole.decode(errors="replace").splitlines()
+        return self._logged.new_lines()
 
     def exit_text(self) -> str:
         """Describes how the program ended."""
@@ -114,21 +126,33 @@ class Node:
             raise RunError(self.exit_text() + end)
 
 
-def stop_all(nodes: Iterable[Node], grace: float = 4.0) -> None:
-    """Stops all nodes: sends SIGTERM, and after `grace` s SIGKILL to those that still run."""
-    nodes = list(nodes)
-    for node in nodes:
-        if node.exit_status() is None:
-            node.signal_group(signal.SIGTERM)
+class Stoppable(Protocol):
+    """A job or program that can be stopped; Node is an example."""
+
+    def wait(self, seconds: float) -> bool:
+        """Waits at most `seconds`; returns whether it has ended."""
+
+    def stop(self) -> None:
+        """Asks it to stop; it may take its time."""
+
+    def kill(self) -> None:
+        """Ends it at once."""
+
+
+def stop_all(running: Iterable[Stoppable], grace: float = 4.0) -> None:
+    """Asks all to stop, and kills those that still run after `grace` s."""
+    running = list(running)
+    for one in running:
+        one.stop()
     deadline = time.monotonic() + grace
-    for node in nodes:
-        node.wait(max(0.0, deadline - time.monotonic()))
-    kill_all(nodes)
-    for node in nodes:
-        node.wait(grace)
+    for one in running:
+        one.wait(max(0.0, deadline - time.monotonic()))
+    kill_all(running)
+    for one in running:
+        one.wait(grace)
 
 
-def kill_all(nodes: Iterable[Node]) -> None:
-    """Sends SIGKILL to the process groups of all running nodes."""
-    for node in nodes:
-        node.signal_group(signal.SIGKILL)
+def kill_all(running: Iterable[Stoppable]) -> None:
+    """Ends all at once, with their descendants."""
+    for one in running:
+        one.kill()

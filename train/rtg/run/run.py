@@ -8,7 +8,7 @@ from typing import Any
 
 from rtg import paths
 from rtg.errors import RunError, StoppedError
-from rtg.files import run_folder
+from rtg.files import locks, run_folder
 from rtg.run import effective_config
 from rtg.run.early_pictures import EarlyPictures
 from rtg.run.plan import RunPlan, make_plan
@@ -27,10 +27,10 @@ def run(args: RunArgs) -> int:
         print(effective_config.load(args.file, args.overrides).yaml, end="")
         return 0
     if args.resume:
-        with run_folder.exclusive_lock(args.file.parent, "another run"):
+        with locks.exclusive_lock(args.file.parent, "another run"):
             return _carry_out(make_plan(args))
     plan = make_plan(args)
-    with run_folder.exclusive_lock(plan.folder, "another run"):
+    with locks.exclusive_lock(plan.folder, "another run"):
         return _carry_out(plan)
 
 

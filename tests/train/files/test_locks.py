@@ -1,0 +1,73 @@
+"""Locks on files."""
+
+import os
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+from rtg import paths
+from rtg.errors import UserError
+from rtg.files.locks import exclusive_lock, lock, try_lock
+
+
+def test_a_lock_has_one_holder_at_a_time(tmp_path):
+    held = try_lock(tmp_path / "lock")
+    assert try_lock(tmp_path / "lock") is None
+    held.release()
+    held.release()
+    assert try_lock(tmp_path / "lock") is not None
+
+
+def test_a_killed_holder_frees_its_lock(tmp_path):
+    program = f"""
+import signal
+from pathlib import Path
+from rtg.files.locks import try_lock
+held = try_lock(Path({str(tmp_path / "lock")!r}))
+print("held", flush=True)
+signal.pause()
+"""
+    holder = subprocess.Popen(
+        [sys.executable, "-c", program],
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
+    )
+    assert holder.stdout.readline() == "held\n"
+    assert try_lock(tmp_path / "lock") is None
+    holder.kill()
+    holder.communicate()
+    assert try_lock(tmp_path / "lock") is not None
+
+
+def test_who_waits_for_a_lock_gets_it_at_last(tmp_path):
+    seen = []
+
+    def enter():
+        with lock(tmp_path / "lock"):
+            seen.append("waiter")
+
+    with lock(tmp_path / "lock"):
+        waiter = threading.Thread(target=enter)
+        waiter.start()
+        seen.append("holder")
+    waiter.join()
+    assert seen == ["holder", "waiter"]
+
+
+def test_a_folder_in_use_is_named(tmp_path):
+    with exclusive_lock(tmp_path, "nobody"):
+        with pytest.raises(UserError) as told, exclusive_lock(tmp_path, "somebody"):
+            pytest.fail("is locked")
+        words = "somebody uses this folder; legal: another folder, or wait"
+        assert str(told.value) == f"--out: {tmp_path}: {words}"
+    with exclusive_lock(tmp_path, "nobody"):
+        pass
+
+
+def test_a_folder_that_cannot_be_written_is_named():
+    with pytest.raises(UserError) as told, exclusive_lock(Path("/proc"), "nobody"):
+        pytest.fail("cannot be locked")
+    assert str(told.value).startswith("--out: /proc: ")

@@ -1,0 +1,1 @@
+"""Executors: where the jobs of a comparison run, on this machine or on others."""

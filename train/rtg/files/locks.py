@@ -1,0 +1,80 @@
+"""Locks on files, by flock(2): the kernel releases them when their holders have ended.
+
+They work between the machines that share a file system as far as that file system has flock.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from rtg.errors import UserError
+from rtg.files.run_folder import write_errors_as_user_errors
+
+
+class FileLock:
+    """A lock on a file. Child processes that inherit its descriptor hold it as well."""
+
+    def __init__(self, descriptor: int) -> None:
+        self.descriptor = descriptor
+
+    def release(self) -> None:
+        """Releases the lock, also for the processes that have inherited it. May be repeated."""
+        if self.descriptor >= 0:
+            fcntl.flock(self.descriptor, fcntl.LOCK_UN)
+            os.close(self.descriptor)
+            self.descriptor = -1
+
+
+def try_lock(path: Path) -> FileLock | None:
+    """Locks the file `path`, which it creates; returns None if somebody else has locked it.
+
+    The file is never removed: another process might lock it between the two.
+    """
+    descriptor = _open(path)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
+        return None
+    except OSError:
+        os.close(descriptor)
+        raise
+    return FileLock(descriptor)
+
+
+@contextlib.contextmanager
+def lock(path: Path) -> Iterator[None]:
+    """Waits for the lock on the file `path`, which it creates, and holds it in the `with` block."""
+    descriptor = _open(path)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+@contextlib.contextmanager
+def exclusive_lock(folder: Path, holder: str) -> Iterator[None]:
+    """Locks the existing `folder` against other processes during the `with` block.
+
+    Raises UserError if another process has locked it. The message calls that process `holder`.
+    """
+    with write_errors_as_user_errors(folder):
+        held = try_lock(folder / ".lock")
+    if held is None:
+        raise UserError(
+            f"--out: {folder}: {holder} uses this folder; legal: another folder, or wait"
+        )
+    try:
+        yield
+    finally:
+        held.release()
+
+
+def _open(path: Path) -> int:
+    """Opens a file to write to, as NFS asks of what is locked."""
+    return os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
