@@ -14,6 +14,7 @@ BUILD = ROOT / "build" / "release"
 PROGRAMS = BUILD / "nodes" if IN_CHECKOUT else _PACKAGE / "programs"
 MESSAGES = BUILD / "msgs" / "python" if IN_CHECKOUT else _PACKAGE / "messages"
 GRAPH = ROOT / "graph.sh" if IN_CHECKOUT else PROGRAMS / "graph.sh"
+DISTRIBUTION = "reverse-trajectory-generation"  # as it is installed
 COMMAND = "./run.sh" if IN_CHECKOUT else "rtg"  # as people type it
 
 

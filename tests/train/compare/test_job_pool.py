@@ -139,7 +139,7 @@ def test_a_run_that_another_process_works_on_is_waited_for(elsewhere):
     summary = pool._jobs[0].folder / "summary.json"
     summary.parent.mkdir()
     summary.write_text(json.dumps(SUMMARY))
-    claim.release()
+    claim.close()
     assert phases(pool) == (False, ["done"])
     assert pool.rows()[0].words == "success 0.50 after 400 interactions"
     assert not pool._jobs[0].log.exists()
@@ -148,7 +148,7 @@ def test_a_run_that_another_process_works_on_is_waited_for(elsewhere):
 def test_a_run_whose_other_process_was_stopped_is_taken_over(elsewhere):
     pool, claim = elsewhere
     phases(pool)
-    claim.release()
+    claim.close()
     assert phases(pool) == (True, ["running"])
     assert is_claimed(pool._jobs[0])
     finish(pool)
@@ -159,14 +159,14 @@ def test_a_run_that_failed_in_another_process_has_failed(elsewhere, tmp_path):
     pool, claim = elsewhere
     phases(pool)
     Failures(tmp_path / "out").add(pool._jobs[0].name, "no memory")
-    claim.release()
+    claim.close()
     assert phases(pool) == (False, ["failed"]) and pool.rows()[0].words == "no memory"
     assert not pool._jobs[0].log.exists()
 
 
 def test_a_run_waits_for_transitions_that_another_process_generates(elsewhere, monkeypatch):
     pool, claim = elsewhere
-    claim.release()
+    claim.close()
     run = pool._jobs[0]
     monkeypatch.setattr(CellRun, "pending_generation_key", "the same")
     other = dataclasses.replace(run, folder=run.folder.with_name("seed-9"))
@@ -175,5 +175,5 @@ def test_a_run_waits_for_transitions_that_another_process_generates(elsewhere, m
     monkeypatch.setattr(CellRun, "pending_generation_key", None)
     claim.share_transitions()
     assert phases(pool) == (True, ["running"]) and is_claimed(other)
-    claim.release()
+    claim.close()
     finish(pool)

@@ -20,8 +20,8 @@ def runs(tmp_path):
 def test_a_job_has_one_process(runs):
     claim = try_claim(runs[0])
     assert try_claim(runs[0]) is None and is_claimed(runs[0])
-    claim.release()
-    claim.release()
+    claim.close()
+    claim.close()
     assert not is_claimed(runs[0])
 
 
@@ -43,7 +43,7 @@ def test_runs_with_the_same_transitions_wait_until_they_are_generated(runs, monk
 def test_what_cannot_be_claimed_as_a_whole_is_not_claimed_at_all(runs, tmp_path):
     claim = try_claim(runs[2])
     assert try_claim(runs[0]) is None  # as its transitions are being generated
-    claim.release()
+    claim.close()
     assert not is_claimed(runs[0])
 
 

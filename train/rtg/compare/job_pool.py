@@ -11,7 +11,7 @@ from rtg.compare.cells import read_grid, update_grid
 from rtg.compare.executors.executor import TAKEN, Executor, Handle
 from rtg.compare.grid_display import GridDisplay, Row
 from rtg.compare.jobs import Job, is_claimed
-from rtg.errors import UserError
+from rtg.errors import RunError, UserError
 from rtg.processes.children import kill_all, stop_all
 
 _GRACE = 10.0  # [s] from the request to stop to the kill; a run allows its own processes less
@@ -119,7 +119,7 @@ class JobPool:
     def _start(self, job: Job) -> None:
         try:
             handle = self._executor.start(job)
-        except (UserError, OSError) as error:
+        except (UserError, RunError, OSError) as error:
             self._fail(job, str(error))
             return
         if handle is None:

@@ -60,7 +60,7 @@ class Claim:
             self._transitions.release()
             self._transitions = None
 
-    def release(self) -> None:
+    def close(self) -> None:
         """Releases all locks. May be repeated."""
         for held in self._all():
             held.release()
@@ -89,7 +89,7 @@ def is_claimed(job: Job) -> bool:
     claim = try_claim(job)
     if claim is None:
         return True
-    claim.release()
+    claim.close()
     return False
 
 

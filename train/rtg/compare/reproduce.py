@@ -7,7 +7,7 @@ import sys
 from rtg.compare import grouped_seeds
 from rtg.compare.cell_run import prepare_runs
 from rtg.compare.cells import update_grid
-from rtg.compare.executors.local import LocalExecutor
+from rtg.compare.executors import choice
 from rtg.compare.grid_display import Row, counts, display
 from rtg.compare.job_pool import Failures, JobPool
 from rtg.compare.reproduce_args import ReproduceArgs
@@ -28,12 +28,13 @@ def reproduce(args: ReproduceArgs) -> int:
     runs = prepare_runs(args)
     with run_folder.write_errors_as_user_errors(args.out):
         args.out.mkdir(parents=True, exist_ok=True)
-        update_grid(args.out, lambda grid: grid.add(args.command, args.cells))
-    executor = LocalExecutor()
-    # If a job of these stages fails, the run itself does the work again.
-    for stage in grouped_seeds.stages(runs, args.together):
-        _run_all(args, JobPool(stage, executor, args.jobs))
-    rows = _run_all(args, JobPool(runs, executor, args.jobs, Failures(args.out)))
+    with choice.opened(args.executor, args.executor_options, args.out) as executor:
+        with run_folder.write_errors_as_user_errors(args.out):
+            update_grid(args.out, lambda grid: grid.add(args.command, args.cells))
+        # If a job of these stages fails, the run itself does the work again.
+        for stage in grouped_seeds.stages(runs, args.together):
+            _run_all(args, JobPool(stage, executor, args.jobs))
+        rows = _run_all(args, JobPool(runs, executor, args.jobs, Failures(args.out)))
     from rtg.compare.report_files import write_report  # imports matplotlib, which takes long
 
     report = write_report(args.out, args.out)

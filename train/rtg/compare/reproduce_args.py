@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import argparse
 import itertools
+import json
 import os
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rtg import paths
 from rtg.compare.ablations import ablations
 from rtg.compare.cells import Cell
+from rtg.compare.executors.choice import EXECUTORS
 from rtg.compare.methods import METHODS, REFERENCE, SEEDLESS, TASKS
 from rtg.errors import UserError
 from rtg.run.run_args import Override, Parser, add_set, task_file
@@ -29,6 +32,7 @@ QUICK_SETTINGS = (
     "train.checkpoint_every=5000",
 )
 MAX_SEEDS = 1000
+MAX_JOBS = 1000
 # Keys that --set must not change -> the flag to use instead.
 RESERVED_KEYS = {
     "run.seed": "--seeds",
@@ -58,6 +62,8 @@ class ReproduceArgs:
     cells: tuple[Cell, ...]
     settings: tuple[str, ...]  # KEY=VALUE, for all cells
     jobs: int
+    executor: str  # of choice.EXECUTORS
+    executor_options: Mapping[str, Any]
     together: bool  # seeds of a method learn in one process even without a GPU
     out: Path
     command: str  # with all flags that affect the results, for the report
@@ -76,7 +82,15 @@ def parser() -> Parser:
     what = "what to compare (all; of a sweep and ablations: ddqn_rtg)"
     p.add_argument("--methods", metavar="a,b", help=what)
     p.add_argument("--seeds", metavar="N|1,2,3", help=f"how many, or which ({DEFAULT_SEEDS})")
-    p.add_argument("--jobs", metavar="N", help="runs at a time (one per core)")
+    p.add_argument("--jobs", metavar="N", help="runs at a time (one per core; of a cluster: all)")
+    p.add_argument("--executor", choices=EXECUTORS, default="local", help="where (this machine)")
+    p.add_argument(
+        "--executor-option",
+        metavar="KEY=VALUE",
+        action="append",
+        default=[],
+        help="for submitit or Ray, such as timeout_min=600, slurm_partition=cpu or num_gpus=0.25",
+    )
     p.add_argument("--out", metavar="DIR", help="folder of the comparison (runs/reproduce)")
     p.add_argument("--quick", action="store_true", help="small budgets, one seed: minutes")
     p.add_argument(
@@ -210,13 +224,39 @@ def _common(args: argparse.Namespace, method: str) -> list[Override]:
     return [*of_method, *(Override(f"--set {setting}", setting) for setting in _settings(args))]
 
 
+def _executor_options(args: argparse.Namespace) -> dict[str, Any]:
+    """Returns the options of the executor; values are JSON where they can be, else text.
+
+    Raises UserError.
+    """
+    found: dict[str, Any] = {}
+    for word in args.executor_option:
+        key, sign, value = word.partition("=")
+        if not (key and sign) or args.executor == "local":
+            raise UserError(
+                f"--executor-option {word}: is none of --executor {args.executor}; legal: KEY=VALUE"
+                " of the executors submitit and ray"
+            )
+        try:
+            found[key] = json.loads(value)
+        except ValueError:
+            found[key] = value
+    return found
+
+
+def _jobs(args: argparse.Namespace) -> int:
+    """Returns how many runs are at work at a time. Raises UserError."""
+    if args.jobs is not None:
+        return _parse_number("--jobs", args.jobs, 1, MAX_JOBS)
+    return len(os.sched_getaffinity(0)) if args.executor == "local" else MAX_JOBS
+
+
 def parse(words: Sequence[str]) -> ReproduceArgs:
     """Parses the command line. Raises UserError, or SystemExit(0) after --help."""
     args = parser().parse_args(words)
     tasks = args.tasks or TASKS
     files = _files(tasks)
     cells = _cells(args, files)
-    jobs = str(len(os.sched_getaffinity(0))) if args.jobs is None else args.jobs
     if args.out == "":
         raise UserError("--out: the path is empty; legal: the path of a folder")
     flags = ["--methods", ",".join(_methods(args)), "--seeds", _seeds(args)]
@@ -227,7 +267,9 @@ def parse(words: Sequence[str]) -> ReproduceArgs:
         files=files,
         cells=cells,
         settings=_settings(args),
-        jobs=_parse_number("--jobs", jobs, 1, 1000),
+        jobs=_jobs(args),
+        executor=args.executor,
+        executor_options=_executor_options(args),
         together=args.together,
         out=Path(args.out or paths.RUNS / f"reproduce{'-quick' * args.quick}").absolute(),
         command=shlex.join([paths.COMMAND, "reproduce", *tasks, *flags]),

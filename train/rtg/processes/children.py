@@ -148,8 +148,9 @@ def stop_all(running: Iterable[Stoppable], grace: float = 4.0) -> None:
     for one in running:
         one.wait(max(0.0, deadline - time.monotonic()))
     kill_all(running)
+    deadline = time.monotonic() + grace
     for one in running:
-        one.wait(grace)
+        one.wait(max(0.0, deadline - time.monotonic()))
 
 
 def kill_all(running: Iterable[Stoppable]) -> None:

@@ -36,5 +36,5 @@ class Executor(Protocol):
     def start(self, job: Job) -> Handle | None:
         """Starts a job. Returns None if another process works on it or has done it by now.
 
-        Raises UserError or OSError if the job cannot start.
+        Raises UserError, RunError or OSError if the job cannot start.
         """

@@ -18,7 +18,7 @@ class _ClaimedNode(Node):
         return super().exit_status()
 
     def close(self) -> None:
-        self._claim.release()
+        self._claim.close()
 
 
 class LocalExecutor:
@@ -33,7 +33,7 @@ class LocalExecutor:
             if not job.done:
                 return _ClaimedNode(job, claim)
         except BaseException:
-            claim.release()
+            claim.close()
             raise
-        claim.release()
+        claim.close()
         return None
