@@ -1,80 +1,11 @@
 """A whole comparison as the user types it, on three tasks and budgets that take seconds."""
 
-import csv
 import json
-import os
 import signal
-import subprocess
-import sys
-import time
 
 import pytest
+from comparisons import PATIENCE, TWO, figures, finish, start, wait_for
 from living import processes_of, wait_until_all_are_gone
-from rtg import paths
-
-PATIENCE = 300.0  # [s]; longer is a hang
-SMALL = (
-    "search.transitions=1500",
-    "search.breadth=8",
-    "search.depth=4",
-    "train.interactions=600",
-    "train.transitions_before_learning=500",
-    "train.batch=32",
-    "train.eval_every=200",
-    "train.eval_episodes=2",
-    "train.checkpoint_every=100",
-)
-WORDS = ["--quick", "--methods", "ddqn_naive", "--jobs", "2"]
-WORDS += [word for setting in SMALL for word in ("--set", setting)]
-TWO = ("gathering", "sorting")
-HOW = {
-    "start_wall_s",
-    "run_wall_s",
-    "run_cpu_s",
-    "generate_wall_s",
-    "generate_cpu_s",
-    "train_wall_s",
-    "train_cpu_s",
-    "reverse_cpu_s",
-    "replay_cpu_s",
-    "runs_in_process",
-}
-COSTS = {"cpu_s", "cpu_s_to_95", "whole_cpu_s"}  # processor time, too
-
-
-def start(folder, tasks=(), *words):
-    return subprocess.Popen(
-        [sys.executable, "-m", "rtg", "reproduce", *tasks, *WORDS, *words, "--out", folder],
-        cwd=paths.ROOT,
-        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-
-
-def finish(process):
-    out, err = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 0, err
-    return out
-
-
-def wait_for(condition, process):
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        assert process.poll() is None, process.stderr.read()
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-
-
-def figures(folder):
-    """All numbers of the tables of two tasks but those on how they were come by."""
-    rows = []
-    for name in ("runs.csv", "curves.csv"):
-        with (folder / name).open() as file:
-            rows += [row for row in csv.DictReader(file) if row["task"] in TWO]
-    assert set(rows[0]) >= HOW
-    return [{key: value for key, value in row.items() if key not in HOW | COSTS} for row in rows]
 
 
 @pytest.fixture(scope="module")

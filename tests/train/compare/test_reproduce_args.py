@@ -78,6 +78,16 @@ def test_seeds_are_a_number_of_them_or_a_list(words, seeds):
     assert parse_seeds(words) == seeds
 
 
+def test_where_the_runs_are_carried_out_is_no_part_of_the_command_of_the_report():
+    options = ["mem_gb=0.5", "slurm_partition=cpu", "slurm_additional_parameters={}"]
+    words = [word for option in options for word in ("--executor-option", option)]
+    args = parse(["gathering", "--executor", "submitit", *words])
+    assert args.executor == "submitit" and args.jobs == reproduce_args.MAX_JOBS
+    found = {"mem_gb": 0.5, "slurm_partition": "cpu", "slurm_additional_parameters": {}}
+    assert args.executor_options == found
+    assert args.command == parse(["gathering"]).command
+
+
 def test_the_values_of_a_sweep_may_be_negative():
     assert parse_sweep("train.offline_share=0.5,-1") == (
         "train.offline_share=0.5",
@@ -117,6 +127,18 @@ def test_the_values_of_a_sweep_may_be_negative():
         (
             ["--sweep", "train.batch=8", "--sweep", "train.batch=9"],
             "--sweep train.batch: is given twice; legal: once, train.batch=V1,V2",
+        ),
+        (
+            ["--executor", "moon"],
+            "argument --executor: invalid choice: 'moon' (choose from ",
+        ),
+        (
+            ["--executor-option", "cluster=local"],
+            "--executor-option cluster=local: is none of --executor local; legal: KEY=VALUE of",
+        ),
+        (
+            ["--executor", "ray", "--executor-option", "num_cpus"],
+            "--executor-option num_cpus: is none of --executor ray; legal: KEY=VALUE of",
         ),
         (["--jobs", "-1"], "--jobs -1: not a legal number; legal: a number from 1 to 1000"),
         (["--out", ""], "--out: the path is empty; legal: the path of a folder"),

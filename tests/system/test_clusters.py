@@ -1,0 +1,43 @@
+"""Comparisons whose runs are jobs of a cluster come to the figures of this machine."""
+
+import sys
+
+import network
+import pytest
+from comparisons import PATIENCE, command, figures, finish, start
+from rtg import paths
+
+RUNS = ("--seeds", "1,2", "--set", "train.interactions=1500")
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("local")
+    finish(start(folder, ("gathering",), *RUNS))
+    return figures(folder)
+
+
+def test_jobs_of_submitit(undisturbed, tmp_path):
+    """Its cluster `local` is one of processes on this machine."""
+    pytest.importorskip("submitit", reason="extra slurm")
+    flags = ("--executor", "submitit", "--executor-option", "cluster=local")
+    assert "2 of 2 runs done" in finish(start(tmp_path, ("gathering",), *RUNS, *flags))
+    assert figures(tmp_path) == undisturbed
+
+
+def test_tasks_of_a_ray_cluster_that_loses_a_node(undisturbed, tmp_path):
+    pytest.importorskip("ray", reason="extra ray")
+    network.require()
+    flags = ("--executor", "ray", "--executor-option", "address=ADDRESS")
+    runs = [tmp_path / f"gathering/ddqn_naive/seed-{seed}" for seed in (1, 2)]
+    words = [sys.executable, paths.ROOT / "tests/system/ray_cluster.py"]
+    words += [run / "checkpoint/state.pt" for run in runs]
+    words += command(tmp_path, ("gathering",), *RUNS, *flags)
+    python_path = str(paths.ROOT / "train")
+    with network.Network() as loopback:
+        process = loopback.start(words, PYTHONPATH=python_path, RAY_USAGE_STATS_ENABLED="0")
+        out, _ = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 0 and "2 of 2 runs done" in out, out
+    begun = [run.with_name(f"{run.name}.log").read_text().count("seed ") for run in runs]
+    assert sorted(begun) == [1, 2]  # the run on the node that was killed went on elsewhere
+    assert figures(tmp_path) == undisturbed
