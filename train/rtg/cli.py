@@ -106,11 +106,13 @@ def _reproduce(words: Sequence[str]) -> int:
 def _plot(words: Sequence[str]) -> int:
     parser = run_args.Parser(
         prog=f"{paths.COMMAND} plot",
-        description="Make report, tables and pictures of a comparison anew, or the pictures of a "
-        "run.",
+        description="Make report, tables and pictures of comparisons and runs anew, or the "
+        "pictures of a run.",
     )
-    parser.add_argument("folder", metavar="DIR", type=Path, help="the --out of reproduce, or a run")
-    parser.add_argument("--out", metavar="DIR", help="of a comparison: where to (the same folder)")
+    parser.add_argument(
+        "folders", metavar="DIR", type=Path, nargs="+", help="the --out of reproduce, or a run"
+    )
+    parser.add_argument("--out", metavar="DIR", help="where to put a report (a comparison's DIR)")
     parser.add_argument(
         "--format",
         choices=("png", "svg", "pdf"),
@@ -120,23 +122,29 @@ def _plot(words: Sequence[str]) -> int:
     args = parser.parse_args(words)
     if args.out == "":
         raise UserError("--out: the path is empty; legal: the path of a folder")
+    if len(args.folders) > 1 and args.out is None:
+        raise UserError(
+            "--out: is missing; legal: --out DIR for the report on several folders together"
+        )
+    if args.out is None and (args.folders[0] / "config.yaml").is_file():
+        return _draw_run(args.folders[0], args.format)
+    from rtg.compare.report_files import write_joint_report
+
+    page = write_joint_report(args.folders, Path(args.out or args.folders[0]), args.format)
+    print(f"report: {page}")
+    return 0
+
+
+def _draw_run(folder: Path, suffix: str) -> int:
     from rtg.compare import evaluate
-    from rtg.compare.report_files import write_report
     from rtg.pictures import plots
     from rtg.run.plan import plan_of
     from rtg.run.results import draw_again
 
-    is_run = (args.folder / "config.yaml").is_file()
-    if is_run and args.out:
-        raise UserError(f"--out: {args.folder} is a run, drawn where it is; legal: no --out")
-    if is_run:
-        with plots.written_as(args.format):
-            draw_again(plan_of(args.folder))
-            evaluate.draw_again(args.folder)
-        print(f"pictures: {args.folder}")
-    else:
-        page = write_report(args.folder, Path(args.out or args.folder), args.format)
-        print(f"report: {page}")
+    with plots.written_as(suffix):
+        draw_again(plan_of(folder))
+        evaluate.draw_again(folder)
+    print(f"pictures: {folder}")
     return 0
 
 

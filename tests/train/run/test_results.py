@@ -173,4 +173,3 @@ def test_the_pictures_of_a_finished_run_are_drawn_again(tmp_path, learned, capsy
     assert cli.main(["plot", str(tmp_path), "--format", "pdf"]) == 0
     assert (tmp_path / "stages.pdf").read_bytes().startswith(b"%PDF")
     assert pictures(tmp_path) == {"episode.png", "episode.gif"}
-    assert cli.main(["plot", str(tmp_path), "--out", "elsewhere"]) == 2

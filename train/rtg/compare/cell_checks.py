@@ -74,22 +74,43 @@ def _check_same(folder: Path, asked: Values) -> None:
 def _check_table(folder: Path, config: _core.Config) -> None:
     """Raises UserError unless tables can compare all runs of the task with the run in `folder`.
 
-    They must agree with `config` in the values of _compared(): task, physics, forward, budget and
-    evaluation, swept keys excluded. The number of transitions must agree only among runs that
-    generate transitions. `config`: the configuration of the run in `folder`.
+    `config`: the configuration of the run in `folder`.
     """
     for found in sorted(folder.parents[1].glob("*/seed-*/config.yaml")):
-        swept = _swept(found.parts[-3]) | _swept(folder.parts[-2])
-        before = effective_config.load(found)
-        old, new = _compared(before, swept), _compared(config, swept)
-        if not (before.train.offline and config.train.offline):
-            del old["search"], new["search"]
-        for section in old:
-            if old[section] != new[section]:
-                what = _difference(section, old[section], new[section])
-                raise UserError(
-                    f"{found.parent}: was made with {what}; legal: the same, or another --out"
-                )
+        labels = found.parts[-3], folder.parts[-2]
+        if what := _incomparable(labels, (effective_config.load(found), config)):
+            raise UserError(
+                f"{found.parent}: was made with {what}; legal: the same, or another --out"
+            )
+
+
+def check_pair(one: tuple[Path, str], other: tuple[Path, str], remedy: str) -> None:
+    """Raises UserError unless tables can compare two runs, each a folder and a label.
+
+    `remedy`: what else would be legal.
+    """
+    configs = [effective_config.load_recorded(run / "config.yaml") for run, _ in (one, other)]
+    if what := _incomparable((one[1], other[1]), (configs[0], configs[1]), str(other[0])):
+        raise UserError(f"{one[0]}: was made with {what}; legal: the same, or {remedy}")
+
+
+def _incomparable(
+    labels: tuple[str, str], configs: tuple[_core.Config, _core.Config], asked: str = "asked for"
+) -> str:
+    """Describes the first difference that keeps two runs out of one table; "" if there is none.
+
+    They must agree in the values of _compared(): task, physics, forward, budget and evaluation,
+    swept keys excluded. The number of transitions must agree only among runs that generate
+    transitions. `asked`: the second run in words.
+    """
+    swept = _swept(labels[0]) | _swept(labels[1])
+    old, new = (_compared(config, swept) for config in configs)
+    if not all(config.train.offline for config in configs):
+        del old["search"], new["search"]
+    differing = (section for section in old if old[section] != new[section])
+    return next(
+        (_difference(section, old[section], new[section], asked) for section in differing), ""
+    )
 
 
 def _swept(label: str) -> set[str]:
@@ -119,7 +140,9 @@ def _compared(config: _core.Config, swept: set[str]) -> Values:
     }
 
 
-def _difference(section: str, old: dict[str, Any], new: dict[str, Any]) -> str:
+def _difference(
+    section: str, old: dict[str, Any], new: dict[str, Any], asked: str = "asked for"
+) -> str:
     key = next(key for key in (*old, *new) if old.get(key) != new.get(key))
-    words = f"{section}.{key} = {old.get(key)}, asked for is {new.get(key)}"
+    words = f"{section}.{key} = {old.get(key)}, {asked} is {new.get(key)}"
     return words if len(words) < 160 else f"another {section}.{key}"

@@ -16,16 +16,15 @@ from numpy.typing import NDArray
 
 from rtg import _core
 from rtg.compare import report_plots
-from rtg.compare.cells import read_grid
+from rtg.compare.collection import check_sources, collect
 from rtg.compare.methods import REFERENCE
-from rtg.compare.report import read_remarks, report
+from rtg.compare.report import report
 from rtg.compare.run_results import (
     COSTS,
     CURVE_COLUMNS,
     Comparison,
     RunResult,
     costs,
-    read_comparison,
 )
 from rtg.errors import UserError
 from rtg.files import locks, run_folder
@@ -38,20 +37,20 @@ _PICTURES = (*_TASK_PICTURES, "replay_gap.png")
 
 
 def write_report(runs: Path, out: Path, suffix: str = "png") -> Path:
-    """Writes the report on the comparison `runs` to `out`; returns the path of its page.
+    """Writes the report on the comparison `runs`, see write_joint_report()."""
+    return write_joint_report([runs], out, suffix)
+
+
+def write_joint_report(sources: Sequence[Path], out: Path, suffix: str = "png") -> Path:
+    """Writes one report on comparisons and single runs to `out`; returns the path of its page.
 
     Its pictures are PNGs. With another `suffix`, svg or pdf, the plots are also written so. Raises
     UserError.
     """
-    if not read_grid(runs).commands_by_cell:
-        raise UserError(
-            f"{runs}: holds neither a comparison (grid.json) nor a run (config.yaml); legal: the "
-            "--out of `reproduce` or of a run"
-        )
+    check_sources(sources)
     with _writing_to(out):
         # Read after others have written theirs, so that the last report has the runs of all.
-        grid = read_grid(runs)
-        comparison, remarks = read_comparison(runs, grid), read_remarks(runs)
+        grid, comparison, remarks = collect(sources)
         episodes = {task: _best_episode(comparison, task) for task in comparison.tasks}
         with run_folder.write_errors_as_user_errors(out):
             _draw(out, comparison, episodes, suffix)

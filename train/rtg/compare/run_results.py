@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -150,8 +151,7 @@ class Comparison:
         return [r for r in self.results if r.done]
 
 
-def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
-    run = folder / cell.name
+def _result(run: Path, cell: Cell, failures: Container[str]) -> RunResult:
     summary = result(run)
     if summary:
         curve = _curve(run / "progress.csv", summary)
@@ -159,9 +159,7 @@ def _result(folder: Path, cell: Cell, grid: Grid) -> RunResult:
         train = effective_config.load_recorded(run / "config.yaml").train
         return RunResult(cell, run, "done", summary, made_with, curve, train)
     begun = "unfinished" if run.is_dir() else "not run"
-    return RunResult(
-        cell, run, "failed" if cell.name in grid.failure_by_name else begun, {}, {}, {}, None
-    )
+    return RunResult(cell, run, "failed" if cell.name in failures else begun, {}, {}, {}, None)
 
 
 def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
@@ -183,16 +181,23 @@ def _method_order(cell: Cell) -> int:
 
 
 def read_comparison(folder: Path, grid: Grid) -> Comparison:
-    """Reads the results of all cells of the grid. Raises UserError if a file is damaged.
+    """Reads the results of all cells of the grid, see read_runs()."""
+    return read_runs(
+        {cell: folder / cell.name for cell in grid.commands_by_cell}, grid.failure_by_name
+    )
+
+
+def read_runs(folders: Mapping[Cell, Path], failures: Container[str]) -> Comparison:
+    """Reads the results of cells from their run folders. Raises UserError if a file is damaged.
 
     The runs are sorted by task, method, settings and seed. Tasks are in the order of TASKS, methods
     in the order of METHODS. Other tasks follow. Other tasks, and the settings, are in the order of
-    the grid.
+    `folders`. `failures`: the names of the cells that have failed.
     """
-    tasks = list(dict.fromkeys((*TASKS, *(cell.task for cell in grid.commands_by_cell))))
-    settings = list(dict.fromkeys(cell.settings for cell in grid.commands_by_cell))
+    tasks = list(dict.fromkeys((*TASKS, *(cell.task for cell in folders))))
+    settings = list(dict.fromkeys(cell.settings for cell in folders))
     cells = sorted(
-        grid.commands_by_cell,
+        folders,
         key=lambda c: (tasks.index(c.task), _method_order(c), settings.index(c.settings), c.seed),
     )
-    return Comparison(tuple(_result(folder, cell, grid) for cell in cells))
+    return Comparison(tuple(_result(folders[cell], cell, failures) for cell in cells))
