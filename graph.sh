@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the programs of one run over LCM, until its transitions are where they are wanted:
 #
-#   ./graph.sh FOLDER [trainer [--resume] | recorder]
+#   ./graph.sh FOLDER [trainer [--resume] [--log NAMES] | recorder]
 #
 # FOLDER/config.yaml is the resolved configuration (./run.sh TASK --print-config). FOLDER gets generation.json,
 # logs/PROGRAM.log, and what the trainer writes or, of the recorder, transitions.npz alone.
@@ -16,7 +16,7 @@ refuse() { # WHY
   echo "graph.sh: $1" >&2
   exit 2
 }
-[[ -f ${1:-}/config.yaml ]] || refuse "'${1:-}' is no folder with a config.yaml; legal: graph.sh FOLDER [trainer [--resume] | recorder]"
+[[ -f ${1:-}/config.yaml ]] || refuse "'${1:-}' is no folder with a config.yaml; legal: graph.sh FOLDER [trainer [--resume] [--log NAMES] | recorder]"
 folder=$(cd -- "$1" && pwd)
 consumer=${2:-trainer} flags=("${@:3}") config=$folder/config.yaml run=${RTG_RUN:-${folder##*/}} logs=$folder/logs
 
@@ -78,8 +78,8 @@ listens() { (($(ls -l "/proc/$1/fd" | grep -c socket:) > 1)); }         # PID: L
 is_running() { [[ " ${running[*]} " == *" $1 "* ]]; }                   # NAME
 
 case "$consumer ${flags[*]}" in
-  'trainer ' | 'trainer --resume' | 'recorder ') ;;
-  *) refuse "no consumer '$consumer${flags[*]:+ ${flags[*]}}'; legal: trainer, trainer --resume, recorder" ;;
+  'trainer ' | 'trainer --resume' | 'recorder ' | 'trainer --log '* | 'trainer --resume --log '*) ;;
+  *) refuse "no consumer '$consumer${flags[*]:+ ${flags[*]}}'; legal: trainer, trainer --resume, either with --log NAMES, recorder" ;;
 esac
 workers=$(setting workers)
 [[ $workers =~ ^[1-9][0-9]*$ ]] || refuse "$config: run.workers is '$workers'; legal: a file that ./run.sh TASK --print-config has printed"

@@ -264,7 +264,7 @@ def test_no_program_outlives_the_script(graph):
 
 @pytest.mark.parametrize("words", ["trainr", "recorder --resume", "trainer --resum"])
 def test_a_consumer_that_does_not_exist_is_refused(graph, words):
-    legal = "trainer, trainer --resume, recorder"
+    legal = "trainer, trainer --resume, either with --log NAMES, recorder"
     assert graph.run(*words.split()) == (2, f"graph.sh: no consumer '{words}'; legal: {legal}\n")
 
 

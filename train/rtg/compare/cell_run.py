@@ -14,6 +14,7 @@ from rtg.compare.cells import Cell, grid_lock
 from rtg.compare.reproduce_args import ReproduceArgs
 from rtg.errors import UserError
 from rtg.files import locks, run_folder
+from rtg.learn import log_sinks
 from rtg.run import effective_config, run_args, shared_transitions
 from rtg.run import plan as run_plan
 from rtg.run.run_args import Override
@@ -31,6 +32,7 @@ class CellRun:
     arguments: tuple[str, ...]  # of `rtg run`, without --out
     generation_key: str | None = None  # see shared_transitions.generation_key()
     device: str = "auto"  # train.device
+    sinks: tuple[str, ...] = ()  # of log_sinks.SINKS
 
     @property
     def name(self) -> str:
@@ -84,7 +86,8 @@ class CellRun:
             place = self.folder.parents[1], self.folder.name
             if source := shared_transitions.find(self.pending_generation_key, *place):
                 shared_transitions.take_over(source, self.folder)
-        return module_command("rtg", "run", "--resume", "--out", str(self.folder))
+        flags = log_sinks.flags(self.sinks)
+        return module_command("rtg", "run", "--resume", *flags, "--out", str(self.folder))
 
     def outcome(self) -> str:
         """Returns the result of a finished run in words."""
@@ -121,7 +124,7 @@ def prepare_runs(args: ReproduceArgs) -> list[CellRun]:
             cell_checks.check_comparable(folder, config)
             checked.add(folder.parent)
         key, device = shared_transitions.generation_key(config), config.train.device
-        runs.append(CellRun(cell, folder, _arguments(args, cell), key, device))
+        runs.append(CellRun(cell, folder, _arguments(args, cell), key, device, args.sinks))
     return runs
 
 

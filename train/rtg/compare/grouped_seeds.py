@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rtg.compare.cell_run import CellRun, module_command
+from rtg.learn import log_sinks
 from rtg.run import shared_transitions
 
 
@@ -82,7 +83,8 @@ class Learning:
             if not run.begun:  # no Generation has made its folder
                 run.begin()
         folders = [str(run.folder) for run in unfinished]
-        return module_command("rtg.learn.trainer", *folders, "--no-stream", "--resume")
+        flags = ["--no-stream", "--resume", *log_sinks.flags(self.runs[0].sinks)]
+        return module_command("rtg.learn.trainer", *folders, *flags)
 
     def outcome(self) -> str:
         return "learned"

@@ -18,7 +18,8 @@ from rtg.compare.cells import Cell
 from rtg.compare.executors.choice import EXECUTORS
 from rtg.compare.methods import METHODS, REFERENCE, SEEDLESS, TASKS
 from rtg.errors import UserError
-from rtg.run.run_args import Override, Parser, add_set, task_file
+from rtg.learn import log_sinks
+from rtg.run.run_args import LOG_HELP, Override, Parser, add_set, task_file
 from rtg.run.run_args import parse as parse_run
 
 DEFAULT_SEEDS = "5"
@@ -65,6 +66,7 @@ class ReproduceArgs:
     executor: str  # of choice.EXECUTORS
     executor_options: Mapping[str, Any]
     together: bool  # seeds of a method learn in one process even without a GPU
+    sinks: tuple[str, ...]  # of log_sinks.SINKS
     out: Path
     command: str  # with all flags that affect the results, for the report
     command_line: str  # the command as the user typed it
@@ -106,6 +108,7 @@ def parser() -> Parser:
         help="also with single settings of the search switched off or at the other end of their "
         "range, with each departure from the preset paper taken back, and with that preset",
     )
+    p.add_argument("--log", metavar="NAMES", help=LOG_HELP)
     p.add_argument(
         "--together", action="store_true", help="a method's seeds learn in one process, as on a GPU"
     )
@@ -271,6 +274,7 @@ def parse(words: Sequence[str]) -> ReproduceArgs:
         executor=args.executor,
         executor_options=_executor_options(args),
         together=args.together,
+        sinks=log_sinks.parse(args.log),
         out=Path(args.out or paths.RUNS / f"reproduce{'-quick' * args.quick}").absolute(),
         command=shlex.join([paths.COMMAND, "reproduce", *tasks, *flags]),
         command_line=shlex.join([paths.COMMAND, "reproduce", *words]),

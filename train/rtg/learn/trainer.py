@@ -1,7 +1,7 @@
 """The learner's process: the trainer of graph.sh, and of runs without LCM.
 
-`python -m rtg.learn.trainer RUN_FOLDER... [--resume] [--no-stream] [--run-name NAME]` reads
-RUN_FOLDER/config.yaml and receives the transitions of the run while it learns. It writes
+`python -m rtg.learn.trainer RUN_FOLDER... [--resume] [--no-stream] [--run-name NAME] [--log NAMES]`
+reads RUN_FOLDER/config.yaml and receives the transitions of the run while it learns. It writes
 transitions.npz, progress.csv, training_state.json (for displays), checkpoint/, model.pt,
 best_episode.npz and training.json to the same folder. With `train.learner: planning` it learns
 nothing and writes no model.pt.
@@ -28,6 +28,7 @@ from rtg.bus.node_status import ENDED, NodeStatus
 from rtg.bus.transition_stream import TransitionStream
 from rtg.errors import UserError, exit_status
 from rtg.files.dataset import Rows
+from rtg.learn import log_sinks
 from rtg.learn.offline_data import FileSource, NoSource, Source
 from rtg.learn.planning import Planning
 from rtg.learn.training import Training
@@ -49,6 +50,7 @@ def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
         metavar="NAME",
         help="the run on the bus whose stream to take (the folder's name)",
     )
+    parser.add_argument("--log", metavar="NAMES", type=log_sinks.parse, default=(), help="also to")
     args = parser.parse_args(argv)
     if len(args.folders) > 1 and not args.no_stream:
         parser.error("several RUN_FOLDERs have no stream of their own; legal: with --no-stream")
@@ -87,6 +89,7 @@ def _begin(folder: Path, args: argparse.Namespace) -> Training | Planning:
     config = _core.Config.from_file(folder / "config.yaml")
     training = (Planning if config.train.learner == "planning" else Training)(config, folder)
     training.runs = len(args.folders)
+    training.log.sinks = log_sinks.LazySinks(args.log, folder, config)
     if training.has_checkpoint():
         if not args.resume:
             raise UserError(
@@ -104,6 +107,8 @@ def _learn(training: Training | Planning, args: argparse.Namespace, interrupts: 
                 return 128 + interrupts.number
             training.finish(source.lost)
         finally:
+            if training.log.sinks:
+                training.log.sinks.close()
             _say(f"ends after {training.scheduled_interactions:,} interactions")
             training.publish_status(ENDED, training.scheduled_interactions)
     return 0

@@ -13,6 +13,7 @@ import numpy as np
 
 from rtg.files.run_folder import write_json, write_text
 from rtg.learn.evaluation import Evaluation
+from rtg.learn.log_sinks import LazySinks
 
 COLUMNS = (
     "interactions",  # as schedules count them, see Training.scheduled_interactions
@@ -41,10 +42,11 @@ DISPLAY_INTERVAL = 0.5  # [s]
 
 
 class TrainingLog:
-    """The log of a training run, with one row per evaluation."""
+    """The log of a training run, with one row per evaluation; its rows also go to `sinks`."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self.sinks: LazySinks | None = None
         self.rows: list[dict[str, Any]] = []
         self._shown_at = -1e9
 
@@ -55,6 +57,8 @@ class TrainingLog:
             raise KeyError(f"{sorted(unknown)} are not columns of progress.csv")
         self.rows.append(dict(row))
         self.write()
+        if self.sinks is not None:
+            self.sinks.add(row)
 
     def write(self) -> None:
         """Writes all rows to progress.csv."""

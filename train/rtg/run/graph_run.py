@@ -10,6 +10,7 @@ from rtg import paths
 from rtg.bus.bus import Bus
 from rtg.errors import RunError, UserError
 from rtg.files import run_folder
+from rtg.learn import log_sinks
 from rtg.processes.child_run import run_child
 from rtg.processes.children import Node
 from rtg.run.plan import RunPlan
@@ -70,9 +71,8 @@ class GraphRun:
 
     def _command(self) -> list[str]:
         plan = self._plan
-        consumer = (
-            ["trainer", *(["--resume"] if plan.resume else [])] if plan.train else ["recorder"]
-        )
+        flags = [*(["--resume"] if plan.resume else []), *log_sinks.flags(plan.sinks)]
+        consumer = ["trainer", *flags] if plan.train else ["recorder"]
         settings = (
             f"RTG_RUN={plan.name}",
             f"RTG_NODES={os.environ.get('RTG_NODES', paths.PROGRAMS)}",

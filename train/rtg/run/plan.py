@@ -27,6 +27,7 @@ class RunPlan:
     train: bool
     resume: bool
     notes: tuple[str, ...]  # messages for the user
+    sinks: tuple[str, ...] = ()  # of log_sinks.SINKS, for the rows of progress.csv
 
     @property
     def in_process(self) -> bool:
@@ -163,6 +164,6 @@ def make_plan(args: RunArgs) -> RunPlan:
         folder.mkdir(parents=True, exist_ok=True)
         run_folder.write_text(folder / "config.yaml", config.yaml)
     name = f"{folder.name}-{secrets.token_hex(4)}"
-    plan = RunPlan(folder, name, config, args.train, args.resume, tuple(notes))
+    plan = RunPlan(folder, name, config, args.train, args.resume, tuple(notes), args.sinks)
     versions.write(folder, versions.generator(folder) if plan.is_generated() else None)
     return plan

@@ -10,6 +10,7 @@ from typing import Any
 
 from rtg import _core, paths
 from rtg.errors import UserError
+from rtg.learn import log_sinks
 
 EPILOG = """\
 examples:
@@ -29,6 +30,7 @@ tools:
 
 exit status: 0 success, 2 bad input, 1 anything else"""
 
+LOG_HELP = f"also log what progress.csv has, optional packages: {', '.join(log_sinks.SINKS)}"
 # Flag -> configuration key.
 _KEYS = {
     "workers": "run.workers",
@@ -58,6 +60,7 @@ class RunArgs:
     train: bool
     resume: bool
     print_config: bool
+    sinks: tuple[str, ...]  # of log_sinks.SINKS
 
 
 class Parser(argparse.ArgumentParser):
@@ -101,6 +104,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--seed", metavar="N", help="seed of all random numbers")
     p.add_argument("--out", metavar="DIR", help="the run folder (runs/TASK-TIME)")
     p.add_argument("--resume", action="store_true", help="go on with the run in --out DIR")
+    p.add_argument("--log", metavar="NAMES", help=LOG_HELP)
     add_set(p, "any configuration value")
     p.add_argument("--print-config", action="store_true", help="print all values and stop")
     return p
@@ -182,4 +186,5 @@ def parse(argv: Sequence[str]) -> RunArgs:
         train=not args.no_train,
         resume=args.resume,
         print_config=args.print_config,
+        sinks=log_sinks.parse(args.log),
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 
 from rtg.files.run_folder import read_json
+from rtg.learn import log_sinks
 from rtg.processes.child_run import run_child
 from rtg.processes.children import Node
 from rtg.run.plan import RunPlan
@@ -32,7 +33,7 @@ def _initial_state(plan: RunPlan) -> RunState:
 
 def run(plan: RunPlan, display: Display) -> None:
     """Trains in a separate process, so that training can be stopped at any time."""
-    flags = ["--no-stream", *(["--resume"] if plan.resume else [])]
+    flags = ["--no-stream", *(["--resume"] if plan.resume else []), *log_sinks.flags(plan.sinks)]
     command = [sys.executable, "-m", "rtg.learn.trainer", str(plan.folder), *flags]
     watch, state = TrainingWatch(plan.folder), _initial_state(plan)
 

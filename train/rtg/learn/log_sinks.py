@@ -1,0 +1,130 @@
+"""Where the rows of progress.csv go besides: TensorBoard, Weights & Biases.
+
+Both are optional, and keep to the machine: Weights & Biases writes to the run folder, for `wandb
+sync`, unless WANDB_MODE says otherwise.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, Protocol
+
+from rtg import _core
+from rtg.errors import UserError, needs_extra
+from rtg.files.run_folder import write_text
+
+SINKS = ("tensorboard", "wandb")
+Row = Mapping[str, Any]
+
+
+class Sink(Protocol):
+    """Takes the rows of one process of a run; those of earlier ones are there already."""
+
+    def add(self, row: Row) -> None: ...
+
+    def close(self) -> None: ...
+
+
+class TensorBoard:
+    """Event files in RUN/tensorboard. Rows from the first one on replace those of their steps."""
+
+    def __init__(self, folder: Path, config: _core.Config, first: Row) -> None:
+        from torch.utils.tensorboard import SummaryWriter
+
+        self._writer = SummaryWriter(folder / "tensorboard", purge_step=first["interactions"])
+
+    def add(self, row: Row) -> None:
+        for name, value in _values(row).items():
+            self._writer.add_scalar(name, value, row["interactions"])
+        self._writer.flush()
+
+    def close(self) -> None:
+        self._writer.close()
+
+
+class Wandb:
+    """A run of Weights & Biases, whose files lie in RUN/wandb; RUN/wandb_id holds its id."""
+
+    def __init__(self, folder: Path, config: _core.Config, first: Row) -> None:
+        import wandb
+
+        run = config.run
+        try:
+            self._run = wandb.init(
+                project="rtg",
+                name=f"{config.task.name}, {run.method}, seed {run.seed}",
+                id=_stored_id(folder / "wandb_id"),
+                resume="allow",
+                reinit="create_new",  # runs that learn in one process are apart
+                dir=folder,
+                config=json.loads(config.json),
+                mode=os.environ.get("WANDB_MODE", "offline"),
+                settings=wandb.Settings(console="off", silent=True, x_disable_stats=True),
+            )
+        except wandb.errors.Error as error:
+            raise UserError(f"--log wandb: {error}; legal: after wandb login, or offline") from None
+
+    def add(self, row: Row) -> None:
+        self._run.log(_values(row), step=row["interactions"])
+
+    def close(self) -> None:
+        self._run.finish()
+
+
+_KINDS: dict[str, type[TensorBoard] | type[Wandb]] = dict(
+    zip(SINKS, (TensorBoard, Wandb), strict=True)
+)
+
+
+class LazySinks:
+    """The sinks `names` of a run, opened with the first row."""
+
+    def __init__(self, names: Sequence[str], folder: Path, config: _core.Config) -> None:
+        self._names, self._folder, self._config = names, folder, config
+        self._open: list[Sink] = []
+
+    def add(self, row: Row) -> None:
+        """Hands the row on. Raises UserError if a sink cannot be opened."""
+        if not self._open:
+            self._open = [_KINDS[name](self._folder, self._config, row) for name in self._names]
+        for sink in self._open:
+            sink.add(row)
+
+    def close(self) -> None:
+        for sink in self._open:
+            sink.close()
+        self._open = []
+
+
+def parse(words: str | None) -> tuple[str, ...]:
+    """Parses the value of --log, names of SINKS, and looks for their packages. Raises UserError."""
+    names = tuple(dict.fromkeys(words.split(","))) if words is not None else ()
+    for name in names:
+        if name not in SINKS:
+            raise UserError(f"--log {name}: no such log; legal: {','.join(SINKS)}")
+        with needs_extra(f"--log {name}", name):
+            if find_spec(name) is None:
+                raise ModuleNotFoundError(name=name)
+    return names
+
+
+def flags(names: Sequence[str]) -> list[str]:
+    """Returns the flags that parse() has read, for another program."""
+    return ["--log", ",".join(names)] if names else []
+
+
+def _values(row: Row) -> dict[str, Any]:
+    """Returns the columns of a row that have values, but for the step."""
+    return {name: value for name, value in row.items() if name != "interactions"}
+
+
+def _stored_id(path: Path) -> str:
+    """Returns the id in the file `path`, which it writes with a new one if there is none."""
+    if not path.is_file():
+        write_text(path, secrets.token_hex(8))
+    return path.read_text()
