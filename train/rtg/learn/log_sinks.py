@@ -53,6 +53,7 @@ class Wandb:
     def __init__(self, folder: Path, config: _core.Config, first: Row) -> None:
         import wandb
 
+        os.environ.setdefault("WANDB_MODE", "offline")
         run = config.run
         try:
             self._run = wandb.init(
@@ -63,7 +64,6 @@ class Wandb:
                 reinit="create_new",  # runs that learn in one process are apart
                 dir=folder,
                 config=json.loads(config.json),
-                mode=os.environ.get("WANDB_MODE", "offline"),
                 settings=wandb.Settings(console="off", silent=True, x_disable_stats=True),
             )
         except wandb.errors.Error as error:

@@ -26,7 +26,7 @@ tools:
   ./run.sh lcm-spy                             the same with LCM's own viewer (needs Java)
   ./run.sh evaluate RUN                        success of its policy elsewhere, as a table
   ./run.sh reproduce [TASK...]                 methods x seeds on tasks, and a report
-  ./run.sh plot DIR [--format pdf]             that report, or the pictures of a run, anew
+  ./run.sh plot DIR... [--format pdf]          that report, or the pictures of a run, anew
 
 exit status: 0 success, 2 bad input, 1 anything else"""
 

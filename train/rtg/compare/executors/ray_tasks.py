@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
@@ -64,7 +65,7 @@ def connected(options: Mapping[str, Any]) -> Iterator[RayExecutor]:
     task_options = dict(options)
     address = str(task_options.pop("address", "auto"))
     try:
-        ray.init(address=address, log_to_driver=False, logging_level="warning")
+        ray.init(address=address, log_to_driver=False, logging_level=logging.WARNING)
     except (ConnectionError, RuntimeError, ValueError) as error:
         raise UserError(
             f"--executor ray: {error}; legal: after `ray start --head` here, RAY_ADDRESS, or "
