@@ -1,10 +1,13 @@
 """Comparisons whose runs are jobs of a cluster come to the figures of this machine."""
 
+import os
+import signal
 import sys
 
 import network
 import pytest
-from comparisons import PATIENCE, command, figures, finish, start
+from comparisons import PATIENCE, command, figures, finish, start, wait_for
+from living import processes_of
 from rtg import paths
 
 RUNS = ("--seeds", "1,2", "--set", "train.interactions=1500")
@@ -23,6 +26,21 @@ def test_jobs_of_submitit(undisturbed, tmp_path):
     flags = ("--executor", "submitit", "--executor-option", "cluster=local")
     assert "2 of 2 runs done" in finish(start(tmp_path, ("gathering",), *RUNS, *flags))
     assert figures(tmp_path) == undisturbed
+
+
+def test_a_preempted_job_of_submitit_goes_on_from_its_checkpoint(undisturbed, tmp_path):
+    pytest.importorskip("submitit", reason="extra slurm")
+    flags = ("--executor", "submitit", "--executor-option", "cluster=local")
+    process = start(tmp_path, ("gathering",), *RUNS, "--seeds", "1", *flags)
+    run = tmp_path / "gathering/ddqn_naive/seed-1"
+    wait_for((run / "checkpoint/state.pt").exists, process)
+    (job,) = (
+        pid for pid, words in processes_of(tmp_path).items() if "submitit.core._submit" in words
+    )
+    os.kill(job, signal.SIGUSR2)  # as Slurm does
+    assert "1 of 1 runs done" in finish(process)
+    assert "learning goes on from its last checkpoint" in run.with_name("seed-1.log").read_text()
+    assert figures(tmp_path) == [row for row in undisturbed if row["seed"] == "1"]
 
 
 def test_tasks_of_a_ray_cluster_that_loses_a_node(undisturbed, tmp_path):

@@ -5,7 +5,7 @@ import json
 import pytest
 from rtg.compare.cell_run import CellRun, prepare_runs
 from rtg.compare.executors.executor import TAKEN
-from rtg.compare.executors.remote import RemoteJob, carry_out
+from rtg.compare.executors.remote import RemoteJob, carry_out, is_free
 from rtg.compare.jobs import is_claimed, try_claim
 from rtg.compare.reproduce_args import parse
 from rtg.errors import RunError, UserError
@@ -89,3 +89,14 @@ def test_the_words_of_a_job_are_those_since_its_start(run):
     assert job.log_tail() == ""
     run.log.write_text(run.log.read_text() + "one\ntwo\n")
     assert job.log_tail() == "one\ntwo" and job.log_tail(lines=1) == "two"
+
+
+def test_only_what_is_free_and_not_done_is_worth_a_place_in_the_queue(run):
+    assert is_free(run)
+    claim = try_claim(run)
+    assert not is_free(run)
+    claim.close()
+    run.folder.mkdir()
+    summary = {"success_rate": 0.5, "interactions": 400}
+    (run.folder / "summary.json").write_text(json.dumps(summary))
+    assert not is_free(run)

@@ -9,7 +9,7 @@ from typing import Any
 
 import ray
 
-from rtg.compare.executors.remote import RemoteJob, carry_out
+from rtg.compare.executors.remote import RemoteJob, carry_out, is_free
 from rtg.compare.jobs import Job
 from rtg.errors import RunError, UserError
 
@@ -51,7 +51,9 @@ class RayExecutor:
                 "Ray's tasks, or address=HOST:PORT"
             ) from None
 
-    def start(self, job: Job) -> RemoteJob:
+    def start(self, job: Job) -> RemoteJob | None:
+        if not is_free(job):
+            return None
         return _RayJob(job, self._task.remote(job))
 
 

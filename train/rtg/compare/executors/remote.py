@@ -11,12 +11,17 @@ import time
 from abc import ABC, abstractmethod
 
 from rtg.compare.executors.executor import TAKEN
-from rtg.compare.jobs import Job, try_claim
+from rtg.compare.jobs import Job, is_claimed, try_claim
 from rtg.errors import RunError, StoppedError, UserError
 from rtg.processes.child_run import run_child
 from rtg.processes.program_log import ProgramLog
 
 _POLL = 0.2  # [s]
+
+
+def is_free(job: Job) -> bool:
+    """Returns whether there is something to submit that no other process works on now."""
+    return not job.done and not is_claimed(job)
 
 
 def carry_out(job: Job) -> int:

@@ -8,7 +8,7 @@ from typing import Any
 
 import submitit
 
-from rtg.compare.executors.remote import RemoteJob, carry_out
+from rtg.compare.executors.remote import RemoteJob, carry_out, is_free
 from rtg.compare.jobs import Job
 from rtg.errors import RunError, UserError
 
@@ -65,7 +65,9 @@ class SlurmExecutor:
                 "KEY=VALUE with a parameter of submitit.AutoExecutor, or cluster=local"
             ) from None
 
-    def start(self, job: Job) -> RemoteJob:
+    def start(self, job: Job) -> RemoteJob | None:
+        if not is_free(job):
+            return None
         try:
             return _SlurmJob(job, self._executor.submit(_Work(), job))
         except submitit.core.utils.FailedJobError as error:
