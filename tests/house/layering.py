@@ -70,6 +70,7 @@ ROOMS = {
     "learn": {"files", "processes", "bus", "envs"},
     "run": {"files", "processes", "bus", "pictures", "learn"},
     "compare": {"files", "processes", "pictures", "learn", "run"},
+    "view": {"files", "processes", "bus", "pictures", "run"},
 }
 ROOF = {"errors", "paths", "_core"}  # modules of rtg itself
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -13,6 +14,9 @@ from rtg.errors import UserError, exit_status
 from rtg.run import run_args
 
 # Functions import modules that load slowly, so that --help and errors appear at once.
+
+# What the extras of pyproject.toml hold, by the tool that needs them.
+_EXTRAS = {"spy": "textual>=1.0", "view": "rerun-sdk==0.41.0"}
 
 
 def _run(words: Sequence[str]) -> int:
@@ -40,6 +44,16 @@ def _check(words: Sequence[str]) -> int:
         task_picture.draw(Path(args.picture), config)
     print(said, end="")
     return 0
+
+
+def _require(module: str, extra: str) -> None:
+    """Raises UserError if a module of an optional extra of this package is missing."""
+    if importlib.util.find_spec(module) is None:
+        raise UserError(
+            f"{extra}: needs {_EXTRAS[extra]}, which is not installed; legal: "
+            f"{sys.executable} -m pip install '{_EXTRAS[extra]}', or this package with the extra "
+            f"[{extra}]"
+        )
 
 
 def _bus_url(target: str) -> str:
@@ -80,6 +94,7 @@ def _spy(words: Sequence[str]) -> int:
     args = parser.parse_args(words)
     seconds = None if args.seconds is None else _seconds(args.seconds)
     url = _bus_url(args.target)
+    _require("textual", "spy")
     from rtg.bus.spy import spy
 
     spy(url, seconds)
@@ -164,6 +179,37 @@ def _evaluate(words: Sequence[str]) -> int:
     return 0
 
 
+def _view(words: Sequence[str]) -> int:
+    parser = run_args.Parser(
+        prog=f"{paths.COMMAND} view",
+        description="Show a run in the browser, while it goes on or afterwards: scene, trees, "
+        "learning curve, replay gap. For this machine alone.",
+    )
+    parser.add_argument(
+        "folder", metavar="RUN", nargs="?", type=Path, help="the folder of a run (the newest one)"
+    )
+    parser.add_argument("--port", metavar="N", default="9090", help="of the page (9090), and N + 1")
+    parser.add_argument("--no-browser", action="store_true", help="open no browser")
+    parser.add_argument("--save", metavar="FILE.rrd", type=Path, help="write a recording instead")
+    args = parser.parse_args(words)
+    if not args.port.isdecimal() or not 1024 <= int(args.port) <= 65_534:
+        raise UserError(f"--port {args.port}: legal: a number from 1024 to 65534")
+    from rtg.files import run_folder
+
+    folder = args.folder or run_folder.newest()
+    _require("rerun", "view")
+    from rtg.view import view
+
+    def say(words: str) -> None:
+        print(words, flush=True)
+
+    if args.save is not None:
+        view.save(folder, args.save, say)
+    else:
+        view.serve(folder, int(args.port), not args.no_browser, say)
+    return 0
+
+
 _TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "run": _run,
     "check": _check,
@@ -172,6 +218,7 @@ _TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "reproduce": _reproduce,
     "plot": _plot,
     "evaluate": _evaluate,
+    "view": _view,
 }
 
 

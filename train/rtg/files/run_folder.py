@@ -84,6 +84,17 @@ def checkpoint_file(run: Path) -> Path:
     return run / "checkpoint" / "state.pt"
 
 
+def write_run_name(run: Path, name: str) -> None:
+    """Notes in the folder of a run by which name its processes know each other on the bus."""
+    write_text(run / "run_name", f"{name}\n")
+
+
+def run_name(run: Path) -> str:
+    """Returns the name of a run on the bus: that noted in its folder, else the folder's own."""
+    file = run / "run_name"
+    return file.read_text().strip() if file.is_file() else run.resolve().name
+
+
 def write_text(path: Path, text: str) -> None:
     """Writes `text` to `path`, atomically even if the machine crashes."""
     draft = path.with_name(f".{path.name}.{os.getpid()}")
@@ -135,6 +146,14 @@ def default_path(task: str) -> Path:
         count += 1
         path = base.with_name(f"{base.name}-{count}")
     return path
+
+
+def newest() -> Path:
+    """Returns the folder in runs/ that began last. Raises UserError if there is none."""
+    found = list(paths.RUNS.glob("*/config.yaml"))
+    if not found:
+        raise UserError(f"RUN: {paths.RUNS} holds no run; legal: the folder of a run")
+    return max(found, key=lambda file: file.stat().st_mtime_ns).parent
 
 
 def summary(

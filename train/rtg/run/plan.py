@@ -164,6 +164,7 @@ def make_plan(args: RunArgs) -> RunPlan:
         folder.mkdir(parents=True, exist_ok=True)
         run_folder.write_text(folder / "config.yaml", config.yaml)
     name = f"{folder.name}-{secrets.token_hex(4)}"
+    run_folder.write_run_name(folder, name)
     plan = RunPlan(folder, name, config, args.train, args.resume, tuple(notes), args.sinks)
     versions.write(folder, versions.generator(folder) if plan.is_generated() else None)
     return plan

@@ -1,0 +1,127 @@
+"""Follows a run: by the files in its folder and, while it generates, by the messages on its bus."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from rtg import _core
+from rtg.bus import multicast
+from rtg.bus.bus import Bus
+from rtg.bus.stream_listener import StreamListener
+from rtg.files import run_folder
+from rtg.files.dataset import Rows
+from rtg.run.progress import generation_text
+from rtg.run.run_state import RunState
+from rtg.run.run_watch import RunWatch
+from rtg.run.training_watch import TrainingWatch
+from rtg.view.run_events import Event, Ints, RunEvents, Steps
+from rtg.view.run_view import RunView
+
+
+def is_over(folder: Path) -> bool:
+    """Returns whether a run has ended: its summary is written after it has begun or resumed."""
+    summary, config = folder / "summary.json", folder / "config.yaml"
+    return summary.is_file() and summary.stat().st_mtime_ns >= config.stat().st_mtime_ns
+
+
+class Heard:
+    """What the bus of a run tells since the last call of its methods. It only listens."""
+
+    def __init__(self, folder: Path, config: _core.Config) -> None:
+        self._bus = Bus(config.run.bus, run_folder.run_name(folder))
+        self._watch = RunWatch(self._bus, RunState())
+        self._rows: list[tuple[Ints, Rows]] = []
+        task = config.task
+        StreamListener(self._bus, task.bodies, task.actions, self._keep)
+        self.warning = self._bus.warning
+
+    def state(self) -> RunState:
+        """Returns the state of the generation; `phase` is "" if it has not been heard of."""
+        return self._watch.state
+
+    def steps(self, at: float) -> list[Event]:
+        """Returns the transitions heard meanwhile, as stored at time `at` [s]."""
+        self._bus.spin(0.0)
+        heard, self._rows = self._rows, []
+        if not heard:
+            return []
+        numbers, rows = zip(*heard, strict=True)
+        joined = Rows(*(np.concatenate(column) for column in zip(*rows, strict=True)))
+        return [Steps(at, np.concatenate(numbers), joined)]
+
+    def close(self) -> None:
+        self._bus.close()
+
+    def _keep(self, numbers: Ints, rows: Rows) -> None:
+        self._rows.append((numbers, rows))
+
+
+def why_unheard(folder: Path, config: _core.Config) -> str | None:
+    """Returns why the bus of a run tells nothing that its folder does not; None if it may."""
+    if is_over(folder) or (folder / "transitions.npz").is_file():
+        return "its transitions are in the folder"
+    if not config.train.offline:
+        return "it generates no transitions"
+    if config.run.in_process:
+        return "with --in-process its transitions are seen once all are found"
+    why = multicast.defect(config.run.bus)
+    return why and f"its transitions are seen once all are found: {why}"
+
+
+class Follower:
+    """Logs the course of a run to a RunView, up to now."""
+
+    def __init__(
+        self,
+        folder: Path,
+        view: RunView,
+        events: RunEvents,
+        heard: Heard | None = None,
+    ) -> None:
+        self._folder, self._view, self._events, self._heard = folder, view, events, heard
+        self._training = TrainingWatch(folder)
+        self._begin = (folder / "config.yaml").stat().st_mtime
+
+    def now(self) -> float:
+        """Returns the time since the run began [s]."""
+        return time.time() - self._begin
+
+    def step(self) -> None:
+        """Logs what is new."""
+        now = self.now()
+        found = self._events.new()
+        if self._heard is not None:
+            found = [*(self._heard.steps(now)), *found]
+        for event in found:
+            self._view.take(event)
+        self._tell_state()
+        self._view.say_state(now)
+        self._view.player.advance(now)
+
+    def finish(self) -> None:
+        """Logs what is new, and the last episode to its end."""
+        self.step()
+        self._view.player.advance(np.inf)
+
+    def _tell_state(self) -> None:
+        state = self._training.update(self._heard.state() if self._heard else RunState())
+        self._view.generation = generation_text(state) if state.phase else ""
+        if state.interactions:
+            self._view.count_interactions(state.interactions)
+
+
+def play_all(view: RunView, found: Sequence[Event], end: float) -> tuple[float, float]:
+    """Logs the events of a finished run. Returns when its last episode begins and ends [s].
+
+    `end`: the time of the last event [s].
+    """
+    for event in found:
+        view.player.advance(event.at)
+        view.take(event)
+    begin = max(end, view.player.free_at)
+    view.player.advance(np.inf)
+    return begin, view.player.free_at

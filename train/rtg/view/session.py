@@ -1,0 +1,85 @@
+"""One view of a run: where it is logged to, and how far."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import rerun as rr
+
+from rtg import _core
+from rtg.errors import UserError
+from rtg.run.effective_config import load_recorded
+from rtg.view import follower
+from rtg.view.layout import following, layout, playing
+from rtg.view.run_events import RunEvents
+from rtg.view.run_view import RunView
+
+_PUSH = 0.5  # [s], duration of a push as it is seen
+_FILM = 60.0  # [s], in which a finished run plays, without its last episode
+
+
+def _configuration(folder: Path) -> _core.Config:
+    file = folder / "config.yaml"
+    if not file.is_file():
+        raise UserError(f"{folder}: has no config.yaml; legal: the folder of a run")
+    return load_recorded(file)
+
+
+class Session:
+    """Logs one run to `recording`: all of it if it is over, else what is new at each step.
+
+    Raises UserError if `folder` is not that of a run.
+    """
+
+    def __init__(self, folder: Path, say: Callable[[str], None]) -> None:
+        self._folder, self._config = folder, _configuration(folder)
+        self._say = say
+        self.recording = rr.RecordingStream("rtg")
+        self.recording.send_recording_name(folder.resolve().name)
+        self._heard: follower.Heard | None = None
+        self._follower: follower.Follower | None = None
+
+    def is_over(self) -> bool:
+        """Returns whether the run has ended."""
+        return follower.is_over(self._folder)
+
+    def begin(self) -> None:
+        """Logs what the folder holds and lays out the panels. Raises UserError or RunError."""
+        events = RunEvents(self._folder, self._config)
+        if self.is_over():
+            self._play(events)
+            return
+        if why := follower.why_unheard(self._folder, self._config):
+            self._say(f"not listening to the run: {why}")
+        else:
+            self._heard = follower.Heard(self._folder, self._config)
+            if self._heard.warning:
+                self._say(self._heard.warning)
+        view = RunView(self.recording, self._config, _PUSH)
+        self._follower = follower.Follower(self._folder, view, events, self._heard)
+        self.recording.send_blueprint(layout(self._config, following()))
+
+    def step(self) -> None:
+        """Logs what is new; nothing if the run was over at the begin."""
+        if self._follower is not None:
+            self._follower.step()
+
+    def finish(self) -> None:
+        """Logs what is left of a run that has ended, its last episode to the end."""
+        if self._follower is not None:
+            self._follower.finish()
+
+    def close(self) -> None:
+        """Ends the recording."""
+        if self._heard is not None:
+            self._heard.close()
+        self.recording.flush()
+        self.recording.disconnect()
+
+    def _play(self, events: RunEvents) -> None:
+        found = events.new()
+        speed = max(1.0, events.end / _FILM)
+        view = RunView(self.recording, self._config, speed * _PUSH)
+        begin, end = follower.play_all(view, found, events.end)
+        self.recording.send_blueprint(layout(self._config, playing(begin, end, speed)))

@@ -1,0 +1,92 @@
+"""The growing trees: where the steps move each object, coloured by the number of steps to success."""
+
+from __future__ import annotations
+
+import matplotlib
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from rtg.pictures.draw import GREY_LEVEL, INK, TaskLike, objects, outline
+from rtg.view.scene import CAPTION_HEIGHT, TIME, closed, raised
+from rtg.view.step_tree import StepTree
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Colours = NDArray[np.uint8]
+
+_MOVED = 0.05  # [m], shorter moves of an object are not shown, as in contact_share
+_WIDTH = 1.2  # of a step, in pixels
+_LEGEND = 5  # number of depths in the legend
+_LOWEST, _HIGHEST = 0.2, 0.3  # heights of the steps of depth 0 and of the deepest, above the goal
+
+
+def tree_path(task: TaskLike, body: int) -> str:
+    """Returns the path of the entity with the steps that move a body."""
+    return f"trees/{task.names[body]}"
+
+
+def depth_colours(depths: Ints, deepest: int) -> Colours:
+    """Returns the colour of each depth, from 1 to `deepest`; grey for 0, unknown. [N] -> [N, 3]"""
+    scale = matplotlib.colormaps["viridis"]
+    shares = (np.minimum(depths, deepest) - 1) / max(1, deepest - 1)
+    colours: Colours = (255 * scale(shares)[:, :3]).astype(np.uint8)
+    colours[depths == 0] = GREY_LEVEL
+    return colours
+
+
+def moves(starts: Floats, ends: Floats, depths: Ints, deepest: int) -> tuple[Floats, Ints]:
+    """Returns the moves of one body, [M, 2 ends, 3], and the depths of their steps, [M].
+
+    The height grows with the depth, so that deep steps, which are fewer, lie on top.
+    starts, ends [N, 2], depths [N]
+    """
+    moved = np.linalg.norm(ends - starts, axis=1) > _MOVED
+    found = raised(np.stack([starts, ends], axis=1)[moved], 0.0)
+    shares = np.minimum(depths[moved], deepest) / deepest
+    found[:, :, 2] = (_LOWEST + (_HIGHEST - _LOWEST) * shares)[:, None]
+    return found, depths[moved]
+
+
+def log_steps(
+    recording: rr.RecordingStream,
+    task: TaskLike,
+    at: float,
+    tree: StepTree,
+    steps: Ints,
+    deepest: int,
+) -> None:
+    """Shows `steps` of the tree from time `at` [s] on. `deepest`: the depth with the last colour."""
+    recording.set_time(TIME, duration=at)
+    for body in objects(task):
+        starts, ends = tree.starts[steps, body, :2], tree.ends[steps, body, :2]
+        lines, depths = moves(starts, ends, tree.depths[steps], deepest)
+        if len(lines):
+            recording.log(
+                tree_path(task, body),
+                rr.LineStrips3D(
+                    lines,
+                    colors=depth_colours(depths, deepest),
+                    radii=rr.Radius.ui_points(_WIDTH / 2),
+                ),
+            )
+
+
+def log_legend(recording: rr.RecordingStream, task: TaskLike, deepest: int) -> None:
+    """Logs dots with the colours of some depths, below the arena, and the start of each object."""
+    depths = np.unique(np.linspace(1, deepest, _LEGEND).round().astype(np.int64))
+    places = np.full((len(depths), 2), -1.14 * task.arena)
+    places[:, 0] = np.linspace(-0.8, 0.8, len(depths)) * task.arena
+    dots = raised(places, CAPTION_HEIGHT)
+    colours, radius = depth_colours(depths, deepest), rr.Radius.ui_points(6.0)
+    recording.log("legend", rr.Points3D(dots, colors=colours, radii=radius), static=True)
+    words = [str(depth) for depth in depths]
+    texts = rr.Points3D(dots, labels=words, show_labels=True, colors=[INK], radii=0.0)
+    recording.log("legend/words", texts, static=True)
+    for body in objects(task):
+        edge = raised(closed(outline(task.outlines[body][0], task.start[body])), CAPTION_HEIGHT)
+        recording.log(
+            f"start/{task.names[body]}",
+            rr.LineStrips3D([edge], colors=[INK], radii=rr.Radius.ui_points(1.5)),
+            static=True,
+        )

@@ -1,0 +1,124 @@
+"""`rtg view`: shows a run in the browser, or writes what would be shown to a file."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import subprocess
+import tempfile
+import time
+import webbrowser
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from rtg.errors import RunError, StoppedError, UserError
+from rtg.processes.children import Node, stop_all
+from rtg.processes.interrupts import Interrupts
+from rtg.view import web_page
+from rtg.view.session import Session
+
+_POLL = 0.1  # [s]
+_PATIENCE = 30.0  # [s] until the viewer must listen
+
+Say = Callable[[str], None]
+
+
+def _program() -> Path:
+    """Returns the path of Rerun's own program. Raises RunError if the package lacks it."""
+    spec = importlib.util.find_spec("rerun_cli")
+    path = Path("rerun") if spec is None or spec.origin is None else Path(spec.origin).parent
+    if not (path / "rerun").is_file():
+        raise RunError("the package rerun-sdk lacks its program rerun; legal: a wheel for Linux")
+    return path / "rerun"
+
+
+def _without_analytics(settings: Path) -> list[str]:
+    """Returns the words that start a program with its settings in a folder, analytics disabled.
+
+    Rerun's program would otherwise report its use. The settings of the user stay as they are.
+    """
+    words = ["env", f"XDG_CONFIG_HOME={settings}", f"XDG_DATA_HOME={settings}"]
+    command = [*words, str(_program()), "analytics", "disable"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise RunError(f"rerun analytics disable failed:\n{done.stdout}{done.stderr}")
+    return words
+
+
+@contextlib.contextmanager
+def _viewer(data_port: int, asset_port: int) -> Iterator[Node]:
+    """Starts Rerun's program, which holds the data and the files of the page."""
+    with tempfile.TemporaryDirectory(prefix="rtg-view-") as settings:
+        command = web_page.command(_program(), data_port, asset_port)
+        words = [*_without_analytics(Path(settings)), *command]
+        node = Node("rerun", words, Path(settings) / "rerun.log")
+        try:
+            yield node
+        finally:
+            stop_all([node])
+
+
+def _wait_for(node: Node, ports: Sequence[int], stopped: Callable[[], bool]) -> None:
+    """Waits until the viewer listens on all ports. Raises RunError if it does not."""
+    deadline = time.monotonic() + _PATIENCE
+    while not all(map(web_page.is_open, ports)):
+        if stopped():
+            raise StoppedError
+        if node.exit_status() is not None or time.monotonic() > deadline:
+            raise RunError(f"{node.name} does not listen:\n{node.log_tail()}")
+        time.sleep(_POLL)
+
+
+def serve(folder: Path, port: int, browser: bool, say: Say) -> None:
+    """Shows a run on a page at `port` of this machine until a signal ends it.
+
+    The data take the port `port` + 1. Opens the page in the user's browser if `browser`. Raises
+    UserError for bad input, RunError if the viewer ends or does not come up.
+    """
+    data_port, asset_port = port + 1, web_page.free_port()
+    for taken in (port, data_port):
+        web_page.check_port(taken)
+    session = Session(folder, say)
+    with (
+        contextlib.suppress(StoppedError),
+        Interrupts() as interrupts,
+        _viewer(data_port, asset_port) as node,
+        web_page.WebPage(port, data_port, asset_port) as page,
+        contextlib.closing(session),
+    ):
+        _wait_for(node, (data_port, asset_port), interrupts.requested)
+        session.recording.connect_grpc(web_page.data_address(data_port))
+        say(f"{page.address} shows {folder}, with the data on port {data_port}")
+        say("for this machine alone; Ctrl-C ends it")
+        session.begin()
+        if browser:
+            webbrowser.open(page.address)
+        while not interrupts.requested():
+            if node.exit_status() is not None:
+                raise RunError(f"{node.exit_text()}:\n{node.log_tail()}")
+            session.step()
+            time.sleep(_POLL)
+
+
+def save(folder: Path, file: Path, say: Say) -> None:
+    """Writes what serve() would show to a recording, which `rerun FILE.rrd` opens.
+
+    If the run is going on, follows it to its end, or until a signal. Raises UserError for bad
+    input.
+    """
+    if file.suffix != ".rrd" or not file.parent.is_dir():
+        raise UserError(f"--save {file}: legal: FILE.rrd in a folder that exists")
+    with (
+        contextlib.closing(Session(folder, say)) as session,
+        Interrupts() as interrupts,
+    ):
+        try:
+            session.recording.save(file)
+        except RuntimeError as error:
+            raise UserError(f"--save {file}: {error}; legal: a file that can be written") from None
+        session.begin()
+        while not (session.is_over() or interrupts.requested()):
+            session.step()
+            time.sleep(_POLL)
+        session.finish()
+    say(f"recording: {file}")
