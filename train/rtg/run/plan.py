@@ -162,9 +162,9 @@ def make_plan(args: RunArgs) -> RunPlan:
     folder = args.out or run_folder.default_path(config.task.name)
     with run_folder.write_errors_as_user_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
+        name = f"{folder.name}-{secrets.token_hex(4)}"
+        run_folder.write_run_name(folder, name)
         run_folder.write_text(folder / "config.yaml", config.yaml)
-    name = f"{folder.name}-{secrets.token_hex(4)}"
-    run_folder.write_run_name(folder, name)
     plan = RunPlan(folder, name, config, args.train, args.resume, tuple(notes), args.sinks)
     versions.write(folder, versions.generator(folder) if plan.is_generated() else None)
     return plan

@@ -12,7 +12,6 @@ from rtg import _core
 from rtg.bus import multicast
 from rtg.bus.bus import Bus
 from rtg.bus.stream_listener import StreamListener
-from rtg.files import run_folder
 from rtg.files.dataset import Rows
 from rtg.run.progress import generation_text
 from rtg.run.run_state import RunState
@@ -31,13 +30,11 @@ def is_over(folder: Path) -> bool:
 class Heard:
     """What the bus of a run tells since the last call of its methods. It only listens."""
 
-    def __init__(self, folder: Path, config: _core.Config) -> None:
-        self._bus = Bus(config.run.bus, run_folder.run_name(folder))
-        self._watch = RunWatch(self._bus, RunState())
+    def __init__(self, bus: Bus, task: _core.Task) -> None:
+        self._bus = bus
+        self._watch = RunWatch(bus, RunState())
         self._rows: list[tuple[Ints, Rows]] = []
-        task = config.task
-        StreamListener(self._bus, task.bodies, task.actions, self._keep)
-        self.warning = self._bus.warning
+        StreamListener(bus, task.bodies, task.actions, self._keep)
 
     def state(self) -> RunState:
         """Returns the state of the generation; `phase` is "" if it has not been heard of."""
@@ -52,9 +49,6 @@ class Heard:
         numbers, rows = zip(*heard, strict=True)
         joined = Rows(*(np.concatenate(column) for column in zip(*rows, strict=True)))
         return [Steps(at, np.concatenate(numbers), joined)]
-
-    def close(self) -> None:
-        self._bus.close()
 
     def _keep(self, numbers: Ints, rows: Rows) -> None:
         self._rows.append((numbers, rows))

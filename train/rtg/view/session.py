@@ -8,7 +8,9 @@ from pathlib import Path
 import rerun as rr
 
 from rtg import _core
+from rtg.bus.bus import Bus
 from rtg.errors import UserError
+from rtg.files.run_folder import run_name
 from rtg.run.effective_config import load_recorded
 from rtg.view import follower
 from rtg.view.layout import following, layout, playing
@@ -37,7 +39,7 @@ class Session:
         self._say = say
         self.recording = rr.RecordingStream("rtg")
         self.recording.send_recording_name(folder.resolve().name)
-        self._heard: follower.Heard | None = None
+        self._bus: Bus | None = None
         self._follower: follower.Follower | None = None
 
     def is_over(self) -> bool:
@@ -50,14 +52,16 @@ class Session:
         if self.is_over():
             self._play(events)
             return
+        heard = None
         if why := follower.why_unheard(self._folder, self._config):
             self._say(f"not listening to the run: {why}")
         else:
-            self._heard = follower.Heard(self._folder, self._config)
-            if self._heard.warning:
-                self._say(self._heard.warning)
+            self._bus = Bus(self._config.run.bus, run_name(self._folder))
+            heard = follower.Heard(self._bus, self._config.task)
+            if self._bus.warning:
+                self._say(self._bus.warning)
         view = RunView(self.recording, self._config, _PUSH)
-        self._follower = follower.Follower(self._folder, view, events, self._heard)
+        self._follower = follower.Follower(self._folder, view, events, heard)
         self.recording.send_blueprint(layout(self._config, following()))
 
     def step(self) -> None:
@@ -72,8 +76,8 @@ class Session:
 
     def close(self) -> None:
         """Ends the recording."""
-        if self._heard is not None:
-            self._heard.close()
+        if self._bus is not None:
+            self._bus.close()
         self.recording.flush()
         self.recording.disconnect()
 

@@ -1,4 +1,4 @@
-"""The growing trees: where the steps move each object, coloured by the number of steps to success."""
+"""The growing trees: moves of each object, coloured by the number of steps to success."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def log_steps(
     steps: Ints,
     deepest: int,
 ) -> None:
-    """Shows `steps` of the tree from time `at` [s] on. `deepest`: the depth with the last colour."""
+    """Shows `steps` of the tree from time `at` [s] on. `deepest` has the last colour."""
     recording.set_time(TIME, duration=at)
     for body in objects(task):
         starts, ends = tree.starts[steps, body, :2], tree.ends[steps, body, :2]

@@ -46,7 +46,12 @@ def data_address(data_port: int) -> str:
 
 def page_query(data_port: int) -> str:
     """Returns the query by which the page shows the data, and keeps and reports nothing."""
-    words = {"url": data_address(data_port), "persist": "false", "hide_welcome_screen": "true"}
+    words = {
+        "url": data_address(data_port),
+        "persist": "false",
+        "hide_welcome_screen": "true",
+        "theme": "light",  # as the scene
+    }
     return urllib.parse.urlencode(words)
 
 

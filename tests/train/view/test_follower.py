@@ -1,0 +1,124 @@
+"""A run that goes on, as its bus and its folder tell it."""
+
+import os
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rerun", reason="the extra view is not installed")
+
+import rerun as rr
+from recordings import lines, read
+from rtg import _core
+from rtg.bus import multicast
+from rtg.bus.bus import Bus
+from rtg.bus.messages import message_type
+from rtg.view.follower import Follower, Heard, is_over, why_unheard
+from rtg.view.run_events import RunEvents
+from rtg.view.run_view import RunView
+from training_runs import run_folder
+from view_runs import TASK, finished, generated
+
+
+def publish(bus, rows, first):
+    batch = message_type("transition_batch_t")()
+    batch.first, batch.n = first, len(rows.action)
+    batch.n_poses = rows.poses.size
+    batch.poses, batch.next_poses = rows.poses.ravel().tolist(), rows.next_poses.ravel().tolist()
+    batch.action, batch.success = rows.action.tolist(), rows.terminated.astype(int).tolist()
+    batch.source = rows.source.tolist()
+    bus.publish("RTG_TRANSITION", batch)
+
+
+def tell_progress(bus):
+    progress = message_type("search_progress_t")()
+    progress.phase, progress.layer, progress.depth = "tree 2", 5, 10
+    bus.publish("RTG_PROGRESS", progress)
+
+
+@pytest.fixture
+def bus():
+    return Bus("memq://", "a run")
+
+
+def follow(folder, bus, file):
+    config = _core.Config.from_file(folder / "config.yaml")
+    recording = rr.RecordingStream("rtg")
+    recording.save(file)
+    view = RunView(recording, config, push=0.5)
+    follower = Follower(folder, view, RunEvents(folder, config), Heard(bus, config.task))
+    return follower, recording
+
+
+def moves(rows, body=2):
+    ends = np.concatenate([rows.poses[:, body, :2], rows.next_poses[:, body, :2]], axis=1)
+    moved = np.linalg.norm(ends[:, 2:] - ends[:, :2], axis=1) > 0.05
+    return ends[(rows.source == 0) & moved]
+
+
+def test_steps_show_as_they_are_heard_and_the_rest_when_the_file_is_there(tmp_path, rows, bus):
+    folder = run_folder(tmp_path / "run", None)
+    follower, recording = follow(folder, bus, tmp_path / "run.rrd")
+    for first in (0, 200, 0):  # the same rows again, and those up to 600 get lost
+        publish(bus, rows.slice(first, first + 200), first)
+    publish(bus, rows.slice(600, 800), 600)
+    tell_progress(bus)
+    follower.step()
+    recording.flush()
+    early = lines(read(tmp_path / "run.rrd")["trees/box2"])
+    assert 0 < len(early) < len(moves(rows.slice(0, 800)))
+    whole = generated(tmp_path / "whole", rows)
+    for name in ("generation.json", "transitions.npz"):
+        os.rename(whole / name, folder / name)
+    follower.finish()
+    recording.flush()
+    recording.disconnect()
+    found = read(tmp_path / "run.rrd")
+    shown = lines(found["trees/box2"])[:, :, :2].reshape(-1, 4)
+    assert np.allclose(np.sort(shown, axis=0), np.sort(moves(rows), axis=0), atol=1e-5)
+    words = [one.values["text"][0] for one in found["state"]]
+    assert any("tree 2, layer 5/10" in text and "600 transitions" in text for text in words)
+    assert "2,000 transitions" in words[-1]
+
+
+def test_the_time_is_that_since_the_run_began(tmp_path, bus):
+    folder = run_folder(tmp_path / "run", None)
+    before = os.stat(folder / "config.yaml").st_mtime - 100.0
+    os.utime(folder / "config.yaml", (before, before))
+    follower, _ = follow(folder, bus, tmp_path / "run.rrd")
+    assert 100.0 <= follower.now() < 200.0
+
+
+def test_a_run_is_over_once_its_summary_is_newer_than_its_configuration(tmp_path, rows):
+    folder = finished(tmp_path / "run", rows)
+    assert is_over(folder)
+    later = os.stat(folder / "summary.json").st_mtime + 10.0
+    os.utime(folder / "config.yaml", (later, later))  # as --resume writes it again
+    assert not is_over(folder)
+
+
+def test_a_run_is_heard_only_while_it_generates_over_lcm(tmp_path, rows, monkeypatch):
+    monkeypatch.setattr(multicast, "defect", lambda url: None)
+
+    def why(folder):
+        return why_unheard(folder, _core.Config.from_file(folder / "config.yaml"))
+
+    assert why(run_folder(tmp_path / "lcm", None)) is None
+    assert why(run_folder(tmp_path / "stored", rows)) == "its transitions are in the folder"
+    alone = run_folder(tmp_path / "alone", None, "run.in_process=true")
+    assert why(alone).startswith("with --in-process its transitions are seen once all are")
+    none = run_folder(tmp_path / "none", None, "run.method=ddqn")
+    assert why(none) == "it generates no transitions"
+    monkeypatch.setattr(multicast, "defect", lambda url: "no route")
+    assert why(tmp_path / "lcm").endswith("seen once all are found: no route")
+
+
+def test_a_run_without_transitions_shows_scene_and_learning(tmp_path, bus):
+    folder = run_folder(tmp_path / "run", None, "run.method=ddqn")
+    follower, recording = follow(folder, bus, tmp_path / "run.rrd")
+    follower.finish()
+    recording.flush()
+    recording.disconnect()
+    found = read(tmp_path / "run.rrd")
+    assert {f"scene/bodies/{name}" for name in TASK.names} <= set(found)
+    assert not any(path.startswith(("trees", "legend")) for path in found)
