@@ -106,12 +106,13 @@ class RunView:
             trees.log_steps(self._recording, self._task, at, self._tree, steps, self._deepest)
 
     def _new(self, event: Steps) -> Rows:
-        """Returns those rows that have not been taken before, as a stream may repeat some."""
-        missing = int(event.numbers.max()) + 1 - len(self._taken)
+        """Returns those rows that have not been taken before, in order: a stream may repeat some."""
+        numbers, places = np.unique(event.numbers, return_index=True)
+        missing = int(numbers[-1]) + 1 - len(self._taken)
         if missing > 0:
             self._taken = np.concatenate([self._taken, np.zeros(missing, bool)])
-        fresh = ~self._taken[event.numbers]
-        self._taken[event.numbers] = True
+        fresh = places[~self._taken[numbers]]
+        self._taken[numbers] = True
         return Rows._make(column[fresh] for column in event.rows)
 
     def _take_episode(self, event: Episode) -> None:
