@@ -106,7 +106,7 @@ class RunView:
             trees.log_steps(self._recording, self._task, at, self._tree, steps, self._deepest)
 
     def _new(self, event: Steps) -> Rows:
-        """Returns those rows that have not been taken before, in order: a stream may repeat some."""
+        """Returns those rows, by number, that have not been taken before; some come twice."""
         numbers, places = np.unique(event.numbers, return_index=True)
         missing = int(numbers[-1]) + 1 - len(self._taken)
         if missing > 0:
