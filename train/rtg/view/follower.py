@@ -108,14 +108,9 @@ class Follower:
             self._view.count_interactions(state.interactions)
 
 
-def play_all(view: RunView, found: Sequence[Event], end: float) -> tuple[float, float]:
-    """Logs the events of a finished run. Returns when its last episode begins and ends [s].
-
-    `end`: the time of the last event [s].
-    """
+def play_all(view: RunView, found: Sequence[Event]) -> None:
+    """Logs the events of a finished run and plays its last episode."""
     for event in found:
         view.player.advance(event.at)
         view.take(event)
-    begin = max(end, view.player.free_at)
     view.player.advance(np.inf)
-    return begin, view.player.free_at

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import rerun.blueprint as rrb
-from rerun.encodings import AbsoluteTimeRange
 
 from rtg import _core
 from rtg.pictures.draw import PAPER, arena_window, objects
@@ -13,6 +12,8 @@ from rtg.view.figures import GAP, LEARNING, STATE
 from rtg.view.scene import TIME
 from rtg.view.trees import tree_path
 
+_NO_BOUND = rrb.TimeRangeBoundary.infinite()
+_ALL_TIME = rrb.TimeRange(start=_NO_BOUND, end=_NO_BOUND)
 _HEIGHT = 2.45  # of the eye above the plane, in half widths of the window
 
 
@@ -23,7 +24,7 @@ def _from_above(
     window = arena_window(config.task)
     until_now = rrb.VisibleTimeRange(
         TIME,
-        start=rrb.TimeRangeBoundary.infinite(),
+        start=_NO_BOUND,
         end=rrb.TimeRangeBoundary.cursor_relative(),
     )
     return rrb.Spatial3DView(
@@ -46,6 +47,7 @@ def _learning() -> rrb.TimeSeriesView:
     return rrb.TimeSeriesView(
         name="success",
         origin=f"/{LEARNING}",
+        axis_x=rrb.TimeAxis(view_range=_ALL_TIME),
         axis_y=rrb.ScalarAxis(range=(-0.03, 1.03), zoom_lock=True),
         plot_legend=rrb.PlotLegend(rrb.Corner2D.RightBottom),
     )
@@ -97,8 +99,8 @@ def following() -> rrb.TimePanel:
     return rrb.TimePanel(state="collapsed", timeline=TIME, play_state="following")
 
 
-def playing(begin: float, end: float, speed: float) -> rrb.TimePanel:
-    """Returns the time panel of a finished run: it plays the time from `begin` to `end` [s].
+def playing(speed: float) -> rrb.TimePanel:
+    """Returns the time panel of a finished run: it plays from begin to end, again and again.
 
     `speed`: of the play, where 1 is that of the run.
     """
@@ -107,10 +109,5 @@ def playing(begin: float, end: float, speed: float) -> rrb.TimePanel:
         timeline=TIME,
         play_state="playing",
         playback_speed=speed,
-        loop_mode="selection",
-        time_selection=AbsoluteTimeRange(min=_nanoseconds(begin), max=_nanoseconds(end)),
+        loop_mode="all",
     )
-
-
-def _nanoseconds(seconds: float) -> int:
-    return round(seconds * 1e9)

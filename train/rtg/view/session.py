@@ -47,7 +47,7 @@ class Session:
         return follower.is_over(self._folder)
 
     def begin(self) -> None:
-        """Logs what the folder holds and lays out the panels. Raises UserError or RunError."""
+        """Lays out the panels and logs what the folder holds. Raises UserError or RunError."""
         events = RunEvents(self._folder, self._config)
         if self.is_over():
             self._play(events)
@@ -60,9 +60,9 @@ class Session:
             heard = follower.Heard(self._bus, self._config.task)
             if self._bus.warning:
                 self._say(self._bus.warning)
+        self.recording.send_blueprint(layout(self._config, following()))
         view = RunView(self.recording, self._config, _PUSH)
         self._follower = follower.Follower(self._folder, view, events, heard)
-        self.recording.send_blueprint(layout(self._config, following()))
 
     def step(self) -> None:
         """Logs what is new; nothing if the run was over at the begin."""
@@ -84,6 +84,5 @@ class Session:
     def _play(self, events: RunEvents) -> None:
         found = events.new()
         speed = max(1.0, events.end / _FILM)
-        view = RunView(self.recording, self._config, speed * _PUSH)
-        begin, end = follower.play_all(view, found, events.end)
-        self.recording.send_blueprint(layout(self._config, playing(begin, end, speed)))
+        self.recording.send_blueprint(layout(self._config, playing(speed)))
+        follower.play_all(RunView(self.recording, self._config, speed * _PUSH), found)

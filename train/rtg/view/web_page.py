@@ -1,10 +1,10 @@
 """The page of Rerun's viewer, served on this machine to this machine alone.
 
 The program `rerun` holds the data and the files of its web viewer, both on ports of 127.0.0.1. Its
-page gets fonts from another host, and in the browser the viewer looks for new versions of itself and
-reports its use, whatever `rerun analytics disable` says. Therefore the page goes through a server of
-our own, which takes the links to fonts out of it and forbids it, by a Content Security Policy, to
-contact anything but this machine.
+page gets fonts from another host. In the browser the viewer looks for new versions of itself and
+reports its use, whatever `rerun analytics disable` says. Therefore the page goes through a server
+of our own, which takes the links to fonts out of it and forbids it, by a Content Security Policy,
+to contact anything but this machine.
 """
 
 from __future__ import annotations
