@@ -15,6 +15,12 @@ def status(number=0, done=0, cpu_s=0.0, pid=7, counters=()):
     return message.encode()
 
 
+def nodes(monitor, now):
+    """The nodes of the only run."""
+    (row,) = monitor.runs(now)
+    return row.nodes
+
+
 def test_a_channel_shows_type_count_rate_and_bandwidth():
     monitor = ChannelMonitor()
     data = message_type("stream_tail_t")().encode()
@@ -56,7 +62,7 @@ def test_a_node_shows_its_state_rate_cpu_and_the_counters_that_count():
             "RTG_STATUS", status(1, done=10 * k, cpu_s=0.25 * k, counters=counters), 0.5 * k
         )
         monitor.sample(0.5 * k)
-    (row,) = monitor.nodes(2.0)
+    (row,) = nodes(monitor, 2.0)
     words = "bus.malformed 2, bus.foreign_run 5"
     assert row == NodeRow("reverse_worker 1", 7, "busy", 40, 20.0, 0.5, words)
 
@@ -64,8 +70,8 @@ def test_a_node_shows_its_state_rate_cpu_and_the_counters_that_count():
 def test_a_node_that_falls_silent_says_so():
     monitor = ChannelMonitor()
     monitor.on_message("RTG_STATUS", status(), 0.0)
-    assert monitor.nodes(2.9)[0].state == "busy"
-    assert monitor.nodes(5.0)[0].state == "silent 5 s"
+    assert nodes(monitor, 2.9)[0].state == "busy"
+    assert nodes(monitor, 5.0)[0].state == "silent 5 s"
 
 
 def test_a_trainer_goes_on_after_the_good_bye_or_is_silent():
@@ -74,7 +80,7 @@ def test_a_trainer_goes_on_after_the_good_bye_or_is_silent():
     monitor = ChannelMonitor()
     monitor.on_message("RTG_STATUS", message.encode(), 0.0)
     monitor.on_message("RTG_PROGRESS", progress(leaving=1), 0.0)
-    assert monitor.nodes(5.0)[0].state == "silent 5 s"
+    assert nodes(monitor, 5.0)[0].state == "silent 5 s"
 
 
 def test_a_trainer_that_says_so_has_ended():
@@ -82,8 +88,8 @@ def test_a_trainer_that_says_so_has_ended():
     message.node, message.state = "trainer", "ended"
     monitor = ChannelMonitor()
     monitor.on_message("RTG_STATUS", message.encode(), 0.0)
-    assert monitor.nodes(0.1)[0].state == "ended"
-    assert monitor.nodes(60.0)[0].state == "ended"
+    assert nodes(monitor, 0.1)[0].state == "ended"
+    assert nodes(monitor, 60.0)[0].state == "ended"
 
 
 def test_lcm_trying_itself_is_no_channel_of_ours():
@@ -102,13 +108,13 @@ def test_a_node_that_falls_silent_after_the_good_bye_has_ended():
     monitor = ChannelMonitor()
     monitor.on_message("RTG_STATUS", status(), 0.0)
     monitor.on_message("RTG_PROGRESS", progress(leaving=0), 0.0)
-    assert monitor.nodes(5.0)[0].state == "silent 5 s"
+    assert nodes(monitor, 5.0)[0].state == "silent 5 s"
     monitor.on_message("RTG_PROGRESS", progress(leaving=1), 0.0)
-    assert monitor.nodes(2.9)[0].state == "busy"
-    assert monitor.nodes(5.0)[0].state == "ended"
-    assert monitor.progress().startswith("generation over: ")
+    assert nodes(monitor, 2.9)[0].state == "busy"
+    assert nodes(monitor, 5.0)[0].state == "ended"
+    assert monitor.runs(5.0)[0].progress.startswith("generation over: ")
     monitor.on_message("RTG_PROGRESS", progress(leaving=0), 0.0)  # resumed
-    assert monitor.nodes(5.0)[0].state == "silent 5 s"
+    assert nodes(monitor, 5.0)[0].state == "silent 5 s"
 
 
 def test_a_restarted_node_counts_from_nothing():
@@ -116,15 +122,45 @@ def test_a_restarted_node_counts_from_nothing():
     for k, (pid, done) in enumerate([(7, 0), (7, 1000), (8, 0), (8, 10)]):
         monitor.on_message("RTG_STATUS", status(pid=pid, done=done), float(k))
         monitor.sample(float(k))
-    (row,) = monitor.nodes(3.0)
+    (row,) = nodes(monitor, 3.0)
     assert (row.pid, row.done, row.rate) == (8, 10, 10.0)
+
+
+def of_run(data, kind, run):
+    message = message_type(kind).decode(data)
+    message.header.run = run
+    return message.encode()
+
+
+def test_each_run_has_its_own_nodes_and_progress():
+    monitor = ChannelMonitor()
+    for run, pid in ((5, 50), (-3, 30)):
+        monitor.on_message("RTG_STATUS", of_run(status(pid=pid), "node_status_t", run), 0.0)
+        if run == 5:
+            said = of_run(progress(leaving=0), "search_progress_t", run)
+            monitor.on_message("RTG_PROGRESS", said, 0.0)
+    first, second = monitor.runs(0.0)
+    assert (first.run, first.nodes[0].pid, first.progress[:7]) == (5, 50, "sealed:")
+    assert (second.run, second.nodes[0].pid, second.progress) == (-3, 30, "")
+
+
+def test_runs_that_are_over_come_last():
+    monitor = ChannelMonitor()
+    for run in (1, 2):
+        monitor.on_message("RTG_STATUS", of_run(status(), "node_status_t", run), 0.0)
+        said = of_run(progress(leaving=run == 1), "search_progress_t", run)
+        monitor.on_message("RTG_PROGRESS", said, 0.0)
+    assert [(row.run, row.is_over) for row in monitor.runs(0.1)] == [(1, False), (2, False)]
+    assert [(row.run, row.is_over) for row in monitor.runs(9.0)] == [(2, False), (1, True)]
 
 
 def test_progress_is_one_line():
     monitor = ChannelMonitor()
-    assert monitor.progress() == ""
+    monitor.on_message("RTG_STATUS", status(), 0.0)
+    assert monitor.runs(0.0)[0].progress == ""
     message = message_type("search_progress_t")()
     message.phase, message.layer, message.depth = "round 1", 3, 24
     message.transitions, message.target = 12345, 60000
     monitor.on_message("RTG_PROGRESS", message.encode(), 0.0)
-    assert monitor.progress().startswith("round 1, layer 3/24: 12,345 of 60,000 transitions, ")
+    words = monitor.runs(0.0)[0].progress
+    assert words.startswith("round 1, layer 3/24: 12,345 of 60,000 transitions, ")

@@ -83,13 +83,22 @@ class NodeRow(NamedTuple):
     counters: str  # names and values of the counters that are not 0
 
 
+class RunRow(NamedTuple):
+    """The values that a display shows for a run."""
+
+    run: int  # run_key() of its name
+    progress: str  # of its data generation, in one line; "" before any message on it
+    nodes: list[NodeRow]  # sorted by name
+    is_over: bool  # all of its processes have ended
+
+
 class ChannelMonitor:
     """Counts the messages on each channel and keeps the last status of each node, of all runs."""
 
     def __init__(self) -> None:
         self._channels: dict[str, _Channel] = {}
         self._nodes: dict[tuple[int, str, int], _Node] = {}
-        self._progress: Any = None
+        self._progress: dict[int, Any] = {}  # the last search_progress_t of each run
         self._finished_runs: set[int] = set()  # run_key() of the runs whose data generation is over
         self._handlers: dict[str, Callable[[Any, float], None]] = {
             "node_status_t": self._on_status,
@@ -123,26 +132,20 @@ class ChannelMonitor:
         """Returns all channels, sorted by name."""
         return [_channel_row(name, stats) for name, stats in sorted(self._channels.items())]
 
-    def nodes(self, now: float) -> list[NodeRow]:
-        """Returns the states of all nodes at time `now` [s], sorted by run and name."""
-        return [
-            _node_row(node, now - node.arrived_at, run in self._finished_runs and name != "trainer")
-            for (run, name, _), node in sorted(self._nodes.items())
-        ]
+    def runs(self, now: float) -> list[RunRow]:
+        """Returns the states of all runs at time `now` [s]: first those that are not over."""
+        keys = dict.fromkeys([*(run for run, _, _ in self._nodes), *self._progress])
+        return sorted((self._run_row(run, now) for run in keys), key=lambda row: row.is_over)
 
-    def progress(self) -> str:
-        """Describes the progress of data generation in one line; "" before any message on it."""
-        p = self._progress
-        if p is None:
-            return ""
-        layer = f", layer {p.layer}/{p.depth}" if p.depth else ""
-        phase = "generation over" if p.leaving else p.phase
-        return (
-            f"{phase}{layer}: {p.transitions:,} of {p.target:,} transitions, "
-            f"contact share {p.contact_share:.2f}, {p.start_region:,} in the start region, "
-            f"workers: {p.workers}, jobs open: {p.jobs_open}, "
-            f"consumers: {p.consumers}, the slowest at {p.slowest_cursor:,}"
-        )
+    def _run_row(self, run: int, now: float) -> RunRow:
+        over = run in self._finished_runs
+        nodes = [
+            _node_row(node, now - node.arrived_at, over and name != "trainer")
+            for (of, name, _), node in sorted(self._nodes.items())
+            if of == run
+        ]
+        is_over = over and all(row.state == ENDED for row in nodes)
+        return RunRow(run, _progress_text(self._progress.get(run)), nodes, is_over)
 
     def _on_status(self, message: Any, now: float) -> None:
         key = (message.header.run, message.node, message.number)
@@ -152,11 +155,25 @@ class ChannelMonitor:
         node.status, node.arrived_at = message, now
 
     def _on_progress(self, message: Any, _: float) -> None:
-        self._progress = message
+        self._progress[message.header.run] = message
         if message.leaving:
             self._finished_runs.add(message.header.run)
         else:  # a resumed run
             self._finished_runs.discard(message.header.run)
+
+
+def _progress_text(p: Any) -> str:
+    """Describes a search_progress_t in one line; "" if it is None."""
+    if p is None:
+        return ""
+    layer = f", layer {p.layer}/{p.depth}" if p.depth else ""
+    phase = "generation over" if p.leaving else p.phase
+    return (
+        f"{phase}{layer}: {p.transitions:,} of {p.target:,} transitions, "
+        f"contact share {p.contact_share:.2f}, {p.start_region:,} in the start region, "
+        f"workers: {p.workers}, jobs open: {p.jobs_open}, "
+        f"consumers: {p.consumers}, the slowest at {p.slowest_cursor:,}"
+    )
 
 
 def _channel_row(name: str, stats: _Channel) -> ChannelRow:
