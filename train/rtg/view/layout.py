@@ -48,8 +48,9 @@ def _learning() -> rrb.TimeSeriesView:
         name="success",
         origin=f"/{LEARNING}",
         axis_x=rrb.TimeAxis(view_range=_ALL_TIME),
-        axis_y=rrb.ScalarAxis(range=(-0.03, 1.03), zoom_lock=True),
-        plot_legend=rrb.PlotLegend(rrb.Corner2D.RightBottom),
+        # with room for the legend above 1
+        axis_y=rrb.ScalarAxis(range=(-0.03, 1.3), zoom_lock=True),
+        plot_legend=rrb.PlotLegend(rrb.Corner2D.LeftTop),
     )
 
 
@@ -60,7 +61,7 @@ def _trees(config: _core.Config) -> rrb.Grid:
         *(
             _from_above(
                 config,
-                f"{task.names[body]}: moves, by steps to success",
+                f"moves of {task.names[body]}",
                 [*fixed, f"start/{task.names[body]}", tree_path(task, body)],
                 whole=True,
             )

@@ -134,7 +134,8 @@ class RunView:
         if stored := int(self._taken.sum()):
             steps, deepest = len(self._tree.depths), int(self._tree.depths.max(initial=0))
             lines.append(
-                f"- {stored:,} transitions, {steps:,} of them steps, up to {deepest} from success"
+                f"- {stored:,} transitions, {steps:,} of them steps, up to {deepest} from success "
+                "(the colours of moves)"
             )
         if now.gaps is not None:
             lines.append(

@@ -27,9 +27,12 @@ def tree_path(task: TaskLike, body: int) -> str:
 
 
 def depth_colours(depths: Ints, deepest: int) -> Colours:
-    """Returns the colour of each depth, from 1 to `deepest`; grey for 0, unknown. [N] -> [N, 3]"""
+    """Returns the colour of each depth, from 1 to `deepest`; grey for 0, unknown. [N] -> [N, 3]
+
+    The colours go with the square root, as few trees get as deep as they may.
+    """
     scale = matplotlib.colormaps["viridis"]
-    shares = (np.minimum(depths, deepest) - 1) / max(1, deepest - 1)
+    shares = np.sqrt(np.clip(depths - 1, 0, deepest - 1) / max(1, deepest - 1))
     colours: Colours = (255 * scale(shares)[:, :3]).astype(np.uint8)
     colours[depths == 0] = GREY_LEVEL
     return colours
@@ -73,9 +76,10 @@ def log_steps(
 
 
 def log_legend(recording: rr.RecordingStream, task: TaskLike, deepest: int) -> None:
-    """Logs dots with the colours of some depths, below the arena, and the start of each object."""
-    depths = np.unique(np.linspace(1, deepest, _LEGEND).round().astype(np.int64))
-    places = np.full((len(depths), 2), -1.14 * task.arena)
+    """Logs dots with the colours of some depths, above the arena, and the start of each object."""
+    shares = np.linspace(0.0, 1.0, _LEGEND)
+    depths = np.unique((1.0 + (deepest - 1) * shares**2).round().astype(np.int64))
+    places = np.full((len(depths), 2), 1.2 * task.arena)
     places[:, 0] = np.linspace(-0.8, 0.8, len(depths)) * task.arena
     dots = raised(places, CAPTION_HEIGHT)
     colours, radius = depth_colours(depths, deepest), rr.Radius.ui_points(6.0)
