@@ -1,13 +1,15 @@
 """Exit status and words of the command, as the user meets them."""
 
+import importlib.util
 import os
 import subprocess
 import sys
+import tomllib
 
 import numpy as np
 import pytest
 from PIL import Image
-from rtg import paths
+from rtg import cli, paths
 
 MISTAKES = {
     "unknown task": (
@@ -170,7 +172,7 @@ def test_spy_names_the_remedy_where_nothing_can_be_heard():
     )
 
 
-@pytest.mark.parametrize("tool", ["run", "check", "spy", "lcm-spy", "reproduce", "plot"])
+@pytest.mark.parametrize("tool", ["run", "check", "spy", "lcm-spy", "reproduce", "plot", "view"])
 def test_every_tool_has_help(tool):
     done = rtg(tool, "--help")
     assert done.returncode == 0 and done.stderr == ""
@@ -182,7 +184,7 @@ def test_help_does_not_wait_for_heavy_imports():
         "import sys; from rtg import cli\n"
         "try: cli.main(['--help'])\n"
         "except SystemExit: pass\n"
-        "print(sorted({'torch', 'matplotlib', 'textual', 'lcm'} & set(sys.modules)))"
+        "print(sorted({'torch', 'matplotlib', 'textual', 'rerun', 'lcm'} & set(sys.modules)))"
     )
     done = subprocess.run(
         [sys.executable, "-c", program],
@@ -192,6 +194,21 @@ def test_help_does_not_wait_for_heavy_imports():
         check=True,
     )
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_a_tool_whose_extra_is_missing_names_it(monkeypatch, capsys):
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    for tool, package in (("spy", "textual>=1.0"), ("view", "rerun-sdk==0.41.0")):
+        assert cli.main([tool] if tool == "spy" else [tool, "runs"]) == 2
+        error = capsys.readouterr().err
+        assert error.startswith(f"rtg: {tool}: needs {package}, which is not installed; legal: ")
+        assert error.endswith(f"pip install '{package}', or this package with the extra [{tool}]\n")
+
+
+def test_the_extras_are_those_of_the_package():
+    project = tomllib.loads((paths.ROOT / "pyproject.toml").read_text())["project"]
+    extras = project["optional-dependencies"]
+    assert {tool: [package] for tool, package in cli._EXTRAS.items()} == extras
 
 
 def test_print_config_reads_back_to_itself(tmp_path):

@@ -1,6 +1,7 @@
 """summary.json and the other files of the run folder."""
 
 import json
+import os
 import re
 
 import pytest
@@ -96,3 +97,22 @@ def test_a_damaged_report_is_named(text, tmp_path):
     assert (
         str(error.value) == f"{file}: is damaged; legal: the file as the run wrote it, or no file"
     )
+
+
+def test_a_run_has_the_name_that_it_was_given_or_that_of_its_folder(tmp_path):
+    assert run_folder.run_name(tmp_path) == tmp_path.name
+    run_folder.write_run_name(tmp_path, "gathering-a1b2c3d4")
+    assert run_folder.run_name(tmp_path) == "gathering-a1b2c3d4"
+
+
+def test_the_newest_run_is_the_one_that_began_last(tmp_path, monkeypatch):
+    monkeypatch.setattr(paths, "RUNS", tmp_path)
+    with pytest.raises(UserError, match="holds no run; legal: the folder of a run"):
+        run_folder.newest()
+    for age, name in enumerate(("second", "first"), 1):
+        (tmp_path / name).mkdir()
+        config = tmp_path / name / "config.yaml"
+        config.touch()
+        os.utime(config, (1000 - age, 1000 - age))
+    (tmp_path / "none").mkdir()
+    assert run_folder.newest() == tmp_path / "second"

@@ -17,7 +17,7 @@ from rtg.view.follower import Follower, Heard, is_over, why_unheard
 from rtg.view.run_events import RunEvents
 from rtg.view.run_view import RunView
 from training_runs import run_folder
-from view_runs import TASK, finished, generated
+from view_runs import GENERATION, TASK, finished, generated
 
 
 def publish(bus, rows, first):
@@ -56,6 +56,7 @@ def moves(rows, body=2):
     return ends[(rows.source == 0) & moved]
 
 
+@pytest.mark.filterwarnings("ignore:RRD file has no footer")  # read before it is complete
 def test_steps_show_as_they_are_heard_and_the_rest_when_the_file_is_there(tmp_path, rows, bus):
     folder = run_folder(tmp_path / "run", None)
     follower, recording = follow(folder, bus, tmp_path / "run.rrd")
@@ -87,6 +88,13 @@ def test_the_time_is_that_since_the_run_began(tmp_path, bus):
     os.utime(folder / "config.yaml", (before, before))
     follower, _ = follow(folder, bus, tmp_path / "run.rrd")
     assert 100.0 <= follower.now() < 200.0
+
+
+def test_the_clock_of_a_run_stopped_long_ago_begins_where_its_files_end(tmp_path, rows, bus):
+    folder = generated(tmp_path / "run", rows)
+    os.utime(folder / "config.yaml", (1e6, 1e6))
+    follower, _ = follow(folder, bus, tmp_path / "run.rrd")
+    assert GENERATION <= follower.now() < GENERATION + 60.0
 
 
 def test_a_run_is_over_once_its_summary_is_newer_than_its_configuration(tmp_path, rows):

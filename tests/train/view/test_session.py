@@ -5,6 +5,7 @@ import pytest
 
 pytest.importorskip("rerun", reason="the extra view is not installed")
 
+import rerun.chunk
 from recordings import lines, read
 from rtg.errors import UserError
 from rtg.files.dataset import SOURCES
@@ -87,6 +88,18 @@ def test_the_learning_curve_is_that_of_the_file(recorded):
     assert [one.values["scalars"] for one in greedy] == [[0.4], [0.8]]
     rollouts = [one.values.get("scalars") for one in recorded["learning/rollout_success"]]
     assert rollouts[-2:] == [[0.1], [0.2]]
+
+
+def test_the_learning_curve_has_a_time_line_of_interactions(tmp_path, rows):
+    file = tmp_path / "run.rrd"
+    view.save(finished(tmp_path / "run", rows), file, lambda words: None)
+    chunks = [c for c in rerun.chunk.RrdReader(file).stream().to_chunks() if not c.is_static]
+    lines = {chunk.entity_path: set(chunk.timeline_names) for chunk in chunks}
+    assert lines["/learning/success_rate"] == {"time", "interactions"}
+    assert {path for path, names in lines.items() if names != {"time"}} == {
+        "/learning/success_rate",
+        "/learning/rollout_success",
+    }
 
 
 def test_the_histogram_counts_all_gaps(recorded):

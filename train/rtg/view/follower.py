@@ -67,7 +67,11 @@ def why_unheard(folder: Path, config: _core.Config) -> str | None:
 
 
 class Follower:
-    """Logs the course of a run to a RunView, up to now."""
+    """Logs the course of a run to a RunView, up to now.
+
+    The clock shows the time since the run began. If the folder tells of something already, it
+    starts at the last of that, as the run may have been stopped long ago.
+    """
 
     def __init__(
         self,
@@ -79,6 +83,9 @@ class Follower:
         self._folder, self._view, self._events, self._heard = folder, view, events, heard
         self._training = TrainingWatch(folder)
         self._begin = (folder / "config.yaml").stat().st_mtime
+        self._first: list[Event] = events.new()
+        if self._first:
+            self._begin = time.time() - events.end
 
     def now(self) -> float:
         """Returns the time since the run began [s]."""
@@ -87,9 +94,9 @@ class Follower:
     def step(self) -> None:
         """Logs what is new."""
         now = self.now()
-        found = self._events.new()
+        found, self._first = [*self._first, *self._events.new()], []
         if self._heard is not None:
-            found = [*(self._heard.steps(now)), *found]
+            found = [*self._heard.steps(now), *found]
         for event in found:
             self._view.take(event)
         self._tell_state()

@@ -56,10 +56,12 @@ class Session:
         if why := follower.why_unheard(self._folder, self._config):
             self._say(f"not listening to the run: {why}")
         else:
-            self._bus = Bus(self._config.run.bus, run_name(self._folder))
+            name = run_name(self._folder)
+            self._bus = Bus(self._config.run.bus, name)
             heard = follower.Heard(self._bus, self._config.task)
             if self._bus.warning:
                 self._say(self._bus.warning)
+            self._say(f"listening to the run {name}")
         self.recording.send_blueprint(layout(self._config, following()))
         view = RunView(self.recording, self._config, _PUSH)
         self._follower = follower.Follower(self._folder, view, events, heard)
