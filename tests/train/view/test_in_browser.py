@@ -15,8 +15,7 @@ pytest.importorskip("rerun", reason="the extra view is not installed")
 from PIL import Image
 from rtg import paths
 from rtg.pictures.draw import KIND_PALETTE, ROBOT
-from rtg.view import web_page
-from view_runs import generated, learn
+from view_runs import free_pair, generated, learn
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
@@ -36,7 +35,7 @@ def page(tmp_path, rows):
     """The address of the view of a run that has not ended, so that it shows its last state."""
     folder = generated(tmp_path / "run", rows)
     learn(folder)
-    port = web_page.free_port()
+    port = free_pair()
     words = ["view", str(folder), "--port", str(port), "--no-browser"]
     process = subprocess.Popen(
         [sys.executable, "-m", "rtg.cli", *words],
@@ -63,7 +62,7 @@ def shows_all(picture):
     return (
         count(picture, SCENE, box) > 1000
         and count(picture, SCENE, ROBOT) > 400
-        and count(picture, CURVE, GREEDY) > 100
+        and count(picture, CURVE, GREEDY) > 100  # of which the legend has 50
         and count(picture, CURVE, ROLLOUTS) > 100
         and count(picture, TREES, ONE_STEP) > 50
     )
@@ -74,6 +73,7 @@ def test_the_page_shows_scene_trees_and_curve_and_asks_no_other_host(page):
     with sync_api.sync_playwright() as play:
         browser = play.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         tab = browser.new_page(viewport={"width": WIDTH, "height": HEIGHT})
+        tab.set_default_timeout(1000.0 * PATIENCE)  # as pictures take seconds on a busy machine
         requests, refused = [], []  # the viewer tries to report its use and to find new versions
         tab.on("request", lambda request: requests.append(request.url))
         tab.on("console", lambda line: refused.append(line.text) if "Policy" in line.text else None)

@@ -87,7 +87,7 @@ def test_the_learning_curve_is_that_of_the_file(recorded):
     assert [one.time for one in greedy] == pytest.approx([GENERATION + t for t in LEARNING])
     assert [one.values["scalars"] for one in greedy] == [[0.4], [0.8]]
     rollouts = [one.values.get("scalars") for one in recorded["learning/rollout_success"]]
-    assert rollouts[-2:] == [[0.1], [0.2]]
+    assert rollouts[-2:] == [[0.3], [0.6]]
 
 
 def test_the_learning_curve_has_a_time_line_of_interactions(tmp_path, rows):

@@ -11,8 +11,9 @@ import pytest
 pytest.importorskip("rerun", reason="the extra view is not installed")
 
 from rtg import paths
-from rtg.view import web_page
-from view_runs import finished
+from rtg.errors import RunError
+from rtg.view import view, web_page
+from view_runs import finished, free_pair
 
 PATIENCE = 120.0  # [s]; longer is a hang
 
@@ -20,14 +21,6 @@ PATIENCE = 120.0  # [s]; longer is a hang
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory, rows):
     return finished(tmp_path_factory.mktemp("view") / "run", rows)
-
-
-def free_pair():
-    """Returns a port that is free, as is the next one."""
-    while True:
-        port = web_page.free_port()
-        if port < 65_535 and not web_page.is_open(port + 1):
-            return port
 
 
 def start(*words, home=None):
@@ -95,3 +88,18 @@ def test_two_views_need_two_ports(folder):
         _, errors = process.communicate(timeout=PATIENCE)
     assert process.returncode == 2
     assert errors.startswith(f"rtg: --port: 127.0.0.1:{port}: address already in use; legal: ")
+
+
+def test_a_viewer_that_cannot_start_is_named(folder, monkeypatch):
+    monkeypatch.setattr(view, "_program", lambda: Path("/bin/false"))
+    with pytest.raises(RunError, match="rerun analytics disable failed"):
+        view.serve(folder, free_pair(), False, print)
+    monkeypatch.setattr(view, "_without_analytics", lambda settings: [])
+    with pytest.raises(RunError, match="rerun does not listen:"):
+        view.serve(folder, free_pair(), False, print)
+
+
+def test_a_package_without_the_program_is_named(folder, monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(RunError, match="rerun-sdk lacks its program rerun; legal: a wheel for"):
+        view.serve(folder, free_pair(), False, print)

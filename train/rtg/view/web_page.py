@@ -78,7 +78,10 @@ def check_port(port: int) -> None:
 
 
 def command(program: Path, data_port: int, asset_port: int) -> list[str]:
-    """Returns the words that start `rerun` without a window."""
+    """Returns the words that start `rerun` without a window, for this machine alone.
+
+    The functions of its Python package that serve data and page listen on all addresses.
+    """
     return [
         str(program),
         "--serve-web",

@@ -1,0 +1,66 @@
+"""What is logged of scenes with walls, joints and several goals, and which colours trees have."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rerun", reason="the extra view is not installed")
+
+import rerun as rr
+from recordings import read
+from rtg import _core, paths
+from rtg.pictures.draw import GREY_LEVEL, KIND_PALETTE, WALL
+from rtg.view import scene, trees
+
+
+def logged(tmp_path, file):
+    task = _core.Config.from_file(paths.CONFIG / file).task
+    recording = rr.RecordingStream("test")
+    recording.save(tmp_path / "scene.rrd")
+    scene.log_scene(recording, task)
+    recording.flush()
+    recording.disconnect()
+    return task, read(tmp_path / "scene.rrd")
+
+
+def colour(found, path):
+    (mesh,) = found[path]
+    packed = mesh.values["vertex_colors"][0]
+    return tuple(packed.to_bytes(4, "big")[:3])
+
+
+def test_walls_and_objects_have_the_colours_of_the_pictures(tmp_path):
+    task, found = logged(tmp_path, "examples/door.yaml")
+    assert task.names[1:] == ["wall", "door", "crate"]
+    shown = [colour(found, f"scene/bodies/{name}") for name in task.names[1:]]
+    assert shown == [WALL, KIND_PALETTE[0], KIND_PALETTE[1]]
+
+
+def test_a_joint_moves_with_its_parent(tmp_path):
+    task, found = logged(tmp_path, "art_manip.yaml")
+    for number, (parent, _, points) in enumerate(task.joints):
+        (pin,) = found[f"scene/bodies/{task.names[parent]}/joint{number}"]
+        assert np.allclose(pin.values["positions"][0][:2], points[0], atol=1e-5)
+
+
+def test_each_goal_has_a_mark_and_small_ones_lie_on_top(tmp_path):
+    task, found = logged(tmp_path, "sorting.yaml")
+    marks = [path for path in found if path.startswith("scene/goal/") and "edge" not in path]
+    assert len(marks) == len(task.goal_marks) == 2
+    heights = [found[path][0].values["vertex_positions"][0][2] for path in sorted(marks)]
+    assert heights == sorted(heights) and heights[0] < heights[1] < scene.WALL_HEIGHT
+
+
+def test_the_colours_of_depths_begin_and_end_with_those_of_the_scale():
+    shown = trees.depth_colours(np.array([1, 40, 99, 0]), deepest=40)
+    assert shown[0].tolist() == [68, 1, 84]
+    assert shown[1].tolist() == shown[2].tolist() == [253, 231, 36]
+    assert shown[3].tolist() == [GREY_LEVEL] * 3
+
+
+def test_only_moves_are_shown():
+    starts = np.zeros((3, 2))
+    ends = np.array([[0.04, 0.0], [0.06, 0.0], [0.0, 2.0]])
+    lines, depths = trees.moves(starts, ends, np.array([1, 2, 4]), deepest=4)
+    assert depths.tolist() == [2, 4]
+    assert np.allclose(lines[:, 1, :2], ends[1:])
+    assert scene.OBJECT_HEIGHT < lines[0, 0, 2] < lines[1, 0, 2]
