@@ -86,7 +86,7 @@ def lost(consumer: Process) -> int:
 def generated_in_process(file: Path, *overrides: str) -> bytes:
     """transitions.npz of the same run in this process, without LCM; written to `file`."""
     config = _core.Config.from_file(_TINY, overrides)
-    recorder = Recorder(config.task)
+    recorder = Recorder(config)
 
     def store(poses, action, next_poses, success, source) -> None:  # type: ignore[no-untyped-def]
         recorder.add(Rows(poses, action, next_poses, success.astype("f4"), success, source))

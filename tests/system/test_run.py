@@ -106,7 +106,7 @@ def test_the_summary_is_whole_and_agrees_with_the_files(whole_run):
     folder, _ = whole_run
     summary = json.loads((folder / "summary.json").read_text())
     assert [key for key in SUMMARY_KEYS if summary[key] is None] == []
-    data = dataset.read(folder / "transitions.npz", bodies=4, actions=48)
+    data = dataset.read(folder / "transitions.npz")
     assert summary["transitions"] == len(data.action) == 2000
     moved = np.abs(data.next_poses - data.poses)[:, 1:, :2]
     moved = np.hypot(moved[..., 0], moved[..., 1]) > 0.05

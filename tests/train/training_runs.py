@@ -19,9 +19,9 @@ def run_folder(path: Path, rows: Rows | None, *overrides: str) -> Path:
     config = _core.Config.from_file(TINY, [*WORK, *overrides])
     (path / "config.yaml").write_text(config.yaml)
     if rows is not None:
-        recorder = Recorder(config.task)
+        recorder = Recorder(config)
         recorder.add(rows)
-        recorder.write(path / "transitions.npz")
+        recorder.finish(path / "transitions.npz")
     return path
 
 

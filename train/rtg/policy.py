@@ -111,14 +111,14 @@ def train(
     if interactions is not None:
         own.append(f"train.interactions={interactions}")
     config = _core.Config.from_text(task.config.yaml, task.name, [*own, *settings])
-    recorder = Recorder(config.task)
+    recorder = Recorder(config)
     recorder.add(Rows(**_checked(task, data)))
     run = Path(folder)
     if (run / "checkpoint").exists() or (run / "model.pt").exists():
         raise UserError(f"{run}: holds a learner already; legal: another folder")
     run.mkdir(parents=True, exist_ok=True)
     (run / "config.yaml").write_text(config.yaml)
-    recorder.write(run / "transitions.npz")
+    recorder.finish(run / "transitions.npz")
     threads = th.get_num_threads()
     th.set_num_threads(1)  # networks this small are slower on more
     try:

@@ -7,10 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rtg import _core, paths
 from rtg.errors import UserError
-from rtg.files import dataset
-from rtg.files.dataset import DatasetError, Transitions
+from rtg.files import dataset, versions
+from rtg.files.dataset import DatasetError, Origin, Transitions
 from samples import random_transitions
+
+TASK = _core.Config.from_file(paths.CONFIG / "gathering.yaml").task
+ORIGIN = Origin(TASK.content, seed=3, revision="abc-modified")
 
 
 @pytest.fixture
@@ -19,15 +23,17 @@ def transitions() -> Transitions:
 
 
 def saved(path: Path, transitions: Transitions, **changes: object) -> Path:
-    arrays = {**transitions._asdict(), **changes}
+    chains = dataset.chains(transitions)._asdict() if len(transitions.poses.shape) == 3 else {}
+    arrays = {**transitions._asdict(), **chains, **ORIGIN._asdict(), **changes}
     np.savez(path, **{name: array for name, array in arrays.items() if array is not None})
     return path
 
 
 def test_round_trip_is_exact(tmp_path: Path, transitions: Transitions) -> None:
     path = tmp_path / "transitions.npz"
-    dataset.write(path, transitions)
-    back = dataset.read(path, bodies=4, actions=48)
+    dataset.write(path, transitions, ORIGIN)
+    back, origin = dataset.read_with_origin(path, TASK)
+    assert origin == ORIGIN
     for wrote, got in zip(transitions, back, strict=True):
         assert wrote.dtype == got.dtype
         np.testing.assert_array_equal(wrote, got)
@@ -37,21 +43,23 @@ def test_round_trip_is_exact(tmp_path: Path, transitions: Transitions) -> None:
 def test_equal_data_gives_equal_bytes(
     tmp_path: Path, transitions: Transitions, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    dataset.write(tmp_path / "a.npz", transitions)
+    dataset.write(tmp_path / "a.npz", transitions, ORIGIN)
     monkeypatch.setattr(time, "time", lambda: 2_000_000_000.0)
-    dataset.write(tmp_path / "b.npz", transitions)
+    dataset.write(tmp_path / "b.npz", transitions, ORIGIN)
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
 
 
 def test_numpy_reads_the_file(tmp_path: Path, transitions: Transitions) -> None:
-    dataset.write(tmp_path / "a.npz", transitions)
+    dataset.write(tmp_path / "a.npz", transitions, ORIGIN)
     with np.load(tmp_path / "a.npz") as archive:
-        assert list(archive) == list(Transitions._fields)
+        columns = [*Transitions._fields, "episode", "step", "truncated"]
+        assert list(archive) == [*columns, "task", "seed", "revision"]
+        assert int(archive["seed"]) == 3 and str(archive["revision"]) == "abc-modified"
 
 
 def test_empty_set_round_trips(tmp_path: Path, transitions: Transitions) -> None:
     empty = Transitions(*(array[:0] for array in transitions))
-    dataset.write(tmp_path / "a.npz", empty)
+    dataset.write(tmp_path / "a.npz", empty, ORIGIN)
     assert len(dataset.read(tmp_path / "a.npz").action) == 0
 
 
@@ -78,6 +86,14 @@ def test_concatenate_keeps_order(transitions: Transitions) -> None:
         ({"action": np.full(50, -1, np.int32)}, "'action' has negative values"),
         ({"action": np.full(50, 48, np.int32)}, "has action 48; legal: 0 to 47"),
         ({"source": np.full(50, 4, np.int8)}, "'source' has illegal values; legal: 0 to 3"),
+        ({"episode": None}, "array 'episode' is missing; legal: poses, action,"),
+        ({"episode": np.zeros(50, np.int32)}, "'episode' is not that of these rows"),
+        ({"step": np.ones(50, np.int32)}, "'step' is not that of these rows"),
+        ({"truncated": np.zeros(50, bool)}, "'truncated' is not that of these rows"),
+        ({"seed": np.zeros(50, np.int64)}, "'seed' has shape [50]; legal: []"),
+        ({"seed": 0.5}, "'seed' has type float64; legal: int64"),
+        ({"revision": 1}, "'revision' has type int64; legal: str"),
+        ({"task": 5}, f"has transitions of another task (5); legal: {TASK.content}, which is"),
     ],
 )
 def test_wrong_arrays_are_named(
@@ -85,7 +101,7 @@ def test_wrong_arrays_are_named(
 ) -> None:
     path = saved(tmp_path / "bad.npz", transitions, **changes)
     with pytest.raises(DatasetError) as error:
-        dataset.read(path, bodies=4, actions=48)
+        dataset.read(path, TASK)
     assert str(error.value).startswith(f"{path}: {message}")
 
 
@@ -94,9 +110,30 @@ def test_a_wrong_file_is_bad_input_to_every_command() -> None:
 
 
 def test_other_tasks_are_refused(tmp_path: Path, transitions: Transitions) -> None:
-    dataset.write(tmp_path / "a.npz", transitions)
-    with pytest.raises(DatasetError, match="has 4 bodies; legal: 5"):
-        dataset.read(tmp_path / "a.npz", bodies=5)
+    other = _core.Config.from_file(paths.CONFIG / "sorting.yaml").task
+    dataset.write(tmp_path / "a.npz", transitions, ORIGIN)
+    with pytest.raises(
+        DatasetError, match=r"has transitions of another task .* which is 'sorting'"
+    ):
+        dataset.read(tmp_path / "a.npz", other)
+    dataset.write(tmp_path / "b.npz", random_transitions(50, bodies=5), ORIGIN)
+    with pytest.raises(DatasetError, match="has 5 bodies; legal: 4"):
+        dataset.read(tmp_path / "b.npz", TASK)
+
+
+def test_a_set_that_was_changed_since_it_was_sealed_is_refused(
+    tmp_path: Path, transitions: Transitions
+) -> None:
+    path, beside = tmp_path / "a.npz", tmp_path / "b.npz"
+    for file in (path, beside):
+        dataset.write(file, transitions, ORIGIN)
+    versions.seal(path)
+    dataset.read(path)
+    dataset.write(path, transitions, ORIGIN._replace(seed=4))
+    with pytest.raises(UserError) as error:
+        dataset.read(path)
+    assert str(error.value).startswith(f"{path}: was changed since the run wrote it")
+    dataset.read(beside)  # which nobody sealed
 
 
 class Bomb:
@@ -120,7 +157,7 @@ def test_pickles_are_never_run(
 
 @pytest.mark.parametrize("keep", [0, 1, 100, 5000])
 def test_truncated_files_are_refused(tmp_path: Path, transitions: Transitions, keep: int) -> None:
-    dataset.write(tmp_path / "a.npz", transitions)
+    dataset.write(tmp_path / "a.npz", transitions, ORIGIN)
     (tmp_path / "b.npz").write_bytes((tmp_path / "a.npz").read_bytes()[:keep])
     with pytest.raises(DatasetError, match="not a transition file"):
         dataset.read(tmp_path / "b.npz")
@@ -129,7 +166,7 @@ def test_truncated_files_are_refused(tmp_path: Path, transitions: Transitions, k
 def test_a_changed_byte_of_the_directory_is_harmless_or_refused(
     tmp_path: Path, transitions: Transitions
 ) -> None:
-    dataset.write(tmp_path / "a.npz", transitions)
+    dataset.write(tmp_path / "a.npz", transitions, ORIGIN)
     whole = (tmp_path / "a.npz").read_bytes()
     refused = 0
     for at in range(whole.rindex(b"PK\x01\x02"), len(whole)):

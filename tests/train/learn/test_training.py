@@ -292,5 +292,5 @@ def test_an_episode_ends_in_failure_where_the_simulator_gives_up(
 
 def test_empty_transition_set_has_the_right_shapes() -> None:
     config = _core.Config.from_file(TINY)
-    empty = Recorder(config.task).transitions()
+    empty = Recorder(config).transitions()
     assert empty.poses.shape == (0, 4, 3) and empty.observation.shape == (0, 20)

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import pytest
 from rtg import paths
 from rtg.errors import RunError, StoppedError, UserError
+from rtg.files import versions
 from rtg.run import effective_config, graph_run, results, run
 from rtg.run.plan import RunPlan
 from rtg.run.progress import display
@@ -121,6 +122,7 @@ def test_a_resumed_run_still_tells_what_its_generation_gave_up(plan, monkeypatch
     report = {**REPORT, "transitions": 2000, "units_given_up": 2}
     plan.report_file.write_text(json.dumps(report))
     plan.transitions_file.touch()
+    versions.seal(plan.transitions_file)
     measured = {}
     for drawing in ("draw", "draw_generation"):
         monkeypatch.setattr(results, drawing, lambda plan: None)

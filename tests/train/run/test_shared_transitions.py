@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from rtg.errors import UserError
 from rtg.files import versions
 from rtg.run import effective_config, run_args
 from rtg.run.plan import make_plan
@@ -29,6 +30,7 @@ def made(tmp_path):
     versions.write(run)
     for name in ("transitions.npz", "generation.json"):
         (run / name).write_text(name)
+    versions.seal(run / "transitions.npz")
     return run
 
 
@@ -84,6 +86,25 @@ def test_another_kind_or_seed_is_not_found(made, tmp_path):
     assert find(generation_key(CONFIG), tmp_path, "seed-2") is None
 
 
+def test_transitions_that_were_changed_are_neither_taken_over_nor_gone_on_with(made, tmp_path):
+    (made / "transitions.npz").write_text("changed")
+    new = tmp_path / "other"
+    new.mkdir()
+    with pytest.raises(UserError, match=r"transitions\.npz: was changed since the run wrote it"):
+        take_over(made, new)
+    assert list(new.iterdir()) == []
+    before = {path: path.read_bytes() for path in made.iterdir()}
+    with pytest.raises(UserError, match="or no file, to generate anew"):
+        make_plan(run_args.parse(["--resume", "--out", str(made)]))
+    assert {path: path.read_bytes() for path in made.iterdir()} == before
+
+
+def test_a_set_that_was_not_sealed_is_not_whole(made):
+    """As if the run was killed between writing and sealing it."""
+    versions.write(made, {"core_sha256": versions.core_digest()})
+    assert not is_generated(made)
+
+
 DEFECTS = {
     "config.yaml": "search: {unknown: 1}\n",
     "versions.json": '{"generator": {"core_sha256": "another"}}',
@@ -105,6 +126,8 @@ def test_what_another_program_made_stays_that_of_the_other(made, tmp_path):
     """It does so even when this one goes on with the run."""
     other = {"git_revision": "another", "core_sha256": "another"}
     versions.write(made, other)
+    versions.seal(made / "transitions.npz")
+    other["sha256"] = {"transitions.npz": versions.digest(made / "transitions.npz")}
     make_plan(run_args.parse(["--resume", "--out", str(made)]))
     assert versions.generator(made) == other
     assert find(generation_key(CONFIG), tmp_path, "seed-1") is None

@@ -1,7 +1,8 @@
 """Records the transitions of a run, if there is no trainer: the recorder of graph.sh.
 
 `python -m rtg.bus.record CONFIG.yaml RUN FILE.npz` receives all transitions of the run named RUN
-and writes them to FILE.npz. Prints how many it has when some have arrived.
+and writes them to FILE.npz, and its digest to the versions.json beside it. Prints how many it has
+when some have arrived.
 """
 
 from __future__ import annotations
@@ -36,12 +37,12 @@ def record(config: _core.Config, run: str, file: Path) -> None:
     if bus.warning:
         _say(bus.warning)
     _say(f"waits for the transitions of run {run}")
-    recorder = Recorder(config.task)
+    recorder = Recorder(config)
     stream = TransitionStream(bus, config.task.bodies, config.task.actions, recorder.add)
     while not stream.complete:
         if stream.poll(_POLL):
             _say(f"has {stream.received} transitions")
-    recorder.write(file)
+    recorder.finish(file)
     stream.close()
     _say(f"ends, {stream.lost} transitions lost")
 

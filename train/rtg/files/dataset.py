@@ -1,4 +1,7 @@
-"""Transition sets: their arrays, the file `transitions.npz` and the checks when it is read."""
+"""Transition sets: their arrays, the file `transitions.npz` and the checks when it is read.
+
+docs/data.md says what each array means.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,8 @@ import numpy.typing as npt
 
 from rtg import _core
 from rtg.errors import UserError
+from rtg.files import versions
+from rtg.files.chains import Chains, chains_of
 
 Array = npt.NDArray[Any]
 
@@ -47,16 +52,29 @@ class Transitions(NamedTuple):
     source: Array  # [N] int8, index into SOURCES
 
 
+class Origin(NamedTuple):
+    """Of a transition set: what it is about, and what it was made with."""
+
+    task: int  # Task.content, a hash of bodies, joints, goal and pushes
+    seed: int  # run.seed
+    revision: str  # commit of the program, with "-modified" if files differed; "" if unknown
+
+
+def origin_of(config: _core.Config) -> Origin:
+    """Returns the origin of the transitions that this program makes with `config`."""
+    return Origin(config.task.content, config.run.seed, versions.this_commit() or "")
+
+
 class _Column(NamedTuple):
     dtype: type[np.generic]
     shape: str = "[N]"
 
     @property
     def rank(self) -> int:
-        return self.shape.count(",") + 1
+        return 0 if self.shape == "[]" else self.shape.count(",") + 1
 
 
-# Element type and shape that each array of Transitions has in the file.
+# Element type and shape that each array has in the file.
 _COLUMNS = {
     "poses": _Column(np.float64, "[N, bodies, 3]"),
     "action": _Column(np.int32),
@@ -66,6 +84,12 @@ _COLUMNS = {
     "observation": _Column(np.float32, "[N, observation]"),
     "next_observation": _Column(np.float32, "[N, observation]"),
     "source": _Column(np.int8),
+    "episode": _Column(np.int32),
+    "step": _Column(np.int32),
+    "truncated": _Column(np.bool_),
+    "task": _Column(np.int64, "[]"),
+    "seed": _Column(np.int64, "[]"),
+    "revision": _Column(np.str_, "[]"),
 }
 
 
@@ -92,32 +116,42 @@ def concatenate(parts: list[Transitions]) -> Transitions:
     return Transitions(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
 
 
-def write(path: Path, transitions: Transitions) -> None:
+def chains(transitions: Transitions) -> Chains:
+    """Returns the episodes that the transitions form."""
+    t = transitions
+    return chains_of(t.poses, t.next_poses, t.terminated, t.source)
+
+
+def write(path: Path, transitions: Transitions, origin: Origin) -> None:
     """Writes `transitions` to `path`, atomically even if the machine crashes.
 
-    Equal transitions give bitwise equal files.
+    Equal transitions of equal origin give bitwise equal files.
     """
+    members = {**transitions._asdict(), **chains(transitions)._asdict(), **origin._asdict()}
     partial = path.with_name(path.name + ".part")
     with partial.open("wb") as file:
         with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
             for name, column in _COLUMNS.items():
                 entry = zipfile.ZipInfo(f"{name}.npy", _ZIP_EPOCH)
                 with archive.open(entry, "w", force_zip64=True) as member:
-                    array: Array = np.ascontiguousarray(
-                        getattr(transitions, name), dtype=column.dtype
-                    )
+                    array: Array = np.asarray(members[name], column.dtype, order="C")
                     np.lib.format.write_array(member, array, allow_pickle=False)
         file.flush()
         os.fsync(file.fileno())
     os.replace(partial, path)
 
 
-def read(path: Path, bodies: int | None = None, actions: int | None = None) -> Transitions:
+def read(path: Path, task: _core.Task | None = None) -> Transitions:
     """Reads and checks a transition set.
 
-    If given, `bodies` and `actions` are the numbers of the task that it must fit. Raises
-    DatasetError if there is no file or it is no legal transition set.
+    It must be one of `task`, if that is given. Raises DatasetError if there is no file or it is no
+    legal transition set, UserError if it was changed since it was sealed (versions.seal()).
     """
+    return read_with_origin(path, task)[0]
+
+
+def read_with_origin(path: Path, task: _core.Task | None = None) -> tuple[Transitions, Origin]:
+    """The same, and where the set comes from."""
     try:
         with np.load(path, allow_pickle=False) as archive:
             arrays = {name: _member(path, archive, name) for name in _COLUMNS}
@@ -130,33 +164,37 @@ def read(path: Path, bodies: int | None = None, actions: int | None = None) -> T
         raise DatasetError(
             f"{path}: is not a transition file{why}; legal: a transitions.npz of RTG"
         ) from error
-    transitions = Transitions(**arrays)
-    _check_shapes(path, transitions)
+    versions.check_seal(path)
+    _check_shapes(path, arrays)
+    transitions = Transitions(*(arrays[name] for name in Transitions._fields))
+    origin = Origin(*(arrays[name].item() for name in Origin._fields))
     _check_values(path, transitions)
-    _check_task(path, transitions, bodies, actions)
-    return transitions
+    _check_episodes(path, arrays, chains(transitions))
+    if task is not None:
+        _check_task(path, transitions, origin, task)
+    return transitions, origin
 
 
 def _member(path: Path, archive: Any, name: str) -> Array:
     if name not in archive:
         raise DatasetError(f"{path}: array '{name}' is missing; legal: {', '.join(_COLUMNS)}")
     array: Array = archive[name]
-    if array.dtype != _COLUMNS[name].dtype:
-        expected = np.dtype(_COLUMNS[name].dtype).name
-        raise DatasetError(f"{path}: '{name}' has type {array.dtype}; legal: {expected}")
+    expected = np.dtype(_COLUMNS[name].dtype)
+    if array.dtype != expected and (array.dtype.kind, expected.kind) != ("U", "U"):
+        raise DatasetError(f"{path}: '{name}' has type {array.dtype}; legal: {expected.name}")
     return array
 
 
-def _check_shapes(path: Path, transitions: Transitions) -> None:
-    count = len(transitions.action) if transitions.action.ndim == 1 else -1
-    for name, array in transitions._asdict().items():
-        legal = _COLUMNS[name].shape
-        wrong = array.ndim != _COLUMNS[name].rank or array.shape[0] != count
+def _check_shapes(path: Path, arrays: dict[str, Array]) -> None:
+    count = len(arrays["action"]) if arrays["action"].ndim == 1 else -1
+    for name, array in arrays.items():
+        legal, rank = _COLUMNS[name].shape, _COLUMNS[name].rank
+        wrong = array.ndim != rank or (rank > 0 and array.shape[0] != count)
         if wrong or (legal.endswith("3]") and array.shape[2] != 3):
             shape = list(array.shape)
             raise DatasetError(f"{path}: '{name}' has shape {shape}; legal: {legal}, one N for all")
     for name in ("poses", "observation"):
-        if getattr(transitions, name).shape != getattr(transitions, f"next_{name}").shape:
+        if arrays[name].shape != arrays[f"next_{name}"].shape:
             raise DatasetError(
                 f"{path}: '{name}' and 'next_{name}' differ in shape; legal: equal shapes"
             )
@@ -180,13 +218,27 @@ def _check_values(path: Path, transitions: Transitions) -> None:
         raise DatasetError(f"{path}: 'source' has illegal values; legal: 0 to {len(SOURCES) - 1}")
 
 
-def _check_task(path: Path, data: Transitions, bodies: int | None, actions: int | None) -> None:
-    if bodies is not None and data.poses.shape[1] != bodies:
+def _check_episodes(path: Path, arrays: dict[str, Array], expected: Chains) -> None:
+    for name, column in expected._asdict().items():
+        if not np.array_equal(arrays[name], column):
+            raise DatasetError(
+                f"{path}: '{name}' is not that of these rows; legal: what RTG wrote, see "
+                "docs/data.md"
+            )
+
+
+def _check_task(path: Path, data: Transitions, origin: Origin, task: _core.Task) -> None:
+    if origin.task != task.content:
         raise DatasetError(
-            f"{path}: has {data.poses.shape[1]} bodies; legal: {bodies}, those of the task"
+            f"{path}: has transitions of another task ({origin.task}); legal: {task.content}, "
+            f"which is '{task.name}'"
         )
-    if actions is not None and len(data.action) and data.action.max() >= actions:
+    if data.poses.shape[1] != task.bodies:
+        raise DatasetError(
+            f"{path}: has {data.poses.shape[1]} bodies; legal: {task.bodies}, those of the task"
+        )
+    if len(data.action) and data.action.max() >= task.actions:
         largest = data.action.max()
         raise DatasetError(
-            f"{path}: has action {largest}; legal: 0 to {actions - 1}, those of the task"
+            f"{path}: has action {largest}; legal: 0 to {task.actions - 1}, those of the task"
         )

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from rtg import _core
-from rtg.files import dataset
+from rtg.files import dataset, versions
 from rtg.files.dataset import Rows, Transitions
 
 
@@ -17,9 +17,9 @@ class Recorder:
     The file does not depend on how the transitions are divided among calls of add().
     """
 
-    def __init__(self, task: _core.Task) -> None:
-        self._task = task
-        self._parts = [self._with_observations(_no_rows(task.bodies))]
+    def __init__(self, config: _core.Config) -> None:
+        self._task, self._origin = config.task, dataset.origin_of(config)
+        self._parts = [self._with_observations(_no_rows(self._task.bodies))]
         self.count = 0
 
     def add(self, rows: Rows) -> Transitions:
@@ -43,7 +43,12 @@ class Recorder:
 
     def write(self, path: Path) -> None:
         """Writes all transitions so far to `path`, atomically."""
-        dataset.write(path, self.transitions())
+        dataset.write(path, self.transitions(), self._origin)
+
+    def finish(self, path: Path) -> None:
+        """Writes all transitions of the run to `path`, and seals the file (versions.seal())."""
+        self.write(path)
+        versions.seal(path)
 
 
 def _no_rows(bodies: int) -> Rows:

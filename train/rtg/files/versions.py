@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import importlib.metadata
 import os
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from rtg import _core, paths
+from rtg.errors import UserError
 from rtg.files import run_folder
 
 FILE = "versions.json"
@@ -56,8 +58,46 @@ def _revision() -> tuple[str | None, bool | None]:
 
 def core_digest() -> str:
     """Returns the SHA-256 of the compiled core. Equal cores generate equal transitions."""
-    with Path(_core.__file__).open("rb") as file:
+    return digest(Path(_core.__file__))
+
+
+def digest(path: Path) -> str:
+    """Returns the SHA-256 of a file, in hexadecimal digits."""
+    with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+@functools.cache
+def this_commit() -> str | None:
+    """Returns the commit of this program as at the first call, in the form of commit()."""
+    return commit(dict(zip(_REVISION_KEYS, _revision(), strict=True)))
+
+
+def seal(path: Path) -> None:
+    """Adds the digest of `path`, a finished transition set, to the versions.json beside it.
+
+    From then on dataset.read() refuses the file if it was changed. Raises UserError if
+    versions.json is damaged.
+    """
+    run = path.parent
+    made_by = {**generator(run), "sha256": {path.name: digest(path)}}
+    run_folder.write_json(run / FILE, {**run_folder.read_json(run / FILE), "generator": made_by})
+
+
+def sealed_digest(path: Path) -> str | None:
+    """Returns the digest of `path` that the versions.json beside it has; None without a seal."""
+    found = generator(path.parent).get("sha256")
+    return found.get(path.name) if isinstance(found, dict) else None
+
+
+def check_seal(path: Path) -> None:
+    """Raises UserError if `path` differs from the file that was sealed; nothing without a seal."""
+    sealed = sealed_digest(path)
+    if sealed is not None and path.is_file() and digest(path) != sealed:
+        raise UserError(
+            f"{path}: was changed since the run wrote it, as its SHA-256 is not that in {FILE}; "
+            "legal: the file as the run wrote it, or no file, to generate anew"
+        )
 
 
 def generator(run: Path) -> dict[str, Any]:

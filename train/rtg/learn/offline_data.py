@@ -45,7 +45,7 @@ class Source(Protocol):
 def read_rows(path: Path, task: _core.Task) -> Rows:
     """Reads the rows of a transition file. Raises dataset.DatasetError."""
     with _READ_LOCK:
-        transitions = dataset.read(path, bodies=task.bodies, actions=task.actions)
+        transitions = dataset.read(path, task)
     return Rows(*(getattr(transitions, name) for name in Rows._fields))
 
 
@@ -54,12 +54,12 @@ class OfflineData:
 
     def __init__(
         self,
-        task: _core.Task,
+        config: _core.Config,
         buffer: MixedReplayBuffer,
         select: Callable[[Transitions], Transitions] = lambda all_rows: all_rows,
     ) -> None:
         self._buffer, self._select = buffer, select
-        self.record = Recorder(task)
+        self.record = Recorder(config)
         # Rows known from the checkpoint. A restarted source repeats them; None once it has done so.
         self._checkpoint_rows: Rows | None = None
         self._repeated_count = 0  # rows that the source has sent again so far

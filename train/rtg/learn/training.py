@@ -53,7 +53,7 @@ class Training:
         self.model = (Cloning if clones else DoubleDqn)(self.env, s, self.discount, seed)
         selection = {"select": imitated} if clones else {}
         self.model.threads = config.run.workers
-        self.data = OfflineData(self.task, self.model.replay, **selection)
+        self.data = OfflineData(config, self.model.replay, **selection)
         self.log = TrainingLog(folder)
         fixed = {name: getattr(s, name) for name in CHECKPOINT_SETTINGS}
         self._identity = {
@@ -150,7 +150,7 @@ class Training:
         if news:
             self.data.refresh_bounds_if_grown(source.complete)
             if source.complete and record:
-                self.data.record.write(self._transition_files()[0])
+                self.data.record.finish(self._transition_files()[0])
         self.log.display(self._display_state())
         self.publish_status(self._activity(), self.scheduled_interactions)
 

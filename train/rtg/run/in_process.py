@@ -85,7 +85,7 @@ def generate(plan: RunPlan, display: Display) -> None:
 
     Raises StoppedError on a signal.
     """
-    recorder = Recorder(plan.config.task)
+    recorder = Recorder(plan.config)
     with Interrupts() as interrupts:
         generation = Generation(plan.config, recorder)
         while not generation.wait(_POLL):
@@ -93,6 +93,6 @@ def generate(plan: RunPlan, display: Display) -> None:
             if interrupts.requested():
                 generation.stop()
                 raise StoppedError
-    recorder.write(plan.transitions_file)
+    recorder.finish(plan.transitions_file)
     run_folder.write_text(plan.report_file, generation.report())
     display.show(replace(generation.state(), budget=plan.interactions))

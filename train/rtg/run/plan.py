@@ -147,6 +147,8 @@ def make_plan(args: RunArgs) -> RunPlan:
     config = effective_config.load(args.file, overrides)
     if args.resume:
         _check_resumed(args.file, config)
+        if config.train.offline and shared_transitions.is_generated(args.file.parent):
+            versions.check_seal(args.file.parent / "transitions.npz")
     check(config, args.train)
     _check_search(config, overrides)
     notes = []

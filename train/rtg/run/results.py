@@ -71,7 +71,7 @@ def _episode(plan: RunPlan) -> Floats | None:
         with np.load(path) as file:
             poses: Floats = file["poses"]
             return poses
-    rows = dataset.read(plan.transitions_file, task.bodies, task.actions)
+    rows = dataset.read(plan.transitions_file, task)
     found = replayed_plan(plan.config, rows)
     if found is not None:
         np.savez(path, poses=found, success=task.succeeded(found[-1:])[0])

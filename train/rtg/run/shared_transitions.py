@@ -36,8 +36,9 @@ def generation_key(config: _core.Config) -> str | None:
 
 
 def is_generated(run: Path) -> bool:
-    """Returns whether the generation of the run is complete."""
-    return all((run / name).is_file() for name in _FILES)
+    """Returns whether the generation of the run is complete, and its transitions are sealed."""
+    is_whole = all((run / name).is_file() for name in _FILES)
+    return is_whole and versions.sealed_digest(run / _FILES[0]) is not None
 
 
 def find(key: str, folder: Path, name: str) -> Path | None:
@@ -66,7 +67,11 @@ def _stored_key(run: Path) -> str | None:
 
 
 def take_over(source: Path, run: Path) -> None:
-    """Links the transitions of run `source` into the existing run `run`, or copies them."""
+    """Links the transitions of run `source` into the existing run `run`, or copies them.
+
+    Raises UserError if they were changed.
+    """
+    versions.check_seal(source / _FILES[0])
     versions.write(run, versions.generator(source))
     for name in _FILES:
         draft = run / f".{name}.{os.getpid()}"
