@@ -71,6 +71,7 @@ ROOMS = {
     "run": {"files", "processes", "bus", "pictures", "learn"},
     "compare": {"files", "processes", "pictures", "learn", "run"},
     "view": {"files", "processes", "bus", "pictures", "run"},
+    "export": {"files", "pictures", "envs", "run"},
 }
 ROOF = {"errors", "paths", "_core"}  # modules of rtg itself
 

@@ -210,6 +210,13 @@ def _view(words: Sequence[str]) -> int:
     return 0
 
 
+def _export(words: Sequence[str]) -> int:
+    from rtg.export.command import export
+
+    print(export(words))
+    return 0
+
+
 _TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "run": _run,
     "check": _check,
@@ -219,6 +226,7 @@ _TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "plot": _plot,
     "evaluate": _evaluate,
     "view": _view,
+    "export": _export,
 }
 
 

@@ -20,12 +20,14 @@ RENDERED_PIXELS = 360  # of a side of a rendered picture
 
 
 def read_config(config: _core.Config | str | Path, settings: Sequence[str] = ()) -> _core.Config:
-    """Returns the configuration that is meant: itself, or that of a task's name or file.
+    """Returns the configuration that is meant: itself, or that of a task's name, file or text.
 
-    Raises ValueError for a bad file or setting.
+    A text has several lines. Raises ValueError for a bad file, text or setting.
     """
     if isinstance(config, _core.Config):
         return config
+    if isinstance(config, str) and "\n" in config:
+        return _core.Config.from_text(config, overrides=list(settings))
     own = paths.CONFIG / f"{config}.yaml"
     file = own if isinstance(config, str) and own.is_file() else config
     return _core.Config.from_file(file, list(settings))
@@ -68,7 +70,7 @@ class PushEnv(gymnasium.Env[Any, Any]):
     reward is 1 when the goal is reached, else 0. Success ends the episode. The seed determines all
     random numbers.
 
-    - `config`: the name of a task, its file, or its configuration.
+    - `config`: the name of a task, its file, the text of one, or its configuration.
     - `settings`: further ones, each "section.key=value".
     - `jitter`: largest random offset of an object's x and y at the start, in units
       of the task (Task.metre); the task's if None.

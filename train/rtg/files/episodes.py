@@ -1,6 +1,9 @@
-"""Finds a plan in a transition set and replays it in the simulator."""
+"""Finds plans in a transition set and replays them in the simulator."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +15,15 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _MAX_GAP = 0.25  # [m], largest jump of a body between the end of a step and the next one's start
-_MAX_REPLAYS = 50  # largest number of plans to simulate
+_MAX_REPLAYS = 50  # largest number of plans to simulate for replayed_plan()
+
+
+class Episode(NamedTuple):
+    """Pushes of the simulator, each from the state in which the one before it ended."""
+
+    poses: Floats  # [T + 1, bodies, 3], x, y [task units], θ [rad]
+    action: Ints  # [T]
+    success: bool  # the goal holds in the last state, and in none before
 
 
 def _positions(states: Floats) -> NDArray[np.float32]:
@@ -46,49 +57,86 @@ def _plans(steps: Transitions) -> tuple[Ints, Ints]:
     return lengths, following
 
 
-def _simulated(config: _core.Config, start: Floats, actions: Ints) -> Floats:
-    """Simulates `actions` from `start` and returns the visited states.
+def _steps(transitions: Transitions) -> Transitions:
+    """Returns the transitions without branches (outcomes of other headings)."""
+    chosen = transitions.source != SOURCES.index("branch")
+    return Transitions(*(column[chosen] for column in transitions))
 
-    Stops after a success, or before a push that the simulator cannot finish.
-    [bodies, 3], [actions] -> [T+1, bodies, 3]
+
+def _nearest_first(task: _core.Task, steps: Transitions, among: Ints) -> Ints:
+    """Sorts steps: those that begin in the start region first, then those nearest to the start."""
+    distances = np.linalg.norm(
+        _positions(steps.poses[among]) - _positions(task.start[None]), axis=1
+    )
+    outside = ~task.in_start_region(steps.poses[among].astype(np.float64))
+    return among[np.lexsort((distances, outside))]
+
+
+def _actions(steps: Transitions, first: int, length: int, following: Ints) -> Ints:
+    plan = [first]
+    while len(plan) < length:
+        plan.append(int(following[plan[-1]]))
+    return steps.action[plan].astype(np.int64)
+
+
+def simulated(
+    config: _core.Config, starts: Sequence[Floats], plans: Sequence[Ints]
+) -> list[Episode]:
+    """Simulates a sequence of actions from each start. [bodies, 3] each, [actions] each
+
+    An episode stops after a success, at the horizon of the task, or before a push that the
+    simulator cannot finish.
     """
-    simulator, states = _core.Simulator(config), [start]
-    for action in actions:
-        after, ok = simulator.push(states[-1][None], np.array([action]))
-        if not ok[0]:
+    simulator, task = _core.Simulator(config), config.task
+    states = [[start] for start in starts]
+    running = range(len(starts))
+    for step in range(task.horizon):
+        alive = [k for k in running if step < len(plans[k])]
+        if not alive:
             break
-        states.append(after[0])
-        if config.task.succeeded(after)[0]:
-            break
-    return np.stack(states)
+        actions = np.array([plans[k][step] for k in alive], np.int64)
+        after, ok = simulator.push(np.stack([states[k][-1] for k in alive]), actions)
+        for k in np.flatnonzero(ok):
+            states[alive[k]].append(after[k])
+        running = np.array(alive)[ok & ~task.succeeded(after)].tolist()
+    return [
+        Episode(np.stack(path), plan[: len(path) - 1], bool(task.succeeded(path[-1][None])[0]))
+        for path, plan in zip(states, plans, strict=True)
+    ]
+
+
+def replayed_plans(
+    config: _core.Config, transitions: Transitions, count: int | None = None, whole: bool = True
+) -> list[Episode]:
+    """Simulates plans from the stored transitions, each from its first state to its end.
+
+    A plan is a chain of stored transitions that ends in a success. Each one begins within 0.25 m of
+    the end of the previous one. Branches are left out. If `whole`, plans that are the end of
+    another one are left out, too.
+
+    Those that begin in the start region come first, then those that begin nearest to the start of
+    the task. `count`: at most so many; None: all. An episode may fail where its plan succeeds.
+    """
+    steps = _steps(transitions)
+    if not steps.terminated.any():
+        return []
+    lengths, following = _plans(steps)
+    planned = np.flatnonzero(lengths)
+    if whole:
+        planned = np.setdiff1d(planned, following[lengths > 1])
+    chosen = _nearest_first(config.task, steps, planned)[:count]
+    plans = [_actions(steps, int(k), int(lengths[k]), following) for k in chosen]
+    found = simulated(config, list(steps.poses[chosen].astype(np.float64)), plans)
+    return [episode for episode in found if len(episode.action)]
 
 
 def replayed_plan(config: _core.Config, transitions: Transitions) -> Floats | None:
-    """Simulates a plan from the stored transitions and returns its states. [T+1, bodies, 3]
+    """Returns the states of one of the replayed_plans(). [T+1, bodies, 3]
 
-    A plan is a chain of stored transitions that ends in a success. Each one begins within 0.25 m of
-    the end of the previous one. Branches (outcomes of other headings) are left out.
-
-    Plans are simulated until one succeeds, at most 50 of them. Those that begin in the start region
-    come first, then those that begin nearest to the start of the task. If all fail, the states of
-    the first one are returned. Returns None if there is no plan.
+    It is the first one that succeeds of at most 50. If all fail, it is the first one. Returns None
+    if there is no plan.
     """
-    chosen = transitions.source != SOURCES.index("branch")
-    steps = Transitions(*(column[chosen] for column in transitions))
-    if not steps.terminated.any():
+    episodes = replayed_plans(config, transitions, _MAX_REPLAYS, whole=False)
+    if not episodes:
         return None
-    lengths, following = _plans(steps)
-    distances = np.linalg.norm(
-        _positions(steps.poses) - _positions(config.task.start[None]), axis=1
-    )
-    planned = np.flatnonzero(lengths)
-    outside = ~config.task.in_start_region(steps.poses[planned].astype(np.float64))
-    episodes = []
-    for step in planned[np.lexsort((distances[planned], outside))][:_MAX_REPLAYS]:
-        plan = [int(step)]
-        while len(plan) < lengths[step]:
-            plan.append(int(following[plan[-1]]))
-        episodes.append(_simulated(config, steps.poses[step], steps.action[plan]))
-        if config.task.succeeded(episodes[-1][-1:])[0]:
-            return episodes[-1]
-    return episodes[0]
+    return next((episode for episode in episodes if episode.success), episodes[0]).poses

@@ -1,0 +1,59 @@
+"""`rtg export` on the command line."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+from exported import run_folder
+from rtg.cli import main
+from rtg.errors import UserError
+from rtg.files import optional
+
+
+def refused(capsys, *words):
+    assert main(["export", *words]) == 2
+    return capsys.readouterr().err
+
+
+def test_bad_words_are_refused(capsys, tmp_path):
+    assert "invalid choice: 'csv'" in refused(capsys, "csv", "run")
+    assert "has no config.yaml; legal: the folder of a run" in refused(capsys, "minari", "nowhere")
+    assert "--episodes 0: legal: a number from 1" in refused(
+        capsys, "minari", "run", "--episodes", "0"
+    )
+    assert "--out: the path is empty" in refused(capsys, "minari", "run", "--out", "")
+
+
+def test_a_changed_file_is_refused(capsys, tmp_path):
+    run = run_folder(tmp_path / "run")
+    made = json.loads((run / "versions.json").read_text())
+    made["generator"]["sha256"]["transitions.npz"] = "0" * 64
+    (run / "versions.json").write_text(json.dumps(made))
+    assert "was changed since the run wrote it" in refused(capsys, "minari", str(run))
+
+
+def test_a_missing_package_is_named_with_its_extra():
+    with pytest.raises(UserError) as error:
+        optional.package("no_such_package", "minari", "export minari")
+    assert str(error.value) == (
+        "export minari needs the package no_such_package, which is not installed; legal: after "
+        "pip install '.[minari]' in the folder of RTG"
+    )
+
+
+def test_no_optional_package_is_imported_by_others():
+    """Whoever does not export needs none of them."""
+    code = "import sys, rtg.cli, rtg.run.run, rtg.export.command; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"minari", "h5py", "pyarrow", "pandas", "av"} & set(done.stdout.split())
+
+
+def test_a_data_set_of_minari_is_written(tmp_path, capsys):
+    pytest.importorskip("minari", reason="the extra `minari` is not installed")
+    run = run_folder(tmp_path / "run")
+    words = ["export", "minari", str(run), "--out", str(tmp_path), "--episodes", "2"]
+    assert main(words) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("rtg/gathering/naive-plans-v0: 2 episodes,")
+    assert (tmp_path / "rtg/gathering/naive-plans-v0/data/metadata.json").is_file()

@@ -1,0 +1,1 @@
+"""Writes the data of a run in formats of other libraries."""

@@ -1,0 +1,143 @@
+"""Data sets in the format of Minari, of which each step begins where the one before it ended."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shutil
+import warnings
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg.errors import UserError
+from rtg.export import run_data
+from rtg.export.environment import environment_of
+from rtg.export.run_data import RunData
+from rtg.files import optional
+from rtg.files.episodes import Episode
+
+_KINDS = {
+    "plans": "whole episodes: plans found in the data, replayed in the simulator from their first "
+    "state to their end",
+    "transitions": "all stored transitions, most of them episodes of one step, as each was "
+    "simulated from a state of its own; info 'source' names their origin",
+}
+
+
+def default_id(data: RunData, kind: str) -> str:
+    """Returns the id that a data set has if the user names none."""
+    name = re.sub(r"\W", "_", data.config.task.name)
+    return f"rtg/{name}/{data.config.search.generator}-{kind}-v0"
+
+
+@contextlib.contextmanager
+def _datasets_in(folder: Path | None) -> Iterator[None]:
+    """Makes `folder` that of Minari's data sets in the `with` block; None: leaves it."""
+    before = os.environ.get("MINARI_DATASETS_PATH")
+    if folder is not None:
+        os.environ["MINARI_DATASETS_PATH"] = str(folder)
+    try:
+        yield
+    finally:
+        if before is not None:
+            os.environ["MINARI_DATASETS_PATH"] = before
+        elif folder is not None:
+            del os.environ["MINARI_DATASETS_PATH"]
+
+
+def _new_path(id: str) -> Path:
+    """Returns the path of the data set `id`. Raises UserError if it exists or is no id."""
+    where = optional.package("minari.storage.datasets_root_dir", "minari", "export minari")
+    names = optional.package("minari.dataset.minari_dataset", "minari", "export minari")
+    try:
+        names.parse_dataset_id(id)
+    except (ValueError, TypeError):
+        raise UserError(
+            f"--id {id}: not an id of Minari; legal: NAME-v0 or GROUP/NAME-v0, of letters, digits, "
+            "- and _"
+        ) from None
+    path: Path = where.get_dataset_path(id)
+    if path.exists():
+        raise UserError(f"--id {id}: {path} exists already; legal: another id, or another --out")
+    return path
+
+
+def _buffer(data: RunData, episode: Episode, sources: NDArray[np.int8] | None) -> Any:
+    """Returns an episode as Minari stores it; its infos are named as those of the environment."""
+    collector = optional.package("minari.data_collector", "minari", "export minari")
+    length, task = len(episode.action), data.config.task
+    ends = np.arange(1, length + 1) == length
+    infos: dict[str, Any] = {
+        "poses": episode.poses,
+        "is_success": task.succeeded(episode.poses),
+    }
+    if sources is not None:  # of the push that led to each state; -1: none did
+        infos["source"] = np.concatenate([np.int8([-1]), sources])
+    return collector.EpisodeBuffer(
+        observations=task.observation(episode.poses),
+        actions=episode.action,
+        rewards=(ends & episode.success).astype(np.float64),
+        terminations=ends & episode.success,
+        truncations=ends & (not episode.success),
+        infos=infos,
+    )
+
+
+def _buffers(data: RunData, kind: str, count: int | None) -> Sequence[Any]:
+    if kind == "plans":
+        return [_buffer(data, episode, None) for episode in run_data.plans(data, count)]
+    found = run_data.order_of_episodes(data)[:count]
+    if not found:
+        raise UserError("there are no transitions; legal: a run whose search finds some")
+    return [
+        _buffer(data, run_data.stored(data, rows), data.transitions.source[rows]) for rows in found
+    ]
+
+
+def _metadata(data: RunData, kind: str, buffers: Sequence[Any]) -> dict[str, Any]:
+    return {
+        "rtg_episodes": kind,
+        "rtg_successes": sum(bool(buffer.terminations[-1]) for buffer in buffers),
+        "rtg_task": str(data.origin.task),  # JSON keeps 53 bits of a number
+        "rtg_seed": data.origin.seed,
+        "rtg_revision": data.origin.revision,
+        "rtg_transitions_sha256": data.sha256,
+    }
+
+
+def write(data: RunData, kind: str, id: str, folder: Path | None, count: int | None) -> str:
+    """Writes the data set `id`, and returns what it is, in words.
+
+    `kind`: "plans" or "transitions". `folder`: that of the data sets; Minari's own if None.
+    `count`: at most so many episodes; all if None. Raises UserError if there is nothing to write,
+    if there is such a data set already, or if Minari is not installed.
+    """
+    minari = optional.package("minari", "minari", "export minari")
+    optional.package("h5py", "minari", "export minari")
+    with _datasets_in(folder), warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # about authors and links, which are not ours
+        path = _new_path(id)
+        buffers = _buffers(data, kind, count)
+        metadata = _metadata(data, kind, buffers)
+        try:
+            made = minari.create_dataset_from_buffers(
+                id,
+                buffers,
+                env=environment_of(data.config),
+                algorithm_name=f"RTG, {data.config.search.generator}",
+                description=f"Pushes of the task {data.config.task.name}; {_KINDS[kind]}. "
+                "`import rtg` before recover_environment().",
+            )
+            made.storage.update_metadata(metadata)
+        except BaseException:
+            shutil.rmtree(path, ignore_errors=True)
+            raise
+    return (
+        f"{id}: {made.total_episodes:,} episodes, {metadata['rtg_successes']:,} of them succeed, "
+        f"{made.total_steps:,} steps\n{path}"
+    )

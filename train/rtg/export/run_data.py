@@ -1,0 +1,63 @@
+"""What is exported: the episodes of a run's data, and where they come from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from rtg import _core
+from rtg.errors import UserError
+from rtg.files import dataset, versions
+from rtg.files.dataset import Origin, Transitions
+from rtg.files.episodes import Episode, replayed_plans
+from rtg.run import effective_config
+
+
+class RunData(NamedTuple):
+    """The stored transitions of a run."""
+
+    config: _core.Config
+    transitions: Transitions
+    origin: Origin
+    sha256: str  # of transitions.npz
+
+
+def read(run: Path) -> RunData:
+    """Reads the transitions of a run. Raises UserError if its folder lacks them or is damaged."""
+    file = run / "config.yaml"
+    if not file.is_file():
+        raise UserError(f"{run}: has no config.yaml; legal: the folder of a run")
+    config = effective_config.load_written(file)
+    path = run / "transitions.npz"
+    transitions, origin = dataset.read_with_origin(path, config.task)
+    return RunData(config, transitions, origin, versions.digest(path))
+
+
+def plans(data: RunData, count: int | None) -> list[Episode]:
+    """Returns the plans of the data, replayed from their first states. Raises UserError for none.
+
+    `count`: at most so many, those that begin nearest to the start; None: all.
+    """
+    found = replayed_plans(data.config, data.transitions, count)
+    if not found:
+        raise UserError(
+            f"the {len(data.transitions.action)} transitions have no plan: no chain of steps ends "
+            "in a success; legal: --transitions, or a run whose search finds goals"
+        )
+    return found
+
+
+def order_of_episodes(data: RunData) -> list[np.ndarray]:
+    """Returns the rows of each stored episode, in order."""
+    chains = dataset.chains(data.transitions)
+    order = np.lexsort((chains.step, chains.episode))
+    return np.split(order, np.flatnonzero(chains.step[order] == 0)[1:]) if len(order) else []
+
+
+def stored(data: RunData, rows: np.ndarray) -> Episode:
+    """Returns the episode that rows of one episode form."""
+    t = data.transitions
+    poses = np.concatenate([t.poses[rows[:1]], t.next_poses[rows]])
+    return Episode(poses, t.action[rows].astype(np.int64), bool(t.terminated[rows[-1]]))
