@@ -31,6 +31,13 @@ def test_the_transitions_are_pushes_of_the_simulator(task, data) -> None:
     assert data.success.any() and {rtg.SOURCES[k] for k in data.source} == {"tree", "branch"}
 
 
+def test_transitions_are_saved_and_loaded(task, data, tmp_path) -> None:
+    data.save(tmp_path / "mine.npz")
+    again = rtg.Transitions.load(tmp_path / "mine.npz", task)
+    for field in dataclasses.fields(data):
+        np.testing.assert_array_equal(getattr(again, field.name), getattr(data, field.name))
+
+
 def test_batches_come_as_they_are_found_and_do_not_depend_on_workers(task, data) -> None:
     batches = list(rtg.generate(task, 600, workers=2))
     assert len(batches) > 1

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
 from rtg.errors import UserError
-from rtg.files import run_folder
+from rtg.files import own_data, run_folder
+from rtg.files.own_data import OwnData
 from rtg.task import Task
 from rtg.transitions import Transitions
 
@@ -60,27 +60,11 @@ def load_policy(run: str | PathLike[str]) -> Policy:
     return Policy(Task(_core.Config.from_file(file, [])), model)
 
 
-def _checked(task: Task, data: Transitions) -> dict[str, Any]:
-    """Returns the columns of the data for the learner. Raises ValueError for what is not legal."""
+def _own_data(task: Task, data: Transitions) -> OwnData:
+    """Returns the data for the learner. Raises ValueError for what is not legal."""
     states, after = task.inner(data.states), task.inner(data.next_states)
-    actions = np.asarray(data.actions)
-    lengths = {len(states), len(after), len(actions), len(data.source)}
-    if len(lengths) != 1:
-        raise ValueError(f"columns of {sorted(lengths)} transitions; legal: of equally many")
-    if not len(actions):
-        raise ValueError("no transitions; legal: at least one")
-    if actions.min() < 0 or actions.max() >= task.actions:
-        wrong = int(actions[(actions < 0) | (actions >= task.actions)][0])
-        raise ValueError(f"action {wrong}; legal: 0 to {task.actions - 1}")
-    success = task.core.succeeded(after)
-    return {
-        "poses": states,
-        "action": actions.astype(np.int32),
-        "next_poses": after,
-        "reward": success.astype(np.float32),
-        "terminated": success,
-        "source": np.asarray(data.source, np.int8),
-    }
+    rows = own_data.checked_rows(task.core, states, data.actions, after, data.source)
+    return OwnData(rows, {"format": "arrays", "name": None, "sha256": None})
 
 
 def train(
@@ -102,8 +86,6 @@ def train(
     """
     import torch as th
 
-    from rtg.files.dataset import Rows
-    from rtg.files.recorder import Recorder
     from rtg.learn.offline_data import FileSource
     from rtg.learn.training import Training
 
@@ -111,14 +93,13 @@ def train(
     if interactions is not None:
         own.append(f"train.interactions={interactions}")
     config = _core.Config.from_text(task.config.yaml, task.name, [*own, *settings])
-    recorder = Recorder(config)
-    recorder.add(Rows(**_checked(task, data)))
+    own = _own_data(task, data)
     run = Path(folder)
     if (run / "checkpoint").exists() or (run / "model.pt").exists():
         raise UserError(f"{run}: holds a learner already; legal: another folder")
     run.mkdir(parents=True, exist_ok=True)
     (run / "config.yaml").write_text(config.yaml)
-    recorder.finish(run / "transitions.npz")
+    own_data.store(run, config, own)
     threads = th.get_num_threads()
     th.set_num_threads(1)  # networks this small are slower on more
     try:

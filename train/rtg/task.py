@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
 from rtg.envs.push_env import read_config
+from rtg.files import own_data
 from rtg.pictures.draw import outline, state_image
 
 Floats = NDArray[np.float64]
@@ -146,23 +147,12 @@ class Task:
 
         Raises ValueError for another shape and for numbers that are not finite.
         """
-        given = np.asarray(states, np.float64)
-        if given.ndim != 3 or given.shape[1:] != (len(self.bodies), 3):
-            raise ValueError(
-                f"states of shape {list(given.shape)}; legal: [N, {len(self.bodies)}, 3]"
-            )
-        if not np.isfinite(given).all():
-            raise ValueError("states hold numbers that are not finite; legal: finite ones")
-        return np.ascontiguousarray(given * self._scale)
+        return own_data.in_task_units(self.core, states)
 
     def outer(self, states: Floats) -> Floats:
         """Returns states of the core in metres. [..., bodies, 3] -> [..., bodies, 3]"""
-        metres: Floats = states / self._scale
+        metres: Floats = states / [self.core.metre, self.core.metre, 1.0]
         return metres
-
-    @property
-    def _scale(self) -> Floats:
-        return np.array([self.core.metre, self.core.metre, 1.0])
 
 
 def load_task(task: str | PathLike[str], settings: Sequence[str] = ()) -> Task:

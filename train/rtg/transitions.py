@@ -7,6 +7,8 @@ import queue
 import threading
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 
 from rtg import _core
 from rtg.errors import StoppedError
+from rtg.files import own_data
 from rtg.task import Task
 
 Floats = NDArray[np.float64]
@@ -45,6 +48,27 @@ class Transitions:
             for field in fields(cls)
         }
         return cls(**columns)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Writes the file that load() and `rtg TASK --data FILE` read: a .npz."""
+        arrays = {
+            "states": self.states,
+            "actions": self.actions,
+            "next_states": self.next_states,
+            "source": self.source,
+        }
+        with Path(path).open("wb") as file:
+            np.savez(file, **arrays)
+
+    @classmethod
+    def load(cls, path: str | PathLike[str], task: Task) -> Transitions:
+        """Reads transitions of the task, which judges their success. docs/data.md has the arrays.
+
+        Raises UserError if the file is not legal.
+        """
+        rows = own_data.read(Path(path), task.core).rows
+        states, after = task.outer(rows.poses), task.outer(rows.next_poses)
+        return cls(states, rows.action.astype(np.int64), after, rows.terminated, rows.source)
 
 
 def generate(

@@ -50,7 +50,7 @@ def chains_of(
 def _joined(poses: Any, next_poses: Any, terminated: Any) -> tuple[Ints, Ints]:
     """Returns pairs of rows, the second of which continues the first."""
     count = len(terminated)
-    state = _numbered(np.concatenate([poses, next_poses]))
+    state = numbered(np.concatenate([poses, next_poses]))
     row = np.tile(np.arange(count), 2)
     is_end = np.repeat([False, True], count)
     counts = ~(is_end & np.tile(terminated, 2))
@@ -61,7 +61,7 @@ def _joined(poses: Any, next_poses: Any, terminated: Any) -> tuple[Ints, Ints]:
     return row[one[pairs]], row[other[pairs]]
 
 
-def _numbered(states: NDArray[np.float64]) -> Ints:
+def numbered(states: NDArray[np.float64]) -> Ints:
     """Returns a number for each state, equal for states of equal bits. [M, bodies, 3] -> [M]"""
     entries = int(np.prod(states.shape[1:]))
     rows = np.ascontiguousarray(states, np.float64).reshape(len(states), entries)

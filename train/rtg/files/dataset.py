@@ -5,8 +5,10 @@ docs/data.md says what each array means.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -116,6 +118,20 @@ def concatenate(parts: list[Transitions]) -> Transitions:
     return Transitions(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
 
 
+@contextlib.contextmanager
+def errors_about(path: Path, legal: str) -> Iterator[None]:
+    """Turns errors of numpy in the `with` block, which reads `path`, into a DatasetError."""
+    try:
+        yield
+    except DatasetError:
+        raise
+    except FileNotFoundError:
+        raise DatasetError(f"{path}: no such file; legal: {legal}") from None
+    except (*_DAMAGED_FILE_ERRORS, OSError) as error:
+        why = f" ({error})" if isinstance(error, OSError) else ", or damaged"
+        raise DatasetError(f"{path}: is not a transition file{why}; legal: {legal}") from error
+
+
 def chains(transitions: Transitions) -> Chains:
     """Returns the episodes that the transitions form."""
     t = transitions
@@ -152,18 +168,11 @@ def read(path: Path, task: _core.Task | None = None) -> Transitions:
 
 def read_with_origin(path: Path, task: _core.Task | None = None) -> tuple[Transitions, Origin]:
     """The same, and where the set comes from."""
-    try:
-        with np.load(path, allow_pickle=False) as archive:
-            arrays = {name: _member(path, archive, name) for name in _COLUMNS}
-    except DatasetError:
-        raise
-    except FileNotFoundError:
-        raise DatasetError(f"{path}: no such file; legal: the transitions of a run") from None
-    except (*_DAMAGED_FILE_ERRORS, OSError) as error:
-        why = f" ({error})" if isinstance(error, OSError) else ", or damaged"
-        raise DatasetError(
-            f"{path}: is not a transition file{why}; legal: a transitions.npz of RTG"
-        ) from error
+    with (
+        errors_about(path, "a transitions.npz of RTG"),
+        np.load(path, allow_pickle=False) as archive,
+    ):
+        arrays = {name: _member(path, archive, name) for name in _COLUMNS}
     versions.check_seal(path)
     _check_shapes(path, arrays)
     transitions = Transitions(*(arrays[name] for name in Transitions._fields))

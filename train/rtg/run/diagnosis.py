@@ -154,9 +154,11 @@ def bottleneck(
 ) -> str | None:
     """Returns a sentence about the first stage that falls short; None if all is well.
 
-    `nodes`: those of generation.json. Only of runs whose data trees found.
+    `nodes`: those of generation.json. Only of runs whose own trees found the data.
     """
     if summary["transitions"] is None or config.search.generator not in TREE_GENERATORS:
+        return None
+    if summary.get("data"):
         return None
     if (summary.get("success_rate") or 0.0) >= _WELL:
         return None

@@ -11,7 +11,8 @@ from typing import Any
 from rtg import _core
 from rtg.bus import multicast
 from rtg.errors import UserError
-from rtg.files import run_folder, versions
+from rtg.files import minari_data, own_data, run_folder, versions
+from rtg.files.own_data import OwnData
 from rtg.learn.settings import CHECKPOINT_SETTINGS
 from rtg.run import effective_config, shared_transitions
 from rtg.run.run_args import Override, RunArgs
@@ -45,15 +46,21 @@ class RunPlan:
         return self.folder / "generation.json"
 
     @property
+    def own_data(self) -> dict[str, Any] | None:
+        """What `--data` gave the run: "format", "name", "sha256", counts; None if nothing."""
+        return run_folder.read_json(self.report_file).get("data")
+
+    @property
     def title(self) -> str:
         """The title for pictures and for the first line of output."""
         run = self.config.run
-        generator = f", {self.config.search.generator}" if self.offline else ""
+        generator = "own data" if self.own_data else self.config.search.generator
+        generator = f", {generator}" if self.offline else ""
         return f"{self.config.task.name}, {run.method}{generator}, seed {run.seed}"
 
     @property
     def offline(self) -> bool:
-        """True if the run generates transitions."""
+        """True if the run generates transitions, or is given some."""
         return self.config.train.offline
 
     @property
@@ -62,8 +69,13 @@ class RunPlan:
         return self.config.train.interactions if self.train else 0
 
     def is_generated(self) -> bool:
-        """Returns whether an earlier process of this run has finished the generation."""
-        return self.resume and shared_transitions.is_generated(self.folder)
+        """Returns whether an earlier process of this run has finished the generation.
+
+        Own data need no generation.
+        """
+        return (self.resume or self.own_data is not None) and shared_transitions.is_generated(
+            self.folder
+        )
 
 
 def _check_device(config: _core.Config) -> None:
@@ -84,18 +96,38 @@ def check(config: _core.Config, train: bool) -> None:
         )
 
 
-def _check_search(config: _core.Config, overrides: Sequence[Override]) -> None:
+def _check_search(config: _core.Config, overrides: Sequence[Override], data: str | None) -> None:
     """Raises UserError if the user asks for transitions, but the run generates none."""
     chosen = [
         o.typed
         for o in overrides
         if o.setting.startswith("search.generator=") or o.typed.startswith("--transitions")
     ]
+    if chosen and data is not None:
+        raise UserError(
+            f"{chosen[-1]}: has no effect, as the transitions are those of --data {data}; legal: "
+            "one of the two"
+        )
+    if data is not None:
+        chosen.append(f"--data {data}")
     if chosen and not config.train.offline:
         raise UserError(
-            f"{chosen[-1]}: has no effect, as run.method {config.run.method} generates no "
+            f"{chosen[-1]}: has no effect, as run.method {config.run.method} takes no "
             "transitions (train.offline is false); legal: another method, or without it"
         )
+
+
+def _read_own_data(word: str, task: _core.Task) -> OwnData:
+    """Reads the transitions that the user has. Raises UserError."""
+    if Path(word).is_file():
+        return own_data.read(Path(word), task)
+    folder = minari_data.folder_of(word)
+    if folder is None:
+        raise UserError(
+            f"--data {word}: no such file or data set; legal: a .npz with states, actions and "
+            "next_states, or the id or folder of a Minari data set (docs/data.md)"
+        )
+    return minari_data.read(word, folder, task)
 
 
 def _fixed_values(config: _core.Config, has_checkpoint: bool) -> dict[str, Any]:
@@ -130,6 +162,20 @@ def _check_resumed(file: Path, config: _core.Config) -> None:
             )
 
 
+def _check_stored(run: Path, config: _core.Config) -> None:
+    """Raises UserError if the stored transitions of a run that is resumed are not as they were."""
+    if not config.train.offline:
+        return
+    file = run / "transitions.npz"
+    if shared_transitions.is_generated(run):
+        versions.check_seal(file)
+    elif run_folder.read_json(run / "generation.json").get("data"):
+        raise UserError(
+            f"--resume: {file} is missing or not whole, and was given by --data; legal: a new run "
+            "with --data"
+        )
+
+
 def plan_of(folder: Path) -> RunPlan:
     """Returns the plan of the run in `folder`, to read its results. Raises UserError."""
     config = effective_config.load_written(folder / "config.yaml")
@@ -147,12 +193,12 @@ def make_plan(args: RunArgs) -> RunPlan:
     config = effective_config.load(args.file, overrides)
     if args.resume:
         _check_resumed(args.file, config)
-        if config.train.offline and shared_transitions.is_generated(args.file.parent):
-            versions.check_seal(args.file.parent / "transitions.npz")
+        _check_stored(args.file.parent, config)
     check(config, args.train)
-    _check_search(config, overrides)
+    _check_search(config, overrides, args.data)
+    own = None if args.data is None else _read_own_data(args.data, config.task)
     notes = []
-    needs_bus = config.train.offline and not config.run.in_process
+    needs_bus = config.train.offline and not config.run.in_process and own is None
     if needs_bus and (why := multicast.defect(config.run.bus)):
         notes.append(f"no process graph: {why}")
         notes.append("going on as with --in-process, which gives the same transitions")
@@ -168,5 +214,8 @@ def make_plan(args: RunArgs) -> RunPlan:
         run_folder.write_run_name(folder, name)
         run_folder.write_text(folder / "config.yaml", config.yaml)
     plan = RunPlan(folder, name, config, args.train, args.resume, tuple(notes), args.sinks)
-    versions.write(folder, versions.generator(folder) if plan.is_generated() else None)
+    if own is not None:
+        own_data.store(folder, config, own)
+    else:
+        versions.write(folder, versions.generator(folder) if plan.is_generated() else None)
     return plan

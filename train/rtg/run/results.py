@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg.errors import UserError
-from rtg.files import dataset, run_folder
+from rtg.files import dataset, own_data, run_folder
 from rtg.files.episodes import replayed_plan
 from rtg.pictures import episode_pictures, plots
 from rtg.run import diagnosis
@@ -50,6 +50,8 @@ def draw_generation(plan: RunPlan) -> None:
 
 def generation_warning(plan: RunPlan) -> str | None:
     """Returns a sentence about what limits a finished generation; None if nothing does."""
+    if plan.own_data:
+        return None
     report = run_folder.read_json(plan.report_file)
     found = diagnosis.of_generation(plan.config, report, report["nodes"])
     return found and f"these data may not suffice: {found}"
@@ -83,7 +85,7 @@ def _origin(plan: RunPlan, start: Floats) -> str:
     if _trained(plan):
         plans = plan.config.train.learner == "planning"
         return "forward search" if plans else "learned policy"
-    is_reverse = plan.config.search.generator in TREE_GENERATORS
+    is_reverse = plan.config.search.generator in TREE_GENERATORS and not plan.own_data
     found = "plan found backwards" if is_reverse else "plan of the data"
     if not plan.config.task.in_start_region(start[None])[0]:
         return f"end of a {found}, which reaches no start"
@@ -121,7 +123,8 @@ def draw(plan: RunPlan) -> None:
 
 def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
     """Writes summary.json and draws stages.png; returns the summary."""
-    mode = ("in_process" if plan.in_process else "lcm") if plan.offline else None
+    generated = plan.offline and not plan.own_data
+    mode = ("in_process" if plan.in_process else "lcm") if generated else None
     summary = run_folder.summary(plan.folder, plan.config, mode, measured)
     run_folder.write_json(plan.folder / "summary.json", summary)
     _draw_stages(plan, summary)
@@ -164,9 +167,14 @@ def stage_times(summary: dict[str, Any]) -> dict[str, dict[str, dict[str, float]
 
 
 def _generation_text(s: dict[str, Any]) -> str:
+    begin = (
+        own_data.words(s["data"])
+        if s.get("data")
+        else f"{s['transitions']:,} transitions in {s['generate_wall_s']:.0f} s"
+    )
     return (
-        f"{s['transitions']:,} transitions in {s['generate_wall_s']:.0f} s, contact share "
-        f"{s['contact_share']:.2f}, {s['headings_per_state']:.1f} headings per state"
+        f"{begin}, contact share {s['contact_share']:.2f}, {s['headings_per_state']:.1f} headings "
+        "per state"
     )
 
 

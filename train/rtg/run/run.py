@@ -8,7 +8,7 @@ from typing import Any
 
 from rtg import paths
 from rtg.errors import RunError, StoppedError
-from rtg.files import locks, run_folder
+from rtg.files import locks, own_data, run_folder
 from rtg.run import effective_config
 from rtg.run.early_pictures import EarlyPictures
 from rtg.run.plan import RunPlan, make_plan
@@ -62,7 +62,8 @@ def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
     if not plan.offline:
         shown.note("no generated data: all that is learned or planned comes from the simulator")
     elif plan.is_generated():
-        shown.note("the transitions are there already")
+        own = plan.own_data
+        shown.note(own_data.words(own) if own else "the transitions are there already")
     elif plan.in_process:
         in_process.generate(plan, shown)
     else:

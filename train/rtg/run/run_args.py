@@ -59,6 +59,7 @@ class RunArgs:
     overrides: tuple[Override, ...]
     out: Path | None
     train: bool
+    data: str | None  # as typed: a .npz, or a Minari data set
     resume: bool
     print_config: bool
     sinks: tuple[str, ...]  # of log_sinks.SINKS
@@ -98,6 +99,12 @@ def parser() -> argparse.ArgumentParser:
         "--generator",
         metavar="ID",
         help=f"of transitions: {_ids(_core.GENERATORS)} (rrbs, the reverse simulator)",
+    )
+    p.add_argument(
+        "--data",
+        metavar="FILE",
+        help="learn from these transitions instead of generated ones: a .npz, or the id or folder "
+        "of a Minari data set",
     )
     p.add_argument("--transitions", metavar="N", help="transitions to generate")
     p.add_argument("--interactions", metavar="N", help="environment steps of the learner")
@@ -167,6 +174,11 @@ def parse(argv: Sequence[str]) -> RunArgs:
             )
         if args.task is not None:
             raise UserError(f"{args.task}: --resume goes on with the task of {out}; legal: no TASK")
+        if args.data is not None:
+            raise UserError(
+                f"--data {args.data}: --resume goes on with the transitions of {out}; legal: no "
+                "--data"
+            )
         file = out / "config.yaml"
         if not file.is_file():
             raise UserError(
@@ -185,6 +197,7 @@ def parse(argv: Sequence[str]) -> RunArgs:
         overrides=_overrides(args),
         out=out,
         train=not args.no_train,
+        data=args.data,
         resume=args.resume,
         print_config=args.print_config,
         sinks=log_sinks.parse(args.log),

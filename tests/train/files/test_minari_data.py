@@ -1,0 +1,119 @@
+"""Transitions from Minari data sets, those of others as well."""
+
+import gymnasium
+import numpy as np
+import pytest
+from rtg import _core, paths
+from rtg.errors import UserError
+from rtg.files import minari_data
+
+minari = pytest.importorskip("minari", reason="the extra `minari` is not installed")
+pytest.importorskip("h5py", reason="the extra `minari` is not installed")
+
+pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")  # of authors and links
+TASK = _core.Config.from_file(paths.CONFIG / "gathering.yaml").task
+ACTIONS = (3, 20, 40)
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path, monkeypatch):
+    monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path / "minari"))
+    return tmp_path / "minari"
+
+
+def episode(env, seed, **infos):
+    """An episode as a collector of Minari stores it; `infos` replace those of the environment."""
+    observation, info = env.reset(seed=seed)
+    observations, known = [observation], {name: [value] for name, value in info.items()}
+    rewards = []
+    for action in ACTIONS:
+        observation, reward, _, _, info = env.step(action)
+        observations.append(observation)
+        rewards.append(reward)
+        for name, value in info.items():
+            known[name].append(value)
+    known = {name: np.array(values) for name, values in known.items()} | infos
+    return minari.data_collector.EpisodeBuffer(
+        observations=np.array(observations),
+        actions=np.array(ACTIONS),
+        rewards=rewards,
+        terminations=[False, False, False],
+        truncations=[False, False, True],
+        infos={name: values for name, values in known.items() if values is not None},
+    )
+
+
+def made(id, *buffers, env="RTG/Gathering-v0"):
+    minari.create_dataset_from_buffers(id, list(buffers), env=gymnasium.make(env))
+    return minari_data.folder_of(id)
+
+
+def test_states_are_those_of_the_infos(home):
+    env = gymnasium.make("RTG/Gathering-v0")
+    buffers = [episode(env, seed) for seed in (1, 2)]
+    folder = made("mine/own-v0", *buffers)
+    rows, origin = minari_data.read("mine/own-v0", folder, TASK)
+    poses = [buffer.infos["poses"] for buffer in buffers]
+    assert np.array_equal(rows.poses, np.concatenate([path[:-1] for path in poses]))
+    assert np.array_equal(rows.next_poses, np.concatenate([path[1:] for path in poses]))
+    assert rows.action.tolist() == [*ACTIONS, *ACTIONS]
+    assert (origin["format"], origin["name"]) == ("minari", "mine/own-v0")
+    assert folder == home / "mine" / "own-v0" / "data"
+    assert minari_data.folder_of(str(folder)) == folder
+    assert minari_data.folder_of(str(folder.parent)) == folder
+
+
+def test_the_digest_is_that_of_the_content():
+    env = gymnasium.make("RTG/Gathering-v0")
+    folder = made("mine-v0", episode(env, 1))
+    before = minari_data.read("mine-v0", folder, TASK).origin["sha256"]
+    assert before == minari_data.read("mine-v0", folder, TASK).origin["sha256"]
+    minari.load_dataset("mine-v0").update_dataset_from_buffer([episode(env, 2)])
+    assert before != minari_data.read("mine-v0", folder, TASK).origin["sha256"]
+
+
+def test_pushes_that_could_not_be_finished_are_left_out():
+    env = gymnasium.make("RTG/Gathering-v0")
+    folder = made("mine-v0", episode(env, 1, rejected=np.array([False, False, True, False])))
+    assert minari_data.read("mine-v0", folder, TASK).rows.action.tolist() == [3, 40]
+
+
+@pytest.mark.parametrize("poses", [None, np.zeros((4, 3, 3)), np.full((4, 4, 3), np.nan)])
+def test_without_poses_it_says_what_is_legal(poses):
+    folder = made("mine-v0", episode(gymnasium.make("RTG/Gathering-v0"), 1, poses=poses))
+    with pytest.raises(UserError, match=r"has no info 'poses' of shape \[4, 4, 3\]"):
+        minari_data.read("mine-v0", folder, TASK)
+
+
+def test_another_task_is_refused():
+    env = gymnasium.make("RTG/PushT-v0")
+    folder = made("mine-v0", episode(env, 1), env="RTG/PushT-v0")
+    with pytest.raises(UserError, match="mine-v0: is of another task; legal: one of 'gath"):
+        minari_data.read("mine-v0", folder, TASK)
+
+
+def test_an_environment_of_others_is_refused():
+    env = gymnasium.make("CartPole-v1")
+    observation = env.reset(seed=1)[0]
+    buffer = minari.data_collector.EpisodeBuffer(
+        observations=np.array([observation, observation]),
+        actions=np.array([0]),
+        rewards=[1.0],
+        terminations=[False],
+        truncations=[True],
+    )
+    folder = made("other-v0", buffer, env="CartPole-v1")
+    with pytest.raises(UserError, match="was not made with an environment of RTG"):
+        minari_data.read("other-v0", folder, TASK)
+
+
+def test_a_damaged_data_set_is_refused():
+    folder = made("mine-v0", episode(gymnasium.make("RTG/Gathering-v0"), 1))
+    (folder / "main_data.hdf5").write_bytes(b"nothing")
+    with pytest.raises(UserError, match="mine-v0: is not a data set of Minari, or damaged"):
+        minari_data.read("mine-v0", folder, TASK)
+
+
+def test_what_is_no_data_set_has_no_folder(tmp_path):
+    assert minari_data.folder_of(str(tmp_path)) is None
+    assert minari_data.folder_of("no/such-v0") is None

@@ -1,0 +1,116 @@
+"""Runs that learn from transitions of one's own: `--data`."""
+
+import json
+
+import numpy as np
+import pytest
+import rtg
+from rtg.cli import main
+from rtg.errors import UserError
+from rtg.files import run_folder, versions
+from rtg.run import run_args, shared_transitions
+from rtg.run.plan import make_plan
+from training_runs import TINY
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    task = rtg.load_task(TINY)
+    path = tmp_path_factory.mktemp("data") / "mine.npz"
+    rtg.Transitions.joined(rtg.generate(task, 600)).save(path)
+    return path
+
+
+def refused(capsys, *words):
+    assert main([str(word) for word in words]) == 2
+    return capsys.readouterr().err
+
+
+def test_it_learns_from_them_and_goes_on_after_a_stop(file, tmp_path, capsys):
+    out = tmp_path / "run"
+    assert main([str(TINY), "--data", str(file), "--no-train", "--out", str(out)]) == 0
+    said = capsys.readouterr().out
+    words = f"600 transitions of mine.npz (SHA-256 {versions.digest(file)[:12]}…)"
+    assert words in said and "own data" in said
+    stored = (out / "transitions.npz").read_bytes()
+    assert main(["--resume", "--out", str(out), "--interactions", "200"]) == 0
+    assert (out / "transitions.npz").read_bytes() == stored
+    summary = json.loads((out / "summary.json").read_text())
+    with np.load(out / "transitions.npz") as rows:
+        successes = int(rows["terminated"].sum())
+    assert summary["data"] == {
+        "format": "npz",
+        "name": "mine.npz",
+        "sha256": versions.digest(file),
+        "transitions": 600,
+        "successes": successes,
+    }
+    assert summary["mode"] is None and summary["trees"] is None
+    assert (summary["transitions"], summary["offline_transitions"]) == (600, 600)
+    assert words in capsys.readouterr().out
+
+
+def test_flags_that_contradict_it_are_refused_and_leave_nothing(file, tmp_path, capsys):
+    out = tmp_path / "run"
+    data = (TINY, "--out", out, "--data", file)
+    assert "--transitions 5: has no effect, as the transitions are those of --data" in refused(
+        capsys, *data, "--transitions", 5
+    )
+    assert "--generator rrbs: has no effect" in refused(capsys, *data, "--generator", "rrbs")
+    assert f"--data {file}: has no effect, as run.method ddqn takes no transitions" in refused(
+        capsys, *data, "--method", "ddqn"
+    )
+    assert not out.exists()
+
+
+def test_what_cannot_be_read_is_refused_and_leaves_nothing(tmp_path, capsys):
+    out = tmp_path / "run"
+    pytest.importorskip("minari", reason="the extra `minari` is not installed")
+    said = refused(capsys, TINY, "--out", out, "--data", "no/such-v0")
+    assert "--data no/such-v0: no such file or data set; legal: a .npz with states" in said
+    (tmp_path / "text.npz").write_text("text")
+    said = refused(capsys, TINY, "--out", out, "--data", tmp_path / "text.npz")
+    assert "text.npz: is not a transition file" in said
+    assert not out.exists()
+
+
+def test_a_resumed_run_has_its_data_already(file, tmp_path):
+    out = tmp_path / "run"
+    make_plan(run_args.parse([str(TINY), "--data", str(file), "--out", str(out)]))
+    with pytest.raises(UserError, match=r"--resume goes on with the transitions of .*legal: no"):
+        run_args.parse(["--resume", "--out", str(out), "--data", str(file)])
+    assert make_plan(run_args.parse(["--resume", "--out", str(out)])).is_generated()
+
+
+def test_lost_or_changed_transitions_are_not_replaced_by_a_search(file, tmp_path):
+    out = tmp_path / "run"
+    make_plan(run_args.parse([str(TINY), "--data", str(file), "--out", str(out)]))
+    (out / "transitions.npz").write_bytes(b"changed")
+    with pytest.raises(UserError, match="was changed since the run wrote it"):
+        make_plan(run_args.parse(["--resume", "--out", str(out)]))
+    (out / "transitions.npz").unlink()
+    with pytest.raises(UserError, match="is missing or not whole, and was given by --data"):
+        make_plan(run_args.parse(["--resume", "--out", str(out)]))
+
+
+def test_other_runs_do_not_take_them_for_generated_ones(file, tmp_path):
+    out = tmp_path / "method" / "seed-1"
+    plan = make_plan(run_args.parse([str(TINY), "--data", str(file), "--out", str(out)]))
+    assert plan.is_generated()
+    key = shared_transitions.generation_key(plan.config)
+    assert shared_transitions.find(key, tmp_path, "seed-1") is None
+
+
+def test_an_exported_data_set_of_minari_is_learned_from(file, tmp_path, monkeypatch):
+    pytest.importorskip("minari", reason="the extra `minari` is not installed")
+    monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path))
+    first, second = tmp_path / "first", tmp_path / "second"
+    make_plan(run_args.parse([str(TINY), "--data", str(file), "--out", str(first)]))
+    assert main(["export", "minari", str(first), "--transitions", "--id", "mine-v0"]) == 0
+    make_plan(run_args.parse([str(TINY), "--data", "mine-v0", "--out", str(second)]))
+    told = run_folder.read_json(second / "generation.json")["data"]
+    assert (told["format"], told["name"], told["transitions"]) == ("minari", "mine-v0", 600)
+    with np.load(first / "transitions.npz") as one, np.load(second / "transitions.npz") as other:
+        order = np.lexsort((one["step"], one["episode"]))
+        for name in ("poses", "action", "next_poses", "terminated", "source", "observation"):
+            assert np.array_equal(one[name][order], other[name])

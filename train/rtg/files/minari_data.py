@@ -1,0 +1,102 @@
+"""Transitions of a Minari data set that was made with an environment of RTG."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rtg import _core
+from rtg.errors import UserError
+from rtg.files import optional, own_data
+from rtg.files.own_data import OwnData
+
+_ENVIRONMENT = "rtg.envs.push_env:PushEnv"
+
+
+def folder_of(word: str) -> Path | None:
+    """Returns the folder with the data of a data set: that of a folder or an id; None if neither.
+
+    Raises UserError if `word` can only be an id and Minari is not installed.
+    """
+    for path in (Path(word), Path(word) / "data"):
+        if (path / "metadata.json").is_file():
+            return path
+    if Path(word).exists():
+        return None
+    where = optional.package("minari.storage.datasets_root_dir", "minari", f"--data {word}")
+    path = where.get_dataset_path(word) / "data"
+    return path if path.is_dir() else None
+
+
+def _digest(folder: Path) -> str:
+    """Returns the SHA-256 over the names and contents of all files of a folder."""
+    found = hashlib.sha256()
+    for path in sorted(folder.rglob("*")):
+        if path.is_file():
+            found.update(f"{path.relative_to(folder)} {path.stat().st_size} ".encode())
+            found.update(path.read_bytes())
+    return found.hexdigest()
+
+
+def _opened(word: str, folder: Path) -> tuple[Any, list[Any]]:
+    """Returns the data set and its episodes."""
+    minari = optional.package("minari", "minari", f"--data {word}")
+    optional.package("h5py", "minari", f"--data {word}")
+    try:
+        found = minari.MinariDataset(folder)
+        return found, list(found.iterate_episodes())
+    except Exception as error:  # Minari and h5py raise any error on damaged files
+        raise UserError(
+            f"{word}: is not a data set of Minari, or damaged ({error}); legal: one that "
+            "minari.load_dataset() reads"
+        ) from None
+
+
+def _check_environment(name: str, found: Any, task: _core.Task) -> None:
+    spec = found.env_spec
+    if spec is None or spec.entry_point != _ENVIRONMENT:
+        raise UserError(
+            f"{name}: was not made with an environment of RTG; legal: one whose "
+            "recover_environment() is RTG/...-v0"
+        )
+    if found.recover_environment().unwrapped.task.content != task.content:
+        raise UserError(f"{name}: is of another task; legal: one of '{task.name}'")
+
+
+def _poses(name: str, episode: Any, task: _core.Task) -> Any:
+    poses = (episode.infos or {}).get("poses")
+    expected = (len(episode.rewards) + 1, task.bodies, 3)
+    if poses is None or np.shape(poses) != expected or not np.isfinite(poses).all():
+        raise UserError(
+            f"{name}: episode {episode.id} has no info 'poses' of shape {list(expected)}, and "
+            "observations do not tell a state to the bit; legal: what `export minari` wrote, or "
+            "minari.DataCollector with record_infos=True"
+        )
+    return np.asarray(poses, np.float64)
+
+
+def read(word: str, folder: Path, task: _core.Task) -> OwnData:
+    """Reads a data set. `word`: what the user calls it; `folder`: see folder_of().
+
+    Pushes that the simulator could not finish (info "rejected") are left out. Raises UserError if
+    Minari is not installed or the data set is not legal.
+    """
+    found, episodes = _opened(word, folder)
+    _check_environment(word, found, task)
+    parts = []
+    for episode in episodes:
+        poses = _poses(word, episode, task)
+        rejected = episode.infos.get("rejected", np.zeros(len(poses), np.bool_))[1:]
+        source = episode.infos.get("source", np.zeros(len(poses), np.int8))[1:]
+        columns = (poses[:-1], np.asarray(episode.actions), poses[1:], source)
+        parts.append([column[~rejected] for column in columns])
+    if not parts:
+        raise UserError(f"{word}: has no episodes; legal: at least one")
+    try:
+        rows = own_data.checked_rows(task, *map(np.concatenate, zip(*parts, strict=True)))
+    except ValueError as error:
+        raise UserError(f"{word}: {error}") from None
+    return OwnData(rows, {"format": "minari", "name": found.id, "sha256": _digest(folder)})

@@ -1,0 +1,149 @@
+"""Transitions of one's own: from arrays, or from a file of them, checked and stored in a run.
+
+The file is a .npz with `states`, `actions`, `next_states` and, if wanted, `source`; see
+docs/data.md.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rtg import _core
+from rtg.errors import UserError
+from rtg.files import dataset, run_folder, versions
+from rtg.files.chains import numbered
+from rtg.files.dataset import Rows
+from rtg.files.recorder import Recorder
+
+Floats = NDArray[np.float64]
+
+_MOVED = 0.05  # [task units], an object that moved farther was pushed; kMoved of the search
+_NEEDED = ("states", "actions", "next_states")
+
+
+class OwnData(NamedTuple):
+    """Transitions that no search of the run has found."""
+
+    rows: Rows
+    origin: dict[str, Any]  # "format", "name", "sha256"; None where there is no file
+
+
+def in_task_units(task: _core.Task, states: ArrayLike) -> Floats:
+    """Returns states in metres as the core takes them. [N, bodies, 3] -> [N, bodies, 3]
+
+    Raises ValueError for another shape and for numbers that are not finite.
+    """
+    given = np.asarray(states, np.float64)
+    if given.ndim != 3 or given.shape[1:] != (task.bodies, 3):
+        raise ValueError(f"states of shape {list(given.shape)}; legal: [N, {task.bodies}, 3]")
+    if not np.isfinite(given).all():
+        raise ValueError("states hold numbers that are not finite; legal: finite ones")
+    return np.ascontiguousarray(given * [task.metre, task.metre, 1.0])
+
+
+def checked_rows(
+    task: _core.Task, poses: Floats, actions: ArrayLike, next_poses: Floats, source: ArrayLike
+) -> Rows:
+    """Returns transitions for the learner; the task judges which succeed.
+
+    Poses are in task units, [N, bodies, 3]. Raises ValueError for what is not legal.
+    """
+    action, sources = np.asarray(actions), np.asarray(source)
+    lengths = {len(poses), len(next_poses), len(action), len(sources)}
+    if len(lengths) != 1:
+        raise ValueError(f"columns of {sorted(lengths)} transitions; legal: of equally many")
+    if not len(action):
+        raise ValueError("no transitions; legal: at least one")
+    for name, column, end in (("action", action, task.actions), ("source", sources, 4)):
+        if column.ndim != 1 or column.dtype.kind not in "iu":
+            raise ValueError(f"{name}s of type {column.dtype}; legal: whole numbers, [N]")
+        if column.min() < 0 or column.max() >= end:
+            wrong = int(column[(column < 0) | (column >= end)][0])
+            raise ValueError(f"{name} {wrong}; legal: 0 to {end - 1}")
+    success = task.succeeded(next_poses)
+    return Rows(
+        poses=poses,
+        action=action.astype(np.int32),
+        next_poses=next_poses,
+        reward=success.astype(np.float32),
+        terminated=success,
+        source=sources.astype(np.int8),
+    )
+
+
+def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
+    """Reads `states`, `actions`, `next_states` and `source` (all 0 if absent) of a .npz.
+
+    Raises DatasetError if the file is none or lacks one of them.
+    """
+    legal = f"a .npz of numpy with {', '.join(_NEEDED)}"
+    with dataset.errors_about(path, legal), np.load(path, allow_pickle=False) as archive:
+        missing = [name for name in _NEEDED if name not in archive]
+        if missing:
+            raise dataset.DatasetError(
+                f"{path}: array '{missing[0]}' is missing; legal: {', '.join(_NEEDED)}, and source "
+                "if wanted"
+            )
+        found = {name: archive[name] for name in _NEEDED}
+        count = found["actions"].size
+        found["source"] = archive["source"] if "source" in archive else np.zeros(count, np.int8)
+        return found
+
+
+def read(path: Path, task: _core.Task) -> OwnData:
+    """Reads the transitions of a .npz, which has states in metres. Raises UserError."""
+    found = read_arrays(path)
+    try:
+        rows = checked_rows(
+            task,
+            in_task_units(task, found["states"]),
+            found["actions"],
+            in_task_units(task, found["next_states"]),
+            found["source"],
+        )
+    except ValueError as error:
+        raise UserError(f"{path}: {error}") from None
+    return OwnData(rows, {"format": "npz", "name": path.name, "sha256": versions.digest(path)})
+
+
+def figures(task: _core.Task, rows: Rows) -> dict[str, Any]:
+    """Returns what generation.json tells of transitions, by the same keys."""
+    ways = np.linalg.norm((rows.next_poses - rows.poses)[:, 1:, :2], axis=2)  # [N, objects]
+    count = len(rows.action)
+    return {
+        "transitions": count,
+        "tree_transitions": int((rows.source == 0).sum()),
+        "branch_transitions": int((rows.source == 1).sum()),
+        "contact_share": float((ways > _MOVED).any(axis=1).mean()),
+        "headings_per_state": count / int(numbered(rows.poses).max() + 1),
+        "start_region_transitions": int(task.in_start_region(rows.poses).sum()),
+    }
+
+
+def store(run: Path, config: _core.Config, own: OwnData) -> None:
+    """Makes the transitions those of a run: transitions.npz, generation.json, versions.json."""
+    versions.write(run, {"data": own.origin})
+    recorder = Recorder(config)
+    recorder.add(own.rows)
+    recorder.finish(run / "transitions.npz")
+    counts = {
+        "transitions": len(own.rows.action),
+        "successes": int(own.rows.terminated.sum()),
+    }
+    report = {
+        "data": {**own.origin, **counts},
+        **figures(config.task, own.rows),
+        "replay_gaps": [],
+        "nodes": [],
+    }
+    run_folder.write_json(run / "generation.json", report)
+
+
+def words(data: dict[str, Any]) -> str:
+    """Says what own data are. `data`: that of the generation.json that store() wrote."""
+    where = f"{data['name']} (SHA-256 {data['sha256'][:12]}…)" if data["name"] else "arrays"
+    return f"{data['transitions']:,} transitions of {where}, {data['successes']:,} of which succeed"
