@@ -11,13 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
-from rtg.envs.push_env import read_config
+from rtg.envs.push_env import observation_names, read_config
 from rtg.files import own_data
 from rtg.pictures.draw import outline, state_image
 
 Floats = NDArray[np.float64]
-
-_ENTRIES = ("x", "y", "cos theta", "sin theta", "x to robot", "y to robot")
 
 
 class GoalArea(NamedTuple):
@@ -69,18 +67,7 @@ class Task:
     @property
     def observation_names(self) -> list[str]:
         """The entries of an observation, in words; for units see `observation`."""
-        robot = ["robot x", "robot y", "robot cos theta", "robot sin theta"]
-        names = robot[: self.core.robot_entries]
-        for name, fixed in zip(self.bodies[1:], self.core.fixed[1:], strict=True):
-            if not fixed:
-                names += [f"{name} {entry}" for entry in _ENTRIES]
-        for _, child, points in self.core.joints:
-            joint = f"joint of {self.bodies[child]}"
-            if len(points) == 1:
-                names += [f"{joint} sin", f"{joint} cos"]
-            elif points:
-                names.append(f"{joint} slide")
-        return names
+        return observation_names(self.core)
 
     def start(self, seed: int = 1) -> Floats:
         """Returns the start number `seed`, with objects jittered. [bodies, 3]"""

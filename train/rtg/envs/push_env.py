@@ -17,6 +17,23 @@ from rtg.envs.window import Window
 Floats = NDArray[np.float64]
 
 RENDERED_PIXELS = 360  # of a side of a rendered picture
+_ENTRIES = ("x", "y", "cos theta", "sin theta", "x to robot", "y to robot")
+
+
+def observation_names(task: _core.Task) -> list[str]:
+    """Returns the entries of an observation, in words."""
+    robot = ["robot x", "robot y", "robot cos theta", "robot sin theta"]
+    names = robot[: task.robot_entries]
+    for name, fixed in zip(task.names[1:], task.fixed[1:], strict=True):
+        if not fixed:
+            names += [f"{name} {entry}" for entry in _ENTRIES]
+    for _, child, points in task.joints:
+        joint = f"joint of {task.names[child]}"
+        if len(points) == 1:
+            names += [f"{joint} sin", f"{joint} cos"]
+        elif points:
+            names.append(f"{joint} slide")
+    return names
 
 
 def read_config(config: _core.Config | str | Path, settings: Sequence[str] = ()) -> _core.Config:

@@ -55,7 +55,14 @@ def export(words: Sequence[str]) -> str:
     count, out = _count(args.episodes), _folder(args.out)
     from rtg.export import run_data
 
+    if args.format == "lerobot" and (args.transitions or args.id is not None):
+        wrong = "--transitions" if args.transitions else "--id"
+        raise UserError(f"{wrong}: is for minari, as LeRobot wants episodes; legal: without it")
     data = run_data.read(args.run)
+    if args.format == "lerobot":
+        from rtg.export import lerobot_format
+
+        return lerobot_format.write(data, out or args.run.absolute() / "lerobot", count)
     from rtg.export import minari_format
 
     kind = "transitions" if args.transitions else "plans"

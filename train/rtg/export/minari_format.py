@@ -103,10 +103,7 @@ def _metadata(data: RunData, kind: str, buffers: Sequence[Any]) -> dict[str, Any
     return {
         "rtg_episodes": kind,
         "rtg_successes": sum(bool(buffer.terminations[-1]) for buffer in buffers),
-        "rtg_task": str(data.origin.task),  # JSON keeps 53 bits of a number
-        "rtg_seed": data.origin.seed,
-        "rtg_revision": data.origin.revision,
-        "rtg_transitions_sha256": data.sha256,
+        **run_data.origin_figures(data),
     }
 
 

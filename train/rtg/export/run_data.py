@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -33,6 +33,16 @@ def read(run: Path) -> RunData:
     path = run / "transitions.npz"
     transitions, origin = dataset.read_with_origin(path, config.task)
     return RunData(config, transitions, origin, versions.digest(path))
+
+
+def origin_figures(data: RunData) -> dict[str, Any]:
+    """Returns what the metadata of a data set tell of its origin."""
+    return {
+        "rtg_task": str(data.origin.task),  # JSON keeps 53 bits of a number
+        "rtg_seed": data.origin.seed,
+        "rtg_revision": data.origin.revision,
+        "rtg_transitions_sha256": data.sha256,
+    }
 
 
 def plans(data: RunData, count: int | None) -> list[Episode]:
