@@ -93,13 +93,13 @@ def train(
     if interactions is not None:
         own.append(f"train.interactions={interactions}")
     config = _core.Config.from_text(task.config.yaml, task.name, [*own, *settings])
-    own = _own_data(task, data)
+    given = _own_data(task, data)
     run = Path(folder)
     if (run / "checkpoint").exists() or (run / "model.pt").exists():
         raise UserError(f"{run}: holds a learner already; legal: another folder")
     run.mkdir(parents=True, exist_ok=True)
     (run / "config.yaml").write_text(config.yaml)
-    own_data.store(run, config, own)
+    own_data.store(run, config, given)
     threads = th.get_num_threads()
     th.set_num_threads(1)  # networks this small are slower on more
     try:

@@ -51,14 +51,14 @@ class Transitions:
 
     def save(self, path: str | PathLike[str]) -> None:
         """Writes the file that load() and `rtg TASK --data FILE` read: a .npz."""
-        arrays = {
-            "states": self.states,
-            "actions": self.actions,
-            "next_states": self.next_states,
-            "source": self.source,
-        }
         with Path(path).open("wb") as file:
-            np.savez(file, **arrays)
+            np.savez(
+                file,
+                states=self.states,
+                actions=self.actions,
+                next_states=self.next_states,
+                source=self.source,
+            )
 
     @classmethod
     def load(cls, path: str | PathLike[str], task: Task) -> Transitions:

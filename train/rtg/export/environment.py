@@ -27,6 +27,6 @@ def environment_of(config: _core.Config) -> gymnasium.Env[Any, Any]:
     for spec in gymnasium.registry.values():
         name = spec.kwargs.get("config")
         is_of_task = spec.namespace == "RTG" and name == config.task.name
-        if is_of_task and _content(read_config(name)) == _content(config):
+        if is_of_task and _content(read_config(config.task.name)) == _content(config):
             return gymnasium.make(spec.id)
     return gymnasium.make("RTG/Task-v0", config=config.yaml)

@@ -77,7 +77,7 @@ def _buffer(data: RunData, episode: Episode, sources: NDArray[np.int8] | None) -
         "is_success": task.succeeded(episode.poses),
     }
     if sources is not None:  # of the push that led to each state; -1: none did
-        infos["source"] = np.concatenate([np.int8([-1]), sources])
+        infos["source"] = np.concatenate([np.array([-1], np.int8), sources])
     return collector.EpisodeBuffer(
         observations=task.observation(episode.poses),
         actions=episode.action,
