@@ -57,7 +57,7 @@ def test_flags_that_contradict_it_are_refused_and_leave_nothing(file, tmp_path, 
         capsys, *data, "--transitions", 5
     )
     assert "--generator rrbs: has no effect" in refused(capsys, *data, "--generator", "rrbs")
-    assert f"--data {file}: has no effect, as run.method ddqn takes no transitions" in refused(
+    assert f"--data {file}: has no effect, as run.method ddqn generates no transitions" in refused(
         capsys, *data, "--method", "ddqn"
     )
     assert not out.exists()

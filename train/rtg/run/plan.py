@@ -97,7 +97,7 @@ def check(config: _core.Config, train: bool) -> None:
 
 
 def _check_search(config: _core.Config, overrides: Sequence[Override], data: str | None) -> None:
-    """Raises UserError if the user asks for transitions, but the run generates none."""
+    """Raises UserError if the user asks for transitions, but the run has no use for them."""
     chosen = [
         o.typed
         for o in overrides
@@ -108,12 +108,12 @@ def _check_search(config: _core.Config, overrides: Sequence[Override], data: str
             f"{chosen[-1]}: has no effect, as the transitions are those of --data {data}; legal: "
             "one of the two"
         )
-    if data is not None:
-        chosen.append(f"--data {data}")
-    if chosen and not config.train.offline:
+    wanted = [f"--data {data}: has no effect"] if data is not None else []
+    wanted += [f"{typed}: has no effect" for typed in chosen]
+    if wanted and not config.train.offline:
         raise UserError(
-            f"{chosen[-1]}: has no effect, as run.method {config.run.method} takes no "
-            "transitions (train.offline is false); legal: another method, or without it"
+            f"{wanted[-1]}, as run.method {config.run.method} generates no transitions and learns "
+            "from none (train.offline is false); legal: another method, or without it"
         )
 
 
