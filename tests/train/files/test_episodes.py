@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from rtg import _core, paths
 from rtg.files.dataset import SOURCES, Transitions
-from rtg.files.episodes import replayed_plan
+from rtg.files.episodes import replayed_plan, replayed_plans, simulated
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
 TASK = CONFIG.task
@@ -90,3 +90,58 @@ def test_of_many_plans_the_nearest_to_the_start_that_succeeds_is_shown():
     states = replayed_plan(CONFIG, transitions(fails, succeeds, beyond))
     assert np.array_equal(states, [solved, succeeds[2]]) and TASK.succeeded(states[-1:])[0]
     assert np.array_equal(replayed_plan(CONFIG, transitions(fails)), [TASK.start, fails[2]])
+
+
+def test_plans_are_whole_episodes_and_those_within_them_are_left_out():
+    """Each with its own result, said of where it ends."""
+    again = row(TASK.start, 6, success=True)
+    found = replayed_plans(CONFIG, transitions(FIRST, SECOND, LAST, again))
+    assert sorted(episode.action.tolist() for episode in found) == [[6], [24, 12, 24]]
+    for episode in found:
+        assert episode.poses.shape == (len(episode.action) + 1, TASK.bodies, 3)
+        assert not episode.success  # as the simulator has it
+        for step, action in enumerate(episode.action):
+            assert np.array_equal(episode.poses[step + 1], push(episode.poses[step], action))
+
+
+def test_of_plans_those_nearest_to_the_start_come_first_and_may_be_counted():
+    far = TASK.start.copy()
+    far[0, 1] += 0.5
+    rows = transitions(row(far, 6, success=True), row(TASK.start, 6, success=True))
+    near, other = replayed_plans(CONFIG, rows)
+    assert np.array_equal(near.poses[0], TASK.start) and np.array_equal(other.poses[0], far)
+    (only,) = replayed_plans(CONFIG, rows, 1)
+    assert np.array_equal(only.poses, near.poses)
+
+
+def test_without_a_success_there_are_no_plans():
+    assert replayed_plans(CONFIG, transitions(FIRST, SECOND)) == []
+
+
+def test_an_episode_ends_at_the_horizon_and_after_a_success():
+    short = _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["task.horizon=3"])
+    solved = TASK.start.copy()
+    solved[1:, :2] = [[-1.0, 0.0], [1.0, 0.0], [0.0, 1.2]]
+    solved[0, :2] = (0.0, -5.0)
+    long, done = simulated(short, [TASK.start, solved], [np.array([6] * 5), np.array([24] * 5)])
+    assert len(long.action) == 3 and not long.success
+    assert len(done.action) == 1 and done.success
+
+
+def test_an_episode_stops_before_a_push_that_the_simulator_cannot_finish(monkeypatch):
+    class Rejects:
+        def __init__(self, config):
+            self.core = Simulator(config)
+
+        def push(self, states, actions):
+            after, ok = self.core.push(states, actions)
+            return after, ok & (actions != 7)
+
+    Simulator = _core.Simulator  # noqa: N806
+    monkeypatch.setattr("rtg.files.episodes._core.Simulator", Rejects)
+    cut, none, whole = simulated(
+        CONFIG, [TASK.start] * 3, [np.array([6, 7, 6]), np.array([7]), np.array([6, 6])]
+    )
+    assert (cut.action.tolist(), len(cut.poses)) == ([6], 2)
+    assert (none.action.tolist(), len(none.poses)) == ([], 1)
+    assert whole.action.tolist() == [6, 6]

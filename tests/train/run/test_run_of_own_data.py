@@ -106,10 +106,11 @@ def test_an_exported_data_set_of_minari_is_learned_from(file, tmp_path, monkeypa
     monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path))
     first, second = tmp_path / "first", tmp_path / "second"
     make_plan(run_args.parse([str(TINY), "--data", str(file), "--out", str(first)]))
-    assert main(["export", "minari", str(first), "--transitions", "--id", "mine-v0"]) == 0
-    make_plan(run_args.parse([str(TINY), "--data", "mine-v0", "--out", str(second)]))
+    assert main(["export", "minari", str(first), "--transitions"]) == 0
+    id = "rtg/gathering/own-transitions-v0"
+    make_plan(run_args.parse([str(TINY), "--data", id, "--out", str(second)]))
     told = run_folder.read_json(second / "generation.json")["data"]
-    assert (told["format"], told["name"], told["transitions"]) == ("minari", "mine-v0", 600)
+    assert (told["format"], told["name"], told["transitions"]) == ("minari", id, 600)
     with np.load(first / "transitions.npz") as one, np.load(second / "transitions.npz") as other:
         order = np.lexsort((one["step"], one["episode"]))
         for name in ("poses", "action", "next_poses", "terminated", "source", "observation"):

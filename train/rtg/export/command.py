@@ -25,7 +25,9 @@ def _parser() -> argparse.ArgumentParser:
         help="minari: the folder of all data sets (Minari's own); lerobot: that of this one "
         "(RUN/lerobot)",
     )
-    p.add_argument("--id", metavar="ID", help="minari: of the data set (rtg/TASK/GENERATOR-...-v0)")
+    p.add_argument(
+        "--id", metavar="ID", help="minari: of the data set (rtg/TASK/GENERATOR-plans-v0)"
+    )
     p.add_argument("--episodes", metavar="N", help="at most so many, nearest to the start (all)")
     p.add_argument(
         "--transitions",

@@ -32,7 +32,7 @@ _KINDS = {
 def default_id(data: RunData, kind: str) -> str:
     """Returns the id that a data set has if the user names none."""
     name = re.sub(r"\W", "_", data.config.task.name)
-    return f"rtg/{name}/{data.config.search.generator}-{kind}-v0"
+    return f"rtg/{name}/{data.maker}-{kind}-v0"
 
 
 @contextlib.contextmanager
@@ -126,7 +126,7 @@ def write(data: RunData, kind: str, id: str, folder: Path | None, count: int | N
                 id,
                 buffers,
                 env=environment_of(data.config),
-                algorithm_name=f"RTG, {data.config.search.generator}",
+                algorithm_name=f"RTG, {data.maker}",
                 description=f"Pushes of the task {data.config.task.name}; {_KINDS[kind]}. "
                 "`import rtg` before recover_environment().",
             )

@@ -9,7 +9,7 @@ import numpy as np
 
 from rtg import _core
 from rtg.errors import UserError
-from rtg.files import dataset, versions
+from rtg.files import dataset, run_folder, versions
 from rtg.files.dataset import Origin, Transitions
 from rtg.files.episodes import Episode, replayed_plans
 from rtg.run import effective_config
@@ -22,6 +22,7 @@ class RunData(NamedTuple):
     transitions: Transitions
     origin: Origin
     sha256: str  # of transitions.npz
+    maker: str  # of the transitions: a generator of the search, or "own" for those of `--data`
 
 
 def read(run: Path) -> RunData:
@@ -32,7 +33,9 @@ def read(run: Path) -> RunData:
     config = effective_config.load_written(file)
     path = run / "transitions.npz"
     transitions, origin = dataset.read_with_origin(path, config.task)
-    return RunData(config, transitions, origin, versions.digest(path))
+    is_given = run_folder.read_json(run / "generation.json").get("data")
+    maker = "own" if is_given else config.search.generator
+    return RunData(config, transitions, origin, versions.digest(path), maker)
 
 
 def origin_figures(data: RunData) -> dict[str, Any]:
