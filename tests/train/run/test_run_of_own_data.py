@@ -88,9 +88,10 @@ def test_lost_or_changed_transitions_are_not_replaced_by_a_search(file, tmp_path
     (out / "transitions.npz").write_bytes(b"changed")
     with pytest.raises(UserError, match="was changed since the run wrote it"):
         make_plan(run_args.parse(["--resume", "--out", str(out)]))
-    (out / "transitions.npz").unlink()
-    with pytest.raises(UserError, match="is missing or not whole, and was given by --data"):
-        make_plan(run_args.parse(["--resume", "--out", str(out)]))
+    for name in ("transitions.npz", "generation.json"):
+        (out / name).unlink()
+        with pytest.raises(UserError, match="is missing or not whole, and was given by --data"):
+            make_plan(run_args.parse(["--resume", "--out", str(out)]))
 
 
 def test_other_runs_do_not_take_them_for_generated_ones(file, tmp_path):

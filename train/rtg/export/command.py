@@ -28,7 +28,9 @@ def _parser() -> argparse.ArgumentParser:
     p.add_argument(
         "--id", metavar="ID", help="minari: of the data set (rtg/TASK/GENERATOR-plans-v0)"
     )
-    p.add_argument("--episodes", metavar="N", help="at most so many, nearest to the start (all)")
+    p.add_argument(
+        "--episodes", metavar="N", help="at most so many, plans nearest to the start first (all)"
+    )
     p.add_argument(
         "--transitions",
         action="store_true",

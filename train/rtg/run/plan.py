@@ -169,7 +169,7 @@ def _check_stored(run: Path, config: _core.Config) -> None:
     file = run / "transitions.npz"
     if shared_transitions.is_generated(run):
         versions.check_seal(file)
-    elif run_folder.read_json(run / "generation.json").get("data"):
+    elif versions.generator(run).get("data"):
         raise UserError(
             f"--resume: {file} is missing or not whole, and was given by --data; legal: a new run "
             "with --data"
@@ -210,12 +210,12 @@ def make_plan(args: RunArgs) -> RunPlan:
     folder = args.out or run_folder.default_path(config.task.name)
     with run_folder.write_errors_as_user_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
+        if own is not None:  # before there is a run to go on with, which would generate its own
+            own_data.store(folder, config, own)
         name = f"{folder.name}-{secrets.token_hex(4)}"
         run_folder.write_run_name(folder, name)
         run_folder.write_text(folder / "config.yaml", config.yaml)
     plan = RunPlan(folder, name, config, args.train, args.resume, tuple(notes), args.sinks)
-    if own is not None:
-        own_data.store(folder, config, own)
-    else:
+    if own is None:
         versions.write(folder, versions.generator(folder) if plan.is_generated() else None)
     return plan
