@@ -1,10 +1,8 @@
 """Exit status and words of the command, as the user meets them."""
 
-import importlib.util
 import os
 import subprocess
 import sys
-import tomllib
 
 import numpy as np
 import pytest
@@ -197,18 +195,11 @@ def test_help_does_not_wait_for_heavy_imports():
 
 
 def test_a_tool_whose_extra_is_missing_names_it(monkeypatch, capsys):
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    for tool, package in (("spy", "textual>=1.0"), ("view", "rerun-sdk==0.41.0")):
+    for tool, module in (("spy", "textual"), ("view", "rerun")):
+        monkeypatch.setitem(sys.modules, module, None)
         assert cli.main([tool] if tool == "spy" else [tool, "runs"]) == 2
         error = capsys.readouterr().err
-        assert error.startswith(f"rtg: {tool}: needs {package}, which is not installed; legal: ")
-        assert error.endswith(f"pip install '{package}', or this package with the extra [{tool}]\n")
-
-
-def test_the_extras_are_those_of_the_package():
-    project = tomllib.loads((paths.ROOT / "pyproject.toml").read_text())["project"]
-    extras = project["optional-dependencies"]
-    assert {tool: [package] for tool, package in cli._EXTRAS.items()} == extras
+        assert error.startswith(f"rtg: {tool} needs the Python package {module}, which is not")
 
 
 def test_print_config_reads_back_to_itself(tmp_path):

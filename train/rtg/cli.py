@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import os
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from rtg import paths
+from rtg import extras, paths
 from rtg.errors import UserError, exit_status
 from rtg.run import run_args
 
 # Functions import modules that load slowly, so that --help and errors appear at once.
-
-# What the extras of pyproject.toml hold, by the tool that needs them.
-_EXTRAS = {"spy": "textual>=1.0", "view": "rerun-sdk==0.41.0"}
 
 
 def _run(words: Sequence[str]) -> int:
@@ -44,16 +40,6 @@ def _check(words: Sequence[str]) -> int:
         task_picture.draw(Path(args.picture), config)
     print(said, end="")
     return 0
-
-
-def _require(module: str, extra: str) -> None:
-    """Raises UserError if a module of an optional extra of this package is missing."""
-    if importlib.util.find_spec(module) is None:
-        raise UserError(
-            f"{extra}: needs {_EXTRAS[extra]}, which is not installed; legal: "
-            f"{sys.executable} -m pip install '{_EXTRAS[extra]}', or this package with the extra "
-            f"[{extra}]"
-        )
 
 
 def _bus_url(target: str) -> str:
@@ -94,7 +80,7 @@ def _spy(words: Sequence[str]) -> int:
     args = parser.parse_args(words)
     seconds = None if args.seconds is None else _seconds(args.seconds)
     url = _bus_url(args.target)
-    _require("textual", "spy")
+    extras.require("textual", "spy", "spy")
     from rtg.bus.spy import spy
 
     spy(url, seconds)
@@ -197,7 +183,7 @@ def _view(words: Sequence[str]) -> int:
     from rtg.files import run_folder
 
     folder = args.folder or run_folder.newest()
-    _require("rerun", "view")
+    extras.require("rerun", "view", "view")
     from rtg.view import view
 
     def say(words: str) -> None:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
-from rtg import _core, paths
+from rtg import _core
 
 
 class UserError(Exception):
@@ -37,18 +36,3 @@ def exit_status(program: str, command: Callable[[], int]) -> int:
     except RunError as error:
         print(f"{program}: {error}", file=sys.stderr)
         return 1
-
-
-@contextlib.contextmanager
-def needs_extra(flag: str, extra: str) -> Iterator[None]:
-    """Turns a failed import in the `with` block into a UserError about `flag`.
-
-    The message names the optional dependencies `extra` of the package, which are missing.
-    """
-    try:
-        yield
-    except ModuleNotFoundError as error:
-        raise UserError(
-            f"{flag}: the Python package {error.name} is missing; legal: after "
-            f"pip install '{paths.DISTRIBUTION}[{extra}]', or another value"
-        ) from None

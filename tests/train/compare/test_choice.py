@@ -14,16 +14,12 @@ def test_without_a_choice_jobs_run_on_this_machine(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    ("name", "module", "extra"), [("submitit", "slurm", "slurm"), ("ray", "ray_tasks", "ray")]
-)
-def test_a_missing_package_is_named_with_its_extra(name, module, extra, tmp_path, monkeypatch):
+@pytest.mark.parametrize("name", ["submitit", "ray"])
+def test_a_missing_package_is_named(name, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, name, None)
-    monkeypatch.delitem(sys.modules, f"rtg.compare.executors.{module}", raising=False)
     with pytest.raises(UserError) as told, opened(name, {}, tmp_path):
         pytest.fail("cannot be opened")
-    words = f"legal: after pip install 'reverse-trajectory-generation[{extra}]', or another value"
-    assert str(told.value) == f"--executor {name}: the Python package {name} is missing; {words}"
+    assert str(told.value).startswith(f"--executor {name} needs the Python package {name}, which")
 
 
 @pytest.mark.parametrize(

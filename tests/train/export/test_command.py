@@ -7,8 +7,6 @@ import sys
 import pytest
 from exported import run_folder
 from rtg.cli import main
-from rtg.errors import UserError
-from rtg.files import optional
 
 
 def refused(capsys, *words):
@@ -31,15 +29,6 @@ def test_a_changed_file_is_refused(capsys, tmp_path):
     made["generator"]["sha256"]["transitions.npz"] = "0" * 64
     (run / "versions.json").write_text(json.dumps(made))
     assert "was changed since the run wrote it" in refused(capsys, "minari", str(run))
-
-
-def test_a_missing_package_is_named_with_its_extra():
-    with pytest.raises(UserError) as error:
-        optional.package("no_such_package", "minari", "export minari")
-    assert str(error.value) == (
-        "export minari needs the package no_such_package, which is not installed; legal: after "
-        "pip install '.[minari]' in the folder of RTG"
-    )
 
 
 def test_no_optional_package_is_imported_by_others():

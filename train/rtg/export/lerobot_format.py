@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rtg import _core
+from rtg import _core, extras
 from rtg.envs.push_env import PushEnv, observation_names
 from rtg.errors import UserError
 from rtg.export import run_data, statistics, video
 from rtg.export.run_data import RunData
 from rtg.export.statistics import Statistics
-from rtg.files import optional, run_folder
+from rtg.files import run_folder
 from rtg.files.episodes import Episode
 from rtg.pictures.draw import Canvas, arena_window, state_image
 
@@ -86,7 +86,7 @@ def _images(task: _core.Task, episode: Episode) -> Iterator[NDArray[np.uint8]]:
 
 
 def _table(columns: dict[str, _Column], values: dict[str, NDArray[Any]]) -> Any:
-    arrow = optional.package("pyarrow", "lerobot", "export lerobot")
+    arrow = extras.imported("pyarrow", "lerobot", "export lerobot")
     arrays = {}
     for name, column in columns.items():
         kind = arrow.from_numpy_dtype(np.dtype(column.dtype))
@@ -109,7 +109,7 @@ class _Writer:
 
     def add(self, number: int, episodes: Sequence[Episode]) -> None:
         """Writes the files with the number `number`."""
-        parquet = optional.package("pyarrow.parquet", "lerobot", "export lerobot")
+        parquet = extras.imported("pyarrow.parquet", "lerobot", "export lerobot")
         data, film = (
             self._path("data", number, ".parquet"),
             self._path(f"videos/{_IMAGES}", number, ".mp4"),
@@ -217,9 +217,9 @@ def _info(task: _core.Task, writer: _Writer) -> dict[str, Any]:
 
 
 def _write_metadata(folder: Path, data: RunData, writer: _Writer) -> None:
-    arrow = optional.package("pyarrow", "lerobot", "export lerobot")
-    parquet = optional.package("pyarrow.parquet", "lerobot", "export lerobot")
-    pandas = optional.package("pandas", "lerobot", "export lerobot")
+    arrow = extras.imported("pyarrow", "lerobot", "export lerobot")
+    parquet = extras.imported("pyarrow.parquet", "lerobot", "export lerobot")
+    pandas = extras.imported("pandas", "lerobot", "export lerobot")
     meta = folder / "meta"
     episodes = meta / "episodes" / f"{_FILE.format(chunk_index=0, file_index=0)}.parquet"
     episodes.parent.mkdir(parents=True)
@@ -241,7 +241,7 @@ def write(data: RunData, folder: Path, count: int | None) -> str:
     if folder.exists():
         raise UserError(f"--out: {folder} exists already; legal: a new folder")
     for package in ("av", "pandas", "pyarrow"):
-        optional.package(package, "lerobot", "export lerobot")
+        extras.imported(package, "lerobot", "export lerobot")
     episodes = run_data.plans(data, count)
     draft = folder.with_name(f".{folder.name}.part")
     shutil.rmtree(draft, ignore_errors=True)

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rtg import extras
 from rtg.errors import UserError
 from rtg.export import run_data
 from rtg.export.environment import environment_of
 from rtg.export.run_data import RunData
-from rtg.files import optional
 from rtg.files.episodes import Episode
 
 _KINDS = {
@@ -52,8 +52,8 @@ def _datasets_in(folder: Path | None) -> Iterator[None]:
 
 def _new_path(id: str) -> Path:
     """Returns the path of the data set `id`. Raises UserError if it exists or is no id."""
-    where = optional.package("minari.storage.datasets_root_dir", "minari", "export minari")
-    names = optional.package("minari.dataset.minari_dataset", "minari", "export minari")
+    where = extras.imported("minari.storage.datasets_root_dir", "minari", "export minari")
+    names = extras.imported("minari.dataset.minari_dataset", "minari", "export minari")
     try:
         names.parse_dataset_id(id)
     except (ValueError, TypeError):
@@ -69,7 +69,7 @@ def _new_path(id: str) -> Path:
 
 def _buffer(data: RunData, episode: Episode, sources: NDArray[np.int8] | None) -> Any:
     """Returns an episode as Minari stores it; its infos are named as those of the environment."""
-    collector = optional.package("minari.data_collector", "minari", "export minari")
+    collector = extras.imported("minari.data_collector", "minari", "export minari")
     length, task = len(episode.action), data.config.task
     ends = np.arange(1, length + 1) == length
     infos: dict[str, Any] = {
@@ -114,8 +114,8 @@ def write(data: RunData, kind: str, id: str, folder: Path | None, count: int | N
     `count`: at most so many episodes; all if None. Raises UserError if there is nothing to write,
     if there is such a data set already, or if Minari is not installed.
     """
-    minari = optional.package("minari", "minari", "export minari")
-    optional.package("h5py", "minari", "export minari")
+    minari = extras.imported("minari", "minari", "export minari")
+    extras.imported("h5py", "minari", "export minari")
     with _datasets_in(folder), warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # about authors and links, which are not ours
         path = _new_path(id)

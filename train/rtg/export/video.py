@@ -10,7 +10,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from rtg.files import optional
+from rtg import extras
 
 CODEC, PIXEL_FORMAT = "h264", "yuv420p"
 # Every other frame is whole, so that a learner that jumps to one decodes two at most.
@@ -22,7 +22,7 @@ class Film:
 
     def __init__(self, path: Path, fps: int, side: int) -> None:
         """`side`: width and height of the frames, an even number."""
-        self._av: Any = optional.package("av", "lerobot", "export lerobot")
+        self._av: Any = extras.imported("av", "lerobot", "export lerobot")
         self._container = self._av.open(str(path), "w")
         self._stream = self._container.add_stream("libx264", rate=fps, options=_OPTIONS)
         self._stream.width = self._stream.height = side

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from rtg import _core
+from rtg import _core, extras
 from rtg.errors import UserError
-from rtg.files import optional, own_data
+from rtg.files import own_data
 from rtg.files.own_data import OwnData
 
 _ENVIRONMENT = "rtg.envs.push_env:PushEnv"
@@ -26,7 +26,7 @@ def folder_of(word: str) -> Path | None:
             return path
     if Path(word).exists():
         return None
-    where = optional.package("minari.storage.datasets_root_dir", "minari", f"--data {word}")
+    where = extras.imported("minari.storage.datasets_root_dir", "minari", f"--data {word}")
     path = where.get_dataset_path(word) / "data"
     return path if path.is_dir() else None
 
@@ -43,8 +43,8 @@ def _digest(folder: Path) -> str:
 
 def _opened(word: str, folder: Path) -> tuple[Any, list[Any]]:
     """Returns the data set and its episodes."""
-    minari = optional.package("minari", "minari", f"--data {word}")
-    optional.package("h5py", "minari", f"--data {word}")
+    minari = extras.imported("minari", "minari", f"--data {word}")
+    extras.imported("h5py", "minari", f"--data {word}")
     try:
         found = minari.MinariDataset(folder)
         return found, list(found.iterate_episodes())

@@ -10,12 +10,11 @@ import json
 import os
 import secrets
 from collections.abc import Mapping, Sequence
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Protocol
 
-from rtg import _core
-from rtg.errors import UserError, needs_extra
+from rtg import _core, extras
+from rtg.errors import UserError
 from rtg.files.run_folder import write_text
 
 SINKS = ("tensorboard", "wandb")
@@ -107,9 +106,7 @@ def parse(words: str | None) -> tuple[str, ...]:
     for name in names:
         if name not in SINKS:
             raise UserError(f"--log {name}: no such log; legal: {','.join(SINKS)}")
-        with needs_extra(f"--log {name}", name):
-            if find_spec(name) is None:
-                raise ModuleNotFoundError(name=name)
+        extras.require(name, name, f"--log {name}")
     return names
 
 

@@ -106,8 +106,7 @@ class RunEvents:
         return found
 
     def _stored(self, length: float) -> list[Event]:
-        task = self._config.task
-        data = dataset.read(self._folder / "transitions.npz", task.bodies, task.actions)
+        data = dataset.read(self._folder / "transitions.npz", self._config.task)
         rows = Rows._make(getattr(data, name) for name in Rows._fields)
         bounds = np.linspace(0, len(rows.action), _PARTS + 1).astype(int)
         return [

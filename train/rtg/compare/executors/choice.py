@@ -7,9 +7,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from rtg import extras
 from rtg.compare.executors.executor import Executor
 from rtg.compare.executors.local import LocalExecutor
-from rtg.errors import needs_extra
 
 EXECUTORS = ("local", "submitit", "ray")
 
@@ -22,12 +22,14 @@ def opened(name: str, options: Mapping[str, Any], folder: Path) -> Iterator[Exec
     """
     flag = f"--executor {name}"
     if name == "submitit":
-        with needs_extra(flag, "slurm"):
-            from rtg.compare.executors.slurm import SlurmExecutor
+        extras.require("submitit", "slurm", flag)
+        from rtg.compare.executors.slurm import SlurmExecutor
+
         yield SlurmExecutor(options, folder / ".jobs")
     elif name == "ray":
-        with needs_extra(flag, "ray"):
-            from rtg.compare.executors.ray_tasks import connected
+        extras.require("ray", "ray", flag)
+        from rtg.compare.executors.ray_tasks import connected
+
         with connected(options) as executor:
             yield executor
     else:
