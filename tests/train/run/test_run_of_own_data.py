@@ -63,11 +63,17 @@ def test_flags_that_contradict_it_are_refused_and_leave_nothing(file, tmp_path, 
     assert not out.exists()
 
 
+def test_what_is_no_data_set_of_minari_is_refused_and_leaves_nothing(tmp_path, capsys):
+    pytest.importorskip("minari", reason="the extra `minari` is not installed")
+    said = refused(capsys, TINY, "--out", tmp_path / "run", "--data", "no/such-v0")
+    assert "--data no/such-v0: no such file or data set; legal: a .npz with states" in said
+    assert not (tmp_path / "run").exists()
+
+
 def test_what_cannot_be_read_is_refused_and_leaves_nothing(tmp_path, capsys):
     out = tmp_path / "run"
-    pytest.importorskip("minari", reason="the extra `minari` is not installed")
-    said = refused(capsys, TINY, "--out", out, "--data", "no/such-v0")
-    assert "--data no/such-v0: no such file or data set; legal: a .npz with states" in said
+    said = refused(capsys, TINY, "--out", out, "--data", tmp_path / "none.npz")
+    assert "none.npz: no such file; legal: a .npz of numpy with states" in said
     (tmp_path / "text.npz").write_text("text")
     said = refused(capsys, TINY, "--out", out, "--data", tmp_path / "text.npz")
     assert "text.npz: is not a transition file" in said

@@ -119,7 +119,7 @@ def _check_search(config: _core.Config, overrides: Sequence[Override], data: str
 
 def _read_own_data(word: str, task: _core.Task) -> OwnData:
     """Reads the transitions that the user has. Raises UserError."""
-    if Path(word).is_file():
+    if Path(word).is_file() or word.endswith(".npz"):
         return own_data.read(Path(word), task)
     folder = minari_data.folder_of(word)
     if folder is None:
