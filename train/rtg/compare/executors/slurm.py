@@ -37,13 +37,13 @@ class _SlurmJob(RemoteJob):
         return int(self._submitted.result())
 
     def stop(self) -> None:
-        if self.exit_status() is None:
-            self.kill()
+        self.kill()
 
     def kill(self) -> None:
         """The cluster sees to the end: it kills what does not stop by itself in time."""
-        self._submitted.cancel(check=False)
-        self._status = 1
+        if self.exit_status() is None:
+            self._submitted.cancel(check=False)
+            self._status = 1
 
 
 class SlurmExecutor:
