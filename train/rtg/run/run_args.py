@@ -22,6 +22,7 @@ examples:
 
 tools:
   ./run.sh check FILE.yaml                     validate a task file and print what it says
+  ./run.sh view [RUN]                          show a run in the browser, live or afterwards
   ./run.sh spy                                 watch the channels of a run in the terminal
   ./run.sh lcm-spy                             the same with LCM's own viewer (needs Java)
   ./run.sh evaluate RUN                        success of its policy elsewhere, as a table
