@@ -8,8 +8,13 @@
 
 namespace rtg::search {
 
+void DataSet::begin_shard(int count) {
+  limit_ = coverage_.transitions() + count;
+  known_.clear();
+}
+
 void DataSet::store(std::span<const Transition> steps, const ReplayBatch& replay) {
-  const auto room = static_cast<std::size_t>(config_.transitions - coverage_.transitions());
+  const auto room = static_cast<std::size_t>(limit_ - coverage_.transitions());
   const auto per_step = static_cast<std::size_t>(1 + config_.branches);
   const auto is_new = [this](const Transition& t) {
     return known_.insert(reverse::key_of(t.poses, t.action)).second;

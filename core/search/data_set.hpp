@@ -19,13 +19,21 @@ class DataSet {
   /// All arguments must outlive the DataSet. `sink` receives the transitions.
   DataSet(const tasks::Task& task, const SearchConfig& config, std::uint64_t seed,
           const TransitionSink& sink)
-      : task_(task), config_(config), seed_(seed), sink_(sink), coverage_(task) {}
+      : task_(task),
+        config_(config),
+        seed_(seed),
+        sink_(sink),
+        limit_(config.transitions),
+        coverage_(task) {}
+
+  /// Forgets which transitions are stored. From now on it is full after `count` further ones.
+  void begin_shard(int count);
 
   /// Stores each step, followed by its branches, until the data set is full. Skips a transition
   /// whose state and action are stored already. `replay` simulates the branches.
   void store(std::span<const Transition> steps, const ReplayBatch& replay);
 
-  bool full() const { return coverage_.transitions() >= config_.transitions; }
+  bool full() const { return coverage_.transitions() >= limit_; }
   const Coverage& coverage() const { return coverage_; }
 
  private:
@@ -33,6 +41,7 @@ class DataSet {
   const SearchConfig& config_;
   std::uint64_t seed_;
   const TransitionSink& sink_;
+  long limit_;  // number of transitions at which it is full
   Coverage coverage_;
   std::unordered_set<std::uint64_t> known_;  // key_of() of each stored state and action
 };

@@ -76,7 +76,7 @@ void search_forward(Generation& run, int number) {
     const std::vector<Transition> steps = search.grow(run.replay(Stage::kReplays));
     if (steps.empty()) break;
     run.data.store(steps, known);
-    run.show("plan " + std::to_string(number + 1), layer, run.layers());
+    run.show("plan " + std::to_string(run.attempts + number + 1), layer, run.layers());
   }
 }
 

@@ -19,6 +19,7 @@ namespace {
 /// start.
 void grow_tree(Generation& run, int number) {
   Rng rng = run.attempt_rng(number);
+  const int tree = run.attempts + number;
   const Poses target = run.draw_start(rng);
   BeamSearch search(run.task, run.config, target, rng.word());
   search.make_roots(run.replay(Stage::kGoals), run.stats);
@@ -28,12 +29,12 @@ void grow_tree(Generation& run, int number) {
     if (search.beam().empty() || run.data.full() || run.cancelled()) break;
     run.data.store(search.grow(run.seams.solve, run.seams.replay, run.stats),
                    run.replay(Stage::kBranches));
-    run.show("tree " + std::to_string(number + 1), layer, run.layers());
+    run.show("tree " + std::to_string(tree + 1), layer, run.layers());
     const double nearest = search.min_start_distance();
     patience = nearest < best ? run.config.patience : patience - 1;
     best = std::min(best, nearest);
   }
-  for (const Node& n : search.nodes()) run.nodes.push_back({n.poses, n.depth, number});
+  for (const Node& n : search.nodes()) run.nodes.push_back({n.poses, n.depth, tree});
 }
 
 }  // namespace

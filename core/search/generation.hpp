@@ -21,11 +21,20 @@ struct Generation {
   SearchStats stats = {};
   std::vector<ReportNode> nodes = {};  // of all trees
   DataSet data{task, config, seed, seams.store};
+  int shard = 0;     // that is being searched
+  int attempts = 0;  // of the shards before
 
-  /// Returns the random number generator of attempt `number`. Training starts never use its
-  /// numbers.
+  /// Begins the k-th of the shards: what it finds does not depend on the others.
+  void begin_shard(int k) {
+    shard = config.shard + k;
+    data.begin_shard(share_of_shard(config, k));
+  }
+
+  /// Returns the random number generator of attempt `number` of the shard. Training starts never
+  /// use its numbers.
   Rng attempt_rng(int number) const {
-    return Rng(Rng(seed).word(), static_cast<std::uint64_t>(number));
+    const auto first = static_cast<std::uint64_t>(shard) << 32;
+    return Rng(Rng(seed).word(), first + static_cast<std::uint64_t>(number));
   }
 
   /// Draws a random start state. Each object moves by up to ± task.start_jitter in x and y. With
@@ -42,14 +51,20 @@ struct Generation {
 
   bool cancelled() const { return seams.cancelled && seams.cancelled(); }
 
-  /// Calls attempt(0), attempt(1), ...: each runs one tree, forward search or wave of walks. Ends
-  /// when the data set is full, the run is cancelled, or eight attempts in a row store nothing.
+  /// Calls attempt(0), attempt(1), ... of each shard: each runs one tree, forward search or wave of
+  /// walks. A shard ends when it has its transitions, the run is cancelled, or eight attempts in a
+  /// row store nothing.
   template <class Attempt>
   void repeat(Attempt attempt) {
-    for (int number = 0, barren = 0; barren < 8 && !data.full() && !cancelled(); ++number) {
-      const long before = data.coverage().transitions();
-      attempt(number);
-      barren = data.coverage().transitions() > before ? 0 : barren + 1;
+    for (int k = 0; k < config.shards; ++k) {
+      begin_shard(k);
+      int number = 0;
+      for (int barren = 0; barren < 8 && !data.full() && !cancelled(); ++number) {
+        const long before = data.coverage().transitions();
+        attempt(number);
+        barren = data.coverage().transitions() > before ? 0 : barren + 1;
+      }
+      attempts += number;
     }
   }
 

@@ -97,6 +97,8 @@ std::string to_json(const GenerationReport& r) {
   out["generate_wall_s"] = r.generate_wall_s;
   out["generate_cpu_s"] = r.generate_cpu_s;
   out["shortfalls"] = r.shortfalls;
+  out["iterations"] = stats.iterations;
+  out["pushing_iterations"] = stats.pushing_iterations;
   out["replay_gaps"] = stats.gaps;
   out["nodes"] = to_json(r.nodes);
   return out.dump();

@@ -30,6 +30,8 @@ struct SearchConfig {
   int root_draws = 4;              // goal states drawn per tree, as a multiple of breadth
   int patience = 4;                // consecutive layers without a better node that end a tree
   bool randomise = false;          // starts are jittered by up to task.randomisation
+  int shards = 1;  // searches without regard to each other, which share the transitions
+  int shard = 0;   // number of the first of them: decides its random numbers, beside the seed
 
   template <class Visitor>
   void visit(Visitor& v) {
@@ -54,7 +56,16 @@ struct SearchConfig {
     v.integer("patience", patience, 1, 1000,
               "end a tree after this many layers in a row no nearer to its start");
     v.flag("randomise", randomise, "shift objects in search starts by up to task.randomisation");
+    v.integer("shards", shards, 1, 10000,
+              "searches without regard to each other that share the transitions");
+    v.integer("shard", shard, 0, 9999, "number of the first of the shards, decides what it finds");
   }
 };
+
+/// Returns how many of the transitions shard k = 0 ... shards - 1 is to store.
+inline int share_of_shard(const SearchConfig& config, int k) {
+  const auto up_to = [&config](long shard) { return config.transitions * shard / config.shards; };
+  return static_cast<int>(up_to(k + 1) - up_to(k));
+}
 
 }  // namespace rtg::search

@@ -43,7 +43,7 @@ void walk(Generation& run, int number) {
     }
     run.data.store(steps, run.replay(Stage::kBranches));
   }
-  run.show("random walks", number + 1, 0);
+  run.show("random walks", run.attempts + number + 1, 0);
 }
 
 }  // namespace rtg::search

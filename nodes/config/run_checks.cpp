@@ -62,6 +62,15 @@ void check_buffer(const Config& config, const ConfigNode& root) {
                     "at least as many as search.transitions");
 }
 
+void check_shards(const Config& config, const ConfigNode& root) {
+  const int transitions = config.search.transitions, shards = config.search.shards;
+  if (shards <= transitions) return;
+  throw ConfigError(place(root, {{"search", "shards"}, {"search", "transitions"}}), "search.shards",
+                    std::to_string(shards) +
+                        " is too many for search.transitions = " + std::to_string(transitions),
+                    "at most as many as search.transitions");
+}
+
 void check_record(const Config& config, const ConfigNode& root) {
   if (!config.run.record || (config.train.offline && !config.run.in_process)) return;
   const std::string why = config.run.in_process ? "with run.in_process" : "without train.offline";
@@ -74,6 +83,7 @@ void check_record(const Config& config, const ConfigNode& root) {
 void check_run(const Config& config, const ConfigNode& root) {
   check_learner(config, root);
   check_buffer(config, root);
+  check_shards(config, root);
   check_record(config, root);
 }
 

@@ -10,14 +10,24 @@ from comparisons import PATIENCE, command, figures, finish, start, wait_for
 from living import processes_of
 from rtg import paths
 
-RUNS = ("--seeds", "1,2", "--set", "train.interactions=1500")
+RUNS = ("--seeds", "1,2", "--set", "train.interactions=1500", "--set", "search.shards=2")
 
 
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory):
     folder = tmp_path_factory.mktemp("local")
     finish(start(folder, ("gathering",), *RUNS))
-    return figures(folder)
+    return folder
+
+
+def assert_same(folder, undisturbed):
+    """Figures, and transitions to the bit, each generation of which two jobs have found."""
+    assert figures(folder) == figures(undisturbed)
+    data = "gathering/ddqn_naive/seed-{}/transitions.npz"
+    for seed in (1, 2):
+        assert len(list((folder / "gathering/.shards").glob("*/[01]"))) == 4
+        there, here = (place / data.format(seed) for place in (folder, undisturbed))
+        assert there.read_bytes() == here.read_bytes()
 
 
 def test_jobs_of_submitit(undisturbed, tmp_path):
@@ -25,7 +35,7 @@ def test_jobs_of_submitit(undisturbed, tmp_path):
     pytest.importorskip("submitit", reason="extra slurm")
     flags = ("--executor", "submitit", "--executor-option", "cluster=local")
     assert "2 of 2 runs done" in finish(start(tmp_path, ("gathering",), *RUNS, *flags))
-    assert figures(tmp_path) == undisturbed
+    assert_same(tmp_path, undisturbed)
 
 
 def test_a_preempted_job_of_submitit_goes_on_from_its_checkpoint(undisturbed, tmp_path):
@@ -40,7 +50,7 @@ def test_a_preempted_job_of_submitit_goes_on_from_its_checkpoint(undisturbed, tm
     os.kill(job, signal.SIGUSR2)  # as Slurm does
     assert "1 of 1 runs done" in finish(process)
     assert "learning goes on from its last checkpoint" in run.with_name("seed-1.log").read_text()
-    assert figures(tmp_path) == [row for row in undisturbed if row["seed"] == "1"]
+    assert figures(tmp_path) == [row for row in figures(undisturbed) if row["seed"] == "1"]
 
 
 def test_tasks_of_a_ray_cluster_that_loses_a_node(undisturbed, tmp_path):
@@ -58,4 +68,4 @@ def test_tasks_of_a_ray_cluster_that_loses_a_node(undisturbed, tmp_path):
     assert process.returncode == 0 and "2 of 2 runs done" in out, out
     begun = [run.with_name(f"{run.name}.log").read_text().count("seed ") for run in runs]
     assert sorted(begun) == [1, 2]  # the run on the node that was killed went on elsewhere
-    assert figures(tmp_path) == undisturbed
+    assert_same(tmp_path, undisturbed)

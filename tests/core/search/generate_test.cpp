@@ -53,6 +53,31 @@ TEST(Generate, GivesTheSameBytesForAnyNumberOfThreads) {
   }
 }
 
+// So each shard may be found by another machine.
+TEST(Generate, ShardsFindWhatEachOfThemFindsAlone) {
+  SearchConfig whole = small();
+  whole.transitions = 1003;
+  whole.shards = 3;
+  std::vector<Transition> expected;
+  SearchStats stats;
+  int trees = 0;
+  for (int k = 0; k < whole.shards; ++k) {
+    SearchConfig alone = small();
+    alone.transitions = share_of_shard(whole, k);
+    alone.shard = k;
+    const GenerationRun run = run_naive(gathering(), alone, 7, 2);
+    EXPECT_EQ(run.stored.size(), k == 2 ? 335U : 334U);
+    expected.insert(expected.end(), run.stored.begin(), run.stored.end());
+    stats.replays += run.report.stats.replays;
+    trees += run.report.trees;
+  }
+  const GenerationRun run = run_naive(gathering(), whole, 7, 1);
+  EXPECT_EQ(run.stored, expected);
+  EXPECT_EQ(run.report.stats.replays, stats.replays);
+  EXPECT_EQ(run.report.trees, trees);
+  EXPECT_TRUE(run.report.shortfalls.empty());
+}
+
 TEST(Generate, AnotherSeedGivesOtherTransitions) {
   EXPECT_NE(run_naive(gathering(), small(), 8, 2).stored, reference_run().stored);
 }

@@ -55,6 +55,7 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
       R"("replays":{"wall_s":6.5,"cpu_s":13.0},)"
       R"("branches":{"wall_s":8.5,"cpu_s":26.0}},"generate_wall_s":42.5,"generate_cpu_s":43.5,)"
       R"("shortfalls":["too few","none moves"],)"
+      R"("iterations":[31,29,30],"pushing_iterations":[32,35,33,34],)"
       R"("replay_gaps":[0.0625,0.03125,0.375],"nodes":[)"
       R"({"poses":[[1.0,2.0,3.0],[4.0,5.0,6.0]],"depth":7},)"
       R"({"poses":[[-0.5,0.0,0.5]],"depth":9}]})");
@@ -127,7 +128,8 @@ TEST(Report, TellsThatFewerTransitionsWereFoundThanAskedFor) {
 TEST(Report, OfNothingHasEmptyListsAndNoDepth) {
   const std::string text = to_json({});
   EXPECT_NE(text.find(R"("start_region_depth":-1,)"), std::string::npos);
-  EXPECT_TRUE(text.ends_with(R"("shortfalls":[],"replay_gaps":[],"nodes":[]})"));
+  EXPECT_TRUE(
+      text.ends_with(R"("iterations":[],"pushing_iterations":[],"replay_gaps":[],"nodes":[]})"));
 }
 
 }  // namespace

@@ -42,6 +42,8 @@ TEST(SearchConfig, EachFieldChangesTheStoredTransitions) {
       {"root_draws", 1},
       {"patience", 8},
       {"randomise", 1},
+      {"shards", 3},
+      {"shard", 2},
   };
   testing::expect_each_field_matters(config, others, {}, stored);
 }

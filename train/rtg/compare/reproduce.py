@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from rtg.compare import grouped_seeds
+from rtg.compare import grouped_seeds, shards
 from rtg.compare.cell_run import prepare_runs
 from rtg.compare.cells import update_grid
 from rtg.compare.executors import choice
@@ -32,7 +32,7 @@ def reproduce(args: ReproduceArgs) -> int:
         with run_folder.write_errors_as_user_errors(args.out):
             update_grid(args.out, lambda grid: grid.add(args.command, args.cells))
         # If a job of these stages fails, the run itself does the work again.
-        for stage in grouped_seeds.stages(runs, args.together):
+        for stage in (*shards.stages(runs), *grouped_seeds.stages(runs, args.together)):
             _run_all(args, JobPool(stage, executor, args.jobs))
         rows = _run_all(args, JobPool(runs, executor, args.jobs, Failures(args.out)))
     from rtg.compare.report_files import write_report  # imports matplotlib, which takes long

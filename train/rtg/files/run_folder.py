@@ -56,7 +56,7 @@ SUMMARY_KEYS = (
 )
 # Keys of generation.json that summary.json leaves out: the data of pictures, which are too long,
 # and what it has among "defects".
-_LEFT_OUT = ("replay_gaps", "nodes", "shortfalls")
+_LEFT_OUT = ("iterations", "pushing_iterations", "replay_gaps", "nodes", "shortfalls")
 
 
 @contextlib.contextmanager
