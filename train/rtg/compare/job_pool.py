@@ -55,6 +55,7 @@ class JobPool:
         self._max_parallel = max_parallel
         self._handles: dict[str, Handle] = {}  # the running jobs, by name
         self._rows = {job.name: _first_row(job) for job in jobs}
+        self._old_words: dict[str, str] = {}  # failures known before jobs went elsewhere, by name
         self._looked_at = -_LOOK_EVERY
 
     def poll(self, shown: GridDisplay) -> bool:
@@ -111,10 +112,17 @@ class JobPool:
         for job in self._jobs:
             if self._phase(job) == "elsewhere" and not is_claimed(job):
                 words = self._failures.words(job.name) if self._failures else ""
+                if words == self._old_words.get(job.name):
+                    words = ""  # not of the process that has had the job meanwhile
                 # Without a result and a failure, the other process was stopped.
                 self._rows[job.name] = (
                     Row(job.name, "failed", words) if words and not job.done else _first_row(job)
                 )
+
+    def _go_elsewhere(self, job: Job) -> None:
+        if self._failures:
+            self._old_words.setdefault(job.name, self._failures.words(job.name))
+        self._rows[job.name] = Row(job.name, "elsewhere")
 
     def _start(self, job: Job) -> None:
         try:
@@ -123,7 +131,7 @@ class JobPool:
             self._fail(job, str(error))
             return
         if handle is None:
-            self._rows[job.name] = Row(job.name, "elsewhere")
+            self._go_elsewhere(job)
             return
         if self._failures:
             self._failures.remove(job.name)
@@ -140,7 +148,7 @@ class JobPool:
         if job.done:
             self._rows[job.name] = _first_row(job)
         elif status == TAKEN:
-            self._rows[job.name] = Row(job.name, "elsewhere")
+            self._go_elsewhere(job)
         else:
             words = handle.log_tail()
             end = f"; the end of its log:\n{words}" if words else ""

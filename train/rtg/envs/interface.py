@@ -76,32 +76,33 @@ class Interface:
         """Whether each episode has a goal of its own."""
         return self._layouts is not None
 
-    def batch_of(self, action: Any) -> NDArray[Any]:
-        """Returns one action as a batch for push(), [1] or [1, 2].
+    def checked_actions(self, actions: Any, count: int) -> NDArray[Any]:
+        """Returns actions of `count` states for push(), [count] int64 or [count, 2] float64.
 
-        Raises ValueError for an action that is not legal.
+        Raises ValueError for actions that are not legal.
         """
+        given = np.asarray(actions)
         if self.variant.actions == "discrete":
-            if not self.action_space.contains(action):
-                raise ValueError(
-                    f"action {action}; legal: integers from 0 to {self.task.actions - 1}"
-                )
-            return np.array([action], np.int64)
-        way = np.asarray(action, np.float64)
-        if way.shape != (2,) or not (np.abs(way) <= 1.0).all():
-            raise ValueError(f"action {action}; legal: two numbers from -1 to 1")
-        return way[None]
+            legal = f"integers from 0 to {self.task.actions - 1}"
+            is_right = given.shape == (count,) and given.dtype.kind in "iu"
+            if not is_right or not ((given >= 0) & (given < self.task.actions)).all():
+                raise ValueError(f"action {_words(actions)}; legal: {legal}")
+            return given.astype(np.int64)
+        is_right = given.shape == (count, 2) and given.dtype.kind in "iuf"
+        if not is_right or not (np.abs(given) <= 1.0).all():
+            raise ValueError(f"action {_words(actions)}; legal: two numbers from -1 to 1")
+        return given.astype(np.float64)
 
-    def push(self, states: Floats, actions: Any) -> tuple[Floats, Bools]:
-        """Simulates an action in each state.
+    def push(self, states: Floats, actions: NDArray[Any]) -> tuple[Floats, Bools]:
+        """Simulates an action, one of checked_actions(), in each state.
 
         Returns the states afterwards, and whether the simulator could finish each push; states of
         others are unchanged. A way of length 0 leaves the state as it is. [N, bodies, 3], [N, ...]
         """
         if self.variant.actions == "discrete":
-            after, ok = self._simulator.push(states, np.asarray(actions, np.int64))
+            after, ok = self._simulator.push(states, actions)
         else:
-            after, ok = self._pushed_along(states, np.asarray(actions, np.float64))
+            after, ok = self._pushed_along(states, actions)
         return np.where(ok[:, None, None], after, states), ok
 
     def drawn_goal(self, key: int) -> Floats:
@@ -210,6 +211,12 @@ class Interface:
             return seen
         layout = _unbounded(self._layouts.size)
         return spaces.Dict({"observation": seen, "achieved_goal": layout, "desired_goal": layout})
+
+
+def _words(actions: Any) -> str:
+    """Returns actions in words, a single one without brackets."""
+    is_single = isinstance(actions, list) and len(actions) == 1
+    return str(actions[0] if is_single else actions)
 
 
 def _unbounded(size: int) -> spaces.Box:

@@ -167,7 +167,9 @@ class PushEnv(gymnasium.Env[Any, Any]):
 
     def step(self, action: ArrayLike) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Performs an action. Raises ValueError for one that is not legal."""
-        after, ok = self.interface.push(self.poses[None], self.interface.batch_of(action))
+        after, ok = self.interface.push(
+            self.poses[None], self.interface.checked_actions([action], 1)
+        )
         self._path.append(after[0])
         self._steps += 1
         info = self._info(rejected=not ok[0])

@@ -51,6 +51,8 @@ class PushVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self.task = read.task
         self.num_envs = num_envs
         self.jitter = self.task.start_jitter if jitter is None else jitter
+        if max_episode_steps is not None and max_episode_steps < 1:
+            raise ValueError(f"max_episode_steps {max_episode_steps}; legal: at least 1")
         self.limit = max_episode_steps or (self.task.horizon if ends_at_horizon else math.inf)
         self.render_mode = render_mode
         self.single_observation_space = self.interface.observation_space
@@ -67,11 +69,14 @@ class PushVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
     def reset(
         self, *, seed: int | list[int] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode in each environment. `seed`: one for all. Knows no options."""
+        """Begins an episode in each environment. `seed`: one for all. Knows no options.
+
+        Raises ValueError for options, and for a list of seeds.
+        """
         if options:
             raise ValueError(f"unknown options {sorted(options)}; legal: none")
         if isinstance(seed, list):
-            seed = seed[0]
+            raise ValueError("seed is a list; legal: one number for all environments")
         super().reset(seed=seed)
         self.begin(np.ones(self.num_envs, np.bool_))
         return self.observation(), self._info(np.zeros(self.num_envs, np.bool_))
@@ -79,11 +84,12 @@ class PushVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
     def step(
         self, actions: NDArray[Any]
     ) -> tuple[Any, NDArray[np.float64], Bools, Bools, dict[str, Any]]:
+        actions = self.interface.checked_actions(actions, self.num_envs)
         begun = self._ended.copy()
         goes_on = ~begun
         ok = np.ones(self.num_envs, np.bool_)
         if goes_on.any():
-            pushed = self.interface.push(self._poses[goes_on], np.asarray(actions)[goes_on])
+            pushed = self.interface.push(self._poses[goes_on], actions[goes_on])
             self._poses[goes_on], ok[goes_on] = pushed
             self._steps[goes_on] += 1
         if begun.any():

@@ -35,6 +35,11 @@ class PushVecEnv(VecEnv):
         self.reset_infos = self._infos(info)
         return observation
 
+    def set_options(self, options: list[dict[str, Any]] | dict[str, Any] | None = None) -> None:
+        """Raises ValueError for options, of which there are none."""
+        if options:
+            raise ValueError(f"unknown options {options}; legal: none")
+
     def step_async(self, actions: NDArray[Any]) -> None:
         self._actions = actions
 

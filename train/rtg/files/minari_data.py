@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rtg import _core, extras
+from rtg import _core, extras, paths
 from rtg.errors import UserError
 from rtg.files import own_data
 from rtg.files.own_data import OwnData
@@ -62,13 +62,34 @@ def _check_environment(name: str, found: Any, task: _core.Task) -> None:
             f"{name}: was not made with an environment of RTG; legal: one whose "
             "recover_environment() is RTG/...-v0"
         )
-    if found.recover_environment().unwrapped.task.content != task.content:
+    if _task_of(name, spec.kwargs).content != task.content:
         raise UserError(f"{name}: is of another task; legal: one of '{task.name}'")
+
+
+def _task_of(name: str, kwargs: dict[str, Any]) -> _core.Task:
+    """Returns the task of an environment's arguments.
+
+    The environment itself is not made: its specification may name any function of a stranger.
+    """
+    config, settings = kwargs.get("config", "gathering"), kwargs.get("settings", ())
+    try:
+        if config in paths.task_names():
+            return _core.Config.from_file(paths.CONFIG / f"{config}.yaml", list(settings)).task
+        if isinstance(config, str) and "\n" in config:
+            return _core.Config.from_text(config, overrides=list(settings)).task
+        if isinstance(config, str) and Path(config).is_file():
+            return _core.Config.from_file(config, list(settings)).task
+    except (TypeError, ValueError) as error:
+        raise UserError(f"{name}: its environment has no task ({error})") from None
+    raise UserError(
+        f"{name}: its environment has config={config!r:.80}; legal: a task of RTG, a file that is "
+        "there, or the text of one"
+    )
 
 
 def _poses(name: str, episode: Any, task: _core.Task) -> Any:
     poses = (episode.infos or {}).get("poses")
-    expected = (len(episode.rewards) + 1, task.bodies, 3)
+    expected = (len(episode.actions) + 1, task.bodies, 3)
     if poses is None or np.shape(poses) != expected or not np.isfinite(poses).all():
         raise UserError(
             f"{name}: episode {episode.id} has no info 'poses' of shape {list(expected)}, and "
@@ -76,6 +97,21 @@ def _poses(name: str, episode: Any, task: _core.Task) -> Any:
             "minari.DataCollector with record_infos=True"
         )
     return np.asarray(poses, np.float64)
+
+
+def _info(name: str, episode: Any, key: str, dtype: type[np.generic]) -> Any:
+    """Returns an info of the steps, 0 if it is absent. [T]"""
+    count = len(episode.actions)
+    if key not in episode.infos:
+        return np.zeros(count, dtype)
+    found = np.asarray(episode.infos[key])
+    if found.shape != (count + 1,) or found.dtype.kind != np.dtype(dtype).kind:
+        legal = f"{np.dtype(dtype).name} [{count + 1}]"
+        raise UserError(
+            f"{name}: episode {episode.id} has info '{key}' of {found.dtype} {list(found.shape)}; "
+            f"legal: {legal}"
+        )
+    return found[1:]
 
 
 def read(word: str, folder: Path, task: _core.Task) -> OwnData:
@@ -89,10 +125,10 @@ def read(word: str, folder: Path, task: _core.Task) -> OwnData:
     parts = []
     for episode in episodes:
         poses = _poses(word, episode, task)
-        rejected = episode.infos.get("rejected", np.zeros(len(poses), np.bool_))[1:]
-        source = episode.infos.get("source", np.zeros(len(poses), np.int8))[1:]
+        kept = ~_info(word, episode, "rejected", np.bool_)
+        source = _info(word, episode, "source", np.int8)
         columns = (poses[:-1], np.asarray(episode.actions), poses[1:], source)
-        parts.append([column[~rejected] for column in columns])
+        parts.append([column[kept] for column in columns])
     if not parts:
         raise UserError(f"{word}: has no episodes; legal: at least one")
     try:

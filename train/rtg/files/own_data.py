@@ -64,6 +64,12 @@ def checked_rows(
         if column.min() < 0 or column.max() >= end:
             wrong = int(column[(column < 0) | (column >= end)][0])
             raise ValueError(f"{name} {wrong}; legal: 0 to {end - 1}")
+    for name, states in (("states", poses), ("next_states", next_poses)):
+        if not (legal := task.is_legal(states)).all():
+            raise ValueError(
+                f"{name}: row {int(np.flatnonzero(~legal)[0])} is no state of the task; legal: no "
+                "bodies that overlap, none out of twice the arena, fixed bodies in their places"
+            )
     success = task.succeeded(next_poses)
     return Rows(
         poses=poses,

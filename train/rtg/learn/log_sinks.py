@@ -90,7 +90,8 @@ class LazySinks:
     def add(self, row: Row) -> None:
         """Hands the row on. Raises UserError if a sink cannot be opened."""
         if not self._open:
-            self._open = [_KINDS[name](self._folder, self._config, row) for name in self._names]
+            for name in self._names:
+                self._open.append(_KINDS[name](self._folder, self._config, row))
         for sink in self._open:
             sink.add(row)
 

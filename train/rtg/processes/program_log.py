@@ -19,6 +19,8 @@ class ProgramLog:
 
     def new_lines(self) -> list[str]:
         """Returns the lines that were completed since the last call of this method."""
+        if not self.path.exists():
+            return []
         with self.path.open("rb") as log:
             log.seek(self._read)
             whole, end, _ = log.read().rpartition(b"\n")

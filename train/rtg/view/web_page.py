@@ -130,12 +130,21 @@ def _answer(request: BaseHTTPRequestHandler, data_port: int, asset_port: int) ->
         request.send_header("Location", f"/?{page_query(data_port)}")
         request.end_headers()
         return
+    if request.headers.get("Host", "").partition(":")[0] not in (HOST, "localhost"):
+        request.send_error(403)  # a page elsewhere whose name leads here
+        return
     path = urllib.parse.urlsplit(request.path).path
+    if not path.startswith("/"):
+        request.send_error(400)
+        return
     try:
         with _OPENER.open(f"http://{HOST}:{asset_port}{path}") as found:
             kind, body = found.headers["Content-Type"], found.read()
     except urllib.error.HTTPError as error:
         request.send_error(error.code)
+        return
+    except urllib.error.URLError:
+        request.send_error(502)  # the viewer has ended
         return
     if path == "/":
         body = _LINK_ELSEWHERE.sub(b"", body)
