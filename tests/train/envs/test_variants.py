@@ -86,6 +86,31 @@ def test_other_ways_are_refused(action: Any) -> None:
         env.step(action)
 
 
+@pytest.mark.parametrize(
+    ("variant", "actions", "legal"),
+    [
+        ("continuous", np.full((2, 2), np.nan), "two numbers from -1 to 1"),
+        ("continuous", np.full((2, 2), 1.5), "two numbers from -1 to 1"),
+        ("continuous", np.zeros((2, 3)), "two numbers from -1 to 1"),
+        ("discrete", np.array([1.7, 2.0]), "integers from 0 to 47"),
+        ("discrete", np.array([1, 48]), "integers from 0 to 47"),
+        ("discrete", np.array([1]), "integers from 0 to 47"),
+    ],
+)
+def test_vectors_refuse_what_single_ones_refuse(variant: str, actions: Any, legal: str) -> None:
+    envs = PushVectorEnv(2, actions=variant)
+    envs.reset(seed=1)
+    with pytest.raises(ValueError, match=f"legal: {legal}"):
+        envs.step(actions)
+
+
+def test_vectors_take_one_seed_and_at_least_one_step() -> None:
+    with pytest.raises(ValueError, match="seed is a list; legal: one number"):
+        PushVectorEnv(2).reset(seed=[1, 2])
+    with pytest.raises(ValueError, match="max_episode_steps 0; legal: at least 1"):
+        PushVectorEnv(2, max_episode_steps=0)
+
+
 def test_an_episode_with_a_drawn_goal_ends_where_its_layout_is_reached() -> None:
     env = PushEnv(goals="drawn")
     first, _ = env.reset(seed=1)

@@ -107,6 +107,23 @@ def test_an_environment_of_others_is_refused():
         minari_data.read("other-v0", folder, TASK)
 
 
+def test_the_environment_of_a_stranger_is_not_made(monkeypatch):
+    """Its specification may name any function to be called."""
+    folder = made("mine-v0", episode(gymnasium.make("RTG/Gathering-v0"), 1))
+    monkeypatch.setattr(gymnasium, "make", lambda *_, **__: pytest.fail("was made"))
+    assert len(minari_data.read("mine-v0", folder, TASK).rows.action) == 3
+
+
+@pytest.mark.parametrize(
+    ("key", "values"),
+    [("rejected", np.zeros(4, np.int64)), ("rejected", np.zeros(3, bool)), ("source", np.ones(4))],
+)
+def test_infos_of_another_type_or_length_are_refused(key, values):
+    folder = made("mine-v0", episode(gymnasium.make("RTG/Gathering-v0"), 1, **{key: values}))
+    with pytest.raises(UserError, match=f"episode 0 has info '{key}' of .*; legal: "):
+        minari_data.read("mine-v0", folder, TASK)
+
+
 def test_a_damaged_data_set_is_refused():
     folder = made("mine-v0", episode(gymnasium.make("RTG/Gathering-v0"), 1))
     (folder / "main_data.hdf5").write_bytes(b"nothing")

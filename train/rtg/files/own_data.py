@@ -89,6 +89,11 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
     legal = f"a .npz of numpy with {', '.join(_NEEDED)}"
     with dataset.errors_about(path, legal), np.load(path, allow_pickle=False) as archive:
         missing = [name for name in _NEEDED if name not in archive]
+        if missing and "next_poses" in archive:
+            raise dataset.DatasetError(
+                f"{path}: is the file of a run, whose poses are in the unit of its task; legal: a "
+                f".npz with {', '.join(_NEEDED)}, which rtg.Task.outer() makes of them"
+            )
         if missing:
             raise dataset.DatasetError(
                 f"{path}: array '{missing[0]}' is missing; legal: {', '.join(_NEEDED)}, and source "
