@@ -164,6 +164,16 @@ def test_a_run_that_failed_in_another_process_has_failed(elsewhere, tmp_path):
     assert not pool._jobs[0].log.exists()
 
 
+def test_a_failure_of_an_earlier_command_does_not_count(elsewhere, tmp_path):
+    pool, claim = elsewhere
+    Failures(tmp_path / "out").add(pool._jobs[0].name, "no memory")
+    assert phases(pool) == (True, ["elsewhere"])
+    claim.close()
+    assert phases(pool) == (True, ["running"])
+    finish(pool)
+    assert [row.phase for row in pool.rows()] == ["done"]
+
+
 def test_a_run_waits_for_transitions_that_another_process_generates(elsewhere, monkeypatch):
     pool, claim = elsewhere
     claim.close()
