@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
 from rtg.envs.layouts import Layouts
-from rtg.pictures.draw import Canvas, MarkLike, arena_window, outline, state_image
+from rtg.pictures.draw import Canvas, MarkLike, arena_window, objects, outline, state_image
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -175,10 +175,9 @@ class Interface:
 
     def _outlines(self, goal: Floats) -> list[MarkLike]:
         task = self.task
-        movable = [body for body in range(1, task.bodies) if not task.fixed[body]]
         return [
             _Outline(task.kinds[body], outline(task.outlines[body][0], goal[body]))
-            for body in movable
+            for body in objects(task)
         ]
 
     def _layout(self, states: Floats) -> NDArray[np.float32]:

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from rtg import _core
 from rtg.envs.curriculum import goal_states
+from rtg.pictures.draw import objects
 
 Array = npt.NDArray[Any]
 
@@ -32,16 +33,17 @@ MAX_DRAWS = 5000  # maximum number of goal states drawn
 DIRECTIONS = 8  # of the displacements that robust goal states bear
 MIXED = 112  # number of such displacements in which each object has a direction of its own
 LAYOUT_SEED = 3 << 61  # fixed seed of the draws, so a policy file need not store it
-BODY_ENTRIES = 6  # entries of an observation per movable object
+# Entries of an observation per movable object.
+BODY_ENTRY_NAMES = ("x", "y", "cos theta", "sin theta", "x to robot", "y to robot")
+BODY_ENTRIES = len(BODY_ENTRY_NAMES)
 
 
 def object_columns(task: _core.Task) -> dict[int, int]:
-    """Returns the first column of each movable object in an observation; see rtg.task.
+    """Returns the first column of each movable object in an observation.
 
-    Its BODY_ENTRIES columns are x, y, cos θ, sin θ and the offset from the robot.
+    Its columns are those of BODY_ENTRY_NAMES.
     """
-    movable = [body for body in range(1, task.bodies) if not task.fixed[body]]
-    return {body: task.robot_entries + BODY_ENTRIES * k for k, body in enumerate(movable)}
+    return {body: task.robot_entries + BODY_ENTRIES * k for k, body in enumerate(objects(task))}
 
 
 class Layouts:

@@ -12,21 +12,21 @@ from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core, paths
 from rtg.envs.interface import Interface, Variant
+from rtg.envs.layouts import BODY_ENTRY_NAMES
 from rtg.envs.window import Window
+from rtg.pictures.draw import objects
 
 Floats = NDArray[np.float64]
 
 RENDERED_PIXELS = 360  # of a side of a rendered picture
-_ENTRIES = ("x", "y", "cos theta", "sin theta", "x to robot", "y to robot")
 
 
 def observation_names(task: _core.Task) -> list[str]:
     """Returns the entries of an observation, in words."""
     robot = ["robot x", "robot y", "robot cos theta", "robot sin theta"]
     names = robot[: task.robot_entries]
-    for name, fixed in zip(task.names[1:], task.fixed[1:], strict=True):
-        if not fixed:
-            names += [f"{name} {entry}" for entry in _ENTRIES]
+    for body in objects(task):
+        names += [f"{task.names[body]} {entry}" for entry in BODY_ENTRY_NAMES]
     for _, child, points in task.joints:
         joint = f"joint of {task.names[child]}"
         if len(points) == 1:
