@@ -27,10 +27,7 @@ class RunData(NamedTuple):
 
 def read(run: Path) -> RunData:
     """Reads the transitions of a run. Raises UserError if its folder lacks them or is damaged."""
-    file = run / "config.yaml"
-    if not file.is_file():
-        raise UserError(f"{run}: has no config.yaml; legal: the folder of a run")
-    config = effective_config.load_written(file)
+    config = effective_config.load_written(run_folder.config_file(run))
     path = run / "transitions.npz"
     transitions, origin = dataset.read_with_origin(path, config.task)
     is_given = run_folder.read_json(run / "generation.json").get("data")

@@ -84,6 +84,14 @@ def checkpoint_file(run: Path) -> Path:
     return run / "checkpoint" / "state.pt"
 
 
+def config_file(run: Path) -> Path:
+    """Returns the configuration of a run. Raises UserError if `run` is not the folder of one."""
+    file = run / "config.yaml"
+    if not file.is_file():
+        raise UserError(f"{run}: has no config.yaml; legal: the folder of a run")
+    return file
+
+
 def write_run_name(run: Path, name: str) -> None:
     """Notes in the folder of a run by which name its processes know each other on the bus."""
     write_text(run / "run_name", f"{name}\n")

@@ -7,10 +7,8 @@ from pathlib import Path
 
 import rerun as rr
 
-from rtg import _core
 from rtg.bus.bus import Bus
-from rtg.errors import UserError
-from rtg.files.run_folder import run_name
+from rtg.files.run_folder import config_file, run_name
 from rtg.run.effective_config import load_recorded
 from rtg.view import follower
 from rtg.view.layout import following, layout, playing
@@ -21,13 +19,6 @@ _PUSH = 0.5  # [s], duration of a push as it is seen
 _FILM = 60.0  # [s], in which a finished run plays, without its last episode
 
 
-def _configuration(folder: Path) -> _core.Config:
-    file = folder / "config.yaml"
-    if not file.is_file():
-        raise UserError(f"{folder}: has no config.yaml; legal: the folder of a run")
-    return load_recorded(file)
-
-
 class Session:
     """Logs one run to `recording`: all of it if it is over, else what is new at each step.
 
@@ -35,7 +26,7 @@ class Session:
     """
 
     def __init__(self, folder: Path, say: Callable[[str], None]) -> None:
-        self._folder, self._config = folder, _configuration(folder)
+        self._folder, self._config = folder, load_recorded(config_file(folder))
         self._say = say
         self.recording = rr.RecordingStream("rtg")
         self.recording.send_recording_name(folder.resolve().name)
