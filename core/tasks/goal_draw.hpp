@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/math/rng.hpp"
-#include "core/tasks/goal_refusals.hpp"
 #include "core/tasks/placement.hpp"
+#include "core/tasks/refusals.hpp"
 #include "core/tasks/task.hpp"
 
 namespace rtg::tasks {
@@ -16,7 +16,7 @@ struct GoalDraw {
   const Task& task;
   const std::vector<GoalTerm>& goal;
   Rng& rng;
-  GoalRefusals& refusals;
+  Refusals& refusals;
   PartialState state;
 };
 

@@ -79,7 +79,7 @@ bool place_objects(GoalDraw& draw) {
 }
 
 std::optional<Poses> attempt(const Task& task, const std::vector<GoalTerm>& goal, Rng& rng,
-                             GoalRefusals& refusals) {
+                             Refusals& refusals) {
   GoalDraw draw{
       task, goal, rng, refusals, {task.start, std::vector<bool>(task.scene.size(), false)}};
   for (std::size_t i = 1; i < task.scene.size(); ++i)
@@ -95,11 +95,11 @@ std::optional<Poses> attempt(const Task& task, const std::vector<GoalTerm>& goal
 
 }  // namespace
 
-std::optional<Poses> sample_goal(const Task& task, Rng& rng, GoalRefusals* refusals) {
+std::optional<Poses> sample_goal(const Task& task, Rng& rng, Refusals* refusals) {
   std::vector<GoalTerm> goal;
   for (const GoalTerm& term : task.goal) goal.push_back(tightened(term, task.scene));
-  GoalRefusals own;
-  GoalRefusals& counts = refusals ? *refusals : own;
+  Refusals own;
+  Refusals& counts = refusals ? *refusals : own;
   counts.by_term.resize(goal.size());
   for (int k = 0; k < kAttempts; ++k)
     if (std::optional<Poses> poses = attempt(task, goal, rng, counts)) return poses;

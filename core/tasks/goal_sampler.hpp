@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/math/rng.hpp"
-#include "core/tasks/goal_refusals.hpp"
+#include "core/tasks/refusals.hpp"
 #include "core/tasks/task.hpp"
 
 namespace rtg::tasks {
@@ -19,6 +19,6 @@ namespace rtg::tasks {
 /// Fixed bodies stay; all others are in the arena. Poses are rounded by to_single(). The state is
 /// only nearly at rest, so callers must let it settle. Returns nothing if 1000 attempts fail. Adds
 /// to `refusals`, if not null.
-std::optional<Poses> sample_goal(const Task& task, Rng& rng, GoalRefusals* refusals = nullptr);
+std::optional<Poses> sample_goal(const Task& task, Rng& rng, Refusals* refusals = nullptr);
 
 }  // namespace rtg::tasks

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -11,21 +10,31 @@
 namespace rtg::tasks {
 namespace {
 
-constexpr int kAttempts = 1000;  // draws of jittered_start()
+constexpr int kAttempts = 1000;  // draws of drawn_start()
 
 bool movable_object(const Task& task, std::size_t body) {
   return body > 0 && !task.scene.bodies[body].fixed;
 }
 
+/// Returns a body that is outside the arena and not fixed.
+std::optional<std::size_t> first_outside(const Task& task, const Poses& poses) {
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (!task.scene.bodies[i].fixed && !in_arena(poses[i], task.push)) return i;
+  return std::nullopt;
+}
+
 /// Returns `poses` if they can be a start; nothing otherwise, see jittered().
-std::optional<Poses> if_legal(const Task& task, Poses poses) {
+std::optional<Poses> if_legal(const Task& task, Poses poses, Refusals& refusals) {
   poses = to_single(with_closed_joints(task.scene, std::move(poses)));
-  const bool within = std::ranges::all_of(
-      std::views::iota(std::size_t{0}, poses.size()),
-      [&](std::size_t i) { return task.scene.bodies[i].fixed || in_arena(poses[i], task.push); });
-  if (!within || first_overlap(task.scene, poses, kStartClearance) || succeeded(task, poses))
-    return std::nullopt;
-  return poses;
+  if (const auto outside = first_outside(task, poses))
+    ++refusals.no_room[{*outside, *outside}];
+  else if (const auto pair = first_overlap(task.scene, poses, kStartClearance))
+    ++refusals.no_room[*pair];
+  else if (succeeded(task, poses))
+    ++refusals.solved;
+  else
+    return poses;
+  return std::nullopt;
 }
 
 /// Moves each tree of joints, and each body without joints, as one: `placed` (i, pose) returns the
@@ -50,14 +59,24 @@ Pose shifted(std::size_t i, Pose pose, double amplitude, Rng& rng) {
   return pose;
 }
 
-/// Draws a state for jittered_start(). Returns nothing if it is not legal.
-std::optional<Poses> drawn(const Task& task, double amplitude, Rng& rng) {
-  if (task.start_ranges.empty()) return jittered(task, task.start, amplitude, rng);
-  return if_legal(task, with_moved_trees(task, task.layout, [&](std::size_t i, const Pose& from) {
-                    const std::optional<StartRange>& range = task.start_ranges[i];
-                    if (!range) return shifted(i, from, amplitude, rng);
-                    return drawn_from(*range, rng);
-                  }));
+/// See jittered().
+std::optional<Poses> shifted_start(const Task& task, const Poses& start, double amplitude, Rng& rng,
+                                   Refusals& refusals) {
+  if (amplitude <= 0.0) return start;
+  Poses poses = with_moved_trees(task, start, [&](std::size_t i, const Pose& from) {
+    return shifted(i, from, amplitude, rng);
+  });
+  return if_legal(task, std::move(poses), refusals);
+}
+
+/// Draws one state for drawn_start(). Returns nothing if it is not legal.
+std::optional<Poses> try_start(const Task& task, double amplitude, Rng& rng, Refusals& refusals) {
+  if (task.start_ranges.empty()) return shifted_start(task, task.start, amplitude, rng, refusals);
+  Poses poses = with_moved_trees(task, task.layout, [&](std::size_t i, const Pose& from) {
+    const std::optional<StartRange>& range = task.start_ranges[i];
+    return range ? drawn_from(*range, rng) : shifted(i, from, amplitude, rng);
+  });
+  return if_legal(task, std::move(poses), refusals);
 }
 
 }  // namespace
@@ -68,10 +87,8 @@ Pose drawn_from(const StartRange& range, Rng& rng) {
 }
 
 std::optional<Poses> jittered(const Task& task, const Poses& start, double amplitude, Rng& rng) {
-  if (amplitude <= 0.0) return start;
-  return if_legal(task, with_moved_trees(task, start, [&](std::size_t i, const Pose& from) {
-                    return shifted(i, from, amplitude, rng);
-                  }));
+  Refusals refusals;
+  return shifted_start(task, start, amplitude, rng, refusals);
 }
 
 Poses layout_around(const Task& task, const Poses& poses) {
@@ -132,19 +149,30 @@ int observation_size(const Task& task) {
   return size;
 }
 
-Poses jittered_start(const Task& task, double amplitude, Rng& rng) {
-  for (int attempt = 0; attempt < kAttempts; ++attempt)
-    if (std::optional<Poses> poses = drawn(task, amplitude, rng)) return *std::move(poses);
-  throw std::invalid_argument("no legal start among " + std::to_string(kAttempts) +
-                              " random draws with objects shifted by up to " +
-                              std::to_string(amplitude * task.units.length) +
-                              " m; legal: a smaller shift");
+std::optional<Poses> drawn_start(const Task& task, double amplitude, Rng& rng, Refusals* refusals) {
+  Refusals own;
+  Refusals& counts = refusals ? *refusals : own;
+  for (int k = 0; k < kAttempts; ++k)
+    if (std::optional<Poses> poses = try_start(task, amplitude, rng, counts)) return poses;
+  return std::nullopt;
 }
 
-bool allows_jitter(const Task& task, double amplitude) {
+Poses jittered_start(const Task& task, double amplitude, Rng& rng) {
+  Refusals refusals;
+  if (std::optional<Poses> poses = drawn_start(task, amplitude, rng, &refusals))
+    return *std::move(poses);
+  throw std::invalid_argument("no legal start among " + std::to_string(kAttempts) +
+                              " random draws with objects shifted by up to " +
+                              std::to_string(amplitude * task.units.length) + " m; " +
+                              main_reason(refusals, task.scene) + "; legal: a smaller shift");
+}
+
+bool allows_jitter(const Task& task, double amplitude, Refusals* refusals) {
+  Refusals own;
+  Refusals& counts = refusals ? *refusals : own;
   Rng rng(1);
   for (int draw = 0, legal = 0; draw < 250; ++draw)
-    if (drawn(task, amplitude, rng) && ++legal == 5) return true;
+    if (try_start(task, amplitude, rng, counts) && ++legal == 5) return true;
   return false;
 }
 

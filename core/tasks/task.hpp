@@ -6,6 +6,7 @@
 
 #include "core/math/rng.hpp"
 #include "core/tasks/goal.hpp"
+#include "core/tasks/refusals.hpp"
 #include "core/tasks/units.hpp"
 #include "core/world/push.hpp"
 
@@ -86,13 +87,18 @@ std::optional<Poses> jittered(const Task& task, const Poses& start, double ampli
 /// hangs on them by joints, as they lie in `poses`; all others in their places.
 Poses layout_around(const Task& task, const Poses& poses);
 
-/// Returns a start state of the task: the bodies that have a range are drawn from it, the others
-/// are jittered(). Jointed bodies move as one. Throws std::invalid_argument if 1000 draws in a row
-/// are illegal; allows_jitter() tests for that in advance.
+/// Draws a start state of the task: the bodies that have a range are drawn from it, the others
+/// are jittered(). Jointed bodies move as one. Returns nothing if 1000 draws in a row are illegal;
+/// allows_jitter() tests for that in advance. Adds to `refusals`, if not null.
+std::optional<Poses> drawn_start(const Task& task, double amplitude, Rng& rng,
+                                 Refusals* refusals = nullptr);
+
+/// Returns the drawn_start(). Throws std::invalid_argument if there is none.
 Poses jittered_start(const Task& task, double amplitude, Rng& rng);
 
-/// Returns whether jittered_start() can be relied on to find a legal start: at least 5 of 250 test
-/// draws are legal. If 1 draw in 50 is legal, 1000 in a row are illegal with probability 2e-9.
-bool allows_jitter(const Task& task, double amplitude);
+/// Returns whether drawn_start() can be relied on to find a legal start: at least 5 of 250 test
+/// draws are legal. If 1 draw in 50 is legal, 1000 in a row are illegal with probability 2e-9. Adds
+/// to `refusals`, if not null.
+bool allows_jitter(const Task& task, double amplitude, Refusals* refusals = nullptr);
 
 }  // namespace rtg::tasks

@@ -37,14 +37,17 @@ void check_jitters(const Config& config, const ConfigNode& root) {
   } jitters[] = {{"task", "start_jitter", config.task.start_jitter},
                  {"task", "randomisation", config.task.randomisation},
                  {"train", "start_jitter", config.train.start_jitter}};
-  for (const auto& [section, key, amplitude] : jitters)
-    if (!allows_jitter(config.task, amplitude))
+  for (const auto& [section, key, amplitude] : jitters) {
+    tasks::Refusals refusals;
+    if (!allows_jitter(config.task, amplitude, &refusals))
       throw ConfigError(
           origin_of(root, section, key), std::string(section) + '.' + key,
           "with objects shifted by up to " + length_text(amplitude, config.task.units) +
-              " m too few starts are legal (no overlaps, objects in the arena, goal not met)",
+              " m too few starts are legal (no overlaps, objects in the arena, goal not met); " +
+              main_reason(refusals, config.task.scene),
           "at most " + length_text(legal_amplitude(config.task, amplitude), config.task.units) +
               " with these bodies");
+  }
 }
 
 }  // namespace rtg::config

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -170,17 +169,18 @@ void draw_nominal_start(tasks::Task& task, const ConfigNode& section) {
   }
   Rng rng(1);
   task.layout = task.start;
-  try {
-    task.start = jittered_start(task, 0.0, rng);
-  } catch (const std::invalid_argument&) {
-    for (std::size_t i = 0; i < task.scene.size(); ++i)
-      if (task.start_ranges[i]) check_range(task, i, section);
-    throw ConfigError(find(section, "bodies")->value.origin, "task.bodies",
-                      "of 1000 states drawn from the starts none is legal",
-                      "starts in which bodies often lie " +
-                          length_text(tasks::kStartClearance, task.units) +
-                          " m apart, in the arena, with the goal not met");
+  tasks::Refusals refusals;
+  if (std::optional<Poses> start = drawn_start(task, 0.0, rng, &refusals)) {
+    task.start = *std::move(start);
+    return;
   }
+  for (std::size_t i = 0; i < task.scene.size(); ++i)
+    if (task.start_ranges[i]) check_range(task, i, section);
+  throw ConfigError(
+      find(section, "bodies")->value.origin, "task.bodies",
+      "of 1000 states drawn from the starts none is legal; " + main_reason(refusals, task.scene),
+      "starts in which bodies often lie " + length_text(tasks::kStartClearance, task.units) +
+          " m apart, in the arena, with the goal not met");
 }
 
 }  // namespace rtg::config

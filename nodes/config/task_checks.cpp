@@ -56,15 +56,25 @@ void check_start(const tasks::Task& task, const ConfigNode& section) {
   }
 }
 
-/// Lists "*" and the kinds of the objects that can move.
-std::string legal_kinds(const tasks::Task& task) {
-  std::vector<std::string> kinds{"\"*\""};
-  for (std::size_t i = 1; i < task.scene.size(); ++i) {
-    const Body& body = task.scene.bodies[i];
-    if (!body.fixed && std::find(kinds.begin(), kinds.end(), body.kind) == kinds.end())
-      kinds.push_back(body.kind);
-  }
+/// Adds the kinds of the objects i for which `counts`(i) to `kinds`, each once, and lists all.
+template <class Counts>
+std::string with_kinds(std::vector<std::string> kinds, const Scene& scene, Counts counts) {
+  for (std::size_t i = 1; i < scene.size(); ++i)
+    if (counts(i) && !std::ranges::count(kinds, scene.bodies[i].kind))
+      kinds.push_back(scene.bodies[i].kind);
   return listed(kinds);
+}
+
+/// Lists "*" and the kinds of the objects that can move.
+std::string legal_kinds(const Scene& scene) {
+  return with_kinds({"\"*\""}, scene, [&](std::size_t i) { return !scene.bodies[i].fixed; });
+}
+
+/// Lists the kinds of the objects beside object `i`.
+std::string legal_others(const Scene& scene, std::size_t i) {
+  const std::string kinds = with_kinds({}, scene, [i](std::size_t j) { return j != i; });
+  return kinds.empty() ? "none, because there is no other object"
+                       : "the kind of another object, also fixed: " + kinds;
 }
 
 /// Returns whether some point at which `term` asks for a body lies in the arena, |x|, |y| ≤ a.
@@ -137,7 +147,7 @@ void check_other(const tasks::GoalTerm& term, const tasks::Task& task, const Con
                           kind == "*" ? "no object beside '" + scene.bodies[i].name + "' can move"
                                       : "no object beside '" + scene.bodies[i].name +
                                             "' is of kind '" + kind + "'",
-                          "the kind of another object, also fixed");
+                          legal_others(scene, i));
   };
   if (const auto* touches = std::get_if<tasks::Touches>(&term.condition))
     check(touches->other, "touching");
@@ -185,7 +195,7 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
                                                             : "no revolute joint has the child '") +
                        term.kind + "'"
                  : "no object that can move is of kind '" + term.kind + "'",
-        of_joint ? legal_joints(task, of_joint->type) : legal_kinds(task));
+        of_joint ? legal_joints(task, of_joint->type) : legal_kinds(task.scene));
   }
   check_other(term, task, node, path);
   check_stays(term, task, node, path);
@@ -209,7 +219,6 @@ bool stands_right(const tasks::Task& task, std::size_t body) {
 }
 
 void check_goal(const tasks::Task& task, const ConfigNode& section) {
-  for (std::size_t k = 0; k < task.goal.size(); ++k) check_term(task, k, section);
   const std::string& origin = find(section, "goal")->value.origin;
   for (std::size_t i = 1; i < task.scene.size(); ++i)
     if (task.scene.bodies[i].fixed && !stands_right(task, i))
@@ -220,7 +229,7 @@ void check_goal(const tasks::Task& task, const ConfigNode& section) {
     throw ConfigError(origin, "task.goal", "holds in the start state",
                       "a goal that the start state does not meet");
   Rng rng(1);
-  tasks::GoalRefusals refusals;
+  tasks::Refusals refusals;
   if (sample_goal(task, rng, &refusals)) return;
   const auto term = main_term(refusals);
   throw ConfigError(
@@ -243,8 +252,12 @@ void check_names(const tasks::Task& task, const ConfigNode& section) {
                 "a name that no other body has");
 }
 
-void check_task(const tasks::Task& task, const ConfigNode& section) {
+void check_terms(const tasks::Task& task, const ConfigNode& section) {
   check_movable(task, section);
+  for (std::size_t k = 0; k < task.goal.size(); ++k) check_term(task, k, section);
+}
+
+void check_task(const tasks::Task& task, const ConfigNode& section) {
   check_start(task, section);
   check_goal(task, section);
 }

@@ -9,13 +9,20 @@ namespace rtg::config {
 /// for messages.
 void check_names(const tasks::Task& task, const ConfigNode& section);
 
-/// Checks values of the task that must fit together. `section`: the section `task`, for messages.
+/// Checks the goal terms, which needs no start state. `section`: the section `task`, for messages.
 /// Throws ConfigError if
 ///
 ///  - no object can move, or the robot is fixed;
+///  - a term concerns no movable object and no joint, or no point of the arena;
+///  - a term compares an object with others of a kind that none has;
+///  - no legal angle of a joint meets a term.
+void check_terms(const tasks::Task& task, const ConfigNode& section);
+
+/// Checks the rest of what must fit together. `section`: the section `task`, for messages. Throws
+/// ConfigError if
+///
 ///  - a movable body starts outside the arena or is larger, or bodies overlap or touch;
-///  - a goal term concerns no movable object and no joint, or no point of the arena;
-///  - no legal angle of a joint meets a goal term, or a fixed body violates one;
+///  - a fixed body violates a goal term;
 ///  - the goal holds in the start state, or no layout that meets it is found.
 void check_task(const tasks::Task& task, const ConfigNode& section);
 

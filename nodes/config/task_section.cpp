@@ -163,6 +163,7 @@ tasks::Task read_task(const ConfigNode& section) {
   if (const ConfigEntry* push = find(section, "push"))
     task.push = read_push(push->value, task.units);
   task.visit(reader);
+  check_terms(task, section);  // a kind without bodies would hold anywhere, also at all starts
   close_joints(task, section);
   draw_nominal_start(task, section);
   check_task(task, section);

@@ -160,7 +160,7 @@ TEST(GoalTerms, WhatCannotBeMetIsNamed) {
   Task task = letter_and_box();
   task.goal = {{"t", CentreIn{Disc{{0, 0}, 2}}}, {"t", CentreIn{Disc{{5, 5}, 1}}, false}};
   Rng rng(1);
-  GoalRefusals refusals;
+  Refusals refusals;
   EXPECT_FALSE(sample_goal(task, rng, &refusals));
   EXPECT_EQ(main_reason(refusals, task.scene).substr(0, 11), "task.goal.0");
 }

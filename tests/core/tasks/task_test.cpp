@@ -151,6 +151,24 @@ TEST(Task, JitterDrawsOverlapsAgainAndGivesUpOnTheImpossible) {
   EXPECT_FALSE(allows_jitter(task, 0.01));
 }
 
+TEST(Task, WhatKeepsStartsFromBeingLegalIsNamed) {
+  const auto reason = [](const Task& task, double amplitude) {
+    Refusals refusals;
+    Rng rng(4);
+    EXPECT_FALSE(drawn_start(task, amplitude, rng, &refusals));
+    return main_reason(refusals, task.scene);
+  };
+  Task task = gathering();
+  task.start[2] = task.start[1];
+  EXPECT_EQ(reason(task, 0.01), "'box1' overlapped 'box2' in 100% of the tries");
+  task = gathering();
+  task.start[3].x = 2.0 * task.push.arena;
+  EXPECT_EQ(reason(task, 0.01), "'box3' was out of the arena in 100% of the tries");
+  task = gathering();
+  task.goal = testing::near_origin(20.0);
+  EXPECT_EQ(reason(task, 0.01), "the goal held in 100% of the tries");
+}
+
 // Box 1 alone moves, by up to 1 m; the goal holds unless it moves to the right end of that.
 TEST(Task, JitterIsAllowedUnlessNearlyNoDrawIsLegal) {
   Task task = gathering();

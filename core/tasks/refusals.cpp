@@ -1,4 +1,4 @@
-#include "core/tasks/goal_refusals.hpp"
+#include "core/tasks/refusals.hpp"
 
 #include <algorithm>
 
@@ -6,8 +6,8 @@ namespace rtg::tasks {
 namespace {
 
 /// Returns the number of all refusals.
-long all_of(const GoalRefusals& refusals) {
-  long all = refusals.no_robot;
+long all_of(const Refusals& refusals) {
+  long all = refusals.no_robot + refusals.solved;
   for (const long count : refusals.by_term) all += count;
   for (const auto& [bodies, count] : refusals.no_room) all += count;
   return all;
@@ -15,19 +15,19 @@ long all_of(const GoalRefusals& refusals) {
 
 }  // namespace
 
-std::optional<std::size_t> main_term(const GoalRefusals& refusals) {
+std::optional<std::size_t> main_term(const Refusals& refusals) {
   const auto most = std::ranges::max_element(refusals.by_term);
   if (most == refusals.by_term.end() || 2 * *most < all_of(refusals)) return std::nullopt;
   return most - refusals.by_term.begin();
 }
 
-std::string main_reason(const GoalRefusals& refusals, const Scene& scene) {
+std::string main_reason(const Refusals& refusals, const Scene& scene) {
   const auto name = [&](std::size_t i) { return '\'' + scene.bodies[i].name + '\''; };
-  std::vector<std::pair<long, std::string>> reasons{
-      {refusals.no_robot, "the robot found no place"}};
+  std::vector<std::pair<long, std::string>> reasons{{refusals.no_robot, "the robot found no place"},
+                                                    {refusals.solved, "the goal held"}};
   for (const auto& [bodies, count] : refusals.no_room)
     reasons.emplace_back(count, bodies.first == bodies.second
-                                    ? name(bodies.first) + " left the arena"
+                                    ? name(bodies.first) + " was out of the arena"
                                     : name(bodies.first) + " overlapped " + name(bodies.second));
   for (std::size_t k = 0; k < refusals.by_term.size(); ++k)
     reasons.emplace_back(refusals.by_term[k], "task.goal." + std::to_string(k) + " did not hold");
