@@ -130,8 +130,9 @@ std::string kind_in_words(const std::string& kind, const char* all) {
   return kind == "*" ? all : '\'' + kind + '\'';
 }
 
-/// Says what a condition asks of its subject.
+/// Says what a condition asks of its subject, the bodies or joints of `kind`.
 struct ConditionWords {
+  const std::string& kind;
   double metre;
 
   std::string operator()(const tasks::CentreIn& c) const {
@@ -157,15 +158,21 @@ struct ConditionWords {
            pose_in_words(c.pose, metre);
   }
   std::string operator()(const tasks::Touches& c) const {
-    return print("is at most %.4g m away from another ", metre * c.gap) +
-           kind_in_words(c.other, "object");
+    return print("is at most %.4g m away from ", metre * c.gap) +
+           (may_be(c.other) ? "another " : "a ") + kind_in_words(c.other, "object");
   }
   std::string operator()(const tasks::KeepsFrom& c) const {
-    return print("is at least %.4g m away from every other ", metre * c.gap) +
-           kind_in_words(c.other, "object");
+    return print("is at least %.4g m away from every ", metre * c.gap) +
+           (may_be(c.other) ? "other " : "") + kind_in_words(c.other, "object");
   }
   std::string operator()(const tasks::Stays& c) const {
     return print("has its centre within %.4g m of its place above", metre * c.distance);
+  }
+
+ private:
+  /// Returns whether a body of the subject may be one of `other`, too.
+  bool may_be(const std::string& other) const {
+    return other == kind || other == "*" || kind == "*";
   }
 };
 
@@ -182,7 +189,7 @@ std::string term_in_words(const tasks::GoalTerm& term, double metre) {
           kind_in_words(term.kind, "movable objects");
   else
     who = every + kind_in_words(term.kind, "movable object");
-  return who + ' ' + std::visit(ConditionWords{metre}, term.condition) + '\n';
+  return who + ' ' + std::visit(ConditionWords{term.kind, metre}, term.condition) + '\n';
 }
 
 std::string task_in_words(const Config& config) {

@@ -219,6 +219,24 @@ def test_check_says_joints_and_goals_of_a_chain() -> None:
 
 
 @pytest.mark.parametrize(
+    ("condition", "words"),
+    [
+        ("touching: box", "is at most 0.1 m away from another 'box'"),
+        ("touching: wall", "is at most 0.1 m away from a 'wall'"),
+        ('apart: "*"', "is at least 0.1 m away from every other object"),
+        ("apart: wall", "is at least 0.1 m away from every 'wall'"),
+    ],
+)
+def test_check_says_with_what_objects_are_compared(condition: str, words: str) -> None:
+    wall = "    - {name: w, kind: wall, fixed: true, shape: {box: [6, 1]}, start: [0, 2.4, 0]}\n"
+    text = TASK.replace("  goal:\n", wall + "  goal:\n")
+    term = f"{condition}, gap: 0.1"
+    near = "    - {kind: box, disc: {centre: [0, 0], radius: 2}}\n"
+    text = text.replace(near, f"{near}    - {{kind: box, {term}}}\n")
+    assert f"  every 'box' {words}\n" in _core.Config.from_text(text, "words").description
+
+
+@pytest.mark.parametrize(
     ("normal", "offset", "words"),
     [
         ("[1, 0]", -2, "x <= -2 m"),
