@@ -2,7 +2,8 @@
 
 - Pages that lie outside of docs/, files that pages link to, and the C++ reference are added.
 - Links between files of the repository become links of the site.
-- A line `<!-- made: NAME -->` is replaced by what the code says: see _MADE.
+- A line `<!-- made: NAME -->`, and the one below it, which tells readers of the file where to look,
+  are replaced by what the code says: see _MADE.
 - Formulas become MathML.
 """
 
@@ -30,8 +31,9 @@ _MADE = {
     "messages": messages.reference,
     "methods": configuration.methods,
     "observations": environments.observations,
+    "python": str,  # nothing: mkdocstrings replaces the names below
 }
-_MARK = re.compile(r"^<!-- made: (\w+) -->$", re.MULTILINE)
+_MARK = re.compile(r"^<!-- made: (\w+) -->\n.+$", re.MULTILINE)
 
 
 def _from(config: MkDocsConfig, file: str) -> File:

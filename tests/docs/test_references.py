@@ -1,5 +1,7 @@
 """The references that docs/site makes of the code."""
 
+import re
+
 import configuration
 import environments
 import headers
@@ -96,6 +98,14 @@ def test_examples_have_text_output_and_picture() -> None:
     page = programs.reference()
     for program in (paths.ROOT / "train" / "rtg" / "examples").glob("[0-9]*.py"):
         assert f"## {program.stem}\n" in page and f"](figures/{program.stem}." in page
+
+
+def test_readers_of_the_files_are_told_how_to_see_what_is_made() -> None:
+    pages = "".join(page.read_text() for page in (paths.ROOT / "docs").glob("*.md"))
+    told = re.findall(r"^<!-- made: \w+ -->\n(\*The site has .*\*)$", pages, re.MULTILINE)
+    assert len(told) == pages.count("<!-- made:") > 6
+    for line in told:
+        assert "docs/requirements.txt" in line and "`python -m mkdocs serve`" in line
 
 
 @pytest.mark.parametrize(
