@@ -1,6 +1,7 @@
 """The README and the pages of docs/: what stands there as code is legal, and runs."""
 
 import ast
+import importlib
 import importlib.util
 import itertools
 import json
@@ -94,6 +95,14 @@ def test_the_tasks_in_yaml_are_legal() -> None:
     for text in found:
         _core.Config.from_text(text, "page")
     assert len(found) >= 2
+
+
+def test_the_task_of_the_tutorial_is_that_of_the_file_and_of_the_example() -> None:
+    page = paths.ROOT / "docs" / "tutorials" / "own_task.md"
+    program = importlib.import_module("rtg.examples.06_own_task")
+    file = paths.CONFIG / "examples" / "shelf.yaml"
+    for text in (*fenced(page.read_text(), "yaml"), program.TASK):
+        assert _core.Config.from_text(text, "page").yaml == _core.Config.from_file(file).yaml
 
 
 def commands(page: Path) -> Iterator[list[str]]:
