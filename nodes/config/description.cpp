@@ -192,6 +192,16 @@ std::string term_in_words(const tasks::GoalTerm& term, double metre) {
   return who + ' ' + std::visit(ConditionWords{term.kind, metre}, term.condition) + '\n';
 }
 
+/// Returns whether an object that can move, or the tree of joints that it belongs to, has no range.
+bool some_start_in_places(const tasks::Task& task) {
+  const std::vector<std::size_t> roots = roots_of(task.scene);
+  for (std::size_t i = 1; i < task.scene.size(); ++i)
+    if (!task.scene.bodies[roots[i]].fixed &&
+        (task.start_ranges.empty() || !task.start_ranges[roots[i]]))
+      return true;
+  return false;
+}
+
 std::string task_in_words(const Config& config) {
   const tasks::Task& task = config.task;
   const double metre = task.units.length;
@@ -208,8 +218,10 @@ std::string task_in_words(const Config& config) {
       push.headings, 360.0 / push.headings, strides.c_str(), metre * push.arena);
   out += print("episodes\n  at most %d pushes, observation of %d numbers\n", task.horizon,
                observation_size(task));
-  out += print("  objects start within %.4g m of the layout above (training: %.4g m)\n",
-               metre * config.evaluation_jitter(), metre * config.training_jitter());
+  if (some_start_in_places(task))
+    out += print("  %s start within %.4g m of the layout above (training: %.4g m)\n",
+                 task.start_ranges.empty() ? "objects" : "objects without a range",
+                 metre * config.evaluation_jitter(), metre * config.training_jitter());
   return out;
 }
 

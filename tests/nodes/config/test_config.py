@@ -204,6 +204,18 @@ def test_check_says_what_it_understood(file: Path) -> None:
     assert said == Path(__file__).with_name("understood.txt").read_text()
 
 
+def test_check_says_which_objects_start_around_their_places() -> None:
+    def said(text: str) -> str:
+        return _core.Config.from_text(text, "starts").description
+
+    moved = "start within 0.1 m of the layout above"
+    one = TASK.replace("[3, 0, 0]", "{x: [3, 4], y: [3, 4]}")
+    both = one.replace("[-3, 0, 0]", "{x: [-4, -3], y: [3, 4]}")
+    assert f"  objects {moved}" in said(TASK)
+    assert f"  objects without a range {moved}" in said(one)
+    assert "layout above" not in said(both)
+
+
 def test_check_says_joints_and_goals_of_a_chain() -> None:
     config = _core.Config.from_file(paths.CONFIG / "art_manip.yaml")
     said = config.description.split("actions\n")[0].splitlines()
