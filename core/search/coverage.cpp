@@ -15,7 +15,7 @@ Coverage::Coverage(const tasks::Task& task)
 bool Coverage::moves_several(const Transition& t) const {
   std::size_t first = 0;
   for (std::size_t k = 1; k < t.poses.size(); ++k) {
-    if ((t.poses[k].position() - t.next[k].position()).norm() <= kMoved) continue;
+    if (!has_moved(t.poses[k], t.next[k])) continue;
     if (first != 0 && group_roots_[k] != first) return true;
     first = group_roots_[k];
   }

@@ -13,10 +13,13 @@ double replay_gap(const Poses& reverse_end, const Poses& replayed_end) {
   return sum / static_cast<double>(reverse_end.size());
 }
 
+bool has_moved(const Pose& before, const Pose& after) {
+  return (before.position() - after.position()).norm() > kMoved;
+}
+
 int objects_moved(const Poses& a, const Poses& b) {
   int count = 0;
-  for (std::size_t k = 1; k < a.size(); ++k)
-    count += (a[k].position() - b[k].position()).norm() > kMoved;
+  for (std::size_t k = 1; k < a.size(); ++k) count += has_moved(a[k], b[k]);
   return count;
 }
 

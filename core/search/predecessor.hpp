@@ -19,14 +19,17 @@ struct Predecessor {
   int depth = 0;                // actions until success, set by the search
 };
 
-/// Displacement above which an object counts as moved [m].
+/// Displacement above which a body counts as moved [m].
 inline constexpr double kMoved = 0.05;
+
+/// Returns whether the positions of a body in two states differ by more than kMoved.
+bool has_moved(const Pose& before, const Pose& after);
 
 /// Returns the replay gap of Fig. 16: the distance between the two positions of a body, averaged
 /// over all bodies [m].
 double replay_gap(const Poses& reverse_end, const Poses& replayed_end);
 
-/// Returns the number of bodies other than the robot whose positions differ by more than kMoved.
+/// Returns the number of bodies other than the robot that has_moved() holds for.
 int objects_moved(const Poses& a, const Poses& b);
 
 /// Returns whether `poses` can be the start of a transition. They must be finite, with the robot in

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/forward/newton_simulator.hpp"
+#include "core/search/predecessor.hpp"
 #include "tests/bench/gathering_states.hpp"
 
 namespace rtg::bench {
@@ -12,18 +13,10 @@ namespace {
 
 using testing::gathering;
 
-constexpr double kMoved = 0.05;  // [m]
-
 struct Push {
   Poses start;
   int action = 0;
 };
-
-bool moves_an_object(const Poses& before, const Poses& after) {
-  for (std::size_t k = 1; k < before.size(); ++k)
-    if ((after[k].position() - before[k].position()).norm() > kMoved) return true;
-  return false;
-}
 
 /// All pushes from the goal states that both simulators finish and that move an object.
 std::vector<Push> contact_pushes(const tasks::Task& task) {
@@ -33,7 +26,8 @@ std::vector<Push> contact_pushes(const tasks::Task& task) {
   for (const Poses& state : bench::goal_states(task))
     for (int action = 0; action < task.push.headings; ++action) {
       const forward::PushOutcome outcome = box2d.push(state, action);
-      if (outcome.ok && moves_an_object(state, outcome.end) && newton.push(state, action).ok)
+      if (outcome.ok && search::objects_moved(state, outcome.end) > 0 &&
+          newton.push(state, action).ok)
         pushes.push_back({state, action});
     }
   return pushes;

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scaled
 from rtg import _core, paths
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
@@ -58,6 +59,47 @@ def test_success_is_the_goal_term_drawn_in_pictures() -> None:
     expected = inside.all(axis=1)
     assert 0.1 < expected.mean() < 0.9
     np.testing.assert_array_equal(TASK.succeeded(states), expected)
+
+
+def test_a_body_has_moved_if_its_place_is_another() -> None:
+    """In the units of the task, so that its size is of no matter."""
+    for scale in (1.0, 1 / 20):
+        task = scaled.gathering(scale).task
+        before = np.repeat(task.start[None], 2, axis=0)
+        after = before.copy()
+        after[0, 1:, 0] += 0.049, 0.051, 0.0
+        after[0, 3, 2] += 3.0
+        after[1, :, 1] -= 1.0
+        assert task.moved(before, after).tolist() == [[False, False, True, False], [True] * 4]
+    with pytest.raises(ValueError, match="states of 3 bodies; legal: 4"):
+        TASK.moved(before, after[:, :3].copy())
+    with pytest.raises(ValueError, match="2 states but 1 next states; legal: equally many"):
+        TASK.moved(before, after[:1])
+
+
+@pytest.mark.parametrize(
+    ("name", "settings"), [("push_t", []), ("gathering", ["task.push.strides=[0.5,1.0]"])]
+)
+def test_the_way_of_an_action_is_that_of_a_robot_that_meets_nothing(
+    name: str, settings: list[str]
+) -> None:
+    """Also of a task in other units, and with several strides."""
+    config = _core.Config.from_file(paths.CONFIG / f"{name}.yaml", settings)
+    actions = np.arange(0, config.task.actions, 5)
+    starts = np.repeat(config.task.start[None], len(actions), axis=0)
+    starts[:, 0, :2] = 0.7 * config.task.arena
+    after, ok = _core.Simulator(config).push(starts, actions)
+    free = ok & (np.abs(after[:, 1:] - starts[:, 1:]).max(axis=(1, 2)) == 0)
+    free &= (np.abs(after[:, 0, :2]) < 0.95 * config.task.arena).all(axis=1)
+    assert free.sum() > 5
+    way = (after - starts)[:, 0, :2]
+    np.testing.assert_allclose(way[free], config.task.ways(actions)[free], atol=1e-4)
+
+
+def test_an_action_that_the_task_lacks_has_no_way() -> None:
+    for wrong in (-1, TASK.actions):
+        with pytest.raises(ValueError, match=f"action {wrong}; legal: 0 to 47"):
+            TASK.ways(np.array([0, wrong]))
 
 
 def test_joints_are_reached_where_each_goal_of_theirs_is_met() -> None:

@@ -47,6 +47,17 @@ inline void check_bodies(const StateArray& states, std::size_t bodies) {
   }
 }
 
+/// Throws ValueError unless each action is from 0 to `count` - 1.
+inline void check_actions(const ActionArray& actions, int count) {
+  for (std::size_t row = 0; row < actions.shape(0); ++row) {
+    const std::int64_t action = actions.data()[row];
+    if (action < 0 || action >= count)
+      throw nb::value_error(
+          ("action " + std::to_string(action) + "; legal: 0 to " + std::to_string(count - 1))
+              .c_str());
+  }
+}
+
 /// Throws ValueError unless there is one action per state, each from 0 to `count` - 1.
 inline void check_actions(const ActionArray& actions, std::size_t states, int count) {
   if (actions.shape(0) != states)
@@ -54,13 +65,7 @@ inline void check_actions(const ActionArray& actions, std::size_t states, int co
                            std::to_string(actions.shape(0)) +
                            " actions; legal: one action per state")
                               .c_str());
-  for (std::size_t row = 0; row < states; ++row) {
-    const std::int64_t action = actions.data()[row];
-    if (action < 0 || action >= count)
-      throw nb::value_error(
-          ("action " + std::to_string(action) + "; legal: 0 to " + std::to_string(count - 1))
-              .c_str());
-  }
+  check_actions(actions, count);
 }
 
 /// Throws ValueError unless there is one way per state, each of a finite length above 0.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "core/search/predecessor.hpp"
 #include "core/search/start_distance.hpp"
 #include "core/tasks/contact_heading.hpp"
 #include "core/tasks/goal_marks.hpp"
@@ -107,6 +108,37 @@ nb::ndarray<nb::numpy, bool> in_start_regions(const tasks::Task& task, const Sta
   for (std::size_t row = 0; row < states.shape(0); ++row)
     out.data[row] = search::in_start_region(task, metric, state_at(states, row));
   return out.release({states.shape(0)});
+}
+
+nb::ndarray<nb::numpy, bool> moved(const tasks::Task& task, const StateArray& states,
+                                   const StateArray& next_states) {
+  check_bodies(states, task.scene.size());
+  check_bodies(next_states, task.scene.size());
+  if (states.shape(0) != next_states.shape(0))
+    throw nb::value_error((std::to_string(states.shape(0)) + " states but " +
+                           std::to_string(next_states.shape(0)) +
+                           " next states; legal: equally many")
+                              .c_str());
+  OwnedArray<bool> out(states.shape(0) * task.scene.size());
+  bool* to = out.data.get();
+  for (std::size_t row = 0; row < states.shape(0); ++row) {
+    const Poses before = state_at(states, row), after = state_at(next_states, row);
+    for (std::size_t i = 0; i < before.size(); ++i) *to++ = search::has_moved(before[i], after[i]);
+  }
+  return out.release({states.shape(0), task.scene.size()});
+}
+
+/// Returns the stroke of each action as a vector. [N] -> [N, 2]
+nb::ndarray<nb::numpy, double> ways(const tasks::Task& task, const ActionArray& actions) {
+  check_actions(actions, action_count(task.push));
+  OwnedArray<double> out(actions.shape(0) * 2);
+  double* to = out.data.get();
+  for (std::size_t row = 0; row < actions.shape(0); ++row) {
+    const Stroke stroke = stroke_of(static_cast<int>(actions.data()[row]), task.push);
+    *to++ = stroke.length * stroke.direction.x();
+    *to++ = stroke.length * stroke.direction.y();
+  }
+  return out.release({actions.shape(0), 2});
 }
 
 /// Returns one contact_heading() per state. Row k draws from random stream k of `seed`.
@@ -304,6 +336,14 @@ It is sample `index` of random stream `seed`. Returns None if 1,000 attempts fai
 
 They are finite, no bodies overlap by more than 0.03 m, movable ones are within twice the
 arena, and fixed ones in their places.)")
+      .def("moved", &moved, nb::arg("states"), nb::arg("next_states"),
+           R"(Returns which bodies are more than 0.05 m from where they were. [N, bodies]
+
+Turns do not count. `states`, `next_states`: [N, bodies, 3] each.)")
+      .def("ways", &ways, nb::arg("actions"),
+           R"(Returns the ways (x, y) of the robot that actions ask for [m]. [N] -> [N, 2]
+
+Raises ValueError for an action that the task does not have.)")
       .def("__reduce__",
            [](const tasks::Task& task) {
              config::Config config;

@@ -5,11 +5,9 @@ import json
 import numpy as np
 import pytest
 from exported import run_folder
-from rtg import _core, paths
 from rtg.cli import main
 from rtg.errors import UserError
 from rtg.export import lerobot_format, run_data
-from rtg.export.lerobot_format import push_vectors
 from rtg.pictures.draw import Canvas, arena_window, state_image
 
 av = pytest.importorskip("av", reason="the extra `lerobot` is not installed")
@@ -50,7 +48,9 @@ def test_a_frame_is_a_state_and_the_push_from_there(data, folder, episodes):
     observations = data.config.task.observation(states)
     assert np.array_equal(np.array(table["observation.state"], np.float32), observations)
     assert table["push"] == actions.tolist()
-    np.testing.assert_allclose(table["action"], push_vectors(data.config.task, actions), atol=1e-6)
+    angles = 2.0 * np.pi * actions / data.config.task.headings
+    ways = 2.0 * np.stack([np.cos(angles), np.sin(angles)], axis=1)  # [m]
+    np.testing.assert_allclose(table["action"], ways, atol=1e-6)
     lengths = [len(episode.action) for episode in episodes]
     frames = np.concatenate([np.arange(length) for length in lengths])
     assert table["frame_index"] == frames.tolist()
@@ -145,21 +145,6 @@ def test_many_episodes_are_divided_among_files(data, tmp_path, monkeypatch):
     assert second["index"][0].as_py() == rows[4]["dataset_from_index"] > 0
     with av.open(str(tmp_path / f"out/videos/{IMAGES}/chunk-000/file-001.mp4")) as film:
         assert sum(1 for _ in film.decode(video=0)) == rows[4]["length"] + rows[5]["length"]
-
-
-def test_the_way_of_a_push_is_that_of_a_robot_that_meets_nothing():
-    """Also of a task in other units, and with several strides."""
-    for name, settings in (("push_t", []), ("gathering", ["task.push.strides=[0.5,1.0]"])):
-        config = _core.Config.from_file(paths.CONFIG / f"{name}.yaml", settings)
-        actions = np.arange(0, config.task.actions, 5)
-        starts = np.repeat(config.task.start[None], len(actions), axis=0)
-        starts[:, 0, :2] = 0.7 * config.task.arena
-        after, ok = _core.Simulator(config).push(starts, actions)
-        free = ok & (np.abs(after[:, 1:] - starts[:, 1:]).max(axis=(1, 2)) == 0)
-        free &= (np.abs(after[:, 0, :2]) < 0.95 * config.task.arena).all(axis=1)
-        way = (after - starts)[:, 0, :2] / config.task.metre
-        assert free.sum() > 5
-        np.testing.assert_allclose(way[free], push_vectors(config.task, actions)[free], atol=1e-4)
 
 
 def test_a_folder_is_not_written_over_and_a_failure_leaves_none(data, tmp_path, monkeypatch):

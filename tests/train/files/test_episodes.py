@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scaled
 from rtg import _core, paths
 from rtg.files.dataset import SOURCES, Transitions
 from rtg.files.episodes import replayed_plan, replayed_plans, simulated
@@ -145,3 +146,13 @@ def test_an_episode_stops_before_a_push_that_the_simulator_cannot_finish(monkeyp
     assert (cut.action.tolist(), len(cut.poses)) == ([6], 2)
     assert (none.action.tolist(), len(none.poses)) == ([], 1)
     assert whole.action.tolist() == [6, 6]
+
+
+def test_plans_are_found_in_a_task_of_any_size():
+    """Steps of a robot of 4 cm begin as far apart, in its units, as those of one of 80 cm."""
+    small = scaled.gathering(1 / 20)
+    joined = transitions(FIRST, SECOND, LAST)
+    assert np.array_equal(replayed_plan(small, joined), replayed_plan(CONFIG, joined))
+    far = row(FIRST[2], 12, shift=0.3)
+    apart = transitions(FIRST, far, row(far[2], 24, success=True))
+    assert len(replayed_plan(small, apart)) == len(replayed_plan(CONFIG, apart)) == 3

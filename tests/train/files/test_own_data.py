@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+import scaled
 from rtg import _core, paths
 from rtg.errors import UserError
 from rtg.files import dataset, own_data, run_folder, versions
@@ -92,6 +93,17 @@ def test_figures_are_those_that_a_search_tells_of_the_same_rows(generated):
     figures = own_data.figures(TASK, rows)
     assert figures == pytest.approx({name: report[name] for name in figures})
     assert 0 < figures["contact_share"] < 1 and figures["headings_per_state"] > 2
+
+
+def test_figures_are_those_of_a_task_of_any_size(generated):
+    """A robot of 4 cm moves boxes by millimetres."""
+    rows = generated[0]
+    small = scaled.gathering(1 / 20).task
+    ways = [column / [small.metre, small.metre, 1.0] for column in (rows.poses, rows.next_poses)]
+    assert np.abs(ways[1] - ways[0])[:, 1:, :2].max() < 0.2  # [m]
+    poses, next_poses = (own_data.in_task_units(small, states) for states in ways)
+    found = own_data.figures(small, rows._replace(poses=poses, next_poses=next_poses))
+    assert found == pytest.approx(own_data.figures(TASK, rows))
 
 
 def test_a_run_stores_them_sealed_and_tells_of_their_file(tmp_path, generated):

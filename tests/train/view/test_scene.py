@@ -6,10 +6,13 @@ import pytest
 pytest.importorskip("rerun", reason="the extra view is not installed")
 
 import rerun as rr
+import scaled
 from recordings import read
 from rtg import _core, paths
+from rtg.files.dataset import Rows
 from rtg.pictures.draw import GREY_LEVEL, KIND_PALETTE, WALL
 from rtg.view import scene, trees
+from rtg.view.step_tree import StepTree
 
 
 def logged(tmp_path, file):
@@ -57,10 +60,22 @@ def test_the_colours_of_depths_begin_and_end_with_those_of_the_scale():
     assert shown[3].tolist() == [GREY_LEVEL] * 3
 
 
-def test_only_moves_are_shown():
-    starts = np.zeros((3, 2))
-    ends = np.array([[0.04, 0.0], [0.06, 0.0], [0.0, 2.0]])
-    lines, depths = trees.moves(starts, ends, np.array([1, 2, 4]), deepest=4)
-    assert depths.tolist() == [2, 4]
-    assert np.allclose(lines[:, 1, :2], ends[1:])
+@pytest.mark.parametrize("scale", [1.0, 1 / 20])
+def test_only_moves_are_shown(scale):
+    task = scaled.gathering(scale).task
+    poses = np.repeat(task.start[None], 3, axis=0)
+    after = poses.copy()
+    after[:, 2, 0] += 0.04, 0.06, 2.0
+    after[2, 0, 0] += 2.0  # the robot is no object
+    done, nothing = np.ones(3, bool), np.zeros(3)
+    tree = StepTree(task.bodies)
+    tree.add(Rows(poses, nothing, after, nothing, done, nothing))
+    found = trees.moves(task, tree, np.array([0, 1, 2]))
+    assert {body: steps.tolist() for body, steps in found.items()} == {2: [1, 2]}
+
+
+def test_deep_steps_lie_on_top():
+    ends = np.array([[0.06, 0.0], [0.0, 2.0]])
+    lines = trees.lines(np.zeros((2, 2)), ends, np.array([2, 4]), deepest=4)
+    assert np.allclose(lines[:, 1, :2], ends)
     assert scene.OBJECT_HEIGHT < lines[0, 0, 2] < lines[1, 0, 2]

@@ -52,13 +52,6 @@ def _columns(task: _core.Task) -> dict[str, _Column]:
     }
 
 
-def push_vectors(task: _core.Task, actions: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Returns the way of the robot that actions ask for, x and y [m]. [N] -> [N, 2]"""
-    angle = 2.0 * np.pi * (actions % task.headings) / task.headings
-    length = np.array(task.strides)[actions // task.headings] * 2.0 * task.relative_unit
-    return (length / task.metre)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-
-
 def _frames(task: _core.Task, episode: Episode, number: int, begin: int) -> dict[str, NDArray[Any]]:
     """Returns the columns of an episode; `begin`: the number of its first frame in the data set."""
     count = len(episode.action)
@@ -66,7 +59,7 @@ def _frames(task: _core.Task, episode: Episode, number: int, begin: int) -> dict
     is_last = frame == count - 1
     return {
         "observation.state": task.observation(episode.poses[:-1]),
-        "action": push_vectors(task, episode.action).astype(np.float32),
+        "action": (task.ways(episode.action) / task.metre).astype(np.float32),
         "push": episode.action,
         "next.reward": (is_last & episode.success).astype(np.float32),
         "next.done": is_last,

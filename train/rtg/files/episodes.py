@@ -14,7 +14,9 @@ from rtg.files.dataset import SOURCES, Transitions
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_MAX_GAP = 0.25  # [m], largest jump of a body between the end of a step and the next one's start
+_MAX_GAP = (
+    0.25  # [task units], largest jump of a body between the end of a step and the next one's start
+)
 _MAX_REPLAYS = 50  # largest number of plans to simulate for replayed_plan()
 
 
@@ -27,7 +29,7 @@ class Episode(NamedTuple):
 
 
 def _positions(states: Floats) -> NDArray[np.float32]:
-    """Returns the positions of all bodies [m]. [N, bodies, 3] -> [N, 2 bodies]"""
+    """Returns the positions of all bodies. [N, bodies, 3] -> [N, 2 bodies]"""
     return states[:, :, :2].reshape(len(states), -1).astype(np.float32)
 
 
@@ -110,9 +112,9 @@ def replayed_plans(
 ) -> list[Episode]:
     """Simulates plans from the stored transitions, each from its first state to its end.
 
-    A plan is a chain of stored transitions that ends in a success. Each one begins within 0.25 m of
-    the end of the previous one. Branches are left out. If `whole`, plans that are the end of
-    another one are left out, too.
+    A plan is a chain of stored transitions that ends in a success. Each one begins within 0.25
+    task units of the end of the previous one. Branches are left out. If `whole`, plans that are the
+    end of another one are left out, too.
 
     Those that begin in the start region come first, then those that begin nearest to the start of
     the task. `count`: at most so many; None: all. An episode may fail where its plan succeeds.

@@ -21,7 +21,6 @@ from rtg.files.recorder import Recorder
 
 Floats = NDArray[np.float64]
 
-_MOVED = 0.05  # [task units], an object that moved farther was pushed; kMoved of the search
 _NEEDED = ("states", "actions", "next_states")
 
 
@@ -123,13 +122,13 @@ def read(path: Path, task: _core.Task) -> OwnData:
 
 def figures(task: _core.Task, rows: Rows) -> dict[str, Any]:
     """Returns what generation.json tells of transitions, by the same keys."""
-    ways = np.linalg.norm((rows.next_poses - rows.poses)[:, 1:, :2], axis=2)  # [N, objects]
+    moved = task.moved(rows.poses, rows.next_poses)[:, 1:]  # [N, objects]
     count = len(rows.action)
     return {
         "transitions": count,
         "tree_transitions": int((rows.source == 0).sum()),
         "branch_transitions": int((rows.source == 1).sum()),
-        "contact_share": float((ways > _MOVED).any(axis=1).mean()),
+        "contact_share": float(moved.any(axis=1).mean()),
         "headings_per_state": count / int(numbered(rows.poses).max() + 1),
         "start_region_transitions": int(task.in_start_region(rows.poses).sum()),
     }

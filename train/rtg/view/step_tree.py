@@ -10,13 +10,13 @@ from rtg.files.dataset import Rows
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_MAX_GAP = 0.5  # [m], largest jump of a body between the end of a step and the start of the next
+_MAX_GAP = 0.5  # [task units], largest jump of a body from the end of a step to the next one
 _TRIES = 3  # calls of add() in which the next step of a step may come
 _PART = 500  # number of states that are compared with all others at once
 
 
 def _positions(states: Floats) -> NDArray[np.float32]:
-    """Returns the positions of all bodies [m]. [N, bodies, 3] -> [N, 2 bodies]"""
+    """Returns the positions of all bodies. [N, bodies, 3] -> [N, 2 bodies]"""
     return states[:, :, :2].reshape(len(states), -1).astype(np.float32)
 
 
@@ -24,8 +24,8 @@ class StepTree:
     """Steps in the order in which a search stores them, each with its depth.
 
     The depth of a step is the number of steps from it to success, itself included. The next step
-    after one that does not succeed is that whose start is nearest to its end, at most 0.5 m off.
-    Steps that lead to no known one have depth 0.
+    after one that does not succeed is that whose start is nearest to its end, at most 0.5 task
+    units off. Steps that lead to no known one have depth 0.
     """
 
     def __init__(self, bodies: int) -> None:

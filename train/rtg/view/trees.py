@@ -15,7 +15,6 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Colours = NDArray[np.uint8]
 
-_MOVED = 0.05  # [m], shorter moves of an object are not shown, as in contact_share
 _WIDTH = 1.2  # of a step, in pixels
 _LEGEND = 5  # number of depths in the legend
 _LOWEST, _HIGHEST = 0.2, 0.3  # heights of the steps of depth 0 and of the deepest, above the goal
@@ -38,17 +37,24 @@ def depth_colours(depths: Ints, deepest: int) -> Colours:
     return colours
 
 
-def moves(starts: Floats, ends: Floats, depths: Ints, deepest: int) -> tuple[Floats, Ints]:
-    """Returns the moves of one body, [M, 2 ends, 3], and the depths of their steps, [M].
+def moves(task: TaskLike, tree: StepTree, steps: Ints) -> dict[int, Ints]:
+    """Returns which of the `steps` move each object, as contact_share counts moves.
+
+    Objects that none of them moves are left out.
+    """
+    moved = task.moved(tree.starts[steps], tree.ends[steps])
+    return {body: steps[moved[:, body]] for body in objects(task) if moved[:, body].any()}
+
+
+def lines(starts: Floats, ends: Floats, depths: Ints, deepest: int) -> Floats:
+    """Returns moves of one body as lines. [N, 2], [N, 2], [N] -> [N, 2 ends, 3]
 
     The height grows with the depth, so that deep steps, which are fewer, lie on top.
-    starts, ends [N, 2], depths [N]
     """
-    moved = np.linalg.norm(ends - starts, axis=1) > _MOVED
-    found = raised(np.stack([starts, ends], axis=1)[moved], 0.0)
-    shares = np.minimum(depths[moved], deepest) / deepest
+    found = raised(np.stack([starts, ends], axis=1), 0.0)
+    shares = np.minimum(depths, deepest) / deepest
     found[:, :, 2] = (_LOWEST + (_HIGHEST - _LOWEST) * shares)[:, None]
-    return found, depths[moved]
+    return found
 
 
 def log_steps(
@@ -61,18 +67,17 @@ def log_steps(
 ) -> None:
     """Shows `steps` of the tree from time `at` [s] on. `deepest` has the last colour."""
     recording.set_time(TIME, duration=at)
-    for body in objects(task):
-        starts, ends = tree.starts[steps, body, :2], tree.ends[steps, body, :2]
-        lines, depths = moves(starts, ends, tree.depths[steps], deepest)
-        if len(lines):
-            recording.log(
-                tree_path(task, body),
-                rr.LineStrips3D(
-                    lines,
-                    colors=depth_colours(depths, deepest),
-                    radii=rr.Radius.ui_points(_WIDTH / 2),
-                ),
-            )
+    for body, moved in moves(task, tree, steps).items():
+        starts, ends = tree.starts[moved, body, :2], tree.ends[moved, body, :2]
+        depths = tree.depths[moved]
+        recording.log(
+            tree_path(task, body),
+            rr.LineStrips3D(
+                lines(starts, ends, depths, deepest),
+                colors=depth_colours(depths, deepest),
+                radii=rr.Radius.ui_points(_WIDTH / 2),
+            ),
+        )
 
 
 def log_legend(recording: rr.RecordingStream, task: TaskLike, deepest: int) -> None:
