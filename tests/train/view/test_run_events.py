@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from rtg import _core
 from rtg.errors import UserError
-from rtg.view.run_events import Episode, Evaluation, Gaps, RunEvents, Steps
+from rtg.view.run_events import BestEpisode, Evaluation, Gaps, RunEvents, Steps
 from view_runs import GENERATION, LEARNING, episode, finished, generated, learn
 
 
@@ -47,7 +47,7 @@ def test_the_replay_gaps_come_bit_by_bit(tmp_path, rows):
 def test_the_episode_comes_last(tmp_path, rows):
     watched = events(finished(tmp_path / "run", rows))
     last = watched.new()[-1]
-    assert isinstance(last, Episode) and last.at == watched.end == GENERATION + LEARNING[-1]
+    assert isinstance(last, BestEpisode) and last.at == watched.end == GENERATION + LEARNING[-1]
     assert np.array_equal(last.states, episode()) and last.success and last.is_learned
 
 
@@ -67,10 +67,10 @@ def test_a_run_without_training_leaves_a_plan(tmp_path, rows):
     folder = generated(tmp_path / "run", rows)
     np.savez(folder / "best_episode.npz", poses=episode(), success=True)
     watched = events(folder)
-    assert of(Episode, watched.new()) == []  # the file may not be whole
+    assert of(BestEpisode, watched.new()) == []  # the file may not be whole
     (folder / "summary.json").write_text("{}")
     (last,) = watched.new()
-    assert isinstance(last, Episode) and not last.is_learned
+    assert isinstance(last, BestEpisode) and not last.is_learned
 
 
 @pytest.mark.parametrize(

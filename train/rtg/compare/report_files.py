@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import csv
 import io
-import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,8 +25,7 @@ from rtg.compare.run_results import (
     RunResult,
     costs,
 )
-from rtg.errors import UserError
-from rtg.files import locks, run_folder
+from rtg.files import best_episode, locks, run_folder
 from rtg.pictures import episode_pictures, plots
 from rtg.run import effective_config
 from rtg.run.results import episode_title
@@ -70,7 +68,7 @@ def _writing_to(out: Path) -> Iterator[None]:
 
 
 def _draw(
-    out: Path, comparison: Comparison, episodes: Mapping[str, Episode | None], suffix: str
+    out: Path, comparison: Comparison, episodes: Mapping[str, ShownEpisode | None], suffix: str
 ) -> None:
     _remove_old_pictures(out)
     for task, episode in episodes.items():
@@ -114,7 +112,7 @@ def _runs_of_reference(done: Sequence[RunResult]) -> list[RunResult]:
 
 
 @dataclass(frozen=True)
-class Episode:
+class ShownEpisode:
     """An episode to show in the report."""
 
     task: _core.Task
@@ -123,28 +121,18 @@ class Episode:
     success: bool
 
 
-def _read_episode(run: RunResult) -> Episode | None:
+def _read_episode(run: RunResult) -> ShownEpisode | None:
     """Reads the best episode of the run's final evaluation; None if there is no file.
 
     Raises UserError if the file is damaged.
     """
-    path, config = run.folder / "best_episode.npz", run.folder / "config.yaml"
-    if not path.is_file():
+    if not (run.folder / best_episode.FILE).is_file():
         return None
-    task = effective_config.load_recorded(config).task
-    try:
-        with np.load(path) as file:
-            poses, success = file["poses"].astype(float), bool(file["success"])
-        if poses.ndim != 3 or poses.shape[1:] != (task.bodies, 3) or not len(poses):
-            raise ValueError(poses.shape)
-    except (OSError, ValueError, TypeError, KeyError, zipfile.BadZipFile):
-        raise UserError(
-            f"{path}: is damaged; legal: the file as the run wrote it, or no file"
-        ) from None
-    return Episode(task, run.cell.label, poses, success)
+    task = effective_config.load_recorded(run.folder / "config.yaml").task
+    return ShownEpisode(task, run.cell.label, *best_episode.read(run.folder, task.bodies))
 
 
-def _best_episode(comparison: Comparison, task: str) -> Episode | None:
+def _best_episode(comparison: Comparison, task: str) -> ShownEpisode | None:
     """Returns the best episode of the final evaluations of a task; None if there is none.
 
     The criteria, in this order: success, reference method, small length.
@@ -158,7 +146,7 @@ def _best_episode(comparison: Comparison, task: str) -> Episode | None:
     )
 
 
-def _draw_episode(out: Path, task: str, episode: Episode | None) -> None:
+def _draw_episode(out: Path, task: str, episode: ShownEpisode | None) -> None:
     if episode is not None:
         words = episode_title(task, len(episode.poses) - 1, episode.success, episode.label)
         what = episode.task, episode.poses, episode.success, words

@@ -9,8 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from rtg.files import best_episode
 from rtg.files.run_folder import write_json, write_text
 from rtg.learn.evaluation import Evaluation
 from rtg.learn.log_sinks import LazySinks
@@ -73,9 +72,7 @@ class TrainingLog:
     def write_result(self, final: Evaluation, figures: Mapping[str, Any]) -> None:
         """Writes best_episode.npz and then training.json."""
         best = final.best()
-        np.savez(
-            self._folder / "best_episode.npz", poses=final.paths[best], success=final.success[best]
-        )
+        best_episode.write(self._folder, final.paths[best], bool(final.success[best]))
         write_json(self._folder / "training.json", dict(figures))
 
     def display(self, state: Mapping[str, Any], force: bool = False) -> None:

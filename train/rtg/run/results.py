@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg.errors import UserError
-from rtg.files import dataset, own_data, run_folder
+from rtg.files import best_episode, dataset, own_data, run_folder
 from rtg.files.episodes import replayed_plan
 from rtg.pictures import episode_pictures, plots
 from rtg.run import diagnosis
@@ -68,15 +68,13 @@ def _episode(plan: RunPlan) -> Floats | None:
     Without a learner, replays a plan from the data and writes it to best_episode.npz. Returns None
     if the data has no plan.
     """
-    path, task = plan.folder / "best_episode.npz", plan.config.task
+    task = plan.config.task
     if _trained(plan):
-        with np.load(path) as file:
-            poses: Floats = file["poses"]
-            return poses
+        return best_episode.read(plan.folder, task.bodies)[0]
     rows = dataset.read(plan.transitions_file, task)
     found = replayed_plan(plan.config, rows)
     if found is not None:
-        np.savez(path, poses=found, success=task.succeeded(found[-1:])[0])
+        best_episode.write(plan.folder, found, bool(task.succeeded(found[-1:])[0]))
     return found
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -12,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
-from rtg.errors import UserError
-from rtg.files import dataset, run_folder
+from rtg.files import best_episode, dataset, run_folder
 from rtg.files.dataset import Rows
 from rtg.run.results import learning_curve
 
@@ -46,7 +44,7 @@ class Gaps(NamedTuple):
     gaps: Floats  # [m]
 
 
-class Episode(NamedTuple):
+class BestEpisode(NamedTuple):
     """The episode that a run leaves: the best one of its policy, or a plan of its data."""
 
     at: float
@@ -55,7 +53,7 @@ class Episode(NamedTuple):
     is_learned: bool
 
 
-Event = Steps | Evaluation | Gaps | Episode
+Event = Steps | Evaluation | Gaps | BestEpisode
 
 
 class RunEvents:
@@ -130,19 +128,7 @@ class RunEvents:
         """The file of the episode is whole when the next one is there."""
         is_learned = (self._folder / "training.json").is_file()
         after = "training.json" if is_learned else "summary.json"
-        path = self._folder / "best_episode.npz"
-        if not self._changed(after) or not path.is_file():
+        if not self._changed(after) or not (self._folder / best_episode.FILE).is_file():
             return []
-        states, success = _read_episode(path, self._config.task.bodies)
-        return [Episode(self.end, states, success, is_learned)]
-
-
-def _read_episode(path: Path, bodies: int) -> tuple[Floats, bool]:
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            states, success = np.asarray(file["poses"], float), bool(file["success"])
-    except (ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        states, success = np.zeros(0), False
-    if states.ndim != 3 or states.shape[1:] != (bodies, 3) or len(states) == 0:
-        raise UserError(f"{path}: is damaged; legal: the file as the run wrote it")
-    return states, success
+        states, success = best_episode.read(self._folder, self._config.task.bodies)
+        return [BestEpisode(self.end, states, success, is_learned)]

@@ -12,7 +12,7 @@ from rtg import _core
 from rtg.files.dataset import SOURCES, Rows
 from rtg.view import figures, scene, trees
 from rtg.view.player import Player
-from rtg.view.run_events import Episode, Evaluation, Event, Gaps, Ints, Steps
+from rtg.view.run_events import BestEpisode, Evaluation, Event, Gaps, Ints, Steps
 from rtg.view.step_tree import StepTree
 
 Bools = NDArray[np.bool_]
@@ -74,7 +74,7 @@ class RunView:
                 figures.log_gaps(self._recording, at, gaps.tolist())
                 median, p90 = np.percentile(gaps, [50, 90])
                 self._figures = self._figures._replace(gaps=(float(median), float(p90)))
-            case Episode():
+            case BestEpisode():
                 self._take_episode(event)
         self.say_state(event.at)
 
@@ -115,7 +115,7 @@ class RunView:
         self._taken[numbers] = True
         return Rows._make(column[fresh] for column in event.rows)
 
-    def _take_episode(self, event: Episode) -> None:
+    def _take_episode(self, event: BestEpisode) -> None:
         end = "success after" if event.success else "not solved in"
         origin = "best episode" if event.is_learned else "plan of the data, replayed"
         self.player.offer(event.states, f"{origin}: {end} {len(event.states) - 1} pushes")
