@@ -9,6 +9,7 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
+from rtg import _core
 from rtg.envs.push_env import PushEnv
 from rtg.envs.push_vector_env import PushVectorEnv
 
@@ -109,6 +110,31 @@ def test_vectors_take_one_seed_and_at_least_one_step() -> None:
         PushVectorEnv(2).reset(seed=[1, 2])
     with pytest.raises(ValueError, match="max_episode_steps 0; legal: at least 1"):
         PushVectorEnv(2, max_episode_steps=0)
+
+
+class CountedTask:
+    """A task that counts how many states it is asked to observe."""
+
+    def __init__(self, task: _core.Task) -> None:
+        self.task, self.observed = task, 0
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.task, name)
+
+    def observation(self, states: np.ndarray) -> np.ndarray:
+        self.observed += len(states)
+        return self.task.observation(states)
+
+
+@pytest.mark.parametrize("observations", ["state", "image"])
+def test_a_step_observes_the_state_and_its_drawn_goal_once(observations: str) -> None:
+    env = PushEnv(goals="drawn", observations=observations)
+    envs = PushVectorEnv(3, goals="drawn", observations=observations)
+    for one, actions, count in ((env, 5, 1), (envs, np.full(3, 5), 3)):
+        one.reset(seed=1)
+        counted = one.interface.task = CountedTask(one.task)
+        one.step(actions)
+        assert counted.observed == 2 * count
 
 
 def test_an_episode_with_a_drawn_goal_ends_where_its_layout_is_reached() -> None:

@@ -136,40 +136,50 @@ class Interface:
         near = self._layouts.near(np.asarray(achieved_goal), np.asarray(desired_goal))
         return near.astype(np.float64) if near.ndim else float(near)
 
-    def observation(self, states: Floats, goals: Floats) -> Any:
+    def seen(self, states: Floats, goals: Floats) -> tuple[Any, Bools]:
         """Returns what an agent sees of states with their goal states. [N, bodies, 3] each
 
-        Arrays [N, ...], or a dictionary of them.
+        It is an array [N, ...] or a dictionary of such; and in which states the goal is reached, as
+        succeeded() tells.
         """
-        if self.variant.observations == "image":
-            frames = [
-                self.image(state[None], goal, self.variant.pixels)
-                for state, goal in zip(states, goals, strict=True)
-            ]
-            seen: Any = np.stack(frames)
-        else:
-            seen = self.task.observation(states)
+        entries = self.task.observation(states)
         if self._layouts is None:
-            return seen
-        return {
-            "observation": seen,
-            "achieved_goal": self._layout(states),
-            "desired_goal": self._layout(goals),
+            success = self.task.succeeded(states)
+            return self._shown(entries, states, goals, success), success
+        achieved, desired = self._layouts.of(entries), self._layout(goals)
+        success = self._layouts.near(achieved, desired)
+        observation = {
+            "observation": self._shown(entries, states, goals, success),
+            "achieved_goal": achieved,
+            "desired_goal": desired,
         }
+        return observation, success
+
+    def _shown(
+        self, entries: NDArray[np.float32], states: Floats, goals: Floats, success: Bools
+    ) -> NDArray[Any]:
+        """Returns the observations of states, whose `entries` are known; or pictures of them."""
+        if self.variant.observations == "state":
+            return entries
+        frames = [
+            self.image(state[None], goal, self.variant.pixels, bool(reached))
+            for state, goal, reached in zip(states, goals, success, strict=True)
+        ]
+        return np.stack(frames)
 
     def image(
-        self, path: Floats, goal: Floats, pixels: int, caption: str = ""
+        self, path: Floats, goal: Floats, pixels: int, reached: bool, caption: str = ""
     ) -> NDArray[np.uint8]:
         """Draws the last of some states, the way of the robot there, and the goal.
 
-        [T, bodies, 3], [bodies, 3] -> [pixels, pixels, 3]
+        `reached`: whether the goal is. [T, bodies, 3], [bodies, 3] -> [pixels, pixels, 3]
         """
         return state_image(
             self.task,
             path,
             canvas=Canvas(arena_window(self.task), pixels),
             caption=caption,
-            reached=bool(self.succeeded(path[-1:], goal[None])[0]),
+            reached=reached,
             marks=None if self._layouts is None else self._outlines(goal),
         )
 

@@ -74,7 +74,7 @@ def check_render_mode(mode: str | None, legal: list[str]) -> None:
 
 
 def first(observation: Any) -> Any:
-    """Returns the first of the observations of Interface.observation()."""
+    """Returns the first of the observations of Interface.seen()."""
     if isinstance(observation, dict):
         return {key: entries[0] for key, entries in observation.items()}
     return observation[0]
@@ -163,7 +163,7 @@ class PushEnv(gymnasium.Env[Any, Any]):
             self._goal = self.interface.drawn_goal(int(self.np_random.integers(2**63)))
         self._steps = 0
         self._show()
-        return self._observation(), self._info(rejected=False)
+        return self._seen(rejected=False)
 
     def step(self, action: ArrayLike) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Performs an action. Raises ValueError for one that is not legal."""
@@ -172,11 +172,11 @@ class PushEnv(gymnasium.Env[Any, Any]):
         )
         self._path.append(after[0])
         self._steps += 1
-        info = self._info(rejected=not ok[0])
+        observation, info = self._seen(rejected=not ok[0])
         success = bool(ok[0]) and info["is_success"]
         truncated = not success and (self._is_out_of_time() or not ok[0])
         self._show()
-        return self._observation(), float(success), success, bool(truncated), info
+        return observation, float(success), success, bool(truncated), info
 
     def get_state(self) -> dict[str, Any]:
         """Returns the state of the episode, for set_state().
@@ -194,7 +194,7 @@ class PushEnv(gymnasium.Env[Any, Any]):
         self._path = [checked_state(self.task, state["poses"])]
         self._goal = checked_state(self.task, state["goal"])
         self._steps = int(state["steps"])
-        return self._observation()
+        return self._seen(rejected=False)[0]
 
     def render(self) -> NDArray[np.uint8] | None:
         """Returns the picture of the state and of the robot's way, in the mode "rgb_array"."""
@@ -212,7 +212,8 @@ class PushEnv(gymnasium.Env[Any, Any]):
     def _picture(self) -> NDArray[np.uint8]:
         way = np.array(self._path)
         way[:-1, 1:] = self.poses[1:]  # shows the objects only at their current poses
-        return self.interface.image(way, self._goal, RENDERED_PIXELS, caption=f"{self._steps}")
+        reached = bool(self.interface.succeeded(self.poses[None], self._goal[None])[0])
+        return self.interface.image(way, self._goal, RENDERED_PIXELS, reached, f"{self._steps}")
 
     def _show(self) -> None:
         if self.render_mode != "human":
@@ -223,9 +224,8 @@ class PushEnv(gymnasium.Env[Any, Any]):
     def _is_out_of_time(self) -> bool:
         return self.ends_at_horizon and self._steps >= self.task.horizon
 
-    def _info(self, rejected: bool) -> dict[str, Any]:
-        success = bool(self.interface.succeeded(self.poses[None], self._goal[None])[0])
-        return {"poses": self.poses.copy(), "is_success": success, "rejected": rejected}
-
-    def _observation(self) -> Any:
-        return first(self.interface.observation(self.poses[None], self._goal[None]))
+    def _seen(self, rejected: bool) -> tuple[Any, dict[str, Any]]:
+        """Returns the observation of the current state, and its info."""
+        seen, success = self.interface.seen(self.poses[None], self._goal[None])
+        info = {"poses": self.poses.copy(), "is_success": bool(success[0]), "rejected": rejected}
+        return first(seen), info

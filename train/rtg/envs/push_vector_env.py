@@ -79,7 +79,7 @@ class PushVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
             raise ValueError("seed is a list; legal: one number for all environments")
         super().reset(seed=seed)
         self.begin(np.ones(self.num_envs, np.bool_))
-        return self.observation(), self._info(np.zeros(self.num_envs, np.bool_))
+        return self._seen(np.zeros(self.num_envs, np.bool_))
 
     def step(
         self, actions: NDArray[Any]
@@ -94,11 +94,11 @@ class PushVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
             self._steps[goes_on] += 1
         if begun.any():
             self.begin(begun)
-        info = self._info(~ok)
+        observation, info = self._seen(~ok)
         success = info["is_success"] & ok & goes_on
         truncated = goes_on & ~success & ((self._steps >= self.limit) | ~ok)
         self._ended = success | truncated
-        return self.observation(), success.astype(np.float64), success, truncated, info
+        return observation, success.astype(np.float64), success, truncated, info
 
     def begin(self, which: Bools) -> None:
         """Begins an episode at once in some environments, [num_envs]."""
@@ -112,17 +112,20 @@ class PushVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
 
     def observation(self) -> Any:
         """Returns the observations of the current states. [num_envs, ...]"""
-        return self.interface.observation(self._poses, self._goals)
+        return self.interface.seen(self._poses, self._goals)[0]
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
         """Returns a picture of each environment [pixels, pixels, 3], in the mode "rgb_array"."""
         if self.render_mode is None:
             return None
+        success = self.interface.succeeded(self._poses, self._goals)
+        parts = zip(self._poses, self._goals, success, self._steps, strict=True)
         return tuple(
-            self.interface.image(state[None], goal, RENDERED_PIXELS, caption=f"{steps}")
-            for state, goal, steps in zip(self._poses, self._goals, self._steps, strict=True)
+            self.interface.image(state[None], goal, RENDERED_PIXELS, bool(reached), f"{steps}")
+            for state, goal, reached, steps in parts
         )
 
-    def _info(self, rejected: Bools) -> dict[str, Any]:
-        success = self.interface.succeeded(self._poses, self._goals)
-        return {"poses": self._poses.copy(), "is_success": success, "rejected": rejected}
+    def _seen(self, rejected: Bools) -> tuple[Any, dict[str, Any]]:
+        """Returns the observations of the current states, and their info."""
+        seen, success = self.interface.seen(self._poses, self._goals)
+        return seen, {"poses": self._poses.copy(), "is_success": success, "rejected": rejected}
