@@ -31,6 +31,18 @@ def test_a_changed_file_is_refused(capsys, tmp_path):
     assert "was changed since the run wrote it" in refused(capsys, "minari", str(run))
 
 
+@pytest.mark.parametrize(("format", "package"), [("minari", "minari"), ("lerobot", "av")])
+def test_a_folder_that_cannot_be_written_is_refused(format, package, capsys, tmp_path):
+    pytest.importorskip(package, reason=f"the extra `{format}` is not installed")
+    run = run_folder(tmp_path / "run")
+    (tmp_path / "file").touch()
+    for out in (tmp_path / "file", tmp_path / "file" / "out"):
+        said = refused(capsys, format, str(run), "--out", str(out), "--episodes", "1")
+        assert said.startswith(f"rtg: --out: {out}")
+        assert "legal: a" in said and said.count("\n") == 1
+    assert (tmp_path / "file").read_bytes() == b""
+
+
 def test_no_optional_package_is_imported_by_others():
     """Whoever does not export needs none of them."""
     code = "import sys, rtg.cli, rtg.run.run, rtg.export.command; print(*sys.modules)"

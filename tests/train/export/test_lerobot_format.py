@@ -158,7 +158,43 @@ def test_a_folder_is_not_written_over_and_a_failure_leaves_none(data, tmp_path, 
     monkeypatch.setattr(lerobot_format, "_write_metadata", fails)
     with pytest.raises(ValueError, match="cause"):
         lerobot_format.write(data, tmp_path / "out", 1)
-    assert [path.name for path in tmp_path.iterdir()] == ["there"]
+    assert names(tmp_path) == ["there"]
+
+
+def names(folder):
+    """The names of all but locks."""
+    return sorted(path.name for path in folder.iterdir() if path.suffix != ".lock")
+
+
+def test_two_exports_to_one_folder_do_not_meet(data, tmp_path, monkeypatch):
+    """The second begins when the first has written all but its metadata."""
+    finish = lerobot_format._write_metadata
+    refused = []
+
+    def also_begin(*first):
+        monkeypatch.setattr(lerobot_format, "_write_metadata", finish)
+        with pytest.raises(UserError, match="out: another export writes it") as told:
+            lerobot_format.write(data, tmp_path / "out", 1)
+        refused.append(told)
+        lerobot_format.write(data, tmp_path / "other", 1)
+        finish(*first)
+
+    monkeypatch.setattr(lerobot_format, "_write_metadata", also_begin)
+    lerobot_format.write(data, tmp_path / "out", 2)
+    assert len(refused) == 1 and names(tmp_path) == ["other", "out"]
+    for name, count in (("out", 2), ("other", 1)):
+        known = json.loads((tmp_path / name / "meta" / "info.json").read_text())
+        table = parquet.read_table(tmp_path / name / "data" / f"{FILE}.parquet")
+        assert known["total_episodes"] == count and known["total_frames"] == len(table)
+
+
+def test_what_a_killed_export_left_is_no_obstacle(data, tmp_path):
+    (tmp_path / ".out.part" / "meta").mkdir(parents=True)
+    (tmp_path / ".out.part" / "meta" / "info.json").write_text("{")
+    (tmp_path / ".out.lock").touch()
+    lerobot_format.write(data, tmp_path / "out", 1)
+    assert names(tmp_path) == ["out"]
+    assert json.loads((tmp_path / "out/meta/info.json").read_text())["total_episodes"] == 1
 
 
 def test_the_command_writes_it_into_the_run(tmp_path, capsys):

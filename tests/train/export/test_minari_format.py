@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from exported import run_folder
 from rtg.errors import UserError
-from rtg.export import minari_format, run_data
+from rtg.export import minari_format, run_data, target
 from rtg.files import dataset
 
 minari = pytest.importorskip("minari", reason="the extra `minari` is not installed")
@@ -126,9 +126,19 @@ def test_what_cannot_be_written_whole_is_not_there(data, home, monkeypatch):
         raise OSError("no space left")
 
     monkeypatch.setattr(minari_format, "environment_of", fails)
-    with pytest.raises(OSError, match="no space left"):
+    with pytest.raises(UserError, match="mine-v0: no space left; legal: a folder to write to"):
         minari_format.write(data, "plans", "mine-v0", None, 1)
     assert not (home / "mine-v0").exists()
+
+
+def test_what_another_export_writes_is_left_to_it(data, home):
+    with target.held(home / "mine-v0"):
+        (home / "mine-v0").mkdir()
+        with pytest.raises(UserError, match="mine-v0: another export writes it"):
+            minari_format.write(data, "plans", "mine-v0", None, 1)
+        assert (home / "mine-v0").is_dir()
+        minari_format.write(data, "plans", "other-v0", None, 1)
+    assert list(minari.list_local_datasets()) == ["other-v0"]
 
 
 def test_data_without_a_plan_say_so(tmp_path, home):

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rtg import _core, extras
 from rtg.envs.push_env import PushEnv, observation_names
 from rtg.errors import UserError
-from rtg.export import run_data, statistics, video
+from rtg.export import run_data, statistics, target, video
 from rtg.export.run_data import RunData
 from rtg.export.statistics import Statistics
 from rtg.files import run_folder
@@ -225,31 +225,34 @@ def _write_metadata(folder: Path, data: RunData, writer: _Writer) -> None:
     run_folder.write_json(meta / "rtg.json", run_data.origin_figures(data))
 
 
+def _write_files(folder: Path, data: RunData, episodes: Sequence[Episode]) -> int:
+    """Writes all files to the new `folder`. Returns the number of frames."""
+    folder.mkdir()
+    writer = _Writer(folder, data)
+    for number, begin in enumerate(range(0, len(episodes), _PER_FILE)):
+        writer.add(number, episodes[begin : begin + _PER_FILE])
+    _write_metadata(folder, data, writer)
+    return writer.frames
+
+
 def write(data: RunData, folder: Path, count: int | None) -> str:
     """Writes the plans of the data to the new `folder`, and returns what it is, in words.
 
     `count`: at most so many episodes; all if None. Raises UserError if there is nothing to write,
-    if `folder` exists, or if a package is missing.
+    if `folder` exists, cannot be written or is being written, or if a package is missing.
     """
-    if folder.exists():
-        raise UserError(f"--out: {folder} exists already; legal: a new folder")
     for package in ("av", "pandas", "pyarrow"):
         extras.imported(package, "lerobot", "export lerobot")
-    episodes = run_data.plans(data, count)
     draft = folder.with_name(f".{folder.name}.part")
-    shutil.rmtree(draft, ignore_errors=True)
-    try:
-        with run_folder.write_errors_as_user_errors(folder):
-            draft.mkdir(parents=True)
-            writer = _Writer(draft, data)
-            for number, begin in enumerate(range(0, len(episodes), _PER_FILE)):
-                writer.add(number, episodes[begin : begin + _PER_FILE])
-            _write_metadata(draft, data, writer)
+    with target.held(folder):
+        if folder.exists():
+            raise UserError(f"--out: {folder} exists already; legal: a new folder")
+        episodes = run_data.plans(data, count)
+        shutil.rmtree(draft, ignore_errors=True)  # of an export that was killed
+        try:
+            frames = _write_files(draft, data, episodes)
             draft.rename(folder)
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
+        finally:
+            shutil.rmtree(draft, ignore_errors=True)
     successes = sum(episode.success for episode in episodes)
-    return (
-        f"{len(episodes):,} episodes, {successes:,} of them succeed, {writer.frames:,} frames\n"
-        f"{folder}"
-    )
+    return f"{len(episodes):,} episodes, {successes:,} of them succeed, {frames:,} frames\n{folder}"

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from rtg import extras
 from rtg.errors import UserError
-from rtg.export import run_data
+from rtg.export import run_data, target
 from rtg.export.environment import environment_of
 from rtg.export.run_data import RunData
 from rtg.files.episodes import Episode
+from rtg.files.run_folder import write_errors_as_user_errors
 
 _KINDS = {
     "plans": "whole episodes: plans found in the data, replayed in the simulator from their first "
@@ -37,12 +38,16 @@ def default_id(data: RunData, kind: str) -> str:
 
 @contextlib.contextmanager
 def _datasets_in(folder: Path | None) -> Iterator[None]:
-    """Makes `folder` that of Minari's data sets in the `with` block; None: leaves it."""
+    """Makes `folder` that of Minari's data sets in the `with` block; None: leaves it.
+
+    Raises UserError for what cannot be written in the block.
+    """
     before = os.environ.get("MINARI_DATASETS_PATH")
     if folder is not None:
         os.environ["MINARI_DATASETS_PATH"] = str(folder)
     try:
-        yield
+        with write_errors_as_user_errors(folder or Path(before or "~/.minari/datasets")):
+            yield
     finally:
         if before is not None:
             os.environ["MINARI_DATASETS_PATH"] = before
@@ -50,8 +55,8 @@ def _datasets_in(folder: Path | None) -> Iterator[None]:
             del os.environ["MINARI_DATASETS_PATH"]
 
 
-def _new_path(id: str) -> Path:
-    """Returns the path of the data set `id`. Raises UserError if it exists or is no id."""
+def _path(id: str) -> Path:
+    """Returns the path of the data set `id`. Raises UserError if it is no id."""
     where = extras.imported("minari.storage.datasets_root_dir", "minari", "export minari")
     names = extras.imported("minari.dataset.minari_dataset", "minari", "export minari")
     try:
@@ -62,8 +67,6 @@ def _new_path(id: str) -> Path:
             "- and _"
         ) from None
     path: Path = where.get_dataset_path(id)
-    if path.exists():
-        raise UserError(f"--id {id}: {path} exists already; legal: another id, or another --out")
     return path
 
 
@@ -107,34 +110,48 @@ def _metadata(data: RunData, kind: str, buffers: Sequence[Any]) -> dict[str, Any
     }
 
 
+def _created(data: RunData, kind: str, id: str, buffers: Sequence[Any]) -> Any:
+    """Has Minari write the data set, and returns it."""
+    minari = extras.imported("minari", "minari", "export minari")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # about authors and links, which are not ours
+        made = minari.create_dataset_from_buffers(
+            id,
+            buffers,
+            env=environment_of(data.config),
+            algorithm_name=f"RTG, {data.maker}",
+            description=f"Pushes of the task {data.config.task.name}; {_KINDS[kind]}. "
+            "`import rtg` before recover_environment().",
+        )
+    made.storage.update_metadata(_metadata(data, kind, buffers))
+    return made
+
+
 def write(data: RunData, kind: str, id: str, folder: Path | None, count: int | None) -> str:
     """Writes the data set `id`, and returns what it is, in words.
 
     `kind`: "plans" or "transitions". `folder`: that of the data sets; Minari's own if None.
     `count`: at most so many episodes; all if None. Raises UserError if there is nothing to write,
-    if there is such a data set already, or if Minari is not installed.
+    if there is such a data set already, if it cannot be written or is being written, or if Minari
+    is not installed.
     """
-    minari = extras.imported("minari", "minari", "export minari")
+    extras.imported("minari", "minari", "export minari")
     extras.imported("h5py", "minari", "export minari")
-    with _datasets_in(folder), warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # about authors and links, which are not ours
-        path = _new_path(id)
-        buffers = _buffers(data, kind, count)
-        metadata = _metadata(data, kind, buffers)
-        try:
-            made = minari.create_dataset_from_buffers(
-                id,
-                buffers,
-                env=environment_of(data.config),
-                algorithm_name=f"RTG, {data.maker}",
-                description=f"Pushes of the task {data.config.task.name}; {_KINDS[kind]}. "
-                "`import rtg` before recover_environment().",
-            )
-            made.storage.update_metadata(metadata)
-        except BaseException:
-            shutil.rmtree(path, ignore_errors=True)
-            raise
+    with _datasets_in(folder):
+        path = _path(id)
+        with target.held(path):
+            if path.exists():
+                raise UserError(
+                    f"--id {id}: {path} exists already; legal: another id, or another --out"
+                )
+            buffers = _buffers(data, kind, count)
+            try:
+                made = _created(data, kind, id, buffers)
+            except BaseException:
+                shutil.rmtree(path, ignore_errors=True)
+                raise
+    successes = made.storage.metadata["rtg_successes"]
     return (
-        f"{id}: {made.total_episodes:,} episodes, {metadata['rtg_successes']:,} of them succeed, "
+        f"{id}: {made.total_episodes:,} episodes, {successes:,} of them succeed, "
         f"{made.total_steps:,} steps\n{path}"
     )

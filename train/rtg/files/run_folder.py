@@ -65,7 +65,8 @@ def write_errors_as_user_errors(folder: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise UserError(f"--out: {folder}: {error.strerror}; legal: a folder to write to") from None
+        cause = error.strerror or error  # libraries raise some without a number
+        raise UserError(f"--out: {folder}: {cause}; legal: a folder to write to") from None
 
 
 def policy_files(folder: Path) -> tuple[Path, Path]:
