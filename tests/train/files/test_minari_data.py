@@ -1,5 +1,8 @@
 """Transitions from Minari data sets, those of others as well."""
 
+import hashlib
+import tracemalloc
+
 import gymnasium
 import numpy as np
 import pytest
@@ -61,6 +64,21 @@ def test_states_are_those_of_the_infos(home):
     assert folder == home / "mine" / "own-v0" / "data"
     assert minari_data.folder_of(str(folder)) == folder
     assert minari_data.folder_of(str(folder.parent)) == folder
+
+
+def test_the_digest_is_over_names_sizes_and_contents_that_are_not_read_whole(tmp_path):
+    contents = {"a.hdf5": bytes(range(256)) * 2**17, "deeper/b.json": b"{}"}
+    expected = hashlib.sha256()
+    for name, content in contents.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_bytes(content)
+        expected.update(f"{name} {len(content)} ".encode() + content)
+    tracemalloc.start()
+    found = minari_data._digest(tmp_path)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert found == expected.hexdigest()
+    assert most < 2**22 < len(contents["a.hdf5"])  # bytes
 
 
 def test_the_digest_is_that_of_the_content():

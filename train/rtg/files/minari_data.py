@@ -37,7 +37,8 @@ def _digest(folder: Path) -> str:
     for path in sorted(folder.rglob("*")):
         if path.is_file():
             found.update(f"{path.relative_to(folder)} {path.stat().st_size} ".encode())
-            found.update(path.read_bytes())
+            with path.open("rb") as file:
+                hashlib.file_digest(file, lambda: found)  # goes on with it, block by block
     return found.hexdigest()
 
 
