@@ -53,7 +53,7 @@ ENVIRONMENTS = {
 }
 
 
-def _register(id: str, horizon: int | None, **kwargs: str | bool) -> None:
+def _register(id: str, horizon: int | None, **kwargs: str | bool | None) -> None:
     register(
         id,
         "rtg.envs.push_env:PushEnv",
@@ -65,4 +65,4 @@ def _register(id: str, horizon: int | None, **kwargs: str | bool) -> None:
 
 for _id, (_task, _horizon) in ENVIRONMENTS.items():
     _register(_id, _horizon, config=_task, ends_at_horizon=False)
-_register("RTG/Task-v0", None)  # any task: config="FILE.yaml", whose horizon holds
+_register("RTG/Task-v0", None, config=None)  # any task, which the user names; its horizon holds

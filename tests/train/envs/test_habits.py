@@ -3,6 +3,7 @@
 import copy
 import multiprocessing
 import pickle
+from collections.abc import Callable
 from pathlib import Path
 
 import gymnasium
@@ -29,7 +30,7 @@ def steps_of_an_episode(env: gymnasium.Env, heading: int = 36) -> int:
 
 @pytest.mark.parametrize("name", IDS)
 def test_a_spec_is_text_and_made_again_from_it(name: str) -> None:
-    env = gymnasium.make(name)
+    env = gymnasium.make(name, **({} if name in rtg.ENVIRONMENTS else {"config": TINY}))
     again = gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json()))
     np.testing.assert_array_equal(env.reset(seed=1)[0], again.reset(seed=1)[0])
 
@@ -57,6 +58,12 @@ def test_a_task_of_ones_own_has_its_horizon_and_a_spec() -> None:
     assert steps_of_an_episode(env) == 5 and env.spec is not None
     given = gymnasium.make("RTG/Task-v0", config=_core.Config.from_file(TINY))
     assert given.spec is not None
+
+
+@pytest.mark.parametrize("make", [gymnasium.make, gymnasium.make_vec])
+def test_a_task_that_nobody_names_is_refused(make: Callable[[str], object]) -> None:
+    with pytest.raises(ValueError, match="config is missing; legal: config= with the name of a"):
+        make("RTG/Task-v0")
 
 
 def test_environments_and_parts_of_the_core_are_pickled_and_copied() -> None:

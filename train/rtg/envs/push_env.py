@@ -36,11 +36,18 @@ def observation_names(task: _core.Task) -> list[str]:
     return names
 
 
-def read_config(config: _core.Config | str | Path, settings: Sequence[str] = ()) -> _core.Config:
+def read_config(
+    config: _core.Config | str | Path | None, settings: Sequence[str] = ()
+) -> _core.Config:
     """Returns the configuration that is meant: itself, or that of a task's name, file or text.
 
-    A text has several lines. Raises ValueError for a bad file, text or setting.
+    A text has several lines. Raises ValueError for None and for a bad file, text or setting.
     """
+    if config is None:
+        raise ValueError(
+            "config is missing; legal: config= with the name of a task, the path or the text of a "
+            "YAML file, or a configuration"
+        )
     if isinstance(config, _core.Config):
         return config
     if isinstance(config, str) and "\n" in config:
