@@ -97,3 +97,41 @@ def test_it_has_what_wrappers_ask_for() -> None:
         envs.set_attr("jitter", 1.0, indices=[0])
     ended = [info for _ in range(8) for info in envs.step(np.array([36, 36]))[3]][-1]
     assert ended["episode"]["l"] == 8
+
+
+def test_each_environment_has_its_own_part_of_attributes_and_results() -> None:
+    envs = PushVecEnv(3, goals="drawn", render_mode="rgb_array")
+    seen = envs.reset()
+    assert isinstance(seen, dict)
+    for indices in (None, [2, 0], 1):
+        asked = [0, 1, 2] if indices is None else np.atleast_1d(indices).tolist()
+        infos = [envs.reset_infos[env] for env in asked]
+        poses = envs.get_attr("_poses", indices)
+        observations = envs.env_method("observation", indices=indices)
+        pictures = envs.env_method("render", indices=indices)
+        assert len(poses) == len(observations) == len(pictures) == len(asked)
+        for env, info, state, one, picture in zip(
+            asked, infos, poses, observations, pictures, strict=True
+        ):
+            np.testing.assert_array_equal(state, info["poses"])
+            assert envs.observation_space.contains(one)
+            np.testing.assert_array_equal(one["observation"], seen["observation"][env])
+            np.testing.assert_array_equal(picture, envs.get_images()[env])
+    assert envs.get_attr("observation_space", 1) == [envs.observation_space]
+    assert envs.get_attr("task", [0, 1]) == [envs.envs.task] * 2
+
+
+def test_what_all_share_is_called_once_and_returned_whole() -> None:
+    envs = vector(goals="drawn")
+    goals = envs.reset()["desired_goal"]  # type: ignore[index]
+    (reward,) = envs.env_method("compute_reward", goals, goals[::-1], None, indices=[1])
+    assert reward.tolist() == [0.0, 0.0]  # as hindsight replay asks for a batch of its own
+    assert envs.env_method("render") == [None, None]  # as no mode was asked for
+
+
+@pytest.mark.parametrize("name", ["reset", "step", "begin", "close"])
+def test_episodes_of_single_environments_are_not_gone_on_with(name: str) -> None:
+    with pytest.raises(
+        ValueError, match=rf"method '{name}'; legal: reset\(\) and step\(\) of this"
+    ):
+        vector().env_method(name, indices=[0])

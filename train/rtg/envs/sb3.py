@@ -13,6 +13,14 @@ from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvO
 
 from rtg.envs.push_vector_env import PushVectorEnv
 
+# Names of PushVectorEnv: its attributes that are arrays have one entry per environment.
+_OF_ONE = {  # and what one of them has in their place
+    "observation_space": "single_observation_space",
+    "action_space": "single_action_space",
+}
+_OF_EACH = ("observation", "render")  # methods with one result per environment
+_OF_ALL = ("reset", "step", "begin", "close")  # those that change all environments at once
+
 
 class PushVecEnv(VecEnv):
     """A PushVectorEnv as Stable-Baselines3 takes it. A new episode begins where one has ended.
@@ -65,7 +73,10 @@ class PushVecEnv(VecEnv):
         return self.envs.render() or [None] * self.num_envs
 
     def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
-        return [getattr(self.envs, attr_name) for _ in self._get_indices(indices)]
+        """Returns an attribute of each environment; one that all share as often as asked for."""
+        value = getattr(self.envs, _OF_ONE.get(attr_name, attr_name))
+        is_of_each = isinstance(value, np.ndarray)
+        return [value[env] if is_of_each else value for env in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
         """Sets an attribute of all environments. Raises ValueError for some of them."""
@@ -76,8 +87,16 @@ class PushVecEnv(VecEnv):
     def env_method(
         self, method_name: str, *args: Any, indices: VecEnvIndices = None, **kwargs: Any
     ) -> list[Any]:
-        method = getattr(self.envs, method_name)
-        return [method(*args, **kwargs) for _ in self._get_indices(indices)]
+        """Calls a method of the environments once, and returns what each of `indices` has of it.
+
+        Methods that are not about the current states, such as compute_reward(), return the same for
+        each. Raises ValueError for those that go on with episodes.
+        """
+        if method_name in _OF_ALL:
+            raise ValueError(f"method '{method_name}'; legal: reset() and step() of this object")
+        value = getattr(self.envs, method_name)(*args, **kwargs)
+        is_of_each = method_name in _OF_EACH and value is not None
+        return [_entry(value, env) if is_of_each else value for env in self._get_indices(indices)]
 
     def env_is_wrapped(
         self, wrapper_class: type[Env[Any, Any]], indices: VecEnvIndices = None
