@@ -35,7 +35,7 @@ program() { # NAME: becomes that program; by hand they can be started in any ord
 declare -A running=() started=() deaths=() # name by pid; by name: when, and how often in a row soon after
 
 start() { # NAME
-  program "$1" </dev/null >>"$logs/$1.log" 2>&1 &
+  program "$1" </dev/null >>"$logs/$1.log" 2>&1 {held}>&- &
   running[$!]=$1 started[$1]=$SECONDS
 }
 
@@ -83,6 +83,8 @@ case "$consumer ${flags[*]}" in
 esac
 workers=$(setting workers)
 [[ $workers =~ ^[1-9][0-9]*$ ]] || refuse "$config: run.workers is '$workers'; legal: a file that ./run.sh TASK --print-config has printed"
+exec {held}>"$folder/.graph.lock" || exit 1 # held by this script alone: the kernel releases it at once when it ends
+flock --nonblock "$held" || refuse "another graph.sh works in '$folder'; legal: another folder, or wait"
 mkdir -p "$logs" && rm -f "$folder/generation.json" || exit 1
 exec 2>/dev/null # bash's own words about programs that have ended
 trap 'stop 130' INT

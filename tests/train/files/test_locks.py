@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from rtg import paths
 from rtg.errors import UserError
-from rtg.files.locks import exclusive_lock, lock, try_lock
+from rtg.files.locks import exclusive_lock, is_locked, lock, try_lock
 
 
 def test_a_lock_has_one_holder_at_a_time(tmp_path):
@@ -18,6 +18,18 @@ def test_a_lock_has_one_holder_at_a_time(tmp_path):
     held.release()
     held.release()
     assert try_lock(tmp_path / "lock") is not None
+
+
+def test_it_tells_whether_a_file_is_locked_and_leaves_it_as_it_is(tmp_path):
+    held = try_lock(tmp_path / "lock")
+    assert is_locked(tmp_path / "lock") and is_locked(tmp_path / "lock")
+    held.release()
+    assert not is_locked(tmp_path / "lock")
+    held = try_lock(tmp_path / "lock")
+    assert held is not None
+    held.release()
+    (tmp_path / "lock").chmod(0o444)
+    assert not is_locked(tmp_path / "lock")
 
 
 def test_a_killed_holder_frees_its_lock(tmp_path):

@@ -8,6 +8,7 @@ import time
 
 import pytest
 from rtg import paths
+from rtg.files.locks import is_locked
 
 CONFIG = "search:\n  workers_: 9\nrun:\n  workers: 2  # reverse workers\n  record: false  # none\n"
 # By name: what a program does. The trainer and the recorder are modules of "python".
@@ -260,6 +261,27 @@ def test_no_program_outlives_the_script(graph):
     process.wait()
     process.stdout.close()
     wait_for(lambda: graph.programs() == [])
+
+
+def test_a_folder_has_one_script_at_a_time(graph):
+    graph.let("python", PATIENT)
+    process = graph.start()
+    wait_for(lambda: len(graph.programs()) == 4)  # all but the coordinator, which is done
+    status, out = graph.run()
+    assert (status, "another graph.sh works in" in out) == (2, True)
+    process.terminate()
+    process.communicate()
+    assert not is_locked(graph.run_folder / ".graph.lock")
+
+
+def test_its_programs_do_not_hold_the_lock_of_the_folder(graph):
+    graph.let("python", f"ls -l /proc/$$/fd; {PATIENT}")
+    process = graph.start()
+    wait_for(lambda: len(graph.programs()) == 4)
+    wait_for(lambda: "trainer.log" in graph.log("trainer"))
+    assert ".graph.lock" not in graph.log("trainer")
+    process.terminate()
+    process.communicate()
 
 
 @pytest.mark.parametrize("words", ["trainr", "recorder --resume", "trainer --resum"])

@@ -13,11 +13,11 @@ from rtg import _core
 from rtg.bus import multicast
 from rtg.bus.bus import Bus
 from rtg.bus.messages import message_type
-from rtg.view.follower import Follower, Heard, is_over, why_unheard
+from rtg.view.follower import Follower, Heard, why_unheard
 from rtg.view.run_events import RunEvents
 from rtg.view.run_view import RunView
 from training_runs import run_folder
-from view_runs import GENERATION, TASK, finished, generated
+from view_runs import GENERATION, TASK, generated
 
 
 def publish(bus, rows, first):
@@ -95,14 +95,6 @@ def test_the_clock_of_a_run_stopped_long_ago_begins_where_its_files_end(tmp_path
     os.utime(folder / "config.yaml", (1e6, 1e6))
     follower, _ = follow(folder, bus, tmp_path / "run.rrd")
     assert GENERATION <= follower.now() < GENERATION + 60.0
-
-
-def test_a_run_is_over_once_its_summary_is_newer_than_its_configuration(tmp_path, rows):
-    folder = finished(tmp_path / "run", rows)
-    assert is_over(folder)
-    later = os.stat(folder / "summary.json").st_mtime + 10.0
-    os.utime(folder / "config.yaml", (later, later))  # as --resume writes it again
-    assert not is_over(folder)
 
 
 def test_a_run_is_heard_only_while_it_generates_over_lcm(tmp_path, rows, monkeypatch):

@@ -8,6 +8,7 @@ pytest.importorskip("rerun", reason="the extra view is not installed")
 import rerun.chunk
 from recordings import lines, read
 from rtg.errors import UserError
+from rtg.files import locks
 from rtg.files.dataset import SOURCES
 from rtg.pictures.draw import KIND_PALETTE, ROBOT, objects, outline
 from rtg.view import view
@@ -127,13 +128,13 @@ def test_a_run_that_goes_on_is_followed(tmp_path, rows):
     generated(folder, rows)
     session = Session(folder, lambda words: None)
     session.recording.save(file)
-    session.begin()
+    session.begin(follow=True)
     session.step()
-    assert not session.is_over()
+    assert session.is_going_on() and not session.is_over()
     learned = finished(tmp_path / "learned", rows)
     for name in ("progress.csv", "best_episode.npz", "training.json", "summary.json"):
         (learned / name).rename(folder / name)
-    assert session.is_over()
+    assert session.is_over() and not session.is_going_on()
     session.finish()
     session.close()
     found = read(file)
@@ -143,6 +144,38 @@ def test_a_run_that_goes_on_is_followed(tmp_path, rows):
     assert found["scene/bodies/box1"][-1].values["translation"][0][:2] == pytest.approx(
         episode()[-1, 1, :2].tolist(), abs=1e-5
     )
+
+
+def test_of_a_run_that_was_stopped_the_recording_holds_what_is_there(tmp_path, rows):
+    folder, file, said = generated(tmp_path / "run", rows), tmp_path / "run.rrd", []
+    with locks.exclusive_lock(folder, "the run that stops"):
+        pass
+    view.save(folder, file, said.append)
+    assert said == [
+        f"{folder}: the run was not finished (it has no summary.json); this is what is there",
+        f"recording: {file}",
+    ]
+    found = read(file)
+    assert len(lines(found["trees/box1"])) > 20
+    captions = [one.values["labels"][0] for one in found["caption"]]
+    assert any(words.startswith("plan of the data, ") for words in captions)
+    assert not any(words.startswith("best episode") for words in captions)
+
+
+def test_a_run_that_is_stopped_while_it_is_recorded_ends_the_recording(tmp_path, rows, monkeypatch):
+    folder, said, steps = generated(tmp_path / "run", rows), [], []
+    held = locks.try_lock(locks.of_run(folder)[0])
+    one_step = Session.step
+
+    def step(session):
+        one_step(session)
+        steps.append(session.is_going_on())
+        held.release()
+
+    monkeypatch.setattr(Session, "step", step)
+    view.save(folder, tmp_path / "run.rrd", said.append)
+    assert steps == [True]
+    assert said[-2].startswith(f"{folder}: the run was not finished")
 
 
 def test_a_folder_of_no_run_is_refused(tmp_path):

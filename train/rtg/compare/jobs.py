@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from rtg.files.locks import FileLock, try_lock
+from rtg.files.locks import FileLock, job_lock, try_lock
 
 
 class Job(Protocol):
@@ -75,7 +75,7 @@ def try_claim(job: Job) -> Claim | None:
     Returns None if another process holds one of these locks.
     """
     with contextlib.ExitStack() as held:
-        cells = _lock_all(map(_cell_lock, sorted(job.folders)), held)
+        cells = _lock_all(map(job_lock, sorted(job.folders)), held)
         key = job.pending_generation_key  # which no one else can change from now on
         transitions = _lock_all([_transitions_lock(job, key)] if key else [], held)
         if cells is None or transitions is None:
@@ -105,11 +105,6 @@ def _lock_all(
         held.callback(lock.release)
         found.append(lock)
     return found
-
-
-def _cell_lock(folder: Path) -> Path:
-    """Returns the lock file of a cell. It lies beside the run folder, which `rtg run` makes."""
-    return folder.with_name(f".{folder.name}.lock")
 
 
 def _transitions_lock(job: Job, key: str) -> Path:

@@ -46,6 +46,21 @@ def try_lock(path: Path) -> FileLock | None:
     return FileLock(descriptor)
 
 
+def is_locked(path: Path) -> bool:
+    """Returns whether somebody has locked the file `path`, which need not be writable.
+
+    Who takes the lock at that very moment may find it taken.
+    """
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(descriptor)
+    return False
+
+
 @contextlib.contextmanager
 def lock(path: Path) -> Iterator[None]:
     """Waits for the lock on the file `path`, which it creates, and holds it in the `with` block."""
@@ -64,7 +79,7 @@ def exclusive_lock(folder: Path, holder: str) -> Iterator[None]:
     Raises UserError if another process has locked it. The message calls that process `holder`.
     """
     with write_errors_as_user_errors(folder):
-        held = try_lock(folder / ".lock")
+        held = try_lock(_run_lock(folder))
     if held is None:
         raise UserError(
             f"--out: {folder}: {holder} uses this folder; legal: another folder, or wait"
@@ -73,6 +88,23 @@ def exclusive_lock(folder: Path, holder: str) -> Iterator[None]:
         yield
     finally:
         held.release()
+
+
+def job_lock(run: Path) -> Path:
+    """Returns the lock of a run's job in a comparison. It lies beside the folder `run`.
+
+    The job makes that folder.
+    """
+    return run.with_name(f".{run.name}.lock")
+
+
+def of_run(run: Path) -> tuple[Path, ...]:
+    """Returns the locks of those who work on a run: `rtg run`, graph.sh, a job of a comparison."""
+    return _run_lock(run), run / ".graph.lock", job_lock(run.resolve())
+
+
+def _run_lock(folder: Path) -> Path:
+    return folder / ".lock"
 
 
 def _open(path: Path) -> int:

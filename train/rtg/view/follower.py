@@ -17,18 +17,13 @@ from rtg.run.progress import generation_text
 from rtg.run.run_state import RunState
 from rtg.run.run_watch import RunWatch
 from rtg.run.training_watch import TrainingWatch
+from rtg.view.activity import is_over
 from rtg.view.run_events import Event, Ints, RunEvents, Steps
 from rtg.view.run_view import RunView
 
 
-def is_over(folder: Path) -> bool:
-    """Returns whether a run has ended: its summary is written after it has begun or resumed."""
-    summary, config = folder / "summary.json", folder / "config.yaml"
-    return summary.is_file() and summary.stat().st_mtime_ns >= config.stat().st_mtime_ns
-
-
 class Heard:
-    """What the bus of a run tells since the last call of its methods. It only listens."""
+    """Keeps what the bus of a run has told since the last call of its methods. It only listens."""
 
     def __init__(self, bus: Bus, task: _core.Task) -> None:
         self._bus = bus

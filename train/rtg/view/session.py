@@ -10,7 +10,7 @@ import rerun as rr
 from rtg.bus.bus import Bus
 from rtg.files.run_folder import config_file, run_name
 from rtg.run.effective_config import load_recorded
-from rtg.view import follower
+from rtg.view import activity, follower
 from rtg.view.layout import following, layout, playing
 from rtg.view.run_events import RunEvents
 from rtg.view.run_view import RunView
@@ -20,7 +20,7 @@ _FILM = 60.0  # [s], in which a finished run plays, without its last episode
 
 
 class Session:
-    """Logs one run to `recording`: all of it if it is over, else what is new at each step.
+    """Logs one run to `recording`: all of it at once, or what is new at each step.
 
     Raises UserError if `folder` is not that of a run.
     """
@@ -35,12 +35,19 @@ class Session:
 
     def is_over(self) -> bool:
         """Returns whether the run has ended."""
-        return follower.is_over(self._folder)
+        return activity.is_over(self._folder)
 
-    def begin(self) -> None:
-        """Lays out the panels and logs what the folder holds. Raises UserError or RunError."""
+    def is_going_on(self) -> bool:
+        """Returns whether the run has not ended and a process works on it."""
+        return activity.is_going_on(self._folder)
+
+    def begin(self, follow: bool) -> None:
+        """Lays out the panels and logs what the folder holds. Raises UserError or RunError.
+
+        `follow`: further steps will log what is new. Else the run plays from its begin.
+        """
         events = RunEvents(self._folder, self._config)
-        if self.is_over():
+        if not follow:
             self._play(events)
             return
         heard = None
@@ -58,12 +65,12 @@ class Session:
         self._follower = follower.Follower(self._folder, view, events, heard)
 
     def step(self) -> None:
-        """Logs what is new; nothing if the run was over at the begin."""
+        """Logs what is new, if it follows the run."""
         if self._follower is not None:
             self._follower.step()
 
     def finish(self) -> None:
-        """Logs what is left of a run that has ended, its last episode to the end."""
+        """Logs what is left of a run that it follows, its last episode to the end."""
         if self._follower is not None:
             self._follower.finish()
 

@@ -90,7 +90,7 @@ def serve(folder: Path, port: int, browser: bool, say: Say) -> None:
         session.recording.connect_grpc(web_page.data_address(data_port))
         say(f"{page.address} shows {folder}, with the data on port {data_port}")
         say("for this machine alone; Ctrl-C ends it")
-        session.begin()
+        session.begin(follow=not session.is_over())
         if browser:
             webbrowser.open(page.address)
         while not interrupts.requested():
@@ -103,8 +103,8 @@ def serve(folder: Path, port: int, browser: bool, say: Say) -> None:
 def save(folder: Path, file: Path, say: Say) -> None:
     """Writes what serve() would show to a recording, which `rerun FILE.rrd` opens.
 
-    If the run is going on, follows it to its end, or until a signal. Raises UserError for bad
-    input.
+    If a process works on the run, follows it to its end, or until a signal. Says so if the run was
+    not finished. Raises UserError for bad input.
     """
     if file.suffix != ".rrd" or not file.parent.is_dir():
         raise UserError(f"--save {file}: legal: FILE.rrd in a folder that exists")
@@ -116,9 +116,12 @@ def save(folder: Path, file: Path, say: Say) -> None:
             session.recording.save(file)
         except RuntimeError as error:
             raise UserError(f"--save {file}: {error}; legal: a file that can be written") from None
-        session.begin()
-        while not (session.is_over() or interrupts.requested()):
+        session.begin(follow=session.is_going_on())
+        while session.is_going_on() and not interrupts.requested():
             session.step()
             time.sleep(_POLL)
         session.finish()
+        if not session.is_over():
+            why = "the run was not finished (it has no summary.json)"
+            say(f"{folder}: {why}; this is what is there")
     say(f"recording: {file}")

@@ -1,0 +1,38 @@
+"""Tells whether a run has ended, and whether anybody works on it."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+from rtg.files import locks
+
+# These files grow while programs are at work that hold no lock: rtg.train, nodes by hand.
+_SIGNS = ("config.yaml", "training_state.json", "progress.csv")
+_QUIET = 60.0  # [s] without a change of these, after which such a run counts as stopped
+
+
+def is_over(folder: Path) -> bool:
+    """Returns whether a run has ended: its last file is written after it has begun or resumed."""
+    last = folder / ("summary.json" if _locks(folder) else "training.json")
+    ends = [file for file in (folder / "summary.json", last) if file.is_file()]
+    began = (folder / "config.yaml").stat().st_mtime_ns
+    return any(file.stat().st_mtime_ns >= began for file in ends)
+
+
+def is_going_on(folder: Path) -> bool:
+    """Returns whether a run has not ended and a process works on it, here or elsewhere."""
+    if is_over(folder):
+        return False
+    found = _locks(folder)
+    return any(map(locks.is_locked, found)) if found else _age(folder) < _QUIET
+
+
+def _locks(folder: Path) -> list[Path]:
+    return [path for path in locks.of_run(folder) if path.is_file()]
+
+
+def _age(folder: Path) -> float:
+    """Returns the time since a run last gave a sign of life in its files [s]."""
+    files = [folder / name for name in _SIGNS]
+    return time.time() - max(file.stat().st_mtime for file in files if file.is_file())
