@@ -1,4 +1,4 @@
-"""What executors on other machines share: the work there, and the view of it from here.
+"""The part that executors on other machines share: the work there, and the view of it from here.
 
 All machines see the comparison folder and the program under the same paths.
 """

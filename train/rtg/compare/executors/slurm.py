@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from rtg.errors import RunError, UserError
 
 # Parameters of submitit.AutoExecutor that options of the user stand above.
 _PARAMETERS = {"name": "rtg", "cpus_per_task": 1, "timeout_min": 24 * 60}
+_ASK_EVERY = 2.0  # [s] between questions to Slurm about cancelled jobs
 
 
 class _Work(submitit.helpers.Checkpointable):  # type: ignore[misc, unused-ignore]
@@ -23,27 +25,48 @@ class _Work(submitit.helpers.Checkpointable):  # type: ignore[misc, unused-ignor
         return carry_out(job)
 
 
+class _Pace:
+    """Limits how often Slurm is asked; it answers for all jobs at once."""
+
+    def __init__(self) -> None:
+        self._asked_at = -_ASK_EVERY
+
+    def is_due(self) -> bool:
+        """Returns whether to ask now; if so, the next time is _ASK_EVERY later."""
+        now = time.monotonic()
+        if now - self._asked_at < _ASK_EVERY:
+            return False
+        self._asked_at = now
+        return True
+
+
 class _SlurmJob(RemoteJob):
-    def __init__(self, job: Job, submitted: submitit.Job[int]) -> None:
+    """A job in Slurm's queue. Slurm sees to its end: it kills what does not stop in time."""
+
+    def __init__(self, job: Job, submitted: submitit.Job[int], pace: _Pace) -> None:
         super().__init__(job)
-        self._submitted = submitted
+        self._submitted, self._pace = submitted, pace
+        self._is_cancelled = False
 
     def _poll(self) -> int | None:
-        if not self._submitted.done():
+        # By itself submitit asks about jobs that have run for hours only every ten minutes.
+        if not self._submitted.done(force_check=self._is_cancelled and self._pace.is_due()):
             return None
+        if self._is_cancelled and not self._submitted.paths.result_pickle.exists():
+            raise RunError("it was cancelled")  # submitit would wait for the result
         error = self._submitted.exception()
         if error is not None:
             raise RunError(str(error))
         return int(self._submitted.result())
 
     def stop(self) -> None:
-        self.kill()
+        """Cancels the job, once: a second request would disturb its end."""
+        if not self._is_cancelled and self.exit_status() is None:
+            self._submitted.cancel(check=False)
+            self._is_cancelled = True
 
     def kill(self) -> None:
-        """The cluster sees to the end: it kills what does not stop by itself in time."""
-        if self.exit_status() is None:
-            self._submitted.cancel(check=False)
-            self._status = 1
+        self.stop()
 
 
 class SlurmExecutor:
@@ -54,6 +77,7 @@ class SlurmExecutor:
     """
 
     def __init__(self, options: Mapping[str, Any], folder: Path) -> None:
+        self._pace = _Pace()
         parameters = {**_PARAMETERS, **options}
         cluster = str(parameters.pop("cluster", "slurm"))
         try:
@@ -69,6 +93,6 @@ class SlurmExecutor:
         if not is_free(job):
             return None
         try:
-            return _SlurmJob(job, self._executor.submit(_Work(), job))
+            return _SlurmJob(job, self._executor.submit(_Work(), job), self._pace)
         except submitit.core.utils.FailedJobError as error:
             raise RunError(f"{job.name} was not submitted: {error}") from None
