@@ -1,4 +1,4 @@
-"""Where the rows of progress.csv go besides: TensorBoard, Weights & Biases.
+"""Sends the rows of progress.csv elsewhere, too: to TensorBoard, to Weights & Biases.
 
 Both are optional, and keep to the machine: Weights & Biases writes to the run folder, for `wandb
 sync`, unless WANDB_MODE says otherwise.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 import secrets
+import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
@@ -22,7 +23,7 @@ Row = Mapping[str, Any]
 
 
 class Sink(Protocol):
-    """Takes the rows of one process of a run; those of earlier ones are there already."""
+    """Takes the rows of one process of a run, after `earlier` ones that its log begins with."""
 
     def add(self, row: Row) -> None: ...
 
@@ -30,29 +31,47 @@ class Sink(Protocol):
 
 
 class TensorBoard:
-    """Event files in RUN/tensorboard. Rows from the first one on replace those of their steps."""
+    """Event files in RUN/tensorboard. They hold the rows of the log, whatever they held before.
 
-    def __init__(self, folder: Path, config: _core.Config, first: Row) -> None:
+    A process that had no sink may have logged some of the earlier rows. Those logged after the last
+    checkpoint come again. Times are those of learning, without the breaks between processes.
+    """
+
+    def __init__(
+        self, folder: Path, config: _core.Config, earlier: Sequence[Row], row: Row
+    ) -> None:
         from torch.utils.tensorboard import SummaryWriter
 
-        self._writer = SummaryWriter(folder / "tensorboard", purge_step=first["interactions"])
+        first = [*earlier, row][0]["interactions"]
+        self._writer = SummaryWriter(folder / "tensorboard", purge_step=first)
+        for old in earlier:
+            self._write(old, time.time() - (row.get("wall_s", 0.0) - old.get("wall_s", 0.0)))
 
     def add(self, row: Row) -> None:
-        for name, value in _values(row).items():
-            self._writer.add_scalar(name, value, row["interactions"])
+        self._write(row, time.time())
         self._writer.flush()
+
+    def _write(self, row: Row, at: float) -> None:
+        for name, value in _values(row).items():
+            self._writer.add_scalar(name, value, row["interactions"], walltime=at)
 
     def close(self) -> None:
         self._writer.close()
 
 
 class Wandb:
-    """A run of Weights & Biases, whose files lie in RUN/wandb; RUN/wandb_id holds its id."""
+    """A run of Weights & Biases, whose files lie in RUN/wandb; RUN/wandb_id holds its id.
 
-    def __init__(self, folder: Path, config: _core.Config, first: Row) -> None:
+    It takes rows in the order of their steps alone: earlier ones only if it has none yet.
+    """
+
+    def __init__(
+        self, folder: Path, config: _core.Config, earlier: Sequence[Row], row: Row
+    ) -> None:
         import wandb
 
         os.environ.setdefault("WANDB_MODE", "offline")
+        missing = [] if (folder / "wandb_id").is_file() else earlier
         run = config.run
         try:
             self._run = wandb.init(
@@ -67,6 +86,8 @@ class Wandb:
             )
         except wandb.errors.Error as error:
             raise UserError(f"--log wandb: {error}; legal: after wandb login, or offline") from None
+        for old in missing:
+            self.add(old)
 
     def add(self, row: Row) -> None:
         self._run.log(_values(row), step=row["interactions"])
@@ -87,11 +108,14 @@ class LazySinks:
         self._names, self._folder, self._config = names, folder, config
         self._open: list[Sink] = []
 
-    def add(self, row: Row) -> None:
-        """Hands the row on. Raises UserError if a sink cannot be opened."""
+    def add(self, row: Row, earlier: Sequence[Row]) -> None:
+        """Hands the row on. Raises UserError if a sink cannot be opened.
+
+        `earlier`: the rows of the log before it, also those of earlier processes of the run.
+        """
         if not self._open:
             for name in self._names:
-                self._open.append(_KINDS[name](self._folder, self._config, row))
+                self._open.append(_KINDS[name](self._folder, self._config, earlier, row))
         for sink in self._open:
             sink.add(row)
 

@@ -57,7 +57,7 @@ class TrainingLog:
         self.rows.append(dict(row))
         self.write()
         if self.sinks is not None:
-            self.sinks.add(row)
+            self.sinks.add(row, self.rows[:-1])
 
     def write(self) -> None:
         """Writes all rows to progress.csv."""
