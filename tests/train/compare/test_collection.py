@@ -5,7 +5,9 @@ from comparison_samples import CONFIG, finished, table_row, write_grid
 from rtg import _core, cli
 from rtg.compare.cells import Cell
 from rtg.compare.collection import collect
+from rtg.compare.report_files import write_joint_report
 from rtg.errors import UserError
+from rtg.files.run_folder import read_json, write_json
 
 COURSE = [0.0, 0.5, 1.0]
 
@@ -74,6 +76,45 @@ def test_rows_with_the_same_label_are_told_apart_by_their_settings(tmp_path):
         "gathering/ddqn_rtg@train.batch=128/seed-2",
         "gathering/ddqn_rtg@train.batch=8/seed-1",
     ]
+
+
+def given(run, name, sha256, *, transitions=600):
+    """Makes a run one of own data."""
+    data = {"format": "npz", "name": name, "sha256": sha256}
+    data |= {"transitions": transitions, "successes": 9}
+    summary = read_json(run / "summary.json")
+    write_json(run / "summary.json", {**summary, "data": data})
+    return run
+
+
+def test_runs_of_own_data_are_named_by_it(tmp_path):
+    own = given(single(tmp_path / "own"), "my data.npz", 64 * "a")
+    found = single(tmp_path / "found", "ddqn_rtg", 1, "search.transitions=7")
+    page = write_joint_report([own, found], tmp_path / "out").read_text()
+    assert table_row(page, "ddqn_rtg@data=my-data.npz")[0] == "1"
+    assert table_row(page, "ddqn_rtg")[0] == "1"
+    assert (
+        "- data of `ddqn_rtg@data=my-data.npz`: 600 transitions of my data.npz (SHA-256 "
+        "aaaaaaaaaaaa…), 9 of which succeed" in page
+    )
+
+
+def test_data_sets_of_one_name_are_told_apart(tmp_path):
+    runs = [given(single(tmp_path / one), "mine.npz", 64 * one) for one in "ab"]
+    assert names(collect(runs)) == [
+        f"gathering/ddqn_rtg@data=mine.npz@data.sha256={12 * one}/seed-1" for one in "ab"
+    ]
+
+
+def test_a_run_that_only_generated_is_no_unfinished_one(tmp_path):
+    alone = single(tmp_path / "alone")
+    summary = read_json(alone / "summary.json")
+    write_json(alone / "summary.json", {**summary, "interactions": None, "success_rate": None})
+    page = write_joint_report([alone], tmp_path / "out").read_text()
+    assert table_row(page, "ddqn_rtg")[:2] == ["1 generation only", "–"]
+    (alone / "training_state.json").write_text("{}")  # it goes on with --resume
+    page = write_joint_report([alone], tmp_path / "out").read_text()
+    assert table_row(page, "ddqn_rtg")[0] == "1 unfinished"
 
 
 def test_the_rows_of_one_comparison_are_left_as_they_are(tmp_path):

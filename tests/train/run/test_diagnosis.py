@@ -127,3 +127,17 @@ def test_of_learning_coverage_comes_first_then_the_ranks_then_the_budget() -> No
     assert "coverage: 10 of 60,000" in said(**failed, start_region_transitions=10)
     assert "little better than by chance (0.20)" in said(**failed, q_rank_correlation=0.2)
     assert "train.interactions, 350,000 now" in said(**failed)
+
+
+def test_of_own_data_other_data_are_advised_and_no_settings_of_a_search() -> None:
+    data = {"transitions": 60_000, "successes": 500}
+    own = {"data": data, "trees": None, "headings_per_state": 1.2, "success_rate": 0.4}
+    words = said(**{**own, "data": {**data, "successes": 0}})
+    assert words == "bottleneck: goal: none of 60,000 transitions reaches it; try data that do"
+    words = said(**own, start_region_transitions=10)
+    assert words.endswith("10 of 60,000 transitions begin where episodes do; try data from there")
+    words = said(**own, q_rank_correlation=0.2)
+    assert "data with other headings from the same states (1.2 per state now)" in words
+    assert "search." not in words
+    assert "more gradient steps" in said(**own)
+    assert bottleneck(CONFIG, {**GOOD, **own, "success_rate": None}, []) is None  # --no-train

@@ -47,7 +47,20 @@ def test_it_learns_from_them_and_goes_on_after_a_stop(file, tmp_path, capsys):
     }
     assert summary["mode"] is None and summary["trees"] is None
     assert (summary["transitions"], summary["offline_transitions"]) == (600, 600)
-    assert words in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert words in said and "own data mine.npz, seed 1" in said
+    assert ("bottleneck: " in said) == (summary["success_rate"] < 0.9)
+
+
+def test_that_data_without_a_success_do_not_suffice_is_said(tmp_path, file, capsys):
+    with np.load(file) as found:
+        arrays = {name: found[name] for name in ("states", "actions", "next_states")}
+    failed = ~rtg.Transitions.load(file, rtg.load_task(TINY)).success
+    failures = tmp_path / "failures.npz"
+    np.savez(failures, **{name: values[failed] for name, values in arrays.items()})
+    out = tmp_path / "run"
+    assert main([str(TINY), "--data", str(failures), "--no-train", "--out", str(out)]) == 0
+    assert "bottleneck: goal: none of " in capsys.readouterr().out
 
 
 def test_flags_that_contradict_it_are_refused_and_leave_nothing(file, tmp_path, capsys):

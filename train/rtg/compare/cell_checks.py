@@ -101,11 +101,12 @@ def _incomparable(
 
     They must agree in the values of _compared(): task, physics, forward, budget and evaluation,
     swept keys excluded. The number of transitions must agree only among runs that generate
-    transitions. `asked`: the second run in words.
+    transitions; the label of a run of own data has the key "data". `asked`: the second run in
+    words.
     """
     swept = _swept(labels[0]) | _swept(labels[1])
     old, new = (_compared(config, swept) for config in configs)
-    if not all(config.train.offline for config in configs):
+    if "data" in swept or not all(config.train.offline for config in configs):
         del old["search"], new["search"]
     differing = (section for section in old if old[section] != new[section])
     return next(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
@@ -13,6 +14,7 @@ from rtg.compare.cells import Cell, Grid, read_grid
 from rtg.compare.report import read_remarks
 from rtg.compare.run_results import Comparison, read_runs
 from rtg.errors import UserError
+from rtg.files import own_data
 from rtg.run import effective_config
 
 # Settings that change no result, or are no choice of the method.
@@ -20,7 +22,7 @@ _INCIDENTAL = ("train.device", "train.checkpoint_every")
 
 
 class Collection(NamedTuple):
-    """What a report is made of."""
+    """Holds what a report is made of."""
 
     grid: Grid
     comparison: Comparison
@@ -77,13 +79,19 @@ def check_sources(sources: Sequence[Path]) -> None:
 def _entries(source: Path) -> Iterator[_Entry]:
     if is_single_run(source):
         config = effective_config.load_recorded(source / "config.yaml")
-        cell = Cell(config.task.name, config.run.method, (), config.run.seed)
+        cell = Cell(config.task.name, config.run.method, _data(source), config.run.seed)
         yield _Entry(source, source, cell, f"(a single run: {source})", "")
         return
     grid = read_grid(source)
     for cell, command in grid.commands_by_cell.items():
         failure = grid.failure_by_name.get(cell.name, "")
         yield _Entry(source, source / cell.name, cell, command, failure)
+
+
+def _data(run: Path) -> tuple[str, ...]:
+    """Returns, as a setting, which data a run was given; () if it was given none."""
+    own = own_data.of_run(run)
+    return (f"data={re.sub('[/@ ]+', '-', own['name'] or 'arrays')}",) if own else ()
 
 
 def _told_apart(entries: Sequence[_Entry]) -> list[_Entry]:
@@ -120,14 +128,16 @@ def _by_label(entries: Sequence[_Entry]) -> list[list[_Entry]]:
 
 
 def _settings(entry: _Entry) -> dict[str, Any]:
-    """Returns all settings of a run that has begun, but those of its execution."""
+    """Returns all settings of a run that has begun, but those of its execution, and its data."""
     config = effective_config.load_recorded(entry.folder / "config.yaml")
-    return {
+    own = own_data.of_run(entry.folder)
+    found = {
         f"{section}.{key}": value
         for section, values in effective_config.values(config).items()
         for key, value in values.items()
         if section != "run" and f"{section}.{key}" not in _INCIDENTAL
     }
+    return {"data.sha256": (own["sha256"] or "")[:12] if own else "", **found}
 
 
 def _setting(entry: _Entry, key: str, value: Any) -> str:

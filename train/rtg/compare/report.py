@@ -15,6 +15,7 @@ from rtg.compare.estimates import RESAMPLES
 from rtg.compare.methods import RANDOMISED, REFERENCE
 from rtg.compare.run_results import THRESHOLD, Comparison, RunResult
 from rtg.errors import UserError
+from rtg.files import own_data
 
 _LEGEND = f"""\
 Means ± standard deviations over the seeds. **success**: of the final greedy policy from held-out
@@ -109,6 +110,12 @@ def _programs(versions: dict[str, Any]) -> str:
     return ", ".join([f"Python {versions.get('python')}", *named])
 
 
+def _given_data(done: Sequence[RunResult]) -> list[str]:
+    """Returns a line for each data set that runs were given."""
+    found = {run.cell.label: run.summary["data"] for run in done if run.summary.get("data")}
+    return [f"- data of `{label}`: {own_data.words(data)}" for label, data in found.items()]
+
+
 def _origin(grid: Grid, comparison: Comparison) -> str:
     done = comparison.all_done()
     lines = [f"    {command}" for command in grid.commands]
@@ -118,6 +125,7 @@ def _origin(grid: Grid, comparison: Comparison) -> str:
             "",
             _commits(done),
             f"- machine: {_listed(_machine(run.versions) for run in done)}",
+            *_given_data(done),
             f"- learner: {_listed(_learner(run.summary) for run in done)}",
             f"- with: {_listed(_programs(run.versions) for run in done)}",
         ]

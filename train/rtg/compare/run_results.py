@@ -38,7 +38,7 @@ class RunResult:
 
     cell: Cell
     folder: Path
-    state: str  # done, failed, unfinished, not run
+    state: str  # done, failed, generation only, unfinished, not run
     summary: dict[str, Any]  # summary.json; this and the next two are {} unless done
     versions: dict[str, Any]
     # Columns of progress.csv [N]; `pushes` and `cpu_s` include those of the generation.
@@ -158,8 +158,17 @@ def _result(run: Path, cell: Cell, failures: Container[str]) -> RunResult:
         made_with = read_json(run / versions.FILE)
         train = effective_config.load_recorded(run / "config.yaml").train
         return RunResult(cell, run, "done", summary, made_with, curve, train)
-    begun = "unfinished" if run.is_dir() else "not run"
-    return RunResult(cell, run, "failed" if cell.name in failures else begun, {}, {}, {}, None)
+    state = "failed" if cell.name in failures else _state_without_result(run)
+    return RunResult(cell, run, state, {}, {}, {}, None)
+
+
+def _state_without_result(run: Path) -> str:
+    if not run.is_dir():
+        return "not run"
+    has_learned = (run / "training_state.json").is_file()
+    # A summary without a result is that of --no-train.
+    is_whole = (run / "summary.json").is_file() and not has_learned
+    return "generation only" if is_whole else "unfinished"
 
 
 def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:

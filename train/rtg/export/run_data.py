@@ -1,4 +1,4 @@
-"""What is exported: the episodes of a run's data, and where they come from."""
+"""Reads what is exported: the episodes of a run's data, and where they come from."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from rtg import _core
 from rtg.errors import UserError
-from rtg.files import dataset, run_folder, versions
+from rtg.files import dataset, own_data, run_folder, versions
 from rtg.files.dataset import Origin, Transitions
 from rtg.files.episodes import Episode, replayed_plans
 from rtg.run import effective_config
@@ -30,7 +30,7 @@ def read(run: Path) -> RunData:
     config = effective_config.load_written(run_folder.config_file(run))
     path = run / "transitions.npz"
     transitions, origin = dataset.read_with_origin(path, config.task)
-    is_given = run_folder.read_json(run / "generation.json").get("data")
+    is_given = own_data.of_run(run)
     maker = "own" if is_given else config.search.generator
     return RunData(config, transitions, origin, versions.digest(path), maker)
 

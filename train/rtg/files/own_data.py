@@ -153,6 +153,16 @@ def store(run: Path, config: _core.Config, own: OwnData) -> None:
     run_folder.write_json(run / "generation.json", report)
 
 
+def of_run(run: Path) -> dict[str, Any] | None:
+    """Returns what store() noted of the data that a run was given; None if it was given none.
+
+    Its keys are "format", "name", "sha256", and counts: "transitions", "successes". Of a run in
+    results/ the summary alone is kept, which has it as well.
+    """
+    files = run / "generation.json", run / "summary.json"
+    return next((data for file in files if (data := run_folder.read_json(file).get("data"))), None)
+
+
 def words(data: dict[str, Any]) -> str:
     """Says what own data are. `data`: that of the generation.json that store() wrote."""
     where = f"{data['name']} (SHA-256 {data['sha256'][:12]}…)" if data["name"] else "arrays"

@@ -124,22 +124,40 @@ def of_generation(
     return None
 
 
+def of_own_data(data: dict[str, Any]) -> str | None:
+    """Returns a sentence about what own data lack; None if they have successes.
+
+    `data`: that of generation.json.
+    """
+    if data["successes"]:
+        return None
+    return f"goal: none of {data['transitions']:,} transitions reaches it; try data that do"
+
+
 def _learning(config: _core.Config, summary: dict[str, Any]) -> str | None:
     success = summary.get("success_rate")
     if success is None:
         return None
     starts, count = summary["start_region_transitions"], summary["transitions"]
+    search, is_own = config.search, bool(summary.get("data"))
     if starts < _COVERED * count:
-        return (
-            f"coverage: {starts:,} of {count:,} transitions begin where episodes do; try more "
-            f"transitions (search.transitions, {config.search.transitions:,} now)"
+        more = (
+            "data from there"
+            if is_own
+            else f"more transitions (search.transitions, {search.transitions:,} now)"
         )
+        return f"coverage: {starts:,} of {count:,} transitions begin where episodes do; try {more}"
     ranked = summary.get("q_rank_correlation")
     if ranked is not None and ranked < _RANKED:
+        headings = (
+            f"data with other headings from the same states ({summary['headings_per_state']:.1f} "
+            "per state now)"
+            if is_own
+            else f"other headings with each step (search.branches, {search.branches} now)"
+        )
         return (
             f"learning: Q ranks the headings of a state little better than by chance "
-            f"({ranked:.2f}); try other headings with each step (search.branches, "
-            f"{config.search.branches} now), more interactions (train.interactions)"
+            f"({ranked:.2f}); try {headings}, more interactions (train.interactions)"
         )
     return (
         f"learning: success {success:.2f} at the end of the budget; try more gradient steps "
@@ -154,13 +172,16 @@ def bottleneck(
 ) -> str | None:
     """Returns a sentence about the first stage that falls short; None if all is well.
 
-    `nodes`: those of generation.json. Only of runs whose own trees found the data.
+    `nodes`: those of generation.json. Only of runs whose own trees found the data, or that were
+    given data.
     """
-    if summary["transitions"] is None or config.search.generator not in TREE_GENERATORS:
+    own = summary.get("data")
+    if summary["transitions"] is None:
         return None
-    if summary.get("data"):
+    if not own and config.search.generator not in TREE_GENERATORS:
         return None
     if (summary.get("success_rate") or 0.0) >= _WELL:
         return None
-    found = of_generation(config, summary, nodes) or _learning(config, summary)
+    lacks = of_own_data(own) if own else of_generation(config, summary, nodes)
+    found = lacks or _learning(config, summary)
     return found and f"bottleneck: {found}"

@@ -47,16 +47,17 @@ class RunPlan:
 
     @property
     def own_data(self) -> dict[str, Any] | None:
-        """What `--data` gave the run: "format", "name", "sha256", counts; None if nothing."""
-        return run_folder.read_json(self.report_file).get("data")
+        """The origin of the data that the run was given, see own_data.of_run()."""
+        return own_data.of_run(self.folder)
 
     @property
     def title(self) -> str:
         """The title for pictures and for the first line of output."""
         run = self.config.run
-        generator = "own data" if self.own_data else self.config.search.generator
-        generator = f", {generator}" if self.offline else ""
-        return f"{self.config.task.name}, {run.method}{generator}, seed {run.seed}"
+        own = self.own_data
+        data = f"own data {own['name'] or ''}".rstrip() if own else self.config.search.generator
+        data = f", {data}" if self.offline else ""
+        return f"{self.config.task.name}, {run.method}{data}, seed {run.seed}"
 
     @property
     def offline(self) -> bool:

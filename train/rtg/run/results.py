@@ -49,11 +49,13 @@ def draw_generation(plan: RunPlan) -> None:
 
 
 def generation_warning(plan: RunPlan) -> str | None:
-    """Returns a sentence about what limits a finished generation; None if nothing does."""
-    if plan.own_data:
-        return None
+    """Returns a sentence about what the data of a run lack; None if nothing."""
     report = run_folder.read_json(plan.report_file)
-    found = diagnosis.of_generation(plan.config, report, report["nodes"])
+    found = (
+        diagnosis.of_own_data(plan.own_data)
+        if plan.own_data
+        else diagnosis.of_generation(plan.config, report, report["nodes"])
+    )
     return found and f"these data may not suffice: {found}"
 
 
