@@ -3,6 +3,7 @@
 import statistics
 
 import numpy as np
+import pytest
 from comparison_samples import finished, write_grid
 from rtg.compare import report_plots
 from rtg.compare.cells import Cell, read_grid
@@ -75,6 +76,17 @@ def test_the_band_is_the_sample_deviation_from_where_all_seeds_have_a_value(tmp_
         mean, deviation = statistics.fmean(values), statistics.stdev(values)
         edges = sorted({round(y, 6) for at, y in band if at == x})
         assert np.allclose([edges[0], edges[-1]], [mean - deviation, mean + deviation])
+
+
+def test_of_a_single_evaluation_mean_and_deviation_are_shown(tmp_path, figures):
+    cells = [Cell("gathering", "ddqn_rtg", (), seed) for seed in (1, 2, 3)]
+    shown = comparison(tmp_path, {cell: [0.2 * cell.seed] for cell in cells})
+    report_plots.curves(tmp_path / "curves.png", shown, "gathering")
+    greedy = figures[0].axes[0]
+    dots = [line for line in greedy.lines if line.get_marker() == "o"]
+    assert [line.get_ydata()[-1] for line in dots] == [pytest.approx(0.4)]
+    segments = [one.get_segments() for one in greedy.collections if hasattr(one, "get_segments")]
+    assert np.allclose(segments, [[[[5.0, 0.2], [5.0, 0.6]]]])
 
 
 def test_of_many_labels_the_methods_alone_have_curves(tmp_path):

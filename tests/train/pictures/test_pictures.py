@@ -189,14 +189,14 @@ def test_curves_with_gaps_and_empty_samples_can_be_drawn(tmp_path):
     report = {"replay_gaps": [0.0, 0.02], "replay_gap_median": 0.01, "replay_gap_p90": 0.02}
     plots.replay_gap(tmp_path / "gap.png", "a run", report)
     none = np.zeros((0, 4, 3))
-    plots.coverage(tmp_path / "coverage.png", "a run", TASK, none, np.zeros(0))
+    plots.coverage(tmp_path / "coverage.png", "a run", TASK, none, np.zeros(0), {})
     for file in tmp_path.iterdir():
         with Image.open(file) as picture:
             assert len(picture.convert("RGB").getcolors(1 << 24)) > 20
 
 
 def test_the_coverage_of_a_body_bears_its_name(figures):
-    plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1))
+    plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1), {})
     titles = [axis.get_title(loc="left") for axis in figures[0].axes]
     assert titles[:3] == ["box1", "box2", "box3"]
 
@@ -204,12 +204,38 @@ def test_the_coverage_of_a_body_bears_its_name(figures):
 def test_each_dot_of_the_coverage_has_the_colour_of_its_depth(figures):
     poses = np.repeat(START, 3, axis=0)
     poses[:, :, 0] = np.array([1.0, 2.0, 3.0])[:, None]
-    plots.coverage(Path("coverage.png"), "a run", TASK, poses, np.array([7.0, 3.0, 5.0]))
+    plots.coverage(Path("coverage.png"), "a run", TASK, poses, np.array([7.0, 3.0, 5.0]), {})
     for axis in figures[0].axes[:3]:
         (dots,) = (one for one in axis.collections if one.get_array() is not None)
         found = dict(zip(dots.get_offsets()[:, 0], dots.get_array(), strict=True))
         assert found == {1.0: 7.0, 2.0: 3.0, 3.0: 5.0}
         assert list(dots.get_array()) == [3.0, 5.0, 7.0]  # the deepest are drawn last
+
+
+def test_the_region_in_which_an_object_starts_is_in_its_panel_alone(figures):
+    ring = np.array([[1.0, 2.0], [3.0, 2.0], [3.0, 4.0]])
+    plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1), {2: ring})
+    dashed = [
+        [line.get_xydata() for line in axis.get_lines() if line.is_dashed()]
+        for axis in figures[0].axes[:3]
+    ]
+    assert dashed[0] == dashed[2] == [] and np.array_equal(dashed[1][0][[0, 1, 2]], ring)
+    assert "dashed: where the centre" in figures[0].get_supxlabel()
+    plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1), {})
+    assert "dashed" not in figures[1].get_supxlabel()
+
+
+@pytest.mark.parametrize(("rollouts", "shown"), [(0.5, 2), (float("nan"), 1)])
+def test_a_single_evaluation_is_a_dot_and_what_is_not_measured_is_not_in_the_legend(
+    figures, rollouts, shown
+):
+    columns = ["interactions", "success_rate", "episode_length_mean", "episode_return_mean"]
+    curve = {name: np.array([0.3]) for name in columns}
+    curve["rollout_success"] = np.array([rollouts])
+    plots.learning_curve(Path("curve.png"), "a run", curve, "interactions")
+    lines = figures[0].axes[0].get_lines()
+    assert len(lines) == len(figures[0].legends[0].get_texts()) == shown
+    assert all(line.get_marker() == "o" for line in lines)
 
 
 def test_the_legend_of_the_curves_covers_none_of_them(figures):

@@ -121,6 +121,8 @@ def _draw_curve(
         if is_share:
             low, high = np.clip(low, 0.0, 1.0), np.clip(high, 0.0, 1.0)
         axis.fill_between(grid, low, high, color=colour, alpha=0.18, lw=0)
+        if len(grid) == 1:  # of one point the area is empty
+            axis.vlines(grid, low, high, color=colour, alpha=0.4, lw=2.0)
 
 
 def curve_labels(comparison: Comparison, task: str) -> list[str]:

@@ -91,8 +91,16 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: st
         figure, axes = plt.subplots(1, 3, figsize=(10.5, 3.2), layout="constrained")
         thousand = np.asarray(curve["interactions"]) / 1000.0
         for axis, (name, column, extra, limits) in zip(axes, panels, strict=True):
-            if extra in curve:
-                axis.plot(thousand, curve[extra], color=_ORANGE, lw=1.3, label="training roll-outs")
+            if extra in curve and np.isfinite(curve[extra]).any():
+                axis.plot(
+                    thousand,
+                    curve[extra],
+                    color=_ORANGE,
+                    lw=1.3,
+                    marker="o",  # for values without neighbours
+                    ms=2,
+                    label="training roll-outs",
+                )
             known = np.isfinite(curve[column])
             axis.plot(
                 thousand[known],
@@ -225,11 +233,24 @@ def _draw_scene(axis: Axes, task: TaskLike, body: int) -> None:
     axis.axis("off")
 
 
-def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Floats) -> None:
+def _draw_start_region(axis: Axes, ring: Floats) -> None:
+    closed = np.vstack([ring, ring[:1]])
+    axis.plot(*closed.T, color=_rgb(INK), lw=1.2, ls=(0, (4, 3)), zorder=3)
+
+
+def coverage(
+    path: Path,
+    title: str,
+    task: TaskLike,
+    poses: Floats,
+    depth: Floats,
+    start_regions: Mapping[int, Floats],
+) -> None:
     """Plots, for each object, its positions in all states that the tree search reached.
 
     poses [N, bodies, 3]: the states. depth [N]: number of actions from each to success, shown as
-    colour.
+    colour. `start_regions`: by body, the outline of the region that its centre starts in, [V, 2];
+    of those alone whose start is drawn.
     """
     bodies = objects(task)
     columns = min(4, len(bodies))
@@ -254,12 +275,16 @@ def coverage(path: Path, title: str, task: TaskLike, poses: Floats, depth: Float
                 lw=0,
                 rasterized=True,
             )
+            if body in start_regions:
+                _draw_start_region(axis, start_regions[body])
             axis.set_title(task.names[body])
         bar = figure.colorbar(ScalarMappable(dots.norm, dots.cmap), ax=axes, shrink=0.85, pad=0.02)
         bar.set_label("actions until success, over all trees")
         bar.locator = MaxNLocator(integer=True)
+        in_ranges = ", in the middle of ranges\ndashed: where the centre of the object starts"
         figure.supxlabel(
-            "dots: centres of the object in the search's nodes; outlines: start layout\n"
+            "dots: centres of the object in the search's nodes\noutlines: start layout"
+            f"{in_ranges if start_regions.keys() & set(bodies) else ''}\n"
             "shaded: goal of the centre, or of a mean that includes it\n"
             f"frame: arena, {2 * task.arena / task.metre:g} m wide",
             fontsize=8,

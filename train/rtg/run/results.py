@@ -13,7 +13,7 @@ from rtg.errors import UserError
 from rtg.files import best_episode, dataset, own_data, run_folder
 from rtg.files.episodes import replayed_plan
 from rtg.pictures import episode_pictures, plots
-from rtg.run import diagnosis
+from rtg.run import diagnosis, start_regions
 from rtg.run.effective_config import TREE_GENERATORS
 from rtg.run.plan import RunPlan
 
@@ -45,7 +45,8 @@ def draw_generation(plan: RunPlan) -> None:
     poses = np.array([node["poses"] for node in nodes]).reshape(-1, plan.config.task.bodies, 3)
     depth = np.array([node["depth"] for node in nodes], float)
     picture = plan.folder / "coverage.png"
-    plots.coverage(picture, plan.title, plan.config.task, poses, depth)
+    starts = start_regions.rings(plan.config)
+    plots.coverage(picture, plan.title, plan.config.task, poses, depth, starts)
 
 
 def generation_warning(plan: RunPlan) -> str | None:
