@@ -1,4 +1,4 @@
-"""What MkDocs calls while it builds the site.
+"""The functions that MkDocs calls while it builds the site.
 
 - Pages that lie outside of docs/, files that pages link to, and the C++ reference are added.
 - Links between files of the repository become links of the site.

@@ -1,4 +1,4 @@
-"""Who may include whom: the architecture's arrows, read from the include and import lines."""
+"""Tells who may include whom: the architecture's arrows, read from the include and import lines."""
 
 from __future__ import annotations
 

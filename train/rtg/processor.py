@@ -1,4 +1,4 @@
-"""Whether this processor can run the compiled core of an installed package."""
+"""Checks whether this processor can run the compiled core of an installed package."""
 
 from __future__ import annotations
 

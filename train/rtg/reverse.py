@@ -49,7 +49,7 @@ class ReverseSolutions:
 
     @property
     def solved(self) -> NDArray[np.bool_]:
-        """Which solves have starts. [N]"""
+        """Returns which solves have starts. [N]"""
         return np.array([len(starts) > 0 for starts in self.starts], np.bool_)
 
 

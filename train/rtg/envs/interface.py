@@ -73,7 +73,7 @@ class Interface:
 
     @property
     def draws_goals(self) -> bool:
-        """Whether each episode has a goal of its own."""
+        """Returns whether each episode has a goal of its own."""
         return self._layouts is not None
 
     def checked_actions(self, actions: Any, count: int) -> NDArray[Any]:

@@ -1,4 +1,4 @@
-"""Which stored transitions follow one another: the columns `episode`, `step` and `truncated`."""
+"""Tells which stored transitions follow one another: columns `episode`, `step` and `truncated`."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ AVERAGING_WARM_UP = 5.0
 
 
 class Environments(Protocol):
-    """What the learner needs of its environments; see TrainingEnvironments."""
+    """The interface of the learner's environments; see TrainingEnvironments."""
 
     count: int
     observation_size: int

@@ -29,7 +29,7 @@ _REASON_LENGTH = 100  # characters, of why a variant is not possible
 
 
 class Variant(NamedTuple):
-    """What differs from the training: settings of the configuration, and noise of the poses."""
+    """A difference from the training: settings of the configuration, and noise of the poses."""
 
     group: str  # what differs, in words
     label: str  # by how much

@@ -186,7 +186,7 @@ class RobustnessRow(Protocol):
 
     @property
     def variant(self) -> Any:
-        """What differs: its `group` and `label`."""
+        """The difference from the training, with its `group` and `label`."""
 
     @property
     def success(self) -> float | None: ...
