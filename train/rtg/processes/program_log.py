@@ -42,6 +42,6 @@ def _end(log: BinaryIO, start: int, lines: int) -> bytes:
         begin = min(max(start, size - block), size)
         log.seek(begin)
         found = log.read(size - begin)
-        if begin <= start or found.count(b"\n") > lines:
+        if begin <= start or found[:-1].count(b"\n") >= lines:
             return found
         block *= 4
