@@ -46,6 +46,8 @@ ENVIRONMENTS = {
     "RTG/PushTHard-v0": ("push_t_hard", 100),
     "RTG/Place-v0": ("place", 100),
     "RTG/Insert-v0": ("insert", 80),
+    "RTG/Key-v0": ("key", 80),
+    "RTG/Plug-v0": ("plug", 80),
     "RTG/Pack-v0": ("pack", 60),
     "RTG/Gate-v0": ("gate", 80),
     "RTG/Maze-v0": ("maze", 80),

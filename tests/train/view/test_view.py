@@ -1,5 +1,6 @@
 """The command: its page and its data are for this machine alone, and a signal ends it."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -38,9 +39,10 @@ def listening(pids):
     sockets = set()
     for pid in pids:
         for link in Path(f"/proc/{pid}/fd").iterdir():
-            target = os.readlink(link)
-            if target.startswith("socket:["):
-                sockets.add(target[8:-1])
+            with contextlib.suppress(FileNotFoundError):  # closed since it was listed
+                target = os.readlink(link)
+                if target.startswith("socket:["):
+                    sockets.add(target[8:-1])
     lines = [
         line.split()
         for table in ("tcp", "tcp6")
