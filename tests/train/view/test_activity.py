@@ -61,3 +61,12 @@ def test_a_run_that_has_learned_but_has_no_summary_is_not_over(tmp_path, rows):
     with locks.exclusive_lock(folder, "a run"):
         assert is_going_on(folder)
     assert not is_over(folder) and not is_going_on(folder)
+
+
+def test_a_run_of_the_graph_script_ends_with_the_results_of_its_learner(tmp_path, rows):
+    folder = run_folder(tmp_path / "run", rows)
+    held = locks.try_lock(folder / locks.GRAPH_LOCK)
+    assert is_going_on(folder)
+    learn(folder)
+    held.release()
+    assert is_over(folder) and not is_going_on(folder)

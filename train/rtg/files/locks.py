@@ -14,6 +14,8 @@ from pathlib import Path
 from rtg.errors import UserError
 from rtg.files.run_folder import write_errors_as_user_errors
 
+GRAPH_LOCK = ".graph.lock"  # of graph.sh, in the folder of its run
+
 
 class FileLock:
     """A lock on a file. Child processes that inherit its descriptor hold it as well."""
@@ -100,7 +102,7 @@ def job_lock(run: Path) -> Path:
 
 def of_run(run: Path) -> tuple[Path, ...]:
     """Returns the locks of those who work on a run: `rtg run`, graph.sh, a job of a comparison."""
-    return _run_lock(run), run / ".graph.lock", job_lock(run.resolve())
+    return _run_lock(run), run / GRAPH_LOCK, job_lock(run.resolve())
 
 
 def _run_lock(folder: Path) -> Path:

@@ -14,8 +14,9 @@ _QUIET = 60.0  # [s] without a change of these, after which such a run counts as
 
 def is_over(folder: Path) -> bool:
     """Returns whether a run has ended: its last file is written after it has begun or resumed."""
-    last = folder / ("summary.json" if _locks(folder) else "training.json")
-    ends = [file for file in (folder / "summary.json", last) if file.is_file()]
+    summarised = any(path.name != locks.GRAPH_LOCK for path in _locks(folder))  # not by graph.sh
+    last = ["summary.json"] if summarised else ["summary.json", "training.json"]
+    ends = [folder / name for name in last if (folder / name).is_file()]
     began = (folder / "config.yaml").stat().st_mtime_ns
     return any(file.stat().st_mtime_ns >= began for file in ends)
 

@@ -116,8 +116,9 @@ def save(folder: Path, file: Path, say: Say) -> None:
             session.recording.save(file)
         except RuntimeError as error:
             raise UserError(f"--save {file}: {error}; legal: a file that can be written") from None
-        session.begin(follow=session.is_going_on())
-        while session.is_going_on() and not interrupts.requested():
+        follow = session.is_going_on()
+        session.begin(follow=follow)
+        while follow and session.is_going_on() and not interrupts.requested():
             session.step()
             time.sleep(_POLL)
         session.finish()
