@@ -1,6 +1,7 @@
 """LeRobot's data sets: tables, films and metadata, against the episodes and the format's rules."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -151,6 +152,8 @@ def test_a_folder_is_not_written_over_and_a_failure_leaves_none(data, tmp_path, 
     (tmp_path / "there").mkdir()
     with pytest.raises(UserError, match="there exists already; legal: a new folder"):
         lerobot_format.write(data, tmp_path / "there", 1)
+    with pytest.raises(UserError, match="--out: / exists already; legal: a new folder"):
+        lerobot_format.write(data, Path("/"), 1)
 
     def fails(*_):
         raise ValueError("cause")

@@ -243,10 +243,10 @@ def write(data: RunData, folder: Path, count: int | None) -> str:
     """
     for package in ("av", "pandas", "pyarrow"):
         extras.imported(package, "lerobot", "export lerobot")
+    if folder.exists():
+        raise UserError(f"--out: {folder} exists already; legal: a new folder")
     draft = folder.with_name(f".{folder.name}.part")
     with target.held(folder):
-        if folder.exists():
-            raise UserError(f"--out: {folder} exists already; legal: a new folder")
         episodes = run_data.plans(data, count)
         shutil.rmtree(draft, ignore_errors=True)  # of an export that was killed
         try:
