@@ -337,11 +337,13 @@ It is sample `index` of random stream `seed`. Returns None if 1,000 attempts fai
 They are finite, no bodies overlap by more than 0.03 m, movable ones are within twice the
 arena, and fixed ones in their places.)")
       .def("moved", &moved, nb::arg("states"), nb::arg("next_states"),
-           R"(Returns which bodies are more than 0.05 m from where they were. [N, bodies]
+           R"(Returns which bodies are more than 0.05 units from where they were. [N, bodies]
 
-Turns do not count. `states`, `next_states`: [N, bodies, 3] each.)")
+The robot has a radius of 0.8 units. Turns do not count. `states`, `next_states`: [N, bodies, 3] each.)")
       .def("ways", &ways, nb::arg("actions"),
-           R"(Returns the ways (x, y) of the robot that actions ask for [m]. [N] -> [N, 2]
+           R"(Returns the ways (x, y) of the robot that actions ask for. [N] -> [N, 2]
+
+They are in the unit of the poses, of which `metre` make a metre.
 
 Raises ValueError for an action that the task does not have.)")
       .def("__reduce__",

@@ -81,7 +81,9 @@ def test_rows_with_the_same_label_are_told_apart_by_their_settings(tmp_path):
 def given(run, name, sha256, *, transitions=600):
     """Makes a run one of own data."""
     data = {"format": "npz", "name": name, "sha256": sha256}
-    data |= {"transitions": transitions, "successes": 9}
+    found = read_json(run / "versions.json")
+    write_json(run / "versions.json", {**found, "generator": {"data": data}})
+    data = {**data, "transitions": transitions, "successes": 9}
     summary = read_json(run / "summary.json")
     write_json(run / "summary.json", {**summary, "data": data})
     return run

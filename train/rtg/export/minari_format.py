@@ -38,16 +38,12 @@ def default_id(data: RunData, kind: str) -> str:
 
 @contextlib.contextmanager
 def _datasets_in(folder: Path | None) -> Iterator[None]:
-    """Makes `folder` that of Minari's data sets in the `with` block; None: leaves it.
-
-    Raises UserError for what cannot be written in the block.
-    """
+    """Makes `folder` that of Minari's data sets in the `with` block; None: leaves it."""
     before = os.environ.get("MINARI_DATASETS_PATH")
     if folder is not None:
         os.environ["MINARI_DATASETS_PATH"] = str(folder)
     try:
-        with write_errors_as_user_errors(folder or Path(before or "~/.minari/datasets")):
-            yield
+        yield
     finally:
         if before is not None:
             os.environ["MINARI_DATASETS_PATH"] = before
@@ -56,7 +52,10 @@ def _datasets_in(folder: Path | None) -> Iterator[None]:
 
 
 def _path(id: str) -> Path:
-    """Returns the path of the data set `id`. Raises UserError if it is no id."""
+    """Returns the path of the data set `id`, and makes the folder of all.
+
+    Raises UserError if it is no id, or if the folder cannot be written.
+    """
     where = extras.imported("minari.storage.datasets_root_dir", "minari", "export minari")
     names = extras.imported("minari.dataset.minari_dataset", "minari", "export minari")
     try:
@@ -66,7 +65,9 @@ def _path(id: str) -> Path:
             f"--id {id}: not an id of Minari; legal: NAME-v0 or GROUP/NAME-v0, of letters, digits, "
             "- and _"
         ) from None
-    path: Path = where.get_dataset_path(id)
+    root = Path(os.environ.get("MINARI_DATASETS_PATH") or "~/.minari/datasets")
+    with write_errors_as_user_errors(root):
+        path: Path = where.get_dataset_path(id)
     return path
 
 

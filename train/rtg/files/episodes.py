@@ -14,9 +14,7 @@ from rtg.files.dataset import SOURCES, Transitions
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_MAX_GAP = (
-    0.25  # [task units], largest jump of a body between the end of a step and the next one's start
-)
+_MAX_GAP = 0.25  # [task units], largest jump of a body from the end of a step to the next one
 _MAX_REPLAYS = 50  # largest number of plans to simulate for replayed_plan()
 
 
@@ -28,7 +26,7 @@ class Episode(NamedTuple):
     success: bool  # the goal holds in the last state, and in none before
 
 
-def _positions(states: Floats) -> NDArray[np.float32]:
+def positions(states: Floats) -> NDArray[np.float32]:
     """Returns the positions of all bodies. [N, bodies, 3] -> [N, 2 bodies]"""
     return states[:, :, :2].reshape(len(states), -1).astype(np.float32)
 
@@ -38,9 +36,9 @@ def _nearest(states: Floats, among: Floats) -> Ints:
 
     [N, bodies, 3], [M, bodies, 3] -> [N]
     """
-    x = _positions(among)
+    x = positions(among)
     squares = (x * x).sum(axis=1)
-    parts = np.array_split(_positions(states), 1 + len(states) // 500)
+    parts = np.array_split(positions(states), 1 + len(states) // 500)
     return np.concatenate([(squares - 2.0 * part @ x.T).argmin(axis=1) for part in parts])
 
 
@@ -67,9 +65,7 @@ def _steps(transitions: Transitions) -> Transitions:
 
 def _nearest_first(task: _core.Task, steps: Transitions, among: Ints) -> Ints:
     """Sorts steps: those that begin in the start region first, then those nearest to the start."""
-    distances = np.linalg.norm(
-        _positions(steps.poses[among]) - _positions(task.start[None]), axis=1
-    )
+    distances = np.linalg.norm(positions(steps.poses[among]) - positions(task.start[None]), axis=1)
     outside = ~task.in_start_region(steps.poses[among].astype(np.float64))
     return among[np.lexsort((distances, outside))]
 

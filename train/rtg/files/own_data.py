@@ -154,13 +154,8 @@ def store(run: Path, config: _core.Config, own: OwnData) -> None:
 
 
 def of_run(run: Path) -> dict[str, Any] | None:
-    """Returns what store() noted of the data that a run was given; None if it was given none.
-
-    Its keys are "format", "name", "sha256", and counts: "transitions", "successes". Of a run in
-    results/ the summary alone is kept, which has it as well.
-    """
-    files = run / "generation.json", run / "summary.json"
-    return next((data for file in files if (data := run_folder.read_json(file).get("data"))), None)
+    """Returns the OwnData.origin of the data that a run was given; None if it was given none."""
+    return versions.generator(run).get("data")
 
 
 def words(data: dict[str, Any]) -> str:

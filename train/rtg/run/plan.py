@@ -170,7 +170,7 @@ def _check_stored(run: Path, config: _core.Config) -> None:
     file = run / "transitions.npz"
     if shared_transitions.is_generated(run):
         versions.check_seal(file)
-    elif versions.generator(run).get("data"):
+    elif own_data.of_run(run):
         raise UserError(
             f"--resume: {file} is missing or not whole, and was given by --data; legal: a new run "
             "with --data"

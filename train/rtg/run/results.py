@@ -53,7 +53,7 @@ def generation_warning(plan: RunPlan) -> str | None:
     """Returns a sentence about what the data of a run lack; None if nothing."""
     report = run_folder.read_json(plan.report_file)
     found = (
-        diagnosis.of_own_data(plan.own_data)
+        diagnosis.of_own_data(report["data"])
         if plan.own_data
         else diagnosis.of_generation(plan.config, report, report["nodes"])
     )

@@ -62,8 +62,10 @@ def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
     if not plan.offline:
         shown.note("no generated data: all that is learned or planned comes from the simulator")
     elif plan.is_generated():
-        own = plan.own_data
-        shown.note(own_data.words(own) if own else "the transitions are there already")
+        report = run_folder.read_json(plan.report_file) if plan.own_data else None
+        shown.note(
+            own_data.words(report["data"]) if report else "the transitions are there already"
+        )
     elif plan.in_process:
         in_process.generate(plan, shown)
     else:

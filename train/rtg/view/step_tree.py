@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg.files.dataset import Rows
+from rtg.files.episodes import positions
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -13,11 +14,6 @@ Ints = NDArray[np.int64]
 _MAX_GAP = 0.5  # [task units], largest jump of a body from the end of a step to the next one
 _TRIES = 3  # calls of add() in which the next step of a step may come
 _PART = 500  # number of states that are compared with all others at once
-
-
-def _positions(states: Floats) -> NDArray[np.float32]:
-    """Returns the positions of all bodies. [N, bodies, 3] -> [N, 2 bodies]"""
-    return states[:, :, :2].reshape(len(states), -1).astype(np.float32)
 
 
 class StepTree:
@@ -47,7 +43,7 @@ class StepTree:
         self.starts = np.concatenate([self.starts, steps.poses])
         self.ends = np.concatenate([self.ends, steps.next_poses])
         self.depths = np.concatenate([self.depths, steps.terminated.astype(np.int64)])
-        self._known = np.concatenate([self._known, _positions(steps.poses)])
+        self._known = np.concatenate([self._known, positions(steps.poses)])
         self._following = np.concatenate([self._following, np.full(count, -1)])
         tried = np.concatenate([self._open, new])
         tries = np.concatenate([self._tries, np.zeros(count, np.int64)]) + 1
@@ -80,7 +76,7 @@ class StepTree:
         alone = np.setdiff1d(alone, in_row)
         squares = (self._known**2).sum(axis=1)
         for part in np.array_split(alone, 1 + len(alone) // _PART) if len(alone) else ():
-            ends = _positions(self.ends[part])
+            ends = positions(self.ends[part])
             nearest = (squares - 2.0 * ends @ self._known.T).argmin(axis=1)
             jumps = (self._known[nearest] - ends).reshape(len(part), -1, 2)
             near = np.linalg.norm(jumps, axis=2).max(axis=1) <= _MAX_GAP
