@@ -14,9 +14,11 @@ std::string content(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// An empty folder that is removed in the end.
+/// An empty folder of the running test's own, as tests run side by side; it is removed in the end.
 struct Folder {
-  std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "atomic_file_test";
+  std::filesystem::path path =
+      std::filesystem::path(::testing::TempDir()) /
+      (std::string("atomic_file_test.") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
 
   Folder() { std::filesystem::create_directory(path); }
   ~Folder() { std::filesystem::remove_all(path); }
