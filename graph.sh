@@ -3,9 +3,10 @@
 #
 #   ./graph.sh FOLDER [trainer [--resume] [--log NAMES] | recorder]
 #
-# FOLDER/config.yaml is the resolved configuration (./run.sh TASK --print-config). FOLDER gets generation.json,
-# logs/PROGRAM.log, and what the trainer writes or, of the recorder, transitions.npz alone.
-# Environment: RTG_RUN, the run's name on the bus (FOLDER's), RTG_NODES (build/release/nodes), RTG_PYTHON (.venv/bin/python).
+# FOLDER/config.yaml is the resolved configuration (./run.sh TASK --print-config), FOLDER/run.key the secret of the run on
+# the bus, which is made if there is none. FOLDER gets generation.json, logs/PROGRAM.log, and what the trainer writes or,
+# of the recorder, transitions.npz alone.
+# Environment: RTG_RUN, the name of a new key (FOLDER's), RTG_NODES (build/release/nodes), RTG_PYTHON (.venv/bin/python).
 # Workers, server and logger are started again when they die before the coordinator has ended. Where another program
 # fails, all end with its status; where the search falls short, with 1 after the consumer. SIGINT, SIGTERM or SIGHUP
 # ends all, the trainer with a checkpoint; a second SIGINT or SIGTERM at once.
@@ -18,16 +19,16 @@ refuse() { # WHY
 }
 [[ -f ${1:-}/config.yaml ]] || refuse "'${1:-}' is no folder with a config.yaml; legal: graph.sh FOLDER [trainer [--resume] [--log NAMES] | recorder]"
 folder=$(cd -- "$1" && pwd)
-consumer=${2:-trainer} flags=("${@:3}") config=$folder/config.yaml run=${RTG_RUN:-${folder##*/}} logs=$folder/logs
+consumer=${2:-trainer} flags=("${@:3}") config=$folder/config.yaml key=$folder/run.key logs=$folder/logs
 
 program() { # NAME: becomes that program; by hand they can be started in any order
   local be=(exec setsid setpriv --pdeathsig KILL) # out of the terminal's reach, but not longer than this script
   case $1 in
-    forward_sim_server) "${be[@]}" "$nodes/rtg_forward_sim_server" "$config" "$run" ;;
-    reverse_worker_*) "${be[@]}" "$nodes/rtg_reverse_worker" "$config" "$run" "${1##*_}" ;;
-    beam_coordinator) "${be[@]}" "$nodes/rtg_beam_coordinator" "$config" "$run" "$folder" ;;
-    trainer) "${be[@]}" "$python" -m rtg.learn.trainer "$folder" --run-name "$run" "${flags[@]}" ;;
-    recorder) "${be[@]}" "$python" -m rtg.bus.record "$config" "$run" "$folder/transitions.npz" ;;
+    forward_sim_server) "${be[@]}" "$nodes/rtg_forward_sim_server" "$config" "$key" ;;
+    reverse_worker_*) "${be[@]}" "$nodes/rtg_reverse_worker" "$config" "$key" "${1##*_}" ;;
+    beam_coordinator) "${be[@]}" "$nodes/rtg_beam_coordinator" "$config" "$key" "$folder" ;;
+    trainer) "${be[@]}" "$python" -m rtg.learn.trainer "$folder" "${flags[@]}" ;;
+    recorder) "${be[@]}" "$python" -m rtg.bus.record "$config" "$key" "$folder/transitions.npz" ;;
     lcm_logger) "${be[@]}" "$python" -m rtg.bus.lcm_tools "$config" "$folder/lcm.log" ;;
   esac
 }
@@ -86,6 +87,7 @@ workers=$(setting workers)
 exec {held}>"$folder/.graph.lock" || exit 1 # held by this script alone: the kernel releases it at once when it ends
 flock --nonblock "$held" || refuse "another graph.sh works in '$folder'; legal: another folder, or wait"
 mkdir -p "$logs" && rm -f "$folder/generation.json" || exit 1
+if [[ ! -e $key ]]; then "$python" -m rtg.bus.new_key "$key" "${RTG_RUN:-${folder##*/}}" || exit; fi
 exec 2>/dev/null # bash's own words about programs that have ended
 trap 'stop 130' INT
 trap 'stop 143' TERM

@@ -3,7 +3,7 @@ include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/rtg)
 
-foreach(library core protocol config)
+foreach(library core files protocol config)
   set_target_properties(rtg_${library} PROPERTIES EXPORT_NAME ${library})
   install(TARGETS rtg_${library} EXPORT rtg ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endforeach()

@@ -17,8 +17,9 @@ HEAD = """// Made by msgs/wire_fields.py from the .lcm files.
 
 {includes}
 
-/// fields(v, m) calls visitor `v` with each field of message `m`, in the order of its .lcm file:
-/// v.scalar(x), v.count(n), v.array(vector, n), v.text(string), v.texts(vector of strings, n).
+/// fields(v, m) calls visitor `v` with the name of each field of message `m` and the field, in the
+/// order of its .lcm file: v.scalar("x", x), v.count("n", n), v.array("a", vector, n),
+/// v.text("s", string), v.texts("t", vector of strings, n). Those of the header come first.
 /// Visitors check the bytes of a message before decoding and its values after decoding.
 namespace rtg_msgs {{
 
@@ -60,13 +61,14 @@ def visits(name: str, fields: list[str]) -> list[str]:
         elif kind not in {*NUMBERS, "string"} or (length and length not in seen):
             refuse(name, field)
         elif length:
-            calls.append(f"v.{'texts' if kind == 'string' else 'array'}(m.{key}, m.{length});")
+            visit = "texts" if kind == "string" else "array"
+            calls.append(f'v.{visit}("{key}", m.{key}, m.{length});')
         elif key in lengths and kind != "int32_t":
             refuse(name, field)
         elif key in lengths:
-            calls.append(f"v.count(m.{key});")
+            calls.append(f'v.count("{key}", m.{key});')
         else:
-            calls.append(f"v.{'text' if kind == 'string' else 'scalar'}(m.{key});")
+            calls.append(f'v.{"text" if kind == "string" else "scalar"}("{key}", m.{key});')
         seen.add(key)
     return calls
 

@@ -1,19 +1,19 @@
-// rtg_beam_coordinator CONFIG.yaml RUN FOLDER [CONSUMERS]
+// rtg_beam_coordinator CONFIG.yaml KEY FOLDER [CONSUMERS]
 //
-// Generates the transitions of the run named RUN with the workers and the server on the bus. Writes
-// FOLDER/generation.json. Ends when all living consumers of the transition stream, and at least
-// CONSUMERS (default 1), have all of it. CONFIG.yaml is the resolved configuration of the run. Exit
-// status 1 if the search fell short, as the last lines say, 3 if the transitions are complete but
-// units of work were skipped.
+// Generates the transitions of the run whose key file is KEY with the workers and the server on the
+// bus. Writes FOLDER/generation.json. Ends when all living consumers of the transition stream, and
+// at least CONSUMERS (default 1), have all of it. CONFIG.yaml is the resolved configuration of the
+// run. Exit status 1 if the search fell short, as the last lines say, 3 if the transitions are
+// complete but units of work were skipped.
 
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 
-#include "nodes/beam_coordinator/atomic_file.hpp"
 #include "nodes/beam_coordinator/coordinator_node.hpp"
 #include "nodes/config/config.hpp"
+#include "nodes/files/atomic_file.hpp"
 #include "nodes/program/program.hpp"
 #include "nodes/program/shutdown.hpp"
 
@@ -25,17 +25,17 @@ int run(const program::Words& words) {
   if (!std::filesystem::is_directory(words[2]))
     throw std::invalid_argument(words[2] + ": no such folder; legal: a folder that exists");
   const config::Config config = config::load_config(words[0]);
-  bus::Bus bus(config.run.bus, words[1]);
+  bus::Bus bus(config.run.bus, bus::RunKey::read(words[1]));
   CoordinatorNode node(
       bus, {program::shape_of(config.task), config_hash(config), config.search.transitions,
             [] { return program::stop_signal() != 0; }});
-  program::say("waits for the workers and the server of run " + words[1]);
+  program::say_waiting(bus, "the workers and the server");
   const auto report = node.run([&](const search::GenerationSeams& seams) {
     const auto seed = static_cast<std::uint64_t>(config.run.seed);
     return generate(config.task, config.search, seed, seams);
   });
   if (report) {
-    write_atomically(std::filesystem::path(words[2]) / "generation.json", to_json(*report));
+    files::write_atomically(std::filesystem::path(words[2]) / "generation.json", to_json(*report));
     program::say("has found " + std::to_string(report->coverage.transitions) +
                  " transitions, waits until all consumers have them");
     node.drain(consumers);
@@ -58,6 +58,6 @@ int run(const program::Words& words) {
 }  // namespace rtg::beam_coordinator
 
 int main(int argc, char** argv) {
-  return rtg::program::run(argc, argv, "CONFIG.yaml RUN FOLDER [CONSUMERS]",
+  return rtg::program::run(argc, argv, "CONFIG.yaml KEY FOLDER [CONSUMERS]",
                            rtg::beam_coordinator::run);
 }

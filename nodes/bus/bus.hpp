@@ -3,75 +3,100 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "nodes/bus/counters.hpp"
+#include "nodes/bus/datagram.hpp"
+#include "nodes/bus/run_key.hpp"
 #include "nodes/bus/wire.hpp"
 
 namespace rtg::bus {
 
 /// Version of the rules in msgs/CHANNELS.md.
-inline constexpr std::int32_t kProtocol = 1;
+inline constexpr std::int32_t kProtocol = 2;
 
-/// A connection to the message bus; the only C++ class that uses LCM.
+class Network;
+
+/// A connection of one process to the messages of its run; the only C++ class that uses LCM.
 ///
 /// LCM loses, duplicates and reorders messages, and any process may send them. The Bus therefore
-/// checks each message. Handlers receive only messages of the expected type, run and protocol whose
-/// numbers are finite. The Bus drops all others and counts them ("bus.malformed",
-/// "bus.foreign_run", ...).
+/// checks each message, in this order: the datagram, the sender's machine, the run, the keyed hash,
+/// the type, the counts, and that all numbers are finite. Handlers receive what passes; the Bus
+/// drops all others and counts them ("bus.malformed", "bus.foreign_run", "bus.forged", ...).
 ///
 /// publish() may be called from any thread, all other functions from one thread only.
 class Bus {
  public:
-  /// `url`: "udpm://GROUP:PORT[?ttl=N]", or "memq://" within one process, for tests. The default
-  /// ttl of 0 keeps messages on this machine. `run`: name of the run; messages of other runs are
-  /// dropped. Throws std::invalid_argument for an illegal URL, std::runtime_error if the network
-  /// cannot be opened.
-  Bus(const std::string& url, const std::string& run);
+  /// `url`: see parse_bus_url(). `key`: that of the run, whose messages alone are heard. Throws
+  /// std::invalid_argument for an illegal URL, std::runtime_error if the network cannot be opened
+  /// or does not bring back what is sent.
+  Bus(const std::string& url, RunKey key);
+  /// Returns a bus that hears what claims to be of the run named `run`, unauthenticated, and sends
+  /// nothing: for displays, which need no key. Throws like the constructor.
+  static Bus listener(const std::string& url, const std::string& run);
   ~Bus();
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// Fills the header of `msg` and sends `msg`. If the kernel refuses the datagram, the message is
-  /// lost and counted as "bus.unsent".
+  /// Fills the header of `msg` and sends `msg` with the hash of the run's key. If the kernel
+  /// refuses the datagram, the message is lost and counted as "bus.unsent".
   template <class Msg>
   void publish(const std::string& channel, Msg msg) {
     msg.header = header_;
-    send(channel, encode(msg));
+    send_sealed(channel, encode(msg));
   }
 
+  /// Makes spin() pass the messages of `channel` to `handler`, also to earlier ones.
   template <class Msg>
   void subscribe(const std::string& channel, std::function<void(const Msg&)> handler) {
-    listen(channel, [this, handler = std::move(handler)](std::span<const std::uint8_t> bytes) {
-      Msg msg{};
-      if (const auto defect = decode(bytes, msg))
-        counters_.add(std::string(counter_name(*defect)));
-      else if (is_ours(msg.header))
-        handler(msg);
-    });
+    handlers_[channel].push_back(
+        [this, handler = std::move(handler)](std::span<const std::uint8_t> bytes) {
+          Msg msg{};
+          if (const auto defect = decode(bytes, msg))
+            counters_.add(std::string(counter_name(*defect)));
+          else if (msg.header.protocol != kProtocol)
+            counters_.add("bus.foreign_protocol");
+          else
+            handler(msg);
+        });
   }
 
   /// Waits up to `timeout` for a message. Then handles all messages that have arrived, at most
-  /// 1000, and returns their number. Rethrows the first exception of a handler.
+  /// 1000, and returns their number. Lets the exceptions of handlers through; the next call goes on
+  /// with the next message.
   int spin(std::chrono::milliseconds timeout);
+
+  /// Forgets all handlers.
+  void unsubscribe() { handlers_.clear(); }
 
   /// Sends `bytes` unchanged; public for tests with malformed or foreign messages.
   void send(const std::string& channel, std::span<const std::uint8_t> bytes);
 
   Counters& counters() { return counters_; }
+  /// Returns the name of the run.
+  const std::string& run() const { return run_; }
+  /// Returns a warning for the user about the network; empty if there is none.
+  std::string warning() const;
 
  private:
-  using RawHandler = std::function<void(std::span<const std::uint8_t>)>;
-  struct Connection;
+  using Handler = std::function<void(std::span<const std::uint8_t>)>;
 
-  void listen(const std::string& channel, RawHandler handler);
-  bool is_ours(const rtg_msgs::header_t& header);
+  Bus(const std::string& url, std::string run);
+  void send_sealed(const std::string& channel, std::vector<std::uint8_t> bytes);
+  bool handle(const Datagram& datagram);
 
-  Counters counters_;
+  std::string run_;
+  std::optional<RunKey> key_;  // none: a listener
   rtg_msgs::header_t header_{};
-  std::unique_ptr<Connection> connection_;
+  Counters counters_;
+  std::unique_ptr<Network> network_;
+  std::map<std::string, std::vector<Handler>, std::less<>> handlers_;
 };
 
 }  // namespace rtg::bus

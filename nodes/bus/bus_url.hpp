@@ -1,14 +1,24 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace rtg::bus {
 
-/// Size of the UDP receive buffer [bytes]. The kernel's default of 208 kB overflows in every burst.
-inline constexpr int kReceiveBuffer = 4 << 20;
+/// Where the messages of a run go and come from.
+struct BusUrl {
+  bool in_process = false;  // "memq://": messages stay in the Bus object; for tests
+  std::string group;        // multicast group
+  std::uint16_t port = 0;
+  int ttl = 0;                     // 0 keeps messages on this machine
+  std::vector<std::string> peers;  // addresses of other machines whose messages are heard
 
-/// Returns `url` with explicit ttl and receive buffer size, "memq://" unchanged. Throws
-/// std::invalid_argument that lists the legal URLs if `url` is not legal.
-std::string checked_bus_url(const std::string& url);
+  bool operator==(const BusUrl&) const = default;
+};
+
+/// Parses "udpm://GROUP:PORT[?ttl=N][&peers=ADDRESS,ADDRESS...]" or "memq://". Throws
+/// std::invalid_argument if `url` is neither.
+BusUrl parse_bus_url(const std::string& url);
 
 }  // namespace rtg::bus

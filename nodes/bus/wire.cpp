@@ -40,9 +40,15 @@ void LayoutCheck::skip_text() {
   if (ok_) rest_ = rest_.subspan(static_cast<std::size_t>(n));
 }
 
-bool has_fingerprint(std::span<const std::uint8_t> bytes, std::int64_t fingerprint) {
-  return bytes.size() >= 8 && big_endian(bytes.first(8)) == static_cast<std::uint64_t>(fingerprint);
+std::int64_t fingerprint_of(std::span<const std::uint8_t> bytes) {
+  return bytes.size() < 8 ? 0 : static_cast<std::int64_t>(big_endian(bytes.first(8)));
 }
 
 }  // namespace wire
+
+std::int64_t run_of(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t at = 8 + sizeof(rtg_msgs::header_t::protocol);
+  return bytes.size() < at + 8 ? 0 : static_cast<std::int64_t>(big_endian(bytes.subspan(at, 8)));
+}
+
 }  // namespace rtg::bus

@@ -33,16 +33,16 @@ class LayoutCheck {
   explicit LayoutCheck(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
 
   template <class T>
-  void scalar(T&) {
+  void scalar(const char*, T&) {
     skip(1, sizeof(T));
   }
-  void count(std::int32_t& n) { n = length(); }
+  void count(const char*, std::int32_t& n) { n = length(); }
   template <class T>
-  void array(std::vector<T>&, std::int32_t n) {
+  void array(const char*, std::vector<T>&, std::int32_t n) {
     skip(n, sizeof(T));
   }
-  void text(std::string&) { skip_text(); }
-  void texts(std::vector<std::string>&, std::int32_t n) {
+  void text(const char*, std::string&) { skip_text(); }
+  void texts(const char*, std::vector<std::string>&, std::int32_t n) {
     for (std::int32_t i = 0; i < n && ok_; ++i) skip_text();
   }
 
@@ -63,16 +63,16 @@ struct FiniteCheck {
   bool ok = true;
 
   template <class T>
-  void scalar(T& x) {
+  void scalar(const char*, T& x) {
     if constexpr (std::is_floating_point_v<T>) ok = ok && std::isfinite(x);
   }
-  void count(std::int32_t&) {}
+  void count(const char*, std::int32_t&) {}
   template <class T>
-  void array(std::vector<T>& values, std::int32_t) {
-    for (T& x : values) scalar(x);
+  void array(const char*, std::vector<T>& values, std::int32_t) {
+    for (T& x : values) scalar("", x);
   }
-  void text(std::string&) {}
-  void texts(std::vector<std::string>&, std::int32_t) {}
+  void text(const char*, std::string&) {}
+  void texts(const char*, std::vector<std::string>&, std::int32_t) {}
 };
 
 /// Visitor that checks whether the arrays of an outgoing message have the announced lengths. The
@@ -81,19 +81,26 @@ struct CountCheck {
   bool ok = true;
 
   template <class T>
-  void scalar(T&) {}
-  void count(std::int32_t& n) { ok = ok && n >= 0; }
+  void scalar(const char*, T&) {}
+  void count(const char*, std::int32_t& n) { ok = ok && n >= 0; }
   template <class T>
-  void array(std::vector<T>& values, std::int32_t n) {
+  void array(const char*, std::vector<T>& values, std::int32_t n) {
     ok = ok && values.size() == static_cast<std::size_t>(n);
   }
-  void text(std::string&) {}
-  void texts(std::vector<std::string>& values, std::int32_t n) { array(values, n); }
+  void text(const char*, std::string&) {}
+  void texts(const char*, std::vector<std::string>& values, std::int32_t n) {
+    array("", values, n);
+  }
 };
 
-bool has_fingerprint(std::span<const std::uint8_t> bytes, std::int64_t fingerprint);
+/// Returns the fingerprint of an encoded message; 0 if `bytes` are too short.
+std::int64_t fingerprint_of(std::span<const std::uint8_t> bytes);
 
 }  // namespace wire
+
+/// Returns `header.run` of an encoded message, which is no more than its sender's word; 0 if
+/// `bytes` are too short.
+std::int64_t run_of(std::span<const std::uint8_t> bytes);
 
 /// Returns the encoded message. Throws std::logic_error if an array does not have the announced
 /// length or the message exceeds kMaxMessageBytes.
@@ -115,7 +122,7 @@ std::vector<std::uint8_t> encode(Msg& msg) {
 template <class Msg>
 [[nodiscard]] std::optional<WireDefect> decode(std::span<const std::uint8_t> bytes, Msg& msg) {
   if (bytes.size() > kMaxMessageBytes) return WireDefect::kTooLong;
-  if (!wire::has_fingerprint(bytes, Msg::getHash())) return WireDefect::kWrongType;
+  if (wire::fingerprint_of(bytes) != Msg::getHash()) return WireDefect::kWrongType;
   wire::LayoutCheck layout(bytes.subspan(8));
   Msg counts{};
   fields(layout, counts);

@@ -18,6 +18,7 @@
 #include "nodes/config/task_section.hpp"
 #include "nodes/config/train_preset.hpp"
 #include "nodes/config/yaml_parser.hpp"
+#include "nodes/files/regular_file.hpp"
 
 namespace rtg::config {
 namespace {
@@ -29,16 +30,11 @@ const std::vector<std::string> kSections{"task",   "physics", "forward", "revers
 const std::string kTaskLegal = "a mapping, or the path of a YAML file with a section 'task'";
 
 std::string read_text(const std::filesystem::path& file, const std::string& origin) {
-  std::error_code error;
-  const char* wrong = "no such file";
-  if (std::filesystem::is_directory(file, error)) {
-    wrong = "is a folder";
-  } else if (std::ifstream stream(file, std::ios::binary); stream) {
-    return {std::istreambuf_iterator<char>(stream), {}};
-  } else if (std::filesystem::exists(file, error)) {
-    wrong = "cannot be read";
-  }
-  throw ConfigError(origin + ": " + wrong + "; legal: a YAML file with a section 'task'");
+  files::Content content = files::read_regular(file, kMaxYamlBytes);
+  if (!content.defect.empty())
+    throw ConfigError(origin + ": " + content.defect +
+                      "; legal: a YAML file with a section 'task'");
+  return std::move(content.text);
 }
 
 ConfigNode parse_root(const std::string& text, const std::string& name) {
@@ -181,7 +177,7 @@ void check_randomisation(const ConfigNode& root, const Config& config) {
 
 void check_bus(const ConfigNode& root, const std::string& url) {
   try {
-    bus::checked_bus_url(url);
+    (void)bus::parse_bus_url(url);
   } catch (const std::invalid_argument& error) {
     throw ConfigError(find(root, "run", "bus")->value.origin + ": key 'run.bus': " + error.what());
   }

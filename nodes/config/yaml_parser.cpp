@@ -15,7 +15,6 @@
 namespace rtg::config {
 namespace {
 
-constexpr std::size_t kMaxBytes = 1 << 18;  // largest size of a text
 constexpr std::size_t kMaxDepth = 16;
 
 using OriginOfLine = std::function<std::string(int)>;  // lines count from 0
@@ -142,9 +141,9 @@ void check_utf8(const std::string& text, const OriginOfLine& origin) {
 }
 
 ConfigNode parse(const std::string& text, const OriginOfLine& origin) {
-  if (text.size() > kMaxBytes)
+  if (text.size() > kMaxYamlBytes)
     throw ConfigError(origin(0) + ": the text is too long; legal: at most " +
-                      std::to_string(kMaxBytes) + " bytes");
+                      std::to_string(kMaxYamlBytes) + " bytes");
   check_utf8(text, origin);
   std::istringstream stream(text);
   TreeBuilder builder(origin);

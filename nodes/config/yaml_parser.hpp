@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "nodes/config/config_tree.hpp"
 
 namespace rtg::config {
+
+/// Largest size of a YAML text [bytes].
+inline constexpr std::size_t kMaxYamlBytes = 1 << 18;
 
 /// Parses a YAML text into a tree with the origins "file:line". Accepts one document in UTF-8 of
 /// mappings with scalar keys, lists and scalars. Throws ConfigError with the line for wrong syntax,

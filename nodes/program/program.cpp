@@ -49,6 +49,12 @@ void say(const std::string& words) {
   std::fflush(stdout);
 }
 
+void say_waiting(const bus::Bus& bus, const std::string& whom) {
+  if (const std::string warning = bus.warning(); !warning.empty())
+    std::fprintf(stderr, "%s\n", warning.c_str());
+  say("waits for " + whom + " of run " + bus.run());
+}
+
 int parse_number(const std::string& word, const std::string& name) {
   int number = 0;
   const char* end = word.data() + word.size();

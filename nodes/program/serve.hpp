@@ -12,14 +12,14 @@
 
 namespace rtg::program {
 
-/// Runs `node` until the coordinator of `run` leaves or a signal arrives. Returns the exit status
+/// Runs `node` until the coordinator of its run leaves or a signal arrives. Returns the exit status
 /// of the process. If the node is stuck with a unit, ends the process at once with status 1. Throws
 /// std::runtime_error if the coordinator falls silent. Rethrows exceptions of the node.
 template <class Service>
-int serve(bus::Bus& bus, jobs::WorkerNode<Service>& node, const std::string& run) {
+int serve(bus::Bus& bus, jobs::WorkerNode<Service>& node) {
   int status = 0;
   bool served = false;
-  say("waits for the coordinator of run " + run);
+  say_waiting(bus, "the coordinator");
   while (!stop_signal() && !node.coordinator().leaving()) {
     bus.spin(std::chrono::milliseconds(50));
     node.tick(bus::monotonic_now());

@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 
 ROOT = Path(__file__).resolve().parents[2]
 
-_OF_PROGRAMS = {"core", "nodes/bus", "nodes/config", "nodes/jobs", "nodes/program"}
+_OF_PROGRAMS = {"core", "nodes/files", "nodes/bus", "nodes/config", "nodes/jobs", "nodes/program"}
 MAY_INCLUDE = {
     "core/math": {"core/math"},
     "core/world": {"core/math", "core/world"},
@@ -28,8 +28,9 @@ MAY_INCLUDE = {
     "core/tasks": {"core/math", "core/world", "core/tasks"},
     "core/search": {"core"},
     "core/threads": {"core/threads"},
-    "nodes/bus": {"core/threads", "nodes/bus", "rtg_msgs"},
-    "nodes/config": {"core", "nodes/bus", "nodes/config"},
+    "nodes/files": {"nodes/files"},
+    "nodes/bus": {"core/threads", "nodes/files", "nodes/bus", "rtg_msgs"},
+    "nodes/config": {"core", "nodes/files", "nodes/bus", "nodes/config"},
     "nodes/jobs": {"core", "nodes/bus", "nodes/jobs", "rtg_msgs"},
     "nodes/program": {"core", "nodes/bus", "nodes/config", "nodes/jobs", "nodes/program"},
     "nodes/beam_coordinator": {*_OF_PROGRAMS, "rtg_msgs", "nodes/beam_coordinator"},
@@ -37,7 +38,7 @@ MAY_INCLUDE = {
     "nodes/reverse_worker": _OF_PROGRAMS,
     "msgs": {"rtg_msgs"},
     # The bindings take the resolved config, so that C++ and Python never read YAML apart.
-    "train": {"core", "nodes/config", "train/bindings"},
+    "train": {"core", "nodes/bus", "nodes/config", "train/bindings", "rtg_msgs"},
     "tests": {"core", "nodes", "tests", "rtg_msgs"},
 }
 
@@ -50,14 +51,15 @@ ONLY_IN = {
     r"box2d/.*": r"(tests/)?core/forward/box2d_\w+\.cpp|tests/consumer/main\.cpp",
     r"geos_c\.h": r"core/world/outline\.cpp",
     r"(yaml-cpp|utf8cpp)/.*": r"nodes/config/\w+\.cpp",
-    r"lcm/.*": r"nodes/bus/bus\w*\.cpp",
+    r"lcm/.*": r"nodes/bus/network\.cpp",
+    r"sodium\.h": r"nodes/bus/(network|run_key)\.cpp",
     r"nlohmann/.*": r"(core/search|nodes|train|tests/bench)/.*\.cpp",
     r"nanobind/.*": r"train/.*\.(cpp|hpp)",
     r"gtest/.*|gmock/.*": r"tests/.*\.(cpp|hpp)",
     r"benchmark/.*": r"tests/bench/.*\.(cpp|hpp)",
     r"Eigen/.*|unsupported/Eigen/.*": r"(core|nodes|train|tests)/.*",
     # POSIX belongs to the processes.
-    r"(sys|netinet|arpa|net)/.*|unistd\.h|pthread\.h": r"(nodes|tests|train)/.*",
+    r"(sys|netinet|arpa|net)/.*|fcntl\.h|unistd\.h|pthread\.h": r"(nodes|tests|train)/.*",
 }
 
 # Rooms of the Python package -> the rooms below, from which they may import; all may import `ROOF`.

@@ -107,7 +107,7 @@ def modules(node: ast.Import | ast.ImportFrom) -> list[str]:
         ("core/search/a.cpp", '#include "core/tasks/task.hpp"'),
         ("core/math/oracle.cpp", "#include <suitesparse/umfpack.h>"),
         ("core/forward/box2d_simulator.cpp", "#include <box2d/box2d.h>"),
-        ("nodes/bus/bus.cpp", "#include <lcm/lcm-cpp.hpp>"),
+        ("nodes/bus/network.cpp", "#include <lcm/lcm-cpp.hpp>"),
         ("nodes/jobs/convert.cpp", '#include "rtg_msgs/transition_t.hpp"'),
         ("core/math/a.hpp", "#include <experimental/simd>"),
         ("train/rtg/bus/bus.py", "import lcm"),

@@ -9,8 +9,10 @@ from pathlib import Path
 
 from network import Network
 from rtg import _core, paths
+from rtg.bus.bus import new_key
 from rtg.files.dataset import Rows
 from rtg.files.recorder import Recorder
+from rtg.files.run_folder import KEY_FILE
 from rtg.run import effective_config
 from rtg.run.run_args import Override
 
@@ -31,9 +33,11 @@ class Graph:
         self.config = folder / "config.yaml"
         given = [Override("", setting) for setting in overrides]
         self.config.write_text(effective_config.load(_TINY, given).yaml)
+        self.key = folder / KEY_FILE
+        new_key(self.key, _RUN)
 
     def _program(self, name: str, *words: str | Path) -> Process:
-        return self.network.start([paths.BUILD / "nodes" / name, self.config, _RUN, *words])
+        return self.network.start([paths.BUILD / "nodes" / name, self.config, self.key, *words])
 
     def server(self) -> Process:
         return self._program("rtg_forward_sim_server")
@@ -53,7 +57,7 @@ class Graph:
         return self._python(_DEADLY_UNIT)
 
     def _python(self, script: Path, *words: str | Path) -> Process:
-        command = [sys.executable, script, self.config, _RUN, *words]
+        command = [sys.executable, script, self.config, self.key, *words]
         return self.network.start(command, PYTHONPATH=str(paths.ROOT / "train"))
 
     def transitions(self, name: str = "transitions") -> bytes:

@@ -16,6 +16,7 @@ import network
 import pytest
 from graph import PATIENCE, Graph, Process, first_rows, generated_in_process, lost
 from rtg import paths
+from rtg.bus.bus import new_key
 
 LONG = ("search.transitions=12000", "run.seed=3")
 
@@ -87,6 +88,7 @@ def test_any_order_of_starts(net: network.Network, tmp_path: Path, tiny: bytes, 
 
 def test_the_shell_script(net: network.Network, tmp_path: Path, tiny: bytes) -> None:
     graph = Graph(net, tmp_path)
+    graph.key.unlink()
     script = net.start([paths.ROOT / "graph.sh", tmp_path, "recorder"], RTG_RUN="by-the-script")
     assert script.stdout is not None
     assert script.stdout.read() == ""
@@ -227,7 +229,7 @@ def test_a_terminated_coordinator_ends_all_and_leaves_no_half_file(
     coordinator.terminate()
     assert coordinator.wait(PATIENCE) == 128 + signal.SIGTERM
     assert_all_left(server, worker)
-    assert [path.name for path in tmp_path.iterdir()] == ["config.yaml"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["config.yaml", "run.key"]
 
 
 def test_workers_and_server_end_when_told(net: network.Network, tmp_path: Path) -> None:
@@ -254,8 +256,8 @@ def test_bad_words_are_named(net: network.Network, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "program",
     [
-        ["{coordinator}", "{config}", "a-run", "{folder}"],
-        [sys.executable, "-m", "rtg.bus.record", "{config}", "a-run", "{folder}/transitions.npz"],
+        ["{coordinator}", "{config}", "{key}", "{folder}"],
+        [sys.executable, "-m", "rtg.bus.record", "{config}", "{key}", "{folder}/transitions.npz"],
     ],
     ids=["coordinator", "recorder"],
 )
@@ -266,7 +268,9 @@ def test_a_folder_that_does_not_exist_is_refused_before_the_search(
         "coordinator": paths.BUILD / "nodes" / "rtg_beam_coordinator",
         "config": paths.CONFIG / "gathering.yaml",
         "folder": tmp_path / "none",
+        "key": tmp_path / "run.key",
     }
+    new_key(places["key"], "a-run")
     words = [word.format(**places) for word in program]
     env = {**os.environ, "PYTHONPATH": str(paths.ROOT / "train")}
     ended = subprocess.run(words, env=env, stderr=subprocess.PIPE, text=True, timeout=PATIENCE)

@@ -5,6 +5,7 @@
 namespace rtg::bindings {
 
 /// Each of these functions binds one part of the core to the Python module rtg._core.
+void bind_bus(nanobind::module_& module);
 void bind_config(nanobind::module_& module);
 void bind_energy(nanobind::module_& module);
 void bind_generation(nanobind::module_& module);

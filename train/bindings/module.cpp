@@ -4,7 +4,7 @@ NB_MODULE(_core, module) {
   nanobind::set_leak_warnings(false);  // sys.exit() leaves objects to the end of the process
   module.doc() =
       "The C++ core of RTG: configuration, tasks, the true dynamics, generation, "
-      "values of headings.";
+      "values of headings, the bus.";
   rtg::bindings::bind_task(module);
   rtg::bindings::bind_config(module);
   rtg::bindings::bind_simulator(module);
@@ -13,4 +13,5 @@ NB_MODULE(_core, module) {
   rtg::bindings::bind_search(module);
   rtg::bindings::bind_generation(module);
   rtg::bindings::bind_network(module);
+  rtg::bindings::bind_bus(module);
 }

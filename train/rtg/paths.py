@@ -12,7 +12,6 @@ CONFIG = ROOT / "config" if IN_CHECKOUT else _PACKAGE / "config"
 RUNS = (ROOT if IN_CHECKOUT else Path.cwd()) / "runs"
 BUILD = ROOT / "build" / "release"
 PROGRAMS = BUILD / "nodes" if IN_CHECKOUT else _PACKAGE / "programs"
-MESSAGES = BUILD / "msgs" / "python" if IN_CHECKOUT else _PACKAGE / "messages"
 GRAPH = ROOT / "graph.sh" if IN_CHECKOUT else PROGRAMS / "graph.sh"
 DISTRIBUTION = "reverse-trajectory-generation"  # as it is installed
 COMMAND = "./run.sh" if IN_CHECKOUT else "rtg"  # as people type it

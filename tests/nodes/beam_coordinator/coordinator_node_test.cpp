@@ -71,7 +71,7 @@ class Graph {
   }
 
   const tasks::Task task = gathering();
-  bus::Bus bus{"memq://", "test"};
+  bus::Bus bus{"memq://", bus::RunKey::random("test")};
   CoordinatorNode coordinator;
   std::vector<double> poses, next_poses;  // as streamed
   std::vector<int> actions, successes, sources;
@@ -132,7 +132,7 @@ TEST(CoordinatorNode, AStopEndsTheSearchWithoutAReport) {
 }
 
 TEST(CoordinatorNode, ASearchThatIsCutShortByAStopHasNoReport) {
-  bus::Bus bus("memq://", "test");
+  bus::Bus bus("memq://", bus::RunKey::random("test"));
   std::atomic<bool> stop = false;
   CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [&] { return stop.load(); }});
   const auto report = coordinator.run([&](const search::GenerationSeams& seams) {
@@ -144,7 +144,7 @@ TEST(CoordinatorNode, ASearchThatIsCutShortByAStopHasNoReport) {
 }
 
 TEST(CoordinatorNode, WhatTheSearchThrowsComesOut) {
-  bus::Bus bus("memq://", "test");
+  bus::Bus bus("memq://", bus::RunKey::random("test"));
   CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [] { return false; }});
   EXPECT_THROW(coordinator.run([](const search::GenerationSeams&) -> search::GenerationReport {
     throw std::range_error("boom");
@@ -153,7 +153,7 @@ TEST(CoordinatorNode, WhatTheSearchThrowsComesOut) {
 }
 
 TEST(CoordinatorNode, WhatAHandlerThrowsComesOutAndEndsTheSearch) {
-  bus::Bus bus("memq://", "test");
+  bus::Bus bus("memq://", bus::RunKey::random("test"));
   CoordinatorNode coordinator(bus, {{1, 48}, kConfig, 10, [] { return false; }});
   bus.subscribe<search_progress_t>(
       "RTG_PROGRESS", [](const search_progress_t&) { throw std::range_error("boom"); });
@@ -166,7 +166,7 @@ TEST(CoordinatorNode, WhatAHandlerThrowsComesOutAndEndsTheSearch) {
 }
 
 TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
-  bus::Bus bus("memq://", "test");
+  bus::Bus bus("memq://", bus::RunKey::random("test"));
   std::vector<search_progress_t> heard;
   std::atomic<bool> said = false;
   bus.subscribe<search_progress_t>("RTG_PROGRESS", [&](const search_progress_t& m) {

@@ -87,7 +87,7 @@ class Played {
     return results;
   }
 
-  bus::Bus bus{"memq://", "test"};
+  bus::Bus bus{"memq://", bus::RunKey::random("test")};
   JobPool<jobs::ReplayService> pool;
   std::function<void(const replay_job_t&)> on_job = [this](const replay_job_t& job) {
     publish(result_of(job));

@@ -32,7 +32,7 @@ std::vector<search::Transition> rows(int first, int end) {
 
 /// A publisher and one that listens on the same bus.
 struct TransitionPublisherTest : ::testing::Test {
-  bus::Bus bus{"memq://", "test"};
+  bus::Bus bus{"memq://", bus::RunKey::random("test")};
   std::vector<transition_batch_t> batches;
   std::vector<stream_tail_t> tails;
   TransitionPublisher publisher{bus, jobs::TaskShape{.bodies = 2, .actions = 48}};

@@ -13,19 +13,19 @@ struct Fill {
   int next = 1;
 
   template <class T>
-  void scalar(T& x) {
+  void scalar(const char*, T& x) {
     x = static_cast<T>(next++);
   }
-  void count(std::int32_t& x) { x = n; }
+  void count(const char*, std::int32_t& x) { x = n; }
   template <class T>
-  void array(std::vector<T>& values, std::int32_t size) {
+  void array(const char*, std::vector<T>& values, std::int32_t size) {
     values.resize(static_cast<std::size_t>(size));
-    for (T& x : values) scalar(x);
+    for (T& x : values) scalar("", x);
   }
-  void text(std::string& s) { s = "text " + std::to_string(next++); }
-  void texts(std::vector<std::string>& values, std::int32_t size) {
+  void text(const char*, std::string& s) { s = "text " + std::to_string(next++); }
+  void texts(const char*, std::vector<std::string>& values, std::int32_t size) {
     values.resize(static_cast<std::size_t>(size));
-    for (std::string& s : values) text(s);
+    for (std::string& s : values) text("", s);
   }
 };
 

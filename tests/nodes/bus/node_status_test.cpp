@@ -13,7 +13,7 @@ namespace rtg::bus {
 namespace {
 
 TEST(NodeStatus, SaysWhichNodeIsInWhichState) {
-  Bus bus("memq://", "test");
+  Bus bus("memq://", RunKey::random("test"));
   std::vector<rtg_msgs::node_status_t> heard;
   bus.subscribe<rtg_msgs::node_status_t>(
       "RTG_STATUS", [&](const rtg_msgs::node_status_t& status) { heard.push_back(status); });
@@ -29,7 +29,7 @@ TEST(NodeStatus, SaysWhichNodeIsInWhichState) {
 
 // Datagrams may arrive in another order than they were sent in.
 TEST(CoordinatorWatch, ACoordinatorThatSaidItLeavesDoesSoWhateverArrivesLater) {
-  Bus bus("memq://", "test");
+  Bus bus("memq://", RunKey::random("test"));
   const CoordinatorWatch watch(bus);
   const auto leaves_after = [&](bool leaving) {
     rtg_msgs::search_progress_t progress{};
@@ -44,7 +44,7 @@ TEST(CoordinatorWatch, ACoordinatorThatSaidItLeavesDoesSoWhateverArrivesLater) {
 }
 
 TEST(CoordinatorWatch, SilenceBeginsAtTheLastMessage) {
-  Bus bus("memq://", "test");
+  Bus bus("memq://", RunKey::random("test"));
   const CoordinatorWatch watch(bus);
   const Seconds made = monotonic_now();
   while (monotonic_now() == made) {

@@ -63,7 +63,7 @@ class Pair {
     }
   }
 
-  bus::Bus bus{"memq://", "test"};
+  bus::Bus bus{"memq://", bus::RunKey::random("test")};
   std::vector<worker_beat_t> beats;
   std::vector<reverse_result_t> results;
   WorkerNode<ReverseService> worker;
@@ -174,7 +174,7 @@ TEST(WorkerNodeDeathTest, AProcessThatIsStuckEndsThoughItsThreadDoesNot) {
     return {};
   };
   const auto process = [&] {
-    bus::Bus bus("memq://", "test");
+    bus::Bus bus("memq://", bus::RunKey::random("test"));
     WorkerNode<ReverseService> worker(bus, {kShape, kConfig, 3, 1, 0.0}, hang);
     reverse_job_t message = ReverseService::message(kJobs);
     message.to = worker.incarnation();

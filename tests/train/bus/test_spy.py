@@ -6,43 +6,60 @@ import time
 
 import pytest
 from rich.console import Console
-from rtg import paths
-from rtg.bus.bus import PROTOCOL, Bus, run_key
+from rtg import _core, paths
+from rtg.bus.bus import open_bus
 from rtg.bus.channel_monitor import ChannelMonitor
-from rtg.bus.messages import message_type
 from rtg.bus.node_status import ENDED, NodeStatus
 from rtg.bus.spy import Picture, SpyApp, bandwidth, run_name, watch_plainly
 from rtg.files.run_folder import write_run_name
 
 
+class Bus:
+    """Passes to a monitor what is published, with the header of a run."""
+
+    def __init__(self):
+        self.waiting, self.run = [], "a run"
+
+    def publish(self, channel, kind, **fields):
+        bus = open_bus("memq://", _core.RunKey.random(self.run))
+        bus.subscribe(channel, kind, lambda message: self.say(channel, kind, message))
+        bus.publish(channel, kind, **fields)
+        bus.spin(0.0)
+
+    def say(self, channel, kind="", message=None):
+        self.waiting.append((channel, 57, kind, message))
+
+    def spin(self, timeout, handler):
+        waiting, self.waiting = self.waiting, []
+        for words in waiting:
+            handler(*words)
+        return len(waiting)
+
+
 @pytest.fixture
 def bus():
-    return Bus("memq://", "a run")
+    return Bus()
 
 
 @pytest.fixture
 def monitor(bus):
-    monitor = ChannelMonitor()
-    bus.watch(".*", lambda channel, data: monitor.on_message(channel, data, time.monotonic()))
-    return monitor
+    return ChannelMonitor(bus)
 
 
 def publish(bus):
-    status = message_type("node_status_t")()
-    status.node, status.number, status.state = "reverse_worker", 3, "busy"
-    bus.publish("RTG_STATUS", status)
-    bus.send("RTG_STATUS", b"rubbish")
+    bus.publish("RTG_STATUS", "node_status_t", node="reverse_worker", number=3, state="busy")
+    bus.say("RTG_STATUS")
 
 
 def test_the_plain_table_names_channels_types_and_nodes(bus, monitor):
     publish(bus)
     out = io.StringIO()
-    watch_plainly(bus, monitor, 0.0, out)
+    watch_plainly(monitor, 0.0, out)
     assert out.getvalue().startswith("no message heard: no run is on this bus, or ")
-    bus.spin(0.0)
-    watch_plainly(bus, monitor, 0.0, out)
+    monitor.listen(0.0)
+    watch_plainly(monitor, 0.0, out)
     lines = [line.split() for line in out.getvalue().splitlines()[1:]]
-    assert lines[0] == ["run", f"{run_key('a run') % 2**64:016x}"[:8]]
+    assert lines[0] == ["run", f"{_core.run_id('a run') % 2**64:016x}"[:8]]
     assert lines[1] == ["node", "pid", "state", "done", "rate", "CPU"]
     assert lines[2][:2] == ["reverse_worker", "3"] and lines[2][3] == "busy"
     assert lines[4] == ["channels", "of", "all", "runs"]
@@ -53,16 +70,16 @@ def test_the_plain_table_names_channels_types_and_nodes(bus, monitor):
 
 def test_the_terminal_monitor_shows_what_is_heard_and_pauses(bus, monitor):
     async def use():
-        app = SpyApp(bus, monitor)
+        app = SpyApp(monitor)
         async with app.run_test(size=(120, 30)) as pilot:
             publish(bus)
-            bus.spin(0.0)
+            monitor.listen(0.0)
             app.refresh_picture()
             await pilot.pause()
             assert "reverse_worker" in app.export_screenshot()
             await pilot.press("space")
-            bus.publish("RTG_TAIL", message_type("stream_tail_t")())
-            bus.spin(0.0)
+            bus.publish("RTG_TAIL", "stream_tail_t")
+            monitor.listen(0.0)
             app.refresh_picture()
             await pilot.pause()
             assert "RTG_TAIL" not in app.export_screenshot()
@@ -71,22 +88,20 @@ def test_the_terminal_monitor_shows_what_is_heard_and_pauses(bus, monitor):
     asyncio.run(use())
 
 
-def of_run(run, message):
-    """Returns the message as a process of another run sends it."""
-    message.header.protocol, message.header.run = PROTOCOL, run_key(run)
-    return message.encode()
-
-
 def publish_run(bus, run, phase, counters=()):
-    progress = message_type("search_progress_t")()
-    progress.phase, progress.transitions, progress.target = phase, 12_345, 60_000
-    bus.send("RTG_PROGRESS", of_run(run, progress))
+    bus.run = run
+    bus.publish("RTG_PROGRESS", "search_progress_t", phase=phase, transitions=12_345, target=60_000)
     for number, node in enumerate(("forward_sim_server", "trainer")):
-        status = message_type("node_status_t")()
-        status.node, status.number, status.state = node, number, "learning"
-        status.done, status.n = 1_234_567, len(counters)
-        status.counter_name, status.counter_value = list(counters), [7] * len(counters)
-        bus.send("RTG_STATUS", of_run(run, status))
+        bus.publish(
+            "RTG_STATUS",
+            "node_status_t",
+            node=node,
+            number=number,
+            state="learning",
+            done=1_234_567,
+            counter_name=list(counters),
+            counter_value=[7] * len(counters),
+        )
 
 
 def shown(monitor, width):
@@ -104,8 +119,8 @@ def two_runs(bus, monitor, tmp_path, monkeypatch):
     publish_run(bus, "first-a1b2", "tree 4")
     publish_run(bus, "second-a1b2", "plan 7", ("bus.foreign_run", "units.reissued"))
     for channel in ("RTG_REVERSE_RESULT", "RTG_TRANSITION"):
-        bus.send(channel, message_type("stream_tail_t")().encode())
-    bus.spin(0.0)
+        bus.publish(channel, "stream_tail_t")
+    monitor.listen(0.0)
 
 
 @pytest.mark.parametrize("width", [56, 80, 200])
@@ -130,14 +145,14 @@ def test_a_narrow_terminal_cuts_no_word(monitor, two_runs):
 
 
 def test_what_cannot_be_decoded_shows_in_a_narrow_terminal(bus, monitor, two_runs):
-    bus.send("RTG_STATUS", b"rubbish")
-    bus.spin(0.0)
+    bus.say("RTG_STATUS")
+    monitor.listen(0.0)
     assert "undecodable" in shown(monitor, 56)
 
 
 def test_a_small_terminal_shows_the_runs_first(bus, monitor, two_runs):
     async def use():
-        app = SpyApp(bus, monitor)
+        app = SpyApp(monitor)
         async with app.run_test(size=(60, 24)) as pilot:
             app.refresh_picture()
             await pilot.pause()
@@ -155,16 +170,22 @@ def test_bandwidth_has_fitting_units():
 
 
 def test_a_python_node_is_shown_like_any_other(bus, monitor):
-    status = NodeStatus(bus, "trainer")
-    bus.counters["bus.malformed"] = 2
+    ours = open_bus("memq://", _core.RunKey.random("a run"))
+    said = lambda message: bus.say("RTG_STATUS", "node_status_t", message)  # noqa: E731
+    ours.subscribe("RTG_STATUS", "node_status_t", said)
+    status = NodeStatus(ours, "trainer")
+    ours.count("bus.malformed")
+    ours.count("bus.malformed")
     status.tick("learning", 400)
     status.tick("learning", 401)  # too early to say more
-    bus.spin(0.0)
+    ours.spin(0.0)
+    monitor.listen(0.0)
     (row,) = monitor.runs(time.monotonic())[0].nodes
     assert (row.name, row.state, row.done) == ("trainer 0", "learning", 400)
     assert row.counters == "bus.malformed 2"
     assert monitor.channels()[0].messages == 1
     status.tick(ENDED, 402)  # a new state is said at once
-    bus.spin(0.0)
+    ours.spin(0.0)
+    monitor.listen(0.0)
     (row,) = monitor.runs(time.monotonic())[0].nodes
     assert (row.state, row.done) == (ENDED, 402)

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from rtg.bus.bus import Bus
-from rtg.bus.messages import message_type
+from rtg import _core
+from rtg.bus.bus import open_bus
 from rtg.bus.stream_listener import StreamListener
 
 
 @pytest.fixture
 def bus():
-    return Bus("memq://", "a run")
+    return open_bus("memq://", _core.RunKey.random("a run"))
 
 
 @pytest.fixture
@@ -20,12 +20,17 @@ def heard(bus):
 
 
 def publish(bus, first, actions):
-    batch = message_type("transition_batch_t")()
-    batch.first, batch.n, batch.n_poses = first, len(actions), len(actions) * 6
-    batch.poses = batch.next_poses = [0.5] * batch.n_poses
-    batch.action, batch.success = actions, [0] * len(actions)
-    batch.source = [0] * len(actions)
-    bus.publish("RTG_TRANSITION", batch)
+    n = len(actions)
+    bus.publish(
+        "RTG_TRANSITION",
+        "transition_batch_t",
+        first=first,
+        poses=[0.5] * n * 6,
+        next_poses=[0.5] * n * 6,
+        action=actions,
+        success=[0] * n,
+        source=[0] * n,
+    )
 
 
 def test_rows_come_with_their_numbers_in_the_order_in_which_they_arrive(bus, heard):
@@ -47,11 +52,10 @@ def test_illegal_rows_are_counted(bus, heard):
 def test_a_listener_says_nothing(bus, heard):
     """A consumer would acknowledge; the sender would then wait for it, and count it."""
     said = []
-    bus.watch("RTG_ACK|RTG_STATUS", lambda channel, data: said.append(channel))
-    tail = message_type("stream_tail_t")()
-    tail.count, tail.sealed = 3, 1
+    bus.subscribe("RTG_ACK", "stream_ack_t", said.append)
+    bus.subscribe("RTG_STATUS", "node_status_t", said.append)
     for _ in range(3):
         publish(bus, 0, [1, 2])
-        bus.publish("RTG_TAIL", tail)
+        bus.publish("RTG_TAIL", "stream_tail_t", count=3, sealed=1)
         bus.spin(0.0)
     assert len(heard) == 3 and said == []

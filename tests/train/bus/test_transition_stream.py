@@ -5,8 +5,8 @@ import random
 
 import numpy as np
 import pytest
-from rtg.bus.bus import Bus
-from rtg.bus.messages import message_type
+from rtg import _core
+from rtg.bus.bus import open_bus
 from rtg.bus.transition_stream import FINAL_ACKS, StreamCursor, TransitionStream, to_rows
 from rtg.errors import RunError
 from rtg.files.dataset import Rows
@@ -153,12 +153,10 @@ def test_overlapping_pieces_are_cut():
 
 
 def test_two_streams_are_not_mixed():
-    ours = Bus("memq://", "a run")
+    ours = open_bus("memq://", _core.RunKey.random("a run"))
     stream = TransitionStream(ours, bodies=3, actions=48, sink=print)
     for number in (5, 5, 6):
-        tail = message_type("stream_tail_t")()
-        tail.stream = number
-        ours.publish("RTG_TAIL", tail)
+        ours.publish("RTG_TAIL", "stream_tail_t", stream=number)
     with pytest.raises(RunError, match="the coordinator was restarted"):
         stream.poll(0.0)
 

@@ -2,6 +2,7 @@
 
 import io
 import json
+import time
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -87,11 +88,18 @@ def test_a_program_that_takes_longer_to_stop_is_waited_for(plan, tmp_path):
 
 
 def test_what_the_network_lacks_is_told(plan, monkeypatch):
-    monkeypatch.setattr("rtg.bus.bus._small_buffer", lambda url: f"a small buffer on {url}")
+    bus = SimpleNamespace(
+        warning="a small buffer",
+        counters={},
+        spin=lambda timeout: time.sleep(timeout),
+        subscribe=lambda *words: None,
+        unsubscribe=lambda: None,
+    )
+    monkeypatch.setattr(graph_run, "open_bus", lambda url, key: bus)
     out = io.StringIO()
     with display(out) as shown:
         graph_run.run(plan, shown)
-    assert "a small buffer on memq://\n" in out.getvalue()
+    assert "a small buffer\n" in out.getvalue()
 
 
 def test_work_that_was_given_up_is_told(plan, tmp_path):

@@ -10,9 +10,8 @@ pytest.importorskip("rerun", reason="the extra view is not installed")
 import rerun as rr
 from recordings import lines, read
 from rtg import _core
-from rtg.bus import multicast
-from rtg.bus.bus import Bus
-from rtg.bus.messages import message_type
+from rtg.bus.bus import open_bus
+from rtg.view import follower
 from rtg.view.follower import Follower, Heard, why_unheard
 from rtg.view.run_events import RunEvents
 from rtg.view.run_view import RunView
@@ -21,24 +20,25 @@ from view_runs import GENERATION, TASK, generated
 
 
 def publish(bus, rows, first):
-    batch = message_type("transition_batch_t")()
-    batch.first, batch.n = first, len(rows.action)
-    batch.n_poses = rows.poses.size
-    batch.poses, batch.next_poses = rows.poses.ravel().tolist(), rows.next_poses.ravel().tolist()
-    batch.action, batch.success = rows.action.tolist(), rows.terminated.astype(int).tolist()
-    batch.source = rows.source.tolist()
-    bus.publish("RTG_TRANSITION", batch)
+    bus.publish(
+        "RTG_TRANSITION",
+        "transition_batch_t",
+        first=first,
+        poses=rows.poses.ravel(),
+        next_poses=rows.next_poses.ravel(),
+        action=rows.action,
+        success=rows.terminated.astype(np.int8),
+        source=rows.source,
+    )
 
 
 def tell_progress(bus):
-    progress = message_type("search_progress_t")()
-    progress.phase, progress.layer, progress.depth = "tree 2", 5, 10
-    bus.publish("RTG_PROGRESS", progress)
+    bus.publish("RTG_PROGRESS", "search_progress_t", phase="tree 2", layer=5, depth=10)
 
 
 @pytest.fixture
 def bus():
-    return Bus("memq://", "a run")
+    return open_bus("memq://", _core.RunKey.random("a run"))
 
 
 def follow(folder, bus, file):
@@ -46,8 +46,8 @@ def follow(folder, bus, file):
     recording = rr.RecordingStream("rtg")
     recording.save(file)
     view = RunView(recording, config, push=0.5)
-    follower = Follower(folder, view, RunEvents(folder, config), Heard(bus, config.task))
-    return follower, recording
+    following = Follower(folder, view, RunEvents(folder, config), Heard(bus, config.task))
+    return following, recording
 
 
 def moves(rows, body=2):
@@ -59,19 +59,19 @@ def moves(rows, body=2):
 @pytest.mark.filterwarnings("ignore:RRD file has no footer")  # read before it is complete
 def test_steps_show_as_they_are_heard_and_the_rest_when_the_file_is_there(tmp_path, rows, bus):
     folder = run_folder(tmp_path / "run", None)
-    follower, recording = follow(folder, bus, tmp_path / "run.rrd")
+    following, recording = follow(folder, bus, tmp_path / "run.rrd")
     for first in (0, 200, 0):  # the same rows again, and those up to 600 get lost
         publish(bus, rows.slice(first, first + 200), first)
     publish(bus, rows.slice(600, 800), 600)
     tell_progress(bus)
-    follower.step()
+    following.step()
     recording.flush()
     early = lines(read(tmp_path / "run.rrd")["trees/box2"])
     assert 0 < len(early) < len(moves(rows.slice(0, 800)))
     whole = generated(tmp_path / "whole", rows)
     for name in ("generation.json", "transitions.npz"):
         os.rename(whole / name, folder / name)
-    follower.finish()
+    following.finish()
     recording.flush()
     recording.disconnect()
     found = read(tmp_path / "run.rrd")
@@ -86,19 +86,19 @@ def test_the_time_is_that_since_the_run_began(tmp_path, bus):
     folder = run_folder(tmp_path / "run", None)
     before = os.stat(folder / "config.yaml").st_mtime - 100.0
     os.utime(folder / "config.yaml", (before, before))
-    follower, _ = follow(folder, bus, tmp_path / "run.rrd")
-    assert 100.0 <= follower.now() < 200.0
+    following, _ = follow(folder, bus, tmp_path / "run.rrd")
+    assert 100.0 <= following.now() < 200.0
 
 
 def test_the_clock_of_a_run_stopped_long_ago_begins_where_its_files_end(tmp_path, rows, bus):
     folder = generated(tmp_path / "run", rows)
     os.utime(folder / "config.yaml", (1e6, 1e6))
-    follower, _ = follow(folder, bus, tmp_path / "run.rrd")
-    assert GENERATION <= follower.now() < GENERATION + 60.0
+    following, _ = follow(folder, bus, tmp_path / "run.rrd")
+    assert GENERATION <= following.now() < GENERATION + 60.0
 
 
 def test_a_run_is_heard_only_while_it_generates_over_lcm(tmp_path, rows, monkeypatch):
-    monkeypatch.setattr(multicast, "defect", lambda url: None)
+    monkeypatch.setattr(follower, "defect", lambda url: None)
 
     def why(folder):
         return why_unheard(folder, _core.Config.from_file(folder / "config.yaml"))
@@ -109,14 +109,14 @@ def test_a_run_is_heard_only_while_it_generates_over_lcm(tmp_path, rows, monkeyp
     assert why(alone).startswith("with --in-process its transitions are seen once all are")
     none = run_folder(tmp_path / "none", None, "run.method=ddqn")
     assert why(none) == "it generates no transitions"
-    monkeypatch.setattr(multicast, "defect", lambda url: "no route")
+    monkeypatch.setattr(follower, "defect", lambda url: "no route")
     assert why(tmp_path / "lcm").endswith("seen once all are found: no route")
 
 
 def test_a_run_without_transitions_shows_scene_and_learning(tmp_path, bus):
     folder = run_folder(tmp_path / "run", None, "run.method=ddqn")
-    follower, recording = follow(folder, bus, tmp_path / "run.rrd")
-    follower.finish()
+    following, recording = follow(folder, bus, tmp_path / "run.rrd")
+    following.finish()
     recording.flush()
     recording.disconnect()
     found = read(tmp_path / "run.rrd")

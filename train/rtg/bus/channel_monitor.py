@@ -1,23 +1,33 @@
 """Statistics of all channels: message counts, rates, and states of nodes (processes of a run).
 
-Does no I/O; the caller passes messages and times.
+Whoever sends on the bus can make up channels, runs and nodes. So there is a limit to each; what is
+beyond is counted together.
 """
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
-from rtg.bus.bus import decoded
-from rtg.bus.messages import type_of
 from rtg.bus.node_status import ENDED
 
 RATE_WINDOW = 4.0  # [s], period of time that rates cover
 SILENCE_LIMIT = 3.0  # [s] without a status after which a node counts as silent
-# Channel on which LCM tests whether a process receives its own messages.
-_SELF_TEST_CHANNEL = "LCM_SELF_TEST"
+MOST_CHANNELS = 64
+MOST_NODES = 512  # of all runs
+OTHERS = "(others)"  # stands for the channels beyond that
+# On which LCM and the bus test whether a process receives its own messages.
+_TEST_CHANNELS = ("LCM_SELF_TEST", "RTG_ECHO")
+
+
+class Source(Protocol):
+    """Where messages come from, such as _core.BusMonitor."""
+
+    def spin(self, timeout: float, handler: Callable[[str, int, str, Any], None]) -> int:
+        """Waits up to `timeout` s, then passes on channel, size, type and message of each."""
 
 
 class Rates:
@@ -86,7 +96,7 @@ class NodeRow(NamedTuple):
 class RunRow(NamedTuple):
     """The values that a display shows for a run."""
 
-    run: int  # run_key() of its name
+    run: int  # _core.run_id() of its name
     progress: str  # of its data generation, in one line; "" before any message on it
     nodes: list[NodeRow]  # sorted by name
     is_over: bool  # all of its processes have ended
@@ -95,31 +105,44 @@ class RunRow(NamedTuple):
 class ChannelMonitor:
     """Counts the messages on each channel and keeps the last status of each node, of all runs."""
 
-    def __init__(self) -> None:
+    def __init__(self, source: Source | None = None) -> None:
+        self._source = source
         self._channels: dict[str, _Channel] = {}
         self._nodes: dict[tuple[int, str, int], _Node] = {}
         self._progress: dict[int, Any] = {}  # the last search_progress_t of each run
-        self._finished_runs: set[int] = set()  # run_key() of the runs whose data generation is over
+        self._finished_runs: set[int] = set()  # of the runs whose data generation is over
         self._handlers: dict[str, Callable[[Any, float], None]] = {
             "node_status_t": self._on_status,
             "search_progress_t": self._on_progress,
         }
 
-    def on_message(self, channel: str, data: bytes, now: float) -> None:
-        """Counts a message that arrived at time `now` [s]."""
-        if channel == _SELF_TEST_CHANNEL:
+    def listen(self, timeout: float) -> None:
+        """Waits up to `timeout` s for messages of the source and counts them."""
+
+        def heard(channel: str, size: int, kind: str, message: Any) -> None:
+            self.on_message(channel, size, kind, message, time.monotonic())
+
+        if self._source is not None:
+            self._source.spin(timeout, heard)
+
+    def on_message(self, channel: str, size: int, kind: str, message: Any, now: float) -> None:
+        """Counts a message of `size` bytes that arrived at time `now` [s].
+
+        `kind`: the name of its type; "" if it is none of RTG's. `message` is then None.
+        """
+        if channel in _TEST_CHANNELS:
             return
+        if channel not in self._channels and len(self._channels) >= MOST_CHANNELS:
+            channel = OTHERS
         stats = self._channels.setdefault(channel, _Channel())
         stats.messages += 1
-        stats.size += len(data)
-        kind = type_of(data)
-        message = None if kind is None else decoded(kind, data)
-        if kind is None or isinstance(message, str):
+        stats.size += size
+        if not kind:
             stats.undecodable += 1
             return
-        stats.type_name = kind.__name__
-        if kind.__name__ in self._handlers:
-            self._handlers[kind.__name__](message, now)
+        stats.type_name = kind
+        if kind in self._handlers:
+            self._handlers[kind](message, now)
 
     def sample(self, now: float) -> None:
         """Updates the rates at time `now` [s]; to be called about twice a second."""
@@ -148,18 +171,22 @@ class ChannelMonitor:
         return RunRow(run, _progress_text(self._progress.get(run)), nodes, is_over)
 
     def _on_status(self, message: Any, now: float) -> None:
-        key = (message.header.run, message.node, message.number)
+        key = (message.run, message.node, message.number)
         node = self._nodes.get(key)
-        if node is None or node.status.header.sender != message.header.sender:
+        if node is None and len(self._nodes) >= MOST_NODES:
+            return
+        if node is None or node.status.sender != message.sender:
             node = self._nodes[key] = _Node(message, now)  # a restarted node counts from 0
         node.status, node.arrived_at = message, now
 
     def _on_progress(self, message: Any, _: float) -> None:
-        self._progress[message.header.run] = message
+        if message.run not in self._progress and len(self._progress) >= MOST_NODES:
+            return
+        self._progress[message.run] = message
         if message.leaving:
-            self._finished_runs.add(message.header.run)
+            self._finished_runs.add(message.run)
         else:  # a resumed run
-            self._finished_runs.discard(message.header.run)
+            self._finished_runs.discard(message.run)
 
 
 def _progress_text(p: Any) -> str:
@@ -192,7 +219,7 @@ def _node_row(node: _Node, silence: float, over: bool) -> NodeRow:
     counters = zip(status.counter_name, status.counter_value, strict=True)
     return NodeRow(
         f"{status.node} {status.number}",
-        status.header.sender,
+        status.sender,
         state,
         status.done,
         rate,

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import time
 
-from rtg.bus.bus import Bus
-from rtg.bus.messages import message_type
+from rtg import _core
 
 INTERVAL = 0.5  # [s], between two messages with the same state
 ENDED = "ended"  # the last state that a process publishes before it exits
@@ -14,7 +13,7 @@ ENDED = "ended"  # the last state that a process publishes before it exits
 class NodeStatus:
     """Publishes the status of this process, which `node` names."""
 
-    def __init__(self, bus: Bus, node: str) -> None:
+    def __init__(self, bus: _core.Bus, node: str) -> None:
         self._bus, self._node = bus, node
         self._published, self._published_at = "", -1e9
 
@@ -27,11 +26,14 @@ class NodeStatus:
         if state == self._published and now - self._published_at < INTERVAL:
             return
         self._published, self._published_at = state, now
-        message = message_type("node_status_t")()
-        message.node = self._node
-        message.state, message.done = state, done
-        message.cpu_s = time.process_time()
-        message.counter_name = list(self._bus.counters)
-        message.counter_value = list(self._bus.counters.values())
-        message.n = len(message.counter_name)
-        self._bus.publish("RTG_STATUS", message)
+        counters = self._bus.counters
+        self._bus.publish(
+            "RTG_STATUS",
+            "node_status_t",
+            node=self._node,
+            state=state,
+            done=done,
+            cpu_s=time.process_time(),
+            counter_name=list(counters),
+            counter_value=list(counters.values()),
+        )

@@ -1,8 +1,8 @@
 """Records the transitions of a run, if there is no trainer: the recorder of graph.sh.
 
-`python -m rtg.bus.record CONFIG.yaml RUN FILE.npz` receives all transitions of the run named RUN
-and writes them to FILE.npz, and its digest to the versions.json beside it. Prints how many it has
-when some have arrived.
+`python -m rtg.bus.record CONFIG.yaml KEY FILE.npz` receives all transitions of the run whose key
+file is KEY and writes them to FILE.npz, and its digest to the versions.json beside it. Prints how
+many it has when some have arrived.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 from rtg import _core
-from rtg.bus.bus import Bus
+from rtg.bus.bus import open_bus, read_key
 from rtg.bus.transition_stream import TransitionStream
 from rtg.errors import UserError, exit_status
 from rtg.files.recorder import Recorder
@@ -23,7 +23,7 @@ def _say(words: str) -> None:
     print(f"recorder: {words}", flush=True)
 
 
-def record(config: _core.Config, run: str, file: Path) -> None:
+def record(config: _core.Config, key: _core.RunKey, file: Path) -> None:
     """Waits for the end of the run's transitions and writes them to `file`.
 
     Raises RunError if the coordinator was restarted, UserError if there is no folder for the file
@@ -33,10 +33,10 @@ def record(config: _core.Config, run: str, file: Path) -> None:
         raise UserError(f"{file}: is a folder; legal: a file in a folder that exists")
     if not file.parent.is_dir():
         raise UserError(f"{file.parent}: no such folder; legal: a file in a folder that exists")
-    bus = Bus(config.run.bus, run)
+    bus = open_bus(config.run.bus, key)
     if bus.warning:
         _say(bus.warning)
-    _say(f"waits for the transitions of run {run}")
+    _say(f"waits for the transitions of run {key.name}")
     recorder = Recorder(config)
     stream = TransitionStream(bus, config.task.bodies, config.task.actions, recorder.add)
     while not stream.complete:
@@ -49,8 +49,8 @@ def record(config: _core.Config, run: str, file: Path) -> None:
 
 def _main(argv: list[str]) -> int:
     if len(argv) != 3:
-        raise UserError("legal words: CONFIG.yaml RUN FILE.npz")
-    record(_core.Config.from_file(Path(argv[0])), argv[1], Path(argv[2]))
+        raise UserError("legal words: CONFIG.yaml KEY FILE.npz")
+    record(_core.Config.from_file(Path(argv[0])), read_key(Path(argv[1])), Path(argv[2]))
     return 0
 
 

@@ -22,9 +22,8 @@ from textual.binding import BindingType
 from textual.containers import VerticalScroll
 from textual.widgets import Footer, Header, Static
 
-from rtg import paths
-from rtg.bus import multicast
-from rtg.bus.bus import Bus, run_key
+from rtg import _core, paths
+from rtg.bus.bus import defect
 from rtg.bus.channel_monitor import ChannelMonitor, ChannelRow, NodeRow, RunRow
 from rtg.bus.node_status import ENDED
 from rtg.errors import RunError
@@ -129,9 +128,9 @@ def node_table(rows: list[NodeRow], width: int) -> Table:
 
 
 def run_name(key: int) -> str:
-    """Returns the folder in runs/ of the run with run_key() `key`, else the key in short."""
+    """Returns the folder in runs/ of the run with _core.run_id() `key`, else the key in short."""
     for file in paths.RUNS.glob("**/run_name"):
-        if run_key(run_folder.run_name(file.parent)) == key:
+        if _core.run_id(run_folder.run_name(file.parent)) == key:
             return file.parent.name
     return f"{key % 2**64:016x}"[:8]
 
@@ -139,7 +138,7 @@ def run_name(key: int) -> str:
 class Picture:
     """The display of all data of `monitor` at time `now` [s], as wide as there is room.
 
-    `name`: the name of a run by its run_key().
+    `name`: the name of a run by its _core.run_id().
     """
 
     def __init__(self, monitor: ChannelMonitor, now: float, name: Callable[[int], str]) -> None:
@@ -175,9 +174,9 @@ class SpyApp(App[None]):
     BINDINGS: ClassVar[list[BindingType]] = [("q", "quit", "quit"), ("space", "pause", "pause")]
     CSS = "VerticalScroll { padding: 1 2; }"
 
-    def __init__(self, bus: Bus, monitor: ChannelMonitor, seconds: float | None = None) -> None:
+    def __init__(self, monitor: ChannelMonitor, seconds: float | None = None) -> None:
         super().__init__()
-        self._bus, self._monitor, self._seconds = bus, monitor, seconds
+        self._monitor, self._seconds = monitor, seconds
         self._run_name = functools.cache(run_name)
         self._paused = False
 
@@ -205,15 +204,15 @@ class SpyApp(App[None]):
             self.query_one("#picture", Static).update(Picture(self._monitor, now, self._run_name))
 
     def _poll(self) -> None:
-        self._bus.spin(0.0)
+        self._monitor.listen(0.0)
 
 
-def watch_plainly(bus: Bus, monitor: ChannelMonitor, seconds: float | None, out: TextIO) -> None:
+def watch_plainly(monitor: ChannelMonitor, seconds: float | None, out: TextIO) -> None:
     """Prints one Picture after `seconds`. If None, prints one every 2 s without end."""
     console, name = Console(file=out, width=_WIDTH, highlight=False), functools.cache(run_name)
     start = sampled = printed = time.monotonic()
     while seconds is None or time.monotonic() - start < seconds:
-        bus.spin(_POLL)
+        monitor.listen(_POLL)
         now = time.monotonic()
         if now - sampled >= _REFRESH:
             sampled = now
@@ -231,14 +230,13 @@ def spy(url: str, seconds: float | None) -> None:
 
     Raises RunError if multicast does not work.
     """
-    if why := multicast.defect(url):
+    if why := defect(url):
         raise RunError(f"nothing to be heard: {why}")
-    monitor = ChannelMonitor()
-    bus = Bus(url, "rtg spy")
-    bus.watch(".*", lambda channel, data: monitor.on_message(channel, data, time.monotonic()))
+    bus = _core.BusMonitor(url)
+    monitor = ChannelMonitor(bus)
     if bus.warning:
         print(bus.warning, file=sys.stderr)
     if sys.stdout.isatty():
-        SpyApp(bus, monitor, seconds).run()
+        SpyApp(monitor, seconds).run()
     else:
-        watch_plainly(bus, monitor, seconds, sys.stdout)
+        watch_plainly(monitor, seconds, sys.stdout)

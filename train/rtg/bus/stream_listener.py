@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rtg.bus.bus import Bus
-from rtg.bus.messages import message_type
+from rtg import _core
 from rtg.bus.transition_stream import to_rows
 from rtg.files.dataset import Rows
 
@@ -25,15 +24,15 @@ class StreamListener:
     """
 
     def __init__(
-        self, bus: Bus, bodies: int, actions: int, sink: Callable[[Ints, Rows], object]
+        self, bus: _core.Bus, bodies: int, actions: int, sink: Callable[[Ints, Rows], object]
     ) -> None:
         self._bus, self._bodies, self._actions = bus, bodies, actions
         self._sink = sink
-        bus.subscribe("RTG_TRANSITION", message_type("transition_batch_t"), self._on_batch)
+        bus.subscribe("RTG_TRANSITION", "transition_batch_t", self._on_batch)
 
     def _on_batch(self, message: Any) -> None:
         rows = to_rows(message, self._bodies, self._actions)
         if rows is None:
-            self._bus.counters["stream.illegal"] += 1
+            self._bus.count("stream.illegal")
             return
         self._sink(np.arange(message.first, message.first + message.n), rows)

@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rtg.bus.bus import Bus
-from rtg.bus.messages import message_type
+from rtg import _core
 from rtg.errors import RunError
 from rtg.files.dataset import SOURCES, Rows
 
@@ -166,15 +165,17 @@ class TransitionStream:
         stream.poll(0.1)
     """
 
-    def __init__(self, bus: Bus, bodies: int, actions: int, sink: Callable[[Rows], object]) -> None:
+    def __init__(
+        self, bus: _core.Bus, bodies: int, actions: int, sink: Callable[[Rows], object]
+    ) -> None:
         self._bus = bus
         self._bodies, self._actions = bodies, actions
         self._sink = sink
         self._cursor = StreamCursor(CREDIT)
         self._consumer = secrets.randbits(62)
         self._stream: int | None = None
-        bus.subscribe("RTG_TRANSITION", message_type("transition_batch_t"), self._on_batch)
-        bus.subscribe("RTG_TAIL", message_type("stream_tail_t"), self._on_tail)
+        bus.subscribe("RTG_TRANSITION", "transition_batch_t", self._on_batch)
+        bus.subscribe("RTG_TAIL", "stream_tail_t", self._on_tail)
 
     def poll(self, timeout: float) -> int:
         """Waits at most `timeout` s for messages; returns the number of rows passed to the sink.
@@ -187,8 +188,8 @@ class TransitionStream:
         return self._cursor.cursor - before
 
     def close(self) -> None:
-        """Ends the reception of rows and closes the bus."""
-        self._bus.close()
+        """Ends the reception of rows."""
+        self._bus.unsubscribe()
 
     @property
     def received(self) -> int:
@@ -208,7 +209,7 @@ class TransitionStream:
     def _on_batch(self, message: Any) -> None:
         rows = to_rows(message, self._bodies, self._actions)
         if rows is None:
-            self._bus.counters["stream.illegal"] += 1
+            self._bus.count("stream.illegal")
             return
         self._check_stream(message.stream)
         now = time.monotonic()
@@ -218,7 +219,7 @@ class TransitionStream:
 
     def _on_tail(self, message: Any) -> None:
         if message.count < 0:
-            self._bus.counters["stream.illegal"] += 1
+            self._bus.count("stream.illegal")
             return
         self._check_stream(message.stream)
         self._cursor.on_tail(message.count, bool(message.sealed))
@@ -233,10 +234,13 @@ class TransitionStream:
         if self._stream is None:
             return
         while ack := self._cursor.ack_due(time.monotonic()):
-            message = message_type("stream_ack_t")()
-            message.stream, message.consumer = self._stream, self._consumer
-            message.cursor, message.credit = ack.cursor, ack.credit
-            message.n = len(ack.missing)
-            message.first = [first for first, _ in ack.missing]
-            message.last = [last for _, last in ack.missing]
-            self._bus.publish("RTG_ACK", message)
+            self._bus.publish(
+                "RTG_ACK",
+                "stream_ack_t",
+                stream=self._stream,
+                consumer=self._consumer,
+                cursor=ack.cursor,
+                credit=ack.credit,
+                first=[first for first, _ in ack.missing],
+                last=[last for _, last in ack.missing],
+            )

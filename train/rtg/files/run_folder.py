@@ -93,6 +93,9 @@ def config_file(run: Path) -> Path:
     return file
 
 
+KEY_FILE = "run.key"  # the secret with which the processes of a run authenticate their messages
+
+
 def write_run_name(run: Path, name: str) -> None:
     """Notes in the folder of a run by which name its processes know each other on the bus."""
     write_text(run / "run_name", f"{name}\n")

@@ -1,6 +1,6 @@
 """The learner's process: the trainer of graph.sh, and of runs without LCM.
 
-`python -m rtg.learn.trainer RUN_FOLDER... [--resume] [--no-stream] [--run-name NAME] [--log NAMES]`
+`python -m rtg.learn.trainer RUN_FOLDER... [--resume] [--no-stream] [--log NAMES]`
 reads RUN_FOLDER/config.yaml and receives the transitions of the run while it learns. It writes
 transitions.npz, progress.csv, training_state.json (for displays), checkpoint/, model.pt,
 best_episode.npz and training.json to the same folder. With `train.learner: planning` it learns
@@ -23,10 +23,11 @@ from pathlib import Path
 import torch as th
 
 from rtg import _core
-from rtg.bus.bus import Bus
+from rtg.bus.bus import open_bus, read_key
 from rtg.bus.node_status import ENDED, NodeStatus
 from rtg.bus.transition_stream import TransitionStream
 from rtg.errors import UserError, exit_status
+from rtg.files import run_folder
 from rtg.files.dataset import Rows
 from rtg.learn import log_sinks
 from rtg.learn.offline_data import FileSource, NoSource, Source
@@ -45,11 +46,6 @@ def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--no-stream", action="store_true", help="learn from RUN_FOLDER/transitions.npz"
     )
-    parser.add_argument(
-        "--run-name",
-        metavar="NAME",
-        help="the run on the bus whose stream to take (the folder's name)",
-    )
     parser.add_argument("--log", metavar="NAMES", type=log_sinks.parse, default=(), help="also to")
     args = parser.parse_args(argv)
     if len(args.folders) > 1 and not args.no_stream:
@@ -62,13 +58,13 @@ def _source(training: Training | Planning, args: argparse.Namespace) -> Source:
         return NoSource()
     if args.no_stream:
         return FileSource(training.folder / "transitions.npz", training.task, training.data)
-    run = args.run_name or training.folder.resolve().name
-    bus = Bus(training.config.run.bus, run)
+    key = read_key(training.folder / run_folder.KEY_FILE)
+    bus = open_bus(training.config.run.bus, key)
     training.publish_status = NodeStatus(bus, "trainer").tick
     task = training.task
     if bus.warning:
         print(bus.warning, file=sys.stderr)
-    _say(f"waits for the transitions of run {run}")
+    _say(f"waits for the transitions of run {key.name}")
     begun = False
 
     def add(rows: Rows) -> None:

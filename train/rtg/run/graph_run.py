@@ -7,7 +7,7 @@ import sys
 from typing import Any
 
 from rtg import paths
-from rtg.bus.bus import Bus
+from rtg.bus.bus import new_key, open_bus
 from rtg.errors import RunError, UserError
 from rtg.files import run_folder
 from rtg.learn import log_sinks
@@ -37,7 +37,8 @@ class GraphRun:
 
     def __init__(self, plan: RunPlan, display: Display) -> None:
         self._plan, self._display = plan, display
-        self._bus = Bus(plan.config.run.bus, plan.name)
+        self._key_file = plan.folder / run_folder.KEY_FILE
+        self._bus = open_bus(plan.config.run.bus, new_key(self._key_file, plan.name))
         self._watch = RunWatch(self._bus, RunState(budget=plan.interactions))
         self._training = TrainingWatch(plan.folder)
         self._restarts = 0
@@ -56,7 +57,8 @@ class GraphRun:
             graph = run_child("graph", self._command(), log, self._step, _GRACE)
             self._bus.spin(0.0)  # messages that arrived since the last step
         finally:
-            self._bus.close()
+            self._bus.unsubscribe()
+            self._key_file.unlink(missing_ok=True)
         self._read_log(graph)
         defects, status = generation_defects(self._plan), graph.exit_status()
         fell_short = status == 1 and defects and set(self._failure) <= set(defects)
@@ -74,7 +76,6 @@ class GraphRun:
         flags = [*(["--resume"] if plan.resume else []), *log_sinks.flags(plan.sinks)]
         consumer = ["trainer", *flags] if plan.train else ["recorder"]
         settings = (
-            f"RTG_RUN={plan.name}",
             f"RTG_NODES={os.environ.get('RTG_NODES', paths.PROGRAMS)}",
             f"RTG_PYTHON={os.environ.get('RTG_PYTHON', sys.executable)}",
         )

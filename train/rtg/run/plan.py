@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rtg import _core
-from rtg.bus import multicast
+from rtg.bus.bus import defect
 from rtg.errors import UserError
 from rtg.files import minari_data, own_data, run_folder, versions
 from rtg.files.own_data import OwnData
@@ -200,7 +200,7 @@ def make_plan(args: RunArgs) -> RunPlan:
     own = None if args.data is None else _read_own_data(args.data, config.task)
     notes = []
     needs_bus = config.train.offline and not config.run.in_process and own is None
-    if needs_bus and (why := multicast.defect(config.run.bus)):
+    if needs_bus and (why := defect(config.run.bus)):
         notes.append(f"no process graph: {why}")
         notes.append("going on as with --in-process, which gives the same transitions")
         overrides = (*overrides, Override("--in-process", "run.in_process=true"))

@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rtg import _core
-from rtg.bus import multicast
-from rtg.bus.bus import Bus
+from rtg.bus.bus import defect
 from rtg.bus.stream_listener import StreamListener
 from rtg.files.dataset import Rows
 from rtg.run.progress import generation_text
@@ -25,7 +24,7 @@ from rtg.view.run_view import RunView
 class Heard:
     """Keeps what the bus of a run has told since the last call of its methods. It only listens."""
 
-    def __init__(self, bus: Bus, task: _core.Task) -> None:
+    def __init__(self, bus: _core.Bus, task: _core.Task) -> None:
         self._bus = bus
         self._watch = RunWatch(bus, RunState())
         self._rows: list[tuple[Ints, Rows]] = []
@@ -57,7 +56,7 @@ def why_unheard(folder: Path, config: _core.Config) -> str | None:
         return "it generates no transitions"
     if config.run.in_process:
         return "with --in-process its transitions are seen once all are found"
-    why = multicast.defect(config.run.bus)
+    why = defect(config.run.bus)
     return why and f"its transitions are seen once all are found: {why}"
 
 

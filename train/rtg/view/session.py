@@ -7,7 +7,8 @@ from pathlib import Path
 
 import rerun as rr
 
-from rtg.bus.bus import Bus
+from rtg import _core
+from rtg.bus.bus import listen
 from rtg.files.run_folder import config_file, run_name
 from rtg.run.effective_config import load_recorded
 from rtg.view import activity, follower
@@ -30,7 +31,7 @@ class Session:
         self._say = say
         self.recording = rr.RecordingStream("rtg")
         self.recording.send_recording_name(folder.resolve().name)
-        self._bus: Bus | None = None
+        self._bus: _core.Bus | None = None
         self._follower: follower.Follower | None = None
 
     def is_over(self) -> bool:
@@ -55,7 +56,7 @@ class Session:
             self._say(f"not listening to the run: {why}")
         else:
             name = run_name(self._folder)
-            self._bus = Bus(self._config.run.bus, name)
+            self._bus = listen(self._config.run.bus, name)
             heard = follower.Heard(self._bus, self._config.task)
             if self._bus.warning:
                 self._say(self._bus.warning)
@@ -77,7 +78,7 @@ class Session:
     def close(self) -> None:
         """Ends the recording."""
         if self._bus is not None:
-            self._bus.close()
+            self._bus.unsubscribe()
         self.recording.flush()
         self.recording.disconnect()
 

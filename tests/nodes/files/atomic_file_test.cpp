@@ -1,4 +1,4 @@
-#include "nodes/beam_coordinator/atomic_file.hpp"
+#include "nodes/files/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,9 @@
 #include <iterator>
 #include <system_error>
 
-namespace rtg::beam_coordinator {
+#include "tests/support/folder.hpp"
+
+namespace rtg::files {
 namespace {
 
 std::string content(const std::filesystem::path& path) {
@@ -14,18 +16,8 @@ std::string content(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// An empty folder of the running test's own, as tests run side by side; it is removed in the end.
-struct Folder {
-  std::filesystem::path path =
-      std::filesystem::path(::testing::TempDir()) /
-      (std::string("atomic_file_test.") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-
-  Folder() { std::filesystem::create_directory(path); }
-  ~Folder() { std::filesystem::remove_all(path); }
-};
-
 TEST(WriteAtomically, ReplacesTheFileAndWhatAKilledWriterLeft) {
-  const Folder folder;
+  const testing::Folder folder;
   const std::filesystem::path path = folder.path / "file";
   std::ofstream(folder.path / "file.part") << "left by a killed writer";
   write_atomically(path, "a long first text");
@@ -35,8 +27,15 @@ TEST(WriteAtomically, ReplacesTheFileAndWhatAKilledWriterLeft) {
   EXPECT_FALSE(std::filesystem::exists(folder.path / "file.part"));
 }
 
+TEST(WriteAtomically, GivesANewFileItsMode) {
+  const testing::Folder folder;
+  write_atomically(folder.path / "file", "secret", 0600);
+  EXPECT_EQ(std::filesystem::status(folder.path / "file").permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
 TEST(WriteAtomically, NamesTheFileThatItCannotWrite) {
-  const Folder folder;
+  const testing::Folder folder;
   const std::filesystem::path path = folder.path / "none" / "file";
   try {
     write_atomically(path, "text");
@@ -47,4 +46,4 @@ TEST(WriteAtomically, NamesTheFileThatItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace rtg::beam_coordinator
+}  // namespace rtg::files
