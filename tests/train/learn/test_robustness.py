@@ -122,7 +122,7 @@ def test_the_command_writes_table_picture_and_json(tmp_path: Path) -> None:
         evaluate(tmp_path, 2)
     text = evaluate(trained(tmp_path), 2)
     rows = json.loads((tmp_path / "evaluation.json").read_text())["rows"]
-    assert len(rows) == len(robustness.variants(CONFIG)) == text.count("\n| ") - 1
+    assert len(rows) == len(robustness.variants(CONFIG)) == text.count("\n| ") - 2  # head and rule
     assert (tmp_path / "evaluation.md").read_text() == text
     assert (tmp_path / "evaluation.png").stat().st_size > 5_000
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import torch as th
 
 from rtg import _core
+from rtg.compare.report_tables import table
 from rtg.errors import UserError
 from rtg.files import run_folder
 from rtg.learn import policy_file, robustness
@@ -32,15 +33,15 @@ def _table(rows: list[Row], config: _core.Config, episodes: int) -> str:
         "",
         f"{_policy(config)}. {episodes} held-out starts each.",
         "",
-        "| | | success | actions per episode |",
-        "|---|---|---:|---:|",
+        table(["", "", "success", "actions per episode"], map(_cells, rows), left=2),
     ]
-    for row in rows:
-        cells = [f"{row.reason}", ""]
-        if row.success is not None:
-            cells = [f"{row.success:.2f}", f"{row.length:.1f}"]
-        lines.append(f"| {row.variant.group} | {row.variant.label} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
+
+
+def _cells(row: Row) -> list[str]:
+    known = row.success is not None
+    figures = [f"{row.success:.2f}", f"{row.length:.1f}"] if known else [f"{row.reason}", ""]
+    return [row.variant.group, row.variant.label, *figures]
 
 
 def _title(config: _core.Config) -> str:

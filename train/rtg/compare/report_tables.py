@@ -16,9 +16,10 @@ NO_VALUE = "–"
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> str:
-    """Returns a Markdown table whose first `left` columns are left-aligned."""
+    """Returns a Markdown table, first `left` columns left-aligned. Escapes "|" in cells."""
     lines = [head, ["---"] * left + ["---:"] * (len(head) - left), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+    escaped = ([cell.replace("|", "\\|") for cell in line] for line in lines)
+    return "\n".join("| " + " | ".join(line) + " |" for line in escaped)
 
 
 def spread(values: Sequence[float | None], form: str) -> str:
