@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
-from rtg.envs.push_env import observation_names, read_config
+from rtg.envs.push_env import observation_names
 from rtg.files import own_data
 from rtg.pictures.draw import outline, state_image
+from rtg.task_config import read_config
 
 Floats = NDArray[np.float64]
 

@@ -1,6 +1,7 @@
 """Transitions from Minari data sets, those of others as well."""
 
 import hashlib
+import json
 import tracemalloc
 
 import gymnasium
@@ -130,6 +131,25 @@ def test_the_environment_of_a_stranger_is_not_made(monkeypatch):
     folder = made("mine-v0", episode(gymnasium.make("RTG/Gathering-v0"), 1))
     monkeypatch.setattr(gymnasium, "make", lambda *_, **__: pytest.fail("was made"))
     assert len(minari_data.read("mine-v0", folder, TASK).rows.action) == 3
+
+
+@pytest.mark.parametrize(
+    ("config", "why"),
+    [
+        ("nowhere.yaml", "nowhere.yaml: no such file; legal: a YAML file"),
+        ("task:\n  name: a", "text:2: key .task.bodies.: is missing"),
+        (["gathering"], r"config is \['gathering'\]; legal: config= with the name of a task"),
+        ("x" * 5000, "File name too long"),
+    ],
+)
+def test_an_environment_whose_specification_has_no_task_is_refused(config, why):
+    folder = made("mine-v0", episode(gymnasium.make("RTG/Gathering-v0"), 1))
+    metadata = json.loads((folder / "metadata.json").read_text())
+    spec = json.loads(metadata["env_spec"])
+    spec["kwargs"]["config"] = config
+    (folder / "metadata.json").write_text(json.dumps({**metadata, "env_spec": json.dumps(spec)}))
+    with pytest.raises(UserError, match=rf"^mine-v0: its environment has no task \(.*{why}"):
+        minari_data.read("mine-v0", folder, TASK)
 
 
 @pytest.mark.parametrize(

@@ -10,11 +10,12 @@ import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rtg import _core, paths
+from rtg import _core
 from rtg.envs.interface import Interface, Variant
 from rtg.envs.layouts import BODY_ENTRY_NAMES
 from rtg.envs.window import Window
 from rtg.pictures.draw import objects
+from rtg.task_config import read_config
 
 Floats = NDArray[np.float64]
 
@@ -34,27 +35,6 @@ def observation_names(task: _core.Task) -> list[str]:
         elif points:
             names.append(f"{joint} slide")
     return names
-
-
-def read_config(
-    config: _core.Config | str | Path | None, settings: Sequence[str] = ()
-) -> _core.Config:
-    """Returns the configuration that is meant: itself, or that of a task's name, file or text.
-
-    A text has several lines. Raises ValueError for None and for a bad file, text or setting.
-    """
-    if config is None:
-        raise ValueError(
-            "config is missing; legal: config= with the name of a task, the path or the text of a "
-            "YAML file, or a configuration"
-        )
-    if isinstance(config, _core.Config):
-        return config
-    if isinstance(config, str) and "\n" in config:
-        return _core.Config.from_text(config, overrides=list(settings))
-    own = paths.CONFIG / f"{config}.yaml"
-    file = own if isinstance(config, str) and own.is_file() else config
-    return _core.Config.from_file(file, list(settings))
 
 
 def checked_state(task: _core.Task, poses: Any) -> Floats:

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from rtg import _core
 from rtg.envs.interface import Interface, Variant
-from rtg.envs.push_env import RENDERED_PIXELS, check_render_mode, read_config
+from rtg.envs.push_env import RENDERED_PIXELS, check_render_mode
+from rtg.task_config import read_config
 
 Bools = NDArray[np.bool_]
 

@@ -7,8 +7,8 @@ from typing import Any
 import gymnasium
 
 from rtg import _core
-from rtg.envs.push_env import read_config
 from rtg.run import effective_config
+from rtg.task_config import read_config
 
 _SECTIONS = ("task", "physics", "forward")  # of a configuration: what an environment consists of
 

@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from rtg import _core, extras, paths
+from rtg import _core, extras
 from rtg.errors import UserError
 from rtg.files import own_data
 from rtg.files.own_data import OwnData
+from rtg.task_config import read_config
 
 _ENVIRONMENT = "rtg.envs.push_env:PushEnv"
 
@@ -74,18 +75,9 @@ def _task_of(name: str, kwargs: dict[str, Any]) -> _core.Task:
     """
     config, settings = kwargs.get("config", "gathering"), kwargs.get("settings", ())
     try:
-        if config in paths.task_names():
-            return _core.Config.from_file(paths.CONFIG / f"{config}.yaml", list(settings)).task
-        if isinstance(config, str) and "\n" in config:
-            return _core.Config.from_text(config, overrides=list(settings)).task
-        if isinstance(config, str) and Path(config).is_file():
-            return _core.Config.from_file(config, list(settings)).task
-    except (TypeError, ValueError) as error:
+        return read_config(config, settings).task
+    except (OSError, TypeError, ValueError) as error:
         raise UserError(f"{name}: its environment has no task ({error})") from None
-    raise UserError(
-        f"{name}: its environment has config={config!r:.80}; legal: a task of RTG, a file that is "
-        "there, or the text of one"
-    )
 
 
 def _poses(name: str, episode: Any, task: _core.Task) -> Any:
