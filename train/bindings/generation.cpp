@@ -6,6 +6,7 @@
 
 #include "core/search/forward_search.hpp"
 #include "core/search/generate.hpp"
+#include "core/search/search_config.hpp"
 #include "core/search/simulators.hpp"
 #include "nodes/config/config.hpp"
 #include "train/bindings/arrays.hpp"
@@ -88,6 +89,8 @@ Calls store(poses, action, next_poses, success, source) with the transitions in 
 Calls progress() after each layer of the search, with a dictionary of "phase", "layer", "depth",
 "transitions", "target", "contact_share" and "start_region". An exception of either function
 ends the generation and is raised.)");
+  module.def("share_of_shard", &search::share_of_shard, nb::arg("search"), nb::arg("k"),
+             "Returns how many of the transitions shard k = 0 ... shards - 1 is to store.");
   module.def("plan", &plan, nb::arg("config"), nb::arg("start"),
              R"(Searches for a plan from `start`, [1, bodies, 3], by forward beam search.
 

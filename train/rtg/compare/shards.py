@@ -11,7 +11,6 @@ import json
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from pathlib import Path
 
 from rtg import _core
@@ -22,6 +21,7 @@ from rtg.errors import exit_status
 from rtg.files import dataset, run_folder, versions
 from rtg.files.dataset import Rows
 from rtg.files.recorder import Recorder
+from rtg.run import effective_config, run_args
 
 
 @dataclass(frozen=True)
@@ -66,23 +66,22 @@ def stages(runs: Sequence[CellRun]) -> tuple[list[Shard], list[Merge]]:
 
 def _shards(run: CellRun, key: str) -> tuple[Shard, ...]:
     """Returns the shards of the generation of a run; none if it is not divided."""
-    values = json.loads(key)
-    count, transitions = values["search.shards"], values["search.transitions"]
-    if count == 1:
+    args = run_args.parse(run.arguments)
+    search = effective_config.load(args.file, args.overrides).search
+    if search.shards == 1:
         return ()
     digest = hashlib.sha256((key + versions.core_digest()).encode()).hexdigest()[:16]
     folder = run.folder.parents[1] / ".shards" / digest
-    bounds = [transitions * k // count for k in range(count + 1)]  # see share_of_shard()
-    return tuple(
-        Shard(_run_of_shard(run, folder / f"{k}", values["search.shard"] + k, end - begin))
-        for k, (begin, end) in enumerate(pairwise(bounds))
-    )
+    return tuple(Shard(_run_of_shard(run, folder, search, k)) for k in range(search.shards))
 
 
-def _run_of_shard(run: CellRun, folder: Path, number: int, transitions: int) -> CellRun:
-    settings = ("shards=1", f"shard={number}", f"transitions={transitions}")
+def _run_of_shard(run: CellRun, folder: Path, search: _core.SearchConfig, k: int) -> CellRun:
+    transitions = _core.share_of_shard(search, k)
+    settings = ("shards=1", f"shard={search.shard + k}", f"transitions={transitions}")
     words = [word for setting in settings for word in ("--set", f"search.{setting}")]
-    return replace(run, folder=folder, arguments=(*run.arguments, *words), generation_key=None)
+    return replace(
+        run, folder=folder / f"{k}", arguments=(*run.arguments, *words), generation_key=None
+    )
 
 
 def merge(run: Path, shards: Sequence[Path]) -> None:
