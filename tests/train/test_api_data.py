@@ -8,6 +8,7 @@ import pytest
 import rtg
 from rtg import paths
 from rtg.errors import UserError
+from rtg.files import own_data
 
 TINY = paths.CONFIG / "tests" / "tiny.yaml"
 
@@ -73,6 +74,15 @@ def test_a_policy_is_trained_and_loaded(task, data, tmp_path: Path) -> None:
     assert {"progress.csv", "training.json", "transitions.npz"} <= {
         path.name for path in (tmp_path / "run").iterdir()
     }
+    for path in (tmp_path / "run", tmp_path / "run" / "transitions.npz"):
+        stored = rtg.Transitions.load(path, task)
+        for field in dataclasses.fields(data):
+            np.testing.assert_array_equal(getattr(stored, field.name), getattr(data, field.name))
+    given = own_data.of_run(tmp_path / "run")
+    assert given["format"] == "arrays" and given["name"] is None
+    assert given["sha256"] == own_data.digest(
+        own_data.rows_in_metres(task.core, data.states, data.actions, data.next_states, data.source)
+    )
     with pytest.raises(UserError, match="holds a learner already"):
         rtg.train(data, task, tmp_path / "run", interactions=80)
 

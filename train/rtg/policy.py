@@ -62,9 +62,10 @@ def load_policy(run: str | PathLike[str]) -> Policy:
 
 def _own_data(task: Task, data: Transitions) -> OwnData:
     """Returns the data for the learner. Raises ValueError for what is not legal."""
-    states, after = task.inner(data.states), task.inner(data.next_states)
-    rows = own_data.checked_rows(task.core, states, data.actions, after, data.source)
-    return OwnData(rows, {"format": "arrays", "name": None, "sha256": None})
+    rows = own_data.rows_in_metres(
+        task.core, data.states, data.actions, data.next_states, data.source
+    )
+    return OwnData(rows, {"format": "arrays", "name": None, "sha256": own_data.digest(rows)})
 
 
 def train(

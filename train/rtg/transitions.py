@@ -64,7 +64,8 @@ class Transitions:
     def load(cls, path: str | PathLike[str], task: Task) -> Transitions:
         """Reads transitions of the task, which judges their success. docs/data.md has the arrays.
 
-        Raises UserError if the file is not legal.
+        `path`: a file that save() wrote, or a run: its folder or transitions.npz. Raises UserError
+        if the file is not legal, of another task, or changed since the run wrote it.
         """
         rows = own_data.read(Path(path), task.core).rows
         states, after = task.outer(rows.poses), task.outer(rows.next_poses)

@@ -101,10 +101,11 @@ def test_runs_of_own_data_are_named_by_it(tmp_path):
     )
 
 
-def test_data_sets_of_one_name_are_told_apart(tmp_path):
-    runs = [given(single(tmp_path / one), "mine.npz", 64 * one) for one in "ab"]
+@pytest.mark.parametrize("name", ["mine.npz", None])
+def test_data_sets_of_one_name_are_told_apart(name, tmp_path):
+    runs = [given(single(tmp_path / one), name, 64 * one) for one in "ab"]
     assert names(collect(runs)) == [
-        f"gathering/ddqn_rtg@data=mine.npz@data.sha256={12 * one}/seed-1" for one in "ab"
+        f"gathering/ddqn_rtg@data={name or 'arrays'}@data.sha256={12 * one}/seed-1" for one in "ab"
     ]
 
 

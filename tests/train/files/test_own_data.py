@@ -9,6 +9,7 @@ from rtg import _core, paths
 from rtg.errors import UserError
 from rtg.files import dataset, own_data, run_folder, versions
 from rtg.files.own_data import OwnData
+from rtg.files.recorder import Recorder
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["search.transitions=300"])
 TASK = CONFIG.task
@@ -56,6 +57,55 @@ def test_sources_are_kept(tmp_path, generated):
     assert np.array_equal(own_data.read(tmp_path / "mine.npz", TASK).rows.source, rows.source)
 
 
+@pytest.fixture
+def run(tmp_path, generated):
+    """The folder of a run that has found the rows."""
+    folder = tmp_path / "run"
+    folder.mkdir()
+    recorder = Recorder(CONFIG)
+    recorder.add(generated[0])
+    recorder.finish(folder / "transitions.npz")
+    return folder
+
+
+@pytest.mark.parametrize("name", ["", "transitions.npz"])
+def test_a_run_is_read_to_the_bit_and_judged_by_the_task(run, generated, name):
+    found, origin = own_data.read(run / name, TASK)
+    for expected, column in zip(generated[0], found, strict=True):
+        assert np.array_equal(expected, column) and expected.dtype == column.dtype
+    digest = versions.sealed_digest(run / "transitions.npz")
+    assert origin == {"format": "run", "name": "run/transitions.npz", "sha256": digest}
+
+
+def test_a_run_of_another_task_and_a_changed_file_are_refused(run):
+    other = _core.Config.from_file(paths.CONFIG / "push_t.yaml").task
+    file = run / "transitions.npz"
+    with pytest.raises(UserError, match=rf"^{file}: has transitions of another task .*'push_t'"):
+        own_data.read(run, other)
+    with file.open("ab") as more:
+        more.write(b"x")
+    with pytest.raises(UserError, match=f"^{file}: was changed since the run wrote it"):
+        own_data.read(run, TASK)
+
+
+def test_a_folder_without_transitions_is_refused(tmp_path):
+    with pytest.raises(
+        UserError, match=r"/transitions\.npz: no such file; legal: a \.npz of numpy"
+    ):
+        own_data.read(tmp_path, TASK)
+
+
+def test_the_digest_of_arrays_is_that_of_their_content(generated):
+    rows = generated[0]
+    again = type(rows)(*(column.copy() for column in rows))
+    assert own_data.digest(again) == own_data.digest(rows)
+    for name in ("poses", "action", "next_poses", "source"):
+        changed = getattr(rows, name).copy()
+        changed.flat[-1] += 1
+        assert own_data.digest(rows._replace(**{name: changed})) != own_data.digest(rows)
+    assert own_data.digest(rows.slice(1)) != own_data.digest(rows)
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -84,8 +134,12 @@ def test_a_file_without_transitions_or_arrays_is_refused(tmp_path, generated):
     with pytest.raises(UserError, match="no transitions; legal: at least one"):
         own_data.read(tmp_path / "none.npz", TASK)
     (tmp_path / "text.npz").write_text("text")
-    with pytest.raises(UserError, match=r"is not a transition file, or damaged; legal: a \.npz"):
-        own_data.read(tmp_path / "text.npz", TASK)
+    np.save(tmp_path / "one.npy", np.zeros(3))
+    for name in ("text.npz", "one.npy"):
+        with pytest.raises(
+            UserError, match=r"is not a transition file, or damaged; legal: a \.npz"
+        ):
+            own_data.read(tmp_path / name, TASK)
 
 
 def test_figures_are_those_that_a_search_tells_of_the_same_rows(generated):
@@ -119,4 +173,7 @@ def test_a_run_stores_them_sealed_and_tells_of_their_file(tmp_path, generated):
     assert told == {**ORIGIN, "transitions": 300, "successes": successes}
     assert own_data.words(told) == (
         f"300 transitions of mine.npz (SHA-256 abc…), {successes} of which succeed"
+    )
+    assert own_data.words({**told, "name": None}).startswith(
+        "300 transitions of arrays (SHA-256 abc…), "
     )

@@ -52,6 +52,27 @@ def test_it_learns_from_them_and_goes_on_after_a_stop(file, tmp_path, capsys):
     assert ("bottleneck: " in said) == (summary["success_rate"] < 0.9)
 
 
+def test_the_data_of_another_run_are_learned_from(file, tmp_path):
+    first = tmp_path / "first"
+    make_plan(run_args.parse([str(TINY), "--data", str(file), "--out", str(first)]))
+    for number, word in enumerate((first, first / "transitions.npz")):
+        out = tmp_path / f"{number}"
+        make_plan(run_args.parse([str(TINY), "--data", str(word), "--out", str(out)]))
+        assert versions.digest(out / "transitions.npz") == versions.digest(
+            first / "transitions.npz"
+        )
+        told = run_folder.read_json(out / "generation.json")["data"]
+        assert (told["format"], told["name"]) == ("run", "first/transitions.npz")
+        assert told["sha256"] == versions.sealed_digest(first / "transitions.npz")
+
+
+def test_a_run_without_transitions_is_refused_and_leaves_nothing(tmp_path, capsys):
+    (tmp_path / "config.yaml").touch()
+    said = refused(capsys, TINY, "--out", tmp_path / "run", "--data", tmp_path)
+    assert f"--data {tmp_path}: no such file or data set; legal: " in said
+    assert not (tmp_path / "run").exists()
+
+
 def test_that_data_without_a_success_do_not_suffice_is_said(tmp_path, file, capsys):
     with np.load(file) as found:
         arrays = {name: found[name] for name in ("states", "actions", "next_states")}

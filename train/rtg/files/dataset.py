@@ -102,6 +102,7 @@ _DAMAGED_FILE_ERRORS = (
     KeyError,
     RuntimeError,
     MemoryError,
+    TypeError,  # a .npy is an array and no archive
     zipfile.BadZipFile,
 )
 

@@ -1,11 +1,12 @@
 """Transitions of one's own: from arrays, or from a file of them, checked and stored in a run.
 
-The file is a .npz with `states`, `actions`, `next_states` and, if wanted, `source`; see
-docs/data.md.
+The file is a .npz with `states`, `actions`, `next_states` and, if wanted, `source`, or the
+transitions.npz of another run; see docs/data.md.
 """
 
 from __future__ import annotations
 
+import hashlib
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -28,7 +29,7 @@ class OwnData(NamedTuple):
     """Transitions that no search of the run has found."""
 
     rows: Rows
-    origin: dict[str, Any]  # "format", "name", "sha256"; None where there is no file
+    origin: dict[str, Any]  # "format", "name" (None where there is no file), "sha256"
 
 
 def in_task_units(task: _core.Task, states: ArrayLike) -> Floats:
@@ -80,22 +81,49 @@ def checked_rows(
     )
 
 
-def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
+def rows_in_metres(
+    task: _core.Task,
+    states: ArrayLike,
+    actions: ArrayLike,
+    next_states: ArrayLike,
+    source: ArrayLike,
+) -> Rows:
+    """Returns transitions for the learner. States are in metres, [N, bodies, 3].
+
+    Raises ValueError for what is not legal.
+    """
+    poses, next_poses = in_task_units(task, states), in_task_units(task, next_states)
+    return checked_rows(task, poses, actions, next_poses, source)
+
+
+def digest(rows: Rows) -> str:
+    """Returns the SHA-256 over the names, sizes and contents of all columns."""
+    found = hashlib.sha256()
+    for name, column in rows._asdict().items():
+        found.update(f"{name} {column.nbytes} ".encode())
+        found.update(column.tobytes())
+    return found.hexdigest()
+
+
+def file_of(path: Path) -> Path:
+    """Returns the file of transitions that is meant: `path`, or that in the folder of a run."""
+    return path / "transitions.npz" if path.is_dir() else path
+
+
+def _arrays(file: Path) -> dict[str, NDArray[Any]] | None:
     """Reads `states`, `actions`, `next_states` and `source` (all 0 if absent) of a .npz.
 
-    Raises DatasetError if the file is none or lacks one of them.
+    Returns None if it is the file of a run. Raises DatasetError if the file is none or lacks one of
+    the arrays.
     """
-    legal = f"a .npz of numpy with {', '.join(_NEEDED)}"
-    with dataset.errors_about(path, legal), np.load(path, allow_pickle=False) as archive:
+    legal = f"a .npz of numpy with {', '.join(_NEEDED)}, or the transitions.npz of a run"
+    with dataset.errors_about(file, legal), np.load(file, allow_pickle=False) as archive:
         missing = [name for name in _NEEDED if name not in archive]
         if missing and "next_poses" in archive:
-            raise dataset.DatasetError(
-                f"{path}: is the file of a run, whose poses are in the unit of its task; legal: a "
-                f".npz with {', '.join(_NEEDED)}, which rtg.Task.outer() makes of them"
-            )
+            return None
         if missing:
             raise dataset.DatasetError(
-                f"{path}: array '{missing[0]}' is missing; legal: {', '.join(_NEEDED)}, and source "
+                f"{file}: array '{missing[0]}' is missing; legal: {', '.join(_NEEDED)}, and source "
                 "if wanted"
             )
         found = {name: archive[name] for name in _NEEDED}
@@ -104,20 +132,29 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
         return found
 
 
+def _rows_of_run(file: Path, task: _core.Task) -> Rows:
+    found = dataset.read(file, task)
+    return checked_rows(task, found.poses, found.action, found.next_poses, found.source)
+
+
 def read(path: Path, task: _core.Task) -> OwnData:
-    """Reads the transitions of a .npz, which has states in metres. Raises UserError."""
-    found = read_arrays(path)
+    """Reads the transitions of a .npz with states in metres, or those of a run of the task.
+
+    `path`: that of the file, or of the folder of the run. The task judges which succeed. Raises
+    UserError, also if the file of a run is of another task or was changed since it was written.
+    """
+    file = file_of(path)
+    arrays = _arrays(file)
+    kind, name = "npz", file.name
+    if arrays is None:
+        kind, name = "run", f"{file.resolve().parent.name}/{file.name}"
     try:
-        rows = checked_rows(
-            task,
-            in_task_units(task, found["states"]),
-            found["actions"],
-            in_task_units(task, found["next_states"]),
-            found["source"],
-        )
+        rows = rows_in_metres(task, **arrays) if arrays else _rows_of_run(file, task)
+    except UserError:
+        raise
     except ValueError as error:
-        raise UserError(f"{path}: {error}") from None
-    return OwnData(rows, {"format": "npz", "name": path.name, "sha256": versions.digest(path)})
+        raise UserError(f"{file}: {error}") from None
+    return OwnData(rows, {"format": kind, "name": name, "sha256": versions.digest(file)})
 
 
 def figures(task: _core.Task, rows: Rows) -> dict[str, Any]:
@@ -160,5 +197,6 @@ def of_run(run: Path) -> dict[str, Any] | None:
 
 def words(data: dict[str, Any]) -> str:
     """Says what own data are. `data`: that of the generation.json that store() wrote."""
-    where = f"{data['name']} (SHA-256 {data['sha256'][:12]}…)" if data["name"] else "arrays"
+    name, sha256 = data["name"] or "arrays", data["sha256"]
+    where = f"{name} (SHA-256 {sha256[:12]}…)" if sha256 else name
     return f"{data['transitions']:,} transitions of {where}, {data['successes']:,} of which succeed"

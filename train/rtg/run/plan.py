@@ -120,13 +120,15 @@ def _check_search(config: _core.Config, overrides: Sequence[Override], data: str
 
 def _read_own_data(word: str, task: _core.Task) -> OwnData:
     """Reads the transitions that the user has. Raises UserError."""
-    if Path(word).is_file() or word.endswith(".npz"):
-        return own_data.read(Path(word), task)
+    file = own_data.file_of(Path(word))
+    if file.is_file() or word.endswith(".npz"):
+        return own_data.read(file, task)
     folder = minari_data.folder_of(word)
     if folder is None:
         raise UserError(
             f"--data {word}: no such file or data set; legal: a .npz with states, actions and "
-            "next_states, or the id or folder of a Minari data set (docs/data.md)"
+            "next_states, a run that has its transitions, or the id or folder of a Minari data set "
+            "(docs/data.md)"
         )
     return minari_data.read(word, folder, task)
 

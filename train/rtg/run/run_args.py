@@ -60,7 +60,7 @@ class RunArgs:
     overrides: tuple[Override, ...]
     out: Path | None
     train: bool
-    data: str | None  # as typed: a .npz, or a Minari data set
+    data: str | None  # as typed: a .npz, a run, or a Minari data set
     resume: bool
     print_config: bool
     sinks: tuple[str, ...]  # of log_sinks.SINKS
@@ -104,8 +104,8 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument(
         "--data",
         metavar="FILE",
-        help="learn from these transitions instead of generated ones: a .npz, or the id or folder "
-        "of a Minari data set",
+        help="learn from these transitions instead of generated ones: a .npz, another run, or the "
+        "id or folder of a Minari data set",
     )
     p.add_argument("--transitions", metavar="N", help="transitions to generate")
     p.add_argument("--interactions", metavar="N", help="environment steps of the learner")
