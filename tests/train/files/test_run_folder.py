@@ -1,8 +1,10 @@
 """summary.json and the other files of the run folder."""
 
+import errno
 import json
 import os
 import re
+from pathlib import Path
 
 import pytest
 from rtg import _core, paths
@@ -116,3 +118,36 @@ def test_the_newest_run_is_the_one_that_began_last(tmp_path, monkeypatch):
         os.utime(config, (1000 - age, 1000 - age))
     (tmp_path / "none").mkdir()
     assert run_folder.newest() == tmp_path / "second"
+
+
+def told(folder, path):
+    with pytest.raises(UserError) as error, run_folder.write_errors_as_user_errors(folder):
+        path.open("r" if path.suffix == ".in" else "w")
+    return str(error.value)
+
+
+@pytest.mark.parametrize("name", ["out/new/file", "out", ".out.part/a", ".out.none/.lock"])
+def test_an_error_of_the_target_is_one_of_the_flag(tmp_path, monkeypatch, name):
+    folder = tmp_path / "out"
+    folder.mkdir()
+    begin = f"--out: {folder}: "
+    assert told(folder, tmp_path / name).startswith(begin)
+    monkeypatch.chdir(tmp_path)
+    assert told(folder, Path(name)).startswith(begin)
+
+
+def test_an_error_of_another_file_names_that(tmp_path):
+    for name in ("font.in", "outer/font", ".outer.part/font", "none/out/file"):
+        file = tmp_path / name
+        assert told(tmp_path / "out", file) == (
+            f"{file}: No such file or directory; legal: a file to read or write"
+        )
+
+
+def test_an_error_without_a_file_is_of_the_target(tmp_path):
+    for error in (OSError(errno.ENOSPC, "no space left"), OSError(errno.EIO, "bad", 3)):
+        with (
+            pytest.raises(UserError, match=f"^--out: {tmp_path}: (no space left|bad); legal: "),
+            run_folder.write_errors_as_user_errors(tmp_path),
+        ):
+            raise error

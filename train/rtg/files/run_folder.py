@@ -61,12 +61,29 @@ _LEFT_OUT = ("iterations", "pushing_iterations", "replay_gaps", "nodes", "shortf
 
 @contextlib.contextmanager
 def write_errors_as_user_errors(folder: Path) -> Iterator[None]:
-    """Turns an OSError in the `with` block into a UserError about `folder` and --out."""
+    """Turns an OSError in the `with` block into a UserError about `folder` and --out.
+
+    If the error names a file elsewhere, the UserError is about that file.
+    """
     try:
         yield
     except OSError as error:
         cause = error.strerror or error  # libraries raise some without a number
-        raise UserError(f"--out: {folder}: {cause}; legal: a folder to write to") from None
+        file = error.filename  # str, bytes or path; a number if it has only a descriptor
+        if file and not isinstance(file, int) and not _belongs_to(Path(os.fsdecode(file)), folder):
+            wrong = f"{os.fsdecode(file)}: {cause}; legal: a file to read or write"
+        else:
+            wrong = f"--out: {folder}: {cause}; legal: a folder to write to"
+        raise UserError(wrong) from None
+
+
+def _belongs_to(file: Path, folder: Path) -> bool:
+    """Returns whether `file` lies in `folder`, above it, or beside it as .NAME.lock does."""
+    file, folder = file.absolute(), folder.absolute()
+    beside = str(folder.parent / f".{folder.name}.")
+    return (
+        file.is_relative_to(folder) or folder.is_relative_to(file) or str(file).startswith(beside)
+    )
 
 
 def policy_files(folder: Path) -> tuple[Path, Path]:
