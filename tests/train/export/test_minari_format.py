@@ -49,8 +49,8 @@ def test_plans_are_episodes_that_their_environment_repeats_to_the_bit(data, home
     assert found.total_episodes > 20 and successes > 0
     assert max(len(episode) for episode in found.iterate_episodes()) > 1
     assert words.splitlines() == [
-        f"rtg/mine-v0: {found.total_episodes} episodes, {successes} of them succeed, "
-        f"{found.total_steps:,} steps",
+        f"rtg/mine-v0: {found.total_episodes} episodes, {successes} of them succeed, none of them "
+        f"begins at a start of the task, {found.total_steps:,} steps",
         str(home / "rtg" / "mine-v0"),
     ]
 
@@ -129,6 +129,21 @@ def test_what_cannot_be_written_whole_is_not_there(data, home, monkeypatch):
     with pytest.raises(UserError, match="mine-v0: no space left; legal: a folder to write to"):
         minari_format.write(data, "plans", "mine-v0", None, 1)
     assert not (home / "mine-v0").exists()
+
+
+def test_a_killed_export_leaves_no_data_set_and_is_no_obstacle(data, home, monkeypatch):
+    """What is killed cleans nothing up."""
+    with monkeypatch.context() as killed:
+        killed.setattr(target.shutil, "rmtree", lambda *_, **__: None)
+        killed.setattr(minari_format, "_metadata", lambda *_: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            minari_format.write(data, "plans", "rtg/mine-v0", None, 1)
+    assert (home / "rtg/.mine-v0.part/rtg/mine-v0/data/main_data.hdf5").is_file()
+    assert not (home / "rtg/mine-v0").exists() and minari.list_local_datasets() == {}
+    minari_format.write(data, "plans", "rtg/mine-v0", None, 1)
+    assert list(minari.list_local_datasets()) == ["rtg/mine-v0"]
+    assert minari.namespace.list_local_namespaces() == ["rtg"]
+    assert not (home / "rtg/.mine-v0.part").exists()
 
 
 def test_what_another_export_writes_is_left_to_it(data, home):

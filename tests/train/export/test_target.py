@@ -32,3 +32,24 @@ def test_what_cannot_be_written_is_bad_input(tmp_path):
         raise OSError("disc is full")
     with target.held(tmp_path / "out"):  # an error frees it
         pass
+
+
+def test_an_error_of_another_file_is_not_told_of_the_target(tmp_path):
+    missing = tmp_path / "font.ttf"
+    with (
+        pytest.raises(UserError, match=f"^{missing}: No such file or directory; legal: "),
+        target.held(tmp_path / "out"),
+    ):
+        missing.read_bytes()
+
+
+def test_a_draft_is_new_and_gone_afterwards(tmp_path):
+    (tmp_path / ".out.part").mkdir()
+    (tmp_path / ".out.part" / "old").touch()
+    with target.draft(tmp_path / "out") as draft:
+        assert draft == tmp_path / ".out.part" and not draft.exists()
+        draft.mkdir()
+    with pytest.raises(KeyError), target.draft(tmp_path / "out") as draft:
+        draft.mkdir()
+        raise KeyError
+    assert list(tmp_path.iterdir()) == []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -225,14 +224,13 @@ def _write_metadata(folder: Path, data: RunData, writer: _Writer) -> None:
     run_folder.write_json(meta / "rtg.json", run_data.origin_figures(data))
 
 
-def _write_files(folder: Path, data: RunData, episodes: Sequence[Episode]) -> int:
-    """Writes all files to the new `folder`. Returns the number of frames."""
+def _write_files(folder: Path, data: RunData, episodes: Sequence[Episode]) -> None:
+    """Writes all files to the new `folder`."""
     folder.mkdir()
     writer = _Writer(folder, data)
     for number, begin in enumerate(range(0, len(episodes), _PER_FILE)):
         writer.add(number, episodes[begin : begin + _PER_FILE])
     _write_metadata(folder, data, writer)
-    return writer.frames
 
 
 def write(data: RunData, folder: Path, count: int | None) -> str:
@@ -245,14 +243,9 @@ def write(data: RunData, folder: Path, count: int | None) -> str:
         extras.imported(package, "lerobot", "export lerobot")
     if folder.exists():
         raise UserError(f"--out: {folder} exists already; legal: a new folder")
-    draft = folder.with_name(f".{folder.name}.part")
     with target.held(folder):
         episodes = run_data.plans(data, count)
-        shutil.rmtree(draft, ignore_errors=True)  # of an export that was killed
-        try:
-            frames = _write_files(draft, data, episodes)
+        with target.draft(folder) as draft:
+            _write_files(draft, data, episodes)
             draft.rename(folder)
-        finally:
-            shutil.rmtree(draft, ignore_errors=True)
-    successes = sum(episode.success for episode in episodes)
-    return f"{len(episodes):,} episodes, {successes:,} of them succeed, {frames:,} frames\n{folder}"
+    return f"{run_data.words(data, episodes)}\n{folder}"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-import shutil
 import warnings
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -65,7 +64,7 @@ def _path(id: str) -> Path:
             f"--id {id}: not an id of Minari; legal: NAME-v0 or GROUP/NAME-v0, of letters, digits, "
             "- and _"
         ) from None
-    root = Path(os.environ.get("MINARI_DATASETS_PATH") or "~/.minari/datasets")
+    root = Path(os.environ.get("MINARI_DATASETS_PATH") or Path.home() / ".minari" / "datasets")
     with write_errors_as_user_errors(root):
         path: Path = where.get_dataset_path(id)
     return path
@@ -92,15 +91,16 @@ def _buffer(data: RunData, episode: Episode, sources: NDArray[np.int8] | None) -
     )
 
 
-def _buffers(data: RunData, kind: str, count: int | None) -> Sequence[Any]:
+def _episodes(
+    data: RunData, kind: str, count: int | None
+) -> list[tuple[Episode, NDArray[np.int8] | None]]:
+    """Returns the episodes, and the sources of their steps with "transitions"."""
     if kind == "plans":
-        return [_buffer(data, episode, None) for episode in run_data.plans(data, count)]
+        return [(episode, None) for episode in run_data.plans(data, count)]
     found = run_data.order_of_episodes(data)[:count]
     if not found:
         raise UserError("there are no transitions; legal: a run whose search finds some")
-    return [
-        _buffer(data, run_data.stored(data, rows), data.transitions.source[rows]) for rows in found
-    ]
+    return [(run_data.stored(data, rows), data.transitions.source[rows]) for rows in found]
 
 
 def _metadata(data: RunData, kind: str, buffers: Sequence[Any]) -> dict[str, Any]:
@@ -111,8 +111,16 @@ def _metadata(data: RunData, kind: str, buffers: Sequence[Any]) -> dict[str, Any
     }
 
 
-def _created(data: RunData, kind: str, id: str, buffers: Sequence[Any]) -> Any:
-    """Has Minari write the data set, and returns it."""
+def _make_group(id: str) -> None:
+    """Makes the group of a data set, if it has one, as Minari does for one that it writes there."""
+    groups = extras.imported("minari.namespace", "minari", "export minari")
+    group = id.rpartition("/")[0]
+    if group and group not in groups.list_local_namespaces():
+        groups.create_namespace(group)
+
+
+def _create(data: RunData, kind: str, id: str, buffers: Sequence[Any]) -> None:
+    """Has Minari write the data set."""
     minari = extras.imported("minari", "minari", "export minari")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # about authors and links, which are not ours
@@ -145,14 +153,11 @@ def write(data: RunData, kind: str, id: str, folder: Path | None, count: int | N
                 raise UserError(
                     f"--id {id}: {path} exists already; legal: another id, or another --out"
                 )
-            buffers = _buffers(data, kind, count)
-            try:
-                made = _created(data, kind, id, buffers)
-            except BaseException:
-                shutil.rmtree(path, ignore_errors=True)
-                raise
-    successes = made.storage.metadata["rtg_successes"]
-    return (
-        f"{id}: {made.total_episodes:,} episodes, {successes:,} of them succeed, "
-        f"{made.total_steps:,} steps\n{path}"
-    )
+            episodes = _episodes(data, kind, count)
+            buffers = [_buffer(data, episode, sources) for episode, sources in episodes]
+            with target.draft(path) as draft:
+                with _datasets_in(draft):
+                    _create(data, kind, id, buffers)
+                _make_group(id)
+                (draft / id).rename(path)
+    return f"{id}: {run_data.words(data, [episode for episode, _ in episodes])}\n{path}"

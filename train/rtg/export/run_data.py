@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -71,3 +72,16 @@ def stored(data: RunData, rows: np.ndarray) -> Episode:
     t = data.transitions
     poses = np.concatenate([t.poses[rows[:1]], t.next_poses[rows]])
     return Episode(poses, t.action[rows].astype(np.int64), bool(t.terminated[rows[-1]]))
+
+
+def words(data: RunData, episodes: Sequence[Episode]) -> str:
+    """Says what is exported: episodes and steps, and how many succeed or begin at a start."""
+    successes = sum(episode.success for episode in episodes)
+    steps = sum(len(episode.action) for episode in episodes)
+    first = np.stack([episode.poses[0] for episode in episodes])
+    at_start = int(data.config.task.in_start_region(first).sum())
+    begin = f"{at_start:,} of them begin" if at_start else "none of them begins"
+    return (
+        f"{len(episodes):,} episodes, {successes:,} of them succeed, {begin} at a start of the "
+        f"task, {steps:,} steps"
+    )

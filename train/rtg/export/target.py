@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -29,3 +30,18 @@ def held(folder: Path) -> Iterator[None]:
             yield
         finally:
             lock.release()
+
+
+@contextlib.contextmanager
+def draft(folder: Path) -> Iterator[Path]:
+    """Yields the path .NAME.part beside `folder`, for what is to be renamed when it is whole.
+
+    Removes what an export that was killed has left there, and what the `with` block leaves.
+    """
+    path = folder.with_name(f".{folder.name}.part")
+    if path.exists():
+        shutil.rmtree(path)
+    try:
+        yield path
+    finally:
+        shutil.rmtree(path, ignore_errors=True)
