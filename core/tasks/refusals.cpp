@@ -28,7 +28,8 @@ std::string main_reason(const Refusals& refusals, const Scene& scene) {
   for (const auto& [bodies, count] : refusals.no_room)
     reasons.emplace_back(count, bodies.first == bodies.second
                                     ? name(bodies.first) + " was out of the arena"
-                                    : name(bodies.first) + " overlapped " + name(bodies.second));
+                                    : name(bodies.first) + " was nearer to " + name(bodies.second) +
+                                          " than the clearance");
   for (std::size_t k = 0; k < refusals.by_term.size(); ++k)
     reasons.emplace_back(refusals.by_term[k], "task.goal." + std::to_string(k) + " did not hold");
   const auto& [count, words] = *std::ranges::max_element(reasons);

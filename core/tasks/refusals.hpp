@@ -13,7 +13,7 @@ namespace rtg::tasks {
 /// Why draws of goal states or of start states were refused.
 struct Refusals {
   std::vector<long> by_term;  // goal states: a term of the goal did not hold
-  // A body met another one, or the edge of the arena (twice the body).
+  // A body was nearer to another one than the clearance, or out of the arena (twice the body).
   std::map<std::pair<std::size_t, std::size_t>, long> no_room;
   long no_robot = 0;  // goal states: there was no place for the robot
   long solved = 0;    // start states: the goal held

@@ -4,9 +4,10 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
+
+#include "nodes/config/suggestion.hpp"
 
 namespace rtg::config {
 namespace {
@@ -15,33 +16,10 @@ using Kind = ConfigNode::Kind;
 
 constexpr std::size_t kMaxText = 200;  // characters of a text
 
-/// Returns the Levenshtein distance of two texts.
-std::size_t edits(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0u);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
-    }
-  }
-  return row.back();
-}
-
-/// Returns " (did you mean 'x'?)" for the key most similar to `key`, or "" if none is similar.
-std::string suggestion(const std::string& key, std::span<const std::string> keys) {
-  constexpr std::size_t kLongestKey = 40;
-  if (keys.empty() || key.size() > kLongestKey) return "";
-  const auto nearest =
-      std::min_element(keys.begin(), keys.end(),
-                       [&](const auto& a, const auto& b) { return edits(key, a) < edits(key, b); });
-  const std::size_t near = std::max<std::size_t>(2, key.size() / 3);
-  return edits(key, *nearest) <= near ? " (did you mean '" + *nearest + "'?)" : "";
-}
-
-std::string range_text(const char* what, const std::string& least, const std::string& most) {
-  return std::string(what) + " from " + least + " to " + most;
+std::string range_text(const char* what, const std::string& least, const std::string& most,
+                       const std::string& unit = "") {
+  return std::string(what) + " from " + least + " to " + most +
+         (unit.empty() ? "" : " [" + unit + ']');
 }
 
 /// Returns the number that an unquoted scalar holds. Returns nothing if the scalar is not a number.
@@ -148,8 +126,10 @@ int FieldReader::index_of(const ConfigEntry& entry, std::span<const std::string_
     for (std::size_t k = 0; k < names.size(); ++k)
       if (names[k] == node.scalar) return static_cast<int>(k);
   const std::vector<std::string> legal(names.begin(), names.end());
-  throw ConfigError(node.origin, path(entry.key),
-                    in_words(node) + " is not one of the legal values", listed(legal));
+  throw ConfigError(
+      node.origin, path(entry.key),
+      in_words(node) + " is not one of the legal values" + suggestion(node.scalar, legal),
+      listed(legal));
 }
 
 const ConfigEntry& FieldReader::required(const char* key, const std::string& legal) const {
@@ -170,10 +150,11 @@ const std::vector<ConfigNode>& FieldReader::items(const char* key, std::size_t c
 }
 
 std::vector<double> FieldReader::numbers(const char* key, std::size_t count, double least,
-                                         double most, const std::string& legal) const {
+                                         double most, const std::string& legal,
+                                         const std::string& unit) const {
   std::vector<double> out;
   for (const ConfigNode& item : items(key, count, legal))
-    out.push_back(read_number(item, path(key), least, most));
+    out.push_back(read_number(item, path(key), least, most, unit));
   return out;
 }
 
@@ -201,18 +182,22 @@ double read_angle(const ConfigNode& node, const std::string& path) {
   return angle;
 }
 
-double read_number(const ConfigNode& node, const std::string& path, double least, double most) {
-  const std::string legal = range_text("a number", number_text(least), number_text(most));
+double read_number(const ConfigNode& node, const std::string& path, double least, double most,
+                   const std::string& unit) {
+  const std::string legal = range_text("a number", number_text(least), number_text(most), unit);
   const double number = read_number(node, path, legal);
   if (number < least || number > most)
     throw ConfigError(node.origin, path, node.scalar + " is out of range", legal);
   return number;
 }
 
+std::string length_range(double least, double most, const tasks::Units& units) {
+  return range_text("a number", length_text(least, units), length_text(most, units), "m");
+}
+
 double read_length(const ConfigNode& node, const std::string& path, double least, double most,
                    const tasks::Units& units) {
-  const std::string legal =
-      range_text("a number", length_text(least, units), length_text(most, units));
+  const std::string legal = length_range(least, most, units);
   const double metres = read_number(node, path, legal);
   const double length = units.length_of(metres);
   if (length < least || length > most)

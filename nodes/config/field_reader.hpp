@@ -46,9 +46,9 @@ class FieldReader {
                                        const std::string& legal) const;
 
   /// Returns the list of numbers at `key`. Throws ConfigError that states `legal` if it does not
-  /// have `count` entries in [least, most].
+  /// have `count` entries in [least, most]. `unit`: that of the numbers, for messages.
   std::vector<double> numbers(const char* key, std::size_t count, double least, double most,
-                              const std::string& legal) const;
+                              const std::string& legal, const std::string& unit = "") const;
   std::vector<double> lengths(const char* key, std::size_t count, double least, double most,
                               const std::string& legal) const;
   /// Returns the pose [x, y, theta] in m and rad at `key`.
@@ -66,11 +66,15 @@ class FieldReader {
   tasks::Units units_;
 };
 
-/// Returns the number that the scalar `node` holds. `path`: its dotted key, for messages. Throws
-/// ConfigError if `node` is no number in [least, most].
-double read_number(const ConfigNode& node, const std::string& path, double least, double most);
+/// Returns the number that the scalar `node` holds. `path`: its dotted key, `unit`: that of the
+/// number, for messages. Throws ConfigError if `node` is no number in [least, most].
+double read_number(const ConfigNode& node, const std::string& path, double least, double most,
+                   const std::string& unit = "");
 /// Reads an angle of at most a full turn [rad]; more are most likely degrees.
 double read_angle(const ConfigNode& node, const std::string& path);
+
+/// Returns the words for a legal length: "a number from 0.01 to 100.0 [m]".
+std::string length_range(double least, double most, const tasks::Units& units);
 
 /// Returns the length in `units` that the scalar `node` holds in m, in [least, most] `units`.
 double read_length(const ConfigNode& node, const std::string& path, double least, double most,

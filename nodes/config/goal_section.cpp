@@ -43,7 +43,7 @@ PoseNear read_pose(const FieldReader& reader) {
   const std::string path = reader.path("within");
   return {reader.pose("pose", kMaxPlace, kPoseLegal),
           read_length(within[0], path, kLeastLength, kMaxPlace, reader.units()),
-          read_number(within[1], path, kLeastTurn, kMaxPlace)};
+          read_number(within[1], path, kLeastTurn, kMaxPlace, "rad")};
 }
 
 Covers read_covers(const ConfigNode& section, const std::string& path, const Units& units) {
@@ -56,8 +56,7 @@ Covers read_covers(const ConfigNode& section, const std::string& path, const Uni
 
 double gap_at(FieldReader& reader) {
   double gap = 0.0;
-  reader.required("gap", "a number from " + metres(kLeastGap, reader) + " to " +
-                             metres(kMaxPlace, reader) + " [m]");
+  reader.required("gap", length_range(kLeastGap, kMaxPlace, reader.units()));
   reader.length("gap", gap, kLeastGap, kMaxPlace);
   return gap;
 }

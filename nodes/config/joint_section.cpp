@@ -8,6 +8,7 @@
 
 #include "nodes/config/config_error.hpp"
 #include "nodes/config/field_reader.hpp"
+#include "nodes/config/suggestion.hpp"
 #include "nodes/config/task_words.hpp"
 
 namespace rtg::config {
@@ -34,7 +35,8 @@ int read_body_name(const FieldReader& reader, const char* key, const Scene& scen
     names.push_back(scene.bodies[i].name);
   }
   throw ConfigError(reader.required(key, "").value.origin, reader.path(key),
-                    '\'' + name + "' is not the name of an object", listed(names));
+                    '\'' + name + "' is not the name of an object" + suggestion(name, names),
+                    listed(names));
 }
 
 [[noreturn]] void fail_at(const ConfigNode& section, std::size_t k, const char* key,

@@ -24,8 +24,7 @@ const std::vector<std::string> kBoxKeys{"centre", "size", "theta"};
 Disc read_disc(const ConfigNode& section, const std::string& path, const Units& units) {
   FieldReader reader(section, path, kDiscKeys, units);
   Disc disc{point_at(reader, "centre"), 0.0};
-  reader.required("radius", "a number from " + length_text(kLeastSize, units) + " to " +
-                                length_text(kMaxPlace, units) + " [m]");
+  reader.required("radius", length_range(kLeastSize, kMaxPlace, units));
   reader.length("radius", disc.radius, kLeastSize, kMaxPlace);
   return disc;
 }
@@ -48,14 +47,15 @@ Polygon read_box(const ConfigNode& section, const std::string& path, const Units
   const Vector2d centre = point_at(reader, "centre");
   const auto size = reader.lengths("size", 2, kLeastSize, kMaxPlace, "[width, height] in m");
   double theta = 0.0;
-  reader.number("theta", theta, -kMaxAngle, kMaxAngle);
+  if (const ConfigEntry* given = find(section, "theta"))
+    theta = read_number(given->value, reader.path("theta"), -kMaxAngle, kMaxAngle, "rad");
   Polygon polygon = box(size[0], size[1]);
   for (Vector2d& v : polygon.vertices) v = on_grid(rotate(theta, v) + centre);
   return polygon;
 }
 
 Polygon read_polygon(const ConfigNode& list, const std::string& path, const Units& units) {
-  const std::string legal = "a convex polygon of 3 to 8 vertices [x, y], counter-clockwise";
+  const std::string legal = "a convex polygon of 3 to 8 vertices [x, y] in m, counter-clockwise";
   Polygon polygon{points_of(list, path, legal, units)};
   if (const auto defect = polygon_defect(polygon.vertices, units.length))
     throw ConfigError(list.origin, path, *defect, legal);

@@ -34,9 +34,10 @@ const std::vector<std::string> kPartKeys{"box", "regular",  "vertices", "disc",
                                          "at",  "rounding", "grown"};
 const std::vector<std::string> kRegularKeys{"sides", "radius"};
 const std::string kShapeLegal =
-    "{box: [width, height]}, {regular: {sides: 3 to 8, radius: m}}, {vertices: [[x, y], ...]}, "
-    "{disc: radius} or {parts: [...]}";
-const std::string kVerticesLegal = "a simple polygon of 3 to 64 vertices [x, y], counter-clockwise";
+    "{box: [width, height]}, {regular: {sides: 3 to 8, radius: r}}, {vertices: [[x, y], ...]}, "
+    "{disc: radius} or {parts: [...]}, lengths in m";
+const std::string kVerticesLegal =
+    "a simple polygon of 3 to 64 vertices [x, y] in m, counter-clockwise";
 
 std::string metres(double length, const Units& units) { return length_text(length, units) + " m"; }
 
@@ -118,7 +119,7 @@ Polygon inset(const Polygon& polygon, double radius, const ConfigNode& node,
     const Vector2d edge = polygon.vertices[next] - polygon.vertices[k];
     if (edge.dot(core.vertices[next] - core.vertices[k]) < kMinSize * edge.norm())
       throw ConfigError(
-          node.origin, path, length_text(radius, units) + " rounds off a whole edge",
+          node.origin, path, metres(radius, units) + " rounds off a whole edge",
           "a radius that leaves " + metres(kMinSize, units) + " of each edge straight");
   }
   return core;

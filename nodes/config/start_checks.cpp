@@ -43,10 +43,12 @@ void check_jitters(const Config& config, const ConfigNode& root) {
       throw ConfigError(
           origin_of(root, section, key), std::string(section) + '.' + key,
           "with objects shifted by up to " + length_text(amplitude, config.task.units) +
-              " m too few starts are legal (no overlaps, objects in the arena, goal not met); " +
+              " m too few starts are legal (bodies " +
+              length_text(tasks::kStartClearance, config.task.units) +
+              " m apart, objects in the arena, goal not met); " +
               main_reason(refusals, config.task.scene),
           "at most " + length_text(legal_amplitude(config.task, amplitude), config.task.units) +
-              " with these bodies");
+              " m with these bodies");
   }
 }
 

@@ -25,10 +25,11 @@ const std::string kStartLegal =
     "[x, y, theta] in m and rad, {x: a, y: b, theta: c} with ranges [least, most] in the place of "
     "numbers, or {in: {disc, box or polygon}, theta: [least, most]}";
 
-/// Reads a value, or a range of values, by read(node).
+/// Reads a value, or a range of values, by read(node). `unit`: that of the values, for messages.
 template <class Read>
-std::pair<double, double> range_at(const FieldReader& reader, const char* key, Read read) {
-  const std::string legal = "a number or [least, most]";
+std::pair<double, double> range_at(const FieldReader& reader, const char* key,
+                                   const std::string& unit, Read read) {
+  const std::string legal = "a number or [least, most] in " + unit;
   const ConfigNode& node = reader.required(key, legal).value;
   if (node.kind != Kind::kList) {
     const double value = read(node);
@@ -43,13 +44,13 @@ std::pair<double, double> range_at(const FieldReader& reader, const char* key, R
 }
 
 std::pair<double, double> lengths_of(const FieldReader& reader, const char* key) {
-  return range_at(reader, key, [&](const ConfigNode& node) {
+  return range_at(reader, key, "m", [&](const ConfigNode& node) {
     return read_length(node, reader.path(key), -kMaxPlace, kMaxPlace, reader.units());
   });
 }
 
 std::pair<double, double> angles_of(const FieldReader& reader, const char* key) {
-  return range_at(reader, key,
+  return range_at(reader, key, "rad",
                   [&](const ConfigNode& node) { return read_angle(node, reader.path(key)); });
 }
 

@@ -13,6 +13,8 @@
 namespace rtg::config {
 namespace {
 
+const std::string kRobotKind = "robot";
+
 std::string body_path(std::size_t i) { return "task.bodies." + std::to_string(i); }
 
 const ConfigNode& body_section(const ConfigNode& section, std::size_t i) {
@@ -41,7 +43,7 @@ void check_start(const tasks::Task& task, const ConfigNode& section) {
     if (body.fixed) continue;
     if (!in_arena(task.start[i], task.push))
       fail_at(section, i, "start", "lies outside the arena",
-              "x and y from -" + arena + " to " + arena + " (task.push.arena)");
+              "x and y from -" + arena + " to " + arena + " m (task.push.arena)");
     if (body.shape.radius() > task.push.arena)
       fail_at(section, i, "shape", "is larger than the arena",
               "a bounding radius of at most " + arena + " m (task.push.arena)");
@@ -70,11 +72,21 @@ std::string legal_kinds(const Scene& scene) {
   return with_kinds({"\"*\""}, scene, [&](std::size_t i) { return !scene.bodies[i].fixed; });
 }
 
-/// Lists the kinds of the objects beside object `i`.
+/// Returns whether an object beside object `i` is of kind `kind`, or can move if that is "*".
+bool has_other(const Scene& scene, std::size_t i, const std::string& kind) {
+  for (std::size_t j = 1; j < scene.size(); ++j)
+    if (j != i && (kind == "*" ? !scene.bodies[j].fixed : scene.bodies[j].kind == kind))
+      return true;
+  return false;
+}
+
+/// Lists the kinds of the objects beside object `i`, and "*" if one of these can move.
 std::string legal_others(const Scene& scene, std::size_t i) {
   const std::string kinds = with_kinds({}, scene, [i](std::size_t j) { return j != i; });
-  return kinds.empty() ? "none, because there is no other object"
-                       : "the kind of another object, also fixed: " + kinds;
+  if (kinds.empty()) return "none, because there is no other object";
+  const bool any = has_other(scene, i, "*");
+  return (any ? "\"*\" for all objects, or " : "") +
+         ("the kind of another object, also fixed: " + kinds);
 }
 
 /// Returns whether some point at which `term` asks for a body lies in the arena, |x|, |y| ≤ a.
@@ -135,14 +147,8 @@ void check_other(const tasks::GoalTerm& term, const tasks::Task& task, const Con
                  const std::string& path) {
   const auto check = [&](const std::string& kind, const char* key) {
     const Scene& scene = task.scene;
-    const auto has_other = [&](std::size_t i) {
-      for (std::size_t j = 1; j < scene.size(); ++j)
-        if (j != i && (kind == "*" ? !scene.bodies[j].fixed : scene.bodies[j].kind == kind))
-          return true;
-      return false;
-    };
     for (std::size_t i = 1; i < scene.size(); ++i)
-      if (concerns(term, scene, i) && !has_other(i))
+      if (concerns(term, scene, i) && !has_other(scene, i, kind))
         throw ConfigError(find(node, key)->value.origin, path + '.' + key,
                           kind == "*" ? "no object beside '" + scene.bodies[i].name + "' can move"
                                       : "no object beside '" + scene.bodies[i].name +
@@ -207,7 +213,7 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
   if (!meets_arena(term, task.push.arena))
     throw ConfigError(node.origin, path, "lies outside the arena",
                       "a region that contains a point with x and y from -" + arena + " to " +
-                          arena + " (task.push.arena)");
+                          arena + " m (task.push.arena)");
 }
 
 /// Returns whether fixed body `body` meets all goal terms that concern it.
@@ -250,6 +256,12 @@ void check_names(const tasks::Task& task, const ConfigNode& section) {
         fail_at(section, i, "name",
                 "'" + bodies[i].name + "' is already the name of body " + std::to_string(j),
                 "a name that no other body has");
+  for (std::size_t i = 1; i < bodies.size(); ++i)
+    if (bodies[i].kind == kRobotKind && bodies[0].kind != kRobotKind)
+      fail_at(section, i, "kind",
+              "is robot, but the first body is the robot, '" + bodies[0].name + "' of kind '" +
+                  bodies[0].kind + "'",
+              "the body of kind robot as the first one, or another kind");
 }
 
 void check_terms(const tasks::Task& task, const ConfigNode& section) {

@@ -5,8 +5,8 @@
 
 namespace rtg::config {
 
-/// Throws ConfigError if two bodies of `task` have the same name. `section`: the section `task`,
-/// for messages.
+/// Throws ConfigError if two bodies of `task` have the same name, or if a body is of kind robot but
+/// the first is not. `section`: the section `task`, for messages.
 void check_names(const tasks::Task& task, const ConfigNode& section);
 
 /// Checks the goal terms, which needs no start state. `section`: the section `task`, for messages.

@@ -34,9 +34,11 @@ const std::vector<std::string> kBodyKeys{"name",     "kind",  "shape", "density"
 const std::vector<std::string> kPushKeys{"headings", "strides", "stride", "arena"};
 
 /// The default is the density of the robot.
-double read_density(FieldReader& reader, const Units& units) {
+double read_density(const FieldReader& reader, const Units& units) {
   double density = units.density;
-  reader.number("density", density, kLeastDensity * units.density, kMostDensity * units.density);
+  if (const ConfigEntry* given = find(reader.section(), "density"))
+    density = read_number(given->value, reader.path("density"), kLeastDensity * units.density,
+                          kMostDensity * units.density, "kg/m²");
   return units.density_of(density);
 }
 
@@ -81,7 +83,7 @@ std::vector<double> read_strides(const FieldReader& reader) {
   const ConfigEntry *one = find(section, "stride"), *all = find(section, "strides");
   if (one && all)
     throw ConfigError(one->value.origin, reader.path("stride"), "is given beside strides",
-                      "strides, a list, or stride, one number");
+                      "strides, a list of lengths in m, or stride, one length in m");
   const auto read = [&](const ConfigNode& node, const char* key) {
     return read_length(node, reader.path(key), kLeastStride, kLongestStride, reader.units());
   };
@@ -93,7 +95,7 @@ std::vector<double> read_strides(const FieldReader& reader) {
     strides.push_back(read(item, "strides"));
     if (std::ranges::count(strides, strides.back()) > 1)
       throw ConfigError(item.origin, reader.path("strides"), item.scalar + " is given twice",
-                        "lengths that differ");
+                        "lengths in m that differ");
   }
   return strides;
 }

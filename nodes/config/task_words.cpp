@@ -46,7 +46,7 @@ std::string name_at(const FieldReader& reader, const char* key, const std::strin
 }
 
 Vector2d point_at(const FieldReader& reader, const char* key) {
-  const auto x = reader.lengths(key, 2, -kMaxPlace, kMaxPlace, "[x, y]");
+  const auto x = reader.lengths(key, 2, -kMaxPlace, kMaxPlace, "[x, y] in m");
   return {x[0], x[1]};
 }
 
@@ -57,8 +57,9 @@ Vector2d direction_at(const FieldReader& reader, const char* key) {
 
 Vector2d angles_at(const FieldReader& reader, const char* key) {
   const std::string width = number_text(kLeastWidth);
-  return wide_enough(reader.numbers(key, 2, -kMaxAngle, kMaxAngle, range_legal(width, "rad")),
-                     reader, key, width, "rad");
+  return wide_enough(
+      reader.numbers(key, 2, -kMaxAngle, kMaxAngle, range_legal(width, "rad"), "rad"), reader, key,
+      width, "rad");
 }
 
 Vector2d lengths_at(const FieldReader& reader, const char* key) {

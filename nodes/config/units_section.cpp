@@ -53,12 +53,13 @@ double robot_radius(const ConfigNode& robot) {
 
 tasks::Units read_units(const FieldReader& task, const ConfigNode& robot) {
   double scale = 0.0;
-  FieldReader(task).number("scale", scale, kLeast, kMost);
+  if (const ConfigEntry* given = find(task.section(), "scale"))
+    scale = read_number(given->value, task.path("scale"), kLeast, kMost, "m");
   if (scale == 0.0) scale = robot_radius(robot);
   tasks::Units units{scale / tasks::kRobotRadius, 1.0};
   if (robot.kind != Kind::kMap) return units;
   if (const ConfigEntry* density = find(robot, "density"))
-    units.density = read_number(density->value, "task.bodies.0.density", kLeast, kMost);
+    units.density = read_number(density->value, "task.bodies.0.density", kLeast, kMost, "kg/m²");
   return units;
 }
 

@@ -5,6 +5,7 @@
 #include "nodes/config/config.hpp"
 #include "nodes/config/description.hpp"
 #include "nodes/config/method.hpp"
+#include "nodes/config/suggestion.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 #include "train/bindings/fields.hpp"
@@ -23,6 +24,10 @@ config::Config from_text(const std::string& text, const std::string& name,
   return config::parse_config(text, name, overrides);
 }
 
+std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
+  return config::suggestion(word, words);
+}
+
 template <class Section>
 void bind_section(nb::module_& module, const char* name, const char* doc) {
   nb::class_<Section> bound(module, name, doc);
@@ -35,6 +40,8 @@ void bind_config(nb::module_& module) {
   module.attr("METHODS") = names_of(config::kMethods);
   nb::exception<config::ConfigError>(module, "ConfigError", PyExc_ValueError).attr("__doc__") =
       "A mistake in the configuration; the text gives file:line, the key and the legal values.";
+  module.def("suggestion", &suggestion, nb::arg("word"), nb::arg("words"),
+             "Asks whether the most similar of `words` was meant by `word`; empty if none is.");
   bind_section<PhysicsConfig>(
       module, "PhysicsConfig",
       "The section `physics`. The physics that reverse solver and simulators share.");

@@ -160,7 +160,8 @@ TEST(Task, WhatKeepsStartsFromBeingLegalIsNamed) {
   };
   Task task = gathering();
   task.start[2] = task.start[1];
-  EXPECT_EQ(reason(task, 0.01), "'box1' overlapped 'box2' in 100% of the tries");
+  EXPECT_EQ(reason(task, 0.01),
+            "'box1' was nearer to 'box2' than the clearance in 100% of the tries");
   task = gathering();
   task.start[3].x = 2.0 * task.push.arena;
   EXPECT_EQ(reason(task, 0.01), "'box3' was out of the arena in 100% of the tries");

@@ -88,8 +88,8 @@ WALLS = """\
     - {name: below, kind: wall, fixed: true, shape: {box: [1, 0.2]}, start: [3, -0.63, 0]}
 """
 TOO_FEW = (
-    "m too few starts are legal (no overlaps, objects in the arena, goal not met); 'a' overlapped "
-    "'right' in {share}% of the tries; legal: at most"
+    "m too few starts are legal (bodies 0.02 m apart, objects in the arena, goal not met); 'a' was "
+    "nearer to 'right' than the clearance in {share}% of the tries; legal: at most"
 )
 
 
@@ -123,9 +123,9 @@ def test_jitters_must_leave_room_for_starts(tmp_path: Path) -> None:
 
     task = "key 'task.start_jitter': with objects shifted by up to "
     too_few = TOO_FEW.format(share=48)
-    assert refusal(path) == f"{path}:4: {task}0.1 {too_few} 0.05 with these bodies"
+    assert refusal(path) == f"{path}:4: {task}0.1 {too_few} 0.05 m with these bodies"
     wide, too_few = "task.start_jitter=0.2", TOO_FEW.format(share=53)
-    assert refusal(path, wide) == f"--set {wide}: {task}0.2 {too_few} 0.05 with these bodies"
+    assert refusal(path, wide) == f"--set {wide}: {task}0.2 {too_few} 0.05 m with these bodies"
     legal = ["task.start_jitter=0.01", "train.start_jitter=0.01"]
     assert refusal(path, *legal) == ""
     last = "train.start_jitter=0.4"
