@@ -113,7 +113,9 @@ def test_the_histogram_counts_all_gaps(recorded):
 def test_the_state_is_told_in_words(recorded):
     words = recorded["state"][-1].values["text"][0]
     assert "2,000 transitions, 400 of them steps" in words
-    assert "replay gap: median 0.01 m, 90 % below 0.063 m" in words
+    assert (
+        "replay gap: median 0.01, 90 % below 0.063 [m, where the robot's radius is 0.8 m]" in words
+    )
     assert "200 interactions, success 0.80" in words
 
 

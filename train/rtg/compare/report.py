@@ -15,7 +15,7 @@ from rtg.compare.estimates import RESAMPLES
 from rtg.compare.methods import RANDOMISED, REFERENCE
 from rtg.compare.run_results import THRESHOLD, Comparison, RunResult
 from rtg.errors import UserError
-from rtg.files import own_data
+from rtg.files import own_data, replay_gaps
 
 _LEGEND = f"""\
 Means ± standard deviations over the seeds. **success**: of the final greedy policy from held-out
@@ -50,14 +50,15 @@ _RUNTIME = """\
 CPU time per reverse solve that was not pruned, and per push of the simulator; how many solves and
 pushes, the share of the solves that converged, iterations of those that moved an object;
 environment steps of the learner per second, evaluations included."""
-_DATA = """\
+_DATA = f"""\
 **transitions**: stored, in thousands; **tree rows**: of them steps found backwards and kept;
 **branches**: outcomes of other headings in the same states; **headings per state**: distinct ones
 stored from a state; **contact share**: of the transitions, those that move an object; **start
 region**: transitions that begin there; **trees**: how many were grown; **depth**: pushes of the
 shortest plan of a tree from the start region; **replay gap**: distance between the state in which
 the push of a reverse step was to end and that in which it ends in the simulator, mean over the
-bodies; quantiles over simulated reverse steps; **rank correlation of Q**: Spearman's, of the
+bodies, in {replay_gaps.UNIT};
+quantiles over simulated reverse steps; **rank correlation of Q**: Spearman's, of the
 learner's final Q with the simulator over all headings of a stored state, mean over some hundred
 states; **error**: root mean square of the difference; **spread**: standard deviation of the
 simulator's values over the headings of a state, mean over the states. States are those of a run's

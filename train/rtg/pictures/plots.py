@@ -49,8 +49,7 @@ _STYLE: Any = {
     "axes.titlesize": 11,
 }
 GAP_AXIS = (
-    "replay gap: mean distance between reverse-generated and replayed end\n"
-    "[m, where the robot's radius is 0.8 m]"
+    f"replay gap: mean distance between reverse-generated and replayed end\n[{replay_gaps.UNIT}]"
 )
 _BLUE, _ORANGE = "#4a7ebb", "#d9822b"
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import rerun.blueprint as rrb
 
 from rtg import _core
+from rtg.files import replay_gaps
 from rtg.pictures.draw import PAPER, arena_window, objects
 from rtg.view.figures import GAP, LEARNING, STATE
 from rtg.view.scene import TIME
@@ -77,7 +78,7 @@ def layout(config: _core.Config, time_panel: rrb.TimePanel) -> rrb.Blueprint:
     state = rrb.TextDocumentView(name="run", origin=f"/{STATE}")
     if config.train.offline:
         gaps = rrb.BarChartView(
-            name="replay gap: steps, over log10 of the gap in m",
+            name=f"replay gap: steps, over log10 of the gap [{replay_gaps.UNIT}]",
             origin=f"/{GAP}",
             plot_legend=rrb.PlotLegend(visible=False),
         )

@@ -9,6 +9,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.files import replay_gaps
 from rtg.files.dataset import SOURCES, Rows
 from rtg.view import figures, scene, trees
 from rtg.view.player import Player
@@ -139,7 +140,8 @@ class RunView:
             )
         if now.gaps is not None:
             lines.append(
-                f"- replay gap: median {now.gaps[0]:.2g} m, 90 % below {now.gaps[1]:.2g} m"
+                f"- replay gap: median {now.gaps[0]:.2g}, 90 % below {now.gaps[1]:.2g} "
+                f"[{replay_gaps.UNIT}]"
             )
         if now.interactions:
             success = "" if np.isnan(now.success) else f", success {now.success:.2f}"
