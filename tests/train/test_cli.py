@@ -12,7 +12,11 @@ from rtg import cli, paths
 MISTAKES = {
     "unknown task": (
         ["sortign"],
-        "sortign: no task of that name; legal: art_manip, art_manip_hard, drawer, ",
+        "sortign: no task of that name (did you mean 'sorting'?); legal: art_manip, ",
+    ),
+    "unknown tool": (
+        ["reprodcue", "gathering"],
+        "reprodcue: no task of that name (did you mean 'reproduce'?); legal: art_manip, ",
     ),
     "unknown flag": (
         ["--wokers", "2"],
@@ -63,7 +67,16 @@ MISTAKES = {
     "spy for no time": (["spy", "--seconds", "0"], "--seconds 0: not a legal duration; legal: "),
     "reproduce of nothing": (
         ["reproduce", "sortign"],
-        "sortign: no task of that name; legal: art_",
+        "sortign: no task of that name (did you mean 'sorting'?); legal: art_",
+    ),
+    "method of a run": (
+        ["--method", "ddqn_rgt"],
+        "--method ddqn_rgt: key 'run.method': 'ddqn_rgt' is not one of the legal values (did you "
+        "mean 'ddqn_rtg'?); legal: dqn, ",
+    ),
+    "misspelt method": (
+        ["reproduce", "--methods", "ddqn_rgt"],
+        "--methods ddqn_rgt: no method of that name (did you mean 'ddqn_rtg'?); legal: ",
     ),
     "method": (
         ["reproduce", "--methods", "magic"],
@@ -78,7 +91,18 @@ MISTAKES = {
         "tests: holds neither a comparison (grid.json) nor a run (config.yaml); legal: ",
     ),
     "spy on nothing": (["spy", "sortign"], "sortign: no task of that name"),
-    "spy on a folder": (["spy", "tests"], "tests: no such task file; legal: art_manip, "),
+    "spy on a folder": (["spy", "tests"], "tests: has no config.yaml; legal: the folder of a run"),
+    "plot of no folder": (["plot", "none"], "none: no such folder; legal: the folder of a run"),
+    "view of no folder": (["view", "none"], "none: no such folder; legal: the folder of a run"),
+    "view of a file": (["view", "run.sh"], "run.sh: is not a folder; legal: the folder of a run"),
+    "evaluate of no folder": (
+        ["evaluate", "none"],
+        "none: no such folder; legal: the folder of a run",
+    ),
+    "evaluate of no run": (
+        ["evaluate", "tests"],
+        "tests: has no config.yaml; legal: the folder of a run",
+    ),
 }
 
 

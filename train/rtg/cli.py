@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rtg import extras, paths
 from rtg.errors import UserError, exit_status
+from rtg.files import run_folder
 from rtg.run import run_args
 
 # Functions import modules that load slowly, so that --help and errors appear at once.
@@ -18,7 +19,7 @@ from rtg.run import run_args
 def _run(words: Sequence[str]) -> int:
     from rtg.run.run import run
 
-    return run(run_args.parse(words))
+    return run(run_args.parse(words, tools=list(_TOOLS)))
 
 
 def _check(words: Sequence[str]) -> int:
@@ -31,7 +32,7 @@ def _check(words: Sequence[str]) -> int:
     parser.add_argument("--picture", metavar="FILE.png", help="also draw starts and goal states")
     run_args.add_set(parser, "any configuration value")
     args = parser.parse_args(words)
-    file = run_args.task_file(args.file)
+    file = paths.task_file(args.file)
     said = effective_config.check(file, run_args.set_values(args))
     if args.picture is not None:
         from rtg.pictures import task_picture
@@ -45,8 +46,11 @@ def _check(words: Sequence[str]) -> int:
 def _bus_url(target: str) -> str:
     from rtg.run import effective_config
 
-    run_config = Path(target) / "config.yaml"
-    file = run_config if run_config.is_file() else run_args.task_file(target, also=", a run folder")
+    folder = Path(target)
+    if (folder / "config.yaml").is_file() or (folder.is_dir() and target not in paths.task_names()):
+        file = run_folder.config_file(folder)
+    else:
+        file = paths.task_file(target, ", a run folder")
     return effective_config.load(file).run.bus
 
 
@@ -180,8 +184,6 @@ def _view(words: Sequence[str]) -> int:
     args = parser.parse_args(words)
     if not args.port.isdecimal() or not 1024 <= int(args.port) <= 65_534:
         raise UserError(f"--port {args.port}: legal: a number from 1024 to 65534")
-    from rtg.files import run_folder
-
     folder = args.folder or run_folder.newest()
     extras.require("rerun", "view", "view")
     from rtg.view import view

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+
+from rtg import _core
+from rtg.errors import UserError
 
 _PACKAGE = Path(__file__).resolve().parent
 ROOT = _PACKAGE.parents[1]  # of a checkout
@@ -20,3 +24,22 @@ COMMAND = "./run.sh" if IN_CHECKOUT else "rtg"  # as people type it
 def task_names() -> list[str]:
     """Returns the names of the tasks in config/. The command line takes them without a path."""
     return sorted(path.stem for path in CONFIG.glob("*.yaml"))
+
+
+def task_file(task: str, also: str = "", others: Sequence[str] = ()) -> Path:
+    """Returns the file of `task`, which is a name or a path. Raises UserError if there is none.
+
+    `also`: text for the message with further values that the caller accepts; `others`: such of them
+    as may have been misspelt.
+    """
+    names = task_names()
+    if task in names:
+        return CONFIG / f"{task}.yaml"
+    path = Path(task)
+    if path.is_file():
+        return path
+    wrong = "no such task file"
+    if path.suffix not in {".yaml", ".yml"} and not path.is_dir():
+        wrong = f"no task of that name{_core.suggestion(task, [*names, *others])}"
+    legal = f"{', '.join(names)}, the path of a FILE.yaml{also}"
+    raise UserError(f"{task or repr(task)}: {wrong}; legal: {legal}")

@@ -104,7 +104,7 @@ def test_the_values_of_a_sweep_may_be_negative():
         ),
         (
             ["gatherin"],
-            "gatherin: no task of that name; legal: art_manip, art_manip_hard, drawer, ",
+            "gatherin: no task of that name (did you mean 'gathering'?); legal: art_manip, ",
         ),
         (["gathering", "--methods", "magic"], "--methods magic: no method of that name; legal: "),
         (["--methods", ""], "--methods : no method of that name; legal: "),

@@ -16,7 +16,9 @@ def refused(capsys, *words):
 
 def test_bad_words_are_refused(capsys, tmp_path):
     assert "invalid choice: 'csv'" in refused(capsys, "csv", "run")
-    assert "has no config.yaml; legal: the folder of a run" in refused(capsys, "minari", "nowhere")
+    assert "nowhere: no such folder; legal: the folder of a run" in refused(
+        capsys, "minari", "nowhere"
+    )
     assert "--episodes 0: legal: a number from 1" in refused(
         capsys, "minari", "run", "--episodes", "0"
     )

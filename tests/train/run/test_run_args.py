@@ -38,7 +38,10 @@ def test_a_path_is_a_task_file(tmp_path):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["sortign"], "sortign: no task of that name; legal: art_manip, art_manip_hard, drawer, "),
+        (
+            ["sortign"],
+            "sortign: no task of that name (did you mean 'sorting'?); legal: art_manip, ",
+        ),
         (["reprodcue", "gathering"], "reprodcue: no task of that name; legal: art_manip, "),
         ([""], "'': no such task file; legal: art_manip, art_manip_hard, drawer, "),
         (["nowhere/mine.yaml"], "nowhere/mine.yaml: no such task file; legal: art_manip, "),
@@ -74,7 +77,7 @@ def test_a_run_folder_with_something_in_it_is_not_overwritten(tmp_path):
         parse(["--out", str(tmp_path)])
     with pytest.raises(UserError, match=r"notes\.txt is not a folder"):
         parse(["--out", str(tmp_path / "notes.txt")])
-    with pytest.raises(UserError, match=r"holds no run \(no config.yaml\)"):
+    with pytest.raises(UserError, match=r"has no config\.yaml; legal: the folder of a run"):
         parse(["--out", str(tmp_path), "--resume"])
 
 

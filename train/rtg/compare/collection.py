@@ -14,7 +14,7 @@ from rtg.compare.cells import Cell, Grid, read_grid
 from rtg.compare.report import read_remarks
 from rtg.compare.run_results import Comparison, read_runs
 from rtg.errors import UserError
-from rtg.files import own_data
+from rtg.files import own_data, run_folder
 from rtg.run import effective_config
 
 # Settings that change no result, or are no choice of the method.
@@ -69,6 +69,7 @@ def is_single_run(folder: Path) -> bool:
 def check_sources(sources: Sequence[Path]) -> None:
     """Raises UserError unless each folder holds a comparison or a run."""
     for source in sources:
+        run_folder.check_folder(source)
         if not is_single_run(source) and not read_grid(source).commands_by_cell:
             raise UserError(
                 f"{source}: holds neither a comparison (grid.json) nor a run (config.yaml); legal: "

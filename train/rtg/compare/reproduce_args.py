@@ -12,14 +12,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rtg import paths
+from rtg import _core, paths
 from rtg.compare.ablations import ablations
 from rtg.compare.cells import Cell
 from rtg.compare.executors.choice import EXECUTORS
 from rtg.compare.methods import METHODS, REFERENCE, SEEDLESS, TASKS
 from rtg.errors import UserError
 from rtg.learn import log_sinks
-from rtg.run.run_args import LOG_HELP, Override, Parser, add_set, task_file
+from rtg.run.run_args import LOG_HELP, Override, Parser, add_set
 from rtg.run.run_args import parse as parse_run
 
 DEFAULT_SEEDS = "5"
@@ -144,7 +144,8 @@ def _methods(args: argparse.Namespace) -> tuple[str, ...]:
     for method in found:
         if method not in METHODS:
             raise UserError(
-                f"--methods {method}: no method of that name; legal: {','.join(METHODS)}"
+                f"--methods {method}: no method of that name{_core.suggestion(method, METHODS)}; "
+                f"legal: {','.join(METHODS)}"
             )
     return found
 
@@ -158,7 +159,7 @@ def _seeds(args: argparse.Namespace) -> str:
 def _files(words: Sequence[str]) -> dict[str, Path]:
     files: dict[str, Path] = {}
     for word in dict.fromkeys(words):
-        path = task_file(word).absolute()
+        path = paths.task_file(word).absolute()
         if path.stem in files:
             raise UserError(
                 f"{word}: {path.stem} is named twice; legal: tasks with different file names"

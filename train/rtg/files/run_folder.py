@@ -88,13 +88,10 @@ def _belongs_to(file: Path, folder: Path) -> bool:
 
 def policy_files(folder: Path) -> tuple[Path, Path]:
     """Returns config.yaml and model.pt of a run. Raises UserError if one is missing."""
-    files = folder / "config.yaml", folder / "model.pt"
-    for file in files:
-        if not file.is_file():
-            raise UserError(
-                f"{folder}: has no {file.name}; legal: the folder of a run that has trained"
-            )
-    return files
+    config, model = config_file(folder), folder / "model.pt"
+    if not model.is_file():
+        raise UserError(f"{folder}: has no model.pt; legal: the folder of a run that has trained")
+    return config, model
 
 
 def checkpoint_file(run: Path) -> Path:
@@ -102,8 +99,16 @@ def checkpoint_file(run: Path) -> Path:
     return run / "checkpoint" / "state.pt"
 
 
+def check_folder(run: Path) -> None:
+    """Raises UserError if there is no folder `run`."""
+    if not run.is_dir():
+        wrong = "is not a folder" if run.exists() else "no such folder"
+        raise UserError(f"{run}: {wrong}; legal: the folder of a run")
+
+
 def config_file(run: Path) -> Path:
     """Returns the configuration of a run. Raises UserError if `run` is not the folder of one."""
+    check_folder(run)
     file = run / "config.yaml"
     if not file.is_file():
         raise UserError(f"{run}: has no config.yaml; legal: the folder of a run")

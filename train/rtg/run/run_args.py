@@ -10,6 +10,7 @@ from typing import Any
 
 from rtg import _core, paths
 from rtg.errors import UserError
+from rtg.files import run_folder
 from rtg.learn import log_sinks
 
 EPILOG = """\
@@ -119,24 +120,8 @@ def parser() -> argparse.ArgumentParser:
     return p
 
 
-def task_file(task: str, also: str = "") -> Path:
-    """Returns the file of `task`, which is a name or a path. Raises UserError if there is none.
-
-    `also`: text for the message with further values that the caller accepts.
-    """
-    if task in paths.task_names():
-        return paths.CONFIG / f"{task}.yaml"
-    path = Path(task)
-    if path.is_file():
-        return path
-    is_file_name = path.suffix in {".yaml", ".yml"} or path.is_dir()
-    wrong = "no such task file" if is_file_name else "no task of that name"
-    names = ", ".join(paths.task_names())
-    raise UserError(f"{task or repr(task)}: {wrong}; legal: {names}, the path of a FILE.yaml{also}")
-
-
-def _task_file(task: str | None) -> Path:
-    return task_file("gathering" if task is None else task, also=", a tool (--help)")
+def _task_file(task: str | None, tools: Sequence[str]) -> Path:
+    return paths.task_file("gathering" if task is None else task, ", a tool (--help)", tools)
 
 
 def add_set(p: argparse.ArgumentParser, what: str) -> None:
@@ -160,10 +145,13 @@ def _overrides(args: argparse.Namespace) -> tuple[Override, ...]:
     return tuple(found)
 
 
-def parse(argv: Sequence[str]) -> RunArgs:
-    """Parses and checks the arguments. Raises UserError, or SystemExit(0) after --help."""
+def parse(argv: Sequence[str], tools: Sequence[str] = ()) -> RunArgs:
+    """Parses and checks the arguments. Raises UserError, or SystemExit(0) after --help.
+
+    `tools`: the words that may have been meant in the place of a task.
+    """
     if argv and not argv[0].startswith("-"):
-        _task_file(argv[0])  # reports a misspelt tool before mistakes in its arguments
+        _task_file(argv[0], tools)  # reports a misspelt tool before mistakes in its arguments
     args = parser().parse_args(argv)
     if args.out == "":
         raise UserError("--out: the path is empty; legal: the path of a folder")
@@ -180,13 +168,9 @@ def parse(argv: Sequence[str]) -> RunArgs:
                 f"--data {args.data}: --resume goes on with the transitions of {out}; legal: no "
                 "--data"
             )
-        file = out / "config.yaml"
-        if not file.is_file():
-            raise UserError(
-                f"--resume: {out} holds no run (no config.yaml); legal: the folder of a run"
-            )
+        file = run_folder.config_file(out)
     else:
-        file = _task_file(args.task)
+        file = _task_file(args.task, tools)
         if out is not None and out.exists() and not out.is_dir():
             raise UserError(f"--out: {out} is not a folder; legal: a new or an empty folder")
         if out is not None and out.is_dir() and any(out.iterdir()):
