@@ -75,7 +75,7 @@ ROOMS = {
     "view": {"files", "processes", "bus", "pictures", "run"},
     "export": {"files", "pictures", "envs", "run"},
 }
-ROOF = {"errors", "extras", "paths", "task_config", "_core"}  # modules of rtg itself
+ROOF = {"arguments", "errors", "extras", "paths", "task_config", "_core"}  # modules of rtg itself
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 IMPORT_LCM = re.compile(r"^\s*(?:import\s+lcm\b|from\s+lcm\b)", re.MULTILINE)

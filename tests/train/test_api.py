@@ -122,7 +122,7 @@ def test_solves_do_not_depend_on_their_company(solved) -> None:
 @pytest.mark.parametrize(
     ("states", "actions", "message"),
     [
-        (np.zeros((2, 3, 3)), [0, 1], r"states of shape \[2, 3, 3\]; legal: \[N, 2, 3\]"),
+        (np.zeros((2, 3, 3)), [0, 1], r"s of shape \[2, 3, 3\]; legal: \[N, 2, 3\]"),
         (np.full((1, 2, 3), np.nan), [0], "not finite"),
         (np.zeros((1, 2, 3)), [48], "action 48; legal: 0 to 47"),
         (np.zeros((1, 2, 3)), [0, 1], "1 states but 2 actions"),

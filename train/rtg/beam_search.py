@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
+from rtg.arguments import checked
 from rtg.task import Task
 from rtg.transitions import Transitions
 
@@ -28,6 +29,7 @@ class Nodes:
     def __len__(self) -> int:
         return len(self.depths)
 
+    @checked
     def plan(self, node: int) -> list[int]:
         """Returns the actions from a node to the goal."""
         actions = []
@@ -48,6 +50,7 @@ class BeamSearch:
             data = search.grow()
     """
 
+    @checked
     def __init__(
         self,
         task: Task,
@@ -63,10 +66,9 @@ class BeamSearch:
         `rtg.generate`, such as "search.breadth=20". Raises ValueError for what is not legal.
         """
         self.task = task
-        own = [f"run.workers={workers}", *settings]
-        config = _core.Config.from_text(task.config.yaml, task.name, own)
+        config = task.config_with([f"run.workers={workers}"], settings)
         self.target = task.start(seed) if target is None else np.asarray(target, np.float64)
-        self._core = _core.BeamSearch(config, task.inner(self.target[None]), seed)
+        self._core = _core.BeamSearch(config, task.inner_state(self.target, "target")[None], seed)
         self._core.make_roots()
 
     def grow(self) -> Transitions:

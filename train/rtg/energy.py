@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
+from rtg.arguments import checked, numbers
 from rtg.task import Task
 
 Floats = NDArray[np.float64]
@@ -36,6 +37,7 @@ class StepEnergy:
     (prismatic), and the others are 0. Raises ValueError for wrong shapes.
     """
 
+    @checked
     def __init__(self, task: Task) -> None:
         self.task = task
         self._core = _core.StepEnergy(task.config)
@@ -52,12 +54,12 @@ class StepEnergy:
 
     def gaps(self, state: ArrayLike) -> Floats:
         """Returns the gap of each contact, [C] in m; twice the barrier's range if it is larger."""
-        gaps: Floats = self._core.gaps(self._inner(state)) / self._metre
+        gaps: Floats = self._core.gaps(self._inner(state, "state")) / self._metre
         return gaps
 
     def forces(self, state: ArrayLike) -> Floats:
         """Returns the normal force -b' of each contact, [C] in N times Δt² over damping: kg m."""
-        forces: Floats = self._core.forces(self._inner(state)) / self._force
+        forces: Floats = self._core.forces(self._inner(state, "state")) / self._force
         return forces
 
     def value(self, after: ArrayLike, now: ArrayLike, forces: ArrayLike | None = None) -> float:
@@ -86,8 +88,10 @@ class StepEnergy:
     def _arguments(
         self, after: ArrayLike, now: ArrayLike, forces: ArrayLike | None
     ) -> tuple[Floats, Floats, Floats | None]:
-        loads = None if forces is None else np.asarray(forces, np.float64) * self._force
-        return self._inner(after), self._inner(now), loads
+        loads = None
+        if forces is not None:
+            loads = numbers("forces", forces, (len(self._core.contacts),)) * self._force
+        return self._inner(after, "after"), self._inner(now, "now"), loads
 
-    def _inner(self, state: ArrayLike) -> Floats:
-        return self.task.inner(np.asarray(state, np.float64)[None])
+    def _inner(self, state: ArrayLike, name: str) -> Floats:
+        return self.task.inner_state(state, name)[None]

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
+from rtg.arguments import checked, indices, numbers
 from rtg.task import Task
 
 Floats = NDArray[np.float64]
@@ -14,10 +15,10 @@ Floats = NDArray[np.float64]
 class _Forward:
     engine: str  # a value of forward.engine
 
+    @checked
     def __init__(self, task: Task) -> None:
         self.task = task
-        settings = [f"forward.engine={self.engine}"]
-        self._core = _core.Simulator(_core.Config.from_text(task.config.yaml, task.name, settings))
+        self._core = _core.Simulator(task.config_with([f"forward.engine={self.engine}"]))
 
     def push(self, states: ArrayLike, actions: ArrayLike) -> tuple[Floats, NDArray[np.bool_]]:
         """Simulates a push from each state. [N, bodies, 3], [N] -> [N, bodies, 3], [N]
@@ -25,7 +26,7 @@ class _Forward:
         Returns the states after the pushes, at rest, and whether each push could be finished.
         Equal arguments give equal bits. Raises ValueError for wrong shapes.
         """
-        pushes = np.atleast_1d(np.asarray(actions, np.int64))
+        pushes = indices("action", actions, self.task.actions)
         after, ok = self._core.push(self.task.inner(states), pushes)
         return self.task.outer(after), ok
 
@@ -34,8 +35,8 @@ class _Forward:
 
         A way has any direction and any length above 0.
         """
-        ways = np.ascontiguousarray(ways, np.float64) * self.task.core.metre
-        after, ok = self._core.push_along(self.task.inner(states), ways)
+        metres = numbers("ways", ways, (None, 2))
+        after, ok = self._core.push_along(self.task.inner(states), metres * self.task.core.metre)
         return self.task.outer(after), ok
 
 

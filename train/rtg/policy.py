@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
+from rtg.arguments import checked, numbers
 from rtg.errors import UserError
 from rtg.files import own_data, run_folder
 from rtg.files.own_data import OwnData
@@ -20,6 +21,7 @@ from rtg.transitions import Transitions
 class Policy:
     """The policy of a trained value network: it takes the action of the largest value."""
 
+    @checked
     def __init__(self, task: Task, file: Path) -> None:
         """Reads `file`, a model.pt. Raises UserError if it does not fit the task."""
         from rtg.learn import policy_file  # imports PyTorch
@@ -31,15 +33,17 @@ class Policy:
         """Returns Q of all actions in states. [N, bodies, 3] -> [N, actions]"""
         return self.values_of_observations(self.task.observation(states))
 
-    def values_of_observations(self, observations: NDArray[np.float32]) -> NDArray[np.float32]:
+    def values_of_observations(self, observations: ArrayLike) -> NDArray[np.float32]:
         """The same for what a learner sees, as of a Gymnasium environment. [N, observation]"""
-        values: NDArray[np.float32] = self._values(observations)
+        seen = numbers("observations", observations, (None, self.task.core.observation_size))
+        values: NDArray[np.float32] = self._values(seen.astype(np.float32))
         return values
 
     def __call__(self, states: ArrayLike) -> NDArray[np.int64]:
         """Returns the actions to take in states. [N, bodies, 3] -> [N]"""
         return self.values(states).argmax(axis=1)
 
+    @checked
     def success_rate(self, episodes: int = 100) -> float:
         """Returns the share of held-out starts from which it succeeds within the horizon.
 
@@ -47,13 +51,13 @@ class Policy:
         """
         from rtg.learn.evaluation import FINAL_SEED, evaluate, held_out_starts
 
-        settings = [f"train.eval_episodes={episodes}"]
-        config = _core.Config.from_text(self.task.config.yaml, self.task.name, settings)
+        config = self.task.config_with([f"train.eval_episodes={episodes}"])
         starts = held_out_starts(config, FINAL_SEED)
         found = evaluate(config, self._values, starts, config.learner_discount)
         return float(found.success.mean())
 
 
+@checked
 def load_policy(run: str | PathLike[str]) -> Policy:
     """Loads the policy of a run. `run`: its folder. Raises UserError if it has none."""
     file, model = run_folder.policy_files(Path(run))
@@ -68,6 +72,7 @@ def _own_data(task: Task, data: Transitions) -> OwnData:
     return OwnData(rows, {"format": "arrays", "name": None, "sha256": own_data.digest(rows)})
 
 
+@checked
 def train(
     data: Transitions,
     task: Task,
@@ -93,7 +98,7 @@ def train(
     own = [f"run.seed={seed}"]
     if interactions is not None:
         own.append(f"train.interactions={interactions}")
-    config = _core.Config.from_text(task.config.yaml, task.name, [*own, *settings])
+    config = task.config_with(own, settings)
     given = _own_data(task, data)
     run = Path(folder)
     if (run / "checkpoint").exists() or (run / "model.pt").exists():

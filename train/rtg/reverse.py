@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
+from rtg.arguments import checked, indices
+from rtg.files import own_data
 from rtg.task import Task
 
 Floats = NDArray[np.float64]
@@ -56,21 +58,24 @@ class ReverseSolutions:
 class ReverseSimulator:
     """Finds the states from which pushes lead to given states [eq. (6), (7)]."""
 
+    @checked
     def __init__(self, task: Task) -> None:
         self.task = task
         self._core = _core.ReverseSimulator(task.config)
 
+    @checked
     def solve(self, end_poses: ArrayLike, actions: ArrayLike, threads: int = 1) -> ReverseSolutions:
         """Solves N problems together, several per register: much faster than one by one.
 
         end_poses [N, bodies, 3] or one state for all, [bodies, 3]; actions [N]. The results do not
         depend on what is solved together, nor on `threads`. Raises ValueError for wrong shapes.
         """
-        pushes = np.atleast_1d(np.asarray(actions, np.int64))
-        ends = np.asarray(end_poses, np.float64)
-        if ends.ndim == 2:
-            ends = np.repeat(ends[None], len(pushes), axis=0)
-        found = self._core.solve(self.task.inner(ends), pushes, threads)
+        pushes = indices("action", actions, self.task.actions)
+        if np.ndim(end_poses) == 2:
+            ends = self.task.inner_state(end_poses, "end_poses")[None].repeat(len(pushes), axis=0)
+        else:
+            ends = own_data.in_task_units(self.task.core, end_poses, "end_poses")
+        found = self._core.solve(ends, pushes, threads)
         metre = self.task.core.metre
         kilogram = self.task.core.kilogram
         objective, infeasibility, stationarity = found["figures"].T

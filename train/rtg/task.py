@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
+from rtg.arguments import checked, numbers
 from rtg.envs.push_env import observation_names
 from rtg.files import own_data
 from rtg.pictures.draw import outline, state_image
@@ -38,6 +39,7 @@ class Task:
     density 1; files and messages have these, too.
     """
 
+    @checked
     def __init__(self, config: _core.Config) -> None:
         self.config = config
         self.core: _core.Task = config.task
@@ -70,10 +72,12 @@ class Task:
         """The entries of an observation, in words; for units see `observation`."""
         return observation_names(self.core)
 
+    @checked
     def start(self, seed: int = 1) -> Floats:
         """Returns the start number `seed`, with objects jittered. [bodies, 3]"""
         return self.outer(self.core.jittered_start(self.core.start_jitter, seed))
 
+    @checked
     def goal_state(self, seed: int = 1) -> Floats:
         """Returns a random state in which the goal holds. [bodies, 3]
 
@@ -101,7 +105,7 @@ class Task:
 
         For each body the outer ring, then its holes: [vertices, 2] in m.
         """
-        poses = self.inner(np.asarray(state, np.float64)[None])[0]
+        poses = self.inner_state(state)
         return [
             [outline(ring, pose) / self.core.metre for ring in rings]
             for rings, pose in zip(self.core.outlines, poses, strict=True)
@@ -121,6 +125,7 @@ class Task:
         """The task in words, as `rtg check` prints it."""
         return self.config.description
 
+    @checked
     def image(self, states: ArrayLike, caption: str = "") -> NDArray[np.uint8]:
         """Draws the last of some states [T, bodies, 3], and the robot's way there, as RGB.
 
@@ -137,12 +142,29 @@ class Task:
         """
         return own_data.in_task_units(self.core, states)
 
+    def inner_state(self, state: ArrayLike, name: str = "state") -> Floats:
+        """Returns one state as the core takes it. [bodies, 3] -> [bodies, 3]
+
+        `name`: that of the argument, for the ValueError that inner() raises, too.
+        """
+        given = numbers(name, state, (len(self.bodies), 3))
+        return own_data.in_task_units(self.core, given[None], name)[0]
+
+    def config_with(self, *settings: Sequence[str]) -> _core.Config:
+        """Returns the configuration with further settings, each "section.key=value".
+
+        Raises ValueError for settings that are not legal.
+        """
+        changed = [setting for some in settings for setting in some]
+        return _core.Config.from_text(self.config.yaml, self.name, changed)
+
     def outer(self, states: Floats) -> Floats:
         """Returns states of the core in metres. [..., bodies, 3] -> [..., bodies, 3]"""
         metres: Floats = states / [self.core.metre, self.core.metre, 1.0]
         return metres
 
 
+@checked
 def load_task(task: str | PathLike[str], settings: Sequence[str] = ()) -> Task:
     """Loads a task: the name of one of RTG's, such as "push_t", or the path of a YAML file.
 

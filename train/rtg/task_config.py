@@ -7,6 +7,7 @@ from os import PathLike
 from pathlib import Path
 
 from rtg import _core, paths
+from rtg.errors import UserError
 
 
 def read_config(
@@ -26,6 +27,8 @@ def read_config(
         )
     if isinstance(config, str) and "\n" in config:
         return _core.Config.from_text(config, overrides=list(settings))
-    own = paths.CONFIG / f"{config}.yaml"
-    file = own if isinstance(config, str) and own.is_file() else config
+    try:
+        file = paths.task_file(config) if isinstance(config, str) else config
+    except UserError as error:
+        raise ValueError(str(error)) from None
     return _core.Config.from_file(file, list(settings))

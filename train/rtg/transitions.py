@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import queue
+import reprlib
 import threading
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.arguments import checked
 from rtg.errors import StoppedError
 from rtg.files import own_data
 from rtg.task import Task
@@ -43,12 +45,17 @@ class Transitions:
     def joined(cls, parts: Iterable[Transitions]) -> Transitions:
         """Returns all transitions of `parts`, in their order. Raises ValueError for none."""
         all_parts = list(parts)
+        if not all_parts or not all(isinstance(part, cls) for part in all_parts):
+            raise ValueError(
+                f"parts {reprlib.repr(parts)}; legal: objects of rtg.Transitions, at least one"
+            )
         columns = {
             field.name: np.concatenate([getattr(part, field.name) for part in all_parts])
             for field in fields(cls)
         }
         return cls(**columns)
 
+    @checked
     def save(self, path: str | PathLike[str]) -> None:
         """Writes the file that load() and `rtg TASK --data FILE` read: a .npz."""
         with Path(path).open("wb") as file:
@@ -61,6 +68,7 @@ class Transitions:
             )
 
     @classmethod
+    @checked
     def load(cls, path: str | PathLike[str], task: Task) -> Transitions:
         """Reads transitions of the task, which judges their success. docs/data.md has the arrays.
 
@@ -72,6 +80,7 @@ class Transitions:
         return cls(states, rows.action.astype(np.int64), after, rows.terminated, rows.source)
 
 
+@checked
 def generate(
     task: Task,
     count: int | None = None,
@@ -90,8 +99,7 @@ def generate(
     own = [f"run.seed={seed}", f"run.workers={workers}"]
     if count is not None:
         own.append(f"search.transitions={count}")
-    config = _core.Config.from_text(task.config.yaml, task.name, [*own, *settings])
-    return _batches(task, config)
+    return _batches(task, task.config_with(own, settings))
 
 
 class _Search:

@@ -6,6 +6,7 @@ import pytest
 import rtg
 from gymnasium.utils.env_checker import check_env as check_gymnasium
 from rtg.envs.push_env import PushEnv
+from rtg.envs.push_vector_env import PushVectorEnv
 from stable_baselines3.common.env_checker import check_env as check_sb3
 
 
@@ -52,6 +53,26 @@ def test_jitter_moves_the_objects_as_far_as_asked_and_the_robot_not_at_all() -> 
     assert (reach <= 0.3 + 1e-6).all() and (reach > 0.28).all()
     nominal = env.reset(seed=0, options={"jitter": 0.0})[1]["poses"]
     np.testing.assert_array_equal(nominal, env.task.start)
+
+
+@pytest.mark.parametrize("make", [PushEnv, PushVectorEnv])
+@pytest.mark.parametrize(
+    ("jitter", "message"),
+    [
+        (16.0, r"jitter 16\.0 \(10 m\): key 'task\.start_jitter': 10\.0 is out of range; legal: "),
+        (-0.5, r"jitter -0\.5 \(-0\.3125 m\): key .*out of range; legal: a number from 0\.0 to"),
+        (float("nan"), r"jitter nan \(nan m\): key .*'nan' is not a number; legal: "),
+    ],
+)
+def test_a_jitter_that_cannot_be_used_is_refused_at_once(make, jitter, message) -> None:
+    with pytest.raises(ValueError, match=message):
+        make(config="push_t", jitter=jitter)
+
+
+def test_a_jitter_that_leaves_few_legal_starts_is_refused_at_once() -> None:
+    """Six boxes moved by up to 10 m are hardly ever all within 7 m."""
+    with pytest.raises(ValueError, match=r"jitter 10\.0 .*too few starts are legal .*; legal: "):
+        PushEnv("sorting_hard", ["task.push.arena=7"], jitter=10.0)
 
 
 def test_success_ends_the_episode_with_reward_one() -> None:

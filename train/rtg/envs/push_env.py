@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
+from rtg.arguments import checked
 from rtg.envs.interface import Interface, Variant
 from rtg.envs.layouts import BODY_ENTRY_NAMES
 from rtg.envs.window import Window
@@ -35,6 +36,24 @@ def observation_names(task: _core.Task) -> list[str]:
         elif points:
             names.append(f"{joint} slide")
     return names
+
+
+def checked_jitter(config: _core.Config, jitter: float | None) -> float:
+    """Returns the jitter of starts, that of the task if None, in units of the task.
+
+    Raises ValueError if it is out of range, or leaves too few legal starts.
+    """
+    task = config.task
+    if jitter is None:
+        return task.start_jitter
+    metres = float(jitter) / task.metre
+    setting = f"task.start_jitter={metres!r}"
+    try:
+        _core.Config.from_text(config.yaml, task.name, [setting])
+    except _core.ConfigError as error:
+        why = str(error).removeprefix(f"--set {setting}: ")
+        raise ValueError(f"jitter {jitter} ({metres:g} m): {why}") from None
+    return jitter
 
 
 def checked_state(task: _core.Task, poses: Any) -> Floats:
@@ -93,9 +112,10 @@ class PushEnv(gymnasium.Env[Any, Any]):
         "render_fps": 4,
     }
 
+    @checked
     def __init__(
         self,
-        config: _core.Config | str | Path = "gathering",
+        config: _core.Config | str | Path | None = "gathering",
         settings: Sequence[str] = (),
         jitter: float | None = None,
         ends_at_horizon: bool = True,
@@ -106,7 +126,7 @@ class PushEnv(gymnasium.Env[Any, Any]):
         read = read_config(config, settings)
         self.interface = Interface(read, Variant(**variant))
         self.task = read.task
-        self.jitter = self.task.start_jitter if jitter is None else jitter
+        self.jitter = checked_jitter(read, jitter)
         self.ends_at_horizon = ends_at_horizon
         self.render_mode = render_mode
         self.observation_space = self.interface.observation_space

@@ -14,8 +14,9 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.arguments import checked
 from rtg.envs.interface import Interface, Variant
-from rtg.envs.push_env import RENDERED_PIXELS, check_render_mode
+from rtg.envs.push_env import RENDERED_PIXELS, check_render_mode, checked_jitter
 from rtg.task_config import read_config
 
 Bools = NDArray[np.bool_]
@@ -35,10 +36,11 @@ class PushVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         "render_fps": 4,
     }
 
+    @checked
     def __init__(
         self,
         num_envs: int = 1,
-        config: _core.Config | str | Path = "gathering",
+        config: _core.Config | str | Path | None = "gathering",
         settings: Sequence[str] = (),
         jitter: float | None = None,
         max_episode_steps: int | None = None,
@@ -51,7 +53,7 @@ class PushVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self.interface = Interface(read, Variant(**variant))
         self.task = read.task
         self.num_envs = num_envs
-        self.jitter = self.task.start_jitter if jitter is None else jitter
+        self.jitter = checked_jitter(read, jitter)
         if max_episode_steps is not None and max_episode_steps < 1:
             raise ValueError(f"max_episode_steps {max_episode_steps}; legal: at least 1")
         self.limit = max_episode_steps or (self.task.horizon if ends_at_horizon else math.inf)

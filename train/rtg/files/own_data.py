@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rtg import _core
+from rtg import _core, arguments
 from rtg.errors import UserError
 from rtg.files import dataset, run_folder, versions
 from rtg.files.chains import numbered
@@ -32,16 +32,15 @@ class OwnData(NamedTuple):
     origin: dict[str, Any]  # "format", "name" (None where there is no file), "sha256"
 
 
-def in_task_units(task: _core.Task, states: ArrayLike) -> Floats:
+def in_task_units(task: _core.Task, states: ArrayLike, name: str = "states") -> Floats:
     """Returns states in metres as the core takes them. [N, bodies, 3] -> [N, bodies, 3]
 
-    Raises ValueError for another shape and for numbers that are not finite.
+    `name`: that of the argument. Raises ValueError for another shape and for numbers that are not
+    finite.
     """
-    given = np.asarray(states, np.float64)
-    if given.ndim != 3 or given.shape[1:] != (task.bodies, 3):
-        raise ValueError(f"states of shape {list(given.shape)}; legal: [N, {task.bodies}, 3]")
+    given = arguments.numbers(name, states, (None, task.bodies, 3))
     if not np.isfinite(given).all():
-        raise ValueError("states hold numbers that are not finite; legal: finite ones")
+        raise ValueError(f"{name} hold numbers that are not finite; legal: finite ones")
     return np.ascontiguousarray(given * [task.metre, task.metre, 1.0])
 
 
@@ -52,18 +51,13 @@ def checked_rows(
 
     Poses are in task units, [N, bodies, 3]. Raises ValueError for what is not legal.
     """
-    action, sources = np.asarray(actions), np.asarray(source)
+    action = arguments.indices("action", actions, task.actions)
+    sources = arguments.indices("source", source, len(_core.SOURCES))
     lengths = {len(poses), len(next_poses), len(action), len(sources)}
     if len(lengths) != 1:
         raise ValueError(f"columns of {sorted(lengths)} transitions; legal: of equally many")
     if not len(action):
         raise ValueError("no transitions; legal: at least one")
-    for name, column, end in (("action", action, task.actions), ("source", sources, 4)):
-        if column.ndim != 1 or column.dtype.kind not in "iu":
-            raise ValueError(f"{name}s of type {column.dtype}; legal: whole numbers, [N]")
-        if column.min() < 0 or column.max() >= end:
-            wrong = int(column[(column < 0) | (column >= end)][0])
-            raise ValueError(f"{name} {wrong}; legal: 0 to {end - 1}")
     for name, states in (("states", poses), ("next_states", next_poses)):
         if not (legal := task.is_legal(states)).all():
             raise ValueError(
