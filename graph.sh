@@ -84,9 +84,12 @@ case "$consumer ${flags[*]}" in
 esac
 workers=$(setting workers)
 [[ $workers =~ ^[1-9][0-9]*$ ]] || refuse "$config: run.workers is '$workers'; legal: a file that ./run.sh TASK --print-config has printed"
-exec {held}>"$folder/.graph.lock" || exit 1 # held by this script alone: the kernel releases it at once when it ends
-flock --nonblock "$held" || refuse "another graph.sh works in '$folder'; legal: another folder, or wait"
-mkdir -p "$logs" && rm -f "$folder/generation.json" || exit 1
+unwritable="'$folder' cannot be written (.graph.lock, logs/, generation.json); legal: a folder to write to"
+# The lock is held by this script alone: the kernel releases it at once when it ends.
+{ exec {held}>"$folder/.graph.lock"; } 2>/dev/null || refuse "$unwritable"
+# Who only asks whether it is held has it for a moment, too.
+flock --wait 1 "$held" || refuse "another graph.sh works in '$folder'; legal: another folder, or wait"
+{ mkdir -p "$logs" && [[ -w $logs ]] && rm -f "$folder/generation.json"; } 2>/dev/null || refuse "$unwritable"
 if [[ ! -e $key ]]; then "$python" -m rtg.bus.new_key "$key" "${RTG_RUN:-${folder##*/}}" || exit; fi
 exec 2>/dev/null # bash's own words about programs that have ended
 trap 'stop 130' INT

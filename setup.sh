@@ -29,8 +29,10 @@ set_environment() {
 
 # One set-up at a time in this checkout; released by unlock_setup or by the end of the process.
 lock_setup() {
-  mkdir -p "$ROOT/build"
-  exec 9>"$ROOT/build/.setup.lock"
+  if ! { mkdir -p "$ROOT/build" && exec 9>"$ROOT/build/.setup.lock"; } 2>/dev/null; then
+    say "$ROOT/build cannot be written; legal: a checkout in a folder to write to"
+    exit 2
+  fi
   if ! flock --nonblock 9; then
     say "waiting for another set-up in $ROOT"
     flock 9

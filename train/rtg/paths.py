@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -36,8 +37,9 @@ def task_file(task: str, also: str = "", others: Sequence[str] = ()) -> Path:
     if task in names:
         return CONFIG / f"{task}.yaml"
     path = Path(task)
-    if path.is_file():
-        return path
+    with contextlib.suppress(OSError, ValueError):  # a name too long, one with a NUL
+        if path.is_file():
+            return path
     wrong = "no such task file"
     if path.suffix not in {".yaml", ".yml"} and not path.is_dir():
         wrong = f"no task of that name{_core.suggestion(task, [*names, *others])}"

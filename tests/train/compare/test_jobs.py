@@ -7,6 +7,7 @@ import pytest
 from rtg.compare.cell_run import CellRun, prepare_runs
 from rtg.compare.jobs import is_claimed, try_claim
 from rtg.compare.reproduce_args import parse
+from rtg.files.locks import job_lock
 from rtg.processes.children import Node
 from training_runs import TINY
 
@@ -23,6 +24,11 @@ def test_a_job_has_one_process(runs):
     claim.close()
     claim.close()
     assert not is_claimed(runs[0])
+
+
+def test_who_asks_for_a_claim_takes_none(runs):
+    assert not is_claimed(runs[0])
+    assert not any(job_lock(folder).exists() for folder in runs[0].folders)
 
 
 def test_runs_of_other_seeds_are_independent(runs):

@@ -1,5 +1,6 @@
 """Locks on files."""
 
+import fcntl
 import os
 import subprocess
 import sys
@@ -21,6 +22,7 @@ def test_a_lock_has_one_holder_at_a_time(tmp_path):
 
 
 def test_it_tells_whether_a_file_is_locked_and_leaves_it_as_it_is(tmp_path):
+    assert not is_locked(tmp_path / "lock") and not any(tmp_path.iterdir())
     held = try_lock(tmp_path / "lock")
     assert is_locked(tmp_path / "lock") and is_locked(tmp_path / "lock")
     held.release()
@@ -30,6 +32,16 @@ def test_it_tells_whether_a_file_is_locked_and_leaves_it_as_it_is(tmp_path):
     held.release()
     (tmp_path / "lock").chmod(0o444)
     assert not is_locked(tmp_path / "lock")
+
+
+def test_who_asks_whether_a_file_is_locked_is_in_nobodys_way(tmp_path, monkeypatch):
+    file = tmp_path / "lock"
+    file.touch()
+    asked = file.open()
+    fcntl.flock(asked, fcntl.LOCK_SH)  # as is_locked() has it for a moment
+    monkeypatch.setattr("rtg.files.locks.time.sleep", lambda seconds: asked.close())
+    assert try_lock(file) is not None
+    assert asked.closed and try_lock(file) is None
 
 
 def test_a_killed_holder_frees_its_lock(tmp_path):

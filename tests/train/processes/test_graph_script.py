@@ -1,5 +1,6 @@
 """graph.sh, with programs that do as they are told."""
 
+import fcntl
 import os
 import pty
 import signal
@@ -76,6 +77,14 @@ def wait_for(condition):
     while not condition():
         assert time.monotonic() < deadline, "never came true"
         time.sleep(0.02)
+
+
+def waits_for_a_lock(parent):
+    """Whether a child of this process is flock(1)."""
+    listed = subprocess.run(
+        ["pgrep", "-x", "-P", str(parent), "flock"], stdout=subprocess.DEVNULL, timeout=120.0
+    )
+    return listed.returncode == 0
 
 
 def test_all_programs_run_with_their_words_and_end_with_the_last_needed_one(graph):
@@ -272,6 +281,23 @@ def test_a_folder_has_one_script_at_a_time(graph):
     process.terminate()
     process.communicate()
     assert not is_locked(graph.run_folder / ".graph.lock")
+
+
+def test_who_asks_whether_the_folder_is_locked_is_not_in_the_way(graph):
+    with (graph.run_folder / ".graph.lock").open("w") as asked:
+        fcntl.flock(asked, fcntl.LOCK_SH)
+        process = graph.start()
+        wait_for(lambda: waits_for_a_lock(process.pid))
+    out, _ = process.communicate(timeout=120.0)
+    assert (process.returncode, out) == (0, "")
+
+
+@pytest.mark.parametrize("name", [".graph.lock", "logs", "generation.json"])
+def test_a_folder_that_cannot_be_written_is_refused(graph, name):
+    wrong = graph.run_folder / name
+    wrong.touch() if name == "logs" else wrong.mkdir()
+    why = "cannot be written (.graph.lock, logs/, generation.json); legal: a folder to write to"
+    assert graph.run() == (2, f"graph.sh: '{graph.run_folder}' {why}\n")
 
 
 def test_its_programs_do_not_hold_the_lock_of_the_folder(graph):

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from rtg.files.locks import FileLock, job_lock, try_lock
+from rtg.files.locks import FileLock, is_locked, job_lock, try_lock
 
 
 class Job(Protocol):
@@ -86,11 +86,9 @@ def try_claim(job: Job) -> Claim | None:
 
 def is_claimed(job: Job) -> bool:
     """Returns whether some process works on the job or generates the transitions that it needs."""
-    claim = try_claim(job)
-    if claim is None:
-        return True
-    claim.close()
-    return False
+    key = job.pending_generation_key
+    transitions = [_transitions_lock(job, key)] if key else []
+    return any(map(is_locked, [*map(job_lock, job.folders), *transitions]))
 
 
 def _lock_all(

@@ -1,6 +1,10 @@
 """Locks on files, by flock(2): the kernel releases them when their holders have ended.
 
 They work between the machines that share a file system as far as that file system has flock.
+
+A process works with an exclusive lock. flock cannot be asked for one: /proc/locks leaves out other
+machines and containers, and names other devices than stat(2) on Btrfs and overlays. is_locked()
+therefore takes a shared lock for a moment, which those who want the exclusive one see through.
 """
 
 from __future__ import annotations
@@ -8,6 +12,7 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import os
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,6 +20,7 @@ from rtg.errors import UserError
 from rtg.files.run_folder import write_errors_as_user_errors
 
 GRAPH_LOCK = ".graph.lock"  # of graph.sh, in the folder of its run
+_MOMENT = 1e-3  # [s]
 
 
 class FileLock:
@@ -38,10 +44,12 @@ def try_lock(path: Path) -> FileLock | None:
     """
     descriptor = _open(path)
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(descriptor)
-        return None
+        while not _takes(descriptor, fcntl.LOCK_EX):
+            if not _takes(descriptor, fcntl.LOCK_SH):
+                os.close(descriptor)
+                return None
+            fcntl.flock(descriptor, fcntl.LOCK_UN)  # others have shared locks alone: is_locked()
+            time.sleep(_MOMENT)
     except OSError:
         os.close(descriptor)
         raise
@@ -49,18 +57,15 @@ def try_lock(path: Path) -> FileLock | None:
 
 
 def is_locked(path: Path) -> bool:
-    """Returns whether somebody has locked the file `path`, which need not be writable.
-
-    Who takes the lock at that very moment may find it taken.
-    """
-    descriptor = os.open(path, os.O_RDONLY)
+    """Returns whether somebody has locked the file `path`, which need not exist or be writable."""
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
+        descriptor = os.open(path, os.O_RDONLY)
+    except FileNotFoundError:
+        return False
+    try:
+        return not _takes(descriptor, fcntl.LOCK_SH)
     finally:
         os.close(descriptor)
-    return False
 
 
 @contextlib.contextmanager
@@ -107,6 +112,15 @@ def of_run(run: Path) -> tuple[Path, ...]:
 
 def _run_lock(folder: Path) -> Path:
     return folder / ".lock"
+
+
+def _takes(descriptor: int, kind: int) -> bool:
+    """Takes a lock of this kind if no other one is in its way; returns whether it has."""
+    try:
+        fcntl.flock(descriptor, kind | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
 
 
 def _open(path: Path) -> int:
