@@ -16,7 +16,13 @@ struct GoalMark {
 };
 
 /// Returns the marks of the goal: regions, outlines of target poses, discs in which bodies stay.
-/// Half-planes are cut off beyond every window on the arena. Angles and distances have no mark.
+/// Half-planes are cut off beyond every window on the arena. Angles and distances have no mark, and
+/// joints have those of joint_marks().
 std::vector<GoalMark> goal_marks(const Task& task);
+
+/// Returns the marks of the goal terms on joints: outlines of the joint's child, with its parent at
+/// `poses`, at values from the least to the most that both the term and the joint's limits allow.
+/// The first and the last outline of each range are targets.
+std::vector<GoalMark> joint_marks(const Task& task, const Poses& poses);
 
 }  // namespace rtg::tasks

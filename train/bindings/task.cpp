@@ -218,6 +218,10 @@ std::vector<bool> joints_reached(const tasks::Task& task, const StateArray& stat
   return out;
 }
 
+std::vector<tasks::GoalMark> joint_marks(const tasks::Task& task, const StateArray& states) {
+  return tasks::joint_marks(task, only_state(states, task.scene.size()));
+}
+
 /// Returns one mean centre per goal term with a mean: that of the bodies to which it applies.
 std::vector<Vector2d> centroids(const tasks::Task& task, const StateArray& states) {
   const Poses poses = only_state(states, task.scene.size());
@@ -317,6 +321,10 @@ void bind_states(nb::class_<tasks::Task>& bound) {
            R"(Returns, for each joint, whether the goal constrains its angle and the angle complies.
 
 `states`: a single state, [1, bodies, 3].)")
+      .def("joint_marks", &joint_marks, nb::arg("states"),
+           R"(Returns where the children of joints lie at the values that the goal allows.
+
+Those with `target` lie at the ends of a range. `states`: a single state, [1, bodies, 3].)")
       .def("centroids", &centroids, nb::arg("states"),
            R"(Returns the mean centre for each goal term with subject "centroid", each [2].
 

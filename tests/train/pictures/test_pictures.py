@@ -17,6 +17,7 @@ from rtg.pictures.draw import (
     WALL,
     Canvas,
     arena_window,
+    blend_with_paper,
     draw_joints,
     episode_window,
     kind_colours,
@@ -77,7 +78,7 @@ def test_a_disc_on_a_half_plane_is_seen_in_any_order():
     goal += "{kind: '*', half_plane: {normal: [-1, 0], offset: 0}}]"
     marks = _core.Config.from_file(paths.CONFIG / "gathering.yaml", [goal]).task.goal_marks
     names = ("kinds", "names", "fixed", "outlines", "joints", "start", "arena")
-    names += ("joints_reached", "centroids")
+    names += ("joints_reached", "joint_marks", "centroids")
     shown = {name: getattr(TASK, name) for name in names}
     pictures = [
         state_image(SimpleNamespace(**shown, goal_marks=goal), SOLVED[None])
@@ -100,6 +101,39 @@ def test_a_pin_shows_whether_its_angle_is_as_asked():
     pins = [outline(np.array([[1.2, 0.0]]), poses[k])[0] for k in (1, 2)]
     assert pixel(picture, *pins[0], window) == GOAL
     assert pixel(picture, *pins[1], window) == PAPER
+
+
+DOOR = paths.CONFIG / "examples" / "door.yaml"
+
+
+def on_door(task, angle):
+    """Returns a place on the door of DOOR at this angle: near its end, on its middle line."""
+    pin = outline(np.array([[1.5, 0.0]]), task.start[1])[0]
+    return pin + 2.4 * np.array([np.cos(angle), np.sin(angle)])
+
+
+def test_where_a_joint_is_to_stand_is_shaded_up_to_its_limit():
+    goal = "task.goal=[{joint: door, angles: [1.0, 3.0]}]"
+    task = _core.Config.from_file(DOOR, [goal, "task.joints.0.limits=[-0.1, 2.0]"]).task
+    picture, window = state_image(task, task.start[None]), arena_window(task)
+    shade = blend_with_paper(KIND_PALETTE[0], 0.18)
+    for angle, colour in ((0.6, PAPER), (1.25, shade), (1.75, shade), (2.4, PAPER)):
+        assert pixel(picture, *on_door(task, angle), window) == colour
+    ends = [mark.ring for mark in task.joint_marks(task.start[None]) if mark.target]
+    assert len(ends) == 2
+    for ring in ends:
+        edge = pixel(picture, *ring[:2].mean(axis=0), window)
+        assert sum(edge) < sum(shade)
+
+
+def test_where_a_joint_is_to_stand_goes_with_its_parent():
+    task = _core.Config.from_file(paths.CONFIG / "art_manip.yaml").task
+    poses = task.start.copy()
+    poses[:, 0] += 1.0
+    before, after = (task.joint_marks(state[None]) for state in (task.start, poses))
+    assert len(before) == len(after) == 27
+    for one, other in zip(before, after, strict=True):
+        assert np.allclose(one.ring + [1.0, 0.0], other.ring)
 
 
 def test_the_window_holds_all_that_happens_outside_the_arena_too():

@@ -74,6 +74,7 @@ class TaskLike(Protocol):
     def metre(self) -> float: ...
     def moved(self, states: Floats, next_states: Floats) -> NDArray[np.bool_]: ...
     def joints_reached(self, states: Floats) -> Sequence[bool]: ...
+    def joint_marks(self, states: Floats) -> Sequence[MarkLike]: ...
     def centroids(self, states: Floats) -> Sequence[Floats]: ...
 
 
@@ -212,6 +213,21 @@ def draw_goal(
         canvas.polygon(mark.ring, blend_with_paper(colour, 0.38 if reached else 0.18), edge=colour)
 
 
+def draw_joint_goals(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
+    """Draws where the goal asks for the children of joints, as seen from their parents.
+
+    The area is that of all values that are allowed, the outlines are at the ends of their range.
+    poses [bodies, 3]
+    """
+    marks = task.joint_marks(poses[None])
+    for mark in marks:
+        colour = blend_with_paper(mark_colour(task, mark), 0.18)
+        canvas.polygon(mark.ring, colour, edge=colour)
+    for mark in marks:
+        if mark.target:
+            canvas.line(np.vstack([mark.ring, mark.ring[:2]]), mark_colour(task, mark), 0.07)
+
+
 def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
     """Draws all bodies: walls first, the robot last and on top. poses [bodies, 3]."""
     colours = kind_colours(task)
@@ -283,6 +299,7 @@ def state_image(
     path = np.asarray(path, dtype=float)
     a = task.arena
     draw_goal(canvas, task, task.goal_marks if marks is None else marks, reached)
+    draw_joint_goals(canvas, task, path[-1])
     canvas.line([(-a, -a), (a, -a), (a, a), (-a, a), (-a, -a)], FAINT, 0.06)
     if len(path) > 1:
         draw_former_outlines(canvas, task, path[0], path[-1])

@@ -21,6 +21,8 @@ def _title(task: _core.Task) -> str:
     words = (
         f"{task.name}: starts and goal states; frames are {2 * task.arena / task.metre:g} m wide"
     )
+    if task.joint_marks(task.start[None]):
+        words += "; pale: where joints are to stand"
     kinds = sorted({mark.kind for mark in task.goal_marks if mark.negated})
     avoided = ", ".join("any object" if kind == "*" else f"'{kind}'" for kind in kinds)
     return f"{words}; red: where {avoided} must not lie" if kinds else words
