@@ -51,6 +51,24 @@ def test_lines_that_hide_each_other_at_zero_are_named(tmp_path, figures):
     assert [text.get_text() for text in figures[0].axes[0].texts] == ["always 0: dqn, her"]
 
 
+def test_long_names_stay_within_the_picture_and_are_broken_between_settings(tmp_path, figures):
+    settings = ("train.interactions=400", "train.eval_every=200", "search.transitions=2000")
+    cells = {
+        Cell("gathering", method, (setting, *settings), 1): [0.0, 0.0]
+        for method in ("dqn", "her")
+        for setting in ("train.batch=16", "train.batch=32")
+    }
+    report_plots.curves(tmp_path / "curves.png", comparison(tmp_path, cells), "gathering")
+    (figure,) = figures
+    (legend,) = figure.legends
+    figure.draw_without_rendering()
+    assert legend.get_window_extent().width <= figure.bbox.width
+    (hidden,) = figure.axes[0].texts
+    for text in (hidden, *legend.get_texts()):
+        words = text.get_text().split()
+        assert {word.strip("@,:") for word in words} >= set(settings)
+
+
 def test_the_band_is_the_sample_deviation_from_where_all_seeds_have_a_value(tmp_path, figures):
     cells = [Cell("gathering", "ddqn_rtg", (), seed) for seed in (1, 2, 3)]
     for cell, course in zip(

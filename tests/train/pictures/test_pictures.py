@@ -272,6 +272,22 @@ def test_a_single_evaluation_is_a_dot_and_what_is_not_measured_is_not_in_the_leg
     assert all(line.get_marker() == "o" for line in lines)
 
 
+def test_curves_that_coincide_are_both_seen(figures):
+    columns = ["interactions", "success_rate", "episode_length_mean", "episode_return_mean"]
+    curve = {name: np.zeros(2) for name in [*columns, "rollout_success"]}
+    plots.learning_curve(Path("curve.png"), "a run", curve, "interactions")
+    below, above = sorted(figures[0].axes[0].get_lines(), key=lambda line: line.get_zorder())
+    assert above.get_zorder() > below.get_zorder()
+    assert below.get_linewidth() > 2.0 * above.get_linewidth()
+
+
+def test_few_gaps_are_counted_in_whole_steps(figures):
+    report = {"replay_gaps": [0.01] * 13, "replay_gap_median": 0.01, "replay_gap_p90": 0.01}
+    plots.replay_gap(Path("gap.png"), "a run", report)
+    ticks = figures[0].axes[0].get_yticks()
+    assert np.array_equal(ticks, ticks.round())
+
+
 def test_the_legend_of_the_curves_covers_none_of_them(figures):
     columns = ["interactions", "success_rate", "episode_length_mean", "episode_return_mean"]
     curve = {name: np.linspace(0.0, 1.0, 5) for name in [*columns, "rollout_success"]}

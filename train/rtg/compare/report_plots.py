@@ -147,10 +147,18 @@ def _runs_with_curves(comparison: Comparison, task: str) -> RunsByLabel:
     return {label: [r for r in comparison.done(task, label) if r.curve] for label in labels}
 
 
+def _wrapped(words: str, width: int) -> str:
+    """Wraps words of names, which may be broken before a setting alone."""
+    return textwrap.fill(
+        words.replace("@", " @"), width, break_long_words=False, break_on_hyphens=False
+    )
+
+
 def _add_legend(figure: Figure, runs_by_label: RunsByLabel, title: str, columns: int = 4) -> None:
     """Adds the title above the panels and the legend below them.
 
-    The legend shows the mean final success and the number of seeds of each label.
+    The legend shows the mean final success and the number of seeds of each label, in `columns` or
+    as many as fit.
     """
     styles = _styles(list(runs_by_label))
     handles = [
@@ -159,18 +167,22 @@ def _add_legend(figure: Figure, runs_by_label: RunsByLabel, title: str, columns:
     ]
     shared, names = split_names(list(runs_by_label))
     words = [
-        f"{name}: {mean_success(runs):.2f} ({len(runs)})"
+        _wrapped(f"{name}: {mean_success(runs):.2f} ({len(runs)})", 60)
         for name, runs in zip(names, runs_by_label.values(), strict=True)
     ]
-    figure.legend(
-        handles,
-        words,
-        loc="outside lower left",
-        ncols=columns,
-        frameon=False,
-        handlelength=3.0,
-        title=f"{shared or 'method'}: final success (seeds)",
-    )
+    for count in range(columns, 0, -1):
+        legend = figure.legend(
+            handles,
+            words,
+            loc="outside lower left",
+            ncols=count,
+            frameon=False,
+            handlelength=3.0,
+            title=f"{shared or 'method'}: final success (seeds)",
+        )
+        if count == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            break
+        legend.remove()
     figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
 
 
@@ -182,7 +194,7 @@ def _name_hidden(axis: Axes, runs_by_label: RunsByLabel) -> None:
         if all(np.nanmax(run.curve["success_rate"], initial=0.0) == 0.0 for run in runs)
     ]
     if len(at_zero) > 1:
-        words = textwrap.fill(f"always 0: {', '.join(split_names(at_zero)[1])}", 44)
+        words = _wrapped(f"always 0: {', '.join(split_names(at_zero)[1])}", 44)
         axis.text(0.98, 0.04, words, transform=axis.transAxes, ha="right", va="bottom", fontsize=8)
 
 

@@ -95,9 +95,10 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: st
                     thousand,
                     curve[extra],
                     color=_ORANGE,
-                    lw=1.3,
+                    lw=1.0,
                     marker="o",  # for values without neighbours
                     ms=2,
+                    zorder=3,  # on the wider line, which shows beside it where both coincide
                     label="training roll-outs",
                 )
             known = np.isfinite(curve[column])
@@ -105,9 +106,9 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: st
                 thousand[known],
                 np.asarray(curve[column])[known],
                 color=_BLUE,
-                lw=1.8,
+                lw=2.4,
                 marker="o",
-                ms=3,
+                ms=4.5,
                 label="greedy, held-out starts",
             )
             axis.set_title(name)
@@ -162,6 +163,7 @@ def gap_histogram(axis: Axes, counts: Sequence[int], median: float, p90: float) 
     axis.set_xscale("log")
     axis.set_xlim(bounds[0] / 1.1, bounds[top] * 1.1)
     axis.set_ylabel("simulated reverse steps")
+    axis.yaxis.set_major_locator(MaxNLocator(integer=True))
     axis.margins(y=0.35)  # room for the legend above the bars
     for words, gap, line_style in (("median", median, "-"), ("90th percentile", p90, "--")):
         at = max(gap, float(bounds[0]))
