@@ -36,12 +36,13 @@ def task_file(task: str, also: str = "", others: Sequence[str] = ()) -> Path:
     names = task_names()
     if task in names:
         return CONFIG / f"{task}.yaml"
-    path = Path(task)
-    with contextlib.suppress(OSError, ValueError):  # a name too long, one with a NUL
+    path, is_folder = Path(task), False
+    with contextlib.suppress(OSError, ValueError):  # a name too long, or with a NUL
         if path.is_file():
             return path
+        is_folder = path.is_dir()
     wrong = "no such task file"
-    if path.suffix not in {".yaml", ".yml"} and not path.is_dir():
+    if path.suffix not in {".yaml", ".yml"} and not is_folder:
         wrong = f"no task of that name{_core.suggestion(task, [*names, *others])}"
     legal = f"{', '.join(names)}, the path of a FILE.yaml{also}"
     raise UserError(f"{task or repr(task)}: {wrong}; legal: {legal}")

@@ -4,7 +4,7 @@ import os
 
 import pytest
 from rtg.files import locks
-from rtg.view.activity import is_going_on, is_over
+from rtg.view.activity import is_going_on, is_over, state
 from training_runs import run_folder
 from view_runs import finished, learn
 
@@ -47,6 +47,24 @@ def test_a_run_without_locks_goes_on_as_long_as_its_files_grow(tmp_path):
     assert not is_going_on(folder)
     (folder / "training_state.json").write_text("{}")
     assert is_going_on(folder)
+
+
+def test_a_run_without_locks_whose_files_rest_goes_on_as_long_as_it_is_heard(tmp_path):
+    folder = aged(run_folder(tmp_path / "run", None))
+    assert is_going_on(folder, lambda: True) and not is_going_on(folder, lambda: False)
+    held = locks.try_lock(locks.of_run(folder)[0])
+    held.release()
+    assert not is_going_on(folder, lambda: True)  # its lock tells
+
+
+def test_only_a_lock_tells_that_a_run_has_stopped(tmp_path, monkeypatch):
+    folder = aged(run_folder(tmp_path / "run", None))
+    monkeypatch.setattr("rtg.view.activity.time.time", lambda: LONG_AGO + 70.0)
+    assert state(folder) == "no news for 70 s, and no lock tells whether the run goes on"
+    held = locks.try_lock(locks.of_run(folder)[0])
+    assert state(folder) == "the run goes on"
+    held.release()
+    assert state(folder) == "the run was not finished (it has no summary.json)"
 
 
 def test_a_learner_without_locks_ends_with_its_results(tmp_path, rows):

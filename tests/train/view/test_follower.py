@@ -1,6 +1,8 @@
 """A run that goes on, as its bus and its folder tell it."""
 
+import itertools
 import os
+import time
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ import rerun as rr
 from recordings import lines, read
 from rtg import _core
 from rtg.bus.bus import open_bus
+from rtg.bus.node_status import NodeStatus
 from rtg.view import follower
 from rtg.view.follower import Follower, Heard, why_unheard
 from rtg.view.run_events import RunEvents
@@ -54,6 +57,15 @@ def moves(rows, body=2):
     ends = np.concatenate([rows.poses[:, body, :2], rows.next_poses[:, body, :2]], axis=1)
     moved = np.linalg.norm(ends[:, 2:] - ends[:, :2], axis=1) > 0.05
     return ends[(rows.source == 0) & moved]
+
+
+def test_a_run_is_alive_as_long_as_a_process_tells_its_status(bus, monkeypatch):
+    heard = Heard(bus, TASK)
+    NodeStatus(bus, "reverse_worker").tick("solving", 3)
+    assert heard.is_alive() and heard.is_alive()
+    clock = itertools.count(time.monotonic() + 10.0)  # a second between two looks
+    monkeypatch.setattr("rtg.view.follower.time.monotonic", lambda: next(clock))
+    assert not heard.is_alive()
 
 
 @pytest.mark.filterwarnings("ignore:RRD file has no footer")  # read before it is complete

@@ -1,5 +1,8 @@
 """What a recording of a run holds, read back from its file."""
 
+import os
+import re
+
 import numpy as np
 import pytest
 
@@ -164,6 +167,18 @@ def test_of_a_run_that_was_stopped_the_recording_holds_what_is_there(tmp_path, r
     assert not any(words.startswith("best episode") for words in captions)
 
 
+def test_of_a_run_that_holds_no_lock_it_is_only_said_that_there_is_no_news(tmp_path, rows):
+    folder, said = generated(tmp_path / "run", rows), []
+    for file in folder.iterdir():
+        os.utime(file, (1e6, 1e6))
+    view.save(folder, tmp_path / "run.rrd", said.append)
+    assert re.fullmatch(
+        rf"{folder}: no news for \d+ s, and no lock tells whether the run goes on; this is what is "
+        "there",
+        said[-2],
+    )
+
+
 def test_a_run_that_is_stopped_while_it_is_recorded_ends_the_recording(tmp_path, rows, monkeypatch):
     folder, said, steps = generated(tmp_path / "run", rows), [], []
     held = locks.try_lock(locks.of_run(folder)[0])
@@ -187,8 +202,17 @@ def test_a_folder_of_no_run_is_refused(tmp_path):
 
 @pytest.mark.parametrize(
     ("file", "why"),
-    [("run.png", "legal: FILE.rrd in a"), ("none/run.rrd", "legal: FILE.rrd in a folder that")],
+    [
+        ("run.png", "its name does not end in .rrd; legal: FILE.rrd"),
+        ("none/run.rrd", "there is no folder TMP/none; legal: FILE.rrd in a folder that exists"),
+        ("folder.rrd", "is a folder; legal: FILE.rrd"),
+        ("run/config.yaml/run.rrd", "there is no folder TMP/run/config.yaml; legal: FILE.rrd in a"),
+        ("/proc/run.rrd", "cannot be written: No such file or directory; legal: a file that can"),
+    ],
 )
 def test_a_recording_needs_a_fitting_name_in_a_folder(tmp_path, rows, file, why):
-    with pytest.raises(UserError, match=why):
+    (tmp_path / "folder.rrd").mkdir()
+    with pytest.raises(UserError) as told:
         view.save(finished(tmp_path / "run", rows), tmp_path / file, lambda words: None)
+    expected = f"--save {tmp_path / file}: {why.replace('TMP', str(tmp_path))}"
+    assert str(told.value).startswith(expected)

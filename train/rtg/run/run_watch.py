@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import fields, replace
 from typing import Any
 
@@ -14,6 +15,7 @@ class RunWatch:
 
     def __init__(self, bus: _core.Bus, state: RunState) -> None:
         self.state = state
+        self.heard_at = float("-inf")  # when the newest message came, by time.monotonic() [s]
         self._counters: dict[tuple[str, int, int], dict[str, int]] = {}
         bus.subscribe("RTG_PROGRESS", "search_progress_t", self._on_progress)
         bus.subscribe("RTG_STATUS", "node_status_t", self._on_status)
@@ -27,10 +29,12 @@ class RunWatch:
         return dict(sorted(total.items()))
 
     def _on_progress(self, message: Any) -> None:
+        self.heard_at = time.monotonic()
         shown = {f.name for f in fields(RunState)} & set(vars(message))
         self.state = replace(self.state, **{name: getattr(message, name) for name in shown})
 
     def _on_status(self, message: Any) -> None:
+        self.heard_at = time.monotonic()
         key = (message.node, message.number, message.sender)
         self._counters[key] = dict(
             zip(message.counter_name, message.counter_value.tolist(), strict=True)

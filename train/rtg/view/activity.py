@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from rtg.files import locks
 
 # These files grow while programs are at work that hold no lock: rtg.train, nodes by hand.
 _SIGNS = ("config.yaml", "training_state.json", "progress.csv")
-_QUIET = 60.0  # [s] without a change of these, after which such a run counts as stopped
+_QUIET = 60.0  # [s] without a change of these, after which only the bus tells of such a run
 
 
 def is_over(folder: Path) -> bool:
@@ -21,12 +22,25 @@ def is_over(folder: Path) -> bool:
     return any(file.stat().st_mtime_ns >= began for file in ends)
 
 
-def is_going_on(folder: Path) -> bool:
-    """Returns whether a run has not ended and a process works on it, here or elsewhere."""
+def is_going_on(folder: Path, is_heard: Callable[[], bool] = lambda: False) -> bool:
+    """Returns whether a run has not ended and a process works on it, here or elsewhere.
+
+    `is_heard`: whether its bus tells of one. It is asked where neither locks nor files tell.
+    """
     if is_over(folder):
         return False
     found = _locks(folder)
-    return any(map(locks.is_locked, found)) if found else _age(folder) < _QUIET
+    return any(map(locks.is_locked, found)) if found else _age(folder) < _QUIET or is_heard()
+
+
+def state(folder: Path) -> str:
+    """Returns what is known of a run that has not ended, in words."""
+    found = _locks(folder)
+    if any(map(locks.is_locked, found)):
+        return "the run goes on"
+    if found:
+        return "the run was not finished (it has no summary.json)"
+    return f"no news for {_age(folder):.0f} s, and no lock tells whether the run goes on"
 
 
 def _locks(folder: Path) -> list[Path]:

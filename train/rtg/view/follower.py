@@ -10,6 +10,7 @@ import numpy as np
 
 from rtg import _core
 from rtg.bus.bus import defect
+from rtg.bus.channel_monitor import SILENCE_LIMIT
 from rtg.bus.stream_listener import StreamListener
 from rtg.files.dataset import Rows
 from rtg.run.progress import generation_text
@@ -33,6 +34,15 @@ class Heard:
     def state(self) -> RunState:
         """Returns the state of the generation; `phase` is "" if it has not been heard of."""
         return self._watch.state
+
+    def is_alive(self) -> bool:
+        """Returns whether a process of the run tells something within SILENCE_LIMIT."""
+        deadline = time.monotonic() + SILENCE_LIMIT
+        while time.monotonic() - self._watch.heard_at > SILENCE_LIMIT:
+            if (left := deadline - time.monotonic()) <= 0.0:
+                return False
+            self._bus.spin(left)
+        return True
 
     def steps(self, at: float) -> list[Event]:
         """Returns the transitions heard meanwhile, as stored at time `at` [s]."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from pathlib import Path
 
@@ -40,7 +41,13 @@ class Session:
 
     def is_going_on(self) -> bool:
         """Returns whether the run has not ended and a process works on it."""
-        return activity.is_going_on(self._folder)
+        return activity.is_going_on(
+            self._folder, lambda: self._heard is not None and self._heard.is_alive()
+        )
+
+    def state(self) -> str:
+        """Returns what is known of a run that has not ended, in words."""
+        return activity.state(self._folder)
 
     def begin(self, follow: bool) -> None:
         """Lays out the panels and logs what the folder holds. Raises UserError or RunError.
@@ -51,16 +58,7 @@ class Session:
         if not follow:
             self._play(events)
             return
-        heard = None
-        if why := follower.why_unheard(self._folder, self._config):
-            self._say(f"not listening to the run: {why}")
-        else:
-            name = run_name(self._folder)
-            self._bus = listen(self._config.run.bus, name)
-            heard = follower.Heard(self._bus, self._config.task)
-            if self._bus.warning:
-                self._say(self._bus.warning)
-            self._say(f"listening to the run {name}")
+        heard = self._heard
         self.recording.send_blueprint(layout(self._config, following()))
         view = RunView(self.recording, self._config, _PUSH)
         self._follower = follower.Follower(self._folder, view, events, heard)
@@ -81,6 +79,20 @@ class Session:
             self._bus.unsubscribe()
         self.recording.flush()
         self.recording.disconnect()
+
+    @functools.cached_property
+    def _heard(self) -> follower.Heard | None:
+        """What is heard of the run from now on; None if there is nothing to be heard."""
+        if why := follower.why_unheard(self._folder, self._config):
+            self._say(f"not listening to the run: {why}")
+            return None
+        name = run_name(self._folder)
+        self._bus = listen(self._config.run.bus, name)
+        heard = follower.Heard(self._bus, self._config.task)
+        if self._bus.warning:
+            self._say(self._bus.warning)
+        self._say(f"listening to the run {name}")
+        return heard
 
     def _play(self, events: RunEvents) -> None:
         found = events.new()

@@ -100,22 +100,36 @@ def serve(folder: Path, port: int, browser: bool, say: Say) -> None:
             time.sleep(_POLL)
 
 
+def _check_target(file: Path) -> None:
+    """Raises UserError if a recording cannot be written to `file`."""
+    why = ""
+    if file.is_dir():
+        why = "is a folder; legal: FILE.rrd"
+    elif file.suffix != ".rrd":
+        why = "its name does not end in .rrd; legal: FILE.rrd"
+    elif not file.parent.is_dir():
+        why = f"there is no folder {file.parent}; legal: FILE.rrd in a folder that exists"
+    if not why:
+        try:
+            file.open("ab").close()
+        except OSError as error:
+            why = f"cannot be written: {error.strerror}; legal: a file that can be written"
+    if why:
+        raise UserError(f"--save {file}: {why}")
+
+
 def save(folder: Path, file: Path, say: Say) -> None:
     """Writes what serve() would show to a recording, which `rerun FILE.rrd` opens.
 
     If a process works on the run, follows it to its end, or until a signal. Says so if the run was
     not finished. Raises UserError for bad input.
     """
-    if file.suffix != ".rrd" or not file.parent.is_dir():
-        raise UserError(f"--save {file}: legal: FILE.rrd in a folder that exists")
     with (
         contextlib.closing(Session(folder, say)) as session,
         Interrupts() as interrupts,
     ):
-        try:
-            session.recording.save(file)
-        except RuntimeError as error:
-            raise UserError(f"--save {file}: {error}; legal: a file that can be written") from None
+        _check_target(file)
+        session.recording.save(file)
         follow = session.is_going_on()
         session.begin(follow=follow)
         while follow and session.is_going_on() and not interrupts.requested():
@@ -123,6 +137,5 @@ def save(folder: Path, file: Path, say: Say) -> None:
             time.sleep(_POLL)
         session.finish()
         if not session.is_over():
-            why = "the run was not finished (it has no summary.json)"
-            say(f"{folder}: {why}; this is what is there")
+            say(f"{folder}: {session.state()}; this is what is there")
     say(f"recording: {file}")
