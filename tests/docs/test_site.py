@@ -3,12 +3,12 @@
 import html.parser
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from rtg import _core, paths
+from time_limit import run
 
 REASON = "the site has packages of its own: docs/requirements.txt"
 for module in ("mkdocs", "material", "mkdocstrings", "pymdownx", "latex2mathml"):
@@ -29,13 +29,10 @@ LOADED = {  # element -> attributes that a browser follows by itself
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("site")
-    done = subprocess.run(
-        [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", folder],
-        cwd=paths.ROOT,
-        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train"), "NO_MKDOCS_2_WARNING": "1"},
-        capture_output=True,
-        text=True,
-    )
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", folder]
+    train = str(paths.ROOT / "train")
+    env = {**os.environ, "PYTHONPATH": train, "NO_MKDOCS_2_WARNING": "1"}
+    done = run(*command, cwd=paths.ROOT, env=env)
     assert done.returncode == 0, done.stderr[-4000:]
     return folder
 

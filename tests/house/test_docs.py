@@ -3,15 +3,13 @@
 import ast
 import re
 import runpy
-import subprocess
 from pathlib import Path
 
 import pytest
 from layering import ROOT, sources
+from time_limit import run
 
-PAGES = subprocess.run(
-    ["git", "ls-files", "*.md"], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True
-).stdout.splitlines()
+PAGES = run("git", "ls-files", "*.md", cwd=ROOT, check=True).stdout.splitlines()
 READERS_OWN = {"config/mine.yaml", "msgs/NAME_t.lcm"}
 CODE = "\n".join(path.read_text() for path in sources(".hpp", ".cpp", ".py"))
 

@@ -1,8 +1,8 @@
-import subprocess
 import sys
 from pathlib import Path
 
 from layering import ROOT, sources
+from time_limit import run
 
 TOOLS = Path(sys.executable).parent
 TESTS = ROOT / "tests"
@@ -11,7 +11,7 @@ PYTHON = ("train", "tests", "msgs", "docs")  # folders
 
 
 def check(*command: str) -> None:
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    done = run(*command, cwd=ROOT)
     assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
 
 
@@ -42,7 +42,7 @@ def test_python_types_hold() -> None:
 
 def test_shell_scripts_parse() -> None:
     command = ("git", "ls-files", "*.sh", ".ci/run")
-    found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    found = run(*command, cwd=ROOT, check=True)
     scripts = found.stdout.splitlines()
     assert {"run.sh", "graph.sh", ".ci/run"} <= set(scripts)
     for script in scripts:

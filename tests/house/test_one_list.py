@@ -3,11 +3,11 @@ there is read, written, sent and checked without a change elsewhere. The tests a
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import time_limit
 from compiler import BUILD, command_for
 from layering import ROOT
 
@@ -54,9 +54,9 @@ def run(folder: Path, text: str, like: str, libraries: list[str]) -> int:
     flags = [word for k, word in enumerate(words[1:], 1) if k not in dropped]
     command = [words[0], "-iquote", str(folder), f"-I{folder}", *flags, "-O0", str(source)]
     command += [*(str(BUILD / library) for library in libraries), "-o", str(program)]
-    done = subprocess.run(command, cwd=where, capture_output=True, text=True)
+    done = time_limit.run(*command, cwd=where)
     assert done.returncode == 0, done.stderr
-    return subprocess.run([program]).returncode
+    return time_limit.run(program).returncode
 
 
 def changed(path: Path, folder: Path, *changes: tuple[str, str]) -> None:
@@ -92,9 +92,9 @@ def test_a_field_of_a_message_is_a_change_of_one_file(tmp_path: Path) -> None:
     files["stream_tail_t.lcm"] = tmp_path / "msgs" / "stream_tail_t.lcm"
     lcm_gen = Path(sys.prefix) / "bin" / "lcm-gen"
     words = ["--cpp", "--cpp-std=c++11", "--cpp-hpath", str(tmp_path), *map(str, files.values())]
-    subprocess.run([lcm_gen, *words], check=True)
+    time_limit.run(lcm_gen, *words, check=True)
     header = tmp_path / "rtg_msgs" / "wire_fields.hpp"
-    subprocess.run([sys.executable, SCRIPT, header, *files.values()], check=True)
+    time_limit.run(sys.executable, SCRIPT, header, *files.values(), check=True)
     assert run(tmp_path, A_FIELD, "/nodes/bus/wire.cpp", ["nodes/librtg_bus.a"]) == 0
 
 
@@ -108,7 +108,7 @@ def test_a_field_that_the_bus_cannot_check_is_refused(tmp_path: Path, field: str
         f"package rtg_msgs;\nstruct odd_t\n{{\n    header_t header;\n    {field};\n}}\n"
     )
     words = [sys.executable, SCRIPT, tmp_path / "wire_fields.hpp", file]
-    done = subprocess.run(words, capture_output=True, text=True)
+    done = time_limit.run(*words)
     assert done.returncode == 1 and not (tmp_path / "wire_fields.hpp").exists()
     assert done.stderr.startswith(f"odd_t.lcm: '{field.split(';')[0]}'")
 
@@ -117,5 +117,5 @@ def test_a_message_without_a_header_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "odd_t.lcm"
     file.write_text("package rtg_msgs;\nstruct odd_t\n{\n    int32_t x; /* no; header */\n}\n")
     words = [sys.executable, SCRIPT, tmp_path / "wire_fields.hpp", file]
-    done = subprocess.run(words, capture_output=True, text=True)
+    done = time_limit.run(*words)
     assert (done.returncode, done.stderr[:20]) == (1, "odd_t.lcm: 'int32_t ")

@@ -1,9 +1,9 @@
 """Though some warnings are off that the compiler gets wrong, a plain mistake is an error."""
 
-import subprocess
 from pathlib import Path
 
 from compiler import command_for
+from time_limit import run
 
 UNINITIALISED = """int f(int a) {
   int x;
@@ -18,7 +18,7 @@ def compiled(file: Path, text: str) -> str:
     words, folder = command_for("/core/world/push.cpp")
     file.write_text(text)
     command = [*words, "-o", str(file.with_suffix(".o")), "-c", str(file)]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    done = run(*command, cwd=folder)
     assert (done.returncode == 0) == (done.stderr == "")
     return done.stderr
 

@@ -12,6 +12,7 @@ from types import TracebackType
 from typing import Self
 
 import pytest
+from time_limit import PATIENCE, run
 
 _MULTICAST = "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo"
 _PATH = os.environ["PATH"] + ":/usr/sbin:/sbin"
@@ -25,7 +26,7 @@ add rule ip loss incoming meta l4proto udp numgen random mod 100 lt {percent} co
 def defect() -> str | None:
     """Returns why there can be no such network here; None if there can."""
     command = ["unshare", "-rn", "sh", "-c", _MULTICAST]
-    done = subprocess.run(command, capture_output=True, text=True, env={"PATH": _PATH})
+    done = run(*command, env={"PATH": _PATH})
     return done.stderr.strip() if done.returncode else None
 
 
@@ -62,7 +63,7 @@ class Network:
         for process in self._processes:
             if process.poll() is None:
                 process.send_signal(signal.SIGKILL)
-            process.wait()
+            process.wait(PATIENCE)
             if process.stdout:
                 process.stdout.close()
 
@@ -84,16 +85,12 @@ class Network:
 
     def dropped(self) -> int:
         """Datagrams for which the receive buffer of some socket had no room so far."""
-        table = subprocess.run(
-            self._inside(["cat", "/proc/net/udp"]), capture_output=True, text=True, check=True
-        )
+        table = run(*self._inside(["cat", "/proc/net/udp"]), check=True)
         return sum(int(line.split()[-1]) for line in table.stdout.splitlines()[1:])
 
     def _nft(self, *arguments: str, rules: str = "") -> str:
         command = self._inside(["nft", *arguments])
-        done = subprocess.run(
-            command, input=rules, capture_output=True, text=True, env={"PATH": _PATH}
-        )
+        done = run(*command, input=rules, env={"PATH": _PATH})
         assert done.returncode == 0, done.stderr
         return done.stdout
 

@@ -35,7 +35,7 @@ def main(files: list[Path], command: list[str]) -> int:
             time.sleep(0.02)
         cluster.remove_node(node, allow_graceful=False)
         print("node killed", flush=True)
-        status = process.wait()
+        status = process.wait(300.0)
     cluster.shutdown()
     return status
 

@@ -1,7 +1,6 @@
 """RTG as others install it: a wheel in an environment of its own, and the C++ libraries."""
 
 import os
-import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,6 +9,7 @@ import network
 import numpy as np
 import pytest
 import rtg
+import time_limit
 from rtg import paths
 
 PARTS = """
@@ -31,12 +31,11 @@ print(rtg.__file__)
 TOOLS = f"{Path(sys.executable).parent}:{os.environ['PATH']}"  # CMake and Ninja among them
 # One process compiles: other tests run beside.
 BUILDING = {**os.environ, "PATH": TOOLS, "CMAKE_BUILD_PARALLEL_LEVEL": "1"}
+BUILD_PATIENCE = 3000.0  # [s]
 
 
 def run(command: Sequence[str | Path], **options: object) -> str:
-    words = [str(word) for word in command]
-    settings = {"env": BUILDING, **options}
-    done = subprocess.run(words, capture_output=True, text=True, **settings)
+    done = time_limit.run(*command, **{"env": BUILDING, "timeout": BUILD_PATIENCE, **options})
     assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
     return done.stdout
 
@@ -56,7 +55,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def elsewhere(folder: Path) -> dict[str, object]:
-    """Returns options of subprocess.run: another folder, and nothing that leads to the checkout."""
+    """Returns options of run(): another folder, and nothing that leads to the checkout."""
     return {"cwd": folder, "env": {"PATH": os.environ["PATH"], "HOME": str(folder)}}
 
 
@@ -73,7 +72,7 @@ def test_an_installed_package_runs_its_processes(installed: Path, tmp_path: Path
     with network.Network() as own:
         program = installed.parent / "rtg"
         graph = own.start([program, "gathering", *small, "--out", tmp_path / "run"])
-        said, _ = graph.communicate()
+        said, _ = graph.communicate(timeout=time_limit.PATIENCE)
     assert graph.returncode == 0, said[-4000:]
     with np.load(tmp_path / "run" / "transitions.npz") as rows:
         assert len(rows["action"]) == 400
@@ -87,7 +86,7 @@ def test_a_project_of_somebody_else_finds_the_libraries(tmp_path: Path) -> None:
     sources = paths.ROOT / "tests" / "consumer"
     configure = ["cmake", "-G", "Ninja", "-S", str(sources), "-B", str(build)]
     configure.append(f"-DCMAKE_PREFIX_PATH={prefix}")
-    refused = subprocess.run(configure, capture_output=True, text=True, env=BUILDING)
+    refused = time_limit.run(*configure, env=BUILDING)
     assert refused.returncode and "rtg is compiled with -march=native." in refused.stderr
     flags = "-march=native -Wall -Wextra -Werror"
     run([*configure, f"-DCMAKE_CXX_FLAGS={flags}"])

@@ -139,7 +139,7 @@ def test_a_killed_worker(net: network.Network, tmp_path: Path, long: bytes) -> N
     coordinator = graph.coordinator()
     assert 0 < first_rows(consumer) < 12000
     worker.kill()
-    assert worker.wait() == -signal.SIGKILL
+    assert worker.wait(PATIENCE) == -signal.SIGKILL
     assert graph.is_generating()
     another = graph.worker(2)
     assert lost(consumer) == 0
@@ -166,7 +166,7 @@ def test_a_killed_server(net: network.Network, tmp_path: Path, long: bytes) -> N
     coordinator = graph.coordinator()
     assert 0 < first_rows(consumer) < 12000
     server.kill()
-    assert server.wait() == -signal.SIGKILL
+    assert server.wait(PATIENCE) == -signal.SIGKILL
     assert graph.is_generating()
     another = graph.server()
     assert lost(consumer) == 0

@@ -1,9 +1,9 @@
 """Checks what the set-up says to somebody who waits for it."""
 
 import shutil
-import subprocess
 
 from rtg import paths
+from time_limit import run
 
 GLOBS = 'echo "[0/2] Re-checking globbed directories..."'
 FORTY_STEPS = f'{GLOBS}; for k in $(seq 40); do echo "[$k/40] Building"; done'
@@ -22,14 +22,8 @@ def set_up(folder, command, ninja=FORTY_STEPS):
     built = folder / "build" / "release" / "build.ninja"
     built.parent.mkdir(parents=True, exist_ok=True)
     built.touch()
-    done = subprocess.run(
-        ["bash", "-euc", f"source setup.sh; {command}"],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return done.stderr
+    words = ["bash", "-euc", f"source setup.sh; {command}"]
+    return run(*words, cwd=folder, check=True).stderr
 
 
 def test_a_build_says_how_long_it_takes(tmp_path):
@@ -47,6 +41,14 @@ def test_the_first_call_says_that_it_is_the_first(tmp_path):
     assert set_up(tmp_path, "lock_setup") == ""
 
 
+def test_a_checkout_that_cannot_be_written_is_refused(tmp_path):
+    shutil.copy(paths.ROOT / "setup.sh", tmp_path)
+    (tmp_path / "build").touch()
+    done = run("bash", "-euc", "source setup.sh; lock_setup", cwd=tmp_path)
+    why = "cannot be written; legal: a checkout in a folder to write to"
+    assert (done.returncode, done.stderr) == (2, f"rtg: {tmp_path}/build {why}\n")
+
+
 def test_a_linked_environment_is_not_emptied(tmp_path):
     (tmp_path / "train").mkdir()
     shutil.copy(paths.ROOT / "train" / "requirements.txt", tmp_path / "train")
@@ -56,7 +58,7 @@ def test_a_linked_environment_is_not_emptied(tmp_path):
     (other / "kept").touch()
     (tmp_path / ".venv").symlink_to(other)
     command = ["bash", "-euc", "source setup.sh; setup_python"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    done = run(*command, cwd=tmp_path)
     assert done.returncode == 1
     assert f".venv is a link to {other}, whose content would go; remove the link" in done.stderr
     assert (other / "kept").exists()

@@ -1,13 +1,13 @@
 """Exit status and words of the command, as the user meets them."""
 
 import os
-import subprocess
 import sys
 
 import numpy as np
 import pytest
 from PIL import Image
 from rtg import cli, paths
+from time_limit import run
 
 MISTAKES = {
     "unknown task": (
@@ -107,28 +107,15 @@ MISTAKES = {
 
 
 def rtg(*words, **environment):
-    return subprocess.run(
-        [sys.executable, "-m", "rtg", *words],
-        cwd=paths.ROOT,
-        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train"), **environment},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    env = {**os.environ, "PYTHONPATH": str(paths.ROOT / "train"), **environment}
+    return run(sys.executable, "-m", "rtg", *words, cwd=paths.ROOT, env=env)
 
 
 def test_output_that_nobody_reads_ends_quietly_with_status_1():
     reader, writer = os.pipe()
     os.close(reader)
-    done = subprocess.run(
-        [sys.executable, "-m", "rtg", "--print-config"],
-        cwd=paths.ROOT,
-        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
-        stdout=writer,
-        stderr=subprocess.PIPE,
-        text=True,
-        check=False,
-    )
+    command = [sys.executable, "-m", "rtg", "--print-config"]
+    done = run(*command, cwd=paths.ROOT, stdout=writer)
     os.close(writer)
     assert (done.returncode, done.stderr) == (1, "")
 
@@ -178,13 +165,7 @@ def test_help_names_every_flag_of_the_contract():
 def test_spy_names_the_remedy_where_nothing_can_be_heard():
     """It runs in a network with no device that is up."""
     program = [sys.executable, "-m", "rtg", "spy", "--seconds", "1"]
-    done = subprocess.run(
-        ["unshare", "--map-root-user", "--net", *program],
-        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = run("unshare", "--map-root-user", "--net", *program)
     if "unshare" in done.stderr:
         pytest.skip("this machine forbids network namespaces")
     assert done.returncode == 1 and done.stdout == ""
@@ -208,13 +189,7 @@ def test_help_does_not_wait_for_heavy_imports():
         "except SystemExit: pass\n"
         "print(sorted({'torch', 'matplotlib', 'textual', 'rerun', 'lcm'} & set(sys.modules)))"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program],
-        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    done = run(sys.executable, "-c", program, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
 
 

@@ -2,7 +2,6 @@
 
 import os
 import stat
-import subprocess
 import sys
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from rtg import _core, paths
 from rtg.bus import new_key
 from rtg.bus.bus import defect, listen, open_bus, read_key
 from rtg.errors import RunError, UserError
+from time_limit import run
 
 NETWORK = paths.ROOT / "tests" / "support" / "private_network.sh"
 URL = "udpm://239.255.76.67:7667"
@@ -149,14 +149,7 @@ key = _core.RunKey.random("a run")
 
 def said(program, *network):
     """Returns what a Python program prints, by default on a network of its own."""
-    done = subprocess.run(
-        [*(network or [NETWORK]), sys.executable, "-c", PRELUDE + program],
-        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = run(*(network or [NETWORK]), sys.executable, "-c", PRELUDE + program)
     if done.returncode == 77 or "unshare" in done.stderr:
         pytest.skip("this machine forbids network namespaces")
     assert done.returncode == 0, done.stderr

@@ -1,9 +1,9 @@
 """A generation in shards: its jobs, and the data that they make together."""
 
-import subprocess
 import sys
 from pathlib import Path
 
+import time_limit
 from rtg.compare import reproduce_args, shards
 from rtg.compare.cell_run import prepare_runs
 from rtg.files import run_folder
@@ -21,7 +21,7 @@ def runs(folder: Path, *words: str) -> list:
 
 def do(job) -> None:
     job.log.parent.mkdir(parents=True, exist_ok=True)
-    done = subprocess.run(job.command(), capture_output=True, text=True)
+    done = time_limit.run(*job.command())
     assert done.returncode == 0, done.stderr
     assert job.done
 
@@ -39,7 +39,7 @@ def test_the_shards_together_are_the_data_of_one_process(tmp_path: Path) -> None
     assert shards.stages([run]) == ([], [])
     whole = tmp_path / "whole"
     alone = [*run.arguments, "--no-train", "--out", str(whole)]
-    subprocess.run([sys.executable, "-m", "rtg", "run", *alone], check=True, capture_output=True)
+    time_limit.run(sys.executable, "-m", "rtg", "run", *alone, check=True)
     name = "transitions.npz"
     assert (run.folder / name).read_bytes() == (whole / name).read_bytes()
     found, expected = (
@@ -65,6 +65,6 @@ def test_a_damaged_shard_is_refused(tmp_path: Path) -> None:
         do(part)
     file = parts[1].run.folder / "transitions.npz"
     file.write_bytes(file.read_bytes()[:-1] + b"x")
-    done = subprocess.run(merge.command(), capture_output=True, text=True)
+    done = time_limit.run(*merge.command())
     assert done.returncode == 2 and str(file) in done.stderr
     assert not shared_transitions.is_generated(run.folder)

@@ -1,12 +1,12 @@
 """`rtg export` on the command line."""
 
 import json
-import subprocess
 import sys
 
 import pytest
 from exported import run_folder
 from rtg.cli import main
+from time_limit import run
 
 
 def refused(capsys, *words):
@@ -48,7 +48,7 @@ def test_a_folder_that_cannot_be_written_is_refused(format, package, capsys, tmp
 def test_no_optional_package_is_imported_by_others():
     """Whoever does not export needs none of them."""
     code = "import sys, rtg.cli, rtg.run.run, rtg.export.command; print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = run(sys.executable, "-c", code, check=True)
     assert not {"minari", "h5py", "pyarrow", "pandas", "av"} & set(done.stdout.split())
 
 

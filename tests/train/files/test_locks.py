@@ -62,7 +62,7 @@ signal.pause()
     assert holder.stdout.readline() == "held\n"
     assert try_lock(tmp_path / "lock") is None
     holder.kill()
-    holder.communicate()
+    holder.communicate(timeout=60.0)
     assert try_lock(tmp_path / "lock") is not None
 
 
@@ -77,7 +77,7 @@ def test_who_waits_for_a_lock_gets_it_at_last(tmp_path):
         waiter = threading.Thread(target=enter)
         waiter.start()
         seen.append("holder")
-    waiter.join()
+    waiter.join(60.0)
     assert seen == ["holder", "waiter"]
 
 

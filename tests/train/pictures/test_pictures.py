@@ -133,7 +133,7 @@ def test_where_a_joint_is_to_stand_goes_with_its_parent():
     before, after = (task.joint_marks(state[None]) for state in (task.start, poses))
     assert len(before) == len(after) == 27
     for one, other in zip(before, after, strict=True):
-        assert np.allclose(one.ring + [1.0, 0.0], other.ring)
+        assert np.allclose(one.ring + np.array([1.0, 0.0]), other.ring)
 
 
 def test_the_window_holds_all_that_happens_outside_the_arena_too():

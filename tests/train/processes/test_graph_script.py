@@ -10,6 +10,7 @@ import time
 import pytest
 from rtg import paths
 from rtg.files.locks import is_locked
+from time_limit import run
 
 CONFIG = "search:\n  workers_: 9\nrun:\n  workers: 2  # reverse workers\n  record: false  # none\n"
 # By name: what a program does. The trainer and the recorder are modules of "python".
@@ -61,15 +62,14 @@ class Graph:
 
     def programs(self):
         """Command lines of the programs that run."""
-        listed = subprocess.run(["pgrep", "-a", "-f", self.bin], stdout=subprocess.PIPE, text=True)
-        return listed.stdout.splitlines()
+        return run("pgrep", "-a", "-f", self.bin).stdout.splitlines()
 
 
 @pytest.fixture
 def graph(tmp_path):
     graph = Graph(tmp_path)
     yield graph
-    subprocess.run(["pkill", "-KILL", "-f", graph.bin])
+    run("pkill", "-KILL", "-f", graph.bin)
 
 
 def wait_for(condition):
@@ -81,10 +81,7 @@ def wait_for(condition):
 
 def waits_for_a_lock(parent):
     """Whether a child of this process is flock(1)."""
-    listed = subprocess.run(
-        ["pgrep", "-x", "-P", str(parent), "flock"], stdout=subprocess.DEVNULL, timeout=120.0
-    )
-    return listed.returncode == 0
+    return run("pgrep", "-x", "-P", str(parent), "flock").returncode == 0
 
 
 def test_all_programs_run_with_their_words_and_end_with_the_last_needed_one(graph):
@@ -267,7 +264,7 @@ def test_no_program_outlives_the_script(graph):
     process = graph.start()
     wait_for(lambda: len(graph.programs()) >= 5)
     process.kill()
-    process.wait()
+    process.wait(120.0)
     process.stdout.close()
     wait_for(lambda: graph.programs() == [])
 
@@ -279,7 +276,7 @@ def test_a_folder_has_one_script_at_a_time(graph):
     status, out = graph.run()
     assert (status, "another graph.sh works in" in out) == (2, True)
     process.terminate()
-    process.communicate()
+    process.communicate(timeout=120.0)
     assert not is_locked(graph.run_folder / ".graph.lock")
 
 
@@ -307,7 +304,7 @@ def test_its_programs_do_not_hold_the_lock_of_the_folder(graph):
     wait_for(lambda: "trainer.log" in graph.log("trainer"))
     assert ".graph.lock" not in graph.log("trainer")
     process.terminate()
-    process.communicate()
+    process.communicate(timeout=120.0)
 
 
 @pytest.mark.parametrize("words", ["trainr", "recorder --resume", "trainer --resum"])

@@ -2,13 +2,12 @@
 
 import os
 import signal
-import subprocess
 import sys
 
 import pytest
-from rtg import paths
 from rtg.errors import StoppedError
 from rtg.processes.interrupts import Interrupts
+from time_limit import run
 
 TWO_SIGNALS = """
 import os, signal
@@ -51,12 +50,6 @@ def test_a_closing_terminal_says_it_twice_and_means_it_once():
 
 
 def test_the_second_signal_ends_the_process():
-    done = subprocess.run(
-        [sys.executable, "-c", TWO_SIGNALS],
-        env={**os.environ, "PYTHONPATH": str(paths.ROOT / "train")},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = run(sys.executable, "-c", TWO_SIGNALS)
     assert done.stdout == "asked True\nat once\n"
     assert done.returncode == 128 + signal.SIGTERM

@@ -123,7 +123,7 @@ signal.pause()
     child = int(parent.stdout.readline())
     assert is_alive(child)
     parent.kill()
-    parent.wait()
+    parent.wait(60.0)
     wait_for(lambda: not is_alive(child))
 
 

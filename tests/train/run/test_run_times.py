@@ -1,12 +1,12 @@
 """Times of a whole run."""
 
-import subprocess
 import sys
 import time
 
 from rtg.run import run_times
 from rtg.run.run_state import RunState
 from rtg.run.run_times import RunTimes
+from time_limit import run
 
 
 class Shown:
@@ -52,12 +52,12 @@ def test_without_a_transition_there_is_no_end_of_the_start() -> None:
 def test_what_processes_used_that_have_ended_counts() -> None:
     before = RunTimes(Shown()).seconds()["run_cpu_s"]
     busy = "import time\nwhile time.process_time() < 0.5: pass"
-    subprocess.run([sys.executable, "-c", busy], check=True)
+    run(sys.executable, "-c", busy, check=True)
     assert RunTimes(Shown()).seconds()["run_cpu_s"] >= before + 0.49
 
 
 def test_the_age_of_a_process_is_the_time_since_its_start() -> None:
     code = "from rtg.run.clock import process_age; print(process_age())"
     begin = time.monotonic()
-    said = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    said = run(sys.executable, "-c", code, check=True)
     assert 0.02 < float(said.stdout) <= time.monotonic() - begin + 0.02
