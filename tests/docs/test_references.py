@@ -106,6 +106,9 @@ def test_readers_of_the_files_are_told_how_to_see_what_is_made() -> None:
     assert len(told) == pages.count("<!-- made:") > 6
     for line in told:
         assert "docs/requirements.txt" in line and "`python -m mkdocs serve`" in line
+        where = re.findall(r"`([^`]+)`", line.partition("; here, ")[2])
+        files = [name for name in where if "/" in name and not name.startswith("./run.sh")]
+        assert where and all((paths.ROOT / name).exists() for name in files)
 
 
 @pytest.mark.parametrize(
