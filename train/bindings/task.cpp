@@ -260,6 +260,10 @@ void bind_geometry(nb::class_<tasks::Task>& bound) {
 The pin of a revolute joint, both ends of the axis of a prismatic one, none of a fixed one.)")
       .def_prop_ro("goal_marks", &tasks::goal_marks,
                    "The regions and target outlines of the goal, for pictures.")
+      .def("joint_marks", &joint_marks, nb::arg("states"),
+           R"(Returns where the children of joints lie at the values that the goal allows.
+
+Those with `target` lie at the ends of a range. `states`: a single state, [1, bodies, 3].)")
       .def_prop_ro(
           "arena", [](const tasks::Task& task) { return task.push.arena; },
           "Half width of the square that the robot stays in [m].")
@@ -321,10 +325,6 @@ void bind_states(nb::class_<tasks::Task>& bound) {
            R"(Returns, for each joint, whether the goal constrains its angle and the angle complies.
 
 `states`: a single state, [1, bodies, 3].)")
-      .def("joint_marks", &joint_marks, nb::arg("states"),
-           R"(Returns where the children of joints lie at the values that the goal allows.
-
-Those with `target` lie at the ends of a range. `states`: a single state, [1, bodies, 3].)")
       .def("centroids", &centroids, nb::arg("states"),
            R"(Returns the mean centre for each goal term with subject "centroid", each [2].
 
