@@ -179,7 +179,7 @@ TEST(WorkerNodeDeathTest, AProcessThatIsStuckEndsThoughItsThreadDoesNot) {
     reverse_job_t message = ReverseService::message(kJobs);
     message.to = worker.incarnation();
     bus.publish("RTG_REVERSE_JOB", message);
-    std::exit(program::serve(bus, worker, "test"));
+    std::exit(program::serve(bus, worker));
   };
   EXPECT_EXIT(process(), ::testing::ExitedWithCode(1), "stuck: a unit of work takes longer");
 }
