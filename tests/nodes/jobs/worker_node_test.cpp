@@ -123,13 +123,6 @@ TEST(WorkerNode, CountsAndIgnoresWhatItCannotUse) {
   other_bodies.n_poses = 6;
   nothing.to = pair.worker.incarnation();
   for (const auto& message : {out_of_range, other_bodies, nothing}) pair.send(message);
-  reverse_job_t foreign = pair.job(3);
-  foreign.header.protocol = bus::kProtocol;
-  foreign.header.run = 1;
-  pair.bus.send("RTG_REVERSE_JOB", bus::encode(foreign));
-  auto bytes = bus::encode(foreign);
-  bytes.pop_back();
-  pair.bus.send("RTG_REVERSE_JOB", bytes);
   reverse_job_t someone_elses = pair.job(4);
   ++someone_elses.to;
   pair.send(someone_elses);
@@ -137,8 +130,6 @@ TEST(WorkerNode, CountsAndIgnoresWhatItCannotUse) {
   pair.serve_until([&] { return !pair.results.empty(); });
   EXPECT_EQ(pair.results[0].job_id, 5);
   EXPECT_EQ(pair.bus.counters().value("jobs.illegal"), 3);
-  EXPECT_EQ(pair.bus.counters().value("bus.foreign_run"), 1);
-  EXPECT_EQ(pair.bus.counters().value("bus.malformed"), 1);
 }
 
 TEST(WorkerNode, WhatTheSolverThrowsSurfacesInTick) {
