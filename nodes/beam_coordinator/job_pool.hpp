@@ -83,7 +83,7 @@ class JobPool {
       return bus_.counters().add("beats.illegal");
     if (message.config != config_) return bus_.counters().add("beats.other_configuration");
     const std::scoped_lock lock(mutex_);
-    dispatcher_.on_beat({message.incarnation, message.capacity, message.held},
+    dispatcher_.on_beat({message.incarnation, message.worker, message.capacity, message.held},
                         bus::monotonic_now());
     send_due();
   }
@@ -95,7 +95,7 @@ class JobPool {
     const auto results = Service::parse(message, shape_);
     if (!results || results->size() != units_.jobs(id).size())
       return bus_.counters().add("results.illegal");
-    if (dispatcher_.on_result(id) != jobs::JobDispatcher::Verdict::kAccepted)
+    if (dispatcher_.on_result(id, bus::monotonic_now()) != jobs::JobDispatcher::Verdict::kAccepted)
       return bus_.counters().add("results.repeated");
     units_.store(id, *results);
     send_due();

@@ -32,7 +32,7 @@ void TransitionPublisher::seal() {
 
 void TransitionPublisher::tick(bus::Seconds now) {
   const std::scoped_lock lock(mutex_);
-  for (const RowRange& range : server_.due(now)) send(range);
+  for (const stream::RowRange& range : server_.due(now)) send(range);
   if (!tail_.due(now)) return;
   rtg_msgs::stream_tail_t message{};
   message.stream = stream_;
@@ -60,7 +60,7 @@ TransitionPublisher::State TransitionPublisher::state() const {
 void TransitionPublisher::on_ack(const rtg_msgs::stream_ack_t& message) {
   if (message.stream != stream_) return bus_.counters().add("stream.other_stream");
   const std::scoped_lock lock(mutex_);
-  std::vector<RowRange> missing;
+  std::vector<stream::RowRange> missing;
   for (std::size_t k = 0; k < message.first.size(); ++k)
     if (message.first[k] >= 0 && message.last[k] >= message.first[k] &&
         message.last[k] < server_.count())
@@ -70,7 +70,7 @@ void TransitionPublisher::on_ack(const rtg_msgs::stream_ack_t& message) {
     bus_.counters().add("stream.illegal_ack");
 }
 
-void TransitionPublisher::send(RowRange range) {
+void TransitionPublisher::send(stream::RowRange range) {
   rtg_msgs::transition_batch_t message{};
   message.stream = stream_;
   message.first = range.begin;

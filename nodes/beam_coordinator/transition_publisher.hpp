@@ -6,10 +6,10 @@
 #include <rtg_msgs/transition_batch_t.hpp>
 #include <span>
 
-#include "nodes/beam_coordinator/stream_server.hpp"
 #include "nodes/bus/bus.hpp"
 #include "nodes/bus/clock.hpp"
 #include "nodes/jobs/services.hpp"
+#include "nodes/stream/stream_server.hpp"
 
 namespace rtg::beam_coordinator {
 
@@ -41,13 +41,13 @@ class TransitionPublisher {
 
  private:
   void on_ack(const rtg_msgs::stream_ack_t& message);
-  void send(RowRange range);
+  void send(stream::RowRange range);
 
   bus::Bus& bus_;
   std::int64_t stream_ = bus::random_identity();
   bus::Ticker tail_{0.2};
   mutable std::mutex mutex_;  // guards the members below
-  StreamServer server_;
+  stream::StreamServer server_;
 };
 
 }  // namespace rtg::beam_coordinator

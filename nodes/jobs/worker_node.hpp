@@ -145,7 +145,7 @@ class WorkerNode {
   std::int64_t incarnation_ = bus::random_identity();
   bus::CoordinatorWatch watch_;
   bus::NodeStatus status_;
-  bus::Ticker beat_{0.05};
+  bus::Ticker beat_{0.02};
   mutable std::mutex mutex_;  // guards the members below
   std::condition_variable_any wake_;
   JobInbox<Jobs, ResultMessage> inbox_{64};

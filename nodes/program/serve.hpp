@@ -21,7 +21,7 @@ int serve(bus::Bus& bus, jobs::WorkerNode<Service>& node) {
   bool served = false;
   say_waiting(bus, "the coordinator");
   while (!stop_signal() && !node.coordinator().leaving()) {
-    bus.spin(std::chrono::milliseconds(50));
+    bus.spin(std::chrono::milliseconds(20));
     node.tick(bus::monotonic_now());
     if (!served && node.has_work()) {
       say("works");

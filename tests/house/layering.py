@@ -32,13 +32,19 @@ MAY_INCLUDE = {
     "nodes/bus": {"core/threads", "nodes/files", "nodes/bus", "rtg_msgs"},
     "nodes/config": {"core", "nodes/files", "nodes/bus", "nodes/config"},
     "nodes/jobs": {"core", "nodes/bus", "nodes/jobs", "rtg_msgs"},
+    "nodes/stream": {"core/search", "nodes/bus", "nodes/stream"},
     "nodes/program": {"core", "nodes/bus", "nodes/config", "nodes/jobs", "nodes/program"},
-    "nodes/beam_coordinator": {*_OF_PROGRAMS, "rtg_msgs", "nodes/beam_coordinator"},
+    "nodes/beam_coordinator": {
+        *_OF_PROGRAMS,
+        "rtg_msgs",
+        "nodes/stream",
+        "nodes/beam_coordinator",
+    },
     "nodes/forward_sim_server": _OF_PROGRAMS,
     "nodes/reverse_worker": _OF_PROGRAMS,
     "msgs": {"rtg_msgs"},
     # The bindings take the resolved config, so that C++ and Python never read YAML apart.
-    "train": {"core", "nodes/bus", "nodes/config", "train/bindings", "rtg_msgs"},
+    "train": {"core", "nodes/bus", "nodes/config", "nodes/stream", "train/bindings", "rtg_msgs"},
     "tests": {"core", "nodes", "tests", "rtg_msgs"},
 }
 

@@ -1,4 +1,4 @@
-"""Three workers, one after the other, that fall silent at their first unit: CONFIG.yaml KEY."""
+"""A worker that dies at its first unit and is started again, five times: CONFIG.yaml KEY."""
 
 import sys
 import time
@@ -6,7 +6,8 @@ import time
 from rtg import _core
 from rtg.bus.bus import open_bus
 
-SILENCE = 2.5  # [s]; 2 s without a beat and a worker is lost
+SILENCE = 2.5  # [s]; after 2 s without a beat a worker with a successor is lost
+LIVES = 5  # that a unit may cost
 
 
 def main(config: str, key: str) -> None:
@@ -14,13 +15,21 @@ def main(config: str, key: str) -> None:
     servers, units = [], []
     bus.subscribe("RTG_REPLAY_BEAT", "worker_beat_t", servers.append)
     bus.subscribe("RTG_REVERSE_JOB", "reverse_job_t", units.append)
-    for incarnation in range(1, 4):
-        while not any(unit.to == incarnation for unit in units):
-            if servers:  # all programs of a run have the same configuration
-                beat = {"config": servers[-1].config, "capacity": 1, "incarnation": incarnation}
-                bus.publish("RTG_REVERSE_BEAT", "worker_beat_t", **beat)
-            bus.spin(0.05)
+
+
+    def beat(incarnation: int, held: list[int]) -> None:
+        if servers:  # all programs of a run have the same configuration
+            state = {"config": servers[-1].config, "incarnation": incarnation, "capacity": 1}
+            bus.publish("RTG_REVERSE_BEAT", "worker_beat_t", **state, held=held)
+        bus.spin(0.05)
+
+    for incarnation in range(1, LIVES + 1):
+        while not (mine := [unit.job_id for unit in units if unit.to == incarnation]):
+            beat(incarnation, [])
+        beat(incarnation, mine)
         time.sleep(SILENCE)
+    for _ in range(20):
+        beat(LIVES + 1, [])
 
 
 if __name__ == "__main__":

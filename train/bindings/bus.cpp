@@ -4,6 +4,8 @@
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
@@ -16,6 +18,7 @@
 
 #include "nodes/bus/network.hpp"
 #include "nodes/bus/run_key.hpp"
+#include "nodes/stream/stream_cursor.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 
@@ -200,6 +203,49 @@ void bind_key(nb::module_& module) {
              "Returns the field `run` of the messages of the run of that name.");
 }
 
+/// The rows of a message are any Python object.
+void bind_cursor(nb::module_& module) {
+  using Cursor = stream::StreamCursor<nb::object>;
+  nb::class_<stream::Acknowledgement>(
+      module, "Acknowledgement", "What a consumer of the transition stream says to its sender.")
+      .def_ro("cursor", &stream::Acknowledgement::cursor, "Number of the next row to consume.")
+      .def_ro("credit", &stream::Acknowledgement::credit,
+              "Number of rows accepted from the cursor on; 0: the consumer has all rows.")
+      .def_prop_ro(
+          "missing",
+          [](const stream::Acknowledgement& self) {
+            std::vector<std::pair<std::int64_t, std::int64_t>> ranges;
+            for (const auto& range : self.missing) ranges.emplace_back(range.begin, range.end);
+            return ranges;
+          },
+          "Ranges of rows to send again: the first one, and the one behind the last.");
+  nb::class_<Cursor>(module, "StreamCursor",
+                     "The receiving end of the transition stream, without I/O: gets every row once "
+                     "and in order from a network that loses, doubles and reorders.")
+      .def(nb::init<>())
+      .def(
+          "on_rows",
+          [](Cursor& self, std::int64_t first, std::int64_t end, const nb::object& rows,
+             double now) {
+            return self.on_rows({first, end}, rows, now);
+          },
+          nb::arg("first"), nb::arg("end"), nb::arg("rows"), nb::arg("now"),
+          "Takes a message with the rows `first` ... `end` - 1. Returns the messages that are next "
+          "in order, each with the number of leading rows to skip.")
+      .def("on_tail", &Cursor::on_tail, nb::arg("count"), nb::arg("sealed"),
+           "Takes what the sender says of the stream: how many rows exist, and whether there will "
+           "be "
+           "no more.")
+      .def(
+          "due", &Cursor::due, nb::arg("now"),
+          "Returns the next acknowledgement to send at time `now` [s], or None. To be called until "
+          "it returns None.")
+      .def_prop_ro("cursor", &Cursor::cursor, "Number of the next row in order.")
+      .def_prop_ro("count", &Cursor::count, "Number of rows known to exist.")
+      .def_prop_ro("complete", &Cursor::complete,
+                   "True if the number of rows is final and every row has been returned.");
+}
+
 void bind_monitor(nb::module_& module) {
   nb::class_<Monitor>(
       module, "BusMonitor",
@@ -274,6 +320,7 @@ void bind_bus(nb::module_& module) {
       .def_prop_ro("warning", &Bus::warning,
                    "A warning for the user about the network; \"\" without one.");
   bind_monitor(module);
+  bind_cursor(module);
 }
 
 }  // namespace rtg::bindings

@@ -1,8 +1,8 @@
-#include "nodes/beam_coordinator/stream_server.hpp"
+#include "nodes/stream/stream_server.hpp"
 
 #include <algorithm>
 
-namespace rtg::beam_coordinator {
+namespace rtg::stream {
 
 StreamServer::StreamServer(const Limits& limits, std::int64_t row_bytes)
     : limits_(limits),
@@ -105,4 +105,4 @@ std::int64_t StreamServer::live_limit(bus::Seconds now) const {
   return limit;
 }
 
-}  // namespace rtg::beam_coordinator
+}  // namespace rtg::stream

@@ -7,15 +7,9 @@
 
 #include "core/search/transition.hpp"
 #include "nodes/bus/seconds.hpp"
+#include "nodes/stream/row_range.hpp"
 
-namespace rtg::beam_coordinator {
-
-/// Half-open range of rows. A row is one transition of the stream; rows are numbered from 0.
-struct RowRange {
-  std::int64_t begin = 0, end = 0;
-
-  bool operator==(const RowRange&) const = default;
-};
+namespace rtg::stream {
 
 /// The sending end of the transition stream, which keeps all rows in memory. Every consumer gets
 /// every row, however many messages the network loses. The class does no I/O: the caller passes in
@@ -94,4 +88,4 @@ class StreamServer {
   long resent_ = 0;
 };
 
-}  // namespace rtg::beam_coordinator
+}  // namespace rtg::stream

@@ -1,10 +1,10 @@
-#include "nodes/beam_coordinator/stream_server.hpp"
+#include "nodes/stream/stream_server.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-namespace rtg::beam_coordinator {
+namespace rtg::stream {
 namespace {
 
 using Ranges = std::vector<RowRange>;
@@ -133,4 +133,4 @@ TEST(StreamServer, TellsWhetherMoreIsToBeSent) {
 }
 
 }  // namespace
-}  // namespace rtg::beam_coordinator
+}  // namespace rtg::stream
