@@ -11,6 +11,7 @@
 #include "nodes/beam_coordinator/unit_table.hpp"
 #include "nodes/bus/bus.hpp"
 #include "nodes/bus/clock.hpp"
+#include "nodes/jobs/copies.hpp"
 #include "nodes/jobs/job_dispatcher.hpp"
 #include "nodes/jobs/services.hpp"
 
@@ -103,12 +104,16 @@ class JobPool {
   }
 
   void send_due() {
-    for (const auto& [worker, id, attempt] : dispatcher_.due(bus::monotonic_now())) {
+    const bus::Seconds now = bus::monotonic_now();
+    const long resent = dispatcher_.resent();
+    const auto sends = dispatcher_.due(now);
+    if (dispatcher_.resent() > resent) copies_.on_repeat(now);
+    for (const auto& [worker, id, attempt] : sends) {
       auto message = Service::message(units_.jobs(id));
       message.job_id = id;
       message.to = worker;
       message.attempt = attempt;
-      bus_.publish(Service::kJobs, std::move(message));
+      bus_.publish(Service::kJobs, std::move(message), copies_.count(now));
     }
   }
 
@@ -126,6 +131,7 @@ class JobPool {
   std::condition_variable changed_;
   jobs::JobDispatcher dispatcher_;
   UnitTable<Service> units_;
+  jobs::Copies copies_;
   bool stopped_ = false;
   long given_up_ = 0;
 };

@@ -36,10 +36,10 @@ void Bus::send(const std::string& channel, std::span<const std::uint8_t> bytes) 
 
 std::string Bus::warning() const { return network_->warning(); }
 
-void Bus::send_sealed(const std::string& channel, std::vector<std::uint8_t> bytes) {
+void Bus::send_sealed(const std::string& channel, std::vector<std::uint8_t> bytes, int copies) {
   if (!key_) throw std::logic_error("bus: a listener sends nothing");
   key_->seal(channel, bytes);
-  send(channel, bytes);
+  for (int k = 0; k < copies; ++k) send(channel, bytes);
 }
 
 /// Returns whether `datagram` is a message that the handlers of its channel are to get.

@@ -45,11 +45,12 @@ class Bus {
   Bus& operator=(const Bus&) = delete;
 
   /// Fills the header of `msg` and sends `msg` with the hash of the run's key. If the kernel
-  /// refuses the datagram, the message is lost and counted as "bus.unsent".
+  /// refuses the datagram, the message is lost and counted as "bus.unsent". A listener throws
+  /// std::logic_error. `copies`: how often the message is sent.
   template <class Msg>
-  void publish(const std::string& channel, Msg msg) {
+  void publish(const std::string& channel, Msg msg, int copies = 1) {
     msg.header = header_;
-    send_sealed(channel, encode(msg));
+    send_sealed(channel, encode(msg), copies);
   }
 
   /// Makes spin() pass the messages of `channel` to `handler`, also to earlier ones.
@@ -88,7 +89,7 @@ class Bus {
   using Handler = std::function<void(std::span<const std::uint8_t>)>;
 
   Bus(const std::string& url, std::string run);
-  void send_sealed(const std::string& channel, std::vector<std::uint8_t> bytes);
+  void send_sealed(const std::string& channel, std::vector<std::uint8_t> bytes, int copies);
   bool handle(const Datagram& datagram);
 
   std::string run_;

@@ -15,6 +15,7 @@
 
 #include "nodes/bus/bus.hpp"
 #include "nodes/bus/node_status.hpp"
+#include "nodes/jobs/copies.hpp"
 #include "nodes/jobs/job_inbox.hpp"
 #include "nodes/jobs/services.hpp"
 
@@ -92,13 +93,16 @@ class WorkerNode {
     if (message.to != incarnation_) return;
     std::optional<Jobs> jobs = Service::parse(message, options_.shape);
     if (!jobs) return bus_.counters().add("jobs.illegal");
+    const bus::Seconds now = bus::monotonic_now();
     std::unique_lock lock(mutex_);
     if (inbox_.held().size() >= kMostHeld) return bus_.counters().add("jobs.too_many");
     const std::optional<ResultMessage> known = inbox_.receive(message.job_id, std::move(*jobs));
+    if (known) copies_.on_repeat(now);
+    const int copies = copies_.count(now);
     lock.unlock();
     if (!known) return wake_.notify_one();
     bus_.counters().add("jobs.answered_again");
-    bus_.publish(Service::kResults, *known);
+    bus_.publish(Service::kResults, *known, copies);
   }
 
   void send_beat(const std::vector<JobId>& held) {
@@ -118,7 +122,7 @@ class WorkerNode {
         ResultMessage message = Service::message(answer_(unit->second));
         message.job_id = unit->first;
         message.incarnation = incarnation_;
-        bus_.publish(Service::kResults, message);
+        bus_.publish(Service::kResults, message, copies());
         const std::scoped_lock lock(mutex_);
         begun_.erase(unit->first);
         inbox_.finish(unit->first, std::move(message));
@@ -128,6 +132,11 @@ class WorkerNode {
       const std::scoped_lock lock(mutex_);
       if (!failure_) failure_ = std::current_exception();
     }
+  }
+
+  int copies() const {
+    const std::scoped_lock lock(mutex_);
+    return copies_.count(bus::monotonic_now());
   }
 
   /// Waits for a unit and returns it. Returns nothing when the node stops.
@@ -150,6 +159,7 @@ class WorkerNode {
   std::condition_variable_any wake_;
   JobInbox<Jobs, ResultMessage> inbox_{64};
   std::map<JobId, bus::Seconds> begun_;  // units in work and their start times
+  Copies copies_;
   long done_ = 0;
   std::exception_ptr failure_;
   std::vector<std::jthread> threads_;  // last, so joined before the other members are destroyed
