@@ -16,7 +16,6 @@ def main(config: str, key: str) -> None:
     bus.subscribe("RTG_REPLAY_BEAT", "worker_beat_t", servers.append)
     bus.subscribe("RTG_REVERSE_JOB", "reverse_job_t", units.append)
 
-
     def beat(incarnation: int, held: list[int]) -> None:
         if servers:  # all programs of a run have the same configuration
             state = {"config": servers[-1].config, "incarnation": incarnation, "capacity": 1}

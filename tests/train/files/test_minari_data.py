@@ -136,10 +136,10 @@ def test_the_environment_of_a_stranger_is_not_made(monkeypatch):
 @pytest.mark.parametrize(
     ("config", "why"),
     [
-        ("nowhere.yaml", "nowhere.yaml: no such file; legal: a YAML file"),
+        ("nowhere.yaml", "nowhere.yaml: no such task file; legal: "),
         ("task:\n  name: a", "text:2: key .task.bodies.: is missing"),
         (["gathering"], r"config is \['gathering'\]; legal: config= with the name of a task"),
-        ("x" * 5000, "File name too long"),
+        ("x" * 5000, "no task of that name"),
     ],
 )
 def test_an_environment_whose_specification_has_no_task_is_refused(config, why):

@@ -4,7 +4,6 @@ import re
 
 import pytest
 from rtg import cli, paths
-from rtg.bus import multicast
 from rtg.errors import UserError
 from rtg.files import locks
 from rtg.learn import settings
@@ -133,7 +132,7 @@ def test_messages_to_record_need_a_process_graph(folder, capsys):
 def test_a_run_that_goes_on_without_lcm_says_what_it_leaves_out_and_can_be_resumed(
     folder, monkeypatch
 ):
-    monkeypatch.setattr(multicast, "defect", lambda url: "multicast: no such device")
+    monkeypatch.setattr("rtg.run.plan.defect", lambda url: "multicast: no such device")
     words = ["--resume", "--set", "run.record=true", "--out", str(folder)]
     plan = make_plan(parse(words))
     assert plan.in_process and "lcm.log is not recorded: there are no messages" in plan.notes

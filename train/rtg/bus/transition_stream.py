@@ -8,7 +8,7 @@ from __future__ import annotations
 import secrets
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -100,7 +100,7 @@ class TransitionStream:
         now = time.monotonic()
         end = message.first + message.n
         for piece, skip in self._cursor.on_rows(message.first, end, rows, now):
-            self._sink(piece.slice(skip))
+            self._sink(cast(Rows, piece).slice(skip))
         self._acknowledge()
 
     def _on_tail(self, message: Any) -> None:
