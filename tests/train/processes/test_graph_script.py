@@ -34,6 +34,7 @@ class Graph:
         self.run_folder = folder / "a run"
         self.run_folder.mkdir()
         (self.run_folder / "config.yaml").write_text(CONFIG)
+        (self.run_folder / "run.key").touch()  # else the script has one made
         self.bin = folder / "bin"
         self.bin.mkdir()
         for name, script in PROGRAMS.items():
@@ -88,9 +89,10 @@ def test_all_programs_run_with_their_words_and_end_with_the_last_needed_one(grap
     graph.let("rtg_reverse_worker", f'echo "$@"; {PATIENT}')
     assert graph.run("trainer", "--resume") == (0, "")
     folder, config = graph.run_folder, graph.run_folder / "config.yaml"
-    assert graph.log("reverse_worker_0") == f"{config} a run 0\n"
-    assert graph.log("reverse_worker_1") == f"{config} a run 1\n"
-    words = f"-m rtg.learn.trainer {folder} --run-name a run --resume\n"
+    key = folder / "run.key"
+    assert graph.log("reverse_worker_0") == f"{config} {key} 0\n"
+    assert graph.log("reverse_worker_1") == f"{config} {key} 1\n"
+    words = f"-m rtg.learn.trainer {folder} --resume\n"
     assert graph.log("trainer") == words
     logs = {path.stem for path in (folder / "logs").iterdir()}
     assert logs == {
@@ -107,8 +109,8 @@ def test_the_recorder_and_the_logger_run_if_asked(graph):
     (graph.run_folder / "config.yaml").write_text(CONFIG.replace("record: false", "record: true"))
     assert graph.run("recorder")[0] == 0
     config = graph.run_folder / "config.yaml"
-    transitions = graph.run_folder / "transitions.npz"
-    assert graph.log("recorder") == f"-m rtg.bus.record {config} a run {transitions}\n"
+    key, transitions = graph.run_folder / "run.key", graph.run_folder / "transitions.npz"
+    assert graph.log("recorder") == f"-m rtg.bus.record {config} {key} {transitions}\n"
     assert graph.log("lcm_logger").startswith(f"-m rtg.bus.lcm_tools {config} ")
 
 
