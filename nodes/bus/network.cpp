@@ -28,9 +28,9 @@ constexpr auto kEchoWait = 50ms;
 class UdpNetwork : public Network {
  public:
   explicit UdpNetwork(const BusUrl& url)
-      : lcm_("udpm://" + url.group + ":" + std::to_string(url.port) +
-             "?ttl=" + std::to_string(url.ttl)),
-        receiver_(url) {
+      : receiver_(url),
+        lcm_("udpm://" + url.group + ":" + std::to_string(url.port) +
+             "?ttl=" + std::to_string(url.ttl)) {
     if (!lcm_.good()) throw std::runtime_error("bus: LCM cannot send to " + url.group);
     if (!brings_back())
       throw std::runtime_error(std::string("bus: messages sent do not come back from multicast. ") +
@@ -64,8 +64,8 @@ class UdpNetwork : public Network {
     return false;
   }
 
-  lcm::LCM lcm_;
   UdpReceiver receiver_;
+  lcm::LCM lcm_;  // after it, as LCM has words of its own for a network without multicast
 };
 
 /// A queue of datagrams.
