@@ -5,13 +5,14 @@
 #   ./test.sh tsan        C++ tests that use threads under ThreadSanitizer
 #   ./test.sh coverage    line coverage of the physics and the solver by their own tests
 #   ./test.sh bench       benchmarks and gates: JSON and Markdown in build/bench/ (40 minutes; --smoke: briefly, no gates on time)
+#   ./test.sh chaos       generations beside losses, kills, pauses and strangers (half an hour; --smoke: briefly, no gates on time)
 #   ./test.sh peer        the reverse solver against CasADi and IPOPT (ten minutes)
-# The last two install CasADi, whose package also holds HPIPM.
+# bench and peer install CasADi, whose package also holds HPIPM.
 set -euo pipefail
 # shellcheck source=setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 
-usage() { sed -n '3,9s/^# *//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '3,10s/^# *//p' "${BASH_SOURCE[0]}"; }
 
 set_up() { # PRESET TARGET [REQUIREMENTS]
   lock_setup
@@ -91,6 +92,12 @@ case $* in # all words, so that one too many is unknown
     set_up release all "$ROOT/tests/bench/requirements.txt"
     set_environment
     bench "${@:2}"
+    ;;
+  chaos | 'chaos --smoke')
+    set_up release rtg_run
+    set_environment
+    export PYTHONPATH=$ROOT/train:$ROOT/tests/support:$ROOT/tests/system:$ROOT/tests/bench
+    exec "$VENV/bin/python" "$ROOT/tests/chaos/chaos.py" "${@:2}"
     ;;
   peer | 'peer '*)
     set_up release peer_dump "$ROOT/tests/bench/requirements.txt"
