@@ -29,7 +29,7 @@ CoordinatorWatch::CoordinatorWatch(Bus& bus) {
   bus.subscribe<rtg_msgs::search_progress_t>("RTG_PROGRESS",
                                              [this](const rtg_msgs::search_progress_t& progress) {
                                                heard_ = monotonic_now();
-                                               leaving_ = leaving_ || progress.leaving != 0;
+                                               leaving_ = progress.leaving != 0;
                                              });
 }
 

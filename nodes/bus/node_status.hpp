@@ -38,7 +38,7 @@ class CoordinatorWatch {
 
   explicit CoordinatorWatch(Bus& bus);
 
-  /// Returns whether the coordinator has announced that it is leaving.
+  /// Returns whether the coordinator has announced that it is leaving, and nothing else since.
   bool leaving() const { return leaving_; }
   /// Returns whether no message of the coordinator has arrived for kSilence.
   bool silent(Seconds now) const { return now - heard_ > kSilence; }

@@ -15,7 +15,9 @@ void StreamServer::append(std::span<const search::Transition> rows) {
 }
 
 bool StreamServer::on_ack(const Ack& ack, bus::Seconds now) {
-  if (ack.cursor < 0 || ack.cursor > count() || ack.credit < 0) return false;
+  if (ack.cursor < 0 || ack.cursor > count() || ack.credit < 0 || ack.credit > limits_.max_credit ||
+      (consumers_.size() >= limits_.max_consumers && !consumers_.contains(ack.consumer)))
+    return false;
   Consumer& consumer = consumers_[ack.consumer];
   consumer.cursor = std::max(consumer.cursor, ack.cursor);  // an old acknowledgement may come late
   consumer.credit = ack.credit;

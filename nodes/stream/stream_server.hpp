@@ -26,6 +26,8 @@ class StreamServer {
     std::int64_t chunk_bytes = 16000;  // rows of one message [bytes]
     bus::Seconds silence = 2.0;        // nobody waits for a consumer silent for longer [s]
     std::int64_t max_nacked = 65536;   // rows that one acknowledgement may request
+    std::int64_t max_credit = 1 << 20;
+    std::size_t max_consumers = 1000;
   };
   struct Ack {
     std::int64_t consumer = 0;
@@ -40,8 +42,8 @@ class StreamServer {
   void append(std::span<const search::Transition> rows);
   void seal() { sealed_ = true; }
 
-  /// Takes note of `ack`. Returns false and ignores it if it contradicts the stream: negative
-  /// numbers, a cursor beyond the end.
+  /// Takes note of `ack`. Returns false and ignores it if it contradicts the stream or the limits:
+  /// negative numbers, a cursor beyond the end, too large a credit, one consumer too many.
   bool on_ack(const Ack& ack, bus::Seconds now);
 
   /// Returns the row ranges to send now, one per message.

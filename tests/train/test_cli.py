@@ -170,7 +170,8 @@ def test_spy_names_the_remedy_where_nothing_can_be_heard():
         pytest.skip("this machine forbids network namespaces")
     assert done.returncode == 1 and done.stdout == ""
     assert done.stderr == (
-        "rtg: nothing to be heard: multicast group 239.255.76.67 cannot be joined: No such device. To mend it: "
+        "rtg: nothing to be heard: multicast group 239.255.76.67 cannot be joined: "
+        "No such device. To mend it: "
         "sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo\n"
     )
 

@@ -109,7 +109,7 @@ TEST(WorkerNode, AnswersARepeatedQuestionFromMemory) {
   pair.serve_until([&] { return !pair.beats.empty() && pair.results.size() == 1; });
   pair.serve_until([&] { return pair.beats.back().n_held == 0; });
   pair.send(pair.job(11));
-  pair.serve_until([&] { return pair.results.size() == 2; });
+  pair.serve_until([&] { return pair.results.size() >= 2; });  // in several copies
   EXPECT_EQ(calls, 1);
   EXPECT_EQ(pair.results[1].start, pair.results[0].start);
   EXPECT_EQ(pair.bus.counters().value("jobs.answered_again"), 1);

@@ -72,7 +72,16 @@ TEST(StreamServer, AnImpossibleCursorIsIgnored) {
   StreamServer server = server_with(100);
   EXPECT_FALSE(server.on_ack({7, 101, 10, {}}, 0.0));
   EXPECT_FALSE(server.on_ack({7, -1, 10, {}}, 0.0));
+  EXPECT_FALSE(server.on_ack({7, 0, std::numeric_limits<std::int64_t>::max(), {}}, 0.0));
   EXPECT_EQ(server.consumers(), 0);
+}
+
+TEST(StreamServer, TheNumberOfConsumersIsBounded) {
+  StreamServer server = server_with(100);
+  for (std::int64_t consumer = 0; consumer < 1000; ++consumer)
+    EXPECT_TRUE(server.on_ack({consumer, 0, 10, {}}, 0.0));
+  EXPECT_FALSE(server.on_ack({1000, 0, 10, {}}, 0.0));
+  EXPECT_TRUE(server.on_ack({999, 5, 10, {}}, 0.0));
 }
 
 TEST(StreamServer, WaitsForTheSlowestLivingConsumer) {

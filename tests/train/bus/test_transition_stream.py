@@ -11,7 +11,7 @@ from rtg.files.dataset import Rows
 
 def test_two_streams_are_not_mixed():
     ours = open_bus("memq://", _core.RunKey.random("a run"))
-    stream = TransitionStream(ours, bodies=3, actions=48, sink=print)
+    stream = TransitionStream(ours, bodies=3, actions=48, most=9, sink=print)
     for number in (5, 5, 6):
         ours.publish("RTG_TAIL", "stream_tail_t", stream=number)
     with pytest.raises(RunError, match="the coordinator was restarted"):
@@ -22,7 +22,9 @@ def test_rows_come_once_and_in_order_and_the_end_is_acknowledged():
     ours = open_bus("memq://", _core.RunKey.random("a run"))
     acks, got = [], []
     ours.subscribe("RTG_ACK", "stream_ack_t", acks.append)
-    stream = TransitionStream(ours, bodies=1, actions=48, sink=lambda rows: got.extend(rows.action))
+    stream = TransitionStream(
+        ours, bodies=1, actions=48, most=4, sink=lambda rows: got.extend(rows.action)
+    )
     for first, actions in ((2, [12, 13]), (0, [10, 11, 12]), (2, [12, 13])):
         n = len(actions)
         state = {"poses": np.zeros(3 * n), "next_poses": np.zeros(3 * n)}
@@ -41,6 +43,15 @@ def test_rows_come_once_and_in_order_and_the_end_is_acknowledged():
     assert got == [10, 11, 12, 13] and (stream.received, stream.lost) == (4, 0)
     assert (acks[0].first.tolist(), acks[0].last.tolist()) == ([0], [1])  # what was missing
     assert (acks[-1].cursor, acks[-1].credit) == (4, 0)
+
+
+def test_a_stream_is_no_longer_than_the_search_is_to_find():
+    ours = open_bus("memq://", _core.RunKey.random("a run"))
+    stream = TransitionStream(ours, bodies=1, actions=48, most=4, sink=print)
+    for count in (5, -1, 10**15):
+        ours.publish("RTG_TAIL", "stream_tail_t", count=count, sealed=1)
+    stream.poll(0.0)
+    assert ours.counters == {"stream.illegal": 3} and not stream.complete
 
 
 class Message:

@@ -38,7 +38,8 @@ def record(config: _core.Config, key: _core.RunKey, file: Path) -> None:
         _say(bus.warning)
     _say(f"waits for the transitions of run {key.name}")
     recorder = Recorder(config)
-    stream = TransitionStream(bus, config.task.bodies, config.task.actions, recorder.add)
+    task, most = config.task, config.search.transitions
+    stream = TransitionStream(bus, task.bodies, task.actions, most, recorder.add)
     while not stream.complete:
         if stream.poll(_POLL):
             _say(f"has {stream.received} transitions")

@@ -45,15 +45,15 @@ def to_rows(message: Any, bodies: int, actions: int) -> Rows | None:
 class TransitionStream:
     """Passes every transition of the run to `sink`, once and in order.
 
-    stream = TransitionStream(bus, bodies=7, actions=48, sink=buffer.add)
+    stream = TransitionStream(bus, bodies=7, actions=48, most=60_000, sink=buffer.add)
     while not stream.complete:
         stream.poll(0.1)
     """
 
     def __init__(
-        self, bus: _core.Bus, bodies: int, actions: int, sink: Callable[[Rows], object]
+        self, bus: _core.Bus, bodies: int, actions: int, most: int, sink: Callable[[Rows], object]
     ) -> None:
-        self._bus = bus
+        self._bus, self._most = bus, most
         self._bodies, self._actions = bodies, actions
         self._sink = sink
         self._cursor = _core.StreamCursor()
@@ -93,7 +93,7 @@ class TransitionStream:
 
     def _on_batch(self, message: Any) -> None:
         rows = to_rows(message, self._bodies, self._actions)
-        if rows is None:
+        if rows is None or message.first + message.n > self._most:
             self._bus.count("stream.illegal")
             return
         self._check_stream(message.stream)
@@ -104,7 +104,7 @@ class TransitionStream:
         self._acknowledge()
 
     def _on_tail(self, message: Any) -> None:
-        if message.count < 0:
+        if not 0 <= message.count <= self._most:
             self._bus.count("stream.illegal")
             return
         self._check_stream(message.stream)

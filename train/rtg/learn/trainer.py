@@ -74,7 +74,8 @@ def _source(training: Training | Planning, args: argparse.Namespace) -> Source:
         begun = True
         training.data.add(rows)
 
-    return TransitionStream(bus, task.bodies, task.actions, add)
+    most = training.config.search.transitions
+    return TransitionStream(bus, task.bodies, task.actions, most, add)
 
 
 def _say(words: str) -> None:

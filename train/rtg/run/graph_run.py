@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 from typing import Any
 
 from rtg import paths
@@ -17,6 +18,7 @@ from rtg.run.plan import RunPlan
 from rtg.run.progress import Display
 from rtg.run.run_state import RunState
 from rtg.run.run_watch import RunWatch
+from rtg.run.stall import Stall
 from rtg.run.training_watch import TrainingWatch
 
 _POLL = 0.1  # [s]
@@ -41,6 +43,7 @@ class GraphRun:
         self._bus = open_bus(plan.config.run.bus, new_key(self._key_file, plan.name))
         self._watch = RunWatch(self._bus, RunState(budget=plan.interactions))
         self._training = TrainingWatch(plan.folder)
+        self._stall = Stall(time.monotonic())
         self._restarts = 0
         self._failure: list[str] = []  # lines of graph.sh that tell why it ended
         if self._bus.warning:
@@ -84,7 +87,9 @@ class GraphRun:
     def _step(self, graph: Node) -> None:
         self._bus.spin(_POLL)
         self._read_log(graph)
-        self._display.show(self._training.update(self._watch.state))
+        state = self._training.update(self._watch.state)
+        self._stall.check(state, time.monotonic())
+        self._display.show(state)
 
     def _read_log(self, graph: Node) -> None:
         for line in graph.new_log_lines():

@@ -9,6 +9,8 @@ from typing import Any
 from rtg import _core
 from rtg.run.run_state import RunState
 
+_MOST_PROCESSES = 4096  # whose counters are kept: those of a run started again and again
+
 
 class RunWatch:
     """Receives the newest state of the run and the counters of all its processes."""
@@ -36,6 +38,8 @@ class RunWatch:
     def _on_status(self, message: Any) -> None:
         self.heard_at = time.monotonic()
         key = (message.node, message.number, message.sender)
+        if key not in self._counters and len(self._counters) >= _MOST_PROCESSES:
+            return
         self._counters[key] = dict(
             zip(message.counter_name, message.counter_value.tolist(), strict=True)
         )
