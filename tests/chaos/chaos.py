@@ -56,15 +56,6 @@ class Run:
         time.sleep(seconds)
         self.programs[name].send_signal(signal.SIGCONT)
 
-    def resident(self) -> dict[str, int]:
-        """Returns the memory of each program [kB]."""
-        found = {}
-        for name, program in {**self.programs, "consumer": self.consumer}.items():
-            status = Path(f"/proc/{program.pid}/status").read_text()
-            line = next(line for line in status.splitlines() if line.startswith("VmRSS"))
-            found[name] = int(line.split()[1])
-        return found
-
     def end(self) -> tuple[float, int, bytes]:
         """Waits for the end. Returns its time [s], how many rows were lost, and all rows."""
         rows_lost = lost(self.consumer)
@@ -126,25 +117,22 @@ def losses(report: Report, rounds: int) -> None:
 
 
 def kills(report: Report, most: int) -> None:
-    """Kills of workers and server, and of the coordinator, about one in a second."""
-    for name, victims in (
-        ("workers_and_server", ["server", *(f"worker {k}" for k in range(WORKERS))]),
-        ("coordinator", ["coordinator"]),
-    ):
-        done, ends, rng = 0, [], random.Random(1)
+    """Kills of workers and server, about one in a second."""
+    victims = ["server", *(f"worker {k}" for k in range(WORKERS))]
+    done, ends, rng = 0, [], random.Random(1)
 
-        def strike(run: Run, victims: list[str] = victims, rng: random.Random = rng) -> None:
-            nonlocal done
-            while done < most and run.is_generating():
-                time.sleep(rng.uniform(0.5, 1.5))
-                if run.is_generating():
-                    run.kill(rng.choice(victims))
-                    done += 1
+    def strike(run: Run) -> None:
+        nonlocal done
+        while done < most and run.is_generating():
+            time.sleep(rng.uniform(0.5, 1.5))
+            if run.is_generating():
+                run.kill(rng.choice(victims))
+                done += 1
 
-        while done < most:
-            ends.append(disturbed(strike))
-        print(f"chaos.kills_of_{name}: {done} in {len(ends)} runs")
-        report.same(f"kills_of_{name}", ends)
+    while done < most:
+        ends.append(disturbed(strike))
+    print(f"chaos.kills: {done} in {len(ends)} runs")
+    report.same("kills", ends)
 
 
 def pauses(report: Report, lengths: tuple[float, ...]) -> None:
@@ -163,23 +151,18 @@ def pauses(report: Report, lengths: tuple[float, ...]) -> None:
 
 def strangers(report: Report, seconds: float) -> None:
     """Forged messages and malformed datagrams, five thousand in a second."""
-    sent, grown = 0, 0
+    sent = 0
 
     def attack(run: Run) -> None:
-        nonlocal sent, grown
-        time.sleep(0.3)
-        before = run.resident()
+        nonlocal sent
         words = [sys.executable, HERE / "stranger.py", run.graph.config, "system-test"]
         stranger = run.graph.network.start(
             [*words, "5000", str(seconds)], PYTHONPATH=str(paths.ROOT / "train")
         )
         sent += int(stranger.communicate()[0])
-        if run.is_generating():
-            after = run.resident()
-            grown = max(grown, *(after[name] - before[name] for name in before))
 
     ends = [disturbed(attack)]
-    print(f"chaos.strangers: {sent} messages; most memory gained by a program: {grown} kB")
+    print(f"chaos.strangers: {sent} messages")
     report.same("strangers", ends)
 
 
