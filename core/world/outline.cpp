@@ -7,8 +7,11 @@
 #include <cstdarg>
 #include <cstdio>
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
+
+#include "core/world/pose.hpp"
 
 namespace rtg {
 namespace {
@@ -64,13 +67,24 @@ Geometry polygon_of(std::span<const Vector2d> ring) {
   return checked(GEOSGeom_createPolygon_r(geos(), line.release(), nullptr, 0));
 }
 
+/// Round corners become arcs of at least `sides` edges per quarter turn.
 Geometry area_of(const Part& part, int sides) {
-  const Vector2d& first = part.core.vertices[0];
-  Geometry core = part.is_disc()
-                      ? checked(GEOSGeom_createPointFromXY_r(geos(), first.x(), first.y()))
-                      : polygon_of(part.core.vertices);
-  if (part.radius == 0.0) return core;
-  return checked(GEOSBuffer_r(geos(), core.get(), part.radius, sides));
+  const std::vector<Vector2d>& core = part.core.vertices;
+  if (part.radius == 0.0) return polygon_of(core);
+  std::vector<Vector2d> ring;
+  for (std::size_t k = 0; k < core.size(); ++k) {
+    double from = 0.0, turn = 2.0 * std::numbers::pi;  // of the normal, along the corner
+    if (!part.is_disc()) {
+      const Vector2d before = edge_normal(part.core, (k + core.size() - 1) % core.size());
+      const Vector2d after = edge_normal(part.core, k);
+      from = angle_of(before.x(), before.y());
+      turn = angle_of(before.dot(after), before.x() * after.y() - before.y() * after.x());
+    }
+    const int edges = static_cast<int>(std::ceil(turn / (std::numbers::pi / 2.0) * sides));
+    for (int n = 0; n < edges + (part.is_disc() ? 0 : 1); ++n)
+      ring.push_back(core[k] + part.radius * unit(from + turn * n / edges));
+  }
+  return polygon_of(ring);
 }
 
 /// Returns the polygons of `geometry`, without lines and points, which unions of areas that touch
@@ -82,10 +96,10 @@ Geometry only_areas(Geometry geometry) {
 
 /// Vertices are rounded to a grid of 2^-`bits` of the size, so that edges that differ by rounding
 /// alone are one.
-Geometry union_of(std::span<const Part> parts, int sides = kQuadrantSides, double bits = 36.0) {
+Geometry union_of(std::span<const Part> parts, int sides = kQuadrantSides, int bits = 36) {
   double reach = 0.0;
   for (const Part& part : parts) reach = std::max(reach, reach_from(Vector2d::Zero(), part));
-  const double grid = std::exp2(std::floor(std::log2(reach)) - bits);
+  const double grid = std::ldexp(1.0, std::ilogb(reach) - bits);
   Geometry all = area_of(parts[0], sides);
   for (const Part& part : parts.subspan(1))
     all = only_areas(checked(GEOSUnionPrec_r(geos(), all.get(), area_of(part, sides).get(), grid)));
@@ -212,7 +226,7 @@ std::vector<std::vector<Vector2d>> outline(std::span<const Part> parts) {
 
 bool in_one_piece(std::span<const Part> parts) {
   // Coarse: the vertices may come from a file, rounded.
-  return GEOSGetNumGeometries_r(geos(), union_of(parts, kQuadrantSides, 28.0).get()) == 1;
+  return GEOSGetNumGeometries_r(geos(), union_of(parts, kQuadrantSides, 28).get()) == 1;
 }
 
 bool maps_onto_itself(std::span<const Part> parts, double angle) {

@@ -1,5 +1,5 @@
-// Generates transitions in one process and prints the report without its samples. Exit status 2 if
-// an argument is not one of
+// Generates transitions in one process and prints the report without its samples, and a digest of
+// the transitions. Exit status 2 if an argument is not one of
 //
 //   generate_bench FILE [--seed S] [--threads T] [SECTION.KEY=VALUE]...
 //
@@ -16,6 +16,7 @@
 #include "core/search/simulators.hpp"
 #include "nodes/config/config.hpp"
 #include "tests/bench/arguments.hpp"
+#include "tests/support/digest.hpp"
 
 namespace rtg::bench {
 namespace {
@@ -65,12 +66,16 @@ void run(const Options& options) {
   search::GenerationSeams seams = search::in_process_seams(
       reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
       search::forward_replay(config.task, config.physics, config.forward), options.threads);
-  seams.store = [](std::span<const search::Transition>) {};
+  std::uint64_t digest = 0;
+  seams.store = [&digest](std::span<const search::Transition> some) {
+    digest = testing::digest(digest, some);
+  };
   seams.progress = print_progress;
   auto report = nlohmann::ordered_json::parse(
       to_json(generate(config.task, config.search, options.seed, seams)));
   report.erase("replay_gaps");
   report.erase("nodes");
+  report["digest"] = digest;
   std::printf("%s\n", report.dump().c_str());
 }
 
