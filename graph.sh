@@ -7,9 +7,10 @@
 # the bus, which is made if there is none. FOLDER gets generation.json, logs/PROGRAM.log, and what the trainer writes or,
 # of the recorder, transitions.npz alone.
 # Environment: RTG_RUN, the name of a new key (FOLDER's), RTG_NODES (build/release/nodes), RTG_PYTHON (.venv/bin/python).
-# Workers, server and logger are started again when they die before the coordinator has ended. Where another program
-# fails, all end with its status; where the search falls short, with 1 after the consumer. SIGINT, SIGTERM or SIGHUP
-# ends all, the trainer with a checkpoint; a second SIGINT or SIGTERM at once.
+# Workers, server and logger are started again when they die before the coordinator has ended, and the coordinator when it
+# is killed: it goes on from FOLDER/generation.journal, which the consumer removes in the end. Where another program fails,
+# all end with its status; where the search falls short, with 1 after the consumer. SIGINT, SIGTERM or SIGHUP ends all, the
+# trainer with a checkpoint; a second SIGINT or SIGTERM at once.
 set -uo pipefail
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 nodes=${RTG_NODES:-$root/build/release/nodes} python=${RTG_PYTHON:-$root/.venv/bin/python}
@@ -20,6 +21,7 @@ refuse() { # WHY
 [[ -f ${1:-}/config.yaml ]] || refuse "'${1:-}' is no folder with a config.yaml; legal: graph.sh FOLDER [trainer [--resume] [--log NAMES] | recorder]"
 folder=$(cd -- "$1" && pwd)
 consumer=${2:-trainer} flags=("${@:3}") config=$folder/config.yaml key=$folder/run.key logs=$folder/logs
+journal=$folder/generation.journal journaled=0 # its size when the coordinator last died
 
 program() { # NAME: becomes that program; by hand they can be started in any order
   local be=(exec setsid setpriv --pdeathsig KILL) # out of the terminal's reach, but not longer than this script
@@ -52,16 +54,31 @@ stop() { # STATUS: ends all programs, at once on a further SIGINT or SIGTERM, an
   exit "$1"
 }
 
+died_soon() { # NAME: whether it has done little since its start
+  if [[ $1 != beam_coordinator ]]; then return $((SECONDS - started[$1] >= 5)); fi
+  local before=$journaled
+  journaled=$(stat -c %s "$journal" || echo 0)
+  ((journaled <= before))
+}
+
+may_start_again() { # NAME STATUS
+  case $1:$2 in
+    *:2 | "$consumer":*) false ;;
+    beam_coordinator:137) [[ -e $journal ]] ;;
+    beam_coordinator:*) false ;;
+  esac
+}
+
 on_failure() { # NAME STATUS
   local how="ended with exit status $2"
   if (($2 > 128)); then how="was killed by SIG$(kill -l $(($2 - 128)))"; fi
-  deaths[$1]=$((SECONDS - started[$1] < 5 ? ${deaths[$1]:-0} + 1 : 0))
-  if [[ $1 == "$consumer" || $1 == beam_coordinator || $2 == 2 ]] || ((deaths[$1] == 10)); then
+  if died_soon "$1"; then deaths[$1]=$((${deaths[$1]:-0} + 1)); else deaths[$1]=0; fi
+  if ! may_start_again "$1" "$2" || ((deaths[$1] == 10)); then
     echo "$1 $how; the end of $logs/$1.log:"
     tail -n 8 "$logs/$1.log"
     stop "$2"
   fi
-  if ! is_running beam_coordinator; then return; fi
+  if [[ $1 != beam_coordinator ]] && ! is_running beam_coordinator; then return; fi
   echo "$1 $how, started again"
   start "$1"
 }

@@ -18,14 +18,20 @@ constexpr auto kBacklogWait = 5ms;  // the same while rows of the stream wait to
 constexpr int kFarewells = 5;       // messages with `leaving` set; a worker ends at the first one
 constexpr auto kFarewellWait = 40ms;
 
+/// Returns the identity of the stream. With a journal, a coordinator that is started again goes on
+/// with the same rows. Without one it may have to give up other units, so that rows differ.
+std::int64_t stream_of(const jobs::UnitJournal* journal) {
+  return journal ? journal->generation() : bus::random_identity();
+}
+
 }  // namespace
 
 CoordinatorNode::CoordinatorNode(bus::Bus& bus, Options options)
     : bus_(bus),
       options_(std::move(options)),
-      reverse_(bus, options_.shape, options_.config),
-      replay_(bus, options_.shape, options_.config),
-      transitions_(bus, options_.shape),
+      reverse_(bus, options_.shape, options_.config, {}, options_.journal),
+      replay_(bus, options_.shape, options_.config, {}, options_.journal),
+      transitions_(bus, options_.shape, stream_of(options_.journal)),
       status_(bus, "beam_coordinator", 0) {
   progress_.target = options_.target;
 }

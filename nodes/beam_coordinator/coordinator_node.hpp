@@ -24,6 +24,8 @@ class CoordinatorNode {
     std::int64_t config = 0;        // hash of the configuration
     long target = 0;                // number of transitions to store, for the display
     std::function<bool()> stopped;  // polled; true: end as soon as possible
+    // Of the answers of workers and server; null: a search that begins anew asks for all of them.
+    jobs::UnitJournal* journal = nullptr;
   };
 
   CoordinatorNode(bus::Bus& bus, Options options);

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "nodes/beam_coordinator/interrupted.hpp"
-#include "nodes/beam_coordinator/unit_table.hpp"
 #include "nodes/bus/bus.hpp"
 #include "nodes/bus/clock.hpp"
 #include "nodes/jobs/copies.hpp"
 #include "nodes/jobs/job_dispatcher.hpp"
 #include "nodes/jobs/services.hpp"
+#include "nodes/jobs/unit_journal.hpp"
+#include "nodes/jobs/unit_table.hpp"
 
 namespace rtg::beam_coordinator {
 
@@ -26,7 +27,8 @@ struct PoolState {
 
 /// Has worker processes compute jobs of one kind, Service. answers() serves as SolveBatch or
 /// ReplayBatch. The pool hides ids, units, retries and the order of answers. The search calls
-/// answers() on its own thread; the thread that spins the bus calls tick().
+/// answers() on its own thread; the thread that spins the bus calls tick(). With a journal, answers
+/// are taken from it where it has them, and added to it as they come.
 template <class Service>
 class JobPool {
  public:
@@ -34,8 +36,8 @@ class JobPool {
   using Result = typename Service::Result;
 
   JobPool(bus::Bus& bus, const jobs::TaskShape& shape, std::int64_t config,
-          const jobs::JobDispatcher::Limits& limits = {})
-      : bus_(bus), shape_(shape), config_(config), dispatcher_(limits) {
+          const jobs::JobDispatcher::Limits& limits = {}, jobs::UnitJournal* journal = nullptr)
+      : bus_(bus), shape_(shape), config_(config), journal_(journal), dispatcher_(limits) {
     bus_.subscribe<Beat>(Service::kBeats, [this](const Beat& m) { on_beat(m); });
     bus_.subscribe<ResultMessage>(Service::kResults,
                                   [this](const ResultMessage& m) { on_result(m); });
@@ -45,10 +47,16 @@ class JobPool {
   /// until every unit is answered or given up. Throws Interrupted once stop() has been called.
   std::vector<Result> answers(std::span<const Job> jobs) {
     std::unique_lock lock(mutex_);
-    dispatcher_.submit(units_.deal(jobs, shape_, config_));
+    std::vector<jobs::JobId> open =
+        units_.deal(jobs, shape_, journal_ ? journal_->generation() : config_);
+    std::erase_if(open, [this](jobs::JobId id) { return is_known(id); });
+    dispatcher_.submit(open);
     send_due();
     changed_.wait(lock, [this] { return stopped_ || dispatcher_.finished(); });
-    for (const jobs::JobId id : dispatcher_.poisoned()) give_up(id);
+    for (const jobs::JobId id : dispatcher_.poisoned()) {
+      if (journal_) journal_->add_given_up(id);
+      give_up(id);
+    }
     dispatcher_.submit({});
     std::vector<Result> results = units_.take();
     if (stopped_) throw Interrupted();
@@ -98,6 +106,7 @@ class JobPool {
       return bus_.counters().add("results.illegal");
     if (dispatcher_.on_result(id, bus::monotonic_now()) != jobs::JobDispatcher::Verdict::kAccepted)
       return bus_.counters().add("results.repeated");
+    if (journal_) journal_->add(id, message);
     units_.store(id, *results);
     send_due();
     if (dispatcher_.finished()) changed_.notify_all();
@@ -117,6 +126,17 @@ class JobPool {
     }
   }
 
+  /// Returns whether the journal has an answer to unit `id`, which then is that of the pool.
+  bool is_known(jobs::JobId id) {
+    if (!journal_) return false;
+    const auto results = journal_->find<Service>(id, units_.jobs(id).size(), shape_);
+    if (results && results->empty())
+      give_up(id);
+    else if (results)
+      units_.store(id, *results);
+    return results.has_value();
+  }
+
   void give_up(jobs::JobId id) {
     ++given_up_;
     std::vector<Result> results;
@@ -127,10 +147,11 @@ class JobPool {
   bus::Bus& bus_;
   jobs::TaskShape shape_;
   std::int64_t config_;
+  jobs::UnitJournal* journal_;
   mutable std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   jobs::JobDispatcher dispatcher_;
-  UnitTable<Service> units_;
+  jobs::UnitTable<Service> units_;
   jobs::Copies copies_;
   bool stopped_ = false;
   long given_up_ = 0;

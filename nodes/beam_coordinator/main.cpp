@@ -1,10 +1,11 @@
 // rtg_beam_coordinator CONFIG.yaml KEY FOLDER [CONSUMERS]
 //
 // Generates the transitions of the run whose key file is KEY with the workers and the server on the
-// bus. Writes FOLDER/generation.json. Ends when all living consumers of the transition stream, and
-// at least CONSUMERS (default 1), have all of it. CONFIG.yaml is the resolved configuration of the
-// run. Exit status 1 if the search fell short, as the last lines say, 3 if the transitions are
-// complete but units of work were skipped.
+// bus. Writes FOLDER/generation.json, and before that the answers of workers and server as they
+// come to FOLDER/generation.journal, from where it takes them when it is started again. Ends when
+// all living consumers of the transition stream, and at least CONSUMERS (default 1), have all of
+// it. CONFIG.yaml is the resolved configuration of the run. Exit status 1 if the search fell short,
+// as the last lines say, 3 if the transitions are complete but units of work were skipped.
 
 #include <cstdio>
 #include <filesystem>
@@ -25,16 +26,21 @@ int run(const program::Words& words) {
   if (!std::filesystem::is_directory(words[2]))
     throw std::invalid_argument(words[2] + ": no such folder; legal: a folder that exists");
   const config::Config config = config::load_config(words[0]);
+  jobs::UnitJournal journal(std::filesystem::path(words[2]) / "generation.journal",
+                            generation_hash(config));
   bus::Bus bus(config.run.bus, bus::RunKey::read(words[1]));
   CoordinatorNode node(
       bus, {program::shape_of(config.task), config_hash(config), config.search.transitions,
-            [] { return program::stop_signal() != 0; }});
+            [] { return program::stop_signal() != 0; }, &journal});
+  if (journal.size() > 0)
+    program::say("has the answers to " + std::to_string(journal.size()) + " units of work");
   program::say_waiting(bus, "the workers and the server");
-  const auto report = node.run([&](const search::GenerationSeams& seams) {
+  auto report = node.run([&](const search::GenerationSeams& seams) {
     const auto seed = static_cast<std::uint64_t>(config.run.seed);
     return generate(config.task, config.search, seed, seams);
   });
   if (report) {
+    report->units_from_journal = journal.units_found();
     files::write_atomically(std::filesystem::path(words[2]) / "generation.json", to_json(*report));
     program::say("has found " + std::to_string(report->coverage.transitions) +
                  " transitions, waits until all consumers have them");

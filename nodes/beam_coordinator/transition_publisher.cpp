@@ -14,8 +14,9 @@ std::int64_t row_bytes(const jobs::TaskShape& shape) {
 
 }  // namespace
 
-TransitionPublisher::TransitionPublisher(bus::Bus& bus, const jobs::TaskShape& shape)
-    : bus_(bus), server_({}, row_bytes(shape)) {
+TransitionPublisher::TransitionPublisher(bus::Bus& bus, const jobs::TaskShape& shape,
+                                         std::int64_t stream)
+    : bus_(bus), stream_(stream), server_({}, row_bytes(shape)) {
   using rtg_msgs::stream_ack_t;
   bus_.subscribe<stream_ack_t>("RTG_ACK", [this](const stream_ack_t& m) { on_ack(m); });
 }
@@ -60,6 +61,9 @@ TransitionPublisher::State TransitionPublisher::state() const {
 void TransitionPublisher::on_ack(const rtg_msgs::stream_ack_t& message) {
   if (message.stream != stream_) return bus_.counters().add("stream.other_stream");
   const std::scoped_lock lock(mutex_);
+  if (!server_.sealed() &&
+      message.cursor > server_.count())  // has rows of a coordinator killed since
+    return bus_.counters().add("stream.ack_ahead");
   std::vector<stream::RowRange> missing;
   for (std::size_t k = 0; k < message.first.size(); ++k)
     if (message.first[k] >= 0 && message.last[k] >= message.first[k] &&

@@ -17,7 +17,8 @@ namespace rtg::beam_coordinator {
 /// thread; the thread that spins the bus calls all other functions.
 class TransitionPublisher {
  public:
-  TransitionPublisher(bus::Bus& bus, const jobs::TaskShape& shape);
+  /// `stream`: identity of the stream. Streams with the same one have the same rows.
+  TransitionPublisher(bus::Bus& bus, const jobs::TaskShape& shape, std::int64_t stream);
 
   void store(std::span<const search::Transition> rows);
   void seal();
@@ -44,7 +45,7 @@ class TransitionPublisher {
   void send(stream::RowRange range);
 
   bus::Bus& bus_;
-  std::int64_t stream_ = bus::random_identity();
+  std::int64_t stream_;
   bus::Ticker tail_{0.2};
   mutable std::mutex mutex_;  // guards the members below
   stream::StreamServer server_;

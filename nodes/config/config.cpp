@@ -11,6 +11,7 @@
 #include "nodes/bus/bus_url.hpp"
 #include "nodes/bus/content_hash.hpp"
 #include "nodes/config/config_overrides.hpp"
+#include "nodes/config/core_digest.hpp"
 #include "nodes/config/field_writer.hpp"
 #include "nodes/config/method.hpp"
 #include "nodes/config/run_checks.hpp"
@@ -279,6 +280,14 @@ std::string config_json(const Config& config) { return json_text(tree_of(config)
 
 std::int64_t config_hash(const Config& config) {
   return bus::ContentHash().add(canonical_yaml(config)).value();
+}
+
+std::int64_t generation_hash(const Config& config) {
+  Config deciding = config;
+  deciding.train = {};
+  deciding.run = {};
+  deciding.run.seed = config.run.seed;
+  return bus::ContentHash().add(core_digest()).add(canonical_yaml(deciding)).value();
 }
 
 std::int64_t task_hash(tasks::Task task) {

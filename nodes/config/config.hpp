@@ -69,6 +69,10 @@ std::string config_json(const Config& config);
 /// folders.
 std::int64_t config_hash(const Config& config);
 
+/// Returns the hash of all that decides the transitions of a run: the compiled core, the seed, and
+/// the sections but for `train` and `run`.
+std::int64_t generation_hash(const Config& config);
+
 /// Returns the hash of what a policy of the task is about: bodies, joints, goal and pushes. Names
 /// of the task, starts of bodies that can move, and the lengths of episodes do not count.
 std::int64_t task_hash(tasks::Task task);

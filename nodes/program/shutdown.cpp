@@ -32,6 +32,7 @@ void handle(int number, void (*handler)(int)) {
 
 void watch_signals() {
   handle(SIGALRM, on_alarm);
+  handle(SIGXFSZ, SIG_IGN);  // write() then says that the file has become too long
   for (const int number : {SIGINT, SIGTERM}) handle(number, on_stop_signal);
 }
 

@@ -29,9 +29,10 @@ MAY_INCLUDE = {
     "core/search": {"core"},
     "core/threads": {"core/threads"},
     "nodes/files": {"nodes/files"},
+    "nodes/journal": {"nodes/files", "nodes/journal"},
     "nodes/bus": {"core/threads", "nodes/files", "nodes/bus", "rtg_msgs"},
     "nodes/config": {"core", "nodes/files", "nodes/bus", "nodes/config"},
-    "nodes/jobs": {"core", "nodes/bus", "nodes/jobs", "rtg_msgs"},
+    "nodes/jobs": {"core", "nodes/bus", "nodes/journal", "nodes/jobs", "rtg_msgs"},
     "nodes/stream": {"core/search", "nodes/bus", "nodes/stream"},
     "nodes/program": {"core", "nodes/bus", "nodes/config", "nodes/jobs", "nodes/program"},
     "nodes/beam_coordinator": {
@@ -44,7 +45,15 @@ MAY_INCLUDE = {
     "nodes/reverse_worker": _OF_PROGRAMS,
     "msgs": {"rtg_msgs"},
     # The bindings take the resolved config, so that C++ and Python never read YAML apart.
-    "train": {"core", "nodes/bus", "nodes/config", "nodes/stream", "train/bindings", "rtg_msgs"},
+    "train": {
+        "core",
+        "nodes/bus",
+        "nodes/config",
+        "nodes/jobs",
+        "nodes/stream",
+        "train/bindings",
+        "rtg_msgs",
+    },
     "tests": {"core", "nodes", "tests", "rtg_msgs"},
 }
 

@@ -12,7 +12,7 @@ from rtg import _core, paths
 from rtg.bus.bus import new_key
 from rtg.files.dataset import Rows
 from rtg.files.recorder import Recorder
-from rtg.files.run_folder import KEY_FILE
+from rtg.files.run_folder import JOURNAL_FILE, KEY_FILE
 from rtg.run import effective_config
 from rtg.run.run_args import Override
 
@@ -35,6 +35,7 @@ class Graph:
         self.config.write_text(effective_config.load(_TINY, given).yaml)
         self.key = folder / KEY_FILE
         new_key(self.key, _RUN)
+        self.journal = folder / JOURNAL_FILE
 
     def _program(self, name: str, *words: str | Path) -> Process:
         return self.network.start([paths.BUILD / "nodes" / name, self.config, self.key, *words])

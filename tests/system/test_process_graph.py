@@ -174,6 +174,33 @@ def test_a_killed_server(net: network.Network, tmp_path: Path, long: bytes) -> N
     assert graph.transitions() == long
 
 
+def test_a_coordinator_killed_twice(net: network.Network, tmp_path: Path, long: bytes) -> None:
+    graph = Graph(net, tmp_path, *LONG)
+    server, worker, consumer = graph.server(), graph.worker(1), graph.consumer()
+    coordinator = graph.coordinator()
+    for _ in range(2):
+        assert 0 < first_rows(consumer) < 12000
+        coordinator.kill()
+        assert coordinator.wait(PATIENCE) == -signal.SIGKILL
+        assert graph.is_generating()
+        coordinator = graph.coordinator()
+    assert lost(consumer) == 0
+    assert_all_left(coordinator, server, worker)
+    assert graph.transitions() == long
+    assert json.loads((tmp_path / "generation.json").read_text())["units_from_journal"] > 0
+    assert not graph.journal.exists()
+
+
+def test_two_coordinators_do_not_share_a_folder(net: network.Network, tmp_path: Path) -> None:
+    graph = Graph(net, tmp_path, *LONG)
+    server, worker, consumer = graph.server(), graph.worker(1), graph.consumer()
+    coordinator = graph.coordinator()
+    assert first_rows(consumer) > 0
+    assert graph.coordinator().wait(PATIENCE) == 1
+    assert lost(consumer) == 0
+    assert_all_left(coordinator, server, worker)
+
+
 def test_a_tenth_of_the_datagrams_lost(net: network.Network, tmp_path: Path, tiny: bytes) -> None:
     net.lose(10)
     graph = Graph(net, tmp_path)
@@ -229,7 +256,8 @@ def test_a_terminated_coordinator_ends_all_and_leaves_no_half_file(
     coordinator.terminate()
     assert coordinator.wait(PATIENCE) == 128 + signal.SIGTERM
     assert_all_left(server, worker)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["config.yaml", "run.key"]
+    left = ["config.yaml", "generation.journal", "run.key"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == left
 
 
 def test_workers_and_server_end_when_told(net: network.Network, tmp_path: Path) -> None:

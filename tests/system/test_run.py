@@ -225,12 +225,45 @@ def test_a_killed_worker_is_replaced_and_changes_nothing(tmp_path):
     assert (folder / "transitions.npz").read_bytes() == undisturbed.read_bytes()
 
 
-@pytest.mark.parametrize("program", ["rtg.learn.trainer", "rtg_beam_coordinator"])
-def test_without_trainer_or_coordinator_the_run_ends(tmp_path, program):
+def test_a_killed_coordinator_goes_on_and_changes_nothing(tmp_path):
+    words = (TINY, "--no-train", "--transitions", "20000", "--workers", "1")
+    assert run(*words, "--in-process", "--out", tmp_path / "undisturbed").returncode == 0
+    folder = tmp_path / "disturbed"
+    process = start(*words, "--out", folder)
+    wait_for_line(process, "tree ")
+    kill(folder, "rtg_beam_coordinator")
+    out, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 0, err
+    assert "beam_coordinator was killed by SIGKILL, started again" in out
+    assert json.loads((folder / "summary.json").read_text())["units_from_journal"] > 0
+    undisturbed = tmp_path / "undisturbed" / "transitions.npz"
+    assert (folder / "transitions.npz").read_bytes() == undisturbed.read_bytes()
+
+
+@pytest.mark.parametrize("mode", [(), ("--in-process",)], ids=["over_lcm", "in_process"])
+def test_a_generation_killed_with_its_command_goes_on(tmp_path, mode):
+    words = (TINY, "--no-train", "--transitions", "20000", "--workers", "1")
+    assert run(*words, "--in-process", "--out", tmp_path / "undisturbed").returncode == 0
+    folder = tmp_path / "disturbed"
+    process = start(*words, *mode, "--out", folder)
+    wait_for_line(process, "tree ")
+    for pid in processes_of(folder):
+        os.kill(pid, signal.SIGKILL)
+    process.communicate(timeout=PATIENCE)
+    wait_until_all_are_gone(folder, PATIENCE)
+    done = run("--resume", "--no-train", "--out", folder)
+    assert done.returncode == 0, done.stderr
+    assert json.loads((folder / "summary.json").read_text())["units_from_journal"] > 0
+    undisturbed = tmp_path / "undisturbed" / "transitions.npz"
+    assert (folder / "transitions.npz").read_bytes() == undisturbed.read_bytes()
+    assert not (folder / "generation.journal").exists()
+
+
+def test_without_trainer_the_run_ends(tmp_path):
     folder = tmp_path / "run"
     process = start(*ENDLESS, "--out", folder)
     wait_for_line(process, "tree ")
-    kill(folder, program)
+    kill(folder, "rtg.learn.trainer")
     _, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 1
     assert "was killed by SIGKILL" in err.splitlines()[0]

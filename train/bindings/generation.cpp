@@ -1,7 +1,11 @@
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/function.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 
+#include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "core/search/forward_search.hpp"
@@ -9,6 +13,7 @@
 #include "core/search/search_config.hpp"
 #include "core/search/simulators.hpp"
 #include "nodes/config/config.hpp"
+#include "nodes/jobs/journaled.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 #include "train/bindings/fields.hpp"
@@ -38,17 +43,28 @@ void report_progress(const nb::object& progress, const search::Progress& p) {
 
 /// Generates transitions in this process and returns the report as JSON. Calls `store` with
 /// transitions and `progress` with the state of the search. An exception of a callback, including
-/// KeyboardInterrupt, ends the generation and propagates to the caller.
+/// KeyboardInterrupt, ends the generation and propagates to the caller. Throws JournalError if the
+/// file `journal` cannot be used.
 std::string generate_in_process(const config::Config& config, const nb::object& store,
-                                const nb::object& progress) {
+                                const nb::object& progress,
+                                const std::optional<std::filesystem::path>& journal) {
   const nb::gil_scoped_release release;
   search::GenerationSeams seams = search::in_process_seams(
       reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
       search::forward_replay(config.task, config.physics, config.forward), config.run.workers);
+  std::optional<jobs::UnitJournal> known;
+  if (journal)
+    keep_in(known.emplace(*journal, generation_hash(config)),
+            {static_cast<int>(config.task.scene.size()), action_count(config.task.push)}, seams);
   seams.store = [&](std::span<const search::Transition> rows) { hand_over(store, rows); };
   seams.progress = [&](const search::Progress& p) { report_progress(progress, p); };
   const auto seed = static_cast<std::uint64_t>(config.run.seed);
-  return to_json(generate(config.task, config.search, seed, seams));
+  search::GenerationReport report = generate(config.task, config.search, seed, seams);
+  if (known) {
+    report.units_from_journal = known->units_found();
+    report.generate_cpu_s += known->cpu_s_found();
+  }
+  return to_json(report);
 }
 
 /// Searches forwards for a plan from `start` [1, bodies, 3] to the goal. Returns the states of the
@@ -81,14 +97,21 @@ std::pair<nb::ndarray<nb::numpy, double>, long> plan(const config::Config& confi
 void bind_generation(nb::module_& module) {
   module.attr("GENERATORS") = names_of(search::kGenerators);
   module.attr("SOURCES") = names_of(search::kSources);
+  nb::exception<journal::JournalError>(module, "JournalError", PyExc_OSError).attr("__doc__") =
+      "A journal that cannot be read or written. The message names its file.";
   module.def(
       "generate", &generate_in_process, nb::arg("config"), nb::arg("store"), nb::arg("progress"),
+      nb::arg("journal") = nb::none(),
       R"(Generates transitions in this process, on run.workers threads. Returns the report as JSON.
 
 Calls store(poses, action, next_poses, success, source) with the transitions in sequence order.
 Calls progress() after each layer of the search, with a dictionary of "phase", "layer", "depth",
 "transitions", "target", "contact_share" and "start_region". An exception of either function
-ends the generation and is raised.)");
+ends the generation and is raised.
+
+The answers of the simulators are added to the file `journal`, if one is given, as they come. A
+generation that was killed and begins anew takes them from there and goes on to the same rows.
+Raises JournalError if the file cannot be used.)");
   module.def("share_of_shard", &search::share_of_shard, nb::arg("search"), nb::arg("k"),
              "Returns how many of the transitions shard k = 0 ... shards - 1 is to store.");
   module.def("plan", &plan, nb::arg("config"), nb::arg("start"),

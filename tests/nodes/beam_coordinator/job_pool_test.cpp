@@ -7,6 +7,8 @@
 #include <set>
 #include <thread>
 
+#include "tests/support/folder.hpp"
+
 namespace rtg::beam_coordinator {
 namespace {
 
@@ -31,7 +33,8 @@ search::ReplayResult answer(const search::ReplayJob& job) {
 /// A pool whose worker, Ann, is played by the test.
 class Played {
  public:
-  explicit Played(jobs::JobDispatcher::Limits limits = {}) : pool(bus, kShape, kConfig, limits) {
+  explicit Played(jobs::JobDispatcher::Limits limits = {}, jobs::UnitJournal* journal = nullptr)
+      : pool(bus, kShape, kConfig, limits, journal) {
     bus.subscribe<replay_job_t>("RTG_REPLAY_JOB", [this](const replay_job_t& m) { on_job(m); });
   }
 
@@ -187,7 +190,9 @@ TEST(JobPool, SendsAgainWhatGotLost) {
 }
 
 TEST(JobPool, GivesUpAUnitThatNobodySurvives) {
-  Played played({.silence = 0.2, .poison = 2});
+  const testing::Folder folder;
+  jobs::UnitJournal journal(folder.path / "journal", 5);
+  Played played({.silence = 0.2, .poison = 2}, &journal);
   std::optional<jobs::JobId> deadly;
   jobs::WorkerId life = 1;
   bool alive = true;
@@ -220,6 +225,7 @@ TEST(JobPool, GivesUpAUnitThatNobodySurvives) {
     EXPECT_EQ(result.end, jobs[k].start);
   }
   EXPECT_EQ(skipped, kUnit);
+  EXPECT_EQ(journal.size(), 3U) << "that it was given up is an answer, too";
 }
 
 TEST(JobPool, GivesUpAUnitThatHangsOnEveryLivingWorker) {
@@ -246,6 +252,51 @@ TEST(JobPool, GivesUpAUnitThatHangsOnEveryLivingWorker) {
   for (std::size_t k = 0; k < jobs.size(); ++k)
     answered += (*results)[k].end == answer(jobs[k]).end;
   EXPECT_EQ(answered, 2U * kUnit);
+}
+
+TEST(JobPool, WhatTheJournalAnswersIsNotAskedAgain) {
+  const testing::Folder folder;
+  const auto jobs = many_jobs(3 * kUnit);
+  {
+    jobs::UnitJournal journal(folder.path / "journal", 5);
+    Played killed({}, &journal);
+    killed.beat();
+    int answered = 0;
+    killed.on_job = [&](const replay_job_t& job) {
+      if (++answered <= 2) killed.publish(Played::result_of(job));
+    };
+    killed.each_round = [&] {
+      if (journal.size() == 2) killed.pool.stop();
+    };
+    EXPECT_FALSE(killed.ask(jobs).has_value());
+  }
+  jobs::UnitJournal journal(folder.path / "journal", 5);
+  Played again({}, &journal);
+  again.beat();
+  int asked = 0;
+  again.on_job = [&](const replay_job_t& job) {
+    ++asked;
+    again.publish(Played::result_of(job));
+  };
+  expect_right(jobs, again.ask(jobs));
+  EXPECT_EQ(asked, 1);
+  EXPECT_EQ(journal.units_found(), 2);
+  expect_right(jobs, again.ask(jobs));
+  EXPECT_EQ(asked, 1);
+}
+
+TEST(JobPool, AUnitThatWasGivenUpStaysSo) {
+  const testing::Folder folder;
+  const auto jobs = many_jobs(2 * kUnit);
+  jobs::UnitJournal journal(folder.path / "journal", 5);
+  journal.add_given_up(jobs::unit_id(std::span(jobs).first(kUnit), 5));
+  Played played({}, &journal);
+  played.beat();
+  const auto results = played.ask(jobs);
+  ASSERT_TRUE(results.has_value());
+  EXPECT_EQ(played.pool.state().given_up, 1);
+  EXPECT_EQ((*results)[0].end, jobs[0].start);
+  EXPECT_EQ(results->back().end, answer(jobs.back()).end);
 }
 
 TEST(JobPool, StopEndsASearchThatWaits) {

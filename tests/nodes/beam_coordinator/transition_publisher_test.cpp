@@ -35,7 +35,7 @@ struct TransitionPublisherTest : ::testing::Test {
   bus::Bus bus{"memq://", bus::RunKey::random("test")};
   std::vector<transition_batch_t> batches;
   std::vector<stream_tail_t> tails;
-  TransitionPublisher publisher{bus, jobs::TaskShape{.bodies = 2, .actions = 48}};
+  TransitionPublisher publisher{bus, jobs::TaskShape{.bodies = 2, .actions = 48}, 3};
   bus::Seconds now = bus::monotonic_now();
 
   TransitionPublisherTest() {
@@ -144,8 +144,11 @@ TEST_F(TransitionPublisherTest, AcknowledgementsOfAnotherStreamAndBeyondTheEndAr
   ack(21, 100, {{3, 5}});
   tick();
   EXPECT_TRUE(numbers().empty());
+  publisher.seal();
+  ack(21, 100, {{3, 5}});
   EXPECT_EQ(bus.counters().all(),
-            (std::map<std::string, long>{{"stream.illegal_ack", 1}, {"stream.other_stream", 1}}));
+            (std::map<std::string, long>{
+                {"stream.ack_ahead", 1}, {"stream.illegal_ack", 1}, {"stream.other_stream", 1}}));
   EXPECT_EQ(publisher.state().consumers, 0);
 }
 

@@ -14,7 +14,7 @@ def test_two_streams_are_not_mixed():
     stream = TransitionStream(ours, bodies=3, actions=48, most=9, sink=print)
     for number in (5, 5, 6):
         ours.publish("RTG_TAIL", "stream_tail_t", stream=number)
-    with pytest.raises(RunError, match="the coordinator was restarted"):
+    with pytest.raises(RunError, match="the coordinator began another generation"):
         stream.poll(0.0)
 
 

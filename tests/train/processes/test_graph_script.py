@@ -161,6 +161,31 @@ def test_a_failure_of_coordinator_or_trainer_ends_the_run_with_its_last_words(gr
     assert graph.programs() == []
 
 
+def test_a_killed_coordinator_with_a_journal_is_started_again(graph):
+    journal = graph.run_folder / "generation.journal"
+    (graph.run_folder / "run.key").touch()
+    killed = f'echo >> "{journal}"; if (($(stat -c %s "{journal}") < 15)); then kill -KILL $$; fi'
+    graph.let("rtg_beam_coordinator", f"{killed}; {DONE}")
+    graph.let(
+        "python", f'while [[ ! -e "{graph.run_folder}/generation.json" ]]; do sleep 0.1; done'
+    )
+    again = "beam_coordinator was killed by SIGKILL, started again\n"
+    assert graph.run() == (0, 14 * again)
+
+
+@pytest.mark.parametrize(("journal", "starts"), [("touch", 10), (":", 1)])
+def test_a_coordinator_killed_without_adding_to_a_journal_ends_the_run(graph, journal, starts):
+    (graph.run_folder / "run.key").touch()
+    killed = f'echo memory; {journal} "{graph.run_folder}/generation.journal"; kill -KILL $$'
+    graph.let("rtg_beam_coordinator", killed)
+    graph.let("python", PATIENT)
+    status, out = graph.run()
+    assert status == 137
+    assert out.count("started again") == starts - 1
+    assert out.endswith(starts * "memory\n" if starts < 8 else 8 * "memory\n")
+    assert graph.programs() == []
+
+
 def test_a_coordinator_that_gave_units_up_lets_the_trainer_finish(graph):
     graph.let("rtg_beam_coordinator", f"{DONE}; echo working; echo 2 units; exit 3")
     graph.let("python", "sleep 1; echo learned")

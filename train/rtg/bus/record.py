@@ -26,8 +26,8 @@ def _say(words: str) -> None:
 def record(config: _core.Config, key: _core.RunKey, file: Path) -> None:
     """Waits for the end of the run's transitions and writes them to `file`.
 
-    Raises RunError if the coordinator was restarted, UserError if there is no folder for the file
-    or `file` is a folder.
+    Raises RunError if the coordinator begins another generation, UserError if there is no folder
+    for the file or `file` is a folder.
     """
     if file.is_dir():
         raise UserError(f"{file}: is a folder; legal: a file in a folder that exists")

@@ -65,7 +65,8 @@ class TransitionStream:
     def poll(self, timeout: float) -> int:
         """Waits at most `timeout` s for messages; returns the number of rows passed to the sink.
 
-        Raises RunError if the coordinator, which sends the rows, was restarted.
+        A coordinator that is started again sends the same rows. Raises RunError if it begins
+        another generation.
         """
         before = self._cursor.cursor
         self._bus.spin(timeout)
@@ -114,7 +115,7 @@ class TransitionStream:
         if self._stream is None:
             self._stream = stream
         if stream != self._stream:
-            raise RunError("the coordinator was restarted: two streams must not be mixed")
+            raise RunError("the coordinator began another generation; its rows differ")
 
     def _acknowledge(self) -> None:
         if self._stream is None:

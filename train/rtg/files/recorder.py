@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from rtg import _core
-from rtg.files import dataset, versions
+from rtg.files import dataset, run_folder, versions
 from rtg.files.dataset import Rows, Transitions
 
 
@@ -46,9 +46,13 @@ class Recorder:
         dataset.write(path, self.transitions(), self._origin)
 
     def finish(self, path: Path) -> None:
-        """Writes all transitions of the run to `path`, and seals the file (versions.seal())."""
+        """Writes all transitions of the run to `path`, and seals the file (versions.seal()).
+
+        Removes the journal of their generation, which has served its purpose.
+        """
         self.write(path)
         versions.seal(path)
+        (path.parent / run_folder.JOURNAL_FILE).unlink(missing_ok=True)
 
 
 def _no_rows(bodies: int) -> Rows:

@@ -115,6 +115,8 @@ def config_file(run: Path) -> Path:
     return file
 
 
+# The answers of the simulators to a generation that has not ended, from which --resume goes on.
+JOURNAL_FILE = "generation.journal"
 KEY_FILE = "run.key"  # the secret with which the processes of a run authenticate their messages
 
 

@@ -6,12 +6,13 @@ import atexit
 import os
 import threading
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from rtg import _core
-from rtg.errors import StoppedError
+from rtg.errors import RunError, StoppedError
 from rtg.files import run_folder
 from rtg.files.dataset import Rows
 from rtg.files.recorder import Recorder
@@ -25,10 +26,13 @@ _STOP_TIMEOUT = 4.0  # [s] that stop() waits for the end of a layer
 
 
 class Generation:
-    """Runs `_core.generate` on a thread, so that the calling thread can display and stop it."""
+    """Runs `_core.generate` on a thread, so that the calling thread can display and stop it.
 
-    def __init__(self, config: _core.Config, recorder: Recorder) -> None:
-        self._config, self._recorder = config, recorder
+    The generation goes on from the file `journal`.
+    """
+
+    def __init__(self, config: _core.Config, recorder: Recorder, journal: Path) -> None:
+        self._config, self._recorder, self._journal = config, recorder, journal
         self._workers: int = config.run.workers
         self._progress: dict[str, Any] = {}
         self._stop = False
@@ -66,7 +70,11 @@ class Generation:
 
     def _generate(self) -> None:
         try:
-            self._report = _core.generate(self._config, self._on_rows, self._on_progress)
+            self._report = _core.generate(
+                self._config, self._on_rows, self._on_progress, self._journal
+            )
+        except _core.JournalError as error:
+            self._failure = RunError(str(error))
         except BaseException as error:
             self._failure = error
 
@@ -83,16 +91,16 @@ class Generation:
 def generate(plan: RunPlan, display: Display) -> None:
     """Generates the transitions; writes generation.json and transitions.npz.
 
-    Raises StoppedError on a signal.
+    Raises StoppedError on a signal, RunError if the journal cannot be written.
     """
     recorder = Recorder(plan.config)
     with Interrupts() as interrupts:
-        generation = Generation(plan.config, recorder)
+        generation = Generation(plan.config, recorder, plan.folder / run_folder.JOURNAL_FILE)
         while not generation.wait(_POLL):
             display.show(replace(generation.state(), budget=plan.interactions))
             if interrupts.requested():
                 generation.stop()
                 raise StoppedError
-    recorder.finish(plan.transitions_file)
     run_folder.write_text(plan.report_file, generation.report())
+    recorder.finish(plan.transitions_file)
     display.show(replace(generation.state(), budget=plan.interactions))

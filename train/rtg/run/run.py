@@ -62,6 +62,7 @@ def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
     if not plan.offline:
         shown.note("no generated data: all that is learned or planned comes from the simulator")
     elif plan.is_generated():
+        (plan.folder / run_folder.JOURNAL_FILE).unlink(missing_ok=True)
         report = run_folder.read_json(plan.report_file) if plan.own_data else None
         shown.note(
             own_data.words(report["data"]) if report else "the transitions are there already"
