@@ -70,18 +70,21 @@ TEST_P(JournaledGeneration, KilledTwentyTimesItFindsTheSameTransitions) {
   const testing::Folder folder;
   Journaled generation(GetParam(), folder);
   const testing::GenerationRun undisturbed = generation.run(-1);
+  const long all = generation.computed;
   std::filesystem::remove(generation.file);
   std::mt19937 random(1);
-  std::uniform_int_distribution last(0, generation.batches - 1), lost(0, 200);
+  std::uniform_int_distribution last(0, generation.batches - 1);
+  std::uintmax_t before = 0;  // end of the journal; what is written after it may be torn
   for (int kill = 0; kill < 20; ++kill) {
     EXPECT_THROW(generation.run(last(random), 1 + kill % 3), Killed);
-    const auto size = static_cast<int>(std::filesystem::file_size(generation.file));
-    const int left = std::max(0, size - lost(random));  // the last record is torn
-    std::filesystem::resize_file(generation.file, static_cast<std::uintmax_t>(left));
+    const std::uintmax_t end = std::filesystem::file_size(generation.file);
+    std::uniform_int_distribution<std::uintmax_t> torn(std::min(before, end), end);
+    before = torn(random);
+    std::filesystem::resize_file(generation.file, before);
   }
   const testing::GenerationRun resumed = generation.run(-1);
   expect_equal(resumed, undisturbed);
-  EXPECT_LT(generation.computed, undisturbed.report.stats.replays);
+  EXPECT_LT(generation.computed, all);
 }
 
 TEST_P(JournaledGeneration, FindsWhatOneWithoutAJournalFinds) {
@@ -115,7 +118,7 @@ TEST(Journaled, AnAnswerThatIsIllegalOrGivenUpIsComputed) {
   UnitJournal journal(folder.path / "journal", kGeneration);
   int asked = 0;
   const search::ReplayBatch replay = [&](std::span<const search::ReplayJob> some) {
-    ++asked;
+    asked += some.empty() ? 0 : 1;
     std::vector<search::ReplayResult> results;
     for (const search::ReplayJob& job : some) results.push_back({job.start, true, 0.5});
     return results;
