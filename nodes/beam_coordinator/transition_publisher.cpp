@@ -61,8 +61,8 @@ TransitionPublisher::State TransitionPublisher::state() const {
 void TransitionPublisher::on_ack(const rtg_msgs::stream_ack_t& message) {
   if (message.stream != stream_) return bus_.counters().add("stream.other_stream");
   const std::scoped_lock lock(mutex_);
-  if (!server_.sealed() &&
-      message.cursor > server_.count())  // has rows of a coordinator killed since
+  // The consumer may have rows that a coordinator killed since has sent.
+  if (!server_.sealed() && message.cursor > server_.count())
     return bus_.counters().add("stream.ack_ahead");
   std::vector<stream::RowRange> missing;
   for (std::size_t k = 0; k < message.first.size(); ++k)
