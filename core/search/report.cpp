@@ -97,6 +97,7 @@ std::string to_json(const GenerationReport& r) {
                                             {"cpu_s", stats.times[k].cpu_s}};
   out["generate_wall_s"] = r.generate_wall_s;
   out["generate_cpu_s"] = r.generate_cpu_s;
+  if (!r.rows_sha256.empty()) out["rows_sha256"] = r.rows_sha256;
   out["shortfalls"] = r.shortfalls;
   out["iterations"] = stats.iterations;
   out["pushing_iterations"] = stats.pushing_iterations;

@@ -66,7 +66,10 @@ std::optional<search::GenerationReport> CoordinatorNode::run(const Search& searc
   thread.join();
   if (failure) std::rethrow_exception(failure);
   if (options_.stopped()) report.reset();
-  if (report) report->units_given_up = given_up();
+  if (report) {
+    report->units_given_up = given_up();
+    report->rows_sha256 = digest_.hex();
+  }
   return report;
 }
 
@@ -85,7 +88,10 @@ search::GenerationSeams CoordinatorNode::seams() {
     return reverse_.answers(jobs);
   };
   seams.replay = [this](std::span<const search::ReplayJob> jobs) { return replay_.answers(jobs); };
-  seams.store = [this](std::span<const search::Transition> rows) { transitions_.store(rows); };
+  seams.store = [this](std::span<const search::Transition> rows) {
+    digest_.add(rows);
+    transitions_.store(rows);
+  };
   seams.progress = [this](const search::Progress& progress) {
     const std::scoped_lock lock(mutex_);
     progress_ = progress;

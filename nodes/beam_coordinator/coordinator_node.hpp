@@ -7,6 +7,7 @@
 
 #include "core/search/generate.hpp"
 #include "nodes/beam_coordinator/job_pool.hpp"
+#include "nodes/beam_coordinator/row_digest.hpp"
 #include "nodes/beam_coordinator/transition_publisher.hpp"
 #include "nodes/bus/node_status.hpp"
 
@@ -59,6 +60,7 @@ class CoordinatorNode {
   JobPool<jobs::ReverseService> reverse_;
   JobPool<jobs::ReplayService> replay_;
   TransitionPublisher transitions_;
+  RowDigest digest_;  // of the stream; the thread of the search adds to it
   bus::NodeStatus status_;
   bus::Ticker progress_ticker_{0.5};
   bool served_ = false;  // a worker or the server has been heard

@@ -15,6 +15,7 @@
 #include "nodes/beam_coordinator/coordinator_node.hpp"
 #include "nodes/config/config.hpp"
 #include "nodes/files/atomic_file.hpp"
+#include "nodes/files/sealed_json.hpp"
 #include "nodes/program/program.hpp"
 #include "nodes/program/shutdown.hpp"
 
@@ -41,7 +42,8 @@ int run(const program::Words& words) {
   });
   if (report) {
     report->units_from_journal = journal.units_found();
-    files::write_atomically(std::filesystem::path(words[2]) / "generation.json", to_json(*report));
+    files::write_atomically(std::filesystem::path(words[2]) / "generation.json",
+                            files::sealed_json(to_json(*report)));
     program::say("has found " + std::to_string(report->coverage.transitions) +
                  " transitions, waits until all consumers have them");
     node.drain(consumers);

@@ -9,6 +9,7 @@ import rtg
 from rtg import paths
 from rtg.errors import UserError
 from rtg.files import own_data
+from rtg.files.row_digest import row_digest
 
 TINY = paths.CONFIG / "tests" / "tiny.yaml"
 
@@ -80,7 +81,7 @@ def test_a_policy_is_trained_and_loaded(task, data, tmp_path: Path) -> None:
             np.testing.assert_array_equal(getattr(stored, field.name), getattr(data, field.name))
     given = own_data.of_run(tmp_path / "run")
     assert given["format"] == "arrays" and given["name"] is None
-    assert given["sha256"] == own_data.digest(
+    assert given["sha256"] == row_digest(
         own_data.rows_in_metres(task.core, data.states, data.actions, data.next_states, data.source)
     )
     with pytest.raises(UserError, match="holds a learner already"):

@@ -232,21 +232,27 @@ def _check_utf8(words: Sequence[str]) -> None:
 def _command(words: Sequence[str]) -> int:
     _check_utf8(words)
     tool = _TOOLS.get(words[0]) if words else None
-    status = tool(words[1:]) if tool else _run(words)
-    sys.stdout.flush()  # Python would flush after main(), where no handler catches errors
-    return status
+    return tool(words[1:]) if tool else _run(words)
+
+
+def _open_standard_streams() -> None:
+    """Gives closed standard streams to /dev/null, lest a file of the run takes their place."""
+    while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
+        pass
+    os.close(number)
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(number, "r" if number == 0 else "w"))
 
 
 def main(words: Sequence[str] | None = None) -> int:
     """Runs the command and returns its exit status: 0 success, 2 bad input, 1 anything else."""
     words = list(sys.argv[1:] if words is None else words)
+    _open_standard_streams()
     try:
         return exit_status("rtg", lambda: _command(words))
     except KeyboardInterrupt:
         print("rtg: interrupted", file=sys.stderr)
-        return 1
-    except BrokenPipeError:  # the reader of the output has closed the pipe, as `head` does
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
 
 

@@ -14,6 +14,7 @@ from rtg.arguments import checked, numbers
 from rtg.errors import UserError
 from rtg.files import own_data, run_folder
 from rtg.files.own_data import OwnData
+from rtg.files.row_digest import row_digest
 from rtg.task import Task
 from rtg.transitions import Transitions
 
@@ -69,7 +70,7 @@ def _own_data(task: Task, data: Transitions) -> OwnData:
     rows = own_data.rows_in_metres(
         task.core, data.states, data.actions, data.next_states, data.source
     )
-    return OwnData(rows, {"format": "arrays", "name": None, "sha256": own_data.digest(rows)})
+    return OwnData(rows, {"format": "arrays", "name": None, "sha256": row_digest(rows)})
 
 
 @checked
@@ -104,7 +105,7 @@ def train(
     if (run / "checkpoint").exists() or (run / "model.pt").exists():
         raise UserError(f"{run}: holds a learner already; legal: another folder")
     run.mkdir(parents=True, exist_ok=True)
-    (run / "config.yaml").write_text(config.yaml)
+    run_folder.write_text(run / "config.yaml", config.yaml)
     own_data.store(run, config, given)
     threads = th.get_num_threads()
     th.set_num_threads(1)  # networks this small are slower on more

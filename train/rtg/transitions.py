@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rtg import _core
 from rtg.arguments import checked
 from rtg.errors import StoppedError
-from rtg.files import own_data
+from rtg.files import archives, own_data
 from rtg.task import Task
 
 Floats = NDArray[np.float64]
@@ -58,7 +58,7 @@ class Transitions:
     @checked
     def save(self, path: str | PathLike[str]) -> None:
         """Writes the file that load() and `rtg TASK --data FILE` read: a .npz."""
-        with Path(path).open("wb") as file:
+        with archives.written(Path(path)) as file:
             np.savez(
                 file,
                 states=self.states,

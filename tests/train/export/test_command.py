@@ -1,11 +1,11 @@
 """`rtg export` on the command line."""
 
-import json
 import sys
 
 import pytest
 from exported import run_folder
 from rtg.cli import main
+from rtg.files import run_folder as files
 from time_limit import run
 
 
@@ -27,9 +27,9 @@ def test_bad_words_are_refused(capsys, tmp_path):
 
 def test_a_changed_file_is_refused(capsys, tmp_path):
     run = run_folder(tmp_path / "run")
-    made = json.loads((run / "versions.json").read_text())
+    made = files.read_json(run / "versions.json")
     made["generator"]["sha256"]["transitions.npz"] = "0" * 64
-    (run / "versions.json").write_text(json.dumps(made))
+    files.write_json(run / "versions.json", made)
     assert "was changed since the run wrote it" in refused(capsys, "minari", str(run))
 
 

@@ -84,7 +84,7 @@ def test_a_run_of_another_task_and_a_changed_file_are_refused(run):
         own_data.read(run, other)
     with file.open("ab") as more:
         more.write(b"x")
-    with pytest.raises(UserError, match=f"^{file}: was changed since the run wrote it"):
+    with pytest.raises(UserError, match=rf"^{file}: .*or changed since it was written\); legal: "):
         own_data.read(run, TASK)
 
 
@@ -93,17 +93,6 @@ def test_a_folder_without_transitions_is_refused(tmp_path):
         UserError, match=r"/transitions\.npz: no such file; legal: a \.npz of numpy"
     ):
         own_data.read(tmp_path, TASK)
-
-
-def test_the_digest_of_arrays_is_that_of_their_content(generated):
-    rows = generated[0]
-    again = type(rows)(*(column.copy() for column in rows))
-    assert own_data.digest(again) == own_data.digest(rows)
-    for name in ("poses", "action", "next_poses", "source"):
-        changed = getattr(rows, name).copy()
-        changed.flat[-1] += 1
-        assert own_data.digest(rows._replace(**{name: changed})) != own_data.digest(rows)
-    assert own_data.digest(rows.slice(1)) != own_data.digest(rows)
 
 
 @pytest.mark.parametrize(
@@ -137,7 +126,7 @@ def test_a_file_without_transitions_or_arrays_is_refused(tmp_path, generated):
     np.save(tmp_path / "one.npy", np.zeros(3))
     for name in ("text.npz", "one.npy"):
         with pytest.raises(
-            UserError, match=r"is not a transition file, or damaged; legal: a \.npz"
+            UserError, match=r"is not a transition file, or damaged \(no archive, .* legal: a \.npz"
         ):
             own_data.read(tmp_path / name, TASK)
 

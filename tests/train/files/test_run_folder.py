@@ -1,14 +1,13 @@
 """summary.json and the other files of the run folder."""
 
 import errno
-import json
 import os
 import re
 from pathlib import Path
 
 import pytest
 from rtg import _core, paths
-from rtg.errors import UserError
+from rtg.errors import RunError, UserError
 from rtg.files import replay_gaps, run_folder
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["run.seed=7", "run.workers=2"])
@@ -77,7 +76,7 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
     run_folder.write_json(file, {"a": 1})
     with pytest.raises(TypeError):
         run_folder.write_json(file, {"a": object()})
-    assert json.loads(file.read_text()) == {"a": 1}
+    assert run_folder.read_json(file) == {"a": 1}
     assert [path.name for path in tmp_path.iterdir()] == ["summary.json"]
 
 
@@ -145,9 +144,17 @@ def test_an_error_of_another_file_names_that(tmp_path):
 
 
 def test_an_error_without_a_file_is_of_the_target(tmp_path):
-    for error in (OSError(errno.ENOSPC, "no space left"), OSError(errno.EIO, "bad", 3)):
+    for error in (OSError("no number"), OSError(errno.EROFS, "read-only", 3)):
         with (
-            pytest.raises(UserError, match=f"^--out: {tmp_path}: (no space left|bad); legal: "),
+            pytest.raises(UserError, match=f"^--out: {tmp_path}: (no number|read-only); legal: "),
             run_folder.write_errors_as_user_errors(tmp_path),
         ):
             raise error
+
+
+def test_no_input_is_to_blame_for_a_full_disk(tmp_path):
+    with (
+        pytest.raises(RunError, match=f"^{tmp_path}: full; to mend it: free some space on the"),
+        run_folder.write_errors_as_user_errors(tmp_path),
+    ):
+        raise OSError(errno.ENOSPC, "full")

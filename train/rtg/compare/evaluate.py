@@ -8,9 +8,8 @@ from pathlib import Path
 
 import torch as th
 
-from rtg import _core
+from rtg import _core, errors
 from rtg.compare.report_tables import table
-from rtg.errors import UserError
 from rtg.files import run_folder
 from rtg.learn import policy_file, robustness
 from rtg.learn.robustness import Row, Variant
@@ -89,7 +88,7 @@ def draw_again(run: Path) -> None:
     file = run / "evaluation.json"
     if not file.is_file():
         return
-    try:
+    with errors.fields_of(file):
         rows = [
             Row(
                 Variant(row["group"], row["label"]),
@@ -99,7 +98,5 @@ def draw_again(run: Path) -> None:
             )
             for row in run_folder.read_json(file)["rows"]
         ]
-    except (KeyError, TypeError):
-        raise UserError(f"{file}: is damaged; legal: the file as evaluate wrote it") from None
     title = _title(effective_config.load_written(run / "config.yaml"))
     plots.robustness(run / "evaluation.png", title, rows)

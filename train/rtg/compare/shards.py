@@ -7,7 +7,6 @@ same to the bit wherever the jobs run, and as one process would find them.
 from __future__ import annotations
 
 import hashlib
-import json
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -18,7 +17,7 @@ from rtg.compare.cell_run import CellRun, module_command
 from rtg.compare.grouped_seeds import Generation
 from rtg.compare.merged_report import merged
 from rtg.errors import exit_status
-from rtg.files import dataset, run_folder, versions
+from rtg.files import dataset, row_digest, run_folder, versions
 from rtg.files.dataset import Rows
 from rtg.files.recorder import Recorder
 from rtg.run import effective_config, run_args
@@ -96,8 +95,9 @@ def merge(run: Path, shards: Sequence[Path]) -> None:
         found = dataset.read(shard / "transitions.npz", config.task)
         recorder.add(Rows._make(getattr(found, name) for name in Rows._fields))
     report = merged([run_folder.read_json(shard / "generation.json") for shard in shards])
+    report[row_digest.KEY] = recorder.digest()
+    run_folder.write_json(run / "generation.json", report, indent=None)
     recorder.finish(run / "transitions.npz")
-    run_folder.write_text(run / "generation.json", json.dumps(report))
 
 
 def main(words: Sequence[str]) -> int:

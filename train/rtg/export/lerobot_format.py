@@ -219,9 +219,11 @@ def _write_metadata(folder: Path, data: RunData, writer: _Writer) -> None:
     words = task_words(data.config.task)
     tasks = pandas.DataFrame({"task_index": [0]}, index=pandas.Index([words], name="task"))
     tasks.to_parquet(meta / "tasks.parquet")
-    run_folder.write_json(meta / "info.json", _info(data.config.task, writer))
-    run_folder.write_json(meta / "stats.json", writer.statistics())
-    run_folder.write_json(meta / "rtg.json", run_data.origin_figures(data))
+    run_folder.write_text(
+        meta / "info.json", run_folder.plain_json(_info(data.config.task, writer))
+    )
+    run_folder.write_text(meta / "stats.json", run_folder.plain_json(writer.statistics()))
+    run_folder.write_text(meta / "rtg.json", run_folder.plain_json(run_data.origin_figures(data)))
 
 
 def _write_files(folder: Path, data: RunData, episodes: Sequence[Episode]) -> None:

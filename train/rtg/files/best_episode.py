@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import zipfile
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rtg.errors import UserError
+from rtg.files import archives
 
 FILE = "best_episode.npz"
 
@@ -17,7 +17,8 @@ Floats = NDArray[np.float64]
 
 def write(run: Path, poses: Floats, success: bool) -> None:
     """Writes the states of the episode, [T + 1, bodies, 3], and whether it succeeds."""
-    np.savez(run / FILE, poses=poses, success=success)
+    with archives.written(run / FILE) as file:
+        np.savez(file, poses=poses, success=success)
 
 
 def read(run: Path, bodies: int) -> tuple[Floats, bool]:
@@ -27,11 +28,11 @@ def read(run: Path, bodies: int) -> tuple[Floats, bool]:
     """
     path = run / FILE
     try:
-        with np.load(path, allow_pickle=False) as file:
-            poses, success = np.asarray(file["poses"], np.float64), bool(file["success"])
+        found = archives.arrays(path, ("poses", "success"))
+        poses, success = np.asarray(found["poses"], np.float64), bool(found["success"])
         if poses.ndim != 3 or poses.shape[1:] != (bodies, 3) or not len(poses):
             raise ValueError(poses.shape)
-    except (OSError, EOFError, ValueError, TypeError, KeyError, zipfile.BadZipFile):
+    except (OSError, ValueError, TypeError, KeyError):
         raise UserError(
             f"{path}: is damaged; legal: the file as the run wrote it, or no file"
         ) from None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+import io
 from pathlib import Path
 from typing import Any
 
@@ -10,25 +10,25 @@ import numpy as np
 import torch as th
 
 from rtg.errors import UserError
+from rtg.files import archives
 
 
 def write(path: Path, state: dict[str, Any]) -> None:
     """Writes `state` to `path`, atomically even if the machine crashes."""
-    draft = path.with_name(path.name + ".part")
-    with draft.open("wb") as file:
-        th.save(_portable(state), file)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(draft, path)
+    content = io.BytesIO()  # PyTorch hides the errors of a file
+    th.save(_portable(state), content)
+    with archives.written(path) as file:
+        file.write(content.getbuffer())
 
 
 def read(path: Path) -> dict[str, Any]:
     """Reads a file that write() wrote; arrays become tensors. Executes no code from the file.
 
-    Raises UserError if the file is missing, unreadable or damaged.
+    Raises UserError if the file is missing, unreadable or changed.
     """
     try:
-        state = th.load(path, map_location="cpu", weights_only=True)
+        with archives.opened(path) as file:
+            state = th.load(file, map_location="cpu", weights_only=True)
     except FileNotFoundError:
         raise UserError(
             f"{path}: no such file; legal: a checkpoint or policy file of RTG"

@@ -5,10 +5,8 @@ docs/data.md says what each array means.
 
 from __future__ import annotations
 
-import contextlib
-import os
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,8 +15,9 @@ import numpy.typing as npt
 
 from rtg import _core
 from rtg.errors import UserError
-from rtg.files import versions
+from rtg.files import archives, run_folder, versions
 from rtg.files.chains import Chains, chains_of
+from rtg.files.row_digest import KEY, row_digest
 
 Array = npt.NDArray[Any]
 
@@ -95,18 +94,6 @@ _COLUMNS = {
 }
 
 
-# Errors that numpy and zipfile raise on damaged files.
-_DAMAGED_FILE_ERRORS = (
-    ValueError,
-    EOFError,
-    KeyError,
-    RuntimeError,
-    MemoryError,
-    TypeError,  # a .npy is an array and no archive
-    zipfile.BadZipFile,
-)
-
-
 class DatasetError(UserError, ValueError):
     """An error for a file that is missing or is no legal transition set.
 
@@ -119,18 +106,20 @@ def concatenate(parts: list[Transitions]) -> Transitions:
     return Transitions(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
 
 
-@contextlib.contextmanager
-def errors_about(path: Path, legal: str) -> Iterator[None]:
-    """Turns errors of numpy in the `with` block, which reads `path`, into a DatasetError."""
+def read_arrays(path: Path, names: Iterable[str], legal: str) -> dict[str, Array]:
+    """Returns those arrays of a .npz that are asked for and there.
+
+    Raises DatasetError if it cannot be read, or was changed since RTG wrote it. `legal`: in words.
+    """
     try:
-        yield
-    except DatasetError:
-        raise
+        return archives.arrays(path, names)
     except FileNotFoundError:
         raise DatasetError(f"{path}: no such file; legal: {legal}") from None
-    except (*_DAMAGED_FILE_ERRORS, OSError) as error:
-        why = f" ({error})" if isinstance(error, OSError) else ", or damaged"
-        raise DatasetError(f"{path}: is not a transition file{why}; legal: {legal}") from error
+    except (OSError, ValueError) as error:
+        why = (isinstance(error, OSError) and error.strerror) or error
+        raise DatasetError(
+            f"{path}: is not a transition file, or damaged ({why}); legal: {legal}"
+        ) from error
 
 
 def chains(transitions: Transitions) -> Chains:
@@ -145,54 +134,47 @@ def write(path: Path, transitions: Transitions, origin: Origin) -> None:
     Equal transitions of equal origin give bitwise equal files.
     """
     members = {**transitions._asdict(), **chains(transitions)._asdict(), **origin._asdict()}
-    partial = path.with_name(path.name + ".part")
-    with partial.open("wb") as file:
-        with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
-            for name, column in _COLUMNS.items():
-                entry = zipfile.ZipInfo(f"{name}.npy", _ZIP_EPOCH)
-                with archive.open(entry, "w", force_zip64=True) as member:
-                    array: Array = np.asarray(members[name], column.dtype, order="C")
-                    np.lib.format.write_array(member, array, allow_pickle=False)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(partial, path)
+    with archives.written(path) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+        for name, column in _COLUMNS.items():
+            entry = zipfile.ZipInfo(f"{name}.npy", _ZIP_EPOCH)
+            with archive.open(entry, "w", force_zip64=True) as member:
+                array: Array = np.asarray(members[name], column.dtype, order="C")
+                np.lib.format.write_array(member, array, allow_pickle=False)
 
 
 def read(path: Path, task: _core.Task | None = None) -> Transitions:
     """Reads and checks a transition set.
 
     It must be one of `task`, if that is given. Raises DatasetError if there is no file or it is no
-    legal transition set, UserError if it was changed since it was sealed (versions.seal()).
+    legal transition set, or not the one that the generation.json beside it tells of; UserError if
+    it was changed since it was sealed (versions.seal()).
     """
     return read_with_origin(path, task)[0]
 
 
 def read_with_origin(path: Path, task: _core.Task | None = None) -> tuple[Transitions, Origin]:
     """The same, and where the set comes from."""
-    with (
-        errors_about(path, "a transitions.npz of RTG"),
-        np.load(path, allow_pickle=False) as archive,
-    ):
-        arrays = {name: _member(path, archive, name) for name in _COLUMNS}
+    arrays = read_arrays(path, _COLUMNS, "a transitions.npz of RTG")
+    _check_types(path, arrays)
     versions.check_seal(path)
     _check_shapes(path, arrays)
     transitions = Transitions(*(arrays[name] for name in Transitions._fields))
     origin = Origin(*(arrays[name].item() for name in Origin._fields))
     _check_values(path, transitions)
     _check_episodes(path, arrays, chains(transitions))
+    _check_report(path, transitions)
     if task is not None:
         _check_task(path, transitions, origin, task)
     return transitions, origin
 
 
-def _member(path: Path, archive: Any, name: str) -> Array:
-    if name not in archive:
-        raise DatasetError(f"{path}: array '{name}' is missing; legal: {', '.join(_COLUMNS)}")
-    array: Array = archive[name]
-    expected = np.dtype(_COLUMNS[name].dtype)
-    if array.dtype != expected and (array.dtype.kind, expected.kind) != ("U", "U"):
-        raise DatasetError(f"{path}: '{name}' has type {array.dtype}; legal: {expected.name}")
-    return array
+def _check_types(path: Path, arrays: dict[str, Array]) -> None:
+    for name, column in _COLUMNS.items():
+        if name not in arrays:
+            raise DatasetError(f"{path}: array '{name}' is missing; legal: {', '.join(_COLUMNS)}")
+        found, expected = arrays[name].dtype, np.dtype(column.dtype)
+        if found != expected and (found.kind, expected.kind) != ("U", "U"):
+            raise DatasetError(f"{path}: '{name}' has type {found}; legal: {expected.name}")
 
 
 def _check_shapes(path: Path, arrays: dict[str, Array]) -> None:
@@ -235,6 +217,15 @@ def _check_episodes(path: Path, arrays: dict[str, Array], expected: Chains) -> N
                 f"{path}: '{name}' is not that of these rows; legal: what RTG wrote, see "
                 "docs/data.md"
             )
+
+
+def _check_report(path: Path, transitions: Transitions) -> None:
+    report = path.with_name("generation.json")
+    if run_folder.read_json(report).get(KEY) not in (None, row_digest(transitions)):
+        raise DatasetError(
+            f"{path}: holds other transitions than {report.name} tells of, as their SHA-256 is "
+            f"not its {KEY}; legal: both as one run wrote them, or neither, to generate anew"
+        )
 
 
 def _check_task(path: Path, data: Transitions, origin: Origin, task: _core.Task) -> None:

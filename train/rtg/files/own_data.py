@@ -6,7 +6,6 @@ transitions.npz of another run; see docs/data.md.
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core, arguments
 from rtg.errors import UserError
-from rtg.files import dataset, run_folder, versions
+from rtg.files import dataset, row_digest, run_folder, versions
 from rtg.files.chains import numbered
 from rtg.files.dataset import Rows
 from rtg.files.recorder import Recorder
@@ -90,15 +89,6 @@ def rows_in_metres(
     return checked_rows(task, poses, actions, next_poses, source)
 
 
-def digest(rows: Rows) -> str:
-    """Returns the SHA-256 over the names, sizes and contents of all columns."""
-    found = hashlib.sha256()
-    for name, column in rows._asdict().items():
-        found.update(f"{name} {column.nbytes} ".encode())
-        found.update(column.tobytes())
-    return found.hexdigest()
-
-
 def file_of(path: Path) -> Path:
     """Returns the file of transitions that is meant: `path`, or that in the folder of a run."""
     return path / "transitions.npz" if path.is_dir() else path
@@ -111,19 +101,17 @@ def _arrays(file: Path) -> dict[str, NDArray[Any]] | None:
     the arrays.
     """
     legal = f"a .npz of numpy with {', '.join(_NEEDED)}, or the transitions.npz of a run"
-    with dataset.errors_about(file, legal), np.load(file, allow_pickle=False) as archive:
-        missing = [name for name in _NEEDED if name not in archive]
-        if missing and "next_poses" in archive:
-            return None
-        if missing:
-            raise dataset.DatasetError(
-                f"{file}: array '{missing[0]}' is missing; legal: {', '.join(_NEEDED)}, and source "
-                "if wanted"
-            )
-        found = {name: archive[name] for name in _NEEDED}
-        count = found["actions"].size
-        found["source"] = archive["source"] if "source" in archive else np.zeros(count, np.int8)
-        return found
+    found = dataset.read_arrays(file, (*_NEEDED, "source", "next_poses"), legal)
+    missing = [name for name in _NEEDED if name not in found]
+    if missing and "next_poses" in found:
+        return None
+    if missing:
+        raise dataset.DatasetError(
+            f"{file}: array '{missing[0]}' is missing; legal: {', '.join(_NEEDED)}, and source if "
+            "wanted"
+        )
+    source = found.get("source", np.zeros(found["actions"].size, np.int8))
+    return {name: found[name] for name in _NEEDED} | {"source": source}
 
 
 def _rows_of_run(file: Path, task: _core.Task) -> Rows:
@@ -170,7 +158,6 @@ def store(run: Path, config: _core.Config, own: OwnData) -> None:
     versions.write(run, {"data": own.origin})
     recorder = Recorder(config)
     recorder.add(own.rows)
-    recorder.finish(run / "transitions.npz")
     counts = {
         "transitions": len(own.rows.action),
         "successes": int(own.rows.terminated.sum()),
@@ -178,10 +165,12 @@ def store(run: Path, config: _core.Config, own: OwnData) -> None:
     report = {
         "data": {**own.origin, **counts},
         **figures(config.task, own.rows),
+        row_digest.KEY: recorder.digest(),
         "replay_gaps": [],
         "nodes": [],
     }
     run_folder.write_json(run / "generation.json", report)
+    recorder.finish(run / "transitions.npz")
 
 
 def of_run(run: Path) -> dict[str, Any] | None:

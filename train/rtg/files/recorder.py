@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from rtg import _core
-from rtg.files import dataset, run_folder, versions
+from rtg.errors import RunError
+from rtg.files import dataset, row_digest, run_folder, versions
 from rtg.files.dataset import Rows, Transitions
 
 
@@ -45,11 +46,25 @@ class Recorder:
         """Writes all transitions so far to `path`, atomically."""
         dataset.write(path, self.transitions(), self._origin)
 
+    def digest(self) -> str:
+        """Returns the row_digest() of all transitions so far."""
+        return row_digest.row_digest(self.transitions())
+
     def finish(self, path: Path) -> None:
         """Writes all transitions of the run to `path`, and seals the file (versions.seal()).
 
         Removes the journal of their generation, which has served its purpose.
+
+        Raises RunError if the generation.json beside it tells of others: those that were generated
+        are not those that came.
         """
+        report = path.with_name("generation.json")
+        told = run_folder.read_json(report).get(row_digest.KEY)
+        if told not in (None, self.digest()):
+            raise RunError(
+                f"{report}: the transitions that were generated are not the {self.count} that "
+                "arrived, as their SHA-256 differs; generate them anew with --resume"
+            )
         self.write(path)
         versions.seal(path)
         (path.parent / run_folder.JOURNAL_FILE).unlink(missing_ok=True)

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import json
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from rtg import _core, paths
+from rtg import _core, errors, paths
 from rtg.errors import UserError
-from rtg.files import replay_gaps
+from rtg.files import replay_gaps, whole_files
 
 # Keys of every summary.json; train/SUMMARY.md explains them. A value that was not measured is null.
 SUMMARY_KEYS = (
@@ -58,23 +59,26 @@ SUMMARY_KEYS = (
 # and what it has among "defects".
 _LEFT_OUT = ("iterations", "pushing_iterations", "replay_gaps", "nodes", "shortfalls")
 
+_SEAL = "sha256"  # the last member of a JSON object: see write_json()
+_DIGITS = 64
+
 
 @contextlib.contextmanager
 def write_errors_as_user_errors(folder: Path) -> Iterator[None]:
     """Turns an OSError in the `with` block into a UserError about `folder` and --out.
 
-    If the error names a file elsewhere, the UserError is about that file.
+    If the error names a file elsewhere, or is of the machine, it is told by errors.in_words().
     """
     try:
         yield
     except OSError as error:
-        cause = error.strerror or error  # libraries raise some without a number
-        file = error.filename  # str, bytes or path; a number if it has only a descriptor
-        if file and not isinstance(file, int) and not _belongs_to(Path(os.fsdecode(file)), folder):
-            wrong = f"{os.fsdecode(file)}: {cause}; legal: a file to read or write"
-        else:
-            wrong = f"--out: {folder}: {cause}; legal: a folder to write to"
-        raise UserError(wrong) from None
+        told, file = errors.in_words(error, folder), error.filename
+        if not errors.is_of_the_machine(error) and (
+            file is None or isinstance(file, int) or _belongs_to(Path(os.fsdecode(file)), folder)
+        ):
+            why = error.strerror or error
+            told = UserError(f"--out: {folder}: {why}; legal: a folder to write to")
+        raise told from None
 
 
 def _belongs_to(file: Path, folder: Path) -> bool:
@@ -128,34 +132,71 @@ def write_run_name(run: Path, name: str) -> None:
 def run_name(run: Path) -> str:
     """Returns the name of a run on the bus: that noted in its folder, else the folder's own."""
     file = run / "run_name"
-    return file.read_text().strip() if file.is_file() else run.resolve().name
+    return read_text(file).strip() if file.exists() else run.resolve().name
 
 
 def write_text(path: Path, text: str) -> None:
     """Writes `text` to `path`, atomically even if the machine crashes."""
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
-    with draft.open("w") as file:
-        file.write(text)
-        file.flush()
-        os.fsync(file.fileno())
-    draft.replace(path)
+    with whole_files.replacing(path) as file:
+        file.write(text.encode())
 
 
-def write_json(path: Path, value: Any) -> None:
-    """Writes `value` to `path` as indented JSON, atomically. Keys keep their order."""
-    write_text(path, json.dumps(value, indent=2, ensure_ascii=False) + "\n")
+def read_text(path: Path) -> str:
+    """Reads a text file. Raises UserError if it cannot be read or is no UTF-8."""
+    try:
+        return whole_files.read(path).decode()
+    except (OSError, UnicodeDecodeError) as error:
+        why = (isinstance(error, OSError) and error.strerror) or "is no UTF-8"
+        raise UserError(f"{path}: {why}; legal: the file as the run wrote it") from None
+
+
+def plain_json(value: Any) -> str:
+    """Returns indented JSON for other programs. Keys keep their order."""
+    return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+
+
+def write_json(path: Path, value: Mapping[str, Any], indent: int | None = 2) -> None:
+    """Writes a JSON object that read_json() is to read, atomically. Keys keep their order.
+
+    The last member, "sha256", is the SHA-256 of all bytes before its digits.
+    """
+    text = json.dumps({**value, _SEAL: ""}, indent=indent, ensure_ascii=False)
+    begin, end = text[: text.rindex('"')], text[text.rindex('"') :]
+    write_text(path, f"{begin}{hashlib.sha256(begin.encode()).hexdigest()}{end}\n")
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    """Reads a JSON object; {} if there is no file. Raises UserError if the file is damaged."""
-    if not path.is_file():
-        return {}
+    """Reads a JSON object; {} if there is no file.
+
+    Raises UserError if it was changed since write_json() wrote it. Objects of others, and those of
+    earlier versions of RTG, have no digest that could tell.
+    """
     try:
-        value = json.loads(path.read_text())
-    except ValueError:
-        value = None
+        content = whole_files.read(path)
+        return _unsealed(content)
+    except (FileNotFoundError, NotADirectoryError):
+        return {}
+    except OSError as error:
+        raise UserError(f"{path}: {error.strerror}; legal: a file to read, or no file") from None
+    except (ValueError, RecursionError):
+        raise UserError(
+            f"{path}: is damaged; legal: the file as the run wrote it, or no file"
+        ) from None
+
+
+def _unsealed(content: bytes) -> dict[str, Any]:
+    """Returns the object that write_json() wrote, or a foreign one. Raises ValueError."""
+    value = json.loads(content.decode())
     if not isinstance(value, dict):
-        raise UserError(f"{path}: is damaged; legal: the file as the run wrote it, or no file")
+        raise ValueError(value)
+    last = next(reversed(value), "")
+    digits = value.get(last)
+    # A changed bit leaves one of the two, the name or the length.
+    if last == _SEAL or (isinstance(digits, str) and len(digits) == _DIGITS):
+        begin = content.rstrip(b'"\n }')[:-_DIGITS]
+        if last != _SEAL or hashlib.sha256(begin).hexdigest() != digits:
+            raise ValueError(digits)
+        del value[_SEAL]
     return value
 
 

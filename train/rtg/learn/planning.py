@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rtg import _core
+from rtg import _core, errors
 from rtg.files import checkpoint, run_folder
 from rtg.learn import policy_file
 from rtg.learn.evaluation import FINAL_SEED, Evaluation, Floats, held_out_starts
@@ -146,7 +146,8 @@ class Planning:
         """
         state = checkpoint.read(self._checkpoint)
         policy_file.check_identity(self._checkpoint, state.get("identity"), self._identity)
-        known = [Plan(**{**one, "states": np.asarray(one["states"])}) for one in state["plans"]]
-        pairs: Any = zip(known, self.starts, strict=False)
-        same = takewhile(lambda pair: np.array_equal(pair[0].states[0], pair[1]), pairs)
-        self.plans = [one for one, _ in same]
+        with errors.fields_of(self._checkpoint):
+            known = [Plan(**{**one, "states": np.asarray(one["states"])}) for one in state["plans"]]
+            pairs: Any = zip(known, self.starts, strict=False)
+            same = takewhile(lambda pair: np.array_equal(pair[0].states[0], pair[1]), pairs)
+            self.plans = [one for one, _ in same]

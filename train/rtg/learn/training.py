@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from rtg import _core
+from rtg import _core, errors
 from rtg.envs.curriculum import Curriculum
 from rtg.envs.training_environments import TrainingEnvironments
 from rtg.errors import RunError, UserError
@@ -253,14 +253,15 @@ class Training:
         state = checkpoint.read(path)
         policy_file.check_identity(path, state.get("identity"), self._identity)
         rows = read_rows(self._seen_transitions(), self.task)
-        self.data.restore(state["data"], rows)
-        self.model.replay.restore(state["replay"])
-        self.model.restore(state["model"])
-        self.env.restore(state["env"])
-        self.log.rows = state["rows"]
-        self.log.write()
-        self.clock.restore(state["seconds"])
-        self.device_info = state["learner"]
+        with errors.fields_of(path):
+            self.data.restore(state["data"], rows)
+            self.model.replay.restore(state["replay"])
+            self.model.restore(state["model"])
+            self.env.restore(state["env"])
+            self.log.rows = state["rows"]
+            self.log.write()
+            self.clock.restore(state["seconds"])
+            self.device_info = state["learner"]
         self._saved_at, self._saved_rows = self.scheduled_interactions, self.data.count
 
     def _transition_files(self) -> tuple[Path, Path]:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from rtg.errors import RunError, UserError
+from rtg.errors import RunError, UserError, in_words
 from rtg.processes.program_log import ProgramLog
 
 _PR_SET_PDEATHSIG = 1
@@ -122,8 +122,17 @@ class Node:
         if status == 2 and words:
             raise UserError(words.splitlines()[-1])
         if status:
-            end = f"; the end of {self.log}:\n{words}" if words else ""
+            end = f"; the end of {self.log}:\n{words}" if words else self.why_mute()
             raise RunError(self.exit_text() + end)
+
+    def why_mute(self) -> str:
+        """Says why the program cannot have written to its log; empty if it could have."""
+        try:
+            with self.log.open("ab", buffering=0) as log:
+                log.write(b"\n")
+        except OSError as error:
+            return f"; {in_words(error, self.log)}"
+        return ""
 
 
 class Stoppable(Protocol):

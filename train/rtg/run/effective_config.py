@@ -10,6 +10,7 @@ from typing import Any
 
 from rtg import _core
 from rtg.errors import UserError
+from rtg.files import run_folder
 from rtg.run.run_args import Override
 
 Values = dict[str, dict[str, Any]]  # section -> key -> value
@@ -45,7 +46,7 @@ def load_written(file: Path) -> _core.Config:
     Raises UserError if `file` lacks a line that this version would write. The version that wrote it
     may have had another default for that setting.
     """
-    config, found = load(file), _settings(file.read_text())
+    config, found = load(file), _settings(run_folder.read_text(file))
     missing = [line for line in _settings(config.yaml) if line not in found]
     if missing:
         raise UserError(
@@ -60,7 +61,7 @@ def load_recorded(file: Path) -> _core.Config:
 
     Leaves out settings that this version no longer has. Raises UserError for other defects.
     """
-    lines = file.read_text().splitlines()
+    lines = run_folder.read_text(file).splitlines()
     while True:
         try:
             return _core.Config.from_text("\n".join(lines), str(file))

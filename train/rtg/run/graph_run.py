@@ -66,7 +66,7 @@ class GraphRun:
         defects, status = generation_defects(self._plan), graph.exit_status()
         fell_short = status == 1 and defects and set(self._failure) <= set(defects)
         if status and not fell_short:
-            raise self._error(status)
+            raise self._error(graph, status)
         return {
             "lost_transitions": 0,
             "worker_restarts": self._restarts,
@@ -99,10 +99,11 @@ class GraphRun:
             else:
                 self._failure.append(line)
 
-    def _error(self, status: int) -> Exception:
+    def _error(self, graph: Node, status: int) -> Exception:
         if status == 2 and self._failure:
             return UserError(self._failure[-1])
-        return RunError("\n".join(self._failure) or f"graph.sh ended with exit status {status}")
+        words = f"graph.sh ended with exit status {status}{graph.why_mute()}"
+        return RunError("\n".join(self._failure) or words)
 
 
 def run(plan: RunPlan, display: Display) -> dict[str, Any]:

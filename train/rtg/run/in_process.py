@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import json
 import os
 import threading
 from dataclasses import replace
@@ -13,7 +14,7 @@ import numpy as np
 
 from rtg import _core
 from rtg.errors import RunError, StoppedError
-from rtg.files import run_folder
+from rtg.files import row_digest, run_folder
 from rtg.files.dataset import Rows
 from rtg.files.recorder import Recorder
 from rtg.processes.interrupts import Interrupts
@@ -63,10 +64,11 @@ class Generation:
         """Returns the current state of the generation."""
         return replace(RunState(), **self._progress, workers=self._workers)
 
-    def report(self) -> str:
-        """Returns the content of generation.json. To be called only after the end."""
+    def report(self) -> dict[str, Any]:
+        """Returns the report of the generation. To be called only after the end."""
         assert self._report is not None
-        return self._report
+        report: dict[str, Any] = json.loads(self._report)
+        return report
 
     def _generate(self) -> None:
         try:
@@ -96,11 +98,13 @@ def generate(plan: RunPlan, display: Display) -> None:
     recorder = Recorder(plan.config)
     with Interrupts() as interrupts:
         generation = Generation(plan.config, recorder, plan.folder / run_folder.JOURNAL_FILE)
-        while not generation.wait(_POLL):
-            display.show(replace(generation.state(), budget=plan.interactions))
-            if interrupts.requested():
-                generation.stop()
-                raise StoppedError
-    run_folder.write_text(plan.report_file, generation.report())
+        try:
+            while not generation.wait(_POLL):
+                display.show(replace(generation.state(), budget=plan.interactions))
+                interrupts.raise_if_requested()
+        finally:
+            generation.stop()
+    report = {**generation.report(), row_digest.KEY: recorder.digest()}
+    run_folder.write_json(plan.report_file, report, indent=None)
     recorder.finish(plan.transitions_file)
     display.show(replace(generation.state(), budget=plan.interactions))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rtg import errors
 from rtg.errors import UserError
 from rtg.files import best_episode, dataset, own_data, run_folder
 from rtg.files.episodes import replayed_plan
@@ -25,9 +26,9 @@ def learning_curve(path: Path) -> dict[str, Floats]:
 
     Raises UserError if the file is damaged.
     """
+    text = run_folder.read_text(path)
     try:
-        with path.open(newline="") as file:
-            rows = list(csv.DictReader(file, strict=True))
+        rows = list(csv.DictReader(text.splitlines(keepends=True), strict=True))
         names = rows[0].keys() if rows else ()
         return {name: np.array([float(row[name] or "nan") for row in rows]) for name in names}
     except (ValueError, TypeError, csv.Error):
@@ -37,13 +38,15 @@ def learning_curve(path: Path) -> dict[str, Floats]:
 def draw_generation(plan: RunPlan) -> None:
     """Draws the pictures of a finished generation."""
     report = run_folder.read_json(plan.report_file)
-    if report["replay_gaps"]:
-        plots.replay_gap(plan.folder / "replay_gap.png", plan.title, report)
-    nodes = report["nodes"]
+    with errors.fields_of(plan.report_file):
+        if report["replay_gaps"]:
+            plots.replay_gap(plan.folder / "replay_gap.png", plan.title, report)
+        nodes = report["nodes"]
+        poses = np.array([node["poses"] for node in nodes], float)
+        poses = poses.reshape(len(nodes), plan.config.task.bodies, 3)
+        depth = np.array([node["depth"] for node in nodes], float)
     if not nodes:  # only a tree search has nodes
         return
-    poses = np.array([node["poses"] for node in nodes]).reshape(-1, plan.config.task.bodies, 3)
-    depth = np.array([node["depth"] for node in nodes], float)
     picture = plan.folder / "coverage.png"
     starts = start_regions.rings(plan.config)
     plots.coverage(picture, plan.title, plan.config.task, poses, depth, starts)
@@ -52,11 +55,12 @@ def draw_generation(plan: RunPlan) -> None:
 def generation_warning(plan: RunPlan) -> str | None:
     """Returns a sentence about what the data of a run lack; None if nothing."""
     report = run_folder.read_json(plan.report_file)
-    found = (
-        diagnosis.of_own_data(report["data"])
-        if plan.own_data
-        else diagnosis.of_generation(plan.config, report, report["nodes"])
-    )
+    with errors.fields_of(plan.report_file):
+        found = (
+            diagnosis.of_own_data(report["data"])
+            if plan.own_data
+            else diagnosis.of_generation(plan.config, report, report["nodes"])
+        )
     return found and f"these data may not suffice: {found}"
 
 
@@ -133,7 +137,9 @@ def finish(plan: RunPlan, measured: dict[str, Any]) -> dict[str, Any]:
 
 
 def _draw_stages(plan: RunPlan, summary: dict[str, Any]) -> None:
-    if times := stage_times(summary):
+    with errors.fields_of(plan.folder / "summary.json"):
+        times = stage_times(summary)
+    if times:
         plots.stages(plan.folder / "stages.png", f"{plan.title}: time", times)
 
 

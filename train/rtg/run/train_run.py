@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 
+from rtg import errors
 from rtg.files.run_folder import read_json
 from rtg.learn import log_sinks
 from rtg.processes.child_run import run_child
@@ -21,14 +22,15 @@ def _initial_state(plan: RunPlan) -> RunState:
     if not plan.offline:
         return RunState(generates=False, budget=plan.interactions)
     report = read_json(plan.report_file)
-    return RunState(
-        phase=FINISHED,
-        transitions=report["transitions"],
-        target=report["transitions"],
-        contact_share=report["contact_share"],
-        start_region=report["start_region_transitions"],
-        budget=plan.interactions,
-    )
+    with errors.fields_of(plan.report_file):
+        return RunState(
+            phase=FINISHED,
+            transitions=report["transitions"],
+            target=report["transitions"],
+            contact_share=report["contact_share"],
+            start_region=report["start_region_transitions"],
+            budget=plan.interactions,
+        )
 
 
 def run(plan: RunPlan, display: Display) -> None:

@@ -6,6 +6,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+from rtg import errors
 from rtg.files.run_folder import read_json
 from rtg.run.run_state import RateMeter, RunState
 
@@ -36,10 +37,11 @@ class TrainingWatch:
 
     def _read(self) -> None:
         learner = read_json(self._path)
-        interactions = int(learner["interactions"])
-        self._state = RunState(
-            interactions=interactions,
-            rate=self._meter.rate(interactions, time.monotonic()),
-            evaluations=learner["evaluations"],
-            success_rate=learner["success_rate"],
-        )
+        with errors.fields_of(self._path):
+            interactions = int(learner["interactions"])
+            self._state = RunState(
+                interactions=interactions,
+                rate=self._meter.rate(interactions, time.monotonic()),
+                evaluations=learner["evaluations"],
+                success_rate=learner["success_rate"],
+            )

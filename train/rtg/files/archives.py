@@ -1,0 +1,89 @@
+"""Archives (.npz, .pt): zip files whose comment is the SHA-256 of all bytes before it.
+
+Any reader of such files reads them. Those of other programs, and of earlier versions of RTG, have
+no comment, and no digest to be checked.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import zipfile
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg.files import whole_files
+
+# The last record of a zip file: its first bytes, and its length without the comment, whose length
+# is in its last two bytes.
+_END, _END_LENGTH = b"PK\x05\x06", 22
+_DIGITS = 64
+_BLOCK = 2**20
+_ROOM = 2**26  # bytes that any archive may unpack to
+
+
+@contextlib.contextmanager
+def written(path: Path) -> Iterator[BinaryIO]:
+    """Yields a file for a zip archive without comment, which replaces `path` with its digest."""
+    with whole_files.replacing(path) as file:
+        yield file
+        file.seek(-2, os.SEEK_END)
+        file.write(_DIGITS.to_bytes(2, "little"))
+        file.write(_digest(file, file.tell()))
+
+
+@contextlib.contextmanager
+def opened(path: Path) -> Iterator[BinaryIO]:
+    """Yields an archive to read.
+
+    Raises OSError; ValueError if it is none, differs from what was written, or would unpack to more
+    than four times its size.
+    """
+    with whole_files.opened(path) as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(0, size - _END_LENGTH - _DIGITS))
+        tail = file.read()
+        is_bare = tail[-_END_LENGTH:].startswith(_END)  # it ends without a comment
+        if not is_bare and not (
+            tail.startswith(_END) and _digest(file, size - _DIGITS) == tail[-_DIGITS:]
+        ):
+            raise ValueError("no archive, or changed since it was written")
+        try:
+            with zipfile.ZipFile(file) as archive:
+                unpacked = sum(entry.file_size for entry in archive.infolist())
+        except Exception as error:  # zipfile raises any error on foreign bytes
+            raise ValueError(str(error)) from None
+        if unpacked > _ROOM + 4 * size:
+            raise ValueError(f"it would unpack to {unpacked} bytes")
+        file.seek(0)
+        yield file
+
+
+def arrays(path: Path, names: Iterable[str]) -> dict[str, NDArray[Any]]:
+    """Returns those arrays of a .npz that are asked for and there. Raises as opened() does."""
+    with opened(path) as file:
+        try:
+            with np.load(file, allow_pickle=False) as archive:
+                found = {name: archive[name] for name in names if name in archive}
+        except OSError:
+            raise
+        except Exception as error:  # numpy and zipfile raise any error on foreign bytes
+            raise ValueError(str(error)) from None
+    if not all(isinstance(array, np.ndarray) for array in found.values()):
+        raise ValueError("it holds other files than arrays")
+    return found
+
+
+def _digest(file: BinaryIO, count: int) -> bytes:
+    """Returns the SHA-256 of the first `count` bytes, as digits; leaves the file behind them."""
+    found = hashlib.sha256()
+    file.seek(0)
+    while count and (block := file.read(min(count, _BLOCK))):
+        found.update(block)
+        count -= len(block)
+    return found.hexdigest().encode()
