@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TextIO
 
 from rtg import _core
 
@@ -88,14 +89,10 @@ def exit_status(program: str, command: Callable[[], int]) -> int:
             status = command()
         except SystemExit as end:  # of argparse, after --help
             status = end.code if isinstance(end.code, int) else 0
-        try:
-            sys.stdout.flush()  # Python would flush at its end, where no handler catches errors
-        except OSError as error:
-            error.filename = "standard output"
-            raise
+        sys.stdout.flush()  # Python would flush at its end, where no handler catches errors
         return status
     except BrokenPipeError:
-        _discard_output()
+        _discard(sys.stdout)
         return 1
     except MemoryError as error:
         return _say(program, RunError(f"too little memory: {error}"))
@@ -107,14 +104,17 @@ def exit_status(program: str, command: Callable[[], int]) -> int:
 
 def _say(program: str, error: Exception) -> int:
     """Prints the error and returns its exit status."""
-    print(f"{program}: {error}", file=sys.stderr)
-    with contextlib.suppress(OSError):
-        sys.stdout.flush()
-        return 1 if isinstance(error, RunError) else 2
-    _discard_output()
-    return 1
+    status = 1 if isinstance(error, RunError) else 2
+    for stream, words in ((sys.stdout, ""), (sys.stderr, f"{program}: {error}\n")):
+        try:
+            stream.write(words)
+            stream.flush()
+        except OSError:
+            _discard(stream)
+            status = 1
+    return status
 
 
-def _discard_output() -> None:
-    """Directs the standard output nowhere: what it still holds cannot be written."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+def _discard(stream: TextIO) -> None:
+    """Directs a stream nowhere: what it still holds cannot be written."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
