@@ -1,7 +1,5 @@
 #include "nodes/files/sha256.hpp"
 
-#include <sodium/utils.h>
-
 #include <array>
 
 namespace rtg::files {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <sodium/crypto_hash_sha256.h>
+#include <sodium.h>
 
 #include <cstdint>
 #include <span>

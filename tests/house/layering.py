@@ -67,7 +67,7 @@ ONLY_IN = {
     r"geos_c\.h": r"core/world/outline\.cpp",
     r"(yaml-cpp|utf8cpp)/.*": r"nodes/config/\w+\.cpp",
     r"lcm/.*": r"nodes/bus/network\.cpp",
-    r"sodium\.h": r"nodes/bus/(network|run_key)\.cpp",
+    r"sodium\.h": r"nodes/(bus/(network|run_key)\.cpp|files/sha256\.(cpp|hpp))",
     r"nlohmann/.*": r"(core/search|nodes|train|tests/bench)/.*\.cpp",
     r"nanobind/.*": r"train/.*\.(cpp|hpp)",
     r"gtest/.*|gmock/.*": r"tests/.*\.(cpp|hpp)",
