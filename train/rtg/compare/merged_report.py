@@ -38,14 +38,14 @@ def merged(reports: Sequence[Report]) -> Report:
 def _sum(values: Sequence[Any]) -> Any:
     """Returns the sum of numbers, of lists, or of dictionaries entry by entry.
 
-    Returns None if there are others, of which merged() has something else to say.
+    Returns None if there are others, such as digests, which cannot be added.
     """
     first = values[0]
     if isinstance(first, dict):
         return {key: _sum([value[key] for value in values]) for key in first}
     if isinstance(first, list):
         return [entry for value in values for entry in value]
-    return None if any(value is None for value in values) else sum(values)
+    return None if any(value is None or isinstance(value, str) for value in values) else sum(values)
 
 
 def _mean(values: Sequence[float], weights: Sequence[int]) -> float:
