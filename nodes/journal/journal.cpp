@@ -1,5 +1,6 @@
 #include "nodes/journal/journal.hpp"
 
+#include <sodium/crypto_generichash.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 
@@ -9,14 +10,12 @@
 #include <system_error>
 #include <utility>
 
-#include "nodes/journal/crc32.hpp"
-
 namespace rtg::journal {
 namespace {
 
 constexpr std::array<std::uint8_t, 8> kMagic{'R', 'T', 'G', 'J', 'R', 'N', 'L', '1'};
 constexpr std::size_t kHeadBytes = 4 + 8;  // number of bytes, id
-constexpr std::size_t kCrcBytes = 4;
+constexpr std::size_t kDigestBytes = crypto_generichash_BYTES_MIN;
 
 template <class Word>
 void append_word(std::vector<std::uint8_t>& out, Word word) {
@@ -29,6 +28,19 @@ Word word_at(std::span<const std::uint8_t> bytes) {
   std::uint64_t word = 0;
   for (std::size_t k = 0; k < sizeof(Word); ++k) word |= std::uint64_t{bytes[k]} << 8 * k;
   return static_cast<Word>(word);
+}
+
+using Digest = std::array<std::uint8_t, kDigestBytes>;
+
+/// Returns the digest of `identity` and the `record` after it.
+Digest digest_of(std::span<const std::uint8_t> identity, std::span<const std::uint8_t> record) {
+  crypto_generichash_state state;
+  crypto_generichash_init(&state, nullptr, 0, kDigestBytes);
+  crypto_generichash_update(&state, identity.data(), identity.size());
+  crypto_generichash_update(&state, record.data(), record.size());
+  Digest digest{};
+  crypto_generichash_final(&state, digest.data(), digest.size());
+  return digest;
 }
 
 std::vector<std::uint8_t> bytes_of(std::int64_t word) {
@@ -51,7 +63,7 @@ Journal::Journal(std::filesystem::path path, std::int64_t identity)
   begin();
   while (const std::optional<Record> record = record_at(end_)) {
     places_[record->id] = end_;
-    end_ += static_cast<std::int64_t>(kHeadBytes + record->bytes.size() + kCrcBytes);
+    end_ += static_cast<std::int64_t>(kHeadBytes + record->bytes.size() + kDigestBytes);
   }
   cut();
 }
@@ -62,7 +74,8 @@ void Journal::append(std::int64_t id, std::span<const std::uint8_t> bytes) {
   append_word(record, static_cast<std::uint32_t>(bytes.size()));
   append_word(record, id);
   record.insert(record.end(), bytes.begin(), bytes.end());
-  append_word(record, crc32(record, crc32(identity_)));
+  const Digest digest = digest_of(identity_, record);
+  record.insert(record.end(), digest.begin(), digest.end());
   const std::int64_t place = end_;
   write(record);
   places_[id] = place;
@@ -102,14 +115,13 @@ std::optional<Journal::Record> Journal::record_at(std::int64_t place) const {
   if (!read(place, bytes)) return std::nullopt;
   const std::size_t size = word_at<std::uint32_t>(bytes);
   if (size > kMaxBytes) return std::nullopt;
-  bytes.resize(kHeadBytes + size + kCrcBytes);
+  bytes.resize(kHeadBytes + size + kDigestBytes);
   if (!read(place, bytes)) return std::nullopt;
-  const auto found = word_at<std::uint32_t>(std::span(bytes).last(kCrcBytes));
-  bytes.resize(kHeadBytes + size);
-  if (crc32(bytes, crc32(identity_)) != found) return std::nullopt;
+  const auto record = std::span(bytes).first(kHeadBytes + size);
+  if (!std::ranges::equal(digest_of(identity_, record), std::span(bytes).last(kDigestBytes)))
+    return std::nullopt;
   const auto id = word_at<std::int64_t>(std::span(bytes).subspan(4));
-  bytes.erase(bytes.begin(), bytes.begin() + kHeadBytes);
-  return Record{id, std::move(bytes)};
+  return Record{id, {record.begin() + kHeadBytes, record.end()}};
 }
 
 /// Fills `bytes` with those from `place` on. Returns false if the file ends before, or cannot be

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "nodes/files/regular_file.hpp"
-#include "nodes/journal/crc32.hpp"
 #include "tests/support/folder.hpp"
 
 namespace rtg::journal {
@@ -47,13 +46,6 @@ std::string refusal(const std::filesystem::path& path) {
     return error.what();
   }
   return "";
-}
-
-TEST(Crc32, IsThatOfZlib) {
-  const std::string digits = "123456789";
-  const Bytes bytes(digits.begin(), digits.end());
-  EXPECT_EQ(crc32(bytes), 0xcbf43926U);
-  EXPECT_EQ(crc32(std::span(bytes).subspan(4), crc32(std::span(bytes).first(4))), 0xcbf43926U);
 }
 
 TEST_F(JournalTest, HasItsRecordsWhenItIsOpenedAgain) {
