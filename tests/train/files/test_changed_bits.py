@@ -1,5 +1,13 @@
-"""A single changed bit is found in every file of a run that is read back."""
+"""Changes of files that are read back: a single bit, stretches of bytes, what is in an archive.
 
+A changed file is refused with its name, or what is read is as it was. Files of others have no
+digest, so that bytes of any kind reach the readers behind it: they are refused or read, and a small
+file never takes much memory.
+"""
+
+import struct
+import tracemalloc
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -8,7 +16,7 @@ import numpy as np
 import pytest
 from rtg import _core
 from rtg.errors import UserError
-from rtg.files import best_episode, checkpoint, dataset, run_folder, versions
+from rtg.files import best_episode, checkpoint, dataset, own_data, run_folder, versions
 from rtg.learn import networks, policy_file
 from samples import random_transitions
 from training_runs import TINY
@@ -16,6 +24,8 @@ from training_runs import TINY
 CONFIG = _core.Config.from_file(TINY)
 TASK = CONFIG.task
 FLIPS = 1000
+CHANGES = 150  # of each file
+ROOM = 64e6  # bytes that a reader may take beside four times the file
 
 
 class Kind(NamedTuple):
@@ -93,3 +103,116 @@ def test_objects_and_arrays_of_others_have_no_digest(tmp_path: Path) -> None:
         assert run_folder.read_json(tmp_path / "a.json") == known
     np.savez(tmp_path / best_episode.FILE, poses=np.ones((2, 4, 3)), success=True)
     assert best_episode.read(tmp_path, 4)[1]
+
+
+def changed(whole: bytes, draws: np.random.Generator) -> bytes:
+    """Returns `whole` with up to four changes of bytes and stretches of bytes."""
+    out = bytearray(whole)
+    for _ in range(draws.integers(1, 5)):
+        at, end = np.sort(draws.integers(0, len(out) + 1, 2))
+        near = at + int(draws.integers(1, 9))
+        match draws.integers(6):
+            case 0:
+                del out[at:]
+            case 1:
+                del out[at:near]
+            case 2:
+                out[at:at] = out[at : min(end, at + 500)]
+            case 3:
+                out[at:near] = draws.bytes(len(out[at:near]))
+            case 4:
+                out[at:near] = draws.choice([b"\0", b"\xff", b"\x7f", b"9"]) * len(out[at:near])
+            case _:
+                out[at:at] = out[int(draws.integers(0, len(out) + 1)) :][:40]
+    return bytes(out)
+
+
+def outcome(kind: Kind, path: Path) -> str:
+    """Reads `path`. Returns the refusal, which names the file; "" if there was none."""
+    tracemalloc.start()
+    try:
+        kind.read(path)
+        return ""
+    except UserError as error:
+        assert str(error).startswith(f"{path}: ")
+        return str(error)
+    finally:
+        most = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert most < ROOM + 4 * path.stat().st_size
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_changed_stretches_are_refused(name: str, tmp_path: Path) -> None:
+    kind, path = KINDS[name], tmp_path / name
+    kind.write(path)
+    whole, draws = path.read_bytes(), np.random.default_rng(1)
+    for _ in range(CHANGES):
+        content = changed(whole, draws)
+        path.write_bytes(content)
+        assert bool(outcome(kind, path)) == (content.rstrip() != whole.rstrip())
+
+
+def write_own(path: Path) -> None:
+    rows = random_transitions(20)
+    np.savez(path, states=rows.poses, actions=rows.action, next_states=rows.next_poses)
+
+
+OWN = Kind(write_own, lambda path: own_data.read(path, TASK))
+ARCHIVES = {name: kind for name, kind in KINDS.items() if not name.endswith(".json")}
+
+
+def repacked(members: dict[str, bytes], path: Path) -> None:
+    """Makes an archive of others, without digest."""
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+
+
+@pytest.mark.parametrize("name", [*ARCHIVES, "own.npz"])
+def test_archives_of_others_are_read_or_refused(name: str, tmp_path: Path) -> None:
+    kind, path = ARCHIVES.get(name, OWN), tmp_path / name
+    kind.write(path)
+    with zipfile.ZipFile(path) as archive:
+        members = {member: archive.read(member) for member in archive.namelist()}
+    draws, refused = np.random.default_rng(2), 0
+    for _ in range(CHANGES):
+        member = str(draws.choice(list(members)))
+        head = members[member][:200]  # of an array, its type and shape
+        content = changed(head, draws) + members[member][200:]
+        repacked({**members, member: content}, path)
+        refused += bool(outcome(kind, path))
+    assert refused > CHANGES / 20
+
+
+def array_file(kind: str, shape: str) -> bytes:
+    """Returns a .npy that tells of an array of that type and shape, and holds nothing of it."""
+    words = f"{{'descr': {kind!r}, 'fortran_order': False, 'shape': {shape}}}\n".encode()
+    return b"\x93NUMPY\x01\0" + struct.pack("<H", len(words)) + words
+
+
+@pytest.mark.parametrize("name", ["transitions.npz", "best_episode.npz", "own.npz"])
+@pytest.mark.parametrize(
+    ("kind", "shape"),
+    [
+        ("<f8", "(1000000000,)"),
+        ("<f8", "(50000000, 7, 3)"),
+        ("<f8", "(4294967296, 4294967296)"),
+        ("<f8", "(-1,)"),
+        ("<U500000000", "()"),
+        ("<U0", "(99999999999,)"),
+        ("|V0", "(99999999999,)"),
+        ("|O", "(2,)"),
+        ("|b1", "(1, 0, 99999999999)"),
+    ],
+)
+def test_an_array_that_is_not_there_takes_no_memory(
+    name: str, kind: str, shape: str, tmp_path: Path
+) -> None:
+    reader, path = ARCHIVES.get(name, OWN), tmp_path / name
+    reader.write(path)
+    with zipfile.ZipFile(path) as archive:
+        members = {member: archive.read(member) for member in archive.namelist()}
+    for member in members:
+        repacked({**members, member: array_file(kind, shape)}, path)
+        assert outcome(reader, path)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import math
 import os
 import zipfile
 from collections.abc import Iterable, Iterator
@@ -25,6 +26,10 @@ _END, _END_LENGTH = b"PK\x05\x06", 22
 _DIGITS = 64
 _BLOCK = 2**20
 _ROOM = 2**26  # bytes that any archive may unpack to
+_HEADERS = {
+    (1, 0): np.lib.format.read_array_header_1_0,
+    (2, 0): np.lib.format.read_array_header_2_0,
+}
 
 
 @contextlib.contextmanager
@@ -69,7 +74,10 @@ def arrays(path: Path, names: Iterable[str]) -> dict[str, NDArray[Any]]:
     with opened(path) as file:
         try:
             with np.load(file, allow_pickle=False) as archive:
-                found = {name: archive[name] for name in names if name in archive}
+                there = [name for name in names if name in archive]
+                for name in there:
+                    _check_size(archive.zip, name)
+                found = {name: archive[name] for name in there}
         except OSError:
             raise
         except Exception as error:  # numpy and zipfile raise any error on foreign bytes
@@ -77,6 +85,24 @@ def arrays(path: Path, names: Iterable[str]) -> dict[str, NDArray[Any]]:
     if not all(isinstance(array, np.ndarray) for array in found.values()):
         raise ValueError("it holds other files than arrays")
     return found
+
+
+def _check_size(archive: zipfile.ZipFile, name: str) -> None:
+    """Raises ValueError if an array would take more bytes than its entry has.
+
+    numpy allocates what the header tells of before it reads on.
+    """
+    entry = archive.getinfo(f"{name}.npy" if f"{name}.npy" in archive.namelist() else name)
+    with archive.open(entry) as member:
+        version = np.lib.format.read_magic(member)
+        if version not in _HEADERS:
+            raise ValueError(f"array '{name}' has a header of version {version}")
+        shape, _, dtype = _HEADERS[version](member)
+    count = math.prod(shape) * max(1, dtype.itemsize)
+    if not 0 <= count <= entry.file_size:
+        raise ValueError(
+            f"array '{name}' has {entry.file_size} bytes, not the {count} of its header"
+        )
 
 
 def _digest(file: BinaryIO, count: int) -> bytes:

@@ -56,6 +56,7 @@ def opened(path: Path) -> Iterator[BinaryIO]:
 def read(path: Path) -> bytes:
     """Returns the content of a file of text. Raises OSError, also if it is absurdly long."""
     with opened(path) as file:
-        if os.fstat(file.fileno()).st_size > _LONGEST:
+        size = os.fstat(file.fileno()).st_size
+        if size > _LONGEST:
             raise OSError(errno.EINVAL, f"Is longer than {_LONGEST} bytes", str(path))
-        return file.read(_LONGEST)
+        return file.read(size)  # which takes as much memory at once
