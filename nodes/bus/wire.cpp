@@ -1,5 +1,7 @@
 #include "nodes/bus/wire.hpp"
 
+#include <algorithm>
+
 namespace rtg::bus {
 namespace {
 
@@ -34,10 +36,10 @@ void LayoutCheck::skip(std::int32_t n, std::size_t size) {
 }
 
 void LayoutCheck::skip_text() {
-  const std::int32_t n = length();
-  ok_ = ok_ && n >= 1 && static_cast<std::size_t>(n) <= rest_.size() &&
-        rest_[static_cast<std::size_t>(n) - 1] == 0;
-  if (ok_) rest_ = rest_.subspan(static_cast<std::size_t>(n));
+  const auto n = static_cast<std::size_t>(length());
+  ok_ = ok_ && n >= 1 && n <= rest_.size() &&
+        std::ranges::find(rest_.first(n), 0) == rest_.begin() + static_cast<std::ptrdiff_t>(n) - 1;
+  if (ok_) rest_ = rest_.subspan(n);
 }
 
 std::int64_t fingerprint_of(std::span<const std::uint8_t> bytes) {

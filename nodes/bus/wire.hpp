@@ -52,7 +52,7 @@ class LayoutCheck {
  private:
   std::int32_t length();  // reads a big-endian count, 0 ... kMaxMessageBytes
   void skip(std::int32_t n, std::size_t size);
-  void skip_text();  // skips the length, which counts the final NUL, and the bytes
+  void skip_text();  // skips the length, which counts the only NUL, the last byte, and the bytes
 
   std::span<const std::uint8_t> rest_;
   bool ok_ = true;

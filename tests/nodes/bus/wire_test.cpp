@@ -85,6 +85,16 @@ TEST(Wire, AnUnterminatedTextIsRejected) {
   EXPECT_EQ(decode(bytes, received), WireDefect::kMalformed);
 }
 
+// LCM would encode it as a shorter text, with bytes of no field behind.
+TEST(Wire, ATextWithANulInsideIsRejected) {
+  auto msg = testing::filled<node_status_t>(0);
+  auto bytes = encode(msg);
+  constexpr std::size_t name = 8 + 16 + 4;  // fingerprint, header, length
+  bytes[name + 1] = 0;
+  node_status_t received{};
+  EXPECT_EQ(decode(bytes, received), WireDefect::kMalformed);
+}
+
 TEST(Wire, AnotherTypeIsRejected) {
   auto msg = testing::filled<worker_beat_t>();
   reverse_job_t received{};
