@@ -12,6 +12,7 @@ PACKAGES=(
   libgtest-dev libbenchmark-dev # one configuration of the build serves both commands
 )
 TEST_PACKAGES=(ccache iproute2 nftables util-linux)
+FUZZ_PACKAGES=(clang-19 libclang-rt-19-dev) # GCC has no libFuzzer; Clang 14, which is Debian's default, lacks CTAD of aggregates
 
 say() { printf 'rtg: %s\n' "$*" >&2; }
 

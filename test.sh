@@ -6,13 +6,14 @@
 #   ./test.sh coverage    line coverage of the physics and the solver by their own tests
 #   ./test.sh bench       benchmarks and gates: JSON and Markdown in build/bench/ (40 minutes; --smoke: briefly, no gates on time)
 #   ./test.sh chaos       generations beside losses, kills, pauses and strangers (half an hour; --smoke: briefly, no gates on time)
+#   ./test.sh fuzz        a million inputs to each fuzz target, with Clang and libFuzzer (an hour; --smoke: 5,000 inputs each)
 #   ./test.sh peer        the reverse solver against CasADi and IPOPT (ten minutes)
 # bench and peer install CasADi, whose package also holds HPIPM.
 set -euo pipefail
 # shellcheck source=setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 
-usage() { sed -n '3,10s/^# *//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '3,11s/^# *//p' "${BASH_SOURCE[0]}"; }
 
 set_up() { # PRESET TARGET [REQUIREMENTS]
   lock_setup
@@ -98,6 +99,11 @@ case $* in # all words, so that one too many is unknown
     set_environment
     export PYTHONPATH=$ROOT/train:$ROOT/tests/support:$ROOT/tests/system:$ROOT/tests/bench
     exec "$VENV/bin/python" "$ROOT/tests/chaos/chaos.py" "${@:2}"
+    ;;
+  fuzz | 'fuzz --smoke')
+    TEST_PACKAGES+=("${FUZZ_PACKAGES[@]}")
+    set_up fuzz rtg_fuzz
+    exec "$VENV/bin/python" "$ROOT/tests/fuzz/fuzz.py" "${@:2}"
     ;;
   peer | 'peer '*)
     set_up release peer_dump "$ROOT/tests/bench/requirements.txt"

@@ -10,7 +10,7 @@ from layering import ROOT, sources
 from time_limit import run
 
 PAGES = run("git", "ls-files", "*.md", cwd=ROOT, check=True).stdout.splitlines()
-READERS_OWN = {"config/mine.yaml", "msgs/NAME_t.lcm"}
+READERS_OWN = {"config/mine.yaml", "msgs/NAME_t.lcm", "tests/fuzz/NAME.cpp"}
 CODE = "\n".join(path.read_text() for path in sources(".hpp", ".cpp", ".py"))
 
 

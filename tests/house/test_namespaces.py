@@ -15,8 +15,8 @@ OPENED = re.compile(r"^namespace (rtg[\w:]*) \{$", re.MULTILINE)
 def namespace_of(path: str) -> str:
     """Returns the namespace that the file at `path` is to be in."""
     parts = PurePosixPath(path).parts
-    if parts[:2] in {("tests", "support"), ("tests", "bench")}:
-        return "rtg::testing" if parts[1] == "support" else "rtg::bench"
+    if parts[0] == "tests" and parts[1] in {"support", "bench", "fuzz"}:
+        return "rtg::testing" if parts[1] == "support" else f"rtg::{parts[1]}"
     if parts[:2] == ("train", "bindings"):
         return "rtg::bindings"
     room = parts[2 if parts[0] == "tests" else 1]
