@@ -15,7 +15,7 @@ def bus():
 @pytest.fixture
 def heard(bus):
     found = []
-    StreamListener(bus, 2, 48, lambda numbers, rows: found.append((numbers.tolist(), rows)))
+    StreamListener(bus, 2, 48, 12, lambda numbers, rows: found.append((numbers.tolist(), rows)))
     return found
 
 
@@ -45,6 +45,14 @@ def test_rows_come_with_their_numbers_in_the_order_in_which_they_arrive(bus, hea
 
 def test_illegal_rows_are_counted(bus, heard):
     publish(bus, 0, [48])
+    bus.spin(0.0)
+    assert heard == [] and bus.counters["stream.illegal"] == 1
+
+
+@pytest.mark.parametrize("first", [11, 10**12, 2**63 - 1, -1])
+def test_rows_that_the_run_cannot_have_are_illegal(bus, heard, first):
+    """A listener hears strangers, too: a display kept a terabyte for one row of theirs."""
+    publish(bus, first, [3, 4])
     bus.spin(0.0)
     assert heard == [] and bus.counters["stream.illegal"] == 1
 

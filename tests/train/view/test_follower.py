@@ -18,7 +18,7 @@ from rtg.view import follower
 from rtg.view.follower import Follower, Heard, why_unheard
 from rtg.view.run_events import RunEvents
 from rtg.view.run_view import RunView
-from training_runs import run_folder
+from training_runs import TINY, run_folder
 from view_runs import GENERATION, TASK, generated
 
 
@@ -49,7 +49,7 @@ def follow(folder, bus, file):
     recording = rr.RecordingStream("rtg")
     recording.save(file)
     view = RunView(recording, config, push=0.5)
-    following = Follower(folder, view, RunEvents(folder, config), Heard(bus, config.task))
+    following = Follower(folder, view, RunEvents(folder, config), Heard(bus, config))
     return following, recording
 
 
@@ -60,7 +60,7 @@ def moves(rows, body=2):
 
 
 def test_a_run_is_alive_as_long_as_a_process_tells_its_status(bus, monkeypatch):
-    heard = Heard(bus, TASK)
+    heard = Heard(bus, _core.Config.from_file(TINY))
     NodeStatus(bus, "reverse_worker").tick("solving", 3)
     assert heard.is_alive() and heard.is_alive()
     clock = itertools.count(time.monotonic() + 10.0)  # a second between two looks

@@ -21,18 +21,26 @@ class StreamListener:
     `numbers` [n]: the places of the rows in the sequence of generation. Rows may be missing, come
     twice and out of order: a listener acknowledges nothing and asks for nothing. Those that were
     sent before it came are not sent again. A generation that begins anew finds the same rows.
+
+    `most`: rows of the run. Numbers beyond are illegal: whoever keeps rows by number would take as
+    much memory as a stranger says.
     """
 
     def __init__(
-        self, bus: _core.Bus, bodies: int, actions: int, sink: Callable[[Ints, Rows], object]
+        self,
+        bus: _core.Bus,
+        bodies: int,
+        actions: int,
+        most: int,
+        sink: Callable[[Ints, Rows], object],
     ) -> None:
-        self._bus, self._bodies, self._actions = bus, bodies, actions
+        self._bus, self._bodies, self._actions, self._most = bus, bodies, actions, most
         self._sink = sink
         bus.subscribe("RTG_TRANSITION", "transition_batch_t", self._on_batch)
 
     def _on_batch(self, message: Any) -> None:
         rows = to_rows(message, self._bodies, self._actions)
-        if rows is None:
+        if rows is None or message.first + message.n > self._most:
             self._bus.count("stream.illegal")
             return
         self._sink(np.arange(message.first, message.first + message.n), rows)

@@ -25,11 +25,12 @@ from rtg.view.run_view import RunView
 class Heard:
     """Keeps what the bus of a run has told since the last call of its methods. It only listens."""
 
-    def __init__(self, bus: _core.Bus, task: _core.Task) -> None:
+    def __init__(self, bus: _core.Bus, config: _core.Config) -> None:
         self._bus = bus
         self._watch = RunWatch(bus, RunState())
         self._rows: list[tuple[Ints, Rows]] = []
-        StreamListener(bus, task.bodies, task.actions, self._keep)
+        task, most = config.task, config.search.transitions
+        StreamListener(bus, task.bodies, task.actions, most, self._keep)
 
     def state(self) -> RunState:
         """Returns the state of the generation; `phase` is "" if it has not been heard of."""

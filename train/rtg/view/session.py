@@ -88,7 +88,7 @@ class Session:
             return None
         name = run_name(self._folder)
         self._bus = listen(self._config.run.bus, name)
-        heard = follower.Heard(self._bus, self._config.task)
+        heard = follower.Heard(self._bus, self._config)
         if self._bus.warning:
             self._say(self._bus.warning)
         self._say(f"listening to the run {name}")
