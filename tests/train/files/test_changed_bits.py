@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from changes import changed
 from rtg import _core
 from rtg.errors import UserError
 from rtg.files import best_episode, checkpoint, dataset, own_data, run_folder, versions
@@ -103,28 +104,6 @@ def test_objects_and_arrays_of_others_have_no_digest(tmp_path: Path) -> None:
         assert run_folder.read_json(tmp_path / "a.json") == known
     np.savez(tmp_path / best_episode.FILE, poses=np.ones((2, 4, 3)), success=True)
     assert best_episode.read(tmp_path, 4)[1]
-
-
-def changed(whole: bytes, draws: np.random.Generator) -> bytes:
-    """Returns `whole` with up to four changes of bytes and stretches of bytes."""
-    out = bytearray(whole)
-    for _ in range(draws.integers(1, 5)):
-        at, end = np.sort(draws.integers(0, len(out) + 1, 2))
-        near = at + int(draws.integers(1, 9))
-        match draws.integers(6):
-            case 0:
-                del out[at:]
-            case 1:
-                del out[at:near]
-            case 2:
-                out[at:at] = out[at : min(end, at + 500)]
-            case 3:
-                out[at:near] = draws.bytes(len(out[at:near]))
-            case 4:
-                out[at:near] = draws.choice([b"\0", b"\xff", b"\x7f", b"9"]) * len(out[at:near])
-            case _:
-                out[at:at] = out[int(draws.integers(0, len(out) + 1)) :][:40]
-    return bytes(out)
 
 
 def outcome(kind: Kind, path: Path) -> str:

@@ -7,6 +7,7 @@ import tracemalloc
 import gymnasium
 import numpy as np
 import pytest
+from changes import changed
 from rtg import _core, paths
 from rtg.errors import UserError
 from rtg.files import minari_data
@@ -172,3 +173,24 @@ def test_a_damaged_data_set_is_refused():
 def test_what_is_no_data_set_has_no_folder(tmp_path):
     assert minari_data.folder_of(str(tmp_path)) is None
     assert minari_data.folder_of("no/such-v0") is None
+
+
+def test_a_data_set_with_changed_bytes_is_read_or_refused(home):
+    env = gymnasium.make("RTG/Gathering-v0")
+    folder = made("mine/own-v0", episode(env, 1))
+    draws = np.random.default_rng(0)
+    for name in ("main_data.hdf5", "metadata.json"):
+        whole, refused = (folder / name).read_bytes(), 0
+        for _ in range(50):
+            (folder / name).write_bytes(changed(whole, draws))
+            tracemalloc.start()
+            try:
+                minari_data.read("mine/own-v0", folder, TASK)
+            except UserError as error:
+                assert str(error).startswith("mine/own-v0: ")
+                refused += 1
+            most = tracemalloc.get_traced_memory()[1]
+            tracemalloc.stop()
+            assert most < 64e6 + 4 * len(whole)
+        (folder / name).write_bytes(whole)
+        assert refused > 10
