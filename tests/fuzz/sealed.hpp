@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -24,11 +23,10 @@ inline const bus::RunKey& fixed_key() {
 
 /// Returns the datagram that carries `payload`.
 inline Bytes datagram_of(std::string_view channel, std::span<const std::uint8_t> payload) {
-  Bytes bytes{'L', 'C', '0', '2', 0, 0, 0, 1};
-  bytes.insert(bytes.end(), channel.begin(), channel.end());
-  bytes.push_back(0);
-  bytes.insert(bytes.end(), payload.begin(), payload.end());
-  return bytes;
+  std::string text("LC02\0\0\0\1", 8);
+  text.append(channel) += '\0';
+  text.append(payload.begin(), payload.end());
+  return bytes_of(text);
 }
 
 }  // namespace rtg::fuzz
