@@ -24,7 +24,7 @@ def main(seconds: float) -> None:
     begin = time.monotonic()
     hours: list[float] = []
     megabytes: list[float] = []
-    while len(hours) < 4 or hours[-1] * 3600 < seconds:
+    while len(hours) < 3 or hours[-1] * 3600 < seconds:
         data = rtg.Transitions.joined(rtg.generate(task, 600))
         with tempfile.TemporaryDirectory() as folder:
             rtg.train(data, task, Path(folder) / "run", interactions=100)

@@ -10,6 +10,7 @@ from rtg import _core
 from rtg.errors import UserError
 from rtg.files import best_episode, checkpoint, dataset, run_folder, versions
 from rtg.learn import networks, policy_file
+from rtg.run import effective_config
 from samples import random_transitions
 from training_runs import TINY
 
@@ -50,6 +51,9 @@ KINDS = {
     ),
     "transitions.npz": Kind(write_transitions, dataset.read),
     "versions.json": Kind(lambda path: versions.write(path.parent, {}), JSON.read),
+    "config.yaml": Kind(
+        lambda path: run_folder.write_config(path, CONFIG.yaml), effective_config.load_written
+    ),
     "summary.json": JSON,
     "generation.json": Kind(
         lambda path: run_folder.write_json(path, {"nodes": [[1, 2]]}, indent=None), JSON.read
