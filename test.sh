@@ -5,7 +5,7 @@
 #   ./test.sh tsan        C++ tests that use threads under ThreadSanitizer
 #   ./test.sh coverage    line coverage of the physics and the solver by their own tests
 #   ./test.sh bench       benchmarks and gates: JSON and Markdown in build/bench/ (40 minutes; --smoke: briefly, no gates on time)
-#   ./test.sh chaos       generations beside losses, kills, pauses and strangers (half an hour; --smoke: briefly, no gates on time)
+#   ./test.sh chaos       runs beside losses, kills, pauses, strangers, full disks (two hours; --smoke: briefly, no gates on time)
 #   ./test.sh fuzz        a million inputs to each fuzz target, with Clang and libFuzzer (an hour; --smoke: 5,000 inputs each)
 #   ./test.sh peer        the reverse solver against CasADi and IPOPT (ten minutes)
 # bench and peer install CasADi, whose package also holds HPIPM.
@@ -94,7 +94,7 @@ case $* in # all words, so that one too many is unknown
     set_environment
     bench "${@:2}"
     ;;
-  chaos | 'chaos --smoke')
+  chaos | 'chaos '*)
     set_up release rtg_run
     set_environment
     export PYTHONPATH=$ROOT/train:$ROOT/tests/support:$ROOT/tests/system:$ROOT/tests/bench

@@ -22,9 +22,9 @@ struct GenerationReport {
   Coverage::Figures coverage = {};  // of the stored transitions
   SearchStats stats = {};
   int trees = 0;
-  int start_region_depth = -1;  // least depth of a node in_start_region(); -1: none
-  long units_given_up = 0;      // job messages whose workers were lost, several times; over LCM
-  long units_from_journal = 0;  // answered by an earlier process of the run
+  int start_region_depth = -1;   // least depth of a node in_start_region(); -1: none
+  long units_given_up = 0;       // job messages whose workers were lost, several times; over LCM
+  long units_from_journal = 0;   // answered by an earlier process of the run
   std::string rows_sha256 = {};  // digest of the stored transitions; empty if nobody took it
   double generate_wall_s = 0.0;
   double generate_cpu_s = 0.0;  // of this process alone, not of workers

@@ -42,16 +42,17 @@ void Bus::send_sealed(const std::string& channel, std::vector<std::uint8_t> byte
   for (int k = 0; k < copies; ++k) send(channel, bytes);
 }
 
-/// Returns whether `datagram` is a message that the handlers of its channel are to get.
-bool Bus::handle(const Datagram& datagram) {
+/// Passes a message of this run to the handlers of its channel.
+Network::Verdict Bus::handle(const Datagram& datagram) {
+  using enum Network::Verdict;
   const auto handlers = handlers_.find(datagram.channel);
-  if (handlers == handlers_.end()) return false;
-  if (run_of(datagram.payload) != header_.run) return counters_.add("bus.foreign_run"), false;
+  if (handlers == handlers_.end()) return kIgnored;
+  if (run_of(datagram.payload) != header_.run) return counters_.add("bus.foreign_run"), kRefused;
   const auto message =
       key_ ? key_->opened(datagram.channel, datagram.payload) : without_tag(datagram.payload);
-  if (!message) return counters_.add("bus.forged"), false;
+  if (!message) return counters_.add("bus.forged"), kRefused;
   for (const Handler& handler : handlers->second) handler(*message);
-  return true;
+  return kHandled;
 }
 
 }  // namespace rtg::bus

@@ -13,6 +13,7 @@
 
 #include "nodes/bus/counters.hpp"
 #include "nodes/bus/datagram.hpp"
+#include "nodes/bus/network.hpp"
 #include "nodes/bus/run_key.hpp"
 #include "nodes/bus/wire.hpp"
 
@@ -20,8 +21,6 @@ namespace rtg::bus {
 
 /// Version of the rules in msgs/CHANNELS.md.
 inline constexpr std::int32_t kProtocol = 2;
-
-class Network;
 
 /// A connection of one process to the messages of its run; the only C++ class that uses LCM.
 ///
@@ -90,7 +89,7 @@ class Bus {
 
   Bus(const std::string& url, std::string run);
   void send_sealed(const std::string& channel, std::vector<std::uint8_t> bytes, int copies);
-  bool handle(const Datagram& datagram);
+  Network::Verdict handle(const Datagram& datagram);
 
   std::string run_;
   std::optional<RunKey> key_;  // none: a listener

@@ -9,6 +9,7 @@
 #include <lcm/lcm-cpp.hpp>
 #include <mutex>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "nodes/bus/clock.hpp"
@@ -24,6 +25,7 @@ constexpr int kMostPerSpin = 1000;  // datagrams; a flood of them must not block
 constexpr const char* kEchoChannel = "RTG_ECHO";
 constexpr Seconds kEchoLimit = 2.0;
 constexpr auto kEchoWait = 50ms;
+constexpr auto kNap = 2ms;
 
 class UdpNetwork : public Network {
  public:
@@ -57,7 +59,7 @@ class UdpNetwork : public Network {
     for (const Seconds end = monotonic_now() + kEchoLimit; monotonic_now() < end;) {
       send(kEchoChannel, token);
       const auto is_ours = [&](const Datagram& datagram) {
-        return std::ranges::equal(datagram.payload, token);
+        return std::ranges::equal(datagram.payload, token) ? Verdict::kHandled : Verdict::kIgnored;
       };
       if (spin(kEchoWait, ignored, is_ours) > 0) return true;
     }
@@ -101,21 +103,31 @@ class LocalNetwork : public Network {
   Bytes current_;
 };
 
+Network::Verdict judge(std::span<const std::uint8_t> bytes, Counters& counters,
+                       const Network::Handler& handle) {
+  if (const auto datagram = parse_datagram(bytes)) return handle(*datagram);
+  counters.add("bus.malformed");
+  return Network::Verdict::kRefused;
+}
+
 }  // namespace
 
 int Network::spin(std::chrono::milliseconds timeout, Counters& counters, const Handler& handle) {
   using std::chrono::duration;
   const Seconds end = monotonic_now() + duration<double>(timeout).count();
   int handled = 0;
+  bool refused = false;  // the last datagram
   for (int heard = 0; heard < kMostPerSpin; ++heard) {
-    const duration<double> left(handled > 0 ? 0.0 : std::max(0.0, end - monotonic_now()));
-    const auto bytes = next(std::chrono::ceil<std::chrono::milliseconds>(left), counters);
+    auto bytes = next(0ms, counters);
+    const duration<double> left(end - monotonic_now());
+    if (!bytes && handled == 0 && left.count() > 0.0) {
+      if (std::exchange(refused, false)) std::this_thread::sleep_for(kNap);
+      bytes = next(std::chrono::ceil<std::chrono::milliseconds>(left), counters);
+    }
     if (!bytes) break;
-    if (bytes->empty()) continue;
-    if (const auto datagram = parse_datagram(*bytes))
-      handled += handle(*datagram);
-    else
-      counters.add("bus.malformed");
+    const Verdict verdict = bytes->empty() ? Verdict::kRefused : judge(*bytes, counters, handle);
+    handled += verdict == Verdict::kHandled;
+    refused = verdict == Verdict::kRefused;
   }
   return handled;
 }

@@ -23,13 +23,16 @@ class Network {
   /// Returns whether the datagram was sent. May be called from any thread.
   virtual bool send(const std::string& channel, std::span<const std::uint8_t> payload) = 0;
 
-  /// Handles a datagram; returns whether it was one that the caller waits for.
-  using Handler = std::function<bool(const Datagram&)>;
+  /// What became of a datagram: handled, or of no interest, or not to be trusted.
+  enum class Verdict { kHandled, kIgnored, kRefused };
+  using Handler = std::function<Verdict(const Datagram&)>;
 
-  /// Waits up to `timeout` for a datagram that `handle` waits for. Then passes on all that have
-  /// arrived, at most 1000, and returns how many of them it waited for. A signal ends the wait
-  /// ("bus.interrupted"). Counts bytes that are no datagram of LCM as "bus.malformed". Lets the
-  /// exceptions of `handle` through; the next call goes on with the next datagram.
+  /// Waits up to `timeout` for a datagram that gets handled. Then passes on all that have arrived,
+  /// at most 1000, and returns how many of them were handled. A signal ends the wait
+  /// ("bus.interrupted"). Counts bytes that are no datagram of LCM as "bus.malformed"; they are
+  /// refused, too. Waits after what was refused for 2 ms before it looks again, so that a flood of
+  /// it does not wake the process with every datagram. Lets the exceptions of `handle` through; the
+  /// next call goes on with the next datagram.
   int spin(std::chrono::milliseconds timeout, Counters& counters, const Handler& handle);
 
   /// Returns a warning for the user; empty if there is none.

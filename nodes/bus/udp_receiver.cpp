@@ -65,15 +65,15 @@ UdpReceiver::UdpReceiver(const BusUrl& url)
 
 std::optional<std::span<const std::uint8_t>> UdpReceiver::next(std::chrono::milliseconds timeout,
                                                                Counters& counters) {
-  pollfd ready{socket_.number(), POLLIN, 0};
-  const int found = poll(&ready, 1, static_cast<int>(timeout.count()));
-  if (found < 0) counters.add("bus.interrupted");
-  if (found <= 0) return std::nullopt;
+  if (timeout.count() > 0) {
+    pollfd ready{socket_.number(), POLLIN, 0};
+    if (poll(&ready, 1, static_cast<int>(timeout.count())) < 0) counters.add("bus.interrupted");
+  }
   sockaddr_in from{};
   socklen_t length = sizeof from;
   const ssize_t size = recvfrom(socket_.number(), bytes_.data(), bytes_.size(), 0,
                                 reinterpret_cast<sockaddr*>(&from), &length);
-  if (size < 0) return std::nullopt;  // a wrong checksum: the kernel has dropped it meanwhile
+  if (size < 0) return std::nullopt;  // none, or a wrong checksum, which the kernel drops
   if (is_known(from.sin_addr.s_addr))
     return std::span(bytes_).first(static_cast<std::size_t>(size));
   counters.add("bus.stranger");

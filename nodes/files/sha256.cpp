@@ -1,7 +1,5 @@
 #include "nodes/files/sha256.hpp"
 
-#include <array>
-
 namespace rtg::files {
 
 Sha256& Sha256::add(std::span<const std::uint8_t> bytes) {
@@ -9,12 +7,17 @@ Sha256& Sha256::add(std::span<const std::uint8_t> bytes) {
   return *this;
 }
 
-std::string Sha256::hex() const {
+std::array<std::uint8_t, Sha256::kBytes> Sha256::digest() const {
   crypto_hash_sha256_state state = state_;
-  std::array<std::uint8_t, crypto_hash_sha256_BYTES> digest{};
+  std::array<std::uint8_t, kBytes> digest{};
   crypto_hash_sha256_final(&state, digest.data());
-  std::array<char, 2 * crypto_hash_sha256_BYTES + 1> digits{};  // and a NUL
-  sodium_bin2hex(digits.data(), digits.size(), digest.data(), digest.size());
+  return digest;
+}
+
+std::string Sha256::hex() const {
+  const auto bytes = digest();
+  std::array<char, 2 * kBytes + 1> digits{};  // and a NUL
+  sodium_bin2hex(digits.data(), digits.size(), bytes.data(), bytes.size());
   return digits.data();
 }
 

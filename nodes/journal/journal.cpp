@@ -1,6 +1,5 @@
 #include "nodes/journal/journal.hpp"
 
-#include <sodium/crypto_generichash.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 
@@ -10,12 +9,14 @@
 #include <system_error>
 #include <utility>
 
+#include "nodes/files/sha256.hpp"
+
 namespace rtg::journal {
 namespace {
 
 constexpr std::array<std::uint8_t, 8> kMagic{'R', 'T', 'G', 'J', 'R', 'N', 'L', '1'};
 constexpr std::size_t kHeadBytes = 4 + 8;  // number of bytes, id
-constexpr std::size_t kDigestBytes = crypto_generichash_BYTES_MIN;
+constexpr std::size_t kDigestBytes = files::Sha256::kBytes;
 
 template <class Word>
 void append_word(std::vector<std::uint8_t>& out, Word word) {
@@ -28,19 +29,6 @@ Word word_at(std::span<const std::uint8_t> bytes) {
   std::uint64_t word = 0;
   for (std::size_t k = 0; k < sizeof(Word); ++k) word |= std::uint64_t{bytes[k]} << 8 * k;
   return static_cast<Word>(word);
-}
-
-using Digest = std::array<std::uint8_t, kDigestBytes>;
-
-/// Returns the digest of `identity` and the `record` after it.
-Digest digest_of(std::span<const std::uint8_t> identity, std::span<const std::uint8_t> record) {
-  crypto_generichash_state state;
-  crypto_generichash_init(&state, nullptr, 0, kDigestBytes);
-  crypto_generichash_update(&state, identity.data(), identity.size());
-  crypto_generichash_update(&state, record.data(), record.size());
-  Digest digest{};
-  crypto_generichash_final(&state, digest.data(), digest.size());
-  return digest;
 }
 
 std::vector<std::uint8_t> bytes_of(std::int64_t word) {
@@ -74,7 +62,7 @@ void Journal::append(std::int64_t id, std::span<const std::uint8_t> bytes) {
   append_word(record, static_cast<std::uint32_t>(bytes.size()));
   append_word(record, id);
   record.insert(record.end(), bytes.begin(), bytes.end());
-  const Digest digest = digest_of(identity_, record);
+  const auto digest = files::Sha256().add(identity_).add(record).digest();
   record.insert(record.end(), digest.begin(), digest.end());
   const std::int64_t place = end_;
   write(record);
@@ -118,7 +106,8 @@ std::optional<Journal::Record> Journal::record_at(std::int64_t place) const {
   bytes.resize(kHeadBytes + size + kDigestBytes);
   if (!read(place, bytes)) return std::nullopt;
   const auto record = std::span(bytes).first(kHeadBytes + size);
-  if (!std::ranges::equal(digest_of(identity_, record), std::span(bytes).last(kDigestBytes)))
+  if (!std::ranges::equal(files::Sha256().add(identity_).add(record).digest(),
+                          std::span(bytes).last(kDigestBytes)))
     return std::nullopt;
   const auto id = word_at<std::int64_t>(std::span(bytes).subspan(4));
   return Record{id, {record.begin() + kHeadBytes, record.end()}};

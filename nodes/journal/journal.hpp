@@ -26,8 +26,8 @@ class JournalError : public std::runtime_error {
 /// A power cut may lose the last ones, as nothing is flushed to the disk; what is left is whole.
 ///
 /// The file begins with the eight characters RTGJRNL1 and the identity, 8 bytes. A record has the
-/// number n of its bytes (4 bytes), the id (8), the n bytes, and a digest (16, BLAKE2b), which
-/// covers the identity, n, the id and the bytes. Numbers are little-endian.
+/// number n of its bytes (4 bytes), the id (8), the n bytes, and a SHA-256 (32), which covers the
+/// identity, n, the id and the bytes. Numbers are little-endian.
 class Journal {
  public:
   static constexpr std::size_t kMaxBytes = 1 << 16;

@@ -1,196 +1,317 @@
-"""What the programs of a run stand: ./test.sh chaos [--smoke]
+"""What the programs of a run stand: ./test.sh chaos [--smoke] [SCENARIO...]
 
-Each scenario generates the same transitions while something goes wrong, in a network of its own,
-and compares them with those of an undisturbed run. Prints a line per figure and gate. --smoke makes
-one short round of each and leaves out the gates on time. Exit status 1 if a gate failed.
+Each scenario makes the same transitions while something goes wrong, in a network of its own, and
+compares them with those of an undisturbed run. Prints a line per figure and gate. --smoke makes
+one short round of each and leaves out the gates on time, load and growth. Exit status 1 if a gate
+failed.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import random
-import signal
 import statistics
-import subprocess
 import sys
 import tempfile
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+import command
+import generation
 import network
+from command import COMMAND, TRAINER, Command
 from gates import gate
-from graph import Graph, generated_in_process, lost
+from generation import Generation, disturbed
+from graph import RUN, Graph, Process
+from processes import cpu_seconds, resident
 from rtg import paths
+from rtg.files import run_folder
 
 HERE = Path(__file__).resolve().parent
-LONG = ("search.transitions=12000", "run.seed=3")
-WORKERS = 2
-
-
-class Run:
-    """The programs of one generation, each started again when it is killed."""
-
-    def __init__(self, net: network.Network, folder: Path) -> None:
-        self.graph = Graph(net, folder, *LONG)
-        self._start: dict[str, Callable[[], subprocess.Popen[str]]] = {
-            "server": self.graph.server,
-            **{f"worker {k}": lambda k=k: self.graph.worker(k) for k in range(WORKERS)},
-            "coordinator": self.graph.coordinator,
-        }
-        self.begun = time.monotonic()
-        self.consumer = self.graph.consumer()
-        self.programs = {name: start() for name, start in self._start.items()}
-
-    def is_generating(self) -> bool:
-        return self.graph.is_generating()
-
-    def kill(self, name: str) -> None:
-        """Kills a program and starts it again."""
-        self.programs[name].kill()
-        self.programs[name].wait()
-        self.programs[name] = self._start[name]()
-
-    def pause(self, name: str, seconds: float) -> None:
-        self.programs[name].send_signal(signal.SIGSTOP)
-        time.sleep(seconds)
-        self.programs[name].send_signal(signal.SIGCONT)
-
-    def end(self) -> tuple[float, int, bytes]:
-        """Waits for the end. Returns its time [s], how many rows were lost, and all rows."""
-        rows_lost = lost(self.consumer)
-        taken = time.monotonic() - self.begun
-        status = self.programs["coordinator"].wait(60)
-        if status != 0:
-            raise SystemExit(f"the coordinator ended with status {status}: units were given up")
-        return taken, rows_lost, self.graph.transitions()
-
-
-def undisturbed(folder: Path) -> bytes:
-    return generated_in_process(folder / "direct.npz", *LONG)
-
-
-def disturbed(
-    disturb: Callable[[Run], None], before: Callable[[network.Network], None] = lambda net: None
-) -> tuple[float, int, bytes]:
-    with network.Network() as net, tempfile.TemporaryDirectory() as folder:
-        before(net)
-        run = Run(net, Path(folder))
-        disturb(run)
-        return run.end()
-
-
-def nothing(run: Run) -> None:
-    """Lets a run go its way."""
+RATE = 5000  # messages of strangers [1/s]
 
 
 class Report:
     """Prints figures and remembers whether a gate failed."""
 
-    def __init__(self, right: bytes, smoke: bool) -> None:
-        self._right, self._smoke = right, smoke
+    def __init__(self, smoke: bool) -> None:
+        self._smoke = smoke
         self.holds = True
 
-    def same(self, name: str, ends: list[tuple[float, int, bytes]]) -> None:
-        """Demands that all runs have lost no row and have the right ones."""
-        wrong = sum(rows_lost != 0 or rows != self._right for _, rows_lost, rows in ends)
-        self.holds &= gate(f"chaos.{name}.wrong", wrong, "<=", 0)
+    def zero(self, name: str, count: int) -> None:
+        """Demands that nothing of a kind has happened."""
+        self.holds &= gate(f"chaos.{name}", count, "<=", 0)
 
-    def ratio(self, name: str, value: float, bar: float) -> None:
+    def same(self, name: str, ends: Iterable[generation.End], right: bytes) -> None:
+        """Demands that all generations have lost no row and have the right ones."""
+        self.zero(f"{name}.wrong", sum(end.lost != 0 or end.rows != right for end in ends))
+
+    def most(self, name: str, value: float, bar: float) -> None:
+        """Demands in the long form that a measured value is at most `bar`."""
         if self._smoke:
-            print(f"chaos.{name}: {value:.3f}")
+            print(f"chaos.{name}: {value:.3g}")
         else:
             self.holds &= gate(f"chaos.{name}", value, "<=", bar)
 
 
-def median_time(ends: list[tuple[float, int, bytes]]) -> float:
-    return statistics.median(end[0] for end in ends)
+class Chaos:
+    """The scenarios, short ones with `smoke`."""
 
+    def __init__(self, smoke: bool) -> None:
+        self._smoke = smoke
+        self.report = Report(smoke)
+        with tempfile.TemporaryDirectory() as folder:
+            self._rows = generation.undisturbed(Path(folder))
+            self._rows_of_command = command.undisturbed(Path(folder))
 
-def losses(report: Report, rounds: int) -> None:
-    """Datagrams that get lost."""
-    base = [disturbed(nothing) for _ in range(rounds)]
-    for percent, bar in ((1, 1.1), (5, 1.5), (20, 4.0)):
-        ends = [disturbed(nothing, lambda net, p=percent: net.lose(p)) for _ in range(rounds)]
-        report.same(f"loss_{percent}", ends)
-        report.ratio(f"loss_{percent}.time", median_time(ends) / median_time(base), bar)
+    def losses(self) -> None:
+        """Datagrams that get lost; of the last kind 5 % come twice as well."""
+        rounds = 1 if self._smoke else 5
+        base = [disturbed() for _ in range(rounds)]
+        for percent, twice, bar in ((1, 0, 1.1), (5, 0, 1.5), (20, 5, 4.0)):
 
+            def lose(net: network.Network, percent: int = percent, twice: int = twice) -> None:
+                net.lose(percent)
+                if twice:
+                    net.double(twice)
 
-def kills(report: Report, most: int) -> None:
-    """Kills of workers and server, about one in a second."""
-    victims = ["server", *(f"worker {k}" for k in range(WORKERS))]
-    done, ends, rng = 0, [], random.Random(1)
+            ends = [disturbed(before=lose) for _ in range(rounds)]
+            self.report.same(f"loss_{percent}", ends, self._rows)
+            self.report.most(f"loss_{percent}.time", _median(ends) / _median(base), bar)
 
-    def strike(run: Run) -> None:
-        nonlocal done
-        while done < most and run.is_generating():
-            time.sleep(rng.uniform(0.5, 1.5))
-            if run.is_generating():
-                run.kill(rng.choice(victims))
-                done += 1
+    def kills(self) -> None:
+        """Kills of workers and server, about one in a second."""
+        self._kill("kills", lambda run: run.names()[:-1], 2 if self._smoke else 100)
 
-    while done < most:
-        ends.append(disturbed(strike))
-    print(f"chaos.kills: {done} in {len(ends)} runs")
-    report.same("kills", ends)
+    def coordinators(self) -> None:
+        """Kills of the coordinator, which goes on from its journal."""
+        self._kill("coordinators", lambda run: run.names()[-1:], 2 if self._smoke else 10)
 
+    def _kill(self, name: str, victims: Callable[[Generation], list[str]], most: int) -> None:
+        done, ends, rng = 0, [], random.Random(1)
 
-def pauses(report: Report, lengths: tuple[float, ...]) -> None:
-    """Programs that freeze for a while."""
-    for seconds in lengths:
-        ends = []
-        for name in ("server", "worker 0", "coordinator"):
+        def strike(run: Generation) -> None:
+            nonlocal done
+            while done < most and run.is_running():
+                time.sleep(rng.uniform(0.5, 1.5))
+                if run.is_running():
+                    run.kill(rng.choice(victims(run)))
+                    done += 1
 
-            def freeze(run: Run, name: str = name, seconds: float = seconds) -> None:
-                time.sleep(0.7)
-                run.pause(name, seconds)
+        while done < most:
+            ends.append(disturbed(strike))
+        print(f"chaos.{name}: {done} in {len(ends)} runs")
+        self.report.same(name, ends, self._rows)
 
-            ends.append(disturbed(freeze))
-        report.same(f"pauses_of_{seconds:g}_s", ends)
+    def pauses(self) -> None:
+        """Programs that freeze for a while: all of them in each run, at random times."""
+        rounds, rng = 1 if self._smoke else 10, random.Random(1)
+        for seconds in (2.6,) if self._smoke else (2.6, 40.0):
 
+            def freeze(run: Generation, seconds: float = seconds) -> None:
+                def later(name: str, delay: float) -> None:
+                    time.sleep(delay)
+                    run.pause(name, seconds)
 
-def strangers(report: Report, seconds: float) -> None:
-    """Forged messages and malformed datagrams, five thousand in a second."""
-    sent = 0
+                threads = [
+                    threading.Thread(target=later, args=(name, rng.uniform(0.3, 2 * seconds)))
+                    for name in [*run.names(), "consumer"]
+                ]
+                for thread in threads:
+                    thread.start()
+                for thread in threads:
+                    thread.join()
 
-    def attack(run: Run) -> None:
-        nonlocal sent
-        words = [sys.executable, HERE / "stranger.py", run.graph.config, "system-test"]
-        stranger = run.graph.network.start(
-            [*words, "5000", str(seconds)], PYTHONPATH=str(paths.ROOT / "train")
+            ends = [disturbed(freeze) for _ in range(rounds)]
+            self.report.same(f"pauses_of_{seconds:g}_s", ends, self._rows)
+
+    def commands(self) -> None:
+        """Kills of the trainer, and of the command with all its programs; --resume goes on."""
+        most, done, wrong, rng = 2 if self._smoke else 10, 0, 0, random.Random(1)
+        while done < most:
+            with network.Network() as net, tempfile.TemporaryDirectory() as folder:
+                run = Command(net, Path(folder) / "run")
+                run.start()
+                for _ in range(3):
+                    time.sleep(rng.uniform(1.0, 6.0))
+                    if (
+                        done < most
+                        and run.is_running()
+                        and run.kill(rng.choice([TRAINER, COMMAND]))
+                    ):
+                        done += 1
+                        run.start()
+                run.end()
+                wrong += run.transitions() != self._rows_of_command
+        print(f"chaos.commands: {done} kills")
+        self.report.zero("commands.wrong", wrong)
+
+    def strangers(self) -> None:
+        """Forged messages and malformed datagrams: what they cost who waits, and who works."""
+        seconds = 1.0 if self._smoke else 20.0
+        self._burden(seconds, lambda graph: {"server": graph.server(), "worker": graph.worker(0)})
+        self._burden(
+            seconds,
+            lambda graph: {"coordinator": graph.coordinator(), "consumer": graph.consumer()},
         )
-        sent += int(stranger.communicate()[0])
+        sent, wrong, end = 0, 0, time.monotonic() + (1.0 if self._smoke else 220.0)
+        while time.monotonic() < end:
+            with network.Network() as net, tempfile.TemporaryDirectory() as folder:
+                run = Command(net, Path(folder) / "run")
+                run.start()
+                while not (run.folder / run_folder.KEY_FILE).exists():
+                    time.sleep(0.01)
+                name = run_folder.run_name(run.folder)
+                with _strangers(net, name) as counts:
+                    run.end()
+                sent += counts[0]
+                wrong += run.transitions() != self._rows_of_command
+        print(f"chaos.strangers: {sent} messages beside training")
+        self.report.zero("strangers.wrong", wrong)
 
-    ends = [disturbed(attack)]
-    print(f"chaos.strangers: {sent} messages")
-    report.same("strangers", ends)
+    def _burden(self, seconds: float, start: Callable[[Graph], dict[str, Process]]) -> None:
+        """Measures the load that strangers put on programs that wait, and what they keep of it."""
+        with network.Network() as net, tempfile.TemporaryDirectory() as folder:
+            graph = Graph(net, Path(folder))
+            programs = start(graph)
+            time.sleep(3.0)
+            before = {name: resident(program.pid) for name, program in programs.items()}
+            idle = _cpu_of(programs, seconds)
+            with _strangers(net, RUN):
+                time.sleep(0.5)
+                busy = _cpu_of(programs, seconds)
+            for name, program in programs.items():
+                self.report.most(f"strangers.cpu_of_{name}", busy[name] - idle[name], 0.03)
+                grown = resident(program.pid) - before[name]
+                self.report.most(f"strangers.growth_of_{name}_mb", grown, 5.0)
+
+    def neighbours(self) -> None:
+        """Two runs on one network."""
+        with network.Network() as net, tempfile.TemporaryDirectory() as folder:
+            folders = [Path(folder) / name for name in ("one", "other")]
+            for one in folders:
+                one.mkdir()
+            runs = [Generation(net, one) for one in folders]
+            self.report.same("neighbours", [run.end() for run in runs], self._rows)
+
+    def disks(self) -> None:
+        """Disks that are full before the run has ended; once there is room, --resume goes on."""
+        wrong = 0
+        for kilobytes in (300,) if self._smoke else (50, 100, 300, 800, 1500, 2500, 3000, 4000):
+            for mode in ([],) if self._smoke else ([], ["--in-process"]):
+                wrong += not _survives_a_full_disk(kilobytes, mode, self._rows_of_command)
+        self.report.zero("disks.wrong", wrong)
+
+    def soak(self) -> None:
+        """Small runs for twenty minutes: what they leave behind, in memory and elsewhere."""
+        seconds = 1.0 if self._smoke else 1200.0
+        strays: set[str] = set()
+        runs, end = 0, time.monotonic() + seconds
+        with network.Network() as net, tempfile.TemporaryDirectory() as own:
+            words = [sys.executable, HERE / "soak.py", str(seconds)]
+            one = net.start(words, PYTHONPATH=os.environ["PYTHONPATH"], TMPDIR=own)
+            while time.monotonic() < end:
+                with tempfile.TemporaryDirectory() as folder:
+                    before = _files()
+                    run = Command(net, Path(folder) / "run")
+                    run.start()
+                    run.end()  # fails where a process is left
+                    strays |= _files() - before
+                    runs += 1
+            rounds, slope = one.communicate()[0].split()[-2:]
+        print(f"chaos.soak: {runs} commands, {rounds} rounds in one process")
+        for stray in sorted(strays):
+            print(f"chaos.soak: stray file {stray}")
+        self.report.zero("soak.stray_files", len(strays))
+        self.report.most("soak.growth_mb_per_h", float(slope), 1.0)
 
 
-def two_at_once(report: Report) -> None:
-    """Two runs on one network."""
+SCENARIOS = (
+    Chaos.losses,
+    Chaos.kills,
+    Chaos.coordinators,
+    Chaos.pauses,
+    Chaos.commands,
+    Chaos.strangers,
+    Chaos.neighbours,
+    Chaos.disks,
+    Chaos.soak,
+)
+
+
+def _median(ends: Iterable[generation.End]) -> float:
+    return statistics.median(end.seconds for end in ends)
+
+
+def _cpu_of(programs: dict[str, Process], seconds: float) -> dict[str, float]:
+    """Returns the share of one core that each program uses in the next `seconds`."""
+    before = {name: cpu_seconds(program.pid) for name, program in programs.items()}
+    time.sleep(seconds)
+    return {
+        name: (cpu_seconds(program.pid) - before[name]) / seconds
+        for name, program in programs.items()
+    }
+
+
+@contextmanager
+def _strangers(net: network.Network, name: str) -> Iterator[list[int]]:
+    """Lets strangers to run `name` send. The list has at the end how many messages these were."""
+    words = [sys.executable, HERE / "stranger.py", command.TINY, name, str(RATE)]
+    stranger = net.start(words, PYTHONPATH=str(paths.ROOT / "train"))
+    assert stranger.stdout is not None and stranger.stdout.readline() == "sends\n"
+    counts: list[int] = []
+    try:
+        yield counts
+    finally:
+        stranger.terminate()
+        counts.append(int(stranger.communicate()[0]))
+
+
+def _survives_a_full_disk(kilobytes: int, mode: list[str], right: bytes) -> bool:
+    """Returns whether a run on so small a disk ends with status 1 and words, and then goes on."""
     with network.Network() as net, tempfile.TemporaryDirectory() as folder:
-        folders = [Path(folder) / name for name in ("one", "other")]
-        for one in folders:
-            one.mkdir()
-        runs = [Run(net, one) for one in folders]
-        report.same("two_runs", [run.end() for run in runs])
+        words = [folder, str(kilobytes), sys.executable, command.TINY, *mode]
+        run = net.start(
+            ["unshare", "--mount", HERE / "full_disk.sh", *words],
+            PYTHONPATH=str(paths.ROOT / "train"),
+        )
+        said = run.communicate(timeout=command.PATIENCE)[0]
+        rows = Path(folder) / "transitions.npz"
+        if run.returncode == 0 and "No space left on device" in said and "Traceback" not in said:
+            return rows.read_bytes() == right
+        print(f"chaos.disks: {kilobytes} kB {mode}: status {run.returncode}: {said}")
+        return False
+
+
+def _files() -> set[str]:
+    """Returns what there is in the folders where programs leave things."""
+    folders = [tempfile.gettempdir(), "/dev/shm", str(Path.cwd()), str(Path.home())]
+    return {str(path) for folder in folders for path in Path(folder).iterdir()}
 
 
 def main() -> int:
     parser = argparse.ArgumentParser("chaos.py", description=__doc__.split("\n")[0])
     parser.add_argument("--smoke", action="store_true", help="briefly, no gates on time")
-    smoke = parser.parse_args().smoke
+    names = [scenario.__name__ for scenario in SCENARIOS]
+    parser.add_argument("scenarios", nargs="*", metavar="SCENARIO", help=", ".join(names))
+    args = parser.parse_args()
+    if unknown := set(args.scenarios) - set(names):
+        parser.error(f"unknown: {', '.join(sorted(unknown))}; legal: {', '.join(names)}")
     if why := network.defect():
         print(f"chaos.py: no network namespaces here: {why}", file=sys.stderr)
         return 77
-    with tempfile.TemporaryDirectory() as folder:
-        report = Report(undisturbed(Path(folder)), smoke)
-    losses(report, 1 if smoke else 5)
-    kills(report, 2 if smoke else 100)
-    pauses(report, (2.6,) if smoke else (2.6, 40.0))
-    strangers(report, 1.0 if smoke else 20.0)
-    two_at_once(report)
-    return 0 if report.holds else 1
+    with tempfile.TemporaryDirectory() as own:  # of which soak() sees what is left
+        os.environ["TMPDIR"] = tempfile.tempdir = own
+        os.environ["TORCHINDUCTOR_CACHE_DIR"] = own  # torch makes a folder for its compiler
+        chaos = Chaos(args.smoke)
+        for scenario in SCENARIOS:
+            if not args.scenarios or scenario.__name__ in args.scenarios:
+                scenario(chaos)
+    return 0 if chaos.report.holds else 1
 
 
 if __name__ == "__main__":

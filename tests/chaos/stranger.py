@@ -1,16 +1,19 @@
-"""A process without the key of a run that sends what might harm it: CONFIG.yaml NAME RATE SECONDS.
+"""A process without the key of a run that sends what might harm it: CONFIG.yaml NAME RATE.
 
 Half of it are forged messages of all types: the run's name, the right channel and type, another
-key. The other half are datagrams that are no messages. Prints how many it has sent.
+key. The other half are datagrams that are no messages. Prints that it sends, and at SIGTERM how
+many these were.
 """
 
 from __future__ import annotations
 
 import random
 import re
+import signal
 import socket
 import struct
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -54,23 +57,25 @@ def forge(bus: _core.Bus, rng: random.Random) -> None:
         bus.publish(channel, kind)
 
 
-def main(config: str, name: str, rate: float, seconds: float) -> None:
+def main(config: str, name: str, rate: float) -> None:
     url, rng = _core.Config.from_file(Path(config)).run.bus, random.Random(1)
     bus = _core.Bus(url, _core.RunKey.random(name))
     group, port = re.match(r"udpm://([\d.]+):(\d+)", url).groups()
     raw = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     raw.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+    stop = threading.Event()
+    signal.signal(signal.SIGTERM, lambda number, frame: stop.set())
+    print("sends", flush=True)
     begin, sent = time.monotonic(), 0
-    while (now := time.monotonic()) < begin + seconds:
-        while sent < (now - begin) * rate:
+    while not stop.wait(0.002):
+        while sent < (time.monotonic() - begin) * rate and not stop.is_set():
             if sent % 2:
                 forge(bus, rng)
             else:
                 raw.sendto(malformed(rng), (group, int(port)))
             sent += 1
-        time.sleep(0.002)
     print(sent)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2], float(sys.argv[3]), float(sys.argv[4]))
+    main(sys.argv[1], sys.argv[2], float(sys.argv[3]))

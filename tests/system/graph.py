@@ -17,7 +17,7 @@ from rtg.run import effective_config
 from rtg.run.run_args import Override
 
 _TINY = paths.CONFIG / "tests" / "tiny.yaml"
-_RUN = "system-test"
+RUN = "system-test"
 _CONSUMER = Path(__file__).with_name("consumer.py")
 _DEADLY_UNIT = Path(__file__).with_name("deadly_unit.py")
 PATIENCE = 120.0  # [s] until a test that hangs fails
@@ -34,7 +34,7 @@ class Graph:
         given = [Override("", setting) for setting in overrides]
         self.config.write_text(effective_config.load(_TINY, given).yaml)
         self.key = folder / KEY_FILE
-        new_key(self.key, _RUN)
+        new_key(self.key, RUN)
         self.journal = folder / JOURNAL_FILE
 
     def _program(self, name: str, *words: str | Path) -> Process:

@@ -16,10 +16,16 @@ from time_limit import PATIENCE, run
 
 _MULTICAST = "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo"
 _PATH = os.environ["PATH"] + ":/usr/sbin:/sbin"
+_SOME = "meta l4proto udp numgen random mod 100 lt {percent}"
 _LOSS = """
 add table ip loss
 add chain ip loss incoming {{ type filter hook input priority 0; }}
-add rule ip loss incoming meta l4proto udp numgen random mod 100 lt {percent} counter drop
+add rule ip loss incoming {some} counter drop
+"""
+_TWICE = """
+add table ip twice
+add chain ip twice incoming {{ type filter hook input priority 0; }}
+add rule ip twice incoming {some} counter dup to 127.0.0.1 device lo
 """
 
 
@@ -96,10 +102,21 @@ class Network:
 
     def lose(self, percent: int) -> None:
         """From now on every datagram is lost with that probability."""
-        self._nft("-f", "-", rules=_LOSS.format(percent=percent))
+        self._nft("-f", "-", rules=_LOSS.format(some=_SOME.format(percent=percent)))
+
+    def double(self, percent: int) -> None:
+        """From now on every datagram comes twice with that probability."""
+        self._nft("-f", "-", rules=_TWICE.format(some=_SOME.format(percent=percent)))
 
     def lost(self) -> int:
         """Datagrams lost so far."""
-        count = re.search(r"packets (\d+)", self._nft("list", "table", "ip", "loss"))
+        return self._count("loss")
+
+    def doubled(self) -> int:
+        """Datagrams doubled so far."""
+        return self._count("twice")
+
+    def _count(self, table: str) -> int:
+        count = re.search(r"packets (\d+)", self._nft("list", "table", "ip", table))
         assert count is not None
         return int(count.group(1))

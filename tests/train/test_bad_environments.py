@@ -55,7 +55,7 @@ LACKS = {
     "full output": (f"{RTG} check gathering >/dev/full", 1, "No space left on device; to mend it"),
     "short files": (f"ulimit -f 1; {MAKE} out", 1, "config.yaml: File too large; to mend it: "),
     "no home": (f"env -u HOME {RTG} check gathering --picture a.png >/dev/null", 0, ""),
-    "full disk": (f"{MOUNT % '40k'} && {MAKE} /mnt/out", 1, "No space left on device; to mend it"),
+    "full disk": (f"{MOUNT % '40k'} && {MAKE} /mnt/out", 1, "No space left on device"),
     "read-only": (f"{MOUNT % '40k,ro'} && {MAKE} /mnt/out", 2, "/mnt/out: Read-only file system"),
 }
 

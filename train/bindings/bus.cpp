@@ -169,7 +169,7 @@ struct Monitor {
       std::string type;
       if (const auto bytes = bus::without_tag(datagram.payload)) read(*bytes, type, message);
       handler(std::string(datagram.channel), datagram.payload.size(), type, message);
-      return true;
+      return bus::Network::Verdict::kHandled;
     });
   }
 

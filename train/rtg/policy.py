@@ -105,7 +105,7 @@ def train(
     if (run / "checkpoint").exists() or (run / "model.pt").exists():
         raise UserError(f"{run}: holds a learner already; legal: another folder")
     run.mkdir(parents=True, exist_ok=True)
-    run_folder.write_text(run / "config.yaml", config.yaml)
+    run_folder.write_config(run / "config.yaml", config.yaml)
     own_data.store(run, config, given)
     threads = th.get_num_threads()
     th.set_num_threads(1)  # networks this small are slower on more

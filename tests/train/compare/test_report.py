@@ -316,7 +316,7 @@ def test_replay_gaps_of_another_method_are_drawn_where_the_reference_has_none(tm
     summary = tmp_path / cells[0].name / "summary.json"
     known = json.loads(summary.read_text())
     del known["replay_gap_counts"]  # nothing was generated
-    summary.write_text(json.dumps(known))
+    write_json(summary, known)
     finished(tmp_path, cells[1], BAD)
     write_grid(tmp_path, cells)
     write_report(tmp_path, tmp_path)

@@ -19,6 +19,7 @@ from rtg import _core
 from rtg.errors import UserError
 from rtg.files import best_episode, checkpoint, dataset, own_data, run_folder, versions
 from rtg.learn import networks, policy_file
+from rtg.run import effective_config
 from samples import random_transitions
 from training_runs import TINY
 
@@ -61,6 +62,9 @@ KINDS = {
     ),
     "transitions.npz": Kind(write_transitions, dataset.read),
     "versions.json": Kind(lambda path: versions.write(path.parent, {}), JSON.read),
+    "config.yaml": Kind(
+        lambda path: run_folder.write_config(path, CONFIG.yaml), effective_config.load_written
+    ),
     "summary.json": JSON,
     "generation.json": Kind(
         lambda path: run_folder.write_json(path, {"nodes": [[1, 2]]}, indent=None), JSON.read
@@ -113,7 +117,7 @@ def outcome(kind: Kind, path: Path) -> str:
         kind.read(path)
         return ""
     except UserError as error:
-        assert str(error).startswith(f"{path}: ")
+        assert str(error).startswith(f"{path}:")  # a line may follow
         return str(error)
     finally:
         most = tracemalloc.get_traced_memory()[1]
@@ -138,7 +142,7 @@ def write_own(path: Path) -> None:
 
 
 OWN = Kind(write_own, lambda path: own_data.read(path, TASK))
-ARCHIVES = {name: kind for name, kind in KINDS.items() if not name.endswith(".json")}
+ARCHIVES = {name: kind for name, kind in KINDS.items() if name.endswith((".npz", ".pt"))}
 
 
 def repacked(members: dict[str, bytes], path: Path) -> None:

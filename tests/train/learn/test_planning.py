@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rtg import _core
+from rtg.files.run_folder import read_json
 from rtg.learn import planning, trainer
 from rtg.learn.evaluation import FINAL_SEED, held_out_starts
 from rtg.learn.offline_data import NoSource
@@ -38,7 +39,7 @@ def planner(folder: Path) -> Planning:
 
 def result(folder: Path) -> dict:
     """Returns what a run leaves but for its seconds."""
-    found = json.loads((folder / "training.json").read_text())
+    found = read_json(folder / "training.json")
     return {name: value for name, value in found.items() if name not in SECONDS}
 
 
@@ -101,7 +102,7 @@ def test_what_it_took_is_written_down(tmp_path: Path, monkeypatch: pytest.Monkey
         (row,) = csv.DictReader(file)
     assert (row["interactions"], row["pushes"], row["success_rate"]) == ("0", "360", "0")
     assert (row["wall_s"], row["cpu_s"]) == ("18", "9")
-    found = json.loads((folder / "training.json").read_text())
+    found = read_json(folder / "training.json")
     assert (found["train_wall_s"], found["train_cpu_s"]) == (18.0, 9.0)
 
 

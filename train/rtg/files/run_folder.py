@@ -6,6 +6,7 @@ import contextlib
 import hashlib
 import json
 import os
+import re
 import time
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -124,6 +125,9 @@ JOURNAL_FILE = "generation.journal"
 KEY_FILE = "run.key"  # the secret with which the processes of a run authenticate their messages
 
 
+_CONFIG_SEAL = "# SHA-256 of the lines above: "
+
+
 def write_run_name(run: Path, name: str) -> None:
     """Notes in the folder of a run by which name its processes know each other on the bus."""
     write_text(run / "run_name", f"{name}\n")
@@ -148,6 +152,32 @@ def read_text(path: Path) -> str:
     except (OSError, UnicodeDecodeError) as error:
         why = (isinstance(error, OSError) and error.strerror) or "is no UTF-8"
         raise UserError(f"{path}: {why}; legal: the file as the run wrote it") from None
+
+
+def write_config(path: Path, yaml: str) -> None:
+    """Writes a configuration; its last line, a comment, has the SHA-256 of those above."""
+    write_text(path, _with_seal(yaml))
+
+
+def read_config(path: Path) -> str:
+    """Reads a configuration. Raises UserError if it was changed since write_config() wrote it.
+
+    Those of users, and of earlier versions of RTG, have no digest that could tell.
+    """
+    text = read_text(path)
+    above, _, last = text[:-1].rpartition("\n")
+    # A changed bit leaves one of the two, the words or the digits.
+    has_seal = _CONFIG_SEAL in last or re.search(f"[0-9a-f]{{{_DIGITS}}}", last)
+    if has_seal and text != _with_seal(f"{above}\n"):
+        raise UserError(
+            f"{path}: was changed since the run wrote it, as its last line tells; legal: as it was "
+            "written; for other settings, a copy without that line and a new run"
+        )
+    return text
+
+
+def _with_seal(yaml: str) -> str:
+    return f"{yaml}{_CONFIG_SEAL}{hashlib.sha256(yaml.encode()).hexdigest()}\n"
 
 
 def plain_json(value: Any) -> str:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import errno
 import os
+import shutil
 import signal
 import subprocess
 import time
@@ -16,6 +18,7 @@ from rtg.errors import RunError, UserError, in_words
 from rtg.processes.program_log import ProgramLog
 
 _PR_SET_PDEATHSIG = 1
+_SCANT = 1 << 20  # [bytes] of free space, with which a program that needs more may have failed
 _libc = ctypes.CDLL(None)
 
 
@@ -126,10 +129,12 @@ class Node:
             raise RunError(self.exit_text() + end)
 
     def why_mute(self) -> str:
-        """Says why the program cannot have written to its log; empty if it could have."""
+        """Says why the program may not have written to its log; empty if it could have."""
         try:
             with self.log.open("ab", buffering=0) as log:
                 log.write(b"\n")
+            if shutil.disk_usage(self.log.parent).free < _SCANT:  # its end has freed some
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         except OSError as error:
             return f"; {in_words(error, self.log)}"
         return ""

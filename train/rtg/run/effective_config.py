@@ -43,10 +43,11 @@ def as_typed(value: Any) -> str:
 def load_written(file: Path) -> _core.Config:
     """Loads `file`, a configuration that this version of RTG must have written.
 
-    Raises UserError if `file` lacks a line that this version would write. The version that wrote it
-    may have had another default for that setting.
+    Raises UserError if `file` was changed, or lacks a line that this version would write. The
+    version that wrote it may have had another default for that setting.
     """
-    config, found = load(file), _settings(run_folder.read_text(file))
+    found = _settings(run_folder.read_config(file))
+    config = load(file)
     missing = [line for line in _settings(config.yaml) if line not in found]
     if missing:
         raise UserError(
@@ -61,7 +62,7 @@ def load_recorded(file: Path) -> _core.Config:
 
     Leaves out settings that this version no longer has. Raises UserError for other defects.
     """
-    lines = run_folder.read_text(file).splitlines()
+    lines = run_folder.read_config(file).splitlines()
     while True:
         try:
             return _core.Config.from_text("\n".join(lines), str(file))

@@ -217,7 +217,7 @@ def make_plan(args: RunArgs) -> RunPlan:
             own_data.store(folder, config, own)
         name = f"{folder.name}-{secrets.token_hex(4)}"
         run_folder.write_run_name(folder, name)
-        run_folder.write_text(folder / "config.yaml", config.yaml)
+        run_folder.write_config(folder / "config.yaml", config.yaml)
     plan = RunPlan(folder, name, config, args.train, args.resume, tuple(notes), args.sinks)
     if own is None:
         versions.write(folder, versions.generator(folder) if plan.is_generated() else None)

@@ -1,0 +1,86 @@
+"""The programs of one generation, which something disturbs."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from graph import Graph, generated_in_process, lost
+from network import Network
+
+SETTINGS = ("search.transitions=12000", "run.seed=3")
+WORKERS = 2
+
+
+class End(NamedTuple):
+    """How a generation ended."""
+
+    seconds: float
+    lost: int  # rows that the consumer lacks
+    rows: bytes  # its transitions.npz
+
+
+class Generation:
+    """The programs of one generation, each started again when it is killed."""
+
+    def __init__(self, network: Network, folder: Path) -> None:
+        self.graph = Graph(network, folder, *SETTINGS)
+        self._start: dict[str, Callable[[], subprocess.Popen[str]]] = {
+            "server": self.graph.server,
+            **{f"worker {k}": lambda k=k: self.graph.worker(k) for k in range(WORKERS)},
+            "coordinator": self.graph.coordinator,
+        }
+        self._begun = time.monotonic()
+        self._consumer = self.graph.consumer()
+        self._programs = {name: start() for name, start in self._start.items()}
+
+    def is_running(self) -> bool:
+        return self.graph.is_generating()
+
+    def names(self) -> list[str]:
+        """Returns the names of all programs but the consumer, which keeps what it has in memory."""
+        return list(self._programs)
+
+    def kill(self, name: str) -> None:
+        """Kills a program and starts it again."""
+        self._programs[name].kill()
+        self._programs[name].wait()
+        self._programs[name] = self._start[name]()
+
+    def pause(self, name: str, seconds: float) -> None:
+        """Freezes a program, or the "consumer", for so long."""
+        program = {**self._programs, "consumer": self._consumer}[name]
+        program.send_signal(signal.SIGSTOP)
+        time.sleep(seconds)
+        program.send_signal(signal.SIGCONT)
+
+    def end(self) -> End:
+        """Waits for the end. Raises SystemExit if a program failed or units were given up."""
+        rows_lost = lost(self._consumer)
+        taken = time.monotonic() - self._begun
+        status = self._programs["coordinator"].wait(60)
+        if status != 0:
+            raise SystemExit(f"the coordinator ended with status {status}: units were given up")
+        return End(taken, rows_lost, self.graph.transitions())
+
+
+def undisturbed(folder: Path) -> bytes:
+    """Returns the transitions of the same generation without LCM."""
+    return generated_in_process(folder / "direct.npz", *SETTINGS)
+
+
+def disturbed(
+    disturb: Callable[[Generation], None] = lambda run: None,
+    before: Callable[[Network], None] = lambda network: None,
+) -> End:
+    """Returns the end of a generation in a network of its own."""
+    with Network() as network, tempfile.TemporaryDirectory() as folder:
+        before(network)
+        run = Generation(network, Path(folder))
+        disturb(run)
+        return run.end()
