@@ -34,7 +34,7 @@ class NodeStatus {
 /// server use it to know when to end.
 class CoordinatorWatch {
  public:
-  static constexpr Seconds kSilence = 30.0;
+  static constexpr Seconds kSilence = 120.0;  // longer than a machine freezes
 
   explicit CoordinatorWatch(Bus& bus);
 

@@ -33,7 +33,7 @@ int serve(bus::Bus& bus, jobs::WorkerNode<Service>& node) {
     }
     if (node.coordinator().silent(bus::monotonic_now())) {
       set_shutdown_deadline(1);  // the node's destructor waits for its units, which may hang
-      throw std::runtime_error("no coordinator heard for 30 s");
+      throw std::runtime_error("no coordinator heard for two minutes");
     }
   }
   say("ends after " + std::to_string(node.units_done()) + " units of work");
