@@ -8,7 +8,7 @@ MADE_FROM=$VENV/.made-from # stamp of a finished .venv
 # Debian and Ubuntu names; "a|b" is satisfied by either (Ubuntu 24.04 renamed some).
 PACKAGES=(
   g++ python3-venv python3-dev 'libglib2.0-0|libglib2.0-0t64'
-  libeigen3-dev libsuitesparse-dev libbox2d-dev libgeos-dev libsodium-dev libyaml-cpp-dev libutfcpp-dev nlohmann-json3-dev
+  libeigen3-dev libsuitesparse-dev libbox2d-dev libgeos-dev libsleef-dev libsodium-dev libyaml-cpp-dev libutfcpp-dev nlohmann-json3-dev
   libgtest-dev libbenchmark-dev # one configuration of the build serves both commands
 )
 TEST_PACKAGES=(ccache iproute2 nftables util-linux)

@@ -5,6 +5,7 @@
 #   ./test.sh tsan        C++ tests that use threads under ThreadSanitizer
 #   ./test.sh coverage    line coverage of the physics and the solver by their own tests
 #   ./test.sh bench       benchmarks and gates: JSON and Markdown in build/bench/ (40 minutes; --smoke: briefly, no gates on time)
+#   ./test.sh bits        the same transitions from builds for several processors (five minutes and a build)
 #   ./test.sh chaos       runs beside losses, kills, pauses, strangers, full disks (two hours; --smoke: briefly, no gates on time)
 #   ./test.sh fuzz        a million inputs to each fuzz target, with Clang and libFuzzer (an hour; --smoke: 5,000 inputs each)
 #   ./test.sh peer        the reverse solver against CasADi and IPOPT (ten minutes)
@@ -93,6 +94,12 @@ case $* in # all words, so that one too many is unknown
     set_up release all "$ROOT/tests/bench/requirements.txt"
     set_environment
     bench "${@:2}"
+    ;;
+  bits)
+    set_up release generate_bench
+    setup_packages qemu-user
+    set_environment
+    exec "$VENV/bin/python" "$ROOT/tests/bench/same_bits.py" "$ROOT/build/release"
     ;;
   chaos | 'chaos '*)
     set_up release rtg_run

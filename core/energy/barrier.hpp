@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/math/elementary.hpp"
+#include "core/math/elementary_lanes.hpp"
 
 namespace rtg::energy {
 

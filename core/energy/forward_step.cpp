@@ -14,9 +14,7 @@ constexpr double kLargestShift = 1e6;  // in units of the Hessian's largest diag
 template <class T>
 T log_cosh(const T& x) {
   const T a = magnitude(x);
-  T small = T(-2.0) * a;
-  exponentials(&small, 1);
-  return a + logarithm(T(1.0) + small) - T(std::numbers::ln2);
+  return a + logarithm(T(1.0) + exponential(T(-2.0) * a)) - T(std::numbers::ln2);
 }
 
 template <class T>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/math/elementary.hpp"
+#include "core/math/elementary_lanes.hpp"
 
 namespace rtg::energy {
 

@@ -1,5 +1,6 @@
 #include "core/energy/open_gaps.hpp"
 
+#include <numeric>
 #include <vector>
 
 #include "core/energy/joint_limit.hpp"
@@ -12,12 +13,15 @@ namespace {
 constexpr int kRounds = 50;
 constexpr double kLeastShare = 0.01;  // least |Jᵀ∇g|²/|∇g|²; below it the joints hold the gap
 
+/// Returns |v|², summed in order. Eigen's order depends on the size of the processor's registers.
+double square(const VectorXd& v) { return std::inner_product(v.begin(), v.end(), v.begin(), 0.0); }
+
 /// Moves the bodies so that a gap grows by `amount`, to first order. `gradient` is ∇g over the
 /// coordinates [3·movable].
 void open_by(const SceneModel<double>& scene, double amount, const VectorXd& gradient,
              Placement<double>& at) {
   const Placement<double> from = at;
-  scene.advance(from, gradient.data(), amount / gradient.squaredNorm(), at);
+  scene.advance(from, gradient.data(), amount / square(gradient), at);
 }
 
 /// Moves the bodies of pair `n` apart where a gap is below `floor`. Returns whether there was such
@@ -34,9 +38,9 @@ bool open_pair(const SceneModel<double>& scene, int n, double floor, Placement<d
     VectorXd slope = VectorXd::Zero(3 * scene.movable());
     pull(scene, n, frame, contact.point.pulled(d.gradient), slope.data());
     opened = true;
-    const double free = slope.squaredNorm();
+    const double free = square(slope);
     scene.articulation().apply_jacobian_transposed(at, slope.data());
-    if (slope.squaredNorm() >= kLeastShare * free) open_by(scene, 1.1 * floor - gap, slope, at);
+    if (square(slope) >= kLeastShare * free) open_by(scene, 1.1 * floor - gap, slope, at);
   }
   return opened;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/math/block_matrix.hpp"
-#include "core/math/elementary.hpp"
+#include "core/math/elementary_lanes.hpp"
 #include "core/world/signed_distance.hpp"
 
 namespace rtg::energy {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/math/block_matrix.hpp"
-#include "core/math/elementary.hpp"
+#include "core/math/elementary_lanes.hpp"
 
 namespace rtg::energy {
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/forward/free_path.hpp"
+#include "core/math/elementary.hpp"
 
 namespace rtg::forward {
 namespace {
@@ -53,7 +54,8 @@ Servo servo_of(const Scene& scene, double stride, const PhysicsConfig& physics) 
   const double drag = mass_of(scene.bodies[0]).mass * damping * speed *
                       (1.0 + physics.inertia_weight()) / (1.0 + step_s * damping);
   // Each step divides the speed of a free body by 1 + h d.
-  const double coasting = std::log(kCatchUp * speed / kRestSpeed) / std::log1p(step_s * damping);
+  const double coasting =
+      logarithm(kCatchUp * speed / kRestSpeed) / logarithm(1.0 + step_s * damping);
   return {step_s,
           speed * step_s,
           radius,

@@ -1,52 +1,50 @@
-#include "core/math/elementary.hpp"
+#include <sleef.h>
 
-#include <cassert>
-
-#include "core/math/vector_math.hpp"
+#include "core/math/elementary_lanes.hpp"
 
 namespace rtg {
-namespace {
 
-constexpr int kWide = kWidth<Lanes>;
-
-/// Calls f on an array of all doubles in x[0], ..., x[count - 1]. f replaces them in place.
-template <class F>
-void as_numbers(Lanes* x, int count, F&& f) {
-  assert(count <= kMaxExponentials);
-  double buffer[kMaxExponentials * kWide];
-  for (int k = 0; k < count; ++k)
-    x[k].copy_to(buffer + k * kWide, std::experimental::element_aligned);
-  f(buffer, count * kWide);
-  for (int k = 0; k < count; ++k)
-    x[k].copy_from(buffer + k * kWide, std::experimental::element_aligned);
+double exponential(double x) { return Sleef_finz_expd1_u10purecfma(x); }
+double logarithm(double x) { return Sleef_finz_logd1_u35purecfma(x); }
+double hyperbolic_tangent(double x) { return Sleef_finz_tanhd1_u35purecfma(x); }
+double angle_of(double x, double y) { return Sleef_finz_atan2d1_u35purecfma(y, x); }
+Turn<double> turn_of(double angle) {
+  const auto [s, c] = Sleef_finz_sincosd1_u35purecfma(angle);
+  return {c, s};
 }
 
-}  // namespace
-
-void exponentials(double* x, int count) {
-  for (int k = 0; k < count; ++k) x[k] = std::exp(x[k]);
-}
-void exponentials(Lanes* x, int count) { as_numbers(x, count, vector_math::exponentials); }
-
-Turn<double> turn_of(double angle) { return {std::cos(angle), std::sin(angle)}; }
-Turn<Lanes> turn_of(const Lanes& angle) {
-  Turn<Lanes> out{angle, angle};
-  as_numbers(&out.c, 1, vector_math::cosines);
-  as_numbers(&out.s, 1, vector_math::sines);
-  return out;
-}
-
-double hyperbolic_tangent(double x) { return std::tanh(x); }
+#if defined(__AVX512F__)
+Lanes exponential(const Lanes& x) { return Lanes(Sleef_finz_expd8_u10avx512f(Register(x))); }
+Lanes logarithm(const Lanes& x) { return Lanes(Sleef_finz_logd8_u35avx512f(Register(x))); }
 Lanes hyperbolic_tangent(const Lanes& x) {
-  Lanes out = x;
-  as_numbers(&out, 1, vector_math::hyperbolic_tangents);
-  return out;
+  return Lanes(Sleef_finz_tanhd8_u35avx512f(Register(x)));
 }
-double logarithm(double x) { return std::log(x); }
+Turn<Lanes> turn_of(const Lanes& angle) {
+  const auto [s, c] = Sleef_finz_sincosd8_u35avx512f(Register(angle));
+  return {Lanes(c), Lanes(s)};
+}
+#elif defined(__AVX2__)
+Lanes exponential(const Lanes& x) { return Lanes(Sleef_finz_expd4_u10avx2(Register(x))); }
+Lanes logarithm(const Lanes& x) { return Lanes(Sleef_finz_logd4_u35avx2(Register(x))); }
+Lanes hyperbolic_tangent(const Lanes& x) { return Lanes(Sleef_finz_tanhd4_u35avx2(Register(x))); }
+Turn<Lanes> turn_of(const Lanes& angle) {
+  const auto [s, c] = Sleef_finz_sincosd4_u35avx2(Register(angle));
+  return {Lanes(c), Lanes(s)};
+}
+#else
+Lanes exponential(const Lanes& x) {
+  return Lanes([&](auto l) { return exponential(double(x[l])); });
+}
 Lanes logarithm(const Lanes& x) {
-  Lanes out = x;
-  as_numbers(&out, 1, vector_math::logarithms);
-  return out;
+  return Lanes([&](auto l) { return logarithm(double(x[l])); });
 }
+Lanes hyperbolic_tangent(const Lanes& x) {
+  return Lanes([&](auto l) { return hyperbolic_tangent(double(x[l])); });
+}
+Turn<Lanes> turn_of(const Lanes& angle) {
+  return {Lanes([&](auto l) { return turn_of(double(angle[l])).c; }),
+          Lanes([&](auto l) { return turn_of(double(angle[l])).s; })};
+}
+#endif
 
 }  // namespace rtg

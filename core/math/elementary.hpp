@@ -1,27 +1,27 @@
 #pragma once
 
-#include "core/math/lanes.hpp"
-
 namespace rtg {
 
-/// Largest `count` that exponentials() accepts for Lanes.
-inline constexpr int kMaxExponentials = 8;
+// Elementary functions that give the same bits for the same number on every processor, and the same
+// for a number as for a lane (elementary_lanes.hpp): SLEEF's deterministic functions. Those of the
+// C library round otherwise from processor to processor and from version to version. Errors are at
+// most 3.5 units in the last place. A NaN gives a NaN.
 
-/// Replaces each of the `count` numbers in `x` by its exponential. The Lanes version of each
-/// function in this file agrees with the double version to a few units in the last place.
-void exponentials(double* x, int count);
-void exponentials(Lanes* x, int count);
+double exponential(double x);
+
+/// ln x; -∞ for zero, NaN for negative numbers.
+double logarithm(double x);
+
+double hyperbolic_tangent(double x);
 
 template <class T>
 struct Turn {
   T c, s;  // cos θ, sin θ
 };
+/// `angle` is θ [rad].
 Turn<double> turn_of(double angle);
-Turn<Lanes> turn_of(const Lanes& angle);
 
-double hyperbolic_tangent(double x);
-Lanes hyperbolic_tangent(const Lanes& x);
-double logarithm(double x);
-Lanes logarithm(const Lanes& x);
+/// Returns the angle of the vector (x, y) from the x axis, in [-π, π]; 0 for the vector 0.
+double angle_of(double x, double y);
 
 }  // namespace rtg

@@ -48,6 +48,38 @@ inline Lanes lesser(const Lanes& a, const Lanes& b) { return select(a < b, a, b)
 
 inline double magnitude(double x) { return std::abs(x); }
 inline Lanes magnitude(const Lanes& x) { return std::experimental::abs(x); }
+
+#if defined(__AVX512F__)
+using Register = __m512d;  // the processor's type for Lanes
+#elif defined(__AVX2__) && defined(__FMA__)
+using Register = __m256d;
+#elif defined(__x86_64__)
+#error "RTG_PROCESSOR is below x86-64-v3"
+#endif
+
+/// Return z ± x y, rounded once. The compiler fuses no product by itself (-ffp-contract=off), as
+/// its choice depends on the processor.
+inline double plus_product(double z, double x, double y) { return std::fma(x, y, z); }
+inline double minus_product(double z, double x, double y) { return std::fma(-x, y, z); }
+inline Lanes plus_product(const Lanes& z, const Lanes& x, const Lanes& y) {
+#if defined(__AVX512F__)
+  return Lanes(_mm512_fmadd_pd(Register(x), Register(y), Register(z)));
+#elif defined(__FMA__)
+  return Lanes(_mm256_fmadd_pd(Register(x), Register(y), Register(z)));
+#else
+  return Lanes([&](auto l) { return std::fma(x[l], y[l], z[l]); });
+#endif
+}
+inline Lanes minus_product(const Lanes& z, const Lanes& x, const Lanes& y) {
+#if defined(__AVX512F__)
+  return Lanes(_mm512_fnmadd_pd(Register(x), Register(y), Register(z)));
+#elif defined(__FMA__)
+  return Lanes(_mm256_fnmadd_pd(Register(x), Register(y), Register(z)));
+#else
+  return plus_product(z, -x, y);
+#endif
+}
+
 inline double root(double x) { return std::sqrt(x); }
 inline Lanes root(const Lanes& x) { return std::experimental::sqrt(x); }
 

@@ -63,7 +63,7 @@ void set_step(StageStep<T>& to, int l, const StageStep<double>& from) {
 template <class T>
 bool PivotingSolver<T>::solve(const StageSystem<T>& system, int l, StageStep<T>& step) {
   StageStep<double> one(system.M, system.h);
-  if (!umfpack_.solve(of_lane(system, l), one)) return false;
+  if (!klu_.solve(of_lane(system, l), one)) return false;
   set_step(step, l, one);
   return true;
 }

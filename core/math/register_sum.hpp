@@ -32,18 +32,18 @@ class RegisterSum<Block<T>> {
   void add(const Left& A, const Right& B) {
     for (int k = 0; k < 3; ++k) {
       const T x = A(0, k), y = A(1, k), z = A(2, k), u = B(k, 0), v = B(k, 1), w = B(k, 2);
-      a_ = a_ + x * u, b_ = b_ + y * u, c_ = c_ + z * u;
-      d_ = d_ + x * v, e_ = e_ + y * v, f_ = f_ + z * v;
-      g_ = g_ + x * w, h_ = h_ + y * w, i_ = i_ + z * w;
+      a_ = plus_product(a_, x, u), b_ = plus_product(b_, y, u), c_ = plus_product(c_, z, u);
+      d_ = plus_product(d_, x, v), e_ = plus_product(e_, y, v), f_ = plus_product(f_, z, v);
+      g_ = plus_product(g_, x, w), h_ = plus_product(h_, y, w), i_ = plus_product(i_, z, w);
     }
   }
   template <class Left, class Right>
   void subtract(const Left& A, const Right& B) {
     for (int k = 0; k < 3; ++k) {
       const T x = A(0, k), y = A(1, k), z = A(2, k), u = B(k, 0), v = B(k, 1), w = B(k, 2);
-      a_ = a_ - x * u, b_ = b_ - y * u, c_ = c_ - z * u;
-      d_ = d_ - x * v, e_ = e_ - y * v, f_ = f_ - z * v;
-      g_ = g_ - x * w, h_ = h_ - y * w, i_ = i_ - z * w;
+      a_ = minus_product(a_, x, u), b_ = minus_product(b_, y, u), c_ = minus_product(c_, z, u);
+      d_ = minus_product(d_, x, v), e_ = minus_product(e_, y, v), f_ = minus_product(f_, z, v);
+      g_ = minus_product(g_, x, w), h_ = minus_product(h_, y, w), i_ = minus_product(i_, z, w);
     }
   }
   template <class Summand>
@@ -86,12 +86,14 @@ class RegisterSum<Vec3<T>> {
   template <class Left>
   void add(const Left& A, const Vec3<T>& x) {
     for (int k = 0; k < 3; ++k)
-      a_ = a_ + A(0, k) * x[k], b_ = b_ + A(1, k) * x[k], c_ = c_ + A(2, k) * x[k];
+      a_ = plus_product(a_, A(0, k), x[k]), b_ = plus_product(b_, A(1, k), x[k]),
+      c_ = plus_product(c_, A(2, k), x[k]);
   }
   template <class Left>
   void subtract(const Left& A, const Vec3<T>& x) {
     for (int k = 0; k < 3; ++k)
-      a_ = a_ - A(0, k) * x[k], b_ = b_ - A(1, k) * x[k], c_ = c_ - A(2, k) * x[k];
+      a_ = minus_product(a_, A(0, k), x[k]), b_ = minus_product(b_, A(1, k), x[k]),
+      c_ = minus_product(c_, A(2, k), x[k]);
   }
   void add(const Vec3<T>& x) { a_ = a_ + x[0], b_ = b_ + x[1], c_ = c_ + x[2]; }
   void subtract(const Vec3<T>& x) { a_ = a_ - x[0], b_ = b_ - x[1], c_ = c_ - x[2]; }

@@ -32,7 +32,7 @@ bool can_pull(const tasks::Task& task, const Pose& robot, const Pose& object, st
   const Shape& shape = task.scene.bodies[body].shape;
   const Vector2d arm = robot.position() - object.position();
   if (arm.norm() > farthest_pull(task, body) ||
-      arm.dot(way) < std::cos(kPullCone) * arm.norm() * way.norm())
+      arm.dot(way) < turn_of(kPullCone).c * arm.norm() * way.norm())
     return false;
   const double gap = separation(hand, robot, shape, object);
   return gap >= 0.0 && gap <= kReach;

@@ -18,7 +18,7 @@ constexpr int kDirections = 90;   // in which a width is measured
 Polygon widened(const Part& part, const Pose& pose, double by) {
   Polygon out = part.is_disc()
                     ? regular_polygon(kDiscSides,
-                                      (part.radius + by) / std::cos(std::numbers::pi / kDiscSides))
+                                      (part.radius + by) / turn_of(std::numbers::pi / kDiscSides).c)
                     : offset_polygon(part.core, part.radius + by);
   for (Vector2d& v : out.vertices)
     v = to_world(pose, part.is_disc() ? Vector2d(v + part.core.vertices[0]) : v);
@@ -113,8 +113,7 @@ Ways::Way Ways::between(const Vector2d& a, const Vector2d& b) const {
 double least_half_width(const Shape& shape) {
   double least = kInfinity;
   for (int k = 0; k < kDirections; ++k) {
-    const double angle = std::numbers::pi * k / kDirections;
-    const Vector2d along(std::cos(angle), std::sin(angle));
+    const Vector2d along = unit(std::numbers::pi * k / kDirections);
     double low = kInfinity, high = -kInfinity;
     for (const auto& [core, radius] : shape.parts())
       for (const Vector2d& v : core.vertices) {

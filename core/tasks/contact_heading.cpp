@@ -16,7 +16,7 @@ Vector2d aim(const Task& task, const Poses& state, Rng& rng) {
       objects[static_cast<std::size_t>(rng.below(static_cast<int>(objects.size())))];
   const double angle = rng.uniform(0.0, 2.0 * std::numbers::pi);
   const double radius = task.scene.bodies[k].shape.radius() * std::sqrt(rng.uniform(0.0, 1.0));
-  return state[k].position() + radius * Vector2d(std::cos(angle), std::sin(angle));
+  return state[k].position() + radius * unit(angle);
 }
 
 }  // namespace
@@ -24,7 +24,7 @@ Vector2d aim(const Task& task, const Poses& state, Rng& rng) {
 int contact_heading(const Task& task, const Poses& state, Rng& rng) {
   const int headings = task.push.headings;
   const Vector2d way = aim(task, state, rng) - state[0].position();
-  const double turns = std::atan2(way.y(), way.x()) / (2.0 * std::numbers::pi);
+  const double turns = angle_of(way.x(), way.y()) / (2.0 * std::numbers::pi);
   const int nearest = static_cast<int>(std::lround(turns * headings));
   const int strides = static_cast<int>(task.push.strides.size());
   const int stride = strides > 1 ? rng.below(strides) : 0;

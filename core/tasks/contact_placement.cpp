@@ -16,15 +16,13 @@ constexpr double kSlideError = 1e-3;  // largest error of that gap [m]
 constexpr double kBesideGap = 0.1;    // largest gap to that body [m]
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-Vector2d unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
-
 /// Returns the angles of the outward normals of all straight edges of the parts, in the body frame.
 std::vector<double> normal_angles(const Shape& shape) {
   std::vector<double> angles;
   for (const auto& [core, radius] : shape.parts())
     for (std::size_t k = 0; core.size() > 1 && k < core.size(); ++k) {
       const Vector2d edge = core.vertices[(k + 1) % core.size()] - core.vertices[k];
-      angles.push_back(std::atan2(-edge.x(), edge.y()));
+      angles.push_back(angle_of(edge.y(), -edge.x()));
     }
   return angles;
 }
@@ -104,7 +102,7 @@ std::optional<Pose> in_touch(GoalDraw& draw, std::size_t i) {
   const Vector2d to = draw.state.poses[others[1]].position() - pose->position();
   const double turn =
       pose->theta +
-      std::round((std::atan2(to.y(), to.x()) - pose->theta) / (kTwoPi / 4.0)) * (kTwoPi / 4.0);
+      std::round((angle_of(to.x(), to.y()) - pose->theta) / (kTwoPi / 4.0)) * (kTwoPi / 4.0);
   return moved_up_to(draw, i, *pose, unit(turn), others[1]);
 }
 

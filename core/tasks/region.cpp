@@ -13,8 +13,6 @@ namespace {
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr int kDiscSides = 96;
 
-Vector2d unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
-
 }  // namespace
 
 double excess(const Region& region, const Vector2d& x) {

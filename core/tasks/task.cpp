@@ -113,20 +113,23 @@ std::vector<float> observation(const Task& task, const Poses& poses) {
   std::vector<float> out;
   out.reserve(static_cast<std::size_t>(observation_size(task)));
   const auto append = [&out](double value) { out.push_back(static_cast<float>(value)); };
+  const auto append_turn = [&append](double angle) {
+    const auto [c, s] = turn_of(angle);
+    append(c);
+    append(s);
+  };
   const double unit = position_unit(task), nearby = relative_unit(task);
   const Pose& robot = poses[0];
   append(robot.x / unit);
   append(robot.y / unit);
   if (robot_is_turned(task)) {
-    append(std::cos(robot.theta));
-    append(std::sin(robot.theta));
+    append_turn(robot.theta);
   }
   for (std::size_t i = 1; i < poses.size(); ++i) {
     if (!movable_object(task, i)) continue;
     append(poses[i].x / unit);
     append(poses[i].y / unit);
-    append(std::cos(poses[i].theta));
-    append(std::sin(poses[i].theta));
+    append_turn(poses[i].theta);
     append((poses[i].x - robot.x) / nearby);
     append((poses[i].y - robot.y) / nearby);
   }
@@ -134,8 +137,8 @@ std::vector<float> observation(const Task& task, const Poses& poses) {
     const double value = joint_value(joint, poses);
     if (joint.type == JointType::kPrismatic) append(value / nearby);
     if (joint.type != JointType::kRevolute) continue;
-    append(std::sin(value));
-    append(std::cos(value));
+    append(turn_of(value).s);
+    append(turn_of(value).c);
   }
   return out;
 }

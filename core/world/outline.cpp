@@ -82,10 +82,10 @@ Geometry only_areas(Geometry geometry) {
 
 /// Vertices are rounded to a grid of 2^-`bits` of the size, so that edges that differ by rounding
 /// alone are one.
-Geometry union_of(std::span<const Part> parts, int sides = kQuadrantSides, double bits = 36.0) {
+Geometry union_of(std::span<const Part> parts, int sides = kQuadrantSides, int bits = 36) {
   double reach = 0.0;
   for (const Part& part : parts) reach = std::max(reach, reach_from(Vector2d::Zero(), part));
-  const double grid = std::exp2(std::floor(std::log2(reach)) - bits);
+  const double grid = std::ldexp(1.0, std::ilogb(reach) - bits);
   Geometry all = area_of(parts[0], sides);
   for (const Part& part : parts.subspan(1))
     all = only_areas(checked(GEOSUnionPrec_r(geos(), all.get(), area_of(part, sides).get(), grid)));
@@ -212,7 +212,7 @@ std::vector<std::vector<Vector2d>> outline(std::span<const Part> parts) {
 
 bool in_one_piece(std::span<const Part> parts) {
   // Coarse: the vertices may come from a file, rounded.
-  return GEOSGetNumGeometries_r(geos(), union_of(parts, kQuadrantSides, 28.0).get()) == 1;
+  return GEOSGetNumGeometries_r(geos(), union_of(parts, kQuadrantSides, 28).get()) == 1;
 }
 
 bool maps_onto_itself(std::span<const Part> parts, double angle) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/math/elementary.hpp"
+
 namespace rtg {
 
 /// Least damping k_D in dynamic mode. Below it, bodies coast for about a hundred sub-steps or more.
@@ -36,7 +38,7 @@ struct PhysicsConfig {
   /// Departs from the paper: its states are two successive poses, so that a push may end while
   /// bodies move. Here it ends at rest, in poses alone, as the learner sees them.
   int settling_steps() const {
-    return inertia ? static_cast<int>(std::ceil(std::log(100.0) / std::log1p(damping))) : 0;
+    return inertia ? static_cast<int>(std::ceil(logarithm(100.0) / logarithm(1.0 + damping))) : 0;
   }
 
   template <class Visitor>

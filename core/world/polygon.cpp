@@ -71,7 +71,7 @@ std::optional<std::string> polygon_defect(std::span<const Vector2d> vertices, do
     const Vector2d next = vertices[(k + 2) % n] - vertices[(k + 1) % n];
     if (edge.norm() < kMinEdge)
       return "edge at " + vertex_name(k) + " is shorter than " + in_metres(kMinEdge * metre);
-    turning += std::atan2(cross(edge, next), edge.dot(next));
+    turning += angle_of(edge.dot(next), cross(edge, next));
     area += cross(vertices[k], vertices[(k + 1) % n]) / 2.0;
   }
   if (area < 0.0) return "is clockwise; list the vertices counter-clockwise";
@@ -111,10 +111,8 @@ Polygon box(double width, double height) {
 
 Polygon regular_polygon(int sides, double circumradius) {
   Polygon shape;
-  for (int k = 0; k < sides; ++k) {
-    const double angle = 2.0 * std::numbers::pi * k / sides;
-    shape.vertices.emplace_back(circumradius * std::cos(angle), circumradius * std::sin(angle));
-  }
+  for (int k = 0; k < sides; ++k)
+    shape.vertices.emplace_back(circumradius * unit(2.0 * std::numbers::pi * k / sides));
   return shape;
 }
 

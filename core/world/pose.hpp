@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/math/elementary.hpp"
 #include "core/math/vectors.hpp"
 
 namespace rtg {
@@ -21,9 +22,15 @@ struct Pose {
 /// State of a scene at rest: one pose per body, body 0 is the robot.
 using Poses = std::vector<Pose>;
 
+/// Returns the unit vector at the angle θ from the x axis.
+inline Vector2d unit(double theta) {
+  const Turn<double> turn = turn_of(theta);
+  return {turn.c, turn.s};
+}
+
 /// Returns R(θ) v.
 inline Vector2d rotate(double theta, const Vector2d& v) {
-  const double c = std::cos(theta), s = std::sin(theta);
+  const auto [c, s] = turn_of(theta);
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 

@@ -24,8 +24,7 @@ PushConfig with_stride_of(int action, const PushConfig& config) {
 }
 
 Vector2d direction(int action, const PushConfig& config) {
-  const double angle = 2.0 * std::numbers::pi * (action % config.headings) / config.headings;
-  return {std::cos(angle), std::sin(angle)};
+  return unit(2.0 * std::numbers::pi * (action % config.headings) / config.headings);
 }
 
 Stroke stroke_of(int action, const PushConfig& config) {

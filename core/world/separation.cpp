@@ -13,7 +13,7 @@ using Points = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, 2 * kMaxVertices>;
 /// Returns the vertices of `b` in the frame of a body with the pose `pose_a`.
 Points local_points(const Pose& pose_a, const Polygon& b, const Pose& pose_b) {
   const Vector2d offset = to_local(pose_a, pose_b.position());
-  const double c = std::cos(pose_b.theta - pose_a.theta), s = std::sin(pose_b.theta - pose_a.theta);
+  const auto [c, s] = turn_of(pose_b.theta - pose_a.theta);
   Points out(2, static_cast<Eigen::Index>(b.size()));
   for (std::size_t k = 0; k < b.size(); ++k) {
     const Vector2d& v = b.vertices[k];

@@ -18,13 +18,14 @@ constexpr double kSame = 1e-6;  // distance at which points count as one / bound
 /// the angle `turn`.
 AreaIntegrals sector(const Vector2d& apex, double radius, double from, double turn) {
   const double area = radius * radius * turn / 2.0, to = from + turn;
-  const Vector2d lever = std::pow(radius, 3) / 3.0 *
-                         Vector2d(std::sin(to) - std::sin(from), std::cos(from) - std::cos(to));
+  const Turn<double> begin = turn_of(from), end = turn_of(to);
+  const double square = radius * radius;
+  const Vector2d lever = square * radius / 3.0 * Vector2d(end.s - begin.s, begin.c - end.c);
   return {area, area * apex + lever,
-          area * apex.squaredNorm() + 2.0 * apex.dot(lever) + std::pow(radius, 4) * turn / 4.0};
+          area * apex.squaredNorm() + 2.0 * apex.dot(lever) + square * square * turn / 4.0};
 }
 
-double angle_of(const Vector2d& v) { return std::atan2(v.y(), v.x()); }
+double angle_of(const Vector2d& v) { return rtg::angle_of(v.x(), v.y()); }
 
 /// Returns `angle` plus the multiple of 2π that puts it into [0, 2π).
 double positive(double angle) {

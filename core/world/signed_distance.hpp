@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "core/math/elementary.hpp"
+#include "core/math/elementary_lanes.hpp"
 #include "core/math/vectors.hpp"
 #include "core/world/polygon.hpp"
 
@@ -54,8 +54,6 @@ T plane_distances(const Planes<T>& planes, const Vec2<T>& x, T* distances) {
 template <class T>
 class SignedDistance {
  public:
-  static_assert(kMaxVertices <= static_cast<std::size_t>(kMaxExponentials));
-
   /// `distances` and `top` are what plane_distances() writes and returns for x. `alpha` is α.
   SignedDistance(const Planes<T>& planes, double alpha, const T* distances, const T& top)
       : planes_(planes), alpha_(alpha) {
@@ -64,10 +62,9 @@ class SignedDistance {
       exponent[k] = T(alpha) * (distances[k] - top);
       weight_[k] = greater(exponent[k], T(kNothing));
     }
-    exponentials(weight_, planes.count);
     T sum(0.0);
     for (int k = 0; k < planes.count; ++k) {
-      weight_[k] = select(exponent[k] > T(kNothing), weight_[k], T(0.0));
+      weight_[k] = select(exponent[k] > T(kNothing), exponential(weight_[k]), T(0.0));
       sum = sum + weight_[k];
     }
     const T scale = T(1.0) / sum;

@@ -12,10 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/search/generate.hpp"
-#include "core/search/simulators.hpp"
 #include "nodes/config/config.hpp"
 #include "tests/bench/arguments.hpp"
+#include "tests/support/generated.hpp"
 
 namespace rtg::bench {
 namespace {
@@ -62,13 +61,8 @@ void print_progress(const search::Progress& p) {
 
 void run(const Options& options) {
   const config::Config config = config::load_config(options.file, options.overrides);
-  search::GenerationSeams seams = search::in_process_seams(
-      reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
-      search::forward_replay(config.task, config.physics, config.forward), options.threads);
-  seams.store = [](std::span<const search::Transition>) {};
-  seams.progress = print_progress;
   auto report = nlohmann::ordered_json::parse(
-      to_json(generate(config.task, config.search, options.seed, seams)));
+      to_json(testing::generated(config, options.seed, options.threads, print_progress)));
   report.erase("replay_gaps");
   report.erase("nodes");
   std::printf("%s\n", report.dump().c_str());

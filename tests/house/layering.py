@@ -64,6 +64,7 @@ ONLY_IN = {
     ),
     r"(hpipm|blasfeo)\w*\.h": r"tests/bench/hpipm_peer\.cpp",
     r"box2d/.*": r"(tests/)?core/forward/box2d_\w+\.cpp|tests/consumer/main\.cpp",
+    r"sleef\.h": r"core/math/elementary\.cpp",
     r"geos_c\.h": r"core/world/outline\.cpp",
     r"(yaml-cpp|utf8cpp)/.*": r"nodes/config/\w+\.cpp",
     r"lcm/.*": r"nodes/bus/network\.cpp",

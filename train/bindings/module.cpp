@@ -5,6 +5,7 @@ NB_MODULE(_core, module) {
   module.doc() =
       "The C++ core of RTG: configuration, tasks, the true dynamics, generation, "
       "values of headings, the bus.";
+  module.attr("PROCESSOR") = RTG_PROCESSOR;  // what -march was given
   rtg::bindings::bind_task(module);
   rtg::bindings::bind_config(module);
   rtg::bindings::bind_simulator(module);

@@ -1,28 +1,34 @@
-"""Checks whether this processor can run the compiled core of an installed package."""
+"""Checks that this processor can run the compiled core, which is for x86-64-v3 or above."""
 
 from __future__ import annotations
 
-import importlib
+import platform
+import sys
 from pathlib import Path
+from types import TracebackType
+from typing import NoReturn
 
-_NEEDED = {"x86-64-v3": ("avx2", "bmi2", "fma")}  # by what -march was given; flags of Linux
+_CPUINFO = Path("/proc/cpuinfo")
+_NEEDED = ("avx2", "bmi2", "fma")  # flags of Linux
 
 
 def check() -> None:
-    """Raises ImportError if the package was compiled for another processor.
+    """Raises ImportError if this processor lacks instructions that every build of the core uses.
 
-    In a checkout it is compiled for this one.
+    Uncaught, the error ends the program with one line and status 2.
     """
-    try:
-        arch = importlib.import_module("rtg.compiled_for").ARCH
-    except ModuleNotFoundError:
+    if platform.machine() != "x86_64":
         return
-    text = Path("/proc/cpuinfo").read_text()
-    flags = text.partition("flags")[2].partition("\n")[0].split()
-    missing = [flag for flag in _NEEDED.get(arch, ()) if flag not in flags]
+    flags = _CPUINFO.read_text().partition("flags")[2].partition("\n")[0].split()
+    missing = [flag for flag in _NEEDED if flag not in flags]
     if missing:
+        sys.excepthook = _tell
         raise ImportError(
-            f"this build of rtg is for processors with {', '.join(missing)} ({arch}); legal: a "
-            "build for any: pip install --no-binary :all: --config-settings="
-            "cmake.define.RTG_ARCH= reverse-trajectory-generation"
+            f"this processor lacks {', '.join(missing)}; legal: an x86-64-v3 processor, as most "
+            "are since 2013"
         )
+
+
+def _tell(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> NoReturn:
+    print(f"rtg: {error}", file=sys.stderr)
+    sys.exit(2)

@@ -149,11 +149,11 @@ void FilterSqp<T>::iterate() {
 }
 
 /// Solves the Newton systems. Returns the lanes of stepping_ in which they are regular. Where kkt_
-/// meets a singular pivot, solves again with pivoting_, unless both are UMFPACK.
+/// meets a singular pivot, solves again with pivoting_, unless both are KLU.
 template <class T>
 Mask<T> FilterSqp<T>::find_step() {
   Mask<T> regular = kkt_->solve(newton_.system(), step_) && stepping_;
-  if (config_.kkt == KktMethod::kUmfpack) return regular;
+  if (config_.kkt == KktMethod::kKlu) return regular;
   for (int l = 0; l < kWidth<T>; ++l)
     if (lane(stepping_ && !regular, l) && strategy(l).may_pivot())
       set_lane(regular, l, pivoting_.solve(newton_.system(), l, step_));

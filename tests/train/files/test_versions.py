@@ -1,6 +1,7 @@
 """Checks what a run says it was made with."""
 
 import json
+import platform
 import re
 
 from rtg.files import versions
@@ -11,7 +12,9 @@ def test_versions_name_what_a_run_was_made_with():
     assert found["packages"]["lcm"] == "1.5.3"
     revision = found["git_revision"]
     assert revision is None or re.fullmatch("[0-9a-f]{40}", revision)
-    assert set(found["debian"]) >= {"libbox2d-dev", "libeigen3-dev"}
+    assert set(found["debian"]) >= {"libbox2d-dev", "libeigen3-dev", "libsleef-dev"}
+    if platform.machine() == "x86_64":
+        assert found["instruction_set"].startswith(("x86-64-v", "native"))
 
 
 def test_a_commit_says_whether_files_were_changed():

@@ -25,6 +25,7 @@ _DEBIAN_PACKAGES = (
     "libsuitesparse-dev",
     "libbox2d-dev",
     "libgeos-dev",
+    "libsleef-dev",
     "libyaml-cpp-dev",
 )
 
@@ -117,6 +118,7 @@ def versions() -> dict[str, Any]:
         "system": platform.platform(),
         "processors": os.cpu_count(),
         "processor": _processor(),
+        "instruction_set": _core.PROCESSOR,
         "memory_gib": round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30),
         "packages": {name: importlib.metadata.version(name) for name in _PYTHON_PACKAGES},
         "debian": {name: _debian_version(name) for name in _DEBIAN_PACKAGES},

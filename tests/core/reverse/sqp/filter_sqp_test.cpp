@@ -275,10 +275,10 @@ TEST(FilterSqp, SolvesSingularSystemsWithPivotingAndGoesOnAfterARestoration) {
     EXPECT_LT((result.x.p[k] - regular.x.p[k]).norm(), 1e-4);
 }
 
-TEST(FilterSqp, DoesNotSolveASingularSystemTwiceByUmfpack) {
+TEST(FilterSqp, DoesNotSolveASingularSystemTwiceByKlu) {
   const TouchingScene scene;
   ReverseConfig config;
-  config.kkt = KktMethod::kUmfpack;
+  config.kkt = KktMethod::kKlu;
   const ReverseProblem problem = scene.problem(config), *one = &problem;
   const Iterate start = static_iterate(problem);
   const SqpResult result =
