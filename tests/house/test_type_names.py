@@ -37,7 +37,7 @@ def doubles(files: dict[str, str]) -> list[str]:
     """Types that more than one of the files defines, with these files."""
     places = defaultdict(list)
     for path, text in sorted(files.items()):
-        for name in types(text):
+        for name in dict.fromkeys(types(text)):
             places[name].append(path)
     return [f"{name}: {', '.join(where)}" for name, where in places.items() if len(where) > 1]
 

@@ -9,7 +9,7 @@
 
 #include "tests/support/generated.hpp"
 
-namespace rtg {
+namespace rtg::beam_coordinator {
 namespace {
 
 std::string digest_of(const std::string& task) {
@@ -36,4 +36,4 @@ TEST(SameBits, OfAChainOfJoints) {
 }
 
 }  // namespace
-}  // namespace rtg
+}  // namespace rtg::beam_coordinator
