@@ -5,8 +5,8 @@
 BUILD_FOLDER is that of the release build, which is for x86-64-v3. It runs as it is, with the
 libraries that a processor with nothing more than x86-64-v3 would get, and emulated on such a
 processor by QEMU; beside it a build for this processor, which takes some minutes. Prints the
-digest of the transitions for each and three tasks, as the report of a run has it. Exit status 1 if
-any two differ.
+digest of the transitions for each and three tasks, as the report of a run has it, and whether a
+processor below x86-64-v3 is refused. Exit status 1 if any two differ, or if it is not.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ LIBRARIES = {
     "OPENBLAS_CORETYPE": "Haswell",
 }
 EMULATED = ("qemu-x86_64", "-cpu", "Haswell")
+TOO_OLD = ("qemu-x86_64", "-cpu", "Nehalem")
 
 
 class Machine(NamedTuple):
@@ -66,6 +67,14 @@ def digest(machine: Machine, task: str, settings: Sequence[str]) -> str:
     return str(json.loads(done.stdout)["rows_sha256"])
 
 
+def refuses(program: Path) -> bool:
+    """Returns whether a program ends with a line and status 2 on a processor that is too old."""
+    command = [*TOO_OLD, program]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    lines = [line for line in done.stderr.splitlines() if not line.startswith("qemu-x86_64: ")]
+    return done.returncode == 2 and len(lines) == 1 and "this processor lacks" in lines[0]
+
+
 def main(release: Path) -> int:
     program = Path("tests", "generate_bench")
     machines = (
@@ -83,7 +92,9 @@ def main(release: Path) -> int:
                 print(f"{task:10s} {settings[0]:24s} {machine.name:14s} {one}", flush=True)
     differ = [" ".join(which) for which, digests in found.items() if len(digests) > 1]
     print(f"the bits differ: {', '.join(differ)}" if differ else "all bits are the same")
-    return bool(differ)
+    refused = refuses(release / program)
+    print(f"a processor below x86-64-v3 is {'' if refused else 'not '}refused")
+    return int(bool(differ) or not refused)
 
 
 if __name__ == "__main__":
